@@ -1,0 +1,32 @@
+//! What the crates of rc speak: grids, fields, elasticity and the small traits that a research fork implements.
+//!
+//! # Conventions (of every crate of this workspace)
+//!
+//! - **Units.** Libraries compute with cell side λ = 1 and E* = E/(1-ν²) = 1 in `f64`. Lengths are multiples of λ, pressures
+//!   multiples of E*. Only `rc-cli` knows metres and pascals; [`PeriodicCell`] and [`Elasticity`] convert.
+//! - **Signs.** Pressure p ≥ 0 is compression. Heights h are those of the rigid surface, positive towards the half-space.
+//!   Gap g ≥ 0. The interface displacement v has zero mean over the cell, and `g = v - (h - h_max + Δ)` with penetration Δ.
+//! - **Layout.** Fields are row-major, `index = iy * nx + ix`. The origin of the cell is its corner; point (ix, iy) is the
+//!   **centre** of its element, ((ix + ½)/nx, (iy + ½)/ny).
+//! - **Fourier.** Wavenumbers k are integers, waves per cell; q = 2πk. A forward transform carries no factor, the inverse
+//!   carries 1/(nx·ny). The symbol of an operator is its eigenvalue for the wave exp(2πi k·x).
+//! - **Means** are over the whole cell (nominal area A0) unless a name says "contact".
+//! - **rms slope** is the isotropic one, √⟨|∇h|²⟩.
+//!
+//! The paper is Putignano, Afferrante, Carbone, Demelio, *A new efficient numerical method for contact mechanics of rough
+//! surfaces*, Int. J. Solids Struct. 49 (2012) 338-343; "Eq. (n)" without another source means its equations.
+
+mod field;
+mod grid;
+mod progress;
+mod traits;
+mod units;
+
+#[cfg(feature = "testing")]
+pub mod testing;
+
+pub use field::{Field, ShapeError};
+pub use grid::{Grid, GridError};
+pub use progress::{Event, Observer, Silent};
+pub use traits::{HeightField, Kernel, Operator, Symbol};
+pub use units::{Elasticity, PeriodicCell, UnitError};

@@ -1,0 +1,95 @@
+//! Conformance checks: what every implementation of a trait must satisfy, for forks to run on their own types.
+//!
+//! Each function panics with a sentence that says what failed, so a test is one call.
+
+use crate::{Grid, HeightField, Kernel, Operator};
+
+/// A reproducible pseudo-random value in [0, 1) for index `i` (a Weyl sequence: no dependency, no state).
+#[must_use]
+pub fn quasi_random(i: usize) -> f64 {
+    (i as f64 * 0.754_877_666_246_692_8 + 0.5).fract()
+}
+
+/// Checks a [`HeightField`]: finite, periodic, and sampled as evaluated, on a grid that is neither square nor even.
+///
+/// # Panics
+/// When the contract is broken.
+pub fn check_height_field(surface: &dyn HeightField) {
+    let side = surface.band_limit().map_or(15, |limit| 2 * limit + 3);
+    let grid = Grid::new(side, side + 2).expect("the band limit fits a grid");
+    let sampled = surface.sample(grid);
+    let scale = sampled.max().abs().max(sampled.min().abs()).max(f64::MIN_POSITIVE);
+    for n in 0..97 {
+        let i = n * (grid.len() - 1) / 96;
+        let (x, y) = grid.centre(i % grid.nx(), i / grid.nx());
+        let h = surface.height(x, y);
+        assert!(h.is_finite(), "height at ({x}, {y}) is {h}");
+        let differences = [
+            ("sample", (sampled.values()[i] - h).abs()),
+            ("period in x", (surface.height(x + 1.0, y) - h).abs()),
+            ("period in y", (surface.height(x, y - 1.0) - h).abs()),
+        ];
+        for (what, difference) in differences {
+            assert!(
+                difference <= 1e-9 * scale,
+                "{what}: off by {difference:e} at ({x}, {y}), heights are of order {scale:e}"
+            );
+        }
+    }
+}
+
+/// Checks a [`Kernel`]: zero at k = 0, positive and finite elsewhere, symmetric under x ↔ y on a square grid.
+///
+/// # Panics
+/// When the contract is broken.
+pub fn check_kernel(kernel: &dyn Kernel) {
+    for (nx, ny) in [(16, 16), (15, 9), (8, 20)] {
+        let symbol = kernel.symbol(Grid::new(nx, ny).expect("small grid"));
+        assert!(symbol(0, 0) == 0.0, "the symbol at k = 0 is {}, not 0", symbol(0, 0));
+        for ky in 0..=ny / 2 {
+            for kx in 0..=nx / 2 {
+                let value = symbol(kx, ky);
+                let allowed = if kx + ky == 0 { value == 0.0 } else { value > 0.0 && value.is_finite() };
+                assert!(allowed, "the symbol at ({kx}, {ky}) on {nx} x {ny} is {value}");
+                if nx == ny {
+                    let mirrored = symbol(ky, kx);
+                    assert!(
+                        (value - mirrored).abs() <= 1e-13 * value,
+                        "symbol ({kx}, {ky}) = {value}, mirrored {mirrored}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Checks a symmetric [`Operator`]: linear, symmetric, positive on neutral loads, zero for a uniform load, indifferent to
+/// dirty scratch.
+///
+/// # Panics
+/// When the contract is broken.
+pub fn check_operator(operator: &dyn Operator) {
+    let n = operator.n_elements();
+    let apply = |p: &[f64], dirt: f64| {
+        let (mut v, mut scratch) = (vec![dirt; n], vec![dirt; operator.scratch_len()]);
+        operator.apply(p, &mut v, &mut scratch);
+        v
+    };
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let a: Vec<f64> = (0..n).map(|i| quasi_random(i) - 0.5).collect();
+    let b: Vec<f64> = (0..n).map(|i| quasi_random(3 * i + 1) - 0.5).collect();
+    let (la, lb) = (apply(&a, 0.0), apply(&b, 0.0));
+    let scale = la.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    assert!(scale > 0.0 && scale.is_finite(), "the displacement of a random load is {scale}");
+
+    assert!(apply(&a, f64::NAN) == la, "the result depends on what scratch and output held before");
+    let combined: Vec<f64> = a.iter().zip(&b).map(|(a, b)| 2.0 * a - b).collect();
+    for ((c, la), lb) in apply(&combined, 0.0).iter().zip(&la).zip(&lb) {
+        assert!((c - (2.0 * la - lb)).abs() <= 1e-12 * scale, "not linear: {c} against {}", 2.0 * la - lb);
+    }
+    let (ab, ba) = (dot(&a, &lb), dot(&b, &la));
+    assert!((ab - ba).abs() <= 1e-12 * scale * n as f64, "not symmetric: <a, Lb> = {ab}, <b, La> = {ba}");
+    assert!(dot(&a, &la) > 0.0, "not positive: <a, La> = {}", dot(&a, &la));
+    let worst = apply(&vec![1.0; n], 0.0).iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    assert!(worst <= 1e-12, "a uniform pressure moves the surface by {worst}");
+}

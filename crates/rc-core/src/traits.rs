@@ -1,0 +1,59 @@
+//! The traits that a research fork implements to bring its own surface, half-space or operator.
+
+use crate::{Field, Grid};
+
+/// A periodic rough surface on the unit cell.
+///
+/// Implementations: a realised spectrum, a measured map, a sphere. [`crate::testing::check_height_field`] (feature
+/// `testing`) checks the contract.
+pub trait HeightField: Sync {
+    /// Height at (`x`, `y`), all in λ; periodic with period 1 in both arguments.
+    fn height(&self, x: f64, y: f64) -> f64;
+
+    /// The largest wavenumber (waves per cell) in any direction, or `None` when the surface is not band-limited.
+    fn band_limit(&self) -> Option<usize>;
+
+    /// Heights at the element centres of `grid`. Equal to [`HeightField::height`] there up to rounding; implementations
+    /// that have a fast transform override it.
+    fn sample(&self, grid: Grid) -> Field {
+        Field::from_fn(grid, |x, y| self.height(x, y))
+    }
+}
+
+/// Eigenvalues of an elastic operator on one grid: maps (|kx|, |ky|), up to half the grid, to the eigenvalue.
+pub type Symbol<'a> = Box<dyn Fn(usize, usize) -> f64 + Send + Sync + 'a>;
+
+/// The elastic response of a periodic half-space to pressure on a uniform grid.
+///
+/// A layered or viscoelastic half-space is another `Kernel`. [`crate::testing::check_kernel`] checks the contract.
+pub trait Kernel: Sync {
+    /// Short name, as in result files.
+    fn name(&self) -> &'static str;
+
+    /// The symbol of `v = L p` on `grid`, in units of λ/E*: the factor between the pressure wave exp(2πi k·x) on element
+    /// centres and its displacement. Even in kx and in ky, so it is asked for 0 ≤ kx ≤ nx/2, 0 ≤ ky ≤ ny/2 only. Zero at
+    /// k = 0 (Eq. 3: the displacement has zero mean) and positive elsewhere.
+    fn symbol(&self, grid: Grid) -> Symbol<'_>;
+
+    /// The constant c for which counted contact area minus c · (contact edges) · (element area) is free of the first-order
+    /// discretisation error (Yastrebov, Anciaux, Molinari 2017; it depends on the discretisation, so on the kernel).
+    fn perimeter_constant(&self) -> f64;
+}
+
+/// A linear map from pressure to zero-mean displacement: `v = L p` (Eq. 4), symmetric for uniform grids.
+///
+/// [`crate::testing::check_operator`] checks the contract.
+pub trait Operator: Sync {
+    /// Number of elements: the length of pressure and displacement.
+    fn n_elements(&self) -> usize;
+
+    /// Length of the scratch that [`Operator::apply`] needs.
+    fn scratch_len(&self) -> usize;
+
+    /// Computes `displacement = L pressure`, in λ for pressures in E*. `scratch` may hold anything before, and holds
+    /// nothing useful after. The result must not depend on the number of threads.
+    ///
+    /// # Panics
+    /// When a slice has another length than the two methods above say.
+    fn apply(&self, pressure: &[f64], displacement: &mut [f64], scratch: &mut [f64]);
+}
