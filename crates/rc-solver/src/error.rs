@@ -1,0 +1,59 @@
+//! Why a solve failed.
+
+use rc_core::Grid;
+use thiserror::Error;
+
+use crate::{Certificate, Solution};
+
+/// A contact problem that was not solved.
+#[derive(Clone, Debug, Error)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// A height is NaN or infinite.
+    #[error("height at element ({ix}, {iy}) is {value}; heights must be finite")]
+    Height {
+        /// Column.
+        ix: usize,
+        /// Row.
+        iy: usize,
+        /// The value.
+        value: f64,
+    },
+    /// The mean pressure is not positive and finite.
+    #[error("the mean pressure must be positive and finite, not {value}")]
+    MeanPressure {
+        /// Mean pressure given, in E*.
+        value: f64,
+    },
+    /// The penetration is outside (0, Δ_full]. Under penetration control no unique pressure exists beyond full contact: use
+    /// pressure control there.
+    #[error(
+        "the penetration must be above 0 and below that of full contact, {full_contact}, not {value} (in units of the cell side)"
+    )]
+    Penetration {
+        /// Penetration given, in λ.
+        value: f64,
+        /// h_max - mean(h), in λ.
+        full_contact: f64,
+    },
+    /// The tolerance is not in (0, 1), or below what rounding allows.
+    #[error("the tolerance must be between {smallest:e} and 1, not {value:e}")]
+    Tolerance {
+        /// The tolerance given.
+        value: f64,
+        /// The smallest that can be certified.
+        smallest: f64,
+    },
+    /// The iteration limit was reached, or the error no longer falls. The best pressure found comes with it.
+    #[error("not converged on {grid} elements after {iterations} iterations: {certificate}")]
+    NotConverged {
+        /// Grid of the level.
+        grid: Grid,
+        /// Iterations on that level.
+        iterations: usize,
+        /// Residuals of the best pressure found.
+        certificate: Certificate,
+        /// The best pressure found, on the finest grid, with its gap.
+        solution: Box<Solution>,
+    },
+}

@@ -1,0 +1,244 @@
+//! The periodic convolution that every application of L and of its preconditioner goes through.
+//!
+//! Three passes over memory: rows are transformed block by block and left in tiles; panels of a few columns are gathered
+//! from the tiles, transformed, multiplied by the symbol, transformed back and scattered; rows are transformed back. The
+//! caller fills the rows and takes them as they come, so that its own vector work rides along while they are in cache.
+//! Work is parallel over blocks and panels, never inside one transform, so results do not depend on the number of threads.
+
+use std::sync::{Arc, Mutex};
+
+use rayon::prelude::*;
+use rc_core::Grid;
+use realfft::num_complex::Complex;
+use realfft::{ComplexToReal, FftNum, RealFftPlanner, RealToComplex};
+use rustfft::{Fft, FftPlanner};
+
+use super::SymbolTable;
+
+/// Rows per block, and columns per panel: sixteen f32 complex values are two cache lines.
+pub(crate) const BLOCK_ROWS: usize = 16;
+const PANEL_COLUMNS: usize = 16;
+
+/// Unused values after each column of a panel. Without them the columns of a grid with a power of two of rows would all
+/// compete for the same few cache lines while a panel is gathered or scattered.
+const PANEL_PADDING: usize = 16;
+
+/// Plans and buffers for convolutions on one grid.
+pub(crate) struct Convolution<T> {
+    grid: Grid,
+    row_forward: Arc<dyn RealToComplex<T>>,
+    row_inverse: Arc<dyn ComplexToReal<T>>,
+    column_forward: Arc<dyn Fft<T>>,
+    column_inverse: Arc<dyn Fft<T>>,
+    /// The row spectra, tiled: block of rows, then panel of columns, then row, then column.
+    spectrum: Vec<Complex<T>>,
+    /// One workspace per thread, locked by the thread that uses it.
+    workspaces: Vec<Mutex<Workspace<T>>>,
+}
+
+struct Workspace<T> {
+    /// One block of rows.
+    rows: Vec<T>,
+    /// One spectrum of a row.
+    row_spectrum: Vec<Complex<T>>,
+    /// One panel, columns contiguous.
+    panel: Vec<Complex<T>>,
+    scratch: Vec<Complex<T>>,
+}
+
+impl<T: FftNum> Convolution<T> {
+    pub(crate) fn new(grid: Grid) -> Self {
+        let mut real_planner = RealFftPlanner::new();
+        let mut planner = FftPlanner::new();
+        let row_forward = real_planner.plan_fft_forward(grid.nx());
+        let row_inverse = real_planner.plan_fft_inverse(grid.nx());
+        let column_forward = planner.plan_fft_forward(grid.ny());
+        let column_inverse = planner.plan_fft_inverse(grid.ny());
+        let scratch_len = [
+            row_forward.get_scratch_len(),
+            row_inverse.get_scratch_len(),
+            column_forward.get_inplace_scratch_len(),
+            column_inverse.get_inplace_scratch_len(),
+        ];
+        let scratch_len = scratch_len.into_iter().max().unwrap_or(0);
+        let n_columns = grid.nx() / 2 + 1;
+        let zero = Complex::new(T::zero(), T::zero());
+        let workspace = || Workspace {
+            rows: vec![T::zero(); BLOCK_ROWS * grid.nx()],
+            row_spectrum: vec![zero; n_columns],
+            panel: vec![zero; PANEL_COLUMNS * (grid.ny() + PANEL_PADDING)],
+            scratch: vec![zero; scratch_len],
+        };
+        let workspaces = (0..rayon::current_num_threads()).map(|_| Mutex::new(workspace())).collect();
+        let spectrum = vec![zero; n_columns * grid.ny()];
+        Self { grid, row_forward, row_inverse, column_forward, column_inverse, spectrum, workspaces }
+    }
+
+    /// Convolves.
+    ///
+    /// `sources` and `sinks` have one item for each [`BLOCK_ROWS`] rows of the grid, in order. `fill` writes the field's
+    /// rows of its block; it is called once for each block before `take` is called at all. `take` receives the rows of the
+    /// result; what it returns is collected in the order of blocks, for the caller to sum.
+    pub(crate) fn apply<S, F, K, R>(
+        &mut self,
+        symbol: &SymbolTable<T>,
+        sources: S,
+        fill: F,
+        sinks: K,
+        take: impl Fn(K::Item, &[T]) -> R + Sync,
+    ) -> Vec<R>
+    where
+        S: IndexedParallelIterator,
+        F: Fn(S::Item, &mut [T]) + Sync,
+        K: IndexedParallelIterator,
+        R: Send,
+    {
+        self.transform_rows(sources, |source, rows| fill(source, rows));
+        self.multiply(symbol);
+        self.take_rows(sinks, take)
+    }
+
+    /// First pass: `fill` and transform rows. Returns what `fill` returns, in the order of blocks.
+    pub(crate) fn transform_rows<S, R>(&mut self, sources: S, fill: impl Fn(S::Item, &mut [T]) -> R + Sync) -> Vec<R>
+    where
+        S: IndexedParallelIterator,
+        R: Send,
+    {
+        let (nx, n_columns) = (self.grid.nx(), self.grid.nx() / 2 + 1);
+        let (row_forward, workspaces) = (&self.row_forward, &self.workspaces);
+        let blocks = self.spectrum.par_chunks_mut(BLOCK_ROWS * n_columns);
+        blocks
+            .zip_eq(sources)
+            .map(|(block, source)| {
+                let n_rows = block.len() / n_columns;
+                let mut workspace = lock(workspaces);
+                let Workspace { rows, row_spectrum, scratch, .. } = &mut *workspace;
+                let rows = &mut rows[..n_rows * nx];
+                let filled = fill(source, rows);
+                for (iy, row) in rows.chunks_exact_mut(nx).enumerate() {
+                    let transformed = row_forward.process_with_scratch(row, row_spectrum, scratch);
+                    transformed.expect("buffers have the lengths of the plan");
+                    let (panels, rest) = row_spectrum.as_chunks::<PANEL_COLUMNS>();
+                    let (tiles, rest_tile) = block.split_at_mut(panels.len() * PANEL_COLUMNS * n_rows);
+                    let (tile_rows, _) = tiles.as_chunks_mut::<PANEL_COLUMNS>();
+                    for (values, tile_row) in panels.iter().zip(tile_rows.iter_mut().skip(iy).step_by(n_rows)) {
+                        *tile_row = *values;
+                    }
+                    rest_tile[iy * rest.len()..][..rest.len()].copy_from_slice(rest);
+                }
+                filled
+            })
+            .collect()
+    }
+
+    /// Second pass: columns there, symbol, and back.
+    pub(crate) fn multiply(&mut self, symbol: &SymbolTable<T>) {
+        let (ny, n_columns) = (self.grid.ny(), self.grid.nx() / 2 + 1);
+        let (forward, inverse, workspaces) = (&self.column_forward, &self.column_inverse, &self.workspaces);
+        let mut panels: Vec<Vec<&mut [Complex<T>]>> = Vec::new();
+        panels.resize_with(n_columns.div_ceil(PANEL_COLUMNS), || Vec::with_capacity(ny.div_ceil(BLOCK_ROWS)));
+        for block in self.spectrum.chunks_mut(BLOCK_ROWS * n_columns) {
+            let n_rows = block.len() / n_columns;
+            for (tile, panel) in block.chunks_mut(PANEL_COLUMNS * n_rows).zip(&mut panels) {
+                panel.push(tile);
+            }
+        }
+        panels.par_iter_mut().enumerate().for_each(|(panel_idx, tiles)| {
+            let first_column = panel_idx * PANEL_COLUMNS;
+            let width = PANEL_COLUMNS.min(n_columns - first_column);
+            let mut workspace = lock(workspaces);
+            let Workspace { panel, scratch, .. } = &mut *workspace;
+            let panel = &mut panel[..width * (ny + PANEL_PADDING)];
+            gather(tiles, panel, width);
+            for (column_idx, column) in panel.chunks_exact_mut(ny + PANEL_PADDING).enumerate() {
+                let column = &mut column[..ny];
+                forward.process_with_scratch(column, scratch);
+                scale_column(column, symbol.column(first_column + column_idx));
+                inverse.process_with_scratch(column, scratch);
+            }
+            scatter(panel, tiles, width);
+        });
+    }
+
+    /// Third pass: transform rows back and hand them to `take`.
+    pub(crate) fn take_rows<K, R>(&self, sinks: K, take: impl Fn(K::Item, &[T]) -> R + Sync) -> Vec<R>
+    where
+        K: IndexedParallelIterator,
+        R: Send,
+    {
+        let (nx, n_columns) = (self.grid.nx(), self.grid.nx() / 2 + 1);
+        let blocks = self.spectrum.par_chunks(BLOCK_ROWS * n_columns);
+        blocks
+            .zip_eq(sinks)
+            .map(|(block, sink)| {
+                let n_rows = block.len() / n_columns;
+                let mut workspace = lock(&self.workspaces);
+                let Workspace { rows, row_spectrum, scratch, .. } = &mut *workspace;
+                let rows = &mut rows[..n_rows * nx];
+                for (iy, row) in rows.chunks_exact_mut(nx).enumerate() {
+                    let (panels, rest) = row_spectrum.as_chunks_mut::<PANEL_COLUMNS>();
+                    let (tiles, rest_tile) = block.split_at(panels.len() * PANEL_COLUMNS * n_rows);
+                    let (tile_rows, _) = tiles.as_chunks::<PANEL_COLUMNS>();
+                    for (values, tile_row) in panels.iter_mut().zip(tile_rows.iter().skip(iy).step_by(n_rows)) {
+                        *values = *tile_row;
+                    }
+                    rest.copy_from_slice(&rest_tile[iy * rest.len()..][..rest.len()]);
+                    // These are real up to rounding; the plan insists on exact zeros.
+                    row_spectrum[0].im = T::zero();
+                    if nx.is_multiple_of(2) {
+                        row_spectrum[n_columns - 1].im = T::zero();
+                    }
+                    let transformed = self.row_inverse.process_with_scratch(row_spectrum, row, scratch);
+                    transformed.expect("buffers have the lengths of the plan");
+                }
+                take(sink, rows)
+            })
+            .collect()
+    }
+}
+
+/// The workspace of the calling thread. A lock is only ever waited for when more threads run than when the plan was made.
+fn lock<T>(workspaces: &[Mutex<Workspace<T>>]) -> std::sync::MutexGuard<'_, Workspace<T>> {
+    let thread = rayon::current_thread_index().unwrap_or(0) % workspaces.len();
+    workspaces[thread].lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+/// Tiles (rows of a few columns) to padded columns.
+fn gather<T: FftNum>(tiles: &[&mut [Complex<T>]], panel: &mut [Complex<T>], width: usize) {
+    let stride = panel.len() / width;
+    for (tile_idx, tile) in tiles.iter().enumerate() {
+        for (column_idx, column) in panel.chunks_exact_mut(stride).enumerate() {
+            let column = &mut column[tile_idx * BLOCK_ROWS..];
+            for (value, row) in column.iter_mut().zip(tile.chunks_exact(width)) {
+                *value = row[column_idx];
+            }
+        }
+    }
+}
+
+/// Padded columns back to tiles.
+fn scatter<T: FftNum>(panel: &[Complex<T>], tiles: &mut [&mut [Complex<T>]], width: usize) {
+    let stride = panel.len() / width;
+    for (tile_idx, tile) in tiles.iter_mut().enumerate() {
+        for (column_idx, column) in panel.chunks_exact(stride).enumerate() {
+            let column = &column[tile_idx * BLOCK_ROWS..];
+            for (value, row) in column.iter().zip(tile.chunks_exact_mut(width)) {
+                row[column_idx] = *value;
+            }
+        }
+    }
+}
+
+/// Multiplies a column by the symbol, which is even in ky.
+fn scale_column<T: FftNum>(column: &mut [Complex<T>], symbol: &[T]) {
+    let ny = column.len();
+    let (low, high) = column.split_at_mut(symbol.len());
+    for (value, &factor) in low.iter_mut().zip(symbol) {
+        *value = value.scale(factor);
+    }
+    // ky = ny - 1, ny - 2, … down to the first that `low` does not hold.
+    for (value, &factor) in high.iter_mut().rev().zip(&symbol[1..]) {
+        *value = value.scale(factor);
+    }
+    debug_assert_eq!(low.len() + high.len(), ny);
+}

@@ -1,0 +1,61 @@
+//! A symbol tabulated for one grid.
+
+use rayon::prelude::*;
+use rc_core::Grid;
+use realfft::FftNum;
+
+/// Eigenvalues for 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2, columns of constant kx contiguous, with the 1/(nx·ny) of the inverse
+/// transform folded in.
+pub(crate) struct SymbolTable<T> {
+    column_len: usize,
+    values: Vec<T>,
+}
+
+impl<T: FftNum> SymbolTable<T> {
+    /// Tabulates `eigenvalue(kx, ky)`; on a square grid, where it is symmetric, only for ky ≥ kx.
+    pub(crate) fn new(grid: Grid, eigenvalue: impl Fn(usize, usize) -> f64 + Sync) -> Self {
+        let column_len = grid.ny() / 2 + 1;
+        let symmetric = grid.nx() == grid.ny();
+        let scale = 1.0 / grid.len() as f64;
+        let mut values = vec![T::zero(); (grid.nx() / 2 + 1) * column_len];
+        values.par_chunks_exact_mut(column_len).enumerate().for_each(|(kx, column)| {
+            for (ky, value) in column.iter_mut().enumerate().skip(if symmetric { kx } else { 0 }) {
+                *value = T::from_f64(scale * eigenvalue(kx, ky)).expect("a float type holds every f64, rounded");
+            }
+        });
+        if symmetric {
+            for kx in 1..column_len {
+                for ky in 0..kx {
+                    values[kx * column_len + ky] = values[ky * column_len + kx];
+                }
+            }
+        }
+        Self { column_len, values }
+    }
+
+    /// The table of the inverse operator: reciprocals, and 0 at k = 0.
+    pub(crate) fn inverse(&self, grid: Grid) -> SymbolTable<f64>
+    where
+        T: Into<f64>,
+    {
+        let scale = 1.0 / grid.len() as f64;
+        let mut values: Vec<f64> = self.values.iter().map(|&value| scale * scale / value.into()).collect();
+        values[0] = 0.0;
+        SymbolTable { column_len: self.column_len, values }
+    }
+
+    /// Sets the entry at k = 0, factor of the inverse transform included.
+    pub(crate) fn set_mean(&mut self, value: T) {
+        self.values[0] = value;
+    }
+
+    /// The table with `convert` applied to every value, as to another precision.
+    pub(crate) fn map<U>(&self, convert: impl Fn(T) -> U) -> SymbolTable<U> {
+        SymbolTable { column_len: self.column_len, values: self.values.iter().map(|&value| convert(value)).collect() }
+    }
+
+    /// The column of `kx`: eigenvalues for 0 ≤ ky ≤ ny/2.
+    pub(crate) fn column(&self, kx: usize) -> &[T] {
+        &self.values[kx * self.column_len..(kx + 1) * self.column_len]
+    }
+}

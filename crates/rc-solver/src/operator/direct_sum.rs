@@ -1,0 +1,59 @@
+//! L on a uniform grid, by direct summation: the slow truth.
+
+use rc_core::{Grid, Kernel, Operator};
+
+/// `v_i = Σ_j L_ij p_j` (Eq. 4) on a uniform grid, with the coefficients from a plain trigonometric sum over the symbol and
+/// the products added one by one. O(n²): for tests.
+pub struct DirectSum {
+    grid: Grid,
+    /// L between element (0, 0) and element (ix, iy).
+    coefficients: Vec<f64>,
+}
+
+impl DirectSum {
+    /// The operator of `kernel` on `grid`.
+    #[must_use]
+    pub fn new(grid: Grid, kernel: &dyn Kernel) -> Self {
+        let (nx, ny) = (grid.nx(), grid.ny());
+        let symbol = kernel.symbol(grid);
+        let turns = |n: usize| (0..n).map(|i| (std::f64::consts::TAU * i as f64 / n as f64).cos()).collect::<Vec<_>>();
+        let (cos_x, cos_y) = (turns(nx), turns(ny));
+        let coefficient = |ix: usize, iy: usize| {
+            let mut sum = 0.0;
+            for ky in 0..ny {
+                for kx in 0..nx {
+                    // The symbol is even in kx and in ky, so sines cancel.
+                    let wave = cos_x[kx * ix % nx] * cos_y[ky * iy % ny];
+                    sum += symbol(kx.min(nx - kx), ky.min(ny - ky)) * wave;
+                }
+            }
+            sum / grid.len() as f64
+        };
+        let coefficients = (0..grid.len()).map(|i| coefficient(i % nx, i / nx)).collect();
+        Self { grid, coefficients }
+    }
+}
+
+impl Operator for DirectSum {
+    fn n_elements(&self) -> usize {
+        self.grid.len()
+    }
+
+    fn scratch_len(&self) -> usize {
+        0
+    }
+
+    fn apply(&self, pressure: &[f64], displacement: &mut [f64], _scratch: &mut [f64]) {
+        let (nx, ny) = (self.grid.nx(), self.grid.ny());
+        assert_eq!(pressure.len(), nx * ny, "length of the pressure");
+        assert_eq!(displacement.len(), nx * ny, "length of the displacement");
+        for (i, v) in displacement.iter_mut().enumerate() {
+            let (ix, iy) = (i % nx, i / nx);
+            let terms = pressure.iter().enumerate().map(|(j, p)| {
+                let (jx, jy) = (j % nx, j / nx);
+                self.coefficients[self.grid.index((ix + nx - jx) % nx, (iy + ny - jy) % ny)] * p
+            });
+            *v = terms.sum();
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! What a solve returns.
+
+use rc_core::{Field, Grid};
+
+use crate::Certificate;
+
+/// How a solve ended well. (Ending badly is a [`crate::SolveError`].)
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// Iterated until the certificate met the tolerance.
+    Converged,
+    /// Contact is complete: the exact solution, without iteration.
+    FullContact,
+}
+
+/// The work done on one level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LevelInfo {
+    /// The grid.
+    pub grid: Grid,
+    /// Iterations.
+    pub iterations: usize,
+    /// Applications of L.
+    pub operator_applications: usize,
+    /// Applications of the preconditioner.
+    pub preconditioner_applications: usize,
+}
+
+/// How a solution was found and how good it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolveInfo {
+    /// Residuals from a fresh application of L on the returned pressure.
+    pub certificate: Certificate,
+    /// Mean pressure σ0, in E*.
+    pub mean_pressure: f64,
+    /// Penetration Δ, in λ: pressure-weighted mean of v - h, plus h_max.
+    pub penetration: f64,
+    /// Penetration of full contact, h_max - mean(h), in λ.
+    pub penetration_full_contact: f64,
+    /// Elastic energy per nominal area, ½ mean(p v), in E* λ.
+    pub elastic_energy: f64,
+    /// The work, coarsest level first; empty in full contact.
+    pub levels: Vec<LevelInfo>,
+}
+
+impl SolveInfo {
+    /// Iterations on the finest level.
+    #[must_use]
+    pub fn fine_iterations(&self) -> usize {
+        self.levels.last().map_or(0, |level| level.iterations)
+    }
+
+    /// Applications of L on the finest level, the certificate's included.
+    #[must_use]
+    pub fn fine_operator_applications(&self) -> usize {
+        self.levels.last().map_or(1, |level| level.operator_applications)
+    }
+}
+
+/// A solved contact problem.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// Pressure, in E*, ≥ 0.
+    pub pressure: Field,
+    /// Gap, in λ, with the pressure-weighted mean 0; at points in contact it is zero within the tolerance.
+    pub gap: Field,
+    /// Converged or full contact.
+    pub status: Status,
+    /// How it was found and how good it is.
+    pub info: SolveInfo,
+}

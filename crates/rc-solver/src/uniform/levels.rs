@@ -1,0 +1,75 @@
+//! Heights on nested coarser grids.
+
+use rayon::prelude::*;
+use rc_core::{Field, Grid};
+
+/// Grids below this many elements per side are not coarsened.
+const SMALLEST_SIDE: usize = 64;
+
+/// Six-point interpolation to the midpoint of two centres (Lagrange), which is where the centre of a coarse element lies:
+/// keeps 99.9 % of a wave of eight fine elements, where averaging would keep 92 %.
+const MIDPOINT: [f64; 6] = [3.0 / 256.0, -25.0 / 256.0, 150.0 / 256.0, 150.0 / 256.0, -25.0 / 256.0, 3.0 / 256.0];
+
+/// The heights on coarser and coarser grids, finest of them first, each with half the elements per side, as long as both
+/// sides are even and large enough.
+pub(super) fn coarsen(heights: &Field) -> Vec<Field> {
+    let mut levels: Vec<Field> = Vec::new();
+    loop {
+        let finer = levels.last().unwrap_or(heights);
+        let (nx, ny) = (finer.grid().nx(), finer.grid().ny());
+        let can_halve = |n: usize| n.is_multiple_of(2) && n >= 2 * SMALLEST_SIDE;
+        if !(can_halve(nx) && can_halve(ny)) {
+            return levels;
+        }
+        let Ok(grid) = Grid::new(nx / 2, ny / 2) else { return levels };
+        let next = halve(finer, grid);
+        levels.push(next);
+    }
+}
+
+fn halve(finer: &Field, grid: Grid) -> Field {
+    let (nx, ny) = (finer.grid().nx(), finer.grid().ny());
+    let mut coarse = Field::zeros(grid);
+    coarse.values_mut().par_chunks_mut(grid.nx()).enumerate().for_each_init(
+        || vec![0.0; nx],
+        |blended, (iy, row)| {
+            blended.fill(0.0);
+            for (tap, weight) in MIDPOINT.iter().enumerate() {
+                let source = finer.row((2 * iy + tap + ny - 2) % ny);
+                for (sum, value) in blended.iter_mut().zip(source) {
+                    *sum += weight * value;
+                }
+            }
+            for (ix, value) in row.iter_mut().enumerate() {
+                let taps = MIDPOINT.iter().enumerate();
+                *value = taps.map(|(tap, weight)| weight * blended[(2 * ix + tap + nx - 2) % nx]).sum();
+            }
+        },
+    );
+    coarse
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    #[test]
+    fn halving_samples_a_resolved_wave_at_the_coarse_centres() {
+        let wave = |x: f64, y: f64| (2.0 * PI * (5.0 * x + 3.0 * y)).cos();
+        let fine = Field::from_fn(Grid::new(160, 128).expect("grid"), wave);
+        let coarse = coarsen(&fine);
+        let grid = Grid::new(80, 64).expect("grid");
+        assert_eq!(coarse.len(), 1, "80 x 64 is too small to halve again");
+        let exact = Field::from_fn(grid, wave);
+        let worst = exact.values().iter().zip(coarse[0].values()).map(|(e, c)| (e - c).abs()).fold(0.0, f64::max);
+        // The interpolation error of a wave of 32 elements, (20/4096)·(2π/32)^6 to leading order, twice.
+        assert!(worst < 1e-6, "off by {worst:e}");
+    }
+
+    #[test]
+    fn odd_sides_are_not_coarsened() {
+        assert!(coarsen(&Field::zeros(Grid::new(256, 255).expect("grid"))).is_empty());
+    }
+}

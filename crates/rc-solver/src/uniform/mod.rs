@@ -1,0 +1,133 @@
+//! The contact problem on uniform grids: nested grids, each solved by preconditioned projected conjugate gradients.
+
+mod descent;
+mod full_contact;
+mod levels;
+mod prolongation;
+mod rows;
+
+use rc_core::{Event, Field, Kernel, Observer};
+
+use crate::solution::{LevelInfo, Solution, SolveInfo, Status};
+use crate::{Control, SolveError, SolveParams};
+use descent::{Descent, Outcome};
+
+/// Coarser levels only prepare a start: their discretisation error is far above this.
+const COARSE_TOLERANCE: f64 = 1e-4;
+
+/// Solves the contact problem on the grid of `heights` (in λ, any mean).
+///
+/// Full contact is returned exactly and without iteration. Otherwise coarser grids, each with half the elements per side,
+/// prepare the start on the next; on each the pressure is found by conjugate gradients preconditioned by the inverse
+/// symbol masked to the contact (see `docs/uniform-solver.md` for the method and its measurements). The certificate is
+/// computed from a fresh application of L, in double precision, on the pressure that is returned.
+///
+/// The result is bitwise the same for any number of threads.
+///
+/// # Errors
+/// [`SolveError`]: heights that are not finite, a control or tolerance out of range, or no convergence.
+pub fn solve_uniform(
+    heights: &Field,
+    kernel: &dyn Kernel,
+    control: Control,
+    params: &SolveParams,
+    observer: &dyn Observer,
+) -> Result<Solution, SolveError> {
+    let problem = Problem::check(heights, control, params)?;
+    if let Control::MeanPressure(mean_pressure) = control
+        && let Some(solution) = full_contact::solve(heights, kernel, mean_pressure, &problem)
+    {
+        return Ok(solution);
+    }
+    let coarse = levels::coarsen(heights);
+    let n_levels = coarse.len() + 1;
+    let mut infos: Vec<LevelInfo> = Vec::with_capacity(n_levels);
+    let mut start: Option<Field> = None;
+    for (level, level_heights) in coarse.iter().rev().chain(std::iter::once(heights)).enumerate() {
+        let finest = level + 1 == n_levels;
+        let grid = level_heights.grid();
+        observer.notify(&Event::Level { grid, level, n_levels });
+        let tolerance = if finest { params.tolerance } else { params.tolerance.max(COARSE_TOLERANCE) };
+        let mut descent = Descent::new(level_heights, kernel, &problem, start.take());
+        let outcome = descent.run(tolerance, params.max_iterations, finest, observer);
+        infos.push(descent.info());
+        if finest {
+            return finish(descent, &outcome, &problem, infos);
+        }
+        start = Some(prolongation::prolong(&descent));
+    }
+    unreachable!("the finest level returns")
+}
+
+/// Wraps up what the finest level found.
+fn finish(
+    descent: Descent<'_>,
+    outcome: &Outcome,
+    problem: &Problem,
+    levels: Vec<LevelInfo>,
+) -> Result<Solution, SolveError> {
+    let grid = descent.grid();
+    let (iterations, certificate) = (descent.info().iterations, outcome.certificate);
+    let info = SolveInfo {
+        certificate,
+        mean_pressure: outcome.mean_pressure,
+        penetration: problem.h_max + outcome.approach,
+        penetration_full_contact: problem.h_max - problem.h_mean,
+        elastic_energy: outcome.elastic_energy,
+        levels,
+    };
+    let (pressure, gap) = descent.into_fields(outcome.approach + problem.offset());
+    let solution = Solution { pressure, gap, status: Status::Converged, info };
+    if outcome.converged {
+        Ok(solution)
+    } else {
+        Err(SolveError::NotConverged { grid, iterations, certificate, solution: Box::new(solution) })
+    }
+}
+
+/// A checked problem, in the quantities that every level shares.
+pub(crate) struct Problem {
+    pub(crate) control: Control,
+    /// Greatest height, on the finest grid.
+    pub(crate) h_max: f64,
+    /// Mean height, on the finest grid.
+    pub(crate) h_mean: f64,
+    /// H = h_max - h_min, which tolerances multiply.
+    pub(crate) h_range: f64,
+}
+
+impl Problem {
+    fn check(heights: &Field, control: Control, params: &SolveParams) -> Result<Self, SolveError> {
+        if let Some(at) = heights.values().iter().position(|h| !h.is_finite()) {
+            let nx = heights.grid().nx();
+            return Err(SolveError::Height { ix: at % nx, iy: at / nx, value: heights.values()[at] });
+        }
+        let (h_max, h_mean) = (heights.max(), heights.mean());
+        let h_range = h_max - heights.min();
+        let full_contact = h_max - h_mean;
+        match control {
+            Control::MeanPressure(value) if !(value > 0.0 && value.is_finite()) => {
+                return Err(SolveError::MeanPressure { value });
+            }
+            // Also refuses every penetration into a flat surface, whose full contact is at zero.
+            Control::Penetration(value) if !(value > 0.0 && value < full_contact) => {
+                return Err(SolveError::Penetration { value, full_contact });
+            }
+            Control::MeanPressure(_) | Control::Penetration(_) => {}
+        }
+        let (value, smallest) = (params.tolerance, SolveParams::SMALLEST_TOLERANCE);
+        if !(value >= smallest && value < 1.0) {
+            return Err(SolveError::Tolerance { value, smallest });
+        }
+        Ok(Self { control, h_max, h_mean, h_range })
+    }
+
+    /// The constant c in `g = L p - h + c`: h_max - Δ under penetration control; under pressure control Δ is a multiplier
+    /// and c is left out.
+    pub(crate) fn offset(&self) -> f64 {
+        match self.control {
+            Control::MeanPressure(_) => 0.0,
+            Control::Penetration(penetration) => self.h_max - penetration,
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! The uniform solver against slow truth and against itself.
+
+use rc_core::testing::quasi_random;
+use rc_core::{Field, Grid, Kernel, Operator, Silent};
+use rc_kernel::{Love, Spectral};
+use rc_solver::{
+    Certificate, Control, DirectSum, Observables, Solution, SolveError, SolveParams, Status, solve_uniform,
+};
+
+const TAU: f64 = std::f64::consts::TAU;
+
+/// A bumpy surface without symmetry, peak-to-valley of order 0.02.
+fn bumps(nx: usize, ny: usize) -> Field {
+    Field::from_fn(Grid::new(nx, ny).expect("grid"), |x, y| {
+        let wave = |a: f64, kx: f64, ky: f64, phase: f64| a * (TAU * (kx * x + ky * y + phase)).cos();
+        wave(5e-3, 1.0, 0.0, 0.1) + wave(4e-3, 1.0, 2.0, 0.37) + wave(2e-3, 3.0, -2.0, 0.8) + wave(1e-3, -2.0, 5.0, 0.5)
+    })
+}
+
+fn solve(heights: &Field, kernel: &dyn Kernel, control: Control, tolerance: f64) -> Result<Solution, SolveError> {
+    let params = SolveParams { tolerance, ..SolveParams::certified() };
+    solve_uniform(heights, kernel, control, &params, &Silent)
+}
+
+/// The certificate, recomputed by direct summation from nothing but the pressure.
+fn recomputed(heights: &Field, kernel: &dyn Kernel, pressure: &Field, mean_pressure: f64) -> Certificate {
+    let n = heights.grid().len();
+    let mut v = vec![0.0; n];
+    DirectSum::new(heights.grid(), kernel).apply(pressure.values(), &mut v, &mut []);
+    let gaps: Vec<f64> = v.iter().zip(heights.values()).map(|(v, h)| v - h).collect();
+    let total: f64 = pressure.values().iter().sum();
+    let weighted = pressure.values().iter().zip(&gaps).map(|(p, g)| p * g).sum::<f64>() / total;
+    let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+    let range = heights.max() - heights.min();
+    let slack = pressure.values().iter().zip(&gaps).map(|(p, g)| p * (g - least)).sum::<f64>();
+    Certificate {
+        complementarity: slack / (range * total),
+        penetration: (weighted - least) / range,
+        load: (total / n as f64 - mean_pressure).abs() / mean_pressure,
+    }
+}
+
+#[test]
+fn certificate_is_what_direct_summation_finds() {
+    for (nx, ny) in [(24, 20), (15, 33)] {
+        for kernel in [&Love as &dyn Kernel, &Spectral] {
+            let heights = bumps(nx, ny);
+            let solution = solve(&heights, kernel, Control::MeanPressure(2e-3), 1e-5).expect("solvable");
+            let (stated, found) = (solution.info.certificate, recomputed(&heights, kernel, &solution.pressure, 2e-3));
+            assert!(found.complementarity <= 1e-5 && found.penetration <= 1e-5, "{nx} x {ny}: {found}");
+            assert!((stated.complementarity - found.complementarity).abs() < 1e-12, "stated {stated}, found {found}");
+            assert!((stated.penetration - found.penetration).abs() < 1e-12, "stated {stated}, found {found}");
+            assert!(found.load <= Certificate::LOAD_TOLERANCE && solution.pressure.min() >= 0.0, "{found}");
+        }
+    }
+}
+
+#[test]
+fn tight_tolerances_are_reached_at_every_load() {
+    let heights = bumps(96, 64);
+    for mean_pressure in [1e-7, 1e-5, 1e-3, 1e-2, 3e-2, 5e-2] {
+        let solution = solve(&heights, &Love, Control::MeanPressure(mean_pressure), 1e-12).expect("solvable");
+        assert!(solution.info.certificate.penetration <= 1e-12, "at {mean_pressure}: {}", solution.info.certificate);
+    }
+}
+
+#[test]
+fn penetration_control_inverts_pressure_control() {
+    let heights = bumps(128, 128);
+    for mean_pressure in [1e-6, 1e-4, 2e-3, 1e-2, 2e-2] {
+        let by_pressure = solve(&heights, &Spectral, Control::MeanPressure(mean_pressure), 1e-10).expect("solvable");
+        assert_eq!(by_pressure.status, Status::Converged, "partial contact is meant");
+        let penetration = Control::Penetration(by_pressure.info.penetration);
+        let by_penetration = solve(&heights, &Spectral, penetration, 1e-10).expect("solvable");
+        let stiffness = Observables::of(&by_pressure, &Spectral).contact_stiffness;
+        // Both errors are penetrations below 1e-10 of the range 0.02; the stiffness turns them into pressures.
+        let allowed = 4e-12 * stiffness;
+        let difference = (by_penetration.info.mean_pressure - mean_pressure).abs();
+        assert!(difference <= allowed, "at {mean_pressure}: differs by {difference:e}, allowed {allowed:e}");
+    }
+}
+
+#[test]
+fn full_contact_is_exact_without_iteration() {
+    let heights = bumps(90, 72);
+    // |q| h / 2 of each wave of `bumps`.
+    let exact = Field::from_fn(heights.grid(), |x, y| {
+        let wave = |a: f64, kx: f64, ky: f64, phase: f64| {
+            0.5 * TAU * f64::hypot(kx, ky) * a * (TAU * (kx * x + ky * y + phase)).cos()
+        };
+        0.1 + wave(5e-3, 1.0, 0.0, 0.1)
+            + wave(4e-3, 1.0, 2.0, 0.37)
+            + wave(2e-3, 3.0, -2.0, 0.8)
+            + wave(1e-3, -2.0, 5.0, 0.5)
+    });
+    let solution = solve(&heights, &Spectral, Control::MeanPressure(0.1), 1e-6).expect("solvable");
+    assert_eq!((solution.status, solution.info.fine_iterations()), (Status::FullContact, 0));
+    for (p, e) in solution.pressure.values().iter().zip(exact.values()) {
+        assert!((p - e).abs() <= 1e-12 * e, "pressure {p}, exact {e}");
+    }
+    assert!((solution.info.penetration - solution.info.penetration_full_contact).abs() < 1e-15);
+    assert!(solution.gap.max() < 1e-15, "gap {}", solution.gap.max());
+}
+
+#[test]
+fn load_just_below_full_contact_leaves_a_gap_and_just_above_none() {
+    let heights = bumps(64, 64);
+    let full = solve(&heights, &Love, Control::MeanPressure(1.0), 1e-6).expect("solvable");
+    let threshold = 1.0 - full.pressure.min();
+    let above = solve(&heights, &Love, Control::MeanPressure(threshold * (1.0 + 1e-9)), 1e-6).expect("solvable");
+    assert_eq!(above.status, Status::FullContact);
+    let below = solve(&heights, &Love, Control::MeanPressure(threshold * 0.99), 1e-9).expect("solvable");
+    assert_eq!(below.status, Status::Converged);
+    assert!(below.gap.max() > 0.0 && below.pressure.min() == 0.0, "a gap opens in the deepest valley");
+}
+
+#[test]
+fn stiffness_is_the_slope_of_load_over_penetration() {
+    let heights = bumps(128, 96);
+    for mean_pressure in [1e-4, 2e-3, 2e-2] {
+        let at = |factor: f64| {
+            solve(&heights, &Love, Control::MeanPressure(factor * mean_pressure), 1e-11).expect("solvable")
+        };
+        let (low, middle, high) = (at(0.999), at(1.0), at(1.001));
+        let slope = (high.info.mean_pressure - low.info.mean_pressure) / (high.info.penetration - low.info.penetration);
+        let stiffness = Observables::of(&middle, &Love).contact_stiffness;
+        // The contact set changes by whole elements between the two loads: a few per mille of the slope.
+        assert!((stiffness / slope - 1.0).abs() < 5e-3, "at {mean_pressure}: {stiffness} against {slope}");
+        let work = high.info.elastic_energy - low.info.elastic_energy;
+        let expected = mean_pressure * (high.info.penetration - low.info.penetration);
+        assert!((work / expected - 1.0).abs() < 1e-4, "dU = {work:e}, σ0 dΔ = {expected:e}");
+    }
+}
+
+#[test]
+fn results_are_bitwise_equal_for_any_number_of_threads() {
+    let heights = bumps(130, 128);
+    let run = |threads: usize, control: Control| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("thread pool");
+        pool.install(|| solve(&heights, &Love, control, 1e-9).expect("solvable"))
+    };
+    for control in [Control::MeanPressure(1e-3), Control::Penetration(4e-3)] {
+        let one = run(1, control);
+        for threads in [2, 3] {
+            let other = run(threads, control);
+            assert!(one == other, "1 and {threads} threads differ under {control:?}");
+            let (a, b) = (Observables::of(&one, &Love), Observables::of(&other, &Love));
+            assert!(a == b, "observables differ: {a:?}, {b:?}");
+        }
+    }
+}
+
+#[test]
+fn white_noise_is_solved_and_scales_exactly() {
+    let grid = Grid::square(128).expect("grid");
+    let noise =
+        |scale: f64| Field::new(grid, (0..grid.len()).map(|i| scale * quasi_random(i)).collect()).expect("field");
+    let solution = solve(&noise(1.0), &Love, Control::MeanPressure(1.0), 1e-8).expect("solvable");
+    // The problem is linear: powers of two change nothing but exponents, at any scale.
+    let scale = 2.0_f64.powi(-120);
+    let scaled = solve(&noise(scale), &Love, Control::MeanPressure(scale), 1e-8).expect("solvable");
+    for (a, b) in solution.pressure.values().iter().zip(scaled.pressure.values()) {
+        assert!((a * scale - b).abs() <= 1e-12 * scale, "{a} scaled is not {b:e}");
+    }
+}
+
+#[test]
+fn flat_surface_is_in_full_contact_at_any_load() {
+    let flat = Field::from_fn(Grid::new(16, 8).expect("grid"), |_, _| 0.25);
+    let solution = solve(&flat, &Love, Control::MeanPressure(1e-9), 1e-6).expect("solvable");
+    assert_eq!(solution.status, Status::FullContact);
+    assert!(solution.pressure.values().iter().all(|&p| (p - 1e-9).abs() < 1e-24));
+}
+
+#[test]
+fn running_out_of_iterations_is_an_error_that_carries_the_residuals() {
+    let heights = bumps(64, 64);
+    let params = SolveParams { tolerance: 1e-9, max_iterations: 2 };
+    let result = solve_uniform(&heights, &Love, Control::MeanPressure(1e-3), &params, &Silent);
+    let Err(SolveError::NotConverged { certificate, solution, .. }) = result else { panic!("expected NotConverged") };
+    assert!(certificate.penetration > 1e-9, "{certificate}");
+    let found = recomputed(&heights, &Love, &solution.pressure, 1e-3);
+    assert!((found.penetration - certificate.penetration).abs() < 1e-12, "stated {certificate}, found {found}");
+}
+
+#[test]
+fn bad_input_is_refused_with_its_value() {
+    let heights = bumps(16, 16);
+    let refused = |control, tolerance| solve(&heights, &Love, control, tolerance).expect_err("bad input");
+    for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(refused(Control::MeanPressure(value), 1e-6), SolveError::MeanPressure { .. }), "{value}");
+        assert!(matches!(refused(Control::Penetration(value), 1e-6), SolveError::Penetration { .. }), "{value}");
+    }
+    let full = heights.max() - heights.mean();
+    assert!(
+        matches!(refused(Control::Penetration(full), 1e-6), SolveError::Penetration { full_contact, .. } if full_contact == full)
+    );
+    for tolerance in [0.0, 1.0, -1e-6, 1e-17, f64::NAN] {
+        assert!(matches!(refused(Control::MeanPressure(1e-3), tolerance), SolveError::Tolerance { .. }), "{tolerance}");
+    }
+    let mut broken = heights.clone();
+    broken.values_mut()[16 * 3 + 5] = f64::NAN;
+    let error = solve(&broken, &Love, Control::MeanPressure(1e-3), 1e-6).expect_err("NaN");
+    assert!(matches!(error, SolveError::Height { ix: 5, iy: 3, .. }), "{error}");
+}
