@@ -1,0 +1,41 @@
+//! Periodic self-affine rough surfaces: spectra, phases, synthesis, exact moments, spectrum estimators.
+//!
+//! The surface of the paper's appendix A is a sum of waves on the unit cell,
+//!
+//! ```text
+//! h(x) = Σ_k a_k exp(2πi k·x),    a_{-k} = conj(a_k),  a_00 = 0                              (Eq. 10)
+//! ⟨|a_k|²⟩ = (2π)² C(q),          C(q) = C0 (max(|k|, k_r) / k_r)^(-2(1+H)),   q = 2πk        (Eq. 1, 9, 12, 13)
+//! ```
+//!
+//! with integer wave vectors k = (kx, ky) (waves per cell), Hurst exponent H, roll-off wavenumber `k_r` (the paper: 1, no
+//! plateau) and N = [`SpectrumParams::waves`] the largest wavenumber. In a periodic cell of side λ the δ(0) of Eq. 12 is
+//! 1/q0² with q0 = 2π/λ, which gives the factor (2π)² for λ = 1; C is in λ⁴, a in λ.
+//!
+//! [`Surface`] realises such a spectrum. The phase of a wave depends on the seed and on k alone, so one seed means one surface:
+//! on every grid, and, for its long waves, for every N. Everything else here measures surfaces: [`Surface::moments`]
+//! without a grid, [`moments_of_grid`] and [`radial_spectrum`] for any height map.
+//!
+//! ```
+//! use rc_core::Grid;
+//! use rc_fractal::{SpectrumParams, Surface};
+//!
+//! let surface = Surface::new(&SpectrumParams::paper(64, 1))?;
+//! assert!((surface.moments().rms_slope - 0.026_232_747_0).abs() < 1e-10);
+//! let heights = surface.sample_on(Grid::square(256)?)?;
+//! assert!((heights.rms() / 1.3e-3 - 1.0).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod draws;
+mod moments;
+mod params;
+mod power;
+mod radial;
+mod surface;
+mod synthesis;
+
+pub use moments::{Moments, moments_of_grid};
+pub use params::{Amplitudes, MAX_WAVES, Normalisation, SpectrumError, SpectrumParams, Truncation};
+pub use radial::{SpectrumBin, radial_spectrum};
+pub use rustfft::num_complex::Complex64;
+pub use surface::{SampleError, Surface};

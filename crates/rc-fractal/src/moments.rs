@@ -1,0 +1,80 @@
+//! Moments of a surface: rms height, slope, curvature, and Nayak's parameter.
+
+use std::f64::consts::TAU;
+
+use rc_core::Field;
+
+use crate::power::PowerSpectrum;
+
+/// Statistics of a whole periodic surface. In terms of the amplitudes `a_k` with q = 2π|k| (Parseval):
+/// ⟨h²⟩ = Σ |a|², ⟨|∇h|²⟩ = Σ q² |a|², ⟨(∇²h)²⟩ = Σ q⁴ |a|².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moments {
+    /// √⟨h²⟩ about the mean plane, in λ.
+    pub rms_height: f64,
+    /// √⟨|∇h|²⟩, of the whole gradient (isotropic), not of one profile.
+    pub rms_slope: f64,
+    /// rms of the mean curvature, half the Laplacian: ½ √⟨(∇²h)²⟩, in 1/λ.
+    pub rms_curvature: f64,
+    /// Nayak's bandwidth parameter α = m0 m4 / m2² = 1.5 ⟨h²⟩ ⟨(∇²h)²⟩ / ⟨|∇h|²⟩², with the profile moments m2 = ⟨|∇h|²⟩/2 and
+    /// m4 = (3/8) ⟨(∇²h)²⟩ of an isotropic surface (P. R. Nayak, *Random process model of rough surfaces*, J. Lubr. Technol. 93
+    /// (1971) 398-407). `NaN` for a flat surface.
+    pub nayak: f64,
+}
+
+/// The three sums over waves that all moments come from.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SpectralSums {
+    /// Σ |a|².
+    pub(crate) height: f64,
+    /// Σ q² |a|².
+    pub(crate) slope: f64,
+    /// Σ q⁴ |a|².
+    pub(crate) laplacian: f64,
+}
+
+impl SpectralSums {
+    /// Counts waves of squared wavenumber |k|² whose |a|² add up to `power`.
+    pub(crate) fn add(&mut self, k_squared: f64, power: f64) {
+        let q_squared = TAU * TAU * k_squared;
+        self.height += power;
+        self.slope += q_squared * power;
+        self.laplacian += q_squared * q_squared * power;
+    }
+
+    /// The sums of both, with the other's counted `weight` times.
+    pub(crate) fn plus(self, other: Self, weight: f64) -> Self {
+        Self {
+            height: self.height + weight * other.height,
+            slope: self.slope + weight * other.slope,
+            laplacian: self.laplacian + weight * other.laplacian,
+        }
+    }
+
+    pub(crate) fn moments(self) -> Moments {
+        Moments {
+            rms_height: self.height.sqrt(),
+            rms_slope: self.slope.sqrt(),
+            rms_curvature: 0.5 * self.laplacian.sqrt(),
+            nayak: 1.5 * self.height * self.laplacian / (self.slope * self.slope),
+        }
+    }
+}
+
+/// Moments of a height map, with spectral derivatives through one Fourier transform; the mean height is removed first.
+///
+/// Exact for a surface whose waves the grid resolves (|kx| < nx/2, |ky| < ny/2), whatever the sides of the grid; test
+/// `moments_of_a_resolved_grid_equal_the_exact_sums` shows 1e-10. A wave of exactly half a side counts with that wavenumber.
+#[must_use]
+pub fn moments_of_grid(heights: &Field) -> Moments {
+    let spectrum = PowerSpectrum::of(heights);
+    let mut total = SpectralSums::default();
+    for column in spectrum.columns() {
+        let mut sums = SpectralSums::default();
+        for (ky, power) in column.powers() {
+            sums.add((column.kx * column.kx + ky * ky) as f64, power);
+        }
+        total = total.plus(sums, column.multiplicity as f64);
+    }
+    total.moments()
+}

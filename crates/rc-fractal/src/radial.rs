@@ -1,0 +1,89 @@
+//! The radially averaged power spectrum of any height map.
+
+use std::f64::consts::TAU;
+
+use rc_core::Field;
+
+use crate::power::PowerSpectrum;
+
+/// One ring of wave vectors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpectrumBin {
+    /// Mean |k| of the ring's wave vectors, in waves per cell.
+    pub wavenumber: f64,
+    /// Mean of C = |`a_k`|²/(2π)² over the ring's wave vectors, in λ⁴.
+    pub psd: f64,
+    /// Number of wave vectors in the ring, k and -k counted both.
+    pub n_modes: usize,
+}
+
+/// Radially averaged C(q) of a height map: rings of width 1 about |k| = 1, 2, 3, …, shortest wavenumber first.
+///
+/// Every wave vector of the grid except k = 0 is in one ring, hence Σ (2π)² `psd` · `n_modes` = ⟨h²⟩ about the mean, exactly
+/// (Parseval; the sum is ∫ C d²q). Rings beyond half the shorter side of the grid reach into the corners of its wave vectors only.
+/// A ring averages over |k| ± ½, so C of a power law comes out high where the ring is wide against |k|, and low in the ring at the
+/// truncation, half of which is empty. Source: T. D. B. Jacobs, T. Junge, L. Pastewka, *Quantitative characterization of surface
+/// topography using spectral analysis*, Surf. Topogr.: Metrol. Prop. 5 (2017) 013001. Tests `thin_rings_recover_the_power_law_to_rounding`
+/// and `rings_add_up_to_the_mean_square_height`.
+#[must_use]
+pub fn radial_spectrum(heights: &Field) -> Vec<SpectrumBin> {
+    binned_spectrum(heights, 1.0)
+}
+
+/// The same with `rings_per_wave` rings for each unit of |k|; every ring that holds a wave vector is returned.
+fn binned_spectrum(heights: &Field, rings_per_wave: f64) -> Vec<SpectrumBin> {
+    #[derive(Clone, Copy, Default)]
+    struct Ring {
+        n_modes: usize,
+        wavenumbers: f64,
+        power: f64,
+    }
+    let grid = heights.grid();
+    let largest = (grid.nx() as f64 / 2.0).hypot(grid.ny() as f64 / 2.0);
+    let mut rings = vec![Ring::default(); (largest * rings_per_wave).round() as usize + 1];
+    for column in PowerSpectrum::of(heights).columns() {
+        let weight = column.multiplicity as f64;
+        for (ky, power) in column.powers() {
+            let wavenumber = ((column.kx * column.kx + ky * ky) as f64).sqrt();
+            let ring = &mut rings[(wavenumber * rings_per_wave).round() as usize];
+            ring.n_modes += column.multiplicity;
+            ring.wavenumbers += weight * wavenumber;
+            ring.power += weight * power;
+        }
+    }
+    // The mean height is alone in ring 0 and is not a wave.
+    let waves = rings.iter().skip(1).filter(|ring| ring.n_modes > 0);
+    waves
+        .map(|ring| {
+            let count = ring.n_modes as f64;
+            let psd = ring.power / (TAU * TAU * count);
+            SpectrumBin { wavenumber: ring.wavenumbers / count, psd, n_modes: ring.n_modes }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use rc_core::{Grid, HeightField};
+
+    use super::*;
+    use crate::{Normalisation, SpectrumParams, Surface};
+
+    /// With rings so thin that all waves of a ring have the same |k|, averaging hides nothing.
+    #[test]
+    fn thin_rings_recover_the_power_law_to_rounding() {
+        let (c0, roll_off) = (3e-9, 4.5);
+        let params = SpectrumParams { normalisation: Normalisation::C0(c0), roll_off, ..SpectrumParams::paper(24, 5) };
+        let surface = Surface::new(&params).expect("valid parameters");
+        let heights = surface.sample(Grid::new(64, 51).expect("small grid"));
+        let mut n_modes = 0;
+        for bin in binned_spectrum(&heights, 1000.0) {
+            let k = bin.wavenumber;
+            let expected = if k < 24.0 + 1e-9 { c0 * (k.max(roll_off) / roll_off).powf(-3.6) } else { 0.0 };
+            let error = (bin.psd - expected).abs();
+            assert!(error <= 1e-12 * expected + 1e-30, "C({k}) = {:e}, asked for {expected:e}", bin.psd);
+            n_modes += bin.n_modes;
+        }
+        assert_eq!(n_modes, 64 * 51 - 1);
+    }
+}

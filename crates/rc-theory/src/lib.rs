@@ -1,0 +1,48 @@
+//! Closed forms of contact mechanics, each with its source: what numerical solutions are compared with.
+//!
+//! Units as in all libraries of this workspace: lengths in λ, pressures in E*, so forces in E*λ², energies in E*λ³. Shapes are those
+//! of the rigid body, heights up towards the half-space; penetration Δ is counted from first touch under the convention of
+//! Eq. 3, a displacement of zero mean, unless a type says that its half-space is infinite.
+//!
+//! | module | contact | valid |
+//! |---|---|---|
+//! | [`hertz`] | sphere, on an infinite half-space and in the periodic cell | exact; contact radius up to 0.25 λ |
+//! | [`cone`] | cone on an infinite half-space | exact |
+//! | [`westergaard`] | one-dimensional wave | exact at every load |
+//! | [`bisinusoidal`] | two-dimensional wave | both ends of the load range |
+//! | [`full_contact`] | any band-limited surface | exact, above a load |
+//! | [`persson`] | random surface, Eq. 7 | a theory, not exact in partial contact |
+//!
+//! [`lattice`] holds the constants of the periodic half-space.
+
+use thiserror::Error;
+
+pub mod bisinusoidal;
+pub mod cone;
+pub mod full_contact;
+pub mod hertz;
+pub mod lattice;
+pub mod persson;
+pub mod westergaard;
+
+mod root;
+
+#[cfg(test)]
+mod testing;
+
+/// A question whose answer the formula does not know.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("no answer for {quantity} {value:e}: it must lie between 0 and {max:e}")]
+pub struct OutOfRange {
+    /// Name of the quantity.
+    pub quantity: &'static str,
+    /// The value given.
+    pub value: f64,
+    /// The largest value that has an answer.
+    pub max: f64,
+}
+
+/// The value, when it is in [0, `max`]; `NaN` is not.
+fn within(quantity: &'static str, value: f64, max: f64) -> Result<f64, OutOfRange> {
+    if (0.0..=max).contains(&value) { Ok(value) } else { Err(OutOfRange { quantity, value, max }) }
+}
