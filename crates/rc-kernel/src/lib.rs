@@ -1,29 +1,64 @@
 //! Elastic half-space kernels on the periodic unit cell (Eq. 2-6), in units of λ and E*.
 //!
-//! - [`love_displacement`]: one square under uniform pressure, one term of Eq. 5.
-//! - [`Love`]: the paper's element on a uniform grid, piecewise-constant pressure collocated at element centres. Its
-//!   coefficients `L_ij = l_ij - l_m` (Eq. 4-6, summed over all images) are diagonal in Fourier space, with a symbol that is
-//!   a sum over aliases; Eq. 3's zero mean is the zero at k = 0.
-//! - [`Spectral`]: the same half-space without aliases, as the FFT codes of this field use it.
+//! The paper's operator is `v_i = Σ_j L_ij p_j` (Eq. 4): element j under uniform pressure and all its periodic images
+//! (Eq. 5), less the mean displacement (Eq. 6). Both sums diverge and their difference converges like 1/(number of images),
+//! so it is never formed. What is here instead:
+//!
+//! | item | what | where |
+//! |---|---|---|
+//! | [`love_displacement`] | one term of Eq. 5: one square in free space, at any distance | `love.rs`, far away `multipoles.rs` |
+//! | [`Love`] | Eq. 4-6 on a uniform grid, all images: diagonal in Fourier space, and its symbol a sum over aliases. Eq. 3, the zero mean, is the zero at k = 0 | `love_symbol.rs` |
+//! | [`love_alias_sum`] | the same symbol one value at a time: the slow truth that [`Love`] is made from and tested against | `alias_sum.rs` |
+//! | [`Spectral`] | Eq. 2-3 for waves instead of elements: the half-space without aliases | `spectral.rs` |
+//!
+//! Half side or side: d_j of Eq. 5 and 6 is the half side of an element, and so is `half_side` here.
+//!
+//! ```
+//! use rc_core::{Grid, Kernel};
+//! use rc_kernel::{Love, Spectral};
+//!
+//! // Sixteen elements to a wave: constant pressures are 0.55 % softer than the continuous half-space.
+//! let grid = Grid::square(16)?;
+//! let ratio = Love.symbol(grid)(1, 0) / Spectral.symbol(grid)(1, 0);
+//! assert!((ratio - 0.99446903).abs() < 1e-8);
+//! # Ok::<(), rc_core::GridError>(())
+//! ```
 //!
 //! Conventions and units: see [`rc_core`].
 
 mod alias_sum;
+mod averages;
+mod error;
+mod lattice;
 mod love;
 mod love_symbol;
+mod multipoles;
+mod periodic;
+mod polynomial;
 mod spectral;
+mod square;
+mod truncated;
+
+pub use alias_sum::love_alias_sum;
+pub use error::KernelError;
+pub use lattice::{LATTICE_CONSTANT, ewald_coefficient, ewald_phi};
 
 pub use love::love_displacement;
+pub use periodic::{PeriodicLove, PeriodicSource};
 pub use spectral::Spectral;
+pub use truncated::{LoadForm, MAX_SHELLS, shells_for, truncated_coefficient, truncation_error_bound};
 
 use love_symbol::LoveSymbol;
 use rc_core::{Grid, Kernel, Symbol};
 
-/// The paper's element: uniform pressure on each square, displacement at its centre, summed over all periodic images
-/// (Eq. 4-6) without truncation.
+/// The paper's element: uniform pressure on each element, displacement at its centre, summed over all periodic images
+/// (Eq. 4-6) without truncation. Elements are squares on a grid with nx = ny, and rectangles otherwise.
 ///
-/// *Accuracy*: the symbol is within 2e-14 relative of the converged alias sum (test
-/// `fast_symbol_matches_the_alias_sum`). Elements are rectangles on a grid with nx ≠ ny.
+/// Its symbol is `Σ 2/|q| sinc(q_x hx/2) sinc(q_y hy/2)` over the aliases q of the wave, for elements of hx × hy.
+///
+/// *Accuracy*: every value within 4e-15 relative of [`love_alias_sum`] (test `fast_symbol_matches_the_alias_sum`); the
+/// coefficients L_ij to 1e-12 (test `love_symbol_reproduces_the_periodic_coefficients`). *Cost*: 2 ms to make; a value 25 ns
+/// on square elements, up to 70 ns on others.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Love;
 

@@ -1,98 +1,73 @@
 //! Love's square: the displacement of a half-space under uniform pressure on a square, one term of Eq. 5.
 //!
-//! Love, *Phil. Trans. R. Soc. A* 228 (1929) 377; Johnson, *Contact Mechanics* (1985), Eq. 3.25. The logarithms of the printed
-//! form cancel where the point is far away or in line with a side. Near the square the same integral is taken with asinh,
-//! which does not cancel in line; far from it a multipole series replaces the differences.
+//! Love, *Phil. Trans. R. Soc. A* 228 (1929) 377; Johnson, *Contact Mechanics* (1985), Eq. 3.25. The logarithms of the
+//! printed form cancel where the point is far away or in line with a side. Here, near the square, every logarithm is
+//! accurate by itself and they cancel little; far from it, a multipole series ([`crate::multipoles`]) replaces them.
 
-use std::f64::consts::{FRAC_1_PI, SQRT_2};
-use std::sync::LazyLock;
+use std::f64::consts::FRAC_1_PI;
 
-/// Distance, in half-sides, from which the multipole series is used: there both forms are accurate to rounding.
-const FAR: f64 = 4.0;
+use crate::multipoles::multipole_series;
 
-/// Orders of the multipole series, in (d/R)²: enough for [`FAR`].
-const ORDERS: usize = 19;
+/// Distance, in half-sides and along the farther axis, from which the multipole series is used. Measured on 15 500 points:
+/// from here on the logarithms lose digits (2e-15 at 4), and the series does not (6e-16 at most).
+const FAR: f64 = 2.5;
 
-/// Displacement at offset (`x`, `y`) from the centre of a square of half-side `half_side` d under unit pressure:
+/// Displacement at offset (`x`, `y`) from the centre of a square of half-side `half_side` d under unit pressure, in units
+/// of λ when `x`, `y`, `half_side` are:
 ///
 /// ```text
 /// u = 1/(π E*) ∫∫ ds / |r - s|       over |s_x|, |s_y| ≤ d,  with E* = 1.
 /// ```
 ///
-/// In units of λ when `x`, `y`, `half_side` are. At the centre `8 d ln(1 + √2)/π`; far away `4 d²/(π R)`.
+/// At the centre 8 d ln(1 + √2)/π; far away 4 d²/(π R). Source: one term of Eq. 5, in free space.
 ///
-/// *Accuracy*: relative error at most 2e-15 at every distance, inside, on edges and on corners included (test
-/// `matches_reference_values_everywhere`). Exactly symmetric under x → -x, y → -y and x ↔ y.
+/// *Accuracy*: relative error below 1e-15 at every distance, inside, on edges and on corners included (tests
+/// `matches_reference_values_everywhere`, `a_square_is_the_sum_of_its_quarters`). Exactly symmetric under x → -x, y → -y
+/// and x ↔ y. *Cost*: 60 ns near the square, 95 ns at 2.5 half-sides, 40 ns at 8, 25 ns at 50.
+///
+/// `half_side` must be positive, and the rest finite; NaN otherwise, or what the formula gives.
 #[must_use]
 pub fn love_displacement(x: f64, y: f64, half_side: f64) -> f64 {
-    let (long, short) = (x.abs().max(y.abs()), x.abs().min(y.abs()));
-    let (long, short) = (long / half_side, short / half_side);
-    FRAC_1_PI * half_side * if long < FAR { near(long, short) } else { far(long, short) }
+    let (x, y) = (x.abs(), y.abs());
+    let (long, short) = if x >= y { (x, y) } else { (y, x) };
+    let ratio = half_side / long;
+    let integral = if ratio <= 1.0 / FAR {
+        4.0 * multipole_series(ratio, short / long)
+    } else {
+        // Differences before the division: next to an edge they are exact.
+        let sides = |offset: f64| [(offset + half_side) / half_side, (offset - half_side) / half_side];
+        near(sides(long), sides(short))
+    };
+    // In this order, nothing underflows before the result does.
+    half_side * (FRAC_1_PI * integral)
 }
 
-/// ∫∫ 1/r over the square of half-side 1, from its four corners.
-fn near(x: f64, y: f64) -> f64 {
-    let corner = |a: f64, b: f64| arm(a, b) + arm(b, a);
-    (corner(x + 1.0, y + 1.0) - corner(x - 1.0, y + 1.0)) - (corner(x + 1.0, y - 1.0) - corner(x - 1.0, y - 1.0))
-}
-
-/// a asinh(b/|a|), 0 for a = 0.
-fn arm(a: f64, b: f64) -> f64 {
-    if a == 0.0 { 0.0 } else { a * (b / a.abs()).asinh() }
-}
-
-/// ∫∫ 1/r over the square of half-side 1, from its multipoles: `4/R Σ_j R^-2j Σ_i M_ji cos(4 i φ)`.
-fn far(x: f64, y: f64) -> f64 {
-    let distance = x.hypot(y);
-    let (cos, sin) = (x / distance, y / distance);
-    let (c2, s2) = (cos * cos - sin * sin, 2.0 * cos * sin);
-    let cos_4 = c2 * c2 - s2 * s2;
-    let u = 1.0 / (distance * distance);
-    // The farthest point of the square is √2 away, so order j is below (√2/R)^2j; 2^-56 is below rounding.
-    let orders = (28.0 / (distance / SQRT_2).log2()) as usize + 2;
-    let mut sum = 0.0;
-    for multipoles in MULTIPOLES[..orders.min(ORDERS)].iter().rev() {
-        // Clenshaw's recurrence for the cosine sum.
-        let (mut b1, mut b2) = (0.0, 0.0);
-        for &m in multipoles[1..].iter().rev() {
-            (b1, b2) = (m + 2.0 * cos_4 * b1 - b2, b1);
-        }
-        sum = sum * u + (multipoles[0] + cos_4 * b1 - b2);
-    }
-    4.0 / distance * sum
-}
-
-/// M_ji: mean over the square of half-side 1 of s^2j times the cos(4iφ) part of the Legendre polynomial P_2j.
-static MULTIPOLES: LazyLock<Vec<Vec<f64>>> =
-    LazyLock::new(|| (0..ORDERS).map(|j| (0..=j / 2).map(|i| multipole(2 * j, 4 * i)).collect()).collect());
-
-/// One multipole: degree l, angular order m.
+/// ∫∫ 1/r over the square of half-side 1, from the offsets [x + 1, x - 1] and [y + 1, y - 1] to its sides.
 ///
-/// `P_l(cos γ) = Σ_k a_k a_{l-k} cos((l-2k)γ)` with `a_k = (2k-1)!!/(2k)!!`, so order m has the factor `2 a_k a_{l-k}`,
-/// k = (l-m)/2 (once for m = 0), times the mean of `s^l cos(mφ)` over the square.
-fn multipole(l: usize, m: usize) -> f64 {
-    let a = |k: usize| (1..=k).map(|i| (2 * i - 1) as f64 / (2 * i) as f64).product::<f64>();
-    let k = (l - m) / 2;
-    let factor = if m == 0 { 1.0 } else { 2.0 } * a(k) * a(l - k);
-    factor * mean_over_square(l, m)
+/// By the divergence of r/|r|, the integral is Σ (distance to a side, positive inwards) · ∫ 1/r along the side: Johnson's
+/// four logarithms. Inside the square all four are positive.
+fn near([a, b]: [f64; 2], [c, e]: [f64; 2]) -> f64 {
+    let corner = |x: f64, y: f64| (x * x + y * y).sqrt();
+    let [ac, ae, bc, be] = [corner(a, c), corner(a, e), corner(b, c), corner(b, e)];
+    let along_y = side(a, [c, e], [ac, ae]) - side(b, [c, e], [bc, be]);
+    let along_x = side(c, [a, b], [ac, bc]) - side(e, [a, b], [ae, be]);
+    along_y + along_x
 }
 
-/// Mean of `s^l cos(mφ)` over |s_x|, |s_y| ≤ 1: the real part of (s_x + i s_y)^m times (s_x² + s_y²)^((l-m)/2), expanded,
-/// with ⟨s^2a⟩ = 1/(2a+1) along each axis.
-fn mean_over_square(l: usize, m: usize) -> f64 {
-    let k = (l - m) / 2;
-    let mut sum = 0.0;
-    for i in (0..=m).step_by(2) {
-        let sign = if i % 4 == 0 { 1.0 } else { -1.0 };
-        for j in 0..=k {
-            let power_y = i + 2 * j;
-            let moment = 1.0 / ((l - power_y + 1) * (power_y + 1)) as f64;
-            sum += sign * binomial(m, i) * binomial(k, j) * moment;
-        }
+/// `distance` · ∫ dt/√(distance² + t²) along a side of length 2, from t = `from` to `to` > 0, whose ends are at the radii
+/// `r_from` and `r_to`. Every branch is accurate to rounding.
+fn side(distance: f64, [to, from]: [f64; 2], [r_to, r_from]: [f64; 2]) -> f64 {
+    if distance == 0.0 {
+        // In line with the side; also the limit at its ends, where the integral diverges logarithmically.
+        return 0.0;
     }
-    sum
-}
-
-fn binomial(n: usize, k: usize) -> f64 {
-    (0..k).map(|i| (n - i) as f64 / (k - i) as f64).product()
+    let closeness = 2.0 / (r_to + r_from);
+    let integral = if closeness < 0.5 {
+        2.0 * closeness.atanh()
+    } else if from < 0.0 {
+        ((to + r_to) * (r_from - from) / (distance * distance)).ln()
+    } else {
+        ((to + r_to) / (from + r_from)).ln()
+    };
+    distance * integral
 }

@@ -2,12 +2,13 @@
 //!
 //! Find p ≥ 0 on the cell with gap `g = v - (h - h_max + Δ) ≥ 0`, `p·g = 0` and `v = L p` (Eq. 3-4), for a given mean
 //! pressure σ0 (Δ is then the multiplier) or a given penetration Δ (σ0 is then a result). [`solve_uniform`] does it on
-//! uniform grids. Conventions and units: see [`rc_core`].
+//! uniform grids, [`solve_gauss_seidel`] by the paper's own procedure on an adaptive mesh. Conventions and units: see [`rc_core`].
 
 mod certificate;
 mod control;
 mod error;
 mod fft;
+mod gauss_seidel;
 mod observables;
 mod operator;
 mod params;
@@ -18,8 +19,9 @@ mod uniform;
 pub use certificate::Certificate;
 pub use control::Control;
 pub use error::SolveError;
+pub use gauss_seidel::{Coefficient, GaussSeidelError, GaussSeidelParams, solve_gauss_seidel};
 pub use observables::{ContactArea, Observables};
 pub use operator::{DirectSum, UniformOperator};
 pub use params::SolveParams;
-pub use solution::{LevelInfo, Solution, SolveInfo, Status};
+pub use solution::{LevelInfo, MeshPressure, Solution, SolveInfo, Status};
 pub use uniform::solve_uniform;

@@ -1,6 +1,7 @@
 //! What a solve returns.
 
 use rc_core::{Field, Grid};
+use rc_quadtree::Mesh;
 
 use crate::Certificate;
 
@@ -57,6 +58,15 @@ impl SolveInfo {
     }
 }
 
+/// Pressures on an adaptive mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshPressure {
+    /// The elements in contact.
+    pub mesh: Mesh,
+    /// Pressure of each, in E*, in the order of the mesh.
+    pub pressure: Vec<f64>,
+}
+
 /// A solved contact problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
@@ -66,6 +76,8 @@ pub struct Solution {
     pub gap: Field,
     /// Converged or full contact.
     pub status: Status,
+    /// The elements and their pressures, when the mesh is not the grid itself.
+    pub elements: Option<MeshPressure>,
     /// How it was found and how good it is.
     pub info: SolveInfo,
 }

@@ -39,7 +39,7 @@ impl<T: FftNum> SymbolTable<T> {
         T: Into<f64>,
     {
         let scale = 1.0 / grid.len() as f64;
-        let mut values: Vec<f64> = self.values.iter().map(|&value| scale * scale / value.into()).collect();
+        let mut values: Vec<f64> = self.values.par_iter().map(|&value| scale * scale / value.into()).collect();
         values[0] = 0.0;
         SymbolTable { column_len: self.column_len, values }
     }
@@ -50,8 +50,9 @@ impl<T: FftNum> SymbolTable<T> {
     }
 
     /// The table with `convert` applied to every value, as to another precision.
-    pub(crate) fn map<U>(&self, convert: impl Fn(T) -> U) -> SymbolTable<U> {
-        SymbolTable { column_len: self.column_len, values: self.values.iter().map(|&value| convert(value)).collect() }
+    pub(crate) fn map<U: Send>(&self, convert: impl Fn(T) -> U + Sync) -> SymbolTable<U> {
+        let values = self.values.par_iter().map(|&value| convert(value)).collect();
+        SymbolTable { column_len: self.column_len, values }
     }
 
     /// The column of `kx`: eigenvalues for 0 ≤ ky ≤ ny/2.

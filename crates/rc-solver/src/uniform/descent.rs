@@ -157,7 +157,9 @@ impl<'a> Descent<'a> {
 
     /// First pressure and gap.
     fn start(&mut self) -> GapSums {
-        let total = self.p.mean();
+        let nx = self.grid().nx();
+        let rows: Vec<f64> = self.p.values().par_chunks(nx).map(|row| row.iter().sum()).collect();
+        let total = rows.into_iter().sum::<f64>() / self.grid().len() as f64;
         match self.problem.control {
             Control::MeanPressure(mean) if total > 0.0 => scale_all(self.p.values_mut(), mean / total),
             Control::MeanPressure(mean) => self.p.values_mut().fill(mean),

@@ -104,5 +104,5 @@ fn certified(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64, problem: 
         levels: vec![LevelInfo { grid, iterations: 0, operator_applications: 1, preconditioner_applications: 0 }],
     };
     debug_assert!(matches!(problem.control, Control::MeanPressure(_)));
-    Solution { pressure, gap, status: Status::FullContact, info }
+    Solution { pressure, gap, status: Status::FullContact, elements: None, info }
 }

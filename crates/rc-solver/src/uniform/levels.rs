@@ -3,21 +3,18 @@
 use rayon::prelude::*;
 use rc_core::{Field, Grid};
 
-/// Grids below this many elements per side are not coarsened.
-const SMALLEST_SIDE: usize = 64;
-
 /// Six-point interpolation to the midpoint of two centres (Lagrange), which is where the centre of a coarse element lies:
 /// keeps 99.9 % of a wave of eight fine elements, where averaging would keep 92 %.
 const MIDPOINT: [f64; 6] = [3.0 / 256.0, -25.0 / 256.0, 150.0 / 256.0, 150.0 / 256.0, -25.0 / 256.0, 3.0 / 256.0];
 
-/// The heights on coarser and coarser grids, finest of them first, each with half the elements per side, as long as both
-/// sides are even and large enough.
-pub(super) fn coarsen(heights: &Field) -> Vec<Field> {
+/// The heights on coarser and coarser grids, finest of them first, each with half the elements per side, as long as that
+/// leaves whole elements, at least `smallest_side` of them.
+pub(crate) fn coarsen(heights: &Field, smallest_side: usize) -> Vec<Field> {
     let mut levels: Vec<Field> = Vec::new();
     loop {
         let finer = levels.last().unwrap_or(heights);
         let (nx, ny) = (finer.grid().nx(), finer.grid().ny());
-        let can_halve = |n: usize| n.is_multiple_of(2) && n >= 2 * SMALLEST_SIDE;
+        let can_halve = |n: usize| n.is_multiple_of(2) && n >= 2 * smallest_side;
         if !(can_halve(nx) && can_halve(ny)) {
             return levels;
         }
@@ -59,7 +56,7 @@ mod tests {
     fn halving_samples_a_resolved_wave_at_the_coarse_centres() {
         let wave = |x: f64, y: f64| (2.0 * PI * (5.0 * x + 3.0 * y)).cos();
         let fine = Field::from_fn(Grid::new(160, 128).expect("grid"), wave);
-        let coarse = coarsen(&fine);
+        let coarse = coarsen(&fine, 64);
         let grid = Grid::new(80, 64).expect("grid");
         assert_eq!(coarse.len(), 1, "80 x 64 is too small to halve again");
         let exact = Field::from_fn(grid, wave);
@@ -70,6 +67,6 @@ mod tests {
 
     #[test]
     fn odd_sides_are_not_coarsened() {
-        assert!(coarsen(&Field::zeros(Grid::new(256, 255).expect("grid"))).is_empty());
+        assert!(coarsen(&Field::zeros(Grid::new(256, 255).expect("grid")), 2).is_empty());
     }
 }

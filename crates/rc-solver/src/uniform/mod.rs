@@ -6,14 +6,23 @@ mod levels;
 mod prolongation;
 mod rows;
 
+use rayon::prelude::*;
 use rc_core::{Event, Field, Kernel, Observer};
 
 use crate::solution::{LevelInfo, Solution, SolveInfo, Status};
 use crate::{Control, SolveError, SolveParams};
 use descent::{Descent, Outcome};
+pub(crate) use levels::coarsen;
 
-/// Coarser levels only prepare a start: their discretisation error is far above this.
+/// Grids with fewer elements per side cost nothing, so no coarser ones prepare them.
+const SMALLEST_SIDE: usize = 64;
+
+/// Tolerance of the level below the finest: its discretisation error is far above this.
 const COARSE_TOLERANCE: f64 = 1e-4;
+
+/// Levels further down may be solved less accurately by this factor each, up to a limit: they only prepare the next.
+const COARSENING: f64 = 3.0;
+const COARSEST_TOLERANCE: f64 = 1e-3;
 
 /// Solves the contact problem on the grid of `heights` (in λ, any mean).
 ///
@@ -39,7 +48,7 @@ pub fn solve_uniform(
     {
         return Ok(solution);
     }
-    let coarse = levels::coarsen(heights);
+    let coarse = coarsen(heights, SMALLEST_SIDE);
     let n_levels = coarse.len() + 1;
     let mut infos: Vec<LevelInfo> = Vec::with_capacity(n_levels);
     let mut start: Option<Field> = None;
@@ -47,7 +56,8 @@ pub fn solve_uniform(
         let finest = level + 1 == n_levels;
         let grid = level_heights.grid();
         observer.notify(&Event::Level { grid, level, n_levels });
-        let tolerance = if finest { params.tolerance } else { params.tolerance.max(COARSE_TOLERANCE) };
+        let tolerance =
+            if finest { params.tolerance } else { coarse_tolerance(n_levels - 2 - level).max(params.tolerance) };
         let mut descent = Descent::new(level_heights, kernel, &problem, start.take());
         let outcome = descent.run(tolerance, params.max_iterations, finest, observer);
         infos.push(descent.info());
@@ -57,6 +67,11 @@ pub fn solve_uniform(
         start = Some(prolongation::prolong(&descent));
     }
     unreachable!("the finest level returns")
+}
+
+/// Tolerance of the level that has `below` levels between it and the finest.
+fn coarse_tolerance(below: usize) -> f64 {
+    (COARSE_TOLERANCE * COARSENING.powi(below as i32)).min(COARSEST_TOLERANCE)
 }
 
 /// Wraps up what the finest level found.
@@ -77,11 +92,45 @@ fn finish(
         levels,
     };
     let (pressure, gap) = descent.into_fields(outcome.approach + problem.offset());
-    let solution = Solution { pressure, gap, status: Status::Converged, info };
+    let solution = Solution { pressure, gap, status: Status::Converged, elements: None, info };
     if outcome.converged {
         Ok(solution)
     } else {
         Err(SolveError::NotConverged { grid, iterations, certificate, solution: Box::new(solution) })
+    }
+}
+
+struct HeightStatistics {
+    h_max: f64,
+    h_min: f64,
+    h_mean: f64,
+}
+
+impl HeightStatistics {
+    /// In one pass, in parallel over rows.
+    fn of(heights: &Field) -> Result<Self, SolveError> {
+        let nx = heights.grid().nx();
+        let rows: Vec<(f64, f64, f64)> = heights
+            .values()
+            .par_chunks(nx)
+            .map(|row| {
+                row.iter().fold((f64::NEG_INFINITY, f64::INFINITY, 0.0), |(max, min, sum), &h| {
+                    (f64::max(max, h), f64::min(min, h), sum + h)
+                })
+            })
+            .collect();
+        // A sum that is not finite gives away NaN and infinities; so does an overflow, which finds none.
+        for (iy, (_, _, sum)) in rows.iter().enumerate() {
+            if let Some(ix) = (!sum.is_finite()).then(|| heights.row(iy).iter().position(|h| !h.is_finite())).flatten()
+            {
+                return Err(SolveError::Height { ix, iy, value: heights.at(ix, iy) });
+            }
+        }
+        Ok(Self {
+            h_max: rows.iter().map(|row| row.0).fold(f64::NEG_INFINITY, f64::max),
+            h_min: rows.iter().map(|row| row.1).fold(f64::INFINITY, f64::min),
+            h_mean: rows.iter().map(|row| row.2).sum::<f64>() / heights.grid().len() as f64,
+        })
     }
 }
 
@@ -97,13 +146,9 @@ pub(crate) struct Problem {
 }
 
 impl Problem {
-    fn check(heights: &Field, control: Control, params: &SolveParams) -> Result<Self, SolveError> {
-        if let Some(at) = heights.values().iter().position(|h| !h.is_finite()) {
-            let nx = heights.grid().nx();
-            return Err(SolveError::Height { ix: at % nx, iy: at / nx, value: heights.values()[at] });
-        }
-        let (h_max, h_mean) = (heights.max(), heights.mean());
-        let h_range = h_max - heights.min();
+    pub(crate) fn check(heights: &Field, control: Control, params: &SolveParams) -> Result<Self, SolveError> {
+        let HeightStatistics { h_max, h_min, h_mean } = HeightStatistics::of(heights)?;
+        let h_range = h_max - h_min;
         let full_contact = h_max - h_mean;
         match control {
             Control::MeanPressure(value) if !(value > 0.0 && value.is_finite()) => {

@@ -52,7 +52,7 @@ fn level_function(coarse: &Descent<'_>) -> Vec<f64> {
     level
 }
 
-/// φ of an element out of contact. c² is estimated from its neighbours in contact, whose centres are about 0.6 elements
+/// φ of an element out of contact. c² is estimated from its neighbours in contact, whose centres are about 0.7 elements
 /// inside the edge; without any the value has no influence.
 fn outside(rows: &[&[f64]; 3], ix: usize, gap: f64, spacing: f64) -> f64 {
     let nx = rows[0].len();
@@ -76,4 +76,4 @@ fn outside(rows: &[&[f64]; 3], ix: usize, gap: f64, spacing: f64) -> f64 {
 }
 
 /// Typical distance to the edge of an element in contact beside one that is not, in elements.
-const EDGE_DISTANCE: f64 = 0.6;
+const EDGE_DISTANCE: f64 = 0.7;

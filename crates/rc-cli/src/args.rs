@@ -1,0 +1,112 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::scene::{RunKeys, Scene, SurfaceKeys};
+
+/// Contact of rough elastic surfaces.
+///
+/// SI units; any consistent system works too (cell 1, E* 1 gives dimensionless results).
+/// Exit codes: 0 solved, 2 bad input, 3 not converged, 4 could not write.
+#[derive(Parser, Clone, Debug)]
+#[command(name = "rc", version, max_term_width = 120, disable_help_subcommand = true)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Subcommand, Clone, Debug)]
+pub enum Command {
+    /// Solve one contact problem (without arguments: the embedded example, the paper's N = 64 surface, into rc-result/)
+    Solve(SolveArgs),
+    /// Generate or convert a surface: statistics, and with --out its files
+    Surface(SurfaceArgs),
+    /// Statistics of a surface or of a result: rms, slopes, spectrum, distributions
+    Inspect(InspectArgs),
+    /// Pictures of a result
+    Plot(PlotArgs),
+}
+
+/// Arguments of `rc solve`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = SOLVE_HELP)]
+pub struct SolveArgs {
+    /// Scene file: TOML with the flags below for keys, written with _ for -
+    #[arg(value_name = "SCENE.toml")]
+    pub scene_file: Option<PathBuf>,
+    /// What is given here holds against the scene file.
+    #[command(flatten)]
+    pub scene: Scene,
+}
+
+const SOLVE_HELP: &str = "\
+What neither scene file nor flags give has the value of the embedded example: cell 0.01 m, E = 0.4 GPa, ν = 0.45, N = 64, \
+H = 0.8, rms 13 µm, seed 1, kernel love, tolerance 1e-6. The control is never assumed: give --pressure or --penetration, \
+exactly one. A flag replaces its alternatives in the scene file: --penetration its pressure, --heights its random surface. \
+Relative paths in a scene file start at its folder.
+
+DIR receives summary.json, pressure.npy (Pa), gap.npy (m), contact.png and scene.toml, from which the result can be repeated \
+(with heights.npy, if the heights came from a file). In the summary, iterations and operator_applications are those of the \
+finest level.";
+
+/// Arguments of `rc surface`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = SURFACE_HELP)]
+pub struct SurfaceArgs {
+    /// Scene file; its keys of the contact are passed over
+    #[arg(value_name = "SCENE.toml")]
+    pub scene_file: Option<PathBuf>,
+    /// What is given here holds against the scene file.
+    #[command(flatten)]
+    pub surface: SurfaceKeys,
+    /// Threads and output.
+    #[command(flatten)]
+    pub run: RunKeys,
+}
+
+const SURFACE_HELP: &str = "\
+--out DIR receives heights.npy (m), scene.toml, surface.png and surface.json; --out FILE.npy or --out FILE.csv the heights \
+alone; without --out nothing is written.";
+
+/// Arguments of `rc inspect`.
+#[derive(Args, Clone, Debug)]
+pub struct InspectArgs {
+    /// A height map (.npy, .csv), a result folder, or its summary.json or pressure.npy
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Side λ of the periodic cell of a height map (m) [default: 0.01; of a result, that of its scene.toml]
+    #[arg(long, allow_hyphen_values = true)]
+    pub cell: Option<f64>,
+    /// Print the statistics as JSON, with the whole spectrum
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `rc plot`.
+#[derive(Args, Clone, Debug)]
+pub struct PlotArgs {
+    /// Folder of a result
+    #[arg(value_name = "RESULT_DIR")]
+    pub folder: PathBuf,
+    /// Folder for the pictures [default: the result's own]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Do not list the pictures
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,67 @@
+//! What ends a command early, and the exit code that goes with it.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use thiserror::Error;
+
+/// Why a command did not end well. Each message is one line: what, where, and what would be right.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum CliError {
+    /// The input cannot be used; nothing was computed or written. Exit code 2.
+    #[error("{0}")]
+    Input(String),
+    /// The solver did not reach the tolerance; the results are written and marked. Exit code 3.
+    #[error("{0}")]
+    NotConverged(String),
+    /// A result could not be written. Exit code 4.
+    #[error("{0}")]
+    Write(String),
+}
+
+impl CliError {
+    /// Exit code of the process: 2 bad input, 3 not converged, 4 could not write.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Input(_) => 2,
+            Self::NotConverged(_) => 3,
+            Self::Write(_) => 4,
+        }
+    }
+
+    /// Bad input. Line breaks, which messages of parsers may bring along, become "; ".
+    pub(crate) fn input(message: impl std::fmt::Display) -> Self {
+        let message = message.to_string();
+        let lines: Vec<&str> = message.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+        Self::Input(lines.join("; "))
+    }
+
+    /// Bad input in a file.
+    pub(crate) fn in_file(path: &Path, message: impl std::fmt::Display) -> Self {
+        Self::input(format_args!("{}: {message}", path.display()))
+    }
+
+    /// A file that could not be written.
+    pub(crate) fn write(path: &Path, cause: impl std::fmt::Display) -> Self {
+        Self::Write(format!("cannot write {}: {cause}", path.display()))
+    }
+}
+
+impl From<&CliError> for ExitCode {
+    fn from(error: &CliError) -> Self {
+        Self::from(error.exit_code())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_of_several_lines_becomes_one() {
+        let error = CliError::input("expected a number\n\n  at line 3\n");
+        assert_eq!(error.to_string(), "expected a number; at line 3");
+        assert_eq!(error.exit_code(), 2);
+    }
+}

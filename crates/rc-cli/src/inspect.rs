@@ -1,0 +1,89 @@
+//! `rc inspect`: statistics of a height map or of a result.
+
+use std::path::{Path, PathBuf};
+
+use rc_core::{Field, PeriodicCell};
+use serde::Serialize;
+
+use crate::args::InspectArgs;
+use crate::error::CliError;
+use crate::result::ResultFolder;
+use crate::scene_file;
+use crate::statistics::{HeightStatistics, PressureStatistics};
+use crate::summary::{Summary, to_json};
+use crate::{heights, npy, output, report};
+
+/// Names of files by which a result is recognised.
+const RESULT_FILES: [&str; 2] = ["summary.json", "pressure.npy"];
+
+/// Statistics of a result, with its summary.
+#[derive(Serialize)]
+struct ResultStatistics {
+    summary: Summary,
+    pressure: PressureStatistics,
+}
+
+/// Runs `rc inspect`.
+///
+/// # Errors
+/// [`CliError::Input`] when the file is neither a height map nor of a result.
+pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
+    let text = match result_folder(&args.file) {
+        Some(_) if args.cell.is_some() => {
+            return Err(CliError::input("cell: a result has its own, in its scene.toml; leave --cell away"));
+        }
+        Some(folder) => inspect_result(&folder, args.json)?,
+        None if args.file.file_name().is_some_and(|name| name == "pressure.npy") => {
+            let statistics = PressureStatistics::of(&finite(&args.file, npy::read(&args.file)?)?);
+            if args.json { to_json(&statistics) } else { report::pressure(&statistics) }
+        }
+        None => inspect_heights(args)?,
+    };
+    output::print(&text)
+}
+
+/// The folder of the result that `file` is or belongs to.
+fn result_folder(file: &Path) -> Option<PathBuf> {
+    if file.is_dir() {
+        return Some(file.to_owned());
+    }
+    let name = file.file_name()?.to_str()?;
+    let folder = file.parent()?;
+    let complete = RESULT_FILES.iter().all(|other| folder.join(other).is_file());
+    (name == "summary.json" || RESULT_FILES.contains(&name) && complete).then(|| folder.to_owned())
+}
+
+fn inspect_result(folder: &Path, json: bool) -> Result<String, CliError> {
+    // A folder that `rc surface` wrote has heights and no pressure.
+    let heights = folder.join(crate::surface::HEIGHTS_FILE);
+    if !folder.join("summary.json").exists() && heights.is_file() {
+        return Err(CliError::in_file(folder, format_args!("not a result; inspect {} instead", heights.display())));
+    }
+    let result = ResultFolder::read(folder)?;
+    let pressure = PressureStatistics::of(&finite(&folder.join("pressure.npy"), result.pressure)?);
+    if json {
+        return Ok(to_json(&ResultStatistics { summary: result.summary, pressure }));
+    }
+    Ok(report::solved(&result.summary, result.side, result.e_star)
+        + "\nstored pressure\n"
+        + &report::pressure(&pressure))
+}
+
+fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
+    let side = args.cell.or(scene_file::example().surface.cell).unwrap_or(1.0);
+    let cell = PeriodicCell::new(side)
+        .map_err(|_| CliError::input(format_args!("cell: must be positive and finite (m), not {side}")))?;
+    let mut field = heights::read(&args.file)?;
+    field.values_mut().iter_mut().for_each(|height| *height /= cell.side());
+    if field.max() <= field.min() {
+        let message = format_args!("all heights are {:e}; a flat surface has no statistics", field.max() * side);
+        return Err(CliError::in_file(&args.file, message));
+    }
+    let statistics = HeightStatistics::of(&field, cell.side(), None);
+    Ok(if args.json { to_json(&statistics) } else { report::heights(&statistics) })
+}
+
+fn finite(path: &Path, field: Field) -> Result<Field, CliError> {
+    heights::check_finite(path, &field)?;
+    Ok(field)
+}

@@ -1,0 +1,85 @@
+//! The command line of rc: scenes, files in SI units, summaries and pictures.
+//!
+//! The way of a solve: [`args`] and [`scene_file`] give a [`scene`], [`resolve`] checks it and turns it into a problem in
+//! units of λ and E*, the libraries solve it, [`summary`] turns it back into SI, [`output`] writes files that are there whole
+//! or not at all. [`picture`] is general enough for figures made elsewhere.
+
+use std::process::ExitCode;
+
+use clap::Parser as _;
+use clap::error::ErrorKind;
+
+pub mod args;
+pub mod coarsen;
+pub mod error;
+pub mod heights;
+pub mod memory;
+pub mod npy;
+pub mod output;
+pub mod picture;
+pub mod quantity;
+pub mod report;
+pub mod resolve;
+pub mod result;
+pub mod scene;
+pub mod scene_file;
+pub mod statistics;
+pub mod summary;
+pub mod surface;
+pub mod values;
+
+mod inspect;
+mod plot;
+mod progress;
+mod solve;
+mod surface_command;
+
+use args::{Cli, Command};
+use error::CliError;
+
+/// Runs the command line of this process.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return refuse(&error),
+    };
+    match run(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            output::tell(&format!("error: {error}"));
+            ExitCode::from(&error)
+        }
+    }
+}
+
+/// Runs one command.
+///
+/// # Errors
+/// [`CliError`] with the exit code in it.
+pub fn run(cli: Cli) -> Result<(), CliError> {
+    match cli.command {
+        Command::Solve(args) => solve::run(args),
+        Command::Surface(args) => surface_command::run(args),
+        Command::Inspect(args) => inspect::run(&args),
+        Command::Plot(args) => plot::run(&args),
+    }
+}
+
+/// Help and version as clap prints them; anything else as one line, exit code 2.
+fn refuse(error: &clap::Error) -> ExitCode {
+    if matches!(
+        error.kind(),
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
+    ) {
+        // There is nowhere left to report that the output is closed.
+        let _ = error.print();
+        return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+    }
+    let text = error.to_string();
+    let before_usage = text.split("\n\nUsage:").next().unwrap_or_default();
+    let before_usage = before_usage.split("\n\nFor more information").next().unwrap_or_default();
+    let error = CliError::input(before_usage.trim_start_matches("error: "));
+    output::tell(&format!("error: {error}"));
+    ExitCode::from(&error)
+}

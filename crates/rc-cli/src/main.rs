@@ -1,0 +1,7 @@
+//! The binary `rc`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    rc_cli::main()
+}

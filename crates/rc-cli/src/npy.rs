@@ -1,0 +1,175 @@
+//! NumPy files: two-dimensional arrays of real numbers in, `f64` arrays out.
+
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Write as _};
+use std::path::Path;
+
+use npyz::{DType, Deserialize, NpyFile, NpyHeader, Order, TypeChar, WriterBuilder as _};
+use rc_core::{Field, Grid};
+
+use crate::error::CliError;
+
+type Reader = BufReader<File>;
+
+/// Reads a two-dimensional array of real numbers (any float or integer type, either byte order, C or Fortran order) as a
+/// field: the first index is y, the second x.
+///
+/// # Errors
+/// [`CliError::Input`] when the file cannot be read, is no npy file, is shorter than it says, or is not 2-D and real.
+pub fn read(path: &Path) -> Result<Field, CliError> {
+    let fail = |message: String| CliError::in_file(path, message);
+    let cut_short = || fail("shorter than its header says".into());
+    let unreadable = |cause: io::Error| match cause.kind() {
+        io::ErrorKind::UnexpectedEof => cut_short(),
+        _ => fail(format!("cannot read: {cause}")),
+    };
+    let file = File::open(path).map_err(unreadable)?;
+    let bytes = file.metadata().map_err(unreadable)?.len();
+    let npy = NpyFile::new(BufReader::new(file)).map_err(|cause| fail(format!("not a valid npy file: {cause}")))?;
+    let grid = grid_of(npy.header()).map_err(fail)?;
+    let order = npy.order();
+    let expected = real_type(&npy.dtype()).map_err(fail)?.1 * npy.len();
+    if bytes < expected {
+        // Said before memory is taken for what a damaged header promises.
+        return Err(cut_short());
+    }
+    let stored = to_f64(npy).map_err(unreadable)?;
+    let values = if order == Order::C { stored } else { transposed(&stored, grid) };
+    Field::new(grid, values).map_err(|cause| fail(cause.to_string()))
+}
+
+/// Writes a field as a 2-D `f64` array, C order, little-endian, each value multiplied by `factor`, without a copy of it.
+///
+/// # Errors
+/// Those of the file system.
+pub fn write(path: &Path, field: &Field, factor: f64) -> io::Result<()> {
+    let shape = [field.grid().ny() as u64, field.grid().nx() as u64];
+    let file = BufWriter::with_capacity(1 << 16, File::create(path)?);
+    let options = npyz::WriteOptions::new_header_only().dtype(DType::Plain("<f8".parse().map_err(io::Error::other)?));
+    let mut out = options.shape(&shape).writer(file).write_header_only()?;
+    for value in field.values() {
+        out.write_all(&(value * factor).to_le_bytes())?;
+    }
+    out.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
+}
+
+fn grid_of(header: &NpyHeader) -> Result<Grid, String> {
+    match *header.shape() {
+        [ny, nx] => Grid::new(to_side(nx), to_side(ny)).map_err(|cause| cause.to_string()),
+        ref shape => Err(format!("a height map is a 2-D array, this one has {} dimensions {shape:?}", shape.len())),
+    }
+}
+
+/// A length that no grid accepts when it does not fit.
+fn to_side(n: u64) -> usize {
+    usize::try_from(n).unwrap_or(usize::MAX)
+}
+
+/// Kind and size in bytes of a real type.
+fn real_type(dtype: &DType) -> Result<(TypeChar, u64), String> {
+    let expected = "a height map has real numbers, of type f2, f4, f8 or an integer type";
+    let DType::Plain(plain) = dtype else {
+        return Err(format!("{expected}, not records"));
+    };
+    match (plain.type_char(), plain.size_field()) {
+        (TypeChar::Float, size @ (2 | 4 | 8)) => Ok((TypeChar::Float, size)),
+        (kind @ (TypeChar::Int | TypeChar::Uint), size @ (1 | 2 | 4 | 8)) => Ok((kind, size)),
+        _ => Err(format!("{expected}, not {plain}")),
+    }
+}
+
+fn to_f64(npy: NpyFile<Reader>) -> io::Result<Vec<f64>> {
+    match real_type(&npy.dtype()).map_err(io::Error::other)? {
+        (TypeChar::Float, 2) => collect(npy, npyz::half::f16::to_f64),
+        (TypeChar::Float, 4) => collect(npy, |v: f32| f64::from(v)),
+        (TypeChar::Int, 1) => collect(npy, |v: i8| f64::from(v)),
+        (TypeChar::Int, 2) => collect(npy, |v: i16| f64::from(v)),
+        (TypeChar::Int, 4) => collect(npy, |v: i32| f64::from(v)),
+        (TypeChar::Int, _) => collect(npy, |v: i64| v as f64),
+        (TypeChar::Uint, 1) => collect(npy, |v: u8| f64::from(v)),
+        (TypeChar::Uint, 2) => collect(npy, |v: u16| f64::from(v)),
+        (TypeChar::Uint, 4) => collect(npy, |v: u32| f64::from(v)),
+        (TypeChar::Uint, _) => collect(npy, |v: u64| v as f64),
+        _ => collect(npy, |v: f64| v),
+    }
+}
+
+fn collect<T: Deserialize>(npy: NpyFile<Reader>, to_f64: impl Fn(T) -> f64) -> io::Result<Vec<f64>> {
+    let data = npy.data::<T>().map_err(io::Error::other)?;
+    data.map(|value| value.map(&to_f64)).collect()
+}
+
+/// Row-major values of an array that is stored column by column.
+fn transposed(stored: &[f64], grid: Grid) -> Vec<f64> {
+    let (nx, ny) = (grid.nx(), grid.ny());
+    (0..ny).flat_map(|iy| (0..nx).map(move |ix| stored[ix * ny + iy])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn write_raw(dir: &Path, dtype: &str, order: bool, data: &[u8]) -> std::path::PathBuf {
+        let order = if order { "True" } else { "False" };
+        let mut header = format!("{{'descr': '{dtype}', 'fortran_order': {order}, 'shape': (2, 3), }}");
+        let padding = 64 - (10 + header.len() + 1) % 64;
+        header.push_str(&" ".repeat(padding));
+        header.push('\n');
+        let length = u16::try_from(header.len()).expect("short header");
+        let bytes = [b"\x93NUMPY\x01\x00".as_slice(), &length.to_le_bytes(), header.as_bytes(), data].concat();
+        let path = dir.join("array.npy");
+        std::fs::write(&path, bytes).expect("a temporary file");
+        path
+    }
+
+    #[test]
+    fn every_real_type_and_byte_order_reads_as_the_same_field() {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        let values = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
+        let f16 = |v: f64| npyz::half::f16::from_f64(v);
+        let cases: Vec<(&str, Vec<u8>)> = vec![
+            ("<f8", values.iter().flat_map(|v: &f64| v.to_le_bytes()).collect()),
+            (">f8", values.iter().flat_map(|v: &f64| v.to_be_bytes()).collect()),
+            ("<f4", values.iter().flat_map(|v| (*v as f32).to_le_bytes()).collect()),
+            (">f4", values.iter().flat_map(|v| (*v as f32).to_be_bytes()).collect()),
+            ("<f2", values.iter().flat_map(|v| f16(*v).to_le_bytes()).collect()),
+            (">f2", values.iter().flat_map(|v| f16(*v).to_be_bytes()).collect()),
+            ("|u1", values.iter().map(|v| *v as u8).collect()),
+            (">i4", values.iter().flat_map(|v| (*v as i32).to_be_bytes()).collect()),
+            ("<i8", values.iter().flat_map(|v| (*v as i64).to_le_bytes()).collect()),
+        ];
+        for (dtype, data) in cases {
+            let field = read(&write_raw(dir.path(), dtype, false, &data)).expect(dtype);
+            assert_eq!((field.grid().nx(), field.grid().ny()), (3, 2), "{dtype}");
+            assert_eq!(field.values(), values, "{dtype}");
+        }
+    }
+
+    #[test]
+    fn fortran_order_is_transposed() {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        let columns = [0.0, 3.0, 1.0, 4.0, 2.0, 5.0_f64];
+        let data: Vec<u8> = columns.iter().flat_map(|v| v.to_le_bytes()).collect();
+        let field = read(&write_raw(dir.path(), "<f8", true, &data)).expect("a field");
+        assert_eq!(field.values(), [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+    }
+
+    #[test]
+    fn what_is_not_real_or_cut_short_is_refused() {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        for (dtype, bytes) in [("<c16", 96), ("|b1", 6), ("<U4", 96), ("<f8", 47), ("<M8[s]", 48)] {
+            let error = read(&write_raw(dir.path(), dtype, false, &vec![0; bytes])).expect_err(dtype);
+            assert_eq!(error.exit_code(), 2, "{dtype}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_field_reads_back_bit_for_bit() {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        let path = dir.path().join("field.npy");
+        let grid = Grid::new(3, 2).expect("a grid");
+        let field = Field::from_fn(grid, |x, y| (x - 0.3).exp() * y);
+        write(&path, &field, 1.0).expect("a written file");
+        assert_eq!(read(&path).expect("a field"), field);
+    }
+}

@@ -1,0 +1,121 @@
+//! Line plots with linear axes.
+
+use plotters::chart::{ChartBuilder, SeriesLabelPosition};
+use plotters::element::{Circle, EmptyElement, PathElement};
+use plotters::prelude::{DrawingBackend, IntoFont as _};
+use plotters::series::{DashedLineSeries, LineSeries};
+use plotters::style::{BLACK, Color as _, RGBColor, WHITE};
+
+use super::{Area, FONT, PictureError};
+use crate::quantity::label;
+
+/// A plot of one or more series.
+#[derive(Clone, Debug)]
+pub struct LinePlot<'a> {
+    /// Text above the plot.
+    pub title: &'a str,
+    /// Text along x.
+    pub x_label: &'a str,
+    /// Text along y.
+    pub y_label: &'a str,
+    /// Range along x.
+    pub x: (f64, f64),
+    /// Range along y.
+    pub y: (f64, f64),
+    /// What is drawn, first at the bottom.
+    pub series: Vec<Series<'a>>,
+}
+
+/// A series of points.
+#[derive(Clone, Debug)]
+pub struct Series<'a> {
+    /// Name in the legend; empty for none.
+    pub name: &'a str,
+    /// The points, in the units of the axes.
+    pub points: Vec<(f64, f64)>,
+    /// Colour.
+    pub colour: RGBColor,
+    /// How it is drawn.
+    pub style: LineStyle,
+}
+
+/// How a series is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LineStyle {
+    /// A continuous line.
+    Solid,
+    /// A dashed line.
+    Dashed,
+    /// A dot at each point.
+    Dots,
+}
+
+/// Draws `plot` into `area`, with text of `font` pixels.
+///
+/// # Errors
+/// [`PictureError`] of the backend.
+pub fn draw_lines<B: DrawingBackend>(area: &Area<B>, plot: &LinePlot<'_>, font: f64) -> Result<(), PictureError> {
+    let mut chart = ChartBuilder::on(area)
+        .caption(plot.title, (FONT, 1.1 * font).into_font().color(&BLACK))
+        .margin((0.8 * font) as i32)
+        .x_label_area_size((2.6 * font) as i32)
+        .y_label_area_size((4.0 * font) as i32)
+        .build_cartesian_2d(plot.x.0..plot.x.1, plot.y.0..plot.y.1)
+        .map_err(PictureError::new)?;
+    chart
+        .configure_mesh()
+        .x_desc(plot.x_label)
+        .y_desc(plot.y_label)
+        .x_label_formatter(&|value| label(*value))
+        .y_label_formatter(&|value| label(*value))
+        .x_labels(8)
+        .y_labels(6)
+        .label_style((FONT, 0.85 * font).into_font().color(&BLACK))
+        .axis_desc_style((FONT, font).into_font().color(&BLACK))
+        .light_line_style(WHITE)
+        .bold_line_style(RGBColor(225, 225, 225))
+        .draw()
+        .map_err(PictureError::new)?;
+    let stroke = (font / 11.0).max(1.0) as u32;
+    let mut named = false;
+    for series in &plot.series {
+        let points = series.points.iter().copied();
+        let line = series.colour.stroke_width(stroke);
+        let drawn = match series.style {
+            LineStyle::Solid => chart.draw_series(LineSeries::new(points, line)),
+            LineStyle::Dashed => chart.draw_series(DashedLineSeries::new(points, 4 * stroke, 3 * stroke, line)),
+            LineStyle::Dots => chart.draw_series(points.map(|at| Circle::new(at, stroke, series.colour.filled()))),
+        };
+        let annotation = drawn.map_err(PictureError::new)?;
+        if !series.name.is_empty() {
+            named = true;
+            let ([first, second], radius) = sample(series.style, (1.4 * font) as i32, stroke);
+            let piece = move |(from, to): (i32, i32)| PathElement::new([(from, 0), (to, 0)], line);
+            annotation.label(series.name).legend(move |at| {
+                EmptyElement::at(at) + piece(first) + piece(second) + Circle::new((first.0, 0), radius, line.filled())
+            });
+        }
+    }
+    if named {
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
+            .legend_area_size((1.8 * font) as u32)
+            .label_font((FONT, 0.85 * font).into_font().color(&BLACK))
+            .background_style(WHITE.mix(0.85))
+            .border_style(RGBColor(225, 225, 225))
+            .draw()
+            .map_err(PictureError::new)?;
+    }
+    Ok(())
+}
+
+/// The pieces of a series' sample in the legend, from its left end, and the radius of the dot at the first: every style is
+/// two pieces and a dot, some of them of no length.
+fn sample(style: LineStyle, length: i32, stroke: u32) -> ([(i32, i32); 2], u32) {
+    match style {
+        LineStyle::Solid => ([(0, length / 2), (length / 2, length)], 0),
+        LineStyle::Dashed => ([(0, length * 2 / 5), (length * 3 / 5, length)], 0),
+        LineStyle::Dots => ([(length / 2, length / 2); 2], stroke),
+    }
+}

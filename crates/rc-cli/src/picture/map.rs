@@ -1,0 +1,174 @@
+//! A map of a field over the cell: title, bitmap, scale bar and colour bar.
+
+use plotters::element::{BitMapElement, Rectangle, Text};
+use plotters::prelude::{DrawingBackend, IntoFont as _};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{BLACK, Color as _, RGBColor, TextStyle};
+use rc_core::Field;
+
+use super::{Area, FONT, Palette, PictureError, Raster};
+use crate::quantity::{Scale, engineering, label, round_below, ticks};
+
+/// A map of a field over the cell.
+#[derive(Clone, Copy, Debug)]
+pub struct Map<'a> {
+    /// Text above the map.
+    pub title: &'a str,
+    /// What is shown.
+    pub field: &'a Field,
+    /// How it is shown.
+    pub shade: Shade,
+    /// Side of the cell, for the scale bar (m).
+    pub side: f64,
+}
+
+/// How values become colours.
+#[derive(Clone, Copy, Debug)]
+pub enum Shade {
+    /// Positive values dark, others light; a pixel with several elements has the grey of the positive part.
+    Contact,
+    /// A colour for each value, with a colour bar.
+    Values {
+        /// Values (of the field) at the ends of the colour bar.
+        range: (f64, f64),
+        /// Colours.
+        palette: Palette,
+        /// A value of 1 of the field in `unit`.
+        factor: f64,
+        /// SI unit of the colour bar; it gets a prefix.
+        unit: &'static str,
+    },
+}
+
+/// Sizes, in units of the font size.
+const TITLE: f64 = 1.9;
+const FOOT: f64 = 2.0;
+const BAR_GAP: f64 = 0.6;
+const BAR_WIDTH: f64 = 0.9;
+const BAR_LABELS: f64 = 3.2;
+
+/// Width of a map without and with a colour bar for the side `side` of its bitmap, and its height, all in pixels.
+#[must_use]
+pub fn map_extent(side: u32, font: f64, colour_bar: bool) -> (u32, u32) {
+    let bar = if colour_bar { BAR_GAP + BAR_WIDTH + BAR_LABELS } else { 0.0 };
+    (side + (bar * font) as u32, side + ((TITLE + FOOT) * font) as u32)
+}
+
+/// Draws `map` into `area`, as large as fits, with text of `font` pixels.
+///
+/// # Errors
+/// [`PictureError`] of the backend.
+pub fn draw_map<B: DrawingBackend>(area: &Area<B>, map: &Map<'_>, font: f64) -> Result<(), PictureError> {
+    let (width, height) = area.dim_in_pixel();
+    let (bar_width, text_height) =
+        (map_extent(0, font, matches!(map.shade, Shade::Values { .. })).0, map_extent(0, font, false).1);
+    let side = width.saturating_sub(bar_width).min(height.saturating_sub(text_height)).max(1);
+    let top = (TITLE * font) as i32;
+    text(area, map.title, (side as i32 / 2, (TITLE * font / 2.0) as i32), HPos::Center, font)?;
+
+    let raster = rasterise(map, side);
+    let bitmap = BitMapElement::with_owned_buffer((0, top), (side, side), raster.rgb)
+        .ok_or_else(|| PictureError::new("the bitmap has another size than its area"))?;
+    area.draw(&bitmap).map_err(PictureError::new)?;
+    let bottom = top + side as i32;
+    frame(area, (0, top), (side as i32, bottom))?;
+    scale_bar(area, map.side, side, bottom, font)?;
+    match map.shade {
+        Shade::Contact => Ok(()),
+        Shade::Values { range, palette, factor, unit } => {
+            let left = side as i32 + (BAR_GAP * font) as i32;
+            let bar = ColourBar { low: range.0 * factor, high: range.1 * factor, palette, unit };
+            bar.draw(area, (left, top), side, font)
+        }
+    }
+}
+
+fn rasterise(map: &Map<'_>, side: u32) -> Raster {
+    match map.shade {
+        Shade::Contact => {
+            let inside = |value: f64| if value > 0.0 { 1.0 } else { 0.0 };
+            Raster::of(map.field, (side, side), inside, |part| Palette::Ink.colour(part))
+        }
+        Shade::Values { range: (low, high), palette, .. } => {
+            let span = if high > low { high - low } else { 1.0 };
+            Raster::of(map.field, (side, side), |value| value, |value| palette.colour((value - low) / span))
+        }
+    }
+}
+
+/// A bar of round length, about a quarter of the cell, below the map at its left.
+fn scale_bar<B: DrawingBackend>(
+    area: &Area<B>,
+    side: f64,
+    pixels: u32,
+    bottom: i32,
+    font: f64,
+) -> Result<(), PictureError> {
+    let length = round_below(side * 0.3);
+    let right = (length / side * f64::from(pixels)).round() as i32;
+    let middle = bottom + (FOOT * font / 2.0) as i32;
+    let half = (font * 0.14) as i32;
+    let bar = Rectangle::new([(0, middle - half), (right, middle + half)], BLACK.filled());
+    area.draw(&bar).map_err(PictureError::new)?;
+    text(area, &engineering(length, "m"), (right + (0.5 * font) as i32, middle), HPos::Left, font)
+}
+
+/// A colour bar with ticks at its right.
+struct ColourBar {
+    low: f64,
+    high: f64,
+    palette: Palette,
+    unit: &'static str,
+}
+
+impl ColourBar {
+    fn draw<B: DrawingBackend>(
+        &self,
+        area: &Area<B>,
+        (left, top): (i32, i32),
+        height: u32,
+        font: f64,
+    ) -> Result<(), PictureError> {
+        let width = (BAR_WIDTH * font) as u32;
+        let colours = (0..height).rev().map(|row| self.palette.colour((f64::from(row) + 0.5) / f64::from(height)));
+        let rgb =
+            colours.flat_map(|RGBColor(r, g, b)| std::iter::repeat_n([r, g, b], width as usize).flatten()).collect();
+        let bitmap = BitMapElement::with_owned_buffer((left, top), (width, height), rgb)
+            .ok_or_else(|| PictureError::new("the colour bar has another size than its area"))?;
+        area.draw(&bitmap).map_err(PictureError::new)?;
+        let (right, bottom) = (left + width as i32, top + height as i32);
+        frame(area, (left, top), (right, bottom))?;
+
+        let scale = Scale::of(self.low.abs().max(self.high.abs()), self.unit);
+        text(area, &scale.unit(), (left, (TITLE * font / 2.0) as i32), HPos::Left, font)?;
+        let (low, high) = (self.low / scale.factor, self.high / scale.factor);
+        for tick in ticks(low, high, 6) {
+            let part = if high > low { (tick - low) / (high - low) } else { 0.0 };
+            let y = bottom - (part * f64::from(height)).round() as i32;
+            let mark = Rectangle::new([(right, y - 1), (right + (0.25 * font) as i32, y + 1)], BLACK.filled());
+            area.draw(&mark).map_err(PictureError::new)?;
+            text(area, &label(tick), (right + (0.4 * font) as i32, y), HPos::Left, font)?;
+        }
+        Ok(())
+    }
+}
+
+/// A thin frame just around the rectangle, so that it covers none of it.
+fn frame<B: DrawingBackend>(area: &Area<B>, from: (i32, i32), to: (i32, i32)) -> Result<(), PictureError> {
+    let grey = RGBColor(90, 90, 90);
+    area.draw(&Rectangle::new([(from.0, from.1 - 1), to], grey.stroke_width(1))).map_err(PictureError::new)
+}
+
+/// Text with the middle of its digits at `at`.
+fn text<B: DrawingBackend>(
+    area: &Area<B>,
+    text: &str,
+    at: (i32, i32),
+    anchor: HPos,
+    font: f64,
+) -> Result<(), PictureError> {
+    // The backends centre the line box, not the digits; this offset is within a fifteenth of the font size for both.
+    let at = (at.0, at.1 + (0.14 * font) as i32);
+    let style: TextStyle<'_> = (FONT, font).into_font().color(&BLACK).pos(Pos::new(anchor, VPos::Center));
+    area.draw(&Text::new(text.to_owned(), at, style)).map_err(PictureError::new)
+}

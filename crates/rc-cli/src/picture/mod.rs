@@ -1,0 +1,74 @@
+//! Pictures: maps of fields and line plots, as PNG or SVG, with an embedded font.
+//!
+//! A [`Picture`] draws itself on any backend; [`save_png`] and [`save_svg`] write it. [`draw_map`] and [`draw_lines`] fill an
+//! area of a larger picture, so figures are put together from them.
+
+mod colour;
+mod font;
+mod lines;
+mod map;
+mod maps;
+mod raster;
+
+use std::path::Path;
+
+use plotters::coord::Shift;
+use plotters::prelude::{BitMapBackend, DrawingArea, DrawingBackend, IntoDrawingArea as _, SVGBackend, WHITE};
+use thiserror::Error;
+
+pub use colour::Palette;
+pub use font::{FONT, register_font};
+pub use lines::{LinePlot, LineStyle, Series, draw_lines};
+pub use map::{Map, Shade, draw_map, map_extent};
+pub use maps::{ContactPicture, MapPicture};
+pub use raster::Raster;
+
+/// A picture that could not be drawn or saved; the text is that of the plotting library.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct PictureError(String);
+
+impl PictureError {
+    /// Wraps an error of the plotting library.
+    pub fn new(cause: impl std::fmt::Display) -> Self {
+        Self(cause.to_string())
+    }
+}
+
+/// The area of a picture to draw in.
+pub type Area<B> = DrawingArea<B, Shift>;
+
+/// Something that draws itself on any backend.
+pub trait Picture {
+    /// Width and height in pixels.
+    fn size(&self) -> (u32, u32);
+
+    /// Draws on `area`, which has the size and is white.
+    ///
+    /// # Errors
+    /// [`PictureError`] of the backend.
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError>;
+}
+
+/// Saves a picture as PNG.
+///
+/// # Errors
+/// [`PictureError`].
+pub fn save_png(picture: &impl Picture, path: &Path) -> Result<(), PictureError> {
+    save(picture, &BitMapBackend::new(path, picture.size()).into_drawing_area())
+}
+
+/// Saves a picture as SVG; maps in it are embedded bitmaps.
+///
+/// # Errors
+/// [`PictureError`].
+pub fn save_svg(picture: &impl Picture, path: &Path) -> Result<(), PictureError> {
+    save(picture, &SVGBackend::new(path, picture.size()).into_drawing_area())
+}
+
+fn save<B: DrawingBackend>(picture: &impl Picture, area: &Area<B>) -> Result<(), PictureError> {
+    register_font();
+    area.fill(&WHITE).map_err(PictureError::new)?;
+    picture.draw(area)?;
+    area.present().map_err(PictureError::new)
+}

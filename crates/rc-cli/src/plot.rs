@@ -1,0 +1,194 @@
+//! `rc plot`: pictures of a result.
+
+use std::path::Path;
+
+use plotters::prelude::DrawingBackend;
+use plotters::style::RGBColor;
+use rc_core::Field;
+
+use crate::args::PlotArgs;
+use crate::error::CliError;
+use crate::heights::check_finite;
+use crate::output::{self, Staged};
+use crate::picture::{
+    Area, ContactPicture, LinePlot, LineStyle, Map, MapPicture, Palette, Picture, PictureError, Series, Shade,
+    draw_lines, save_png, save_svg,
+};
+use crate::quantity::Scale;
+use crate::result::ResultFolder;
+use crate::statistics::PressureStatistics;
+
+const BLUE: RGBColor = RGBColor(38, 92, 158);
+const RED: RGBColor = RGBColor(190, 60, 50);
+
+/// Font of the line plots, in pixels.
+const TEXT: f64 = 26.0;
+
+/// Runs `rc plot`.
+///
+/// # Errors
+/// [`CliError`].
+pub(crate) fn run(args: &PlotArgs) -> Result<(), CliError> {
+    let result = ResultFolder::read(&args.folder)?;
+    check_finite(&args.folder.join("pressure.npy"), &result.pressure)?;
+    check_finite(&args.folder.join("gap.npy"), &result.gap)?;
+    let target = args.out.as_deref().unwrap_or(&args.folder);
+    output::check_folder(target)?;
+    let names = write(target, &result)?;
+    if args.quiet {
+        return Ok(());
+    }
+    output::print(&names.iter().fold(String::new(), |text, name| text + &format!("{}\n", target.join(name).display())))
+}
+
+fn write(target: &Path, result: &ResultFolder) -> Result<Vec<String>, CliError> {
+    let ResultFolder { pressure, gap, side, .. } = result;
+    let contact = ContactPicture { pressure, pressure_unit: 1.0, side: *side };
+    let shade = Shade::Values { range: (0.0, gap.max()), palette: Palette::Viridis, factor: 1.0, unit: "m" };
+    let gap_map = MapPicture(Map { title: "Gap", field: gap, shade, side: *side });
+    let sections = Sections::of(pressure, gap, *side);
+    let distribution = Distribution::of(pressure);
+    let mut staged = Staged::new(target)?;
+    staged.add("contact.png", |path| save_png(&contact, path))?;
+    staged.add("gap.png", |path| save_png(&gap_map, path))?;
+    staged.add("sections.png", |path| save_png(&sections, path))?;
+    staged.add("sections.svg", |path| save_svg(&sections, path))?;
+    staged.add("distribution.png", |path| save_png(&distribution, path))?;
+    staged.add("distribution.svg", |path| save_svg(&distribution, path))?;
+    let names = staged.names().to_vec();
+    staged.commit()?;
+    Ok(names)
+}
+
+/// Pressure and gap along the row through the greatest pressure.
+struct Sections {
+    pressure: Profile,
+    gap: Profile,
+    length_unit: String,
+    /// End of the x axis.
+    length: f64,
+    title: String,
+}
+
+/// A profile with its unit.
+struct Profile {
+    points: Vec<(f64, f64)>,
+    unit: String,
+    max: f64,
+}
+
+impl Profile {
+    /// Row `iy` of `field`; `step` is the distance of its points.
+    fn of(field: &Field, iy: usize, step: f64, unit: &'static str) -> Self {
+        let row = field.row(iy);
+        let max = row.iter().copied().fold(0.0, f64::max);
+        let scale = Scale::of(max, unit);
+        let points = row.iter().enumerate().map(|(ix, value)| ((ix as f64 + 0.5) * step, value / scale.factor));
+        Self { points: points.collect(), unit: scale.unit(), max: max / scale.factor }
+    }
+}
+
+impl Sections {
+    fn of(pressure: &Field, gap: &Field, side: f64) -> Self {
+        let grid = pressure.grid();
+        let peak = (0..grid.len()).max_by(|a, b| pressure.values()[*a].total_cmp(&pressure.values()[*b])).unwrap_or(0);
+        let iy = peak / grid.nx();
+        let scale = Scale::of(side, "m");
+        let step = side / scale.factor / grid.nx() as f64;
+        let y = (iy as f64 + 0.5) / grid.ny() as f64 * side;
+        Self {
+            pressure: Profile::of(pressure, iy, step, "Pa"),
+            gap: Profile::of(gap, iy, step, "m"),
+            length_unit: scale.unit(),
+            length: side / scale.factor,
+            title: format!("Section through the greatest pressure, y = {}", crate::quantity::engineering(y, "m")),
+        }
+    }
+
+    fn panel<B: DrawingBackend>(
+        &self,
+        area: &Area<B>,
+        title: &str,
+        (name, profile, colour): (&str, &Profile, RGBColor),
+    ) -> Result<(), PictureError> {
+        let plot = LinePlot {
+            title,
+            x_label: &format!("x ({})", self.length_unit),
+            y_label: &format!("{name} ({})", profile.unit),
+            x: (0.0, self.length),
+            y: (0.0, above(profile.max)),
+            series: vec![Series { name: "", points: profile.points.clone(), colour, style: LineStyle::Solid }],
+        };
+        draw_lines(area, &plot, TEXT)
+    }
+}
+
+impl Picture for Sections {
+    fn size(&self) -> (u32, u32) {
+        (1600, 1100)
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
+        let (upper, lower) = area.split_vertically(self.size().1 / 2);
+        self.panel(&upper, &self.title, ("pressure", &self.pressure, RED))?;
+        self.panel(&lower, "", ("gap", &self.gap, BLUE))
+    }
+}
+
+/// The distribution of the pressure in contact.
+struct Distribution {
+    points: Vec<(f64, f64)>,
+    unit: String,
+    mean: f64,
+    max: (f64, f64),
+}
+
+impl Distribution {
+    fn of(pressure: &Field) -> Self {
+        let statistics = PressureStatistics::of(pressure);
+        let scale = Scale::of(statistics.max_pressure, "Pa");
+        let bins: Vec<(f64, f64)> =
+            statistics.distribution.bins().map(|(p, density)| (p / scale.factor, density * scale.factor)).collect();
+        let highest = bins.iter().fold(0.0_f64, |highest, bin| highest.max(bin.1));
+        Self {
+            points: bins,
+            unit: scale.unit(),
+            mean: statistics.mean_contact_pressure / scale.factor,
+            max: (statistics.max_pressure / scale.factor, highest),
+        }
+    }
+
+    /// The outline of the bins.
+    fn steps(&self) -> Vec<(f64, f64)> {
+        let half = self.max.0 / self.points.len() as f64 / 2.0;
+        self.points.iter().flat_map(|(p, density)| [(p - half, *density), (p + half, *density)]).collect()
+    }
+}
+
+impl Picture for Distribution {
+    fn size(&self) -> (u32, u32) {
+        (1300, 850)
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
+        let top = above(self.max.1);
+        let mean = vec![(self.mean, 0.0), (self.mean, top)];
+        let plot = LinePlot {
+            title: "Distribution of the pressure in contact",
+            x_label: &format!("pressure ({})", self.unit),
+            y_label: &format!("probability density (1/{})", self.unit),
+            x: (0.0, above(self.max.0)),
+            y: (0.0, top),
+            series: vec![
+                Series { name: "elements in contact", points: self.steps(), colour: BLUE, style: LineStyle::Solid },
+                Series { name: "mean in contact", points: mean, colour: RED, style: LineStyle::Dashed },
+            ],
+        };
+        draw_lines(area, &plot, TEXT)
+    }
+}
+
+/// The end of an axis from 0 that has to show `max`.
+fn above(max: f64) -> f64 {
+    if max > 0.0 { 1.05 * max } else { 1.0 }
+}

@@ -1,0 +1,112 @@
+//! Numbers with units for people: `446.4 kPa`, `13 µm`, round tick marks.
+
+/// A unit with a decimal prefix, shared by numbers that belong together (the ticks of an axis).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// Values divided by this are in the prefixed unit.
+    pub factor: f64,
+    prefix: &'static str,
+    unit: &'static str,
+}
+
+const PREFIXES: [(f64, &str); 9] =
+    [(1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p")];
+
+impl Scale {
+    /// The prefix that writes `largest` as a number from 1 to 1000, where there is one.
+    #[must_use]
+    pub fn of(largest: f64, unit: &'static str) -> Self {
+        let magnitude = largest.abs();
+        // Rounding to four digits must not show 1000 of the next smaller unit.
+        let fits = |(factor, _): &&(f64, &str)| magnitude >= factor * 0.999_95;
+        let smallest = if magnitude > 0.0 { PREFIXES[PREFIXES.len() - 1] } else { (1.0, "") };
+        let (factor, prefix) = PREFIXES.iter().find(fits).copied().unwrap_or(smallest);
+        Self { factor, prefix, unit }
+    }
+
+    /// The unit with its prefix, as `MPa`.
+    #[must_use]
+    pub fn unit(&self) -> String {
+        format!("{}{}", self.prefix, self.unit)
+    }
+}
+
+/// `value` in `unit`, four significant digits, with a decimal prefix: `446.4 kPa`.
+#[must_use]
+pub fn engineering(value: f64, unit: &'static str) -> String {
+    let scale = Scale::of(value, unit);
+    format!("{} {}", digits(value / scale.factor, 4), scale.unit()).trim_end().to_owned()
+}
+
+/// `value` with `n` significant digits, plain between 1e-4 and 1e6, trailing zeros removed.
+#[must_use]
+pub fn digits(value: f64, n: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    if !(-4..6).contains(&exponent) {
+        return format!("{value:.*e}", n.saturating_sub(1));
+    }
+    let decimals = (n as i32 - 1 - exponent).max(0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// [`digits`] for pictures: with a true minus sign.
+#[must_use]
+pub fn label(value: f64) -> String {
+    digits(value, 4).replace('-', "\u{2212}")
+}
+
+/// The largest of 1, 2, 5 times a power of ten that is at most `limit` (positive).
+#[must_use]
+pub fn round_below(limit: f64) -> f64 {
+    let power = 10_f64.powf(limit.log10().floor());
+    // The logarithm of a power of ten may be off by a rounding; so is the comparison then.
+    let fits = |digit: &f64| digit * power <= limit * (1.0 + 1e-12);
+    [10.0, 5.0, 2.0, 1.0].into_iter().find(fits).unwrap_or(0.5) * power
+}
+
+/// Tick marks at multiples of a round step in [`low`, `high`], about `n` of them.
+#[must_use]
+pub fn ticks(low: f64, high: f64, n: usize) -> Vec<f64> {
+    let span = high - low;
+    if !(span.is_finite() && span > 0.0) {
+        return vec![low];
+    }
+    let step = round_below(span / n.max(1) as f64 * 1.5);
+    let first = (low / step - 1e-9).ceil() as i64;
+    let last = (high / step + 1e-9).floor() as i64;
+    (first..=last).map(|i| i as f64 * step).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantities_are_written_with_prefix_and_four_digits() {
+        let cases = [
+            (446_394.98, "Pa", "446.4 kPa"),
+            (13e-6, "m", "13 µm"),
+            (999_960.0, "Pa", "1 MPa"),
+            (0.0, "Pa", "0 Pa"),
+            (2.5e15, "Pa", "2500 TPa"),
+            (-1.5e-3, "m", "-1.5 mm"),
+            (0.071_234, "", "71.23 m"),
+        ];
+        for (value, unit, expected) in cases {
+            assert_eq!(engineering(value, unit), expected);
+        }
+    }
+
+    #[test]
+    fn round_numbers_are_round() {
+        for (limit, expected) in [(1.0, 1.0), (0.99, 0.5), (2.5e-3, 2e-3), (5.0, 5.0), (1000.0, 1000.0), (9.9, 5.0)] {
+            assert!((round_below(limit) / expected - 1.0).abs() < 1e-9, "{limit}: {}", round_below(limit));
+        }
+        assert_eq!(ticks(0.0, 10.0, 5), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
+        assert_eq!(ticks(3.0, 3.0, 5), [3.0]);
+    }
+}

@@ -1,0 +1,174 @@
+//! Results for people: a few aligned lines, small tables and bars.
+
+use std::path::Path;
+
+use crate::quantity::{digits, engineering};
+use crate::statistics::{HeightStatistics, Histogram, PressureStatistics, SpectrumRow};
+use crate::summary::Summary;
+
+/// A few aligned lines about a solved problem; `side` is λ in m, `e_star` E* in Pa.
+#[must_use]
+pub fn solved(summary: &Summary, side: f64, e_star: f64) -> String {
+    let s = summary;
+    let percent = |fraction: f64| digits(100.0 * fraction, 4);
+    let stiffness = s.contact_stiffness.map_or_else(|| "infinite".into(), |value| engineering(value, "Pa/m"));
+    let lines = [
+        (
+            "cell",
+            format!(
+                "{} with {} x {} elements, E* = {}",
+                engineering(side, "m"),
+                s.grid[0],
+                s.grid[1],
+                engineering(e_star, "Pa")
+            ),
+        ),
+        (
+            "surface",
+            format!(
+                "rms height {}, rms slope {}, highest point {}",
+                engineering(s.rms_height, "m"),
+                digits(s.rms_slope, 4),
+                engineering(s.h_max, "m")
+            ),
+        ),
+        (
+            "contact area",
+            format!(
+                "({}) % of the nominal area, {} % by counting",
+                with_error(100.0 * s.area_fraction, 100.0 * s.area_fraction_error),
+                percent(s.area_fraction_cells)
+            ),
+        ),
+        (
+            "mean pressure",
+            format!("{} ({} E*)", engineering(s.mean_pressure, "Pa"), digits(s.mean_pressure / e_star, 4)),
+        ),
+        ("rms, max pressure", format!("{}, {}", engineering(s.rms_pressure, "Pa"), engineering(s.max_pressure, "Pa"))),
+        (
+            "penetration",
+            format!(
+                "{} of {} at full contact",
+                engineering(s.penetration, "m"),
+                engineering(s.penetration_full_contact, "m")
+            ),
+        ),
+        ("mean gap", engineering(s.mean_gap, "m")),
+        ("stiffness", stiffness),
+        ("elastic energy", engineering(s.elastic_energy, "J")),
+        (
+            "certificate",
+            format!(
+                "complementarity {:.1e}, penetration {:.1e}, load {:.1e}",
+                s.complementarity_error, s.penetration_error, s.load_error
+            ),
+        ),
+    ];
+    headline(s) + &aligned(&lines)
+}
+
+fn grids(n: usize) -> &'static str {
+    if n == 1 { "grid" } else { "grids" }
+}
+
+/// `7.183 ± 0.008`: both with the last digit that the error leaves certain.
+fn with_error(value: f64, error: f64) -> String {
+    if error > 0.0 && error.is_finite() {
+        let decimals = (-error.log10().floor()).clamp(0.0, 12.0) as usize;
+        format!("{value:.decimals$} ± {error:.decimals$}")
+    } else {
+        digits(value, 6)
+    }
+}
+
+/// Lines of a name and its value.
+fn aligned(lines: &[(&str, String)]) -> String {
+    lines.iter().fold(String::new(), |text, (name, value)| text + &format!("  {name:<19}{value}\n"))
+}
+
+/// Where results went, if anywhere.
+#[must_use]
+pub fn written(target: Option<&Path>) -> String {
+    target.map_or_else(String::new, |target| format!("\nwritten to {}\n", target.display()))
+}
+
+fn headline(s: &Summary) -> String {
+    let memory = s.peak_memory_bytes.map_or_else(String::new, |bytes| format!(", {} MB", bytes / 1_000_000));
+    let how = match s.status.as_str() {
+        "full_contact" => "full contact, solved exactly".to_owned(),
+        "not_converged" => format!("NOT CONVERGED after {} fine iterations", s.iterations),
+        _ => format!("converged in {} fine iterations, {} nested {}", s.iterations, s.levels, grids(s.levels)),
+    };
+    format!("{how}: {} s, {} threads{memory}\n", digits(s.wall_seconds, 3), s.threads)
+}
+
+/// Statistics of a height map, with a short table of its spectrum and its distribution.
+#[must_use]
+pub fn heights(statistics: &HeightStatistics) -> String {
+    let s = statistics;
+    let lines = [
+        ("cell", format!("{} with {} x {} elements", engineering(s.cell, "m"), s.grid[0], s.grid[1])),
+        (
+            "heights",
+            format!(
+                "from {} to {}, mean {}",
+                engineering(s.h_min, "m"),
+                engineering(s.h_max, "m"),
+                engineering(s.mean, "m")
+            ),
+        ),
+        ("rms height", engineering(s.rms_height, "m")),
+        ("rms slope", digits(s.rms_slope, 4)),
+        ("rms curvature", format!("{} 1/m", digits(s.rms_curvature, 4))),
+        ("Nayak parameter", digits(s.nayak, 4)),
+        ("skewness, kurtosis", format!("{}, {}", digits(s.skewness, 3), digits(s.kurtosis, 4))),
+    ];
+    let heading = "\n  height about mean   density\n";
+    aligned(&lines) + &spectrum_table(&s.spectrum) + heading + &bars(&s.distribution, "m")
+}
+
+/// Statistics of a pressure field, with its distribution.
+#[must_use]
+pub fn pressure(statistics: &PressureStatistics) -> String {
+    let s = statistics;
+    let lines = [
+        ("grid", format!("{} x {} elements", s.grid[0], s.grid[1])),
+        ("contact area", format!("{} % of the elements", digits(100.0 * s.area_fraction_cells, 4))),
+        ("mean pressure", engineering(s.mean_pressure, "Pa")),
+        ("mean in contact", engineering(s.mean_contact_pressure, "Pa")),
+        ("rms, max pressure", format!("{}, {}", engineering(s.rms_pressure, "Pa"), engineering(s.max_pressure, "Pa"))),
+    ];
+    aligned(&lines) + "\n  pressure in contact density\n" + &bars(&s.distribution, "Pa")
+}
+
+/// About a dozen rows of the spectrum, evenly spaced in the logarithm of the wavenumber.
+fn spectrum_table(spectrum: &[SpectrumRow]) -> String {
+    let mut text = "\n  waves per cell      C(q) (m^4)     modes\n".to_owned();
+    // Beyond the shortest wave of a surface there is only rounding.
+    let noise = spectrum.iter().fold(0.0_f64, |highest, row| highest.max(row.psd)) * 1e-20;
+    let mut next = 0.0;
+    for row in spectrum.iter().filter(|row| row.psd > noise) {
+        if row.waves >= next {
+            let line = format!("  {:<20}{:<15.4e}{}\n", digits(row.waves, 4), row.psd, row.modes);
+            text.push_str(&line);
+            next = (row.waves * 1.5).max(row.waves + 1.0) - 0.5;
+        }
+    }
+    text
+}
+
+/// The density as bars, two bins a line.
+fn bars(histogram: &Histogram, unit: &'static str) -> String {
+    let bins: Vec<(f64, f64)> = histogram.bins().collect();
+    let lines: Vec<(f64, f64)> = bins.chunks(2).map(mean_of).collect();
+    let highest = lines.iter().fold(0.0_f64, |highest, line| highest.max(line.1));
+    lines.iter().fold(String::new(), |text, (middle, density)| {
+        let length = if highest > 0.0 { (40.0 * density / highest).round() as usize } else { 0 };
+        text + format!("  {:<20}{}", engineering(*middle, unit), "#".repeat(length)).trim_end() + "\n"
+    })
+}
+
+fn mean_of(pairs: &[(f64, f64)]) -> (f64, f64) {
+    let n = pairs.len() as f64;
+    (pairs.iter().map(|pair| pair.0).sum::<f64>() / n, pairs.iter().map(|pair| pair.1).sum::<f64>() / n)
+}

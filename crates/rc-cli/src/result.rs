@@ -1,0 +1,55 @@
+//! A result folder, read back.
+
+use std::path::Path;
+
+use rc_core::Field;
+
+use crate::error::CliError;
+use crate::summary::Summary;
+use crate::{npy, resolve, scene_file};
+
+/// What `rc solve --out` wrote.
+#[derive(Clone, Debug)]
+pub struct ResultFolder {
+    /// The summary.
+    pub summary: Summary,
+    /// Side λ of the cell (m), from the scene as it was solved.
+    pub side: f64,
+    /// E* (Pa), from the same scene.
+    pub e_star: f64,
+    /// Pressure (Pa).
+    pub pressure: Field,
+    /// Gap (m).
+    pub gap: Field,
+}
+
+impl ResultFolder {
+    /// Reads a result folder.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] that names the file that is missing or wrong.
+    pub fn read(folder: &Path) -> Result<Self, CliError> {
+        if !folder.is_dir() {
+            return Err(CliError::in_file(folder, "no such folder; give the --out folder of a solve"));
+        }
+        let path = folder.join("summary.json");
+        let text = std::fs::read_to_string(&path)
+            .map_err(|cause| CliError::in_file(&path, format_args!("cannot read this summary: {cause}")))?;
+        let summary: Summary = serde_json::from_str(&text)
+            .map_err(|cause| CliError::in_file(&path, format_args!("not a summary of rc solve: {cause}")))?;
+        let scene_path = folder.join("scene.toml");
+        let scene = scene_file::read(&scene_path)?;
+        let side = scene.surface.cell;
+        let side = side.filter(|side| *side > 0.0 && side.is_finite());
+        let side =
+            side.ok_or_else(|| CliError::in_file(&scene_path, "cell: must be given, positive and finite (m)"))?;
+        let e_star = resolve::contact(scene.contact, side)?.elasticity.e_star();
+        let pressure = npy::read(&folder.join("pressure.npy"))?;
+        let gap = npy::read(&folder.join("gap.npy"))?;
+        if gap.grid() != pressure.grid() {
+            let message = format_args!("{} elements, but pressure.npy has {}", gap.grid(), pressure.grid());
+            return Err(CliError::in_file(&folder.join("gap.npy"), message));
+        }
+        Ok(Self { summary, side, e_star, pressure, gap })
+    }
+}

@@ -1,0 +1,285 @@
+//! The scene: every key of a scene file, which is a flag of the command line as well.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use serde::{Deserialize, Serialize};
+
+use crate::values::{GridSpec, Tolerance};
+
+/// The embedded example: the paper's surface with N = 64 at σ0/E* = 8.9e-4. Also the source of defaults.
+pub const EXAMPLE: &str = include_str!("../../../data/paper-n64.toml");
+
+/// The rough surface: a file, or the parameters of a random one (Eq. 9-14).
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[command(next_help_heading = "Surface")]
+pub struct SurfaceKeys {
+    /// Side λ of the square periodic cell (m)
+    #[arg(long, allow_hyphen_values = true)]
+    pub cell: Option<f64>,
+    /// Height map instead of a random surface: .npy (2-D, any real type) or .csv; heights in m
+    #[arg(long, value_name = "FILE")]
+    pub heights: Option<PathBuf>,
+    /// N, waves per cell of the shortest wave
+    #[arg(long, allow_hyphen_values = true)]
+    pub waves: Option<usize>,
+    /// Hurst exponent H
+    #[arg(long, allow_hyphen_values = true)]
+    pub hurst: Option<f64>,
+    /// Rms height (m); or give --rms-slope or --c0
+    #[arg(long, allow_hyphen_values = true)]
+    pub rms: Option<f64>,
+    /// Rms slope of the surface, instead of --rms
+    #[arg(long, allow_hyphen_values = true)]
+    pub rms_slope: Option<f64>,
+    /// C0 of Eq. 9 (m⁴), instead of --rms
+    #[arg(long, allow_hyphen_values = true)]
+    pub c0: Option<f64>,
+    /// Seed of the random phases
+    #[arg(long, allow_hyphen_values = true)]
+    pub seed: Option<u64>,
+    /// Which waves take part: |k| ≤ N or max(|kx|, |ky|) ≤ N
+    #[arg(long)]
+    pub truncation: Option<Truncation>,
+    /// Below this number of waves per cell the spectrum is flat (1: no roll-off)
+    #[arg(long, allow_hyphen_values = true)]
+    pub roll_off: Option<f64>,
+    /// Amplitudes exactly of the spectrum (Eq. 14), or random about it
+    #[arg(long)]
+    pub amplitudes: Option<Amplitudes>,
+    /// Finest elements per side: 512, or 512x256 along x and y [default: 32 per shortest wave; a height map has its own]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub grid: Option<GridSpec>,
+}
+
+/// The elastic half-space, the load, and how the problem is solved.
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[command(next_help_heading = "Contact")]
+pub struct ContactKeys {
+    /// Young's modulus (Pa)
+    #[arg(long, allow_hyphen_values = true)]
+    pub young: Option<f64>,
+    /// Poisson's ratio
+    #[arg(long, allow_hyphen_values = true)]
+    pub poisson: Option<f64>,
+    /// E* = E/(1-ν²) (Pa), instead of --young and --poisson
+    #[arg(long, allow_hyphen_values = true)]
+    pub e_star: Option<f64>,
+    /// Mean pressure σ0 (Pa)
+    #[arg(long, allow_hyphen_values = true)]
+    pub pressure: Option<f64>,
+    /// Penetration Δ (m), instead of --pressure
+    #[arg(long, allow_hyphen_values = true)]
+    pub penetration: Option<f64>,
+    /// Discretisation of the half-space: the paper's uniformly loaded square, or the Fourier symbol
+    #[arg(long)]
+    pub kernel: Option<KernelName>,
+    /// How the problem is solved; this version has `uniform` (FFT on the whole grid)
+    #[arg(long)]
+    pub method: Option<Method>,
+    /// Certified tolerance, relative to the peak-to-valley height
+    #[arg(long, allow_hyphen_values = true)]
+    pub tolerance: Option<Tolerance>,
+    /// Write pressure and gap averaged to this many elements per side
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub output_grid: Option<GridSpec>,
+}
+
+/// How the command runs, and where its results go.
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[command(next_help_heading = "Run")]
+pub struct RunKeys {
+    /// Folder that receives the results; without it nothing is written
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Worker threads [default: all cores]; results do not depend on it
+    #[arg(long, allow_hyphen_values = true)]
+    pub threads: Option<usize>,
+    /// Print nothing but errors
+    #[arg(long)]
+    #[serde(default)]
+    pub quiet: bool,
+    /// Print the summary as JSON
+    #[arg(long)]
+    #[serde(default)]
+    pub json: bool,
+}
+
+/// Which wavenumbers a random surface has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Truncation {
+    /// |k| ≤ N.
+    Disc,
+    /// max(|kx|, |ky|) ≤ N.
+    Square,
+}
+
+/// Amplitudes of a random surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Amplitudes {
+    /// Those of the spectrum (Eq. 14); phases alone are random.
+    Fixed,
+    /// Gaussian about the spectrum.
+    Random,
+}
+
+/// Discretisation of the half-space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum KernelName {
+    /// Pressure constant on each element, displacement at its centre (Eq. 5).
+    Love,
+    /// The symbol 2/(E* q), as FFT codes have it.
+    Spectral,
+}
+
+/// Method of solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Adaptive multilevel.
+    Adaptive,
+    /// FFT on the uniform grid.
+    Uniform,
+    /// The procedure of the paper.
+    GaussSeidel,
+}
+
+/// A scene: the three groups of keys.
+#[derive(Args, Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// The rough surface.
+    #[command(flatten)]
+    pub surface: SurfaceKeys,
+    /// Half-space, load, method.
+    #[command(flatten)]
+    pub contact: ContactKeys,
+    /// Run and output.
+    #[command(flatten)]
+    pub run: RunKeys,
+}
+
+/// `upper` where it says something, else `lower`.
+macro_rules! or_lower {
+    ($upper:expr, $lower:expr, { $($key:ident),+ $(,)? }) => { $( if $upper.$key.is_none() { $upper.$key = $lower.$key; } )+ };
+}
+
+impl SurfaceKeys {
+    /// These keys laid over `lower`. A key given here also removes its alternatives below: a height map the parameters of
+    /// a random surface (and the reverse), and each of `rms`, `rms_slope`, `c0` the other two.
+    #[must_use]
+    pub fn over(mut self, mut lower: Self) -> Self {
+        if self.heights.is_some() {
+            lower = Self { cell: lower.cell, ..Self::default() };
+        } else if self.generates() {
+            lower.heights = None;
+        }
+        if self.rms.is_some() || self.rms_slope.is_some() || self.c0.is_some() {
+            (lower.rms, lower.rms_slope, lower.c0) = (None, None, None);
+        }
+        or_lower!(self, lower, {
+            cell, heights, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, amplitudes, grid
+        });
+        self
+    }
+
+    /// Whether any parameter of a random surface is given.
+    #[must_use]
+    pub fn generates(&self) -> bool {
+        let Self { waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, amplitudes, .. } = self;
+        let numbers = [hurst, rms, rms_slope, c0, roll_off].iter().any(|key| key.is_some());
+        numbers || waves.is_some() || seed.is_some() || truncation.is_some() || amplitudes.is_some()
+    }
+}
+
+impl ContactKeys {
+    /// These keys laid over `lower`. A key given here also removes its alternatives below: `pressure` and `penetration`
+    /// each other, `e_star` the pair `young`, `poisson` and the reverse.
+    #[must_use]
+    pub fn over(mut self, mut lower: Self) -> Self {
+        if self.pressure.is_some() || self.penetration.is_some() {
+            (lower.pressure, lower.penetration) = (None, None);
+        }
+        if self.e_star.is_some() {
+            (lower.young, lower.poisson) = (None, None);
+        } else if self.young.is_some() || self.poisson.is_some() {
+            lower.e_star = None;
+        }
+        or_lower!(self, lower, { young, poisson, e_star, pressure, penetration, kernel, method, tolerance, output_grid });
+        self
+    }
+}
+
+impl RunKeys {
+    /// These keys laid over `lower`; `quiet` and `json` hold when either says so.
+    #[must_use]
+    pub fn over(mut self, lower: Self) -> Self {
+        or_lower!(self, lower, { out, threads });
+        self.quiet |= lower.quiet;
+        self.json |= lower.json;
+        self
+    }
+}
+
+impl Scene {
+    /// This scene laid over `lower`, group by group.
+    #[must_use]
+    pub fn over(self, lower: Self) -> Self {
+        Self {
+            surface: self.surface.over(lower.surface),
+            contact: self.contact.over(lower.contact),
+            run: self.run.over(lower.run),
+        }
+    }
+
+    /// Whether the scene says nothing at all.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The scene with its relative paths taken from `folder`.
+    #[must_use]
+    pub fn relative_to(mut self, folder: &Path) -> Self {
+        for path in [&mut self.surface.heights, &mut self.run.out].into_iter().flatten() {
+            *path = folder.join(&*path);
+        }
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_upper_key_removes_its_alternatives_below() {
+        let lower = Scene {
+            surface: SurfaceKeys { waves: Some(8), rms: Some(1.0), cell: Some(2.0), ..Default::default() },
+            contact: ContactKeys { pressure: Some(1.0), e_star: Some(3.0), ..Default::default() },
+            run: RunKeys::default(),
+        };
+        let upper = Scene {
+            surface: SurfaceKeys { c0: Some(4.0), ..Default::default() },
+            contact: ContactKeys { penetration: Some(5.0), young: Some(6.0), ..Default::default() },
+            run: RunKeys { json: true, ..Default::default() },
+        };
+        let merged = upper.over(lower);
+        assert_eq!((merged.surface.c0, merged.surface.rms, merged.surface.waves), (Some(4.0), None, Some(8)));
+        assert_eq!((merged.contact.penetration, merged.contact.pressure), (Some(5.0), None));
+        assert_eq!((merged.contact.young, merged.contact.e_star), (Some(6.0), None));
+        assert!(merged.run.json);
+    }
+
+    #[test]
+    fn a_height_map_replaces_a_random_surface_and_the_reverse() {
+        let map = SurfaceKeys { heights: Some("h.npy".into()), ..Default::default() };
+        let random =
+            SurfaceKeys { waves: Some(8), grid: Some(GridSpec::square(64)), cell: Some(2.0), ..Default::default() };
+        let merged = map.clone().over(random.clone());
+        assert_eq!((merged.waves, merged.grid, merged.cell), (None, None, Some(2.0)));
+        assert_eq!(random.over(map).heights, None);
+    }
+}

@@ -1,0 +1,87 @@
+//! The summary of a result: what `summary.json` and `--json` hold, in SI.
+
+use serde::{Deserialize, Serialize};
+
+/// One solved contact problem. Pressures in Pa, lengths in m; fractions are of the nominal area.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// `converged`, `full_contact` or `not_converged`.
+    pub status: String,
+    /// What was prescribed: `pressure` or `penetration`.
+    pub control: String,
+    /// `love` or `spectral`.
+    pub kernel: String,
+    /// `uniform`.
+    pub method: String,
+    /// Elements per side of the finest grid, along x and y.
+    pub grid: [usize; 2],
+    /// Elements that carry unknowns: all of the finest grid.
+    pub elements: usize,
+    /// Nested grids; 0 when full contact needed no iteration.
+    pub levels: usize,
+    /// Mean pressure σ0 (Pa).
+    pub mean_pressure: f64,
+    /// Penetration Δ (m).
+    pub penetration: f64,
+    /// Penetration of full contact, max(h) - mean(h) (m).
+    pub penetration_full_contact: f64,
+    /// Contact area A/A0, best estimate: counted area less the perimeter term.
+    pub area_fraction: f64,
+    /// Contact area A/A0 by counting elements with p > 0.
+    pub area_fraction_cells: f64,
+    /// Estimated error of `area_fraction`.
+    pub area_fraction_error: f64,
+    /// Root mean square of the pressure over the cell (Pa).
+    pub rms_pressure: f64,
+    /// Greatest pressure (Pa).
+    pub max_pressure: f64,
+    /// Mean gap (m).
+    pub mean_gap: f64,
+    /// dσ0/dΔ (Pa/m); null where it is infinite, in full contact.
+    pub contact_stiffness: Option<f64>,
+    /// Elastic energy of the cell (J).
+    pub elastic_energy: f64,
+    /// Rms height about the mean (m).
+    pub rms_height: f64,
+    /// Rms slope √⟨|∇h|²⟩.
+    pub rms_slope: f64,
+    /// Greatest height on the grid (m).
+    pub h_max: f64,
+    /// Σ p (g - min g) / (H Σ p), with H = max(h) - min(h) and g of pressure-weighted mean 0.
+    pub complementarity_error: f64,
+    /// max(-g) / H.
+    pub penetration_error: f64,
+    /// |mean p - σ0| / σ0, or the deviation of Δ over H under penetration control.
+    pub load_error: f64,
+    /// Iterations on the finest level.
+    pub iterations: usize,
+    /// Applications of L on the finest level, the certificate's included.
+    pub operator_applications: usize,
+    /// Seconds from the parsed scene to the certified solution, evaluation of heights included.
+    pub wall_seconds: f64,
+    /// Peak resident memory of the process; null where the system does not say.
+    pub peak_memory_bytes: Option<u64>,
+    /// Worker threads.
+    pub threads: usize,
+    /// Version of rc.
+    pub version: String,
+}
+
+impl Summary {
+    /// The summary as JSON, one key a line, with a line break at the end.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        to_json(self)
+    }
+}
+
+/// `value` as JSON for a file or for standard output.
+///
+/// # Panics
+/// Never for the plain records of this crate.
+#[must_use]
+pub fn to_json(value: &impl Serialize) -> String {
+    let mut text = serde_json::to_string_pretty(value).expect("a record of numbers and text is valid JSON");
+    text.push('\n');
+    text
+}

@@ -1,0 +1,77 @@
+//! `rc surface`: a surface as files, without a contact.
+
+use std::path::Path;
+
+use rc_core::Field;
+
+use crate::args::SurfaceArgs;
+use crate::error::CliError;
+use crate::output::{self, Staged};
+use crate::picture::{Map, MapPicture, Palette, Shade, save_png};
+use crate::scene::{ContactKeys, Scene};
+use crate::statistics::HeightStatistics;
+use crate::summary::to_json;
+use crate::surface::{HEIGHTS_FILE, Heights};
+use crate::{heights, npy, report, resolve, scene_file};
+
+/// Runs `rc surface`.
+///
+/// # Errors
+/// [`CliError`].
+pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
+    let flags = Scene { surface: args.surface, contact: ContactKeys::default(), run: args.run };
+    let scene = resolve::layers(args.scene_file.as_deref(), flags)?;
+    let problem = resolve::surface(scene.surface)?;
+    resolve::start_threads(scene.run.threads)?;
+    let target = scene.run.out.as_deref();
+    if let Some(target) = target {
+        output::check_folder(if is_map(target) { target.parent().unwrap_or(Path::new("")) } else { target })?;
+    }
+    let side = problem.cell.side();
+    let heights = problem.heights()?;
+    let statistics = HeightStatistics::of(&heights.field, side, heights.moments);
+    match target {
+        Some(target) if is_map(target) => write_map(target, &heights, side)?,
+        Some(folder) => write_folder(folder, &heights, &statistics, side)?,
+        None => {}
+    }
+    match (scene.run.quiet, scene.run.json) {
+        (true, _) => Ok(()),
+        (false, true) => output::print(&to_json(&statistics)),
+        (false, false) => output::print(&(report::heights(&statistics) + &report::written(target))),
+    }
+}
+
+/// Whether the heights alone are to go into a file of this name.
+fn is_map(target: &Path) -> bool {
+    target.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy") || e.eq_ignore_ascii_case("csv"))
+}
+
+/// Heights and the factor that makes them metres: as read, where they come from a file.
+fn in_metres(heights: &Heights, side: f64) -> (&Field, f64) {
+    heights.as_read.as_ref().map_or((&heights.field, side), |field| (field, 1.0))
+}
+
+fn write_map(target: &Path, heights: &Heights, side: f64) -> Result<(), CliError> {
+    let (field, factor) = in_metres(heights, side);
+    let csv = target.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+    let write = if csv { heights::write_csv } else { npy::write };
+    output::write_file(target, |path| write(path, field, factor))
+}
+
+fn write_folder(folder: &Path, heights: &Heights, statistics: &HeightStatistics, side: f64) -> Result<(), CliError> {
+    let (field, factor) = in_metres(heights, side);
+    let scene = format!(
+        "# The surface; `rc solve scene.toml --pressure ...` presses it.\n\n{}",
+        scene_file::to_toml(&heights.keys)
+    );
+    let range = (heights.field.min(), heights.field.max());
+    let shade = Shade::Values { range, palette: Palette::Viridis, factor: side, unit: "m" };
+    let picture = MapPicture(Map { title: "Height", field: &heights.field, shade, side });
+    let mut staged = Staged::new(folder)?;
+    staged.add(HEIGHTS_FILE, |path| npy::write(path, field, factor))?;
+    staged.add("surface.png", |path| save_png(&picture, path))?;
+    staged.add_text("scene.toml", &scene)?;
+    staged.add_text("surface.json", &to_json(statistics))?;
+    staged.commit()
+}

@@ -1,0 +1,148 @@
+//! Values of a scene that are more than a number: a grid, a tolerance.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::de::{self, Deserializer, Visitor};
+use serde::{Deserialize, Serialize, Serializer};
+
+/// Elements per side, as written: `512`, or `512x256` (along x, along y). Checked when the scene is resolved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GridSpec {
+    /// Elements along x.
+    pub nx: usize,
+    /// Elements along y.
+    pub ny: usize,
+}
+
+impl GridSpec {
+    /// `n` elements along both sides.
+    #[must_use]
+    pub fn square(n: usize) -> Self {
+        Self { nx: n, ny: n }
+    }
+}
+
+impl fmt::Display for GridSpec {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.nx == self.ny { write!(f, "{}", self.nx) } else { write!(f, "{}x{}", self.nx, self.ny) }
+    }
+}
+
+impl FromStr for GridSpec {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |text: &str| {
+            let expected = || format!("a grid is a number of elements per side, as 512, or 512x256, not '{text}'");
+            text.trim().parse::<usize>().map_err(|_| expected())
+        };
+        match text.split_once('x') {
+            Some((nx, ny)) => Ok(Self { nx: side(nx)?, ny: side(ny)? }),
+            None => Ok(Self::square(side(text)?)),
+        }
+    }
+}
+
+impl Serialize for GridSpec {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if self.nx == self.ny { serializer.serialize_u64(self.nx as u64) } else { serializer.collect_str(self) }
+    }
+}
+
+impl<'de> Deserialize<'de> for GridSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct GridVisitor;
+        impl Visitor<'_> for GridVisitor {
+            type Value = GridSpec;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number of elements per side, as 512, or \"512x256\"")
+            }
+
+            fn visit_i64<E: de::Error>(self, value: i64) -> Result<GridSpec, E> {
+                let n = usize::try_from(value).map_err(|_| E::invalid_value(de::Unexpected::Signed(value), &self))?;
+                Ok(GridSpec::square(n))
+            }
+
+            fn visit_str<E: de::Error>(self, value: &str) -> Result<GridSpec, E> {
+                value.parse().map_err(E::custom)
+            }
+        }
+        deserializer.deserialize_any(GridVisitor)
+    }
+}
+
+/// The tolerance, as written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tolerance {
+    /// Certified, relative to the peak-to-valley height.
+    Relative(f64),
+    /// `auto`: that of the discretisation error.
+    Auto,
+}
+
+impl FromStr for Tolerance {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "auto" => Ok(Self::Auto),
+            _ => text
+                .parse()
+                .map(Self::Relative)
+                .map_err(|_| format!("a tolerance is a number, as 1e-6, or auto, not '{text}'")),
+        }
+    }
+}
+
+impl Serialize for Tolerance {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Relative(value) => serializer.serialize_f64(*value),
+            Self::Auto => serializer.serialize_str("auto"),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Tolerance {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ToleranceVisitor;
+        impl Visitor<'_> for ToleranceVisitor {
+            type Value = Tolerance;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number, as 1e-6, or \"auto\"")
+            }
+
+            fn visit_f64<E: de::Error>(self, value: f64) -> Result<Tolerance, E> {
+                Ok(Tolerance::Relative(value))
+            }
+
+            fn visit_i64<E: de::Error>(self, value: i64) -> Result<Tolerance, E> {
+                Ok(Tolerance::Relative(value as f64))
+            }
+
+            fn visit_str<E: de::Error>(self, value: &str) -> Result<Tolerance, E> {
+                value.parse().map_err(E::custom)
+            }
+        }
+        deserializer.deserialize_any(ToleranceVisitor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_reads_back_as_it_is_written() {
+        for text in ["512", "512x256"] {
+            let grid: GridSpec = text.parse().expect("a grid");
+            assert_eq!(grid.to_string(), text);
+        }
+        for text in ["", "x", "5.5", "-4", "4x", "4x4x4"] {
+            assert!(text.parse::<GridSpec>().is_err(), "'{text}' was read as a grid");
+        }
+    }
+}

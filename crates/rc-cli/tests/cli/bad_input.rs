@@ -1,0 +1,194 @@
+//! Bad input: exit code 2 and one line that says what, where, and what would be right.
+
+use crate::support::{Place, SMALL, assert_refused, bumps, f8, npy, small, text};
+
+/// Runs the small problem at 1e5 Pa with `flags`, which replace its own of the same name.
+fn run_small_with(place: &Place, flags: &[&str]) -> std::process::Output {
+    let mut args = vec!["solve", "--quiet", "--pressure", "1e5"];
+    for default in [["--waves", "8"], ["--grid", "128"]] {
+        if !flags.contains(&default[0]) {
+            args.extend(default);
+        }
+    }
+    args.extend(flags);
+    place.run(&args)
+}
+
+#[test]
+fn bad_values_of_the_surface_are_refused_with_their_key() {
+    let place = Place::new();
+    let cases: &[(&[&str], &str)] = &[
+        (&["--cell", "0"], "cell"),
+        (&["--cell", "-1"], "cell"),
+        (&["--cell", "-1e-3"], "cell"),
+        (&["--cell", "nan"], "cell"),
+        (&["--grid", "0"], "grid"),
+        (&["--grid", "16"], "at least 17"),
+        (&["--grid", "-3"], "grid"),
+        (&["--grid", "1000000"], "grid"),
+        (&["--grid", "99999999999"], "grid"),
+        (&["--waves", "0"], "waves"),
+        (&["--rms", "-1e-6"], "rms"),
+        (&["--hurst", "2"], "hurst"),
+        (&["--roll-off", "9"], "roll_off"),
+        (&["--seed", "-1"], "seed"),
+        (&["--seed", "18446744073709551615"], "seed"),
+        (&["--rms", "1", "--c0", "1"], "alternatives"),
+    ];
+    for (flags, expected) in cases {
+        assert_refused(&run_small_with(&place, flags), expected);
+    }
+    assert!(place.names(".").is_empty(), "left behind: {:?}", place.names("."));
+}
+
+#[test]
+fn bad_values_of_the_contact_are_refused_with_their_key() {
+    let place = Place::new();
+    let cases: &[(&[&str], &str)] = &[
+        (&["--young", "0"], "young"),
+        (&["--e-star", "-5"], "e_star"),
+        (&["--poisson", "0.6"], "poisson"),
+        (&["--poisson", "-1"], "poisson"),
+        (&["--e-star", "1", "--young", "1"], "e_star"),
+        (&["--tolerance", "2"], "tolerance"),
+        (&["--tolerance", "0"], "tolerance"),
+        (&["--tolerance", "1e-30"], "tolerance"),
+        (&["--tolerance", "auto"], "tolerance"),
+        (&["--tolerance", "small"], "tolerance"),
+        (&["--method", "adaptive"], "uniform"),
+        (&["--method", "gauss-seidel"], "uniform"),
+        (&["--kernel", "lave"], "love"),
+        (&["--output-grid", "50"], "output_grid"),
+        (&["--output-grid", "0"], "output_grid"),
+        (&["--threads", "0"], "threads"),
+        (&["--threads", "-1"], "threads"),
+        (&["--presure", "1"], "--pressure"),
+    ];
+    for (flags, expected) in cases {
+        assert_refused(&run_small_with(&place, flags), expected);
+    }
+    assert!(place.names(".").is_empty(), "left behind: {:?}", place.names("."));
+}
+
+#[test]
+fn the_control_must_be_given_exactly_once() {
+    let place = Place::new();
+    assert_refused(&place.run(&SMALL), "exactly one");
+    assert_refused(&place.run(&small("1e5", &["--penetration", "1e-6"])), "exactly one");
+    for pressure in ["0", "-1e5", "inf", "nan"] {
+        assert_refused(&place.run(&small(pressure, &[])), "pressure");
+    }
+    assert_refused(&place.run(&[&SMALL[..], &["--penetration", "-1e-6"]].concat()), "penetration");
+}
+
+#[test]
+fn a_penetration_beyond_full_contact_names_it_and_points_to_pressure_control() {
+    let place = Place::new();
+    let output = place.run(&[&SMALL[..], &["--penetration", "4e-4", "--out", "result"]].concat());
+    assert_refused(&output, "full contact");
+    assert!(text(&output.stderr).contains("--pressure"), "{}", text(&output.stderr));
+    assert!(!place.path("result").exists(), "a folder was made for nothing");
+}
+
+#[test]
+fn bad_scene_files_are_refused_with_line_and_remedy() {
+    let place = Place::new();
+    let cases = [
+        (
+            "waves = 8\npresure = 1.0\n",
+            "scene.toml: line 2: unknown key 'presure'; the nearest known key is 'pressure'",
+        ),
+        ("waves = 8\ncell = \"wide\"\n", "scene.toml: line 2"),
+        ("waves = 8\nwaves = 9\n", "scene.toml: line 2"),
+        ("waves == 8\n", "scene.toml: line 1"),
+        (
+            "pressure = 1.0\npenetration = 1e-6\n",
+            "scene.toml: both pressure and penetration are given; give exactly one",
+        ),
+        ("heights = \"h.npy\"\nwaves = 8\n", "scene.toml: heights"),
+        ("heights = \"missing.npy\"\npressure = 1.0\n", "missing.npy: cannot read"),
+    ];
+    for (scene, expected) in cases {
+        place.write("scene.toml", scene);
+        assert_refused(&place.run(&["solve", "scene.toml"]), expected);
+    }
+    assert_refused(&place.run(&["solve", "none.toml"]), "none.toml");
+    place.write("binary.toml", [0xff, 0xfe, 0x00]);
+    assert_refused(&place.run(&["solve", "binary.toml"]), "binary.toml");
+}
+
+/// Files that are no height maps, and what the message about each must say.
+fn write_bad_maps(place: &Place) -> Vec<(&'static str, &'static str)> {
+    let mut holed = bumps(8);
+    holed[19] = f32::NAN;
+    let mut spiked = bumps(8);
+    spiked[0] = f32::INFINITY;
+    let square = "(8, 8)";
+    place.write("nan.npy", npy("<f8", false, square, &f8(&holed)));
+    place.write("inf.npy", npy("<f8", false, square, &f8(&spiked)));
+    place.write("flat.npy", npy("<f8", false, square, &f8(&[1.5; 64])));
+    place.write("line.npy", npy("<f8", false, "(64,)", &f8(&bumps(8))));
+    place.write("cube.npy", npy("<f8", false, "(4, 4, 4)", &f8(&bumps(8))));
+    place.write("none.npy", npy("<f8", false, "(0, 8)", &[]));
+    place.write("huge.npy", npy("<f8", false, "(1048576, 1048576)", &[0; 64]));
+    place.write("short.npy", npy("<f8", false, square, &f8(&bumps(8)[1..])));
+    place.write("complex.npy", npy("<c16", false, "(4, 8)", &f8(&bumps(8))));
+    place.write("text.npy", npy("<U4", false, "(4, 8)", &f8(&bumps(8))));
+    place.write("not.npy", "1,2\n3,4\n");
+    place.write("ragged.csv", "1,2,3\n4,5\n");
+    place.write("text.csv", "1,2\n3,four\n");
+    place.write("nan.csv", "1,2\n3,nan\n");
+    place.write("empty.csv", "");
+    place.write("map.dat", "1,2\n3,4\n");
+    vec![
+        ("nan.npy", "row 2, column 3"),
+        ("inf.npy", "row 0, column 0"),
+        ("flat.npy", "flat"),
+        ("line.npy", "2-D"),
+        ("cube.npy", "2-D"),
+        ("none.npy", "1 to"),
+        ("huge.npy", "shorter"),
+        ("short.npy", "shorter"),
+        ("complex.npy", "real"),
+        ("text.npy", "real"),
+        ("not.npy", "not a valid npy file"),
+        ("ragged.csv", "line 2"),
+        ("text.csv", "line 2, value 2"),
+        ("nan.csv", "row 1, column 1"),
+        ("empty.csv", "1 to"),
+        ("map.dat", ".csv"),
+        ("missing.npy", "cannot read"),
+    ]
+}
+
+#[test]
+fn bad_height_maps_are_refused_with_their_place() {
+    let place = Place::new();
+    for (file, expected) in write_bad_maps(&place) {
+        let output = place.run(&["solve", "--heights", file, "--pressure", "1e5", "--out", "result"]);
+        assert_refused(&output, expected);
+        assert!(text(&output.stderr).contains(file), "{}", text(&output.stderr));
+        assert_refused(&place.run(&["inspect", file]), expected);
+    }
+    assert_refused(&place.run(&["solve", "--heights", ".", "--pressure", "1e5"]), ".csv");
+    assert!(!place.path("result").exists(), "a folder was made for nothing");
+}
+
+#[test]
+fn a_grid_that_is_not_that_of_the_height_map_is_refused() {
+    let place = Place::new();
+    place.write("map.npy", npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
+    let args = ["solve", "--heights", "map.npy", "--pressure", "1e5", "--grid", "128", "--quiet"];
+    assert_refused(&place.run(&args), "64 x 64");
+}
+
+#[test]
+fn an_output_folder_that_cannot_be_is_refused_before_any_work() {
+    let place = Place::new();
+    place.write("file", "keep");
+    for out in ["file", "file/sub", "file/sub/sub"] {
+        assert_refused(&place.run(&small("1e5", &["--out", out])), "out:");
+    }
+    assert_eq!(place.bytes("file"), b"keep");
+    assert_eq!(place.names("."), ["file"]);
+}

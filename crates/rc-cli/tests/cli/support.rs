@@ -1,0 +1,103 @@
+//! A folder to run `rc` in, and what to say of its answers.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+/// A small problem that every test can afford: 8 waves on 128 x 128 elements.
+pub(crate) const SMALL: [&str; 6] = ["solve", "--waves", "8", "--grid", "128", "--quiet"];
+
+/// Arguments of the small problem at `pressure` Pa, with more of them.
+pub(crate) fn small<'a>(pressure: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    [&SMALL[..], &["--pressure", pressure], more].concat()
+}
+
+/// A folder to run in.
+pub(crate) struct Place(TempDir);
+
+impl Place {
+    pub(crate) fn new() -> Self {
+        Self(tempfile::tempdir().expect("a temporary folder"))
+    }
+
+    pub(crate) fn folder(&self) -> &Path {
+        self.0.path()
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        fs::write(self.path(name), content).expect("a file in the temporary folder");
+    }
+
+    pub(crate) fn run(&self, args: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_rc")).args(args).current_dir(self.folder()).output().expect("rc runs")
+    }
+
+    /// Names in `folder`, sorted, hidden ones included.
+    pub(crate) fn names(&self, folder: &str) -> Vec<String> {
+        let entries = fs::read_dir(self.path(folder)).expect("a folder");
+        let name = |entry: std::io::Result<fs::DirEntry>| entry.expect("an entry").file_name();
+        let mut names: Vec<String> = entries.map(|entry| name(entry).to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    pub(crate) fn bytes(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap_or_else(|cause| panic!("{name}: {cause}"))
+    }
+
+    /// Names and contents of the files in `folder`.
+    pub(crate) fn contents(&self, folder: &str) -> Vec<(String, Vec<u8>)> {
+        self.names(folder).into_iter().map(|name| (name.clone(), self.bytes(&format!("{folder}/{name}")))).collect()
+    }
+
+    pub(crate) fn json(&self, name: &str) -> serde_json::Value {
+        serde_json::from_slice(&self.bytes(name)).expect("valid JSON")
+    }
+}
+
+pub(crate) fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+pub(crate) fn assert_solved(output: &Output) {
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+}
+
+/// Exit code 2, nothing on standard output, and one line on standard error that holds `expected`.
+pub(crate) fn assert_refused(output: &Output, expected: &str) {
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(output.stdout.is_empty(), "standard output: {}", text(&output.stdout));
+    assert_eq!(message.lines().count(), 1, "not one line: {message}");
+    assert!(message.starts_with("error: ") && message.contains(expected), "no '{expected}' in: {message}");
+}
+
+/// An npy file of version 1.0.
+pub(crate) fn npy(dtype: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec<u8> {
+    let order = if fortran { "True" } else { "False" };
+    let mut header = format!("{{'descr': '{dtype}', 'fortran_order': {order}, 'shape': {shape}, }}");
+    while (10 + header.len() + 1) % 64 != 0 {
+        header.push(' ');
+    }
+    header.push('\n');
+    let length = u16::try_from(header.len()).expect("a short header");
+    [b"\x93NUMPY\x01\x00".as_slice(), &length.to_le_bytes(), header.as_bytes(), data].concat()
+}
+
+/// Heights (m) of a bumpy surface on n x n points; exact in `f32`.
+pub(crate) fn bumps(n: usize) -> Vec<f32> {
+    let wave = |i: usize, k: f64| (std::f64::consts::TAU * k * (i as f64 + 0.5) / n as f64).cos();
+    let height = |i: usize| 1e-5 * (wave(i % n, 2.0) + 0.5 * wave(i / n, 3.0) * wave(i % n, 5.0));
+    (0..n * n).map(|i| height(i) as f32).collect()
+}
+
+/// Values as little-endian `f64`.
+pub(crate) fn f8(values: &[f32]) -> Vec<u8> {
+    values.iter().flat_map(|v| f64::from(*v).to_le_bytes()).collect()
+}

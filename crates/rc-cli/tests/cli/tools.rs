@@ -1,0 +1,67 @@
+//! `rc surface`, `rc inspect`, `rc plot` and help.
+
+use crate::support::{Place, assert_refused, assert_solved, small, text};
+
+#[test]
+fn a_surface_is_converted_without_loss() {
+    let place = Place::new();
+    let surface = ["surface", "--waves", "8", "--grid", "64", "--quiet", "--out"];
+    for target in ["s", "s.npy", "s.csv"] {
+        assert_solved(&place.run(&[&surface[..], &[target]].concat()));
+    }
+    assert_eq!(place.names("s"), ["heights.npy", "scene.toml", "surface.json", "surface.png"]);
+    assert_eq!(place.names("."), ["s", "s.csv", "s.npy"]);
+    assert!(place.bytes("s/heights.npy") == place.bytes("s.npy"), "two ways to write heights differ");
+    assert_solved(&place.run(&["surface", "--heights", "s.csv", "--quiet", "--out", "again.npy"]));
+    assert!(place.bytes("again.npy") == place.bytes("s.npy"), "CSV has lost digits");
+    let rms = place.json("s/surface.json")["rms_height"].as_f64().expect("a number");
+    assert!((rms / 13e-6 - 1.0).abs() < 1e-12, "rms height {rms:e}, 13e-6 was asked for");
+    assert_solved(&place.run(&["solve", "s/scene.toml", "--pressure", "1e5", "--quiet"]));
+}
+
+#[test]
+fn inspect_measures_what_surface_made() {
+    let place = Place::new();
+    let surface =
+        ["surface", "--waves", "8", "--grid", "64", "--cell", "2e-3", "--rms", "1e-6", "--quiet", "--out", "s"];
+    assert_solved(&place.run(&surface));
+    let output = place.run(&["inspect", "s/heights.npy", "--cell", "2e-3", "--json"]);
+    assert_solved(&output);
+    let made = place.json("s/surface.json");
+    let measured: serde_json::Value = serde_json::from_slice(&output.stdout).expect("valid JSON");
+    for key in ["rms_height", "rms_slope", "rms_curvature", "nayak"] {
+        let (a, b) = (made[key].as_f64().expect("a number"), measured[key].as_f64().expect("a number"));
+        // Exact sums against a transform of the grid: rounding, amplified by the fourth power of the wavenumber.
+        assert!((a / b - 1.0).abs() < 1e-9, "{key}: made {a}, measured {b}");
+    }
+    assert_refused(&place.run(&["inspect", "s"]), "heights.npy");
+    assert_refused(&place.run(&["inspect", "s/heights.npy", "--cell", "-1"]), "cell");
+}
+
+#[test]
+fn results_are_inspected_and_plotted() {
+    let place = Place::new();
+    assert_solved(&place.run(&small("1e5", &["--out", "r"])));
+    for file in ["r", "r/summary.json", "r/pressure.npy"] {
+        let output = place.run(&["inspect", file]);
+        assert_solved(&output);
+        assert!(text(&output.stdout).contains("contact area"), "{}", text(&output.stdout));
+    }
+    assert_solved(&place.run(&["plot", "r", "--out", "pictures"]));
+    assert_eq!(
+        place.names("pictures"),
+        ["contact.png", "distribution.png", "distribution.svg", "gap.png", "sections.png", "sections.svg"]
+    );
+    assert!(place.bytes("pictures/contact.png") == place.bytes("r/contact.png"), "not the same picture again");
+    assert_refused(&place.run(&["plot", "nothing"]), "nothing");
+    assert_refused(&place.run(&["plot", "pictures"]), "summary.json");
+    assert_refused(&place.run(&["inspect", "pictures"]), "summary.json");
+}
+
+#[test]
+fn help_is_no_error() {
+    let place = Place::new();
+    for args in [&["--help"][..], &["--version"], &["solve", "--help"], &["surface", "--help"]] {
+        assert_solved(&place.run(args));
+    }
+}

@@ -1,0 +1,67 @@
+//! What periodic coefficients cost: near, midway and far, for small and large sources, tables, and truncated sums.
+//!
+//! `cargo bench -p rc-kernel --bench periodic`. Each sample of a benchmark of values is 1000 values.
+
+use divan::{Bencher, black_box};
+use rc_kernel::{LoadForm, PeriodicLove, ewald_coefficient, truncated_coefficient};
+
+const VALUES: usize = 1000;
+
+fn main() {
+    divan::main();
+}
+
+/// Half side 2^-level; offsets all around at `distance`.
+#[divan::bench(args = [(3, 0.3), (3, 0.5), (5, 0.02), (5, 0.1), (5, 0.4), (8, 0.001), (8, 0.01), (8, 0.1), (8, 0.4), (12, 0.001), (12, 0.4), (17, 0.4)])]
+fn coefficient(bencher: Bencher<'_, '_>, (level, distance): (i32, f64)) {
+    let love = PeriodicLove::new();
+    let half_side = 0.5_f64.powi(level);
+    let offsets = ring(distance);
+    // Makes the table.
+    let _ = love.coefficient(0.1, 0.1, half_side);
+    bencher.counter(VALUES).bench(|| {
+        let half_side = black_box(half_side);
+        offsets.iter().map(|&(x, y)| love.coefficient(x, y, half_side)).sum::<f64>()
+    });
+}
+
+/// Offsets all around the source, in an order without a pattern.
+fn ring(distance: f64) -> Vec<(f64, f64)> {
+    let point = |i: usize| (2.4 * i as f64).sin_cos();
+    (0..VALUES).map(point).map(|(sin, cos)| (distance * cos, distance * sin)).collect()
+}
+
+/// Sizes that are no power of two: with a table of their own, and without.
+#[divan::bench(args = [true, false])]
+fn other_sizes(bencher: Bencher<'_, '_>, table: bool) {
+    let love = PeriodicLove::new();
+    let half_side = 1.0 / 96.0;
+    let source = love.source(half_side).expect("a source");
+    let offsets = ring(0.4);
+    let of = |&(x, y): &(f64, f64)| {
+        if table { source.coefficient(x, y) } else { love.coefficient(x, y, black_box(half_side)) }
+    };
+    bencher.counter(VALUES).bench(|| offsets.iter().map(of).sum::<f64>());
+}
+
+#[divan::bench]
+fn make_a_table(bencher: Bencher<'_, '_>) {
+    let love = PeriodicLove::new();
+    bencher.bench(|| love.source(black_box(1.0 / 96.0)));
+}
+
+#[divan::bench]
+fn make_a_handle() -> PeriodicLove {
+    PeriodicLove::new()
+}
+
+/// One coefficient from K shells of images.
+#[divan::bench(args = [1, 8, 64])]
+fn truncated(shells: usize) -> f64 {
+    truncated_coefficient(black_box(0.25), 0.1, 1.0 / 128.0, shells, LoadForm::Plain).expect("a valid request")
+}
+
+#[divan::bench]
+fn slow_truth() -> f64 {
+    ewald_coefficient(black_box(0.25), 0.1, 1.0 / 128.0)
+}

@@ -1,0 +1,45 @@
+//! What can be wrong with a request for a periodic coefficient.
+
+use thiserror::Error;
+
+/// Why a periodic coefficient, or its number of image shells, cannot be given. Lengths are in units of λ.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum KernelError {
+    /// An offset is infinite or not a number.
+    #[error("offset ({dx}, {dy}) between target and source is not finite")]
+    Offset {
+        /// Offset along x.
+        dx: f64,
+        /// Offset along y.
+        dy: f64,
+    },
+    /// A half side is not in (0, 1/2]: the source is empty, or overlaps its own images.
+    #[error("half side {half_side} of the source is not in (0, 0.5] cell sides")]
+    HalfSide {
+        /// The half side that was given.
+        half_side: f64,
+    },
+    /// No shell of images: the sum over none has no meaning.
+    #[error("0 shells of images; at least 1 is needed")]
+    NoShells,
+    /// More shells than [`MAX_SHELLS`](crate::MAX_SHELLS).
+    #[error("{shells} shells of images are more than the {max} that are ever summed; use the exact coefficients", max = crate::MAX_SHELLS)]
+    TooManyShells {
+        /// The number of shells that was given.
+        shells: usize,
+    },
+    /// A tolerance is not a positive number.
+    #[error("tolerance {tolerance} is not a positive number")]
+    Tolerance {
+        /// The tolerance that was given.
+        tolerance: f64,
+    },
+    /// The truncation error at [`MAX_SHELLS`](crate::MAX_SHELLS) shells may still be larger than the tolerance.
+    #[error("tolerance {tolerance:e} is out of reach: {max} shells of images guarantee {reached:e}; use the exact coefficients", max = crate::MAX_SHELLS)]
+    Unreachable {
+        /// The tolerance that was given.
+        tolerance: f64,
+        /// The error bound with the largest number of shells.
+        reached: f64,
+    },
+}

@@ -1,0 +1,161 @@
+//! Eq. 4-6 as the paper sums them: the images of K shells, and a bound of what is left out.
+
+use std::f64::consts::{FRAC_1_PI, SQRT_2};
+
+use crate::lattice::wrap;
+use crate::{KernelError, love_displacement};
+
+/// Most shells of images that are ever summed: 4 million images, a second for one coefficient.
+pub const MAX_SHELLS: usize = 1024;
+
+/// How the uniform counter-load of the cell, l_m, is written as a sum of squares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LoadForm {
+    /// Each image of the cell is one square of half-side λ/2, with the mean pressure (2d/λ)².
+    Plain,
+    /// Eq. 6 as printed: squares of half-side λ around each image, so that every point is covered four times, with a
+    /// quarter of the mean pressure, (d/λ)². Same limit, four times the error at the source.
+    Printed,
+}
+
+impl LoadForm {
+    /// Half side of the squares, in units of λ.
+    fn half_side(self) -> f64 {
+        match self {
+            Self::Plain => 0.5,
+            Self::Printed => 1.0,
+        }
+    }
+
+    /// Their pressure, for unit pressure on a source of half side d: its area over theirs.
+    fn pressure(self, half_side: f64) -> f64 {
+        (half_side / self.half_side()).powi(2)
+    }
+}
+
+/// `L_ij = l_ij - l_m` (Eq. 4-6) with the images |h|, |k| ≤ K = `shells`, for a source of half-side `half_side` d at offset
+/// (`dx`, `dy`) = target minus source, in units of λ (displacement λ p/E*).
+///
+/// l_ij and l_m diverge separately. Here each image of the source is summed together with its part of the counter-load,
+/// (2K + 1)² differences that fall as R⁻² (R⁻³ for opposite images together), from the outermost shell inwards. As in
+/// Eq. 6, the counter-load is seen from the centre of the source.
+///
+/// The offset is wrapped into the cell first, so that images lie around the target evenly; without that the error is larger.
+///
+/// *Accuracy*: truncation within [`truncation_error_bound`] of [`PeriodicLove`](crate::PeriodicLove) (test
+/// `truncation_error_is_below_its_bound`), rounding below 1e-16 (2d)² K.
+///
+/// # Errors
+/// [`KernelError`]: an offset that is not finite, `half_side` not in (0, 1/2], `shells` 0 or above [`MAX_SHELLS`].
+pub fn truncated_coefficient(
+    dx: f64,
+    dy: f64,
+    half_side: f64,
+    shells: usize,
+    form: LoadForm,
+) -> Result<f64, KernelError> {
+    check_offset(dx, dy)?;
+    check_half_side(half_side)?;
+    check_shells(shells)?;
+    let (x, y) = (wrap(dx), wrap(dy));
+    let (load, pressure) = (form.half_side(), form.pressure(half_side));
+    let image = |h: i32, k: i32| {
+        let (h, k) = (f64::from(h), f64::from(k));
+        love_displacement(x + h, y + k, half_side) - pressure * love_displacement(h, k, load)
+    };
+    // Four at a time, a quarter turn apart: what falls as R⁻² cancels in each sum.
+    let turned = |h: i32, k: i32| (image(h, k) + image(-h, -k)) + (image(-k, h) + image(k, -h));
+    let shell = |n: i32| (1 - n..=n).map(|k| turned(n, k)).sum::<f64>();
+    Ok((1..=shells as i32).rev().map(shell).sum::<f64>() + image(0, 0))
+}
+
+/// A bound of |[`truncated_coefficient`] - `L_ij`| over all offsets, in units of λ (displacement λ p/E*). About
+/// (2d)² e/(π K), with e at most √2/3 for the plain form and 2√2/3 for the printed one, when the source is small.
+///
+/// *Proof.* The images left out are a tail Σ_R (t_R(source) - t_R(counter-load)), each t_R being (2d)²/π times the mean of
+/// `1/|R - a| = Σ_l |a|^l/R^(l+1) P_l(cos γ)` over a square of points a. Images a quarter turn apart are left out together:
+/// - l = 0 cancels between source and counter-load, odd l between opposite images;
+/// - l = 2 leaves ⟨|a|²⟩/(4R³). With ⟨|a|²⟩ = r² + 2d²/3 for the source at offset r² ≤ 1/2, and 2c²/3 for the counter-load
+///   of half-side c, the difference is largest at one of the ends of 0 ≤ r² ≤ 1/2;
+/// - for even l ≥ 4, P_l averaged over quarter turns is at most (1 + |P_l(0)|)/2 ≤ 11/16 (its Fourier coefficients are
+///   positive), and the series is at most geometric: 11/16 ⟨|a|⁴⟩/R⁵ · 1/(1 - A²/R²), with A the farthest point and R ≥ K + 1.
+///
+/// A shell n of images is four trapezoidal sums of (n² + t²)^(-s/2) over -n ≤ t ≤ n, and these are below their integrals, by
+/// Euler and Maclaurin (test `shells_are_below_their_integrals`): Σ R⁻³ ≤ 4√2/n², Σ R⁻⁵ ≤ (10√2/3)/n⁴. By convexity
+/// `Σ_{n>K} n⁻²  ≤ 1/(K + ½)` and `Σ_{n>K} n⁻⁴ ≤ 1/(3 (K + ½)³)`.
+///
+/// Infinite, as nothing is guaranteed, for `shells` = 0 or a half side outside (0, 1/2].
+#[must_use]
+pub fn truncation_error_bound(half_side: f64, shells: usize, form: LoadForm) -> f64 {
+    if shells == 0 || check_half_side(half_side).is_err() {
+        return f64::INFINITY;
+    }
+    let (d2, c2) = (half_side * half_side, form.half_side().powi(2));
+    let (k_half, nearest2) = (shells as f64 + 0.5, (shells as f64 + 1.0).powi(2));
+    let second = |r2: f64| 0.25 * (r2 + 2.0 / 3.0 * (d2 - c2)).abs();
+    let fourth = |mean: f64, farthest2: f64| 11.0 / 16.0 * mean / (1.0 - farthest2 / nearest2);
+    // The source at the corner of the cell: ⟨a_x²⟩ and ⟨a_x⁴⟩ of one coordinate, ½ ± d.
+    let (square, fourth_power) = (0.25 + d2 / 3.0, 1.0 / 16.0 + 0.5 * d2 + d2 * d2 / 5.0);
+    let source = fourth(2.0 * (fourth_power + square * square), 2.0 * (0.5 + half_side).powi(2));
+    let counter_load = fourth(28.0 / 45.0 * c2 * c2, 2.0 * c2);
+    let cubes = 4.0 * SQRT_2 / k_half;
+    let fifth_powers = 10.0 * SQRT_2 / 9.0 / k_half.powi(3);
+    4.0 * d2 * FRAC_1_PI * (second(0.0).max(second(0.5)) * cubes + (source + counter_load) * fifth_powers)
+}
+
+/// The least number of shells with [`truncation_error_bound`] ≤ `tolerance` (absolute, displacement in λ p/E*).
+///
+/// # Errors
+/// [`KernelError`]: `half_side` not in (0, 1/2], `tolerance` not positive, or not reached with [`MAX_SHELLS`].
+pub fn shells_for(half_side: f64, tolerance: f64, form: LoadForm) -> Result<usize, KernelError> {
+    check_half_side(half_side)?;
+    if !(tolerance > 0.0 && tolerance.is_finite()) {
+        return Err(KernelError::Tolerance { tolerance });
+    }
+    let bound = |shells: usize| truncation_error_bound(half_side, shells, form);
+    let reached = bound(MAX_SHELLS);
+    if reached > tolerance {
+        return Err(KernelError::Unreachable { tolerance, reached });
+    }
+    // The bound falls with K, so this is bisection: `low` shells are too few, `high` are enough.
+    let (mut low, mut high) = (0, MAX_SHELLS);
+    while high - low > 1 {
+        let middle = usize::midpoint(low, high);
+        if bound(middle) <= tolerance { high = middle } else { low = middle }
+    }
+    Ok(high)
+}
+
+pub(crate) fn check_offset(dx: f64, dy: f64) -> Result<(), KernelError> {
+    if dx.is_finite() && dy.is_finite() { Ok(()) } else { Err(KernelError::Offset { dx, dy }) }
+}
+
+pub(crate) fn check_half_side(half_side: f64) -> Result<(), KernelError> {
+    if half_side > 0.0 && half_side <= 0.5 { Ok(()) } else { Err(KernelError::HalfSide { half_side }) }
+}
+
+fn check_shells(shells: usize) -> Result<(), KernelError> {
+    match shells {
+        0 => Err(KernelError::NoShells),
+        1..=MAX_SHELLS => Ok(()),
+        _ => Err(KernelError::TooManyShells { shells }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shells_are_below_their_integrals() {
+        for n in 1..=300_i32 {
+            let radius = |k: i32| f64::from(n).hypot(f64::from(k));
+            let sum = |power: i32| 4.0 * (1 - n..=n).map(|k| radius(k).powi(-power)).sum::<f64>();
+            let n = f64::from(n);
+            for (sum, integral) in [(sum(3), 4.0 * SQRT_2 / (n * n)), (sum(5), 10.0 * SQRT_2 / 3.0 / n.powi(4))] {
+                assert!(sum <= integral, "shell {n}: {sum:e} above {integral:e}");
+                assert!(sum >= 0.94 * integral / (1.0 + 1.0 / n), "shell {n}: {sum:e} far below {integral:e}");
+            }
+        }
+    }
+}

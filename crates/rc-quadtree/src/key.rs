@@ -1,0 +1,155 @@
+//! Keys: the place and size of one square, sorted along the Morton curve.
+
+/// Deepest level a key can hold: squares of side 2^-20 of a root square.
+pub const MAX_LEVEL: u32 = 20;
+
+/// Most root squares per side: with [`MAX_LEVEL`] below them, a coordinate takes 29 bits and a whole key 63.
+pub const MAX_BASE: usize = 512;
+
+const LEVEL_BITS: u32 = 5;
+const LEVEL_MASK: u64 = (1 << LEVEL_BITS) - 1;
+
+/// The place and size of one square of the mesh in 8 bytes.
+///
+/// A square of level l is one of `base · 2^l` per side, at column `ix` and row `iy` of these. The key is the Morton
+/// code (the bits of y and x in turn) of its lower left corner in units of the smallest square, followed by the
+/// level. Hence keys sort along the Morton curve, a square covers the interval of `4^(MAX_LEVEL - l)` codes that
+/// starts at its own code, and two squares either are nested or have disjoint intervals. (G. M. Morton, *A computer
+/// oriented geodetic data base*, IBM Ottawa, 1966; linear quadtrees: I. Gargantini, Commun. ACM 25 (1982) 905-910.)
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Key(u64);
+
+impl Key {
+    /// The square of level `level` at column `ix` and row `iy`, each below `base << level`.
+    pub(crate) fn new(level: u32, ix: u32, iy: u32) -> Self {
+        let to_finest = MAX_LEVEL - level;
+        let code = spread(ix << to_finest) | (spread(iy << to_finest) << 1);
+        Self::from_code(code, level)
+    }
+
+    fn from_code(code: u64, level: u32) -> Self {
+        Self((code << LEVEL_BITS) | u64::from(level))
+    }
+
+    /// Level of the square: 0 for a root square, one more for every halving of the side.
+    #[must_use]
+    pub fn level(self) -> u32 {
+        (self.0 & LEVEL_MASK) as u32
+    }
+
+    /// Column of the square among those of its level.
+    #[must_use]
+    pub fn ix(self) -> u32 {
+        gather(self.start()) >> (MAX_LEVEL - self.level())
+    }
+
+    /// Row of the square among those of its level.
+    #[must_use]
+    pub fn iy(self) -> u32 {
+        gather(self.start() >> 1) >> (MAX_LEVEL - self.level())
+    }
+
+    /// First Morton code of the square.
+    pub(crate) fn start(self) -> u64 {
+        self.0 >> LEVEL_BITS
+    }
+
+    /// Number of Morton codes of the square: its area in units of the smallest square.
+    pub(crate) fn span(self) -> u64 {
+        1 << (2 * (MAX_LEVEL - self.level()))
+    }
+
+    /// First Morton code after the square.
+    pub(crate) fn end(self) -> u64 {
+        self.start() + self.span()
+    }
+
+    /// Is `other` this square or a part of it?
+    #[must_use]
+    pub fn contains(self, other: Self) -> bool {
+        self.start() <= other.start() && other.end() <= self.end()
+    }
+
+    /// The square of twice the side that this one is a quarter of; none for a root square.
+    #[must_use]
+    pub fn parent(self) -> Option<Self> {
+        let level = self.level().checked_sub(1)?;
+        Some(Self::new(level, self.ix() / 2, self.iy() / 2))
+    }
+
+    /// The four quarters in Morton order: lower left, lower right, upper left, upper right. The level must be below
+    /// [`MAX_LEVEL`].
+    pub(crate) fn children(self) -> [Self; 4] {
+        let quarter = self.span() / 4;
+        std::array::from_fn(|q| Self::from_code(self.start() + q as u64 * quarter, self.level() + 1))
+    }
+
+    /// The square of the same size `dx` columns and `dy` rows away, around the periodic cell of `base` root squares.
+    pub(crate) fn step(self, base: usize, dx: i64, dy: i64) -> Self {
+        Self::wrapped(base, self.level(), i64::from(self.ix()) + dx, i64::from(self.iy()) + dy)
+    }
+
+    /// The square of level `level` at column `ix` and row `iy` of the periodically continued plane.
+    pub(crate) fn wrapped(base: usize, level: u32, ix: i64, iy: i64) -> Self {
+        let per_side = (base as i64) << level;
+        Self::new(level, ix.rem_euclid(per_side) as u32, iy.rem_euclid(per_side) as u32)
+    }
+}
+
+impl std::fmt::Debug for Key {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Key(level {}, ix {}, iy {})", self.level(), self.ix(), self.iy())
+    }
+}
+
+/// Moves bit i of `v` to bit 2i.
+fn spread(v: u32) -> u64 {
+    let mut v = u64::from(v);
+    v = (v | (v << 16)) & 0x0000_FFFF_0000_FFFF;
+    v = (v | (v << 8)) & 0x00FF_00FF_00FF_00FF;
+    v = (v | (v << 4)) & 0x0F0F_0F0F_0F0F_0F0F;
+    v = (v | (v << 2)) & 0x3333_3333_3333_3333;
+    (v | (v << 1)) & 0x5555_5555_5555_5555
+}
+
+/// Moves bit 2i of `v` to bit i; the inverse of [`spread`].
+fn gather(v: u64) -> u32 {
+    let mut v = v & 0x5555_5555_5555_5555;
+    v = (v | (v >> 1)) & 0x3333_3333_3333_3333;
+    v = (v | (v >> 2)) & 0x0F0F_0F0F_0F0F_0F0F;
+    v = (v | (v >> 4)) & 0x00FF_00FF_00FF_00FF;
+    v = (v | (v >> 8)) & 0x0000_FFFF_0000_FFFF;
+    (v | (v >> 16)) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn largest_key_comes_back_unchanged() {
+        let last = ((MAX_BASE as u32) << MAX_LEVEL) - 1;
+        let key = Key::new(MAX_LEVEL, last, last - 1);
+        assert_eq!((key.level(), key.ix(), key.iy()), (MAX_LEVEL, last, last - 1));
+    }
+
+    #[test]
+    fn children_tile_their_parent_in_order() {
+        let parent = Key::new(3, 5, 2);
+        let children = parent.children();
+        assert_eq!(children.map(|c| (c.level(), c.ix(), c.iy())), [(4, 10, 4), (4, 11, 4), (4, 10, 5), (4, 11, 5)]);
+        assert_eq!(children[0].start(), parent.start());
+        assert_eq!(children[3].end(), parent.end());
+        for child in children {
+            assert_eq!(child.parent(), Some(parent));
+            assert!(parent.contains(child) && !child.contains(parent));
+            assert!(parent < child, "an ancestor sorts before its parts");
+        }
+    }
+
+    #[test]
+    fn steps_wrap_around_a_cell_of_three_roots() {
+        let corner = Key::new(1, 0, 5);
+        assert_eq!(corner.step(3, -1, 1), Key::new(1, 5, 0));
+    }
+}

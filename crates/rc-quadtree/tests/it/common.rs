@@ -1,0 +1,49 @@
+//! Contact sets for the tests: discs on the periodic cell, and brute-force looks at a mask.
+
+use rc_quadtree::{Mask, Mesh};
+
+/// A disc: centre (x, y) and radius in λ.
+pub(crate) type Disc = (f64, f64, f64);
+
+/// Distance of the nearest images of two coordinates.
+fn apart(a: f64, b: f64) -> f64 {
+    let d = (a - b).rem_euclid(1.0);
+    d.min(1.0 - d)
+}
+
+/// Contact in any of the `spots`, except in the `holes`, around the periodic cell.
+pub(crate) fn discs(side: usize, spots: &[Disc], holes: &[Disc]) -> Mask {
+    let inside = |x: f64, y: f64, &(cx, cy, r): &Disc| apart(x, cx).hypot(apart(y, cy)) < r;
+    let contact = |x: f64, y: f64| spots.iter().any(|d| inside(x, y, d)) && !holes.iter().any(|d| inside(x, y, d));
+    Mask::from_predicate(side, contact).expect("a side of a test is small")
+}
+
+/// Value of the mask at a cell of the periodically continued plane.
+pub(crate) fn at(mask: &Mask, ix: i64, iy: i64) -> bool {
+    let side = mask.side() as i64;
+    mask.cells()[(iy.rem_euclid(side) * side + ix.rem_euclid(side)) as usize]
+}
+
+/// Cells of the grid of `side` cells per side that the mesh covers, row-major, each element painted by itself.
+pub(crate) fn painted(mesh: &Mesh, side: usize) -> Vec<bool> {
+    let mut cells = vec![false; side * side];
+    for key in mesh.keys() {
+        let size = side / (mesh.base() << key.level());
+        assert!(size > 0, "{key:?} is smaller than a cell of {side}");
+        for iy in 0..size {
+            for ix in 0..size {
+                let cell = &mut cells[(key.iy() as usize * size + iy) * side + key.ix() as usize * size + ix];
+                assert!(!*cell, "{key:?} overlaps another element");
+                *cell = true;
+            }
+        }
+    }
+    cells
+}
+
+/// Cells within `reach` rows and columns of contact.
+pub(crate) fn with_halo(mask: &Mask, reach: i64) -> Vec<bool> {
+    let side = mask.side() as i64;
+    let near = |ix: i64, iy: i64| (-reach..=reach).any(|dy| (-reach..=reach).any(|dx| at(mask, ix + dx, iy + dy)));
+    (0..side * side).map(|i| near(i % side, i / side)).collect()
+}

@@ -1,0 +1,51 @@
+//! Why the paper's procedure failed.
+
+use rc_core::Grid;
+use rc_quadtree::MeshError;
+use thiserror::Error;
+
+use crate::SolveError;
+
+/// A contact problem that the paper's procedure did not solve.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum GaussSeidelError {
+    /// The problem itself is refused, or was not solved; as for the other methods.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// The elements of the mesh must be squares.
+    #[error("the mesh has square elements, so the grid must have as many along x as along y, not {grid}")]
+    NotSquare {
+        /// Grid of the heights.
+        grid: Grid,
+    },
+    /// The mesh cannot be made.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The scene needs more work than the budget allows. The estimate comes from a solution on a coarse grid, before any
+    /// other work.
+    #[error(
+        "about {elements} elements in contact need {coefficients:.1e} coefficients a sweep, about {seconds_per_sweep:.0} s, \
+         more than the budget of {budget:.1e}; take a coarser grid, another method, or a larger budget"
+    )]
+    Budget {
+        /// Estimated number of elements in contact.
+        elements: usize,
+        /// Its square.
+        coefficients: f64,
+        /// Rough time of one sweep on one core.
+        seconds_per_sweep: f64,
+        /// [`crate::GaussSeidelParams::sweep_budget`].
+        budget: f64,
+    },
+    /// A parameter is out of range.
+    #[error("{what} must be {wanted}, not {value}")]
+    Parameter {
+        /// Name of the parameter.
+        what: &'static str,
+        /// What would be right.
+        wanted: &'static str,
+        /// The value.
+        value: f64,
+    },
+}

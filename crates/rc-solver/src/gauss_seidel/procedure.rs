@@ -1,0 +1,375 @@
+//! Steps (i) to (vi) of the paper's procedure.
+
+use rc_core::{Event, Field, Kernel, Observer, Operator};
+use rc_quadtree::{Mask, Mesh, MeshKind, MeshParams, Reconstruction, count, transfer};
+
+use super::coefficients::{Coefficient, Coefficients, Site};
+use super::sweep::{self, Limits};
+use super::{GaussSeidelError, GaussSeidelParams};
+use crate::operator::UniformOperator;
+use crate::solution::{LevelInfo, MeshPressure, Solution, SolveInfo, Status};
+use crate::uniform::{Problem, coarsen};
+use crate::{Certificate, Control, SolveError, SolveParams, solve_uniform};
+
+/// Largest element, in finest elements: beyond it coarsening saves nothing and heights at centres would need more levels.
+const LARGEST_DOUBLINGS: u32 = 5;
+
+/// Side of the coarse grid that the cost is estimated on, at most.
+const ESTIMATE_SIDE: usize = 256;
+
+/// Rough time of one coefficient from a table, for the message about the budget.
+const SECONDS_PER_COEFFICIENT: f64 = 2e-9;
+
+/// Tolerance of all increments but the last, which only prepare its contact.
+const EARLY_TOLERANCE: f64 = 1e-4;
+
+/// Steps of the search for the penetration of a given mean pressure.
+const MOST_SECANT_STEPS: usize = 30;
+
+/// Solves the contact problem by the paper's procedure (Sec. 2, steps (i)-(vi)) on an adaptive mesh whose finest elements
+/// are those of the grid of `heights`.
+///
+/// `kernel` and `coefficient` must be the same half-space: its symbol on uniform grids, and L_ij between squares, as
+/// [`rc_kernel::Love`] and `rc_kernel::PeriodicLove` are. A mean pressure is found by a secant search over the penetration,
+/// which is what the procedure controls.
+///
+/// The result is bitwise the same for any number of threads.
+///
+/// # Errors
+/// [`GaussSeidelError`].
+pub fn solve_gauss_seidel(
+    heights: &Field,
+    kernel: &dyn Kernel,
+    coefficient: Coefficient<'_>,
+    control: Control,
+    params: &GaussSeidelParams,
+    observer: &dyn Observer,
+) -> Result<Solution, GaussSeidelError> {
+    check(heights, params)?;
+    let solve_params = SolveParams { tolerance: params.tolerance, ..SolveParams::certified() };
+    let problem = Problem::check(heights, control, &solve_params)?;
+    let expected = estimate(heights, kernel, control, params)?;
+    let mut procedure = Procedure::new(heights, kernel, coefficient, &problem, params, observer)?;
+    match control {
+        Control::Penetration(penetration) => procedure.increase_to(penetration)?,
+        Control::MeanPressure(mean) => procedure.search(mean, expected)?,
+    }
+    procedure.finish(control)
+}
+
+fn check(heights: &Field, params: &GaussSeidelParams) -> Result<(), GaussSeidelError> {
+    let grid = heights.grid();
+    if grid.nx() != grid.ny() {
+        return Err(GaussSeidelError::NotSquare { grid });
+    }
+    let bad = |what, wanted, value| Err(GaussSeidelError::Parameter { what, wanted, value });
+    if !(params.relaxation > 0.0 && params.relaxation < 2.0) {
+        return bad("the relaxation factor", "above 0 and below 2", params.relaxation);
+    }
+    if params.increments == 0 {
+        return bad("the number of increments", "at least 1", 0.0);
+    }
+    if params.max_checks == 0 || params.max_sweeps == 0 {
+        return bad("the number of sweeps and of double checks", "at least 1", 0.0);
+    }
+    Ok(())
+}
+
+/// The mesh of a grid of `side` elements.
+fn mesh_params(side: usize, ring: usize) -> MeshParams {
+    let doublings = side.trailing_zeros().min(LARGEST_DOUBLINGS);
+    MeshParams { base: side >> doublings, ring, halo: 0 }
+}
+
+fn mesh_kind(params: &GaussSeidelParams) -> MeshKind {
+    if params.uniform_elements { MeshKind::AdaptiveUniform } else { MeshKind::Adaptive }
+}
+
+/// Solves the scene on a coarse grid to foresee the cost, and the penetration. Refuses what would exceed the budget.
+fn estimate(
+    heights: &Field,
+    kernel: &dyn Kernel,
+    control: Control,
+    params: &GaussSeidelParams,
+) -> Result<f64, GaussSeidelError> {
+    let coarse = coarsen(heights, ESTIMATE_SIDE / 2);
+    let coarse = std::iter::once(heights).chain(&coarse).find(|field| field.grid().nx() <= ESTIMATE_SIDE);
+    // A grid that cannot be halved is its own coarse grid.
+    let coarse = coarse.unwrap_or(heights);
+    let at_most = |full_contact: f64| match control {
+        // The coarse grid misses the highest point: keep its penetration below its own full contact.
+        Control::Penetration(value) => Control::Penetration(value.min(0.999 * full_contact)),
+        Control::MeanPressure(_) => control,
+    };
+    let solve_params = SolveParams { tolerance: 1e-4, ..SolveParams::certified() };
+    let control = at_most(coarse.max() - coarse.mean());
+    let solution = match solve_uniform(coarse, kernel, control, &solve_params, &rc_core::Silent) {
+        Ok(solution) => solution,
+        Err(SolveError::NotConverged { solution, .. }) => *solution,
+        Err(error) => return Err(error.into()),
+    };
+    let side = heights.grid().nx();
+    let ratio = side / coarse.grid().nx();
+    let contact = |i: usize| {
+        let (ix, iy) = (i % side, i / side);
+        solution.pressure.at(ix / ratio, iy / ratio) > 0.0
+    };
+    let mask = Mask::new(side, (0..heights.grid().len()).map(contact).collect())?;
+    let elements: usize = count(&mask, mesh_kind(params), &mesh_params(side, params.ring))?.into_iter().sum();
+    let coefficients = (elements as f64).powi(2);
+    if coefficients > params.sweep_budget as f64 {
+        let (seconds_per_sweep, budget) = (coefficients * SECONDS_PER_COEFFICIENT, params.sweep_budget as f64);
+        return Err(GaussSeidelError::Budget { elements, coefficients, seconds_per_sweep, budget });
+    }
+    Ok(solution.info.penetration.max(f64::MIN_POSITIVE))
+}
+
+/// The state between increments.
+struct Procedure<'a> {
+    /// Heights at the centres of elements of 1, 2, 4, … finest elements; the first are the heights themselves.
+    pyramid: Vec<Field>,
+    problem: &'a Problem,
+    params: &'a GaussSeidelParams,
+    observer: &'a dyn Observer,
+    coefficients: Coefficients<'a>,
+    operator: UniformOperator,
+    kind: MeshKind,
+    mesh_params: MeshParams,
+    penetration: f64,
+    /// Cells of the finest grid in contact.
+    contact: Vec<bool>,
+    /// Displacement on the finest grid.
+    displacement: Field,
+    mesh: Mesh,
+    sites: Vec<Site>,
+    pressure: Vec<f64>,
+    info: LevelInfo,
+    /// Whether the last double check left the contact as it was.
+    settled: bool,
+}
+
+impl<'a> Procedure<'a> {
+    fn new(
+        heights: &Field,
+        kernel: &dyn Kernel,
+        coefficient: Coefficient<'a>,
+        problem: &'a Problem,
+        params: &'a GaussSeidelParams,
+        observer: &'a dyn Observer,
+    ) -> Result<Self, GaussSeidelError> {
+        let grid = heights.grid();
+        let side = grid.nx();
+        let mut pyramid = vec![heights.clone()];
+        pyramid.extend(coarsen(heights, 1).into_iter().take(LARGEST_DOUBLINGS as usize));
+        // No element larger than heights are known for.
+        let mut mesh_params = mesh_params(side, params.ring);
+        mesh_params.base = mesh_params.base.max(side >> (pyramid.len() - 1));
+        let kind = mesh_kind(params);
+        let contact = vec![false; grid.len()];
+        let mesh = Mesh::from_mask(&Mask::new(side, contact.clone())?, kind, &mesh_params)?;
+        Ok(Self {
+            pyramid,
+            problem,
+            params,
+            observer,
+            coefficients: Coefficients::new(coefficient, side as u32, params.memory_budget),
+            operator: UniformOperator::new(grid, kernel),
+            kind,
+            mesh_params,
+            penetration: 0.0,
+            contact,
+            displacement: Field::zeros(grid),
+            mesh,
+            sites: Vec::new(),
+            pressure: Vec::new(),
+            info: LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 },
+            settled: false,
+        })
+    }
+
+    /// Step (i): Δ in increments, of which only the last is solved to the tolerance.
+    fn increase_to(&mut self, penetration: f64) -> Result<(), GaussSeidelError> {
+        let (grid, steps) = (self.info.grid, self.params.increments);
+        for step in 1..=steps {
+            self.observer.notify(&Event::Level { grid, level: step - 1, n_levels: steps });
+            let (fraction, last) = (step as f64 / steps as f64, step == steps);
+            let tolerance = if last { self.params.tolerance } else { self.params.tolerance.max(EARLY_TOLERANCE) };
+            self.settle(fraction * penetration, tolerance)?;
+        }
+        Ok(())
+    }
+
+    /// The penetration at which the mean pressure is `mean`, starting from the `expected` one.
+    fn search(&mut self, mean: f64, expected: f64) -> Result<(), GaussSeidelError> {
+        let full = self.problem.h_max - self.problem.h_mean;
+        self.increase_to(expected.min(0.999 * full))?;
+        let (mut low, mut high) = ((0.0, 0.0), (full, f64::INFINITY));
+        for _ in 0..MOST_SECANT_STEPS {
+            let here = (self.penetration, self.mean_pressure());
+            if (here.1 / mean - 1.0).abs() <= self.params.tolerance {
+                return Ok(());
+            }
+            // A chord to the other end of the bracket, or to the origin while it has no upper end.
+            let other = if here.1 < mean && high.1.is_finite() { high } else { low };
+            if here.1 < mean {
+                low = here;
+            } else {
+                high = here;
+            }
+            let chord = here.0 + (mean - here.1) * (here.0 - other.0) / (here.1 - other.1);
+            let inside = chord > low.0 && chord < high.0;
+            let next = if inside { chord } else { f64::midpoint(low.0, high.0) };
+            self.settle(next, self.params.tolerance)?;
+        }
+        Ok(())
+    }
+
+    /// Mean pressure over the cell.
+    fn mean_pressure(&self) -> f64 {
+        self.mesh.elements().zip(&self.pressure).map(|(element, p)| p * element.area()).sum()
+    }
+
+    /// Steps (ii) to (vi) at one penetration.
+    fn settle(&mut self, penetration: f64, tolerance: f64) -> Result<(), GaussSeidelError> {
+        self.penetration = penetration;
+        let slack = tolerance * self.problem.h_range;
+        // (ii) The deformed layer as it was, lowered to the new penetration, meets the surface.
+        self.add_penetrating(0.0);
+        for _ in 0..self.params.max_checks {
+            self.relax(slack)?;
+            self.displace()?;
+            // (vi) The double check. An element under tension has no gap, so it is not added right back.
+            let removed = self.remove_tension();
+            let added = self.add_penetrating(slack);
+            self.settled = removed + added == 0;
+            self.observer.notify(&Event::Iteration {
+                iteration: self.info.iterations,
+                error: (removed + added) as f64,
+                tolerance: 0.0,
+                n_contact: self.mesh.len(),
+            });
+            if self.settled {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Steps (iii) and (iv): meshes the contact and relaxes the pressure until v is as prescribed, to a tenth of `slack`.
+    fn relax(&mut self, slack: f64) -> Result<(), GaussSeidelError> {
+        let mask = Mask::new(self.info.grid.nx(), self.contact.clone())?;
+        let mesh = Mesh::from_mask(&mask, self.kind, &self.mesh_params)?;
+        self.pressure = transfer(&self.mesh, &mesh, &self.pressure, Reconstruction::Constant)?.values;
+        self.pressure.iter_mut().for_each(|p| *p = p.max(0.0));
+        self.sites = self.coefficients.prepare(&mesh);
+        self.mesh = mesh;
+        let prescribed = self.prescribed();
+        let limits =
+            Limits { residual: 0.1 * slack, max_sweeps: self.params.max_sweeps, relaxation: self.params.relaxation };
+        let relaxed = sweep::relax(&self.coefficients, &self.sites, &prescribed, &mut self.pressure, &limits);
+        self.info.iterations += relaxed.sweeps;
+        Ok(())
+    }
+
+    /// `v_i = h_i - h_max + Δ` at the centres of elements.
+    fn prescribed(&self) -> Vec<f64> {
+        let depth = self.mesh_params.base;
+        let lowering = self.penetration - self.problem.h_max;
+        let finest = self.info.grid.nx();
+        let height = |key: &rc_quadtree::Key| {
+            let side = depth << key.level();
+            let level = (finest / side).trailing_zeros() as usize;
+            self.pyramid[level].at(key.ix() as usize, key.iy() as usize) + lowering
+        };
+        self.mesh.keys().iter().map(height).collect()
+    }
+
+    /// Step (v): the displacement everywhere.
+    fn displace(&mut self) -> Result<(), GaussSeidelError> {
+        let pressure = self.mesh.to_field(&self.pressure, self.info.grid)?;
+        self.operator.apply(pressure.values(), self.displacement.values_mut(), &mut []);
+        self.info.operator_applications += 1;
+        Ok(())
+    }
+
+    /// Takes elements with negative pressure out of contact. Returns their number.
+    fn remove_tension(&mut self) -> usize {
+        let grid = self.info.grid;
+        let mut removed = 0;
+        for (key, _) in self.mesh.keys().iter().zip(&self.pressure).filter(|&(_, &p)| p < 0.0) {
+            let cells = grid.nx() / (self.mesh_params.base << key.level());
+            let (left, low) = (key.ix() as usize * cells, key.iy() as usize * cells);
+            for iy in low..low + cells {
+                self.contact[grid.index(left, iy)..grid.index(left, iy) + cells].fill(false);
+            }
+            removed += 1;
+        }
+        removed
+    }
+
+    /// Brings cells out of contact that penetrate by more than `slack` into it. Returns their number.
+    fn add_penetrating(&mut self, slack: f64) -> usize {
+        let lowering = self.penetration - self.problem.h_max;
+        let mut added = 0;
+        let cells = self.contact.iter_mut().zip(self.displacement.values()).zip(self.pyramid[0].values());
+        for ((contact, v), h) in cells {
+            if !*contact && v - (h + lowering) < -slack {
+                *contact = true;
+                added += 1;
+            }
+        }
+        added
+    }
+
+    /// The solution with its certificate, from fresh sums.
+    fn finish(mut self, control: Control) -> Result<Solution, GaussSeidelError> {
+        let area: Vec<f64> = self.mesh.elements().map(|element| element.area()).collect();
+        let weighted = |p: &[f64], values: &[f64]| -> f64 {
+            p.iter().zip(&area).zip(values).map(|((p, area), value)| p * area * value).sum()
+        };
+        let wanted = self.prescribed();
+        let v = sweep::displacement(&self.coefficients, &self.sites, &self.pressure);
+        // The last digits of the load, or of the penetration, by scaling the pressure.
+        let scale = match control {
+            Control::MeanPressure(mean) => mean / self.mean_pressure(),
+            Control::Penetration(_) => weighted(&self.pressure, &wanted) / weighted(&self.pressure, &v),
+        };
+        self.pressure.iter_mut().for_each(|p| *p *= scale);
+        self.displace()?;
+        let v = sweep::displacement(&self.coefficients, &self.sites, &self.pressure);
+        let gap: Vec<f64> = v.iter().zip(&wanted).map(|(v, wanted)| v - wanted).collect();
+        let mean_pressure = self.mean_pressure();
+        let mean_gap = weighted(&self.pressure, &gap) / mean_pressure;
+
+        let lowering = self.penetration - self.problem.h_max;
+        let mut field = self.displacement;
+        for (g, h) in field.values_mut().iter_mut().zip(self.pyramid[0].values()) {
+            *g -= h + lowering + mean_gap;
+        }
+        let outside = field.values().iter().zip(&self.contact).filter(|&(_, &contact)| !contact).map(|(&g, _)| g);
+        let least = gap.iter().map(|g| g - mean_gap).chain(outside).fold(f64::INFINITY, f64::min);
+        let error = (-least / self.problem.h_range).max(0.0);
+        let load = match control {
+            Control::MeanPressure(wanted) => (mean_pressure - wanted).abs() / wanted,
+            Control::Penetration(_) => mean_gap.abs() / self.problem.h_range,
+        };
+        let certificate = Certificate { complementarity: error, penetration: error, load };
+        let info = SolveInfo {
+            certificate,
+            mean_pressure,
+            penetration: self.penetration + mean_gap,
+            penetration_full_contact: self.problem.h_max - self.problem.h_mean,
+            elastic_energy: 0.5 * weighted(&self.pressure, &v),
+            levels: vec![self.info],
+        };
+        let pressure = self.mesh.to_field(&self.pressure, self.info.grid)?;
+        let elements = Some(MeshPressure { mesh: self.mesh, pressure: self.pressure });
+        let solution = Solution { pressure, gap: field, status: Status::Converged, elements, info };
+        let tension = solution.pressure.min() < 0.0;
+        if self.settled && !tension && error <= self.params.tolerance && load <= Certificate::LOAD_TOLERANCE {
+            return Ok(solution);
+        }
+        let (grid, iterations) = (self.info.grid, self.info.iterations);
+        Err(SolveError::NotConverged { grid, iterations, certificate, solution: Box::new(solution) }.into())
+    }
+}

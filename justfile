@@ -1,0 +1,29 @@
+# Shortcuts; every recipe is one cargo line, so nothing is lost without `just`.
+
+# Solve the embedded example: the paper's N = 64 surface.
+example:
+    cargo run --release -p rc-cli -- solve
+
+# All tests.
+test:
+    cargo xtask test
+
+# What continuous integration runs: format, lints, docs, tests.
+ci:
+    cargo xtask ci
+
+# Arrows, paper map, snapshots, culture.
+tidy:
+    cargo xtask tidy
+
+# Every figure of the paper that is built, at full size.
+figures:
+    cargo xtask figures
+
+# Run time against error.
+bench:
+    cargo xtask bench
+
+# The documentation of all crates.
+doc:
+    cargo doc --workspace --no-deps --open

@@ -1,0 +1,35 @@
+//! What crosses crates, in one binary: exact solutions, independent programs, the paper's statistics, swapped crates.
+
+mod bisinusoidal;
+mod full_contact;
+mod hertz;
+mod reference;
+mod rough;
+mod swap;
+mod westergaard;
+
+use std::path::{Path, PathBuf};
+
+use rc_core::{Field, Kernel, Silent};
+use rc_solver::{Control, Solution, SolveParams, solve_uniform};
+
+/// A file of the repository's `data/`.
+fn data_path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../data").join(name)
+}
+
+/// A solution to `tolerance`, or a failed test.
+fn solved(heights: &Field, kernel: &dyn Kernel, control: Control, tolerance: f64) -> Solution {
+    let params = SolveParams { tolerance, ..SolveParams::certified() };
+    solve_uniform(heights, kernel, control, &params, &Silent).unwrap_or_else(|error| panic!("{control:?}: {error}"))
+}
+
+/// Fails unless `value` is within `relative` of `reference`.
+#[track_caller]
+fn assert_close(what: &str, value: f64, reference: f64, relative: f64) {
+    let error = (value / reference - 1.0).abs();
+    assert!(
+        error <= relative,
+        "{what}: {value:e}, reference {reference:e}, off by {error:.1e} (allowed {relative:.1e})"
+    );
+}

@@ -1,0 +1,23 @@
+//! `cargo xtask ci`: what continuous integration runs, in its order.
+
+use anyhow::Result;
+
+use crate::process::Step;
+
+/// Checks format, lints and documentation, then runs every test; stops at the first failure.
+///
+/// The same steps as the script `.ci/run`.
+#[derive(clap::Args)]
+pub(crate) struct Args {}
+
+/// Cheapest first. The script `.ci/run` must hold the same lines, which `cargo xtask tidy` checks.
+pub(crate) const STEPS: &[Step] = &[
+    Step { environment: &[], words: &["fmt", "--all", "--check"] },
+    Step { environment: &[], words: &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"] },
+    Step { environment: &[("RUSTDOCFLAGS", "-D warnings")], words: &["doc", "--workspace", "--no-deps"] },
+    Step { environment: &[], words: &["xtask", "test"] },
+];
+
+pub(crate) fn run(_args: &Args) -> Result<()> {
+    STEPS.iter().try_for_each(|step| step.run(&[]))
+}

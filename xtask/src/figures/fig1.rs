@@ -1,0 +1,308 @@
+//! Fig. 1: a section of a solved contact: rigid rough surface, deformed half-space, penetration Δ and mean planes.
+//!
+//! The paper's figure is a sketch; this one is a solution, along the row of elements through the highest peak, because there
+//! the displacement v takes its largest value, which is Δ (Sec. 2).
+
+use std::f64::consts::TAU;
+
+use anyhow::Result;
+use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, PathElement, Polygon, RGBColor, Rectangle};
+use plotters::style::{BLACK, Color};
+use rc_cli::picture::{Area, Picture, PictureError};
+use rc_core::{Field, Grid, Kernel, Silent};
+use rc_fractal::{SpectrumParams, Surface};
+use rc_kernel::Love;
+use rc_solver::{Control, ContactArea, Solution, SolveParams, solve_uniform};
+
+use super::chart::{Axes, BLUE, Chart, Drawn, GREY, RED, Side, TEXT, dimension, write};
+use super::{Figure, Preset, Table, number, paper};
+
+/// The two bodies.
+const RIGID: RGBColor = RGBColor(214, 214, 214);
+const SOFT: RGBColor = RGBColor(203, 223, 242);
+/// Width of the enlarged part, in λ.
+const WINDOW: f64 = 0.125;
+/// Micrometres and millimetres in a metre.
+const MICRO: f64 = 1e6;
+const MILLI: f64 = 1e3;
+
+/// What Fig. 1 is computed from.
+#[derive(Clone, Debug)]
+pub(crate) struct Params {
+    /// Number of waves N.
+    waves: usize,
+    /// Elements per side.
+    grid: usize,
+    /// Mean pressure σ0/E*.
+    mean_pressure: f64,
+    /// Seed of the phases.
+    seed: u64,
+    /// Relative tolerance of the solve.
+    tolerance: f64,
+    /// Side λ of the cell (m).
+    cell: f64,
+}
+
+/// One element of the section. Displacements are positive into the half-space (m).
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    /// Distance from the highest peak (m).
+    x: f64,
+    /// Displacement that would touch the rigid surface, h - h_max + Δ.
+    rigid: f64,
+    /// Displacement v of the half-space.
+    deformed: f64,
+    /// σ/E*.
+    pressure: f64,
+}
+
+/// The section and what is measured at it, SI.
+#[derive(Clone, Debug)]
+pub(crate) struct Fig1 {
+    cell: f64,
+    mean_pressure: f64,
+    /// Elements of the section, the highest peak in the middle.
+    points: Vec<Point>,
+    /// Δ.
+    penetration: f64,
+    /// Height of the highest peak above the mean plane of the roughness.
+    h_max: f64,
+    /// Mean and greatest displacement over the whole cell.
+    mean_displacement: f64,
+    max_displacement: f64,
+    /// A/A0 of the whole cell.
+    area: f64,
+}
+
+impl Figure for Fig1 {
+    const NAME: &'static str = "fig1";
+    type Params = Params;
+
+    /// The paper's surface with 64 waves on 32 elements per shortest wave (full), and 8 waves on 16 (reduced).
+    fn params(preset: Preset) -> Result<Params> {
+        let (waves, grid, tolerance) = match preset {
+            Preset::Full => (paper::value("waves_a")? as usize, 2048, 1e-6),
+            Preset::Reduced => (8, 128, 1e-9),
+        };
+        let (mean_pressure, cell) = (paper::value("load")?, TAU / paper::value("q0")?);
+        Ok(Params { waves, grid, mean_pressure, seed: 1, tolerance, cell })
+    }
+
+    fn compute(params: &Params) -> Result<Self> {
+        let surface = Surface::new(&SpectrumParams::paper(params.waves, params.seed))?;
+        let heights = surface.sample_on(Grid::square(params.grid)?)?;
+        let solve_params = SolveParams { tolerance: params.tolerance, ..SolveParams::certified() };
+        let control = Control::MeanPressure(params.mean_pressure);
+        let solution = solve_uniform(&heights, &Love, control, &solve_params, &Silent)?;
+        Ok(Self::of(params, &heights, &solution))
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        vec![self.summary(), self.section()]
+    }
+
+    fn caption(&self) -> Option<String> {
+        let um = |length: f64| format!("{:.1} µm", MICRO * length);
+        Some(format!(
+            "**Fig. 1.** Section of a solved contact through the highest peak of the rigid surface, at σ0/E* = {:.2e}, where \
+             A/A0 = {:.4}. The deformed surface of the half-space touches the rigid surface where v = h − h_max + Δ (red). The \
+             displacement v has zero mean over the cell, so the undeformed mean plane is v = 0, and v is greatest under the \
+             highest peak, where it is the penetration Δ = {}. The mean plane of the roughness lies h_max = {} above that \
+             peak and ū = h_max − Δ = {} above the mean plane of the half-space. Heights are exaggerated as the panels say.\n",
+            self.mean_pressure,
+            self.area,
+            um(self.penetration),
+            um(self.h_max),
+            um(self.h_max - self.penetration),
+        ))
+    }
+}
+
+impl Picture for Fig1 {
+    fn size(&self) -> (u32, u32) {
+        (1700, 1240)
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
+        let (whole, part) = area.split_vertically(700);
+        self.draw_whole(&whole).map_err(PictureError::new)?;
+        self.draw_part(&part).map_err(PictureError::new)
+    }
+}
+
+impl Fig1 {
+    /// The row through the highest peak, shifted around the cell so that the peak is in its middle.
+    fn of(params: &Params, heights: &Field, solution: &Solution) -> Self {
+        let (n, cell, penetration) = (params.grid, params.cell, solution.info.penetration);
+        let h_max = heights.max();
+        let peak = heights.values().iter().position(|&h| h >= h_max).unwrap_or(0);
+        let (peak_x, row) = (peak % n, peak / n);
+        let rigid = |height: f64| cell * (height - h_max + penetration);
+        let displacement = |(height, gap): (&f64, &f64)| rigid(*height) + cell * gap;
+        let points = (0..n).map(|i| {
+            let ix = (peak_x + n / 2 + i) % n;
+            let (height, gap) = (heights.at(ix, row), solution.gap.at(ix, row));
+            Point {
+                x: (i as f64 - (n / 2) as f64) * cell / n as f64,
+                rigid: rigid(height),
+                deformed: displacement((&height, &gap)),
+                pressure: solution.pressure.at(ix, row),
+            }
+        });
+        let displacements = heights.values().iter().zip(solution.gap.values()).map(displacement);
+        Self {
+            cell,
+            mean_pressure: params.mean_pressure,
+            points: points.collect(),
+            penetration: cell * penetration,
+            h_max: cell * solution.info.penetration_full_contact,
+            mean_displacement: cell * (solution.gap.mean() + heights.mean() - h_max + penetration),
+            max_displacement: displacements.fold(f64::NEG_INFINITY, f64::max),
+            area: ContactArea::of(&solution.pressure, Love.perimeter_constant()).fraction,
+        }
+    }
+
+    fn summary(&self) -> Table {
+        let row = |quantity: &str, unit: &str, value: f64| vec![quantity.to_owned(), unit.to_owned(), number(value)];
+        let in_contact = self.points.iter().filter(|point| point.pressure > 0.0).count();
+        let rows = [
+            row("mean pressure", "E*", self.mean_pressure),
+            row("contact area", "A0", self.area),
+            row("contact along the section", "cell side", in_contact as f64 / self.points.len() as f64),
+            row("penetration", "um", MICRO * self.penetration),
+            row("greatest displacement", "um", MICRO * self.max_displacement),
+            row("mean displacement", "um", MICRO * self.mean_displacement),
+            row("h_max", "um", MICRO * self.h_max),
+            row("mean gap", "um", MICRO * (self.h_max - self.penetration)),
+        ];
+        Table::new("summary", &["quantity", "unit", "value"], rows)
+    }
+
+    fn section(&self) -> Table {
+        let header = ["x_mm", "rigid_um", "displacement_um", "gap_um", "pressure_over_e_star"];
+        let rows = self.points.iter().map(|point| {
+            let gap = point.deformed - point.rigid;
+            let lengths = [point.rigid, point.deformed, gap].map(|length| number(MICRO * length));
+            let [rigid, deformed, gap] = lengths;
+            vec![number(MILLI * point.x), rigid, deformed, gap, number(point.pressure)]
+        });
+        Table::new("section", &header, rows)
+    }
+
+    /// Heights above the mean plane of the half-space, -v: rigid and deformed (µm), over x (mm).
+    fn heights(&self, half_width: f64) -> Vec<(f64, f64, f64, bool)> {
+        let inside = self.points.iter().filter(|point| point.x.abs() <= half_width);
+        inside.map(|p| (MILLI * p.x, -MICRO * p.rigid, -MICRO * p.deformed, p.pressure > 0.0)).collect()
+    }
+
+    /// The whole section with planes and dimensions.
+    fn draw_whole<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
+        let half = 0.5 * self.cell;
+        let heights = self.heights(half);
+        let highest = heights.iter().map(|at| at.1).fold(0.0, f64::max);
+        let (depth, gap) = (-MICRO * self.penetration, MICRO * (self.h_max - self.penetration));
+        let y = (1.9 * depth, 1.12 * highest);
+        let mut chart = bodies(area, &heights, (MILLI * half, y))?;
+        let (left, right) = (-MILLI * half, MILLI * half);
+        for plane in [0.0, gap] {
+            chart.draw_series(DashedLineSeries::new([(left, plane), (right, plane)], 10, 7, BLACK.stroke_width(1)))?;
+        }
+        let at = |part: f64| left + part * (right - left);
+        chart.draw_series([PathElement::new([(at(0.44), depth), (at(0.64), depth)], BLACK.stroke_width(1))])?;
+        dimension(&mut chart, at(0.47), (0.0, depth), BLACK)?;
+        write(&mut chart, (at(0.47), 0.5 * depth), Side::Left, "Δ", BLACK)?;
+        dimension(&mut chart, at(0.62), (gap, depth), BLACK)?;
+        write(&mut chart, (at(0.62), 0.5 * (gap + depth)), Side::Right, "h_max", BLACK)?;
+        write(&mut chart, (at(0.0), gap), Side::Right, "", BLACK)?;
+        let window = MILLI * 0.5 * WINDOW * self.cell;
+        let low = heights.iter().map(|at| at.2).fold(f64::INFINITY, f64::min);
+        chart.draw_series([Rectangle::new([(-window, 1.3 * low), (window, 0.5 * gap)], GREY.stroke_width(1))])?;
+        Ok(())
+    }
+
+    /// The surroundings of the peak.
+    fn draw_part<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
+        let half = 0.5 * WINDOW * self.cell;
+        let heights = self.heights(half);
+        let deformed = || heights.iter().map(|at| at.2);
+        let (low, high) = (deformed().fold(f64::INFINITY, f64::min), deformed().fold(f64::NEG_INFINITY, f64::max));
+        let y = (low - 0.35 * (high - low), high + 0.9 * (high - low));
+        bodies(area, &heights, (MILLI * half, y))?;
+        Ok(())
+    }
+}
+
+/// Both bodies and their contact, with axes and the exaggeration of heights.
+fn bodies<'a, B: DrawingBackend>(
+    area: &'a Area<B>,
+    heights: &[(f64, f64, f64, bool)],
+    (half_width, y): (f64, (f64, f64)),
+) -> Drawn<Chart<'a, B>, B> {
+    let axes = Axes {
+        x: (-half_width, half_width),
+        y,
+        x_label: "x (mm)",
+        y_label: "−v (µm)",
+        n_labels: (10, 8),
+        top: TEXT as u32,
+    };
+    let mut chart = axes.on(area)?;
+    let clamp = |z: f64| z.clamp(y.0, y.1);
+    let (Some(first), Some(last)) = (heights.first(), heights.last()) else { return Ok(chart) };
+    let above = heights.iter().map(|at| (at.0, clamp(at.1))).chain([(last.0, y.1), (first.0, y.1)]);
+    chart.draw_series([Polygon::new(above.collect::<Vec<_>>(), RIGID.filled())])?;
+    let below = heights.iter().map(|at| (at.0, clamp(at.2))).chain([(last.0, y.0), (first.0, y.0)]);
+    chart.draw_series([Polygon::new(below.collect::<Vec<_>>(), SOFT.filled())])?;
+    chart.draw_series(LineSeries::new(heights.iter().map(|at| (at.0, clamp(at.1))), GREY.stroke_width(2)))?;
+    chart.draw_series(LineSeries::new(heights.iter().map(|at| (at.0, clamp(at.2))), BLUE.stroke_width(2)))?;
+    for run in heights.chunk_by(|a, b| a.3 == b.3).filter(|run| run[0].3) {
+        let line: Vec<(f64, f64)> = run.iter().map(|at| (at.0, at.2)).collect();
+        chart.draw_series([PathElement::new(line, RED.stroke_width(5))])?;
+    }
+    Ok(chart)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figures::tests::assert_written;
+    use crate::snapshot::{Numeric, assert_table};
+
+    fn reduced() -> (Params, Fig1) {
+        let params = Fig1::params(Preset::Reduced).expect("paper values");
+        let figure = Fig1::compute(&params).expect("the reduced figure is solved");
+        (params, figure)
+    }
+
+    #[test]
+    fn the_greatest_displacement_is_the_penetration_and_the_mean_is_zero() {
+        let (params, figure) = reduced();
+        // The solve is exact to its tolerance times the height of the surface, below 100 µm.
+        let bound = 1e-4 * params.tolerance;
+        let Fig1 { max_displacement, penetration, mean_displacement, .. } = figure;
+        let difference = max_displacement - penetration;
+        assert!(difference.abs() < bound, "{max_displacement:e} against {penetration:e}, difference {difference:e}");
+        assert!(mean_displacement.abs() < bound, "mean displacement {mean_displacement:e} above {bound:e}");
+    }
+
+    #[test]
+    fn no_body_is_inside_the_other_and_pressure_is_only_where_they_touch() {
+        let (params, figure) = reduced();
+        let bound = 1e-4 * params.tolerance;
+        for point in &figure.points {
+            let gap = point.deformed - point.rigid;
+            assert!(gap > -bound, "penetration at {point:?}");
+            assert!(point.pressure == 0.0 || gap < 10.0 * bound, "pressure across a gap of {gap:e} at {point:?}");
+        }
+    }
+
+    #[test]
+    fn reduced_figure_1_is_as_reviewed_and_can_be_drawn() {
+        let (params, figure) = reduced();
+        // A tolerance of 1e-9 of the height leaves 1e-7 µm, and as a pressure on waves of an element 1e-7 of E*.
+        let tolerance = Numeric { absolute: 1e-6, relative: 1e-5 };
+        assert_table("fig1-summary", &figure.summary(), tolerance, &format!("{params:?}"));
+        assert_table("fig1-section", &figure.section(), tolerance, &format!("{params:?}"));
+        assert_written(&figure);
+    }
+}

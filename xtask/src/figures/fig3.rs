@@ -1,0 +1,374 @@
+//! Fig. 3: elements against penetration for the three meshes, from touch to full contact.
+//!
+//! The meshes are counted on the contact sets of the uniform solver, whose elements are the smallest of all three. A contact set
+//! to 1e-4 of the height of the surface is enough for that: `a_tolerance_of_1e_4_is_enough_for_counts` shows how little the
+//! counts change beyond.
+
+use std::f64::consts::TAU;
+
+use anyhow::{Context, Result, ensure};
+use plotters::prelude::{Circle, DrawingBackend, EmptyElement, LineSeries, Rectangle};
+use plotters::style::{BLACK, Color, RGBColor, WHITE};
+use rc_cli::picture::{Area, Picture, PictureError};
+use rc_core::{Field, Grid, Silent};
+use rc_fractal::{SpectrumParams, Surface};
+use rc_kernel::Love;
+use rc_quadtree::{Mask, MeshKind, MeshParams, count};
+use rc_solver::{Control, Solution, SolveParams, Status, solve_uniform};
+
+use super::chart::{Axes, BLUE, Chart, Drawn, GREEN, RED, Side, TEXT, label, words, write};
+use super::{Figure, Preset, Table, number, paper};
+
+/// The meshes, their names in the paper and in tables, and their colours; most elements first.
+const MESHES: [(MeshKind, &str, &str, RGBColor); 3] = [
+    (MeshKind::Uniform, "uniform grid", "uniform", BLUE),
+    (MeshKind::AdaptiveUniform, "adaptive uniform grid", "adaptive_uniform", GREEN),
+    (MeshKind::Adaptive, "adaptive non-uniform grid", "adaptive", RED),
+];
+/// Mean pressures, over E* times the rms slope of the surface: in these units the contact fraction depends little on the surface.
+const LOADS: [f64; 14] = [4e-4, 2e-3, 8e-3, 0.025, 0.06, 0.12, 0.2, 0.28, 0.36, 0.42, 0.48, 0.6, 0.8, 1.1];
+/// A mean pressure, in E*, that closes every gap of any surface with slopes far below 1.
+const CRUSHING: f64 = 1.0;
+/// Smallest elements per side in the paper, 4.2 million in all.
+const PAPER_GRID: usize = 2048;
+/// The contact fraction at which the meshes are compared.
+const TWO_THIRDS: f64 = 2.0 / 3.0;
+const MICRO: f64 = 1e6;
+const MILLION: f64 = 1e6;
+
+/// What Fig. 3 is computed from.
+#[derive(Clone, Debug)]
+pub(crate) struct Params {
+    /// Number of waves N.
+    waves: usize,
+    /// Smallest elements per side.
+    grid: usize,
+    /// Seed of the phases.
+    seed: u64,
+    /// Relative tolerance of the solves.
+    tolerance: f64,
+    /// Side λ of the cell (m).
+    cell: f64,
+}
+
+/// One contact.
+#[derive(Clone, Copy, Debug)]
+struct State {
+    /// σ0/E*.
+    mean_pressure: f64,
+    /// Δ (m).
+    penetration: f64,
+    /// Fraction of the smallest elements in contact.
+    fraction: f64,
+    /// Elements of the meshes, in their order.
+    elements: [f64; 3],
+}
+
+/// The three printed numbers of elements.
+#[derive(Clone, Copy, Debug)]
+struct Printed {
+    penetration: f64,
+    elements: [f64; 3],
+}
+
+/// The contacts from touch to full contact, in order.
+#[derive(Clone, Debug)]
+pub(crate) struct Fig3 {
+    params: Params,
+    states: Vec<State>,
+    /// h_max above the mean plane (m).
+    h_max: f64,
+    rms_height: f64,
+    printed: Printed,
+}
+
+impl Figure for Fig3 {
+    const NAME: &'static str = "fig3";
+    type Params = Params;
+
+    /// The paper's surface on 2048² elements, 16 for a shortest wave; 16 waves on as many in the reduced one.
+    fn params(preset: Preset) -> Result<Params> {
+        let (waves, grid, tolerance) = match preset {
+            Preset::Full => (paper::value("waves_b")? as usize, 2048, 1e-4),
+            Preset::Reduced => (16, 256, 1e-8),
+        };
+        Ok(Params { waves, grid, seed: 1, tolerance, cell: TAU / paper::value("q0")? })
+    }
+
+    fn compute(params: &Params) -> Result<Self> {
+        let surface = Surface::new(&SpectrumParams::paper(params.waves, params.seed))?;
+        let heights = surface.sample_on(Grid::square(params.grid)?)?;
+        let moments = surface.moments();
+        let partial = LOADS.iter().map(|load| partial_contact(params, &heights, load * moments.rms_slope));
+        let full = std::iter::once_with(|| full_contact(params, &heights));
+        Ok(Self {
+            params: params.clone(),
+            states: partial.chain(full).collect::<Result<_>>()?,
+            h_max: params.cell * (heights.max() - heights.mean()),
+            rms_height: params.cell * moments.rms_height,
+            printed: Printed {
+                penetration: paper::value("fig3_penetration")?,
+                elements: [
+                    paper::value("fig3_elements_uniform")?,
+                    paper::value("fig3_elements_adaptive_uniform")?,
+                    paper::value("fig3_elements_adaptive")?,
+                ],
+            },
+        })
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        vec![self.summary(), self.counts()]
+    }
+
+    fn caption(&self) -> Option<String> {
+        self.at_fraction(TWO_THIRDS).map(|state| self.caption_of(&state))
+    }
+}
+
+impl Picture for Fig3 {
+    fn size(&self) -> (u32, u32) {
+        (1800, 860)
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
+        let panels = area.split_evenly((1, 2));
+        self.draw_penetration(&panels[0]).map_err(PictureError::new)?;
+        self.draw_fraction(&panels[1]).map_err(PictureError::new)
+    }
+}
+
+fn solve(params: &Params, heights: &Field, mean_pressure: f64) -> Result<Solution> {
+    let solve_params = SolveParams { tolerance: params.tolerance, ..SolveParams::certified() };
+    Ok(solve_uniform(heights, &Love, Control::MeanPressure(mean_pressure), &solve_params, &Silent)?)
+}
+
+fn partial_contact(params: &Params, heights: &Field, mean_pressure: f64) -> Result<State> {
+    let solution = solve(params, heights, mean_pressure).with_context(|| format!("at σ0/E* = {mean_pressure:.3e}"))?;
+    State::of(params, &solution, mean_pressure)
+}
+
+/// The least load of full contact. Beyond it pressure only shifts, so the load is that of any full contact less its least pressure.
+fn full_contact(params: &Params, heights: &Field) -> Result<State> {
+    let solution = solve(params, heights, CRUSHING)?;
+    ensure!(solution.status == Status::FullContact, "σ0 = {CRUSHING} E* leaves gaps; the surface is too steep");
+    State::of(params, &solution, CRUSHING - solution.pressure.min())
+}
+
+impl State {
+    fn of(params: &Params, solution: &Solution, mean_pressure: f64) -> Result<Self> {
+        let mask = Mask::positive(&solution.pressure)?;
+        let mesh = MeshParams::default();
+        let mut elements = [0.0; 3];
+        for (elements, (kind, ..)) in elements.iter_mut().zip(MESHES) {
+            *elements = count(&mask, kind, &mesh)?.iter().sum::<usize>() as f64;
+        }
+        Ok(Self {
+            mean_pressure,
+            penetration: params.cell * solution.info.penetration,
+            fraction: mask.count() as f64 / mask.cells().len() as f64,
+            elements,
+        })
+    }
+
+    /// The state at `part` of the way to `other`, every number linear.
+    fn towards(&self, other: &Self, part: f64) -> Self {
+        let mix = |a: f64, b: f64| a + part * (b - a);
+        Self {
+            mean_pressure: mix(self.mean_pressure, other.mean_pressure),
+            penetration: mix(self.penetration, other.penetration),
+            fraction: mix(self.fraction, other.fraction),
+            elements: std::array::from_fn(|mesh| mix(self.elements[mesh], other.elements[mesh])),
+        }
+    }
+}
+
+impl Fig3 {
+    /// The contact with this fraction, between the two computed next to it; none outside their range.
+    fn at_fraction(&self, fraction: f64) -> Option<State> {
+        let mut pairs = self.states.windows(2);
+        let pair = pairs.find(|pair| (pair[0].fraction..=pair[1].fraction).contains(&fraction))?;
+        let part = (fraction - pair[0].fraction) / (pair[1].fraction - pair[0].fraction);
+        Some(pair[0].towards(&pair[1], part))
+    }
+
+    /// The contact fraction that the printed numbers imply: the adaptive uniform mesh has the elements in contact, of 2048².
+    fn printed_fraction(&self) -> f64 {
+        self.printed.elements[1] / (PAPER_GRID * PAPER_GRID) as f64
+    }
+
+    fn summary(&self) -> Table {
+        let header = ["quantity", "unit", "at_two_thirds", "at_printed_fraction", "printed"];
+        let at = [self.at_fraction(TWO_THIRDS), self.at_fraction(self.printed_fraction())];
+        let row = |quantity: &str, unit: &str, printed: Option<f64>, of: &dyn Fn(&State) -> f64| {
+            let values = at.iter().map(|state| state.as_ref().map_or_else(String::new, |state| number(of(state))));
+            let cells = [quantity.to_owned(), unit.to_owned()].into_iter().chain(values);
+            cells.chain([printed.map_or_else(String::new, number)]).collect::<Vec<_>>()
+        };
+        let [uniform, adaptive_uniform, adaptive] = self.printed.elements;
+        let rows = [
+            row("contact fraction", "1", Some(self.printed_fraction()), &|state| state.fraction),
+            row("mean pressure", "E*", None, &|state| state.mean_pressure),
+            row("penetration", "um", Some(MICRO * self.printed.penetration), &|state| MICRO * state.penetration),
+            row("penetration", "h_max", None, &|state| state.penetration / self.h_max),
+            row("h_max", "um", None, &|_| MICRO * self.h_max),
+            row("elements uniform", "1", Some(uniform), &|state| state.elements[0]),
+            row("elements adaptive uniform", "1", Some(adaptive_uniform), &|state| state.elements[1]),
+            row("elements adaptive", "1", Some(adaptive), &|state| state.elements[2]),
+            row("uniform to adaptive", "1", Some(uniform / adaptive), &|state| state.elements[0] / state.elements[2]),
+            row("adaptive uniform to adaptive", "1", Some(adaptive_uniform / adaptive), &|state| {
+                state.elements[1] / state.elements[2]
+            }),
+        ];
+        Table::new("summary", &header, rows)
+    }
+
+    fn counts(&self) -> Table {
+        let [uniform, adaptive_uniform, adaptive] = MESHES.map(|mesh| mesh.2);
+        let header = [
+            "mean_pressure_over_e_star",
+            "penetration_um",
+            "penetration_over_h_max",
+            "contact_fraction",
+            uniform,
+            adaptive_uniform,
+            adaptive,
+        ];
+        let rows = self.states.iter().map(|state| {
+            let lengths = [MICRO * state.penetration, state.penetration / self.h_max];
+            let numbers = [state.mean_pressure].into_iter().chain(lengths).chain([state.fraction]);
+            numbers.chain(state.elements).map(number).collect()
+        });
+        Table::new("counts", &header, rows)
+    }
+
+    fn caption_of(&self, state: &State) -> String {
+        let millions = |elements: [f64; 3]| {
+            let [uniform, adaptive_uniform, adaptive] = elements.map(|n| n / MILLION);
+            format!("{adaptive:.3} : {adaptive_uniform:.3} : {uniform:.3}")
+        };
+        let Params { waves, grid, seed, cell, .. } = self.params;
+        let printed_state = self.at_fraction(self.printed_fraction());
+        let short_of_full = printed_state.map_or(0.0, |state| self.h_max - state.penetration);
+        let um = |length: f64| format!("{:.3} µm", MICRO * length);
+        format!(
+            "**Fig. 3.** Elements of the three meshes against penetration Δ (left) and contact fraction (right), for one realisation \
+             (seed {seed}) of the paper's surface: H = 0.8, rms height {rms:.0} µm, N = {waves}, λ = {mm:.0} mm, from touch to full \
+             contact. The smallest element has side λ/{grid} = λ_min/{per_wave}; the step λ_min/32 in the text is its half side, \
+             as d in Eq. (5), for 4.2 million elements are 2048². At two-thirds contact the meshes adaptive : adaptive uniform : \
+             uniform have {ours} million elements; the paper prints {theirs} (squares).\n\n\
+             The paper prints these numbers at \"Δ = 400 µm\". No contact has that Δ: v has zero mean and equals h − h_max + Δ in \
+             contact, so full contact is reached at Δ = h_max, here {h_max} = {h_over_rms:.2} rms heights, and 400 µm would be \
+             {printed_over_rms:.0} rms heights. Read as 40 µm it needs a realisation with h_max of at least 40 µm = 3.1 rms heights. \
+             The adaptive uniform mesh has the elements in contact only, so the numbers themselves say the contact fraction, \
+             2.75e6 / 2048² = {fraction:.3}, and the squares are drawn there. At that fraction Δ is already within {short} of \
+             h_max, where all curves are steep: Δ alone does not fix the numbers, and the fraction does.\n\n\
+             In full contact no border is left, and the rule gives one element for the whole cell.\n",
+            rms = MICRO * self.rms_height,
+            mm = 1e3 * cell,
+            per_wave = grid / waves,
+            ours = millions(state.elements),
+            theirs = millions(self.printed.elements),
+            h_max = um(self.h_max),
+            h_over_rms = self.h_max / self.rms_height,
+            printed_over_rms = self.printed.penetration / self.rms_height,
+            fraction = self.printed_fraction(),
+            short = um(short_of_full),
+        )
+    }
+
+    /// Range of the axes of elements: all of them, and room for a name.
+    fn y(&self) -> (f64, f64) {
+        (0.0, 1.16 * (self.params.grid * self.params.grid) as f64 / self.unit())
+    }
+
+    /// Elements are shown in millions, or in thousands when there are fewer.
+    fn unit(&self) -> f64 {
+        if self.params.grid > 1000 { MILLION } else { 1e3 }
+    }
+
+    /// Elements against Δ, in µm below and in h_max above.
+    fn draw_penetration<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
+        let right = 1.03;
+        let axes = self.axes((0.0, right * MICRO * self.h_max), "penetration Δ (µm)");
+        let mut chart = axes.on(area)?.set_secondary_coord(0.0..right, self.y().0..self.y().1);
+        let text = |size: f64| words(size, BLACK);
+        let mut second = chart.configure_secondary_axes();
+        second.x_desc("Δ / h_max").x_labels(6).x_label_formatter(&label);
+        second.label_style(text(0.85 * TEXT)).axis_desc_style(text(TEXT)).draw()?;
+        self.draw_curves(&mut chart, |state| MICRO * state.penetration)
+    }
+
+    /// Elements against the contact fraction, with the printed numbers.
+    fn draw_fraction<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
+        let mut chart = self.axes((0.0, 1.03), "contact fraction").on(area)?;
+        self.draw_curves(&mut chart, |state| state.fraction)?;
+        // The printed numbers are for 128 waves on 2048² elements.
+        if self.params.grid == PAPER_GRID {
+            let printed = self.printed.elements.map(|elements| (self.printed_fraction(), elements / self.unit()));
+            chart.draw_series(printed.into_iter().zip(MESHES).map(|(at, (.., colour))| {
+                let square = |half: i32, fill: RGBColor| Rectangle::new([(-half, -half), (half, half)], fill.filled());
+                EmptyElement::at(at) + square(11, colour) + square(7, WHITE)
+            }))?;
+            write(&mut chart, (0.66, 0.93), Side::Below, "", BLACK)?;
+        }
+        let full = self.y().1 / 1.16;
+        for ((.., name, _, colour), at) in MESHES.map(|(a, name, b, colour)| (a, name, b, colour)).into_iter().zip([
+            (0.02, 1.05 * full),
+            (0.02, 0.5 * full),
+            (0.3, 0.1 * full),
+        ]) {
+            write(&mut chart, at, Side::Right, name, colour)?;
+        }
+        Ok(())
+    }
+
+    fn axes<'a>(&self, x: (f64, f64), x_label: &'a str) -> Axes<'a> {
+        let y_label = if self.unit() == MILLION { "elements (millions)" } else { "elements (thousands)" };
+        Axes { x, y: self.y(), x_label, y_label, n_labels: (8, 6), top: (2.9 * TEXT) as u32 }
+    }
+
+    fn draw_curves<B: DrawingBackend>(&self, chart: &mut Chart<'_, B>, x: impl Fn(&State) -> f64) -> Drawn<(), B> {
+        for (mesh, (.., colour)) in MESHES.iter().enumerate() {
+            let points: Vec<(f64, f64)> = self.states.iter().map(|s| (x(s), s.elements[mesh] / self.unit())).collect();
+            chart.draw_series(LineSeries::new(points.iter().copied(), colour.stroke_width(3)))?;
+            chart.draw_series(points.iter().map(|&at| Circle::new(at, 5, colour.filled())))?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figures::tests::assert_written;
+    use crate::snapshot::{Numeric, assert_table};
+
+    fn reduced(tolerance: f64) -> Fig3 {
+        let params = Fig3::params(Preset::Reduced).expect("paper values");
+        Fig3::compute(&Params { tolerance, ..params }).expect("the reduced figure is solved")
+    }
+
+    #[test]
+    fn a_tolerance_of_1e_4_is_enough_for_counts() {
+        let (coarse, fine) = (reduced(1e-4), reduced(1e-8));
+        for (coarse, fine) in coarse.states.iter().zip(&fine.states) {
+            for mesh in 0..MESHES.len() {
+                let (a, b) = (coarse.elements[mesh], fine.elements[mesh]);
+                // Three of a thousand elements is a tenth of what the figure can show.
+                assert!((a - b).abs() <= 0.003 * b, "{}: {a} against {b} at {fine:?}", MESHES[mesh].1);
+            }
+        }
+    }
+
+    #[test]
+    fn reduced_figure_3_is_as_reviewed_and_can_be_drawn() {
+        let params = Fig3::params(Preset::Reduced).expect("paper values");
+        let figure = Fig3::compute(&params).expect("the reduced figure is solved");
+        // At tolerance 1e-8 the contact sets do not change, nor do the counts; lengths are exact to about seven digits.
+        let tolerance = Numeric { absolute: 0.0, relative: 1e-5 };
+        assert_table("fig3-summary", &figure.summary(), tolerance, &format!("{params:?}"));
+        assert_table("fig3-counts", &figure.counts(), tolerance, &format!("{params:?}"));
+        assert_written(&figure);
+    }
+}

@@ -1,0 +1,36 @@
+//! The values printed in the paper, read from `data/reference/paper-values.csv`.
+
+use anyhow::{Context, Result};
+
+const VALUES: &str = include_str!("../../../data/reference/paper-values.csv");
+
+/// The value called `name`, in the unit that the file gives.
+///
+/// # Errors
+/// When the file has no such name, or no number there.
+pub(crate) fn value(name: &str) -> Result<f64> {
+    let row = VALUES.lines().map(|line| line.split(',')).find(|cells| cells.clone().next() == Some(name));
+    let cell = row.and_then(|mut cells| cells.nth(1));
+    let cell = cell.with_context(|| format!("data/reference/paper-values.csv has no `{name}`; add the line"))?;
+    cell.parse().with_context(|| format!("`{name}` in data/reference/paper-values.csv is {cell}; write a number"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_line_is_a_number_with_unit_and_place() {
+        for line in VALUES.lines().skip(1) {
+            let cells: Vec<&str> = line.split(',').collect();
+            assert_eq!(cells.len(), 5, "{line}");
+            assert!(value(cells[0]).is_ok_and(f64::is_finite), "{line}");
+            assert!(cells[2..4].iter().all(|cell| !cell.is_empty()), "{line}");
+        }
+    }
+
+    #[test]
+    fn an_unknown_name_is_an_error_that_names_it() {
+        assert!(format!("{:#}", value("colour").expect_err("no such value")).contains("`colour`"));
+    }
+}

@@ -1,0 +1,61 @@
+//! Steps that run cargo, announced before they run.
+
+use std::process::Command;
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+
+use crate::repository;
+
+/// One cargo call, as plain data: what continuous integration runs can be listed, compared and printed.
+pub(crate) struct Step {
+    /// Environment variables, set for this call only.
+    pub(crate) environment: &'static [(&'static str, &'static str)],
+    /// The words after `cargo`.
+    pub(crate) words: &'static [&'static str],
+}
+
+impl Step {
+    /// The step as typed in a shell.
+    pub(crate) fn shell_line(&self) -> String {
+        let environment = self.environment.iter().map(|(name, value)| format!("{name}=\"{value}\""));
+        let words = self.words.iter().map(ToString::to_string);
+        environment.chain(["cargo".to_owned()]).chain(words).collect::<Vec<_>>().join(" ")
+    }
+
+    /// Runs the step in the root of the repository, with `extra` words at its end, its output going where ours goes.
+    ///
+    /// # Errors
+    /// When cargo cannot be started, or fails.
+    #[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
+    pub(crate) fn run(&self, extra: &[String]) -> Result<()> {
+        let line = [self.shell_line()].into_iter().chain(extra.iter().cloned()).collect::<Vec<_>>().join(" ");
+        eprintln!("$ {line}");
+        let start = Instant::now();
+        // The cargo that started us, so that a `+toolchain` holds for the steps too.
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let status = Command::new(cargo)
+            .args(self.words)
+            .args(extra)
+            .envs(self.environment.iter().copied())
+            .current_dir(repository::root())
+            .status()
+            .with_context(|| format!("could not start `{line}`; is cargo installed?"))?;
+        if !status.success() {
+            bail!("`{line}` failed; repeat that line alone to see why");
+        }
+        eprintln!("  done in {:.0} s", start.elapsed().as_secs_f64());
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_is_written_as_typed() {
+        let step = Step { environment: &[("RUSTDOCFLAGS", "-D warnings")], words: &["doc", "--no-deps"] };
+        assert_eq!(step.shell_line(), "RUSTDOCFLAGS=\"-D warnings\" cargo doc --no-deps");
+    }
+}

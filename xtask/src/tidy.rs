@@ -1,0 +1,59 @@
+//! `cargo xtask tidy`: the rules of this repository that the compiler does not know.
+//!
+//! Each check is a pure function from file texts to complaints. A complaint says what is wrong, where, and what fixes it.
+
+mod arrows;
+mod culture;
+mod paper_map;
+mod snapshots;
+
+use anyhow::{Result, bail};
+
+use crate::repository::{self, Sources};
+
+/// Checks dependency arrows, paper map, snapshots and house rules (also a test, so `cargo xtask test` runs it).
+#[derive(clap::Args)]
+pub(crate) struct Args {}
+
+/// A rule that a file breaks, with what fixes it.
+pub(crate) type Complaint = String;
+
+/// A check: a pure function of the sources.
+type Check = fn(&Sources) -> Vec<Complaint>;
+
+/// The checks by name.
+const CHECKS: &[(&str, Check)] = &[
+    ("arrows", arrows::check),
+    ("paper map", paper_map::check),
+    ("snapshots", snapshots::check),
+    ("culture", culture::check),
+];
+
+#[expect(clippy::print_stdout, reason = "the result of the command")]
+pub(crate) fn run(_args: &Args) -> Result<()> {
+    let complaints = check_all(&repository::read_sources(&repository::root())?);
+    if !complaints.is_empty() {
+        bail!("{} untidy:\n{}", complaints.len(), complaints.join("\n"));
+    }
+    println!("tidy: {}", CHECKS.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", "));
+    Ok(())
+}
+
+fn check_all(sources: &Sources) -> Vec<Complaint> {
+    let complaints = CHECKS
+        .iter()
+        .flat_map(|(name, check)| check(sources).into_iter().map(move |complaint| format!("{name}: {complaint}")));
+    complaints.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_repository_is_tidy() {
+        let sources = repository::read_sources(&repository::root()).expect("the sources can be read");
+        let complaints = check_all(&sources);
+        assert!(complaints.is_empty(), "{} untidy:\n{}", complaints.len(), complaints.join("\n"));
+    }
+}

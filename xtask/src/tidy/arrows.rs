@@ -1,0 +1,104 @@
+//! Which crate may depend on which: the arrows of ARCHITECTURE.md.
+
+use toml::{Table, Value};
+
+use super::Complaint;
+use crate::repository::Sources;
+
+/// What each room may use; rooms that are not listed here may use nothing until ARCHITECTURE.md gives them an arrow.
+const ARROWS: &[(&str, &[&str])] = &[
+    ("rc-core", &[]),
+    ("rc-fractal", &["rc-core"]),
+    ("rc-kernel", &["rc-core"]),
+    ("rc-quadtree", &["rc-core"]),
+    ("rc-theory", &["rc-core"]),
+    ("rc-solver", &["rc-core", "rc-kernel", "rc-quadtree"]),
+    ("rc-cli", LIBRARIES),
+    ("rc-tests", LIBRARIES_AND_CLI),
+    ("xtask", LIBRARIES_AND_CLI),
+];
+
+const LIBRARIES: &[&str] = &["rc-core", "rc-fractal", "rc-kernel", "rc-quadtree", "rc-solver", "rc-theory"];
+const LIBRARIES_AND_CLI: &[&str] =
+    &["rc-core", "rc-fractal", "rc-kernel", "rc-quadtree", "rc-solver", "rc-theory", "rc-cli"];
+
+/// Checks the manifest of every member. Tests count: an arrow that only tests need is drawn in `tests/`, not in a crate.
+pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
+    let manifests = sources.iter().filter(|(path, _)| path.ends_with("/Cargo.toml"));
+    manifests.flat_map(|(path, text)| check_manifest(path, text)).collect()
+}
+
+fn check_manifest(path: &str, text: &str) -> Vec<Complaint> {
+    let manifest: Table = match text.parse() {
+        Ok(manifest) => manifest,
+        Err(error) => return vec![format!("{path} is not TOML: {error}; correct the manifest")],
+    };
+    let name = manifest.get("package").and_then(|package| package.get("name")).and_then(Value::as_str).unwrap_or("");
+    let Some((_, allowed)) = ARROWS.iter().find(|(room, _)| *room == name) else {
+        return vec![format!(
+            "{path}: `{name}` is in no room; add it to ARCHITECTURE.md and to ARROWS in xtask/src/tidy/arrows.rs"
+        )];
+    };
+    let used = ["dependencies", "dev-dependencies", "build-dependencies"].into_iter().flat_map(|section| {
+        let dependencies = manifest.get(section).and_then(Value::as_table);
+        dependencies.into_iter().flatten().map(move |(dependency, how)| (section, dependency, how))
+    });
+    let forbidden = used.filter(|(section, dependency, how)| {
+        is_member(dependency) && !allowed.contains(&dependency.as_str()) && !own_checks(name, section, dependency, how)
+    });
+    let complaint = |(section, dependency, _): (&str, &String, &Value)| {
+        format!(
+            "{path} [{section}]: {name} -> {dependency} is no arrow of ARCHITECTURE.md; move what needs it to tests/ or \
+             xtask/, or redraw the arrow there and in xtask/src/tidy/arrows.rs"
+        )
+    };
+    forbidden.map(complaint).collect()
+}
+
+fn is_member(dependency: &str) -> bool {
+    dependency == "xtask" || dependency.starts_with("rc-")
+}
+
+/// rc-core runs its own conformance checks in its own tests.
+fn own_checks(name: &str, section: &str, dependency: &str, how: &Value) -> bool {
+    let testing = how.get("features").and_then(Value::as_array);
+    name == "rc-core"
+        && dependency == "rc-core"
+        && section == "dev-dependencies"
+        && testing.is_some_and(|features| features.iter().any(|feature| feature.as_str() == Some("testing")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_allowed_arrow_passes() {
+        let manifest = "[package]\nname = \"rc-solver\"\n[dependencies]\nrc-core.workspace = true\nrayon = \"1\"\n";
+        assert_eq!(check_manifest("crates/rc-solver/Cargo.toml", manifest), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_forbidden_arrow_is_found_even_when_only_tests_use_it() {
+        for section in ["dependencies", "dev-dependencies", "build-dependencies"] {
+            let manifest = format!("[package]\nname = \"rc-solver\"\n[{section}]\nrc-fractal.workspace = true\n");
+            let complaints = check_manifest("crates/rc-solver/Cargo.toml", &manifest);
+            assert_eq!(complaints.len(), 1, "{complaints:?}");
+            assert!(complaints[0].contains("rc-solver -> rc-fractal"), "{complaints:?}");
+        }
+    }
+
+    #[test]
+    fn nothing_depends_on_the_task_runner_or_on_the_command_line() {
+        for dependency in ["xtask", "rc-cli"] {
+            let manifest = format!("[package]\nname = \"rc-theory\"\n[dependencies]\n{dependency}.workspace = true\n");
+            assert_eq!(check_manifest("crates/rc-theory/Cargo.toml", &manifest).len(), 1, "{dependency}");
+        }
+    }
+
+    #[test]
+    fn a_member_without_a_room_is_found() {
+        let complaints = check_manifest("crates/rc-new/Cargo.toml", "[package]\nname = \"rc-new\"\n");
+        assert!(complaints[0].contains("no room"), "{complaints:?}");
+    }
+}
