@@ -12,18 +12,21 @@ use crate::figures::{Figure, Preset, Table, number};
 
 const FORMS: [(LoadForm, &str, RGBColor); 2] =
     [(LoadForm::Plain, "plain", RGBColor(30, 90, 160)), (LoadForm::Printed, "printed", RGBColor(200, 60, 30))];
-/// Colours and names of the lines of each offset, plain and printed.
-const SHADES: [(&str, (RGBColor, &str), (RGBColor, &str)); 3] = [
-    ("near", (RGBColor(30, 90, 160), "plain, near"), (RGBColor(200, 60, 30), "printed, near")),
-    ("mid", (RGBColor(90, 150, 210), "plain, mid"), (RGBColor(230, 130, 60), "printed, mid")),
-    ("far", (RGBColor(160, 195, 230), "plain, far"), (RGBColor(245, 195, 140), "printed, far")),
+/// Names and colours of the lines: form, offset.
+const LINES: [(&str, &str, &str, RGBColor); 6] = [
+    ("plain, near", "plain", "near", RGBColor(30, 90, 160)),
+    ("plain, mid", "plain", "mid", RGBColor(90, 150, 210)),
+    ("plain, far", "plain", "far", RGBColor(160, 195, 230)),
+    ("printed, near", "printed", "near", RGBColor(200, 60, 30)),
+    ("printed, mid", "printed", "mid", RGBColor(230, 130, 60)),
+    ("printed, far", "printed", "far", RGBColor(245, 195, 140)),
 ];
 /// The size that the picture shows: elements of λ/64.
 const SHOWN: f64 = 1.0 / 128.0;
 /// Accuracy that is documented for the exact coefficients, relative to the area of the source.
 const EXACT: f64 = 1e-12;
 /// Text, in pixels.
-const TEXT: f64 = 20.0;
+const TEXT: f64 = 24.0;
 /// How long one coefficient is timed.
 const SAMPLE: Duration = Duration::from_millis(20);
 
@@ -100,10 +103,10 @@ impl Figure for KernelErrors {
             for offset in Offset::all(half_side) {
                 for (form, name, _) in FORMS {
                     for &shells in &params.shells {
-                        cases.push(case(&love, half_side, offset, shells, (form, name))?);
+                        cases.push(case(love, half_side, offset, shells, (form, name))?);
                     }
                 }
-                timings.push(exact_time(&love, half_side, offset));
+                timings.push(exact_time(love, half_side, offset));
             }
         }
         for &shells in &params.shells {
@@ -118,7 +121,7 @@ impl Figure for KernelErrors {
 }
 
 fn case(
-    love: &PeriodicLove,
+    love: PeriodicLove,
     half_side: f64,
     offset: Offset,
     shells: usize,
@@ -131,7 +134,7 @@ fn case(
     Ok(Case { form: name, half_side, offset, shells, error: (truncated - exact).abs() / area, bound })
 }
 
-fn exact_time(love: &PeriodicLove, half_side: f64, offset: Offset) -> Timing {
+fn exact_time(love: PeriodicLove, half_side: f64, offset: Offset) -> Timing {
     // Targets in a small square around the offset, a thousand at a time.
     let targets: Vec<(f64, f64)> =
         (0..1000).map(|i| (offset.dx + 1e-5 * f64::from(i % 32), offset.dy + 1e-5 * f64::from(i / 32))).collect();
@@ -185,10 +188,10 @@ impl KernelErrors {
         self.cases.iter().filter(shown).map(|case| (case.shells as f64, case.error, case.bound)).collect()
     }
 
-    /// Nanoseconds of a truncated coefficient.
-    fn time_of(&self, shells: f64) -> Option<f64> {
-        let timing = self.timings.iter().find(|timing| timing.shells.is_some_and(|k| k as f64 == shells));
-        timing.map(|timing| timing.nanoseconds)
+    /// The shown size in the middle of the cell, truncated: time, error.
+    fn timed_line(&self, form: &str) -> Vec<(f64, f64)> {
+        let times = self.timings.iter().filter(|timing| timing.shells.is_some()).map(|timing| timing.nanoseconds);
+        times.zip(self.line(form, "mid")).map(|(time, (_, error, _))| (time, error)).collect()
     }
 }
 
@@ -213,33 +216,29 @@ impl KernelErrors {
             colour,
             style: LineStyle::Dashed,
         });
-        let errors = FORMS.into_iter().flat_map(|(_, form, _)| {
-            SHADES.into_iter().map(move |(offset, plain, printed)| {
-                let (colour, name) = if form == "plain" { plain } else { printed };
-                let points = decades(self.line(form, offset).into_iter().map(|(shells, error, _)| (shells, error)));
-                Series { name, points, colour, style: LineStyle::Solid }
-            })
+        let errors = LINES.map(|(name, form, offset, colour)| {
+            let points = decades(self.line(form, offset).into_iter().map(|(shells, error, _)| (shells, error)));
+            Series { name, points, colour, style: LineStyle::Solid }
         });
         LinePlot {
             title: "truncation error, elements of λ/64",
             x_label: "log10 of K, the shells of images",
             y_label: "log10 of error / (2d)²",
             x: (0.0, 2.2),
-            y: (-4.0, 1.5),
+            y: (-4.0, 2.0),
             series: bounds.into_iter().chain(errors).collect(),
         }
     }
 
     fn against_time(&self) -> LinePlot<'static> {
         let truncated = FORMS.map(|(_, form, colour)| {
-            let timed = |(shells, error, _): (f64, f64, f64)| self.time_of(shells).map(|time| (time, error));
-            let points = decades(self.line(form, "mid").into_iter().filter_map(timed));
+            let points = decades(self.timed_line(form).into_iter());
             let name = if form == "plain" { "K shells, plain" } else { "K shells, printed" };
             Series { name, points, colour, style: LineStyle::Solid }
         });
         let exact = self.timings.iter().filter(|timing| timing.shells.is_none());
         let exact = Series {
-            name: "all images, every size and offset (guaranteed)",
+            name: "all images: 1e-12 guaranteed",
             points: decades(exact.map(|timing| (timing.nanoseconds, EXACT))),
             colour: BLACK,
             style: LineStyle::Dots,

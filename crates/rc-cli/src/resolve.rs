@@ -29,6 +29,8 @@ pub struct ContactProblem {
     pub control: Control,
     /// Discretisation.
     pub kernel: KernelName,
+    /// Method of solution.
+    pub method: Method,
     /// Tolerance and limits.
     pub params: SolveParams,
     /// The keys as resolved, for `scene.toml`.
@@ -163,13 +165,21 @@ pub fn contact(keys: ContactKeys, side: f64) -> Result<ContactProblem, CliError>
         (None, Some(depth)) => Control::Penetration(positive("penetration", "m", Some(depth))? / side),
         _ => return Err(CliError::input("give exactly one of pressure (Pa) and penetration (m); neither is given")),
     };
-    match keys.method {
-        Some(Method::Uniform) | None => {}
-        Some(_) => return Err(CliError::input("method: only 'uniform' is available in this version")),
+    let method = keys.method.unwrap_or(Method::Uniform);
+    let kernel = keys.kernel.unwrap_or(KernelName::Love);
+    match (method, kernel) {
+        (Method::Adaptive, _) => {
+            return Err(CliError::input(
+                "method: 'adaptive' is not available in this version; uniform or gauss-seidel",
+            ));
+        }
+        (Method::GaussSeidel, KernelName::Spectral) => {
+            return Err(CliError::input("method: 'gauss-seidel' has the paper's elements, so kernel must be love"));
+        }
+        (Method::Uniform, _) | (Method::GaussSeidel, KernelName::Love) => {}
     }
     let params = SolveParams { tolerance: tolerance(keys.tolerance)?, ..SolveParams::certified() };
-    let kernel = keys.kernel.unwrap_or(KernelName::Love);
-    Ok(ContactProblem { elasticity, control, kernel, params, keys })
+    Ok(ContactProblem { elasticity, control, kernel, method, params, keys })
 }
 
 fn elasticity(keys: &ContactKeys) -> Result<Elasticity, CliError> {
@@ -193,7 +203,7 @@ fn tolerance(given: Option<Tolerance>) -> Result<f64, CliError> {
             Err(CliError::input(format_args!("tolerance: must be between 0 and 1, as 1e-6, not {value}")))
         }
         Some(Tolerance::Auto) => Err(CliError::input(
-            "tolerance: 'auto' is not available for method uniform; give a number between 0 and 1, as 1e-6",
+            "tolerance: 'auto' is not available in this version; give a number between 0 and 1, as 1e-6",
         )),
         None => Ok(SolveParams::certified().tolerance),
     }

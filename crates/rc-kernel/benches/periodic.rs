@@ -31,6 +31,19 @@ fn ring(distance: f64) -> Vec<(f64, f64)> {
     (0..VALUES).map(point).map(|(sin, cos)| (distance * cos, distance * sin)).collect()
 }
 
+/// Sizes from λ/4 to λ/2048 in random order, targets anywhere in the cell: a row of L on an adaptive mesh.
+#[divan::bench]
+fn mixed_sizes(bencher: Bencher<'_, '_>) {
+    let love = PeriodicLove::new();
+    let requests: Vec<(f64, f64, f64)> = (0..VALUES)
+        .map(|i| {
+            let random = |factor: f64| (factor * i as f64).fract();
+            (random(0.618034) - 0.5, random(0.414214) - 0.5, 0.5_f64.powi(3 + (10.0 * random(0.732051)) as i32))
+        })
+        .collect();
+    bencher.counter(VALUES).bench(|| requests.iter().map(|&(x, y, d)| love.coefficient(x, y, d)).sum::<f64>());
+}
+
 /// Sizes that are no power of two: with a table of their own, and without.
 #[divan::bench(args = [true, false])]
 fn other_sizes(bencher: Bencher<'_, '_>, table: bool) {

@@ -114,7 +114,9 @@ impl MeanTable {
     }
 
     /// The mean at offset (`long`, `short`), 0 ≤ short ≤ long ≤ 1/2.
-    #[inline]
+    ///
+    /// Never inlined: 18 ns as a function, and up to 30 inside loops, where the compiler spills the eight sums.
+    #[inline(never)]
     pub(crate) fn mean(&self, long: f64, short: f64) -> f64 {
         const PER_LENGTH: f64 = 2.0 * PATCHES as f64;
         let (x, y) = (long * PER_LENGTH, short * PER_LENGTH);

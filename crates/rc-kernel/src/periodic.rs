@@ -44,7 +44,7 @@ static TABLES: LazyLock<Tables> = LazyLock::new(|| Tables {
 /// relative error has no meaning. Measured 6e-14, for half sides from 1/2 to 2^-17 and all offsets (test
 /// `coefficients_match_the_quadrature_of_ewald_sums`). Exactly symmetric under dx → -dx, dy → -dy and dx ↔ dy.
 ///
-/// *Cost*, one core, x86-64 without AVX: 50 ns within 13 half sides of the source, 30 ns beyond, for half sides 2^-3, 2^-4, …
+/// *Cost*, one core, x86-64 without AVX: 54 ns within 13 half sides of the source, 31 ns beyond, for half sides 2^-3, 2^-4, …
 /// and all below 2.4e-7. Other half sides take 0.7 µs; a [`PeriodicSource`] has a table for one of them. A square larger
 /// than λ/4 is the sum of its quarters, so 4 (λ/2) to 16 times as much; a mesh has a handful of these. The first use in a
 /// process takes 1 ms, and the first use of a size 0.3 ms; after that this is a pointer.

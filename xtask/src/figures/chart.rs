@@ -1,16 +1,19 @@
 //! What line figures share: colours, axes, words at a point, and dimension arrows.
 
+use plotters::chart::DualCoordChartContext;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::{
     Cartesian2d, ChartBuilder, ChartContext, DrawingAreaErrorKind, DrawingBackend, EmptyElement, IntoFont, PathElement,
     Polygon, RGBColor, Text,
 };
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{BLACK, Color, TextStyle};
+use plotters::style::{BLACK, Color, TextStyle, WHITE};
 use rc_cli::picture::{Area, FONT};
 
 /// Text, in pixels.
-pub(crate) const TEXT: f64 = 24.0;
+pub(crate) const TEXT: f64 = 30.0;
+/// Height of the numbers and the name along x, in pixels.
+const LABELS: u32 = 84;
 /// Colours that stay apart in print and for colour-blind readers (after Okabe and Ito).
 pub(crate) const BLUE: RGBColor = RGBColor(0, 90, 160);
 pub(crate) const RED: RGBColor = RGBColor(200, 60, 20);
@@ -21,6 +24,14 @@ const PALE: RGBColor = RGBColor(228, 228, 228);
 
 /// A chart with linear axes.
 pub(crate) type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// A chart with a second scale along its top; series are drawn on the first.
+pub(crate) type TwoScales<'a, B> = DualCoordChartContext<
+    'a,
+    B,
+    Cartesian2d<RangedCoordf64, RangedCoordf64>,
+    Cartesian2d<RangedCoordf64, RangedCoordf64>,
+>;
 
 /// What drawing returns.
 pub(crate) type Drawn<T, B> = Result<T, DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
@@ -34,37 +45,62 @@ pub(crate) struct Axes<'a> {
     pub(crate) y_label: &'a str,
     /// About how many numbers along x and along y.
     pub(crate) n_labels: (usize, usize),
-    /// Pixels above the chart: `TEXT` or so, or more for a second axis.
-    pub(crate) top: u32,
 }
 
 impl Axes<'_> {
-    /// Draws the axes and returns the chart.
+    /// A chart with its axes drawn.
     pub(crate) fn on<'a, B: DrawingBackend>(&self, area: &'a Area<B>) -> Drawn<Chart<'a, B>, B> {
-        let mut chart = ChartBuilder::on(area)
-            .margin_left(10)
-            .margin_right(34)
-            .margin_bottom(10)
-            .top_x_label_area_size(self.top)
-            .x_label_area_size((2.9 * TEXT) as u32)
-            .y_label_area_size((4.4 * TEXT) as u32)
-            .build_cartesian_2d(self.x.0..self.x.1, self.y.0..self.y.1)?;
+        let mut chart =
+            builder(area).margin_top(TEXT as u32).build_cartesian_2d(self.x.0..self.x.1, self.y.0..self.y.1)?;
+        self.draw(&mut chart)?;
+        Ok(chart)
+    }
+
+    /// A chart with its axes and a second scale along its top: `factor` times x, named `x_label`.
+    pub(crate) fn with_top<'a, B: DrawingBackend>(
+        &self,
+        area: &'a Area<B>,
+        factor: f64,
+        x_label: &str,
+    ) -> Drawn<TwoScales<'a, B>, B> {
+        let (x, y) = (self.x.0..self.x.1, self.y.0..self.y.1);
+        let chart = builder(area)
+            .margin_top((0.6 * TEXT) as u32)
+            .top_x_label_area_size(LABELS)
+            .build_cartesian_2d(x, y.clone())?;
+        let mut chart = chart.set_secondary_coord(factor * self.x.0..factor * self.x.1, y);
+        self.draw(&mut chart)?;
+        let mut top = chart.configure_secondary_axes();
+        top.x_desc(x_label).x_labels(self.n_labels.0).x_label_formatter(&|x| label(*x)).set_all_tick_mark_size(6);
+        top.label_style(words(0.85 * TEXT, BLACK)).axis_desc_style(words(TEXT, BLACK)).draw()?;
+        Ok(chart)
+    }
+
+    fn draw<B: DrawingBackend>(&self, chart: &mut Chart<'_, B>) -> Drawn<(), B> {
         let mut mesh = chart.configure_mesh();
         mesh.x_desc(self.x_label).y_desc(self.y_label).x_labels(self.n_labels.0).y_labels(self.n_labels.1);
-        mesh.x_label_formatter(&label).y_label_formatter(&label).set_all_tick_mark_size(6);
+        mesh.x_label_formatter(&|x| label(*x)).y_label_formatter(&|y| label(*y)).set_all_tick_mark_size(6);
         mesh.label_style(words(0.85 * TEXT, BLACK)).axis_desc_style(words(TEXT, BLACK));
-        mesh.light_line_style(RGBColor(255, 255, 255)).bold_line_style(PALE).draw()?;
-        Ok(chart)
+        mesh.light_line_style(WHITE).bold_line_style(PALE).draw()
     }
 }
 
+/// A chart with room for numbers and names.
+fn builder<'b, B: DrawingBackend>(area: &Area<B>) -> ChartBuilder<'_, 'b, B> {
+    let mut builder = ChartBuilder::on(area);
+    builder.margin_left(10).margin_right((1.5 * TEXT) as u32).margin_bottom(10);
+    builder.x_label_area_size(LABELS).y_label_area_size((1.5 * f64::from(LABELS)) as u32);
+    builder
+}
+
 /// A number on an axis. Ticks are sums of steps, so their last digits are rounding.
-pub(crate) fn label(value: &f64) -> String {
-    rc_cli::quantity::label(1e-9 * (1e9 * value).round())
+fn label(value: f64) -> String {
+    // Adding zero turns -0 into 0.
+    rc_cli::quantity::label(1e-9 * (1e9 * value).round() + 0.0)
 }
 
 /// Text of a size and colour.
-pub(crate) fn words(size: f64, colour: RGBColor) -> TextStyle<'static> {
+fn words(size: f64, colour: RGBColor) -> TextStyle<'static> {
     (FONT, size).into_font().color(&colour)
 }
 
@@ -74,6 +110,7 @@ pub(crate) enum Side {
     Left,
     Right,
     Above,
+    RightAbove,
     Below,
 }
 
@@ -89,6 +126,7 @@ pub(crate) fn write<B: DrawingBackend>(
     let (offset, horizontal, vertical) = match side {
         Side::Left => ((-gap, 0), HPos::Right, VPos::Center),
         Side::Right => ((gap, 0), HPos::Left, VPos::Center),
+        Side::RightAbove => ((gap, -gap), HPos::Left, VPos::Bottom),
         Side::Above => ((0, -gap), HPos::Center, VPos::Bottom),
         Side::Below => ((0, gap), HPos::Center, VPos::Top),
     };
@@ -108,7 +146,7 @@ pub(crate) fn dimension<B: DrawingBackend>(
     let up = if to > from { 1 } else { -1 };
     for (end, sign) in [(from, -up), (to, up)] {
         // Pixels count downwards.
-        let head = [(0, 0), (-6, 14 * sign), (6, 14 * sign)];
+        let head = [(0, 0), (-7, 18 * sign), (7, 18 * sign)];
         chart.draw_series([EmptyElement::at((x, end)) + Polygon::new(head, colour.filled())])?;
     }
     Ok(())

@@ -1,27 +1,27 @@
 //! Fig. 1: a section of a solved contact: rigid rough surface, deformed half-space, penetration Δ and mean planes.
 //!
-//! The paper's figure is a sketch; this one is a solution, along the row of elements through the highest peak, because there
-//! the displacement v takes its largest value, which is Δ (Sec. 2).
+//! The paper's figure is a sketch; this one is a solution, along the row of elements through the highest peak, because
+//! there the displacement v takes its largest value, which is Δ (Sec. 2).
 
 use std::f64::consts::TAU;
 
 use anyhow::Result;
-use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, PathElement, Polygon, RGBColor, Rectangle};
+use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, PathElement, Polygon, RGBColor};
 use plotters::style::{BLACK, Color};
 use rc_cli::picture::{Area, Picture, PictureError};
 use rc_core::{Field, Grid, Kernel, Silent};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Love;
-use rc_solver::{Control, ContactArea, Solution, SolveParams, solve_uniform};
+use rc_solver::{ContactArea, Control, Solution, SolveParams, solve_uniform};
 
-use super::chart::{Axes, BLUE, Chart, Drawn, GREY, RED, Side, TEXT, dimension, write};
+use super::chart::{Axes, BLUE, Chart, Drawn, GREY, RED, Side, dimension, write};
 use super::{Figure, Preset, Table, number, paper};
 
 /// The two bodies.
 const RIGID: RGBColor = RGBColor(214, 214, 214);
 const SOFT: RGBColor = RGBColor(203, 223, 242);
 /// Width of the enlarged part, in λ.
-const WINDOW: f64 = 0.125;
+const WINDOW: f64 = 0.25;
 /// Micrometres and millimetres in a metre.
 const MICRO: f64 = 1e6;
 const MILLI: f64 = 1e3;
@@ -104,11 +104,13 @@ impl Figure for Fig1 {
     fn caption(&self) -> Option<String> {
         let um = |length: f64| format!("{:.1} µm", MICRO * length);
         Some(format!(
-            "**Fig. 1.** Section of a solved contact through the highest peak of the rigid surface, at σ0/E* = {:.2e}, where \
-             A/A0 = {:.4}. The deformed surface of the half-space touches the rigid surface where v = h − h_max + Δ (red). The \
-             displacement v has zero mean over the cell, so the undeformed mean plane is v = 0, and v is greatest under the \
-             highest peak, where it is the penetration Δ = {}. The mean plane of the roughness lies h_max = {} above that \
-             peak and ū = h_max − Δ = {} above the mean plane of the half-space. Heights are exaggerated as the panels say.\n",
+            "**Fig. 1.** Section of a solved contact through the highest peak of the rigid surface, at σ0/E* = \
+             {:.2e}, where A/A0 = {:.4}. The deformed surface of the half-space touches the rigid surface where v = h \
+             − h_max + Δ (red). The displacement v has zero mean over the cell, so the undeformed mean plane is v = 0, \
+             and v is greatest under the highest peak, where it is the penetration Δ = {}. The mean plane of the \
+             roughness lies h_max = {} above that peak and ū = h_max − Δ = {} above the mean plane of the half-space. \
+             Below, the quarter of the cell around the peak. Heights are exaggerated by the factors in the \
+             corners.\n",
             self.mean_pressure,
             self.area,
             um(self.penetration),
@@ -120,11 +122,11 @@ impl Figure for Fig1 {
 
 impl Picture for Fig1 {
     fn size(&self) -> (u32, u32) {
-        (1700, 1240)
+        (2100, 1560)
     }
 
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
-        let (whole, part) = area.split_vertically(700);
+        let (whole, part) = area.split_vertically(880);
         self.draw_whole(&whole).map_err(PictureError::new)?;
         self.draw_part(&part).map_err(PictureError::new)
     }
@@ -189,76 +191,98 @@ impl Fig1 {
         Table::new("section", &header, rows)
     }
 
-    /// Heights above the mean plane of the half-space, -v: rigid and deformed (µm), over x (mm).
-    fn heights(&self, half_width: f64) -> Vec<(f64, f64, f64, bool)> {
+    /// The profiles within `half_width` (m) of the peak.
+    fn profile(&self, half_width: f64) -> Vec<Heights> {
         let inside = self.points.iter().filter(|point| point.x.abs() <= half_width);
-        inside.map(|p| (MILLI * p.x, -MICRO * p.rigid, -MICRO * p.deformed, p.pressure > 0.0)).collect()
+        let heights = inside.map(|point| Heights {
+            x: MILLI * point.x,
+            rigid: -MICRO * point.rigid,
+            soft: -MICRO * point.deformed,
+            touching: point.pressure > 0.0,
+        });
+        heights.collect()
     }
 
     /// The whole section with planes and dimensions.
     fn draw_whole<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
-        let half = 0.5 * self.cell;
-        let heights = self.heights(half);
-        let highest = heights.iter().map(|at| at.1).fold(0.0, f64::max);
+        let profile = self.profile(0.5 * self.cell);
+        let top = profile.iter().map(|at| at.rigid).fold(0.0, f64::max);
         let (depth, gap) = (-MICRO * self.penetration, MICRO * (self.h_max - self.penetration));
-        let y = (1.9 * depth, 1.12 * highest);
-        let mut chart = bodies(area, &heights, (MILLI * half, y))?;
-        let (left, right) = (-MILLI * half, MILLI * half);
+        let half = MILLI * 0.5 * self.cell;
+        let mut chart = bodies(area, &profile, half, (1.8 * depth, 1.15 * top))?;
         for plane in [0.0, gap] {
-            chart.draw_series(DashedLineSeries::new([(left, plane), (right, plane)], 10, 7, BLACK.stroke_width(1)))?;
+            chart.draw_series(DashedLineSeries::new([(-half, plane), (half, plane)], 12, 8, BLACK.stroke_width(2)))?;
         }
-        let at = |part: f64| left + part * (right - left);
-        chart.draw_series([PathElement::new([(at(0.44), depth), (at(0.64), depth)], BLACK.stroke_width(1))])?;
-        dimension(&mut chart, at(0.47), (0.0, depth), BLACK)?;
-        write(&mut chart, (at(0.47), 0.5 * depth), Side::Left, "Δ", BLACK)?;
-        dimension(&mut chart, at(0.62), (gap, depth), BLACK)?;
-        write(&mut chart, (at(0.62), 0.5 * (gap + depth)), Side::Right, "h_max", BLACK)?;
-        write(&mut chart, (at(0.0), gap), Side::Right, "", BLACK)?;
-        let window = MILLI * 0.5 * WINDOW * self.cell;
-        let low = heights.iter().map(|at| at.2).fold(f64::INFINITY, f64::min);
-        chart.draw_series([Rectangle::new([(-window, 1.3 * low), (window, 0.5 * gap)], GREY.stroke_width(1))])?;
-        Ok(())
+        let (delta_x, h_max_x, gap_x) = (-0.05 * half, 0.32 * half, -0.92 * half);
+        chart
+            .draw_series([PathElement::new([(delta_x - 0.04 * half, depth), (h_max_x + 0.04 * half, depth)], BLACK)])?;
+        for (x, ends, side, name) in [
+            (delta_x, (0.0, depth), Side::Left, "Δ"),
+            (h_max_x, (gap, depth), Side::Right, "h_max"),
+            (gap_x, (0.0, gap), Side::Right, "h_max − Δ"),
+        ] {
+            dimension(&mut chart, x, ends, BLACK)?;
+            write(&mut chart, (x, 0.5 * (ends.0 + ends.1)), side, name, BLACK)?;
+        }
+        write(&mut chart, (-0.2 * half, gap), Side::Above, "mean plane of the roughness, h = 0", BLACK)?;
+        write(&mut chart, (-0.75 * half, 0.0), Side::Below, "mean plane of the half-space, v = 0", BLACK)?;
+        write(&mut chart, (0.72 * half, 1.05 * top), Side::Below, "rigid rough surface", GREY)?;
+        write(&mut chart, (-0.72 * half, 1.4 * depth), Side::Below, "elastic half-space", BLUE)?;
+        write(&mut chart, (0.42 * half, 0.75 * depth), Side::Below, "contact", RED)
     }
 
     /// The surroundings of the peak.
     fn draw_part<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
         let half = 0.5 * WINDOW * self.cell;
-        let heights = self.heights(half);
-        let deformed = || heights.iter().map(|at| at.2);
-        let (low, high) = (deformed().fold(f64::INFINITY, f64::min), deformed().fold(f64::NEG_INFINITY, f64::max));
-        let y = (low - 0.35 * (high - low), high + 0.9 * (high - low));
-        bodies(area, &heights, (MILLI * half, y))?;
+        let profile = self.profile(half);
+        let soft = || profile.iter().map(|at| at.soft);
+        let (low, high) = (soft().fold(f64::INFINITY, f64::min), soft().fold(f64::NEG_INFINITY, f64::max));
+        let y = (low - 0.3 * (high - low), high + 0.45 * (high - low));
+        bodies(area, &profile, MILLI * half, y)?;
         Ok(())
     }
+}
+
+/// Heights above the mean plane of the half-space, -v, as they are drawn.
+#[derive(Clone, Copy, Debug)]
+struct Heights {
+    /// Distance from the peak (mm).
+    x: f64,
+    /// Rigid surface (µm).
+    rigid: f64,
+    /// Surface of the half-space (µm).
+    soft: f64,
+    touching: bool,
 }
 
 /// Both bodies and their contact, with axes and the exaggeration of heights.
 fn bodies<'a, B: DrawingBackend>(
     area: &'a Area<B>,
-    heights: &[(f64, f64, f64, bool)],
-    (half_width, y): (f64, (f64, f64)),
+    profile: &[Heights],
+    half_width: f64,
+    y: (f64, f64),
 ) -> Drawn<Chart<'a, B>, B> {
-    let axes = Axes {
-        x: (-half_width, half_width),
-        y,
-        x_label: "x (mm)",
-        y_label: "−v (µm)",
-        n_labels: (10, 8),
-        top: TEXT as u32,
-    };
+    let axes =
+        Axes { x: (-half_width, half_width), y, x_label: "x (mm)", y_label: "height −v (µm)", n_labels: (10, 8) };
     let mut chart = axes.on(area)?;
-    let clamp = |z: f64| z.clamp(y.0, y.1);
-    let (Some(first), Some(last)) = (heights.first(), heights.last()) else { return Ok(chart) };
-    let above = heights.iter().map(|at| (at.0, clamp(at.1))).chain([(last.0, y.1), (first.0, y.1)]);
-    chart.draw_series([Polygon::new(above.collect::<Vec<_>>(), RIGID.filled())])?;
-    let below = heights.iter().map(|at| (at.0, clamp(at.2))).chain([(last.0, y.0), (first.0, y.0)]);
-    chart.draw_series([Polygon::new(below.collect::<Vec<_>>(), SOFT.filled())])?;
-    chart.draw_series(LineSeries::new(heights.iter().map(|at| (at.0, clamp(at.1))), GREY.stroke_width(2)))?;
-    chart.draw_series(LineSeries::new(heights.iter().map(|at| (at.0, clamp(at.2))), BLUE.stroke_width(2)))?;
-    for run in heights.chunk_by(|a, b| a.3 == b.3).filter(|run| run[0].3) {
-        let line: Vec<(f64, f64)> = run.iter().map(|at| (at.0, at.2)).collect();
-        chart.draw_series([PathElement::new(line, RED.stroke_width(5))])?;
+    let line = |height: fn(&Heights) -> f64| -> Vec<(f64, f64)> {
+        profile.iter().map(|at| (at.x, height(at).clamp(y.0, y.1))).collect()
+    };
+    for (height, edge, fill, stroke) in [(line(|at| at.rigid), y.1, RIGID, GREY), (line(|at| at.soft), y.0, SOFT, BLUE)]
+    {
+        let ends = [half_width, -half_width].map(|x| (x, edge));
+        chart.draw_series([Polygon::new(height.iter().copied().chain(ends).collect::<Vec<_>>(), fill.filled())])?;
+        chart.draw_series(LineSeries::new(height, stroke.stroke_width(2)))?;
     }
+    for run in profile.chunk_by(|a, b| a.touching == b.touching).filter(|run| run[0].touching) {
+        let line: Vec<(f64, f64)> = run.iter().map(|at| (at.x, at.soft)).collect();
+        chart.draw_series([PathElement::new(line, RED.stroke_width(6))])?;
+    }
+    // µm per pixel up against mm per pixel along.
+    let (width, height) = chart.plotting_area().dim_in_pixel();
+    let exaggeration = MICRO / MILLI * (f64::from(height) / (y.1 - y.0)) / (f64::from(width) / (2.0 * half_width));
+    let corner = (half_width, y.0 + 0.05 * (y.1 - y.0));
+    write(&mut chart, corner, Side::Left, &format!("heights × {exaggeration:.0}"), BLACK)?;
     Ok(chart)
 }
 

@@ -56,7 +56,7 @@ fn bad_values_of_the_contact_are_refused_with_their_key() {
         (&["--tolerance", "auto"], "tolerance"),
         (&["--tolerance", "small"], "tolerance"),
         (&["--method", "adaptive"], "uniform"),
-        (&["--method", "gauss-seidel"], "uniform"),
+        (&["--method", "gauss-seidel", "--kernel", "spectral"], "love"),
         (&["--kernel", "lave"], "love"),
         (&["--output-grid", "50"], "output_grid"),
         (&["--output-grid", "0"], "output_grid"),

@@ -10,10 +10,9 @@
 //! - (v) find the displacement out of contact;
 //! - (vi) remove elements under tension, add those that penetrate, and mesh the new contact, until neither changes it.
 //!
-//! Two departures. Step (v) evaluates `Σ_j L_ij σ_j` on all points of the finest grid by FFT: an element of the mesh is a
+//! One departure: step (v) evaluates `Σ_j L_ij σ_j` on all points of the finest grid by FFT. An element of the mesh is a
 //! patch of finest elements under one pressure, so this is the same sum to rounding (test
-//! `displacement_by_fft_is_the_direct_sum`), without its O(n·N) cost. And a relaxation factor above 1 is the default,
-//! because plain Gauss-Seidel needs several times more sweeps (`docs/gauss-seidel.md`).
+//! `displacement_by_fft_is_the_direct_sum`), without its O(n·N) cost.
 //!
 //! On a mesh of unequal elements collocation makes L non-symmetric: Gauss-Seidel tolerates that, conjugate gradients do
 //! not. The cost is that of a dense matrix, n² coefficients a sweep, so there is a budget, and a clear error when a scene

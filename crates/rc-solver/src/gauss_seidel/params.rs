@@ -9,7 +9,8 @@ pub struct GaussSeidelParams {
     pub tolerance: f64,
     /// Increments in which the penetration is reached.
     pub increments: usize,
-    /// Relaxation factor ω in (0, 2): 1 is plain Gauss-Seidel, as in the paper.
+    /// Relaxation factor ω in (0, 2). 1 is plain Gauss-Seidel, as in the paper, and also what needs the fewest sweeps: N = 8
+    /// on 128² takes 185 sweeps in all with ω = 1, 246 with 1.2, 536 with 1.6.
     pub relaxation: f64,
     /// Largest number of sweeps for one contact set.
     pub max_sweeps: usize,
@@ -32,7 +33,7 @@ impl GaussSeidelParams {
         Self {
             tolerance: 1e-6,
             increments: 4,
-            relaxation: 1.6,
+            relaxation: 1.0,
             max_sweeps: 2000,
             max_checks: 100,
             ring: 1,
