@@ -2,6 +2,7 @@
 
 mod bisinusoidal;
 mod full_contact;
+mod gauss_seidel;
 mod hertz;
 mod reference;
 mod rough;

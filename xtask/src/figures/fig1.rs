@@ -191,9 +191,10 @@ impl Fig1 {
         Table::new("section", &header, rows)
     }
 
-    /// The profiles within `half_width` (m) of the peak.
+    /// The profiles within `half_width` (m) of the peak; the cell ends with the image of its first point.
     fn profile(&self, half_width: f64) -> Vec<Heights> {
-        let inside = self.points.iter().filter(|point| point.x.abs() <= half_width);
+        let image = self.points.first().map(|point| Point { x: 0.5 * self.cell, ..*point });
+        let inside = self.points.iter().copied().chain(image).filter(|point| point.x.abs() <= half_width);
         let heights = inside.map(|point| Heights {
             x: MILLI * point.x,
             rigid: -MICRO * point.rigid,

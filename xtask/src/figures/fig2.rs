@@ -1,5 +1,4 @@
-//! Fig. 2: the self-balanced load on the elementary cell, and the displacement L that it causes along the cell (Eq.
-//! 3-6).
+//! Fig. 2: the self-balanced load on the elementary cell, and the displacement L that it causes there (Eq. 3-6).
 //!
 //! The load is σ = 1 on a square of half side d less its mean (2d/λ)² everywhere, so that it carries no net force and
 //! its displacement has a mean of zero.

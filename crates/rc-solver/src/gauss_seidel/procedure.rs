@@ -1,4 +1,4 @@
-//! Steps (i) to (vi) of the paper's procedure.
+//! Steps (i) to (vi) of the procedure of Sec. 2, which solves Eq. 4 on the elements in contact.
 
 use rc_core::{Event, Field, Kernel, Observer, Operator};
 use rc_quadtree::{Mask, Mesh, MeshKind, MeshParams, Reconstruction, count, transfer};
@@ -279,8 +279,7 @@ impl<'a> Procedure<'a> {
         self.sites = self.coefficients.prepare(&mesh);
         self.mesh = mesh;
         let prescribed = self.prescribed();
-        let limits =
-            Limits { residual, max_sweeps: self.params.max_sweeps, relaxation: self.params.relaxation };
+        let limits = Limits { residual, max_sweeps: self.params.max_sweeps, relaxation: self.params.relaxation };
         let relaxed = sweep::relax(&self.coefficients, &self.sites, &prescribed, &mut self.pressure, &limits);
         self.info.iterations += relaxed.sweeps;
         Ok(())

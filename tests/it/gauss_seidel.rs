@@ -1,0 +1,64 @@
+//! The paper's procedure on its adaptive mesh: Hertz with the paper's parameters, and a rough surface.
+
+use rc_core::{Field, Grid, Silent};
+use rc_fractal::{SpectrumParams, Surface};
+use rc_kernel::{Love, PeriodicLove};
+use rc_solver::{ContactArea, Control, GaussSeidelParams, Solution, solve_gauss_seidel};
+use rc_theory::hertz::PeriodicHertz;
+
+use crate::{assert_close, solved};
+
+fn by_the_paper(heights: &Field, control: Control, tolerance: f64) -> Solution {
+    let periodic = PeriodicLove::new();
+    let coefficient = |dx: f64, dy: f64, half_side: f64| periodic.coefficient(dx, dy, half_side);
+    let params = GaussSeidelParams { tolerance, ..GaussSeidelParams::paper() };
+    solve_gauss_seidel(heights, &Love, &coefficient, control, &params, &Silent)
+        .unwrap_or_else(|error| panic!("{control:?}: {error}"))
+}
+
+/// Contact area of the adaptive solution, with the perimeter term of its finest elements.
+fn contact_area(solution: &Solution) -> f64 {
+    ContactArea::of(&solution.pressure, 0.0872).fraction
+}
+
+#[test]
+fn papers_sphere_on_the_adaptive_mesh_matches_periodic_hertz() {
+    // R = 1 cm, Δ = 25 µm in a cell of 1 cm: the radius is 27 finest elements.
+    let theory = PeriodicHertz { radius: 1.0 };
+    let expected = theory.at_penetration(2.5e-3).expect("small contact");
+    let grid = Grid::square(512).expect("grid");
+    // At the centre of a block of eight elements, so that a large element sits on the peak and not four around it.
+    let centre = 260.0 / 512.0;
+    let heights = Field::from_fn(grid, |x, y| -0.5 * ((x - centre).powi(2) + (y - centre).powi(2)));
+    // Centres of elements miss the apex, so h_max of the grid is that much lower.
+    let solution = by_the_paper(&heights, Control::Penetration(2.5e-3 + heights.max()), 1e-7);
+    let elements = solution.elements.as_ref().expect("a mesh");
+    assert!(elements.mesh.len() < 1600, "{} elements for 2250 cells", elements.mesh.len());
+    elements.mesh.assert_well_formed();
+    let radius = (contact_area(&solution) / std::f64::consts::PI).sqrt();
+    assert_close("radius", radius, expected.contact_radius, 0.01);
+    assert_close("load", solution.info.mean_pressure, expected.load, 0.01);
+    assert_close("peak pressure", solution.pressure.max(), expected.peak_pressure, 0.01);
+    // Sections as in Fig. 4: through the centre and beside it.
+    for (element, p) in elements.mesh.elements().zip(&elements.pressure) {
+        let r = (element.x - centre).hypot(element.y - centre);
+        if r < 0.9 * expected.contact_radius {
+            let exact = expected.pressure(r);
+            let error = (p - exact).abs() / expected.peak_pressure;
+            assert!(error < 0.03, "at r = {r}: {p:e} against {exact:e}");
+        }
+    }
+}
+
+#[test]
+fn rough_surface_matches_the_uniform_solution_with_the_same_smallest_element() {
+    let surface = Surface::new(&SpectrumParams::paper(8, 1)).expect("valid spectrum");
+    let heights = surface.sample_on(Grid::square(128).expect("grid")).expect("resolved");
+    let reference = solved(&heights, &Love, Control::Penetration(1.5e-3), 1e-8);
+    let solution = by_the_paper(&heights, Control::Penetration(1.5e-3), 1e-6);
+    assert_close("area", contact_area(&solution), contact_area(&reference), 0.01);
+    assert_close("load", solution.info.mean_pressure, reference.info.mean_pressure, 0.01);
+    let elements = solution.elements.as_ref().expect("a mesh").mesh.len();
+    let cells = reference.pressure.values().iter().filter(|&&p| p > 0.0).count();
+    assert!(elements < cells, "{elements} elements for {cells} cells");
+}
