@@ -101,9 +101,9 @@ fn finish(
 }
 
 struct HeightStatistics {
-    h_max: f64,
-    h_min: f64,
-    h_mean: f64,
+    greatest: f64,
+    least: f64,
+    mean: f64,
 }
 
 impl HeightStatistics {
@@ -127,9 +127,9 @@ impl HeightStatistics {
             }
         }
         Ok(Self {
-            h_max: rows.iter().map(|row| row.0).fold(f64::NEG_INFINITY, f64::max),
-            h_min: rows.iter().map(|row| row.1).fold(f64::INFINITY, f64::min),
-            h_mean: rows.iter().map(|row| row.2).sum::<f64>() / heights.grid().len() as f64,
+            greatest: rows.iter().map(|row| row.0).fold(f64::NEG_INFINITY, f64::max),
+            least: rows.iter().map(|row| row.1).fold(f64::INFINITY, f64::min),
+            mean: rows.iter().map(|row| row.2).sum::<f64>() / heights.grid().len() as f64,
         })
     }
 }
@@ -147,7 +147,7 @@ pub(crate) struct Problem {
 
 impl Problem {
     pub(crate) fn check(heights: &Field, control: Control, params: &SolveParams) -> Result<Self, SolveError> {
-        let HeightStatistics { h_max, h_min, h_mean } = HeightStatistics::of(heights)?;
+        let HeightStatistics { greatest: h_max, least: h_min, mean: h_mean } = HeightStatistics::of(heights)?;
         let h_range = h_max - h_min;
         let full_contact = h_max - h_mean;
         match control {
