@@ -2,10 +2,12 @@
 //!
 //! Find p ≥ 0 on the cell with gap `g = v - (h - h_max + Δ) ≥ 0`, `p·g = 0` and `v = L p` (Eq. 3-4), for a given mean
 //! pressure σ0 (Δ is then the multiplier) or a given penetration Δ (σ0 is then a result). [`solve_uniform`] does it on
-//! uniform grids, [`solve_gauss_seidel`] by the paper's own procedure on an adaptive mesh. Conventions and units: see [`rc_core`].
+//! uniform grids, [`solve_gauss_seidel`] by the paper's own procedure on an adaptive mesh, and
+//! [`solve_dense`], slowly, by elimination: what the other two are tested against. Conventions and units: see [`rc_core`].
 
 mod certificate;
 mod control;
+mod dense;
 mod error;
 mod fft;
 mod gauss_seidel;
@@ -18,6 +20,7 @@ mod uniform;
 
 pub use certificate::Certificate;
 pub use control::Control;
+pub use dense::solve_dense;
 pub use error::SolveError;
 pub use gauss_seidel::{Coefficient, GaussSeidelError, GaussSeidelParams, solve_gauss_seidel};
 pub use observables::{ContactArea, Observables};

@@ -4,7 +4,7 @@ use rc_core::{Field, Grid, Operator, Silent};
 use rc_kernel::{Love, PeriodicLove};
 use rc_solver::{
     Control, GaussSeidelError, GaussSeidelParams, Observables, Solution, SolveError, SolveParams, UniformOperator,
-    solve_gauss_seidel, solve_uniform,
+    solve_dense, solve_gauss_seidel, solve_uniform,
 };
 
 const TAU: f64 = std::f64::consts::TAU;
@@ -38,6 +38,23 @@ fn gauss_seidel_agrees_with_conjugate_gradients_on_the_same_mesh() {
         let pairs = ours.pressure.values().iter().zip(reference.pressure.values());
         let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(worst <= 1e-8 * scale, "{control:?}: pressures differ by {:e} of the peak", worst / scale);
+    }
+}
+
+#[test]
+fn dense_elimination_gauss_seidel_and_conjugate_gradients_agree() {
+    let heights = bumps(32);
+    let control = Control::Penetration(6e-3);
+    let exact = solve_dense(&heights, &Love, 6e-3).expect("valid").expect("the contact settles");
+    let params = GaussSeidelParams { tolerance: 1e-11, uniform_elements: true, ..GaussSeidelParams::paper() };
+    let by_sweeps = by_the_paper(&heights, control, &params).expect("solvable");
+    let by_gradients = uniform(&heights, control, 1e-12);
+    let scale = exact.max();
+    assert!(exact.values().iter().filter(|&&p| p > 0.0).count() > 50, "a contact of many elements");
+    for (name, solution) in [("Gauss-Seidel", by_sweeps), ("conjugate gradients", by_gradients)] {
+        let pairs = solution.pressure.values().iter().zip(exact.values());
+        let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(worst <= 1e-8 * scale, "{name} differs by {:e} of the peak", worst / scale);
     }
 }
 

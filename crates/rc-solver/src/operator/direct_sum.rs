@@ -32,6 +32,17 @@ impl DirectSum {
         let coefficients = (0..grid.len()).map(|i| coefficient(i % nx, i / nx)).collect();
         Self { grid, coefficients }
     }
+
+    /// `L_ij` between target `i` and source `j`, indices of elements.
+    ///
+    /// # Panics
+    /// When an index is outside the grid.
+    #[must_use]
+    pub fn coefficient(&self, i: usize, j: usize) -> f64 {
+        let (nx, ny) = (self.grid.nx(), self.grid.ny());
+        let (ix, iy, jx, jy) = (i % nx, i / nx, j % nx, j / nx);
+        self.coefficients[self.grid.index((ix + nx - jx) % nx, (iy + ny - jy) % ny)]
+    }
 }
 
 impl Operator for DirectSum {
@@ -44,16 +55,10 @@ impl Operator for DirectSum {
     }
 
     fn apply(&self, pressure: &[f64], displacement: &mut [f64], _scratch: &mut [f64]) {
-        let (nx, ny) = (self.grid.nx(), self.grid.ny());
-        assert_eq!(pressure.len(), nx * ny, "length of the pressure");
-        assert_eq!(displacement.len(), nx * ny, "length of the displacement");
+        assert_eq!(pressure.len(), self.grid.len(), "length of the pressure");
+        assert_eq!(displacement.len(), self.grid.len(), "length of the displacement");
         for (i, v) in displacement.iter_mut().enumerate() {
-            let (ix, iy) = (i % nx, i / nx);
-            let terms = pressure.iter().enumerate().map(|(j, p)| {
-                let (jx, jy) = (j % nx, j / nx);
-                self.coefficients[self.grid.index((ix + nx - jx) % nx, (iy + ny - jy) % ny)] * p
-            });
-            *v = terms.sum();
+            *v = pressure.iter().enumerate().map(|(j, p)| self.coefficient(i, j) * p).sum();
         }
     }
 }
