@@ -113,6 +113,18 @@ impl MeanTable {
         Self { patches: (0..PATCHES).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| patch(i, j)).collect() }
     }
 
+    /// The table of means given by themselves, at offsets (x, y) with 0 ≤ y, x ≤ 1/2: for squares larger than
+    /// [`MAX_HALF_SIDE`].
+    pub(crate) fn of_means(mean: impl Fn(f64, f64) -> f64) -> Self {
+        let half_patch = 0.25 / PATCHES as f64;
+        let point = |patch: usize, at: usize| half_patch * ((2 * patch + 1) as f64 + chebyshev_point(at, DEGREES));
+        let patch = |i: usize, j: usize| {
+            let points = (0..DEGREES * DEGREES).map(|at| mean(point(i, at / DEGREES), point(j, at % DEGREES)));
+            to_powers(&chebyshev_coefficients(&points.collect::<Vec<f64>>(), DEGREES))
+        };
+        Self { patches: (0..PATCHES).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| patch(i, j)).collect() }
+    }
+
     /// The mean at offset (`long`, `short`), 0 ≤ short ≤ long ≤ 1/2.
     ///
     /// Never inlined: 18 ns as a function, and up to 30 inside loops, where the compiler spills the eight sums.

@@ -3,7 +3,7 @@
 //! The nearest image of the source is a square in free space ([`crate::square`]). All other images, with the background, add
 //! the mean over the source of a smooth function, which is tabulated by size ([`crate::averages`]).
 
-use std::f64::consts::FRAC_1_PI;
+use std::f64::consts::{FRAC_1_PI, PI};
 use std::sync::{LazyLock, OnceLock};
 
 use crate::KernelError;
@@ -12,9 +12,9 @@ use crate::lattice::wrap;
 use crate::square::square_integral;
 use crate::truncated::{check_half_side, check_offset};
 
-/// Half sides 2^-3 to 2^-21 have a table each.
-const FIRST_LEVEL: usize = 3;
-const LEVELS: usize = 19;
+/// Half sides 2^-2 to 2^-21 have a table each.
+const FIRST_LEVEL: usize = 2;
+const LEVELS: usize = 20;
 
 /// Below this half side d, what images add is the same as for a point: the difference, d²/6 times the Laplacian of ψ (below
 /// 20), is less than 2e-13.
@@ -41,12 +41,12 @@ static TABLES: LazyLock<Tables> = LazyLock::new(|| Tables {
 /// [`ewald_phi`](crate::ewald_phi). In units of λ p/E*. The sum over a row is 0 on any tiling of the cell.
 ///
 /// *Accuracy*: error at most 1e-12 of the larger of |L_ij| and (2d)², the area of the source: where L_ij changes sign its
-/// relative error has no meaning. Measured 6e-14, for half sides from 1/2 to 2^-17 and all offsets (test
-/// `coefficients_match_the_quadrature_of_ewald_sums`). Exactly symmetric under dx → -dx, dy → -dy and dx ↔ dy.
+/// relative error has no meaning. Measured 1.4e-13 for sides of λ/2 and 6e-14 for smaller ones, down to half sides of
+/// 2^-17, at all offsets (test `coefficients_match_the_quadrature_of_ewald_sums`). Exactly symmetric under dx → -dx, dy → -dy and dx ↔ dy.
 ///
-/// *Cost*, one core, x86-64 without AVX: 54 ns within 13 half sides of the source, 31 ns beyond, for half sides 2^-3, 2^-4, …
-/// and all below 2.4e-7. Other half sides take 0.7 µs; a [`PeriodicSource`] has a table for one of them. A square larger
-/// than λ/4 is the sum of its quarters, so 4 (λ/2) to 16 times as much; a mesh has a handful of these. The first use in a
+/// *Cost*, one core, x86-64 without AVX: 54 ns within 13 half sides of the source, 31 ns beyond, for half sides 2^-2, 2^-3, …
+/// and all below 2.4e-7. Other half sides take 0.7 µs; a [`PeriodicSource`] has a table for one of them. Another
+/// square larger than λ/4 is the sum of its quarters, so 4 to 16 times as much. The first use in a
 /// process takes 1 ms, and the first use of a size 0.3 ms; after that this is a pointer.
 #[derive(Clone, Copy, Debug)]
 pub struct PeriodicLove {
@@ -165,7 +165,17 @@ impl Tables {
     #[cold]
     #[inline(never)]
     fn make(&self, half_side: f64) -> MeanTable {
-        MeanTable::new(&self.remainder, half_side)
+        if half_side <= MAX_HALF_SIDE {
+            return MeanTable::new(&self.remainder, half_side);
+        }
+        // A square of side λ/2 reaches too near its images for the fit of ψ, but what they add at its own offsets is
+        // smooth: the sum of its quarters less the nearest image.
+        let (half, side) = (0.5 * half_side, 2.0 * half_side);
+        let quarter = self.make(half);
+        MeanTable::of_means(|x, y| {
+            let all = PI * quarters(x, y, half, |u, v| with_table(&quarter, u, v, half));
+            (all - square_integral(x.max(y), x.min(y), half_side)) / (side * side)
+        })
     }
 }
 
