@@ -12,7 +12,7 @@ fn main() {
 }
 
 /// Half side 2^-level; offsets all around at `distance`.
-#[divan::bench(args = [(3, 0.3), (3, 0.5), (5, 0.02), (5, 0.1), (5, 0.4), (8, 0.001), (8, 0.01), (8, 0.1), (8, 0.4), (12, 0.001), (12, 0.4), (17, 0.4)])]
+#[divan::bench(args = [(2, 0.3), (3, 0.3), (3, 0.5), (5, 0.02), (5, 0.1), (5, 0.4), (8, 0.001), (8, 0.01), (8, 0.1), (8, 0.4), (12, 0.001), (12, 0.4), (17, 0.4)])]
 fn coefficient(bencher: Bencher<'_, '_>, (level, distance): (i32, f64)) {
     let love = PeriodicLove::new();
     let half_side = 0.5_f64.powi(level);
