@@ -12,6 +12,7 @@
 //! | [`PeriodicLove`] | Eq. 4-6 between any two squares of the cell, all images, to 1e-12 in 31 to 54 ns | `periodic.rs`: `square.rs` and `averages.rs` |
 //! | [`ewald_phi`], [`ewald_coefficient`] | the point load and the square by Ewald's sum: the slow truth of [`PeriodicLove`] | `lattice.rs` |
 //! | [`truncated_coefficient`] | Eq. 4-6 as the paper sums them, K shells of images, with a proven bound | `truncated.rs` |
+//! | [`ScaleSplit`] | Eq. 4-6 split by scale, for meshes of many levels: short-range stencils, filters between levels, a smooth remainder | `split/` |
 //! | [`Spectral`] | Eq. 2-3 for waves instead of elements: the half-space without aliases | `spectral.rs` |
 //!
 //! Half side or side: d_j of Eq. 5 and 6 is the half side of an element, and so is `half_side` here.
@@ -39,6 +40,7 @@ mod multipoles;
 mod periodic;
 mod polynomial;
 mod spectral;
+mod split;
 mod square;
 mod truncated;
 
@@ -49,6 +51,7 @@ pub use lattice::{LATTICE_CONSTANT, ewald_coefficient, ewald_phi};
 pub use love::love_displacement;
 pub use periodic::{PeriodicLove, PeriodicSource};
 pub use spectral::Spectral;
+pub use split::{Filter, ScaleSplit, SplitParams, Stencil};
 pub use truncated::{LoadForm, MAX_SHELLS, shells_for, truncated_coefficient, truncation_error_bound};
 
 use love_symbol::LoveSymbol;

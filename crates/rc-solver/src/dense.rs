@@ -3,7 +3,7 @@
 use rc_core::{Field, Kernel, Operator};
 
 use crate::operator::DirectSum;
-use crate::uniform::Problem;
+use crate::problem::Problem;
 use crate::{Control, SolveError, SolveParams};
 
 /// Pressures (in E*) on the grid of `heights` under a given penetration (in λ), by elimination on the elements in contact:

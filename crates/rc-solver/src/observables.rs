@@ -38,7 +38,12 @@ impl ContactArea {
         };
         let add = |a: (usize, usize), b: (usize, usize)| (a.0 + b.0, a.1 + b.1);
         let (in_contact, perimeter_edges) = (0..ny).into_par_iter().map(count_row).reduce(|| (0, 0), add);
-        let n = pressure.grid().len() as f64;
+        Self::from_counts(in_contact, perimeter_edges, pressure.grid().len(), perimeter_constant)
+    }
+
+    /// From the number of elements in contact and of contact edges, on a grid of `n` elements.
+    pub(crate) fn from_counts(in_contact: usize, perimeter_edges: usize, n: usize, perimeter_constant: f64) -> Self {
+        let n = n as f64;
         let (cells, perimeter_term) = (in_contact as f64 / n, perimeter_constant * perimeter_edges as f64 / n);
         Self { cells, perimeter_edges, fraction: cells - perimeter_term, error: PERIMETER_TERM_ERROR * perimeter_term }
     }

@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 use rc_core::{Field, Kernel};
 
-use crate::fft::{BLOCK_ROWS, Convolution, SymbolTable};
+use crate::descent::Engine;
+use crate::fft::{Convolution, SymbolTable};
 
 /// The iteration ends when a step adds less than this fraction; what later steps would add is of the same order.
 const SMALLEST_GAIN: f64 = 3e-4;
@@ -11,28 +12,38 @@ const SMALLEST_GAIN: f64 = 3e-4;
 /// Enough for the worst scenes at [`SMALLEST_GAIN`]; reached only when rounding prevents progress.
 const MOST_STEPS: usize = 50;
 
-/// dσ0/dΔ, in E*/λ, for the contact set {p > 0}: the mean of the pressure x that displaces every element in contact by 1,
-/// `L x = 1` there. The set may be held fixed, since pressure and gap vanish at its edge, so that moving it is of second
-/// order. Infinite when everything is in contact, where a uniform pressure displaces nothing.
-///
-/// The mean of x is the maximum of 2⟨x⟩ - ⟨x L x⟩, so its error is the square of that of x, and conjugate gradients in
-/// single precision reach 1e-3 in about five steps.
+/// dσ0/dΔ, in E*/λ, on a uniform grid; see [`stiffness_of`].
 pub(crate) fn contact_stiffness(pressure: &Field, kernel: &dyn Kernel) -> f64 {
     let grid = pressure.grid();
-    let (n, block) = (grid.len() as f64, BLOCK_ROWS * grid.nx());
-    let in_contact: Vec<bool> = pressure.values().par_iter().map(|&p| p > 0.0).collect();
-    if in_contact.iter().all(|&c| c) {
+    if pressure.values().par_iter().all(|&p| p > 0.0) {
         return f64::INFINITY;
     }
     let response = SymbolTable::<f64>::new(grid, kernel.symbol(grid));
     let mut preconditioner = response.inverse(grid).map(|value| value as f32);
     let response = response.map(|value| value as f32);
     let mut convolution = Convolution::<f32>::new(grid);
+    stiffness_of(pressure.values(), grid.len() as f64, &mut convolution, &response, &mut preconditioner)
+}
 
-    let zeros = || vec![0.0_f32; grid.len()];
+/// dσ0/dΔ, in E*/λ, for the contact set {p > 0}: the mean over a cell of `n` elements of the pressure x that displaces every
+/// element in contact by 1, `L x = 1` there. The set may be held fixed, since pressure and gap vanish at its edge, so that
+/// moving it is of second order.
+///
+/// The mean of x is the maximum of 2⟨x⟩ - ⟨x L x⟩, so its error is the square of that of x, and conjugate gradients in
+/// single precision reach 1e-3 in about five steps.
+pub(crate) fn stiffness_of<C: Engine<f32>>(
+    pressure: &[f64],
+    n: f64,
+    engine: &mut C,
+    response: &C::Table,
+    preconditioner: &mut C::Table,
+) -> f64 {
+    let block = engine.block_len();
+    let in_contact: Vec<bool> = pressure.par_iter().map(|&p| p > 0.0).collect();
+    let zeros = || vec![0.0_f32; pressure.len()];
     let (mut residual, mut z, mut t, mut u) = (zeros(), zeros(), zeros(), zeros());
     // The first direction is the pressure itself: its best multiple has the secant stiffness σ0²/mean(p v).
-    for (t, &p) in t.iter_mut().zip(pressure.values()) {
+    for (t, &p) in t.iter_mut().zip(pressure) {
         *t = p as f32;
     }
     for (residual, &c) in residual.iter_mut().zip(&in_contact) {
@@ -41,16 +52,12 @@ pub(crate) fn contact_stiffness(pressure: &Field, kernel: &dyn Kernel) -> f64 {
     let mut stiffness = 0.0;
     for step in 0..MOST_STEPS {
         let sinks = (t.par_chunks(block), residual.par_chunks(block), u.par_chunks_mut(block));
-        let sums = convolution.apply(
-            &response,
-            t.par_chunks(block),
-            |t, rows| rows.copy_from_slice(t),
-            sinks.into_par_iter(),
-            |(t, residual, u), rows| {
-                u.copy_from_slice(rows);
-                [dot(t, rows), dot(t, residual)]
-            },
-        );
+        engine.fill(t.par_chunks(block), |t, rows| rows.copy_from_slice(t));
+        engine.multiply(response);
+        let sums = engine.take(response, sinks.into_par_iter(), |(t, residual, u), rows| {
+            u.copy_from_slice(rows);
+            [dot(t, rows), dot(t, residual)]
+        });
         let [curvature, slope] = crate::fft::total(sums);
         if curvature <= 0.0 || !curvature.is_finite() {
             break;
@@ -61,28 +68,24 @@ pub(crate) fn contact_stiffness(pressure: &Field, kernel: &dyn Kernel) -> f64 {
             break;
         }
         if step == 0 {
-            preconditioner.set_mean((stiffness / n) as f32);
+            engine.set_mean(preconditioner, stiffness);
         }
         let length = (slope / curvature) as f32;
         let sources = (residual.par_chunks_mut(block), u.par_chunks(block), in_contact.par_chunks(block));
         let sinks = (u.par_chunks(block), in_contact.par_chunks(block), z.par_chunks_mut(block));
-        let sums = convolution.apply(
-            &preconditioner,
-            sources.into_par_iter(),
-            |(residual, u, in_contact), rows| {
-                for (((r, &u), &c), row) in residual.iter_mut().zip(u).zip(in_contact).zip(rows) {
-                    *r = if c { *r - length * u } else { 0.0 };
-                    *row = *r;
-                }
-            },
-            sinks.into_par_iter(),
-            |(u, in_contact, z), rows| {
-                for ((z, &row), &c) in z.iter_mut().zip(rows).zip(in_contact) {
-                    *z = if c { row } else { 0.0 };
-                }
-                [dot(z, u)]
-            },
-        );
+        engine.fill(sources.into_par_iter(), |(residual, u, in_contact), rows| {
+            for (((r, &u), &c), row) in residual.iter_mut().zip(u).zip(in_contact).zip(rows) {
+                *r = if c { *r - length * u } else { 0.0 };
+                *row = *r;
+            }
+        });
+        engine.multiply(preconditioner);
+        let sums = engine.take(preconditioner, sinks.into_par_iter(), |(u, in_contact, z), rows| {
+            for ((z, &row), &c) in z.iter_mut().zip(rows).zip(in_contact) {
+                *z = if c { row } else { 0.0 };
+            }
+            [dot(z, u)]
+        });
         let [zu] = crate::fft::total(sums);
         let beta = (zu / curvature) as f32;
         t.par_iter_mut().zip(&z).for_each(|(t, &z)| *t = z - beta * *t);

@@ -74,6 +74,11 @@ impl<T: FftNum> Convolution<T> {
         Self { grid, row_forward, row_inverse, column_forward, column_inverse, spectrum, workspaces }
     }
 
+    /// The grid.
+    pub(crate) fn grid(&self) -> Grid {
+        self.grid
+    }
+
     /// Convolves.
     ///
     /// `sources` and `sinks` have one item for each [`BLOCK_ROWS`] rows of the grid, in order. `fill` writes the field's

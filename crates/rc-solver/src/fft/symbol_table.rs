@@ -6,6 +6,7 @@ use realfft::FftNum;
 
 /// Eigenvalues for 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2, columns of constant kx contiguous, with the 1/(nx·ny) of the inverse
 /// transform folded in.
+#[derive(Clone)]
 pub(crate) struct SymbolTable<T> {
     column_len: usize,
     values: Vec<T>,

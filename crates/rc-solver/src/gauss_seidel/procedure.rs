@@ -7,8 +7,9 @@ use super::coefficients::{Coefficient, Coefficients, Site};
 use super::sweep::{self, Limits};
 use super::{GaussSeidelError, GaussSeidelParams};
 use crate::operator::UniformOperator;
+use crate::problem::Problem;
 use crate::solution::{LevelInfo, MeshPressure, Solution, SolveInfo, Status};
-use crate::uniform::{Problem, coarsen};
+use crate::uniform::coarsen;
 use crate::{Certificate, Control, SolveError, SolveParams, solve_uniform};
 
 /// Largest element, in finest elements: beyond it coarsening saves nothing and heights at centres would need more levels.

@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 use rc_core::{Field, Kernel};
 
-use super::Problem;
 use crate::fft::{BLOCK_ROWS, Convolution, SymbolTable};
 use crate::operator::UniformOperator;
+use crate::problem::Problem;
 use crate::solution::{LevelInfo, Solution, SolveInfo, Status};
 use crate::{Certificate, Control};
 

@@ -6,17 +6,15 @@
 //! interpolation puts the edge where it belongs.
 
 use rayon::prelude::*;
-use rc_core::{Field, Grid};
 
-use super::descent::Descent;
+use super::UniformDescent;
 
 /// The start on the grid with twice as many elements per side.
-pub(super) fn prolong(coarse: &Descent<'_>) -> Field {
+pub(crate) fn prolong(coarse: &UniformDescent<'_>) -> Vec<f64> {
     let level = level_function(coarse);
     let (nx, ny) = (coarse.grid().nx(), coarse.grid().ny());
-    let fine_grid = Grid::new(2 * nx, 2 * ny).expect("twice a level's grid is the next level's");
-    let mut fine = Field::zeros(fine_grid);
-    fine.values_mut().par_chunks_mut(2 * nx).enumerate().for_each(|(iy, row)| {
+    let mut fine = vec![0.0; 4 * nx * ny];
+    fine.par_chunks_mut(2 * nx).enumerate().for_each(|(iy, row)| {
         // The centre of a fine element lies a quarter of a coarse element from the centre of the coarse one it is in.
         let near = &level[(iy / 2) * nx..][..nx];
         let far_iy = if iy.is_multiple_of(2) { (iy / 2 + ny - 1) % ny } else { (iy / 2 + 1) % ny };
@@ -32,7 +30,7 @@ pub(super) fn prolong(coarse: &Descent<'_>) -> Field {
 }
 
 /// φ at the coarse centres.
-fn level_function(coarse: &Descent<'_>) -> Vec<f64> {
+pub(crate) fn level_function(coarse: &UniformDescent<'_>) -> Vec<f64> {
     let (nx, ny) = (coarse.grid().nx(), coarse.grid().ny());
     let (pressure, gap) = (coarse.pressure(), coarse.gap());
     let zero_gap = coarse.contact_gap();
@@ -57,14 +55,16 @@ fn level_function(coarse: &Descent<'_>) -> Vec<f64> {
 fn outside(rows: &[&[f64]; 3], ix: usize, gap: f64, spacing: f64) -> f64 {
     let nx = rows[0].len();
     let columns = [(ix + nx - 1) % nx, ix, (ix + 1) % nx];
+    outside_level(rows.iter().flat_map(|row| columns.iter().map(|&column| &row[column])), gap, spacing)
+}
+
+/// φ of an element out of contact with these pressures around it.
+pub(crate) fn outside_level<'a>(near: impl Iterator<Item = &'a f64>, gap: f64, spacing: f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
-    for row in rows {
-        for column in columns {
-            let p = row[column];
-            if p > 0.0 {
-                sum += p * p;
-                count += 1.0;
-            }
+    for p in near {
+        if *p > 0.0 {
+            sum += p * p;
+            count += 1.0;
         }
     }
     if count == 0.0 {

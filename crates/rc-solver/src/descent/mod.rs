@@ -1,4 +1,4 @@
-//! Preconditioned projected conjugate gradients on one grid.
+//! Preconditioned projected conjugate gradients on one level, whatever its mesh ([`Engine`]).
 //!
 //! One round chooses the active elements (pressing or penetrating), takes [`STEPS_PER_ROUND`] conjugate-gradient steps on
 //! them, clips tensile pressures and restores the load. Directions survive a change of the active set: β makes the new
@@ -9,12 +9,17 @@
 //! correction is added to exact values, as in iterative refinement, and a fresh application of L in double precision
 //! settles what single precision left. All corrections are relative to the height range H, so no scene underflows.
 
-use rayon::prelude::*;
-use rc_core::{Event, Field, Grid, Kernel, Observer};
+mod engine;
+mod rows;
 
-use super::Problem;
-use super::rows::{self, GapSums};
-use crate::fft::{BLOCK_ROWS, Convolution, SymbolTable, total};
+use rayon::prelude::*;
+use rc_core::{Event, Grid, Observer};
+
+pub(crate) use engine::Engine;
+use rows::GapSums;
+
+use crate::fft::total;
+use crate::problem::Problem;
 use crate::solution::LevelInfo;
 use crate::{Certificate, Control};
 
@@ -29,92 +34,161 @@ const PATIENCE: usize = 20;
 const GREATEST_SCALING: f64 = 4.0;
 
 /// What a descent found.
-pub(super) struct Outcome {
-    pub(super) converged: bool,
-    pub(super) certificate: Certificate,
+pub(crate) struct Outcome {
+    pub(crate) converged: bool,
+    pub(crate) certificate: Certificate,
     /// Mean pressure.
-    pub(super) mean_pressure: f64,
+    pub(crate) mean_pressure: f64,
     /// Pressure-weighted mean of v - h: penetration minus h_max.
-    pub(super) approach: f64,
+    pub(crate) approach: f64,
     /// ½ mean(p v).
-    pub(super) elastic_energy: f64,
+    pub(crate) elastic_energy: f64,
 }
 
-/// Pressure, gap and everything that one grid needs to improve them.
-pub(super) struct Descent<'a> {
-    heights: &'a Field,
+impl Outcome {
+    /// What pressure `p` and gap `g`, of elements with heights `h`, amount to when all others are out of contact, in a cell
+    /// of `n_cell` elements.
+    pub(crate) fn of(problem: &Problem, n_cell: f64, h: &[f64], p: &[f64], g: &[f64]) -> Self {
+        Self::new(problem, &rows::sums(SUMMED_AT_ONCE, h, p, g), n_cell, true)
+    }
+
+    fn new(problem: &Problem, sums: &GapSums, n: f64, converged: bool) -> Self {
+        let h_range = problem.h_range;
+        let mean_pressure = sums.pressure / n;
+        let mean_gap = if sums.pressure > 0.0 { sums.pressure_gap / sums.pressure } else { 0.0 };
+        let penetration = ((mean_gap - sums.min_gap) / h_range).max(0.0);
+        let load = match problem.control {
+            Control::MeanPressure(wanted) => (mean_pressure - wanted).abs() / wanted,
+            Control::Penetration(_) => mean_gap.abs() / h_range,
+        };
+        let offset = problem.offset();
+        let displacement_work = sums.pressure_gap + sums.pressure_height - offset * sums.pressure;
+        Self {
+            converged,
+            // Σ p (g - min g) / Σ p with the weighted mean of g as zero is -min g: the two errors coincide.
+            certificate: Certificate { complementarity: penetration, penetration, load },
+            mean_pressure,
+            approach: mean_gap - offset,
+            elastic_energy: 0.5 * displacement_work / n,
+        }
+    }
+}
+
+/// Elements whose sums one thread forms at a time.
+const SUMMED_AT_ONCE: usize = 4096;
+
+/// What applies L and its approximate inverse on one level.
+pub(crate) struct Machinery<C: Engine<f32>, F: Engine<f64>> {
+    /// Corrections, in single precision.
+    pub(crate) corrections: C,
+    /// L.
+    pub(crate) response: C::Table,
+    /// Its approximate inverse.
+    pub(crate) preconditioner: C::Table,
+    /// Fresh gaps, in double precision.
+    pub(crate) fresh: F,
+    /// L.
+    pub(crate) fresh_response: F::Table,
+}
+
+/// Where a descent starts.
+pub(crate) enum Start {
+    /// From a uniform pressure, or from what the rigid surface would displace.
+    Nothing,
+    /// From this pressure, up to a factor.
+    Pressure(Vec<f64>),
+    /// From this pressure, of which the gap is known.
+    Known { pressure: Vec<f64>, gap: Vec<f64> },
+}
+
+/// Pressure, gap and everything that one level needs to improve them.
+pub(crate) struct Descent<'a, C: Engine<f32>, F: Engine<f64>> {
+    heights: &'a [f64],
     problem: &'a Problem,
-    /// Corrections, in single precision: L, its inverse, and where they are applied.
-    response: SymbolTable<f32>,
-    preconditioner: SymbolTable<f32>,
-    corrections: Convolution<f32>,
-    /// L in double precision, for fresh gaps.
-    fresh_response: SymbolTable<f64>,
-    fresh: Convolution<f64>,
-    p: Field,
-    g: Field,
+    machinery: Machinery<C, F>,
+    p: Vec<f64>,
+    g: Vec<f64>,
     z: Vec<f32>,
     t: Vec<f32>,
     u: Vec<f32>,
     active: Vec<bool>,
+    has_start: bool,
+    has_gap: bool,
     /// <t, u> of the last step; infinite when there is no direction to be conjugate to.
     curvature: f64,
     zero_gap: f64,
     info: LevelInfo,
 }
 
-impl<'a> Descent<'a> {
-    /// A descent from `start`, or from a uniform pressure.
-    pub(super) fn new(heights: &'a Field, kernel: &dyn Kernel, problem: &'a Problem, start: Option<Field>) -> Self {
-        let grid = heights.grid();
-        let eigenvalue = kernel.symbol(grid);
-        let fresh_response = SymbolTable::new(grid, &eigenvalue);
-        let response = fresh_response.map(|value| value as f32);
-        let preconditioner = fresh_response.inverse(grid).map(|value| value as f32);
-        let zeros = || vec![0.0; grid.len()];
+impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
+    /// A descent on the level whose elements are those of `grid`, or some of them: `heights` has one value for each.
+    pub(crate) fn new(
+        heights: &'a [f64],
+        grid: Grid,
+        machinery: Machinery<C, F>,
+        problem: &'a Problem,
+        start: Start,
+    ) -> Self {
+        let n = heights.len();
+        debug_assert_eq!(machinery.corrections.block_len(), machinery.fresh.block_len());
+        let (has_start, has_gap) = (!matches!(start, Start::Nothing), matches!(start, Start::Known { .. }));
+        let (p, g) = match start {
+            Start::Nothing => (vec![0.0; n], vec![0.0; n]),
+            Start::Pressure(pressure) => (pressure, vec![0.0; n]),
+            Start::Known { pressure, gap } => (pressure, gap),
+        };
+        let zeros = || vec![0.0; n];
         Self {
             heights,
             problem,
-            response,
-            preconditioner,
-            corrections: Convolution::new(grid),
-            fresh_response,
-            fresh: Convolution::new(grid),
-            p: start.unwrap_or_else(|| Field::zeros(grid)),
-            g: Field::zeros(grid),
+            machinery,
+            p,
+            g,
             z: zeros(),
             t: zeros(),
             u: zeros(),
-            active: vec![false; grid.len()],
+            active: vec![false; n],
+            has_start,
+            has_gap,
             curvature: f64::INFINITY,
             zero_gap: 0.0,
             info: LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 },
         }
     }
 
-    pub(super) fn grid(&self) -> Grid {
-        self.heights.grid()
+    pub(crate) fn grid(&self) -> Grid {
+        self.info.grid
     }
 
-    pub(super) fn info(&self) -> LevelInfo {
+    pub(crate) fn info(&self) -> LevelInfo {
         self.info
     }
 
-    pub(super) fn pressure(&self) -> &[f64] {
-        self.p.values()
+    pub(crate) fn pressure(&self) -> &[f64] {
+        &self.p
     }
 
-    pub(super) fn gap(&self) -> &[f64] {
-        self.g.values()
+    pub(crate) fn gap(&self) -> &[f64] {
+        &self.g
     }
 
     /// The gap of elements in contact, which a converged solution makes the same for all.
-    pub(super) fn contact_gap(&self) -> f64 {
+    pub(crate) fn contact_gap(&self) -> f64 {
         self.zero_gap
     }
 
+    /// Values in a block.
+    fn block(&self) -> usize {
+        self.machinery.corrections.block_len()
+    }
+
+    /// Elements of the whole cell, in contact or not.
+    fn n_cell(&self) -> f64 {
+        self.info.grid.len() as f64
+    }
+
     /// Iterates until the error is within `tolerance`; with `certify`, until a fresh application says so.
-    pub(super) fn run(
+    pub(crate) fn run(
         &mut self,
         tolerance: f64,
         max_iterations: usize,
@@ -157,17 +231,29 @@ impl<'a> Descent<'a> {
 
     /// First pressure and gap.
     fn start(&mut self) -> GapSums {
-        let nx = self.grid().nx();
-        let rows: Vec<f64> = self.p.values().par_chunks(nx).map(|row| row.iter().sum()).collect();
-        let total = rows.into_iter().sum::<f64>() / self.grid().len() as f64;
+        let blocks: Vec<f64> = self.p.par_chunks(self.block()).map(|block| block.iter().sum()).collect();
+        let total = blocks.into_iter().sum::<f64>() / self.n_cell();
+        let usable = self.has_start && total > 0.0;
+        if self.has_gap && usable {
+            return match self.problem.control {
+                Control::MeanPressure(mean) => self.rescale(mean / total),
+                Control::Penetration(_) => {
+                    let sums = self.rescale(1.0);
+                    self.scale_to_penetration(&sums).map_or(sums, |scale| self.rescale(scale))
+                }
+            };
+        }
         match self.problem.control {
-            Control::MeanPressure(mean) if total > 0.0 => scale_all(self.p.values_mut(), mean / total),
-            Control::MeanPressure(mean) => self.p.values_mut().fill(mean),
-            Control::Penetration(_) if total > 0.0 => {}
+            Control::MeanPressure(mean) if usable => scale_all(&mut self.p, mean / total),
+            Control::MeanPressure(mean) => {
+                let share = self.n_cell() / self.p.len() as f64;
+                self.p.fill(mean * share);
+            }
+            Control::Penetration(_) if usable => {}
             // What the rigid surface would displace: the right places, and `refresh` finds the amount.
             Control::Penetration(_) => {
                 let offset = self.problem.offset();
-                for (p, h) in self.p.values_mut().iter_mut().zip(self.heights.values()) {
+                for (p, h) in self.p.iter_mut().zip(self.heights) {
                     *p = (h - offset).max(0.0);
                 }
             }
@@ -175,28 +261,32 @@ impl<'a> Descent<'a> {
         self.refresh()
     }
 
+    /// Computes the gap afresh between two runs.
+    pub(crate) fn renew(&mut self) {
+        self.refresh();
+    }
+
     /// The gap from a fresh application of L, in double precision, and the pressure at the prescribed load or penetration.
     fn refresh(&mut self) -> GapSums {
         let sums = self.fresh_gap();
         let Some(scale) = self.scale_to_penetration(&sums) else { return self.settle(sums) };
-        scale_all(self.p.values_mut(), scale);
+        scale_all(&mut self.p, scale);
         let sums = self.fresh_gap();
         self.settle(sums)
     }
 
     fn fresh_gap(&mut self) -> GapSums {
-        let block = BLOCK_ROWS * self.grid().nx();
+        let block = self.block();
         let offset = self.problem.offset();
-        let (p, h) = (self.p.values(), self.heights.values());
-        let sinks = (h.par_chunks(block), p.par_chunks(block), self.g.values_mut().par_chunks_mut(block));
+        let (p, h) = (&self.p, self.heights);
+        let sinks = (h.par_chunks(block), p.par_chunks(block), self.g.par_chunks_mut(block));
         self.info.operator_applications += 1;
-        let sums = self.fresh.apply(
-            &self.fresh_response,
-            p.par_chunks(block),
-            |p, rows| rows.copy_from_slice(p),
-            sinks.into_par_iter(),
-            |(h, p, g), rows| rows::fresh_gap(rows, offset, h, p, g),
-        );
+        let sums = {
+            let Machinery { fresh, fresh_response, .. } = &mut self.machinery;
+            fresh.fill(p.par_chunks(block), |p, values| values.copy_from_slice(p));
+            fresh.multiply(fresh_response);
+            fresh.take(fresh_response, sinks.into_par_iter(), |(h, p, g), rows| rows::fresh_gap(rows, offset, h, p, g))
+        };
         GapSums::total(sums)
     }
 
@@ -267,112 +357,112 @@ impl<'a> Descent<'a> {
     /// pressure to being scaled, σ0²/mean(p v), which grows without bound towards full contact as the true one does.
     fn precondition_mean(&mut self, sums: &GapSums) {
         let Control::Penetration(_) = self.problem.control else { return };
-        let n = self.grid().len() as f64;
+        let n = self.n_cell();
         let work = sums.pressure_gap + sums.pressure_height - self.problem.offset() * sums.pressure;
         let stiffness = sums.pressure * sums.pressure / (n * work);
         if stiffness.is_finite() && work > 0.0 {
-            self.preconditioner.set_mean((stiffness / n) as f32);
+            let Machinery { corrections, preconditioner, .. } = &mut self.machinery;
+            corrections.set_mean(preconditioner, stiffness);
         }
     }
 
     /// Chooses the active elements and starts the transform of their residual. Returns their number and Σ t.
     fn choose_active(&mut self) -> [f64; 2] {
-        let block = BLOCK_ROWS * self.grid().nx();
+        let block = self.block();
         let (zero_gap, unit) = (self.zero_gap, self.problem.h_range.recip());
         let sources = (
-            self.p.values().par_chunks(block),
-            self.g.values().par_chunks(block),
+            self.p.par_chunks(block),
+            self.g.par_chunks(block),
             self.t.par_chunks(block),
             self.active.par_chunks_mut(block),
         );
-        total(self.corrections.transform_rows(sources.into_par_iter(), |(p, g, t, active), rows| {
+        total(self.machinery.corrections.fill(sources.into_par_iter(), |(p, g, t, active), rows| {
             rows::first_residual((p, g), (zero_gap, unit), t, active, rows)
         }))
     }
 
     /// Takes a step and starts the transform of the residual on the same elements.
     fn advance(&mut self, length: f64) {
-        let block = BLOCK_ROWS * self.grid().nx();
+        let block = self.block();
         let (zero_gap, unit) = (self.zero_gap, self.problem.h_range.recip());
         let sources = (
-            self.p.values_mut().par_chunks_mut(block),
-            self.g.values_mut().par_chunks_mut(block),
+            self.p.par_chunks_mut(block),
+            self.g.par_chunks_mut(block),
             self.t.par_chunks(block),
             self.u.par_chunks(block),
             self.active.par_chunks(block),
         );
-        self.corrections.transform_rows(sources.into_par_iter(), |(p, g, t, u, active), rows| {
+        self.machinery.corrections.fill(sources.into_par_iter(), |(p, g, t, u, active), rows| {
             rows::next_residual(length, (zero_gap, unit), (p, g), (t, u), active, rows);
         });
     }
 
     /// Applies the preconditioner to the residual whose rows are already transformed. Returns Σ z, Σ z u, Σ u.
     fn precondition(&mut self) -> [f64; 3] {
-        let block = BLOCK_ROWS * self.grid().nx();
+        let block = self.block();
         self.info.preconditioner_applications += 1;
-        self.corrections.multiply(&self.preconditioner);
+        let Machinery { corrections, preconditioner, .. } = &mut self.machinery;
+        corrections.multiply(preconditioner);
         let sinks = (self.u.par_chunks(block), self.active.par_chunks(block), self.z.par_chunks_mut(block));
-        total(
-            self.corrections
-                .take_rows(sinks.into_par_iter(), |(u, active, z), rows| rows::take_preconditioned(rows, u, active, z)),
-        )
+        total(corrections.take(preconditioner, sinks.into_par_iter(), |(u, active, z), rows| {
+            rows::take_preconditioned(rows, u, active, z)
+        }))
     }
 
     /// The next direction t and its displacement u = L t. Returns <t, u>, <residual, t> and Σ u.
     fn respond(&mut self, beta: f64, shift: f64) -> [f64; 3] {
-        let block = BLOCK_ROWS * self.grid().nx();
+        let block = self.block();
         let (beta, shift, zero_gap) = (beta as f32, shift as f32, self.zero_gap);
         self.info.operator_applications += 1;
         let (z, active) = (&self.z, &self.active);
         let sources = (z.par_chunks(block), active.par_chunks(block), self.t.par_chunks_mut(block));
-        self.corrections.transform_rows(sources.into_par_iter(), |(z, active, t), rows| {
+        self.machinery.corrections.fill(sources.into_par_iter(), |(z, active, t), rows| {
             rows::next_direction(z, beta, shift, active, t, rows);
         });
-        self.corrections.multiply(&self.response);
+        self.machinery.corrections.multiply(&self.machinery.response);
         let sinks = (
             self.t.par_chunks(block),
-            self.g.values().par_chunks(block),
+            self.g.par_chunks(block),
             active.par_chunks(block),
             self.u.par_chunks_mut(block),
         );
-        total(self.corrections.take_rows(sinks.into_par_iter(), |(t, g, active, u), rows| {
-            rows::take_response(rows, t, g, zero_gap, active, u)
-        }))
+        total(self.machinery.corrections.take(
+            &self.machinery.response,
+            sinks.into_par_iter(),
+            |(t, g, active, u), rows| rows::take_response(rows, t, g, zero_gap, active, u),
+        ))
     }
 
     /// Takes a step, clips tensile pressures and restores the load or the penetration.
     fn project(&mut self, length: f64) -> GapSums {
-        let block = BLOCK_ROWS * self.grid().nx();
+        let block = self.block();
         let (offset, range) = (self.problem.offset(), self.problem.h_range);
         let sources = (
-            self.p.values_mut().par_chunks_mut(block),
-            self.g.values_mut().par_chunks_mut(block),
+            self.p.par_chunks_mut(block),
+            self.g.par_chunks_mut(block),
             self.t.par_chunks(block),
             self.u.par_chunks(block),
         );
         let [pressure, clipped] =
-            total(self.corrections.transform_rows(sources.into_par_iter(), |(p, g, t, u), rows| {
+            total(self.machinery.corrections.fill(sources.into_par_iter(), |(p, g, t, u), rows| {
                 rows::clip(length, range.recip(), (p, g), (t, u), rows)
             }));
         let scale = match self.problem.control {
-            Control::MeanPressure(mean) if pressure > 0.0 => mean * self.grid().len() as f64 / pressure,
+            Control::MeanPressure(mean) if pressure > 0.0 => mean * self.n_cell() / pressure,
             _ => 1.0,
         };
         let response = if clipped > 0.0 {
             self.info.operator_applications += 1;
-            self.corrections.multiply(&self.response);
+            self.machinery.corrections.multiply(&self.machinery.response);
             range
         } else {
             0.0
         };
-        let sinks = (
-            self.heights.values().par_chunks(block),
-            self.p.values_mut().par_chunks_mut(block),
-            self.g.values_mut().par_chunks_mut(block),
-        );
-        let sums = self.corrections.take_rows(sinks.into_par_iter(), |(h, p, g), rows| {
-            rows::take_clipped(rows, response, scale, offset, h, (p, g))
-        });
+        let sinks = (self.heights.par_chunks(block), self.p.par_chunks_mut(block), self.g.par_chunks_mut(block));
+        let sums =
+            self.machinery.corrections.take(&self.machinery.response, sinks.into_par_iter(), |(h, p, g), rows| {
+                rows::take_clipped(rows, response, scale, offset, h, (p, g))
+            });
         let sums = GapSums::total(sums);
         match self.scale_to_penetration(&sums) {
             None => self.settle(sums),
@@ -381,42 +471,26 @@ impl<'a> Descent<'a> {
     }
 
     fn rescale(&mut self, scale: f64) -> GapSums {
-        let block = BLOCK_ROWS * self.grid().nx();
+        let block = self.block();
         let offset = self.problem.offset();
-        let vectors = (
-            self.heights.values().par_chunks(block),
-            self.p.values_mut().par_chunks_mut(block),
-            self.g.values_mut().par_chunks_mut(block),
-        );
+        let vectors = (self.heights.par_chunks(block), self.p.par_chunks_mut(block), self.g.par_chunks_mut(block));
         let sums = vectors.into_par_iter().map(|(h, p, g)| rows::rescale(scale, offset, h, p, g)).collect();
         let sums = GapSums::total(sums);
         self.settle(sums)
     }
 
     fn outcome(&self, sums: &GapSums, converged: bool) -> Outcome {
-        let (h_range, n) = (self.problem.h_range, self.grid().len() as f64);
-        let mean_pressure = sums.pressure / n;
-        let mean_gap = if sums.pressure > 0.0 { sums.pressure_gap / sums.pressure } else { 0.0 };
-        let penetration = ((mean_gap - sums.min_gap) / h_range).max(0.0);
-        let load = match self.problem.control {
-            Control::MeanPressure(wanted) => (mean_pressure - wanted).abs() / wanted,
-            Control::Penetration(_) => mean_gap.abs() / h_range,
-        };
-        let offset = self.problem.offset();
-        let displacement_work = sums.pressure_gap + sums.pressure_height - offset * sums.pressure;
-        Outcome {
-            converged,
-            // Σ p (g - min g) / Σ p with the weighted mean of g as zero is -min g: the two errors coincide.
-            certificate: Certificate { complementarity: penetration, penetration, load },
-            mean_pressure,
-            approach: mean_gap - offset,
-            elastic_energy: 0.5 * displacement_work / n,
-        }
+        Outcome::new(self.problem, sums, self.n_cell(), converged)
+    }
+
+    /// The machinery, to be used again, and the pressure.
+    pub(crate) fn into_machinery(self) -> (Machinery<C, F>, Vec<f64>) {
+        (self.machinery, self.p)
     }
 
     /// Pressure, and gap with its pressure-weighted mean at zero.
-    pub(super) fn into_fields(mut self, mean_gap: f64) -> (Field, Field) {
-        self.g.values_mut().par_iter_mut().for_each(|g| *g -= mean_gap);
+    pub(crate) fn into_vectors(mut self, mean_gap: f64) -> (Vec<f64>, Vec<f64>) {
+        self.g.par_iter_mut().for_each(|g| *g -= mean_gap);
         (self.p, self.g)
     }
 }

@@ -3,6 +3,8 @@
 //! Each function fills the rows of a convolution or takes them, so the vectors pass through the cache once. Sums are in
 //! double precision and in a fixed order: element by element in a block, then block by block.
 
+use rayon::prelude::*;
+
 /// Sums over elements in contact or at risk, which the iteration needs after a change of the pressure.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GapSums {
@@ -52,6 +54,18 @@ impl GapSums {
             n_contact: sum.n_contact + block.n_contact,
         })
     }
+}
+
+/// The sums over vectors, in blocks of `block` elements.
+pub(super) fn sums(block: usize, h: &[f64], p: &[f64], g: &[f64]) -> GapSums {
+    let blocks = (h.par_chunks(block), p.par_chunks(block), g.par_chunks(block)).into_par_iter().map(|(h, p, g)| {
+        let mut sums = GapSums::EMPTY;
+        for ((&h, &p), &g) in h.iter().zip(p).zip(g) {
+            sums.add_element(p, g, h);
+        }
+        sums
+    });
+    GapSums::total(blocks.collect())
 }
 
 /// `g = L p - h + c` from a fresh `displacement = L p`.

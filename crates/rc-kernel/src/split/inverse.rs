@@ -1,0 +1,59 @@
+//! The inverse operator |q|/2 split by scale, accurately enough for a preconditioner.
+
+use std::f64::consts::PI;
+
+use super::{Filter, Stencil};
+
+/// Wavenumbers per axis at which the symbol is taken.
+const SAMPLES: usize = 64;
+
+/// What |q|/2 on a level has beyond |q|/2 on the next coarser one between two filters, cut off at `radius`, with the weight
+/// at the centre such that a constant still gives zero.
+pub(super) fn stencil(filter: &Filter, radius: usize) -> Stencil {
+    let n = SAMPLES as i32;
+    let wavenumbers: Vec<f64> = (0..n).map(|k| 2.0 * PI * f64::from(k - n / 2) / f64::from(n)).collect();
+    let squares: Vec<f64> = wavenumbers.iter().map(|&q| filter.response(q).powi(2)).collect();
+    // Waves too short for the coarse grid appear there as the longer ones they alias to.
+    let folded: Vec<f64> = wavenumbers.iter().map(|&q| q - PI * (q / PI).round()).collect();
+    let missing = |kx: usize, ky: usize| {
+        let fine = wavenumbers[kx].hypot(wavenumbers[ky]);
+        let coarse = folded[kx].hypot(folded[ky]);
+        0.5 * (fine - squares[kx] * squares[ky] * coarse)
+    };
+    let weight = |dx: usize, dy: usize| {
+        let cosine = |k: usize, d: usize| (wavenumbers[k] * d as f64).cos();
+        let row = |ky: usize| -> f64 { (0..SAMPLES).map(|kx| missing(kx, ky) * cosine(kx, dx)).sum() };
+        (0..SAMPLES).map(|ky| row(ky) * cosine(ky, dy)).sum::<f64>() / (SAMPLES * SAMPLES) as f64
+    };
+    let cut = Stencil::new(radius, weight);
+    let excess = cut.sum();
+    Stencil::new(radius, |dx, dy| {
+        let value = cut.weight(dx as i32, dy as i32);
+        if dx == 0 && dy == 0 { value - excess } else { value }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{ScaleSplit, SplitParams};
+
+    /// On top of a coarser level that has |q|/2 exactly, the stencil restores |q|/2 well enough for a preconditioner.
+    #[test]
+    fn one_level_restores_the_symbol() {
+        let split = ScaleSplit::new(SplitParams::quick());
+        let (filter, stencil) = (split.level_filter(), split.inverse_stencil(3));
+        assert!(stencil.sum().abs() < 1e-12);
+        for (qx, qy) in [(0.1, 0.0), (0.3, 0.2), (0.8, 0.1), (1.5, 1.0), (3.0, 0.5), (3.1, 3.1_f64)] {
+            let fold = |q: f64| q - std::f64::consts::PI * (q / std::f64::consts::PI).round();
+            let coarse = 0.5 * fold(qx).hypot(fold(qy)) * (filter.response(qx) * filter.response(qy)).powi(2);
+            let mut fine = 0.0;
+            for dx in -3..=3 {
+                for dy in -3..=3 {
+                    fine += stencil.weight(dx, dy) * (qx * f64::from(dx)).cos() * (qy * f64::from(dy)).cos();
+                }
+            }
+            let ratio = (coarse + fine) / (0.5 * qx.hypot(qy));
+            assert!((0.8..1.2).contains(&ratio), "({qx}, {qy}): {ratio}");
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! The kernel split by scale: a short-range stencil for each level of a mesh, and a smooth remainder for the next coarser one.
+//!
+//! With a window χ that falls from 1 at r = 0 to 0 at the cutoff c ([`window`](self)), the half-space is
+//!
+//! ```text
+//! 1/(π r) = χ(r/c)/(π r)  +  Ψ(r/c)/(π r),     χ = 1 - Ψ,
+//! ```
+//!
+//! a kernel that ends at c, and a smooth one that a grid twice as coarse resolves. On that grid the smooth one is split
+//! again at 2c, and so on up to a grid small enough for one Fourier transform. Pressures go up, and displacements come
+//! down, by the same short filter ([`Filter`]), so that the whole is symmetric. Lengths are in elements of the level at
+//! hand, hence one set of tables serves every level:
+//!
+//! ```text
+//! level K (finest):  v_K = h_K  S p_K + F  u_{K-1}            S: [`ScaleSplit::love_stencil`],     F: [`ScaleSplit::love_filter`]
+//! level k:           u_k = h_k  D ρ_k + F' u_{k-1}            D: [`ScaleSplit::level_stencil`],    F': [`ScaleSplit::level_filter`]
+//!                    ρ_k = ¼ F'ᵀ ρ_{k+1}  (F at the finest)
+//! base:              u_0 = inverse FFT( remainder · FFT ρ_0 )    [`ScaleSplit::remainder_symbol`]
+//! ```
+//!
+//! The window is the Kaiser-Bessel one, as in particle-mesh sums (J. F. Kaiser, 1974); the recursion is that of the
+//! dual-space multilevel kernel splitting of Jiang and Greengard (*Commun. Pure Appl. Math.* 2025), in a half-space.
+
+mod filter;
+mod inverse;
+mod stencil;
+mod window;
+
+pub use filter::Filter;
+pub use stencil::Stencil;
+
+use window::Window;
+
+/// How the kernel is split.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SplitParams {
+    /// Cutoff of the short-range stencil, in elements of its level.
+    pub cutoff: usize,
+    /// Shape β of the Kaiser-Bessel window: the larger, the faster the remainder's spectrum falls, and the later.
+    pub shape: f64,
+    /// Taps of the filter between two levels, an even number.
+    pub taps: usize,
+}
+
+impl SplitParams {
+    /// The smallest error that [`SplitParams::for_error`] promises.
+    pub const SMALLEST_ERROR: f64 = 1e-10;
+
+    /// For corrections of a pressure that is known otherwise: relative error of v below 2e-3 on the pressures of contacts, and
+    /// of a few percent on pressures as rough as corrections are.
+    #[must_use]
+    pub fn quick() -> Self {
+        Self { cutoff: 3, shape: 3.0, taps: 4 }
+    }
+
+    /// Relative error of v below 1e-6 on the pressures of contacts.
+    #[must_use]
+    pub fn certified() -> Self {
+        Self { cutoff: 8, shape: 10.0, taps: 16 }
+    }
+
+    /// The cheapest split whose error of v, relative to its rms, is below `bound` on pressures of contacts: with square-root
+    /// edges, on random meshes of up to three levels above a base grid on which contacts are a few elements wide (test
+    /// `one_application_agrees_with_exact_sums` of rc-solver). On white noise the error is about a hundred times larger.
+    /// `None` when the bound is below [`SplitParams::SMALLEST_ERROR`] or not a number.
+    #[must_use]
+    pub fn for_error(bound: f64) -> Option<Self> {
+        match bound {
+            2e-3.. => Some(Self::quick()),
+            1e-6.. => Some(Self::certified()),
+            2e-9.. => Some(Self { cutoff: 12, shape: 15.0, taps: 22 }),
+            Self::SMALLEST_ERROR.. => Some(Self { cutoff: 16, shape: 19.0, taps: 26 }),
+            _ => None,
+        }
+    }
+}
+
+/// Tables of the split kernel.
+#[derive(Clone, Debug)]
+pub struct ScaleSplit {
+    params: SplitParams,
+    window: Window,
+}
+
+impl ScaleSplit {
+    /// The split with these parameters.
+    #[must_use]
+    pub fn new(params: SplitParams) -> Self {
+        Self { params, window: Window::new(params.shape, params.cutoff) }
+    }
+
+    /// Its parameters.
+    #[must_use]
+    pub fn params(&self) -> SplitParams {
+        self.params
+    }
+
+    /// Displacement at the centres around an element under unit pressure (Love's square), remainder excluded, for elements
+    /// of side 1.
+    #[must_use]
+    pub fn love_stencil(&self) -> Stencil {
+        stencil::love(&self.window, self.params.cutoff)
+    }
+
+    /// The part of the next finer level's remainder that this level adds, for elements of side 1: the kernel between
+    /// cutoffs c/2 and c, sampled at the centres.
+    #[must_use]
+    pub fn level_stencil(&self) -> Stencil {
+        stencil::level(&self.window, self.params.cutoff)
+    }
+
+    /// Filter between the finest level, of Love's squares, and the next one.
+    #[must_use]
+    pub fn love_filter(&self) -> Filter {
+        filter::design(&self.window, self.params, filter::love_target)
+    }
+
+    /// Filter between two coarser levels, whose values are samples of smooth functions.
+    #[must_use]
+    pub fn level_filter(&self) -> Filter {
+        filter::design(&self.window, self.params, |_| 1.0)
+    }
+
+    /// Symbol of the remainder at the angular wavenumber `q` > 0, for a cutoff `c` in the unit of length of 1/q:
+    /// `2/q` less the transform of the short-range kernel.
+    #[must_use]
+    pub fn remainder_symbol(&self, q: f64, c: f64) -> f64 {
+        2.0 / q - self.short_range_symbol(q, c)
+    }
+
+    /// Transform of `χ(r/c)/(π r)` at the angular wavenumber `q`.
+    #[must_use]
+    pub fn short_range_symbol(&self, q: f64, c: f64) -> f64 {
+        c * self.window.short_range(q * c)
+    }
+
+    /// Bound of the second derivatives along x and along y of the remainder's displacement, for pressures between 0 and 1 and
+    /// a cutoff `c`: what lies between two points of a grid cannot differ more from the line between them than this allows.
+    #[must_use]
+    pub fn remainder_curvature(&self, c: f64) -> f64 {
+        self.window.curvature() / (std::f64::consts::PI * c)
+    }
+
+    /// Stencil of one level of the inverse operator |q|/2, for elements of side 1 and reach `radius`; to be divided by the
+    /// side. Together with [`ScaleSplit::level_filter`] on every level and |q|/2 on the base grid it is a preconditioner.
+    #[must_use]
+    pub fn inverse_stencil(&self, radius: usize) -> Stencil {
+        inverse::stencil(&self.level_filter(), radius)
+    }
+}

@@ -1,0 +1,125 @@
+//! Short-range stencils: what one element does to the centres around it.
+
+use std::f64::consts::FRAC_1_PI;
+
+use super::window::Window;
+use crate::love_displacement;
+use crate::polynomial::gauss_legendre;
+
+/// Points per direction of the rule on one element.
+const POINTS: usize = 8;
+
+/// Weights at the centres around an element, of a symmetric kernel of finite reach.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stencil {
+    radius: usize,
+    weights: Vec<f64>,
+}
+
+impl Stencil {
+    /// A stencil from its weight at (dx, dy), asked for 0 ≤ dy ≤ dx ≤ `radius` only.
+    pub(super) fn new(radius: usize, weight: impl Fn(usize, usize) -> f64) -> Self {
+        let side = 2 * radius + 1;
+        let mut weights = vec![0.0; side * side];
+        for dx in 0..=radius {
+            for dy in 0..=dx {
+                let value = weight(dx, dy);
+                for (x, y) in [(dx, dy), (dy, dx)] {
+                    for (row, column) in [(radius + y, radius + x), (radius - y, radius - x)] {
+                        weights[row * side + column] = value;
+                        weights[row * side + (2 * radius - column)] = value;
+                    }
+                }
+            }
+        }
+        Self { radius, weights }
+    }
+
+    /// Largest offset along x and along y.
+    #[must_use]
+    pub fn radius(&self) -> usize {
+        self.radius
+    }
+
+    /// Weight at offset (`dx`, `dy`), each at most the radius in size.
+    ///
+    /// # Panics
+    /// When an offset is larger.
+    #[must_use]
+    pub fn weight(&self, dx: i32, dy: i32) -> f64 {
+        let radius = self.radius as i32;
+        self.weights[((radius + dy) * (2 * radius + 1) + radius + dx) as usize]
+    }
+
+    /// Sum of all weights.
+    #[must_use]
+    pub fn sum(&self) -> f64 {
+        self.weights.iter().sum()
+    }
+}
+
+/// Love's square less the mean of the remainder over it.
+pub(super) fn love(window: &Window, cutoff: usize) -> Stencil {
+    let rule = gauss_legendre::<POINTS>();
+    Stencil::new(cutoff, |dx, dy| {
+        let (x, y) = (dx as f64, dy as f64);
+        love_displacement(x, y, 0.5) - mean_remainder(window, cutoff as f64, (x, y), &rule)
+    })
+}
+
+/// Mean of `Ψ(r/c)/(π r)` over the unit square around `centre`. The window ends at r = c with a kink: a square that it
+/// crosses is halved a few times.
+fn mean_remainder(window: &Window, cutoff: f64, (x, y): (f64, f64), rule: &[(f64, f64)]) -> f64 {
+    let (nearest, farthest) = ((x - 0.5).max(0.0).hypot((y - 0.5).max(0.0)), (x + 0.5).hypot(y + 0.5));
+    let parts = if nearest < cutoff && cutoff < farthest { 8 } else { 2 };
+    let side = 1.0 / f64::from(parts);
+    let mut sum = 0.0;
+    for row in 0..parts {
+        for column in 0..parts {
+            let (left, below) = (x - 0.5 + side * f64::from(column), y - 0.5 + side * f64::from(row));
+            for (sy, wy) in rule {
+                for (sx, wx) in rule {
+                    let r = (left + side * (0.5 + 0.5 * sx)).hypot(below + side * (0.5 + 0.5 * sy));
+                    sum += wx * wy * window.rise_over(r / cutoff);
+                }
+            }
+        }
+    }
+    sum * side * side * FRAC_1_PI / cutoff
+}
+
+/// The kernel between cutoffs c/2 and c, at the centres.
+pub(super) fn level(window: &Window, cutoff: usize) -> Stencil {
+    let c = cutoff as f64;
+    Stencil::new(cutoff, |dx, dy| {
+        let r = (dx as f64).hypot(dy as f64);
+        FRAC_1_PI / c * (2.0 * window.rise_over(2.0 * r / c) - window.rise_over(r / c))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The weights of all squares add up to the integral of the short-range kernel.
+    #[test]
+    fn sums_are_integrals() {
+        for (cutoff, shape) in [(3, 3.0), (6, 8.0), (12, 18.0)] {
+            let window = Window::new(shape, cutoff);
+            let integral = cutoff as f64 * window.short_range(0.0);
+            let sum = love(&window, cutoff).sum();
+            // Squares beyond the stencil's radius, which the window's edge still touches, are left out.
+            let tolerance = if shape < 5.0 { 1e-3 } else { 1e-6 };
+            assert!((sum / integral - 1.0).abs() < tolerance, "cutoff {cutoff}: {sum} for {integral}");
+        }
+    }
+
+    #[test]
+    fn stencils_end_at_the_cutoff() {
+        let window = Window::new(8.0, 6);
+        for stencil in [love(&window, 6), level(&window, 6)] {
+            assert!(stencil.weight(6, 6).abs() < 1e-14 && stencil.weight(0, 5).abs() > 0.0);
+            assert_eq!(stencil.weight(2, -3).to_bits(), stencil.weight(-3, 2).to_bits());
+        }
+    }
+}

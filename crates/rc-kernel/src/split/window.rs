@@ -1,0 +1,164 @@
+//! The Kaiser-Bessel window χ(x) = 1 - Ψ(x) and its transform.
+//!
+//! ```text
+//! Ψ(x) = ∫₀^x I₀(β√(1-t²)) dt / ∫₀¹ I₀(β√(1-t²)) dt        (∫₀¹ = sinh β / β),     Ψ = 1 from x = 1 on
+//! ```
+
+use crate::polynomial::gauss_legendre;
+
+/// Terms of the expansions before those are dropped that do not matter: enough for rounding accuracy up to β = 24 and cutoffs
+/// of 24 elements.
+const TERMS: usize = 64;
+
+/// χ, tabulated.
+#[derive(Clone, Debug)]
+pub(crate) struct Window {
+    /// Ψ(x)/x in Chebyshev polynomials of x², of which it is an entire function.
+    rise: Vec<f64>,
+    /// `2 ∫₀¹ χ(x) J₀(q x) dx` in Chebyshev polynomials of q², q ≤ `reach`.
+    transform: Vec<f64>,
+    /// q·c at the corner of the coarser level's Brillouin zone, and a little more.
+    reach: f64,
+}
+
+impl Window {
+    pub(super) fn new(shape: f64, cutoff: usize) -> Self {
+        let reach = 2.25 * cutoff as f64;
+        let rule = gauss_legendre::<TERMS>();
+        let total = if shape == 0.0 { 1.0 } else { shape.sinh() / shape };
+        // Ψ(x)/x = ∫₀¹ I₀(β√(1 - x² s²)) ds / total.
+        let rise = chebyshev(|square| {
+            let integral: f64 = rule
+                .iter()
+                .map(|(s, w)| w * bessel_i0(shape * (1.0 - square * (0.5 + 0.5 * s).powi(2)).max(0.0).sqrt()))
+                .sum();
+            integral / total
+        });
+        let values: Vec<(f64, f64)> = rule
+            .iter()
+            .map(|(s, w)| {
+                let x = 0.5 + 0.5 * s;
+                (x, 2.0 * w * (1.0 - x * clenshaw(&rise, x * x)))
+            })
+            .collect();
+        let transform = chebyshev(|square| {
+            let q = reach * square.sqrt();
+            values.iter().map(|(x, weight)| weight * libm::j0(q * x)).sum()
+        });
+        Self { rise, transform, reach }
+    }
+
+    /// Ψ(x)/x.
+    pub(super) fn rise_over(&self, x: f64) -> f64 {
+        if x < 1.0 { clenshaw(&self.rise, x * x) } else { 1.0 / x }
+    }
+
+    /// ∫∫ |∂²f/∂x²| of f = Ψ(r)/r over the plane.
+    pub(super) fn curvature(&self) -> f64 {
+        let rule = gauss_legendre::<TERMS>();
+        let angles = 64;
+        let cosines: Vec<f64> = (0..angles)
+            .map(|i| (std::f64::consts::TAU * (f64::from(i) + 0.5) / f64::from(angles)).cos().powi(2))
+            .collect();
+        // Mean over the angle of |f'' cos² + f'/r sin²|.
+        let mean = |second: f64, first: f64| {
+            cosines.iter().map(|c| (second * c + first * (1.0 - c)).abs()).sum::<f64>() / f64::from(angles)
+        };
+        let f = |r: f64| clenshaw(&self.rise, r * r);
+        let step = 1e-3;
+        let inside: f64 = rule
+            .iter()
+            .map(|(s, w)| {
+                let r = 0.5 + 0.5 * s;
+                let second = (f(r + step) - 2.0 * f(r) + f(r - step)) / (step * step);
+                let first = (f(r + step) - f(r - step)) / (2.0 * step);
+                w * mean(second, first / r) * r
+            })
+            .sum();
+        // The slope jumps where the window ends; beyond, f = 1/r.
+        let jump = 0.5 * ((f(1.0) - f(1.0 - step)) / step + 1.0).abs();
+        std::f64::consts::TAU * (inside + jump + mean(2.0, -1.0))
+    }
+
+    /// Transform of `χ(r)/(π r)` at the wavenumber `q`: `2 ∫₀¹ χ(r) J₀(q r) dr`. Beyond the tabulated range it is extended
+    /// by its asymptote, 2/q.
+    pub(super) fn short_range(&self, q: f64) -> f64 {
+        if q < self.reach { clenshaw(&self.transform, (q / self.reach).powi(2)) } else { 2.0 / q }
+    }
+}
+
+/// Modified Bessel function I₀: its series, all of whose terms are positive.
+fn bessel_i0(x: f64) -> f64 {
+    let quarter = 0.25 * x * x;
+    let (mut term, mut sum) = (1.0, 1.0);
+    for k in 1..200 {
+        term *= quarter / f64::from(k * k);
+        sum += term;
+        if term < 1e-17 * sum {
+            break;
+        }
+    }
+    sum
+}
+
+/// Chebyshev coefficients of a function on [0, 1].
+fn chebyshev(value: impl Fn(f64) -> f64) -> Vec<f64> {
+    let n = TERMS as f64;
+    let angle = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / n;
+    let values: Vec<f64> = (0..TERMS).map(|i| value(0.5 + 0.5 * angle(i).cos())).collect();
+    let coefficient = |k: usize| -> f64 {
+        let sum: f64 = values.iter().enumerate().map(|(i, v)| v * (k as f64 * angle(i)).cos()).sum();
+        if k == 0 { sum / n } else { 2.0 * sum / n }
+    };
+    let mut coefficients: Vec<f64> = (0..TERMS).map(coefficient).collect();
+    let negligible = 1e-16 * coefficients.iter().fold(0.0_f64, |max, c| max.max(c.abs()));
+    while coefficients.last().is_some_and(|c| c.abs() < negligible) {
+        coefficients.pop();
+    }
+    coefficients
+}
+
+/// Sum of a Chebyshev series on [0, 1].
+fn clenshaw(coefficients: &[f64], x: f64) -> f64 {
+    let t = 2.0 * x - 1.0;
+    let (mut b1, mut b2) = (0.0, 0.0);
+    for &c in coefficients[1..].iter().rev() {
+        (b1, b2) = (2.0 * t * b1 - b2 + c, b1);
+    }
+    t * b1 - b2 + coefficients[0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_falls_from_one_to_zero() {
+        for shape in [0.0, 3.0, 8.0, 20.0] {
+            let window = Window::new(shape, 6);
+            let chi = |x: f64| 1.0 - x * window.rise_over(x);
+            assert!((chi(0.0) - 1.0).abs() < 1e-14 && chi(1.0 - 1e-12).abs() < 1e-10 && chi(2.0).abs() < 1e-14);
+            let falls = (0..100).all(|i| chi(f64::from(i) / 100.0) >= chi(f64::from(i + 1) / 100.0) - 1e-14);
+            assert!(falls, "shape {shape}");
+        }
+    }
+
+    #[test]
+    fn the_transform_agrees_with_a_fine_rule() {
+        for shape in [3.0, 8.0, 18.0] {
+            let window = Window::new(shape, 24);
+            let rule = gauss_legendre::<400>();
+            for q in [0.0, 0.1, 2.0, 9.0, 25.0, 50.0] {
+                let fine: f64 = rule
+                    .iter()
+                    .map(|(s, w)| {
+                        let x = 0.5 + 0.5 * s;
+                        2.0 * w * (1.0 - x * window.rise_over(x)) * libm::j0(q * x)
+                    })
+                    .sum();
+                let value = window.short_range(q);
+                assert!((value - fine).abs() < 2e-13, "shape {shape}, q {q}: {value} for {fine}");
+            }
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! Why the adaptive method did not solve a problem.
+
+use rc_core::Grid;
+use thiserror::Error;
+
+use super::AdaptiveSolution;
+use crate::{Certificate, SolveError};
+
+/// A contact problem that the adaptive method did not solve.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum AdaptiveError {
+    /// The problem itself is not valid; never [`SolveError::NotConverged`].
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// The grid does not divide into tiles.
+    #[error(
+        "the adaptive method needs a square grid of 128 · 2^k elements per side or another number that 16 divides and {smallest} does not exceed, not {nx} x {ny}"
+    )]
+    Grid {
+        /// Elements along x.
+        nx: usize,
+        /// Elements along y.
+        ny: usize,
+        /// Fewest elements per side.
+        smallest: usize,
+    },
+    /// The base grid cannot hold the surface's spectrum, or does not divide the finest grid.
+    #[error(
+        "a base grid of {base} elements per side does not do for {waves} waves and {finest} elements per side: it must be a multiple of 8, more than twice the waves, and the finest grid 2^k times it"
+    )]
+    Base {
+        /// Elements per side of the base grid.
+        base: usize,
+        /// Largest wavenumber of the surface.
+        waves: usize,
+        /// Elements per side of the finest grid.
+        finest: usize,
+    },
+    /// The surface is flat, so there is nothing to adapt to.
+    #[error("a flat surface has nothing to adapt to; the uniform method solves it")]
+    Flat,
+    /// The estimated memory is above the limit.
+    #[error(
+        "the adaptive method needs about {needed} MB for an estimated contact area of {area_percent:.1} %, more than the limit of {limit} MB"
+    )]
+    Memory {
+        /// Estimate, in 10^6 bytes.
+        needed: u64,
+        /// Limit, in 10^6 bytes.
+        limit: u64,
+        /// Estimated contact area, in percent of the nominal one.
+        area_percent: f64,
+    },
+    /// The accuracy asked of the operator is out of reach.
+    #[error("the error bound of the operator must be between {smallest:e} and 1e-3, not {value:e}")]
+    OperatorError {
+        /// What was asked for.
+        value: f64,
+        /// The smallest that can be had.
+        smallest: f64,
+    },
+    /// The iteration limit was reached, or the error no longer falls.
+    #[error("not converged on {grid} elements after {iterations} iterations: {certificate}")]
+    NotConverged {
+        /// The finest grid.
+        grid: Grid,
+        /// Iterations on it.
+        iterations: usize,
+        /// Residuals of the pressure found.
+        certificate: Certificate,
+        /// The pressure found.
+        solution: Box<AdaptiveSolution>,
+    },
+}

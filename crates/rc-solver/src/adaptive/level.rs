@@ -1,0 +1,302 @@
+//! One level on tiles: the coarser ones prepare the next, the finest is certified.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use rc_core::{Grid, Observer};
+
+use super::Solver;
+use super::fresh::Fresh;
+use super::operator::{BLOCK_CELLS, Hierarchy, Real, Tables, TileOperator};
+use super::survey::{Remainder, possible_contact};
+use super::tiles::{CELLS, TileSet};
+use crate::Control;
+use crate::descent::{Descent, Engine, Machinery, Outcome, Start};
+use crate::problem::Problem;
+use crate::solution::LevelInfo;
+
+/// The finest level is first solved to the tolerance times this, then the gap is computed afresh: corrections are applied with
+/// the quick operator, a few percent off on pressures as rough as corrections are.
+const FIRST_TOLERANCE: f64 = 20.0;
+
+/// The error left to the fresh gap, relative to the tolerance, when corrections end.
+const LAST_TOLERANCE: f64 = 0.85;
+
+/// Rounds of descents and surveys on the finest level. Each round but the first starts with what the last one has missed; one
+/// is the rule, two are the exception.
+const MOST_ROUNDS: usize = 20;
+
+/// Candidates for contact are chosen with this margin, in units of the height range, so that small changes of the pressure do
+/// not add others.
+const CANDIDATE_MARGIN: f64 = 2e-3;
+
+/// Pressures on tiles; zero everywhere else.
+pub(super) struct Mesh {
+    pub(super) tiles: TileSet,
+    pub(super) pressure: Vec<f64>,
+}
+
+/// A level as it was left.
+pub(super) struct Level {
+    pub(super) tiles: TileSet,
+    pub(super) pressure: Vec<f64>,
+    pub(super) gap: Vec<f64>,
+    pub(super) contact_gap: f64,
+    pub(super) outcome: Outcome,
+    /// Cells whose gap was computed; the others are proven to be out of contact.
+    pub(super) evaluated: usize,
+    pub(super) info: LevelInfo,
+}
+
+/// Tiles where contact is possible, with their heights.
+struct Candidates {
+    tiles: TileSet,
+    heights: Vec<f64>,
+}
+
+impl<T: Real + Into<f64>> Solver<'_, T> {
+    fn n_levels(&self, grid: Grid) -> usize {
+        (grid.nx() / self.base().nx()).ilog2() as usize
+    }
+
+    fn hierarchy(&self, tiles: &TileSet, halo: usize) -> Arc<Hierarchy> {
+        Arc::new(Hierarchy::new(self.base().nx(), tiles.clone(), halo))
+    }
+
+    /// Solves on the tiles of the prolonged pressure only, for the next level.
+    pub(super) fn prepare_level(&self, grid: Grid, mesh: Mesh, tolerance: f64, observer: &dyn Observer) -> Level {
+        let n_levels = self.n_levels(grid);
+        let hierarchy = self.hierarchy(&mesh.tiles, self.response.halo());
+        let response = self.response.tables(n_levels);
+        let machinery = Machinery {
+            corrections: TileOperator::new(Arc::clone(&hierarchy)),
+            preconditioner: self.preconditioner.tables(n_levels),
+            fresh: Fresh::<f32>::new(hierarchy),
+            fresh_response: response.clone(),
+            response,
+        };
+        let heights = self.tile_heights(&mesh.tiles);
+        let start = Start::Pressure(mesh.pressure);
+        let mut descent = Descent::new(&heights, grid, machinery, &self.problem, start);
+        let outcome = descent.run(tolerance, self.params.max_iterations, false, observer);
+        let (info, contact_gap) = (descent.info(), descent.contact_gap());
+        let (pressure, gap) = descent.into_vectors(0.0);
+        Level { evaluated: gap.len(), tiles: mesh.tiles, pressure, gap, contact_gap, outcome, info }
+    }
+
+    /// Solves to the tolerance, and proves it for the whole cell.
+    pub(super) fn solve_finest(&self, grid: Grid, mut mesh: Mesh, contact_gap: f64, observer: &dyn Observer) -> Level {
+        let (n, n_levels) = (grid.len() as f64, self.n_levels(grid));
+        let mut info = LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 };
+        scale_to_load(&self.problem, n, &mut mesh.pressure);
+        let mut response = self.response.tables(n_levels);
+        let mut preconditioner = self.preconditioner.tables(n_levels);
+        let mut fresh_response = self.fresh.tables(n_levels);
+        let mut candidates = self.first_candidates(&mesh, &response, contact_gap);
+        let mut gave_up = false;
+        for round in 0.. {
+            // The gap wherever contact is possible.
+            let (pressure, gap) = self.survey(&mut candidates, &mesh, &fresh_response, &mut info, round > 0);
+            let outcome = Outcome::of(&self.problem, n, &candidates.heights, &pressure, &gap);
+            let contact_gap = contact_gap_of(&self.problem, &pressure, &gap);
+            if round == MOST_ROUNDS
+                || gave_up
+                || (round > 0 && outcome.certificate.penetration <= self.params.tolerance)
+            {
+                let evaluated = gap.len();
+                return Level { tiles: candidates.tiles, pressure, gap, contact_gap, outcome, evaluated, info };
+            }
+            let part = Part::choose(&candidates, &mesh.tiles, &pressure, &gap, contact_gap);
+            let machinery = Machinery {
+                corrections: TileOperator::new(self.hierarchy(&part.tiles, self.response.halo())),
+                response,
+                preconditioner,
+                fresh: Fresh::new(self.hierarchy(&part.tiles, self.fresh.halo())),
+                fresh_response,
+            };
+            // Before the descent, which needs the memory.
+            drop((pressure, gap));
+            let start = Start::Known { pressure: part.pressure, gap: part.gap };
+            let mut descent = Descent::new(&part.heights, grid, machinery, &self.problem, start);
+            let tolerance = self.params.tolerance;
+            let most = self.params.max_iterations;
+            descent.run(FIRST_TOLERANCE * tolerance, most, false, observer);
+            descent.renew();
+            let reached = descent.run(LAST_TOLERANCE * tolerance, most, false, observer).converged;
+            gave_up = !reached;
+            let done = descent.info();
+            info.iterations += done.iterations;
+            info.operator_applications += done.operator_applications;
+            info.preconditioner_applications += done.preconditioner_applications;
+            let (machinery, pressure) = descent.into_machinery();
+            mesh = Mesh { tiles: part.tiles, pressure };
+            (response, preconditioner, fresh_response) =
+                (machinery.response, machinery.preconditioner, machinery.fresh_response);
+        }
+        unreachable!("the last round returns")
+    }
+
+    /// Tiles where the start may touch, judged by the quick operator.
+    fn first_candidates(&self, mesh: &Mesh, response: &Tables<f32>, contact_gap: f64) -> Candidates {
+        let mut quick = Fresh::<f32>::new(self.hierarchy(&mesh.tiles, self.response.halo()));
+        quick.fill(mesh.pressure.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
+        quick.multiply(response);
+        // Not a proof yet: the margin stands for the quick operator's error too.
+        let level = contact_gap + CANDIDATE_MARGIN * self.problem.h_range;
+        let places = self.possible_contact(&quick, &mesh.pressure, mesh.tiles.per_side(), level);
+        self.candidates(mesh.tiles.per_side(), places, mesh.tiles.places())
+    }
+
+    fn candidates(&self, per_side: usize, mut places: Vec<[u32; 2]>, more: &[[u32; 2]]) -> Candidates {
+        places.extend_from_slice(more);
+        let tiles = TileSet::new(per_side, places);
+        Candidates { heights: self.tile_heights(&tiles), tiles }
+    }
+
+    /// Tiles where the gap under the pressure last spread by `operator` may be less than `level`.
+    fn possible_contact<U: Real + Into<f64>>(
+        &self,
+        operator: &Fresh<U>,
+        pressure: &[f64],
+        per_side: usize,
+        level: f64,
+    ) -> Vec<[u32; 2]> {
+        let greatest = pressure.par_iter().copied().reduce(|| 0.0, f64::max);
+        let cutoff = 0.5 * self.certified.params().cutoff as f64 / self.base().nx() as f64;
+        let remainder = Remainder {
+            values: operator.operator().base_displacement(),
+            curvature: greatest * self.certified.remainder_curvature(cutoff),
+            error: 1e-5 * self.problem.h_range,
+        };
+        possible_contact(&remainder, &self.heights, level - self.problem.offset(), per_side)
+    }
+
+    /// Pressure and gap on all candidates. With `prove`, tiles are added to them until no contact is possible elsewhere.
+    fn survey(
+        &self,
+        candidates: &mut Candidates,
+        mesh: &Mesh,
+        response: &Tables<T>,
+        info: &mut LevelInfo,
+        prove: bool,
+    ) -> (Vec<f64>, Vec<f64>) {
+        loop {
+            let mut pressure = moved(&mesh.tiles, &candidates.tiles, &mesh.pressure);
+            let mut fresh = Fresh::<T>::new(self.hierarchy(&candidates.tiles, self.fresh.halo()));
+            fresh.fill(pressure.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
+            fresh.multiply(response);
+            info.operator_applications += 1;
+            let mut gap = vec![0.0; pressure.len()];
+            let offset = self.problem.offset();
+            let sinks = (gap.par_chunks_mut(BLOCK_CELLS), candidates.heights.par_chunks(BLOCK_CELLS));
+            fresh.take(response, sinks.into_par_iter(), |(gap, heights), cells| {
+                for ((gap, height), cell) in gap.iter_mut().zip(heights).zip(cells) {
+                    *gap = cell - height + offset;
+                }
+            });
+            restore_penetration(&self.problem, &candidates.heights, &mut pressure, &mut gap);
+            if prove {
+                let level = contact_gap_of(&self.problem, &pressure, &gap);
+                let places = self.possible_contact(&fresh, &pressure, candidates.tiles.per_side(), level);
+                let known = |place: &[u32; 2]| candidates.tiles.find(place[0].into(), place[1].into()).is_some();
+                if !places.iter().all(known) {
+                    *candidates = self.candidates(candidates.tiles.per_side(), places, candidates.tiles.places());
+                    continue;
+                }
+            }
+            return (pressure, gap);
+        }
+    }
+
+    fn tile_heights(&self, tiles: &TileSet) -> Vec<f64> {
+        let mut heights = vec![0.0; tiles.n_cells()];
+        let (cells, _) = heights.as_chunks_mut::<CELLS>();
+        cells.par_iter_mut().zip(tiles.places()).with_min_len(16).for_each(|(cells, &[column, row])| {
+            self.heights.tile(tiles.side(), column as usize, row as usize, cells);
+        });
+        heights
+    }
+}
+
+/// The candidates that press or penetrate somewhere, or nearly did when the level began.
+struct Part {
+    tiles: TileSet,
+    heights: Vec<f64>,
+    pressure: Vec<f64>,
+    gap: Vec<f64>,
+}
+
+impl Part {
+    fn choose(candidates: &Candidates, known: &TileSet, pressure: &[f64], gap: &[f64], contact_gap: f64) -> Self {
+        let cells = |tile: usize| tile * CELLS..(tile + 1) * CELLS;
+        let takes_part = |tile: usize| {
+            let [column, row] = candidates.tiles.places()[tile].map(i64::from);
+            known.find(column, row).is_some() || cells(tile).any(|i| pressure[i] > 0.0 || gap[i] < contact_gap)
+        };
+        let chosen: Vec<usize> = (0..candidates.tiles.len()).filter(|&tile| takes_part(tile)).collect();
+        let places = chosen.iter().map(|&tile| candidates.tiles.places()[tile]).collect();
+        let part = |values: &[f64]| {
+            let mut part = Vec::with_capacity(chosen.len() * CELLS);
+            for &tile in &chosen {
+                part.extend_from_slice(&values[cells(tile)]);
+            }
+            part
+        };
+        // A part of sorted tiles is sorted, so places and values stay together.
+        Self {
+            tiles: TileSet::new(candidates.tiles.per_side(), places),
+            heights: part(&candidates.heights),
+            pressure: part(pressure),
+            gap: part(gap),
+        }
+    }
+}
+
+/// Values on `to`, which has all tiles of `from`; zero on the others.
+pub(super) fn moved(from: &TileSet, to: &TileSet, values: &[f64]) -> Vec<f64> {
+    let mut result = vec![0.0; to.n_cells()];
+    for (tile, &[column, row]) in from.places().iter().enumerate() {
+        let at = to.find(i64::from(column), i64::from(row)).expect("a tile of both");
+        result[at * CELLS..][..CELLS].copy_from_slice(&values[tile * CELLS..][..CELLS]);
+    }
+    result
+}
+
+/// Multiplies the pressure so that its mean over the cell is the prescribed one.
+fn scale_to_load(problem: &Problem, n_cell: f64, pressure: &mut [f64]) {
+    if let Control::MeanPressure(mean) = problem.control {
+        let sum: f64 = pressure.iter().sum();
+        if sum > 0.0 {
+            pressure.par_iter_mut().for_each(|p| *p *= mean * n_cell / sum);
+        }
+    }
+}
+
+/// Under penetration control, multiplies the pressure so that its weighted mean gap is zero; the gap follows, since v is
+/// linear in p.
+fn restore_penetration(problem: &Problem, heights: &[f64], pressure: &mut [f64], gap: &mut [f64]) {
+    let Control::Penetration(_) = problem.control else { return };
+    let offset = problem.offset();
+    let (mut wanted, mut displaced) = (0.0, 0.0);
+    for ((p, g), h) in pressure.iter().zip(&*gap).zip(heights) {
+        wanted += p * (h - offset);
+        displaced += p * (g + h - offset);
+    }
+    let factor = wanted / displaced;
+    if factor.is_finite() && factor > 0.0 {
+        for ((p, g), h) in pressure.iter_mut().zip(gap).zip(heights) {
+            *p *= factor;
+            *g = factor * (*g + h - offset) - h + offset;
+        }
+    }
+}
+
+/// The gap in contact: its mean there, or zero where the penetration is prescribed.
+fn contact_gap_of(problem: &Problem, pressure: &[f64], gap: &[f64]) -> f64 {
+    if let Control::Penetration(_) = problem.control {
+        return 0.0;
+    }
+    let in_contact = pressure.iter().zip(gap).filter(|&(&p, _)| p > 0.0);
+    let (sum, count) = in_contact.fold((0.0, 0.0), |(sum, count), (_, g)| (sum + g, count + 1.0));
+    if count > 0.0 { sum / count } else { 0.0 }
+}

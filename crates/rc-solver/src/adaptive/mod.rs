@@ -1,0 +1,310 @@
+//! The contact problem on an adaptive mesh: work and memory follow the contact, not the cell.
+//!
+//! Uniform grids up to a base grid, as in [`crate::solve_uniform`]; from there on, level by level, only the tiles of 8 × 8
+//! cells that contact touches or nearly does, with the multilevel operator. What is not stored is out of contact, and the
+//! survey proves it.
+
+mod engine;
+mod error;
+mod estimate;
+mod fresh;
+pub(crate) mod heights;
+mod level;
+pub(crate) mod operator;
+mod prolongation;
+mod solution;
+mod survey;
+pub(crate) mod tiles;
+
+use rc_core::{Event, Grid, Observer};
+use rc_kernel::{Love, ScaleSplit, SplitParams};
+
+pub use self::error::AdaptiveError;
+pub use self::estimate::Estimate;
+pub use self::heights::HeightSource;
+use self::heights::Heights;
+use self::level::{Level, Mesh};
+use self::operator::{Prepared, Real};
+pub use self::solution::{AdaptiveSolution, ContactElement};
+use self::tiles::{TILE, TileSet};
+use crate::problem::Problem;
+use crate::solution::{LevelInfo, SolveInfo};
+use crate::{Certificate, Control, SolveParams, uniform};
+
+/// Operator errors from here on are reached in single precision.
+const SINGLE_PRECISION: f64 = 1e-6;
+
+/// Error of L relative to the rms displacement, over the tolerance, that a certificate may have: tolerances are relative to
+/// the height range, which is at least ten times the error's measure on any surface.
+const OPERATOR_ERROR_PER_TOLERANCE: f64 = 10.0;
+
+/// Elements of the base grid for the shortest wave: what interpolates heights to other levels needs no more.
+const BASE_ELEMENTS_PER_WAVE: usize = 4;
+
+/// Fewest elements per side of the base grid.
+const SMALLEST_BASE: usize = 64;
+
+/// How accurately, and within which limits, the adaptive method solves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AdaptiveParams {
+    /// Tolerance of the certificate and limit of iterations.
+    pub solve: SolveParams,
+    /// Bound on the error of one application of L, relative to the rms displacement, on pressures of contacts
+    /// ([`SplitParams`] has the measurements). A tolerance below a tenth of it lowers it.
+    pub operator_error: f64,
+    /// Elements per side of the base grid; `None` chooses.
+    pub base_side: Option<usize>,
+    /// Most memory, in bytes; a larger estimate is an error, before any work.
+    pub memory_limit: Option<u64>,
+}
+
+impl AdaptiveParams {
+    /// As [`SolveParams::certified`], L to 1e-6, no limit of memory.
+    #[must_use]
+    pub fn certified() -> Self {
+        Self { solve: SolveParams::certified(), operator_error: 1e-6, base_side: None, memory_limit: None }
+    }
+}
+
+/// A checked contact problem, ready for the adaptive method: heights are sampled, nothing is solved.
+///
+/// Displacements are those of Love's squares ([`rc_kernel::Love`]) of the finest side.
+pub struct AdaptiveProblem<'a> {
+    heights: Heights<'a>,
+    problem: Problem,
+    params: AdaptiveParams,
+    split: SplitParams,
+}
+
+impl<'a> AdaptiveProblem<'a> {
+    /// Checks and prepares.
+    ///
+    /// # Errors
+    /// [`AdaptiveError`], but not [`AdaptiveError::NotConverged`].
+    pub fn new(source: HeightSource<'a>, control: Control, params: &AdaptiveParams) -> Result<Self, AdaptiveError> {
+        let error = params.operator_error.min(OPERATOR_ERROR_PER_TOLERANCE * params.solve.tolerance);
+        let split = SplitParams::for_error(error)
+            .ok_or(AdaptiveError::OperatorError { value: error, smallest: SplitParams::SMALLEST_ERROR })?;
+        let base_side = base_side(&source, params.base_side)?;
+        let heights = Heights::new(source, base_side)?;
+        let problem = Problem::of_statistics(heights.extremes(), control, &params.solve)?;
+        if problem.h_range == 0.0 {
+            return Err(AdaptiveError::Flat);
+        }
+        let prepared = Self { heights, problem, params: *params, split };
+        prepared.check_memory()?;
+        Ok(prepared)
+    }
+
+    fn check_memory(&self) -> Result<(), AdaptiveError> {
+        let Some(limit) = self.params.memory_limit else { return Ok(()) };
+        let estimate = self.estimate();
+        if estimate.adaptive_bytes <= limit as f64 {
+            return Ok(());
+        }
+        Err(AdaptiveError::Memory {
+            needed: (estimate.adaptive_bytes / 1e6).ceil() as u64,
+            limit: limit / 1_000_000,
+            area_percent: 100.0 * estimate.area_fraction,
+        })
+    }
+
+    /// What solving it will cost, from the surface and the load alone.
+    #[must_use]
+    pub fn estimate(&self) -> Estimate {
+        Estimate::new(&self.heights, self.problem.control)
+    }
+
+    /// The greatest height over the finest grid, in λ.
+    #[must_use]
+    pub fn h_max(&self) -> f64 {
+        self.problem.h_max
+    }
+
+    /// Solves it.
+    ///
+    /// The certificate comes from a fresh application of L on the returned pressure; it covers every cell where a bound does
+    /// not exclude contact. The result is bitwise the same for any number of threads.
+    ///
+    /// # Errors
+    /// [`AdaptiveError::NotConverged`].
+    pub fn solve(self, observer: &dyn Observer) -> Result<AdaptiveSolution, AdaptiveError> {
+        let Self { heights, problem, params, split } = self;
+        if params.operator_error.min(OPERATOR_ERROR_PER_TOLERANCE * params.solve.tolerance) >= SINGLE_PRECISION {
+            Solver::<f32>::new(heights, problem, params.solve, split).solve(observer)
+        } else {
+            Solver::<f64>::new(heights, problem, params.solve, split).solve(observer)
+        }
+    }
+}
+
+/// Solves a contact problem on an adaptive mesh: [`AdaptiveProblem::new`] and [`AdaptiveProblem::solve`].
+///
+/// # Errors
+/// [`AdaptiveError`].
+pub fn solve_adaptive(
+    source: HeightSource<'_>,
+    control: Control,
+    params: &AdaptiveParams,
+    observer: &dyn Observer,
+) -> Result<AdaptiveSolution, AdaptiveError> {
+    AdaptiveProblem::new(source, control, params)?.solve(observer)
+}
+
+/// Checks or chooses the elements per side of the base grid.
+fn base_side(source: &HeightSource<'_>, wanted: Option<usize>) -> Result<usize, AdaptiveError> {
+    let (nx, ny, waves) = match source {
+        HeightSource::Surface(surface, side) => (*side, *side, surface.band_limit()),
+        HeightSource::Map(map) => (map.grid().nx(), map.grid().ny(), None),
+    };
+    let finest = nx;
+    if let Some(base) = wanted {
+        let fits = base >= TILE && base.is_multiple_of(TILE) && base > 2 * waves.unwrap_or(0) && 2 * base <= finest;
+        let divides = fits && finest.is_multiple_of(base) && (finest / base).is_power_of_two();
+        let error = AdaptiveError::Base { base, waves: waves.unwrap_or(0), finest };
+        return if divides && nx == ny { Ok(base) } else { Err(error) };
+    }
+    // A map may hold waves as short as a few elements: two levels above the base grid are safe, and three on large maps.
+    let least = match waves {
+        Some(waves) => (BASE_ELEMENTS_PER_WAVE * waves).max(SMALLEST_BASE),
+        None => (finest / if finest >= 4096 { 8 } else { 4 }).max(SMALLEST_BASE),
+    };
+    let halves = |side: usize| side.is_multiple_of(2 * TILE) && side / 2 >= least;
+    let mut base = finest;
+    while halves(base) {
+        base /= 2;
+    }
+    if base == finest && finest.is_multiple_of(2 * TILE) && finest / 2 > 2 * waves.unwrap_or(0) {
+        base /= 2;
+    }
+    let allowed = nx == ny && base < finest && Grid::square(finest).is_ok();
+    if allowed { Ok(base) } else { Err(AdaptiveError::Grid { nx, ny, smallest: 2 * least }) }
+}
+
+/// What the levels share; `T` is the precision of fresh gaps.
+struct Solver<'a, T> {
+    heights: Heights<'a>,
+    problem: Problem,
+    params: SolveParams,
+    certified: ScaleSplit,
+    /// L, and its approximate inverse, for corrections.
+    response: Prepared<f32>,
+    preconditioner: Prepared<f32>,
+    /// L for fresh gaps.
+    fresh: Prepared<T>,
+}
+
+/// The tiles of one level with the level function on them, from which the next level starts.
+struct Coarse {
+    tiles: TileSet,
+    function: Vec<f64>,
+    contact_gap: f64,
+}
+
+impl<'a, T: Real + Into<f64>> Solver<'a, T> {
+    fn new(heights: Heights<'a>, problem: Problem, params: SolveParams, split: SplitParams) -> Self {
+        let (quick, certified) = (ScaleSplit::new(SplitParams::quick()), ScaleSplit::new(split));
+        let base = heights.base().grid();
+        Self {
+            response: Prepared::displacement(&quick, base),
+            preconditioner: Prepared::inverse(&quick, base),
+            fresh: Prepared::displacement(&certified, base),
+            certified,
+            heights,
+            problem,
+            params,
+        }
+    }
+
+    fn base(&self) -> Grid {
+        self.heights.base().grid()
+    }
+
+    fn solve(&self, observer: &dyn Observer) -> Result<AdaptiveSolution, AdaptiveError> {
+        let n_above = (self.heights.finest_side() / self.base().nx()).ilog2() as usize;
+        let (mut coarse, mut infos) = self.solve_base(n_above, observer);
+        for above in 1..=n_above {
+            let grid = Grid::square(self.base().nx() << above).expect("a level of a checked grid");
+            observer.notify(&Event::Level { grid, level: infos.len(), n_levels: infos.len() + 1 + n_above - above });
+            let (tiles, pressure) = prolongation::prolong(&coarse.tiles, &coarse.function);
+            let mesh = Mesh { tiles, pressure };
+            if above < n_above {
+                let tolerance = uniform::coarse_tolerance(n_above - above - 1).max(self.params.tolerance);
+                let level = self.prepare_level(grid, mesh, tolerance, observer);
+                infos.push(level.info);
+                let Level { tiles, pressure, gap, contact_gap, .. } = level;
+                let function = prolongation::level_function(&tiles, &pressure, &gap, contact_gap);
+                coarse = Coarse { tiles, function, contact_gap };
+            } else {
+                let level = self.solve_finest(grid, mesh, coarse.contact_gap, observer);
+                infos.push(level.info);
+                return self.finish(grid, level, infos);
+            }
+        }
+        unreachable!("the finest level returns")
+    }
+
+    /// Wraps up what the finest level found.
+    fn finish(&self, grid: Grid, level: Level, levels: Vec<LevelInfo>) -> Result<AdaptiveSolution, AdaptiveError> {
+        let (outcome, iterations) = (level.outcome, level.info.iterations);
+        let certificate = outcome.certificate;
+        let info = SolveInfo {
+            certificate,
+            mean_pressure: outcome.mean_pressure,
+            penetration: self.problem.h_max + outcome.approach,
+            penetration_full_contact: self.problem.h_max - self.problem.h_mean,
+            elastic_energy: outcome.elastic_energy,
+            levels,
+        };
+        let solution = AdaptiveSolution {
+            base_side: self.base().nx(),
+            tiles: level.tiles,
+            pressure: level.pressure,
+            info,
+            evaluated: level.evaluated,
+            proven: grid.len() - level.evaluated,
+        };
+        if certificate.penetration <= self.params.tolerance && certificate.load <= Certificate::LOAD_TOLERANCE {
+            Ok(solution)
+        } else {
+            Err(AdaptiveError::NotConverged { grid, iterations, certificate, solution: Box::new(solution) })
+        }
+    }
+
+    /// Uniform grids up to the base grid.
+    fn solve_base(&self, n_above: usize, observer: &dyn Observer) -> (Coarse, Vec<LevelInfo>) {
+        let base = self.heights.base();
+        let coarser = uniform::coarsen(base, uniform::SMALLEST_SIDE);
+        let n_levels = coarser.len() + 1;
+        let mut infos = Vec::new();
+        let mut start = None;
+        for (level, heights) in coarser.iter().rev().chain([base]).enumerate() {
+            observer.notify(&Event::Level { grid: heights.grid(), level, n_levels: n_levels + n_above });
+            let below = n_levels + n_above - 2 - level;
+            let mut descent = uniform::descent(heights, &Love, &self.problem, start.take());
+            let tolerance = uniform::coarse_tolerance(below).max(self.params.tolerance);
+            descent.run(tolerance, self.params.max_iterations, false, observer);
+            infos.push(descent.info());
+            if level + 1 == n_levels {
+                let function = to_tiles(base.grid(), &uniform::level_function(&descent));
+                let tiles = TileSet::full(base.grid().nx() / TILE);
+                return (Coarse { tiles, function, contact_gap: descent.contact_gap() }, infos);
+            }
+            start = Some(uniform::prolong(&descent));
+        }
+        unreachable!("the base grid returns")
+    }
+}
+
+/// Values of a grid, tile by tile.
+fn to_tiles(grid: Grid, values: &[f64]) -> Vec<f64> {
+    let tiles = TileSet::full(grid.nx() / TILE);
+    let mut result = Vec::with_capacity(values.len());
+    for &[column, row] in tiles.places() {
+        for y in 0..TILE {
+            let start = (row as usize * TILE + y) * grid.nx() + column as usize * TILE;
+            result.extend_from_slice(&values[start..start + TILE]);
+        }
+    }
+    result
+}

@@ -1,0 +1,69 @@
+//! A stencil applied to one tile.
+
+use rc_kernel::Stencil;
+
+use super::patch::Patch;
+use super::real::{MultiplyAdd, Real};
+use crate::adaptive::tiles::{CELLS, TILE};
+
+/// The weights of a stencil with their places in a patch of given side.
+#[derive(Clone, Debug)]
+pub(crate) struct Taps<T> {
+    /// Offset of the weight's first source cell in the patch, and the weight.
+    taps: Vec<(usize, T)>,
+    radius: usize,
+}
+
+impl<T: Real> Taps<T> {
+    /// `stencil`, times `factor`, for patches of `side`. Weights that cannot matter are left out.
+    pub(crate) fn new(stencil: &Stencil, factor: f64, side: usize) -> Self {
+        let (radius, margin) = (stencil.radius() as i32, (side - TILE) as i32 / 2);
+        let negligible = 1e-15 * stencil.weight(0, 0).abs();
+        let mut taps = Vec::new();
+        for dy in -radius..=radius {
+            for dx in -radius..=radius {
+                let weight = stencil.weight(dx, dy);
+                if weight.abs() > negligible {
+                    let offset = (margin + dy) * side as i32 + margin + dx;
+                    taps.push((offset as usize, T::rounded(factor * weight)));
+                }
+            }
+        }
+        Self { taps, radius: stencil.radius() }
+    }
+
+    /// Rows of the patch that are read.
+    pub(crate) fn rows(&self, side: usize) -> std::ops::Range<usize> {
+        let margin = (side - TILE) / 2;
+        margin - self.radius..margin + TILE + self.radius
+    }
+
+    /// Adds the stencil's sum over the patch around a tile to `out`.
+    #[inline(always)]
+    pub(crate) fn add<A: MultiplyAdd, const SIDE: usize>(&self, patch: &Patch<T, SIDE>, out: &mut [T; CELLS]) {
+        let cells = patch.as_flattened();
+        if T::ROWS == TILE {
+            self.add_rows::<A, SIDE, 8>(cells, out);
+        } else {
+            let (low, high) = out.split_at_mut(CELLS / 2);
+            self.add_rows::<A, SIDE, 4>(cells, low);
+            self.add_rows::<A, SIDE, 4>(&cells[4 * SIDE..], high);
+        }
+    }
+
+    #[inline(always)]
+    fn add_rows<A: MultiplyAdd, const SIDE: usize, const ROWS: usize>(&self, cells: &[T], out: &mut [T]) {
+        let mut sums = [[T::default(); TILE]; ROWS];
+        for &(offset, weight) in &self.taps {
+            let window = &cells[offset..][..(ROWS - 1) * SIDE + TILE];
+            for (y, sums) in sums.iter_mut().enumerate() {
+                for (x, sum) in sums.iter_mut().enumerate() {
+                    *sum = A::add(*sum, weight, window[y * SIDE + x]);
+                }
+            }
+        }
+        for (out, sum) in out.iter_mut().zip(sums.as_flattened()) {
+            *out = *out + *sum;
+        }
+    }
+}

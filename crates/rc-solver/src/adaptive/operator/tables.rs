@@ -1,0 +1,135 @@
+//! What an operator does on each level of a hierarchy: of L, and of its approximate inverse.
+
+use std::f64::consts::PI;
+
+use rc_core::Grid;
+use rc_kernel::{Filter, ScaleSplit, Stencil};
+
+use super::real::Real;
+use super::stencil::Taps;
+use super::transfer::Transfer;
+use crate::fft::SymbolTable;
+
+/// Filters are filled up to one of these numbers of taps, for which the inner loops are compiled, and patches are as large as
+/// that needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sizes {
+    /// 4 taps; stencils reach at most 8 cells.
+    Small,
+    /// 16 taps; stencils reach at most 8 cells.
+    Medium,
+    /// 32 taps; stencils reach at most 16 cells.
+    Large,
+}
+
+impl Sizes {
+    fn of(split: &ScaleSplit) -> Self {
+        let params = split.params();
+        match (params.cutoff, params.taps) {
+            (..=8, ..=4) => Self::Small,
+            (..=8, ..=16) => Self::Medium,
+            _ => Self::Large,
+        }
+    }
+
+    fn taps(self) -> usize {
+        match self {
+            Self::Small => 4,
+            Self::Medium => 16,
+            Self::Large => 32,
+        }
+    }
+
+    /// Side of the patch around one tile.
+    fn around(self) -> usize {
+        match self {
+            Self::Small | Self::Medium => 24,
+            Self::Large => 40,
+        }
+    }
+}
+
+/// Tables of one operator on levels 0 (the base grid, with its Fourier transform) to K.
+#[derive(Clone)]
+pub(crate) struct Tables<T> {
+    pub(crate) sizes: Sizes,
+    pub(crate) base: SymbolTable<T>,
+    /// Of levels 1 to K: the stencil on the level, and the transfer between it and the next coarser one.
+    pub(crate) levels: Vec<(Taps<T>, Transfer<T>)>,
+}
+
+/// The split kernel of one base grid, from which the tables of any number of levels are made.
+pub(crate) struct Prepared<T> {
+    sizes: Sizes,
+    base: Grid,
+    symbol: SymbolTable<T>,
+    /// Stencil and transfer of the finest level, and of those between it and the base grid; sum of the stencil.
+    finest: (Stencil, Transfer<T>),
+    between: (Stencil, Transfer<T>),
+    scale: Scale,
+}
+
+/// How weights follow from the side h of an element.
+#[derive(Clone, Copy)]
+enum Scale {
+    /// In proportion: displacements.
+    Side,
+    /// In inverse proportion: pressures.
+    Inverse,
+}
+
+/// Reach of the preconditioner's stencils.
+const INVERSE_RADIUS: usize = 2;
+
+impl<T: Real> Prepared<T> {
+    /// `v = L p` for Love's squares.
+    pub(crate) fn displacement(split: &ScaleSplit, base: Grid) -> Self {
+        let cutoff = 0.5 * split.params().cutoff as f64 / base.nx() as f64;
+        let symbol = SymbolTable::new(base, |kx: usize, ky: usize| {
+            let q = 2.0 * PI * (kx as f64).hypot(ky as f64);
+            if q == 0.0 { 0.0 } else { split.remainder_symbol(q, cutoff) }
+        });
+        let sizes = Sizes::of(split);
+        let transfer = |filter: &Filter| Transfer::new(filter, sizes.taps());
+        Self {
+            sizes,
+            base,
+            symbol,
+            finest: (split.love_stencil(), transfer(&split.love_filter())),
+            between: (split.level_stencil(), transfer(&split.level_filter())),
+            scale: Scale::Side,
+        }
+    }
+
+    /// |q|/2, nearly: the inverse of L but for the mean, as a preconditioner.
+    pub(crate) fn inverse(split: &ScaleSplit, base: Grid) -> Self {
+        let sizes = Sizes::of(split);
+        let part = (split.inverse_stencil(INVERSE_RADIUS), Transfer::new(&split.level_filter(), sizes.taps()));
+        let symbol = SymbolTable::new(base, |kx: usize, ky: usize| PI * (kx as f64).hypot(ky as f64));
+        Self { sizes, base, symbol, finest: part.clone(), between: part, scale: Scale::Inverse }
+    }
+
+    /// Cells of a coarser level around a tile that its values go to and come from.
+    pub(crate) fn halo(&self) -> usize {
+        self.finest.1.reach()
+    }
+
+    /// Tables for a finest level of `base side · 2^n_levels` cells per side.
+    pub(crate) fn tables(&self, n_levels: usize) -> Tables<T> {
+        let (mut levels, mut sum) = (Vec::with_capacity(n_levels), 0.0);
+        for level in 1..=n_levels {
+            let (stencil, transfer) = if level == n_levels { &self.finest } else { &self.between };
+            let cells = (self.base.nx() << level) as f64;
+            let factor = match self.scale {
+                Scale::Side => 1.0 / cells,
+                Scale::Inverse => cells,
+            };
+            sum += factor * stencil.sum();
+            levels.push((Taps::new(stencil, factor, self.sizes.around()), transfer.clone()));
+        }
+        let mut base = self.symbol.clone();
+        // A constant gives zero (Eq. 3): the base grid takes off what the stencils add to it.
+        base.set_mean(T::rounded(-sum / self.base.len() as f64));
+        Tables { sizes: self.sizes, base, levels }
+    }
+}

@@ -1,0 +1,113 @@
+//! From the pressure on the tiles of one level to a start, and the tiles it needs, on the next finer one.
+//!
+//! What is interpolated is the level function φ of [`crate::uniform`]'s prolongation: p² inside, and -c² times the distance
+//! to the edge outside, which is linear across the edge of a contact.
+
+use rayon::prelude::*;
+
+use super::operator::{Patch, gather};
+use super::tiles::{CELLS, TILE, TileSet};
+use crate::uniform::outside_level;
+
+/// Cells around a tile that must be out of contact for it to be left out: contacts may grow a little.
+const MARGIN: usize = 2;
+
+/// Side of the patches that hold a tile and its neighbours.
+const SIDE: usize = 3 * TILE;
+
+/// φ on the cells of `tiles`, from pressure and gap there.
+pub(super) fn level_function(tiles: &TileSet, pressure: &[f64], gap: &[f64], contact_gap: f64) -> Vec<f64> {
+    let spacing = 1.0 / tiles.side() as f64;
+    let mut level = vec![0.0; pressure.len()];
+    level.par_chunks_mut(CELLS).enumerate().for_each(|(tile, level)| {
+        let [column, row] = tiles.places()[tile].map(i64::from);
+        let mut patch: Patch<f64, SIDE> = [[0.0; SIDE]; SIDE];
+        gather(pressure, tiles, (column - 1, row - 1), TILE - 1..2 * TILE + 1, &mut patch);
+        for (cell, value) in level.iter_mut().enumerate() {
+            let (x, y) = (TILE + cell % TILE, TILE + cell / TILE);
+            let here = patch[y][x];
+            *value = if here > 0.0 {
+                here * here
+            } else {
+                let near = patch[y - 1..=y + 1].iter().flat_map(|row| &row[x - 1..=x + 1]);
+                outside_level(near, (gap[tile * CELLS + cell] - contact_gap).max(0.0), spacing)
+            };
+        }
+    });
+    level
+}
+
+/// The tiles of the next finer level that the start presses, or nearly, and the pressure on them.
+pub(super) fn prolong(tiles: &TileSet, level: &[f64]) -> (TileSet, Vec<f64>) {
+    // Where no tile is, there is no contact for a long way.
+    let contact: Vec<f64> = level.iter().copied().filter(|&l| l > 0.0).collect();
+    let far = -contact.iter().sum::<f64>() / contact.len().max(1) as f64;
+    let children: Vec<[Option<Box<[f64; CELLS]>>; 4]> = tiles
+        .places()
+        .par_iter()
+        .map(|&[column, row]| {
+            let mut patch: Patch<f64, SIDE> = [[0.0; SIDE]; SIDE];
+            let corner = (i64::from(column) - 1, i64::from(row) - 1);
+            gather(level, tiles, corner, TILE - 2..2 * TILE + 2, &mut patch);
+            if !patch[TILE - 2..2 * TILE + 2].iter().flat_map(|row| &row[TILE - 2..2 * TILE + 2]).any(|&l| l > 0.0) {
+                return [const { None }; 4];
+            }
+            mark_missing(tiles, corner, far, &mut patch);
+            std::array::from_fn(|child| fine_tile(&patch, (child % 2, child / 2)))
+        })
+        .collect();
+    let place = |tile: usize, child: usize| {
+        let [column, row] = tiles.places()[tile];
+        [2 * column + (child % 2) as u32, 2 * row + (child / 2) as u32]
+    };
+    let chosen = children.iter().enumerate().flat_map(|(tile, children)| {
+        children.iter().enumerate().filter_map(move |(child, pressure)| pressure.as_ref().map(|p| (tile, child, p)))
+    });
+    let fine = TileSet::new(2 * tiles.per_side(), chosen.clone().map(|(tile, child, _)| place(tile, child)).collect());
+    let mut pressure = vec![0.0; fine.n_cells()];
+    for (tile, child, values) in chosen {
+        let [column, row] = place(tile, child).map(i64::from);
+        let at = fine.find(column, row).expect("it was just put there");
+        pressure[at * CELLS..][..CELLS].copy_from_slice(values.as_slice());
+    }
+    (fine, pressure)
+}
+
+fn mark_missing(tiles: &TileSet, (column, row): (i64, i64), far: f64, patch: &mut Patch<f64, SIDE>) {
+    for y in 0..3 {
+        for x in 0..3 {
+            if tiles.find(column + x as i64, row + y as i64).is_none() {
+                for line in &mut patch[y * TILE..][..TILE] {
+                    line[x * TILE..][..TILE].fill(far);
+                }
+            }
+        }
+    }
+}
+
+/// The pressure of the fine tile in a quarter of the middle of the patch; none when nothing presses on it or near it.
+fn fine_tile(patch: &Patch<f64, SIDE>, (half_x, half_y): (usize, usize)) -> Option<Box<[f64; CELLS]>> {
+    const WIDE: usize = TILE + 2 * MARGIN;
+    // Coarse cell and its neighbour on the side of the fine cell; fine cells are counted from the margin's corner.
+    let near = |i: usize, half: usize| {
+        let fine = TILE * 2 + half * TILE + i - MARGIN;
+        let coarse = fine / 2;
+        (coarse, if fine.is_multiple_of(2) { coarse - 1 } else { coarse + 1 })
+    };
+    let mut touched = false;
+    let mut pressure = [0.0; CELLS];
+    for y in 0..WIDE {
+        let (near_y, far_y) = near(y, half_y);
+        for x in 0..WIDE {
+            let (near_x, far_x) = near(x, half_x);
+            let blend = |x: usize| 0.75 * patch[near_y][x] + 0.25 * patch[far_y][x];
+            let level = 0.75 * blend(near_x) + 0.25 * blend(far_x);
+            touched |= level > 0.0;
+            let inside = |i: usize| (MARGIN..MARGIN + TILE).contains(&i);
+            if inside(x) && inside(y) {
+                pressure[(y - MARGIN) * TILE + x - MARGIN] = level.max(0.0).sqrt();
+            }
+        }
+    }
+    touched.then(|| Box::new(pressure))
+}

@@ -1,0 +1,194 @@
+//! What the adaptive method returns: pressures on tiles, and everything else on request.
+
+use rayon::prelude::*;
+use rc_core::{Grid, Kernel};
+use rc_kernel::{Love, ScaleSplit, SplitParams};
+
+use super::operator::{BLOCK_CELLS, Hierarchy, Patch, Prepared, TileOperator, gather};
+use super::tiles::{CELLS, TILE, TileSet};
+use crate::stiffness::stiffness_of;
+use crate::{ContactArea, Observables, SolveInfo};
+
+/// One element in contact, in units of λ and E*.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactElement {
+    /// Centre along x.
+    pub x: f64,
+    /// Centre along y.
+    pub y: f64,
+    /// Side of the square.
+    pub side: f64,
+    /// Pressure, > 0.
+    pub pressure: f64,
+}
+
+/// A contact problem solved on an adaptive mesh.
+///
+/// Only what contact touches is stored; [`AdaptiveSolution::pressure_rows`] gives the rows of the finest grid one tile high at
+/// a time, for files and pictures.
+#[derive(Clone, Debug)]
+pub struct AdaptiveSolution {
+    pub(super) base_side: usize,
+    pub(super) tiles: TileSet,
+    pub(super) pressure: Vec<f64>,
+    /// How it was found and how good it is. The certificate holds for the whole cell.
+    pub info: SolveInfo,
+    /// Cells of the finest grid whose gap was computed for the certificate.
+    pub evaluated: usize,
+    /// Cells that were proven to be out of contact without computing their gap: all others.
+    pub proven: usize,
+}
+
+impl AdaptiveSolution {
+    /// The finest grid.
+    #[must_use]
+    pub fn grid(&self) -> Grid {
+        Grid::square(self.tiles.side()).expect("the side of a solved grid")
+    }
+
+    /// Elements in contact.
+    pub fn elements(&self) -> impl Iterator<Item = ContactElement> + '_ {
+        let side = 1.0 / self.tiles.side() as f64;
+        self.tiles.places().iter().zip(self.pressure.chunks_exact(CELLS)).flat_map(move |(&[column, row], cells)| {
+            cells.iter().enumerate().filter(|&(_, &pressure)| pressure > 0.0).map(move |(cell, &pressure)| {
+                let x = (f64::from(column) * TILE as f64 + (cell % TILE) as f64 + 0.5) * side;
+                let y = (f64::from(row) * TILE as f64 + (cell / TILE) as f64 + 0.5) * side;
+                ContactElement { x, y, side, pressure }
+            })
+        })
+    }
+
+    /// Number of elements in contact.
+    #[must_use]
+    pub fn n_elements(&self) -> usize {
+        self.pressure.par_iter().filter(|&&p| p > 0.0).count()
+    }
+
+    /// Hands out the pressure on the finest grid, eight rows at a time, in order: the index of the first row, and the rows one
+    /// after the other. Stops at the first error.
+    ///
+    /// # Errors
+    /// What `take` returns.
+    pub fn pressure_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        let n = self.tiles.side();
+        let mut rows = vec![0.0; TILE * n];
+        for row in 0..self.tiles.per_side() {
+            rows.fill(0.0);
+            for column in 0..self.tiles.per_side() {
+                if let Some(tile) = self.tiles.find(column as i64, row as i64) {
+                    let cells = &self.pressure[tile * CELLS..][..CELLS];
+                    for (line, values) in rows.chunks_exact_mut(n).zip(cells.as_chunks::<TILE>().0) {
+                        line[column * TILE..][..TILE].copy_from_slice(values);
+                    }
+                }
+            }
+            take(row * TILE, &rows)?;
+        }
+        Ok(())
+    }
+
+    /// Hands out the displacement v on the finest grid, rows of tiles at a time as [`AdaptiveSolution::pressure_rows`] does, at
+    /// about the cost of one application of L on the whole grid. The gap is `v - h + mean gap offset`: see
+    /// [`AdaptiveSolution::gap_offset`].
+    ///
+    /// # Errors
+    /// What `take` returns.
+    pub fn displacement_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        let (n, per_side) = (self.tiles.side(), self.tiles.per_side());
+        let grid = Grid::square(self.base_side).expect("the base grid of a solution");
+        let prepared = Prepared::<f32>::displacement(&ScaleSplit::new(SplitParams::certified()), grid);
+        let tables = prepared.tables((n / self.base_side).ilog2() as usize);
+        // As many rows of tiles at once as about a million cells hold.
+        let at_once = (1_000_000 / (TILE * n)).max(1);
+        for first in (0..per_side).step_by(at_once) {
+            let band = first..(first + at_once).min(per_side);
+            let more = band.clone().flat_map(|row| (0..per_side).map(move |column| [column as u32, row as u32]));
+            let tiles = TileSet::new(per_side, self.tiles.places().iter().copied().chain(more).collect());
+            let mut operator =
+                TileOperator::new(std::sync::Arc::new(Hierarchy::new(self.base_side, tiles, prepared.halo())));
+            let mut values = super::level::moved(&self.tiles, operator.hierarchy().finest(), &self.pressure);
+            operator.fill(values.par_chunks(BLOCK_CELLS), |p, cells| {
+                for (cell, &p) in cells.iter_mut().zip(p) {
+                    *cell = p as f32;
+                }
+            });
+            operator.spread(&tables);
+            operator.take(&tables, values.par_chunks_mut(BLOCK_CELLS), |v, cells| {
+                for (v, &cell) in v.iter_mut().zip(cells) {
+                    *v = f64::from(cell);
+                }
+            });
+            let tiles = operator.hierarchy().finest();
+            let mut rows = vec![0.0; TILE * n];
+            for row in band {
+                for column in 0..per_side {
+                    let tile = tiles.find(column as i64, row as i64).expect("a tile of the band");
+                    for (line, cells) in rows.chunks_exact_mut(n).zip(values[tile * CELLS..].as_chunks::<TILE>().0) {
+                        line[column * TILE..][..TILE].copy_from_slice(cells);
+                    }
+                }
+                take(row * TILE, &rows)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// What the gap is more than v - h: the greatest height less the penetration.
+    #[must_use]
+    pub fn gap_offset(&self, h_max: f64) -> f64 {
+        h_max - self.info.penetration
+    }
+
+    /// Counted contact area and contact edges.
+    fn contact_area(&self) -> ContactArea {
+        let edges = |tile: usize| {
+            const SIDE: usize = 3 * TILE;
+            let [column, row] = self.tiles.places()[tile].map(i64::from);
+            let mut patch: Patch<f64, SIDE> = [[0.0; SIDE]; SIDE];
+            gather(&self.pressure, &self.tiles, (column - 1, row - 1), TILE - 1..2 * TILE + 1, &mut patch);
+            let in_contact = |x: usize, y: usize| patch[y][x] > 0.0;
+            let mut edges = 0;
+            for y in TILE..2 * TILE {
+                for x in TILE..2 * TILE {
+                    let here = in_contact(x, y);
+                    // Each edge once: from the cell in contact.
+                    let around = [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)];
+                    edges += if here { around.iter().filter(|&&(x, y)| !in_contact(x, y)).count() } else { 0 };
+                }
+            }
+            edges
+        };
+        let n_edges = (0..self.tiles.len()).into_par_iter().map(edges).sum();
+        ContactArea::from_counts(self.n_elements(), n_edges, self.grid().len(), Love.perimeter_constant())
+    }
+
+    /// Evaluates the observables, as [`Observables::of`] does for a solution on a uniform grid.
+    #[must_use]
+    pub fn observables(&self) -> Observables {
+        let n = self.grid().len() as f64;
+        let squares: Vec<f64> = self.pressure.par_chunks(BLOCK_CELLS).map(|p| p.iter().map(|p| p * p).sum()).collect();
+        Observables {
+            area: self.contact_area(),
+            rms_pressure: (squares.iter().sum::<f64>() / n).sqrt(),
+            max_pressure: self.pressure.par_iter().copied().reduce(|| 0.0, f64::max),
+            mean_gap: self.info.penetration_full_contact - self.info.penetration,
+            elastic_energy: self.info.elastic_energy,
+            contact_stiffness: self.contact_stiffness(),
+        }
+    }
+
+    fn contact_stiffness(&self) -> f64 {
+        if self.n_elements() == self.grid().len() {
+            return f64::INFINITY;
+        }
+        let split = ScaleSplit::new(SplitParams::quick());
+        let base = Grid::square(self.base_side).expect("the base grid of a solution");
+        let n_levels = (self.tiles.side() / self.base_side).ilog2() as usize;
+        let prepared = Prepared::<f32>::displacement(&split, base);
+        let response = prepared.tables(n_levels);
+        let mut preconditioner = Prepared::<f32>::inverse(&split, base).tables(n_levels);
+        let hierarchy = Hierarchy::new(self.base_side, self.tiles.clone(), prepared.halo());
+        let mut engine = TileOperator::new(std::sync::Arc::new(hierarchy));
+        stiffness_of(&self.pressure, self.grid().len() as f64, &mut engine, &response, &mut preconditioner)
+    }
+}

@@ -1,0 +1,138 @@
+//! Tiles: the squares of 8 × 8 cells in which a level of the mesh is stored.
+
+/// Cells per side of a tile.
+pub(crate) const TILE: usize = 8;
+
+/// Cells of a tile.
+pub(crate) const CELLS: usize = TILE * TILE;
+
+/// No tile at this place.
+const NONE: u32 = u32::MAX;
+
+/// The tiles of one level, sorted along the Morton curve so that neighbours are near in memory.
+///
+/// A value of the level is at `tile · 64 + row · 8 + column`. Where tiles are is looked up in a table of 4 bytes for each
+/// possible tile: 1/16 byte a cell of the level, the only memory that grows with the cell and not with the contact.
+#[derive(Clone, Debug)]
+pub(crate) struct TileSet {
+    per_side: usize,
+    places: Vec<[u32; 2]>,
+    index: Vec<u32>,
+}
+
+impl TileSet {
+    /// The tiles at `places` (column, row), each below `per_side`; double ones are dropped.
+    pub(crate) fn new(per_side: usize, mut places: Vec<[u32; 2]>) -> Self {
+        places.sort_unstable_by_key(|&place| morton(place));
+        places.dedup();
+        let mut index = vec![NONE; per_side * per_side];
+        for (tile, &[column, row]) in places.iter().enumerate() {
+            index[row as usize * per_side + column as usize] = tile as u32;
+        }
+        Self { per_side, places, index }
+    }
+
+    /// All tiles of a level, row by row.
+    pub(crate) fn full(per_side: usize) -> Self {
+        let places = (0..per_side * per_side).map(|i| [(i % per_side) as u32, (i / per_side) as u32]);
+        Self { per_side, places: places.collect(), index: (0..(per_side * per_side) as u32).collect() }
+    }
+
+    /// Tiles per side of the whole level.
+    pub(crate) fn per_side(&self) -> usize {
+        self.per_side
+    }
+
+    /// Cells per side of the whole level.
+    pub(crate) fn side(&self) -> usize {
+        self.per_side * TILE
+    }
+
+    /// Number of tiles.
+    pub(crate) fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Number of cells.
+    pub(crate) fn n_cells(&self) -> usize {
+        self.places.len() * CELLS
+    }
+
+    /// Column and row of each tile.
+    pub(crate) fn places(&self) -> &[[u32; 2]] {
+        &self.places
+    }
+
+    /// The tile at a place of the periodically continued level.
+    #[inline]
+    pub(crate) fn find(&self, column: i64, row: i64) -> Option<usize> {
+        let per_side = self.per_side as i64;
+        // Most places are inside, and a division is slow.
+        let wrap = |i: i64| if (0..per_side).contains(&i) { i } else { i.rem_euclid(per_side) };
+        let tile = self.index[(wrap(row) * per_side + wrap(column)) as usize];
+        (tile != NONE).then_some(tile as usize)
+    }
+
+    /// The tiles of the level with half as many cells per side that hold these tiles, or a cell within `halo` cells of that
+    /// level from them.
+    pub(crate) fn parents(&self, halo: usize) -> Self {
+        let (half, halo) = (self.per_side as i64 / 2, halo as i64);
+        let mut marks = vec![false; (half * half) as usize];
+        // A tile covers half a tile of the coarser level.
+        let (quarter, tile) = (TILE as i64 / 2, TILE as i64);
+        for &[column, row] in &self.places {
+            let range = |i: u32| {
+                let start = i64::from(i) * quarter;
+                (start - halo).div_euclid(tile)..=(start + quarter + halo - 1).div_euclid(tile)
+            };
+            for y in range(row) {
+                for x in range(column) {
+                    marks[(y.rem_euclid(half) * half + x.rem_euclid(half)) as usize] = true;
+                }
+            }
+        }
+        let half = half as usize;
+        let marked = marks.iter().enumerate().filter(|&(_, &mark)| mark);
+        Self::new(half, marked.map(|(i, _)| [(i % half) as u32, (i / half) as u32]).collect())
+    }
+}
+
+/// Place along the Morton curve.
+fn morton([x, y]: [u32; 2]) -> u64 {
+    let spread = |v: u32| {
+        let mut v = u64::from(v);
+        v = (v | (v << 16)) & 0x0000_FFFF_0000_FFFF;
+        v = (v | (v << 8)) & 0x00FF_00FF_00FF_00FF;
+        v = (v | (v << 4)) & 0x0F0F_0F0F_0F0F_0F0F;
+        v = (v | (v << 2)) & 0x3333_3333_3333_3333;
+        (v | (v << 1)) & 0x5555_5555_5555_5555
+    };
+    spread(x) | (spread(y) << 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_are_found_across_the_seam() {
+        let set = TileSet::new(6, vec![[5, 0], [0, 5], [2, 3], [2, 3]]);
+        assert_eq!(set.len(), 3);
+        assert_eq!(set.places()[set.find(-1, 6).expect("stored")], [5, 0]);
+        assert_eq!(set.find(3, 2), None);
+    }
+
+    #[test]
+    fn parents_hold_the_halo() {
+        let set = TileSet::new(8, vec![[0, 0]]);
+        let places = |halo| {
+            let mut places = set.parents(halo).places().to_vec();
+            places.sort_unstable();
+            places
+        };
+        assert_eq!(places(0), [[0, 0]]);
+        // The tile covers cells 0 to 3 of 8 of its parent: two more on either side reach beyond the seam on one side only.
+        assert_eq!(places(2), [[0, 0], [0, 3], [3, 0], [3, 3]]);
+        assert_eq!(places(5).len(), 9);
+    }
+}

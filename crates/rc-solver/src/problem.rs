@@ -1,0 +1,93 @@
+//! A checked contact problem, in what every level shares.
+
+use rayon::prelude::*;
+use rc_core::Field;
+
+use crate::{Control, SolveError, SolveParams};
+
+/// Extremes and mean of the heights.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HeightStatistics {
+    pub(crate) greatest: f64,
+    pub(crate) least: f64,
+    pub(crate) mean: f64,
+}
+
+impl HeightStatistics {
+    /// In one pass, in parallel over rows.
+    pub(crate) fn of(heights: &Field) -> Result<Self, SolveError> {
+        let nx = heights.grid().nx();
+        let rows: Vec<(f64, f64, f64)> = heights
+            .values()
+            .par_chunks(nx)
+            .map(|row| {
+                row.iter().fold((f64::NEG_INFINITY, f64::INFINITY, 0.0), |(max, min, sum), &h| {
+                    (f64::max(max, h), f64::min(min, h), sum + h)
+                })
+            })
+            .collect();
+        // A sum that is not finite gives away NaN and infinities; so does an overflow, which finds none.
+        for (iy, (_, _, sum)) in rows.iter().enumerate() {
+            if let Some(ix) = (!sum.is_finite()).then(|| heights.row(iy).iter().position(|h| !h.is_finite())).flatten()
+            {
+                return Err(SolveError::Height { ix, iy, value: heights.at(ix, iy) });
+            }
+        }
+        Ok(Self {
+            greatest: rows.iter().map(|row| row.0).fold(f64::NEG_INFINITY, f64::max),
+            least: rows.iter().map(|row| row.1).fold(f64::INFINITY, f64::min),
+            mean: rows.iter().map(|row| row.2).sum::<f64>() / heights.grid().len() as f64,
+        })
+    }
+}
+
+/// A checked problem, in the quantities that every level shares.
+pub(crate) struct Problem {
+    pub(crate) control: Control,
+    /// Greatest height, on the finest grid.
+    pub(crate) h_max: f64,
+    /// Mean height, on the finest grid.
+    pub(crate) h_mean: f64,
+    /// H = h_max - h_min, which tolerances multiply.
+    pub(crate) h_range: f64,
+}
+
+impl Problem {
+    pub(crate) fn check(heights: &Field, control: Control, params: &SolveParams) -> Result<Self, SolveError> {
+        Self::of_statistics(HeightStatistics::of(heights)?, control, params)
+    }
+
+    pub(crate) fn of_statistics(
+        statistics: HeightStatistics,
+        control: Control,
+        params: &SolveParams,
+    ) -> Result<Self, SolveError> {
+        let HeightStatistics { greatest: h_max, least: h_min, mean: h_mean } = statistics;
+        let h_range = h_max - h_min;
+        let full_contact = h_max - h_mean;
+        match control {
+            Control::MeanPressure(value) if !(value > 0.0 && value.is_finite()) => {
+                return Err(SolveError::MeanPressure { value });
+            }
+            // Also refuses every penetration into a flat surface, whose full contact is at zero.
+            Control::Penetration(value) if !(value > 0.0 && value < full_contact) => {
+                return Err(SolveError::Penetration { value, full_contact });
+            }
+            Control::MeanPressure(_) | Control::Penetration(_) => {}
+        }
+        let (value, smallest) = (params.tolerance, SolveParams::SMALLEST_TOLERANCE);
+        if !(value >= smallest && value < 1.0) {
+            return Err(SolveError::Tolerance { value, smallest });
+        }
+        Ok(Self { control, h_max, h_mean, h_range })
+    }
+
+    /// The constant c in `g = L p - h + c`: h_max - Δ under penetration control; under pressure control Δ is a multiplier
+    /// and c is left out.
+    pub(crate) fn offset(&self) -> f64 {
+        match self.control {
+            Control::MeanPressure(_) => 0.0,
+            Control::Penetration(penetration) => self.h_max - penetration,
+        }
+    }
+}
