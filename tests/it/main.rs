@@ -1,5 +1,6 @@
 //! What crosses crates, in one binary: exact solutions, independent programs, the paper's statistics, swapped crates.
 
+mod adaptive;
 mod bisinusoidal;
 mod full_contact;
 mod gauss_seidel;

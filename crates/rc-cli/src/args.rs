@@ -49,9 +49,12 @@ H = 0.8, rms 13 µm, seed 1, kernel love, tolerance 1e-6. The control is never a
 exactly one. A flag replaces its alternatives in the scene file: --penetration its pressure, --heights its random surface. \
 Relative paths in a scene file start at its folder.
 
-DIR receives summary.json, pressure.npy (Pa), gap.npy (m), contact.png and scene.toml, from which the result can be repeated \
-(with heights.npy, if the heights came from a file). In the summary, iterations and operator_applications are those of the \
-finest level.";
+Without --method, the solver is adaptive where the estimated contact area makes that cheaper than the uniform grid, and where \
+it can be: kernel love, and a square grid that halves into levels. --method adaptive, uniform or gauss-seidel is held to.
+
+DIR receives summary.json, pressure.npy (Pa), gap.npy (m), contact.png and scene.toml, from which the result can be repeated; \
+elements.csv (m, m, m, Pa) from the methods with elements of their own, adaptive and gauss-seidel; and heights.npy, if the \
+heights came from a file. In the summary, iterations and operator_applications are those of the finest level.";
 
 /// Arguments of `rc surface`.
 #[derive(Args, Clone, Debug)]

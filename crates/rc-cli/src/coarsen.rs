@@ -10,35 +10,63 @@ use crate::values::GridSpec;
 /// # Errors
 /// [`CliError::Input`].
 pub fn check_factor(grid: Grid, spec: GridSpec) -> Result<(), CliError> {
-    let divides = |coarse: usize, fine: usize| coarse > 0 && fine.is_multiple_of(coarse);
-    if divides(spec.nx, grid.nx()) && divides(spec.ny, grid.ny()) {
+    if divides(grid, spec) {
         Ok(())
     } else {
         Err(CliError::input(format_args!("output_grid: {spec} does not divide the grid of {grid} elements")))
     }
 }
 
-/// `field` on the coarser grid `spec`: the mean over the elements of each new one, so means over the cell are kept.
-///
-/// # Panics
-/// When `spec` does not divide the grid, see [`check_factor`].
-#[must_use]
-pub fn averaged(field: &Field, spec: GridSpec) -> Field {
-    let grid = field.grid();
-    let coarse = Grid::new(spec.nx, spec.ny).expect("the caller has checked the grid");
-    let (mx, my) = (grid.nx() / spec.nx, grid.ny() / spec.ny);
-    assert!(mx * spec.nx == grid.nx() && my * spec.ny == grid.ny(), "{spec} does not divide {grid}");
-    let mut mean = Field::zeros(coarse);
-    for iy in 0..grid.ny() {
-        let start = coarse.index(0, iy / my);
-        let sums = &mut mean.values_mut()[start..start + spec.nx];
-        for (sum, values) in sums.iter_mut().zip(field.row(iy).chunks_exact(mx)) {
-            *sum += values.iter().sum::<f64>();
+fn divides(grid: Grid, spec: GridSpec) -> bool {
+    let divides = |coarse: usize, fine: usize| coarse > 0 && fine.is_multiple_of(coarse);
+    divides(spec.nx, grid.nx()) && divides(spec.ny, grid.ny())
+}
+
+/// The mean over the elements of each element of a coarser grid, from the rows of the finer one: means over the cell are
+/// kept, and the finer field is never whole in memory.
+#[derive(Clone, Debug)]
+pub struct BlockMean {
+    grid: Grid,
+    sums: Field,
+    next_row: usize,
+}
+
+impl BlockMean {
+    /// Of fields on `grid`, on `spec`.
+    ///
+    /// # Panics
+    /// When `spec` does not divide the grid, see [`check_factor`].
+    #[must_use]
+    pub fn new(grid: Grid, spec: GridSpec) -> Self {
+        assert!(divides(grid, spec), "{spec} does not divide {grid}");
+        let coarse = Grid::new(spec.nx, spec.ny).expect("the sides divide those of a grid");
+        Self { grid, sums: Field::zeros(coarse), next_row: 0 }
+    }
+
+    /// Takes the next rows.
+    ///
+    /// # Panics
+    /// When there are more rows than the grid has.
+    pub fn take(&mut self, rows: &[f64]) {
+        let coarse = self.sums.grid();
+        let (mx, my) = (self.grid.nx() / coarse.nx(), self.grid.ny() / coarse.ny());
+        for row in rows.chunks_exact(self.grid.nx()) {
+            let start = coarse.index(0, self.next_row / my);
+            let sums = &mut self.sums.values_mut()[start..start + coarse.nx()];
+            for (sum, values) in sums.iter_mut().zip(row.chunks_exact(mx)) {
+                *sum += values.iter().sum::<f64>();
+            }
+            self.next_row += 1;
         }
     }
-    let per_element = 1.0 / (mx * my) as f64;
-    mean.values_mut().iter_mut().for_each(|value| *value *= per_element);
-    mean
+
+    /// The means.
+    #[must_use]
+    pub fn finish(mut self) -> Field {
+        let per_element = self.sums.grid().len() as f64 / self.grid.len() as f64;
+        self.sums.values_mut().iter_mut().for_each(|value| *value *= per_element);
+        self.sums
+    }
 }
 
 #[cfg(test)]
@@ -47,11 +75,12 @@ mod tests {
 
     #[test]
     fn averaging_keeps_the_mean_and_the_place() {
-        let field =
-            Field::new(Grid::new(4, 2).expect("a grid"), vec![1., 3., 5., 7., 1., 3., 9., 11.]).expect("a field");
-        let coarse = averaged(&field, GridSpec { nx: 2, ny: 1 });
-        assert_eq!(coarse.values(), [2.0, 8.0]);
-        assert!(check_factor(field.grid(), GridSpec::square(3)).is_err());
-        assert!(check_factor(field.grid(), GridSpec::square(0)).is_err());
+        let grid = Grid::new(4, 2).expect("a grid");
+        let mut mean = BlockMean::new(grid, GridSpec { nx: 2, ny: 1 });
+        mean.take(&[1., 3., 5., 7.]);
+        mean.take(&[1., 3., 9., 11.]);
+        assert_eq!(mean.finish().values(), [2.0, 8.0]);
+        assert!(check_factor(grid, GridSpec::square(3)).is_err());
+        assert!(check_factor(grid, GridSpec::square(0)).is_err());
     }
 }

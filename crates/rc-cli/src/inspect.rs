@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use rc_core::{Field, PeriodicCell};
+use rc_fractal::moments_of_grid;
 use serde::Serialize;
 
 use crate::args::InspectArgs;
@@ -79,7 +80,7 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
         let message = format_args!("all heights are {:e}; a flat surface has no statistics", field.max() * side);
         return Err(CliError::in_file(&args.file, message));
     }
-    let statistics = HeightStatistics::of(&field, cell.side(), None);
+    let statistics = HeightStatistics::of(&field, cell.side(), moments_of_grid(&field));
     Ok(if args.json { to_json(&statistics) } else { report::heights(&statistics) })
 }
 

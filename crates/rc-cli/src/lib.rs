@@ -10,6 +10,9 @@ use clap::Parser as _;
 use clap::error::ErrorKind;
 
 pub mod args;
+pub mod auto_tolerance;
+pub mod budget;
+pub mod byte_size;
 pub mod coarsen;
 pub mod error;
 pub mod heights;

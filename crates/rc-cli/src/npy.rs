@@ -43,14 +43,56 @@ pub fn read(path: &Path) -> Result<Field, CliError> {
 /// # Errors
 /// Those of the file system.
 pub fn write(path: &Path, field: &Field, factor: f64) -> io::Result<()> {
-    let shape = [field.grid().ny() as u64, field.grid().nx() as u64];
-    let file = BufWriter::with_capacity(1 << 16, File::create(path)?);
-    let options = npyz::WriteOptions::new_header_only().dtype(DType::Plain("<f8".parse().map_err(io::Error::other)?));
-    let mut out = options.shape(&shape).writer(file).write_header_only()?;
-    for value in field.values() {
-        out.write_all(&(value * factor).to_le_bytes())?;
+    let mut out = RowWriter::create(path, field.grid(), factor)?;
+    out.write(field.values())?;
+    out.finish()
+}
+
+/// A file as [`write()`] makes it, from rows that come one after the other.
+#[derive(Debug)]
+pub struct RowWriter {
+    out: BufWriter<File>,
+    factor: f64,
+    missing: usize,
+}
+
+impl RowWriter {
+    /// Starts a file for a field on `grid`.
+    ///
+    /// # Errors
+    /// Those of the file system.
+    pub fn create(path: &Path, grid: Grid, factor: f64) -> io::Result<Self> {
+        let shape = [grid.ny() as u64, grid.nx() as u64];
+        let file = BufWriter::with_capacity(1 << 16, File::create(path)?);
+        let plain = DType::Plain("<f8".parse().map_err(io::Error::other)?);
+        let options = npyz::WriteOptions::new_header_only().dtype(plain);
+        let out = options.shape(&shape).writer(file).write_header_only()?;
+        Ok(Self { out, factor, missing: grid.len() })
     }
-    out.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
+
+    /// Writes the next values.
+    ///
+    /// # Errors
+    /// Those of the file system, and more values than the grid has elements.
+    pub fn write(&mut self, values: &[f64]) -> io::Result<()> {
+        let missing = self.missing.checked_sub(values.len());
+        self.missing = missing.ok_or_else(|| io::Error::other("more values than elements"))?;
+        for value in values {
+            self.out.write_all(&(value * self.factor).to_le_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// Ends the file and waits until the system has it.
+    ///
+    /// # Errors
+    /// Those of the file system, and fewer values than the grid has elements.
+    pub fn finish(self) -> io::Result<()> {
+        if self.missing > 0 {
+            return Err(io::Error::other(format!("{} values are missing", self.missing)));
+        }
+        self.out.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
+    }
 }
 
 fn grid_of(header: &NpyHeader) -> Result<Grid, String> {
@@ -161,6 +203,19 @@ mod tests {
             let error = read(&write_raw(dir.path(), dtype, false, &vec![0; bytes])).expect_err(dtype);
             assert_eq!(error.exit_code(), 2, "{dtype}: {error}");
         }
+    }
+
+    #[test]
+    fn a_file_of_rows_has_all_of_them_or_is_an_error() {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        let (path, grid) = (dir.path().join("rows.npy"), Grid::new(3, 2).expect("a grid"));
+        let mut out = RowWriter::create(&path, grid, 2.0).expect("a file");
+        out.write(&[1.0, 2.0, 3.0]).expect("a row");
+        out.write(&[4.0, 5.0, 6.0]).expect("a row");
+        assert!(out.write(&[7.0]).is_err(), "a value too many");
+        let mut out = RowWriter::create(&path, grid, 2.0).expect("a file");
+        out.write(&[1.0, 2.0, 3.0]).expect("a row");
+        assert!(out.finish().is_err(), "a row too few");
     }
 
     #[test]

@@ -43,7 +43,7 @@ pub(crate) fn run(args: &PlotArgs) -> Result<(), CliError> {
 
 fn write(target: &Path, result: &ResultFolder) -> Result<Vec<String>, CliError> {
     let ResultFolder { pressure, gap, side, .. } = result;
-    let contact = ContactPicture { pressure, pressure_unit: 1.0, side: *side };
+    let contact = ContactPicture::of(pressure, 1.0, *side);
     let shade = Shade::Values { range: (0.0, gap.max()), palette: Palette::Viridis, factor: 1.0, unit: "m" };
     let gap_map = MapPicture(Map { title: "Gap", field: gap, shade, side: *side });
     let sections = Sections::of(pressure, gap, *side);

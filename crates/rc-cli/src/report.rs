@@ -13,6 +13,7 @@ pub fn solved(summary: &Summary, side: f64, e_star: f64) -> String {
     let percent = |fraction: f64| digits(100.0 * fraction, 4);
     let stiffness = s.contact_stiffness.map_or_else(|| "infinite".into(), |value| engineering(value, "Pa/m"));
     let lines = [
+        ("method", s.method_reason.clone()),
         (
             "cell",
             format!(
@@ -63,12 +64,13 @@ pub fn solved(summary: &Summary, side: f64, e_star: f64) -> String {
                 s.complementarity_error, s.penetration_error, s.load_error
             ),
         ),
+        ("cells", format!("{} evaluated, {} proven out of contact", s.cells_evaluated, s.cells_proven)),
     ];
     headline(s) + &aligned(&lines)
 }
 
-fn grids(n: usize) -> &'static str {
-    if n == 1 { "grid" } else { "grids" }
+fn levels(n: usize) -> &'static str {
+    if n == 1 { "level" } else { "levels" }
 }
 
 /// `7.183 ± 0.008`: both with the last digit that the error leaves certain.
@@ -97,7 +99,7 @@ fn headline(s: &Summary) -> String {
     let how = match s.status.as_str() {
         "full_contact" => "full contact, solved exactly".to_owned(),
         "not_converged" => format!("NOT CONVERGED after {} fine iterations", s.iterations),
-        _ => format!("converged in {} fine iterations, {} nested {}", s.iterations, s.levels, grids(s.levels)),
+        _ => format!("converged in {} fine iterations, {} nested {}", s.iterations, s.levels, levels(s.levels)),
     };
     format!("{how}: {} s, {} threads{memory}\n", digits(s.wall_seconds, 3), s.threads)
 }

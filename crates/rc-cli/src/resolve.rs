@@ -7,8 +7,8 @@ use rc_fractal::{MAX_WAVES, Normalisation, SpectrumParams};
 use rc_kernel::{Love, Spectral};
 use rc_solver::{Control, SolveParams};
 
+use crate::auto_tolerance::auto_tolerance;
 use crate::error::CliError;
-use crate::memory;
 use crate::scene::{Amplitudes, ContactKeys, KernelName, Method, Scene, SurfaceKeys, Truncation};
 use crate::scene_file;
 use crate::surface::{Source, SurfaceProblem};
@@ -16,9 +16,6 @@ use crate::values::{GridSpec, Tolerance};
 
 /// Elements per shortest wave of a random surface, when no grid is given: element side `λ_min/32`.
 const ELEMENTS_PER_WAVE: usize = 32;
-
-/// Bytes per element that a solve is assumed to need, when a grid is compared with the memory of the machine.
-const BYTES_PER_ELEMENT: u64 = 80;
 
 /// What is pressed against the surface, how hard, and how the problem is solved; in units of λ and E*.
 #[derive(Clone, Debug)]
@@ -29,8 +26,8 @@ pub struct ContactProblem {
     pub control: Control,
     /// Discretisation.
     pub kernel: KernelName,
-    /// Method of solution.
-    pub method: Method,
+    /// Method of solution, where one is asked for.
+    pub method: Option<Method>,
     /// Tolerance and limits.
     pub params: SolveParams,
     /// The keys as resolved, for `scene.toml`.
@@ -149,13 +146,13 @@ fn spectrum(keys: &SurfaceKeys, side: f64) -> Result<SpectrumParams, CliError> {
     })
 }
 
-/// Checks the keys of half-space, load and method, with the embedded example for defaults; the control has none. `side` is
-/// λ in m.
+/// Checks the keys of half-space, load and method, with the embedded example for defaults; control and method have none.
+/// `side` is λ in m; `elements_per_wave` is what the tolerance `auto` depends on ([`auto_tolerance`]).
 ///
 /// # Errors
 /// [`CliError::Input`].
-pub fn contact(keys: ContactKeys, side: f64) -> Result<ContactProblem, CliError> {
-    let defaults = ContactKeys { pressure: None, penetration: None, ..scene_file::example().contact };
+pub fn contact(keys: ContactKeys, side: f64, elements_per_wave: Option<f64>) -> Result<ContactProblem, CliError> {
+    let defaults = ContactKeys { pressure: None, penetration: None, method: None, ..scene_file::example().contact };
     let keys = keys.over(defaults);
     let elasticity = elasticity(&keys)?;
     let control = match (keys.pressure, keys.penetration) {
@@ -165,20 +162,14 @@ pub fn contact(keys: ContactKeys, side: f64) -> Result<ContactProblem, CliError>
         (None, Some(depth)) => Control::Penetration(positive("penetration", "m", Some(depth))? / side),
         _ => return Err(CliError::input("give exactly one of pressure (Pa) and penetration (m); neither is given")),
     };
-    let method = keys.method.unwrap_or(Method::Uniform);
-    let kernel = keys.kernel.unwrap_or(KernelName::Love);
-    match (method, kernel) {
-        (Method::Adaptive, _) => {
-            return Err(CliError::input(
-                "method: 'adaptive' is not available in this version; uniform or gauss-seidel",
-            ));
-        }
-        (Method::GaussSeidel, KernelName::Spectral) => {
-            return Err(CliError::input("method: 'gauss-seidel' has the paper's elements, so kernel must be love"));
-        }
-        (Method::Uniform, _) | (Method::GaussSeidel, KernelName::Love) => {}
+    let (method, kernel) = (keys.method, keys.kernel.unwrap_or(KernelName::Love));
+    if let (Some(method @ (Method::Adaptive | Method::GaussSeidel)), KernelName::Spectral) = (method, kernel) {
+        return Err(CliError::input(format_args!(
+            "method: '{}' has the paper's elements, so kernel must be love; uniform has spectral too",
+            method.name()
+        )));
     }
-    let params = SolveParams { tolerance: tolerance(keys.tolerance)?, ..SolveParams::certified() };
+    let params = SolveParams { tolerance: tolerance(keys.tolerance, elements_per_wave)?, ..SolveParams::certified() };
     Ok(ContactProblem { elasticity, control, kernel, method, params, keys })
 }
 
@@ -196,44 +187,20 @@ fn elasticity(keys: &ContactKeys) -> Result<Elasticity, CliError> {
     })
 }
 
-fn tolerance(given: Option<Tolerance>) -> Result<f64, CliError> {
+fn tolerance(given: Option<Tolerance>, elements_per_wave: Option<f64>) -> Result<f64, CliError> {
     match given {
         Some(Tolerance::Relative(value)) if value > 0.0 && value < 1.0 => Ok(value),
         Some(Tolerance::Relative(value)) => {
             Err(CliError::input(format_args!("tolerance: must be between 0 and 1, as 1e-6, not {value}")))
         }
-        Some(Tolerance::Auto) => Err(CliError::input(
-            "tolerance: 'auto' is not available in this version; give a number between 0 and 1, as 1e-6",
-        )),
+        Some(Tolerance::Auto) => Ok(auto_tolerance(elements_per_wave)),
         None => Ok(SolveParams::certified().tolerance),
     }
 }
 
-/// A grid that the libraries and the memory of this machine can hold.
+/// A grid that the libraries can count; what memory it needs depends on the method.
 fn checked_grid(spec: GridSpec) -> Result<Grid, CliError> {
-    let grid = Grid::new(spec.nx, spec.ny).map_err(|cause| CliError::input(format_args!("grid: {cause}")))?;
-    check_memory(grid)?;
-    Ok(grid)
-}
-
-/// Refuses a grid on which a solve would not fit into the memory of this machine.
-///
-/// # Errors
-/// [`CliError::Input`] that names what is needed, what there is, and the largest grid that fits.
-pub fn check_memory(grid: Grid) -> Result<(), CliError> {
-    const GIB: u64 = 1 << 30;
-    let needed = grid.len() as u64 * BYTES_PER_ELEMENT;
-    match memory::physical() {
-        Some(available) if needed > available => {
-            let side = (available / BYTES_PER_ELEMENT).isqrt();
-            Err(CliError::input(format_args!(
-                "grid: {grid} elements need about {} GiB of memory, this machine has {} GiB; at most {side} per side fit",
-                needed / GIB,
-                available / GIB
-            )))
-        }
-        _ => Ok(()),
-    }
+    Grid::new(spec.nx, spec.ny).map_err(|cause| CliError::input(format_args!("grid: {cause}")))
 }
 
 /// Checks the number of worker threads and starts them; all cores when it is not given.
@@ -280,14 +247,14 @@ mod tests {
         let Source::Random { spectrum, grid } = &surface.source else { panic!("not random: {:?}", surface.source) };
         assert_eq!(spectrum.normalisation, Normalisation::RmsHeight(1e-5 / 2e-2));
         assert_eq!((grid.nx(), grid.ny()), (256, 256));
-        let contact = contact(scene.contact, surface.cell.side()).expect("a contact");
+        let contact = contact(scene.contact, surface.cell.side(), None).expect("a contact");
         assert_eq!(contact.control, Control::MeanPressure(0.25));
         assert_eq!(contact.keys.young, None);
     }
 
     #[test]
     fn the_control_is_never_assumed() {
-        let error = contact(ContactKeys::default(), 1.0).expect_err("no control").to_string();
+        let error = contact(ContactKeys::default(), 1.0, None).expect_err("no control").to_string();
         assert!(error.contains("exactly one"), "{error}");
     }
 
@@ -304,13 +271,12 @@ mod tests {
             ("hurst = 1.5", "hurst"),
             ("waves = 0", "waves"),
             ("waves = 4000000000", "waves"),
-            ("waves = 4096", "grid"),
             ("roll_off = 0.5", "roll_off"),
             ("roll_off = 65", "roll_off"),
             ("grid = 0", "grid"),
             ("grid = 128", "grid"),
             ("grid = \"256x100\"", "grid"),
-            ("grid = 1000000", "grid"),
+            ("grid = 1048577", "grid"),
         ];
         for (text, key) in cases {
             let error = surface(keys(text).surface).expect_err(text).to_string();
@@ -326,15 +292,24 @@ mod tests {
             ("poisson = 0.51", "poisson"),
             ("poisson = -1.0", "poisson"),
             ("poisson = nan", "poisson"),
-            ("method = \"adaptive\"", "method"),
+            ("method = \"adaptive\"\nkernel = \"spectral\"", "method"),
+            ("method = \"gauss-seidel\"\nkernel = \"spectral\"", "method"),
             ("tolerance = 1.0", "tolerance"),
-            ("tolerance = \"auto\"", "tolerance"),
+            ("tolerance = 0.0", "tolerance"),
         ];
         for (text, key) in cases {
             let keys = ContactKeys { pressure: Some(1.0), ..keys(text).contact };
-            let error = contact(keys, 1.0).expect_err(text).to_string();
+            let error = contact(keys, 1.0, None).expect_err(text).to_string();
             assert!(error.starts_with(&format!("{key}:")), "{text}: {error}");
         }
+    }
+
+    #[test]
+    fn the_tolerance_auto_becomes_a_number_and_stays_auto_in_the_keys() {
+        let keys = ContactKeys { pressure: Some(1.0), ..keys("tolerance = \"auto\"").contact };
+        let contact = contact(keys, 1.0, Some(8.0)).expect("a contact");
+        assert!((contact.params.tolerance / 3e-5 - 1.0).abs() < 1e-12, "{}", contact.params.tolerance);
+        assert_eq!(contact.keys.tolerance, Some(Tolerance::Auto));
     }
 
     #[test]

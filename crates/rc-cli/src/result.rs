@@ -43,7 +43,7 @@ impl ResultFolder {
         let side = side.filter(|side| *side > 0.0 && side.is_finite());
         let side =
             side.ok_or_else(|| CliError::in_file(&scene_path, "cell: must be given, positive and finite (m)"))?;
-        let e_star = resolve::contact(scene.contact, side)?.elasticity.e_star();
+        let e_star = resolve::contact(scene.contact, side, None)?.elasticity.e_star();
         let pressure = npy::read(&folder.join("pressure.npy"))?;
         let gap = npy::read(&folder.join("gap.npy"))?;
         if gap.grid() != pressure.grid() {

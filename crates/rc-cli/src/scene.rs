@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 
+use crate::byte_size::ByteSize;
 use crate::values::{GridSpec, Tolerance};
 
 /// The embedded example: the paper's surface with N = 64 at σ0/E* = 8.9e-4. Also the source of defaults.
@@ -74,10 +75,10 @@ pub struct ContactKeys {
     /// Discretisation of the half-space: the paper's uniformly loaded square, or the Fourier symbol
     #[arg(long)]
     pub kernel: Option<KernelName>,
-    /// How the problem is solved; this version has `uniform` (FFT on the whole grid)
+    /// How the problem is solved [default: adaptive, or uniform where that is cheaper; the summary says which and why]
     #[arg(long)]
     pub method: Option<Method>,
-    /// Certified tolerance, relative to the peak-to-valley height
+    /// Certified tolerance, relative to the peak-to-valley height; auto stops well below the error of the grid
     #[arg(long, allow_hyphen_values = true)]
     pub tolerance: Option<Tolerance>,
     /// Write pressure and gap averaged to this many elements per side
@@ -95,6 +96,9 @@ pub struct RunKeys {
     /// Worker threads [default: all cores]; results do not depend on it
     #[arg(long, allow_hyphen_values = true)]
     pub threads: Option<usize>,
+    /// Most memory, as 500MB, 2GB or bytes: what is estimated to need more is refused before any work
+    #[arg(long, value_name = "SIZE", allow_hyphen_values = true)]
+    pub memory_limit: Option<ByteSize>,
     /// Print nothing but errors
     #[arg(long)]
     #[serde(default)]
@@ -139,12 +143,24 @@ pub enum KernelName {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// Adaptive multilevel.
+    /// On elements that follow the contact: work and memory grow with the contact area (kernel love).
     Adaptive,
-    /// FFT on the uniform grid.
+    /// FFT on the whole grid.
     Uniform,
     /// The procedure of the paper.
     GaussSeidel,
+}
+
+impl Method {
+    /// The name, as in scene files and summaries.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Adaptive => "adaptive",
+            Self::Uniform => "uniform",
+            Self::GaussSeidel => "gauss-seidel",
+        }
+    }
 }
 
 /// A scene: the three groups of keys.
@@ -216,7 +232,7 @@ impl RunKeys {
     /// These keys laid over `lower`; `quiet` and `json` hold when either says so.
     #[must_use]
     pub fn over(mut self, lower: Self) -> Self {
-        or_lower!(self, lower, { out, threads });
+        or_lower!(self, lower, { out, threads, memory_limit });
         self.quiet |= lower.quiet;
         self.json |= lower.json;
         self

@@ -1,7 +1,7 @@
 //! Statistics of height maps and of pressures, in SI.
 
 use rc_core::Field;
-use rc_fractal::{Moments, moments_of_grid, radial_spectrum};
+use rc_fractal::{Moments, radial_spectrum};
 use serde::Serialize;
 
 /// Bins of a histogram.
@@ -84,11 +84,10 @@ impl Histogram {
 }
 
 impl HeightStatistics {
-    /// Statistics of `heights` (in λ) in a cell of side `side` (m). `moments` are exact ones where they are known; else
-    /// those of the grid are taken.
+    /// Statistics of `heights` (in λ) in a cell of side `side` (m). `moments` are exact ones where they are known, else
+    /// [`rc_fractal::moments_of_grid`].
     #[must_use]
-    pub fn of(heights: &Field, side: f64, moments: Option<Moments>) -> Self {
-        let moments = moments.unwrap_or_else(|| moments_of_grid(heights));
+    pub fn of(heights: &Field, side: f64, moments: Moments) -> Self {
         let grid = heights.grid();
         // The mean of a random surface is zero up to rounding.
         let mean = Some(heights.mean()).filter(|mean| mean.abs() > 1e-12 * moments.rms_height).unwrap_or(0.0);
@@ -180,13 +179,14 @@ impl PressureStatistics {
 mod tests {
     use super::*;
     use rc_core::Grid;
+    use rc_fractal::moments_of_grid;
     use std::f64::consts::TAU;
 
     #[test]
     fn a_wave_has_the_statistics_of_a_wave() {
         let (amplitude, waves, side) = (1e-3, 4.0, 2.0);
         let field = Field::from_fn(Grid::square(64).expect("a grid"), |x, _| amplitude * (TAU * waves * x).cos());
-        let statistics = HeightStatistics::of(&field, side, None);
+        let statistics = HeightStatistics::of(&field, side, moments_of_grid(&field));
         let close = |name: &str, value: f64, reference: f64| {
             assert!((value / reference - 1.0).abs() < 1e-9, "{name}: {value}, reference {reference}");
         };

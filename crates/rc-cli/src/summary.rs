@@ -11,13 +11,15 @@ pub struct Summary {
     pub control: String,
     /// `love` or `spectral`.
     pub kernel: String,
-    /// `uniform`.
+    /// The method that ran: `adaptive`, `uniform` or `gauss-seidel`.
     pub method: String,
+    /// Why it was this one.
+    pub method_reason: String,
     /// Elements per side of the finest grid, along x and y.
     pub grid: [usize; 2],
-    /// Elements that carry unknowns: all of the finest grid.
+    /// Elements in contact on an adaptive mesh; all of the grid for the uniform method.
     pub elements: usize,
-    /// Nested grids; 0 when full contact needed no iteration.
+    /// Nested levels; 0 when full contact needed no iteration.
     pub levels: usize,
     /// Mean pressure σ0 (Pa).
     pub mean_pressure: f64,
@@ -53,6 +55,14 @@ pub struct Summary {
     pub penetration_error: f64,
     /// |mean p - σ0| / σ0, or the deviation of Δ over H under penetration control.
     pub load_error: f64,
+    /// The tolerance that the first two errors were to reach, as a number.
+    pub tolerance: f64,
+    /// Elements of the grid whose gap was computed for the certificate.
+    pub cells_evaluated: usize,
+    /// Elements that were proven to be out of contact without computing their gap: all others.
+    pub cells_proven: usize,
+    /// Iterations on each level, coarsest first.
+    pub level_iterations: Vec<usize>,
     /// Iterations on the finest level.
     pub iterations: usize,
     /// Applications of L on the finest level, the certificate's included.

@@ -1,17 +1,18 @@
-//! The rough surface of a scene as numbers: heights on a grid, and its moments.
+//! The rough surface of a scene: realised or read, and its heights on a grid only where a method needs them.
 
-use std::path::PathBuf;
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
 
 use rc_core::{Field, Grid, PeriodicCell};
-use rc_fractal::{Moments, SpectrumParams, Surface};
+use rc_fractal::{Moments, SpectrumParams, Surface, moments_of_grid};
+use rc_solver::HeightSource;
 
 use crate::error::CliError;
 use crate::heights;
-use crate::resolve;
 use crate::scene::SurfaceKeys;
 use crate::values::GridSpec;
 
-/// A checked surface, before its heights are evaluated.
+/// A checked surface, before it is realised or read.
 #[derive(Clone, Debug)]
 pub struct SurfaceProblem {
     /// The cell (m).
@@ -36,63 +37,131 @@ pub enum Source {
     Random {
         /// Its parameters, in units of λ.
         spectrum: SpectrumParams,
-        /// The grid to evaluate it on.
+        /// The finest grid.
         grid: Grid,
     },
 }
 
-/// A surface with its heights.
+/// A surface, ready to be evaluated.
 #[derive(Clone, Debug)]
-pub struct Heights {
-    /// Heights in λ.
-    pub field: Field,
-    /// Heights as read from a file (m); a result is repeated bit for bit only from these.
-    pub as_read: Option<Field>,
-    /// Exact moments of a random surface, in λ; those of a height map have to be computed.
-    pub moments: Option<Moments>,
+pub struct LoadedSurface {
+    /// What is known of it.
+    pub shape: Shape,
+    /// The finest grid.
+    pub grid: Grid,
     /// The keys as resolved: the grid is known now, and a height map is called as in a result folder.
     pub keys: SurfaceKeys,
+}
+
+/// A surface as a sum of waves, or as a map.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// A random surface; it has heights anywhere.
+    Random(Surface),
+    /// A height map.
+    Map {
+        /// Heights in λ.
+        heights: Field,
+        /// Heights as read from the file (m); a result is repeated bit for bit only from these.
+        as_read: Field,
+    },
 }
 
 /// The name of a height map in a result folder.
 pub const HEIGHTS_FILE: &str = "heights.npy";
 
 impl SurfaceProblem {
-    /// Reads or evaluates the heights.
+    /// Elements per shortest wave of a random surface; `None` for a height map, whose waves are not known.
+    #[must_use]
+    pub fn elements_per_wave(&self) -> Option<f64> {
+        match &self.source {
+            Source::File { .. } => None,
+            Source::Random { spectrum, grid } => Some(grid.nx().min(grid.ny()) as f64 / spectrum.waves as f64),
+        }
+    }
+
+    /// Reads the map or realises the random surface, whose heights are not evaluated yet.
     ///
     /// # Errors
     /// [`CliError::Input`] when the file is no height map, is on another grid than the scene says, or is flat.
-    pub fn heights(&self) -> Result<Heights, CliError> {
+    pub fn load(&self) -> Result<LoadedSurface, CliError> {
         match &self.source {
-            Source::File { path, expected } => {
-                let as_read = heights::read(path)?;
-                let grid = as_read.grid();
-                if let Some(expected) = expected.filter(|expected| *expected != grid) {
-                    let message = format_args!("the map has {grid} elements, grid says {expected}; leave grid away");
-                    return Err(CliError::in_file(path, message));
-                }
-                if as_read.max() <= as_read.min() {
-                    let message =
-                        format_args!("all heights are {:e}; a flat surface has no contact problem", as_read.max());
-                    return Err(CliError::in_file(path, message));
-                }
-                resolve::check_memory(grid)?;
-                let side = self.cell.side();
-                let scaled = as_read.values().iter().map(|height| height / side).collect();
-                let field = Field::new(grid, scaled).map_err(|cause| CliError::in_file(path, cause))?;
-                let keys =
-                    SurfaceKeys { heights: Some(HEIGHTS_FILE.into()), grid: Some(spec(grid)), ..self.keys.clone() };
-                Ok(Heights { moments: None, field, as_read: Some(as_read), keys })
-            }
+            Source::File { path, expected } => self.read(path, *expected),
             Source::Random { spectrum, grid } => {
                 let surface = Surface::new(spectrum).map_err(CliError::input)?;
-                let field = surface.sample_on(*grid).map_err(|cause| CliError::input(format_args!("grid: {cause}")))?;
-                Ok(Heights { moments: Some(surface.moments()), field, as_read: None, keys: self.keys.clone() })
+                Ok(LoadedSurface { shape: Shape::Random(surface), grid: *grid, keys: self.keys.clone() })
             }
         }
     }
+
+    fn read(&self, path: &Path, expected: Option<Grid>) -> Result<LoadedSurface, CliError> {
+        let as_read = heights::read(path)?;
+        let grid = as_read.grid();
+        if let Some(expected) = expected.filter(|expected| *expected != grid) {
+            let message = format_args!("the map has {grid} elements, grid says {expected}; leave grid away");
+            return Err(CliError::in_file(path, message));
+        }
+        if as_read.max() <= as_read.min() {
+            let message = format_args!("all heights are {:e}; a flat surface has no contact problem", as_read.max());
+            return Err(CliError::in_file(path, message));
+        }
+        let side = self.cell.side();
+        let scaled = as_read.values().iter().map(|height| height / side).collect();
+        let heights = Field::new(grid, scaled).map_err(|cause| CliError::in_file(path, cause))?;
+        let spec = GridSpec { nx: grid.nx(), ny: grid.ny() };
+        let keys = SurfaceKeys { heights: Some(HEIGHTS_FILE.into()), grid: Some(spec), ..self.keys.clone() };
+        Ok(LoadedSurface { shape: Shape::Map { heights, as_read }, grid, keys })
+    }
 }
 
-fn spec(grid: Grid) -> GridSpec {
-    GridSpec { nx: grid.nx(), ny: grid.ny() }
+impl LoadedSurface {
+    /// Heights on the finest grid, in λ; those of a random surface are evaluated for it, 8 bytes each.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] when the grid is too coarse for the waves.
+    pub fn heights(&self) -> Result<Cow<'_, Field>, CliError> {
+        match &self.shape {
+            Shape::Random(surface) => {
+                let sampled = surface.sample_on(self.grid);
+                sampled.map(Cow::Owned).map_err(|cause| CliError::input(format_args!("grid: {cause}")))
+            }
+            Shape::Map { heights, .. } => Ok(Cow::Borrowed(heights)),
+        }
+    }
+
+    /// The surface for the adaptive method, which evaluates what it needs; of a grid that is not square the side along x.
+    #[must_use]
+    pub fn source(&self) -> HeightSource<'_> {
+        match &self.shape {
+            Shape::Random(surface) => HeightSource::Surface(surface, self.grid.nx()),
+            Shape::Map { heights, .. } => HeightSource::Map(heights),
+        }
+    }
+
+    /// N of a random surface.
+    #[must_use]
+    pub fn waves(&self) -> Option<usize> {
+        match &self.shape {
+            Shape::Random(surface) => Some(surface.waves()),
+            Shape::Map { .. } => None,
+        }
+    }
+
+    /// Moments, in λ: exact ones of a random surface, those of its grid for a height map.
+    #[must_use]
+    pub fn moments(&self) -> Moments {
+        match &self.shape {
+            Shape::Random(surface) => surface.moments(),
+            Shape::Map { heights, .. } => moments_of_grid(heights),
+        }
+    }
+
+    /// The heights as read from a file (m).
+    #[must_use]
+    pub fn as_read(&self) -> Option<&Field> {
+        match &self.shape {
+            Shape::Random(_) => None,
+            Shape::Map { as_read, .. } => Some(as_read),
+        }
+    }
 }

@@ -5,13 +5,14 @@ use std::path::Path;
 use rc_core::Field;
 
 use crate::args::SurfaceArgs;
+use crate::budget::Budget;
 use crate::error::CliError;
 use crate::output::{self, Staged};
 use crate::picture::{Map, MapPicture, Palette, Shade, save_png};
 use crate::scene::{ContactKeys, Scene};
 use crate::statistics::HeightStatistics;
 use crate::summary::to_json;
-use crate::surface::{HEIGHTS_FILE, Heights};
+use crate::surface::{HEIGHTS_FILE, LoadedSurface};
 use crate::{heights, npy, report, resolve, scene_file};
 
 /// Runs `rc surface`.
@@ -28,11 +29,13 @@ pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
         output::check_folder(if is_map(target) { target.parent().unwrap_or(Path::new("")) } else { target })?;
     }
     let side = problem.cell.side();
-    let heights = problem.heights()?;
-    let statistics = HeightStatistics::of(&heights.field, side, heights.moments);
+    let surface = problem.load()?;
+    Budget::new(scene.run.memory_limit).check_grid("the surface", surface.grid)?;
+    let heights = surface.heights()?;
+    let statistics = HeightStatistics::of(&heights, side, surface.moments());
     match target {
-        Some(target) if is_map(target) => write_map(target, &heights, side)?,
-        Some(folder) => write_folder(folder, &heights, &statistics, side)?,
+        Some(target) if is_map(target) => write_map(target, &surface, &heights, side)?,
+        Some(folder) => write_folder(folder, &surface, &heights, &statistics, side)?,
         None => {}
     }
     match (scene.run.quiet, scene.run.json) {
@@ -48,26 +51,32 @@ fn is_map(target: &Path) -> bool {
 }
 
 /// Heights and the factor that makes them metres: as read, where they come from a file.
-fn in_metres(heights: &Heights, side: f64) -> (&Field, f64) {
-    heights.as_read.as_ref().map_or((&heights.field, side), |field| (field, 1.0))
+fn in_metres<'a>(surface: &'a LoadedSurface, heights: &'a Field, side: f64) -> (&'a Field, f64) {
+    surface.as_read().map_or((heights, side), |field| (field, 1.0))
 }
 
-fn write_map(target: &Path, heights: &Heights, side: f64) -> Result<(), CliError> {
-    let (field, factor) = in_metres(heights, side);
+fn write_map(target: &Path, surface: &LoadedSurface, heights: &Field, side: f64) -> Result<(), CliError> {
+    let (field, factor) = in_metres(surface, heights, side);
     let csv = target.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
     let write = if csv { heights::write_csv } else { npy::write };
     output::write_file(target, |path| write(path, field, factor))
 }
 
-fn write_folder(folder: &Path, heights: &Heights, statistics: &HeightStatistics, side: f64) -> Result<(), CliError> {
-    let (field, factor) = in_metres(heights, side);
+fn write_folder(
+    folder: &Path,
+    surface: &LoadedSurface,
+    heights: &Field,
+    statistics: &HeightStatistics,
+    side: f64,
+) -> Result<(), CliError> {
+    let (field, factor) = in_metres(surface, heights, side);
     let scene = format!(
         "# The surface; `rc solve scene.toml --pressure ...` presses it.\n\n{}",
-        scene_file::to_toml(&heights.keys)
+        scene_file::to_toml(&surface.keys)
     );
-    let range = (heights.field.min(), heights.field.max());
+    let range = (heights.min(), heights.max());
     let shade = Shade::Values { range, palette: Palette::Viridis, factor: side, unit: "m" };
-    let picture = MapPicture(Map { title: "Height", field: &heights.field, shade, side });
+    let picture = MapPicture(Map { title: "Height", field: heights, shade, side });
     let mut staged = Staged::new(folder)?;
     staged.add(HEIGHTS_FILE, |path| npy::write(path, field, factor))?;
     staged.add("surface.png", |path| save_png(&picture, path))?;

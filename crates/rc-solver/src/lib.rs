@@ -23,7 +23,7 @@ mod uniform;
 
 pub use adaptive::{
     AdaptiveError, AdaptiveParams, AdaptiveProblem, AdaptiveSolution, ContactElement, Estimate, HeightSource,
-    solve_adaptive,
+    MultilevelOperator, solve_adaptive,
 };
 pub use certificate::Certificate;
 pub use control::Control;

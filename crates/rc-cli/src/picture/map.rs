@@ -27,6 +27,8 @@ pub struct Map<'a> {
 pub enum Shade {
     /// Positive values dark, others light; a pixel with several elements has the grey of the positive part.
     Contact,
+    /// Values are parts of contact already, from 0 (light) to 1 (dark).
+    PartOfContact,
     /// A colour for each value, with a colour bar.
     Values {
         /// Values (of the field) at the ends of the colour bar.
@@ -74,7 +76,7 @@ pub fn draw_map<B: DrawingBackend>(area: &Area<B>, map: &Map<'_>, font: f64) -> 
     frame(area, (0, top), (side as i32, bottom))?;
     scale_bar(area, map.side, side, bottom, font)?;
     match map.shade {
-        Shade::Contact => Ok(()),
+        Shade::Contact | Shade::PartOfContact => Ok(()),
         Shade::Values { range, palette, factor, unit } => {
             let left = side as i32 + (BAR_GAP * font) as i32;
             let bar = ColourBar { low: range.0 * factor, high: range.1 * factor, palette, unit };
@@ -89,6 +91,7 @@ fn rasterise(map: &Map<'_>, side: u32) -> Raster {
             let inside = |value: f64| if value > 0.0 { 1.0 } else { 0.0 };
             Raster::of(map.field, (side, side), inside, |part| Palette::Ink.colour(part))
         }
+        Shade::PartOfContact => Raster::of(map.field, (side, side), |part| part, |part| Palette::Ink.colour(part)),
         Shade::Values { range: (low, high), palette, .. } => {
             let span = if high > low { high - low } else { 1.0 };
             Raster::of(map.field, (side, side), |value| value, |value| palette.colour((value - low) / span))

@@ -1,19 +1,80 @@
 //! Pictures of maps: `contact.png` (where the surfaces touch, and how hard), and one map alone.
 
 use plotters::prelude::DrawingBackend;
-use rc_core::Field;
+use rc_core::{Field, Grid};
 
-use super::{Area, Map, Palette, Picture, PictureError, Shade, draw_map, map_extent};
+use super::{Area, Map, Palette, Picture, PictureError, PixelMean, Shade, draw_map, map_extent};
 
-/// Contact map and pressure side by side.
-#[derive(Clone, Copy, Debug)]
-pub struct ContactPicture<'a> {
-    /// The pressure.
-    pub pressure: &'a Field,
-    /// A pressure of 1 of the field, in Pa.
-    pub pressure_unit: f64,
+/// Contact map and pressure side by side, at the resolution of the picture.
+#[derive(Clone, Debug)]
+pub struct ContactPicture {
+    /// Part of each pixel in contact.
+    contact: Field,
+    /// Mean pressure of each pixel.
+    pressure: Field,
+    /// Part of the elements in contact.
+    fraction: f64,
+    /// Greatest pressure of an element.
+    greatest: f64,
+    /// A pressure of 1, in Pa.
+    pressure_unit: f64,
     /// Side λ of the cell (m).
-    pub side: f64,
+    side: f64,
+}
+
+impl ContactPicture {
+    /// The picture of a pressure field; `pressure_unit` is a pressure of 1 of the field in Pa, `side` is λ in m.
+    #[must_use]
+    pub fn of(pressure: &Field, pressure_unit: f64, side: f64) -> Self {
+        let mut rows = ContactRows::new(pressure.grid());
+        rows.take(pressure.values());
+        rows.finish(pressure_unit, side)
+    }
+}
+
+/// A [`ContactPicture`] in the making, from the rows of a pressure field that need never be whole in memory.
+#[derive(Clone, Debug)]
+pub struct ContactRows {
+    grid: Grid,
+    contact: PixelMean,
+    pressure: PixelMean,
+    in_contact: usize,
+    greatest: f64,
+}
+
+impl ContactRows {
+    /// For a field on `grid`.
+    #[must_use]
+    pub fn new(grid: Grid) -> Self {
+        let mean = PixelMean::new(grid, SIDE as usize);
+        Self { grid, contact: mean.clone(), pressure: mean, in_contact: 0, greatest: f64::NEG_INFINITY }
+    }
+
+    /// Takes the next rows of pressures.
+    ///
+    /// # Panics
+    /// When there are more rows than the grid has.
+    pub fn take(&mut self, rows: &[f64]) {
+        for row in rows.chunks_exact(self.grid.nx()) {
+            self.contact.take(|ix| if row[ix] > 0.0 { 1.0 } else { 0.0 });
+            self.pressure.take(|ix| row[ix]);
+            self.in_contact += row.iter().filter(|p| **p > 0.0).count();
+            self.greatest = row.iter().copied().fold(self.greatest, f64::max);
+        }
+    }
+
+    /// The picture, when all rows are in; `pressure_unit` and `side` as in [`ContactPicture::of`].
+    #[must_use]
+    pub fn finish(self, pressure_unit: f64, side: f64) -> ContactPicture {
+        ContactPicture {
+            contact: self.contact.finish(),
+            pressure: self.pressure.finish(),
+            fraction: self.in_contact as f64 / self.grid.len() as f64,
+            greatest: self.greatest,
+            pressure_unit,
+            side,
+        }
+    }
 }
 
 /// Side of a map, its text, and the space around it, in pixels.
@@ -21,7 +82,7 @@ const SIDE: u32 = 900;
 const TEXT: f64 = 30.0;
 const MARGIN: u32 = 36;
 
-impl Picture for ContactPicture<'_> {
+impl Picture for ContactPicture {
     fn size(&self) -> (u32, u32) {
         let (contact, height) = map_extent(SIDE, TEXT, false);
         let (pressure, _) = map_extent(SIDE, TEXT, true);
@@ -32,18 +93,16 @@ impl Picture for ContactPicture<'_> {
         let (contact, height) = map_extent(SIDE, TEXT, false);
         let (pressure, _) = map_extent(SIDE, TEXT, true);
         let panel = |left: u32, width: u32| area.clone().shrink((left as i32, (MARGIN / 2) as i32), (width, height));
-        let fraction =
-            self.pressure.values().iter().filter(|p| **p > 0.0).count() as f64 / self.pressure.values().len() as f64;
-        let title = format!("Contact: {} % of the elements", crate::quantity::digits(100.0 * fraction, 3));
-        let contact_map = Map { title: &title, field: self.pressure, shade: Shade::Contact, side: self.side };
+        let title = format!("Contact: {} % of the elements", crate::quantity::digits(100.0 * self.fraction, 3));
+        let contact_map = Map { title: &title, field: &self.contact, shade: Shade::PartOfContact, side: self.side };
         draw_map(&panel(MARGIN, contact), &contact_map, TEXT)?;
         let shade = Shade::Values {
-            range: (0.0, self.pressure.max()),
+            range: (0.0, self.greatest),
             palette: Palette::Heat,
             factor: self.pressure_unit,
             unit: "Pa",
         };
-        let pressure_map = Map { title: "Pressure", field: self.pressure, shade, side: self.side };
+        let pressure_map = Map { title: "Pressure", field: &self.pressure, shade, side: self.side };
         draw_map(&panel(contact + 2 * MARGIN, pressure), &pressure_map, TEXT)
     }
 }
@@ -69,13 +128,12 @@ impl Picture for MapPicture<'_> {
 mod tests {
     use super::*;
     use crate::picture::{save_png, save_svg};
-    use rc_core::Grid;
 
     #[test]
     fn a_picture_has_its_size_and_maps_in_svg_are_bitmaps() {
         let dir = tempfile::tempdir().expect("a temporary folder");
         let pressure = Field::from_fn(Grid::new(60, 50).expect("a grid"), |x, y| (x - y).max(0.0));
-        let picture = ContactPicture { pressure: &pressure, pressure_unit: 3e6, side: 1e-2 };
+        let picture = ContactPicture::of(&pressure, 3e6, 1e-2);
         let (png, svg) = (dir.path().join("a.png"), dir.path().join("a.svg"));
         save_png(&picture, &png).expect("a PNG file");
         save_svg(&picture, &svg).expect("an SVG file");
@@ -93,7 +151,7 @@ mod tests {
         let dir = tempfile::tempdir().expect("a temporary folder");
         for value in [0.0, 3.0] {
             let pressure = Field::from_fn(Grid::new(1, 1).expect("a grid"), |_, _| value);
-            let picture = ContactPicture { pressure: &pressure, pressure_unit: 1.0, side: 1.0 };
+            let picture = ContactPicture::of(&pressure, 1.0, 1.0);
             save_png(&picture, &dir.path().join("a.png")).expect("a PNG file");
         }
     }

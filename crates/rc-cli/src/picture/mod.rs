@@ -20,8 +20,8 @@ pub use colour::Palette;
 pub use font::{FONT, register_font};
 pub use lines::{LinePlot, LineStyle, Series, draw_lines};
 pub use map::{Map, Shade, draw_map, map_extent};
-pub use maps::{ContactPicture, MapPicture};
-pub use raster::Raster;
+pub use maps::{ContactPicture, ContactRows, MapPicture};
+pub use raster::{PixelMean, Raster};
 
 /// A picture that could not be drawn or saved; the text is that of the plotting library.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

@@ -1,7 +1,7 @@
 //! Fields as bitmaps of any size.
 
 use plotters::style::RGBColor;
-use rc_core::Field;
+use rc_core::{Field, Grid};
 
 /// A bitmap, rows from top to bottom, three bytes a pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,6 +40,57 @@ impl Raster {
     }
 }
 
+/// The mean of a value over the elements of each pixel, from the rows of a field that need never be whole in memory. Its
+/// [`Raster`] of as many pixels is bit for bit that of the field.
+#[derive(Clone, Debug)]
+pub struct PixelMean {
+    grid: Grid,
+    sums: Field,
+    next_row: usize,
+}
+
+impl PixelMean {
+    /// Of fields on `grid`, on at most `most` pixels per side; where elements are fewer, each is a pixel.
+    ///
+    /// # Panics
+    /// When `most` is 0.
+    #[must_use]
+    pub fn new(grid: Grid, most: usize) -> Self {
+        let pixels = Grid::new(grid.nx().min(most), grid.ny().min(most)).expect("not more pixels than elements");
+        Self { grid, sums: Field::zeros(pixels), next_row: 0 }
+    }
+
+    /// Takes the next row.
+    ///
+    /// # Panics
+    /// When there are more rows than the grid has.
+    pub fn take(&mut self, row: impl Fn(usize) -> f64) {
+        let pixels = self.sums.grid();
+        // The one pixel whose span holds the row.
+        let start = pixels.index(0, ((self.next_row + 1) * pixels.ny() - 1) / self.grid.ny());
+        for (i, sum) in self.sums.values_mut()[start..start + pixels.nx()].iter_mut().enumerate() {
+            let (first, end) = span(i, pixels.nx(), self.grid.nx());
+            *sum += (first..end).map(&row).sum::<f64>();
+        }
+        self.next_row += 1;
+    }
+
+    /// The means.
+    #[must_use]
+    pub fn finish(mut self) -> Field {
+        let pixels = self.sums.grid();
+        let length = |(first, end): (usize, usize)| end - first;
+        for iy in 0..pixels.ny() {
+            let rows = length(span(iy, pixels.ny(), self.grid.ny()));
+            let start = pixels.index(0, iy);
+            for (ix, sum) in self.sums.values_mut()[start..start + pixels.nx()].iter_mut().enumerate() {
+                *sum /= (rows * length(span(ix, pixels.nx(), self.grid.nx()))) as f64;
+            }
+        }
+        self.sums
+    }
+}
+
 /// First and one past the last of the `elements` that pixel `i` of `pixels` shows; never empty.
 fn span(i: usize, pixels: usize, elements: usize) -> (usize, usize) {
     let first = i * elements / pixels;
@@ -49,7 +100,6 @@ fn span(i: usize, pixels: usize, elements: usize) -> (usize, usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rc_core::Grid;
 
     #[test]
     fn pixels_share_the_elements_among_them() {
@@ -58,6 +108,21 @@ mod tests {
             assert_eq!(spans[0].0, 0);
             assert_eq!(spans[pixels - 1].1, elements);
             assert!(spans.windows(2).all(|pair| pair[0].1 == pair[1].0), "{spans:?}");
+        }
+    }
+
+    #[test]
+    fn means_over_pixels_give_the_same_picture_bit_for_bit() {
+        for (nx, ny) in [(50, 70), (7, 90), (3, 2)] {
+            let field = Field::from_fn(Grid::new(nx, ny).expect("a grid"), |x, y| (7.0 * x).sin() * (y - 0.3));
+            let mut mean = PixelMean::new(field.grid(), 16);
+            (0..ny).for_each(|iy| mean.take(|ix| field.at(ix, iy)));
+            let colour = |v: f64| {
+                let bytes = v.to_bits().to_be_bytes();
+                RGBColor(bytes[0] ^ bytes[5], bytes[1] ^ bytes[6], bytes[2] ^ bytes[7])
+            };
+            let raster = |field: &Field| Raster::of(field, (16, 16), |v| v, colour);
+            assert!(raster(&mean.finish()) == raster(&field), "{nx} x {ny}");
         }
     }
 

@@ -7,11 +7,12 @@ use std::time::Duration;
 use crate::support::{Place, assert_refused, assert_solved, bumps, f8, npy, small, text};
 
 /// Keys of `summary.json`, in their order.
-const KEYS: [&str; 30] = [
+const KEYS: [&str; 35] = [
     "status",
     "control",
     "kernel",
     "method",
+    "method_reason",
     "grid",
     "elements",
     "levels",
@@ -32,6 +33,10 @@ const KEYS: [&str; 30] = [
     "complementarity_error",
     "penetration_error",
     "load_error",
+    "tolerance",
+    "cells_evaluated",
+    "cells_proven",
+    "level_iterations",
     "iterations",
     "operator_applications",
     "wall_seconds",
@@ -40,7 +45,7 @@ const KEYS: [&str; 30] = [
     "version",
 ];
 
-fn assert_close(name: &str, value: f64, reference: f64, tolerance: f64) {
+pub(crate) fn assert_close(name: &str, value: f64, reference: f64, tolerance: f64) {
     let error = (value - reference).abs() / reference.abs();
     assert!(error <= tolerance, "{name}: {value:e}, reference {reference:e}, relative error {error:e}");
 }
@@ -53,7 +58,7 @@ fn a_solve_fills_its_folder_and_prints_the_keys_in_order() {
     assert_solved(&output);
     assert_eq!(
         place.names("a/result"),
-        ["contact.png", "gap.npy", "pressure.npy", "scene.toml", "summary.json"],
+        ["contact.png", "elements.csv", "gap.npy", "pressure.npy", "scene.toml", "summary.json"],
         "files of the result"
     );
     assert_eq!(place.names("a"), ["result"], "something beside the result");
@@ -224,7 +229,10 @@ fn quiet_prints_nothing_and_a_summary_is_short() {
     let told = place.run(&["solve", "--waves", "8", "--grid", "128", "--pressure", "1e5"]);
     assert_solved(&told);
     let summary = text(&told.stdout);
-    assert!(summary.lines().count() <= 15 && summary.contains("contact area"), "{summary}");
+    assert!(
+        summary.lines().count() <= 15 && summary.contains("method") && summary.contains("contact area"),
+        "{summary}"
+    );
     assert!(told.stderr.is_empty(), "progress without a terminal: {}", text(&told.stderr));
     assert!(place.names(".").is_empty(), "written without --out: {:?}", place.names("."));
 }

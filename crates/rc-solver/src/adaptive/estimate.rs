@@ -13,7 +13,7 @@ const PROPORTIONALITY: f64 = 2.1;
 const TILES_PER_AREA: f64 = 1.9;
 
 /// Bytes for each cell of a tile where contact is possible, at the peak.
-const BYTES_PER_CELL: f64 = 150.0;
+const BYTES_PER_CELL: f64 = 80.0;
 
 /// Bytes for each element of the base grid.
 const BYTES_PER_BASE_ELEMENT: f64 = 130.0;

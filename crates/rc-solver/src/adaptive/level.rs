@@ -106,7 +106,9 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
                 let evaluated = gap.len();
                 return Level { tiles: candidates.tiles, pressure, gap, contact_gap, outcome, evaluated, info };
             }
-            let part = Part::choose(&candidates, &mesh.tiles, &pressure, &gap, contact_gap);
+            // What is nearer to contact than the error may come into it yet.
+            let near = contact_gap + outcome.certificate.penetration * self.problem.h_range;
+            let part = Part::choose(&candidates, &mesh.tiles, &pressure, &gap, near);
             let machinery = Machinery {
                 corrections: TileOperator::new(self.hierarchy(&part.tiles, self.response.halo())),
                 response,
@@ -218,7 +220,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
     }
 }
 
-/// The candidates that press or penetrate somewhere, or nearly did when the level began.
+/// The candidates that press somewhere, or nearly do, or did when the level began.
 struct Part {
     tiles: TileSet,
     heights: Vec<f64>,
@@ -227,11 +229,11 @@ struct Part {
 }
 
 impl Part {
-    fn choose(candidates: &Candidates, known: &TileSet, pressure: &[f64], gap: &[f64], contact_gap: f64) -> Self {
+    fn choose(candidates: &Candidates, known: &TileSet, pressure: &[f64], gap: &[f64], near: f64) -> Self {
         let cells = |tile: usize| tile * CELLS..(tile + 1) * CELLS;
         let takes_part = |tile: usize| {
             let [column, row] = candidates.tiles.places()[tile].map(i64::from);
-            known.find(column, row).is_some() || cells(tile).any(|i| pressure[i] > 0.0 || gap[i] < contact_gap)
+            known.find(column, row).is_some() || cells(tile).any(|i| pressure[i] > 0.0 || gap[i] < near)
         };
         let chosen: Vec<usize> = (0..candidates.tiles.len()).filter(|&tile| takes_part(tile)).collect();
         let places = chosen.iter().map(|&tile| candidates.tiles.places()[tile]).collect();

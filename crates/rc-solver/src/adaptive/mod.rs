@@ -10,6 +10,7 @@ mod estimate;
 mod fresh;
 pub(crate) mod heights;
 mod level;
+mod multilevel;
 pub(crate) mod operator;
 mod prolongation;
 mod solution;
@@ -24,6 +25,7 @@ pub use self::estimate::Estimate;
 pub use self::heights::HeightSource;
 use self::heights::Heights;
 use self::level::{Level, Mesh};
+pub use self::multilevel::MultilevelOperator;
 use self::operator::{Prepared, Real};
 pub use self::solution::{AdaptiveSolution, ContactElement};
 use self::tiles::{TILE, TileSet};
@@ -257,7 +259,8 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
             levels,
         };
         let solution = AdaptiveSolution {
-            base_side: self.base().nx(),
+            base: self.base(),
+            grid,
             tiles: level.tiles,
             pressure: level.pressure,
             info,

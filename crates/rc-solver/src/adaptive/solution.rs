@@ -1,5 +1,7 @@
 //! What the adaptive method returns: pressures on tiles, and everything else on request.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use rc_core::{Grid, Kernel};
 use rc_kernel::{Love, ScaleSplit, SplitParams};
@@ -28,7 +30,8 @@ pub struct ContactElement {
 /// a time, for files and pictures.
 #[derive(Clone, Debug)]
 pub struct AdaptiveSolution {
-    pub(super) base_side: usize,
+    pub(super) base: Grid,
+    pub(super) grid: Grid,
     pub(super) tiles: TileSet,
     pub(super) pressure: Vec<f64>,
     /// How it was found and how good it is. The certificate holds for the whole cell.
@@ -43,7 +46,7 @@ impl AdaptiveSolution {
     /// The finest grid.
     #[must_use]
     pub fn grid(&self) -> Grid {
-        Grid::square(self.tiles.side()).expect("the side of a solved grid")
+        self.grid
     }
 
     /// Elements in contact.
@@ -95,17 +98,15 @@ impl AdaptiveSolution {
     /// What `take` returns.
     pub fn displacement_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         let (n, per_side) = (self.tiles.side(), self.tiles.per_side());
-        let grid = Grid::square(self.base_side).expect("the base grid of a solution");
-        let prepared = Prepared::<f32>::displacement(&ScaleSplit::new(SplitParams::certified()), grid);
-        let tables = prepared.tables((n / self.base_side).ilog2() as usize);
+        let prepared = Prepared::<f32>::displacement(&ScaleSplit::new(SplitParams::certified()), self.base);
+        let tables = prepared.tables(self.n_levels());
         // As many rows of tiles at once as about a million cells hold.
         let at_once = (1_000_000 / (TILE * n)).max(1);
         for first in (0..per_side).step_by(at_once) {
             let band = first..(first + at_once).min(per_side);
             let more = band.clone().flat_map(|row| (0..per_side).map(move |column| [column as u32, row as u32]));
             let tiles = TileSet::new(per_side, self.tiles.places().iter().copied().chain(more).collect());
-            let mut operator =
-                TileOperator::new(std::sync::Arc::new(Hierarchy::new(self.base_side, tiles, prepared.halo())));
+            let mut operator = TileOperator::new(Arc::new(Hierarchy::new(self.base.nx(), tiles, prepared.halo())));
             let mut values = super::level::moved(&self.tiles, operator.hierarchy().finest(), &self.pressure);
             operator.fill(values.par_chunks(BLOCK_CELLS), |p, cells| {
                 for (cell, &p) in cells.iter_mut().zip(p) {
@@ -122,7 +123,7 @@ impl AdaptiveSolution {
             let mut rows = vec![0.0; TILE * n];
             for row in band {
                 for column in 0..per_side {
-                    let tile = tiles.find(column as i64, row as i64).expect("a tile of the band");
+                    let Some(tile) = tiles.find(column as i64, row as i64) else { continue };
                     for (line, cells) in rows.chunks_exact_mut(n).zip(values[tile * CELLS..].as_chunks::<TILE>().0) {
                         line[column * TILE..][..TILE].copy_from_slice(cells);
                     }
@@ -137,6 +138,11 @@ impl AdaptiveSolution {
     #[must_use]
     pub fn gap_offset(&self, h_max: f64) -> f64 {
         h_max - self.info.penetration
+    }
+
+    /// Levels above the base grid.
+    fn n_levels(&self) -> usize {
+        (self.grid.nx() / self.base.nx()).ilog2() as usize
     }
 
     /// Counted contact area and contact edges.
@@ -182,13 +188,11 @@ impl AdaptiveSolution {
             return f64::INFINITY;
         }
         let split = ScaleSplit::new(SplitParams::quick());
-        let base = Grid::square(self.base_side).expect("the base grid of a solution");
-        let n_levels = (self.tiles.side() / self.base_side).ilog2() as usize;
-        let prepared = Prepared::<f32>::displacement(&split, base);
-        let response = prepared.tables(n_levels);
-        let mut preconditioner = Prepared::<f32>::inverse(&split, base).tables(n_levels);
-        let hierarchy = Hierarchy::new(self.base_side, self.tiles.clone(), prepared.halo());
-        let mut engine = TileOperator::new(std::sync::Arc::new(hierarchy));
+        let prepared = Prepared::<f32>::displacement(&split, self.base);
+        let response = prepared.tables(self.n_levels());
+        let mut preconditioner = Prepared::<f32>::inverse(&split, self.base).tables(self.n_levels());
+        let hierarchy = Hierarchy::new(self.base.nx(), self.tiles.clone(), prepared.halo());
+        let mut engine = TileOperator::new(Arc::new(hierarchy));
         stiffness_of(&self.pressure, self.grid().len() as f64, &mut engine, &response, &mut preconditioner)
     }
 }

@@ -92,7 +92,6 @@ fn one_application_agrees_with_exact_sums() {
             let split = ScaleSplit::new(SplitParams::for_error(bound).expect("a bound in range"));
             let v = apply::<f64>(&split, base, tiles.clone(), &p);
             let error = error_against_exact_sums(&tiles, &p, &v);
-            println!("{bound:e} {base} {side}: {error:e}");
             assert!(error < bound, "{bound:e}, {base} to {side}: {error:e}");
         }
     }

@@ -1,0 +1,78 @@
+//! What a solve may need of memory: the limit that the user gives, and what the machine has.
+
+use rc_core::Grid;
+
+use crate::byte_size::ByteSize;
+use crate::error::CliError;
+use crate::memory;
+
+/// Bytes per element that the methods on the whole grid are assumed to need at their peak.
+const BYTES_PER_ELEMENT: u64 = 80;
+
+/// Memory that there is for a command.
+#[derive(Clone, Copy, Debug)]
+pub struct Budget {
+    limit: Option<ByteSize>,
+    machine: Option<ByteSize>,
+}
+
+impl Budget {
+    /// The memory of this machine, and the limit of the user, if there is one.
+    #[must_use]
+    pub fn new(limit: Option<ByteSize>) -> Self {
+        Self { limit, machine: memory::physical().map(ByteSize) }
+    }
+
+    /// Refuses `what`, which needs about `needed` bytes, when there are fewer; `remedy` (may be empty) gets the bytes that
+    /// there are.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] with the estimate.
+    pub fn check(&self, what: &str, needed: f64, remedy: impl Fn(u64) -> String) -> Result<(), CliError> {
+        let exceeds = |bound: &ByteSize| needed > bound.0 as f64;
+        let needs = ByteSize(needed as u64);
+        if let Some(limit) = self.limit.filter(exceeds) {
+            let message = format_args!(
+                "memory_limit: {what} needs about {needs}, more than the limit of {limit}{}",
+                remedy(limit.0)
+            );
+            return Err(CliError::input(message));
+        }
+        match self.machine.filter(exceeds) {
+            Some(machine) => Err(CliError::input(format_args!(
+                "grid: {what} needs about {needs} of memory, this machine has {machine}{}",
+                remedy(machine.0)
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses a grid on which a method that stores every element, here called `what`, would not fit.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] that names what is needed, what there is, and the largest grid that fits.
+    pub fn check_grid(&self, what: &str, grid: Grid) -> Result<(), CliError> {
+        let needed = grid.len() as f64 * BYTES_PER_ELEMENT as f64;
+        let remedy =
+            |available: u64| format!("; at most {} elements per side fit", (available / BYTES_PER_ELEMENT).isqrt());
+        self.check(&format!("{what} on {grid} elements"), needed, remedy)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_holds_before_the_machine_and_names_what_fits() {
+        let budget = Budget { limit: Some(ByteSize(8_000_000)), machine: Some(ByteSize(800_000_000)) };
+        let grid = |n| Grid::square(n).expect("a grid");
+        assert!(budget.check_grid("it", grid(316)).is_ok());
+        let error = budget.check_grid("it", grid(317)).expect_err("above the limit").to_string();
+        assert!(error.starts_with("memory_limit: it on 317 x 317") && error.contains("at most 316"), "{error}");
+        let unlimited = Budget { limit: None, ..budget };
+        assert!(unlimited.check_grid("it", grid(3162)).is_ok());
+        let error = unlimited.check_grid("it", grid(3163)).expect_err("above the machine").to_string();
+        assert!(error.starts_with("grid: it on 3163 x 3163") && error.contains("has 800 MB"), "{error}");
+    }
+}

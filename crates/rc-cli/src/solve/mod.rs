@@ -1,0 +1,146 @@
+//! `rc solve`: one contact problem, from scene to files.
+
+mod files;
+mod found;
+mod method;
+mod refusal;
+mod summarise;
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use self::found::Found;
+use self::method::Choice;
+use self::summarise::summarise;
+use crate::args::SolveArgs;
+use crate::coarsen::check_factor;
+use crate::error::CliError;
+use crate::output;
+use crate::progress::Progress;
+use crate::resolve::{self, ContactProblem};
+use crate::scene::{RunKeys, Scene};
+use crate::summary::Summary;
+use crate::surface::{LoadedSurface, SurfaceProblem};
+use crate::{report, scene_file};
+
+/// Where the run without arguments writes.
+const EXAMPLE_FOLDER: &str = "rc-result";
+
+/// A solved problem with what its files and its summary need.
+struct Solved {
+    found: Found,
+    /// Why it was solved by this method.
+    reason: String,
+    surface: LoadedSurface,
+    wall: Duration,
+}
+
+/// Runs `rc solve`.
+///
+/// # Errors
+/// [`CliError`] of every kind.
+pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
+    let scene = scene_of(args)?;
+    let started = Instant::now();
+    let surface = resolve::surface(scene.surface)?;
+    let contact = resolve::contact(scene.contact, surface.cell.side(), surface.elements_per_wave())?;
+    let threads = resolve::start_threads(scene.run.threads)?;
+    execute(&surface, &contact, &scene.run, threads, started)
+}
+
+/// Solves, writes and prints.
+fn execute(
+    surface: &SurfaceProblem,
+    contact: &ContactProblem,
+    run: &RunKeys,
+    threads: usize,
+    started: Instant,
+) -> Result<(), CliError> {
+    if let Some(folder) = &run.out {
+        output::check_folder(folder)?;
+    }
+    let side = surface.cell.side();
+    let solved = solve(surface, contact, run, started)?;
+    let summary = summarise(&solved, contact, side, threads);
+    if let Some(folder) = &run.out {
+        files::write(folder, &solved, &summary, contact, side)?;
+    }
+    print_summary(&summary, surface, contact, run)?;
+    match solved.found.failure {
+        None => Ok(()),
+        Some(message) if run.out.is_some() => {
+            Err(CliError::NotConverged(format!("{message}; the results are written and marked not_converged")))
+        }
+        Some(message) => Err(CliError::NotConverged(message)),
+    }
+}
+
+/// The scene of the command line; without any argument the embedded example, into its folder.
+fn scene_of(args: SolveArgs) -> Result<Scene, CliError> {
+    if args.scene_file.is_some() || !args.scene.is_empty() {
+        return resolve::layers(args.scene_file.as_deref(), args.scene);
+    }
+    output::tell(&format!(
+        "No scene given: solving the embedded example (the paper's surface, N = 64, σ0/E* = 8.9e-4), writing to \
+         {EXAMPLE_FOLDER}/"
+    ));
+    let run = RunKeys { out: Some(PathBuf::from(EXAMPLE_FOLDER)), ..RunKeys::default() };
+    Ok(Scene { run, ..scene_file::example() })
+}
+
+fn solve(
+    problem: &SurfaceProblem,
+    contact: &ContactProblem,
+    run: &RunKeys,
+    started: Instant,
+) -> Result<Solved, CliError> {
+    let progress = Progress::new(run.quiet);
+    progress.say("heights");
+    let (surface, side) = (problem.load()?, problem.cell.side());
+    if let Some(spec) = contact.keys.output_grid {
+        check_factor(surface.grid, spec)?;
+    }
+    let Choice { plan, reason } = method::choose(&surface, contact, side, run)?;
+    let found = Found::by(plan, &surface, contact, side, &progress)?;
+    let wall = started.elapsed();
+    Ok(Solved { found, reason, surface, wall })
+}
+
+fn print_summary(
+    summary: &Summary,
+    surface: &SurfaceProblem,
+    contact: &ContactProblem,
+    run: &RunKeys,
+) -> Result<(), CliError> {
+    match (run.quiet, run.json) {
+        (true, _) => Ok(()),
+        (false, true) => output::print(&summary.to_json()),
+        (false, false) => {
+            let text = report::solved(summary, surface.cell.side(), contact.elasticity.e_star());
+            output::print(&(text + &report::written(run.out.as_deref())))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::summary::Summary;
+
+    #[test]
+    fn what_did_not_converge_is_written_and_marked() {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        let scene = scene_file::parse("waves = 8\ngrid = 64\npressure = 1e5").expect("a scene");
+        let surface = resolve::surface(scene.surface).expect("a surface");
+        let mut contact = resolve::contact(scene.contact, surface.cell.side(), None).expect("a contact");
+        contact.params.max_iterations = 1;
+        let run = RunKeys { out: Some(dir.path().join("r")), quiet: true, ..RunKeys::default() };
+        let error = execute(&surface, &contact, &run, 1, Instant::now()).expect_err("one iteration is too few");
+        assert_eq!(error.exit_code(), 3, "{error}");
+        assert!(error.to_string().contains("complementarity error"), "no residuals: {error}");
+        let text = std::fs::read_to_string(dir.path().join("r/summary.json")).expect("a summary");
+        let summary: Summary = serde_json::from_str(&text).expect("valid JSON");
+        assert_eq!(summary.status, "not_converged");
+        assert!(dir.path().join("r/pressure.npy").is_file(), "the best pressure is written");
+    }
+}

@@ -1,0 +1,220 @@
+//! The adaptive method on the command line: when it runs, what it writes, and that it agrees with the uniform grid.
+
+use std::process::Output;
+
+use rc_core::Field;
+use serde_json::Value;
+
+use crate::solve::assert_close;
+use crate::support::{Place, assert_refused, assert_solved, bumps, f8, npy, text};
+
+/// Sixteen waves on 32 elements each; about a tenth of the cell in contact.
+const SCENE: [&str; 6] = ["solve", "--waves", "16", "--grid", "512", "--pressure"];
+const PRESSURE: &str = "3e5";
+
+fn scene<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    [&SCENE[..], &[PRESSURE], more].concat()
+}
+
+fn summary_of(output: &Output) -> Value {
+    assert_solved(output);
+    serde_json::from_slice(&output.stdout).expect("valid JSON")
+}
+
+fn number(summary: &Value, key: &str) -> f64 {
+    summary[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", summary[key]))
+}
+
+fn reason(summary: &Value) -> &str {
+    summary["method_reason"].as_str().expect("text")
+}
+
+fn field(place: &Place, name: &str) -> Field {
+    rc_cli::npy::read(&place.path(name)).expect("a field")
+}
+
+/// Counted area, rms pressure and penetration of two solutions of one problem.
+fn assert_agree(adaptive: &Value, uniform: &Value) {
+    // Both are certified to 1e-6 of the height range; areas differ by the few elements on the edge that this leaves open.
+    for (key, tolerance) in [("area_fraction_cells", 2e-3), ("rms_pressure", 2e-3), ("penetration", 5e-4)] {
+        assert_close(key, number(adaptive, key), number(uniform, key), tolerance);
+    }
+}
+
+#[test]
+fn the_default_is_adaptive_and_agrees_with_the_uniform_grid() {
+    let place = Place::new();
+    let adaptive = summary_of(&place.run(&scene(&["--json"])));
+    let uniform = summary_of(&place.run(&scene(&["--json", "--method", "uniform", "--kernel", "love"])));
+    assert_eq!((&adaptive["method"], &uniform["method"]), (&"adaptive".into(), &"uniform".into()));
+    assert!(reason(&adaptive).starts_with("adaptive: an estimated contact area of "), "{}", reason(&adaptive));
+    assert_agree(&adaptive, &uniform);
+    let cells = 512 * 512;
+    let count = |summary: &Value, key: &str| summary[key].as_u64().expect("a count");
+    assert_eq!(count(&adaptive, "cells_evaluated") + count(&adaptive, "cells_proven"), cells);
+    assert!(count(&adaptive, "cells_proven") > cells / 2, "{} proven", adaptive["cells_proven"]);
+    assert_eq!((count(&uniform, "cells_evaluated"), count(&uniform, "cells_proven")), (cells, 0));
+    for summary in [&adaptive, &uniform] {
+        let iterations = summary["level_iterations"].as_array().expect("a list");
+        assert_eq!(iterations.len() as u64, count(summary, "levels"));
+        assert_eq!(iterations.last(), Some(&summary["iterations"]));
+    }
+    let in_contact = number(&adaptive, "area_fraction_cells") * cells as f64;
+    assert_eq!(count(&adaptive, "elements"), in_contact.round() as u64);
+}
+
+#[test]
+fn the_method_is_chosen_by_what_can_and_what_is_cheaper() {
+    let place = Place::new();
+    let small = ["solve", "--waves", "8", "--json", "--pressure"];
+    let cases: &[(&[&str], &str, &str)] = &[
+        (&["1e5", "--grid", "128"], "adaptive", "an estimated contact area of"),
+        (&["1e5", "--grid", "128", "--method", "adaptive"], "adaptive", "asked for"),
+        (&["1e5", "--grid", "128", "--method", "uniform"], "uniform", "asked for"),
+        (&["1e5", "--grid", "128", "--kernel", "spectral"], "uniform", "the kernel spectral has no adaptive form"),
+        (&["4e6", "--grid", "128"], "uniform", "is cheaper on the uniform grid"),
+        (&["1e9", "--grid", "128"], "uniform", "100 % is cheaper on the uniform grid"),
+        (&["1e5", "--grid", "128x64"], "uniform", "not square"),
+        (&["1e5", "--grid", "130"], "uniform", "do not divide"),
+        (&["1e5", "--grid", "128", "--tolerance", "1e-12"], "uniform", "1e-12"),
+    ];
+    for (flags, method, expected) in cases {
+        let summary = summary_of(&place.run(&[&small[..], flags].concat()));
+        let reason = reason(&summary);
+        assert_eq!(summary["method"], *method, "{flags:?}: {reason}");
+        assert!(reason.starts_with(&format!("{method}: ")) && reason.contains(expected), "{flags:?}: {reason}");
+    }
+}
+
+#[test]
+fn the_files_of_an_adaptive_solve_agree_with_its_summary() {
+    let place = Place::new();
+    let summary = summary_of(&place.run(&scene(&["--json", "--out", "r"])));
+    let (pressure, gap) = (field(&place, "r/pressure.npy"), field(&place, "r/gap.npy"));
+    assert_close("mean pressure", pressure.mean(), 3e5, 1e-10);
+    assert_close("max pressure", pressure.max(), number(&summary, "max_pressure"), 1e-14);
+    // Gaps are those of single precision, and zero in contact as far as the tolerance demands; the height range is about
+    // 8 rms heights of 13 µm.
+    let bound = 2e-6 * 8.0 * 13e-6;
+    assert!(gap.min() >= -bound, "gap of {:e} m", gap.min());
+    let in_contact = pressure.values().iter().zip(gap.values()).filter(|(p, _)| **p > 0.0);
+    let weighted = in_contact.clone().map(|(p, g)| p * g.abs()).sum::<f64>() / pressure.values().iter().sum::<f64>();
+    assert!(weighted <= bound, "mean gap in contact of {weighted:e} m");
+    assert_close("mean gap", gap.mean(), number(&summary, "mean_gap"), 1e-6);
+
+    let mut elements = csv::Reader::from_path(place.path("r/elements.csv")).expect("a table");
+    let rows: Vec<[f64; 4]> = elements.deserialize().map(|row| row.expect("four numbers")).collect();
+    assert_eq!(rows.len() as u64, summary["elements"].as_u64().expect("a count"));
+    let load: f64 = rows.iter().map(|[_, _, size, pressure]| size * size * pressure).sum();
+    assert_close("load of the elements", load, 3e5 * 1e-4, 1e-10);
+    for [x, y, size, value] in rows {
+        let (ix, iy) = ((x / size) as usize, (y / size) as usize);
+        assert_close("pressure of an element", value, pressure.at(ix, iy), 1e-14);
+    }
+}
+
+#[test]
+fn an_output_grid_holds_the_means_of_an_adaptive_solution() {
+    let place = Place::new();
+    assert_solved(&place.run(&scene(&["--quiet", "--out", "full"])));
+    assert_solved(&place.run(&scene(&["--quiet", "--out", "coarse", "--output-grid", "64x32"])));
+    for name in ["pressure.npy", "gap.npy"] {
+        let (full, coarse) = (field(&place, &format!("full/{name}")), field(&place, &format!("coarse/{name}")));
+        assert_eq!((coarse.grid().nx(), coarse.grid().ny()), (64, 32));
+        assert_close(name, coarse.mean(), full.mean(), 1e-12);
+        let block: f64 = (0..16).map(|y| full.row(16 * 5 + y)[8 * 7..8 * 8].iter().sum::<f64>()).sum();
+        assert!((coarse.at(7, 5) - block / 128.0).abs() <= 1e-12 * full.max(), "{name}: not the mean of its block");
+    }
+    assert!(place.bytes("full/contact.png") == place.bytes("coarse/contact.png"), "the picture is of the output grid");
+}
+
+#[test]
+fn a_penetration_and_a_height_map_are_solved_adaptively() {
+    let place = Place::new();
+    place.write("map.npy", npy("<f8", false, "(256, 256)", &f8(&bumps(256))));
+    let random = ["--waves", "16", "--grid", "256"];
+    let map = ["--heights", "map.npy", "--cell", "3e-3"];
+    let cases: [(&[&str], [&str; 2]); 3] =
+        [(&random, ["--penetration", "1.5e-5"]), (&map, ["--penetration", "4e-6"]), (&map, ["--pressure", "5e5"])];
+    for (surface, control) in cases {
+        let solve = |method: &str| {
+            let args = [&["solve", "--json", "--method", method], surface, &control].concat();
+            summary_of(&place.run(&args))
+        };
+        let (adaptive, uniform) = (solve("adaptive"), solve("uniform"));
+        assert_eq!(adaptive["method"], "adaptive");
+        assert_agree(&adaptive, &uniform);
+        assert_close("mean_pressure", number(&adaptive, "mean_pressure"), number(&uniform, "mean_pressure"), 1e-3);
+        assert_close("h_max", number(&adaptive, "h_max"), number(&uniform, "h_max"), 1e-8);
+        assert_close("rms_height", number(&adaptive, "rms_height"), number(&uniform, "rms_height"), 1e-14);
+    }
+    let beyond = [&["solve", "--method", "adaptive"], &random[..], &["--penetration", "1e-3"]].concat();
+    assert_refused(&place.run(&beyond), "full contact");
+}
+
+#[test]
+fn a_memory_limit_is_kept_before_any_work_and_otherwise_changes_nothing() {
+    let place = Place::new();
+    let refused = place.run(&scene(&["--memory-limit", "2MB", "--out", "r"]));
+    assert_refused(&refused, "memory_limit: the adaptive method on 512 x 512 elements");
+    assert!(text(&refused.stderr).contains("limit of 2 MB"), "{}", text(&refused.stderr));
+    assert!(!place.path("r").exists(), "a folder was made for nothing");
+    place.write("scene.toml", "waves = 8\ngrid = 128\npressure = 1e5\nmemory_limit = \"500kB\"\n");
+    assert_refused(&place.run(&["solve", "scene.toml"]), "memory_limit");
+    assert_solved(&place.run(&["solve", "scene.toml", "--memory-limit", "1GiB", "--quiet"]));
+    assert_refused(&place.run(&scene(&["--memory-limit", "20MB", "--method", "uniform"])), "per side fit");
+}
+
+#[cfg(unix)]
+#[test]
+fn the_finest_grid_is_never_stored() {
+    let place = Place::new();
+    let args = ["solve", "--waves", "8", "--grid", "4096", "--pressure", "2e4", "--tolerance", "1e-4", "--json"];
+    let summary = summary_of(&place.run(&args));
+    assert_eq!(summary["method"], "adaptive");
+    let heights = 8.0 * 4096.0 * 4096.0;
+    let peak = number(&summary, "peak_memory_bytes");
+    assert!(peak < heights, "a peak of {peak:e} bytes; the heights alone would be {heights:e}");
+}
+
+/// What the iteration leaves and what halving the elements changes, each summed over three surfaces: of one surface alone the
+/// second may vanish by chance.
+#[test]
+fn auto_stops_well_below_the_error_of_the_grid() {
+    let place = Place::new();
+    let solve = |method: &str, seed: &str, grid: usize, tolerance: &str| {
+        let grid = grid.to_string();
+        let args = ["solve", "--waves", "16", "--pressure", PRESSURE, "--json", "--method", method, "--seed", seed];
+        summary_of(&place.run(&[&args[..], &["--grid", &grid, "--tolerance", tolerance]].concat()))
+    };
+    let keys = ["area_fraction", "rms_pressure"];
+    for (grid, method) in [(64, "uniform"), (128, "uniform"), (256, "uniform"), (256, "adaptive")] {
+        let (mut iteration, mut discretisation) = ([0.0; 2], [0.0; 2]);
+        for seed in ["1", "2", "3"] {
+            let [exact, finer] = [grid, 2 * grid].map(|grid| solve("uniform", seed, grid, "1e-9"));
+            let auto = solve(method, seed, grid, "auto");
+            for (i, key) in keys.iter().enumerate() {
+                iteration[i] += (number(&auto, key) - number(&exact, key)).abs();
+                discretisation[i] += (number(&finer, key) - number(&exact, key)).abs();
+            }
+        }
+        for ((key, iteration), discretisation) in keys.iter().zip(iteration).zip(discretisation) {
+            assert!(
+                iteration < 0.2 * discretisation,
+                "{key}, {method} on {grid}: the iteration leaves {iteration:e}, finer elements change {discretisation:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_scene_keeps_auto_and_the_method_that_ran() {
+    let place = Place::new();
+    let args =
+        ["solve", "--waves", "8", "--grid", "128", "--pressure", "1e5", "--tolerance", "auto", "--quiet", "--out", "r"];
+    assert_solved(&place.run(&args));
+    let scene = text(&place.bytes("r/scene.toml"));
+    assert!(scene.contains("tolerance = \"auto\"") && scene.contains("method = \"adaptive\""), "{scene}");
+    // Sixteen elements per wave.
+    assert_close("tolerance", number(&place.json("r/summary.json"), "tolerance"), 3e-5 * 2_f64.powf(-1.5), 1e-12);
+}

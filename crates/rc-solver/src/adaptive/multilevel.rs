@@ -1,0 +1,98 @@
+//! The multilevel operator as an [`Operator`]: for tests, benchmarks, and forks that want it alone.
+
+use std::sync::{Arc, Mutex};
+
+use rayon::prelude::*;
+use rc_core::{Grid, Operator};
+use rc_kernel::{ScaleSplit, SplitParams};
+
+use super::AdaptiveError;
+use super::operator::{BLOCK_CELLS, Hierarchy, Prepared, Tables, TileOperator};
+use super::tiles::{TILE, TileSet};
+
+/// `v = L p` (Eq. 4) for Love's squares of one size on tiles of 8 × 8 of them, with any tiles left out.
+///
+/// Pressures are zero on the tiles that are left out, and displacements are not asked for there; the cost is proportional to
+/// the tiles that are there, plus a Fourier transform of the base grid. Element i is cell i % 64 (row by row) of tile i / 64.
+pub struct MultilevelOperator {
+    tables: Tables<f64>,
+    n_elements: usize,
+    places: Vec<[u32; 2]>,
+    operator: Mutex<TileOperator<f64>>,
+}
+
+impl MultilevelOperator {
+    /// The operator on the tiles at `places` (column, row) of a grid of `side` elements per side, with `base_side` on its base
+    /// grid and an error of at most `error` of the rms displacement (see [`SplitParams::for_error`]). Tiles are sorted, and
+    /// double ones dropped: [`MultilevelOperator::places`].
+    ///
+    /// # Errors
+    /// [`AdaptiveError::Base`] when `base_side` is not a multiple of 8, or `side` not 2^k times it, k ≥ 1, or a place outside
+    /// the grid; [`AdaptiveError::OperatorError`].
+    pub fn new(base_side: usize, side: usize, places: Vec<[u32; 2]>, error: f64) -> Result<Self, AdaptiveError> {
+        let bad = AdaptiveError::Base { base: base_side, waves: 0, finest: side };
+        let divides = base_side >= TILE && base_side.is_multiple_of(TILE) && side > base_side;
+        if !(divides && side.is_multiple_of(base_side) && (side / base_side).is_power_of_two()) {
+            return Err(bad);
+        }
+        let (Ok(base), Ok(_)) = (Grid::square(base_side), Grid::square(side)) else { return Err(bad) };
+        if places.iter().flatten().any(|&i| i as usize >= side / TILE) {
+            return Err(bad);
+        }
+        let smallest = SplitParams::SMALLEST_ERROR;
+        let split = SplitParams::for_error(error).ok_or(AdaptiveError::OperatorError { value: error, smallest })?;
+        let prepared = Prepared::displacement(&ScaleSplit::new(split), base);
+        let tiles = TileSet::new(side / TILE, places);
+        let (n_elements, places) = (tiles.n_cells(), tiles.places().to_vec());
+        let hierarchy = Arc::new(Hierarchy::new(base_side, tiles, prepared.halo()));
+        let tables = prepared.tables(hierarchy.n_levels());
+        Ok(Self { tables, n_elements, places, operator: Mutex::new(TileOperator::new(hierarchy)) })
+    }
+
+    /// Column and row of each tile, in the order of elements.
+    #[must_use]
+    pub fn places(&self) -> &[[u32; 2]] {
+        &self.places
+    }
+}
+
+impl Operator for MultilevelOperator {
+    fn n_elements(&self) -> usize {
+        self.n_elements
+    }
+
+    fn scratch_len(&self) -> usize {
+        0
+    }
+
+    fn apply(&self, pressure: &[f64], displacement: &mut [f64], _scratch: &mut [f64]) {
+        assert_eq!(pressure.len(), self.n_elements, "one pressure for each element");
+        assert_eq!(displacement.len(), self.n_elements, "one displacement for each element");
+        let mut operator = self.operator.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        operator.fill(pressure.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
+        operator.spread(&self.tables);
+        let sinks = displacement.par_chunks_mut(BLOCK_CELLS);
+        operator.take(&self.tables, sinks, |v, cells| v.copy_from_slice(cells));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rc_core::testing::check_operator;
+
+    use super::*;
+
+    #[test]
+    fn on_all_tiles_it_meets_the_contract() {
+        let places = (0..16).flat_map(|row| (0..16).map(move |column| [column, row])).collect();
+        check_operator(&MultilevelOperator::new(32, 128, places, 1e-6).expect("a valid operator"));
+    }
+
+    #[test]
+    fn what_does_not_divide_is_refused() {
+        for (base, side, places) in [(12, 24, vec![]), (32, 96, vec![]), (32, 32, vec![]), (32, 64, vec![[8, 0]])] {
+            assert!(MultilevelOperator::new(base, side, places, 1e-6).is_err(), "{base} to {side}");
+        }
+        assert!(MultilevelOperator::new(32, 64, vec![[0, 0]], 1e-12).is_err(), "an error out of reach");
+    }
+}

@@ -1,0 +1,212 @@
+//! The adaptive method against the uniform one, exact solutions, and its own proofs.
+
+use std::f64::consts::PI;
+
+use rc_core::{Field, Grid, HeightField, Operator, Silent};
+use rc_fractal::{Normalisation, SpectrumParams, Surface};
+use rc_kernel::Love;
+use rc_solver::{
+    AdaptiveError, AdaptiveParams, AdaptiveProblem, AdaptiveSolution, Control, Estimate, HeightSource, Observables,
+    SolveParams, UniformOperator, solve_adaptive, solve_uniform,
+};
+use rc_theory::hertz::PeriodicHertz;
+
+use crate::assert_close;
+
+/// σ0/E* of the paper's Fig. 6.
+const MEAN_PRESSURE: f64 = 8.9e-4;
+
+fn surface(waves: usize, hurst: f64, seed: u64) -> Surface {
+    let params = SpectrumParams { hurst, ..SpectrumParams::paper(waves, seed) };
+    // The same rms slope for every H keeps the contact area comparable.
+    let params = SpectrumParams { normalisation: Normalisation::RmsSlope(0.026), ..params };
+    Surface::new(&params).expect("a valid spectrum")
+}
+
+fn adaptive(source: HeightSource<'_>, control: Control, tolerance: f64) -> AdaptiveSolution {
+    let solve = SolveParams { tolerance, ..SolveParams::certified() };
+    let params = AdaptiveParams { solve, ..AdaptiveParams::certified() };
+    solve_adaptive(source, control, &params, &Silent).expect("a solvable scene")
+}
+
+/// Pressures on the whole grid.
+fn field(solution: &AdaptiveSolution) -> Field {
+    let mut values = Vec::with_capacity(solution.grid().len());
+    let rows = solution.pressure_rows(|_, rows| {
+        values.extend_from_slice(rows);
+        Ok::<(), ()>(())
+    });
+    rows.expect("no row fails");
+    Field::new(solution.grid(), values).expect("all rows")
+}
+
+/// Area by counting and rms pressure within 0.2 %, penetration within 0.05 % of the uniform solution, at equal elements.
+fn assert_agrees_with_uniform(heights: &Field, solution: &AdaptiveSolution, control: Control) {
+    let params = SolveParams::certified();
+    let uniform = solve_uniform(heights, &Love, control, &params, &Silent).expect("a solvable scene");
+    let (of_uniform, of_adaptive) = (Observables::of(&uniform, &Love), solution.observables());
+    assert_close("area by counting", of_adaptive.area.cells, of_uniform.area.cells, 2e-3);
+    assert_close("area", of_adaptive.area.fraction, of_uniform.area.fraction, 2e-3);
+    assert_close("rms pressure", of_adaptive.rms_pressure, of_uniform.rms_pressure, 2e-3);
+    assert_close("mean pressure", solution.info.mean_pressure, uniform.info.mean_pressure, 1e-3);
+    assert_close("penetration", solution.info.penetration, uniform.info.penetration, 5e-4);
+    assert_close("stiffness", of_adaptive.contact_stiffness, of_uniform.contact_stiffness, 1e-2);
+    assert_close("energy", of_adaptive.elastic_energy, of_uniform.elastic_energy, 1e-3);
+}
+
+#[test]
+fn agrees_with_the_uniform_grid_for_all_hurst_exponents_and_loads() {
+    for (hurst, waves, pressure) in [(0.1, 32, 2e-4), (0.5, 24, MEAN_PRESSURE), (0.8, 32, 3e-3), (1.0, 8, 1e-5)] {
+        let surface = surface(waves, hurst, 11);
+        let heights = surface.sample(Grid::square(512).expect("a grid"));
+        let control = Control::MeanPressure(pressure);
+        let solution = adaptive(HeightSource::Surface(&surface, 512), control, 1e-6);
+        assert_agrees_with_uniform(&heights, &solution, control);
+    }
+}
+
+#[test]
+fn penetration_control_agrees_and_returns_the_penetration() {
+    let surface = surface(32, 0.8, 4);
+    let heights = surface.sample(Grid::square(512).expect("a grid"));
+    let control = Control::Penetration(0.5 * heights.max());
+    let solution = adaptive(HeightSource::Surface(&surface, 512), control, 1e-6);
+    assert_close("penetration", solution.info.penetration, 0.5 * heights.max(), 1e-9);
+    assert_agrees_with_uniform(&heights, &solution, control);
+}
+
+#[test]
+fn a_map_of_heights_goes_the_same_way() {
+    let surface = surface(24, 0.8, 9);
+    let heights = surface.sample(Grid::square(512).expect("a grid"));
+    let control = Control::MeanPressure(MEAN_PRESSURE);
+    let of_map = adaptive(HeightSource::Map(&heights), control, 1e-6);
+    assert_agrees_with_uniform(&heights, &of_map, control);
+}
+
+/// The certificate of the adaptive method, checked on every cell of the finest grid by the uniform operator: what was proven
+/// to be out of contact is.
+#[test]
+fn nothing_penetrates_where_nothing_was_evaluated() {
+    for (seed, pressure) in [(1, 1e-4), (2, MEAN_PRESSURE), (3, 4e-3)] {
+        let surface = surface(48, 0.7, seed);
+        let grid = Grid::square(1024).expect("a grid");
+        let solution = adaptive(HeightSource::Surface(&surface, 1024), Control::MeanPressure(pressure), 1e-6);
+        assert_eq!(solution.evaluated + solution.proven, grid.len());
+        if pressure < 1e-3 {
+            assert!(2 * solution.proven > grid.len(), "only {} of {} cells are proven", solution.proven, grid.len());
+        }
+        let (p, heights) = (field(&solution), surface.sample(grid));
+        let mut v = vec![0.0; grid.len()];
+        UniformOperator::new(grid, &Love).apply(p.values(), &mut v, &mut []);
+        let offset = solution.gap_offset(heights.max());
+        let range = heights.max() - heights.min();
+        let least = v.iter().zip(heights.values()).map(|(v, h)| v - h + offset).fold(f64::INFINITY, f64::min);
+        // The tolerance, and the error of the multilevel operator.
+        assert!(least > -1.2e-6 * range, "seed {seed}: a gap of {:e} of the height range", least / range);
+        let mut from_rows = Vec::new();
+        let rows = solution.displacement_rows(|_, rows| {
+            from_rows.extend_from_slice(rows);
+            Ok::<(), ()>(())
+        });
+        rows.expect("no row fails");
+        let worst = v.iter().zip(&from_rows).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(worst < 2e-6 * range, "displacement rows are off by {:e} of the height range", worst / range);
+    }
+}
+
+#[test]
+fn tight_tolerances_are_reached() {
+    let surface = surface(16, 0.8, 5);
+    let control = Control::MeanPressure(MEAN_PRESSURE);
+    let solution = adaptive(HeightSource::Surface(&surface, 256), control, 1e-9);
+    assert!(solution.info.certificate.penetration <= 1e-9, "{}", solution.info.certificate);
+    let heights = surface.sample(Grid::square(256).expect("a grid"));
+    let params = SolveParams { tolerance: 1e-9, ..SolveParams::certified() };
+    let uniform = solve_uniform(&heights, &Love, control, &params, &Silent).expect("a solvable scene");
+    assert_close("rms pressure", solution.observables().rms_pressure, uniform.pressure.rms(), 1e-6);
+}
+
+#[test]
+fn a_sphere_is_hertzs() {
+    // Contact radius of a tenth of the cell. A paraboloid has no band limit: it goes as a map.
+    let exact = PeriodicHertz { radius: 1.0 }.at_contact_radius(0.1).expect("a small contact");
+    let n = 1024;
+    let grid = Grid::square(n).expect("a grid");
+    let centre = grid.centre(n / 2, n / 2).0;
+    let heights = Field::from_fn(grid, |x, y| -0.5 * ((x - centre).powi(2) + (y - centre).powi(2)));
+    let solution = adaptive(HeightSource::Map(&heights), Control::MeanPressure(exact.load), 1e-7);
+    let observables = solution.observables();
+    assert_close("area", observables.area.fraction, PI * 0.01, 5e-3);
+    assert_close("penetration", solution.info.penetration, exact.penetration, 5e-4);
+    assert_close("peak pressure", observables.max_pressure, exact.peak_pressure, 5e-4);
+    assert!(4 * solution.evaluated < n * n, "{} cells evaluated", solution.evaluated);
+}
+
+#[test]
+fn results_do_not_depend_on_the_number_of_threads() {
+    let surface = surface(32, 0.8, 6);
+    let solve = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| {
+            field(&adaptive(HeightSource::Surface(&surface, 512), Control::MeanPressure(MEAN_PRESSURE), 1e-6))
+        })
+    };
+    let (one, three) = (solve(1), solve(3));
+    assert!(one.values().iter().zip(three.values()).all(|(a, b)| a.to_bits() == b.to_bits()));
+}
+
+#[test]
+fn elements_carry_the_load() {
+    let surface = surface(16, 0.8, 2);
+    let solution = adaptive(HeightSource::Surface(&surface, 512), Control::MeanPressure(MEAN_PRESSURE), 1e-6);
+    let load: f64 = solution.elements().map(|e| e.pressure * e.side * e.side).sum();
+    assert_close("load", load, MEAN_PRESSURE, 1e-10);
+    assert_eq!(solution.elements().count(), solution.n_elements());
+}
+
+#[test]
+fn estimates_are_right_within_a_factor_of_two() {
+    let surface = surface(32, 0.8, 3);
+    for pressure in [3e-4, MEAN_PRESSURE, 4e-3] {
+        let control = Control::MeanPressure(pressure);
+        let source = HeightSource::Surface(&surface, 1024);
+        let problem = AdaptiveProblem::new(source, control, &AdaptiveParams::certified()).expect("a valid scene");
+        let Estimate { area_fraction, tile_fraction, .. } = problem.estimate();
+        let solution = problem.solve(&Silent).expect("a solvable scene");
+        let area = solution.observables().area.cells;
+        assert!(area_fraction / area < 2.0 && area / area_fraction < 2.0, "{area_fraction} for {area}");
+        let evaluated = solution.evaluated as f64 / (1024.0 * 1024.0);
+        assert!(tile_fraction / evaluated < 2.0 && evaluated / tile_fraction < 2.0, "{tile_fraction} for {evaluated}");
+    }
+}
+
+#[test]
+fn what_cannot_be_done_is_said_before_any_work() {
+    let surface = surface(32, 0.8, 3);
+    let control = Control::MeanPressure(MEAN_PRESSURE);
+    let error = |side: usize, params: AdaptiveParams| {
+        solve_adaptive(HeightSource::Surface(&surface, side), control, &params, &Silent).expect_err("an error")
+    };
+    let params = AdaptiveParams::certified();
+    assert!(matches!(error(500, params), AdaptiveError::Grid { .. }), "500 does not divide into tiles twice");
+    let small = AdaptiveParams { base_side: Some(64), ..params };
+    assert!(matches!(error(1024, small), AdaptiveError::Base { waves: 32, .. }), "64 elements for 32 waves");
+    let little = AdaptiveParams { memory_limit: Some(1_000_000), ..params };
+    assert!(matches!(error(1024, little), AdaptiveError::Memory { limit: 1, .. }));
+    let exact = AdaptiveParams { operator_error: 1e-14, ..params };
+    assert!(matches!(error(1024, exact), AdaptiveError::OperatorError { .. }));
+    let flat = Field::zeros(Grid::square(512).expect("a grid"));
+    let error = solve_adaptive(HeightSource::Map(&flat), control, &params, &Silent).expect_err("an error");
+    assert!(matches!(error, AdaptiveError::Flat), "{error}");
+}
+
+#[test]
+fn a_pressure_that_is_not_positive_is_refused() {
+    let surface = surface(16, 0.8, 1);
+    for control in [Control::MeanPressure(-1.0), Control::MeanPressure(f64::NAN), Control::Penetration(1.0)] {
+        let source = HeightSource::Surface(&surface, 256);
+        let error = solve_adaptive(source, control, &AdaptiveParams::certified(), &Silent).expect_err("an error");
+        assert!(matches!(error, AdaptiveError::Solve(_)), "{control:?}: {error}");
+    }
+}
