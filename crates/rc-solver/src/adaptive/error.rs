@@ -15,7 +15,8 @@ pub enum AdaptiveError {
     Solve(#[from] SolveError),
     /// The grid does not divide into tiles.
     #[error(
-        "the adaptive method needs a square grid of 128 · 2^k elements per side or another number that 16 divides and {smallest} does not exceed, not {nx} x {ny}"
+        "the adaptive method needs a square grid of at least {smallest} elements per side, 16 or a larger power of 2 times \
+         another number, not {nx} x {ny}"
     )]
     Grid {
         /// Elements along x.
