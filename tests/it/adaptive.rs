@@ -65,6 +65,23 @@ fn agrees_with_the_uniform_grid_for_all_hurst_exponents_and_loads() {
     }
 }
 
+/// Contacts of a few elements, which coarser levels hold as one or none.
+#[test]
+fn the_smallest_loads_are_not_lost() {
+    let surface = surface(32, 0.8, 7);
+    let heights = surface.sample(Grid::square(512).expect("a grid"));
+    for pressure in [1e-6, 1e-8, 1e-10] {
+        let control = Control::MeanPressure(pressure);
+        let solution = adaptive(HeightSource::Surface(&surface, 512), control, 1e-6);
+        let uniform = solve_uniform(&heights, &Love, control, &SolveParams::certified(), &Silent).expect("solvable");
+        assert_close("mean pressure", solution.info.mean_pressure, pressure, 1e-10);
+        let range = heights.max() - heights.min();
+        let difference = (solution.info.penetration - uniform.info.penetration).abs();
+        assert!(difference < 3e-6 * range, "{pressure:e}: penetrations differ by {difference:e}");
+        assert!(10 * solution.evaluated < 512 * 512, "{pressure:e}: {} cells evaluated", solution.evaluated);
+    }
+}
+
 #[test]
 fn penetration_control_agrees_and_returns_the_penetration() {
     let surface = surface(32, 0.8, 4);

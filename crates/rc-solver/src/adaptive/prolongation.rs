@@ -48,7 +48,7 @@ pub(super) fn prolong(tiles: &TileSet, level: &[f64]) -> (TileSet, Vec<f64>) {
         .map(|&[column, row]| {
             let mut patch: Patch<f64, SIDE> = [[0.0; SIDE]; SIDE];
             let corner = (i64::from(column) - 1, i64::from(row) - 1);
-            gather(level, tiles, corner, TILE - 2..2 * TILE + 2, &mut patch);
+            gather(level, tiles, corner, TILE - 3..2 * TILE + 3, &mut patch);
             if !patch[TILE - 2..2 * TILE + 2].iter().flat_map(|row| &row[TILE - 2..2 * TILE + 2]).any(|&l| l > 0.0) {
                 return [const { None }; 4];
             }
@@ -101,7 +101,11 @@ fn fine_tile(patch: &Patch<f64, SIDE>, (half_x, half_y): (usize, usize)) -> Opti
         for x in 0..WIDE {
             let (near_x, far_x) = near(x, half_x);
             let blend = |x: usize| 0.75 * patch[near_y][x] + 0.25 * patch[far_y][x];
-            let level = 0.75 * blend(near_x) + 0.25 * blend(far_x);
+            let mut level = 0.75 * blend(near_x) + 0.25 * blend(far_x);
+            if level <= 0.0 && patch[near_y][near_x] > 0.0 && is_alone(patch, near_x, near_y) {
+                // Between nothing but free cells no fine centre may be left inside the edge; the contact must not get lost.
+                level = LEFT_OF_ALONE * patch[near_y][near_x];
+            }
             touched |= level > 0.0;
             let inside = |i: usize| (MARGIN..MARGIN + TILE).contains(&i);
             if inside(x) && inside(y) {
@@ -110,4 +114,14 @@ fn fine_tile(patch: &Patch<f64, SIDE>, (half_x, half_y): (usize, usize)) -> Opti
         }
     }
     touched.then(|| Box::new(pressure))
+}
+
+/// Part of the level function that a contact of a single cell keeps when the interpolation leaves nothing of it.
+const LEFT_OF_ALONE: f64 = 0.25;
+
+/// Is none of the neighbours of this cell in contact?
+fn is_alone(patch: &Patch<f64, SIDE>, x: usize, y: usize) -> bool {
+    let around = patch[y - 1..=y + 1].iter().flat_map(|row| &row[x - 1..=x + 1]);
+    let pressed = around.filter(|&&l| l > 0.0).count();
+    pressed == 1
 }
