@@ -1,3 +1,5 @@
+//! The multilevel operator against exact sums of the periodic coefficients.
+
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rc_kernel::{PeriodicLove, ScaleSplit, SplitParams};
