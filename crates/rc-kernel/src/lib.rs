@@ -51,7 +51,7 @@ pub use lattice::{LATTICE_CONSTANT, ewald_coefficient, ewald_phi};
 pub use love::love_displacement;
 pub use periodic::{PeriodicLove, PeriodicSource};
 pub use spectral::Spectral;
-pub use split::{Filter, ScaleSplit, SplitParams, Stencil};
+pub use split::{CoarseElement, CoarseFilter, Filter, ScaleSplit, SplitParams, Stencil};
 pub use truncated::{LoadForm, MAX_SHELLS, shells_for, truncated_coefficient, truncation_error_bound};
 
 use love_symbol::LoveSymbol;

@@ -8,10 +8,10 @@ use super::SplitParams;
 use super::window::Window;
 
 /// Wavenumbers at which the fit is made.
-const SAMPLES: usize = 400;
+pub(super) const SAMPLES: usize = 400;
 
 /// Weight of the condition that a constant is interpolated exactly, relative to the largest of the fit.
-const EXACT: f64 = 1e4;
+pub(super) const EXACT: f64 = 1e4;
 
 /// Interpolation from a grid to the one twice as fine, along one axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,7 +64,7 @@ pub(super) fn design(window: &Window, params: SplitParams, target: impl Fn(f64) 
 }
 
 /// Solves an overdetermined system, rows with the right-hand side last, by Householder reflections.
-fn least_squares(mut rows: Vec<Vec<f64>>, n: usize) -> Vec<f64> {
+pub(super) fn least_squares(mut rows: Vec<Vec<f64>>, n: usize) -> Vec<f64> {
     for column in 0..n {
         let norm = rows[column..].iter().map(|row| row[column] * row[column]).sum::<f64>().sqrt();
         let alpha = if rows[column][column] > 0.0 { -norm } else { norm };

@@ -21,11 +21,13 @@
 //! The window is the Kaiser-Bessel one, as in particle-mesh sums (J. F. Kaiser, 1974); the recursion is that of the
 //! dual-space multilevel kernel splitting of Jiang and Greengard (*Commun. Pure Appl. Math.* 2025), in a half-space.
 
+mod coarse;
 mod filter;
 mod inverse;
 mod stencil;
 mod window;
 
+pub use coarse::{CoarseElement, CoarseFilter};
 pub use filter::Filter;
 pub use stencil::Stencil;
 
@@ -119,6 +121,12 @@ impl ScaleSplit {
     #[must_use]
     pub fn level_filter(&self) -> Filter {
         filter::design(&self.window, self.params, |_| 1.0)
+    }
+
+    /// Elements of 2, 4, … 2^`n_levels` times the finest side, each as one pressure and one mean displacement.
+    #[must_use]
+    pub fn coarse_elements(&self, n_levels: usize) -> Vec<CoarseElement> {
+        coarse::elements(&self.window, self.params, &self.love_stencil(), &self.level_stencil(), n_levels)
     }
 
     /// Symbol of the remainder at the angular wavenumber `q` > 0, for a cutoff `c` in the unit of length of 1/q:

@@ -6,8 +6,9 @@ use rayon::prelude::*;
 use rc_core::{Grid, Observer};
 
 use super::Solver;
+use super::elements::Elements;
 use super::fresh::Fresh;
-use super::operator::{BLOCK_CELLS, Hierarchy, Real, Tables, TileOperator};
+use super::operator::{BLOCK_CELLS, Hierarchy, Reach, Real, Tables, TileOperator};
 use super::survey::{Remainder, possible_contact};
 use super::tiles::{CELLS, TileSet};
 use crate::Control;
@@ -59,14 +60,14 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         (grid.nx() / self.base().nx()).ilog2() as usize
     }
 
-    fn hierarchy(&self, tiles: &TileSet, halo: usize) -> Arc<Hierarchy> {
-        Arc::new(Hierarchy::new(self.base().nx(), tiles.clone(), halo))
+    fn hierarchy(&self, tiles: &TileSet, reach: Reach) -> Arc<Hierarchy> {
+        Arc::new(Hierarchy::new(self.base().nx(), Elements::uniform(tiles.clone()), reach))
     }
 
     /// Solves on the tiles of the prolonged pressure only, for the next level.
     pub(super) fn prepare_level(&self, grid: Grid, mesh: Mesh, tolerance: f64, observer: &dyn Observer) -> Level {
         let n_levels = self.n_levels(grid);
-        let hierarchy = self.hierarchy(&mesh.tiles, self.response.halo());
+        let hierarchy = self.hierarchy(&mesh.tiles, self.response.reach());
         let response = self.response.tables(n_levels);
         let machinery = Machinery {
             corrections: TileOperator::new(Arc::clone(&hierarchy)),
@@ -110,10 +111,10 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
             let near = contact_gap + outcome.certificate.penetration * self.problem.h_range;
             let part = Part::choose(&candidates, &mesh.tiles, &pressure, &gap, near);
             let machinery = Machinery {
-                corrections: TileOperator::new(self.hierarchy(&part.tiles, self.response.halo())),
+                corrections: TileOperator::new(self.hierarchy(&part.tiles, self.response.reach())),
                 response,
                 preconditioner,
-                fresh: Fresh::new(self.hierarchy(&part.tiles, self.fresh.halo())),
+                fresh: Fresh::new(self.hierarchy(&part.tiles, self.fresh.reach())),
                 fresh_response,
             };
             // Before the descent, which needs the memory.
@@ -140,7 +141,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
 
     /// Tiles where the start may touch, judged by the quick operator.
     fn first_candidates(&self, mesh: &Mesh, response: &Tables<f32>, contact_gap: f64) -> Candidates {
-        let mut quick = Fresh::<f32>::new(self.hierarchy(&mesh.tiles, self.response.halo()));
+        let mut quick = Fresh::<f32>::new(self.hierarchy(&mesh.tiles, self.response.reach()));
         quick.fill(mesh.pressure.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
         quick.multiply(response);
         // Not a proof yet: the margin stands for the quick operator's error too.
@@ -184,7 +185,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
     ) -> (Vec<f64>, Vec<f64>) {
         loop {
             let mut pressure = moved(&mesh.tiles, &candidates.tiles, &mesh.pressure);
-            let mut fresh = Fresh::<T>::new(self.hierarchy(&candidates.tiles, self.fresh.halo()));
+            let mut fresh = Fresh::<T>::new(self.hierarchy(&candidates.tiles, self.fresh.reach()));
             fresh.fill(pressure.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
             fresh.multiply(response);
             info.operator_applications += 1;

@@ -4,6 +4,7 @@
 //! cells that contact touches or nearly does, with the multilevel operator. What is not stored is out of contact, and the
 //! survey proves it.
 
+mod elements;
 mod engine;
 mod error;
 mod estimate;
@@ -208,9 +209,9 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
         let (quick, certified) = (ScaleSplit::new(SplitParams::quick()), ScaleSplit::new(split));
         let base = heights.base().grid();
         Self {
-            response: Prepared::displacement(&quick, base),
+            response: Prepared::displacement(&quick, base, 0),
             preconditioner: Prepared::inverse(&quick, base),
-            fresh: Prepared::displacement(&certified, base),
+            fresh: Prepared::displacement(&certified, base, 0),
             certified,
             heights,
             problem,

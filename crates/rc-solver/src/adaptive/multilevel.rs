@@ -7,6 +7,7 @@ use rc_core::{Grid, Operator};
 use rc_kernel::{ScaleSplit, SplitParams};
 
 use super::AdaptiveError;
+use super::elements::Elements;
 use super::operator::{BLOCK_CELLS, Hierarchy, Prepared, Tables, TileOperator};
 use super::tiles::{TILE, TileSet};
 
@@ -41,10 +42,10 @@ impl MultilevelOperator {
         }
         let smallest = SplitParams::SMALLEST_ERROR;
         let split = SplitParams::for_error(error).ok_or(AdaptiveError::OperatorError { value: error, smallest })?;
-        let prepared = Prepared::displacement(&ScaleSplit::new(split), base);
+        let prepared = Prepared::displacement(&ScaleSplit::new(split), base, 0);
         let tiles = TileSet::new(side / TILE, places);
         let (n_elements, places) = (tiles.n_cells(), tiles.places().to_vec());
-        let hierarchy = Arc::new(Hierarchy::new(base_side, tiles, prepared.halo()));
+        let hierarchy = Arc::new(Hierarchy::new(base_side, Elements::uniform(tiles), prepared.reach()));
         let tables = prepared.tables(hierarchy.n_levels());
         Ok(Self { tables, n_elements, places, operator: Mutex::new(TileOperator::new(hierarchy)) })
     }

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use rc_core::{Grid, Kernel};
 use rc_kernel::{Love, ScaleSplit, SplitParams};
 
+use super::elements::Elements;
 use super::operator::{BLOCK_CELLS, Hierarchy, Patch, Prepared, TileOperator, gather};
 use super::tiles::{CELLS, TILE, TileSet};
 use crate::stiffness::stiffness_of;
@@ -98,7 +99,7 @@ impl AdaptiveSolution {
     /// What `take` returns.
     pub fn displacement_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         let (n, per_side) = (self.tiles.side(), self.tiles.per_side());
-        let prepared = Prepared::<f32>::displacement(&ScaleSplit::new(SplitParams::certified()), self.base);
+        let prepared = Prepared::<f32>::displacement(&ScaleSplit::new(SplitParams::certified()), self.base, 0);
         let tables = prepared.tables(self.n_levels());
         // As many rows of tiles at once as about a million cells hold.
         let at_once = (1_000_000 / (TILE * n)).max(1);
@@ -106,8 +107,9 @@ impl AdaptiveSolution {
             let band = first..(first + at_once).min(per_side);
             let more = band.clone().flat_map(|row| (0..per_side).map(move |column| [column as u32, row as u32]));
             let tiles = TileSet::new(per_side, self.tiles.places().iter().copied().chain(more).collect());
-            let mut operator = TileOperator::new(Arc::new(Hierarchy::new(self.base.nx(), tiles, prepared.halo())));
-            let mut values = super::level::moved(&self.tiles, operator.hierarchy().finest(), &self.pressure);
+            let mut operator =
+                TileOperator::new(Arc::new(Hierarchy::new(self.base.nx(), Elements::uniform(tiles), prepared.reach())));
+            let mut values = super::level::moved(&self.tiles, operator.hierarchy().elements().finest(), &self.pressure);
             operator.fill(values.par_chunks(BLOCK_CELLS), |p, cells| {
                 for (cell, &p) in cells.iter_mut().zip(p) {
                     *cell = p as f32;
@@ -119,7 +121,7 @@ impl AdaptiveSolution {
                     *v = f64::from(cell);
                 }
             });
-            let tiles = operator.hierarchy().finest();
+            let tiles = operator.hierarchy().elements().finest();
             let mut rows = vec![0.0; TILE * n];
             for row in band {
                 for column in 0..per_side {
@@ -188,10 +190,10 @@ impl AdaptiveSolution {
             return f64::INFINITY;
         }
         let split = ScaleSplit::new(SplitParams::quick());
-        let prepared = Prepared::<f32>::displacement(&split, self.base);
+        let prepared = Prepared::<f32>::displacement(&split, self.base, 0);
         let response = prepared.tables(self.n_levels());
         let mut preconditioner = Prepared::<f32>::inverse(&split, self.base).tables(self.n_levels());
-        let hierarchy = Hierarchy::new(self.base.nx(), self.tiles.clone(), prepared.halo());
+        let hierarchy = Hierarchy::new(self.base.nx(), Elements::uniform(self.tiles.clone()), prepared.reach());
         let mut engine = TileOperator::new(Arc::new(hierarchy));
         stiffness_of(&self.pressure, self.grid().len() as f64, &mut engine, &response, &mut preconditioner)
     }

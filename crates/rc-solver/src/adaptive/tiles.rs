@@ -73,6 +73,25 @@ impl TileSet {
         (tile != NONE).then_some(tile as usize)
     }
 
+    /// These tiles and those within `halo` cells of them.
+    pub(crate) fn around(&self, halo: usize) -> Self {
+        let (n, reach) = (self.per_side as i64, halo.div_ceil(TILE) as i64);
+        let mut places = Vec::with_capacity(self.places.len());
+        for &[column, row] in &self.places {
+            for y in i64::from(row) - reach..=i64::from(row) + reach {
+                for x in i64::from(column) - reach..=i64::from(column) + reach {
+                    places.push([x.rem_euclid(n) as u32, y.rem_euclid(n) as u32]);
+                }
+            }
+        }
+        Self::new(self.per_side, places)
+    }
+
+    /// These tiles and others of the same level.
+    pub(crate) fn with(&self, others: &Self) -> Self {
+        Self::new(self.per_side, self.places.iter().chain(&others.places).copied().collect())
+    }
+
     /// The tiles of the level with half as many cells per side that hold these tiles, or a cell within `halo` cells of that
     /// level from them.
     pub(crate) fn parents(&self, halo: usize) -> Self {

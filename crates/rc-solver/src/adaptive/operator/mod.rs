@@ -10,6 +10,7 @@
     reason = "what is not inlined into the dispatched function is compiled for the least of machines: seven times slower"
 )]
 
+mod coarse;
 mod patch;
 mod real;
 mod stencil;
@@ -17,12 +18,14 @@ mod tables;
 mod transfer;
 
 use std::marker::PhantomData;
+use std::ops::Range;
 use std::sync::Arc;
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use rc_core::Grid;
 
+use self::coarse::{Blur, FromGhosts, Leaves, Means};
 pub(crate) use self::patch::{Patch, gather};
 pub(crate) use self::real::Real;
 use self::real::{Fused, MultiplyAdd, Separate};
@@ -30,6 +33,7 @@ use self::stencil::Taps;
 use self::tables::Sizes;
 pub(crate) use self::tables::{Prepared, Tables};
 use self::transfer::Transfer;
+use super::elements::Elements;
 use super::tiles::{CELLS, TILE, TileSet};
 use crate::fft::{BLOCK_ROWS, Convolution};
 
@@ -39,27 +43,49 @@ const BLOCK_TILES: usize = 16;
 /// Cells in a block.
 pub(crate) const BLOCK_CELLS: usize = BLOCK_TILES * CELLS;
 
-/// The tiles of all levels, coarsest first: the first is the whole base grid, the last has the elements.
+/// The tiles of all levels, coarsest first: the first is the whole base grid, the last has the finest elements.
 pub(crate) struct Hierarchy {
+    elements: Elements,
+    blocks: Vec<(usize, Range<usize>)>,
+    /// The densities of each level, coarser elements included; on the finest level, its elements.
     levels: Vec<TileSet>,
+    /// The elements that are 2, 4, … times as large as the finest.
+    leaves: Vec<Leaves>,
+}
+
+/// How far, in cells of a level, values go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Reach {
+    /// Filters, between levels and within one.
+    pub(crate) filter: usize,
+    /// Stencils.
+    pub(crate) stencil: usize,
 }
 
 impl Hierarchy {
-    /// The levels over `finest` down to the base grid of `base_side` cells per side, a multiple of 8, each with the tiles
-    /// that a filter of reach `halo` needs.
-    pub(crate) fn new(base_side: usize, finest: TileSet, halo: usize) -> Self {
-        let mut levels = vec![finest];
+    /// The levels over `elements` down to the base grid of `base_side` cells per side, a multiple of 8, each with the tiles
+    /// that filters need. The coarsest elements are finer than the base grid's, and elements whose sizes differ by more than
+    /// a factor of 2 are farther from each other than stencils of the level between them reach.
+    pub(crate) fn new(base_side: usize, elements: Elements, reach: Reach) -> Self {
+        let mut levels = vec![elements.finest().clone()];
         while levels[levels.len() - 1].side() > 2 * base_side {
-            levels.push(levels[levels.len() - 1].parents(halo));
+            let parents = levels[levels.len() - 1].parents(reach.filter);
+            levels.push(match elements.levels().get(levels.len()) {
+                Some(leaves) => parents.with(&leaves.around(reach.filter)),
+                None => parents,
+            });
         }
         levels.push(TileSet::full(base_side / TILE));
         levels.reverse();
-        Self { levels }
+        debug_assert!(elements.levels().len() < levels.len(), "no elements are on the base grid");
+        let pairs = elements.levels().windows(2);
+        let leaves = pairs.map(|pair| Leaves::new(pair[1].clone(), &pair[0], reach.stencil)).collect();
+        Self { blocks: elements.blocks(), elements, levels, leaves }
     }
 
-    /// The tiles with the elements.
-    pub(crate) fn finest(&self) -> &TileSet {
-        &self.levels[self.levels.len() - 1]
+    /// The elements.
+    pub(crate) fn elements(&self) -> &Elements {
+        &self.elements
     }
 
     /// The base grid.
@@ -70,6 +96,12 @@ impl Hierarchy {
     /// Levels above the base grid.
     pub(crate) fn n_levels(&self) -> usize {
         self.levels.len() - 1
+    }
+
+    /// The elements of a level: where they are in a vector, and their tiles.
+    fn elements_of(&self, level: usize) -> Option<(Range<usize>, &TileSet)> {
+        let coarser = self.n_levels() - level;
+        self.elements.levels().get(coarser).map(|tiles| (self.elements.cells(coarser), tiles))
     }
 }
 
@@ -82,6 +114,8 @@ pub(crate) struct TileOperator<T> {
     /// Densities that went up, and displacements that come down, of each level below the finest.
     up: Vec<Vec<T>>,
     down: Vec<Vec<T>>,
+    /// Values of the ghosts of each level of coarse elements.
+    ghosts: Vec<Vec<T>>,
 }
 
 impl<T: Real> TileOperator<T> {
@@ -91,9 +125,10 @@ impl<T: Real> TileOperator<T> {
         Self {
             arch: Arch::new(),
             convolution: Convolution::new(hierarchy.base()),
-            source: vec![T::default(); hierarchy.finest().n_cells()],
+            source: vec![T::default(); hierarchy.elements.len()],
             up: zeros(),
             down: zeros(),
+            ghosts: hierarchy.leaves.iter().map(|leaves| vec![T::default(); leaves.ghosts.n_cells()]).collect(),
             hierarchy,
         }
     }
@@ -137,6 +172,7 @@ impl<T: Real> TileOperator<T> {
         let n_levels = self.hierarchy.n_levels();
         let (hierarchy, arch) = (Arc::clone(&self.hierarchy), self.arch);
         let levels = &hierarchy.levels;
+        self.spread_to_ghosts();
         for level in (1..n_levels).rev() {
             let (coarser, finer) = self.up.split_at_mut(level + 1);
             let values = finer.first().unwrap_or(&self.source);
@@ -146,6 +182,7 @@ impl<T: Real> TileOperator<T> {
                 let finer = (values.as_slice(), &levels[level + 1]);
                 arch.dispatch(Lift::<T, A, N, UNDER> { transfer, finer, places, cells, arithmetic: PhantomData });
             });
+            self.add_coarse_elements::<A, AROUND>(level, tables);
         }
         self.convolve_base::<A, N, UNDER>(tables);
         for level in 1..n_levels {
@@ -165,6 +202,27 @@ impl<T: Real> TileOperator<T> {
                 });
             });
         }
+    }
+
+    fn spread_to_ghosts(&mut self) {
+        let elements = &self.hierarchy.elements;
+        for (i, (leaves, ghosts)) in self.hierarchy.leaves.iter().zip(&mut self.ghosts).enumerate() {
+            let values = &self.source[elements.cells(i + 1)];
+            let blocks = ghosts.par_chunks_mut(BLOCK_CELLS).zip(leaves.ghosts.places().par_chunks(BLOCK_TILES));
+            blocks.for_each(|(ghosts, places)| leaves.spread_to_ghosts(values, places, ghosts));
+        }
+    }
+
+    /// Adds the elements of a level that is not the finest to its density.
+    fn add_coarse_elements<A: MultiplyAdd, const AROUND: usize>(&mut self, level: usize, tables: &Tables<T>) {
+        let Some((cells, tiles)) = self.hierarchy.elements_of(level) else { return };
+        let table = tables.coarse_table(self.hierarchy.n_levels() - level);
+        let (values, arch) = ((&self.source[cells], tiles), self.arch);
+        let places = self.hierarchy.levels[level].places();
+        let blocks = self.up[level].par_chunks_mut(BLOCK_CELLS).zip(places.par_chunks(BLOCK_TILES));
+        blocks.for_each(|(cells, places)| {
+            arch.dispatch(Blur::<T, A, AROUND> { table, values, places, cells, arithmetic: PhantomData });
+        });
     }
 
     /// The base grid: its density from level 1, its convolution, its displacement as tiles.
@@ -226,26 +284,84 @@ impl<T: Real> TileOperator<T> {
         K: IndexedParallelIterator,
         R: Send,
     {
-        let (hierarchy, level) = (self.hierarchy.as_ref(), self.hierarchy.n_levels());
-        let blocks = hierarchy.finest().places().par_chunks(BLOCK_TILES);
+        let blocks = self.hierarchy.blocks.par_iter().enumerate();
         blocks
             .zip_eq(sinks)
-            .map(|(places, sink)| {
+            .map(|((i, (coarser, tiles)), sink)| {
                 let mut block = [T::default(); BLOCK_CELLS];
-                let (table, cells) = (&tables.levels[level - 1], block.as_mut_slice());
-                let density = (self.source.as_slice(), &hierarchy.levels[level]);
-                let coarser = (self.down[level - 1].as_slice(), &hierarchy.levels[level - 1]);
-                self.arch.dispatch(Lower::<T, A, N, AROUND> {
-                    table,
-                    density,
-                    coarser,
-                    places,
-                    cells,
-                    arithmetic: PhantomData,
-                });
-                take(sink, &block[..places.len() * CELLS])
+                let cells = &mut block[..tiles.len() * CELLS];
+                if *coarser == 0 {
+                    self.lower_finest::<A, N, AROUND>(tables, tiles.clone(), cells);
+                } else {
+                    self.lower_coarse::<A, AROUND>(tables, *coarser, tiles.clone(), cells);
+                }
+                self.add_ghosts::<A, AROUND>(tables, *coarser, tiles.clone(), cells);
+                // What fills up the last block of a level has no displacement.
+                take(sink, &block[..(self.source.len() - i * BLOCK_CELLS).min(BLOCK_CELLS)])
             })
             .collect()
+    }
+
+    /// The displacement of some tiles of the finest elements.
+    fn lower_finest<A: MultiplyAdd, const N: usize, const AROUND: usize>(
+        &self,
+        tables: &Tables<T>,
+        tiles: Range<usize>,
+        cells: &mut [T],
+    ) {
+        let (levels, level) = (&self.hierarchy.levels, self.hierarchy.n_levels());
+        let finest = self.hierarchy.elements.cells(0);
+        self.arch.dispatch(Lower::<T, A, N, AROUND> {
+            table: &tables.levels[level - 1],
+            density: (&self.source[finest], &levels[level]),
+            coarser: (self.down[level - 1].as_slice(), &levels[level - 1]),
+            places: &levels[level].places()[tiles],
+            cells,
+            arithmetic: PhantomData,
+        });
+    }
+
+    /// The displacement of some tiles of elements 2^`coarser` times as large as the finest.
+    fn lower_coarse<A: MultiplyAdd, const AROUND: usize>(
+        &self,
+        tables: &Tables<T>,
+        coarser: usize,
+        tiles: Range<usize>,
+        cells: &mut [T],
+    ) {
+        let Hierarchy { elements, levels, leaves, .. } = self.hierarchy.as_ref();
+        let level = self.hierarchy.n_levels() - coarser;
+        let leaves = &leaves[coarser - 1];
+        self.arch.dispatch(Means::<T, A, AROUND> {
+            table: tables.coarse_table(coarser),
+            elements: (&self.source[elements.cells(coarser)], &leaves.tiles),
+            finer: (&self.source[elements.cells(coarser - 1)], &elements.levels()[coarser - 1]),
+            ghosts: &leaves.ghosts,
+            level: (self.down[level].as_slice(), &levels[level]),
+            places: &leaves.tiles.places()[tiles],
+            cells,
+            arithmetic: PhantomData,
+        });
+    }
+
+    /// Adds what larger elements nearby add to the displacement of some tiles of elements 2^`coarser` times as large as the
+    /// finest.
+    fn add_ghosts<A: MultiplyAdd, const AROUND: usize>(
+        &self,
+        tables: &Tables<T>,
+        coarser: usize,
+        tiles: Range<usize>,
+        cells: &mut [T],
+    ) {
+        let Some(larger) = self.hierarchy.leaves.get(coarser) else { return };
+        let Some(table) = tables.coarse_table(coarser + 1) else { return };
+        self.arch.dispatch(FromGhosts::<T, A, AROUND> {
+            taps: &table.across,
+            ghosts: (&self.ghosts[coarser], &larger.ghosts),
+            places: &self.hierarchy.elements.levels()[coarser].places()[tiles],
+            cells,
+            arithmetic: PhantomData,
+        });
     }
 }
 

@@ -3,8 +3,10 @@
 use std::f64::consts::PI;
 
 use rc_core::Grid;
-use rc_kernel::{Filter, ScaleSplit, Stencil};
+use rc_kernel::{CoarseElement, Filter, ScaleSplit, Stencil};
 
+use super::Reach;
+use super::coarse::CoarseTable;
 use super::real::Real;
 use super::stencil::Taps;
 use super::transfer::Transfer;
@@ -56,6 +58,15 @@ pub(crate) struct Tables<T> {
     pub(crate) base: SymbolTable<T>,
     /// Of levels 1 to K: the stencil on the level, and the transfer between it and the next coarser one.
     pub(crate) levels: Vec<(Taps<T>, Transfer<T>)>,
+    /// Of elements 2, 4, … times as large as the finest; empty when they are like any value of their level.
+    coarse: Vec<CoarseTable<T>>,
+}
+
+impl<T> Tables<T> {
+    /// The table of elements 2^`coarser` times as large as the finest.
+    pub(super) fn coarse_table(&self, coarser: usize) -> Option<&CoarseTable<T>> {
+        self.coarse.get(coarser - 1)
+    }
 }
 
 /// The split kernel of one base grid, from which the tables of any number of levels are made.
@@ -66,6 +77,7 @@ pub(crate) struct Prepared<T> {
     /// Stencil and transfer of the finest level, and of those between it and the base grid; sum of the stencil.
     finest: (Stencil, Transfer<T>),
     between: (Stencil, Transfer<T>),
+    coarse: Vec<CoarseElement>,
     scale: Scale,
 }
 
@@ -82,8 +94,8 @@ enum Scale {
 const INVERSE_RADIUS: usize = 2;
 
 impl<T: Real> Prepared<T> {
-    /// `v = L p` for Love's squares.
-    pub(crate) fn displacement(split: &ScaleSplit, base: Grid) -> Self {
+    /// `v = L p` for Love's squares, and elements up to 2^`n_coarse` times as large.
+    pub(crate) fn displacement(split: &ScaleSplit, base: Grid, n_coarse: usize) -> Self {
         let cutoff = 0.5 * split.params().cutoff as f64 / base.nx() as f64;
         let symbol = SymbolTable::new(base, |kx: usize, ky: usize| {
             let q = 2.0 * PI * (kx as f64).hypot(ky as f64);
@@ -97,6 +109,7 @@ impl<T: Real> Prepared<T> {
             symbol,
             finest: (split.love_stencil(), transfer(&split.love_filter())),
             between: (split.level_stencil(), transfer(&split.level_filter())),
+            coarse: split.coarse_elements(n_coarse),
             scale: Scale::Side,
         }
     }
@@ -106,12 +119,12 @@ impl<T: Real> Prepared<T> {
         let sizes = Sizes::of(split);
         let part = (split.inverse_stencil(INVERSE_RADIUS), Transfer::new(&split.level_filter(), sizes.taps()));
         let symbol = SymbolTable::new(base, |kx: usize, ky: usize| PI * (kx as f64).hypot(ky as f64));
-        Self { sizes, base, symbol, finest: part.clone(), between: part, scale: Scale::Inverse }
+        Self { sizes, base, symbol, finest: part.clone(), between: part, coarse: Vec::new(), scale: Scale::Inverse }
     }
 
-    /// Cells of a coarser level around a tile that its values go to and come from.
-    pub(crate) fn halo(&self) -> usize {
-        self.finest.1.reach()
+    /// How far values go on a level.
+    pub(crate) fn reach(&self) -> Reach {
+        Reach { filter: self.finest.1.reach(), stencil: self.finest.0.radius() }
     }
 
     /// Tables for a finest level of `base side · 2^n_levels` cells per side.
@@ -119,17 +132,36 @@ impl<T: Real> Prepared<T> {
         let (mut levels, mut sum) = (Vec::with_capacity(n_levels), 0.0);
         for level in 1..=n_levels {
             let (stencil, transfer) = if level == n_levels { &self.finest } else { &self.between };
-            let cells = (self.base.nx() << level) as f64;
-            let factor = match self.scale {
-                Scale::Side => 1.0 / cells,
-                Scale::Inverse => cells,
-            };
+            let factor = self.factor(level);
             sum += factor * stencil.sum();
             levels.push((Taps::new(stencil, factor, self.sizes.around()), transfer.clone()));
         }
         let mut base = self.symbol.clone();
         // A constant gives zero (Eq. 3): the base grid takes off what the stencils add to it.
         base.set_mean(T::rounded(-sum / self.base.len() as f64));
-        Tables { sizes: self.sizes, base, levels }
+        Tables { sizes: self.sizes, base, levels, coarse: self.coarse_tables(n_levels) }
+    }
+
+    /// What a stencil in units of the elements of a level is multiplied by.
+    fn factor(&self, level: usize) -> f64 {
+        let cells = (self.base.nx() << level) as f64;
+        match self.scale {
+            Scale::Side => 1.0 / cells,
+            Scale::Inverse => cells,
+        }
+    }
+
+    fn coarse_tables(&self, n_levels: usize) -> Vec<CoarseTable<T>> {
+        let side = self.sizes.around();
+        // Elements of one size act on each other across a border with larger ones as they do anywhere.
+        let whole = [&self.finest.0].into_iter().chain(self.coarse.iter().map(|element| &element.whole));
+        let levels = (1..n_levels).rev();
+        levels
+            .zip(self.coarse.iter().zip(whole))
+            .map(|(level, (element, finer))| {
+                let across = Taps::new(finer, self.factor(level + 1), side);
+                CoarseTable::new(element, self.factor(level), across, side)
+            })
+            .collect()
     }
 }

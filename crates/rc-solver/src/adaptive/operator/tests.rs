@@ -6,12 +6,18 @@ use rc_kernel::{PeriodicLove, ScaleSplit, SplitParams};
 
 use super::*;
 
+/// Radii of spots a few elements of a base grid wide.
+const SMALL: [f64; 2] = [0.01, 0.06];
+
+/// Radii of spots that have larger elements inside.
+const LARGE: [f64; 2] = [0.06, 0.12];
+
 /// Round contacts with Hertz's pressure, at random places, as in contact problems.
-fn spots(tiles: &TileSet, seed: u64) -> Vec<f64> {
+fn spots(tiles: &TileSet, [least, greatest]: [f64; 2], seed: u64) -> Vec<f64> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let side = tiles.side() as f64;
     let centres: Vec<[f64; 3]> =
-        (0..12).map(|_| [rng.random(), rng.random(), 0.01 + 0.05 * rng.random::<f64>()]).collect();
+        (0..12).map(|_| [rng.random(), rng.random(), rng.random_range(least..greatest)]).collect();
     let mut p = vec![0.0; tiles.n_cells()];
     for (tile, place) in tiles.places().iter().enumerate() {
         for cell in 0..CELLS {
@@ -27,9 +33,9 @@ fn spots(tiles: &TileSet, seed: u64) -> Vec<f64> {
 }
 
 /// The tiles of a level that any of the spots touches, and some at random.
-fn tiles_of_spots(side: usize, seed: u64) -> TileSet {
+fn tiles_of_spots(side: usize, radii: [f64; 2], seed: u64) -> TileSet {
     let all = TileSet::full(side / TILE);
-    let p = spots(&all, seed);
+    let p = spots(&all, radii, seed);
     let mut rng = ChaCha8Rng::seed_from_u64(seed + 100);
     let touched = all
         .places()
@@ -39,9 +45,10 @@ fn tiles_of_spots(side: usize, seed: u64) -> TileSet {
     TileSet::new(side / TILE, touched.map(|(_, &place)| place).collect())
 }
 
-fn apply<T: Real + Into<f64>>(split: &ScaleSplit, base: usize, tiles: TileSet, p: &[f64]) -> Vec<f64> {
-    let prepared = Prepared::<T>::displacement(split, Grid::square(base).expect("a grid"));
-    let hierarchy = Arc::new(Hierarchy::new(base, tiles, prepared.halo()));
+fn apply<T: Real + Into<f64>>(split: &ScaleSplit, base: usize, elements: Elements, p: &[f64]) -> Vec<f64> {
+    let n_coarse = elements.levels().len() - 1;
+    let prepared = Prepared::<T>::displacement(split, Grid::square(base).expect("a grid"), n_coarse);
+    let hierarchy = Arc::new(Hierarchy::new(base, elements, prepared.reach()));
     let tables = prepared.tables(hierarchy.n_levels());
     let mut operator = TileOperator::<T>::new(Arc::clone(&hierarchy));
     operator.fill(p.par_chunks(BLOCK_CELLS), |p, cells| {
@@ -89,12 +96,112 @@ fn error_against_exact_sums(tiles: &TileSet, p: &[f64], v: &[f64]) -> f64 {
 fn one_application_agrees_with_exact_sums() {
     for bound in [2e-3, 1e-6, 2e-9, 1e-10] {
         for (base, side, seed) in [(64, 128, 1), (64, 256, 2), (80, 320, 3), (64, 512, 4)] {
-            let tiles = tiles_of_spots(side, seed);
-            let p = spots(&tiles, seed);
+            let tiles = tiles_of_spots(side, SMALL, seed);
+            let p = spots(&tiles, SMALL, seed);
             let split = ScaleSplit::new(SplitParams::for_error(bound).expect("a bound in range"));
-            let v = apply::<f64>(&split, base, tiles.clone(), &p);
+            let v = apply::<f64>(&split, base, Elements::uniform(tiles.clone()), &p);
             let error = error_against_exact_sums(&tiles, &p, &v);
             assert!(error < bound, "{bound:e}, {base} to {side}: {error:e}");
         }
+    }
+}
+
+/// Elements of three sizes under the spots: the smaller, the nearer to a point, graded as the operator asks.
+fn graded(side: usize, cutoff: usize, seed: u64) -> Elements {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed + 200);
+    let centre: [f64; 2] = [rng.random(), rng.random()];
+    let mut fine = tiles_of_spots(side / 4, LARGE, seed);
+    let mut levels = Vec::new();
+    for radius in [0.4, 0.33 - (cutoff.div_ceil(TILE) * 2 * TILE) as f64 / side as f64] {
+        let per_side = fine.per_side() as f64;
+        let is_near = |place: &[u32; 2]| {
+            let [dx, dy] = [0, 1].map(|axis| {
+                let d = (f64::from(place[axis]) + 0.5) / per_side - centre[axis];
+                d - d.round()
+            });
+            dx.hypot(dy) < radius
+        };
+        let (near, far): (Vec<_>, Vec<_>) = fine.places().iter().copied().partition(is_near);
+        levels.insert(0, TileSet::new(fine.per_side(), far));
+        let children = near.into_iter().flat_map(|[x, y]| (0..4).map(move |i| [2 * x + i % 2, 2 * y + i / 2]));
+        fine = TileSet::new(2 * fine.per_side(), children.collect());
+    }
+    levels.insert(0, fine);
+    Elements::new(levels)
+}
+
+/// The pressures of the spots as each element sees them, and as the finest elements of the whole cell do.
+fn pressures(elements: &Elements, seed: u64) -> Vec<f64> {
+    let mut p = vec![0.0; elements.len()];
+    for (coarser, tiles) in elements.levels().iter().enumerate() {
+        p[elements.cells(coarser)].copy_from_slice(&spots(tiles, LARGE, seed));
+    }
+    p
+}
+
+/// Centres of the finest elements that the element at `cell` of level `coarser` consists of.
+fn finest_centres(elements: &Elements, coarser: usize, cell: usize) -> impl Iterator<Item = (f64, f64)> {
+    let tiles = &elements.levels()[coarser];
+    let [column, row] = tiles.places()[cell / CELLS].map(|i| i as usize * TILE);
+    let (x, y) = (column + cell % CELLS % TILE, row + cell % CELLS / TILE);
+    let (n, side) = (1_usize << coarser, (tiles.side() << coarser) as f64);
+    let centre = move |i: usize, part: usize| ((i * n + part) as f64 + 0.5) / side;
+    (0..n * n).map(move |part| (centre(x, part % n), centre(y, part / n)))
+}
+
+#[test]
+fn elements_of_several_sizes_agree_with_exact_means() {
+    let exact = PeriodicLove::new();
+    for bound in [2e-3, 1e-6, 2e-9] {
+        let params = SplitParams::for_error(bound).expect("a bound in range");
+        for (base, side, seed) in [(64, 512, 1), (64, 512, 2)] {
+            let elements = graded(side, params.cutoff, seed);
+            assert!(elements.levels().iter().all(|tiles| tiles.len() > 8), "all sizes take part");
+            let p = pressures(&elements, seed);
+            let v = apply::<f64>(&ScaleSplit::new(params), base, elements.clone(), &p);
+            let sources: Vec<((f64, f64), f64)> = (0..elements.levels().len())
+                .flat_map(|coarser| elements.cells(coarser).enumerate().map(move |(cell, i)| (coarser, cell, i)))
+                .filter(|&(_, _, i)| p[i] != 0.0)
+                .flat_map(|(coarser, cell, i)| finest_centres(&elements, coarser, cell).zip(std::iter::repeat(p[i])))
+                .collect();
+            for coarser in 0..elements.levels().len() {
+                let (mut difference, mut size) = (0.0, 0.0);
+                let n_cells = elements.cells(coarser).len();
+                for cell in (0..n_cells).step_by(n_cells / 40) {
+                    let centres: Vec<(f64, f64)> = finest_centres(&elements, coarser, cell).collect();
+                    let coefficient =
+                        |(x, y): (f64, f64), (sx, sy): (f64, f64)| exact.coefficient(x - sx, y - sy, 0.5 / side as f64);
+                    let sum: f64 =
+                        centres.iter().map(|&x| sources.iter().map(|&(s, p)| p * coefficient(x, s)).sum::<f64>()).sum();
+                    let mean = sum / centres.len() as f64;
+                    difference += (v[elements.cells(coarser).start + cell] - mean).powi(2);
+                    size += mean * mean;
+                }
+                let error = (difference / size).sqrt();
+                assert!(error < bound, "{bound:e}, {base} to {side}, elements {coarser} levels coarser: {error:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_operator_is_symmetric_in_the_areas() {
+    for split in [SplitParams::quick(), SplitParams::certified()].map(ScaleSplit::new) {
+        let elements = graded(512, split.params().cutoff, 5);
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        let [p, q] = [(); 2].map(|()| {
+            let mut values = vec![0.0; elements.len()];
+            for coarser in 0..3 {
+                values[elements.cells(coarser)].fill_with(|| rng.random::<f64>() - 0.3);
+            }
+            values
+        });
+        let product = |a: &[f64], b: &[f64]| -> f64 {
+            let level = |c: usize| elements.cells(c).map(|i| a[i] * b[i]).sum::<f64>() * Elements::area(c);
+            (0..3).map(level).sum()
+        };
+        let [lp, lq] = [&p, &q].map(|p| apply::<f64>(&split, 64, elements.clone(), p));
+        let (there, back) = (product(&q, &lp), product(&p, &lq));
+        assert!((there - back).abs() < 1e-12 * product(&p, &lp), "{there} and {back}");
     }
 }
