@@ -145,7 +145,8 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         quick.multiply(response);
         // Not a proof yet: the margin stands for the quick operator's error too.
         let level = contact_gap + CANDIDATE_MARGIN * self.problem.h_range;
-        let places = self.possible_contact(&quick, &mesh.pressure, mesh.tiles.per_side(), level);
+        let curvature = self.response.remainder_curvature();
+        let places = self.possible_contact(&quick, curvature, &mesh.pressure, mesh.tiles.per_side(), level);
         self.candidates(mesh.tiles.per_side(), places, mesh.tiles.places())
     }
 
@@ -155,19 +156,20 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         Candidates { heights: self.tile_heights(&tiles), tiles }
     }
 
-    /// Tiles where the gap under the pressure last spread by `operator` may be less than `level`.
+    /// Tiles where the gap under the pressure last spread by `operator` may be less than `level`; `unit_curvature` is the bound
+    /// of its remainder's second derivatives for unit pressure ([`super::operator::Prepared::remainder_curvature`]).
     fn possible_contact<U: Real + Into<f64>>(
         &self,
         operator: &Fresh<U>,
+        unit_curvature: f64,
         pressure: &[f64],
         per_side: usize,
         level: f64,
     ) -> Vec<[u32; 2]> {
         let greatest = pressure.par_iter().copied().reduce(|| 0.0, f64::max);
-        let cutoff = 0.5 * self.certified.params().cutoff as f64 / self.base().nx() as f64;
         let remainder = Remainder {
             values: operator.operator().base_displacement(),
-            curvature: greatest * self.certified.remainder_curvature(cutoff),
+            curvature: greatest * unit_curvature,
             error: 1e-5 * self.problem.h_range,
         };
         possible_contact(&remainder, &self.heights, level - self.problem.offset(), per_side)
@@ -199,7 +201,8 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
             restore_penetration(&self.problem, &candidates.heights, &mut pressure, &mut gap);
             if prove {
                 let level = contact_gap_of(&self.problem, &pressure, &gap);
-                let places = self.possible_contact(&fresh, &pressure, candidates.tiles.per_side(), level);
+                let curvature = self.fresh.remainder_curvature();
+                let places = self.possible_contact(&fresh, curvature, &pressure, candidates.tiles.per_side(), level);
                 let known = |place: &[u32; 2]| candidates.tiles.find(place[0].into(), place[1].into()).is_some();
                 if !places.iter().all(known) {
                     *candidates = self.candidates(candidates.tiles.per_side(), places, candidates.tiles.places());

@@ -188,7 +188,6 @@ struct Solver<'a, T> {
     heights: Heights<'a>,
     problem: Problem,
     params: SolveParams,
-    certified: ScaleSplit,
     /// L, and its approximate inverse, for corrections.
     response: Prepared<f32>,
     preconditioner: Prepared<f32>,
@@ -211,7 +210,6 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
             response: Prepared::displacement(&quick, base),
             preconditioner: Prepared::inverse(&quick, base),
             fresh: Prepared::displacement(&certified, base),
-            certified,
             heights,
             problem,
             params,

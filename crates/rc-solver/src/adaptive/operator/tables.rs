@@ -67,6 +67,7 @@ pub(crate) struct Prepared<T> {
     finest: (Stencil, Transfer<T>),
     between: (Stencil, Transfer<T>),
     scale: Scale,
+    remainder_curvature: f64,
 }
 
 /// How weights follow from the side h of an element.
@@ -98,6 +99,7 @@ impl<T: Real> Prepared<T> {
             finest: (split.love_stencil(), transfer(&split.love_filter())),
             between: (split.level_stencil(), transfer(&split.level_filter())),
             scale: Scale::Side,
+            remainder_curvature: split.remainder_curvature(cutoff),
         }
     }
 
@@ -106,12 +108,26 @@ impl<T: Real> Prepared<T> {
         let sizes = Sizes::of(split);
         let part = (split.inverse_stencil(INVERSE_RADIUS), Transfer::new(&split.level_filter(), sizes.taps()));
         let symbol = SymbolTable::new(base, |kx: usize, ky: usize| PI * (kx as f64).hypot(ky as f64));
-        Self { sizes, base, symbol, finest: part.clone(), between: part, scale: Scale::Inverse }
+        Self {
+            sizes,
+            base,
+            symbol,
+            finest: part.clone(),
+            between: part,
+            scale: Scale::Inverse,
+            // No bound: what comes down from the base grid is not a smooth part of anything.
+            remainder_curvature: f64::INFINITY,
+        }
     }
 
     /// Cells of a coarser level around a tile that its values go to and come from.
     pub(crate) fn halo(&self) -> usize {
         self.finest.1.reach()
+    }
+
+    /// Bound of the second derivatives, along the axes, of what comes down to the base grid under pressures between 0 and 1.
+    pub(crate) fn remainder_curvature(&self) -> f64 {
+        self.remainder_curvature
     }
 
     /// Tables for a finest level of `base side · 2^n_levels` cells per side.
