@@ -4,7 +4,6 @@
 //! cells that contact touches or nearly does, with the multilevel operator. What is not stored is out of contact, and the
 //! survey proves it.
 
-mod engine;
 mod error;
 mod estimate;
 mod fresh;

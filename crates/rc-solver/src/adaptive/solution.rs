@@ -8,6 +8,7 @@ use rc_kernel::{Love, ScaleSplit, SplitParams};
 
 use super::operator::{BLOCK_CELLS, Hierarchy, Patch, Prepared, TileOperator, gather};
 use super::tiles::{CELLS, TILE, TileSet};
+use crate::descent::Engine;
 use crate::stiffness::stiffness_of;
 use crate::{ContactArea, Observables, SolveInfo};
 
@@ -113,7 +114,7 @@ impl AdaptiveSolution {
                     *cell = p as f32;
                 }
             });
-            operator.spread(&tables);
+            operator.multiply(&tables);
             operator.take(&tables, values.par_chunks_mut(BLOCK_CELLS), |v, cells| {
                 for (v, &cell) in v.iter_mut().zip(cells) {
                     *v = f64::from(cell);
