@@ -99,11 +99,6 @@ impl<T: Real> TileOperator<T> {
         }
     }
 
-    /// The tiles it works on.
-    pub(crate) fn hierarchy(&self) -> &Hierarchy {
-        &self.hierarchy
-    }
-
     /// What came down to the cells of the base grid in the last [`Engine::multiply`], tile by tile, row-major: the smooth
     /// remainder of the displacement.
     pub(crate) fn base_displacement(&self) -> &[T] {
