@@ -28,6 +28,7 @@ pub use self::multilevel::MultilevelOperator;
 use self::operator::{Prepared, Real};
 pub use self::solution::{AdaptiveSolution, ContactElement};
 use self::tiles::{TILE, TileSet};
+use crate::descent::Outcome;
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, SolveInfo};
 use crate::{Certificate, Control, SolveParams, uniform};
@@ -231,7 +232,7 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
                 let tolerance = uniform::coarse_tolerance(n_above - above - 1).max(self.params.tolerance);
                 let level = self.prepare_level(grid, mesh, tolerance, observer);
                 infos.push(level.info);
-                let Level { tiles, pressure, gap, contact_gap, .. } = level;
+                let Level { tiles, pressure, gap, outcome: Outcome { contact_gap, .. }, .. } = level;
                 let function = prolongation::level_function(&tiles, &pressure, &gap, contact_gap);
                 coarse = Coarse { tiles, function, contact_gap };
             } else {
