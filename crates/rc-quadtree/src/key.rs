@@ -23,8 +23,7 @@ impl Key {
     /// The square of level `level` at column `ix` and row `iy`, each below `base << level`.
     pub(crate) fn new(level: u32, ix: u32, iy: u32) -> Self {
         let to_finest = MAX_LEVEL - level;
-        let code = spread(ix << to_finest) | (spread(iy << to_finest) << 1);
-        Self::from_code(code, level)
+        Self::from_code(morton_code(ix << to_finest, iy << to_finest), level)
     }
 
     fn from_code(code: u64, level: u32) -> Self {
@@ -102,6 +101,14 @@ impl std::fmt::Debug for Key {
     }
 }
 
+/// Place of the square at column `ix` and row `iy` along the Morton curve through all squares of its size: the bits of `iy` and
+/// `ix` in turn, so that squares near each other are mostly near along the curve. For sorting squares of one size without a
+/// mesh; a [`Key`] holds the size too.
+#[must_use]
+pub fn morton_code(ix: u32, iy: u32) -> u64 {
+    spread(ix) | (spread(iy) << 1)
+}
+
 /// Moves bit i of `v` to bit 2i.
 fn spread(v: u32) -> u64 {
     let mut v = u64::from(v);
@@ -145,6 +152,12 @@ mod tests {
             assert!(parent.contains(child) && !child.contains(parent));
             assert!(parent < child, "an ancestor sorts before its parts");
         }
+    }
+
+    #[test]
+    fn the_morton_code_has_the_bits_of_both_in_turn() {
+        assert_eq!(morton_code(0b101, 0b011), 0b01_10_11);
+        assert_eq!((morton_code(u32::MAX, 0), morton_code(0, u32::MAX)), (u64::MAX / 3, u64::MAX / 3 * 2));
     }
 
     #[test]

@@ -39,7 +39,7 @@ mod refine;
 mod transfer;
 
 pub use error::MeshError;
-pub use key::{Key, MAX_BASE, MAX_LEVEL};
+pub use key::{Key, MAX_BASE, MAX_LEVEL, morton_code};
 pub use mark::{Mark, MeshKind, MeshParams, RefinementPlan, count, plan};
 pub use mask::Mask;
 pub use mesh::{Edge, Element, Mesh, Neighbour};

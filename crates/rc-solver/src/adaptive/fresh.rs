@@ -35,7 +35,7 @@ impl<T: Real + Into<f64>> Engine<f64> for Fresh<T> {
         S: IndexedParallelIterator,
         R: Send,
     {
-        TileOperator::fill(&mut self.0, sources, |source, cells| {
+        self.0.fill(sources, |source, cells| {
             let mut values = [0.0; BLOCK_CELLS];
             let values = &mut values[..cells.len()];
             let filled = fill(source, values);
@@ -47,7 +47,7 @@ impl<T: Real + Into<f64>> Engine<f64> for Fresh<T> {
     }
 
     fn multiply(&mut self, table: &Tables<T>) {
-        self.0.spread(table);
+        self.0.multiply(table);
     }
 
     fn take<K, R>(&self, table: &Tables<T>, sinks: K, take: impl Fn(K::Item, &[f64]) -> R + Sync) -> Vec<R>
@@ -55,7 +55,7 @@ impl<T: Real + Into<f64>> Engine<f64> for Fresh<T> {
         K: IndexedParallelIterator,
         R: Send,
     {
-        TileOperator::take(&self.0, table, sinks, |sink, cells| {
+        self.0.take(table, sinks, |sink, cells| {
             let mut values = [0.0; BLOCK_CELLS];
             for (value, &cell) in values.iter_mut().zip(cells) {
                 *value = cell.into();
@@ -65,6 +65,6 @@ impl<T: Real + Into<f64>> Engine<f64> for Fresh<T> {
     }
 
     fn set_mean(&self, table: &mut Tables<T>, eigenvalue: f64) {
-        Engine::set_mean(&self.0, table, eigenvalue);
+        self.0.set_mean(table, eigenvalue);
     }
 }

@@ -11,9 +11,7 @@ use super::fresh::Fresh;
 use super::operator::{BLOCK_CELLS, Hierarchy, Reach, Real, Tables, TileOperator};
 use super::survey::{Remainder, possible_contact};
 use super::tiles::{CELLS, TileSet};
-use crate::Control;
-use crate::descent::{Descent, Engine, Machinery, Outcome, Start};
-use crate::problem::Problem;
+use crate::descent::{Descent, Engine, Machinery, Outcome, Start, fresh_gap, rescale, scale_to_load};
 use crate::solution::LevelInfo;
 
 /// The finest level is first solved to the tolerance times this, then the gap is computed afresh: corrections are applied with
@@ -42,11 +40,17 @@ pub(super) struct Level {
     pub(super) tiles: TileSet,
     pub(super) pressure: Vec<f64>,
     pub(super) gap: Vec<f64>,
-    pub(super) contact_gap: f64,
     pub(super) outcome: Outcome,
     /// Cells whose gap was computed; the others are proven to be out of contact.
     pub(super) evaluated: usize,
     pub(super) info: LevelInfo,
+}
+
+/// Pressure and gap wherever contact is possible, and what they amount to.
+struct Surveyed {
+    pressure: Vec<f64>,
+    gap: Vec<f64>,
+    outcome: Outcome,
 }
 
 /// Tiles where contact is possible, with their heights.
@@ -80,16 +84,16 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         let start = Start::Pressure(mesh.pressure);
         let mut descent = Descent::new(&heights, grid, machinery, &self.problem, start);
         let outcome = descent.run(tolerance, self.params.max_iterations, false, observer);
-        let (info, contact_gap) = (descent.info(), descent.contact_gap());
+        let info = descent.info();
         let (pressure, gap) = descent.into_vectors(0.0);
-        Level { evaluated: gap.len(), tiles: mesh.tiles, pressure, gap, contact_gap, outcome, info }
+        Level { evaluated: gap.len(), tiles: mesh.tiles, pressure, gap, outcome, info }
     }
 
     /// Solves to the tolerance, and proves it for the whole cell.
     pub(super) fn solve_finest(&self, grid: Grid, mut mesh: Mesh, contact_gap: f64, observer: &dyn Observer) -> Level {
         let (n, n_levels) = (grid.len() as f64, self.n_levels(grid));
         let mut info = LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 };
-        scale_to_load(&self.problem, n, &mut mesh.pressure);
+        scale_to_load(&self.problem, n, BLOCK_CELLS, &mut mesh.pressure);
         let mut response = self.response.tables(n_levels);
         let mut preconditioner = self.preconditioner.tables(n_levels);
         let mut fresh_response = self.fresh.tables(n_levels);
@@ -97,18 +101,17 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         let mut gave_up = false;
         for round in 0.. {
             // The gap wherever contact is possible.
-            let (pressure, gap) = self.survey(&mut candidates, &mesh, &fresh_response, &mut info, round > 0);
-            let outcome = Outcome::of(&self.problem, n, &candidates.heights, &pressure, &gap);
-            let contact_gap = contact_gap_of(&self.problem, &pressure, &gap);
+            let Surveyed { pressure, gap, outcome } =
+                self.survey(&mut candidates, &mesh, &fresh_response, &mut info, round > 0);
             if round == MOST_ROUNDS
                 || gave_up
                 || (round > 0 && outcome.certificate.penetration <= self.params.tolerance)
             {
                 let evaluated = gap.len();
-                return Level { tiles: candidates.tiles, pressure, gap, contact_gap, outcome, evaluated, info };
+                return Level { tiles: candidates.tiles, pressure, gap, outcome, evaluated, info };
             }
             // What is nearer to contact than the error may come into it yet.
-            let near = contact_gap + outcome.certificate.penetration * self.problem.h_range;
+            let near = outcome.contact_gap + outcome.certificate.penetration * self.problem.h_range;
             let part = Part::choose(&candidates, &mesh.tiles, &pressure, &gap, near);
             let machinery = Machinery {
                 corrections: TileOperator::new(self.hierarchy(&part.tiles, self.response.reach())),
@@ -146,7 +149,8 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         quick.multiply(response);
         // Not a proof yet: the margin stands for the quick operator's error too.
         let level = contact_gap + CANDIDATE_MARGIN * self.problem.h_range;
-        let places = self.possible_contact(&quick, &mesh.pressure, mesh.tiles.per_side(), level);
+        let curvature = self.response.remainder_curvature();
+        let places = self.possible_contact(&quick, curvature, &mesh.pressure, mesh.tiles.per_side(), level);
         self.candidates(mesh.tiles.per_side(), places, mesh.tiles.places())
     }
 
@@ -156,19 +160,20 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         Candidates { heights: self.tile_heights(&tiles), tiles }
     }
 
-    /// Tiles where the gap under the pressure last spread by `operator` may be less than `level`.
+    /// Tiles where the gap under the pressure last spread by `operator` may be less than `level`; `unit_curvature` is the bound
+    /// of its remainder's second derivatives for unit pressure ([`super::operator::Prepared::remainder_curvature`]).
     fn possible_contact<U: Real + Into<f64>>(
         &self,
         operator: &Fresh<U>,
+        unit_curvature: f64,
         pressure: &[f64],
         per_side: usize,
         level: f64,
     ) -> Vec<[u32; 2]> {
         let greatest = pressure.par_iter().copied().reduce(|| 0.0, f64::max);
-        let cutoff = 0.5 * self.certified.params().cutoff as f64 / self.base().nx() as f64;
         let remainder = Remainder {
             values: operator.operator().base_displacement(),
-            curvature: greatest * self.certified.remainder_curvature(cutoff),
+            curvature: greatest * unit_curvature,
             error: 1e-5 * self.problem.h_range,
         };
         possible_contact(&remainder, &self.heights, level - self.problem.offset(), per_side)
@@ -182,32 +187,29 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         response: &Tables<T>,
         info: &mut LevelInfo,
         prove: bool,
-    ) -> (Vec<f64>, Vec<f64>) {
+    ) -> Surveyed {
         loop {
             let mut pressure = moved(&mesh.tiles, &candidates.tiles, &mesh.pressure);
-            let mut fresh = Fresh::<T>::new(self.hierarchy(&candidates.tiles, self.fresh.reach()));
-            fresh.fill(pressure.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
-            fresh.multiply(response);
-            info.operator_applications += 1;
             let mut gap = vec![0.0; pressure.len()];
-            let offset = self.problem.offset();
-            let sinks = (gap.par_chunks_mut(BLOCK_CELLS), candidates.heights.par_chunks(BLOCK_CELLS));
-            fresh.take(response, sinks.into_par_iter(), |(gap, heights), cells| {
-                for ((gap, height), cell) in gap.iter_mut().zip(heights).zip(cells) {
-                    *gap = cell - height + offset;
-                }
-            });
-            restore_penetration(&self.problem, &candidates.heights, &mut pressure, &mut gap);
+            let mut fresh = Fresh::<T>::new(self.hierarchy(&candidates.tiles, self.fresh.reach()));
+            info.operator_applications += 1;
+            let heights = &candidates.heights;
+            let mut sums = fresh_gap(&mut fresh, response, &self.problem, (heights, &pressure, &mut gap));
+            if let Some(scale) = sums.scale_to_penetration(&self.problem) {
+                sums = rescale(scale, BLOCK_CELLS, &self.problem, (heights, &mut pressure, &mut gap));
+            }
+            let outcome = Outcome::new(&self.problem, &sums, info.grid.len() as f64, true);
             if prove {
-                let level = contact_gap_of(&self.problem, &pressure, &gap);
-                let places = self.possible_contact(&fresh, &pressure, candidates.tiles.per_side(), level);
+                let level = outcome.contact_gap;
+                let curvature = self.fresh.remainder_curvature();
+                let places = self.possible_contact(&fresh, curvature, &pressure, candidates.tiles.per_side(), level);
                 let known = |place: &[u32; 2]| candidates.tiles.find(place[0].into(), place[1].into()).is_some();
                 if !places.iter().all(known) {
                     *candidates = self.candidates(candidates.tiles.per_side(), places, candidates.tiles.places());
                     continue;
                 }
             }
-            return (pressure, gap);
+            return Surveyed { pressure, gap, outcome };
         }
     }
 
@@ -263,43 +265,4 @@ pub(super) fn moved(from: &TileSet, to: &TileSet, values: &[f64]) -> Vec<f64> {
         result[at * CELLS..][..CELLS].copy_from_slice(&values[tile * CELLS..][..CELLS]);
     }
     result
-}
-
-/// Multiplies the pressure so that its mean over the cell is the prescribed one.
-fn scale_to_load(problem: &Problem, n_cell: f64, pressure: &mut [f64]) {
-    if let Control::MeanPressure(mean) = problem.control {
-        let sum: f64 = pressure.iter().sum();
-        if sum > 0.0 {
-            pressure.par_iter_mut().for_each(|p| *p *= mean * n_cell / sum);
-        }
-    }
-}
-
-/// Under penetration control, multiplies the pressure so that its weighted mean gap is zero; the gap follows, since v is
-/// linear in p.
-fn restore_penetration(problem: &Problem, heights: &[f64], pressure: &mut [f64], gap: &mut [f64]) {
-    let Control::Penetration(_) = problem.control else { return };
-    let offset = problem.offset();
-    let (mut wanted, mut displaced) = (0.0, 0.0);
-    for ((p, g), h) in pressure.iter().zip(&*gap).zip(heights) {
-        wanted += p * (h - offset);
-        displaced += p * (g + h - offset);
-    }
-    let factor = wanted / displaced;
-    if factor.is_finite() && factor > 0.0 {
-        for ((p, g), h) in pressure.iter_mut().zip(gap).zip(heights) {
-            *p *= factor;
-            *g = factor * (*g + h - offset) - h + offset;
-        }
-    }
-}
-
-/// The gap in contact: its mean there, or zero where the penetration is prescribed.
-fn contact_gap_of(problem: &Problem, pressure: &[f64], gap: &[f64]) -> f64 {
-    if let Control::Penetration(_) = problem.control {
-        return 0.0;
-    }
-    let in_contact = pressure.iter().zip(gap).filter(|&(&p, _)| p > 0.0);
-    let (sum, count) = in_contact.fold((0.0, 0.0), |(sum, count), (_, g)| (sum + g, count + 1.0));
-    if count > 0.0 { sum / count } else { 0.0 }
 }

@@ -5,7 +5,6 @@
 //! survey proves it.
 
 mod elements;
-mod engine;
 mod error;
 mod estimate;
 mod fresh;
@@ -30,6 +29,7 @@ pub use self::multilevel::MultilevelOperator;
 use self::operator::{Prepared, Real};
 pub use self::solution::{AdaptiveSolution, ContactElement};
 use self::tiles::{TILE, TileSet};
+use crate::descent::Outcome;
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, SolveInfo};
 use crate::{Certificate, Control, SolveParams, uniform};
@@ -189,7 +189,6 @@ struct Solver<'a, T> {
     heights: Heights<'a>,
     problem: Problem,
     params: SolveParams,
-    certified: ScaleSplit,
     /// L, and its approximate inverse, for corrections.
     response: Prepared<f32>,
     preconditioner: Prepared<f32>,
@@ -212,7 +211,6 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
             response: Prepared::displacement(&quick, base, 0),
             preconditioner: Prepared::inverse(&quick, base),
             fresh: Prepared::displacement(&certified, base, 0),
-            certified,
             heights,
             problem,
             params,
@@ -235,7 +233,7 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
                 let tolerance = uniform::coarse_tolerance(n_above - above - 1).max(self.params.tolerance);
                 let level = self.prepare_level(grid, mesh, tolerance, observer);
                 infos.push(level.info);
-                let Level { tiles, pressure, gap, contact_gap, .. } = level;
+                let Level { tiles, pressure, gap, outcome: Outcome { contact_gap, .. }, .. } = level;
                 let function = prolongation::level_function(&tiles, &pressure, &gap, contact_gap);
                 coarse = Coarse { tiles, function, contact_gap };
             } else {

@@ -10,6 +10,7 @@ use super::AdaptiveError;
 use super::elements::Elements;
 use super::operator::{BLOCK_CELLS, Hierarchy, Prepared, Tables, TileOperator};
 use super::tiles::{TILE, TileSet};
+use crate::descent::Engine;
 
 /// `v = L p` (Eq. 4) for Love's squares of one size on tiles of 8 × 8 of them, with any tiles left out.
 ///
@@ -71,7 +72,7 @@ impl Operator for MultilevelOperator {
         assert_eq!(displacement.len(), self.n_elements, "one displacement for each element");
         let mut operator = self.operator.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         operator.fill(pressure.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
-        operator.spread(&self.tables);
+        operator.multiply(&self.tables);
         let sinks = displacement.par_chunks_mut(BLOCK_CELLS);
         operator.take(&self.tables, sinks, |v, cells| v.copy_from_slice(cells));
     }

@@ -7,8 +7,11 @@ use rc_core::{Grid, Kernel};
 use rc_kernel::{Love, ScaleSplit, SplitParams};
 
 use super::elements::Elements;
+use super::fresh::Fresh;
+use super::level::moved;
 use super::operator::{BLOCK_CELLS, Hierarchy, Patch, Prepared, TileOperator, gather};
 use super::tiles::{CELLS, TILE, TileSet};
+use crate::descent::Engine;
 use crate::stiffness::stiffness_of;
 use crate::{ContactArea, Observables, SolveInfo};
 
@@ -107,21 +110,13 @@ impl AdaptiveSolution {
             let band = first..(first + at_once).min(per_side);
             let more = band.clone().flat_map(|row| (0..per_side).map(move |column| [column as u32, row as u32]));
             let tiles = TileSet::new(per_side, self.tiles.places().iter().copied().chain(more).collect());
-            let mut operator =
-                TileOperator::new(Arc::new(Hierarchy::new(self.base.nx(), Elements::uniform(tiles), prepared.reach())));
-            let mut values = super::level::moved(&self.tiles, operator.hierarchy().elements().finest(), &self.pressure);
-            operator.fill(values.par_chunks(BLOCK_CELLS), |p, cells| {
-                for (cell, &p) in cells.iter_mut().zip(p) {
-                    *cell = p as f32;
-                }
-            });
-            operator.spread(&tables);
-            operator.take(&tables, values.par_chunks_mut(BLOCK_CELLS), |v, cells| {
-                for (v, &cell) in v.iter_mut().zip(cells) {
-                    *v = f64::from(cell);
-                }
-            });
-            let tiles = operator.hierarchy().elements().finest();
+            let hierarchy = Arc::new(Hierarchy::new(self.base.nx(), Elements::uniform(tiles), prepared.reach()));
+            let tiles = hierarchy.elements().finest();
+            let mut values = moved(&self.tiles, tiles, &self.pressure);
+            let mut fresh = Fresh::<f32>::new(Arc::clone(&hierarchy));
+            fresh.fill(values.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
+            fresh.multiply(&tables);
+            fresh.take(&tables, values.par_chunks_mut(BLOCK_CELLS), |v, cells| v.copy_from_slice(cells));
             let mut rows = vec![0.0; TILE * n];
             for row in band {
                 for column in 0..per_side {

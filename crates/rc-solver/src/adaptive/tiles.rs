@@ -1,5 +1,7 @@
 //! Tiles: the squares of 8 × 8 cells in which a level of the mesh is stored.
 
+use rc_quadtree::morton_code;
+
 /// Cells per side of a tile.
 pub(crate) const TILE: usize = 8;
 
@@ -23,7 +25,7 @@ pub(crate) struct TileSet {
 impl TileSet {
     /// The tiles at `places` (column, row), each below `per_side`; double ones are dropped.
     pub(crate) fn new(per_side: usize, mut places: Vec<[u32; 2]>) -> Self {
-        places.sort_unstable_by_key(|&place| morton(place));
+        places.sort_unstable_by_key(|&[column, row]| morton_code(column, row));
         places.dedup();
         let mut index = vec![NONE; per_side * per_side];
         for (tile, &[column, row]) in places.iter().enumerate() {
@@ -114,19 +116,6 @@ impl TileSet {
         let marked = marks.iter().enumerate().filter(|&(_, &mark)| mark);
         Self::new(half, marked.map(|(i, _)| [(i % half) as u32, (i / half) as u32]).collect())
     }
-}
-
-/// Place along the Morton curve.
-fn morton([x, y]: [u32; 2]) -> u64 {
-    let spread = |v: u32| {
-        let mut v = u64::from(v);
-        v = (v | (v << 16)) & 0x0000_FFFF_0000_FFFF;
-        v = (v | (v << 8)) & 0x00FF_00FF_00FF_00FF;
-        v = (v | (v << 4)) & 0x0F0F_0F0F_0F0F_0F0F;
-        v = (v | (v << 2)) & 0x3333_3333_3333_3333;
-        (v | (v << 1)) & 0x5555_5555_5555_5555
-    };
-    spread(x) | (spread(y) << 1)
 }
 
 #[cfg(test)]

@@ -10,13 +10,17 @@
 //! settles what single precision left. All corrections are relative to the height range H, so no scene underflows.
 
 mod engine;
+mod gap;
+mod outcome;
 mod rows;
 
 use rayon::prelude::*;
 use rc_core::{Event, Grid, Observer};
 
 pub(crate) use engine::Engine;
-use rows::GapSums;
+pub(crate) use gap::{GapSums, fresh_gap, rescale, scale_to_load};
+use gap::{mean_pressure, scale_all};
+pub(crate) use outcome::Outcome;
 
 use crate::fft::total;
 use crate::problem::Problem;
@@ -29,53 +33,6 @@ const STEPS_PER_ROUND: usize = 2;
 
 /// Rounds without progress before the iteration becomes cautious, and then gives up.
 const PATIENCE: usize = 20;
-
-/// Scaling of the pressure under penetration control is bounded by this factor per round.
-const GREATEST_SCALING: f64 = 4.0;
-
-/// What a descent found.
-pub(crate) struct Outcome {
-    pub(crate) converged: bool,
-    pub(crate) certificate: Certificate,
-    /// Mean pressure.
-    pub(crate) mean_pressure: f64,
-    /// Pressure-weighted mean of v - h: penetration minus h_max.
-    pub(crate) approach: f64,
-    /// ½ mean(p v).
-    pub(crate) elastic_energy: f64,
-}
-
-impl Outcome {
-    /// What pressure `p` and gap `g`, of elements with heights `h`, amount to when all others are out of contact, in a cell
-    /// of `n_cell` elements.
-    pub(crate) fn of(problem: &Problem, n_cell: f64, h: &[f64], p: &[f64], g: &[f64]) -> Self {
-        Self::new(problem, &rows::sums(SUMMED_AT_ONCE, h, p, g), n_cell, true)
-    }
-
-    fn new(problem: &Problem, sums: &GapSums, n: f64, converged: bool) -> Self {
-        let h_range = problem.h_range;
-        let mean_pressure = sums.pressure / n;
-        let mean_gap = if sums.pressure > 0.0 { sums.pressure_gap / sums.pressure } else { 0.0 };
-        let penetration = ((mean_gap - sums.min_gap) / h_range).max(0.0);
-        let load = match problem.control {
-            Control::MeanPressure(wanted) => (mean_pressure - wanted).abs() / wanted,
-            Control::Penetration(_) => mean_gap.abs() / h_range,
-        };
-        let offset = problem.offset();
-        let displacement_work = sums.pressure_gap + sums.pressure_height - offset * sums.pressure;
-        Self {
-            converged,
-            // Σ p (g - min g) / Σ p with the weighted mean of g as zero is -min g: the two errors coincide.
-            certificate: Certificate { complementarity: penetration, penetration, load },
-            mean_pressure,
-            approach: mean_gap - offset,
-            elastic_energy: 0.5 * displacement_work / n,
-        }
-    }
-}
-
-/// Elements whose sums one thread forms at a time.
-const SUMMED_AT_ONCE: usize = 4096;
 
 /// What applies L and its approximate inverse on one level.
 pub(crate) struct Machinery<C: Engine<f32>, F: Engine<f64>> {
@@ -231,22 +188,22 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
 
     /// First pressure and gap.
     fn start(&mut self) -> GapSums {
-        let blocks: Vec<f64> = self.p.par_chunks(self.block()).map(|block| block.iter().sum()).collect();
-        let total = blocks.into_iter().sum::<f64>() / self.n_cell();
-        let usable = self.has_start && total > 0.0;
+        let (n_cell, block) = (self.n_cell(), self.block());
+        let present = mean_pressure(n_cell, block, &self.p);
+        let usable = self.has_start && present > 0.0;
         if self.has_gap && usable {
             return match self.problem.control {
-                Control::MeanPressure(mean) => self.rescale(mean / total),
+                Control::MeanPressure(mean) => self.rescale(mean / present),
                 Control::Penetration(_) => {
                     let sums = self.rescale(1.0);
-                    self.scale_to_penetration(&sums).map_or(sums, |scale| self.rescale(scale))
+                    sums.scale_to_penetration(self.problem).map_or(sums, |scale| self.rescale(scale))
                 }
             };
         }
         match self.problem.control {
-            Control::MeanPressure(mean) if usable => scale_all(&mut self.p, mean / total),
+            Control::MeanPressure(_) if usable => scale_to_load(self.problem, n_cell, block, &mut self.p),
             Control::MeanPressure(mean) => {
-                let share = self.n_cell() / self.p.len() as f64;
+                let share = n_cell / self.p.len() as f64;
                 self.p.fill(mean * share);
             }
             Control::Penetration(_) if usable => {}
@@ -269,50 +226,27 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
     /// The gap from a fresh application of L, in double precision, and the pressure at the prescribed load or penetration.
     fn refresh(&mut self) -> GapSums {
         let sums = self.fresh_gap();
-        let Some(scale) = self.scale_to_penetration(&sums) else { return self.settle(sums) };
+        let Some(scale) = sums.scale_to_penetration(self.problem) else { return self.settle(sums) };
         scale_all(&mut self.p, scale);
         let sums = self.fresh_gap();
         self.settle(sums)
     }
 
     fn fresh_gap(&mut self) -> GapSums {
-        let block = self.block();
-        let offset = self.problem.offset();
-        let (p, h) = (&self.p, self.heights);
-        let sinks = (h.par_chunks(block), p.par_chunks(block), self.g.par_chunks_mut(block));
         self.info.operator_applications += 1;
-        let sums = {
-            let Machinery { fresh, fresh_response, .. } = &mut self.machinery;
-            fresh.fill(p.par_chunks(block), |p, values| values.copy_from_slice(p));
-            fresh.multiply(fresh_response);
-            fresh.take(fresh_response, sinks.into_par_iter(), |(h, p, g), rows| rows::fresh_gap(rows, offset, h, p, g))
-        };
-        GapSums::total(sums)
-    }
-
-    /// The factor on the pressure that makes its weighted mean gap zero, under penetration control.
-    fn scale_to_penetration(&self, sums: &GapSums) -> Option<f64> {
-        let Control::Penetration(_) = self.problem.control else { return None };
-        let wanted = sums.pressure_height - self.problem.offset() * sums.pressure;
-        let displaced = sums.pressure_gap + wanted;
-        let scale = wanted / displaced;
-        let possible = scale.is_finite() && displaced > 0.0;
-        possible.then(|| scale.clamp(GREATEST_SCALING.recip(), GREATEST_SCALING))
+        let Machinery { fresh, fresh_response, .. } = &mut self.machinery;
+        fresh_gap(fresh, fresh_response, self.problem, (self.heights, &self.p, &mut self.g))
     }
 
     /// Notes the gap of elements in contact.
     fn settle(&mut self, sums: GapSums) -> GapSums {
-        self.zero_gap = match self.problem.control {
-            Control::MeanPressure(_) if sums.n_contact > 0 => sums.contact_gap / sums.n_contact as f64,
-            Control::MeanPressure(_) => sums.min_gap,
-            Control::Penetration(_) => 0.0,
-        };
+        self.zero_gap = sums.zero_gap(self.problem);
         sums
     }
 
     /// The error as the certificate defines it, from the running gap.
     fn error(&self, sums: &GapSums) -> f64 {
-        let mean_gap = if sums.pressure > 0.0 { sums.pressure_gap / sums.pressure } else { 0.0 };
+        let mean_gap = sums.mean_gap();
         let penetration = (mean_gap - sums.min_gap) / self.problem.h_range;
         match self.problem.control {
             Control::MeanPressure(_) => penetration,
@@ -358,7 +292,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
     fn precondition_mean(&mut self, sums: &GapSums) {
         let Control::Penetration(_) = self.problem.control else { return };
         let n = self.n_cell();
-        let work = sums.pressure_gap + sums.pressure_height - self.problem.offset() * sums.pressure;
+        let work = sums.work(self.problem);
         let stiffness = sums.pressure * sums.pressure / (n * work);
         if stiffness.is_finite() && work > 0.0 {
             let Machinery { corrections, preconditioner, .. } = &mut self.machinery;
@@ -464,7 +398,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
                 rows::take_clipped(rows, response, scale, offset, h, (p, g))
             });
         let sums = GapSums::total(sums);
-        match self.scale_to_penetration(&sums) {
+        match sums.scale_to_penetration(self.problem) {
             None => self.settle(sums),
             Some(scale) => self.rescale(scale),
         }
@@ -472,10 +406,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
 
     fn rescale(&mut self, scale: f64) -> GapSums {
         let block = self.block();
-        let offset = self.problem.offset();
-        let vectors = (self.heights.par_chunks(block), self.p.par_chunks_mut(block), self.g.par_chunks_mut(block));
-        let sums = vectors.into_par_iter().map(|(h, p, g)| rows::rescale(scale, offset, h, p, g)).collect();
-        let sums = GapSums::total(sums);
+        let sums = rescale(scale, block, self.problem, (self.heights, &mut self.p, &mut self.g));
         self.settle(sums)
     }
 
@@ -493,8 +424,4 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
         self.g.par_iter_mut().for_each(|g| *g -= mean_gap);
         (self.p, self.g)
     }
-}
-
-fn scale_all(values: &mut [f64], factor: f64) {
-    values.par_iter_mut().for_each(|value| *value *= factor);
 }

@@ -3,70 +3,7 @@
 //! Each function fills the rows of a convolution or takes them, so the vectors pass through the cache once. Sums are in
 //! double precision and in a fixed order: element by element in a block, then block by block.
 
-use rayon::prelude::*;
-
-/// Sums over elements in contact or at risk, which the iteration needs after a change of the pressure.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct GapSums {
-    /// Σ p
-    pub(super) pressure: f64,
-    /// Σ p g
-    pub(super) pressure_gap: f64,
-    /// Σ p h
-    pub(super) pressure_height: f64,
-    /// min g
-    pub(super) min_gap: f64,
-    /// Σ g over p > 0
-    pub(super) contact_gap: f64,
-    /// Number of elements with p > 0
-    pub(super) n_contact: usize,
-}
-
-impl GapSums {
-    const EMPTY: Self = Self {
-        pressure: 0.0,
-        pressure_gap: 0.0,
-        pressure_height: 0.0,
-        min_gap: f64::INFINITY,
-        contact_gap: 0.0,
-        n_contact: 0,
-    };
-
-    fn add_element(&mut self, p: f64, g: f64, h: f64) {
-        self.min_gap = self.min_gap.min(g);
-        if p > 0.0 {
-            self.pressure += p;
-            self.pressure_gap += p * g;
-            self.pressure_height += p * h;
-            self.contact_gap += g;
-            self.n_contact += 1;
-        }
-    }
-
-    /// Adds blocks in their order.
-    pub(super) fn total(blocks: Vec<Self>) -> Self {
-        blocks.into_iter().fold(Self::EMPTY, |sum, block| Self {
-            pressure: sum.pressure + block.pressure,
-            pressure_gap: sum.pressure_gap + block.pressure_gap,
-            pressure_height: sum.pressure_height + block.pressure_height,
-            min_gap: sum.min_gap.min(block.min_gap),
-            contact_gap: sum.contact_gap + block.contact_gap,
-            n_contact: sum.n_contact + block.n_contact,
-        })
-    }
-}
-
-/// The sums over vectors, in blocks of `block` elements.
-pub(super) fn sums(block: usize, h: &[f64], p: &[f64], g: &[f64]) -> GapSums {
-    let blocks = (h.par_chunks(block), p.par_chunks(block), g.par_chunks(block)).into_par_iter().map(|(h, p, g)| {
-        let mut sums = GapSums::EMPTY;
-        for ((&h, &p), &g) in h.iter().zip(p).zip(g) {
-            sums.add_element(p, g, h);
-        }
-        sums
-    });
-    GapSums::total(blocks.collect())
-}
+use super::gap::GapSums;
 
 /// `g = L p - h + c` from a fresh `displacement = L p`.
 pub(super) fn fresh_gap(displacement: &[f64], offset: f64, h: &[f64], p: &[f64], g: &mut [f64]) -> GapSums {

@@ -11,6 +11,7 @@
 )]
 
 mod coarse;
+mod pass;
 mod patch;
 mod real;
 mod stencil;
@@ -21,20 +22,20 @@ use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::Arc;
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Arch;
 use rayon::prelude::*;
 use rc_core::Grid;
 
 use self::coarse::{Blur, FromGhosts, Leaves, Means};
+use self::pass::{Lift, Lower};
 pub(crate) use self::patch::{Patch, gather};
 pub(crate) use self::real::Real;
 use self::real::{Fused, MultiplyAdd, Separate};
-use self::stencil::Taps;
 use self::tables::Sizes;
 pub(crate) use self::tables::{Prepared, Tables};
-use self::transfer::Transfer;
 use super::elements::Elements;
 use super::tiles::{CELLS, TILE, TileSet};
+use crate::descent::Engine;
 use crate::fft::{BLOCK_ROWS, Convolution};
 
 /// Tiles that one thread works on at a time, and whose values a caller gets at a time.
@@ -133,36 +134,10 @@ impl<T: Real> TileOperator<T> {
         }
     }
 
-    /// The tiles it works on.
-    pub(crate) fn hierarchy(&self) -> &Hierarchy {
-        &self.hierarchy
-    }
-
-    /// What came down to the cells of the base grid in the last [`TileOperator::spread`], tile by tile, row-major: the smooth
+    /// What came down to the cells of the base grid in the last [`Engine::multiply`], tile by tile, row-major: the smooth
     /// remainder of the displacement.
     pub(crate) fn base_displacement(&self) -> &[T] {
         &self.down[0]
-    }
-
-    /// `fill` writes the cells of its block of [`BLOCK_CELLS`] (the last may be shorter). Returns what it returns, in order.
-    pub(crate) fn fill<S, R>(&mut self, sources: S, fill: impl Fn(S::Item, &mut [T]) -> R + Sync) -> Vec<R>
-    where
-        S: IndexedParallelIterator,
-        R: Send,
-    {
-        self.source.par_chunks_mut(BLOCK_CELLS).zip_eq(sources).map(|(cells, source)| fill(source, cells)).collect()
-    }
-
-    /// Everything but the finest level's own part.
-    pub(crate) fn spread(&mut self, tables: &Tables<T>) {
-        match (tables.sizes, self.arch) {
-            (Sizes::Small, Arch::Scalar) => self.spread_with::<Separate, 4, 24, 32>(tables),
-            (Sizes::Small, _) => self.spread_with::<Fused, 4, 24, 32>(tables),
-            (Sizes::Medium, Arch::Scalar) => self.spread_with::<Separate, 16, 24, 48>(tables),
-            (Sizes::Medium, _) => self.spread_with::<Fused, 16, 24, 48>(tables),
-            (Sizes::Large, Arch::Scalar) => self.spread_with::<Separate, 32, 40, 80>(tables),
-            (Sizes::Large, _) => self.spread_with::<Fused, 32, 40, 80>(tables),
-        }
     }
 
     fn spread_with<A: MultiplyAdd, const N: usize, const AROUND: usize, const UNDER: usize>(
@@ -258,22 +233,6 @@ impl<T: Real> TileOperator<T> {
         });
     }
 
-    /// Hands the result to `take`, block by block; returns what it returns, in order.
-    pub(crate) fn take<K, R>(&self, tables: &Tables<T>, sinks: K, take: impl Fn(K::Item, &[T]) -> R + Sync) -> Vec<R>
-    where
-        K: IndexedParallelIterator,
-        R: Send,
-    {
-        match (tables.sizes, self.arch) {
-            (Sizes::Small, Arch::Scalar) => self.take_with::<Separate, 4, 24, K, R>(tables, sinks, take),
-            (Sizes::Small, _) => self.take_with::<Fused, 4, 24, K, R>(tables, sinks, take),
-            (Sizes::Medium, Arch::Scalar) => self.take_with::<Separate, 16, 24, K, R>(tables, sinks, take),
-            (Sizes::Medium, _) => self.take_with::<Fused, 16, 24, K, R>(tables, sinks, take),
-            (Sizes::Large, Arch::Scalar) => self.take_with::<Separate, 32, 40, K, R>(tables, sinks, take),
-            (Sizes::Large, _) => self.take_with::<Fused, 32, 40, K, R>(tables, sinks, take),
-        }
-    }
-
     fn take_with<A: MultiplyAdd, const N: usize, const AROUND: usize, K, R>(
         &self,
         tables: &Tables<T>,
@@ -365,61 +324,51 @@ impl<T: Real> TileOperator<T> {
     }
 }
 
-/// The densities of tiles from those of the next finer level.
-struct Lift<'a, T, A, const N: usize, const UNDER: usize> {
-    transfer: &'a Transfer<T>,
-    finer: (&'a [T], &'a TileSet),
-    places: &'a [[u32; 2]],
-    cells: &'a mut [T],
-    arithmetic: PhantomData<A>,
-}
+/// Blocks are of [`BLOCK_CELLS`] cells. What [`Engine::take`] does on the way is the finest level's own part.
+impl<T: Real> Engine<T> for TileOperator<T> {
+    type Table = Tables<T>;
 
-impl<T: Real, A: MultiplyAdd, const N: usize, const UNDER: usize> WithSimd for Lift<'_, T, A, N, UNDER> {
-    type Output = ();
+    fn block_len(&self) -> usize {
+        BLOCK_CELLS
+    }
 
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let margin = ((UNDER - 2 * TILE) / 2 / TILE) as i64;
-        let mut patch = [[T::default(); UNDER]; UNDER];
-        for (out, &[column, row]) in self.cells.as_chunks_mut::<CELLS>().0.iter_mut().zip(self.places) {
-            let corner = (2 * i64::from(column) - margin, 2 * i64::from(row) - margin);
-            if gather(self.finer.0, self.finer.1, corner, self.transfer.rows_up(UNDER), &mut patch) {
-                self.transfer.up::<A, N, UNDER>(&patch, out);
-            } else {
-                *out = [T::default(); CELLS];
-            }
+    fn fill<S, R>(&mut self, sources: S, fill: impl Fn(S::Item, &mut [T]) -> R + Sync) -> Vec<R>
+    where
+        S: IndexedParallelIterator,
+        R: Send,
+    {
+        self.source.par_chunks_mut(BLOCK_CELLS).zip_eq(sources).map(|(cells, source)| fill(source, cells)).collect()
+    }
+
+    fn multiply(&mut self, tables: &Tables<T>) {
+        match (tables.sizes, self.arch) {
+            (Sizes::Small, Arch::Scalar) => self.spread_with::<Separate, 4, 24, 32>(tables),
+            (Sizes::Small, _) => self.spread_with::<Fused, 4, 24, 32>(tables),
+            (Sizes::Medium, Arch::Scalar) => self.spread_with::<Separate, 16, 24, 48>(tables),
+            (Sizes::Medium, _) => self.spread_with::<Fused, 16, 24, 48>(tables),
+            (Sizes::Large, Arch::Scalar) => self.spread_with::<Separate, 32, 40, 80>(tables),
+            (Sizes::Large, _) => self.spread_with::<Fused, 32, 40, 80>(tables),
         }
     }
-}
 
-/// The displacements of tiles: the level's stencil on its density, and what comes down from the coarser level.
-struct Lower<'a, T, A, const N: usize, const AROUND: usize> {
-    table: &'a (Taps<T>, Transfer<T>),
-    density: (&'a [T], &'a TileSet),
-    coarser: (&'a [T], &'a TileSet),
-    places: &'a [[u32; 2]],
-    cells: &'a mut [T],
-    arithmetic: PhantomData<A>,
-}
-
-impl<T: Real, A: MultiplyAdd, const N: usize, const AROUND: usize> WithSimd for Lower<'_, T, A, N, AROUND> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let (taps, transfer) = self.table;
-        let margin = ((AROUND - TILE) / 2 / TILE) as i64;
-        let mut patch = [[T::default(); AROUND]; AROUND];
-        for (out, &[column, row]) in self.cells.as_chunks_mut::<CELLS>().0.iter_mut().zip(self.places) {
-            let half = (column as usize % 2, row as usize % 2);
-            let corner = (i64::from(column / 2) - margin, i64::from(row / 2) - margin);
-            gather(self.coarser.0, self.coarser.1, corner, transfer.rows_down(AROUND, half.1), &mut patch);
-            transfer.down::<A, N, AROUND>(&patch, half, out);
-            let corner = (i64::from(column) - margin, i64::from(row) - margin);
-            if gather(self.density.0, self.density.1, corner, taps.rows(AROUND), &mut patch) {
-                taps.add::<A, AROUND>(&patch, out);
-            }
+    fn take<K, R>(&self, tables: &Tables<T>, sinks: K, take: impl Fn(K::Item, &[T]) -> R + Sync) -> Vec<R>
+    where
+        K: IndexedParallelIterator,
+        R: Send,
+    {
+        match (tables.sizes, self.arch) {
+            (Sizes::Small, Arch::Scalar) => self.take_with::<Separate, 4, 24, K, R>(tables, sinks, take),
+            (Sizes::Small, _) => self.take_with::<Fused, 4, 24, K, R>(tables, sinks, take),
+            (Sizes::Medium, Arch::Scalar) => self.take_with::<Separate, 16, 24, K, R>(tables, sinks, take),
+            (Sizes::Medium, _) => self.take_with::<Fused, 16, 24, K, R>(tables, sinks, take),
+            (Sizes::Large, Arch::Scalar) => self.take_with::<Separate, 32, 40, K, R>(tables, sinks, take),
+            (Sizes::Large, _) => self.take_with::<Fused, 32, 40, K, R>(tables, sinks, take),
         }
+    }
+
+    fn set_mean(&self, tables: &mut Tables<T>, eigenvalue: f64) {
+        let value = eigenvalue / self.hierarchy.base().len() as f64;
+        tables.base.set_mean(T::rounded(value));
     }
 }
 

@@ -79,6 +79,7 @@ pub(crate) struct Prepared<T> {
     between: (Stencil, Transfer<T>),
     coarse: Vec<CoarseElement>,
     scale: Scale,
+    remainder_curvature: f64,
 }
 
 /// How weights follow from the side h of an element.
@@ -111,6 +112,7 @@ impl<T: Real> Prepared<T> {
             between: (split.level_stencil(), transfer(&split.level_filter())),
             coarse: split.coarse_elements(n_coarse),
             scale: Scale::Side,
+            remainder_curvature: split.remainder_curvature(cutoff),
         }
     }
 
@@ -119,12 +121,27 @@ impl<T: Real> Prepared<T> {
         let sizes = Sizes::of(split);
         let part = (split.inverse_stencil(INVERSE_RADIUS), Transfer::new(&split.level_filter(), sizes.taps()));
         let symbol = SymbolTable::new(base, |kx: usize, ky: usize| PI * (kx as f64).hypot(ky as f64));
-        Self { sizes, base, symbol, finest: part.clone(), between: part, coarse: Vec::new(), scale: Scale::Inverse }
+        Self {
+            sizes,
+            base,
+            symbol,
+            finest: part.clone(),
+            between: part,
+            coarse: Vec::new(),
+            scale: Scale::Inverse,
+            // No bound: what comes down from the base grid is not a smooth part of anything.
+            remainder_curvature: f64::INFINITY,
+        }
     }
 
     /// How far values go on a level.
     pub(crate) fn reach(&self) -> Reach {
         Reach { filter: self.finest.1.reach(), stencil: self.finest.0.radius() }
+    }
+
+    /// Bound of the second derivatives, along the axes, of what comes down to the base grid under pressures between 0 and 1.
+    pub(crate) fn remainder_curvature(&self) -> f64 {
+        self.remainder_curvature
     }
 
     /// Tables for a finest level of `base side · 2^n_levels` cells per side.

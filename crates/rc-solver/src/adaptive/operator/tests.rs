@@ -56,7 +56,7 @@ fn apply<T: Real + Into<f64>>(split: &ScaleSplit, base: usize, elements: Element
             *cell = T::rounded(p);
         }
     });
-    operator.spread(&tables);
+    operator.multiply(&tables);
     let mut v = vec![0.0; p.len()];
     operator.take(&tables, v.par_chunks_mut(BLOCK_CELLS), |v, cells| {
         for (v, cell) in v.iter_mut().zip(cells) {

@@ -1,0 +1,139 @@
+//! The gap under a pressure, and the sums over both that scale the pressure and measure its error.
+
+use rayon::prelude::*;
+
+use super::{Engine, rows};
+use crate::Control;
+use crate::problem::Problem;
+
+/// Scaling of the pressure under penetration control is bounded by this factor per round.
+const GREATEST_SCALING: f64 = 4.0;
+
+/// Sums over elements in contact or at risk, which the iteration needs after a change of the pressure.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GapSums {
+    /// Σ p
+    pub(super) pressure: f64,
+    /// Σ p g
+    pub(super) pressure_gap: f64,
+    /// Σ p h
+    pub(super) pressure_height: f64,
+    /// min g
+    pub(super) min_gap: f64,
+    /// Σ g over p > 0
+    pub(super) contact_gap: f64,
+    /// Number of elements with p > 0
+    pub(super) n_contact: usize,
+}
+
+impl GapSums {
+    pub(super) const EMPTY: Self = Self {
+        pressure: 0.0,
+        pressure_gap: 0.0,
+        pressure_height: 0.0,
+        min_gap: f64::INFINITY,
+        contact_gap: 0.0,
+        n_contact: 0,
+    };
+
+    pub(super) fn add_element(&mut self, p: f64, g: f64, h: f64) {
+        self.min_gap = self.min_gap.min(g);
+        if p > 0.0 {
+            self.pressure += p;
+            self.pressure_gap += p * g;
+            self.pressure_height += p * h;
+            self.contact_gap += g;
+            self.n_contact += 1;
+        }
+    }
+
+    /// Adds blocks in their order.
+    pub(super) fn total(blocks: Vec<Self>) -> Self {
+        blocks.into_iter().fold(Self::EMPTY, |sum, block| Self {
+            pressure: sum.pressure + block.pressure,
+            pressure_gap: sum.pressure_gap + block.pressure_gap,
+            pressure_height: sum.pressure_height + block.pressure_height,
+            min_gap: sum.min_gap.min(block.min_gap),
+            contact_gap: sum.contact_gap + block.contact_gap,
+            n_contact: sum.n_contact + block.n_contact,
+        })
+    }
+
+    /// Pressure-weighted mean of the gap.
+    pub(super) fn mean_gap(&self) -> f64 {
+        if self.pressure > 0.0 { self.pressure_gap / self.pressure } else { 0.0 }
+    }
+
+    /// Σ p v
+    pub(super) fn work(&self, problem: &Problem) -> f64 {
+        self.pressure_gap + self.pressure_height - problem.offset() * self.pressure
+    }
+
+    /// The gap of elements in contact: its mean, or zero where the penetration is prescribed.
+    pub(super) fn zero_gap(&self, problem: &Problem) -> f64 {
+        match problem.control {
+            Control::MeanPressure(_) if self.n_contact > 0 => self.contact_gap / self.n_contact as f64,
+            Control::MeanPressure(_) => self.min_gap,
+            Control::Penetration(_) => 0.0,
+        }
+    }
+
+    /// The factor on the pressure that makes its weighted mean gap zero, under penetration control.
+    pub(crate) fn scale_to_penetration(&self, problem: &Problem) -> Option<f64> {
+        let Control::Penetration(_) = problem.control else { return None };
+        let wanted = self.pressure_height - problem.offset() * self.pressure;
+        let displaced = self.pressure_gap + wanted;
+        let scale = wanted / displaced;
+        let possible = scale.is_finite() && displaced > 0.0;
+        possible.then(|| scale.clamp(GREATEST_SCALING.recip(), GREATEST_SCALING))
+    }
+}
+
+/// Computes the gap `g` under pressure `p`, from a fresh application of L, on elements with heights `h`.
+pub(crate) fn fresh_gap<F: Engine<f64>>(
+    engine: &mut F,
+    response: &F::Table,
+    problem: &Problem,
+    (h, p, g): (&[f64], &[f64], &mut [f64]),
+) -> GapSums {
+    let (block, offset) = (engine.block_len(), problem.offset());
+    engine.fill(p.par_chunks(block), |p, values| values.copy_from_slice(p));
+    engine.multiply(response);
+    let sinks = (h.par_chunks(block), p.par_chunks(block), g.par_chunks_mut(block));
+    GapSums::total(
+        engine.take(response, sinks.into_par_iter(), |(h, p, g), rows| rows::fresh_gap(rows, offset, h, p, g)),
+    )
+}
+
+/// Multiplies the pressure `p` by `scale`; the gap `g` follows, since v is linear in p. Sums are of blocks of `block` elements.
+pub(crate) fn rescale(
+    scale: f64,
+    block: usize,
+    problem: &Problem,
+    (h, p, g): (&[f64], &mut [f64], &mut [f64]),
+) -> GapSums {
+    let offset = problem.offset();
+    let vectors = (h.par_chunks(block), p.par_chunks_mut(block), g.par_chunks_mut(block)).into_par_iter();
+    GapSums::total(vectors.map(|(h, p, g)| rows::rescale(scale, offset, h, p, g)).collect())
+}
+
+/// Mean of the pressure over a cell of `n_cell` elements.
+pub(super) fn mean_pressure(n_cell: f64, block: usize, pressure: &[f64]) -> f64 {
+    let blocks: Vec<f64> = pressure.par_chunks(block).map(|block| block.iter().sum()).collect();
+    blocks.into_iter().sum::<f64>() / n_cell
+}
+
+/// Multiplies the pressure so that its mean over a cell of `n_cell` elements is the prescribed one, if one is and anything
+/// presses.
+pub(crate) fn scale_to_load(problem: &Problem, n_cell: f64, block: usize, pressure: &mut [f64]) {
+    if let Control::MeanPressure(wanted) = problem.control {
+        let mean = mean_pressure(n_cell, block, pressure);
+        if mean > 0.0 {
+            scale_all(pressure, wanted / mean);
+        }
+    }
+}
+
+pub(super) fn scale_all(values: &mut [f64], factor: f64) {
+    values.par_iter_mut().for_each(|value| *value *= factor);
+}

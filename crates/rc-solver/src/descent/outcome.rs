@@ -1,0 +1,42 @@
+//! What a pressure amounts to: its certificate and its observables.
+
+use super::gap::GapSums;
+use crate::problem::Problem;
+use crate::{Certificate, Control};
+
+/// What a descent found.
+pub(crate) struct Outcome {
+    pub(crate) converged: bool,
+    pub(crate) certificate: Certificate,
+    /// Mean pressure.
+    pub(crate) mean_pressure: f64,
+    /// Pressure-weighted mean of v - h: penetration minus h_max.
+    pub(crate) approach: f64,
+    /// ½ mean(p v).
+    pub(crate) elastic_energy: f64,
+    /// The gap of elements in contact, which a converged solution makes the same for all.
+    pub(crate) contact_gap: f64,
+}
+
+impl Outcome {
+    /// From the sums over all elements that may be in contact, in a cell of `n_cell` elements.
+    pub(crate) fn new(problem: &Problem, sums: &GapSums, n_cell: f64, converged: bool) -> Self {
+        let h_range = problem.h_range;
+        let mean_pressure = sums.pressure / n_cell;
+        let mean_gap = sums.mean_gap();
+        let penetration = ((mean_gap - sums.min_gap) / h_range).max(0.0);
+        let load = match problem.control {
+            Control::MeanPressure(wanted) => (mean_pressure - wanted).abs() / wanted,
+            Control::Penetration(_) => mean_gap.abs() / h_range,
+        };
+        Self {
+            converged,
+            // Σ p (g - min g) / Σ p with the weighted mean of g as zero is -min g: the two errors coincide.
+            certificate: Certificate { complementarity: penetration, penetration, load },
+            mean_pressure,
+            approach: mean_gap - problem.offset(),
+            elastic_energy: 0.5 * sums.work(problem) / n_cell,
+            contact_gap: sums.zero_gap(problem),
+        }
+    }
+}
