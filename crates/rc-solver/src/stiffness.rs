@@ -25,7 +25,7 @@ pub(crate) fn contact_stiffness(pressure: &Field, kernel: &dyn Kernel) -> f64 {
     stiffness_of(pressure.values(), grid.len() as f64, &mut convolution, &response, &mut preconditioner)
 }
 
-/// dσ0/dΔ, in E*/λ, for the contact set {p > 0}: the mean over a cell of `n` elements of the pressure x that displaces every
+/// dσ0/dΔ, in E*/λ, for the contact set {p > 0}: the mean over a cell of `n` of the smallest elements of the pressure x that displaces every
 /// element in contact by 1, `L x = 1` there. The set may be held fixed, since pressure and gap vanish at its edge, so that
 /// moving it is of second order.
 ///
@@ -38,7 +38,8 @@ pub(crate) fn stiffness_of<C: Engine<f32>>(
     response: &C::Table,
     preconditioner: &mut C::Table,
 ) -> f64 {
-    let block = engine.block_len();
+    let blocks = engine.blocks();
+    let block = blocks.len();
     let in_contact: Vec<bool> = pressure.par_iter().map(|&p| p > 0.0).collect();
     let zeros = || vec![0.0_f32; pressure.len()];
     let (mut residual, mut z, mut t, mut u) = (zeros(), zeros(), zeros(), zeros());
@@ -58,7 +59,7 @@ pub(crate) fn stiffness_of<C: Engine<f32>>(
             u.copy_from_slice(rows);
             [dot(t, rows), dot(t, residual)]
         });
-        let [curvature, slope] = crate::fft::total(sums);
+        let [curvature, slope] = blocks.total(sums);
         if curvature <= 0.0 || !curvature.is_finite() {
             break;
         }
@@ -86,7 +87,7 @@ pub(crate) fn stiffness_of<C: Engine<f32>>(
             }
             [dot(z, u)]
         });
-        let [zu] = crate::fft::total(sums);
+        let [zu] = blocks.total(sums);
         let beta = (zu / curvature) as f32;
         t.par_iter_mut().zip(&z).for_each(|(t, &z)| *t = z - beta * *t);
     }

@@ -2,8 +2,11 @@
 
 use std::ops::Range;
 
-use super::operator::BLOCK_CELLS;
-use super::tiles::{CELLS, TileSet};
+use rayon::prelude::*;
+
+use super::operator::{BLOCK_CELLS, Patch};
+use super::tiles::{CELLS, TILE, TileSet};
+use crate::descent::Blocks;
 
 /// Disjoint tiles of one or more levels, finest first.
 ///
@@ -43,10 +46,51 @@ impl Elements {
         &self.levels[0]
     }
 
+    /// Number of elements.
+    pub(crate) fn n_cells(&self) -> usize {
+        self.levels.iter().map(TileSet::n_cells).sum()
+    }
+
+    /// Has it the tile at a place of the level with `side` cells per side?
+    pub(crate) fn has(&self, side: usize, [column, row]: [u32; 2]) -> bool {
+        let level = self.levels.iter().find(|tiles| tiles.side() == side);
+        level.is_some_and(|tiles| tiles.find(column.into(), row.into()).is_some())
+    }
+
     /// Length of vectors.
     pub(crate) fn len(&self) -> usize {
         let last = self.levels.len() - 1;
         self.starts[last] + self.levels[last].n_cells()
+    }
+
+    /// The tiles of the coarsest level.
+    pub(crate) fn coarsest(&self) -> &TileSet {
+        &self.levels[self.levels.len() - 1]
+    }
+
+    /// With tiles of the coarsest level at all of `places` that have no elements yet.
+    pub(crate) fn with(&self, places: &[[u32; 2]]) -> Self {
+        let last = self.levels.len() - 1;
+        let mut levels = self.levels.clone();
+        let new = places.iter().filter(|&&[column, row]| !self.cover(last, column, row));
+        levels[last] = TileSet::new(levels[last].per_side(), levels[last].places().iter().chain(new).copied().collect());
+        Self::new(levels)
+    }
+
+    /// The tiles for which `wanted` is true; it gets the cells per side of the level, the place and where the cells are.
+    pub(crate) fn filtered(&self, wanted: impl Fn(usize, [u32; 2], Range<usize>) -> bool) -> Self {
+        let level = |(tiles, &start): (&TileSet, &usize)| {
+            let places = tiles.places().iter().enumerate();
+            let cells = |tile: usize| start + tile * CELLS..start + (tile + 1) * CELLS;
+            let chosen = places.filter(|&(tile, &place)| wanted(tiles.side(), place, cells(tile))).map(|(_, &place)| place);
+            TileSet::new(tiles.per_side(), chosen.collect())
+        };
+        Self::new(self.levels.iter().zip(&self.starts).map(level).collect())
+    }
+
+    /// Parts of a vector that have no element.
+    pub(crate) fn padding(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        (1..self.levels.len()).map(|coarser| self.cells(coarser - 1).end..self.starts[coarser])
     }
 
     /// Where the cells of the level `coarser` times coarser than the finest are in a vector.
@@ -64,8 +108,119 @@ impl Elements {
         self.levels.iter().enumerate().flat_map(blocks).collect()
     }
 
+    /// How vectors are divided.
+    pub(crate) fn division(&self) -> Blocks {
+        if self.levels.len() == 1 {
+            return Blocks::of(BLOCK_CELLS);
+        }
+        Blocks::with_areas(BLOCK_CELLS, self.blocks().into_iter().map(|(coarser, _)| Self::area(coarser)).collect())
+    }
+
     /// Area of an element in units of the finest ones.
     pub(crate) fn area(coarser: usize) -> f64 {
         f64::from(1_u32 << (2 * coarser))
+    }
+
+    /// Side of an element, in λ.
+    pub(crate) fn side(&self, coarser: usize) -> f64 {
+        1.0 / self.levels[coarser].side() as f64
+    }
+
+    /// All tiles: how much coarser than the finest, the index among those of its level, and the first cell.
+    pub(crate) fn tiles(&self) -> impl Iterator<Item = (usize, usize, usize)> + '_ {
+        let of_level = |(coarser, tiles): (usize, &TileSet)| {
+            let start = self.starts[coarser];
+            (0..tiles.len()).map(move |tile| (coarser, tile, start + tile * CELLS))
+        };
+        self.levels.iter().enumerate().flat_map(of_level)
+    }
+
+    /// The first cell of the tile at a place of a level, when its elements are of that size.
+    fn find(&self, coarser: usize, column: i64, row: i64) -> Option<usize> {
+        let tile = self.levels.get(coarser)?.find(column, row)?;
+        Some(self.starts[coarser] + tile * CELLS)
+    }
+
+    /// Are there elements, of this size or smaller ones, at a place of a level?
+    pub(crate) fn cover(&self, coarser: usize, column: u32, row: u32) -> bool {
+        // A tile that is divided has all its quarters.
+        let (mut x, mut y) = (i64::from(column), i64::from(row));
+        (0..=coarser).rev().any(|coarser| {
+            let found = self.levels.get(coarser).is_some_and(|tiles| tiles.find(x, y).is_some());
+            (x, y) = (2 * x, 2 * y);
+            found
+        })
+    }
+
+    /// Copies the values of a tile's place of a level, whatever the size of the elements there up to a factor of 2: larger ones
+    /// stand for their quarters, smaller ones are averaged. False, and nothing copied, where there are none.
+    pub(crate) fn tile_values(
+        &self,
+        values: &[f64],
+        coarser: usize,
+        (column, row): (i64, i64),
+        mut put: impl FnMut(usize, usize, f64),
+    ) -> bool {
+        if let Some(start) = self.find(coarser, column, row) {
+            for (cell, &value) in values[start..start + CELLS].iter().enumerate() {
+                put(cell % TILE, cell / TILE, value);
+            }
+            return true;
+        }
+        if let Some(start) = self.find(coarser + 1, column.div_euclid(2), row.div_euclid(2)) {
+            let half = |i: i64| i.rem_euclid(2) as usize * (TILE / 2);
+            for cell in 0..CELLS {
+                let (x, y) = (half(column) + cell % TILE / 2, half(row) + cell / TILE / 2);
+                put(cell % TILE, cell / TILE, values[start + y * TILE + x]);
+            }
+            return true;
+        }
+        let Some(finer) = coarser.checked_sub(1) else { return false };
+        let mut any = false;
+        for child in 0..4 {
+            let (half_x, half_y) = (child % 2, child / 2);
+            let Some(start) = self.find(finer, 2 * column + half_x, 2 * row + half_y) else { continue };
+            any = true;
+            for cell in 0..CELLS / 4 {
+                let (x, y) = (cell % (TILE / 2), cell / (TILE / 2));
+                let corner = start + 2 * y * TILE + 2 * x;
+                let sum = values[corner] + values[corner + 1] + values[corner + TILE] + values[corner + TILE + 1];
+                put(half_x as usize * TILE / 2 + x, half_y as usize * TILE / 2 + y, 0.25 * sum);
+            }
+        }
+        any
+    }
+
+    /// The values on a tile and its neighbours, `missing` where there are no elements.
+    pub(crate) fn around(
+        &self,
+        values: &[f64],
+        coarser: usize,
+        [column, row]: [u32; 2],
+        missing: f64,
+    ) -> Patch<f64, { 3 * TILE }> {
+        let mut patch = [[missing; 3 * TILE]; 3 * TILE];
+        for j in 0..3 {
+            for i in 0..3 {
+                let place = (i64::from(column) + i as i64 - 1, i64::from(row) + j as i64 - 1);
+                self.tile_values(values, coarser, place, |x, y, value| patch[j * TILE + y][i * TILE + x] = value);
+            }
+        }
+        patch
+    }
+
+    /// Values on the elements of `to`, whose tiles are those here, parts of them, or new ones, where values are zero.
+    pub(crate) fn moved(&self, to: &Self, values: &[f64]) -> Vec<f64> {
+        let mut result = vec![0.0; to.len()];
+        for (coarser, tiles) in to.levels.iter().enumerate() {
+            // The same level here: this mesh may end one level earlier.
+            let Some(here) = self.levels.iter().position(|level| level.side() == tiles.side()) else { continue };
+            let cells = &mut result[to.cells(coarser)];
+            let sinks = cells.par_chunks_mut(CELLS).zip(tiles.places()).with_min_len(64);
+            sinks.for_each(|(cells, &[column, row])| {
+                self.tile_values(values, here, (column.into(), row.into()), |x, y, value| cells[y * TILE + x] = value);
+            });
+        }
+        result
     }
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::operator::{BLOCK_CELLS, Hierarchy, Real, Tables, TileOperator};
-use crate::descent::Engine;
+use crate::descent::{Blocks, Engine};
 
 /// An operator of precision `T` on vectors of double precision.
 pub(super) struct Fresh<T>(TileOperator<T>);
@@ -26,8 +26,8 @@ impl<T: Real + Into<f64>> Fresh<T> {
 impl<T: Real + Into<f64>> Engine<f64> for Fresh<T> {
     type Table = Tables<T>;
 
-    fn block_len(&self) -> usize {
-        BLOCK_CELLS
+    fn blocks(&self) -> Blocks {
+        self.0.blocks()
     }
 
     fn fill<S, R>(&mut self, sources: S, fill: impl Fn(S::Item, &mut [f64]) -> R + Sync) -> Vec<R>

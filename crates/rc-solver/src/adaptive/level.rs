@@ -9,8 +9,8 @@ use super::Solver;
 use super::elements::Elements;
 use super::fresh::Fresh;
 use super::operator::{BLOCK_CELLS, Hierarchy, Reach, Real, Tables, TileOperator};
+use super::refinement::State;
 use super::survey::{Remainder, possible_contact};
-use super::tiles::{CELLS, TileSet};
 use crate::descent::{Descent, Engine, Machinery, Outcome, Start, fresh_gap, rescale, scale_to_load};
 use crate::solution::LevelInfo;
 
@@ -29,19 +29,19 @@ const MOST_ROUNDS: usize = 20;
 /// not add others.
 const CANDIDATE_MARGIN: f64 = 2e-3;
 
-/// Pressures on tiles; zero everywhere else.
+/// Pressures on elements; zero everywhere else.
 pub(super) struct Mesh {
-    pub(super) tiles: TileSet,
+    pub(super) elements: Elements,
     pub(super) pressure: Vec<f64>,
 }
 
 /// A level as it was left.
 pub(super) struct Level {
-    pub(super) tiles: TileSet,
+    pub(super) elements: Elements,
     pub(super) pressure: Vec<f64>,
     pub(super) gap: Vec<f64>,
     pub(super) outcome: Outcome,
-    /// Cells whose gap was computed; the others are proven to be out of contact.
+    /// Elements whose gap was computed; everything else is proven to be out of contact.
     pub(super) evaluated: usize,
     pub(super) info: LevelInfo,
 }
@@ -53,9 +53,9 @@ struct Surveyed {
     outcome: Outcome,
 }
 
-/// Tiles where contact is possible, with their heights.
+/// Elements where contact is possible, with their heights.
 struct Candidates {
-    tiles: TileSet,
+    elements: Elements,
     heights: Vec<f64>,
 }
 
@@ -64,14 +64,14 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         (grid.nx() / self.base().nx()).ilog2() as usize
     }
 
-    fn hierarchy(&self, tiles: &TileSet, reach: Reach) -> Arc<Hierarchy> {
-        Arc::new(Hierarchy::new(self.base().nx(), Elements::uniform(tiles.clone()), reach))
+    fn hierarchy(&self, elements: &Elements, reach: Reach) -> Arc<Hierarchy> {
+        Arc::new(Hierarchy::new(self.base().nx(), elements.clone(), reach))
     }
 
-    /// Solves on the tiles of the prolonged pressure only, for the next level.
+    /// Solves on the elements of the prolonged pressure only, for the next level.
     pub(super) fn prepare_level(&self, grid: Grid, mesh: Mesh, tolerance: f64, observer: &dyn Observer) -> Level {
         let n_levels = self.n_levels(grid);
-        let hierarchy = self.hierarchy(&mesh.tiles, self.response.reach());
+        let hierarchy = self.hierarchy(&mesh.elements, self.response.reach());
         let response = self.response.tables(n_levels);
         let machinery = Machinery {
             corrections: TileOperator::new(Arc::clone(&hierarchy)),
@@ -80,20 +80,20 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
             fresh_response: response.clone(),
             response,
         };
-        let heights = self.tile_heights(&mesh.tiles);
+        let heights = self.element_heights(&mesh.elements);
         let start = Start::Pressure(mesh.pressure);
         let mut descent = Descent::new(&heights, grid, machinery, &self.problem, start);
         let outcome = descent.run(tolerance, self.params.max_iterations, false, observer);
         let info = descent.info();
         let (pressure, gap) = descent.into_vectors(0.0);
-        Level { evaluated: gap.len(), tiles: mesh.tiles, pressure, gap, outcome, info }
+        Level { evaluated: gap.len(), elements: mesh.elements, pressure, gap, outcome, info }
     }
 
     /// Solves to the tolerance, and proves it for the whole cell.
     pub(super) fn solve_finest(&self, grid: Grid, mut mesh: Mesh, contact_gap: f64, observer: &dyn Observer) -> Level {
         let (n, n_levels) = (grid.len() as f64, self.n_levels(grid));
         let mut info = LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 };
-        scale_to_load(&self.problem, n, BLOCK_CELLS, &mut mesh.pressure);
+        scale_to_load(&self.problem, n, &mesh.elements.division(), &mut mesh.pressure);
         let mut response = self.response.tables(n_levels);
         let mut preconditioner = self.preconditioner.tables(n_levels);
         let mut fresh_response = self.fresh.tables(n_levels);
@@ -107,17 +107,17 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
                 || gave_up
                 || (round > 0 && outcome.certificate.penetration <= self.params.tolerance)
             {
-                let evaluated = gap.len();
-                return Level { tiles: candidates.tiles, pressure, gap, outcome, evaluated, info };
+                let evaluated = candidates.elements.n_cells();
+                return Level { elements: candidates.elements, pressure, gap, outcome, evaluated, info };
             }
             // What is nearer to contact than the error may come into it yet.
             let near = outcome.contact_gap + outcome.certificate.penetration * self.problem.h_range;
-            let part = Part::choose(&candidates, &mesh.tiles, &pressure, &gap, near);
+            let part = Part::choose(&candidates, &mesh.elements, &pressure, &gap, near);
             let machinery = Machinery {
-                corrections: TileOperator::new(self.hierarchy(&part.tiles, self.response.reach())),
+                corrections: TileOperator::new(self.hierarchy(&part.elements, self.response.reach())),
                 response,
                 preconditioner,
-                fresh: Fresh::new(self.hierarchy(&part.tiles, self.fresh.reach())),
+                fresh: Fresh::new(self.hierarchy(&part.elements, self.fresh.reach())),
                 fresh_response,
             };
             // Before the descent, which needs the memory.
@@ -135,29 +135,27 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
             info.operator_applications += done.operator_applications;
             info.preconditioner_applications += done.preconditioner_applications;
             let (machinery, pressure) = descent.into_machinery();
-            mesh = Mesh { tiles: part.tiles, pressure };
+            mesh = Mesh { elements: part.elements, pressure };
             (response, preconditioner, fresh_response) =
                 (machinery.response, machinery.preconditioner, machinery.fresh_response);
         }
         unreachable!("the last round returns")
     }
 
-    /// Tiles where the start may touch, judged by the quick operator.
+    /// Elements where the start may touch, judged by the quick operator.
     fn first_candidates(&self, mesh: &Mesh, response: &Tables<f32>, contact_gap: f64) -> Candidates {
-        let mut quick = Fresh::<f32>::new(self.hierarchy(&mesh.tiles, self.response.reach()));
+        let mut quick = Fresh::<f32>::new(self.hierarchy(&mesh.elements, self.response.reach()));
         quick.fill(mesh.pressure.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
         quick.multiply(response);
         // Not a proof yet: the margin stands for the quick operator's error too.
         let level = contact_gap + CANDIDATE_MARGIN * self.problem.h_range;
         let curvature = self.response.remainder_curvature();
-        let places = self.possible_contact(&quick, curvature, &mesh.pressure, mesh.tiles.per_side(), level);
-        self.candidates(mesh.tiles.per_side(), places, mesh.tiles.places())
+        let places = self.possible_contact(&quick, curvature, &mesh.pressure, mesh.elements.coarsest().per_side(), level);
+        self.candidates(mesh.elements.with(&places))
     }
 
-    fn candidates(&self, per_side: usize, mut places: Vec<[u32; 2]>, more: &[[u32; 2]]) -> Candidates {
-        places.extend_from_slice(more);
-        let tiles = TileSet::new(per_side, places);
-        Candidates { heights: self.tile_heights(&tiles), tiles }
+    fn candidates(&self, elements: Elements) -> Candidates {
+        Candidates { heights: self.element_heights(&elements), elements }
     }
 
     /// Tiles where the gap under the pressure last spread by `operator` may be less than `level`; `unit_curvature` is the bound
@@ -189,23 +187,25 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         prove: bool,
     ) -> Surveyed {
         loop {
-            let mut pressure = moved(&mesh.tiles, &candidates.tiles, &mesh.pressure);
+            let mut pressure = mesh.elements.moved(&candidates.elements, &mesh.pressure);
             let mut gap = vec![0.0; pressure.len()];
-            let mut fresh = Fresh::<T>::new(self.hierarchy(&candidates.tiles, self.fresh.reach()));
+            let mut fresh = Fresh::<T>::new(self.hierarchy(&candidates.elements, self.fresh.reach()));
             info.operator_applications += 1;
             let heights = &candidates.heights;
             let mut sums = fresh_gap(&mut fresh, response, &self.problem, (heights, &pressure, &mut gap));
             if let Some(scale) = sums.scale_to_penetration(&self.problem) {
-                sums = rescale(scale, BLOCK_CELLS, &self.problem, (heights, &mut pressure, &mut gap));
+                sums = rescale(scale, &candidates.elements.division(), &self.problem, (heights, &mut pressure, &mut gap));
             }
             let outcome = Outcome::new(&self.problem, &sums, info.grid.len() as f64, true);
             if prove {
                 let level = outcome.contact_gap;
                 let curvature = self.fresh.remainder_curvature();
-                let places = self.possible_contact(&fresh, curvature, &pressure, candidates.tiles.per_side(), level);
-                let known = |place: &[u32; 2]| candidates.tiles.find(place[0].into(), place[1].into()).is_some();
-                if !places.iter().all(known) {
-                    *candidates = self.candidates(candidates.tiles.per_side(), places, candidates.tiles.places());
+                let elements = &candidates.elements;
+                let places = self.possible_contact(&fresh, curvature, &pressure, elements.coarsest().per_side(), level);
+                let more = elements.with(&places);
+                let more = self.divided(&State { elements, pressure: &pressure, gap: &gap, ..self.state(level) }).unwrap_or(more);
+                if more.n_cells() > elements.n_cells() {
+                    *candidates = self.candidates(more);
                     continue;
                 }
             }
@@ -213,56 +213,28 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         }
     }
 
-    fn tile_heights(&self, tiles: &TileSet) -> Vec<f64> {
-        let mut heights = vec![0.0; tiles.n_cells()];
-        let (cells, _) = heights.as_chunks_mut::<CELLS>();
-        cells.par_iter_mut().zip(tiles.places()).with_min_len(16).for_each(|(cells, &[column, row])| {
-            self.heights.tile(tiles.side(), column as usize, row as usize, cells);
-        });
-        heights
-    }
 }
 
 /// The candidates that press somewhere, or nearly do, or did when the level began.
 struct Part {
-    tiles: TileSet,
+    elements: Elements,
     heights: Vec<f64>,
     pressure: Vec<f64>,
     gap: Vec<f64>,
 }
 
 impl Part {
-    fn choose(candidates: &Candidates, known: &TileSet, pressure: &[f64], gap: &[f64], near: f64) -> Self {
-        let cells = |tile: usize| tile * CELLS..(tile + 1) * CELLS;
-        let takes_part = |tile: usize| {
-            let [column, row] = candidates.tiles.places()[tile].map(i64::from);
-            known.find(column, row).is_some() || cells(tile).any(|i| pressure[i] > 0.0 || gap[i] < near)
-        };
-        let chosen: Vec<usize> = (0..candidates.tiles.len()).filter(|&tile| takes_part(tile)).collect();
-        let places = chosen.iter().map(|&tile| candidates.tiles.places()[tile]).collect();
-        let part = |values: &[f64]| {
-            let mut part = Vec::with_capacity(chosen.len() * CELLS);
-            for &tile in &chosen {
-                part.extend_from_slice(&values[cells(tile)]);
-            }
-            part
-        };
-        // A part of sorted tiles is sorted, so places and values stay together.
-        Self {
-            tiles: TileSet::new(candidates.tiles.per_side(), places),
-            heights: part(&candidates.heights),
-            pressure: part(pressure),
-            gap: part(gap),
+    fn choose(candidates: &Candidates, known: &Elements, pressure: &[f64], gap: &[f64], near: f64) -> Self {
+        let elements = candidates.elements.filtered(|side, place, cells| {
+            known.has(side, place) || cells.into_iter().any(|i| pressure[i] > 0.0 || gap[i] < near)
+        });
+        let part = |values: &[f64]| candidates.elements.moved(&elements, values);
+        let (mut heights, mut gap) = (part(&candidates.heights), part(gap));
+        // What fills a level up is as far from contact as can be.
+        for fill in elements.padding() {
+            heights[fill.clone()].fill(f64::MIN);
+            gap[fill].fill(f64::MAX);
         }
+        Self { heights, pressure: part(pressure), gap, elements }
     }
-}
-
-/// Values on `to`, which has all tiles of `from`; zero on the others.
-pub(super) fn moved(from: &TileSet, to: &TileSet, values: &[f64]) -> Vec<f64> {
-    let mut result = vec![0.0; to.n_cells()];
-    for (tile, &[column, row]) in from.places().iter().enumerate() {
-        let at = to.find(i64::from(column), i64::from(row)).expect("a tile of both");
-        result[at * CELLS..][..CELLS].copy_from_slice(&values[tile * CELLS..][..CELLS]);
-    }
-    result
 }

@@ -5,6 +5,7 @@
 
 use rayon::prelude::*;
 
+use super::elements::Elements;
 use super::operator::{Patch, gather};
 use super::tiles::{CELLS, TILE, TileSet};
 use crate::uniform::outside_level;
@@ -15,33 +16,52 @@ const MARGIN: usize = 2;
 /// Side of the patches that hold a tile and its neighbours.
 const SIDE: usize = 3 * TILE;
 
-/// φ on the cells of `tiles`, from pressure and gap there.
-pub(super) fn level_function(tiles: &TileSet, pressure: &[f64], gap: &[f64], contact_gap: f64) -> Vec<f64> {
-    let spacing = 1.0 / tiles.side() as f64;
+/// φ on the elements, from pressure and gap there.
+pub(super) fn level_function(elements: &Elements, pressure: &[f64], gap: &[f64], contact_gap: f64) -> Vec<f64> {
     let mut level = vec![0.0; pressure.len()];
-    level.par_chunks_mut(CELLS).enumerate().for_each(|(tile, level)| {
-        let [column, row] = tiles.places()[tile].map(i64::from);
-        let mut patch: Patch<f64, SIDE> = [[0.0; SIDE]; SIDE];
-        gather(pressure, tiles, (column - 1, row - 1), TILE - 1..2 * TILE + 1, &mut patch);
-        for (cell, value) in level.iter_mut().enumerate() {
-            let (x, y) = (TILE + cell % TILE, TILE + cell / TILE);
-            let here = patch[y][x];
-            *value = if here > 0.0 {
-                here * here
-            } else {
-                let near = patch[y - 1..=y + 1].iter().flat_map(|row| &row[x - 1..=x + 1]);
-                outside_level(near, (gap[tile * CELLS + cell] - contact_gap).max(0.0), spacing)
-            };
+    for (coarser, tiles) in elements.levels().iter().enumerate() {
+        let (cells, spacing) = (elements.cells(coarser), elements.side(coarser));
+        let gaps = gap[cells.clone()].par_chunks(CELLS);
+        let sinks = level[cells].par_chunks_mut(CELLS).zip(gaps).zip(tiles.places());
+        sinks.for_each(|((level, gap), &place)| {
+            let patch = elements.around(pressure, coarser, place, 0.0);
+            for (cell, (value, gap)) in level.iter_mut().zip(gap).enumerate() {
+                let (x, y) = (TILE + cell % TILE, TILE + cell / TILE);
+                let here = patch[y][x];
+                *value = if here > 0.0 {
+                    here * here
+                } else {
+                    let near = patch[y - 1..=y + 1].iter().flat_map(|row| &row[x - 1..=x + 1]);
+                    outside_level(near, (gap - contact_gap).max(0.0), spacing)
+                };
+            }
+        });
+    }
+    level
+}
+
+/// φ where no element is: there is no contact for a long way.
+fn far(level: &[f64]) -> f64 {
+    let contact: Vec<f64> = level.iter().copied().filter(|&l| l > 0.0).collect();
+    -contact.iter().sum::<f64>() / contact.len().max(1) as f64
+}
+
+/// Fills the pressure on the finest of `refined`, a mesh whose finest elements are quarters of those of `elements`, from φ there.
+pub(super) fn prolong_to(elements: &Elements, level: &[f64], refined: &Elements, pressure: &mut [f64]) {
+    let far = far(level);
+    let sinks = pressure[refined.cells(0)].par_chunks_mut(CELLS).zip(refined.finest().places());
+    sinks.for_each(|(cells, &[column, row])| {
+        let patch = elements.around(level, 0, [column / 2, row / 2], far);
+        match fine_tile(&patch, (column as usize % 2, row as usize % 2)) {
+            Some(pressure) => cells.copy_from_slice(pressure.as_slice()),
+            None => cells.fill(0.0),
         }
     });
-    level
 }
 
 /// The tiles of the next finer level that the start presses, or nearly, and the pressure on them.
 pub(super) fn prolong(tiles: &TileSet, level: &[f64]) -> (TileSet, Vec<f64>) {
-    // Where no tile is, there is no contact for a long way.
-    let contact: Vec<f64> = level.iter().copied().filter(|&l| l > 0.0).collect();
-    let far = -contact.iter().sum::<f64>() / contact.len().max(1) as f64;
+    let far = far(level);
     let children: Vec<[Option<Box<[f64; CELLS]>>; 4]> = tiles
         .places()
         .par_iter()

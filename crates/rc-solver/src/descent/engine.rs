@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use rustfft::FftNum;
 
+use super::Blocks;
 use crate::fft::{BLOCK_ROWS, Convolution, SymbolTable};
 
 /// Applies tables to vectors, block by block, so that the caller's vector work rides along: first the caller fills a vector,
@@ -11,8 +12,8 @@ pub(crate) trait Engine<T> {
     /// An operator, tabulated.
     type Table: Sync;
 
-    /// Values in a block; the last one may be shorter.
-    fn block_len(&self) -> usize;
+    /// How vectors are divided.
+    fn blocks(&self) -> Blocks;
 
     /// `fill` writes the vector; one item of `sources` for each block.
     fn fill<S, R>(&mut self, sources: S, fill: impl Fn(S::Item, &mut [T]) -> R + Sync) -> Vec<R>
@@ -37,8 +38,8 @@ pub(crate) trait Engine<T> {
 impl<T: FftNum> Engine<T> for Convolution<T> {
     type Table = SymbolTable<T>;
 
-    fn block_len(&self) -> usize {
-        BLOCK_ROWS * self.grid().nx()
+    fn blocks(&self) -> Blocks {
+        Blocks::of(BLOCK_ROWS * self.grid().nx())
     }
 
     fn fill<S, R>(&mut self, sources: S, fill: impl Fn(S::Item, &mut [T]) -> R + Sync) -> Vec<R>

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{Engine, rows};
+use super::{Blocks, Engine, rows};
 use crate::Control;
 use crate::problem::Problem;
 
@@ -22,8 +22,8 @@ pub(crate) struct GapSums {
     pub(super) min_gap: f64,
     /// Σ g over p > 0
     pub(super) contact_gap: f64,
-    /// Number of elements with p > 0
-    pub(super) n_contact: usize,
+    /// Σ 1 over p > 0
+    pub(super) n_contact: f64,
 }
 
 impl GapSums {
@@ -33,7 +33,7 @@ impl GapSums {
         pressure_height: 0.0,
         min_gap: f64::INFINITY,
         contact_gap: 0.0,
-        n_contact: 0,
+        n_contact: 0.0,
     };
 
     pub(super) fn add_element(&mut self, p: f64, g: f64, h: f64) {
@@ -43,19 +43,22 @@ impl GapSums {
             self.pressure_gap += p * g;
             self.pressure_height += p * h;
             self.contact_gap += g;
-            self.n_contact += 1;
+            self.n_contact += 1.0;
         }
     }
 
-    /// Adds blocks in their order.
-    pub(super) fn total(blocks: Vec<Self>) -> Self {
-        blocks.into_iter().fold(Self::EMPTY, |sum, block| Self {
-            pressure: sum.pressure + block.pressure,
-            pressure_gap: sum.pressure_gap + block.pressure_gap,
-            pressure_height: sum.pressure_height + block.pressure_height,
-            min_gap: sum.min_gap.min(block.min_gap),
-            contact_gap: sum.contact_gap + block.contact_gap,
-            n_contact: sum.n_contact + block.n_contact,
+    /// Adds blocks in their order, weighted by the area of their elements.
+    pub(super) fn total(blocks: &Blocks, sums: Vec<Self>) -> Self {
+        sums.into_iter().enumerate().fold(Self::EMPTY, |sum, (i, block)| {
+            let area = blocks.area(i);
+            Self {
+                pressure: sum.pressure + area * block.pressure,
+                pressure_gap: sum.pressure_gap + area * block.pressure_gap,
+                pressure_height: sum.pressure_height + area * block.pressure_height,
+                min_gap: sum.min_gap.min(block.min_gap),
+                contact_gap: sum.contact_gap + area * block.contact_gap,
+                n_contact: sum.n_contact + area * block.n_contact,
+            }
         })
     }
 
@@ -72,7 +75,7 @@ impl GapSums {
     /// The gap of elements in contact: its mean, or zero where the penetration is prescribed.
     pub(super) fn zero_gap(&self, problem: &Problem) -> f64 {
         match problem.control {
-            Control::MeanPressure(_) if self.n_contact > 0 => self.contact_gap / self.n_contact as f64,
+            Control::MeanPressure(_) if self.n_contact > 0.0 => self.contact_gap / self.n_contact,
             Control::MeanPressure(_) => self.min_gap,
             Control::Penetration(_) => 0.0,
         }
@@ -96,38 +99,38 @@ pub(crate) fn fresh_gap<F: Engine<f64>>(
     problem: &Problem,
     (h, p, g): (&[f64], &[f64], &mut [f64]),
 ) -> GapSums {
-    let (block, offset) = (engine.block_len(), problem.offset());
+    let (blocks, offset) = (engine.blocks(), problem.offset());
+    let block = blocks.len();
     engine.fill(p.par_chunks(block), |p, values| values.copy_from_slice(p));
     engine.multiply(response);
     let sinks = (h.par_chunks(block), p.par_chunks(block), g.par_chunks_mut(block));
-    GapSums::total(
-        engine.take(response, sinks.into_par_iter(), |(h, p, g), rows| rows::fresh_gap(rows, offset, h, p, g)),
-    )
+    let sums = engine.take(response, sinks.into_par_iter(), |(h, p, g), rows| rows::fresh_gap(rows, offset, h, p, g));
+    GapSums::total(&blocks, sums)
 }
 
-/// Multiplies the pressure `p` by `scale`; the gap `g` follows, since v is linear in p. Sums are of blocks of `block` elements.
+/// Multiplies the pressure `p` by `scale`; the gap `g` follows, since v is linear in p.
 pub(crate) fn rescale(
     scale: f64,
-    block: usize,
+    blocks: &Blocks,
     problem: &Problem,
     (h, p, g): (&[f64], &mut [f64], &mut [f64]),
 ) -> GapSums {
-    let offset = problem.offset();
+    let (block, offset) = (blocks.len(), problem.offset());
     let vectors = (h.par_chunks(block), p.par_chunks_mut(block), g.par_chunks_mut(block)).into_par_iter();
-    GapSums::total(vectors.map(|(h, p, g)| rows::rescale(scale, offset, h, p, g)).collect())
+    GapSums::total(blocks, vectors.map(|(h, p, g)| rows::rescale(scale, offset, h, p, g)).collect())
 }
 
-/// Mean of the pressure over a cell of `n_cell` elements.
-pub(super) fn mean_pressure(n_cell: f64, block: usize, pressure: &[f64]) -> f64 {
-    let blocks: Vec<f64> = pressure.par_chunks(block).map(|block| block.iter().sum()).collect();
-    blocks.into_iter().sum::<f64>() / n_cell
+/// Mean of the pressure over a cell of `n_cell` of the smallest elements.
+pub(super) fn mean_pressure(n_cell: f64, blocks: &Blocks, pressure: &[f64]) -> f64 {
+    let [sum] = blocks.total(pressure.par_chunks(blocks.len()).map(|block| [block.iter().sum()]).collect());
+    sum / n_cell
 }
 
-/// Multiplies the pressure so that its mean over a cell of `n_cell` elements is the prescribed one, if one is and anything
+/// Multiplies the pressure so that its mean over a cell of `n_cell` of the smallest elements is the prescribed one, if one is and anything
 /// presses.
-pub(crate) fn scale_to_load(problem: &Problem, n_cell: f64, block: usize, pressure: &mut [f64]) {
+pub(crate) fn scale_to_load(problem: &Problem, n_cell: f64, blocks: &Blocks, pressure: &mut [f64]) {
     if let Control::MeanPressure(wanted) = problem.control {
-        let mean = mean_pressure(n_cell, block, pressure);
+        let mean = mean_pressure(n_cell, blocks, pressure);
         if mean > 0.0 {
             scale_all(pressure, wanted / mean);
         }

@@ -9,6 +9,7 @@
 //! correction is added to exact values, as in iterative refinement, and a fresh application of L in double precision
 //! settles what single precision left. All corrections are relative to the height range H, so no scene underflows.
 
+mod blocks;
 mod engine;
 mod gap;
 mod outcome;
@@ -17,12 +18,12 @@ mod rows;
 use rayon::prelude::*;
 use rc_core::{Event, Grid, Observer};
 
+pub(crate) use blocks::Blocks;
 pub(crate) use engine::Engine;
 pub(crate) use gap::{GapSums, fresh_gap, rescale, scale_to_load};
 use gap::{mean_pressure, scale_all};
 pub(crate) use outcome::Outcome;
 
-use crate::fft::total;
 use crate::problem::Problem;
 use crate::solution::LevelInfo;
 use crate::{Certificate, Control};
@@ -62,6 +63,7 @@ pub(crate) enum Start {
 pub(crate) struct Descent<'a, C: Engine<f32>, F: Engine<f64>> {
     heights: &'a [f64],
     problem: &'a Problem,
+    blocks: Blocks,
     machinery: Machinery<C, F>,
     p: Vec<f64>,
     g: Vec<f64>,
@@ -87,7 +89,8 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
         start: Start,
     ) -> Self {
         let n = heights.len();
-        debug_assert_eq!(machinery.corrections.block_len(), machinery.fresh.block_len());
+        let blocks = machinery.corrections.blocks();
+        debug_assert_eq!(blocks.len(), machinery.fresh.blocks().len());
         let (has_start, has_gap) = (!matches!(start, Start::Nothing), matches!(start, Start::Known { .. }));
         let (p, g) = match start {
             Start::Nothing => (vec![0.0; n], vec![0.0; n]),
@@ -98,6 +101,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
         Self {
             heights,
             problem,
+            blocks,
             machinery,
             p,
             g,
@@ -136,10 +140,10 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
 
     /// Values in a block.
     fn block(&self) -> usize {
-        self.machinery.corrections.block_len()
+        self.blocks.len()
     }
 
-    /// Elements of the whole cell, in contact or not.
+    /// The smallest elements that the whole cell has room for.
     fn n_cell(&self) -> f64 {
         self.info.grid.len() as f64
     }
@@ -157,7 +161,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
         loop {
             let mut error = self.error(&sums);
             let iteration = self.info.iterations;
-            observer.notify(&Event::Iteration { iteration, error, tolerance, n_contact: sums.n_contact });
+            observer.notify(&Event::Iteration { iteration, error, tolerance, n_contact: sums.n_contact as usize });
             if error <= tolerance {
                 if !certify {
                     return self.outcome(&sums, true);
@@ -188,8 +192,8 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
 
     /// First pressure and gap.
     fn start(&mut self) -> GapSums {
-        let (n_cell, block) = (self.n_cell(), self.block());
-        let present = mean_pressure(n_cell, block, &self.p);
+        let n_cell = self.n_cell();
+        let present = mean_pressure(n_cell, &self.blocks, &self.p);
         let usable = self.has_start && present > 0.0;
         if self.has_gap && usable {
             return match self.problem.control {
@@ -201,7 +205,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
             };
         }
         match self.problem.control {
-            Control::MeanPressure(_) if usable => scale_to_load(self.problem, n_cell, block, &mut self.p),
+            Control::MeanPressure(_) if usable => scale_to_load(self.problem, n_cell, &self.blocks, &mut self.p),
             Control::MeanPressure(mean) => {
                 let share = n_cell / self.p.len() as f64;
                 self.p.fill(mean * share);
@@ -310,7 +314,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
             self.t.par_chunks(block),
             self.active.par_chunks_mut(block),
         );
-        total(self.machinery.corrections.fill(sources.into_par_iter(), |(p, g, t, active), rows| {
+        self.blocks.total(self.machinery.corrections.fill(sources.into_par_iter(), |(p, g, t, active), rows| {
             rows::first_residual((p, g), (zero_gap, unit), t, active, rows)
         }))
     }
@@ -338,7 +342,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
         let Machinery { corrections, preconditioner, .. } = &mut self.machinery;
         corrections.multiply(preconditioner);
         let sinks = (self.u.par_chunks(block), self.active.par_chunks(block), self.z.par_chunks_mut(block));
-        total(corrections.take(preconditioner, sinks.into_par_iter(), |(u, active, z), rows| {
+        self.blocks.total(corrections.take(preconditioner, sinks.into_par_iter(), |(u, active, z), rows| {
             rows::take_preconditioned(rows, u, active, z)
         }))
     }
@@ -360,7 +364,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
             active.par_chunks(block),
             self.u.par_chunks_mut(block),
         );
-        total(self.machinery.corrections.take(
+        self.blocks.total(self.machinery.corrections.take(
             &self.machinery.response,
             sinks.into_par_iter(),
             |(t, g, active, u), rows| rows::take_response(rows, t, g, zero_gap, active, u),
@@ -378,7 +382,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
             self.u.par_chunks(block),
         );
         let [pressure, clipped] =
-            total(self.machinery.corrections.fill(sources.into_par_iter(), |(p, g, t, u), rows| {
+            self.blocks.total(self.machinery.corrections.fill(sources.into_par_iter(), |(p, g, t, u), rows| {
                 rows::clip(length, range.recip(), (p, g), (t, u), rows)
             }));
         let scale = match self.problem.control {
@@ -397,7 +401,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
             self.machinery.corrections.take(&self.machinery.response, sinks.into_par_iter(), |(h, p, g), rows| {
                 rows::take_clipped(rows, response, scale, offset, h, (p, g))
             });
-        let sums = GapSums::total(sums);
+        let sums = GapSums::total(&self.blocks, sums);
         match sums.scale_to_penetration(self.problem) {
             None => self.settle(sums),
             Some(scale) => self.rescale(scale),
@@ -406,7 +410,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
 
     fn rescale(&mut self, scale: f64) -> GapSums {
         let block = self.block();
-        let sums = rescale(scale, block, self.problem, (self.heights, &mut self.p, &mut self.g));
+        let sums = rescale(scale, &self.blocks, self.problem, (self.heights, &mut self.p, &mut self.g));
         self.settle(sums)
     }
 

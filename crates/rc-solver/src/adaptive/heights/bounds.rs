@@ -41,6 +41,7 @@ pub(super) struct Bounds {
     offset: f64,
     remainder: f64,
     scale: f64,
+    curvature: f64,
 }
 
 impl Bounds {
@@ -56,7 +57,7 @@ impl Bounds {
                 round_up((inside.fold(f64::NEG_INFINITY, |max, &h| max.max(h)) - offset) / scale)
             })
         });
-        Self { pyramid: MaxPyramid::new(n_blocks, leaves.collect()), offset, remainder: 0.0, scale }
+        Self { pyramid: MaxPyramid::new(n_blocks, leaves.collect()), offset, remainder: 0.0, scale, curvature: f64::INFINITY }
     }
 
     /// Bounds of a band-limited surface everywhere, and of its negative, by cell of its coefficients; `samples` are
@@ -65,16 +66,16 @@ impl Bounds {
         let scale = scale(samples);
         let side = surface.side();
         let mut leaves = [(); 2].map(|()| vec![0.0_f32; side * side]);
-        let mut remainder = f64::INFINITY;
+        let (mut remainder, mut curvature) = (f64::INFINITY, f64::INFINITY);
         for refinement in 0..=MAX_REFINEMENT {
             if remainder > SMALL_REMAINDER * surface.rms() {
-                remainder = Expansions::new(surface, refinement).bound(scale, &mut leaves);
+                (remainder, curvature) = Expansions::new(surface, refinement).bound(scale, &mut leaves);
             }
         }
         let mut signs = [surface.mean(), -surface.mean()].into_iter();
         leaves.map(|leaves| {
             let offset = signs.next().unwrap_or(0.0);
-            Self { pyramid: MaxPyramid::new(side, leaves), offset, remainder, scale }
+            Self { pyramid: MaxPyramid::new(side, leaves), offset, remainder, scale, curvature }
         })
     }
 
@@ -84,6 +85,11 @@ impl Bounds {
     /// When the block is outside the cell.
     pub(super) fn of_block(&self, blocks: usize, ix: usize, iy: usize) -> f64 {
         self.height(self.pyramid.max(blocks, ix, iy))
+    }
+
+    /// Upper bound of |∂²h/∂x²| and |∂²h/∂y²| everywhere; infinite for a map, of which nothing is known between elements.
+    pub(super) fn curvature(&self) -> f64 {
+        self.curvature
     }
 
     /// Leaves per side.
@@ -130,8 +136,8 @@ impl<'a> Expansions<'a> {
     }
 
     /// Fills the bounds of coefficient cells, of the heights and of their negatives, in units of `scale`; returns the remainder
-    /// to be added to them.
-    fn bound(&self, scale: f64, [above, below]: &mut [Vec<f32>; 2]) -> f64 {
+    /// to be added to them, and the bound of second derivatives along the axes.
+    fn bound(&self, scale: f64, [above, below]: &mut [Vec<f32>; 2]) -> (f64, f64) {
         let len = (TILE >> self.refinement) * self.surface.side();
         let rows = above.par_chunks_mut(len).zip(below.par_chunks_mut(len)).enumerate();
         let curvatures: Vec<[f64; 3]> =
@@ -187,8 +193,8 @@ impl<'a> Expansions<'a> {
     }
 
     /// R, from the greatest |hxx|, |hxy| and |hyy| at the centres, and the errors of interpolation: of the expansions, and of
-    /// the tiles that are to be bounded.
-    fn remainder(&self, curvatures: [f64; 3]) -> f64 {
+    /// the tiles that are to be bounded. And the greatest of |hxx| and |hyy| anywhere, in 1/λ.
+    fn remainder(&self, curvatures: [f64; 3]) -> (f64, f64) {
         let surface = self.surface;
         // Angle by which the shortest wave advances in a coefficient cell: a derivative multiplies a wave by this at most.
         let angle = TAU * surface.band_limit() as f64 / surface.side() as f64;
@@ -201,7 +207,7 @@ impl<'a> Expansions<'a> {
         let d = self.half;
         // Products of two errors are far below the factor 2.
         let errors = 2.0 * (2.0 * surface.error() + 2.0 * d * gradient_error + 2.0 * d * d * curvature_error);
-        d * d * d / 6.0 * third_derivatives + errors
+        (d * d * d / 6.0 * third_derivatives + errors, xx.max(yy) * (surface.side() as f64).powi(2))
     }
 }
 

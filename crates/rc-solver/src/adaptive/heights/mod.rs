@@ -168,6 +168,11 @@ impl<'a> Heights<'a> {
         self.bounds.of_block(blocks, ix, iy)
     }
 
+    /// Upper bound of |∂²h/∂x²| and |∂²h/∂y²|, in 1/λ; infinite for a map.
+    pub(crate) fn curvature(&self) -> f64 {
+        self.bounds.curvature()
+    }
+
     /// Greatest and least height at the centres of the finest level, and the mean height.
     pub(crate) fn extremes(&self) -> HeightStatistics {
         self.extremes

@@ -35,7 +35,7 @@ use self::tables::Sizes;
 pub(crate) use self::tables::{Prepared, Tables};
 use super::elements::Elements;
 use super::tiles::{CELLS, TILE, TileSet};
-use crate::descent::Engine;
+use crate::descent::{Blocks, Engine};
 use crate::fft::{BLOCK_ROWS, Convolution};
 
 /// Tiles that one thread works on at a time, and whose values a caller gets at a time.
@@ -328,8 +328,8 @@ impl<T: Real> TileOperator<T> {
 impl<T: Real> Engine<T> for TileOperator<T> {
     type Table = Tables<T>;
 
-    fn block_len(&self) -> usize {
-        BLOCK_CELLS
+    fn blocks(&self) -> Blocks {
+        self.hierarchy.elements.division()
     }
 
     fn fill<S, R>(&mut self, sources: S, fill: impl Fn(S::Item, &mut [T]) -> R + Sync) -> Vec<R>
