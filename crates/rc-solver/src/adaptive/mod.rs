@@ -30,8 +30,9 @@ pub use self::solution::{AdaptiveSolution, ContactElement};
 use self::tiles::{TILE, TileSet};
 use crate::descent::Outcome;
 use crate::problem::Problem;
-use crate::solution::{LevelInfo, SolveInfo};
-use crate::{Certificate, Control, SolveParams, uniform};
+use crate::solution::LevelInfo;
+use crate::uniform::{self, Climb, Climbed};
+use crate::{Certificate, Control, SolveParams};
 
 /// Operator errors from here on are reached in single precision.
 const SINGLE_PRECISION: f64 = 1e-6;
@@ -248,14 +249,7 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
     fn finish(&self, grid: Grid, level: Level, levels: Vec<LevelInfo>) -> Result<AdaptiveSolution, AdaptiveError> {
         let (outcome, iterations) = (level.outcome, level.info.iterations);
         let certificate = outcome.certificate;
-        let info = SolveInfo {
-            certificate,
-            mean_pressure: outcome.mean_pressure,
-            penetration: self.problem.h_max + outcome.approach,
-            penetration_full_contact: self.problem.h_max - self.problem.h_mean,
-            elastic_energy: outcome.elastic_energy,
-            levels,
-        };
+        let info = outcome.info(&self.problem, levels);
         let solution = AdaptiveSolution {
             base: self.base(),
             grid,
@@ -275,25 +269,12 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
     /// Uniform grids up to the base grid.
     fn solve_base(&self, n_above: usize, observer: &dyn Observer) -> (Coarse, Vec<LevelInfo>) {
         let base = self.heights.base();
-        let coarser = uniform::coarsen(base, uniform::SMALLEST_SIDE);
-        let n_levels = coarser.len() + 1;
-        let mut infos = Vec::new();
-        let mut start = None;
-        for (level, heights) in coarser.iter().rev().chain([base]).enumerate() {
-            observer.notify(&Event::Level { grid: heights.grid(), level, n_levels: n_levels + n_above });
-            let below = n_levels + n_above - 2 - level;
-            let mut descent = uniform::descent(heights, &Love, &self.problem, start.take());
-            let tolerance = uniform::coarse_tolerance(below).max(self.params.tolerance);
-            descent.run(tolerance, self.params.max_iterations, false, observer);
-            infos.push(descent.info());
-            if level + 1 == n_levels {
-                let function = to_tiles(base.grid(), &uniform::level_function(&descent));
-                let tiles = TileSet::full(base.grid().nx() / TILE);
-                return (Coarse { tiles, function, contact_gap: descent.contact_gap() }, infos);
-            }
-            start = Some(uniform::prolong(&descent));
-        }
-        unreachable!("the base grid returns")
+        let (problem, params) = (&self.problem, self.params);
+        let climb = Climb { kernel: &Love, problem, params, n_above, observer };
+        let Climbed { descent, outcome, levels } = climb.to(base);
+        let function = to_tiles(base.grid(), &uniform::level_function(&descent));
+        let tiles = TileSet::full(base.grid().nx() / TILE);
+        (Coarse { tiles, function, contact_gap: outcome.contact_gap }, levels)
     }
 }
 
