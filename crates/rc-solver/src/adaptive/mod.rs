@@ -57,7 +57,8 @@ pub struct AdaptiveParams {
     pub operator_error: f64,
     /// Elements per side of the base grid; `None` chooses.
     pub base_side: Option<usize>,
-    /// Most memory, in bytes; a larger estimate is an error, before any work.
+    /// Most memory, in bytes; a larger estimate is an error, before any work. That of the base grid is checked before heights
+    /// are sampled.
     pub memory_limit: Option<u64>,
 }
 
@@ -89,27 +90,16 @@ impl<'a> AdaptiveProblem<'a> {
         let split = SplitParams::for_error(error)
             .ok_or(AdaptiveError::OperatorError { value: error, smallest: SplitParams::SMALLEST_ERROR })?;
         let base_side = base_side(&source, params.base_side)?;
+        check_memory(params.memory_limit, estimate::base_bytes(base_side), None)?;
         let heights = Heights::new(source, base_side)?;
         let problem = Problem::of_statistics(heights.extremes(), control, &params.solve)?;
         if problem.h_range == 0.0 {
             return Err(AdaptiveError::Flat);
         }
         let prepared = Self { heights, problem, params: *params, split };
-        prepared.check_memory()?;
+        let Estimate { area_fraction, adaptive_bytes, .. } = prepared.estimate();
+        check_memory(params.memory_limit, adaptive_bytes, Some(100.0 * area_fraction))?;
         Ok(prepared)
-    }
-
-    fn check_memory(&self) -> Result<(), AdaptiveError> {
-        let Some(limit) = self.params.memory_limit else { return Ok(()) };
-        let estimate = self.estimate();
-        if estimate.adaptive_bytes <= limit as f64 {
-            return Ok(());
-        }
-        Err(AdaptiveError::Memory {
-            needed: (estimate.adaptive_bytes / 1e6).ceil() as u64,
-            limit: limit / 1_000_000,
-            area_percent: 100.0 * estimate.area_fraction,
-        })
     }
 
     /// What solving it will cost, from the surface and the load alone.
@@ -152,6 +142,17 @@ pub fn solve_adaptive(
     observer: &dyn Observer,
 ) -> Result<AdaptiveSolution, AdaptiveError> {
     AdaptiveProblem::new(source, control, params)?.solve(observer)
+}
+
+/// Refuses what needs more bytes than the limit.
+fn check_memory(limit: Option<u64>, bytes: f64, area_percent: Option<f64>) -> Result<(), AdaptiveError> {
+    match limit {
+        Some(limit) if bytes > limit as f64 => {
+            let needed = (bytes / 1e6).ceil() as u64;
+            Err(AdaptiveError::Memory { needed, limit: limit / 1_000_000, area_percent })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Checks or chooses the elements per side of the base grid.
@@ -289,4 +290,51 @@ fn to_tiles(grid: Grid, values: &[f64]) -> Vec<f64> {
         }
     }
     result
+}
+
+#[cfg(test)]
+mod tests {
+    use rc_core::HeightField;
+
+    use super::*;
+
+    /// Any surface with this many waves.
+    struct Waves(usize);
+
+    impl HeightField for Waves {
+        fn height(&self, _x: f64, _y: f64) -> f64 {
+            0.0
+        }
+
+        fn band_limit(&self) -> Option<usize> {
+            Some(self.0)
+        }
+    }
+
+    #[test]
+    fn the_base_grid_follows_the_waves_and_the_divisors() {
+        let base = |side, waves| base_side(&HeightSource::Surface(&Waves(waves), side), None);
+        for (side, waves, expected) in [(2048, 64, 256), (32768, 1024, 4096), (128, 8, 64), (1_000_000, 8, 125_000)] {
+            assert_eq!(base(side, waves).ok(), Some(expected), "{side}, {waves} waves");
+        }
+        assert!(matches!(base(1001, 8), Err(AdaptiveError::Grid { .. })));
+    }
+
+    #[test]
+    fn a_base_grid_above_the_limit_is_refused_before_heights_are_sampled() {
+        struct Unsampled;
+        impl HeightField for Unsampled {
+            fn height(&self, _x: f64, _y: f64) -> f64 {
+                panic!("sampled")
+            }
+
+            fn band_limit(&self) -> Option<usize> {
+                Some(1000)
+            }
+        }
+        let params = AdaptiveParams { memory_limit: Some(100_000_000), ..AdaptiveParams::certified() };
+        let source = HeightSource::Surface(&Unsampled, 32768);
+        let error = AdaptiveProblem::new(source, Control::MeanPressure(1e-3), &params).err();
+        assert!(matches!(error, Some(AdaptiveError::Memory { limit: 100, area_percent: None, .. })), "{error:?}");
+    }
 }
