@@ -1,13 +1,11 @@
 //! What a solve may need of memory: the limit that the user gives, and what the machine has.
 
 use rc_core::Grid;
+use rc_solver::UNIFORM_BYTES_PER_ELEMENT;
 
 use crate::byte_size::ByteSize;
 use crate::error::CliError;
 use crate::memory;
-
-/// Bytes per element that the methods on the whole grid are assumed to need at their peak.
-const BYTES_PER_ELEMENT: u64 = 80;
 
 /// Memory that there is for a command.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +19,12 @@ impl Budget {
     #[must_use]
     pub fn new(limit: Option<ByteSize>) -> Self {
         Self { limit, machine: memory::physical().map(ByteSize) }
+    }
+
+    /// Bytes that there are, as far as that is known.
+    #[must_use]
+    pub fn available(&self) -> Option<u64> {
+        self.limit.into_iter().chain(self.machine).map(|bytes| bytes.0).min()
     }
 
     /// Refuses `what`, which needs about `needed` bytes, when there are fewer; `remedy` (may be empty) gets the bytes that
@@ -52,9 +56,10 @@ impl Budget {
     /// # Errors
     /// [`CliError::Input`] that names what is needed, what there is, and the largest grid that fits.
     pub fn check_grid(&self, what: &str, grid: Grid) -> Result<(), CliError> {
-        let needed = grid.len() as f64 * BYTES_PER_ELEMENT as f64;
-        let remedy =
-            |available: u64| format!("; at most {} elements per side fit", (available / BYTES_PER_ELEMENT).isqrt());
+        let needed = grid.len() as f64 * UNIFORM_BYTES_PER_ELEMENT as f64;
+        let remedy = |available: u64| {
+            format!("; at most {} elements per side fit", (available / UNIFORM_BYTES_PER_ELEMENT).isqrt())
+        };
         self.check(&format!("{what} on {grid} elements"), needed, remedy)
     }
 }
@@ -73,6 +78,7 @@ mod tests {
         let unlimited = Budget { limit: None, ..budget };
         assert!(unlimited.check_grid("it", grid(3162)).is_ok());
         let error = unlimited.check_grid("it", grid(3163)).expect_err("above the machine").to_string();
+        assert_eq!((budget.available(), unlimited.available()), (Some(8_000_000), Some(800_000_000)));
         assert!(error.starts_with("grid: it on 3163 x 3163") && error.contains("has 800 MB"), "{error}");
     }
 }

@@ -34,4 +34,4 @@ pub use observables::{ContactArea, Observables};
 pub use operator::{DirectSum, UniformOperator};
 pub use params::SolveParams;
 pub use solution::{LevelInfo, MeshPressure, Solution, SolveInfo, Status};
-pub use uniform::solve_uniform;
+pub use uniform::{UNIFORM_BYTES_PER_ELEMENT, solve_uniform};

@@ -1,6 +1,5 @@
 //! Which method solves a scene, and why.
 
-use rc_core::Grid;
 use rc_solver::{AdaptiveError, AdaptiveParams, AdaptiveProblem, Estimate};
 
 use super::refusal;
@@ -10,9 +9,6 @@ use crate::quantity::digits;
 use crate::resolve::ContactProblem;
 use crate::scene::{KernelName, Method, RunKeys};
 use crate::surface::{LoadedSurface, Shape};
-
-/// Bytes that the adaptive method needs for each element of its base grid, at least.
-const BYTES_PER_BASE_ELEMENT: f64 = 130.0;
 
 /// What the adaptive method still needs when files are written, relative to its peak.
 const KEPT_FOR_FILES: f64 = 1.0 / 3.0;
@@ -50,7 +46,7 @@ pub(super) fn choose<'a>(
     match contact.method {
         None => chooser.automatic(),
         Some(Method::Adaptive) => {
-            let problem = chooser.prepare()?.map_err(|error| chooser.refuse(&error))?;
+            let problem = chooser.prepare().map_err(|error| chooser.refuse(&error))?;
             chooser.adaptive(problem, "adaptive: asked for".into())
         }
         Some(Method::Uniform) => chooser.on_grid(Plan::Uniform, "uniform: asked for".into()),
@@ -73,56 +69,64 @@ impl<'a> Chooser<'a, '_> {
         if self.contact.kernel == KernelName::Spectral {
             return self.on_grid(Plan::Uniform, "uniform: the kernel spectral has no adaptive form".into());
         }
-        let problem = match self.prepare()? {
+        let problem = match self.prepare() {
             Ok(problem) => problem,
-            Err(error) => match self.obstacle(&error) {
-                Some(obstacle) => return self.on_grid(Plan::Uniform, format!("uniform: {obstacle}")),
-                None => return Err(self.refuse(&error)),
-            },
+            Err(error) => return self.without_adaptive(&error),
         };
         let area = problem.estimate().area_fraction;
         let percent = digits(100.0 * area, 2);
         if area <= Estimate::GREATEST_ADAPTIVE_AREA {
-            self.adaptive(problem, format!("adaptive: an estimated contact area of {percent} %"))
-        } else {
-            // Its base grid is memory that the uniform method can use.
-            drop(problem);
-            let reason = format!("uniform: an estimated contact area of {percent} % is cheaper on the uniform grid");
-            self.on_grid(Plan::Uniform, reason)
+            return self.adaptive(problem, format!("adaptive: an estimated contact area of {percent} %"));
+        }
+        match self.on_grid(Plan::Uniform, cheaper_on_grid(100.0 * area)) {
+            // The adaptive method fits, or it would not be prepared.
+            Err(_) => self.adaptive(
+                problem,
+                format!(
+                    "adaptive: at an estimated contact area of {percent} % the uniform grid is cheaper but does not fit into \
+                     memory"
+                ),
+            ),
+            choice => choice,
         }
     }
 
-    /// The outer error ends the command; the inner one only says that the adaptive method does not do for this scene.
-    fn prepare(&self) -> Result<Result<AdaptiveProblem<'a>, AdaptiveError>, CliError> {
-        self.check_base()?;
+    /// Prepares the adaptive method, if it does for this scene and fits into memory.
+    fn prepare(&self) -> Result<AdaptiveProblem<'a>, AdaptiveError> {
         let grid = self.surface.grid;
         if grid.nx() != grid.ny() {
             // Said here, since a surface is handed over with one side.
-            return Ok(Err(AdaptiveError::Grid { nx: grid.nx(), ny: grid.ny(), smallest: 128 }));
+            return Err(AdaptiveError::Grid { nx: grid.nx(), ny: grid.ny(), smallest: 128 });
         }
-        let params = AdaptiveParams { solve: self.contact.params, ..AdaptiveParams::certified() };
-        Ok(AdaptiveProblem::new(self.surface.source(), self.contact.control, &params))
+        let memory_limit = self.budget.available();
+        let params = AdaptiveParams { solve: self.contact.params, memory_limit, ..AdaptiveParams::certified() };
+        AdaptiveProblem::new(self.surface.source(), self.contact.control, &params)
     }
 
-    /// Refuses a base grid that does not fit, before the solver samples it. Every method needs more than that.
-    fn check_base(&self) -> Result<(), CliError> {
-        let (Shape::Random(_), Some(waves)) = (&self.surface.shape, self.surface.waves()) else { return Ok(()) };
-        let grid = self.surface.grid;
-        let needed = (least_base(grid, waves) as f64).powi(2) * BYTES_PER_BASE_ELEMENT;
-        self.budget.check(&format!("the base grid of {grid} elements with {waves} waves"), needed, |_| String::new())
+    /// The uniform grid instead of the adaptive method, where that helps.
+    fn without_adaptive(&self, error: &AdaptiveError) -> Result<Choice<'a>, CliError> {
+        if let AdaptiveError::Memory { area_percent, .. } = error {
+            let reason = match area_percent.filter(|percent| *percent > 100.0 * Estimate::GREATEST_ADAPTIVE_AREA) {
+                Some(percent) => cheaper_on_grid(percent),
+                None => "uniform: the adaptive method does not fit into memory".into(),
+            };
+            return self.on_grid(Plan::Uniform, reason).map_err(|_| self.refuse(error));
+        }
+        match self.obstacle(error) {
+            Some(obstacle) => self.on_grid(Plan::Uniform, format!("uniform: {obstacle}")),
+            None => Err(self.refuse(error)),
+        }
     }
 
     fn adaptive(&self, problem: AdaptiveProblem<'a>, reason: String) -> Result<Choice<'a>, CliError> {
-        let Estimate { area_fraction, adaptive_bytes, .. } = problem.estimate();
+        let adaptive_bytes = problem.estimate().adaptive_bytes;
         let writing = match self.surface.shape {
             Shape::Random(_) if self.files => {
                 BYTES_PER_HEIGHT * self.surface.grid.len() as f64 + KEPT_FOR_FILES * adaptive_bytes
             }
             _ => 0.0,
         };
-        let (percent, grid) = (digits(100.0 * area_fraction, 2), self.surface.grid);
-        let what = format!("the adaptive method on {grid} elements, at an estimated contact area of {percent} %,");
-        self.budget.check(&what, adaptive_bytes, |_| String::new())?;
+        let grid = self.surface.grid;
         self.budget.check(&format!("gap.npy of {grid} elements"), writing, |_| "; solve without --out".into())?;
         Ok(Choice { plan: Plan::Adaptive(Box::new(problem)), reason })
     }
@@ -160,33 +164,22 @@ impl<'a> Chooser<'a, '_> {
             AdaptiveError::Grid { .. } | AdaptiveError::Base { .. } => {
                 CliError::input(format_args!("grid: {error}; --method uniform takes any grid"))
             }
+            AdaptiveError::Memory { needed, area_percent, .. } => {
+                let grid = self.surface.grid;
+                let part = match area_percent {
+                    Some(percent) => format!(", at an estimated contact area of {} %,", digits(*percent, 2)),
+                    None => " for its base grid alone".into(),
+                };
+                let what = format!("the adaptive method on {grid} elements{part}");
+                let refused = self.budget.check(&what, 1e6 * *needed as f64, |_| String::new());
+                refused.err().unwrap_or_else(|| CliError::input(format_args!("memory_limit: {error}")))
+            }
             other => CliError::input(format_args!("method: {other}")),
         }
     }
 }
 
-/// Elements per side of the coarsest base grid that the adaptive method may take for a surface with `waves` waves: at least
-/// four for the shortest, in whole tiles of eight.
-fn least_base(grid: Grid, waves: usize) -> usize {
-    let mut side = grid.nx().min(grid.ny());
-    while side.is_multiple_of(16) && side / 2 >= waves.saturating_mul(4).max(64) {
-        side /= 2;
-    }
-    // A finest grid that is its own base is halved once more.
-    side.min(grid.nx().min(grid.ny()).div_ceil(2))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_base_grid_follows_the_waves_and_the_divisors() {
-        let least = |side, waves| least_base(Grid::square(side).expect("a grid"), waves);
-        assert_eq!(least(2048, 64), 256);
-        assert_eq!(least(32768, 1024), 4096);
-        assert_eq!(least(128, 8), 64);
-        assert_eq!(least(1_000_000, 8), 125_000);
-        assert_eq!(least(1001, 8), 501);
-    }
+/// Why the uniform method solves a scene with this estimated contact area, in percent.
+fn cheaper_on_grid(percent: f64) -> String {
+    format!("uniform: an estimated contact area of {} % is cheaper on the uniform grid", digits(percent, 2))
 }

@@ -42,16 +42,15 @@ pub enum AdaptiveError {
     #[error("a flat surface has nothing to adapt to; the uniform method solves it")]
     Flat,
     /// The estimated memory is above the limit.
-    #[error(
-        "the adaptive method needs about {needed} MB for an estimated contact area of {area_percent:.1} %, more than the limit of {limit} MB"
-    )]
+    #[error("the adaptive method needs about {needed} MB {}, more than the limit of {limit} MB", needed_for(*area_percent))]
     Memory {
         /// Estimate, in 10^6 bytes.
         needed: u64,
         /// Limit, in 10^6 bytes.
         limit: u64,
-        /// Estimated contact area, in percent of the nominal one.
-        area_percent: f64,
+        /// Estimated contact area, in percent of the nominal one; `None` when the base grid alone is too large, which is said
+        /// before heights are sampled.
+        area_percent: Option<f64>,
     },
     /// The accuracy asked of the operator is out of reach.
     #[error("the error bound of the operator must be between {smallest:e} and 1e-3, not {value:e}")]
@@ -73,4 +72,11 @@ pub enum AdaptiveError {
         /// The pressure found.
         solution: Box<AdaptiveSolution>,
     },
+}
+
+fn needed_for(area_percent: Option<f64>) -> String {
+    match area_percent {
+        Some(percent) => format!("for an estimated contact area of {percent:.1} %"),
+        None => "for its base grid alone".into(),
+    }
 }

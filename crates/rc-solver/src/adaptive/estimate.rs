@@ -18,8 +18,10 @@ const BYTES_PER_CELL: f64 = 80.0;
 /// Bytes for each element of the base grid.
 const BYTES_PER_BASE_ELEMENT: f64 = 130.0;
 
-/// Bytes for each element of a uniform grid.
-const BYTES_PER_ELEMENT: f64 = 75.0;
+/// Memory of the base grid, in bytes: what the adaptive method needs at least.
+pub(super) fn base_bytes(base_side: usize) -> f64 {
+    BYTES_PER_BASE_ELEMENT * (base_side as f64).powi(2)
+}
 
 /// An estimate of area, time and memory, from the surface and the load alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,8 +32,6 @@ pub struct Estimate {
     pub tile_fraction: f64,
     /// Memory of the adaptive method, in bytes.
     pub adaptive_bytes: f64,
-    /// Memory of the uniform method, in bytes.
-    pub uniform_bytes: f64,
 }
 
 impl Estimate {
@@ -50,12 +50,11 @@ impl Estimate {
         let area_fraction = if area.is_finite() { area.min(1.0) } else { 1.0 };
         // Contacts of a few cells take a whole tile each.
         let tile_fraction = (TILES_PER_AREA * area_fraction + 0.005).min(1.0);
-        let (n, n_base) = ((heights.finest_side() as f64).powi(2), base.grid().len() as f64);
+        let n = (heights.finest_side() as f64).powi(2);
         Self {
             area_fraction,
             tile_fraction,
-            adaptive_bytes: BYTES_PER_CELL * tile_fraction * n + BYTES_PER_BASE_ELEMENT * n_base,
-            uniform_bytes: BYTES_PER_ELEMENT * n,
+            adaptive_bytes: BYTES_PER_CELL * tile_fraction * n + base_bytes(base.grid().nx()),
         }
     }
 }

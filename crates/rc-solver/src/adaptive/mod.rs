@@ -31,8 +31,9 @@ pub use self::solution::{AdaptiveSolution, ContactElement};
 use self::tiles::{TILE, TileSet};
 use crate::descent::Outcome;
 use crate::problem::Problem;
-use crate::solution::{LevelInfo, SolveInfo};
-use crate::{Certificate, Control, SolveParams, uniform};
+use crate::solution::LevelInfo;
+use crate::uniform::{self, Climb, Climbed};
+use crate::{Certificate, Control, SolveParams};
 
 /// Operator errors from here on are reached in single precision.
 const SINGLE_PRECISION: f64 = 1e-6;
@@ -57,7 +58,8 @@ pub struct AdaptiveParams {
     pub operator_error: f64,
     /// Elements per side of the base grid; `None` chooses.
     pub base_side: Option<usize>,
-    /// Most memory, in bytes; a larger estimate is an error, before any work.
+    /// Most memory, in bytes; a larger estimate is an error, before any work. That of the base grid is checked before heights
+    /// are sampled.
     pub memory_limit: Option<u64>,
 }
 
@@ -89,27 +91,16 @@ impl<'a> AdaptiveProblem<'a> {
         let split = SplitParams::for_error(error)
             .ok_or(AdaptiveError::OperatorError { value: error, smallest: SplitParams::SMALLEST_ERROR })?;
         let base_side = base_side(&source, params.base_side)?;
+        check_memory(params.memory_limit, estimate::base_bytes(base_side), None)?;
         let heights = Heights::new(source, base_side)?;
         let problem = Problem::of_statistics(heights.extremes(), control, &params.solve)?;
         if problem.h_range == 0.0 {
             return Err(AdaptiveError::Flat);
         }
         let prepared = Self { heights, problem, params: *params, split };
-        prepared.check_memory()?;
+        let Estimate { area_fraction, adaptive_bytes, .. } = prepared.estimate();
+        check_memory(params.memory_limit, adaptive_bytes, Some(100.0 * area_fraction))?;
         Ok(prepared)
-    }
-
-    fn check_memory(&self) -> Result<(), AdaptiveError> {
-        let Some(limit) = self.params.memory_limit else { return Ok(()) };
-        let estimate = self.estimate();
-        if estimate.adaptive_bytes <= limit as f64 {
-            return Ok(());
-        }
-        Err(AdaptiveError::Memory {
-            needed: (estimate.adaptive_bytes / 1e6).ceil() as u64,
-            limit: limit / 1_000_000,
-            area_percent: 100.0 * estimate.area_fraction,
-        })
     }
 
     /// What solving it will cost, from the surface and the load alone.
@@ -152,6 +143,17 @@ pub fn solve_adaptive(
     observer: &dyn Observer,
 ) -> Result<AdaptiveSolution, AdaptiveError> {
     AdaptiveProblem::new(source, control, params)?.solve(observer)
+}
+
+/// Refuses what needs more bytes than the limit.
+fn check_memory(limit: Option<u64>, bytes: f64, area_percent: Option<f64>) -> Result<(), AdaptiveError> {
+    match limit {
+        Some(limit) if bytes > limit as f64 => {
+            let needed = (bytes / 1e6).ceil() as u64;
+            Err(AdaptiveError::Memory { needed, limit: limit / 1_000_000, area_percent })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Checks or chooses the elements per side of the base grid.
@@ -249,14 +251,7 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
     fn finish(&self, grid: Grid, level: Level, levels: Vec<LevelInfo>) -> Result<AdaptiveSolution, AdaptiveError> {
         let (outcome, iterations) = (level.outcome, level.info.iterations);
         let certificate = outcome.certificate;
-        let info = SolveInfo {
-            certificate,
-            mean_pressure: outcome.mean_pressure,
-            penetration: self.problem.h_max + outcome.approach,
-            penetration_full_contact: self.problem.h_max - self.problem.h_mean,
-            elastic_energy: outcome.elastic_energy,
-            levels,
-        };
+        let info = outcome.info(&self.problem, levels);
         let solution = AdaptiveSolution {
             base: self.base(),
             grid,
@@ -276,25 +271,12 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
     /// Uniform grids up to the base grid.
     fn solve_base(&self, n_above: usize, observer: &dyn Observer) -> (Coarse, Vec<LevelInfo>) {
         let base = self.heights.base();
-        let coarser = uniform::coarsen(base, uniform::SMALLEST_SIDE);
-        let n_levels = coarser.len() + 1;
-        let mut infos = Vec::new();
-        let mut start = None;
-        for (level, heights) in coarser.iter().rev().chain([base]).enumerate() {
-            observer.notify(&Event::Level { grid: heights.grid(), level, n_levels: n_levels + n_above });
-            let below = n_levels + n_above - 2 - level;
-            let mut descent = uniform::descent(heights, &Love, &self.problem, start.take());
-            let tolerance = uniform::coarse_tolerance(below).max(self.params.tolerance);
-            descent.run(tolerance, self.params.max_iterations, false, observer);
-            infos.push(descent.info());
-            if level + 1 == n_levels {
-                let function = to_tiles(base.grid(), &uniform::level_function(&descent));
-                let tiles = TileSet::full(base.grid().nx() / TILE);
-                return (Coarse { tiles, function, contact_gap: descent.contact_gap() }, infos);
-            }
-            start = Some(uniform::prolong(&descent));
-        }
-        unreachable!("the base grid returns")
+        let (problem, params) = (&self.problem, self.params);
+        let climb = Climb { kernel: &Love, problem, params, n_above, observer };
+        let Climbed { descent, outcome, levels } = climb.to(base);
+        let function = to_tiles(base.grid(), &uniform::level_function(&descent));
+        let tiles = TileSet::full(base.grid().nx() / TILE);
+        (Coarse { tiles, function, contact_gap: outcome.contact_gap }, levels)
     }
 }
 
@@ -309,4 +291,51 @@ fn to_tiles(grid: Grid, values: &[f64]) -> Vec<f64> {
         }
     }
     result
+}
+
+#[cfg(test)]
+mod tests {
+    use rc_core::HeightField;
+
+    use super::*;
+
+    /// Any surface with this many waves.
+    struct Waves(usize);
+
+    impl HeightField for Waves {
+        fn height(&self, _x: f64, _y: f64) -> f64 {
+            0.0
+        }
+
+        fn band_limit(&self) -> Option<usize> {
+            Some(self.0)
+        }
+    }
+
+    #[test]
+    fn the_base_grid_follows_the_waves_and_the_divisors() {
+        let base = |side, waves| base_side(&HeightSource::Surface(&Waves(waves), side), None);
+        for (side, waves, expected) in [(2048, 64, 256), (32768, 1024, 4096), (128, 8, 64), (1_000_000, 8, 125_000)] {
+            assert_eq!(base(side, waves).ok(), Some(expected), "{side}, {waves} waves");
+        }
+        assert!(matches!(base(1001, 8), Err(AdaptiveError::Grid { .. })));
+    }
+
+    #[test]
+    fn a_base_grid_above_the_limit_is_refused_before_heights_are_sampled() {
+        struct Unsampled;
+        impl HeightField for Unsampled {
+            fn height(&self, _x: f64, _y: f64) -> f64 {
+                panic!("sampled")
+            }
+
+            fn band_limit(&self) -> Option<usize> {
+                Some(1000)
+            }
+        }
+        let params = AdaptiveParams { memory_limit: Some(100_000_000), ..AdaptiveParams::certified() };
+        let source = HeightSource::Surface(&Unsampled, 32768);
+        let error = AdaptiveProblem::new(source, Control::MeanPressure(1e-3), &params).err();
+        assert!(matches!(error, Some(AdaptiveError::Memory { limit: 100, area_percent: None, .. })), "{error:?}");
+    }
 }

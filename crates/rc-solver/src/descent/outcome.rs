@@ -2,6 +2,7 @@
 
 use super::gap::GapSums;
 use crate::problem::Problem;
+use crate::solution::{LevelInfo, SolveInfo};
 use crate::{Certificate, Control};
 
 /// What a descent found.
@@ -37,6 +38,18 @@ impl Outcome {
             approach: mean_gap - problem.offset(),
             elastic_energy: 0.5 * sums.work(problem) / n_cell,
             contact_gap: sums.zero_gap(problem),
+        }
+    }
+
+    /// As it is told to the user, with the work done on the levels, coarsest first.
+    pub(crate) fn info(&self, problem: &Problem, levels: Vec<LevelInfo>) -> SolveInfo {
+        SolveInfo {
+            certificate: self.certificate,
+            mean_pressure: self.mean_pressure,
+            penetration: problem.h_max + self.approach,
+            penetration_full_contact: problem.h_max - problem.h_mean,
+            elastic_energy: self.elastic_energy,
+            levels,
         }
     }
 }

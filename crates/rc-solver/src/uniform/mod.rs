@@ -1,28 +1,23 @@
 //! The contact problem on uniform grids: nested grids, each solved by preconditioned projected conjugate gradients.
 
+mod climb;
 mod full_contact;
 mod levels;
 mod prolongation;
 
-use rc_core::{Event, Field, Kernel, Observer};
+use rc_core::{Field, Kernel, Observer};
 
-use crate::descent::{Descent, Machinery, Outcome, Start};
-use crate::fft::{Convolution, SymbolTable};
+pub(crate) use self::climb::{Climb, Climbed, UniformDescent, coarse_tolerance};
+pub(crate) use self::levels::coarsen;
+pub(crate) use self::prolongation::{level_function, outside_level};
+use crate::descent::Outcome;
 use crate::problem::Problem;
-use crate::solution::{LevelInfo, Solution, SolveInfo, Status};
+use crate::solution::{LevelInfo, Solution, Status};
 use crate::{Control, SolveError, SolveParams};
-pub(crate) use levels::coarsen;
-pub(crate) use prolongation::{level_function, outside_level, prolong};
 
-/// Grids with fewer elements per side cost nothing, so no coarser ones prepare them.
-pub(crate) const SMALLEST_SIDE: usize = 64;
-
-/// Tolerance of the level below the finest: its discretisation error is far above this.
-const COARSE_TOLERANCE: f64 = 1e-4;
-
-/// Levels further down may be solved less accurately by this factor each, up to a limit: they only prepare the next.
-const COARSENING: f64 = 3.0;
-const COARSEST_TOLERANCE: f64 = 1e-3;
+/// Bytes for each element that [`solve_uniform`] is assumed to need at its peak, heights included; 64 to 67 were measured at
+/// 2048² and 4096².
+pub const UNIFORM_BYTES_PER_ELEMENT: u64 = 80;
 
 /// Solves the contact problem on the grid of `heights` (in λ, any mean).
 ///
@@ -48,52 +43,9 @@ pub fn solve_uniform(
     {
         return Ok(solution);
     }
-    let coarse = coarsen(heights, SMALLEST_SIDE);
-    let n_levels = coarse.len() + 1;
-    let mut infos: Vec<LevelInfo> = Vec::with_capacity(n_levels);
-    let mut start: Option<Vec<f64>> = None;
-    for (level, level_heights) in coarse.iter().rev().chain(std::iter::once(heights)).enumerate() {
-        let finest = level + 1 == n_levels;
-        let grid = level_heights.grid();
-        observer.notify(&Event::Level { grid, level, n_levels });
-        let tolerance =
-            if finest { params.tolerance } else { coarse_tolerance(n_levels - 2 - level).max(params.tolerance) };
-        let mut descent = descent(level_heights, kernel, &problem, start.take());
-        let outcome = descent.run(tolerance, params.max_iterations, finest, observer);
-        infos.push(descent.info());
-        if finest {
-            return finish(descent, &outcome, &problem, infos);
-        }
-        start = Some(prolong(&descent));
-    }
-    unreachable!("the finest level returns")
-}
-
-/// A descent on a uniform grid.
-pub(crate) type UniformDescent<'a> = Descent<'a, Convolution<f32>, Convolution<f64>>;
-
-/// A descent on the grid of `heights` from `start`, if there is one.
-pub(crate) fn descent<'a>(
-    heights: &'a Field,
-    kernel: &dyn Kernel,
-    problem: &'a Problem,
-    start: Option<Vec<f64>>,
-) -> UniformDescent<'a> {
-    let grid = heights.grid();
-    let fresh_response = SymbolTable::new(grid, kernel.symbol(grid));
-    let machinery = Machinery {
-        corrections: Convolution::new(grid),
-        response: fresh_response.map(|value| value as f32),
-        preconditioner: fresh_response.inverse(grid).map(|value| value as f32),
-        fresh: Convolution::new(grid),
-        fresh_response,
-    };
-    Descent::new(heights.values(), grid, machinery, problem, start.map_or(Start::Nothing, Start::Pressure))
-}
-
-/// Tolerance of the level that has `below` levels between it and the finest.
-pub(crate) fn coarse_tolerance(below: usize) -> f64 {
-    (COARSE_TOLERANCE * COARSENING.powi(below as i32)).min(COARSEST_TOLERANCE)
+    let climb = Climb { kernel, problem: &problem, params: *params, n_above: 0, observer };
+    let Climbed { descent, outcome, levels } = climb.to(heights);
+    finish(descent, &outcome, &problem, levels)
 }
 
 /// Wraps up what the finest level found.
@@ -105,14 +57,7 @@ fn finish(
 ) -> Result<Solution, SolveError> {
     let grid = descent.grid();
     let (iterations, certificate) = (descent.info().iterations, outcome.certificate);
-    let info = SolveInfo {
-        certificate,
-        mean_pressure: outcome.mean_pressure,
-        penetration: problem.h_max + outcome.approach,
-        penetration_full_contact: problem.h_max - problem.h_mean,
-        elastic_energy: outcome.elastic_energy,
-        levels,
-    };
+    let info = outcome.info(problem, levels);
     let (pressure, gap) = descent.into_vectors(outcome.approach + problem.offset());
     let field = |values| Field::new(grid, values).expect("a value for each element");
     let (pressure, gap) = (field(pressure), field(gap));

@@ -1,0 +1,97 @@
+//! From the coarsest of nested grids to the finest, each of which prepares the start on the next.
+
+use rc_core::{Event, Field, Kernel, Observer};
+
+use super::levels::coarsen;
+use super::prolongation::prolong;
+use crate::SolveParams;
+use crate::descent::{Descent, Machinery, Outcome, Start};
+use crate::fft::{Convolution, SymbolTable};
+use crate::problem::Problem;
+use crate::solution::LevelInfo;
+
+/// Grids with fewer elements per side cost nothing, so no coarser ones prepare them.
+const SMALLEST_SIDE: usize = 64;
+
+/// Tolerance of the level below the finest: its discretisation error is far above this.
+const COARSE_TOLERANCE: f64 = 1e-4;
+
+/// Levels further down may be solved less accurately by this factor each, up to a limit: they only prepare the next.
+const COARSENING: f64 = 3.0;
+const COARSEST_TOLERANCE: f64 = 1e-3;
+
+/// A descent on a uniform grid.
+pub(crate) type UniformDescent<'a> = Descent<'a, Convolution<f32>, Convolution<f64>>;
+
+/// What the levels of a climb share.
+pub(crate) struct Climb<'a> {
+    pub(crate) kernel: &'a dyn Kernel,
+    pub(crate) problem: &'a Problem,
+    pub(crate) params: SolveParams,
+    /// Levels that others will add above the last grid; without any, it is solved to the tolerance and certified.
+    pub(crate) n_above: usize,
+    pub(crate) observer: &'a dyn Observer,
+}
+
+/// The last grid of a climb.
+pub(crate) struct Climbed<'a> {
+    pub(crate) descent: UniformDescent<'a>,
+    pub(crate) outcome: Outcome,
+    /// The work on all grids, coarsest first.
+    pub(crate) levels: Vec<LevelInfo>,
+}
+
+impl<'a> Climb<'a> {
+    /// Solves on coarser grids and then on that of `heights`.
+    pub(crate) fn to(&self, heights: &'a Field) -> Climbed<'a> {
+        let coarser = coarsen(heights, SMALLEST_SIDE);
+        let n_levels = coarser.len() + 1 + self.n_above;
+        let (mut levels, mut start) = (Vec::with_capacity(n_levels), Start::Nothing);
+        for heights in coarser.iter().rev() {
+            let (descent, _) = self.solve(heights, start, n_levels, &mut levels);
+            start = Start::Pressure(prolong(&descent));
+        }
+        let (descent, outcome) = self.solve(heights, start, n_levels, &mut levels);
+        Climbed { descent, outcome, levels }
+    }
+
+    /// Solves the next of `n_levels` levels.
+    fn solve<'h>(
+        &self,
+        heights: &'h Field,
+        start: Start,
+        n_levels: usize,
+        levels: &mut Vec<LevelInfo>,
+    ) -> (UniformDescent<'h>, Outcome)
+    where
+        'a: 'h,
+    {
+        let (level, grid) = (levels.len(), heights.grid());
+        self.observer.notify(&Event::Level { grid, level, n_levels });
+        let wanted = self.params.tolerance;
+        let above = n_levels - 1 - level;
+        let tolerance = if above == 0 { wanted } else { coarse_tolerance(above - 1).max(wanted) };
+        let machinery = machinery(heights, self.kernel);
+        let mut descent = Descent::new(heights.values(), grid, machinery, self.problem, start);
+        let outcome = descent.run(tolerance, self.params.max_iterations, above == 0, self.observer);
+        levels.push(descent.info());
+        (descent, outcome)
+    }
+}
+
+fn machinery(heights: &Field, kernel: &dyn Kernel) -> Machinery<Convolution<f32>, Convolution<f64>> {
+    let grid = heights.grid();
+    let fresh_response = SymbolTable::new(grid, kernel.symbol(grid));
+    Machinery {
+        corrections: Convolution::new(grid),
+        response: fresh_response.map(|value| value as f32),
+        preconditioner: fresh_response.inverse(grid).map(|value| value as f32),
+        fresh: Convolution::new(grid),
+        fresh_response,
+    }
+}
+
+/// Tolerance of the level that has `below` levels between it and the finest.
+pub(crate) fn coarse_tolerance(below: usize) -> f64 {
+    (COARSE_TOLERANCE * COARSENING.powi(below as i32)).min(COARSEST_TOLERANCE)
+}
