@@ -73,7 +73,8 @@ impl Elements {
         let last = self.levels.len() - 1;
         let mut levels = self.levels.clone();
         let new = places.iter().filter(|&&[column, row]| !self.cover(last, column, row));
-        levels[last] = TileSet::new(levels[last].per_side(), levels[last].places().iter().chain(new).copied().collect());
+        levels[last] =
+            TileSet::new(levels[last].per_side(), levels[last].places().iter().chain(new).copied().collect());
         Self::new(levels)
     }
 
@@ -82,7 +83,8 @@ impl Elements {
         let level = |(tiles, &start): (&TileSet, &usize)| {
             let places = tiles.places().iter().enumerate();
             let cells = |tile: usize| start + tile * CELLS..start + (tile + 1) * CELLS;
-            let chosen = places.filter(|&(tile, &place)| wanted(tiles.side(), place, cells(tile))).map(|(_, &place)| place);
+            let chosen =
+                places.filter(|&(tile, &place)| wanted(tiles.side(), place, cells(tile))).map(|(_, &place)| place);
             TileSet::new(tiles.per_side(), chosen.collect())
         };
         Self::new(self.levels.iter().zip(&self.starts).map(level).collect())
@@ -167,12 +169,7 @@ impl Elements {
             }
             return true;
         }
-        if let Some(start) = self.find(coarser + 1, column.div_euclid(2), row.div_euclid(2)) {
-            let half = |i: i64| i.rem_euclid(2) as usize * (TILE / 2);
-            for cell in 0..CELLS {
-                let (x, y) = (half(column) + cell % TILE / 2, half(row) + cell / TILE / 2);
-                put(cell % TILE, cell / TILE, values[start + y * TILE + x]);
-            }
+        if self.quarter_values(values, coarser + 1, (column, row), &mut put) {
             return true;
         }
         let Some(finer) = coarser.checked_sub(1) else { return false };
@@ -189,6 +186,23 @@ impl Elements {
             }
         }
         any
+    }
+
+    /// The same for the place of a tile half as large as those of the level `coarser`, from that level only.
+    fn quarter_values(
+        &self,
+        values: &[f64],
+        coarser: usize,
+        (column, row): (i64, i64),
+        mut put: impl FnMut(usize, usize, f64),
+    ) -> bool {
+        let Some(start) = self.find(coarser, column.div_euclid(2), row.div_euclid(2)) else { return false };
+        let half = |i: i64| i.rem_euclid(2) as usize * (TILE / 2);
+        for cell in 0..CELLS {
+            let (x, y) = (half(column) + cell % TILE / 2, half(row) + cell / TILE / 2);
+            put(cell % TILE, cell / TILE, values[start + y * TILE + x]);
+        }
+        true
     }
 
     /// The values on a tile and its neighbours, `missing` where there are no elements.
@@ -209,16 +223,30 @@ impl Elements {
         patch
     }
 
+    /// The mesh without its finest level: what was there is averaged over elements twice as large.
+    pub(crate) fn without_finest(&self, values: &[f64]) -> (Self, Vec<f64>) {
+        let mut levels = self.levels[1..].to_vec();
+        levels[0] = levels[0].with(&self.levels[0].parents(0));
+        let coarser = Self::new(levels);
+        let values = self.moved(&coarser, values);
+        (coarser, values)
+    }
+
     /// Values on the elements of `to`, whose tiles are those here, parts of them, or new ones, where values are zero.
     pub(crate) fn moved(&self, to: &Self, values: &[f64]) -> Vec<f64> {
         let mut result = vec![0.0; to.len()];
         for (coarser, tiles) in to.levels.iter().enumerate() {
-            // The same level here: this mesh may end one level earlier.
-            let Some(here) = self.levels.iter().position(|level| level.side() == tiles.side()) else { continue };
+            // The same level here, unless the other mesh has a finer one.
+            let here = self.levels.iter().position(|level| level.side() == tiles.side());
             let cells = &mut result[to.cells(coarser)];
             let sinks = cells.par_chunks_mut(CELLS).zip(tiles.places()).with_min_len(64);
-            sinks.for_each(|(cells, &[column, row])| {
-                self.tile_values(values, here, (column.into(), row.into()), |x, y, value| cells[y * TILE + x] = value);
+            sinks.for_each(|(cells, &place)| {
+                let (place, put) =
+                    (place.map(i64::from).into(), |x: usize, y: usize, value| cells[y * TILE + x] = value);
+                match here {
+                    Some(here) => self.tile_values(values, here, place, put),
+                    None => self.quarter_values(values, 0, place, put),
+                };
             });
         }
         result

@@ -38,6 +38,23 @@ pub enum AdaptiveError {
         /// Elements per side of the finest grid.
         finest: usize,
     },
+    /// The smallest elements would be smaller than the tables of tiles can be large.
+    #[error(
+        "border level {border_level} on a grid of {side} elements per side is too deep: {deepest} is the deepest for it"
+    )]
+    BorderLevel {
+        /// What was asked for.
+        border_level: usize,
+        /// Elements per side of the grid.
+        side: usize,
+        /// The deepest.
+        deepest: u32,
+    },
+    /// A border level for heights that are known on a grid only.
+    #[error(
+        "a border level needs heights between the points of the grid: resample the map on a finer grid, or generate the surface"
+    )]
+    BorderOfMap,
     /// The surface is flat, so there is nothing to adapt to.
     #[error("a flat surface has nothing to adapt to; the uniform method solves it")]
     Flat,

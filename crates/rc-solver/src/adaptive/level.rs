@@ -6,10 +6,12 @@ use rayon::prelude::*;
 use rc_core::{Grid, Observer};
 
 use super::Solver;
+use super::element_heights::element_heights;
 use super::elements::Elements;
 use super::fresh::Fresh;
 use super::operator::{BLOCK_CELLS, Hierarchy, Reach, Real, Tables, TileOperator};
 use super::refinement::State;
+use super::split::split;
 use super::survey::{Remainder, possible_contact};
 use crate::descent::{Descent, Engine, Machinery, Outcome, Start, fresh_gap, rescale, scale_to_load};
 use crate::solution::LevelInfo;
@@ -80,7 +82,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
             fresh_response: response.clone(),
             response,
         };
-        let heights = self.element_heights(&mesh.elements);
+        let heights = element_heights(&self.heights, &mesh.elements);
         let start = Start::Pressure(mesh.pressure);
         let mut descent = Descent::new(&heights, grid, machinery, &self.problem, start);
         let outcome = descent.run(tolerance, self.params.max_iterations, false, observer);
@@ -150,12 +152,13 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         // Not a proof yet: the margin stands for the quick operator's error too.
         let level = contact_gap + CANDIDATE_MARGIN * self.problem.h_range;
         let curvature = self.response.remainder_curvature();
-        let places = self.possible_contact(&quick, curvature, &mesh.pressure, mesh.elements.coarsest().per_side(), level);
+        let places =
+            self.possible_contact(&quick, curvature, &mesh.pressure, mesh.elements.coarsest().per_side(), level);
         self.candidates(mesh.elements.with(&places))
     }
 
     fn candidates(&self, elements: Elements) -> Candidates {
-        Candidates { heights: self.element_heights(&elements), elements }
+        Candidates { heights: element_heights(&self.heights, &elements), elements }
     }
 
     /// Tiles where the gap under the pressure last spread by `operator` may be less than `level`; `unit_curvature` is the bound
@@ -194,7 +197,8 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
             let heights = &candidates.heights;
             let mut sums = fresh_gap(&mut fresh, response, &self.problem, (heights, &pressure, &mut gap));
             if let Some(scale) = sums.scale_to_penetration(&self.problem) {
-                sums = rescale(scale, &candidates.elements.division(), &self.problem, (heights, &mut pressure, &mut gap));
+                sums =
+                    rescale(scale, &candidates.elements.division(), &self.problem, (heights, &mut pressure, &mut gap));
             }
             let outcome = Outcome::new(&self.problem, &sums, info.grid.len() as f64, true);
             if prove {
@@ -202,8 +206,17 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
                 let curvature = self.fresh.remainder_curvature();
                 let elements = &candidates.elements;
                 let places = self.possible_contact(&fresh, curvature, &pressure, elements.coarsest().per_side(), level);
-                let more = elements.with(&places);
-                let more = self.divided(&State { elements, pressure: &pressure, gap: &gap, ..self.state(level) }).unwrap_or(more);
+                let state = State {
+                    elements,
+                    pressure: &pressure,
+                    gap: &gap,
+                    contact_gap: level,
+                    height_curvature: self.heights.curvature(),
+                };
+                let more = match elements.levels().len() {
+                    1 => elements.with(&places),
+                    _ => split(elements, state.too_coarse(), false, self.fresh.reach().stencil).with(&places),
+                };
                 if more.n_cells() > elements.n_cells() {
                     *candidates = self.candidates(more);
                     continue;
@@ -212,7 +225,6 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
             return Surveyed { pressure, gap, outcome };
         }
     }
-
 }
 
 /// The candidates that press somewhere, or nearly do, or did when the level began.

@@ -4,6 +4,7 @@
 //! cells that contact touches or nearly does, with the multilevel operator. What is not stored is out of contact, and the
 //! survey proves it.
 
+mod element_heights;
 mod elements;
 mod error;
 mod estimate;
@@ -13,7 +14,9 @@ mod level;
 mod multilevel;
 pub(crate) mod operator;
 mod prolongation;
+mod refinement;
 mod solution;
+mod split;
 mod survey;
 pub(crate) mod tiles;
 
@@ -27,9 +30,9 @@ use self::heights::Heights;
 use self::level::{Level, Mesh};
 pub use self::multilevel::MultilevelOperator;
 use self::operator::{Prepared, Real};
+use self::refinement::State;
 pub use self::solution::{AdaptiveSolution, ContactElement};
 use self::tiles::{TILE, TileSet};
-use crate::descent::Outcome;
 use crate::problem::Problem;
 use crate::solution::LevelInfo;
 use crate::uniform::{self, Climb, Climbed};
@@ -56,6 +59,8 @@ pub struct AdaptiveParams {
     /// Bound on the error of one application of L, relative to the rms displacement, on pressures of contacts
     /// ([`SplitParams`] has the measurements). A tolerance below a tenth of it lowers it.
     pub operator_error: f64,
+    /// How often elements at the edges of contacts are halved beyond the finest grid. Inside contacts they stay as they are.
+    pub border_level: usize,
     /// Elements per side of the base grid; `None` chooses.
     pub base_side: Option<usize>,
     /// Most memory, in bytes; a larger estimate is an error, before any work. That of the base grid is checked before heights
@@ -67,7 +72,13 @@ impl AdaptiveParams {
     /// As [`SolveParams::certified`], L to 1e-6, no limit of memory.
     #[must_use]
     pub fn certified() -> Self {
-        Self { solve: SolveParams::certified(), operator_error: 1e-6, base_side: None, memory_limit: None }
+        Self {
+            solve: SolveParams::certified(),
+            operator_error: 1e-6,
+            border_level: 0,
+            base_side: None,
+            memory_limit: None,
+        }
     }
 }
 
@@ -92,7 +103,7 @@ impl<'a> AdaptiveProblem<'a> {
             .ok_or(AdaptiveError::OperatorError { value: error, smallest: SplitParams::SMALLEST_ERROR })?;
         let base_side = base_side(&source, params.base_side)?;
         check_memory(params.memory_limit, estimate::base_bytes(base_side), None)?;
-        let heights = Heights::new(source, base_side)?;
+        let heights = Heights::new(with_border_level(source, params.border_level)?, base_side)?;
         let problem = Problem::of_statistics(heights.extremes(), control, &params.solve)?;
         if problem.h_range == 0.0 {
             return Err(AdaptiveError::Flat);
@@ -125,9 +136,9 @@ impl<'a> AdaptiveProblem<'a> {
     pub fn solve(self, observer: &dyn Observer) -> Result<AdaptiveSolution, AdaptiveError> {
         let Self { heights, problem, params, split } = self;
         if params.operator_error.min(OPERATOR_ERROR_PER_TOLERANCE * params.solve.tolerance) >= SINGLE_PRECISION {
-            Solver::<f32>::new(heights, problem, params.solve, split).solve(observer)
+            Solver::<f32>::new(heights, problem, &params, split).solve(observer)
         } else {
-            Solver::<f64>::new(heights, problem, params.solve, split).solve(observer)
+            Solver::<f64>::new(heights, problem, &params, split).solve(observer)
         }
     }
 }
@@ -143,6 +154,21 @@ pub fn solve_adaptive(
     observer: &dyn Observer,
 ) -> Result<AdaptiveSolution, AdaptiveError> {
     AdaptiveProblem::new(source, control, params)?.solve(observer)
+}
+
+/// The source on the grid of the smallest elements.
+fn with_border_level(source: HeightSource<'_>, border_level: usize) -> Result<HeightSource<'_>, AdaptiveError> {
+    match source {
+        _ if border_level == 0 => Ok(source),
+        HeightSource::Surface(surface, side) if surface.band_limit().is_some() => {
+            let finest = (border_level < 32).then(|| side.checked_shl(border_level as u32)).flatten();
+            let finest = finest.filter(|&finest| finest >> border_level == side && finest <= DEEPEST_SIDE);
+            let deepest = (DEEPEST_SIDE / side.max(1)).checked_ilog2().unwrap_or(0);
+            let finest = finest.ok_or(AdaptiveError::BorderLevel { border_level, side, deepest })?;
+            Ok(HeightSource::Surface(surface, finest))
+        }
+        _ => Err(AdaptiveError::BorderOfMap),
+    }
 }
 
 /// Refuses what needs more bytes than the limit.
@@ -186,11 +212,16 @@ fn base_side(source: &HeightSource<'_>, wanted: Option<usize>) -> Result<usize, 
     if allowed { Ok(base) } else { Err(AdaptiveError::Grid { nx, ny, smallest: 2 * least }) }
 }
 
+/// Most elements per side of the grid of the smallest elements: where tiles are is looked up in tables of 4 bytes for 64 of
+/// them.
+const DEEPEST_SIDE: usize = 1 << 17;
+
 /// What the levels share; `T` is the precision of fresh gaps.
 struct Solver<'a, T> {
     heights: Heights<'a>,
     problem: Problem,
     params: SolveParams,
+    border_level: usize,
     /// L, and its approximate inverse, for corrections.
     response: Prepared<f32>,
     preconditioner: Prepared<f32>,
@@ -198,24 +229,18 @@ struct Solver<'a, T> {
     fresh: Prepared<T>,
 }
 
-/// The tiles of one level with the level function on them, from which the next level starts.
-struct Coarse {
-    tiles: TileSet,
-    function: Vec<f64>,
-    contact_gap: f64,
-}
-
 impl<'a, T: Real + Into<f64>> Solver<'a, T> {
-    fn new(heights: Heights<'a>, problem: Problem, params: SolveParams, split: SplitParams) -> Self {
+    fn new(heights: Heights<'a>, problem: Problem, params: &AdaptiveParams, split: SplitParams) -> Self {
         let (quick, certified) = (ScaleSplit::new(SplitParams::quick()), ScaleSplit::new(split));
-        let base = heights.base().grid();
+        let (base, border_level) = (heights.base().grid(), params.border_level);
         Self {
-            response: Prepared::displacement(&quick, base, 0),
+            response: Prepared::displacement(&quick, base, border_level),
             preconditioner: Prepared::inverse(&quick, base),
-            fresh: Prepared::displacement(&certified, base, 0),
+            fresh: Prepared::displacement(&certified, base, border_level),
             heights,
             problem,
-            params,
+            params: params.solve,
+            border_level,
         }
     }
 
@@ -225,26 +250,47 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
 
     fn solve(&self, observer: &dyn Observer) -> Result<AdaptiveSolution, AdaptiveError> {
         let n_above = (self.heights.finest_side() / self.base().nx()).ilog2() as usize;
-        let (mut coarse, mut infos) = self.solve_base(n_above, observer);
+        let (mut mesh, mut contact_gap, mut infos) = self.solve_base(n_above, observer);
         for above in 1..=n_above {
             let grid = Grid::square(self.base().nx() << above).expect("a level of a checked grid");
             observer.notify(&Event::Level { grid, level: infos.len(), n_levels: infos.len() + 1 + n_above - above });
-            let (tiles, pressure) = prolongation::prolong(&coarse.tiles, &coarse.function);
-            let mesh = Mesh { tiles, pressure };
-            if above < n_above {
-                let tolerance = uniform::coarse_tolerance(n_above - above - 1).max(self.params.tolerance);
-                let level = self.prepare_level(grid, mesh, tolerance, observer);
-                infos.push(level.info);
-                let Level { tiles, pressure, gap, outcome: Outcome { contact_gap, .. }, .. } = level;
-                let function = prolongation::level_function(&tiles, &pressure, &gap, contact_gap);
-                coarse = Coarse { tiles, function, contact_gap };
-            } else {
-                let level = self.solve_finest(grid, mesh, coarse.contact_gap, observer);
+            if above == n_above {
+                let level = self.solve_finest(grid, mesh, contact_gap, observer);
                 infos.push(level.info);
                 return self.finish(grid, level, infos);
             }
+            let tolerance = uniform::coarse_tolerance(n_above - above - 1).max(self.params.tolerance);
+            let level = self.prepare_level(grid, mesh, tolerance, observer);
+            infos.push(level.info);
+            contact_gap = level.outcome.contact_gap;
+            mesh = self.refined(&level, above >= n_above - self.border_level);
         }
         unreachable!("the finest level returns")
+    }
+
+    /// The start on elements half as large: of all, or of those `at_edges` of contacts only.
+    fn refined(&self, level: &Level, at_edges: bool) -> Mesh {
+        let Level { elements, pressure, gap, outcome, .. } = level;
+        let function = prolongation::level_function(elements, pressure, gap, outcome.contact_gap);
+        if !at_edges {
+            return prolongation::prolong(elements.finest(), &function);
+        }
+        let chosen = self.state(level).too_coarse();
+        let refined = split::split(elements, chosen, true, self.fresh.reach().stencil);
+        let mut pressure = elements.moved(&refined, pressure);
+        prolongation::prolong_to(elements, &function, &refined, &mut pressure);
+        Mesh { elements: refined, pressure }
+    }
+
+    /// What decides on the size of elements.
+    fn state<'b>(&self, level: &'b Level) -> State<'b> {
+        State {
+            elements: &level.elements,
+            pressure: &level.pressure,
+            gap: &level.gap,
+            contact_gap: level.outcome.contact_gap,
+            height_curvature: self.heights.curvature(),
+        }
     }
 
     /// Wraps up what the finest level found.
@@ -254,8 +300,10 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
         let info = outcome.info(&self.problem, levels);
         let solution = AdaptiveSolution {
             base: self.base(),
-            grid,
-            tiles: level.tiles,
+            grid: Grid::square(grid.nx() >> self.border_level).expect("a coarser grid than the finest"),
+            finest: grid,
+            border_level: self.border_level,
+            elements: level.elements,
             pressure: level.pressure,
             info,
             evaluated: level.evaluated,
@@ -268,15 +316,15 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
         }
     }
 
-    /// Uniform grids up to the base grid.
-    fn solve_base(&self, n_above: usize, observer: &dyn Observer) -> (Coarse, Vec<LevelInfo>) {
+    /// Uniform grids up to the base grid: the start on the level above it, and the gap in contact.
+    fn solve_base(&self, n_above: usize, observer: &dyn Observer) -> (Mesh, f64, Vec<LevelInfo>) {
         let base = self.heights.base();
         let (problem, params) = (&self.problem, self.params);
         let climb = Climb { kernel: &Love, problem, params, n_above, observer };
         let Climbed { descent, outcome, levels } = climb.to(base);
         let function = to_tiles(base.grid(), &uniform::level_function(&descent));
         let tiles = TileSet::full(base.grid().nx() / TILE);
-        (Coarse { tiles, function, contact_gap: outcome.contact_gap }, levels)
+        (prolongation::prolong(&tiles, &function), outcome.contact_gap, levels)
     }
 }
 

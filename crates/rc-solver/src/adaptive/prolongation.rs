@@ -6,6 +6,7 @@
 use rayon::prelude::*;
 
 use super::elements::Elements;
+use super::level::Mesh;
 use super::operator::{Patch, gather};
 use super::tiles::{CELLS, TILE, TileSet};
 use crate::uniform::outside_level;
@@ -60,7 +61,7 @@ pub(super) fn prolong_to(elements: &Elements, level: &[f64], refined: &Elements,
 }
 
 /// The tiles of the next finer level that the start presses, or nearly, and the pressure on them.
-pub(super) fn prolong(tiles: &TileSet, level: &[f64]) -> (TileSet, Vec<f64>) {
+pub(super) fn prolong(tiles: &TileSet, level: &[f64]) -> Mesh {
     let far = far(level);
     let children: Vec<[Option<Box<[f64; CELLS]>>; 4]> = tiles
         .places()
@@ -90,7 +91,7 @@ pub(super) fn prolong(tiles: &TileSet, level: &[f64]) -> (TileSet, Vec<f64>) {
         let at = fine.find(column, row).expect("it was just put there");
         pressure[at * CELLS..][..CELLS].copy_from_slice(values.as_slice());
     }
-    (fine, pressure)
+    Mesh { elements: Elements::uniform(fine), pressure }
 }
 
 fn mark_missing(tiles: &TileSet, (column, row): (i64, i64), far: f64, patch: &mut Patch<f64, SIDE>) {

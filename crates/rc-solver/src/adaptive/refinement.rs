@@ -7,7 +7,7 @@ use super::operator::Patch;
 use super::tiles::TILE;
 
 /// Cells around a tile that are looked at, and that edges keep away from larger elements.
-const RING: usize = 4;
+const RING: usize = 2;
 
 const SIDE: usize = 3 * TILE;
 
@@ -33,7 +33,12 @@ impl State<'_> {
                 // No pressure is nearer than the ring: ∫ p |∂²(1/πr)/∂x²| dA ≤ max p ∫ 2/(π r³) dA.
                 let curvature = self.height_curvature + 4.0 * greatest / ((RING - 1) as f64 * side);
                 let bend = curvature * side * side;
-                tiles.places().par_iter().with_min_len(16).map(|&place| self.is_too_coarse(coarser, place, bend)).collect()
+                tiles
+                    .places()
+                    .par_iter()
+                    .with_min_len(16)
+                    .map(|&place| self.is_too_coarse(coarser, place, bend))
+                    .collect()
             })
             .collect()
     }
@@ -69,9 +74,11 @@ fn extrapolate(patch: &mut Patch<f64, SIDE>, bend: f64) {
         }
     }
     for (out, near, next) in [(first - 1, first, first + 1), (last + 1, last, last - 1)] {
-        for x in first - 1..=last + 1 {
-            if patch[out][x].is_nan() {
-                patch[out][x] = beyond(patch[near][x], patch[next][x]);
+        let [inner, further] = [patch[near], patch[next]];
+        let row = patch[out].iter_mut().zip(inner.iter().zip(further)).skip(first - 1).take(TILE + 2);
+        for (value, (&near, next)) in row {
+            if value.is_nan() {
+                *value = beyond(near, next);
             }
         }
     }

@@ -1,5 +1,6 @@
 //! What the adaptive method returns: pressures on tiles, and everything else on request.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -8,8 +9,7 @@ use rc_kernel::{Love, ScaleSplit, SplitParams};
 
 use super::elements::Elements;
 use super::fresh::Fresh;
-use super::level::moved;
-use super::operator::{BLOCK_CELLS, Hierarchy, Patch, Prepared, TileOperator, gather};
+use super::operator::{BLOCK_CELLS, Hierarchy, Prepared, TileOperator};
 use super::tiles::{CELLS, TILE, TileSet};
 use crate::descent::Engine;
 use crate::stiffness::stiffness_of;
@@ -36,7 +36,11 @@ pub struct ContactElement {
 pub struct AdaptiveSolution {
     pub(super) base: Grid,
     pub(super) grid: Grid,
-    pub(super) tiles: TileSet,
+    /// The grid of the smallest elements.
+    pub(super) finest: Grid,
+    /// The smallest elements are 2^`border_level` times smaller than those of the grid.
+    pub(super) border_level: usize,
+    pub(super) elements: Elements,
     pub(super) pressure: Vec<f64>,
     /// How it was found and how good it is. The certificate holds for the whole cell.
     pub info: SolveInfo,
@@ -47,7 +51,7 @@ pub struct AdaptiveSolution {
 }
 
 impl AdaptiveSolution {
-    /// The finest grid.
+    /// The grid: the smallest elements are 2^[`AdaptiveParams::border_level`](super::AdaptiveParams) times smaller than its own.
     #[must_use]
     pub fn grid(&self) -> Grid {
         self.grid
@@ -55,11 +59,13 @@ impl AdaptiveSolution {
 
     /// Elements in contact.
     pub fn elements(&self) -> impl Iterator<Item = ContactElement> + '_ {
-        let side = 1.0 / self.tiles.side() as f64;
-        self.tiles.places().iter().zip(self.pressure.chunks_exact(CELLS)).flat_map(move |(&[column, row], cells)| {
-            cells.iter().enumerate().filter(|&(_, &pressure)| pressure > 0.0).map(move |(cell, &pressure)| {
-                let x = (f64::from(column) * TILE as f64 + (cell % TILE) as f64 + 0.5) * side;
-                let y = (f64::from(row) * TILE as f64 + (cell / TILE) as f64 + 0.5) * side;
+        self.elements.tiles().flat_map(move |(coarser, tile, start)| {
+            let side = self.elements.side(coarser);
+            let [column, row] = self.elements.levels()[coarser].places()[tile].map(|i| f64::from(i) * TILE as f64);
+            let cells = self.pressure[start..start + CELLS].iter().enumerate();
+            cells.filter(|&(_, &pressure)| pressure > 0.0).map(move |(cell, &pressure)| {
+                let x = (column + (cell % TILE) as f64 + 0.5) * side;
+                let y = (row + (cell / TILE) as f64 + 0.5) * side;
                 ContactElement { x, y, side, pressure }
             })
         })
@@ -71,19 +77,32 @@ impl AdaptiveSolution {
         self.pressure.par_iter().filter(|&&p| p > 0.0).count()
     }
 
-    /// Hands out the pressure on the finest grid, eight rows at a time, in order: the index of the first row, and the rows one
+    /// Tiles of the grid, and the mean pressure on its cells.
+    fn on_grid(&self) -> (TileSet, Cow<'_, [f64]>) {
+        if self.border_level == 0 {
+            return (self.elements.finest().clone(), Cow::Borrowed(&self.pressure));
+        }
+        let (mut elements, mut pressure) = self.elements.without_finest(&self.pressure);
+        while elements.levels().len() > 1 {
+            (elements, pressure) = elements.without_finest(&pressure);
+        }
+        (elements.finest().clone(), Cow::Owned(pressure))
+    }
+
+    /// Hands out the pressure on the grid, in the mean over smaller elements, eight rows at a time, in order: the index of the first row, and the rows one
     /// after the other. Stops at the first error.
     ///
     /// # Errors
     /// What `take` returns.
     pub fn pressure_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
-        let n = self.tiles.side();
+        let (tiles, pressure) = self.on_grid();
+        let n = tiles.side();
         let mut rows = vec![0.0; TILE * n];
-        for row in 0..self.tiles.per_side() {
+        for row in 0..tiles.per_side() {
             rows.fill(0.0);
-            for column in 0..self.tiles.per_side() {
-                if let Some(tile) = self.tiles.find(column as i64, row as i64) {
-                    let cells = &self.pressure[tile * CELLS..][..CELLS];
+            for column in 0..tiles.per_side() {
+                if let Some(tile) = tiles.find(column as i64, row as i64) {
+                    let cells = &pressure[tile * CELLS..][..CELLS];
                     for (line, values) in rows.chunks_exact_mut(n).zip(cells.as_chunks::<TILE>().0) {
                         line[column * TILE..][..TILE].copy_from_slice(values);
                     }
@@ -94,25 +113,27 @@ impl AdaptiveSolution {
         Ok(())
     }
 
-    /// Hands out the displacement v on the finest grid, rows of tiles at a time as [`AdaptiveSolution::pressure_rows`] does, at
+    /// Hands out the displacement v of the grid's pressure, rows of tiles at a time as [`AdaptiveSolution::pressure_rows`] does, at
     /// about the cost of one application of L on the whole grid. The gap is `v - h + mean gap offset`: see
     /// [`AdaptiveSolution::gap_offset`].
     ///
     /// # Errors
     /// What `take` returns.
     pub fn displacement_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
-        let (n, per_side) = (self.tiles.side(), self.tiles.per_side());
+        let (own_tiles, pressure) = self.on_grid();
+        let (n, per_side) = (own_tiles.side(), own_tiles.per_side());
+        let own = Elements::uniform(own_tiles);
         let prepared = Prepared::<f32>::displacement(&ScaleSplit::new(SplitParams::certified()), self.base, 0);
-        let tables = prepared.tables(self.n_levels());
+        let tables = prepared.tables(self.n_levels() - self.border_level);
         // As many rows of tiles at once as about a million cells hold.
         let at_once = (1_000_000 / (TILE * n)).max(1);
         for first in (0..per_side).step_by(at_once) {
             let band = first..(first + at_once).min(per_side);
             let more = band.clone().flat_map(|row| (0..per_side).map(move |column| [column as u32, row as u32]));
-            let tiles = TileSet::new(per_side, self.tiles.places().iter().copied().chain(more).collect());
+            let tiles = TileSet::new(per_side, own.finest().places().iter().copied().chain(more).collect());
             let hierarchy = Arc::new(Hierarchy::new(self.base.nx(), Elements::uniform(tiles), prepared.reach()));
+            let mut values = own.moved(hierarchy.elements(), &pressure);
             let tiles = hierarchy.elements().finest();
-            let mut values = moved(&self.tiles, tiles, &self.pressure);
             let mut fresh = Fresh::<f32>::new(Arc::clone(&hierarchy));
             fresh.fill(values.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
             fresh.multiply(&tables);
@@ -137,18 +158,16 @@ impl AdaptiveSolution {
         h_max - self.info.penetration
     }
 
-    /// Levels above the base grid.
+    /// Levels above the base grid, up to the smallest elements.
     fn n_levels(&self) -> usize {
-        (self.grid.nx() / self.base.nx()).ilog2() as usize
+        (self.finest.nx() / self.base.nx()).ilog2() as usize
     }
 
     /// Counted contact area and contact edges.
     fn contact_area(&self) -> ContactArea {
-        let edges = |tile: usize| {
-            const SIDE: usize = 3 * TILE;
-            let [column, row] = self.tiles.places()[tile].map(i64::from);
-            let mut patch: Patch<f64, SIDE> = [[0.0; SIDE]; SIDE];
-            gather(&self.pressure, &self.tiles, (column - 1, row - 1), TILE - 1..2 * TILE + 1, &mut patch);
+        let counts = |(coarser, tile, start): (usize, usize, usize)| {
+            let place = self.elements.levels()[coarser].places()[tile];
+            let patch = self.elements.around(&self.pressure, coarser, place, 0.0);
             let in_contact = |x: usize, y: usize| patch[y][x] > 0.0;
             let mut edges = 0;
             for y in TILE..2 * TILE {
@@ -159,20 +178,24 @@ impl AdaptiveSolution {
                     edges += if here { around.iter().filter(|&&(x, y)| !in_contact(x, y)).count() } else { 0 };
                 }
             }
-            edges
+            let n_contact = self.pressure[start..start + CELLS].iter().filter(|&&p| p > 0.0).count();
+            // In units of the smallest elements.
+            [n_contact << (2 * coarser), edges << coarser]
         };
-        let n_edges = (0..self.tiles.len()).into_par_iter().map(edges).sum();
-        ContactArea::from_counts(self.n_elements(), n_edges, self.grid().len(), Love.perimeter_constant())
+        let tiles: Vec<(usize, usize, usize)> = self.elements.tiles().collect();
+        let add = |[a, b]: [usize; 2], [c, d]: [usize; 2]| [a + c, b + d];
+        let [n_contact, n_edges] = tiles.into_par_iter().map(counts).reduce(|| [0; 2], add);
+        ContactArea::from_counts(n_contact, n_edges, self.finest.len(), Love.perimeter_constant())
     }
 
     /// Evaluates the observables, as [`Observables::of`] does for a solution on a uniform grid.
     #[must_use]
     pub fn observables(&self) -> Observables {
-        let n = self.grid().len() as f64;
-        let squares: Vec<f64> = self.pressure.par_chunks(BLOCK_CELLS).map(|p| p.iter().map(|p| p * p).sum()).collect();
+        let squares = self.pressure.par_chunks(BLOCK_CELLS).map(|p| [p.iter().map(|p| p * p).sum()]).collect();
+        let [squares] = self.elements.division().total(squares);
         Observables {
             area: self.contact_area(),
-            rms_pressure: (squares.iter().sum::<f64>() / n).sqrt(),
+            rms_pressure: (squares / self.finest.len() as f64).sqrt(),
             max_pressure: self.pressure.par_iter().copied().reduce(|| 0.0, f64::max),
             mean_gap: self.info.penetration_full_contact - self.info.penetration,
             elastic_energy: self.info.elastic_energy,
@@ -181,15 +204,15 @@ impl AdaptiveSolution {
     }
 
     fn contact_stiffness(&self) -> f64 {
-        if self.n_elements() == self.grid().len() {
+        if self.pressure.len() == self.finest.len() && self.n_elements() == self.finest.len() {
             return f64::INFINITY;
         }
         let split = ScaleSplit::new(SplitParams::quick());
-        let prepared = Prepared::<f32>::displacement(&split, self.base, 0);
+        let prepared = Prepared::<f32>::displacement(&split, self.base, self.border_level);
         let response = prepared.tables(self.n_levels());
         let mut preconditioner = Prepared::<f32>::inverse(&split, self.base).tables(self.n_levels());
-        let hierarchy = Hierarchy::new(self.base.nx(), Elements::uniform(self.tiles.clone()), prepared.reach());
+        let hierarchy = Hierarchy::new(self.base.nx(), self.elements.clone(), prepared.reach());
         let mut engine = TileOperator::new(Arc::new(hierarchy));
-        stiffness_of(&self.pressure, self.grid().len() as f64, &mut engine, &response, &mut preconditioner)
+        stiffness_of(&self.pressure, self.finest.len() as f64, &mut engine, &response, &mut preconditioner)
     }
 }

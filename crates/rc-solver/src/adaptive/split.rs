@@ -40,11 +40,8 @@ pub(super) fn split(elements: &Elements, mut chosen: Vec<Vec<bool>>, deepen: boo
     }
     for (coarser, tiles) in levels.iter().enumerate() {
         let places = part(coarser, false);
-        let places = if coarser + 1 < levels.len() {
-            places.chain(quarters(coarser + 1)).collect()
-        } else {
-            places.collect()
-        };
+        let places =
+            if coarser + 1 < levels.len() { places.chain(quarters(coarser + 1)).collect() } else { places.collect() };
         result.push(TileSet::new(tiles.per_side(), places));
     }
     Elements::new(result)

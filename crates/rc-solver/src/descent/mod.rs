@@ -409,7 +409,6 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
     }
 
     fn rescale(&mut self, scale: f64) -> GapSums {
-        let block = self.block();
         let sums = rescale(scale, &self.blocks, self.problem, (self.heights, &mut self.p, &mut self.g));
         self.settle(sums)
     }

@@ -57,7 +57,13 @@ impl Bounds {
                 round_up((inside.fold(f64::NEG_INFINITY, |max, &h| max.max(h)) - offset) / scale)
             })
         });
-        Self { pyramid: MaxPyramid::new(n_blocks, leaves.collect()), offset, remainder: 0.0, scale, curvature: f64::INFINITY }
+        Self {
+            pyramid: MaxPyramid::new(n_blocks, leaves.collect()),
+            offset,
+            remainder: 0.0,
+            scale,
+            curvature: f64::INFINITY,
+        }
     }
 
     /// Bounds of a band-limited surface everywhere, and of its negative, by cell of its coefficients; `samples` are
