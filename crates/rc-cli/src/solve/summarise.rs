@@ -8,7 +8,7 @@ use crate::resolve::ContactProblem;
 use crate::summary::Summary;
 
 /// The summary; `side` is λ in m.
-pub(super) fn summarise(solved: &Solved, contact: &ContactProblem, side: f64, threads: usize) -> Summary {
+pub(super) fn summarise(solved: &Solved<'_>, contact: &ContactProblem, side: f64, threads: usize) -> Summary {
     let (e_star, found) = (contact.elasticity.e_star(), &solved.found);
     let info = found.info();
     let observables = found.observables(contact);

@@ -87,6 +87,19 @@ fn the_method_is_chosen_by_what_can_and_what_is_cheaper() {
 }
 
 #[test]
+fn where_one_method_does_not_fit_into_memory_the_other_is_taken() {
+    let place = Place::new();
+    // The uniform grid needs 21.0 MB; the adaptive method 16.6 MB at an estimated 40 % contact, and 21.5 MB at 100 %.
+    let cases = [("1.7e6", "19MB", "adaptive", "does not fit into memory"), ("1e9", "21MB", "uniform", "is cheaper")];
+    for (pressure, limit, method, expected) in cases {
+        let summary = summary_of(&place.run(&[&SCENE[..], &[pressure, "--memory-limit", limit, "--json"]].concat()));
+        let reason = reason(&summary);
+        assert_eq!(summary["method"], method, "{pressure} Pa: {reason}");
+        assert!(reason.starts_with(&format!("{method}: ")) && reason.contains(expected), "{pressure} Pa: {reason}");
+    }
+}
+
+#[test]
 fn the_files_of_an_adaptive_solve_agree_with_its_summary() {
     let place = Place::new();
     let summary = summary_of(&place.run(&scene(&["--json", "--out", "r"])));

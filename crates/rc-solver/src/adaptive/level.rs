@@ -175,7 +175,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
             curvature: greatest * unit_curvature,
             error: 1e-5 * self.problem.h_range,
         };
-        possible_contact(&remainder, &self.heights, level - self.problem.offset(), per_side)
+        possible_contact(&remainder, self.heights, level - self.problem.offset(), per_side)
     }
 
     /// Pressure and gap on all candidates. With `prove`, tiles are added to them until no contact is possible elsewhere.

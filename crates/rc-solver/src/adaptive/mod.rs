@@ -121,13 +121,37 @@ impl<'a> AdaptiveProblem<'a> {
     ///
     /// # Errors
     /// [`AdaptiveError::NotConverged`].
-    pub fn solve(self, observer: &dyn Observer) -> Result<AdaptiveSolution, AdaptiveError> {
+    pub fn solve(&self, observer: &dyn Observer) -> Result<AdaptiveSolution, AdaptiveError> {
         let Self { heights, problem, params, split } = self;
         if params.operator_error.min(OPERATOR_ERROR_PER_TOLERANCE * params.solve.tolerance) >= SINGLE_PRECISION {
-            Solver::<f32>::new(heights, problem, params.solve, split).solve(observer)
+            Solver::<f32>::new(heights, *problem, params.solve, *split).solve(observer)
         } else {
-            Solver::<f64>::new(heights, problem, params.solve, split).solve(observer)
+            Solver::<f64>::new(heights, *problem, params.solve, *split).solve(observer)
         }
+    }
+
+    /// Hands out the gap under `solution` on the finest grid, as [`AdaptiveSolution::displacement_rows`] does the
+    /// displacement. Neither it nor the heights are ever whole in memory.
+    ///
+    /// # Errors
+    /// What `take` returns.
+    ///
+    /// # Panics
+    /// When the solution is on another grid than this problem.
+    pub fn gap_rows<E>(
+        &self,
+        solution: &AdaptiveSolution,
+        mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        assert_eq!(solution.grid().nx(), self.heights.finest_side(), "not a solution of this problem");
+        let offset = solution.gap_offset(self.h_max());
+        solution.displacement_rows(|first, displacement| {
+            let mut rows = self.heights.row_of_tiles(first / TILE);
+            for (h, v) in rows.iter_mut().zip(displacement) {
+                *h = v - *h + offset;
+            }
+            take(first, &rows)
+        })
     }
 }
 
@@ -187,7 +211,7 @@ fn base_side(source: &HeightSource<'_>, wanted: Option<usize>) -> Result<usize, 
 
 /// What the levels share; `T` is the precision of fresh gaps.
 struct Solver<'a, T> {
-    heights: Heights<'a>,
+    heights: &'a Heights<'a>,
     problem: Problem,
     params: SolveParams,
     /// L, and its approximate inverse, for corrections.
@@ -205,7 +229,7 @@ struct Coarse {
 }
 
 impl<'a, T: Real + Into<f64>> Solver<'a, T> {
-    fn new(heights: Heights<'a>, problem: Problem, params: SolveParams, split: SplitParams) -> Self {
+    fn new(heights: &'a Heights<'a>, problem: Problem, params: SolveParams, split: SplitParams) -> Self {
         let (quick, certified) = (ScaleSplit::new(SplitParams::quick()), ScaleSplit::new(split));
         let base = heights.base().grid();
         Self {

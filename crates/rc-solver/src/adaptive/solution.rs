@@ -9,7 +9,7 @@ use rc_kernel::{Love, ScaleSplit, SplitParams};
 use super::fresh::Fresh;
 use super::level::moved;
 use super::operator::{BLOCK_CELLS, Hierarchy, Patch, Prepared, TileOperator, gather};
-use super::tiles::{CELLS, TILE, TileSet};
+use super::tiles::{CELLS, TILE, TileSet, put_tile};
 use crate::descent::Engine;
 use crate::stiffness::stiffness_of;
 use crate::{ContactArea, Observables, SolveInfo};
@@ -82,10 +82,7 @@ impl AdaptiveSolution {
             rows.fill(0.0);
             for column in 0..self.tiles.per_side() {
                 if let Some(tile) = self.tiles.find(column as i64, row as i64) {
-                    let cells = &self.pressure[tile * CELLS..][..CELLS];
-                    for (line, values) in rows.chunks_exact_mut(n).zip(cells.as_chunks::<TILE>().0) {
-                        line[column * TILE..][..TILE].copy_from_slice(values);
-                    }
+                    put_tile(&mut rows, n, column, &self.pressure[tile * CELLS..][..CELLS]);
                 }
             }
             take(row * TILE, &rows)?;
@@ -94,8 +91,8 @@ impl AdaptiveSolution {
     }
 
     /// Hands out the displacement v on the finest grid, rows of tiles at a time as [`AdaptiveSolution::pressure_rows`] does, at
-    /// about the cost of one application of L on the whole grid. The gap is `v - h + mean gap offset`: see
-    /// [`AdaptiveSolution::gap_offset`].
+    /// about the cost of one application of L on the whole grid. The gap is `v - h + offset`: see
+    /// [`AdaptiveSolution::gap_offset`], and [`crate::AdaptiveProblem::gap_rows`].
     ///
     /// # Errors
     /// What `take` returns.
@@ -120,9 +117,7 @@ impl AdaptiveSolution {
             for row in band {
                 for column in 0..per_side {
                     let Some(tile) = tiles.find(column as i64, row as i64) else { continue };
-                    for (line, cells) in rows.chunks_exact_mut(n).zip(values[tile * CELLS..].as_chunks::<TILE>().0) {
-                        line[column * TILE..][..TILE].copy_from_slice(cells);
-                    }
+                    put_tile(&mut rows, n, column, &values[tile * CELLS..][..CELLS]);
                 }
                 take(row * TILE, &rows)?;
             }

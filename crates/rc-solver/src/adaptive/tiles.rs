@@ -99,6 +99,13 @@ impl TileSet {
     }
 }
 
+/// Writes a tile into rows of the level, eight of `side` cells each, at this column of tiles.
+pub(crate) fn put_tile(rows: &mut [f64], side: usize, column: usize, tile: &[f64]) {
+    for (line, cells) in rows.chunks_exact_mut(side).zip(tile.as_chunks::<TILE>().0) {
+        line[column * TILE..][..TILE].copy_from_slice(cells);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
