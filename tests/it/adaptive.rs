@@ -133,6 +133,34 @@ fn nothing_penetrates_where_nothing_was_evaluated() {
 }
 
 #[test]
+fn gap_rows_are_displacement_less_height() {
+    let surface = surface(16, 0.8, 4);
+    let (grid, params) = (Grid::square(512).expect("a grid"), AdaptiveParams::certified());
+    let source = HeightSource::Surface(&surface, 512);
+    let problem = AdaptiveProblem::new(source, Control::MeanPressure(MEAN_PRESSURE), &params).expect("a valid scene");
+    let solution = problem.solve(&Silent).expect("a solvable scene");
+    let (mut gap, mut displacement) = (Vec::new(), Vec::new());
+    let rows = problem.gap_rows(&solution, |first, rows| {
+        assert_eq!(first * 512, gap.len(), "rows come in order");
+        gap.extend_from_slice(rows);
+        Ok::<(), ()>(())
+    });
+    rows.expect("no row fails");
+    let rows = solution.displacement_rows(|_, rows| {
+        displacement.extend_from_slice(rows);
+        Ok::<(), ()>(())
+    });
+    rows.expect("no row fails");
+    assert_eq!(gap.len(), grid.len());
+    let heights = surface.sample(grid);
+    let offset = solution.gap_offset(heights.max());
+    let expected = displacement.iter().zip(heights.values()).map(|(v, h)| v - h + offset);
+    let worst = expected.zip(&gap).map(|(expected, gap)| (expected - gap).abs()).fold(0.0, f64::max);
+    // Heights on tiles are interpolated to 1e-9 of their rms.
+    assert!(worst < 2e-9 * heights.rms(), "off by {worst:e}, rms height {:e}", heights.rms());
+}
+
+#[test]
 fn tight_tolerances_are_reached() {
     let surface = surface(16, 0.8, 5);
     let control = Control::MeanPressure(MEAN_PRESSURE);

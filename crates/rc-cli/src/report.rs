@@ -12,8 +12,8 @@ pub fn solved(summary: &Summary, side: f64, e_star: f64) -> String {
     let s = summary;
     let percent = |fraction: f64| digits(100.0 * fraction, 4);
     let stiffness = s.contact_stiffness.map_or_else(|| "infinite".into(), |value| engineering(value, "Pa/m"));
-    let lines = [
-        ("method", s.method_reason.clone()),
+    let mut lines = vec![
+        ("method", s.method_reason.as_ref().unwrap_or(&s.method).clone()),
         (
             "cell",
             format!(
@@ -64,8 +64,10 @@ pub fn solved(summary: &Summary, side: f64, e_star: f64) -> String {
                 s.complementarity_error, s.penetration_error, s.load_error
             ),
         ),
-        ("cells", format!("{} evaluated, {} proven out of contact", s.cells_evaluated, s.cells_proven)),
     ];
+    if let (Some(evaluated), Some(proven)) = (s.cells_evaluated, s.cells_proven) {
+        lines.push(("cells", format!("{evaluated} evaluated, {proven} proven out of contact")));
+    }
     headline(s) + &aligned(&lines)
 }
 
@@ -97,11 +99,16 @@ pub fn written(target: Option<&Path>) -> String {
 fn headline(s: &Summary) -> String {
     let memory = s.peak_memory_bytes.map_or_else(String::new, |bytes| format!(", {} MB", bytes / 1_000_000));
     let how = match s.status.as_str() {
-        "full_contact" => "full contact, solved exactly".to_owned(),
+        "full_contact" if s.iterations == 0 => "full contact, solved exactly".to_owned(),
+        "full_contact" => format!("full contact, {}", converged(s)),
         "not_converged" => format!("NOT CONVERGED after {} fine iterations", s.iterations),
-        _ => format!("converged in {} fine iterations, {} nested {}", s.iterations, s.levels, levels(s.levels)),
+        _ => converged(s),
     };
     format!("{how}: {} s, {} threads{memory}\n", digits(s.wall_seconds, 3), s.threads)
+}
+
+fn converged(s: &Summary) -> String {
+    format!("converged in {} fine iterations, {} nested {}", s.iterations, s.levels, levels(s.levels))
 }
 
 /// Statistics of a height map, with a short table of its spectrum and its distribution.

@@ -35,6 +35,12 @@ pub struct ContactProblem {
 }
 
 impl ContactProblem {
+    /// How often elements at the edges of contacts are halved beyond the grid.
+    #[must_use]
+    pub fn border_level(&self) -> usize {
+        self.keys.border_level.unwrap_or(0)
+    }
+
     /// The kernel itself.
     #[must_use]
     pub fn kernel(&self) -> &'static dyn Kernel {
@@ -168,6 +174,13 @@ pub fn contact(keys: ContactKeys, side: f64, elements_per_wave: Option<f64>) -> 
             "method: '{}' has the paper's elements, so kernel must be love; uniform has spectral too",
             method.name()
         )));
+    }
+    if let (Some(1..), Some(Method::Uniform | Method::GaussSeidel), _) | (Some(1..), _, KernelName::Spectral) =
+        (keys.border_level, method, kernel)
+    {
+        return Err(CliError::input(
+            "border_level: only the adaptive method, with kernel love, halves elements at the edges of contacts",
+        ));
     }
     let params = SolveParams { tolerance: tolerance(keys.tolerance, elements_per_wave)?, ..SolveParams::certified() };
     Ok(ContactProblem { elasticity, control, kernel, method, params, keys })

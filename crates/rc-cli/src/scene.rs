@@ -78,6 +78,9 @@ pub struct ContactKeys {
     /// How the problem is solved [default: adaptive, or uniform where that is cheaper; the summary says which and why]
     #[arg(long)]
     pub method: Option<Method>,
+    /// Halve elements at the edges of contacts this many times beyond --grid (adaptive method, generated surfaces)
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub border_level: Option<usize>,
     /// Certified tolerance, relative to the peak-to-valley height; auto stops well below the error of the grid
     #[arg(long, allow_hyphen_values = true)]
     pub tolerance: Option<Tolerance>,
@@ -223,7 +226,9 @@ impl ContactKeys {
         } else if self.young.is_some() || self.poisson.is_some() {
             lower.e_star = None;
         }
-        or_lower!(self, lower, { young, poisson, e_star, pressure, penetration, kernel, method, tolerance, output_grid });
+        or_lower!(self, lower, {
+            young, poisson, e_star, pressure, penetration, kernel, method, border_level, tolerance, output_grid
+        });
         self
     }
 }

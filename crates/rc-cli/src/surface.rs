@@ -138,15 +138,6 @@ impl LoadedSurface {
         }
     }
 
-    /// N of a random surface.
-    #[must_use]
-    pub fn waves(&self) -> Option<usize> {
-        match &self.shape {
-            Shape::Random(surface) => Some(surface.waves()),
-            Shape::Map { .. } => None,
-        }
-    }
-
     /// Moments, in λ: exact ones of a random surface, those of its grid for a height map.
     #[must_use]
     pub fn moments(&self) -> Moments {

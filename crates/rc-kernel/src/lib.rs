@@ -32,6 +32,7 @@
 
 mod alias_sum;
 mod averages;
+mod bessel;
 mod error;
 mod lattice;
 mod love;
@@ -45,6 +46,7 @@ mod square;
 mod truncated;
 
 pub use alias_sum::love_alias_sum;
+pub use bessel::bessel_series;
 pub use error::KernelError;
 pub use lattice::{LATTICE_CONSTANT, ewald_coefficient, ewald_phi};
 

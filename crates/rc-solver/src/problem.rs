@@ -42,6 +42,7 @@ impl HeightStatistics {
 }
 
 /// A checked problem, in the quantities that every level shares.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Problem {
     pub(crate) control: Control,
     /// Greatest height, on the finest grid.

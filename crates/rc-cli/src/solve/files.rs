@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 
 use rc_core::{Field, Grid};
-use rc_solver::{AdaptiveSolution, MeshPressure, Solution};
+use rc_solver::{AdaptiveProblem, AdaptiveSolution, MeshPressure, Solution};
 
 use super::Solved;
 use super::found::Pressure;
@@ -30,7 +30,7 @@ struct Units {
 /// Writes the result folder; `side` is λ in m.
 pub(super) fn write(
     folder: &Path,
-    solved: &Solved,
+    solved: &Solved<'_>,
     summary: &Summary,
     contact: &ContactProblem,
     side: f64,
@@ -39,7 +39,9 @@ pub(super) fn write(
     let mut staged = Staged::new(folder)?;
     match &solved.found.pressure {
         Pressure::Whole(solution) => add_whole(&mut staged, solution, contact.keys.output_grid, units)?,
-        Pressure::Tiles(solution) => add_tiles(&mut staged, solution, solved, contact.keys.output_grid, units)?,
+        Pressure::Tiles { solution, problem } => {
+            add_tiles(&mut staged, solution, problem, contact.keys.output_grid, units)?;
+        }
     }
     if let Some(heights) = solved.surface.as_read() {
         staged.add(HEIGHTS_FILE, |path| npy::write(path, heights, 1.0))?;
@@ -72,11 +74,11 @@ fn add_whole(
     staged.add("contact.png", |path| save_png(&picture, path))
 }
 
-/// As [`add_whole`], from rows of the finest grid: pressure and displacement are never whole in memory.
+/// As [`add_whole`], from rows of the finest grid: pressure, gap and heights are never whole in memory.
 fn add_tiles(
     staged: &mut Staged,
     solution: &AdaptiveSolution,
-    solved: &Solved,
+    problem: &AdaptiveProblem<'_>,
     output_grid: Option<GridSpec>,
     units: Units,
 ) -> Result<(), CliError> {
@@ -86,20 +88,11 @@ fn add_tiles(
         solution.pressure_rows(|_, rows| file.take(rows))?;
         file.finish()
     })?;
-    let heights = solved.surface.heights()?;
-    let offset = solution.gap_offset(solved.found.h_max);
     staged.add("gap.npy", |path| {
         let mut file = MapFile::create(path, grid, output_grid, units.side)?;
-        let mut gap = Vec::new();
-        solution.displacement_rows(|first, rows| {
-            gap.clear();
-            let heights = &heights.values()[first * grid.nx()..];
-            gap.extend(rows.iter().zip(heights).map(|(v, h)| v - h + offset));
-            file.take(&gap)
-        })?;
+        problem.gap_rows(solution, |_, rows| file.take(rows))?;
         file.finish()
     })?;
-    drop(heights);
     let rows = solution.elements().map(|e| [e.x, e.y, e.side, e.pressure]);
     staged.add("elements.csv", |path| write_elements(path, rows, units))?;
     let mut picture = ContactRows::new(grid);
@@ -158,7 +151,7 @@ fn write_elements(path: &Path, elements: impl Iterator<Item = [f64; 4]>, units: 
 }
 
 /// The scene as it was solved: every key that determines the result, the method that ran included.
-fn scene_text(solved: &Solved, contact: &ContactProblem) -> String {
+fn scene_text(solved: &Solved<'_>, contact: &ContactProblem) -> String {
     let keys = ContactKeys { method: Some(solved.found.method), ..contact.keys.clone() };
     let [surface, contact] = [scene_file::to_toml(&solved.surface.keys), scene_file::to_toml(&keys)];
     format!("# The scene as it was solved: `rc solve scene.toml` repeats the result.\n\n{surface}\n{contact}")

@@ -16,9 +16,9 @@ use crate::scene::Method;
 use crate::surface::LoadedSurface;
 
 /// What a method found.
-pub(super) struct Found {
+pub(super) struct Found<'a> {
     pub(super) method: Method,
-    pub(super) pressure: Pressure,
+    pub(super) pressure: Pressure<'a>,
     /// The solver's error, when this is only the best pressure it found.
     pub(super) failure: Option<String>,
     /// Greatest height on the finest grid, in λ.
@@ -26,22 +26,26 @@ pub(super) struct Found {
 }
 
 /// A solution, whole or on the tiles that contact touches.
-pub(super) enum Pressure {
+pub(super) enum Pressure<'a> {
     Whole(Box<Solution>),
-    Tiles(Box<AdaptiveSolution>),
+    Tiles {
+        solution: Box<AdaptiveSolution>,
+        /// What it solves, heights included.
+        problem: Box<AdaptiveProblem<'a>>,
+    },
 }
 
-impl Found {
+impl<'a> Found<'a> {
     /// Carries out `plan`; `side` is λ in m.
     pub(super) fn by(
-        plan: Plan<'_>,
+        plan: Plan<'a>,
         surface: &LoadedSurface,
         contact: &ContactProblem,
         side: f64,
         progress: &Progress,
     ) -> Result<Self, CliError> {
         match plan {
-            Plan::Adaptive(problem) => Self::by_adaptive(*problem, contact, side, progress),
+            Plan::Adaptive(problem) => Self::by_adaptive(problem, contact, side, progress),
             Plan::Uniform => {
                 let heights = surface.heights()?;
                 let result = solve_uniform(&heights, contact.kernel(), contact.control, &contact.params, progress);
@@ -56,7 +60,7 @@ impl Found {
     }
 
     fn by_adaptive(
-        problem: AdaptiveProblem<'_>,
+        problem: Box<AdaptiveProblem<'a>>,
         contact: &ContactProblem,
         side: f64,
         progress: &Progress,
@@ -71,7 +75,7 @@ impl Found {
             Err(AdaptiveError::Solve(error)) => return Err(in_si(&error, side, contact)),
             Err(other) => return Err(CliError::input(other)),
         };
-        Ok(Self { method: Method::Adaptive, pressure: Pressure::Tiles(solution), failure, h_max })
+        Ok(Self { method: Method::Adaptive, pressure: Pressure::Tiles { solution, problem }, failure, h_max })
     }
 
     fn of_whole(
@@ -96,6 +100,7 @@ impl Found {
         match (&self.failure, &self.pressure) {
             (Some(_), _) => "not_converged",
             (None, Pressure::Whole(solution)) if solution.status == Status::FullContact => "full_contact",
+            (None, Pressure::Tiles { solution, .. }) if solution.is_full_contact() => "full_contact",
             (None, _) => "converged",
         }
     }
@@ -103,7 +108,7 @@ impl Found {
     pub(super) fn info(&self) -> &SolveInfo {
         match &self.pressure {
             Pressure::Whole(solution) => &solution.info,
-            Pressure::Tiles(solution) => &solution.info,
+            Pressure::Tiles { solution, .. } => &solution.info,
         }
     }
 
@@ -111,7 +116,7 @@ impl Found {
     pub(super) fn grid(&self) -> Grid {
         match &self.pressure {
             Pressure::Whole(solution) => solution.pressure.grid(),
-            Pressure::Tiles(solution) => solution.grid(),
+            Pressure::Tiles { solution, .. } => solution.grid(),
         }
     }
 
@@ -121,7 +126,7 @@ impl Found {
             Pressure::Whole(solution) => {
                 solution.elements.as_ref().map_or(solution.pressure.grid().len(), |elements| elements.mesh.len())
             }
-            Pressure::Tiles(solution) => solution.n_elements(),
+            Pressure::Tiles { solution, .. } => solution.n_elements(),
         }
     }
 
@@ -129,14 +134,14 @@ impl Found {
     pub(super) fn evaluated_and_proven(&self) -> (usize, usize) {
         match &self.pressure {
             Pressure::Whole(solution) => (solution.pressure.grid().len(), 0),
-            Pressure::Tiles(solution) => (solution.evaluated, solution.proven),
+            Pressure::Tiles { solution, .. } => (solution.evaluated, solution.proven),
         }
     }
 
     pub(super) fn observables(&self, contact: &ContactProblem) -> Observables {
         match &self.pressure {
             Pressure::Whole(solution) => Observables::of(solution, contact.kernel()),
-            Pressure::Tiles(solution) => solution.observables(),
+            Pressure::Tiles { solution, .. } => solution.observables(),
         }
     }
 }

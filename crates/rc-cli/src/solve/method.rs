@@ -8,13 +8,7 @@ use crate::error::CliError;
 use crate::quantity::digits;
 use crate::resolve::ContactProblem;
 use crate::scene::{KernelName, Method, RunKeys};
-use crate::surface::{LoadedSurface, Shape};
-
-/// What the adaptive method still needs when files are written, relative to its peak.
-const KEPT_FOR_FILES: f64 = 1.0 / 3.0;
-
-/// Bytes for each height of a random surface, which `gap.npy` is made with.
-const BYTES_PER_HEIGHT: f64 = 8.0;
+use crate::surface::LoadedSurface;
 
 /// A method, prepared as far as it goes before solving, and why it is this one.
 pub(super) struct Choice<'a> {
@@ -42,12 +36,12 @@ pub(super) fn choose<'a>(
     side: f64,
     run: &RunKeys,
 ) -> Result<Choice<'a>, CliError> {
-    let chooser = Chooser { surface, contact, side, budget: Budget::new(run.memory_limit), files: run.out.is_some() };
+    let chooser = Chooser { surface, contact, side, budget: Budget::new(run.memory_limit) };
     match contact.method {
         None => chooser.automatic(),
         Some(Method::Adaptive) => {
             let problem = chooser.prepare().map_err(|error| chooser.refuse(&error))?;
-            chooser.adaptive(problem, "adaptive: asked for".into())
+            Ok(adaptive(problem, "adaptive: asked for".into()))
         }
         Some(Method::Uniform) => chooser.on_grid(Plan::Uniform, "uniform: asked for".into()),
         Some(Method::GaussSeidel) => chooser.on_grid(Plan::GaussSeidel, "gauss-seidel: asked for".into()),
@@ -60,8 +54,6 @@ struct Chooser<'a, 'b> {
     /// λ in m.
     side: f64,
     budget: Budget,
-    /// Whether result files are to be written.
-    files: bool,
 }
 
 impl<'a> Chooser<'a, '_> {
@@ -71,22 +63,23 @@ impl<'a> Chooser<'a, '_> {
         }
         let problem = match self.prepare() {
             Ok(problem) => problem,
+            Err(error) if self.contact.border_level() > 0 => return Err(self.refuse(&error)),
             Err(error) => return self.without_adaptive(&error),
         };
+        if self.contact.border_level() > 0 {
+            return Ok(adaptive(problem, "adaptive: a border level is asked for".into()));
+        }
         let area = problem.estimate().area_fraction;
         let percent = digits(100.0 * area, 2);
         if area <= Estimate::GREATEST_ADAPTIVE_AREA {
-            return self.adaptive(problem, format!("adaptive: an estimated contact area of {percent} %"));
+            return Ok(adaptive(problem, format!("adaptive: an estimated contact area of {percent} %")));
         }
         match self.on_grid(Plan::Uniform, cheaper_on_grid(100.0 * area)) {
             // The adaptive method fits, or it would not be prepared.
-            Err(_) => self.adaptive(
-                problem,
-                format!(
-                    "adaptive: at an estimated contact area of {percent} % the uniform grid is cheaper but does not fit into \
-                     memory"
-                ),
-            ),
+            Err(_) => {
+                let why = "the uniform grid is cheaper but does not fit into memory";
+                Ok(adaptive(problem, format!("adaptive: at an estimated contact area of {percent} % {why}")))
+            }
             choice => choice,
         }
     }
@@ -99,7 +92,12 @@ impl<'a> Chooser<'a, '_> {
             return Err(AdaptiveError::Grid { nx: grid.nx(), ny: grid.ny(), smallest: 128 });
         }
         let memory_limit = self.budget.available();
-        let params = AdaptiveParams { solve: self.contact.params, memory_limit, ..AdaptiveParams::certified() };
+        let params = AdaptiveParams {
+            solve: self.contact.params,
+            border_level: self.contact.border_level(),
+            memory_limit,
+            ..AdaptiveParams::certified()
+        };
         AdaptiveProblem::new(self.surface.source(), self.contact.control, &params)
     }
 
@@ -116,19 +114,6 @@ impl<'a> Chooser<'a, '_> {
             Some(obstacle) => self.on_grid(Plan::Uniform, format!("uniform: {obstacle}")),
             None => Err(self.refuse(error)),
         }
-    }
-
-    fn adaptive(&self, problem: AdaptiveProblem<'a>, reason: String) -> Result<Choice<'a>, CliError> {
-        let adaptive_bytes = problem.estimate().adaptive_bytes;
-        let writing = match self.surface.shape {
-            Shape::Random(_) if self.files => {
-                BYTES_PER_HEIGHT * self.surface.grid.len() as f64 + KEPT_FOR_FILES * adaptive_bytes
-            }
-            _ => 0.0,
-        };
-        let grid = self.surface.grid;
-        self.budget.check(&format!("gap.npy of {grid} elements"), writing, |_| "; solve without --out".into())?;
-        Ok(Choice { plan: Plan::Adaptive(Box::new(problem)), reason })
     }
 
     fn on_grid(&self, plan: Plan<'a>, reason: String) -> Result<Choice<'a>, CliError> {
@@ -174,9 +159,16 @@ impl<'a> Chooser<'a, '_> {
                 let refused = self.budget.check(&what, 1e6 * *needed as f64, |_| String::new());
                 refused.err().unwrap_or_else(|| CliError::input(format_args!("memory_limit: {error}")))
             }
+            AdaptiveError::BorderLevel { .. } | AdaptiveError::BorderOfMap => {
+                CliError::input(format_args!("border_level: {error}"))
+            }
             other => CliError::input(format_args!("method: {other}")),
         }
     }
+}
+
+fn adaptive(problem: AdaptiveProblem<'_>, reason: String) -> Choice<'_> {
+    Choice { plan: Plan::Adaptive(Box::new(problem)), reason }
 }
 
 /// Why the uniform method solves a scene with this estimated contact area, in percent.

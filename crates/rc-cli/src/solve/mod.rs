@@ -27,11 +27,11 @@ use crate::{report, scene_file};
 const EXAMPLE_FOLDER: &str = "rc-result";
 
 /// A solved problem with what its files and its summary need.
-struct Solved {
-    found: Found,
+struct Solved<'a> {
+    found: Found<'a>,
     /// Why it was solved by this method.
     reason: String,
-    surface: LoadedSurface,
+    surface: &'a LoadedSurface,
     wall: Duration,
 }
 
@@ -60,7 +60,12 @@ fn execute(
         output::check_folder(folder)?;
     }
     let side = surface.cell.side();
-    let solved = solve(surface, contact, run, started)?;
+    let progress = Progress::new(run.quiet);
+    progress.say("heights");
+    let loaded = surface.load()?;
+    let solved = solve(&loaded, contact, side, run, &progress, started)?;
+    // The bar goes before anything is printed.
+    drop(progress);
     let summary = summarise(&solved, contact, side, threads);
     if let Some(folder) = &run.out {
         files::write(folder, &solved, &summary, contact, side)?;
@@ -88,22 +93,21 @@ fn scene_of(args: SolveArgs) -> Result<Scene, CliError> {
     Ok(Scene { run, ..scene_file::example() })
 }
 
-fn solve(
-    problem: &SurfaceProblem,
+/// `side` is λ in m.
+fn solve<'a>(
+    surface: &'a LoadedSurface,
     contact: &ContactProblem,
+    side: f64,
     run: &RunKeys,
+    progress: &Progress,
     started: Instant,
-) -> Result<Solved, CliError> {
-    let progress = Progress::new(run.quiet);
-    progress.say("heights");
-    let (surface, side) = (problem.load()?, problem.cell.side());
+) -> Result<Solved<'a>, CliError> {
     if let Some(spec) = contact.keys.output_grid {
         check_factor(surface.grid, spec)?;
     }
-    let Choice { plan, reason } = method::choose(&surface, contact, side, run)?;
-    let found = Found::by(plan, &surface, contact, side, &progress)?;
-    let wall = started.elapsed();
-    Ok(Solved { found, reason, surface, wall })
+    let Choice { plan, reason } = method::choose(surface, contact, side, run)?;
+    let found = Found::by(plan, surface, contact, side, progress)?;
+    Ok(Solved { found, reason, surface, wall: started.elapsed() })
 }
 
 fn print_summary(

@@ -8,7 +8,7 @@ use crate::resolve::ContactProblem;
 use crate::summary::Summary;
 
 /// The summary; `side` is λ in m.
-pub(super) fn summarise(solved: &Solved, contact: &ContactProblem, side: f64, threads: usize) -> Summary {
+pub(super) fn summarise(solved: &Solved<'_>, contact: &ContactProblem, side: f64, threads: usize) -> Summary {
     let (e_star, found) = (contact.elasticity.e_star(), &solved.found);
     let info = found.info();
     let observables = found.observables(contact);
@@ -26,8 +26,9 @@ pub(super) fn summarise(solved: &Solved, contact: &ContactProblem, side: f64, th
         }),
         kernel: text(contact.kernel().name()),
         method: text(found.method.name()),
-        method_reason: solved.reason.clone(),
+        method_reason: Some(solved.reason.clone()),
         grid: [grid.nx(), grid.ny()],
+        border_level: Some(contact.border_level()),
         elements: found.n_elements(),
         levels: info.levels.len(),
         mean_pressure: info.mean_pressure * e_star,
@@ -47,10 +48,10 @@ pub(super) fn summarise(solved: &Solved, contact: &ContactProblem, side: f64, th
         complementarity_error: info.certificate.complementarity,
         penetration_error: info.certificate.penetration,
         load_error: info.certificate.load,
-        tolerance: contact.params.tolerance,
-        cells_evaluated,
-        cells_proven,
-        level_iterations: info.levels.iter().map(|level| level.iterations).collect(),
+        tolerance: Some(contact.params.tolerance),
+        cells_evaluated: Some(cells_evaluated),
+        cells_proven: Some(cells_proven),
+        level_iterations: Some(info.levels.iter().map(|level| level.iterations).collect()),
         iterations: info.fine_iterations(),
         operator_applications: info.fine_operator_applications(),
         wall_seconds: solved.wall.as_secs_f64(),

@@ -87,6 +87,19 @@ fn the_method_is_chosen_by_what_can_and_what_is_cheaper() {
 }
 
 #[test]
+fn where_one_method_does_not_fit_into_memory_the_other_is_taken() {
+    let place = Place::new();
+    // The uniform grid needs 21.0 MB; the adaptive method 16.6 MB at an estimated 40 % contact, and 21.5 MB at 100 %.
+    let cases = [("1.7e6", "19MB", "adaptive", "does not fit into memory"), ("1e9", "21MB", "uniform", "is cheaper")];
+    for (pressure, limit, method, expected) in cases {
+        let summary = summary_of(&place.run(&[&SCENE[..], &[pressure, "--memory-limit", limit, "--json"]].concat()));
+        let reason = reason(&summary);
+        assert_eq!(summary["method"], method, "{pressure} Pa: {reason}");
+        assert!(reason.starts_with(&format!("{method}: ")) && reason.contains(expected), "{pressure} Pa: {reason}");
+    }
+}
+
+#[test]
 fn the_files_of_an_adaptive_solve_agree_with_its_summary() {
     let place = Place::new();
     let summary = summary_of(&place.run(&scene(&["--json", "--out", "r"])));
@@ -126,6 +139,19 @@ fn an_output_grid_holds_the_means_of_an_adaptive_solution() {
         assert!((coarse.at(7, 5) - block / 128.0).abs() <= 1e-12 * full.max(), "{name}: not the mean of its block");
     }
     assert!(place.bytes("full/contact.png") == place.bytes("coarse/contact.png"), "the picture is of the output grid");
+}
+
+#[test]
+fn an_adaptive_full_contact_is_called_so() {
+    let place = Place::new();
+    let solve = |pressure: &str| {
+        let args = ["solve", "--waves", "8", "--grid", "128", "--method", "adaptive", "--json", "--pressure", pressure];
+        summary_of(&place.run(&args))
+    };
+    let (full, partial) = (solve("1e9"), solve("4e6"));
+    assert_eq!((&full["status"], &partial["status"]), (&"full_contact".into(), &"converged".into()));
+    assert_eq!(full["elements"], 128 * 128);
+    assert!(full["contact_stiffness"].is_null() && partial["contact_stiffness"].is_number());
 }
 
 #[test]

@@ -4,6 +4,7 @@
 //! Ψ(x) = ∫₀^x I₀(β√(1-t²)) dt / ∫₀¹ I₀(β√(1-t²)) dt        (∫₀¹ = sinh β / β),     Ψ = 1 from x = 1 on
 //! ```
 
+use crate::bessel::bessel_series;
 use crate::polynomial::gauss_legendre;
 
 /// Terms of the expansions before those are dropped that do not matter: enough for rounding accuracy up to β = 24 and cutoffs
@@ -87,18 +88,9 @@ impl Window {
     }
 }
 
-/// Modified Bessel function I₀: its series, all of whose terms are positive.
+/// Modified Bessel function I₀.
 fn bessel_i0(x: f64) -> f64 {
-    let quarter = 0.25 * x * x;
-    let (mut term, mut sum) = (1.0, 1.0);
-    for k in 1..200 {
-        term *= quarter / f64::from(k * k);
-        sum += term;
-        if term < 1e-17 * sum {
-            break;
-        }
-    }
-    sum
+    bessel_series(0.25 * x * x, 0)
 }
 
 /// Chebyshev coefficients of a function on [0, 1].

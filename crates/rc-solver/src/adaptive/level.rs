@@ -82,7 +82,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
             fresh_response: response.clone(),
             response,
         };
-        let heights = element_heights(&self.heights, &mesh.elements);
+        let heights = element_heights(self.heights, &mesh.elements);
         let start = Start::Pressure(mesh.pressure);
         let mut descent = Descent::new(&heights, grid, machinery, &self.problem, start);
         let outcome = descent.run(tolerance, self.params.max_iterations, false, observer);
@@ -158,7 +158,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
     }
 
     fn candidates(&self, elements: Elements) -> Candidates {
-        Candidates { heights: element_heights(&self.heights, &elements), elements }
+        Candidates { heights: element_heights(self.heights, &elements), elements }
     }
 
     /// Tiles where the gap under the pressure last spread by `operator` may be less than `level`; `unit_curvature` is the bound
@@ -177,7 +177,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
             curvature: greatest * unit_curvature,
             error: 1e-5 * self.problem.h_range,
         };
-        possible_contact(&remainder, &self.heights, level - self.problem.offset(), per_side)
+        possible_contact(&remainder, self.heights, level - self.problem.offset(), per_side)
     }
 
     /// Pressure and gap on all candidates. With `prove`, tiles are added to them until no contact is possible elsewhere.

@@ -117,7 +117,7 @@ impl<'a> AdaptiveProblem<'a> {
     /// What solving it will cost, from the surface and the load alone.
     #[must_use]
     pub fn estimate(&self) -> Estimate {
-        Estimate::new(&self.heights, self.problem.control)
+        Estimate::new(&self.heights, self.params.border_level, self.problem.control)
     }
 
     /// The greatest height over the finest grid, in λ.
@@ -133,13 +133,37 @@ impl<'a> AdaptiveProblem<'a> {
     ///
     /// # Errors
     /// [`AdaptiveError::NotConverged`].
-    pub fn solve(self, observer: &dyn Observer) -> Result<AdaptiveSolution, AdaptiveError> {
+    pub fn solve(&self, observer: &dyn Observer) -> Result<AdaptiveSolution, AdaptiveError> {
         let Self { heights, problem, params, split } = self;
         if params.operator_error.min(OPERATOR_ERROR_PER_TOLERANCE * params.solve.tolerance) >= SINGLE_PRECISION {
-            Solver::<f32>::new(heights, problem, &params, split).solve(observer)
+            Solver::<f32>::new(heights, *problem, params, *split).solve(observer)
         } else {
-            Solver::<f64>::new(heights, problem, &params, split).solve(observer)
+            Solver::<f64>::new(heights, *problem, params, *split).solve(observer)
         }
+    }
+
+    /// Hands out the gap under the mean `solution` on the grid, as [`AdaptiveSolution::displacement_rows`] does the
+    /// displacement. Neither it nor the heights are ever whole in memory.
+    ///
+    /// # Errors
+    /// What `take` returns.
+    ///
+    /// # Panics
+    /// When the solution is on another grid than this problem.
+    pub fn gap_rows<E>(
+        &self,
+        solution: &AdaptiveSolution,
+        mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        assert_eq!(solution.finest_side(), self.heights.finest_side(), "not a solution of this problem");
+        let offset = solution.gap_offset(self.h_max());
+        solution.displacement_rows(|first, displacement| {
+            let mut rows = self.heights.row_of_tiles(solution.grid().nx(), first / TILE);
+            for (h, v) in rows.iter_mut().zip(displacement) {
+                *h = v - *h + offset;
+            }
+            take(first, &rows)
+        })
     }
 }
 
@@ -218,7 +242,7 @@ const DEEPEST_SIDE: usize = 1 << 17;
 
 /// What the levels share; `T` is the precision of fresh gaps.
 struct Solver<'a, T> {
-    heights: Heights<'a>,
+    heights: &'a Heights<'a>,
     problem: Problem,
     params: SolveParams,
     border_level: usize,
@@ -230,7 +254,7 @@ struct Solver<'a, T> {
 }
 
 impl<'a, T: Real + Into<f64>> Solver<'a, T> {
-    fn new(heights: Heights<'a>, problem: Problem, params: &AdaptiveParams, split: SplitParams) -> Self {
+    fn new(heights: &'a Heights<'a>, problem: Problem, params: &AdaptiveParams, split: SplitParams) -> Self {
         let (quick, certified) = (ScaleSplit::new(SplitParams::quick()), ScaleSplit::new(split));
         let (base, border_level) = (heights.base().grid(), params.border_level);
         Self {

@@ -10,7 +10,7 @@ use rc_kernel::{Love, ScaleSplit, SplitParams};
 use super::elements::Elements;
 use super::fresh::Fresh;
 use super::operator::{BLOCK_CELLS, Hierarchy, Prepared, TileOperator};
-use super::tiles::{CELLS, TILE, TileSet};
+use super::tiles::{CELLS, TILE, TileSet, put_tile};
 use crate::descent::Engine;
 use crate::stiffness::stiffness_of;
 use crate::{ContactArea, Observables, SolveInfo};
@@ -77,6 +77,13 @@ impl AdaptiveSolution {
         self.pressure.par_iter().filter(|&&p| p > 0.0).count()
     }
 
+    /// Whether every element is in contact, and elements are everywhere.
+    #[must_use]
+    pub fn is_full_contact(&self) -> bool {
+        let areas = self.elements.levels().iter().enumerate().map(|(coarser, tiles)| tiles.n_cells() << (2 * coarser));
+        areas.sum::<usize>() == self.finest.len() && self.n_elements() == self.elements.n_cells()
+    }
+
     /// Tiles of the grid, and the mean pressure on its cells.
     fn on_grid(&self) -> (TileSet, Cow<'_, [f64]>) {
         if self.border_level == 0 {
@@ -89,8 +96,8 @@ impl AdaptiveSolution {
         (elements.finest().clone(), Cow::Owned(pressure))
     }
 
-    /// Hands out the pressure on the grid, in the mean over smaller elements, eight rows at a time, in order: the index of the first row, and the rows one
-    /// after the other. Stops at the first error.
+    /// Hands out the pressure on the grid, in the mean over smaller elements, eight rows at a time, in order: the index of the
+    /// first row, and the rows one after the other. Stops at the first error.
     ///
     /// # Errors
     /// What `take` returns.
@@ -102,10 +109,7 @@ impl AdaptiveSolution {
             rows.fill(0.0);
             for column in 0..tiles.per_side() {
                 if let Some(tile) = tiles.find(column as i64, row as i64) {
-                    let cells = &pressure[tile * CELLS..][..CELLS];
-                    for (line, values) in rows.chunks_exact_mut(n).zip(cells.as_chunks::<TILE>().0) {
-                        line[column * TILE..][..TILE].copy_from_slice(values);
-                    }
+                    put_tile(&mut rows, n, column, &pressure[tile * CELLS..][..CELLS]);
                 }
             }
             take(row * TILE, &rows)?;
@@ -113,9 +117,9 @@ impl AdaptiveSolution {
         Ok(())
     }
 
-    /// Hands out the displacement v of the grid's pressure, rows of tiles at a time as [`AdaptiveSolution::pressure_rows`] does, at
-    /// about the cost of one application of L on the whole grid. The gap is `v - h + mean gap offset`: see
-    /// [`AdaptiveSolution::gap_offset`].
+    /// Hands out the displacement v of the grid's pressure, rows of tiles at a time as [`AdaptiveSolution::pressure_rows`]
+    /// does, at about the cost of one application of L on the whole grid. The gap is `v - h + offset`: see
+    /// [`AdaptiveSolution::gap_offset`], and [`crate::AdaptiveProblem::gap_rows`].
     ///
     /// # Errors
     /// What `take` returns.
@@ -142,9 +146,7 @@ impl AdaptiveSolution {
             for row in band {
                 for column in 0..per_side {
                     let Some(tile) = tiles.find(column as i64, row as i64) else { continue };
-                    for (line, cells) in rows.chunks_exact_mut(n).zip(values[tile * CELLS..].as_chunks::<TILE>().0) {
-                        line[column * TILE..][..TILE].copy_from_slice(cells);
-                    }
+                    put_tile(&mut rows, n, column, &values[tile * CELLS..][..CELLS]);
                 }
                 take(row * TILE, &rows)?;
             }
@@ -156,6 +158,11 @@ impl AdaptiveSolution {
     #[must_use]
     pub fn gap_offset(&self, h_max: f64) -> f64 {
         h_max - self.info.penetration
+    }
+
+    /// Smallest elements that a side of the cell has room for.
+    pub(super) fn finest_side(&self) -> usize {
+        self.finest.nx()
     }
 
     /// Levels above the base grid, up to the smallest elements.
@@ -204,7 +211,7 @@ impl AdaptiveSolution {
     }
 
     fn contact_stiffness(&self) -> f64 {
-        if self.pressure.len() == self.finest.len() && self.n_elements() == self.finest.len() {
+        if self.is_full_contact() {
             return f64::INFINITY;
         }
         let split = ScaleSplit::new(SplitParams::quick());

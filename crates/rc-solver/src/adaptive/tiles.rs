@@ -1,5 +1,7 @@
 //! Tiles: the squares of 8 × 8 cells in which a level of the mesh is stored.
 
+use std::sync::Arc;
+
 use rc_quadtree::morton_code;
 
 /// Cells per side of a tile.
@@ -18,8 +20,9 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Debug)]
 pub(crate) struct TileSet {
     per_side: usize,
-    places: Vec<[u32; 2]>,
-    index: Vec<u32>,
+    // Shared: meshes are cloned often, and never changed.
+    places: Arc<Vec<[u32; 2]>>,
+    index: Arc<Vec<u32>>,
 }
 
 impl TileSet {
@@ -31,13 +34,14 @@ impl TileSet {
         for (tile, &[column, row]) in places.iter().enumerate() {
             index[row as usize * per_side + column as usize] = tile as u32;
         }
-        Self { per_side, places, index }
+        Self { per_side, places: Arc::new(places), index: Arc::new(index) }
     }
 
     /// All tiles of a level, row by row.
     pub(crate) fn full(per_side: usize) -> Self {
         let places = (0..per_side * per_side).map(|i| [(i % per_side) as u32, (i / per_side) as u32]);
-        Self { per_side, places: places.collect(), index: (0..(per_side * per_side) as u32).collect() }
+        let index = (0..(per_side * per_side) as u32).collect();
+        Self { per_side, places: Arc::new(places.collect()), index: Arc::new(index) }
     }
 
     /// Tiles per side of the whole level.
@@ -79,7 +83,7 @@ impl TileSet {
     pub(crate) fn around(&self, halo: usize) -> Self {
         let (n, reach) = (self.per_side as i64, halo.div_ceil(TILE) as i64);
         let mut places = Vec::with_capacity(self.places.len());
-        for &[column, row] in &self.places {
+        for &[column, row] in self.places() {
             for y in i64::from(row) - reach..=i64::from(row) + reach {
                 for x in i64::from(column) - reach..=i64::from(column) + reach {
                     places.push([x.rem_euclid(n) as u32, y.rem_euclid(n) as u32]);
@@ -91,7 +95,7 @@ impl TileSet {
 
     /// These tiles and others of the same level.
     pub(crate) fn with(&self, others: &Self) -> Self {
-        Self::new(self.per_side, self.places.iter().chain(&others.places).copied().collect())
+        Self::new(self.per_side, self.places.iter().chain(others.places()).copied().collect())
     }
 
     /// The tiles of the level with half as many cells per side that hold these tiles, or a cell within `halo` cells of that
@@ -101,7 +105,7 @@ impl TileSet {
         let mut marks = vec![false; (half * half) as usize];
         // A tile covers half a tile of the coarser level.
         let (quarter, tile) = (TILE as i64 / 2, TILE as i64);
-        for &[column, row] in &self.places {
+        for &[column, row] in self.places() {
             let range = |i: u32| {
                 let start = i64::from(i) * quarter;
                 (start - halo).div_euclid(tile)..=(start + quarter + halo - 1).div_euclid(tile)
@@ -115,6 +119,13 @@ impl TileSet {
         let half = half as usize;
         let marked = marks.iter().enumerate().filter(|&(_, &mark)| mark);
         Self::new(half, marked.map(|(i, _)| [(i % half) as u32, (i / half) as u32]).collect())
+    }
+}
+
+/// Writes a tile into rows of the level, eight of `side` cells each, at this column of tiles.
+pub(crate) fn put_tile(rows: &mut [f64], side: usize, column: usize, tile: &[f64]) {
+    for (line, cells) in rows.chunks_exact_mut(side).zip(tile.as_chunks::<TILE>().0) {
+        line[column * TILE..][..TILE].copy_from_slice(cells);
     }
 }
 

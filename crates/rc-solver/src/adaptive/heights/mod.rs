@@ -15,9 +15,10 @@ mod window;
 
 use std::borrow::Cow;
 
+use rayon::prelude::*;
 use rc_core::{Field, Grid, HeightField};
 
-use super::tiles::TILE;
+use super::tiles::{TILE, put_tile};
 use crate::SolveError;
 use crate::problem::HeightStatistics;
 use crate::uniform::coarsen;
@@ -154,6 +155,24 @@ impl<'a> Heights<'a> {
             }
             (None, None) => unreachable!("a map keeps all levels"),
         }
+    }
+
+    /// Heights of row `ty` of the tiles of the level with `side` cells per side: eight rows of cells.
+    ///
+    /// # Panics
+    /// As [`Heights::tile`].
+    pub(crate) fn row_of_tiles(&self, side: usize, ty: usize) -> Vec<f64> {
+        let tile = |tx: usize| {
+            let mut tile = [0.0; TILE * TILE];
+            self.tile(side, tx, ty, &mut tile);
+            tile
+        };
+        let tiles: Vec<[f64; TILE * TILE]> = (0..side / TILE).into_par_iter().map(tile).collect();
+        let mut rows = vec![0.0; TILE * side];
+        for (tx, tile) in tiles.iter().enumerate() {
+            put_tile(&mut rows, side, tx, tile);
+        }
+        rows
     }
 
     /// Upper bound of the heights at all centres of the finest level in block (`ix`, `iy`) of `blocks` × `blocks` equal

@@ -9,6 +9,8 @@
 
 use std::f64::consts::PI;
 
+use rc_kernel::bessel_series;
+
 /// Coefficients that one interpolated value uses along a direction.
 pub(super) const TAPS: usize = 12;
 
@@ -26,7 +28,7 @@ pub(super) const ERRORS: [f64; 3] = [1e-10, 2e-9, 1e-7];
 /// The window φ at `x` cells from its centre, or its first or second derivative; zero from TAPS/2 on.
 ///
 /// `φ = I0(β √(1 - u²)) / c`, with `u = 2 x / TAPS` and c such that its integral is 1. In `q = β² (1 - u²) / 4` it is
-/// `F_0(q) / c`, where `F_m(q) = Σ_n qⁿ / (n! (n + m)!)` and `F_m' = F_(m+1)`.
+/// `F_0(q) / c`, with the series F_m of [`bessel_series`], where `F_m' = F_(m+1)`.
 pub(super) fn window(x: f64, derivative: Derivative) -> f64 {
     let width = TAPS as f64;
     let u = 2.0 * x / width;
@@ -61,19 +63,6 @@ impl Derivative {
 pub(super) fn transform(frequency: f64) -> f64 {
     let z = (SHAPE * SHAPE - (PI * TAPS as f64 * frequency).powi(2)).sqrt();
     (z.sinh() / z) * (SHAPE / SHAPE.sinh())
-}
-
-/// Σ_n qⁿ / (n! (n + m)!), all of whose terms are positive.
-fn bessel_series(q: f64, m: usize) -> f64 {
-    let mut term = 1.0 / (1..=m).map(|n| n as f64).product::<f64>();
-    let mut sum = 0.0;
-    let mut n = 0.0;
-    while term > f64::EPSILON * 1e-2 * sum {
-        sum += term;
-        n += 1.0;
-        term *= q / (n * (n + m as f64));
-    }
-    sum
 }
 
 #[cfg(test)]
