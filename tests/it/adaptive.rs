@@ -255,3 +255,71 @@ fn a_pressure_that_is_not_positive_is_refused() {
         assert!(matches!(error, AdaptiveError::Solve(_)), "{control:?}: {error}");
     }
 }
+
+/// Halving the elements at edges again and again, those inside kept: the area converges as on uniform grids of the smallest
+/// element, with far fewer of them.
+#[test]
+fn border_levels_refine_edges_only() {
+    let surface = surface(8, 0.8, 1);
+    let control = Control::MeanPressure(MEAN_PRESSURE);
+    let solve = |side: usize, border_level: usize| {
+        let params = AdaptiveParams { border_level, ..AdaptiveParams::certified() };
+        solve_adaptive(HeightSource::Surface(&surface, side), control, &params, &Silent).expect("a solvable scene")
+    };
+    let mut counts = Vec::new();
+    for border_level in 1..=4 {
+        let (edges, everywhere) = (solve(256, border_level), solve(256 << border_level, 0));
+        let (of_edges, of_all) = (edges.observables(), everywhere.observables());
+        assert_close("area by counting", of_edges.area.cells, of_all.area.cells, 2e-3);
+        assert_close("area", of_edges.area.fraction, of_all.area.fraction, 2e-3);
+        assert_close("rms pressure", of_edges.rms_pressure, of_all.rms_pressure, 2e-3);
+        assert_close("penetration", edges.info.penetration, everywhere.info.penetration, 5e-4);
+        assert_close("stiffness", of_edges.contact_stiffness, of_all.contact_stiffness, 1e-2);
+        assert_eq!(edges.grid().nx(), 256);
+        assert_close("mean pressure on the grid", field(&edges).mean(), MEAN_PRESSURE, 1e-12);
+        let load: f64 = edges.elements().map(|element| element.pressure * element.side * element.side).sum();
+        assert_close("mean pressure of the elements", load, MEAN_PRESSURE, 1e-12);
+        counts.push((edges.n_elements() as f64, of_edges.area.cells));
+        if border_level == 4 {
+            let with_side = |n: f64| edges.elements().filter(|e| e.side.to_bits() == n.recip().to_bits()).count();
+            assert!(with_side(4096.0) > with_side(2048.0) && with_side(1024.0) > 0, "elements are coarser inside");
+            assert!(5 * edges.n_elements() < everywhere.n_elements(), "{}", edges.n_elements());
+        }
+    }
+    // Towards twice the elements for each halving, not four times; and half the error.
+    let growth: Vec<f64> = counts.windows(2).map(|pair| pair[1].0 / pair[0].0).collect();
+    assert!(growth.iter().all(|&growth| growth < 2.8) && growth[2] < 2.4, "{growth:?}");
+    let steps: Vec<f64> = counts.windows(2).map(|pair| pair[0].1 - pair[1].1).collect();
+    for pair in steps.windows(2) {
+        assert!((1.6..2.4).contains(&(pair[0] / pair[1])), "steps of the area: {steps:?}");
+    }
+}
+
+/// The certificate with border levels, on every point of the grid of the smallest elements.
+#[test]
+fn nothing_penetrates_between_coarse_elements() {
+    let surface = surface(24, 0.7, 5);
+    let control = Control::MeanPressure(MEAN_PRESSURE);
+    let params = AdaptiveParams { border_level: 2, ..AdaptiveParams::certified() };
+    let solution = solve_adaptive(HeightSource::Surface(&surface, 256), control, &params, &Silent).expect("solvable");
+    // The pressure of every element, on the grid of the smallest.
+    let grid = Grid::square(1024).expect("a grid");
+    let mut pressure = vec![0.0; grid.len()];
+    for element in solution.elements() {
+        let n = (element.side * 1024.0).round() as usize;
+        let corner = |centre: f64| ((centre - 0.5 * element.side) * 1024.0).round() as usize;
+        for row in 0..n {
+            let start = (corner(element.y) + row) * 1024 + corner(element.x);
+            pressure[start..start + n].fill(element.pressure);
+        }
+    }
+    let operator = UniformOperator::new(grid, &Love);
+    let mut displacement = vec![0.0; grid.len()];
+    operator.apply(&pressure, &mut displacement, &mut vec![0.0; operator.scratch_len()]);
+    let heights = surface.sample(grid);
+    let offset = heights.max() - solution.info.penetration;
+    let range = heights.max() - heights.min();
+    let free = displacement.iter().zip(heights.values()).zip(&pressure).filter(|&(_, &p)| p == 0.0);
+    let least = free.map(|((v, h), _)| v - h + offset).fold(f64::INFINITY, f64::min);
+    assert!(least > -2e-6 * range, "a point outside contact penetrates by {:e}", -least / range);
+}

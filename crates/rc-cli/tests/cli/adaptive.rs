@@ -244,3 +244,44 @@ fn a_scene_keeps_auto_and_the_method_that_ran() {
     // Sixteen elements per wave.
     assert_close("tolerance", number(&place.json("r/summary.json"), "tolerance"), 3e-5 * 2_f64.powf(-1.5), 1e-12);
 }
+
+#[test]
+fn a_border_level_refines_edges_and_keeps_the_grid() {
+    let place = Place::new();
+    let scene = ["solve", "--waves", "8", "--grid", "128", "--pressure", PRESSURE, "--json"];
+    let plain = summary_of(&place.run(&scene));
+    let output = place.run(&[&scene[..], &["--border-level", "2", "--out", "fine"]].concat());
+    let fine = summary_of(&output);
+    assert_eq!((&fine["grid"], &fine["border_level"]), (&plain["grid"], &2.into()));
+    assert_eq!(reason(&fine), "adaptive: a border level is asked for");
+    assert!(number(&fine, "area_fraction_cells") < number(&plain, "area_fraction_cells"));
+    assert_close("area", number(&fine, "area_fraction"), number(&plain, "area_fraction"), 0.02);
+    let pressure = field(&place, "fine/pressure.npy");
+    assert_eq!((pressure.grid().nx(), pressure.grid().ny()), (128, 128));
+    assert_close("load", pressure.mean(), number(&fine, "mean_pressure"), 1e-12);
+    let elements = std::fs::read_to_string(place.path("fine/elements.csv")).expect("a table");
+    assert_eq!(elements.lines().count() as u64 - 1, fine["elements"].as_u64().expect("a count"));
+    let sizes: std::collections::BTreeSet<&str> =
+        elements.lines().skip(1).map(|line| line.split(',').nth(2).expect("a side")).collect();
+    assert!(sizes.len() >= 2, "sizes: {sizes:?}");
+    // The folder repeats itself.
+    let again = summary_of(&place.run(&["solve", "fine/scene.toml", "--json"]));
+    assert_eq!(again["area_fraction"], fine["area_fraction"]);
+}
+
+#[test]
+fn border_levels_that_cannot_be_are_refused() {
+    let place = Place::new();
+    let scene = ["solve", "--waves", "8", "--grid", "128", "--pressure", PRESSURE];
+    let refused = |more: &[&str], what: &str| {
+        let output = place.run(&[&scene[..], more].concat());
+        assert_refused(&output, what);
+    };
+    refused(&["--border-level", "2", "--method", "uniform"], "border_level: only the adaptive method");
+    refused(&["--border-level", "2", "--kernel", "spectral"], "border_level: only the adaptive method");
+    refused(&["--border-level", "11"], "10 is the deepest");
+    refused(&["--border-level", "99999999999"], "10 is the deepest");
+    place.write("map.npy", npy("<f8", false, "(128, 128)", &f8(&bumps(128))));
+    let output = place.run(&["solve", "--heights", "map.npy", "--pressure", PRESSURE, "--border-level", "1"]);
+    assert_refused(&output, "border_level: a border level needs heights between the points");
+}
