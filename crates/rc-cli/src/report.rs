@@ -97,11 +97,16 @@ pub fn written(target: Option<&Path>) -> String {
 fn headline(s: &Summary) -> String {
     let memory = s.peak_memory_bytes.map_or_else(String::new, |bytes| format!(", {} MB", bytes / 1_000_000));
     let how = match s.status.as_str() {
-        "full_contact" => "full contact, solved exactly".to_owned(),
+        "full_contact" if s.iterations == 0 => "full contact, solved exactly".to_owned(),
+        "full_contact" => format!("full contact, {}", converged(s)),
         "not_converged" => format!("NOT CONVERGED after {} fine iterations", s.iterations),
-        _ => format!("converged in {} fine iterations, {} nested {}", s.iterations, s.levels, levels(s.levels)),
+        _ => converged(s),
     };
     format!("{how}: {} s, {} threads{memory}\n", digits(s.wall_seconds, 3), s.threads)
+}
+
+fn converged(s: &Summary) -> String {
+    format!("converged in {} fine iterations, {} nested {}", s.iterations, s.levels, levels(s.levels))
 }
 
 /// Statistics of a height map, with a short table of its spectrum and its distribution.

@@ -100,6 +100,7 @@ impl<'a> Found<'a> {
         match (&self.failure, &self.pressure) {
             (Some(_), _) => "not_converged",
             (None, Pressure::Whole(solution)) if solution.status == Status::FullContact => "full_contact",
+            (None, Pressure::Tiles { solution, .. }) if solution.is_full_contact() => "full_contact",
             (None, _) => "converged",
         }
     }

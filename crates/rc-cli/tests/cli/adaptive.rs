@@ -142,6 +142,19 @@ fn an_output_grid_holds_the_means_of_an_adaptive_solution() {
 }
 
 #[test]
+fn an_adaptive_full_contact_is_called_so() {
+    let place = Place::new();
+    let solve = |pressure: &str| {
+        let args = ["solve", "--waves", "8", "--grid", "128", "--method", "adaptive", "--json", "--pressure", pressure];
+        summary_of(&place.run(&args))
+    };
+    let (full, partial) = (solve("2e7"), solve("4e6"));
+    assert_eq!((&full["status"], &partial["status"]), (&"full_contact".into(), &"converged".into()));
+    assert_eq!(full["elements"], 128 * 128);
+    assert!(full["contact_stiffness"].is_null() && partial["contact_stiffness"].is_number());
+}
+
+#[test]
 fn a_penetration_and_a_height_map_are_solved_adaptively() {
     let place = Place::new();
     place.write("map.npy", npy("<f8", false, "(256, 256)", &f8(&bumps(256))));

@@ -70,6 +70,12 @@ impl AdaptiveSolution {
         self.pressure.par_iter().filter(|&&p| p > 0.0).count()
     }
 
+    /// Whether every element of the finest grid is in contact.
+    #[must_use]
+    pub fn is_full_contact(&self) -> bool {
+        self.n_elements() == self.grid.len()
+    }
+
     /// Hands out the pressure on the finest grid, eight rows at a time, in order: the index of the first row, and the rows one
     /// after the other. Stops at the first error.
     ///
@@ -175,7 +181,7 @@ impl AdaptiveSolution {
     }
 
     fn contact_stiffness(&self) -> f64 {
-        if self.n_elements() == self.grid().len() {
+        if self.is_full_contact() {
             return f64::INFINITY;
         }
         let split = ScaleSplit::new(SplitParams::quick());
