@@ -12,8 +12,8 @@ pub fn solved(summary: &Summary, side: f64, e_star: f64) -> String {
     let s = summary;
     let percent = |fraction: f64| digits(100.0 * fraction, 4);
     let stiffness = s.contact_stiffness.map_or_else(|| "infinite".into(), |value| engineering(value, "Pa/m"));
-    let lines = [
-        ("method", s.method_reason.clone()),
+    let mut lines = vec![
+        ("method", s.method_reason.as_ref().unwrap_or(&s.method).clone()),
         (
             "cell",
             format!(
@@ -64,8 +64,10 @@ pub fn solved(summary: &Summary, side: f64, e_star: f64) -> String {
                 s.complementarity_error, s.penetration_error, s.load_error
             ),
         ),
-        ("cells", format!("{} evaluated, {} proven out of contact", s.cells_evaluated, s.cells_proven)),
     ];
+    if let (Some(evaluated), Some(proven)) = (s.cells_evaluated, s.cells_proven) {
+        lines.push(("cells", format!("{evaluated} evaluated, {proven} proven out of contact")));
+    }
     headline(s) + &aligned(&lines)
 }
 

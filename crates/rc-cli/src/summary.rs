@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 /// One solved contact problem. Pressures in Pa, lengths in m; fractions are of the nominal area.
+///
+/// Keys that the first summaries did not have are `None` when such a summary is read; new ones always have them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// `converged`, `full_contact` or `not_converged`.
@@ -14,7 +16,7 @@ pub struct Summary {
     /// The method that ran: `adaptive`, `uniform` or `gauss-seidel`.
     pub method: String,
     /// Why it was this one.
-    pub method_reason: String,
+    pub method_reason: Option<String>,
     /// Elements per side of the finest grid, along x and y.
     pub grid: [usize; 2],
     /// Elements in contact on an adaptive mesh; all of the grid for the uniform method.
@@ -56,13 +58,13 @@ pub struct Summary {
     /// |mean p - σ0| / σ0, or the deviation of Δ over H under penetration control.
     pub load_error: f64,
     /// The tolerance that the first two errors were to reach, as a number.
-    pub tolerance: f64,
+    pub tolerance: Option<f64>,
     /// Elements of the grid whose gap was computed for the certificate.
-    pub cells_evaluated: usize,
+    pub cells_evaluated: Option<usize>,
     /// Elements that were proven to be out of contact without computing their gap: all others.
-    pub cells_proven: usize,
+    pub cells_proven: Option<usize>,
     /// Iterations on each level, coarsest first.
-    pub level_iterations: Vec<usize>,
+    pub level_iterations: Option<Vec<usize>>,
     /// Iterations on the finest level.
     pub iterations: usize,
     /// Applications of L on the finest level, the certificate's included.

@@ -59,6 +59,26 @@ fn results_are_inspected_and_plotted() {
 }
 
 #[test]
+fn summaries_without_the_newer_keys_are_read() {
+    let place = Place::new();
+    assert_solved(&place.run(&small("1e5", &["--out", "r"])));
+    let mut summary = place.json("r/summary.json");
+    let keys = summary.as_object_mut().expect("an object");
+    for key in ["method_reason", "tolerance", "cells_evaluated", "cells_proven", "level_iterations"] {
+        assert!(keys.remove(key).is_some(), "no {key}");
+    }
+    place.write("r/summary.json", summary.to_string());
+    let output = place.run(&["inspect", "r"]);
+    assert_solved(&output);
+    assert!(text(&output.stdout).contains("adaptive") && !text(&output.stdout).contains("evaluated"));
+    assert_solved(&place.run(&["inspect", "r", "--json"]));
+    assert_solved(&place.run(&["plot", "r", "--out", "pictures"]));
+    summary.as_object_mut().expect("an object").remove("penetration");
+    place.write("r/summary.json", summary.to_string());
+    assert_refused(&place.run(&["inspect", "r"]), "penetration");
+}
+
+#[test]
 fn help_is_no_error() {
     let place = Place::new();
     for args in [&["--help"][..], &["--version"], &["solve", "--help"], &["surface", "--help"]] {
