@@ -148,7 +148,7 @@ fn an_adaptive_full_contact_is_called_so() {
         let args = ["solve", "--waves", "8", "--grid", "128", "--method", "adaptive", "--json", "--pressure", pressure];
         summary_of(&place.run(&args))
     };
-    let (full, partial) = (solve("1e9"), solve("4e6"));
+    let (full, partial) = (solve("2e7"), solve("4e6"));
     assert_eq!((&full["status"], &partial["status"]), (&"full_contact".into(), &"converged".into()));
     assert_eq!(full["elements"], 128 * 128);
     assert!(full["contact_stiffness"].is_null() && partial["contact_stiffness"].is_number());
