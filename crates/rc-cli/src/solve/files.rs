@@ -27,15 +27,10 @@ struct Units {
     e_star: f64,
 }
 
-/// Writes the result folder; `side` is λ in m.
-pub(super) fn write(
-    folder: &Path,
-    solved: &Solved,
-    summary: &Summary,
-    contact: &ContactProblem,
-    side: f64,
-) -> Result<(), CliError> {
-    let units = Units { side, e_star: contact.elasticity.e_star() };
+/// Writes the result folder.
+pub(super) fn write(folder: &Path, solved: &Solved<'_>, summary: &Summary) -> Result<(), CliError> {
+    let contact = solved.contact;
+    let units = Units { side: solved.side, e_star: contact.elasticity.e_star() };
     let mut staged = Staged::new(folder)?;
     match &solved.found.pressure {
         Pressure::Whole(solution) => add_whole(&mut staged, solution, contact.keys.output_grid, units)?,
@@ -76,7 +71,7 @@ fn add_whole(
 fn add_tiles(
     staged: &mut Staged,
     solution: &AdaptiveSolution,
-    solved: &Solved,
+    solved: &Solved<'_>,
     output_grid: Option<GridSpec>,
     units: Units,
 ) -> Result<(), CliError> {
@@ -158,7 +153,7 @@ fn write_elements(path: &Path, elements: impl Iterator<Item = [f64; 4]>, units: 
 }
 
 /// The scene as it was solved: every key that determines the result, the method that ran included.
-fn scene_text(solved: &Solved, contact: &ContactProblem) -> String {
+fn scene_text(solved: &Solved<'_>, contact: &ContactProblem) -> String {
     let keys = ContactKeys { method: Some(solved.found.method), ..contact.keys.clone() };
     let [surface, contact] = [scene_file::to_toml(&solved.surface.keys), scene_file::to_toml(&keys)];
     format!("# The scene as it was solved: `rc solve scene.toml` repeats the result.\n\n{surface}\n{contact}")
