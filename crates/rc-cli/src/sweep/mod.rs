@@ -1,6 +1,6 @@
 //! `rc sweep`: many loads on many surfaces, kept row by row.
 //!
-//! [`Plan`] is what is to be solved, [`Journal`] what is done, [`workers`] do the difference; [`table`] is the result. No row
+//! A plan is what is to be solved, the journal what is done, workers do the difference, and a table is the result. No row
 //! depends on another one, so that resumed and sharded sweeps give the rows of an uninterrupted one.
 
 mod bar;
