@@ -51,6 +51,14 @@ impl Budget {
         }
     }
 
+    /// How many solves fit side by side, the greatest on `n_elements` elements, whatever their method: within the limit, or half
+    /// of the machine's memory; at least one.
+    #[must_use]
+    pub fn solves_at_once(&self, n_elements: f64) -> usize {
+        let available = self.limit.map(|limit| limit.0 as f64).or(self.machine.map(|machine| 0.5 * machine.0 as f64));
+        available.map_or(1, |bytes| (bytes / (n_elements * UNIFORM_BYTES_PER_ELEMENT as f64)) as usize).max(1)
+    }
+
     /// Refuses a grid on which a method that stores every element, here called `what`, would not fit.
     ///
     /// # Errors
@@ -75,7 +83,10 @@ mod tests {
         assert!(budget.check_grid("it", grid(316)).is_ok());
         let error = budget.check_grid("it", grid(317)).expect_err("above the limit").to_string();
         assert!(error.starts_with("memory_limit: it on 317 x 317") && error.contains("at most 316"), "{error}");
+        assert_eq!(budget.solves_at_once(25_000.0), 4);
+        assert_eq!(budget.solves_at_once(1e9), 1);
         let unlimited = Budget { limit: None, ..budget };
+        assert_eq!(unlimited.solves_at_once(25_000.0), 200);
         assert!(unlimited.check_grid("it", grid(3162)).is_ok());
         let error = unlimited.check_grid("it", grid(3163)).expect_err("above the machine").to_string();
         assert_eq!((budget.available(), unlimited.available()), (Some(8_000_000), Some(800_000_000)));

@@ -36,6 +36,7 @@ mod plot;
 mod progress;
 mod solve;
 mod surface_command;
+pub mod sweep;
 
 use args::{Cli, Command};
 use error::CliError;
@@ -63,6 +64,7 @@ pub fn main() -> ExitCode {
 pub fn run(cli: Cli) -> Result<(), CliError> {
     match cli.command {
         Command::Solve(args) => solve::run(args),
+        Command::Sweep(args) => sweep::run(*args),
         Command::Surface(args) => surface_command::run(args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Plot(args) => plot::run(&args),

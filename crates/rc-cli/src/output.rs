@@ -3,9 +3,15 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use tempfile::TempDir;
+use tempfile::{NamedTempFile, TempDir};
 
 use crate::error::CliError;
+
+/// Begin of the names of what is on its way to a final name. A process that is killed may leave it behind.
+const PARTIAL: &str = ".rc-partial-";
+
+/// Begin of the name of the folder that [`check_folder`] makes for a moment.
+const PROBE: &str = ".rc-probe-";
 
 /// Checks that files can be made in `folder`, or that `folder` itself can be made, and leaves nothing behind.
 ///
@@ -21,7 +27,7 @@ pub fn check_folder(folder: &Path) -> Result<(), CliError> {
     if !existing.is_dir() {
         return Err(refuse(&format_args!("{} is not a folder", existing.display())));
     }
-    tempfile::Builder::new().prefix(".rc-probe-").tempdir_in(existing).map_err(|cause| refuse(&cause))?;
+    tempfile::Builder::new().prefix(PROBE).tempdir_in(existing).map_err(|cause| refuse(&cause))?;
     Ok(())
 }
 
@@ -48,7 +54,7 @@ impl Staged {
         let folder = or_here(folder).to_owned();
         let fail = |cause: io::Error| CliError::write(&folder, cause);
         std::fs::create_dir_all(&folder).map_err(fail)?;
-        let hidden = tempfile::Builder::new().prefix(".rc-partial-").tempdir_in(&folder).map_err(fail)?;
+        let hidden = tempfile::Builder::new().prefix(PARTIAL).tempdir_in(&folder).map_err(fail)?;
         Ok(Self { folder, hidden, names: Vec::new() })
     }
 
@@ -112,10 +118,36 @@ pub fn write_file<E: std::fmt::Display>(
     let folder = or_here(path.parent().unwrap_or(Path::new("")));
     let fail = |cause: &dyn std::fmt::Display| CliError::write(path, cause);
     std::fs::create_dir_all(folder).map_err(|cause| fail(&cause))?;
-    let hidden = tempfile::Builder::new().prefix(".rc-partial-").tempdir_in(folder).map_err(|cause| fail(&cause))?;
+    let hidden = tempfile::Builder::new().prefix(PARTIAL).tempdir_in(folder).map_err(|cause| fail(&cause))?;
     let temporary = hidden.path().join(path.file_name().unwrap_or_default());
     write(&temporary).map_err(|cause| fail(&cause))?;
     std::fs::rename(&temporary, path).map_err(|cause| fail(&cause))
+}
+
+/// A hidden file in `folder`, to be filled and given its final name. Others may read it as far as the user lets them.
+///
+/// # Errors
+/// Those of the file system.
+pub fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.prefix(PARTIAL).tempfile_in(folder)
+}
+
+/// Removes what processes that were killed have left in `folder`, as far as it can be removed. No other process may be writing
+/// there.
+pub fn remove_leftovers(folder: &Path) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if name.starts_with(PARTIAL) || name.starts_with(PROBE) {
+            let (path, is_folder) = (entry.path(), entry.file_type().is_ok_and(|kind| kind.is_dir()));
+            // What stays is hidden, and does no harm.
+            let _ = if is_folder { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
+        }
+    }
 }
 
 /// Writes a file and waits until the system has it.

@@ -80,6 +80,16 @@ impl SurfaceProblem {
         }
     }
 
+    /// Elements of the finest grid; at most, for a height map, by the length of its file.
+    #[must_use]
+    pub fn most_elements(&self) -> f64 {
+        match &self.source {
+            Source::Random { grid, .. } => grid.len() as f64,
+            // Two bytes are the least that a useful map has for a height.
+            Source::File { path, .. } => path.metadata().map_or(0.0, |file| file.len() as f64 / 2.0),
+        }
+    }
+
     /// Reads the map or realises the random surface, whose heights are not evaluated yet.
     ///
     /// # Errors

@@ -27,15 +27,10 @@ struct Units {
     e_star: f64,
 }
 
-/// Writes the result folder; `side` is λ in m.
-pub(super) fn write(
-    folder: &Path,
-    solved: &Solved<'_>,
-    summary: &Summary,
-    contact: &ContactProblem,
-    side: f64,
-) -> Result<(), CliError> {
-    let units = Units { side, e_star: contact.elasticity.e_star() };
+/// Writes the result folder.
+pub(super) fn write(folder: &Path, solved: &Solved<'_>, summary: &Summary) -> Result<(), CliError> {
+    let contact = solved.contact;
+    let units = Units { side: solved.side, e_star: contact.elasticity.e_star() };
     let mut staged = Staged::new(folder)?;
     match &solved.found.pressure {
         Pressure::Whole(solution) => add_whole(&mut staged, solution, contact.keys.output_grid, units)?,

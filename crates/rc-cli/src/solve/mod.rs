@@ -6,7 +6,7 @@ mod method;
 mod refusal;
 mod summarise;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use self::found::Found;
@@ -27,12 +27,57 @@ use crate::{report, scene_file};
 const EXAMPLE_FOLDER: &str = "rc-result";
 
 /// A solved problem with what its files and its summary need.
-struct Solved<'a> {
+pub(crate) struct Solved<'a> {
     found: Found<'a>,
     /// Why it was solved by this method.
     reason: String,
     surface: &'a LoadedSurface,
+    contact: &'a ContactProblem,
+    /// λ in m.
+    side: f64,
     wall: Duration,
+}
+
+impl<'a> Solved<'a> {
+    /// Solves; `side` is λ in m, `started` the moment from which `wall_seconds` counts. Folder and memory limit of `run` are
+    /// respected, nothing is written.
+    ///
+    /// # Errors
+    /// [`CliError::Input`]; a solution that did not converge is none, see [`Solved::failure`].
+    pub(crate) fn new(
+        surface: &'a LoadedSurface,
+        contact: &'a ContactProblem,
+        side: f64,
+        run: &RunKeys,
+        started: Instant,
+        progress: &Progress,
+    ) -> Result<Self, CliError> {
+        if let Some(spec) = contact.keys.output_grid {
+            check_factor(surface.grid, spec)?;
+        }
+        let Choice { plan, reason } = method::choose(surface, contact, side, run)?;
+        let found = Found::by(plan, surface, contact, side, progress)?;
+        let wall = started.elapsed();
+        Ok(Self { found, reason, surface, contact, side, wall })
+    }
+
+    /// What is to be said of a solution that did not reach the tolerance.
+    pub(crate) fn failure(&self) -> Option<&str> {
+        self.found.failure.as_deref()
+    }
+
+    /// The summary in SI; `threads` is what it says of them.
+    pub(crate) fn summary(&self, threads: usize) -> Summary {
+        summarise(self, threads)
+    }
+
+    /// Writes the result folder.
+    ///
+    /// # Errors
+    /// [`CliError::Write`].
+    pub(crate) fn write(&self, folder: &Path, summary: &Summary) -> Result<(), CliError> {
+        files::write(folder, self, summary)
+    }
 }
 
 /// Runs `rc solve`.
@@ -59,24 +104,23 @@ fn execute(
     if let Some(folder) = &run.out {
         output::check_folder(folder)?;
     }
-    let side = surface.cell.side();
     let progress = Progress::new(run.quiet);
     progress.say("heights");
     let loaded = surface.load()?;
-    let solved = solve(&loaded, contact, side, run, &progress, started)?;
+    let solved = Solved::new(&loaded, contact, surface.cell.side(), run, started, &progress)?;
     // The bar goes before anything is printed.
     drop(progress);
-    let summary = summarise(&solved, contact, side, threads);
+    let summary = solved.summary(threads);
     if let Some(folder) = &run.out {
-        files::write(folder, &solved, &summary, contact, side)?;
+        solved.write(folder, &summary)?;
     }
     print_summary(&summary, surface, contact, run)?;
-    match solved.found.failure {
+    match solved.failure() {
         None => Ok(()),
         Some(message) if run.out.is_some() => {
             Err(CliError::NotConverged(format!("{message}; the results are written and marked not_converged")))
         }
-        Some(message) => Err(CliError::NotConverged(message)),
+        Some(message) => Err(CliError::NotConverged(message.to_owned())),
     }
 }
 
@@ -91,23 +135,6 @@ fn scene_of(args: SolveArgs) -> Result<Scene, CliError> {
     ));
     let run = RunKeys { out: Some(PathBuf::from(EXAMPLE_FOLDER)), ..RunKeys::default() };
     Ok(Scene { run, ..scene_file::example() })
-}
-
-/// `side` is λ in m.
-fn solve<'a>(
-    surface: &'a LoadedSurface,
-    contact: &ContactProblem,
-    side: f64,
-    run: &RunKeys,
-    progress: &Progress,
-    started: Instant,
-) -> Result<Solved<'a>, CliError> {
-    if let Some(spec) = contact.keys.output_grid {
-        check_factor(surface.grid, spec)?;
-    }
-    let Choice { plan, reason } = method::choose(surface, contact, side, run)?;
-    let found = Found::by(plan, surface, contact, side, progress)?;
-    Ok(Solved { found, reason, surface, wall: started.elapsed() })
 }
 
 fn print_summary(

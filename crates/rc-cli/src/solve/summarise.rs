@@ -4,12 +4,12 @@ use rc_solver::Control;
 
 use super::Solved;
 use crate::memory;
-use crate::resolve::ContactProblem;
 use crate::summary::Summary;
 
-/// The summary; `side` is λ in m.
-pub(super) fn summarise(solved: &Solved<'_>, contact: &ContactProblem, side: f64, threads: usize) -> Summary {
-    let (e_star, found) = (contact.elasticity.e_star(), &solved.found);
+/// The summary in SI.
+pub(super) fn summarise(solved: &Solved<'_>, threads: usize) -> Summary {
+    let Solved { found, contact, side, .. } = solved;
+    let (e_star, side) = (contact.elasticity.e_star(), *side);
     let info = found.info();
     let observables = found.observables(contact);
     let grid = found.grid();

@@ -4,4 +4,7 @@ mod adaptive;
 mod bad_input;
 mod solve;
 mod support;
+mod sweep;
+mod sweep_interrupted;
+mod sweep_refused;
 mod tools;

@@ -1,0 +1,41 @@
+//! One process at a time writes into the folder of a sweep.
+
+use std::fs::File;
+use std::path::Path;
+
+use crate::error::CliError;
+
+/// Held until dropped; it goes with the process, however that ends.
+#[derive(Debug)]
+pub(super) struct Lock {
+    #[cfg(unix)]
+    _file: Option<nix::fcntl::Flock<File>>,
+}
+
+impl Lock {
+    /// Locks `file`, of the sweep in `folder`. On a file system without locks nothing is held.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] when another process has it.
+    #[cfg(unix)]
+    pub(super) fn take(file: &File, folder: &Path) -> Result<Self, CliError> {
+        use nix::errno::Errno;
+        use nix::fcntl::{Flock, FlockArg};
+        let Ok(file) = file.try_clone() else { return Ok(Self { _file: None }) };
+        match Flock::lock(file, FlockArg::LockExclusiveNonblock) {
+            Ok(file) => Ok(Self { _file: Some(file) }),
+            Err((_, Errno::EWOULDBLOCK)) => Err(CliError::in_file(
+                folder,
+                "another process is writing this sweep; wait for it, or give another --out",
+            )),
+            Err(_) => Ok(Self { _file: None }),
+        }
+    }
+
+    /// Nothing is held where the system has no such locks.
+    #[cfg(not(unix))]
+    #[expect(clippy::unnecessary_wraps, reason = "the same signature on every system")]
+    pub(super) fn take(_file: &File, _folder: &Path) -> Result<Self, CliError> {
+        Ok(Self {})
+    }
+}

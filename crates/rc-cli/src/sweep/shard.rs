@@ -1,0 +1,106 @@
+//! The rows of a sweep, and which of them a shard solves.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+
+/// How many rows a sweep has: row s·L + l is surface s under load l, of S surfaces and L loads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Shape {
+    /// S: scenes times seeds.
+    pub(super) surfaces: usize,
+    /// L: loads of each.
+    pub(super) loads: usize,
+}
+
+impl Shape {
+    /// Number of rows.
+    pub(super) fn rows(self) -> usize {
+        self.surfaces.saturating_mul(self.loads)
+    }
+}
+
+/// Part `index` of `count`, counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// From 1 to `count`.
+    pub index: usize,
+    /// Number of shards.
+    pub count: usize,
+}
+
+impl Shard {
+    /// The whole sweep.
+    pub(super) const WHOLE: Self = Self { index: 1, count: 1 };
+
+    /// The rows of this shard, in order. Rows are dealt load by load, so that each shard gets its part of the heavy ones.
+    pub(super) fn rows(self, shape: Shape) -> impl Iterator<Item = usize> {
+        (0..shape.rows()).filter(move |row| {
+            let (surface, load) = (row / shape.loads, row % shape.loads);
+            (load * shape.surfaces + surface) % self.count == self.index - 1
+        })
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.index, self.count)
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
+        match parts {
+            Some((index, count)) if (1..=count).contains(&index) => Ok(Self { index, count }),
+            _ => Err(format!("a shard is i/n with i from 1 to n, as 2/8, not '{text}'")),
+        }
+    }
+}
+
+impl Serialize for Shard {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Shard {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(de::Error::custom)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shards_share_the_rows_and_the_loads() {
+        for (surfaces, loads, count) in [(7, 8, 8), (1, 24, 4), (8, 8, 8), (3, 5, 15), (4, 1, 3), (2, 3, 1)] {
+            let shape = Shape { surfaces, loads };
+            let shards: Vec<Vec<usize>> =
+                (1..=count).map(|index| Shard { index, count }.rows(shape).collect()).collect();
+            let mut all: Vec<usize> = shards.concat();
+            all.sort_unstable();
+            assert!(all.into_iter().eq(0..shape.rows()), "{shape:?} in {count}: not each row once");
+            let sums = shards.iter().map(|rows| (rows.len(), rows.iter().map(|row| row % loads).sum::<usize>()));
+            let (sizes, weights): (Vec<usize>, Vec<usize>) = sums.unzip();
+            let spread = |values: &[usize]| values.iter().max().unwrap_or(&0) - values.iter().min().unwrap_or(&0);
+            assert!(spread(&sizes) <= 1, "{shape:?} in {count}: {sizes:?} rows");
+            // Unlike sizes, and the place in the deal, make up to one step of the load for each row.
+            assert!(spread(&weights) <= sizes[0] + loads, "{shape:?} in {count}: loads {weights:?}");
+        }
+    }
+
+    #[test]
+    fn a_shard_reads_back_as_it_is_written() {
+        assert_eq!("2/8".parse(), Ok(Shard { index: 2, count: 8 }));
+        assert_eq!(Shard { index: 2, count: 8 }.to_string(), "2/8");
+        for text in ["", "2", "0/3", "4/3", "1/0", "a/b", "1/2/3", "-1/2"] {
+            assert!(text.parse::<Shard>().is_err(), "'{text}' was read as a shard");
+        }
+    }
+}
