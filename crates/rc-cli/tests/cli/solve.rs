@@ -14,6 +14,7 @@ pub(crate) const KEYS: [&str; 35] = [
     "method",
     "method_reason",
     "grid",
+        "border_level",
     "elements",
     "levels",
     "mean_pressure",
