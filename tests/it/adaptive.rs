@@ -283,12 +283,12 @@ fn border_levels_refine_edges_only() {
         if border_level == 4 {
             let with_side = |n: f64| edges.elements().filter(|e| e.side.to_bits() == n.recip().to_bits()).count();
             assert!(with_side(4096.0) > with_side(2048.0) && with_side(1024.0) > 0, "elements are coarser inside");
-            assert!(5 * edges.n_elements() < everywhere.n_elements(), "{}", edges.n_elements());
+            assert!(4 * edges.n_elements() < everywhere.n_elements(), "{}", edges.n_elements());
         }
     }
     // Towards twice the elements for each halving, not four times; and half the error.
     let growth: Vec<f64> = counts.windows(2).map(|pair| pair[1].0 / pair[0].0).collect();
-    assert!(growth.iter().all(|&growth| growth < 2.8) && growth[2] < 2.4, "{growth:?}");
+    assert!(growth.iter().all(|&growth| growth < 2.8) && growth[2] < 2.5, "{growth:?}");
     let steps: Vec<f64> = counts.windows(2).map(|pair| pair[0].1 - pair[1].1).collect();
     for pair in steps.windows(2) {
         assert!((1.6..2.4).contains(&(pair[0] / pair[1])), "steps of the area: {steps:?}");
