@@ -16,7 +16,7 @@ ci:
 tidy:
     cargo xtask tidy
 
-# Every figure of the paper that is built, at full size.
+# Every figure of the paper, at full size.
 figures:
     cargo xtask figures
 

@@ -7,6 +7,7 @@ mod gauss_seidel;
 mod hertz;
 mod reference;
 mod rough;
+mod stress_distribution;
 mod swap;
 mod westergaard;
 

@@ -1,32 +1,40 @@
 //! The figures of the paper: numbers first, then a picture of these numbers.
 
+pub(crate) mod all;
+pub(crate) mod archive;
 mod chart;
 mod contact_map;
 pub(crate) mod fig1;
 pub(crate) mod fig2;
 pub(crate) mod fig3;
 pub(crate) mod fig4;
+pub(crate) mod fig5;
 pub(crate) mod fig6;
+pub(crate) mod fig7;
+pub(crate) mod fig8;
+mod fit;
+mod marks;
 mod paper;
+mod solve;
+mod sweep;
 mod table;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use clap::ValueEnum;
 use rc_cli::picture::{Picture, save_png, save_svg};
 
 use crate::repository;
 pub(crate) use table::{Table, number};
 
 /// How large a figure is computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Preset {
     /// The size that the paper's statement needs; minutes at most.
     Full,
     /// A small version of the same, as the tests run it; seconds.
-    Reduced,
+    Quick,
 }
 
 /// A figure: plain data that knows its tables and, as a [`Picture`], how to draw itself.
@@ -56,26 +64,24 @@ pub(crate) struct Args {
     /// Folder for the tables (CSV) and pictures (SVG, PNG).
     #[arg(long, value_name = "DIR", default_value_os_t = repository::root().join("figures"), hide_default_value = true)]
     pub(crate) out: PathBuf,
-    /// Size of the computation.
-    #[arg(long, value_enum, default_value_t = Preset::Full)]
-    pub(crate) preset: Preset,
+    /// Small surfaces, as the tests compute them, instead of the paper's.
+    #[arg(long)]
+    quick: bool,
+}
+
+impl Args {
+    /// The size that is asked for.
+    pub(crate) fn preset(&self) -> Preset {
+        if self.quick { Preset::Quick } else { Preset::Full }
+    }
 }
 
 /// Computes one figure and writes it.
 pub(crate) fn run<F: Figure>(args: &Args) -> Result<()> {
-    let params = F::params(args.preset)?;
+    let params = F::params(args.preset())?;
     let figure = F::compute(&params).with_context(|| format!("{} with {params:?}", F::NAME))?;
     report(&figure, &write(&figure, &args.out)?);
     Ok(())
-}
-
-/// Computes every figure that is built.
-pub(crate) fn run_all(args: &Args) -> Result<()> {
-    run::<fig1::Fig1>(args)?;
-    run::<fig2::Fig2>(args)?;
-    run::<fig3::Fig3>(args)?;
-    run::<fig4::Fig4>(args)?;
-    run::<fig6::Fig6>(args)
 }
 
 #[expect(clippy::print_stdout, reason = "the result of the command")]

@@ -90,7 +90,7 @@ impl Figure for KernelErrors {
     fn params(preset: Preset) -> Result<Params> {
         let shells = match preset {
             Preset::Full => vec![1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128],
-            Preset::Reduced => vec![1, 2, 4, 8],
+            Preset::Quick => vec![1, 2, 4, 8],
         };
         Ok(Params { half_sides: vec![0.125, SHOWN, 1.0 / 2048.0], shells })
     }
@@ -263,11 +263,12 @@ fn decades(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
 mod tests {
     use super::*;
     use crate::figures::write;
-    use crate::snapshot::{Numeric, assert_table};
+    use crate::numeric::Numeric;
+    use crate::snapshot::assert_table;
 
     #[test]
-    fn reduced_kernel_errors_are_as_reviewed_and_can_be_drawn() {
-        let params = KernelErrors::params(Preset::Reduced).expect("constants");
+    fn quick_kernel_errors_are_as_reviewed_and_can_be_drawn() {
+        let params = KernelErrors::params(Preset::Quick).expect("constants");
         let figure = KernelErrors::compute(&params).expect("valid requests");
         for case in &figure.cases {
             assert!(case.error <= case.bound, "{case:?}");

@@ -4,8 +4,10 @@ mod bench;
 mod ci;
 mod figures;
 mod kernel_error;
+mod numeric;
 mod process;
 mod repository;
+mod reproduction;
 #[cfg(test)]
 mod snapshot;
 mod test;
@@ -34,10 +36,17 @@ enum Command {
     Fig3(figures::Args),
     /// Draws Fig. 4: contact circle and pressure sections of a sphere against Hertz
     Fig4(figures::Args),
+    /// Draws Fig. 5: contact area against mean pressure, with straight lines and Persson's curves
+    Fig5(figures::Args),
     /// Draws Fig. 6: contact maps of the paper's surface with 64 and 128 waves
     Fig6(figures::Args),
-    /// Draws every figure of the paper that is built
-    Figures(figures::Args),
+    /// Draws Fig. 7: mean pressure against penetration, with exponential fits and Persson's decay length
+    Fig7(figures::Args),
+    /// Draws Fig. 8: the stress distribution, the fit of Eq. (7), and the approach to zero
+    Fig8(figures::Args),
+    /// Draws every figure of the paper; compares with the archived run, or archives the run
+    Figures(figures::all::Args),
+    Reproduction(reproduction::Args),
     /// Tabulates and draws the truncation error of the image sums against shells and time, beside the exact coefficients
     KernelError(figures::Args),
     Bench(bench::Args),
@@ -52,8 +61,12 @@ fn main() -> anyhow::Result<()> {
         Command::Fig2(args) => figures::run::<figures::fig2::Fig2>(&args),
         Command::Fig3(args) => figures::run::<figures::fig3::Fig3>(&args),
         Command::Fig4(args) => figures::run::<figures::fig4::Fig4>(&args),
+        Command::Fig5(args) => figures::run::<figures::fig5::Fig5>(&args),
         Command::Fig6(args) => figures::run::<figures::fig6::Fig6>(&args),
-        Command::Figures(args) => figures::run_all(&args),
+        Command::Fig7(args) => figures::run::<figures::fig7::Fig7>(&args),
+        Command::Fig8(args) => figures::run::<figures::fig8::Fig8>(&args),
+        Command::Figures(args) => figures::all::run(&args),
+        Command::Reproduction(args) => reproduction::run(&args),
         Command::KernelError(args) => figures::run::<kernel_error::KernelErrors>(&args),
         Command::Bench(args) => bench::run(&args),
     }

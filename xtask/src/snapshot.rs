@@ -1,18 +1,9 @@
-//! Snapshots of numeric tables: text must agree exactly, numbers within a tolerance.
-//!
-//! FFT code paths depend on the processor, so the last digits of a result may; a table that changed in its sixth digit is
-//! the same table, and one that changed in its fourth is not.
+//! Snapshots of numeric tables, compared as numbers.
 
 use insta::{Comparator, Settings, Snapshot};
 
 use crate::figures::Table;
-
-/// Numbers `a` (reference) and `b` agree when |a - b| ≤ `absolute` + `relative` · |a|.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Numeric {
-    pub(crate) absolute: f64,
-    pub(crate) relative: f64,
-}
+use crate::numeric::Numeric;
 
 impl Comparator for Numeric {
     fn matches(&self, reference: &Snapshot, test: &Snapshot) -> bool {
@@ -27,31 +18,6 @@ impl Comparator for Numeric {
     }
 }
 
-impl Numeric {
-    /// The first difference between two tables, as a sentence.
-    fn difference(self, reference: &str, test: &str) -> Option<String> {
-        let (n_reference, n_test) = (reference.trim().lines().count(), test.trim().lines().count());
-        if n_reference != n_test {
-            return Some(format!("{n_reference} lines against {n_test}"));
-        }
-        let mut lines = reference.trim().lines().zip(test.trim().lines()).enumerate();
-        lines.find_map(|(row, (a, b))| {
-            let (a, b): (Vec<&str>, Vec<&str>) = (a.split(',').collect(), b.split(',').collect());
-            let cell = a.iter().zip(&b).position(|(a, b)| !self.agree(a, b));
-            let column = cell.or((a.len() != b.len()).then_some(a.len().min(b.len())))?;
-            let shown = |cells: &[&str]| cells.get(column).map_or("nothing".to_owned(), ToString::to_string);
-            Some(format!("line {}, column {}: {} against {}", row + 1, column + 1, shown(&a), shown(&b)))
-        })
-    }
-
-    fn agree(self, reference: &str, test: &str) -> bool {
-        match (reference.parse::<f64>(), test.parse::<f64>()) {
-            (Ok(a), Ok(b)) => (a - b).abs() <= self.absolute + self.relative * a.abs(),
-            _ => reference == test,
-        }
-    }
-}
-
 /// Asserts that `table` is as in the snapshot `name`, and records in it where the numbers come from.
 pub(crate) fn assert_table(name: &str, table: &Table, tolerance: Numeric, parameters: &str) {
     let mut settings = Settings::clone_current();
@@ -61,31 +27,4 @@ pub(crate) fn assert_table(name: &str, table: &Table, tolerance: Numeric, parame
     settings.set_snapshot_path("figures/snapshots");
     settings.set_prepend_module_to_snapshot(false);
     settings.bind(|| insta::assert_snapshot!(name, &table.csv));
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const TOLERANCE: Numeric = Numeric { absolute: 1e-12, relative: 1e-6 };
-
-    #[test]
-    fn numbers_within_the_tolerance_agree() {
-        assert_eq!(TOLERANCE.difference("x,y\nage,1.000000e0\n", "x,y\nage,1.0000005e0"), None);
-        assert_eq!(TOLERANCE.difference("0.000000e0", "9e-13"), None);
-    }
-
-    #[test]
-    fn other_numbers_texts_and_shapes_differ() {
-        for (reference, test) in [
-            ("1.000000e0", "1.000002e0"),
-            ("0.000000e0", "2e-12"),
-            ("radius,1.0", "width,1.0"),
-            ("1.0,2.0", "1.0"),
-            ("1.0\n2.0", "1.0"),
-            ("1.0", "NaN"),
-        ] {
-            assert!(TOLERANCE.difference(reference, test).is_some(), "{reference} against {test}");
-        }
-    }
 }

@@ -19,6 +19,7 @@ mod params;
 mod problem;
 mod solution;
 mod stiffness;
+mod stress_distribution;
 mod uniform;
 
 pub use adaptive::{
@@ -34,4 +35,5 @@ pub use observables::{ContactArea, Observables};
 pub use operator::{DirectSum, UniformOperator};
 pub use params::SolveParams;
 pub use solution::{LevelInfo, MeshPressure, Solution, SolveInfo, Status};
+pub use stress_distribution::StressDistribution;
 pub use uniform::{UNIFORM_BYTES_PER_ELEMENT, solve_uniform};

@@ -12,6 +12,7 @@
 //! | [`bisinusoidal`] | two-dimensional wave | both ends of the load range |
 //! | [`full_contact`] | any band-limited surface | exact, above a load |
 //! | [`persson`] | random surface, Eq. 7 | a theory, not exact in partial contact |
+//! | [`persson_gap`] | mean gap of a random surface at low loads | a theory, without a highest asperity |
 //!
 //! [`lattice`] holds the constants of the periodic half-space.
 
@@ -23,6 +24,7 @@ pub mod full_contact;
 pub mod hertz;
 pub mod lattice;
 pub mod persson;
+pub mod persson_gap;
 pub mod westergaard;
 
 mod root;

@@ -109,6 +109,8 @@ fn words(size: f64, colour: RGBColor) -> TextStyle<'static> {
 pub(crate) enum Side {
     Left,
     Right,
+    /// This many pixels to the right.
+    RightOf(i32),
     Above,
     RightAbove,
     Below,
@@ -126,6 +128,8 @@ pub(crate) fn write<B: DrawingBackend>(
     let (offset, horizontal, vertical) = match side {
         Side::Left => ((-gap, 0), HPos::Right, VPos::Center),
         Side::Right => ((gap, 0), HPos::Left, VPos::Center),
+        // The backends centre the line box, not the digits.
+        Side::RightOf(pixels) => ((gap + pixels, (0.14 * TEXT) as i32), HPos::Left, VPos::Center),
         Side::RightAbove => ((gap, -gap), HPos::Left, VPos::Bottom),
         Side::Above => ((0, -gap), HPos::Center, VPos::Bottom),
         Side::Below => ((0, gap), HPos::Center, VPos::Top),

@@ -54,7 +54,7 @@ impl Figure for Fig2 {
     fn params(preset: Preset) -> Result<Params> {
         let n_intervals = match preset {
             Preset::Full => 1024,
-            Preset::Reduced => 64,
+            Preset::Quick => 64,
         };
         Ok(Params { inverse_half_sides: vec![8, 32], n_intervals })
     }
@@ -243,16 +243,17 @@ mod tests {
 
     use super::*;
     use crate::figures::tests::assert_written;
-    use crate::snapshot::{Numeric, assert_table};
+    use crate::numeric::Numeric;
+    use crate::snapshot::assert_table;
 
-    fn reduced() -> Fig2 {
-        let params = Fig2::params(Preset::Reduced).expect("no paper values are needed");
+    fn quick() -> Fig2 {
+        let params = Fig2::params(Preset::Quick).expect("no paper values are needed");
         Fig2::compute(&params).expect("coefficients cannot fail")
     }
 
     #[test]
     fn the_load_and_its_response_have_zero_mean() {
-        for case in reduced().cases {
+        for case in quick().cases {
             let rounding = f64::EPSILON * case.load();
             assert!(case.mean_stress.abs() <= rounding, "{}: mean load {:e}", case.name(), case.mean_stress);
             // A coefficient is exact to 1e-12 of the greatest, which is about d; the mean averages them.
@@ -263,7 +264,7 @@ mod tests {
 
     #[test]
     fn far_from_the_square_only_the_load_counts() {
-        for case in reduced().cases {
+        for case in quick().cases {
             let (numeric, point) = (case.response[0] / case.load(), point_response(0.5));
             // The next term is d²/6 times the Laplacian, and far from the square the slowest wave leads, whose
             // Laplacian is (2π)² times its value.
@@ -274,9 +275,9 @@ mod tests {
     }
 
     #[test]
-    fn reduced_figure_2_is_as_reviewed_and_can_be_drawn() {
-        let figure = reduced();
-        let description = format!("{:?}", Fig2::params(Preset::Reduced).expect("no paper values are needed"));
+    fn quick_figure_2_is_as_reviewed_and_can_be_drawn() {
+        let figure = quick();
+        let description = format!("{:?}", Fig2::params(Preset::Quick).expect("no paper values are needed"));
         // Closed forms: only rounding differs between machines, and the last of seven digits may turn on it.
         let tolerance = Numeric { absolute: 1e-13, relative: 2e-7 };
         assert_table("fig2-summary", &figure.summary(), tolerance, &description);

@@ -1,9 +1,9 @@
 //! Fig. 3: elements against penetration for the three meshes, from touch to full contact.
 //!
-//! The meshes are counted on the contact sets of the uniform solver, whose elements are the smallest of all three. A
+//! The meshes are counted on contact sets of elements that are the smallest of all three meshes. A
 //! tolerance of 1e-4 of the height of the surface is enough: only elements at borders of contact can still change.
 //! Against 1e-6, no count on 2048² elements moves by more than 1e-3 of the uniform grid, and the adaptive mesh at
-//! two-thirds contact by 2e-5 of itself; `a_tolerance_of_1e_4_is_enough_for_counts` asserts this on the reduced figure.
+//! two-thirds contact by 2e-5 of itself; `a_tolerance_of_1e_4_is_enough_for_counts` asserts this on the quick figure.
 
 use std::f64::consts::TAU;
 
@@ -11,13 +11,14 @@ use anyhow::{Context, Result, ensure};
 use plotters::prelude::{Circle, DrawingBackend, EmptyElement, LineSeries, Rectangle};
 use plotters::style::{BLACK, Color, RGBColor, WHITE};
 use rc_cli::picture::{Area, Picture, PictureError};
-use rc_core::{Field, Grid, Silent};
+use rc_core::{Field, Grid, HeightField, Silent};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Love;
 use rc_quadtree::{Mask, MeshKind, MeshParams, count};
-use rc_solver::{Control, Solution, SolveParams, Status, solve_uniform};
+use rc_solver::{Control, SolveParams, Status, solve_uniform};
 
 use super::chart::{Axes, BLUE, Chart, Drawn, GREEN, RED, Side, write};
+use super::solve::solve;
 use super::{Figure, Preset, Table, number, paper};
 
 /// The meshes, their names in the paper and in tables, and their colours; most elements first.
@@ -88,20 +89,20 @@ impl Figure for Fig3 {
     const NAME: &'static str = "fig3";
     type Params = Params;
 
-    /// The paper's surface on 2048² elements, 16 for a shortest wave; 16 waves on as many in the reduced one.
+    /// The paper's surface on 2048² elements, 16 for a shortest wave; 16 waves on as many in the quick one.
     fn params(preset: Preset) -> Result<Params> {
         let (waves, grid, tolerance) = match preset {
             Preset::Full => (paper::value("waves_b")? as usize, 2048, 1e-4),
-            Preset::Reduced => (16, 256, 1e-8),
+            Preset::Quick => (16, 256, 1e-8),
         };
         Ok(Params { waves, grid, seed: 1, tolerance, cell: TAU / paper::value("q0")? })
     }
 
     fn compute(params: &Params) -> Result<Self> {
         let surface = Surface::new(&SpectrumParams::paper(params.waves, params.seed))?;
-        let heights = surface.sample_on(Grid::square(params.grid)?)?;
+        let heights = surface.sample(Grid::square(params.grid)?);
         let moments = surface.moments();
-        let partial = LOADS.iter().map(|load| partial_contact(params, &heights, load * moments.rms_slope));
+        let partial = LOADS.iter().map(|load| partial_contact(params, &surface, load * moments.rms_slope));
         let full = std::iter::once_with(|| full_contact(params, &heights));
         Ok(Self {
             params: params.clone(),
@@ -140,22 +141,20 @@ impl Picture for Fig3 {
     }
 }
 
-fn solve(params: &Params, heights: &Field, mean_pressure: f64) -> Result<Solution> {
-    let solve_params = SolveParams { tolerance: params.tolerance, ..SolveParams::certified() };
-    Ok(solve_uniform(heights, &Love, Control::MeanPressure(mean_pressure), &solve_params, &Silent)?)
-}
-
-fn partial_contact(params: &Params, heights: &Field, mean_pressure: f64) -> Result<State> {
-    let solution = solve(params, heights, mean_pressure).with_context(|| format!("at σ0/E* = {mean_pressure:.3e}"))?;
-    State::of(params, &solution, mean_pressure)
+fn partial_contact(params: &Params, surface: &Surface, mean_pressure: f64) -> Result<State> {
+    let contact = solve(surface, params.grid, Control::MeanPressure(mean_pressure), params.tolerance)
+        .with_context(|| format!("at σ0/E* = {mean_pressure:.3e}"))?;
+    State::of(params, &contact.pressure, contact.info.penetration, mean_pressure)
 }
 
 /// The least load of full contact. Beyond it pressure only shifts, so the load is that of any full contact less its
 /// least pressure.
 fn full_contact(params: &Params, heights: &Field) -> Result<State> {
-    let solution = solve(params, heights, CRUSHING)?;
+    let control = Control::MeanPressure(CRUSHING);
+    let solution = solve_uniform(heights, &Love, control, &SolveParams::certified(), &Silent)?;
     ensure!(solution.status == Status::FullContact, "σ0 = {CRUSHING} E* leaves gaps; the surface is too steep");
-    State::of(params, &solution, CRUSHING - solution.pressure.min())
+    let least = solution.pressure.min();
+    State::of(params, &solution.pressure, solution.info.penetration, CRUSHING - least)
 }
 
 impl State {
@@ -165,8 +164,8 @@ impl State {
         Self { mean_pressure: 0.0, penetration: 0.0, fraction: 0.0, elements }
     }
 
-    fn of(params: &Params, solution: &Solution, mean_pressure: f64) -> Result<Self> {
-        let mask = Mask::positive(&solution.pressure)?;
+    fn of(params: &Params, pressure: &Field, penetration: f64, mean_pressure: f64) -> Result<Self> {
+        let mask = Mask::positive(pressure)?;
         let mesh = MeshParams::default();
         let mut elements = [0.0; 3];
         for (elements, (kind, ..)) in elements.iter_mut().zip(MESHES) {
@@ -174,7 +173,7 @@ impl State {
         }
         Ok(Self {
             mean_pressure,
-            penetration: params.cell * solution.info.penetration,
+            penetration: params.cell * penetration,
             fraction: mask.count() as f64 / mask.cells().len() as f64,
             elements,
         })
@@ -352,16 +351,17 @@ impl Fig3 {
 mod tests {
     use super::*;
     use crate::figures::tests::assert_written;
-    use crate::snapshot::{Numeric, assert_table};
+    use crate::numeric::Numeric;
+    use crate::snapshot::assert_table;
 
-    fn reduced(tolerance: f64) -> Fig3 {
-        let params = Fig3::params(Preset::Reduced).expect("paper values");
-        Fig3::compute(&Params { tolerance, ..params }).expect("the reduced figure is solved")
+    fn quick(tolerance: f64) -> Fig3 {
+        let params = Fig3::params(Preset::Quick).expect("paper values");
+        Fig3::compute(&Params { tolerance, ..params }).expect("the quick figure is solved")
     }
 
     #[test]
     fn a_tolerance_of_1e_4_is_enough_for_counts() {
-        let (coarse, fine) = (reduced(1e-4), reduced(1e-8));
+        let (coarse, fine) = (quick(1e-4), quick(1e-8));
         // The axis goes up to the uniform grid; a thousandth of it is below the size of a dot.
         let visible = 1e-3 * fine.states[0].elements[0];
         for (a, b) in coarse.states.iter().zip(&fine.states) {
@@ -378,9 +378,9 @@ mod tests {
     }
 
     #[test]
-    fn reduced_figure_3_is_as_reviewed_and_can_be_drawn() {
-        let params = Fig3::params(Preset::Reduced).expect("paper values");
-        let figure = Fig3::compute(&params).expect("the reduced figure is solved");
+    fn quick_figure_3_is_as_reviewed_and_can_be_drawn() {
+        let params = Fig3::params(Preset::Quick).expect("paper values");
+        let figure = Fig3::compute(&params).expect("the quick figure is solved");
         // At tolerance 1e-8 the contact sets do not change, nor do the counts; lengths are exact to about seven digits.
         let tolerance = Numeric { absolute: 0.0, relative: 1e-5 };
         assert_table("fig3-summary", &figure.summary(), tolerance, &format!("{params:?}"));

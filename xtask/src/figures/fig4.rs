@@ -11,12 +11,13 @@ use plotters::prelude::{
     DrawingBackend, IntoFont, LineSeries, RGBColor, Rectangle,
 };
 use rc_cli::picture::{Area, FONT, Picture, PictureError};
-use rc_core::{Elasticity, Field, Grid, PeriodicCell, Silent};
+use rc_core::{Elasticity, Field, Grid, Kernel, PeriodicCell, Silent};
 use rc_kernel::Love;
-use rc_solver::{Control, Observables, Solution, SolveParams, solve_uniform};
+use rc_solver::{AdaptiveParams, ContactArea, Control, HeightSource, SolveParams, solve_adaptive};
 use rc_theory::hertz::{Hertz, PeriodicHertz};
 
 use super::contact_map::{ContactMap, Run};
+use super::solve::{Contact as Solved, pressure_field};
 use super::{Figure, Preset, Table, number, paper};
 
 /// Distances of the three sections from the centre, in contact radii, before they are moved to the nearest row.
@@ -86,7 +87,7 @@ impl Figure for Fig4 {
     const NAME: &'static str = "fig4";
     type Params = Params;
 
-    /// 107 elements per contact radius (full) and 13 (reduced), in a cell of 1 cm, the side of the paper's rough surfaces.
+    /// 107 elements per contact radius (full) and 13 (quick), in a cell of 1 cm, the side of the paper's rough surfaces.
     fn params(preset: Preset) -> Result<Params> {
         let elasticity = Elasticity::from_young_poisson(paper::value("young")?, paper::value("poisson")?)?;
         Ok(Params {
@@ -96,7 +97,7 @@ impl Figure for Fig4 {
             cell: 1e-2,
             grid: match preset {
                 Preset::Full => 2048,
-                Preset::Reduced => 256,
+                Preset::Quick => 256,
             },
             tolerance: 1e-9,
         })
@@ -105,8 +106,10 @@ impl Figure for Fig4 {
     fn compute(params: &Params) -> Result<Self> {
         let (heights, apex) = sphere(params)?;
         let control = Control::Penetration(params.penetration / params.cell);
-        let solve_params = SolveParams { tolerance: params.tolerance, ..SolveParams::certified() };
-        let solution = solve_uniform(&heights, &Love, control, &solve_params, &Silent)?;
+        let solve = SolveParams { tolerance: params.tolerance, ..SolveParams::certified() };
+        let adaptive = AdaptiveParams { solve, ..AdaptiveParams::certified() };
+        let solution = solve_adaptive(HeightSource::Map(&heights), control, &adaptive, &Silent)?;
+        let solution = Solved { pressure: pressure_field(&solution)?, info: solution.info };
         let (periodic, infinite) = theory(params)?;
         let side = params.cell / params.grid as f64;
         Ok(Self {
@@ -171,19 +174,19 @@ fn theory(params: &Params) -> Result<(Contact, Contact)> {
 }
 
 /// The contact that was found: its radius from the area, its load from the mean pressure.
-fn measure(params: &Params, solution: &Solution) -> Result<Contact> {
-    let observables = Observables::of(solution, &Love);
+fn measure(params: &Params, solution: &Solved) -> Result<Contact> {
+    let area = ContactArea::of(&solution.pressure, Love.perimeter_constant());
     let nominal_area = PeriodicCell::new(params.cell)?.nominal_area();
     Ok(Contact {
-        radius: (observables.area.fraction * nominal_area / std::f64::consts::PI).sqrt(),
+        radius: (area.fraction * nominal_area / std::f64::consts::PI).sqrt(),
         load: solution.info.mean_pressure * params.e_star * nominal_area,
-        peak: observables.max_pressure * params.e_star,
+        peak: solution.pressure.max() * params.e_star,
         penetration: solution.info.penetration * params.cell,
     })
 }
 
 /// The row nearest to `y_over_a` radii from the centre.
-fn section(params: &Params, solution: &Solution, theory: &Contact, apex: usize, y_over_a: f64) -> Section {
+fn section(params: &Params, solution: &Solved, theory: &Contact, apex: usize, y_over_a: f64) -> Section {
     let side = params.cell / params.grid as f64;
     let row = apex + (y_over_a * theory.radius / side).round() as usize;
     let distance = |i: usize| (i as f64 - apex as f64) * side;
@@ -295,19 +298,20 @@ fn axes<'a, B: DrawingBackend>(
 mod tests {
     use super::*;
     use crate::figures::tests::assert_written;
-    use crate::snapshot::{Numeric, assert_table};
+    use crate::numeric::Numeric;
+    use crate::snapshot::assert_table;
 
     #[test]
     fn the_apex_of_the_sphere_is_sampled() {
-        let params = Params { grid: 64, ..Fig4::params(Preset::Reduced).expect("paper values") };
+        let params = Params { grid: 64, ..Fig4::params(Preset::Quick).expect("paper values") };
         let (heights, apex) = sphere(&params).expect("a sphere");
         assert_eq!((heights.max(), heights.at(apex, apex)), (0.0, 0.0));
     }
 
     #[test]
-    fn reduced_figure_4_is_as_reviewed_and_can_be_drawn() {
-        let params = Fig4::params(Preset::Reduced).expect("paper values");
-        let figure = Fig4::compute(&params).expect("the reduced figure is solved");
+    fn quick_figure_4_is_as_reviewed_and_can_be_drawn() {
+        let params = Fig4::params(Preset::Quick).expect("paper values");
+        let figure = Fig4::compute(&params).expect("the quick figure is solved");
         let description = format!("{params:?}");
         // The tolerance of the solve is 1e-7 of Δ; an element more or less at the border moves the radius by 1e-3 of itself.
         let tolerance = Numeric { absolute: 1e-9, relative: 1e-5 };

@@ -1,8 +1,8 @@
-//! The values printed in the paper, read from `data/reference/paper-values.csv`.
+//! The values printed in the paper, read from `data/paper.csv`.
 
 use anyhow::{Context, Result};
 
-const VALUES: &str = include_str!("../../../data/reference/paper-values.csv");
+const VALUES: &str = include_str!("../../../data/paper.csv");
 
 /// The value called `name`, in the unit that the file gives.
 ///
@@ -11,8 +11,16 @@ const VALUES: &str = include_str!("../../../data/reference/paper-values.csv");
 pub(crate) fn value(name: &str) -> Result<f64> {
     let row = VALUES.lines().map(|line| line.split(',')).find(|cells| cells.clone().next() == Some(name));
     let cell = row.and_then(|mut cells| cells.nth(1));
-    let cell = cell.with_context(|| format!("data/reference/paper-values.csv has no `{name}`; add the line"))?;
-    cell.parse().with_context(|| format!("`{name}` in data/reference/paper-values.csv is {cell}; write a number"))
+    let cell = cell.with_context(|| format!("data/paper.csv has no `{name}`; add the line"))?;
+    cell.parse().with_context(|| format!("`{name}` in data/paper.csv is {cell}; write a number"))
+}
+
+/// The two numbers of waves N of the paper's rough surfaces.
+///
+/// # Errors
+/// As [`value`].
+pub(crate) fn both_waves() -> Result<[usize; 2]> {
+    Ok([value("waves_a")? as usize, value("waves_b")? as usize])
 }
 
 #[cfg(test)]

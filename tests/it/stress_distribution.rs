@@ -1,0 +1,84 @@
+//! The stress distribution of solved contacts against exact ones.
+
+use std::f64::consts::{PI, TAU};
+
+use rc_core::{Field, Grid, Silent};
+use rc_kernel::Love;
+use rc_solver::{Control, Solution, SolveParams, StressDistribution, solve_uniform};
+use rc_theory::hertz::{PeriodicContact, PeriodicHertz};
+use rc_theory::westergaard::Westergaard;
+
+fn solve(heights: &Field, mean_pressure: f64) -> Solution {
+    let params = SolveParams { tolerance: 1e-9, ..SolveParams::certified() };
+    solve_uniform(heights, &Love, Control::MeanPressure(mean_pressure), &params, &Silent).expect("a solvable scene")
+}
+
+/// A sphere with its apex `offset` elements from a corner of elements, 51 elements per contact radius.
+fn sphere(offset: f64) -> (Solution, PeriodicContact) {
+    let exact = PeriodicHertz { radius: 1.0 }.at_contact_radius(0.1).expect("a small contact");
+    let n = 512;
+    let apex = 0.5 + offset / n as f64;
+    let nearest = |x: f64| (x - apex + 0.5).rem_euclid(1.0) - 0.5;
+    let heights = Field::from_fn(Grid::square(n).expect("a grid"), |x, y| -0.5 * nearest(x).hypot(nearest(y)).powi(2));
+    (solve(&heights, exact.load), exact)
+}
+
+/// Hertz: P(σ) = 2πa²σ/p0² up to p0.
+#[test]
+fn the_stress_of_a_sphere_starts_linearly() {
+    for offset in [0.0, 0.3, 0.5] {
+        let (solution, exact) = sphere(offset);
+        let edges: Vec<f64> = (0..10).map(|k| 0.1 * f64::from(k) * exact.peak_pressure).collect();
+        let found = StressDistribution::of(&solution.pressure, &edges);
+        let area = PI * exact.contact_radius.powi(2);
+        for (bin, density) in found.density.iter().enumerate() {
+            let expected = area * (edges[bin] + edges[bin + 1]) / exact.peak_pressure.powi(2);
+            let error = (density / expected - 1.0).abs();
+            let allowed = if bin < 3 { 0.05 } else { 0.005 };
+            assert!(error < allowed, "offset {offset}, bin {bin}: {density} against {expected}, off by {error:.1e}");
+        }
+        let error = (found.area_fraction / area - 1.0).abs();
+        assert!(error < 2e-3, "offset {offset}: area {} against {area}", found.area_fraction);
+    }
+}
+
+/// What a histogram of elements shows instead: the smallest pressures are missing or come in heaps.
+#[test]
+fn a_histogram_of_elements_does_not() {
+    let (solution, exact) = sphere(0.3);
+    let width = 0.02 * exact.peak_pressure;
+    let area = PI * exact.contact_radius.powi(2);
+    let expected = area * 0.02 * 0.02;
+    let n = solution.pressure.values().iter().filter(|&&p| p > 0.0 && p < width).count();
+    let counted = n as f64 / solution.pressure.grid().len() as f64;
+    let found = StressDistribution::of(&solution.pressure, &[0.0, width]).density[0] * width;
+    assert!((found / expected - 1.0).abs() < 0.06, "{found:e} against {expected:e}");
+    assert!(!(0.5..2.0).contains(&(counted / expected)), "counting gives {counted:e}, {expected:e} is right");
+}
+
+/// Westergaard: p² is a function of sin² alone, so the area below a stress is known.
+#[test]
+fn the_stress_of_a_wave_is_exact_in_every_bin() {
+    let wave = Westergaard { amplitude: 1e-3 };
+    let mean_pressure = 0.3 * wave.full_contact_pressure();
+    let heights = Field::from_fn(Grid::square(512).expect("a grid"), |x, _| wave.amplitude * (TAU * x).cos());
+    let solution = solve(&heights, mean_pressure);
+    let peak = wave.peak_pressure(mean_pressure);
+    let edges: Vec<f64> = (0..10).map(|k| 0.1 * f64::from(k) * peak).collect();
+    let found = StressDistribution::of(&solution.pressure, &edges);
+    // The pressure falls from the middle of the contact to its edge: the place of a stress by bisection.
+    let place = |stress: f64| {
+        let (mut inside, mut outside) = (0.0, 0.5);
+        for _ in 0..60 {
+            let middle = 0.5 * (inside + outside);
+            let is_inside = wave.pressure(middle, mean_pressure) > stress;
+            (inside, outside) = if is_inside { (middle, outside) } else { (inside, middle) };
+        }
+        2.0 * inside
+    };
+    for (bin, density) in found.density.iter().enumerate() {
+        let expected = (place(edges[bin]) - place(edges[bin + 1])) / (edges[bin + 1] - edges[bin]);
+        let error = (density / expected - 1.0).abs();
+        assert!(error < 0.05, "bin {bin}: {density} against {expected}, off by {error:.1e}");
+    }
+}

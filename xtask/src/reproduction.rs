@@ -1,0 +1,191 @@
+//! docs/reproduction.md: words by people, numbers from the archived run.
+//!
+//! The document has blocks between `<!-- numbers: fig5 -->` and `<!-- end of numbers -->`; what stands between them is made
+//! here from `data/runs/paper/` and `data/paper.csv`. `cargo xtask figures --archive` and `cargo xtask reproduction` write it,
+//! `cargo xtask tidy` compares.
+
+mod rows;
+
+use std::fs;
+
+use anyhow::{Context, Result};
+use rc_cli::quantity::digits;
+use toml::Table as Toml;
+
+use crate::repository::{self, Sources};
+use rows::{ROWS, Row};
+
+const DOCUMENT: &str = "docs/reproduction.md";
+const RUN: &str = "data/runs/paper/";
+const PAPER: &str = "data/paper.csv";
+const BEGIN: &str = "<!-- numbers: ";
+const END: &str = "<!-- end of numbers -->";
+
+/// Rewrites the numbers of docs/reproduction.md from the archived run, as `cargo xtask figures --archive` does
+#[derive(clap::Args)]
+pub(crate) struct Args {}
+
+pub(crate) fn run(_args: &Args) -> Result<()> {
+    update()
+}
+
+/// Rewrites the numbers of the document.
+pub(crate) fn update() -> Result<()> {
+    let sources = repository::read_sources(&repository::root())?;
+    let text = render(&sources).map_err(anyhow::Error::msg)?;
+    let path = repository::root().join(DOCUMENT);
+    fs::write(&path, text).with_context(|| format!("could not write {}", path.display()))
+}
+
+/// Complains when the document has other numbers than the archived run.
+pub(crate) fn check(sources: &Sources) -> Vec<String> {
+    match render(sources) {
+        Ok(text) if sources.get(DOCUMENT).is_some_and(|document| *document == text) => Vec::new(),
+        Ok(_) => vec![format!(
+            "{DOCUMENT} has other numbers than {RUN}; run `cargo xtask reproduction`, and review what changed"
+        )],
+        Err(complaint) => vec![complaint],
+    }
+}
+
+/// The document with its blocks filled in.
+fn render(sources: &Sources) -> Result<String, String> {
+    let document = sources.get(DOCUMENT).ok_or_else(|| format!("{DOCUMENT} is missing; restore it from history"))?;
+    let mut text = String::new();
+    let mut rest = document.as_str();
+    while let Some((before, after)) = rest.split_once(BEGIN) {
+        let (name, after) =
+            after.split_once(" -->").ok_or_else(|| format!("{DOCUMENT}: `{BEGIN}` without ` -->`; close it"))?;
+        let (_, after) = after.split_once(END).ok_or_else(|| format!("{DOCUMENT}: no `{END}` after {name}; add it"))?;
+        let block = if name == "run" { run_block(sources)? } else { figure_block(name, sources)? };
+        text.extend([before, BEGIN, name, " -->\n\n", &block, "\n", END]);
+        rest = after;
+    }
+    Ok(text + rest)
+}
+
+/// Version, times and memory of the run.
+fn run_block(sources: &Sources) -> Result<String, String> {
+    let path = format!("{RUN}run.toml");
+    let text =
+        sources.get(&path).ok_or_else(|| format!("{path} is missing; `cargo xtask figures --archive` makes it"))?;
+    let run: Toml = text.parse().map_err(|error| format!("{path}: {error}"))?;
+    let cell = |key: &str| run.get(key).map_or_else(|| "?".to_owned(), |value| value.to_string().replace('"', ""));
+    let head = format!(
+        "Version {}, {} threads: {} s in all on a shared machine, {} s of processor time, {} MB at most.\n\n| figure | seconds |\n|---|---|\n",
+        cell("version"),
+        cell("threads"),
+        cell("seconds"),
+        cell("processor_seconds"),
+        cell("peak_memory_megabytes")
+    );
+    let figures = run.get("figures").and_then(|figures| figures.as_table());
+    let line = |(name, figure): (&String, &toml::Value)| {
+        let seconds = figure.get("seconds").map_or_else(|| "?".to_owned(), ToString::to_string);
+        format!("| {name} | {seconds} |\n")
+    };
+    Ok([head].into_iter().chain(figures.into_iter().flatten().map(line)).collect())
+}
+
+/// The table of one figure.
+fn figure_block(name: &str, sources: &Sources) -> Result<String, String> {
+    let mut block = "| quantity | the paper | here | difference |\n|---|---|---|---|\n".to_owned();
+    let mut rows = ROWS.iter().filter(|row| row.figure == name).peekable();
+    if rows.peek().is_none() {
+        return Err(format!("{DOCUMENT}: no numbers are called `{name}`; add rows in xtask/src/reproduction/rows.rs"));
+    }
+    for row in rows {
+        block.push_str(&line(row, sources)?);
+    }
+    Ok(block)
+}
+
+fn line(row: &Row, sources: &Sources) -> Result<String, String> {
+    let printed = row.paper.map(|name| published(name, sources)).transpose()?;
+    let (value, error) = ours(row, sources)?;
+    let show = |value: f64| digits(row.factor * value, row.digits);
+    let here = match error {
+        Some(error) if row.unit.is_empty() => format!("{} ± {}", show(value), digits(row.factor * error, 2)),
+        Some(error) => format!("({} ± {}){}", show(value), digits(row.factor * error, 2), row.unit),
+        None => show(value) + row.unit,
+    };
+    let difference = printed.map_or_else(String::new, |printed| {
+        let percent = format!("{:+.1} %", 100.0 * (value / printed - 1.0)).replace('-', "\u{2212}");
+        match error {
+            Some(error) => format!("{percent}, {:.1} s.e.", (value - printed).abs() / error),
+            None => percent,
+        }
+    });
+    Ok(format!(
+        "| {} | {} | {here} | {difference} |\n",
+        row.what,
+        printed.map_or_else(String::new, |value| show(value) + row.unit)
+    ))
+}
+
+/// A number that the paper prints.
+fn published(name: &str, sources: &Sources) -> Result<f64, String> {
+    let text = sources.get(PAPER).ok_or_else(|| format!("{PAPER} is missing; restore it from history"))?;
+    let row = text.lines().map(|line| line.split(',').collect::<Vec<_>>()).find(|cells| cells[0] == name);
+    let cell = row.and_then(|cells| cells.get(1)?.parse().ok());
+    cell.ok_or_else(|| format!("{PAPER} has no number called `{name}`; add the line"))
+}
+
+/// A number of the archived run, and its standard error where the table has one.
+fn ours(row: &Row, sources: &Sources) -> Result<(f64, Option<f64>), String> {
+    let path = format!("{RUN}{}.csv", row.table);
+    let text =
+        sources.get(&path).ok_or_else(|| format!("{path} is missing; `cargo xtask figures --archive` makes it"))?;
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = lines.next().unwrap_or_default();
+    let column = |name: &str| header.iter().position(|cell| *cell == name);
+    let has = |cells: &[&str], name: &str, wanted: &str| {
+        wanted.is_empty() || column(name).and_then(|column| cells.get(column)) == Some(&wanted)
+    };
+    let found = lines.find(|cells| {
+        cells.first() == Some(&row.first) && has(cells, "waves", row.waves) && has(cells, "unit", row.in_unit)
+    });
+    let number = |name: &str| found.as_ref().and_then(|cells| cells.get(column(name)?)?.parse::<f64>().ok());
+    let value = number(row.column).ok_or_else(|| {
+        format!("{path} has no `{}` in column `{}`; correct xtask/src/reproduction/rows.rs", row.first, row.column)
+    })?;
+    Ok((value, number("standard_error")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sources(document: &str) -> Sources {
+        let files = [
+            (DOCUMENT, document),
+            (PAPER, "name,value\narea_fraction_a,0.0673\narea_fraction_b,0.0588\n"),
+            (
+                "data/runs/paper/fig6-summary.csv",
+                "quantity,unit,waves,value\narea fraction,A0,64,0.07\narea fraction,A0,128,0.0588\n\
+                 contact spots,1,64,500\ncontact spots,1,128,900\n",
+            ),
+        ];
+        files.map(|(path, text)| (path.to_owned(), text.to_owned())).into()
+    }
+
+    #[test]
+    fn numbers_come_from_the_tables() {
+        let document = format!("before\n{BEGIN}fig6 -->stale{END}\nafter\n");
+        let text = render(&sources(&document)).expect("both tables are there");
+        assert!(text.starts_with("before\n") && text.ends_with("after\n") && !text.contains("stale"), "{text}");
+        assert!(text.contains("| 0.0673 | 0.07 | +4.0 % |"), "{text}");
+        assert_eq!(render(&sources(&text)).expect("its own output"), text);
+        assert_eq!((check(&sources(&text)).len(), check(&sources(&document)).len()), (0, 1));
+    }
+
+    #[test]
+    fn what_is_missing_is_named() {
+        let unknown = check(&sources(&format!("{BEGIN}fig9 -->{END}")));
+        assert!(unknown[0].contains("`fig9`"), "{unknown:?}");
+        let open = check(&sources(&format!("{BEGIN}fig6 -->")));
+        assert!(open[0].contains(END), "{open:?}");
+        let run = check(&sources(&format!("{BEGIN}run -->{END}")));
+        assert!(run[0].contains("run.toml"), "{run:?}");
+    }
+}

@@ -1,0 +1,174 @@
+//! Which number of the archived run stands beside which number of the paper.
+
+/// One line of a table in docs/reproduction.md.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    /// The block it belongs to.
+    pub(super) figure: &'static str,
+    /// What it is.
+    pub(super) what: &'static str,
+    /// Name in `data/paper.csv`.
+    pub(super) paper: Option<&'static str>,
+    /// Table, first cell of its line, and what else tells the line apart.
+    pub(super) table: &'static str,
+    pub(super) first: &'static str,
+    pub(super) waves: &'static str,
+    pub(super) in_unit: &'static str,
+    /// Column of the value.
+    pub(super) column: &'static str,
+    /// What both numbers are multiplied by to be shown, and their unit then.
+    pub(super) factor: f64,
+    pub(super) unit: &'static str,
+    /// Significant digits.
+    pub(super) digits: usize,
+}
+
+/// A row without unit and paper value.
+const fn row(figure: &'static str, what: &'static str, table: &'static str, first: &'static str) -> Row {
+    Row {
+        figure,
+        what,
+        paper: None,
+        table,
+        first,
+        waves: "",
+        in_unit: "",
+        column: "value",
+        factor: 1.0,
+        unit: "",
+        digits: 4,
+    }
+}
+
+impl Row {
+    const fn waves(self, waves: &'static str) -> Self {
+        Self { waves, ..self }
+    }
+
+    const fn paper(self, name: &'static str) -> Self {
+        Self { paper: Some(name), ..self }
+    }
+
+    const fn column(self, column: &'static str) -> Self {
+        Self { column, ..self }
+    }
+
+    const fn in_unit(self, in_unit: &'static str) -> Self {
+        Self { in_unit, ..self }
+    }
+
+    const fn digits(self, digits: usize) -> Self {
+        Self { digits, ..self }
+    }
+
+    const fn shown(self, factor: f64, unit: &'static str) -> Self {
+        Self { factor, unit, ..self }
+    }
+}
+
+const FIG5: &str = "fig5-summary";
+const FIG7: &str = "fig7-summary";
+const FIG8: &str = "fig8-summary";
+
+/// Every line, in the order of the document.
+pub(super) const ROWS: &[Row] = &[
+    row("fig1", "A/A0 of the realisation", "fig1-summary", "contact area"),
+    row("fig1", "Δ", "fig1-summary", "penetration").shown(1.0, " µm"),
+    row("fig1", "greatest displacement v", "fig1-summary", "greatest displacement").shown(1.0, " µm"),
+    row("fig1", "mean displacement", "fig1-summary", "mean displacement").shown(1.0, " µm"),
+    row("fig3", "contact fraction", "fig3-summary", "contact fraction").column("at_printed_fraction"),
+    row("fig3", "elements, uniform", "fig3-summary", "elements uniform")
+        .column("at_printed_fraction")
+        .paper("fig3_elements_uniform"),
+    row("fig3", "elements, adaptive uniform", "fig3-summary", "elements adaptive uniform")
+        .column("at_printed_fraction")
+        .paper("fig3_elements_adaptive_uniform"),
+    row("fig3", "elements, adaptive", "fig3-summary", "elements adaptive")
+        .column("at_printed_fraction")
+        .paper("fig3_elements_adaptive"),
+    row("fig3", "Δ there", "fig3-summary", "penetration").in_unit("um").column("at_printed_fraction").shown(1.0, " µm"),
+    row("fig4", "contact radius", "fig4-summary", "contact radius").column("numeric").shown(1e3, " mm"),
+    row("fig4", "contact radius, less Hertz in the cell, relative", "fig4-summary", "contact radius")
+        .column("relative_difference"),
+    row("fig4", "load", "fig4-summary", "load").column("numeric").shown(1.0, " N"),
+    row("fig4", "load, less Hertz in the cell, relative", "fig4-summary", "load").column("relative_difference"),
+    row("fig4", "peak pressure", "fig4-summary", "peak pressure").column("numeric").shown(1e-6, " MPa"),
+    row("fig4", "peak pressure, less Hertz in the cell, relative", "fig4-summary", "peak pressure")
+        .column("relative_difference"),
+    row("fig5", "A/A0 at σ0/E* = 8.9e-4, N = 64", FIG5, "area fraction").waves("64").paper("area_fraction_a"),
+    row("fig5", "A/A0 at σ0/E* = 8.9e-4, N = 128", FIG5, "area fraction").waves("128").paper("area_fraction_b"),
+    row("fig5", "the same, mean of 28 realisations, N = 64", FIG5, MORE).waves("64").paper("area_fraction_a"),
+    row("fig5", "the same, mean of 28 realisations, N = 128", FIG5, MORE).waves("128").paper("area_fraction_b"),
+    row("fig5", "seven realisations, by counting elements, N = 64", FIG5, "area fraction by counting")
+        .waves("64")
+        .paper("area_fraction_a"),
+    row("fig5", "seven realisations, by counting elements, N = 128", FIG5, "area fraction by counting")
+        .waves("128")
+        .paper("area_fraction_b"),
+    row("fig5", "scatter of one realisation, N = 64", FIG5, "scatter of the area fraction").waves("64"),
+    row("fig5", "scatter of one realisation, N = 128", FIG5, "scatter of the area fraction").waves("128"),
+    row("fig5", "Persson's A/A0 there, N = 64", FIG5, "Persson's area fraction").waves("64"),
+    row("fig5", "Persson's A/A0 there, N = 128", FIG5, "Persson's area fraction").waves("128"),
+    row("fig5", "rms slope g, N = 64", FIG5, "rms slope").waves("64"),
+    row("fig5", "rms slope g, N = 128", FIG5, "rms slope").waves("128"),
+    row("fig5", "slope of the line, N = 64", FIG5, "slope of the line").waves("64"),
+    row("fig5", "slope of the line, N = 128", FIG5, "slope of the line").waves("128"),
+    row("fig5", "κ of the line, N = 64", FIG5, "kappa of the line").waves("64"),
+    row("fig5", "κ of the line, N = 128", FIG5, "kappa of the line").waves("128"),
+    row("fig5", "R² (the paper: above), N = 64", FIG5, "R squared").waves("64").paper("fig5_r_squared").digits(5),
+    row("fig5", "R² (the paper: above), N = 128", FIG5, "R squared").waves("128").paper("fig5_r_squared").digits(5),
+    row("fig5", "R² up to σ0/E* = 4e-3, N = 64", FIG5, "R squared up to 4e-3").waves("64").digits(5),
+    row("fig5", "R² up to σ0/E* = 4e-3, N = 128", FIG5, "R squared up to 4e-3").waves("128").digits(5),
+    row("fig6", "A/A0, N = 64", "fig6-summary", "area fraction").waves("64").paper("area_fraction_a"),
+    row("fig6", "A/A0, N = 128", "fig6-summary", "area fraction").waves("128").paper("area_fraction_b"),
+    row("fig6", "contact spots, N = 64", "fig6-summary", "contact spots").waves("64"),
+    row("fig6", "contact spots, N = 128", "fig6-summary", "contact spots").waves("128"),
+    row("fig7", "h_max over rms height, N = 64", FIG7, "h_max").waves("64"),
+    row("fig7", "d log10 σ0 / d(Δ/h_max), N = 64", FIG7, "d log10(load) / d(penetration/h_max) of realisations")
+        .waves("64"),
+    row("fig7", "d log10 σ0 / d(Δ/h_max), N = 128", FIG7, "d log10(load) / d(penetration/h_max) of realisations")
+        .waves("128"),
+    row("fig7", "R² of the averages, N = 64", FIG7, "R squared of averages").waves("64").digits(5),
+    row("fig7", "R² of the averages, N = 128", FIG7, "R squared of averages").waves("128").digits(5),
+    row("fig7", "u0/h_rms, N = 64", FIG7, "u0").waves("64"),
+    row("fig7", "u0/h_rms, N = 128", FIG7, "u0").waves("128"),
+    row("fig7", "Persson's u0/h_rms, γ = 0.40", FIG7, "Persson's u0 for gamma 0.40").waves("64"),
+    row("fig7", "Persson's u0/h_rms, γ = 0.45", FIG7, "Persson's u0 for gamma 0.45").waves("64"),
+    row(
+        "fig7",
+        "greatest difference of Δ/h_max between N = 64 and 128",
+        FIG7,
+        "greatest difference of penetration/h_max between surfaces",
+    ),
+    row("fig8", "Λ of the fit, N = 64", FIG8, "fitted Lambda").waves("64").shown(1e5, "·10⁻⁵ E*²"),
+    row("fig8", "Λ of the fit, N = 128", FIG8, "fitted Lambda").waves("128").shown(1e5, "·10⁻⁵ E*²"),
+    row("fig8", "Λ that A/A0 stands for, N = 64", FIG8, "Lambda from the area fraction")
+        .waves("64")
+        .shown(1e5, "·10⁻⁵ E*²"),
+    row("fig8", "Λ that A/A0 stands for, N = 128", FIG8, "Lambda from the area fraction")
+        .waves("128")
+        .shown(1e5, "·10⁻⁵ E*²"),
+    row("fig8", "Λ of the fit over the theory's g²/8, N = 64", FIG8, "fitted Lambda over slope^2/8").waves("64"),
+    row("fig8", "Λ of the fit over the theory's g²/8, N = 128", FIG8, "fitted Lambda over slope^2/8").waves("128"),
+    row("fig8", "A/A0, N = 64", FIG8, "area fraction").waves("64").paper("area_fraction_a"),
+    row("fig8", "∫P dσ, N = 64", FIG8, "integral of P").waves("64").paper("area_fraction_a"),
+    row("fig8", "erf(σ0/2√Λ) of the fit, N = 64", FIG8, "erf(load/2 sqrt(Lambda)) of the fit")
+        .waves("64")
+        .paper("area_fraction_a"),
+    row("fig8", "A/A0, N = 128", FIG8, "area fraction").waves("128").paper("area_fraction_b"),
+    row("fig8", "∫P dσ, N = 128", FIG8, "integral of P").waves("128").paper("area_fraction_b"),
+    row("fig8", "erf(σ0/2√Λ) of the fit, N = 128", FIG8, "erf(load/2 sqrt(Lambda)) of the fit")
+        .waves("128")
+        .paper("area_fraction_b"),
+    row("fig8", "first bin (2e-4 E*) over the peak, N = 64", FIG8, "first bin over peak").waves("64"),
+    row("fig8", "first bin (2e-4 E*) over the peak, N = 128", FIG8, "first bin over peak").waves("128"),
+    row("fig8", "the same from counting elements, N = 64", FIG8, "first bin over peak by elements").waves("64"),
+    row("fig8", "the same from counting elements, N = 128", FIG8, "first bin over peak by elements").waves("128"),
+    row("fig8", "d log P/d log σ from 0.01 to 0.1 of the peak stress, N = 64", FIG8, SLOPE).waves("64"),
+    row("fig8", "d log P/d log σ from 0.01 to 0.1 of the peak stress, N = 128", FIG8, SLOPE).waves("128"),
+    row("fig8", "the same from 0.004 to 0.04, N = 64", FIG8, "slope from 0.004 to 0.04").waves("64"),
+    row("fig8", "the same from 0.004 to 0.04, N = 128", FIG8, "slope from 0.004 to 0.04").waves("128"),
+];
+
+const MORE: &str = "area fraction of all realisations";
+const SLOPE: &str = "slope from 0.01 to 0.1 of the peak stress";
