@@ -14,7 +14,7 @@ pub(crate) const KEYS: [&str; 36] = [
     "method",
     "method_reason",
     "grid",
-        "border_level",
+    "border_level",
     "elements",
     "levels",
     "mean_pressure",
