@@ -1,4 +1,5 @@
-//! Where smaller elements are needed: at the edges of contacts, and where a larger element may hide a contact.
+//! Where smaller elements are needed (Sec. 2, Fig. 3): at the edges of contacts, and where a larger element may hide a
+//! contact.
 
 use rayon::prelude::*;
 
