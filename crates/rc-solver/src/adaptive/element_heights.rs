@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::elements::Elements;
 use super::heights::Heights;
-use super::tiles::{CELLS, TILE, TileSet};
+use super::tiles::{CELLS, TileSet, means_of_quarter, quarters};
 
 /// Heights of all elements. What fills a vector up gets the least height there is, which is never in contact.
 pub(super) fn element_heights(heights: &Heights<'_>, elements: &Elements) -> Vec<f64> {
@@ -24,19 +24,11 @@ pub(super) fn element_heights(heights: &Heights<'_>, elements: &Elements) -> Vec
 /// From heights at centres to means over the centres of the finest elements, 2^`coarser` of them per side, as the displacement
 /// of larger elements is one: with ⟨·⟩ over n × n centres, `⟨h⟩ - h(0) = Δh/24 (1 - 1/n²) d²` up to fourth order, so that
 /// the mean over four gives the one over all.
-fn to_means(heights: &Heights<'_>, tiles: &TileSet, [column, row]: [u32; 2], coarser: usize, cells: &mut [f64; CELLS]) {
+fn to_means(heights: &Heights<'_>, tiles: &TileSet, place: [u32; 2], coarser: usize, cells: &mut [f64; CELLS]) {
     let ratio = (1.0 - 1.0 / Elements::area(coarser)) / (1.0 - 0.25);
-    for quarter in 0..4 {
-        let (half_x, half_y) = (quarter % 2, quarter / 2);
+    for quarter in quarters(place) {
         let mut fine = [0.0; CELLS];
-        heights.tile(2 * tiles.side(), 2 * column as usize + half_x, 2 * row as usize + half_y, &mut fine);
-        for y in 0..TILE / 2 {
-            for x in 0..TILE / 2 {
-                let corner = 2 * y * TILE + 2 * x;
-                let mean = 0.25 * (fine[corner] + fine[corner + 1] + fine[corner + TILE] + fine[corner + TILE + 1]);
-                let cell = &mut cells[(half_y * TILE / 2 + y) * TILE + half_x * TILE / 2 + x];
-                *cell += ratio * (mean - *cell);
-            }
-        }
+        heights.tile(2 * tiles.side(), quarter[0] as usize, quarter[1] as usize, &mut fine);
+        means_of_quarter(quarter, &fine, |cell, mean| cells[cell] += ratio * (mean - cells[cell]));
     }
 }

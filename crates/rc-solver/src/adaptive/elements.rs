@@ -5,7 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::operator::{BLOCK_CELLS, Patch};
-use super::tiles::{CELLS, TILE, TileSet};
+use super::tiles::{CELLS, TILE, TileSet, cell_over, means_of_quarter, quarters};
 use crate::descent::Blocks;
 
 /// Disjoint tiles of one or more levels, finest first.
@@ -90,11 +90,6 @@ impl Elements {
         Self::new(self.levels.iter().zip(&self.starts).map(level).collect())
     }
 
-    /// Parts of a vector that have no element.
-    pub(crate) fn padding(&self) -> impl Iterator<Item = Range<usize>> + '_ {
-        (1..self.levels.len()).map(|coarser| self.cells(coarser - 1).end..self.starts[coarser])
-    }
-
     /// Where the cells of the level `coarser` times coarser than the finest are in a vector.
     pub(crate) fn cells(&self, coarser: usize) -> Range<usize> {
         self.starts[coarser]..self.starts[coarser] + self.levels[coarser].n_cells()
@@ -174,16 +169,11 @@ impl Elements {
         }
         let Some(finer) = coarser.checked_sub(1) else { return false };
         let mut any = false;
-        for child in 0..4 {
-            let (half_x, half_y) = (child % 2, child / 2);
-            let Some(start) = self.find(finer, 2 * column + half_x, 2 * row + half_y) else { continue };
+        let wrap = |i: i64| i.rem_euclid(self.levels[coarser].per_side() as i64) as u32;
+        for quarter in quarters([wrap(column), wrap(row)]) {
+            let Some(start) = self.find(finer, quarter[0].into(), quarter[1].into()) else { continue };
             any = true;
-            for cell in 0..CELLS / 4 {
-                let (x, y) = (cell % (TILE / 2), cell / (TILE / 2));
-                let corner = start + 2 * y * TILE + 2 * x;
-                let sum = values[corner] + values[corner + 1] + values[corner + TILE] + values[corner + TILE + 1];
-                put(half_x as usize * TILE / 2 + x, half_y as usize * TILE / 2 + y, 0.25 * sum);
-            }
+            means_of_quarter(quarter, &values[start..start + CELLS], |cell, mean| put(cell % TILE, cell / TILE, mean));
         }
         any
     }
@@ -197,10 +187,10 @@ impl Elements {
         mut put: impl FnMut(usize, usize, f64),
     ) -> bool {
         let Some(start) = self.find(coarser, column.div_euclid(2), row.div_euclid(2)) else { return false };
-        let half = |i: i64| i.rem_euclid(2) as usize * (TILE / 2);
+        let quarter = [column, row].map(|i| i.rem_euclid(2) as u32);
         for cell in 0..CELLS {
-            let (x, y) = (half(column) + cell % TILE / 2, half(row) + cell / TILE / 2);
-            put(cell % TILE, cell / TILE, values[start + y * TILE + x]);
+            let (x, y) = (cell % TILE, cell / TILE);
+            put(x, y, values[start + cell_over(quarter, x, y)]);
         }
         true
     }
@@ -228,13 +218,14 @@ impl Elements {
         let mut levels = self.levels[1..].to_vec();
         levels[0] = levels[0].with(&self.levels[0].parents(0));
         let coarser = Self::new(levels);
-        let values = self.moved(&coarser, values);
+        let values = self.moved(&coarser, values, 0.0);
         (coarser, values)
     }
 
-    /// Values on the elements of `to`, whose tiles are those here, parts of them, or new ones, where values are zero.
-    pub(crate) fn moved(&self, to: &Self, values: &[f64]) -> Vec<f64> {
-        let mut result = vec![0.0; to.len()];
+    /// Values on the elements of `to`, whose tiles are those here, parts of them, or new ones; `elsewhere` on new ones, and in
+    /// what fills vectors up.
+    pub(crate) fn moved(&self, to: &Self, values: &[f64], elsewhere: f64) -> Vec<f64> {
+        let mut result = vec![elsewhere; to.len()];
         for (coarser, tiles) in to.levels.iter().enumerate() {
             // The same level here, unless the other mesh has a finer one.
             let here = self.levels.iter().position(|level| level.side() == tiles.side());

@@ -190,7 +190,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         prove: bool,
     ) -> Surveyed {
         loop {
-            let mut pressure = mesh.elements.moved(&candidates.elements, &mesh.pressure);
+            let mut pressure = mesh.elements.moved(&candidates.elements, &mesh.pressure, 0.0);
             let mut gap = vec![0.0; pressure.len()];
             let mut fresh = Fresh::<T>::new(self.hierarchy(&candidates.elements, self.fresh.reach()));
             info.operator_applications += 1;
@@ -240,13 +240,9 @@ impl Part {
         let elements = candidates.elements.filtered(|side, place, cells| {
             known.has(side, place) || cells.into_iter().any(|i| pressure[i] > 0.0 || gap[i] < near)
         });
-        let part = |values: &[f64]| candidates.elements.moved(&elements, values);
-        let (mut heights, mut gap) = (part(&candidates.heights), part(gap));
+        let part = |values: &[f64], elsewhere: f64| candidates.elements.moved(&elements, values, elsewhere);
         // What fills a level up is as far from contact as can be.
-        for fill in elements.padding() {
-            heights[fill.clone()].fill(f64::MIN);
-            gap[fill].fill(f64::MAX);
-        }
-        Self { heights, pressure: part(pressure), gap, elements }
+        let (heights, gap) = (part(&candidates.heights, f64::MIN), part(gap, f64::MAX));
+        Self { heights, pressure: part(pressure, 0.0), gap, elements }
     }
 }

@@ -301,7 +301,7 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
         }
         let chosen = self.state(level).too_coarse();
         let refined = split::split(elements, chosen, true, self.fresh.reach().stencil);
-        let mut pressure = elements.moved(&refined, pressure);
+        let mut pressure = elements.moved(&refined, pressure, 0.0);
         prolongation::prolong_to(elements, &function, &refined, &mut pressure);
         Mesh { elements: refined, pressure }
     }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::elements::Elements;
 use super::level::Mesh;
 use super::operator::{Patch, gather};
-use super::tiles::{CELLS, TILE, TileSet};
+use super::tiles::{CELLS, TILE, TileSet, quarters};
 use crate::uniform::outside_level;
 
 /// Cells around a tile that must be out of contact for it to be left out: contacts may grow a little.
@@ -77,10 +77,7 @@ pub(super) fn prolong(tiles: &TileSet, level: &[f64]) -> Mesh {
             std::array::from_fn(|child| fine_tile(&patch, (child % 2, child / 2)))
         })
         .collect();
-    let place = |tile: usize, child: usize| {
-        let [column, row] = tiles.places()[tile];
-        [2 * column + (child % 2) as u32, 2 * row + (child / 2) as u32]
-    };
+    let place = |tile: usize, child: usize| quarters(tiles.places()[tile])[child];
     let chosen = children.iter().enumerate().flat_map(|(tile, children)| {
         children.iter().enumerate().filter_map(move |(child, pressure)| pressure.as_ref().map(|p| (tile, child, p)))
     });

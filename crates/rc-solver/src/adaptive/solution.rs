@@ -136,7 +136,7 @@ impl AdaptiveSolution {
             let more = band.clone().flat_map(|row| (0..per_side).map(move |column| [column as u32, row as u32]));
             let tiles = TileSet::new(per_side, own.finest().places().iter().copied().chain(more).collect());
             let hierarchy = Arc::new(Hierarchy::new(self.base.nx(), Elements::uniform(tiles), prepared.reach()));
-            let mut values = own.moved(hierarchy.elements(), &pressure);
+            let mut values = own.moved(hierarchy.elements(), &pressure, 0.0);
             let tiles = hierarchy.elements().finest();
             let mut fresh = Fresh::<f32>::new(Arc::clone(&hierarchy));
             fresh.fill(values.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));

@@ -1,7 +1,7 @@
 //! Dividing elements, and keeping the sizes of neighbours within what the operator allows.
 
 use super::elements::Elements;
-use super::tiles::{TILE, TileSet};
+use super::tiles::{TILE, TileSet, quarters};
 
 /// Divides the chosen tiles into quarters of half the element side. `chosen` has a flag for each tile of each level; with
 /// `deepen` a level is added below the finest, without it flags of the finest are void.
@@ -31,17 +31,15 @@ pub(super) fn split(elements: &Elements, mut chosen: Vec<Vec<bool>>, deepen: boo
         let places = levels[coarser].places().iter().zip(&chosen[coarser]);
         places.filter(move |&(_, &chosen)| chosen == wanted).map(|(&place, _)| place)
     };
-    let quarters = |coarser: usize| {
-        part(coarser, true).flat_map(|[column, row]| (0..4).map(move |i| [2 * column + i % 2, 2 * row + i / 2]))
-    };
+    let divided = |coarser: usize| part(coarser, true).flat_map(quarters);
     let mut result = Vec::with_capacity(levels.len() + 1);
     if deepen {
-        result.push(TileSet::new(2 * levels[0].per_side(), quarters(0).collect()));
+        result.push(TileSet::new(2 * levels[0].per_side(), divided(0).collect()));
     }
     for (coarser, tiles) in levels.iter().enumerate() {
         let places = part(coarser, false);
         let places =
-            if coarser + 1 < levels.len() { places.chain(quarters(coarser + 1)).collect() } else { places.collect() };
+            if coarser + 1 < levels.len() { places.chain(divided(coarser + 1)).collect() } else { places.collect() };
         result.push(TileSet::new(tiles.per_side(), places));
     }
     Elements::new(result)
@@ -82,7 +80,7 @@ mod tests {
         let values: Vec<f64> = (0..all.len()).map(|i| i as f64).collect();
         let flags = vec![all.levels()[0].places().iter().map(|place| *place == [1, 2]).collect()];
         let two = split(&all, flags, true, 8);
-        let moved = all.moved(&two, &values);
+        let moved = all.moved(&two, &values, 0.0);
         let tile = all.levels()[0].find(1, 2).expect("all tiles");
         let fine = two.levels()[0].find(3, 4).expect("a quarter");
         // The cell in the lower right corner of the tile, four times.

@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use rc_quadtree::morton_code;
 
+use super::operator::Real;
+
 /// Cells per side of a tile.
 pub(crate) const TILE: usize = 8;
 
@@ -126,6 +128,34 @@ impl TileSet {
 pub(crate) fn put_tile(rows: &mut [f64], side: usize, column: usize, tile: &[f64]) {
     for (line, cells) in rows.chunks_exact_mut(side).zip(tile.as_chunks::<TILE>().0) {
         line[column * TILE..][..TILE].copy_from_slice(cells);
+    }
+}
+
+/// The places of a tile's quarters, on the level of elements half as large.
+pub(crate) fn quarters([column, row]: [u32; 2]) -> [[u32; 2]; 4] {
+    [0, 1, 2, 3].map(|quarter| [2 * column + quarter % 2, 2 * row + quarter / 2])
+}
+
+/// The cell of a tile that holds cell (`x`, `y`) of its quarter at a place (only whether its column and row are odd matters).
+pub(crate) fn cell_over([column, row]: [u32; 2], x: usize, y: usize) -> usize {
+    let half = |i: u32| i as usize % 2 * (TILE / 2);
+    (half(row) + y / 2) * TILE + half(column) + x / 2
+}
+
+/// Means over two by two cells of a tile's quarter at a place: `put` gets the cell of the tile, and the mean.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "it is part of vectorised loops, which are compiled for the machine at hand")]
+pub(crate) fn means_of_quarter<T>(place: [u32; 2], fine: &[T], mut put: impl FnMut(usize, T))
+where
+    T: Real,
+{
+    let quarter = T::rounded(0.25);
+    for y in (0..TILE).step_by(2) {
+        for x in (0..TILE).step_by(2) {
+            let corner = y * TILE + x;
+            let sum = fine[corner] + fine[corner + 1] + fine[corner + TILE] + fine[corner + TILE + 1];
+            put(cell_over(place, x, y), quarter * sum);
+        }
     }
 }
 

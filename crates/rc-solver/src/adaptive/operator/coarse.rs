@@ -13,7 +13,7 @@ use rc_kernel::CoarseElement;
 use super::patch::{Patch, gather};
 use super::real::{MultiplyAdd, Real};
 use super::stencil::Taps;
-use crate::adaptive::tiles::{CELLS, TILE, TileSet};
+use crate::adaptive::tiles::{CELLS, TILE, TileSet, cell_over, means_of_quarter, quarters};
 
 /// What coarse elements do, in the precision of the values.
 #[derive(Clone, Debug)]
@@ -45,14 +45,11 @@ impl Leaves {
     pub(super) fn new(tiles: TileSet, finer: &TileSet, cutoff: usize) -> Self {
         let reach = cutoff.div_ceil(TILE) as i64;
         let mut ghosts = Vec::new();
-        for &[column, row] in tiles.places() {
-            for child in 0..4 {
-                let (x, y) = (2 * column + child % 2, 2 * row + child / 2);
-                let is_near = (-reach..=reach)
-                    .any(|dy| (-reach..=reach).any(|dx| finer.find(i64::from(x) + dx, i64::from(y) + dy).is_some()));
-                if is_near {
-                    ghosts.push([x, y]);
-                }
+        for [x, y] in tiles.places().iter().copied().flat_map(quarters) {
+            let is_near = (-reach..=reach)
+                .any(|dy| (-reach..=reach).any(|dx| finer.find(i64::from(x) + dx, i64::from(y) + dy).is_some()));
+            if is_near {
+                ghosts.push([x, y]);
             }
         }
         Self { ghosts: TileSet::new(2 * tiles.per_side(), ghosts), tiles }
@@ -60,13 +57,12 @@ impl Leaves {
 
     /// The values of the ghosts at `places`.
     pub(super) fn spread_to_ghosts<T: Real>(&self, values: &[T], places: &[[u32; 2]], ghosts: &mut [T]) {
-        for (out, &[column, row]) in ghosts.as_chunks_mut::<CELLS>().0.iter_mut().zip(places) {
+        for (out, &place) in ghosts.as_chunks_mut::<CELLS>().0.iter_mut().zip(places) {
+            let [column, row] = place;
             let tile =
                 self.tiles.find(i64::from(column / 2), i64::from(row / 2)).expect("ghosts are quarters of tiles");
-            let (left, below) = (column as usize % 2 * TILE / 2, row as usize % 2 * TILE / 2);
             for (cell, value) in out.iter_mut().enumerate() {
-                let (x, y) = (left + cell % TILE / 2, below + cell / TILE / 2);
-                *value = values[tile * CELLS + y * TILE + x];
+                *value = values[tile * CELLS + cell_over(place, cell % TILE, cell / TILE)];
             }
         }
     }
@@ -159,14 +155,13 @@ impl<T: Real, A: MultiplyAdd, const AROUND: usize> WithSimd for Means<'_, T, A, 
             blurred::<T, A, AROUND>(self.table, self.level, (column, row), &mut patch, out);
             let Some(table) = self.table else { continue };
             short_range::<T, A, AROUND>(&table.near, self.elements, (column, row), &mut patch, out);
-            for child in 0..4 {
-                let place = (2 * column + child % 2, 2 * row + child / 2);
-                if self.ghosts.find(i64::from(place.0), i64::from(place.1)).is_none() {
+            for place in quarters([column, row]) {
+                if self.ghosts.find(i64::from(place[0]), i64::from(place[1])).is_none() {
                     continue;
                 }
                 let mut ghost = [T::default(); CELLS];
-                if short_range::<T, A, AROUND>(&table.across, self.finer, place, &mut patch, &mut ghost) {
-                    add_means(&ghost, (child as usize % 2, child as usize / 2), out);
+                if short_range::<T, A, AROUND>(&table.across, self.finer, place.into(), &mut patch, &mut ghost) {
+                    means_of_quarter(place, &ghost, |cell, mean| out[cell] = out[cell] + mean);
                 }
             }
         }
@@ -189,20 +184,6 @@ pub(super) fn short_range<T: Real, A: MultiplyAdd, const AROUND: usize>(
         taps.add::<A, AROUND>(patch, out);
     }
     any
-}
-
-/// Adds the means over two by two cells of the tile that is the quarter (`half_x`, `half_y`) of `out`.
-#[inline(always)]
-fn add_means<T: Real>(fine: &[T; CELLS], (half_x, half_y): (usize, usize), out: &mut [T; CELLS]) {
-    let quarter = T::rounded(0.25);
-    for y in 0..TILE / 2 {
-        for x in 0..TILE / 2 {
-            let corner = 2 * y * TILE + 2 * x;
-            let sum = fine[corner] + fine[corner + 1] + fine[corner + TILE] + fine[corner + TILE + 1];
-            let cell = (half_y * TILE / 2 + y) * TILE + half_x * TILE / 2 + x;
-            out[cell] = out[cell] + quarter * sum;
-        }
-    }
 }
 
 /// Adds what ghosts do to the elements around them.

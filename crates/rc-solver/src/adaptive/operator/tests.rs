@@ -5,6 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rc_kernel::{PeriodicLove, ScaleSplit, SplitParams};
 
 use super::*;
+use crate::adaptive::tiles::quarters;
 
 /// Radii of spots a few elements of a base grid wide.
 const SMALL: [f64; 2] = [0.01, 0.06];
@@ -123,8 +124,7 @@ fn graded(side: usize, cutoff: usize, seed: u64) -> Elements {
         };
         let (near, far): (Vec<_>, Vec<_>) = fine.places().iter().copied().partition(is_near);
         levels.insert(0, TileSet::new(fine.per_side(), far));
-        let children = near.into_iter().flat_map(|[x, y]| (0..4).map(move |i| [2 * x + i % 2, 2 * y + i / 2]));
-        fine = TileSet::new(2 * fine.per_side(), children.collect());
+        fine = TileSet::new(2 * fine.per_side(), near.into_iter().flat_map(quarters).collect());
     }
     levels.insert(0, fine);
     Elements::new(levels)
