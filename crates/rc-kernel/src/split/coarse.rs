@@ -12,7 +12,7 @@
 //! along each axis ([`CoarseFilter`]); its short-range part follows level by level from that of Love's squares.
 
 use super::SplitParams;
-use super::filter::{EXACT, SAMPLES, least_squares, love_target};
+use super::filter::{EXACT, SAMPLES, least_squares, love_target, weight};
 use super::stencil::Stencil;
 use super::window::Window;
 
@@ -120,7 +120,7 @@ fn design(window: &Window, params: SplitParams, m: u32) -> CoarseFilter {
     let mut rows: Vec<Vec<f64>> = (1..=SAMPLES)
         .map(|sample| {
             let q = std::f64::consts::PI * sample as f64 / SAMPLES as f64;
-            let weight = (2.0 / q - c * window.short_range(q * c)) * q.powf(-1.5);
+            let weight = weight(window, c, q);
             let waves = (0..=n).map(|j| weight * if j == 0 { 1.0 } else { 2.0 * (q * j as f64).cos() });
             waves.chain([weight * blur(q, m)]).collect()
         })

@@ -41,6 +41,11 @@ pub(super) fn love_target(q: f64) -> f64 {
     ((0.5 * q).sin() / (0.5 * q)).sqrt()
 }
 
+/// Weight of the wavenumber `q` in a fit: the remainder of the cutoff `c`, times the decay of a pressure with square-root edges.
+pub(super) fn weight(window: &Window, c: f64, q: f64) -> f64 {
+    (2.0 / q - c * window.short_range(q * c)) * q.powf(-1.5)
+}
+
 /// The taps whose response at q, in radians per fine element, is nearest to `target(q)`.
 pub(super) fn design(window: &Window, params: SplitParams, target: impl Fn(f64) -> f64) -> Filter {
     let n = params.taps;
@@ -50,8 +55,7 @@ pub(super) fn design(window: &Window, params: SplitParams, target: impl Fn(f64) 
     for sample in 1..=SAMPLES {
         // Up to the shortest wave of the coarse grid.
         let q = std::f64::consts::FRAC_PI_2 * sample as f64 / SAMPLES as f64;
-        // The remainder, times the decay of a pressure with square-root edges.
-        let weight = (2.0 / q - c * window.short_range(q * c)) * q.powf(-1.5);
+        let weight = weight(window, c, q);
         let phases: Vec<f64> = (0..n as i32).map(|j| q * (2.0 * f64::from(first + j) - 0.5)).collect();
         let wanted = weight * target(q);
         rows.push(phases.iter().map(|phase| weight * phase.cos()).chain([wanted]).collect());

@@ -10,7 +10,6 @@ use super::element_heights::element_heights;
 use super::elements::Elements;
 use super::fresh::Fresh;
 use super::operator::{BLOCK_CELLS, Hierarchy, Reach, Real, Tables, TileOperator};
-use super::refinement::State;
 use super::split::split;
 use super::survey::{Remainder, possible_contact};
 use crate::descent::{Descent, Engine, Machinery, Outcome, Start, fresh_gap, rescale, scale_to_load};
@@ -206,13 +205,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
                 let curvature = self.fresh.remainder_curvature();
                 let elements = &candidates.elements;
                 let places = self.possible_contact(&fresh, curvature, &pressure, elements.coarsest().per_side(), level);
-                let state = State {
-                    elements,
-                    pressure: &pressure,
-                    gap: &gap,
-                    contact_gap: level,
-                    height_curvature: self.heights.curvature(),
-                };
+                let state = self.state(elements, &pressure, &gap, level);
                 let more = match elements.levels().len() {
                     1 => elements.with(&places),
                     _ => split(elements, state.too_coarse(), false, self.fresh.reach().stencil).with(&places),

@@ -23,6 +23,7 @@ pub(crate) mod tiles;
 use rc_core::{Event, Grid, Observer};
 use rc_kernel::{Love, ScaleSplit, SplitParams};
 
+use self::elements::Elements;
 pub use self::error::AdaptiveError;
 pub use self::estimate::Estimate;
 pub use self::heights::HeightSource;
@@ -299,7 +300,7 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
         if !at_edges {
             return prolongation::prolong(elements.finest(), &function);
         }
-        let chosen = self.state(level).too_coarse();
+        let chosen = self.state(elements, pressure, gap, outcome.contact_gap).too_coarse();
         let refined = split::split(elements, chosen, true, self.fresh.reach().stencil);
         let mut pressure = elements.moved(&refined, pressure, 0.0);
         prolongation::prolong_to(elements, &function, &refined, &mut pressure);
@@ -307,14 +308,8 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
     }
 
     /// What decides on the size of elements.
-    fn state<'b>(&self, level: &'b Level) -> State<'b> {
-        State {
-            elements: &level.elements,
-            pressure: &level.pressure,
-            gap: &level.gap,
-            contact_gap: level.outcome.contact_gap,
-            height_curvature: self.heights.curvature(),
-        }
+    fn state<'b>(&self, elements: &'b Elements, pressure: &'b [f64], gap: &'b [f64], contact_gap: f64) -> State<'b> {
+        State { elements, pressure, gap, contact_gap, height_curvature: self.heights.curvature() }
     }
 
     /// Wraps up what the finest level found.
