@@ -32,6 +32,10 @@ use crate::{Certificate, Control};
 /// 37, 36, 36 convolutions, but only 2 does it everywhere from 0.1 % to 86 % contact.
 const STEPS_PER_ROUND: usize = 2;
 
+/// The error, relative to the least so far, from which on directions are not trusted. Without it N = 512 at 16384² went from
+/// 5e-4 to 3e-3 and needed 72 iterations at one load, 30 at a load that differs in its seventh digit.
+const ASTRAY: f64 = 1.5;
+
 /// Rounds without progress before the iteration becomes cautious, and then gives up.
 const PATIENCE: usize = 20;
 
@@ -177,6 +181,10 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
                 (best, rounds_since_best) = (error, 0);
             } else {
                 rounds_since_best += 1;
+            }
+            if error > ASTRAY * best {
+                // Directions that met other contacts are forgotten before they lead further away.
+                self.curvature = f64::INFINITY;
             }
             if rounds_since_best == PATIENCE {
                 // Caution: clip after every step, forget the directions.
