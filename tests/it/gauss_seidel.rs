@@ -1,6 +1,6 @@
 //! The paper's procedure on its adaptive mesh: Hertz with the paper's parameters, and a rough surface.
 
-use rc_core::{Field, Grid, Silent};
+use rc_core::{Field, Grid, Kernel as _, Silent};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::{Love, PeriodicLove};
 use rc_solver::{ContactArea, Control, GaussSeidelParams, Solution, solve_gauss_seidel};
@@ -16,9 +16,9 @@ fn by_the_paper(heights: &Field, control: Control, tolerance: f64) -> Solution {
         .unwrap_or_else(|error| panic!("{control:?}: {error}"))
 }
 
-/// Contact area of the adaptive solution, with the perimeter term of its finest elements.
+/// Contact area of the adaptive solution, with the edges located on the finest grid.
 fn contact_area(solution: &Solution) -> f64 {
-    ContactArea::of(&solution.pressure, 0.0872).fraction
+    ContactArea::of(&solution.pressure, &solution.gap, Love.edge_bias()).fraction
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod bisinusoidal;
+mod contact_area;
 mod full_contact;
 mod gauss_seidel;
 mod hertz;

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use rc_core::testing::{check_height_field, check_kernel};
-use rc_core::{Grid, HeightField, Kernel, Silent, Symbol};
+use rc_core::{EdgeBias, Grid, HeightField, Kernel, Silent, Symbol};
 use rc_solver::{Control, SolveParams, Status, solve_uniform};
 
 /// An elastic layer of thickness `depth` bonded to a rigid base, incompressible limit left aside: the half-space response
@@ -24,8 +24,8 @@ impl Kernel for Layer {
         })
     }
 
-    fn perimeter_constant(&self) -> f64 {
-        0.1
+    fn edge_bias(&self) -> EdgeBias {
+        EdgeBias { per_edge: 0.03, per_contact: 0.0, per_bend: 0.0 }
     }
 }
 

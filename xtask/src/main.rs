@@ -1,5 +1,6 @@
 //! The task runner: `cargo xtask <command>`, one file per command.
 
+mod accuracy;
 mod bench;
 mod ci;
 mod figures;
@@ -49,6 +50,8 @@ enum Command {
     Reproduction(reproduction::Args),
     /// Tabulates and draws the truncation error of the image sums against shells and time, beside the exact coefficients
     KernelError(figures::Args),
+    /// Measures the error of area, rms pressure and mean gap on usual meshes, and how often their error bars hold it
+    Accuracy(figures::Args),
     Bench(bench::Args),
 }
 
@@ -68,6 +71,7 @@ fn main() -> anyhow::Result<()> {
         Command::Figures(args) => figures::all::run(&args),
         Command::Reproduction(args) => reproduction::run(&args),
         Command::KernelError(args) => figures::run::<kernel_error::KernelErrors>(&args),
+        Command::Accuracy(args) => figures::run::<accuracy::Accuracy>(&args),
         Command::Bench(args) => bench::run(&args),
     }
 }

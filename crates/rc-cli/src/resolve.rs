@@ -75,6 +75,9 @@ fn check_alternatives(scene: &Scene) -> Result<(), String> {
     if [surface.rms, surface.rms_slope, surface.c0].iter().flatten().count() > 1 {
         return Err("rms, rms_slope and c0 are alternatives; give one".into());
     }
+    if surface.grid.is_some() && contact.area_error.is_some() {
+        return Err("area_error chooses the grid; give either area_error or grid".into());
+    }
     if surface.heights.is_some() && surface.generates() {
         return Err("heights is a surface already; give no parameters of a random one (waves, hurst, rms, ...)".into());
     }
@@ -160,6 +163,11 @@ fn spectrum(keys: &SurfaceKeys, side: f64) -> Result<SpectrumParams, CliError> {
 pub fn contact(keys: ContactKeys, side: f64, elements_per_wave: Option<f64>) -> Result<ContactProblem, CliError> {
     let defaults = ContactKeys { pressure: None, penetration: None, method: None, ..scene_file::example().contact };
     let keys = keys.over(defaults);
+    if keys.area_error.is_some() {
+        return Err(CliError::input(
+            "area_error: only rc solve, on a random surface, chooses its grid; give grid instead",
+        ));
+    }
     let elasticity = elasticity(&keys)?;
     let control = match (keys.pressure, keys.penetration) {
         (Some(pressure), None) => {

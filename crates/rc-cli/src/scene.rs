@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 
 use crate::byte_size::ByteSize;
-use crate::values::{GridSpec, Tolerance};
+use crate::values::{Fraction, GridSpec, Tolerance};
 
 /// The embedded example: the paper's surface with N = 64 at σ0/E* = 8.9e-4. Also the source of defaults.
 pub const EXAMPLE: &str = include_str!("../../../data/paper-n64.toml");
@@ -84,6 +84,10 @@ pub struct ContactKeys {
     /// Certified tolerance, relative to the peak-to-valley height; auto stops well below the error of the grid
     #[arg(long, allow_hyphen_values = true)]
     pub tolerance: Option<Tolerance>,
+    /// Choose the grid so that the relative error of the contact area is at most this, as 0.5% or 0.005, and no finer than needed;
+    /// the tolerance is auto then, unless it is given (random surfaces, instead of --grid)
+    #[arg(long, value_name = "ERROR", allow_hyphen_values = true)]
+    pub area_error: Option<Fraction>,
     /// Write pressure and gap averaged to this many elements per side
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub output_grid: Option<GridSpec>,
@@ -227,7 +231,7 @@ impl ContactKeys {
             lower.e_star = None;
         }
         or_lower!(self, lower, {
-            young, poisson, e_star, pressure, penetration, kernel, method, border_level, tolerance, output_grid
+            young, poisson, e_star, pressure, penetration, kernel, method, border_level, tolerance, area_error, output_grid
         });
         self
     }
@@ -247,7 +251,12 @@ impl RunKeys {
 impl Scene {
     /// This scene laid over `lower`, group by group.
     #[must_use]
-    pub fn over(self, lower: Self) -> Self {
+    pub fn over(self, mut lower: Self) -> Self {
+        if self.contact.area_error.is_some() {
+            lower.surface.grid = None;
+        } else if self.surface.grid.is_some() {
+            lower.contact.area_error = None;
+        }
         Self {
             surface: self.surface.over(lower.surface),
             contact: self.contact.over(lower.contact),

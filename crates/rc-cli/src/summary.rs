@@ -31,18 +31,24 @@ pub struct Summary {
     pub penetration: f64,
     /// Penetration of full contact, max(h) - mean(h) (m).
     pub penetration_full_contact: f64,
-    /// Contact area A/A0, best estimate: counted area less the perimeter term.
+    /// Contact area A/A0, best estimate: edges of contacts are located between the centres of elements.
     pub area_fraction: f64,
     /// Contact area A/A0 by counting elements with p > 0.
     pub area_fraction_cells: f64,
     /// Estimated error of `area_fraction`.
     pub area_fraction_error: f64,
+    /// Length of the edges of all contacts (m).
+    pub contact_perimeter: Option<f64>,
     /// Root mean square of the pressure over the cell (Pa).
     pub rms_pressure: f64,
+    /// Estimated discretisation error of `rms_pressure` (Pa); null when no coarser grid was solved.
+    pub rms_pressure_error: Option<f64>,
     /// Greatest pressure (Pa).
     pub max_pressure: f64,
     /// Mean gap (m).
     pub mean_gap: f64,
+    /// Estimated discretisation error of `mean_gap` and of `penetration` (m); null when no coarser grid was solved.
+    pub mean_gap_error: Option<f64>,
     /// dσ0/dΔ (Pa/m); null where it is infinite, in full contact.
     pub contact_stiffness: Option<f64>,
     /// Elastic energy of the cell (J).

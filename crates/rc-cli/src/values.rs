@@ -131,9 +131,63 @@ impl<'de> Deserialize<'de> for Tolerance {
     }
 }
 
+/// A part of something, as written: `0.5%` or `0.005`; above 0 and below 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fraction(pub f64);
+
+impl FromStr for Fraction {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
+        let value = number.trim().parse().map_or(f64::NAN, |value: f64| value * unit);
+        let expected = || format!("a part is a number above 0 and below 1, as 0.005 or 0.5%, not '{text}'");
+        (value > 0.0 && value < 1.0).then_some(Self(value)).ok_or_else(expected)
+    }
+}
+
+impl Serialize for Fraction {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_f64(self.0)
+    }
+}
+
+impl<'de> Deserialize<'de> for Fraction {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct FractionVisitor;
+        impl Visitor<'_> for FractionVisitor {
+            type Value = Fraction;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number above 0 and below 1, as 0.005, or \"0.5%\"")
+            }
+
+            fn visit_f64<E: de::Error>(self, value: f64) -> Result<Fraction, E> {
+                self.visit_str(&value.to_string())
+            }
+
+            fn visit_str<E: de::Error>(self, value: &str) -> Result<Fraction, E> {
+                value.parse().map_err(E::custom)
+            }
+        }
+        deserializer.deserialize_any(FractionVisitor)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_fraction_is_a_number_or_a_percentage() {
+        for (text, value) in [("0.005", 0.005), ("0.5%", 0.005), ("12 %", 0.12)] {
+            let Fraction(read) = text.parse().expect("a fraction");
+            assert!((read / value - 1.0).abs() < 1e-15, "{text} is {read}");
+        }
+        for text in ["", "%", "0", "1", "100%", "-1%", "nan", "inf%", "x"] {
+            assert!(text.parse::<Fraction>().is_err(), "'{text}' was read as a fraction");
+        }
+    }
 
     #[test]
     fn a_grid_reads_back_as_it_is_written() {

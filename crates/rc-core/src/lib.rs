@@ -28,5 +28,5 @@ pub mod testing;
 pub use field::{Field, ShapeError};
 pub use grid::{Grid, GridError};
 pub use progress::{Event, Observer, Silent};
-pub use traits::{HeightField, Kernel, Operator, Symbol};
+pub use traits::{EdgeBias, HeightField, Kernel, Operator, Symbol};
 pub use units::{Elasticity, PeriodicCell, UnitError};

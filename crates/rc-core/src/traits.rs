@@ -23,6 +23,19 @@ pub trait HeightField: Sync {
 /// Eigenvalues of an elastic operator on one grid: maps (|kx|, |ky|), up to half the grid, to the eigenvalue.
 pub type Symbol<'a> = Box<dyn Fn(usize, usize) -> f64 + Send + Sync + 'a>;
 
+/// What to take off a contact area whose edges were located between elements, in areas of an element, so that its
+/// first-order error vanishes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeBias {
+    /// For each edge between an element in contact and one out of it.
+    pub per_edge: f64,
+    /// For each contact, less the holes in contacts: edges that curve are shifted otherwise than straight ones.
+    pub per_contact: f64,
+    /// For the sum over edges of how far the gap two elements out is from the law that holds near a straight edge: between
+    /// contacts that are close, and at edges that curve, it bends away from it.
+    pub per_bend: f64,
+}
+
 /// The elastic response of a periodic half-space to pressure on a uniform grid.
 ///
 /// A layered or viscoelastic half-space is another `Kernel`. [`crate::testing::check_kernel`] checks the contract.
@@ -35,9 +48,9 @@ pub trait Kernel: Sync {
     /// square grid symmetric in kx and ky, so it may be asked for ky ≥ kx only. Zero at k = 0 (Eq. 3: the displacement has zero mean) and positive elsewhere.
     fn symbol(&self, grid: Grid) -> Symbol<'_>;
 
-    /// The constant c for which counted contact area minus c · (contact edges) · (element area) is free of the first-order
-    /// discretisation error (Yastrebov, Anciaux, Molinari 2017; it depends on the discretisation, so on the kernel).
-    fn perimeter_constant(&self) -> f64;
+    /// How far the discretisation shifts the edges of contacts: it is first order in the element size, and depends on the
+    /// kernel (`docs/accuracy.md` has the calibration of the ones here).
+    fn edge_bias(&self) -> EdgeBias;
 }
 
 /// A linear map from pressure to zero-mean displacement: `v = L p` (Eq. 4), symmetric for uniform grids.

@@ -57,7 +57,7 @@ pub use split::{CoarseElement, CoarseFilter, Filter, ScaleSplit, SplitParams, St
 pub use truncated::{LoadForm, MAX_SHELLS, shells_for, truncated_coefficient, truncation_error_bound};
 
 use love_symbol::LoveSymbol;
-use rc_core::{Grid, Kernel, Symbol};
+use rc_core::{EdgeBias, Grid, Kernel, Symbol};
 
 /// The paper's element: uniform pressure on each element, displacement at its centre, summed over all periodic images
 /// (Eq. 4-6) without truncation. Elements are squares on a grid with nx = ny, and rectangles otherwise.
@@ -80,8 +80,7 @@ impl Kernel for Love {
         Box::new(move |kx, ky| symbol.eigenvalue(kx, ky))
     }
 
-    /// Calibrated on Hertz contacts of 51 elements per radius at random offsets: 0.0872 ± 0.0025.
-    fn perimeter_constant(&self) -> f64 {
-        0.0872
+    fn edge_bias(&self) -> EdgeBias {
+        EdgeBias { per_edge: 0.029, per_contact: -0.21, per_bend: -0.0275 }
     }
 }

@@ -7,6 +7,7 @@
 
 mod adaptive;
 mod certificate;
+mod contact_area;
 mod control;
 mod dense;
 mod descent;
@@ -27,13 +28,14 @@ pub use adaptive::{
     MultilevelOperator, solve_adaptive,
 };
 pub use certificate::Certificate;
+pub use contact_area::ContactArea;
 pub use control::Control;
 pub use dense::solve_dense;
 pub use error::SolveError;
 pub use gauss_seidel::{Coefficient, GaussSeidelError, GaussSeidelParams, solve_gauss_seidel};
-pub use observables::{ContactArea, Observables};
+pub use observables::Observables;
 pub use operator::{DirectSum, UniformOperator};
 pub use params::SolveParams;
-pub use solution::{LevelInfo, MeshPressure, Solution, SolveInfo, Status};
+pub use solution::{LevelInfo, LevelValues, MeshPressure, Solution, SolveInfo, Status};
 pub use stress_distribution::StressDistribution;
 pub use uniform::{UNIFORM_BYTES_PER_ELEMENT, solve_uniform};

@@ -27,6 +27,17 @@ pub struct LevelInfo {
     pub preconditioner_applications: usize,
 }
 
+/// What a level found that the next finer one is compared with, to estimate its error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LevelValues {
+    /// A/A0, the best estimate.
+    pub area_fraction: f64,
+    /// Root mean square of the pressure, in E*.
+    pub rms_pressure: f64,
+    /// Penetration Δ, in λ, from the greatest height of the finest grid.
+    pub penetration: f64,
+}
+
 /// How a solution was found and how good it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolveInfo {
@@ -42,6 +53,8 @@ pub struct SolveInfo {
     pub elastic_energy: f64,
     /// The work, coarsest level first; empty in full contact.
     pub levels: Vec<LevelInfo>,
+    /// What the level below the finest one found; none when there was none.
+    pub coarser: Option<LevelValues>,
 }
 
 impl SolveInfo {

@@ -7,6 +7,7 @@
 //! | module | contact | valid |
 //! |---|---|---|
 //! | [`hertz`] | sphere, on an infinite half-space and in the periodic cell | exact; contact radius up to 0.25 λ |
+//! | [`elliptic`] | ellipsoidal peak on an infinite half-space | exact |
 //! | [`cone`] | cone on an infinite half-space | exact |
 //! | [`westergaard`] | one-dimensional wave | exact at every load |
 //! | [`bisinusoidal`] | two-dimensional wave | both ends of the load range |
@@ -20,6 +21,7 @@ use thiserror::Error;
 
 pub mod bisinusoidal;
 pub mod cone;
+pub mod elliptic;
 pub mod full_contact;
 pub mod hertz;
 pub mod lattice;

@@ -9,10 +9,9 @@ use anyhow::Result;
 use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, PathElement, Polygon, RGBColor};
 use plotters::style::{BLACK, Color};
 use rc_cli::picture::{Area, Picture, PictureError};
-use rc_core::{Field, Grid, Kernel, Silent};
+use rc_core::{Field, Grid, Silent};
 use rc_fractal::{SpectrumParams, Surface};
-use rc_kernel::Love;
-use rc_solver::{AdaptiveParams, AdaptiveSolution, ContactArea, Control, HeightSource, SolveParams, solve_adaptive};
+use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, HeightSource, SolveParams, solve_adaptive};
 
 use super::chart::{Axes, BLUE, Chart, Drawn, GREY, RED, Side, dimension, write};
 use super::solve::{displacement_field, pressure_field};
@@ -159,7 +158,7 @@ impl Fig1 {
             h_max: cell * solution.info.penetration_full_contact,
             mean_displacement: cell * displacement.mean(),
             max_displacement: cell * displacement.max(),
-            area: ContactArea::of(&pressure, Love.perimeter_constant()).fraction,
+            area: solution.contact_area().fraction,
         })
     }
 

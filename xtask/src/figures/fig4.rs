@@ -11,9 +11,8 @@ use plotters::prelude::{
     DrawingBackend, IntoFont, LineSeries, RGBColor, Rectangle,
 };
 use rc_cli::picture::{Area, FONT, Picture, PictureError};
-use rc_core::{Elasticity, Field, Grid, Kernel, PeriodicCell, Silent};
-use rc_kernel::Love;
-use rc_solver::{AdaptiveParams, ContactArea, Control, HeightSource, SolveParams, solve_adaptive};
+use rc_core::{Elasticity, Field, Grid, PeriodicCell, Silent};
+use rc_solver::{AdaptiveParams, Control, HeightSource, SolveParams, solve_adaptive};
 use rc_theory::hertz::{Hertz, PeriodicHertz};
 
 use super::contact_map::{ContactMap, Run};
@@ -109,7 +108,8 @@ impl Figure for Fig4 {
         let solve = SolveParams { tolerance: params.tolerance, ..SolveParams::certified() };
         let adaptive = AdaptiveParams { solve, ..AdaptiveParams::certified() };
         let solution = solve_adaptive(HeightSource::Map(&heights), control, &adaptive, &Silent)?;
-        let solution = Solved { pressure: pressure_field(&solution)?, info: solution.info };
+        let solution =
+            Solved { pressure: pressure_field(&solution)?, area: solution.contact_area(), info: solution.info };
         let (periodic, infinite) = theory(params)?;
         let side = params.cell / params.grid as f64;
         Ok(Self {
@@ -175,7 +175,7 @@ fn theory(params: &Params) -> Result<(Contact, Contact)> {
 
 /// The contact that was found: its radius from the area, its load from the mean pressure.
 fn measure(params: &Params, solution: &Solved) -> Result<Contact> {
-    let area = ContactArea::of(&solution.pressure, Love.perimeter_constant());
+    let area = solution.area;
     let nominal_area = PeriodicCell::new(params.cell)?.nominal_area();
     Ok(Contact {
         radius: (area.fraction * nominal_area / std::f64::consts::PI).sqrt(),

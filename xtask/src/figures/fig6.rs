@@ -8,10 +8,9 @@ use std::f64::consts::TAU;
 use anyhow::Result;
 use plotters::prelude::DrawingBackend;
 use rc_cli::picture::{Area, Map, Picture, PictureError, Shade, draw_map};
-use rc_core::{Field, Kernel};
+use rc_core::Field;
 use rc_fractal::{SpectrumParams, Surface};
-use rc_kernel::Love;
-use rc_solver::{ContactArea, Control};
+use rc_solver::Control;
 
 use super::contact_map::ContactMap;
 use super::solve::solve;
@@ -125,13 +124,13 @@ impl Picture for Fig6 {
 fn contact(case: &Case, params: &Params) -> Result<Contact> {
     let surface = Surface::new(&SpectrumParams::paper(case.waves, params.seed))?;
     let solved = solve(&surface, case.grid, Control::MeanPressure(params.mean_pressure), params.tolerance)?;
-    let area = ContactArea::of(&solved.pressure, Love.perimeter_constant());
+    let area = solved.area;
     let rms_slope = surface.moments().rms_slope;
     Ok(Contact {
         case: case.clone(),
         area_cells: area.cells,
         area: area.fraction,
-        perimeter: area.perimeter_edges as f64 / case.grid as f64,
+        perimeter: area.perimeter,
         n_spots: ContactMap::of(&solved.pressure).n_spots(),
         rms_slope,
         kappa: area.fraction * rms_slope / params.mean_pressure,

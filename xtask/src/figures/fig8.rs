@@ -5,17 +5,16 @@
 
 use anyhow::Result;
 use rc_cli::picture::{Area, Picture, PictureError};
-use rc_core::{Field, Kernel};
+use rc_core::Field;
 use rc_fractal::{SpectrumParams, Surface};
-use rc_kernel::Love;
-use rc_solver::{ContactArea, Control, StressDistribution};
+use rc_solver::{Control, StressDistribution};
 use rc_theory::persson::Persson;
 
 use plotters::prelude::DrawingBackend;
 
 use super::fit::{Line, Sample, fit_persson};
 use super::marks::{STYLES, Style};
-use super::solve::solve;
+use super::solve::{Contact, solve};
 use super::sweep::ELEMENTS_PER_WAVE;
 use super::{Figure, Preset, Table, number, paper};
 
@@ -200,13 +199,14 @@ fn points(distribution: &StressDistribution) -> Vec<(f64, f64)> {
 impl Realisation {
     fn solve(params: &Params, surface: &Surface, waves: usize) -> Result<Self> {
         let control = Control::MeanPressure(params.load);
-        let pressure = solve(surface, params.elements_per_wave * waves, control, params.tolerance)?.pressure;
+        let Contact { pressure, area, .. } =
+            solve(surface, params.elements_per_wave * waves, control, params.tolerance)?;
         let equal: Vec<f64> = (0..=params.n_bins).map(|k| k as f64 * params.bin_width).collect();
         let ratio = 10_f64.powf((params.per_decade as f64).recip());
         let small: Vec<f64> = (0..=params.n_small).map(|k| params.first_edge * ratio.powi(k as i32)).collect();
         let distribution = StressDistribution::of(&pressure, &equal);
         Ok(Self {
-            area: ContactArea::of(&pressure, Love.perimeter_constant()).fraction,
+            area: area.fraction,
             lambda: fit_persson(params.load, &points(&distribution)).lambda,
             equal: distribution,
             equal_elements: histogram(&pressure, &equal),

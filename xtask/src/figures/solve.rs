@@ -4,8 +4,8 @@ use anyhow::Result;
 use rc_core::{Field, Grid, HeightField, Silent};
 use rc_kernel::Love;
 use rc_solver::{
-    AdaptiveParams, AdaptiveProblem, AdaptiveSolution, Control, Estimate, HeightSource, SolveInfo, SolveParams,
-    solve_uniform,
+    AdaptiveParams, AdaptiveProblem, AdaptiveSolution, ContactArea, Control, Estimate, HeightSource, Observables,
+    SolveInfo, SolveParams, solve_uniform,
 };
 
 /// A solved contact, in units of λ and E*.
@@ -13,6 +13,7 @@ use rc_solver::{
 pub(crate) struct Contact {
     /// Pressure on the finest grid.
     pub(crate) pressure: Field,
+    pub(crate) area: ContactArea,
     pub(crate) info: SolveInfo,
 }
 
@@ -26,10 +27,11 @@ pub(crate) fn solve(surface: &dyn HeightField, side: usize, control: Control, to
         drop(problem);
         let heights = surface.sample(Grid::square(side)?);
         let solution = solve_uniform(&heights, &Love, control, &solve, &Silent)?;
-        return Ok(Contact { pressure: solution.pressure, info: solution.info });
+        let area = Observables::of(&solution, &Love).area;
+        return Ok(Contact { pressure: solution.pressure, area, info: solution.info });
     }
     let solution = problem.solve(&Silent)?;
-    Ok(Contact { pressure: pressure_field(&solution)?, info: solution.info })
+    Ok(Contact { pressure: pressure_field(&solution)?, area: solution.contact_area(), info: solution.info })
 }
 
 /// The pressure on the finest grid.

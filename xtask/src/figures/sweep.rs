@@ -4,10 +4,8 @@
 //! the short ones.
 
 use anyhow::{Context, Result};
-use rc_core::Kernel;
 use rc_fractal::{SpectrumParams, Surface};
-use rc_kernel::Love;
-use rc_solver::{ContactArea, Control};
+use rc_solver::Control;
 
 use super::fit::Sample;
 use super::solve::solve;
@@ -167,7 +165,7 @@ fn state(params: &Params, surface: &Surface, (waves, seed, load): (usize, u64, f
     let side = params.elements_per_wave * waves;
     let contact = solve(surface, side, Control::MeanPressure(load), params.tolerance)
         .with_context(|| format!("N = {waves}, seed {seed}, σ0/E* = {load:e}"))?;
-    let area = ContactArea::of(&contact.pressure, Love.perimeter_constant());
+    let area = contact.area;
     let (info, rms_height) = (&contact.info, surface.moments().rms_height);
     Ok(State {
         waves,

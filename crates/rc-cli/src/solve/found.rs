@@ -3,8 +3,8 @@
 use rc_core::{Field, Grid};
 use rc_kernel::PeriodicLove;
 use rc_solver::{
-    AdaptiveError, AdaptiveProblem, AdaptiveSolution, GaussSeidelError, GaussSeidelParams, Observables, Solution,
-    SolveError, SolveInfo, Status, solve_gauss_seidel, solve_uniform,
+    AdaptiveError, AdaptiveProblem, AdaptiveSolution, ContactArea, GaussSeidelError, GaussSeidelParams, Observables,
+    Solution, SolveError, SolveInfo, Status, solve_gauss_seidel, solve_uniform,
 };
 
 use super::method::Plan;
@@ -135,6 +135,13 @@ impl<'a> Found<'a> {
         match &self.pressure {
             Pressure::Whole(solution) => (solution.pressure.grid().len(), 0),
             Pressure::Tiles { solution, .. } => (solution.evaluated, solution.proven),
+        }
+    }
+
+    pub(super) fn contact_area(&self, contact: &ContactProblem) -> ContactArea {
+        match &self.pressure {
+            Pressure::Whole(solution) => ContactArea::of_solution(solution, contact.kernel()),
+            Pressure::Tiles { solution, .. } => solution.contact_area(),
         }
     }
 

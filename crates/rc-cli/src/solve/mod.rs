@@ -1,5 +1,6 @@
 //! `rc solve`: one contact problem, from scene to files.
 
+mod area_error;
 mod files;
 mod found;
 mod method;
@@ -66,6 +67,11 @@ impl<'a> Solved<'a> {
         self.found.failure.as_deref()
     }
 
+    /// Estimated error of the contact area over it.
+    fn relative_area_error(&self) -> f64 {
+        self.found.contact_area(self.contact).relative_error()
+    }
+
     /// The summary in SI; `threads` is what it says of them.
     pub(crate) fn summary(&self, threads: usize) -> Summary {
         summarise(self, threads)
@@ -87,6 +93,9 @@ impl<'a> Solved<'a> {
 pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
     let scene = scene_of(args)?;
     let started = Instant::now();
+    if let Some(wanted) = scene.contact.area_error {
+        return area_error::run(scene, wanted, started);
+    }
     let surface = resolve::surface(scene.surface)?;
     let contact = resolve::contact(scene.contact, surface.cell.side(), surface.elements_per_wave())?;
     let threads = resolve::start_threads(scene.run.threads)?;
@@ -110,11 +119,16 @@ fn execute(
     let solved = Solved::new(&loaded, contact, surface.cell.side(), run, started, &progress)?;
     // The bar goes before anything is printed.
     drop(progress);
+    finish(&solved, surface, run, threads)
+}
+
+/// Writes and prints.
+fn finish(solved: &Solved<'_>, surface: &SurfaceProblem, run: &RunKeys, threads: usize) -> Result<(), CliError> {
     let summary = solved.summary(threads);
     if let Some(folder) = &run.out {
         solved.write(folder, &summary)?;
     }
-    print_summary(&summary, surface, contact, run)?;
+    print_summary(&summary, surface, solved.contact, run)?;
     match solved.failure() {
         None => Ok(()),
         Some(message) if run.out.is_some() => {

@@ -7,7 +7,7 @@ use std::time::Duration;
 use crate::support::{Place, assert_refused, assert_solved, bumps, f8, npy, small, text};
 
 /// Keys of `summary.json`, in their order.
-pub(crate) const KEYS: [&str; 36] = [
+pub(crate) const KEYS: [&str; 39] = [
     "status",
     "control",
     "kernel",
@@ -23,9 +23,12 @@ pub(crate) const KEYS: [&str; 36] = [
     "area_fraction",
     "area_fraction_cells",
     "area_fraction_error",
+    "contact_perimeter",
     "rms_pressure",
+    "rms_pressure_error",
     "max_pressure",
     "mean_gap",
+    "mean_gap_error",
     "contact_stiffness",
     "elastic_energy",
     "rms_height",

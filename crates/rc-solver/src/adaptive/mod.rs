@@ -4,6 +4,7 @@
 //! cells that contact touches or nearly does, with the multilevel operator. What is not stored is out of contact, and the
 //! survey proves it.
 
+mod contact_area;
 mod element_heights;
 mod elements;
 mod error;
@@ -23,6 +24,7 @@ pub(crate) mod tiles;
 use rc_core::{Event, Grid, Observer};
 use rc_kernel::{Love, ScaleSplit, SplitParams};
 
+use self::contact_area::contact_area;
 use self::elements::Elements;
 pub use self::error::AdaptiveError;
 pub use self::estimate::Estimate;
@@ -35,7 +37,7 @@ use self::refinement::State;
 pub use self::solution::{AdaptiveSolution, ContactElement};
 use self::tiles::{TILE, TileSet};
 use crate::problem::Problem;
-use crate::solution::LevelInfo;
+use crate::solution::{LevelInfo, LevelValues};
 use crate::uniform::{self, Climb, Climbed};
 use crate::{Certificate, Control, SolveParams};
 
@@ -275,18 +277,21 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
 
     fn solve(&self, observer: &dyn Observer) -> Result<AdaptiveSolution, AdaptiveError> {
         let n_above = (self.heights.finest_side() / self.base().nx()).ilog2() as usize;
-        let (mut mesh, mut contact_gap, mut infos) = self.solve_base(n_above, observer);
+        let (mut mesh, mut contact_gap, mut infos, mut coarser) = self.solve_base(n_above, observer);
         for above in 1..=n_above {
             let grid = Grid::square(self.base().nx() << above).expect("a level of a checked grid");
             observer.notify(&Event::Level { grid, level: infos.len(), n_levels: infos.len() + 1 + n_above - above });
             if above == n_above {
                 let level = self.solve_finest(grid, mesh, contact_gap, observer);
                 infos.push(level.info);
-                return self.finish(grid, level, infos);
+                return self.finish(grid, level, infos, coarser);
             }
             let tolerance = uniform::coarse_tolerance(n_above - above - 1).max(self.params.tolerance);
             let level = self.prepare_level(grid, mesh, tolerance, observer);
             infos.push(level.info);
+            if above + 1 == n_above {
+                coarser = Some(self.values(grid, &level));
+            }
             contact_gap = level.outcome.contact_gap;
             mesh = self.refined(&level, above >= n_above - self.border_level);
         }
@@ -312,11 +317,29 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
         State { elements, pressure, gap, contact_gap, height_curvature: self.heights.curvature() }
     }
 
+    /// What a level found.
+    fn values(&self, grid: Grid, level: &Level) -> LevelValues {
+        let Level { elements, pressure, gap, outcome, .. } = level;
+        LevelValues {
+            area_fraction: contact_area(elements, pressure, (gap, outcome.contact_gap), grid).fraction,
+            rms_pressure: solution::rms_pressure(elements, pressure),
+            penetration: self.problem.h_max + outcome.approach,
+        }
+    }
+
     /// Wraps up what the finest level found.
-    fn finish(&self, grid: Grid, level: Level, levels: Vec<LevelInfo>) -> Result<AdaptiveSolution, AdaptiveError> {
+    fn finish(
+        &self,
+        grid: Grid,
+        level: Level,
+        levels: Vec<LevelInfo>,
+        coarser: Option<LevelValues>,
+    ) -> Result<AdaptiveSolution, AdaptiveError> {
+        let area = contact_area(&level.elements, &level.pressure, (&level.gap, level.outcome.contact_gap), grid);
+        let area = coarser.map_or(area, |coarser| area.with_coarser(coarser.area_fraction));
         let (outcome, iterations) = (level.outcome, level.info.iterations);
         let certificate = outcome.certificate;
-        let info = outcome.info(&self.problem, levels);
+        let info = outcome.info(&self.problem, levels, coarser);
         let solution = AdaptiveSolution {
             base: self.base(),
             grid: Grid::square(grid.nx() >> self.border_level).expect("a coarser grid than the finest"),
@@ -324,6 +347,7 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
             border_level: self.border_level,
             elements: level.elements,
             pressure: level.pressure,
+            area,
             info,
             evaluated: level.evaluated,
             proven: grid.len() - level.evaluated,
@@ -335,15 +359,16 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
         }
     }
 
-    /// Uniform grids up to the base grid: the start on the level above it, and the gap in contact.
-    fn solve_base(&self, n_above: usize, observer: &dyn Observer) -> (Mesh, f64, Vec<LevelInfo>) {
+    /// Uniform grids up to the base grid: the start on the level above it, the gap in contact, the work, and what it found
+    /// when one level is left.
+    fn solve_base(&self, n_above: usize, observer: &dyn Observer) -> (Mesh, f64, Vec<LevelInfo>, Option<LevelValues>) {
         let base = self.heights.base();
         let (problem, params) = (&self.problem, self.params);
         let climb = Climb { kernel: &Love, problem, params, n_above, observer };
-        let Climbed { descent, outcome, levels } = climb.to(base);
+        let Climbed { descent, outcome, levels, coarser } = climb.to(base);
         let function = to_tiles(base.grid(), &uniform::level_function(&descent));
         let tiles = TileSet::full(base.grid().nx() / TILE);
-        (prolongation::prolong(&tiles, &function), outcome.contact_gap, levels)
+        (prolongation::prolong(&tiles, &function), outcome.contact_gap, levels, coarser)
     }
 }
 

@@ -4,14 +4,15 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use rc_core::{Grid, Kernel};
-use rc_kernel::{Love, ScaleSplit, SplitParams};
+use rc_core::Grid;
+use rc_kernel::{ScaleSplit, SplitParams};
 
 use super::elements::Elements;
 use super::fresh::Fresh;
 use super::operator::{BLOCK_CELLS, Hierarchy, Prepared, TileOperator};
 use super::tiles::{CELLS, TILE, TileSet, put_tile};
 use crate::descent::Engine;
+use crate::observables::{mean_gap_error, rms_pressure_error};
 use crate::stiffness::stiffness_of;
 use crate::{ContactArea, Observables, SolveInfo};
 
@@ -42,6 +43,7 @@ pub struct AdaptiveSolution {
     pub(super) border_level: usize,
     pub(super) elements: Elements,
     pub(super) pressure: Vec<f64>,
+    pub(super) area: ContactArea,
     /// How it was found and how good it is. The certificate holds for the whole cell.
     pub info: SolveInfo,
     /// Cells of the finest grid whose gap was computed for the certificate.
@@ -170,41 +172,23 @@ impl AdaptiveSolution {
         (self.finest.nx() / self.base.nx()).ilog2() as usize
     }
 
-    /// Counted contact area and contact edges.
-    fn contact_area(&self) -> ContactArea {
-        let counts = |(coarser, tile, start): (usize, usize, usize)| {
-            let place = self.elements.levels()[coarser].places()[tile];
-            let patch = self.elements.around(&self.pressure, coarser, place, 0.0);
-            let in_contact = |x: usize, y: usize| patch[y][x] > 0.0;
-            let mut edges = 0;
-            for y in TILE..2 * TILE {
-                for x in TILE..2 * TILE {
-                    let here = in_contact(x, y);
-                    // Each edge once: from the cell in contact.
-                    let around = [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)];
-                    edges += if here { around.iter().filter(|&&(x, y)| !in_contact(x, y)).count() } else { 0 };
-                }
-            }
-            let n_contact = self.pressure[start..start + CELLS].iter().filter(|&&p| p > 0.0).count();
-            // In units of the smallest elements.
-            [n_contact << (2 * coarser), edges << coarser]
-        };
-        let tiles: Vec<(usize, usize, usize)> = self.elements.tiles().collect();
-        let add = |[a, b]: [usize; 2], [c, d]: [usize; 2]| [a + c, b + d];
-        let [n_contact, n_edges] = tiles.into_par_iter().map(counts).reduce(|| [0; 2], add);
-        ContactArea::from_counts(n_contact, n_edges, self.finest.len(), Love.perimeter_constant())
+    /// The contact area, from pressure and gap where it was solved.
+    #[must_use]
+    pub fn contact_area(&self) -> ContactArea {
+        self.area
     }
 
     /// Evaluates the observables, as [`Observables::of`] does for a solution on a uniform grid.
     #[must_use]
     pub fn observables(&self) -> Observables {
-        let squares = self.pressure.par_chunks(BLOCK_CELLS).map(|p| [p.iter().map(|p| p * p).sum()]).collect();
-        let [squares] = self.elements.division().total(squares);
+        let rms_pressure = rms_pressure(&self.elements, &self.pressure);
         Observables {
-            area: self.contact_area(),
-            rms_pressure: (squares / self.finest.len() as f64).sqrt(),
+            area: self.area,
+            rms_pressure,
+            rms_pressure_error: rms_pressure_error(&self.info, &self.area, rms_pressure),
             max_pressure: self.pressure.par_iter().copied().reduce(|| 0.0, f64::max),
             mean_gap: self.info.penetration_full_contact - self.info.penetration,
+            mean_gap_error: mean_gap_error(&self.info, &self.area),
             elastic_energy: self.info.elastic_energy,
             contact_stiffness: self.contact_stiffness(),
         }
@@ -222,4 +206,12 @@ impl AdaptiveSolution {
         let mut engine = TileOperator::new(Arc::new(hierarchy));
         stiffness_of(&self.pressure, self.finest.len() as f64, &mut engine, &response, &mut preconditioner)
     }
+}
+
+/// Root mean square over the whole cell.
+pub(super) fn rms_pressure(elements: &Elements, pressure: &[f64]) -> f64 {
+    let squares = pressure.par_chunks(BLOCK_CELLS).map(|p| [p.iter().map(|p| p * p).sum()]).collect();
+    let [squares] = elements.division().total(squares);
+    let smallest = elements.finest().side();
+    (squares / (smallest * smallest) as f64).sqrt()
 }

@@ -2,7 +2,7 @@
 
 use super::gap::GapSums;
 use crate::problem::Problem;
-use crate::solution::{LevelInfo, SolveInfo};
+use crate::solution::{LevelInfo, LevelValues, SolveInfo};
 use crate::{Certificate, Control};
 
 /// What a descent found.
@@ -41,8 +41,9 @@ impl Outcome {
         }
     }
 
-    /// As it is told to the user, with the work done on the levels, coarsest first.
-    pub(crate) fn info(&self, problem: &Problem, levels: Vec<LevelInfo>) -> SolveInfo {
+    /// As it is told to the user, with the work done on the levels, coarsest first, and what the
+    /// last but one found.
+    pub(crate) fn info(&self, problem: &Problem, levels: Vec<LevelInfo>, coarser: Option<LevelValues>) -> SolveInfo {
         SolveInfo {
             certificate: self.certificate,
             mean_pressure: self.mean_pressure,
@@ -50,6 +51,7 @@ impl Outcome {
             penetration_full_contact: problem.h_max - problem.h_mean,
             elastic_energy: self.elastic_energy,
             levels,
+            coarser,
         }
     }
 }

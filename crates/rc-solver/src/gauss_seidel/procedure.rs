@@ -376,6 +376,7 @@ impl<'a> Procedure<'a> {
             penetration_full_contact: self.problem.h_max - self.problem.h_mean,
             elastic_energy: 0.5 * weighted(&self.pressure, &v),
             levels: vec![self.info],
+            coarser: None,
         };
         let pressure = self.mesh.to_field(&self.pressure, self.info.grid)?;
         let elements = Some(MeshPressure { mesh: self.mesh, pressure: self.pressure });

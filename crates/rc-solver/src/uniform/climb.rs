@@ -1,14 +1,15 @@
 //! From the coarsest of nested grids to the finest, each of which prepares the start on the next.
 
+use rayon::prelude::*;
 use rc_core::{Event, Field, Kernel, Observer};
 
 use super::levels::coarsen;
 use super::prolongation::prolong;
-use crate::SolveParams;
 use crate::descent::{Descent, Machinery, Outcome, Start};
 use crate::fft::{Convolution, SymbolTable};
 use crate::problem::Problem;
-use crate::solution::LevelInfo;
+use crate::solution::{LevelInfo, LevelValues};
+use crate::{ContactArea, SolveParams};
 
 /// Grids with fewer elements per side cost nothing, so no coarser ones prepare them.
 const SMALLEST_SIDE: usize = 64;
@@ -39,6 +40,8 @@ pub(crate) struct Climbed<'a> {
     pub(crate) outcome: Outcome,
     /// The work on all grids, coarsest first.
     pub(crate) levels: Vec<LevelInfo>,
+    /// What the level below the finest found; the last grid when there are others above it.
+    pub(crate) coarser: Option<LevelValues>,
 }
 
 impl<'a> Climb<'a> {
@@ -46,13 +49,31 @@ impl<'a> Climb<'a> {
     pub(crate) fn to(&self, heights: &'a Field) -> Climbed<'a> {
         let coarser = coarsen(heights, SMALLEST_SIDE);
         let n_levels = coarser.len() + 1 + self.n_above;
-        let (mut levels, mut start) = (Vec::with_capacity(n_levels), Start::Nothing);
+        let (mut levels, mut start, mut values) = (Vec::with_capacity(n_levels), Start::Nothing, None);
         for heights in coarser.iter().rev() {
-            let (descent, _) = self.solve(heights, start, n_levels, &mut levels);
+            let (descent, outcome) = self.solve(heights, start, n_levels, &mut levels);
+            values = self.values(&descent, &outcome, n_levels - levels.len());
             start = Start::Pressure(prolong(&descent));
         }
         let (descent, outcome) = self.solve(heights, start, n_levels, &mut levels);
-        Climbed { descent, outcome, levels }
+        let coarser = if self.n_above == 0 { values } else { self.values(&descent, &outcome, self.n_above) };
+        Climbed { descent, outcome, levels, coarser }
+    }
+
+    /// What a grid with `above` levels above it found; nobody asks when there is more than one.
+    fn values(&self, descent: &UniformDescent<'_>, outcome: &Outcome, above: usize) -> Option<LevelValues> {
+        let (nx, pressure) = (descent.grid().nx(), descent.pressure());
+        (above == 1).then(|| LevelValues {
+            area_fraction: ContactArea::of_values(
+                nx,
+                pressure,
+                (descent.gap(), outcome.contact_gap),
+                self.kernel.edge_bias(),
+            )
+            .fraction,
+            rms_pressure: rms(pressure),
+            penetration: self.problem.h_max + outcome.approach,
+        })
     }
 
     /// Solves the next of `n_levels` levels.
@@ -94,4 +115,10 @@ fn machinery(heights: &Field, kernel: &dyn Kernel) -> Machinery<Convolution<f32>
 /// Tolerance of the level that has `below` levels between it and the finest.
 pub(crate) fn coarse_tolerance(below: usize) -> f64 {
     (COARSE_TOLERANCE * COARSENING.powi(below as i32)).min(COARSEST_TOLERANCE)
+}
+
+/// Root mean square, summed in pieces so that it is the same for any number of threads.
+fn rms(values: &[f64]) -> f64 {
+    let squares: Vec<f64> = values.par_chunks(4096).map(|chunk| chunk.iter().map(|v| v * v).sum()).collect();
+    (squares.iter().sum::<f64>() / values.len() as f64).sqrt()
 }

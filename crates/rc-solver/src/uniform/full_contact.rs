@@ -102,6 +102,7 @@ fn certified(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64, problem: 
         penetration_full_contact: problem.h_max - problem.h_mean,
         elastic_energy: 0.5 * work / grid.len() as f64,
         levels: vec![LevelInfo { grid, iterations: 0, operator_applications: 1, preconditioner_applications: 0 }],
+        coarser: None,
     };
     debug_assert!(matches!(problem.control, Control::MeanPressure(_)));
     Solution { pressure, gap, status: Status::FullContact, elements: None, info }

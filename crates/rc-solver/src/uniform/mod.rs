@@ -10,9 +10,8 @@ use rc_core::{Field, Kernel, Observer};
 pub(crate) use self::climb::{Climb, Climbed, UniformDescent, coarse_tolerance};
 pub(crate) use self::levels::coarsen;
 pub(crate) use self::prolongation::{level_function, outside_level};
-use crate::descent::Outcome;
 use crate::problem::Problem;
-use crate::solution::{LevelInfo, Solution, Status};
+use crate::solution::{Solution, Status};
 use crate::{Control, SolveError, SolveParams};
 
 /// Bytes for each element that [`solve_uniform`] is assumed to need at its peak, heights included; 64 to 67 were measured at
@@ -44,20 +43,17 @@ pub fn solve_uniform(
         return Ok(solution);
     }
     let climb = Climb { kernel, problem: &problem, params: *params, n_above: 0, observer };
-    let Climbed { descent, outcome, levels } = climb.to(heights);
-    finish(descent, &outcome, &problem, levels)
+    finish(climb.to(heights), &problem)
 }
 
 /// Wraps up what the finest level found.
 fn finish(
-    descent: UniformDescent<'_>,
-    outcome: &Outcome,
+    Climbed { descent, outcome, levels, coarser }: Climbed<'_>,
     problem: &Problem,
-    levels: Vec<LevelInfo>,
 ) -> Result<Solution, SolveError> {
     let grid = descent.grid();
     let (iterations, certificate) = (descent.info().iterations, outcome.certificate);
-    let info = outcome.info(problem, levels);
+    let info = outcome.info(problem, levels, coarser);
     let (pressure, gap) = descent.into_vectors(outcome.approach + problem.offset());
     let field = |values| Field::new(grid, values).expect("a value for each element");
     let (pressure, gap) = (field(pressure), field(gap));

@@ -1,0 +1,99 @@
+//! What the elements at the edges of contacts amount to.
+
+use std::ops::{Add, AddAssign};
+
+use super::edge::Edge;
+
+/// The neighbours of an element, around it.
+const AROUND: [[isize; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
+
+/// Sums over elements of one size.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct EdgeSums {
+    /// Elements in contact.
+    pub(crate) n_contact: usize,
+    /// Pairs of neighbours, in and out of contact.
+    pub(crate) edges: usize,
+    /// The same of neighbours across a corner.
+    pub(crate) diagonals: usize,
+    /// Edges where the gap beside the contact is known, and those where the next one is too.
+    pub(crate) known: [usize; 2],
+    /// Σ (s - ½) over the first of these, with s as in [`Edge::position`].
+    pub(crate) shift: f64,
+    /// Σ of [`Edge::bend`] over the second of these.
+    pub(crate) bend: f64,
+    /// Corners where one of the four elements that meet is in contact, less those where three are: four times the number of
+    /// contacts less that of holes in them.
+    pub(crate) turns: isize,
+}
+
+impl EdgeSums {
+    /// Adds an element in contact. `at` gives pressure and gap at a place from it, in elements; the gap may be NaN where it is not
+    /// known. `side` is that of the element.
+    pub(crate) fn add(&mut self, side: f64, at: &impl Fn(isize, isize) -> [f64; 2]) {
+        self.n_contact += 1;
+        let free = AROUND.map(|[dx, dy]| at(dx, dy)[0] <= 0.0);
+        if free == [false; 8] {
+            return;
+        }
+        let pressure = at(0, 0)[0];
+        for ([dx, dy], _) in AROUND.into_iter().zip(free).filter(|&(_, free)| free) {
+            if dx != 0 && dy != 0 {
+                self.diagonals += 1;
+                continue;
+            }
+            self.edges += 1;
+            let gap_ratio = |steps: isize| at(steps * dx, steps * dy)[1] / (pressure * side);
+            if let Some(edge) = Edge::new(gap_ratio(1)) {
+                self.shift += edge.position() - 0.5;
+                self.known[0] += 1;
+                if let Some(bend) = edge.bend(gap_ratio(2)) {
+                    self.known[1] += 1;
+                    self.bend += bend;
+                }
+            }
+        }
+        let in_contact = |dx: isize, dy: isize| at(dx, dy)[0] > 0.0;
+        for [x, y] in [[-1, -1], [0, -1], [-1, 0], [0, 0]] {
+            let corner = [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]];
+            // Each corner once: from the first of its elements in contact.
+            if corner.into_iter().find(|&[x, y]| in_contact(x, y)) == Some([0, 0]) {
+                match corner.into_iter().filter(|&[x, y]| in_contact(x, y)).count() {
+                    1 => self.turns += 1,
+                    3 => self.turns -= 1,
+                    _ => {}
+                }
+            }
+        }
+    }
+}
+
+impl EdgeSums {
+    /// Shift and bend of all edges: those that are not known have the mean of the others.
+    pub(crate) fn of_all(&self) -> [f64; 2] {
+        let all = |sum: f64, known: usize| if known == 0 { 0.0 } else { sum * (self.edges as f64 / known as f64) };
+        [all(self.shift, self.known[0]), all(self.bend, self.known[1])]
+    }
+}
+
+impl Add for EdgeSums {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            n_contact: self.n_contact + other.n_contact,
+            edges: self.edges + other.edges,
+            diagonals: self.diagonals + other.diagonals,
+            known: [self.known[0] + other.known[0], self.known[1] + other.known[1]],
+            shift: self.shift + other.shift,
+            bend: self.bend + other.bend,
+            turns: self.turns + other.turns,
+        }
+    }
+}
+
+impl AddAssign for EdgeSums {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}

@@ -1,0 +1,52 @@
+//! The test set of scenes: seeds, exponents, numbers of waves and loads that were not used to choose anything.
+
+use anyhow::Result;
+use rc_core::{Field, Grid};
+use rc_fractal::{Normalisation, SpectrumParams, Surface};
+
+/// Rms slope of all scenes: contact depends on the mean pressure over it only.
+pub(super) const RMS_SLOPE: f64 = 0.03;
+
+/// Mean pressures over E* and rms slope: from half a percent to nearly full contact.
+const LOADS: (f64, f64) = (3e-3, 0.6);
+
+/// Hurst exponents that scenes go through.
+const HURST: [f64; 5] = [0.8, 0.3, 0.5, 1.0, 0.65];
+
+/// A surface and a load.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scene {
+    pub(super) waves: usize,
+    pub(super) hurst: f64,
+    pub(super) seed: u64,
+    /// σ0/E*.
+    pub(super) mean_pressure: f64,
+}
+
+impl Scene {
+    /// The first `n` scenes whose shortest waves are one of `waves` to the cell.
+    pub(super) fn first(n: usize, waves: &[usize]) -> Vec<Self> {
+        let (least, most) = LOADS;
+        let scene = |i: usize| {
+            // Loads in an order that does not follow the other cycles: steps of the golden ratio.
+            let place = (i as f64 * 0.618_033_988_749_895).fract();
+            Self {
+                waves: waves[i % waves.len()],
+                hurst: HURST[i % HURST.len()],
+                seed: 1000 + i as u64,
+                mean_pressure: RMS_SLOPE * least * (most / least).powf(place),
+            }
+        };
+        (0..n).map(scene).collect()
+    }
+
+    /// Heights with this many elements per side.
+    pub(super) fn heights(&self, side: usize) -> Result<Field> {
+        let spectrum = SpectrumParams {
+            hurst: self.hurst,
+            normalisation: Normalisation::RmsSlope(RMS_SLOPE),
+            ..SpectrumParams::paper(self.waves, self.seed)
+        };
+        Ok(Surface::new(&spectrum)?.sample_on(Grid::square(side)?)?)
+    }
+}
