@@ -173,13 +173,12 @@ fn area_parameters(p: &AreaParameters) -> String {
 
 /// Whether the map is periodic, and the power law in its spectrum.
 fn spectrum_lines(s: &HeightStatistics) -> String {
-    let border = match s.windowed {
-        false => format!("{} times the step between neighbours: periodic", digits(s.border_step, 3)),
-        true => format!(
-            "{} times the step between neighbours: not periodic (rc surface --periodic), so the spectrum is under a Hann window",
-            digits(s.border_step, 3)
-        ),
+    let state = if s.windowed {
+        "not periodic (rc surface --periodic), so the spectrum is under a Hann window"
+    } else {
+        "periodic"
     };
+    let border = format!("{} times the step between neighbours: {state}", digits(s.border_step, 3));
     let law = match &s.hurst_fit {
         None => "no part of the spectrum is a power law over a factor 4".to_owned(),
         Some(fit) => format!(

@@ -15,13 +15,16 @@ const STRAIGHT: f64 = 0.15;
 /// Deviations of that many standard deviations are scatter.
 const SCATTER: f64 = 2.5;
 
+/// Exponents that make a range: those of self-affine surfaces, and a little more. A roll-off is straight too, with H = -1.
+const SELF_AFFINE: std::ops::RangeInclusive<f64> = 0.0..=1.2;
+
 /// Part of the greatest C below which there is only rounding.
 const ROUNDING: f64 = 1e-20;
 
 /// A power law C ∝ q^(-2(1+H)) through a part of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HurstFit {
-    /// Hurst exponent H. Below 0 or above 1 the surface is not self-affine, though its spectrum is a power law.
+    /// Hurst exponent H, from 0 to 1.2. Above 1 the surface is smoother than a self-affine one, though its spectrum is a power law.
     pub hurst: f64,
     /// ln C at one wave per cell on the line, C in λ⁴.
     pub ln_c: f64,
@@ -41,8 +44,8 @@ struct Point {
     tolerance: f64,
 }
 
-/// The longest part of `spectrum` that is straight in logarithms, within the scatter of its rings; `None` when less than a
-/// factor 4 in wavenumber is straight.
+/// The longest part of `spectrum` that is straight in logarithms, within the scatter of its rings, and as steep as that of a self-affine
+/// surface; `None` when less than a factor 4 in wavenumber is.
 ///
 /// A line through all bins of a candidate by least squares, every bin the same weight; no bin further from it than 15 % and the
 /// scatter of a mean over so many random waves. Of equally long candidates the straighter one. Tests
@@ -100,12 +103,13 @@ fn line(points: &[Point]) -> Option<HurstFit> {
     let xx: f64 = points.iter().map(|point| (point.ln_k - x).powi(2)).sum();
     let slope = xy / xx;
     let off = |point: &Point| point.ln_c - y - slope * (point.ln_k - x);
-    if points.iter().any(|point| off(point).abs() > point.tolerance) {
+    let hurst = -0.5 * slope - 1.0;
+    if !SELF_AFFINE.contains(&hurst) || points.iter().any(|point| off(point).abs() > point.tolerance) {
         return None;
     }
     let deviation = (points.iter().map(|point| off(point).powi(2)).sum::<f64>() / n).sqrt();
     let (from, to) = (first.ln_k.exp(), last.ln_k.exp());
-    Some(HurstFit { hurst: -0.5 * slope - 1.0, ln_c: y - slope * x, from, to, deviation })
+    Some(HurstFit { hurst, ln_c: y - slope * x, from, to, deviation })
 }
 
 #[cfg(test)]

@@ -120,6 +120,7 @@ mod tests {
 
     use super::*;
     use crate::LengthUnit;
+    use crate::Unit::{GreyLevel, Metre, Unnamed};
 
     fn map(height_unit: Unit, side_unit: Unit) -> HeightMap {
         let heights = Field::new(Grid::new(2, 1).expect("a grid"), vec![1.0, 2.0]).expect("two heights");
@@ -131,7 +132,6 @@ mod tests {
         let um = Scales { unit: Some(LengthUnit::Micrometre), height_scale: None };
         let nm = Scales { height_scale: Some(1e-9), ..um };
         let none = Scales::default();
-        use Unit::{GreyLevel, Metre, Unnamed};
         let cases = [
             (Metre, Metre, none, Ok((1.0, 3.0))),
             (Unnamed, Unnamed, none, Ok((1.0, 3.0))),

@@ -15,12 +15,24 @@ fn a_measured_map_becomes_a_surface_that_is_solved() {
     let scan = sample("surfalize-missing.sdf");
     // 12 x 8 points on 24 µm x 24 µm: a square already, with a hole, and not periodic.
     assert_refused(&place.run(&["solve", "--heights", &scan, "--pressure", "1e5"]), "--fill laplace");
-    let treat =
-        ["surface", "--heights", &scan, "--fill", "laplace", "--level", "plane", "--periodic", "mirror", "--resample", "32"];
+    let treat = [
+        "surface",
+        "--heights",
+        &scan,
+        "--fill",
+        "laplace",
+        "--level",
+        "plane",
+        "--periodic",
+        "mirror",
+        "--resample",
+        "32",
+    ];
     let output = place.run(&[&treat[..], &["--out", "ready"]].concat());
     assert_solved(&output);
     let printed = text(&output.stdout);
-    for words in ["as read", "fill laplace", "level plane", "periodic mirror", "resample 32 x 32", "Sdr", "border step"] {
+    for words in ["as read", "fill laplace", "level plane", "periodic mirror", "resample 32 x 32", "Sdr", "border step"]
+    {
         assert!(printed.contains(words), "no '{words}' in:\n{printed}");
     }
     let json = place.json("ready/surface.json");
@@ -100,7 +112,8 @@ fn cut_off_and_damaged_files_are_refused_with_one_line() {
 #[test]
 fn inspect_draws_a_map_of_any_shape() {
     let place = Place::new();
-    place.write("map.xyz", (0..48).map(|i| format!("{} {} {}\n", i % 8, i / 8, (i * 7) % 5)).collect::<String>());
+    let points: Vec<String> = (0..48).map(|i| format!("{} {} {}", i % 8, i / 8, (i * 7) % 5)).collect();
+    place.write("map.xyz", points.join("\n"));
     let output = place.run(&["inspect", "map.xyz", "--unit", "um", "--out", "look"]);
     assert_solved(&output);
     assert!(text(&output.stdout).starts_with("not a square"), "{}", text(&output.stdout));

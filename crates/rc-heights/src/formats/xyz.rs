@@ -125,7 +125,8 @@ mod tests {
 
     #[test]
     fn points_that_make_no_grid_are_refused() {
-        let scattered: String = (0..40).map(|i| format!("{i} {} 1\n", i * 7 % 41)).collect();
+        let scattered: Vec<String> = (0..40).map(|i| format!("{i} {} 1", i * 7 % 41)).collect();
+        let scattered = scattered.join("\n");
         let cases = [
             ("0 0 1\n1 0\n", "line 2 has 2 values"),
             ("0 0 1\n1 x 2\n", "line 2, value 2"),

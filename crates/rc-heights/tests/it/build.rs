@@ -23,7 +23,7 @@ fn f64s(values: impl IntoIterator<Item = f64>) -> Vec<u8> {
 
 pub(crate) fn npy() -> Vec<u8> {
     let mut header = "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }".to_owned();
-    while (10 + header.len() + 1) % 64 != 0 {
+    while !(10 + header.len() + 1).is_multiple_of(64) {
         header.push(' ');
     }
     header.push('\n');

@@ -1,4 +1,5 @@
 //! Treatments against what they must do to planes, waves and holes.
+#![expect(clippy::float_cmp, reason = "heights that are moved or copied keep their bits")]
 
 use std::f64::consts::TAU;
 
