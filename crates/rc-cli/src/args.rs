@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
 use rc_heights::LengthUnit;
 
 use crate::scene::{RunKeys, Scene, SurfaceKeys};
@@ -34,6 +35,10 @@ pub enum Command {
     Inspect(InspectArgs),
     /// Pictures of a result
     Plot(PlotArgs),
+    /// Completions of commands and flags for a shell, on standard output
+    Completions(CompletionsArgs),
+    /// Manual pages of all commands
+    Man(ManArgs),
 }
 
 /// Arguments of `rc solve`.
@@ -188,6 +193,28 @@ pub struct PlotArgs {
     /// Do not list the pictures
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// Arguments of `rc completions`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = COMPLETIONS_HELP)]
+pub struct CompletionsArgs {
+    /// The shell
+    pub shell: Shell,
+}
+
+const COMPLETIONS_HELP: &str = "\
+For the current user, in a new shell:
+  bash  rc completions bash > ~/.local/share/bash-completion/completions/rc
+  zsh   rc completions zsh > a folder of $fpath, as the file _rc
+  fish  rc completions fish > ~/.config/fish/completions/rc.fish";
+
+/// Arguments of `rc man`.
+#[derive(Args, Clone, Debug)]
+pub struct ManArgs {
+    /// Folder that receives rc.1, rc-solve.1 and so on
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
 }
 
 #[cfg(test)]

@@ -33,6 +33,7 @@ pub mod values;
 
 mod height_pictures;
 mod inspect;
+mod manual;
 mod plot;
 mod progress;
 mod solve;
@@ -72,6 +73,8 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
         Command::Surface(args) => surface_command::run(args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Plot(args) => plot::run(&args),
+        Command::Completions(args) => manual::completions(args.shell),
+        Command::Man(args) => manual::pages(&args.out),
     }
 }
 
