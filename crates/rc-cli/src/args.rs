@@ -3,9 +3,12 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
+use rc_heights::LengthUnit;
 
 use crate::scene::{RunKeys, Scene, SurfaceKeys};
 use crate::sweep::{Loads, Seeds, Shard};
+use crate::treatment::TreatmentKeys;
 
 /// Contact of rough elastic surfaces.
 ///
@@ -32,6 +35,10 @@ pub enum Command {
     Inspect(InspectArgs),
     /// Pictures of a result
     Plot(PlotArgs),
+    /// Completions of commands and flags for a shell, on standard output
+    Completions(CompletionsArgs),
+    /// Manual pages of all commands
+    Man(ManArgs),
 }
 
 /// Arguments of `rc solve`.
@@ -135,6 +142,9 @@ pub struct SurfaceArgs {
     /// What is given here holds against the scene file.
     #[command(flatten)]
     pub surface: SurfaceKeys,
+    /// Treatment of a height map.
+    #[command(flatten)]
+    pub treatment: TreatmentKeys,
     /// Threads and output.
     #[command(flatten)]
     pub run: RunKeys,
@@ -142,17 +152,30 @@ pub struct SurfaceArgs {
 
 const SURFACE_HELP: &str = "\
 --out DIR receives heights.npy (m), scene.toml, surface.png and surface.json; --out FILE.npy or --out FILE.csv the heights \
-alone; without --out nothing is written.";
+alone; without --out nothing is written. Heights are written in m.
+
+A measured map mostly needs --crop square --fill laplace --level plane --periodic mirror. What each treatment changes is printed \
+and goes into surface.json.";
 
 /// Arguments of `rc inspect`.
 #[derive(Args, Clone, Debug)]
 pub struct InspectArgs {
-    /// A height map (.npy, .csv), a result folder, or its summary.json or pressure.npy
+    /// A height map of any format that rc surface reads, a result folder, or its summary.json or pressure.npy
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
-    /// Side λ of the periodic cell of a height map (m) [default: 0.01; of a result, that of its scene.toml]
+    /// Side λ of the periodic cell of a height map (m) [default: that of its file if it says it, else 0.01; of a result, that of
+    /// its scene.toml]
     #[arg(long, allow_hyphen_values = true)]
     pub cell: Option<f64>,
+    /// Unit of the lengths of a height map that names none: m, mm, um, nm [default: m]
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<LengthUnit>,
+    /// Height (m) of 1 in a height map that names no unit, as of one level of grey of an image; goes before --unit
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub height_scale: Option<f64>,
+    /// Folder for pictures of a height map: heights, spectrum with its power law, distribution
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Print the statistics as JSON, with the whole spectrum
     #[arg(long)]
     pub json: bool,
@@ -170,6 +193,28 @@ pub struct PlotArgs {
     /// Do not list the pictures
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// Arguments of `rc completions`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = COMPLETIONS_HELP)]
+pub struct CompletionsArgs {
+    /// The shell
+    pub shell: Shell,
+}
+
+const COMPLETIONS_HELP: &str = "\
+For the current user, in a new shell:
+  bash  rc completions bash > ~/.local/share/bash-completion/completions/rc
+  zsh   rc completions zsh > a folder of $fpath, as the file _rc
+  fish  rc completions fish > ~/.config/fish/completions/rc.fish";
+
+/// Arguments of `rc man`.
+#[derive(Args, Clone, Debug)]
+pub struct ManArgs {
+    /// Folder that receives rc.1, rc-solve.1 and so on
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
 }
 
 #[cfg(test)]

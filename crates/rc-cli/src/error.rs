@@ -48,6 +48,12 @@ impl CliError {
     }
 }
 
+impl From<rc_heights::ReadError> for CliError {
+    fn from(error: rc_heights::ReadError) -> Self {
+        Self::input(error)
+    }
+}
+
 impl From<&CliError> for ExitCode {
     fn from(error: &CliError) -> Self {
         Self::from(error.exit_code())

@@ -1,28 +1,23 @@
-//! Height maps from files: `.npy` and `.csv`, checked to be finite and not flat.
+//! Height maps from files, in metres and checked for what a solver needs.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write as _};
 use std::path::Path;
 
-use rc_core::{Field, Grid};
+use rc_core::Field;
+use rc_heights::{HeightMap, Scales};
 
 use crate::error::CliError;
-use crate::npy;
+use crate::quantity::engineering;
 
-/// Reads a height map, in the unit of the file (m). Row `iy` of the file is row `iy` of the field.
+/// Sides and cells that differ by less than this part are the same length.
+const SAME_LENGTH: f64 = 1e-3;
+
+/// Reads a height map of any format of `rc-heights`, in metres; `NaN` where nothing was measured. Row `iy` of the file is row
+/// `iy` of the field.
 ///
 /// # Errors
-/// [`CliError::Input`] when the file cannot be read, is neither `.npy` nor `.csv`, is not a full 2-D array of real numbers,
-/// or holds `NaN` or an infinite value.
-pub fn read(path: &Path) -> Result<Field, CliError> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    let field = match extension.as_deref() {
-        Some("npy") => npy::read(path)?,
-        Some("csv" | "txt") => read_csv(path)?,
-        _ => return Err(CliError::in_file(path, "a height map is a .npy or a .csv file")),
-    };
-    check_finite(path, &field)?;
-    Ok(field)
+/// [`CliError::Input`] when the file cannot be read or is damaged, or when `scales` does not fit its units.
+pub fn read(path: &Path, scales: Scales) -> Result<HeightMap, CliError> {
+    rc_heights::read(path)?.in_metres(scales).map_err(|cause| CliError::in_file(path, cause))
 }
 
 /// Refuses a field with `NaN` or an infinite value.
@@ -35,97 +30,62 @@ pub fn check_finite(path: &Path, field: &Field) -> Result<(), CliError> {
         None => Ok(()),
         Some(i) => {
             let (row, column, value) = (i / nx, i % nx, field.values()[i]);
-            let place = format_args!("row {row}, column {column} (from 0) is {value}; heights must be finite");
+            let missing = field.values().iter().filter(|value| value.is_nan()).count();
+            let cure = if missing > 0 {
+                format!("; {missing} of {} are missing, which rc surface --fill laplace fills", field.grid().len())
+            } else {
+                String::new()
+            };
+            let place = format_args!("row {row}, column {column} (from 0) is {value}; heights must be finite{cure}");
             Err(CliError::in_file(path, place))
         }
     }
 }
 
-/// Comma-separated numbers, one row of the map a line; lines that start with `#` are comments.
-fn read_csv(path: &Path) -> Result<Field, CliError> {
-    let fail = |message: String| CliError::in_file(path, message);
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_path(path)
-        .map_err(|cause| fail(format!("cannot read: {cause}")))?;
-    let (mut values, mut columns, mut rows) = (Vec::new(), 0, 0);
-    for record in reader.records() {
-        let record = record.map_err(|cause| fail(cause.to_string()))?;
-        let line = record.position().map_or(0, csv::Position::line);
-        if rows == 0 {
-            columns = record.len();
-        } else if record.len() != columns {
-            return Err(fail(format!("line {line} has {} values, the lines before have {columns}", record.len())));
-        }
-        for (i, text) in record.iter().enumerate() {
-            let value = text.parse::<f64>();
-            values.push(value.map_err(|_| fail(format!("line {line}, value {}: '{text}' is no number", i + 1)))?);
-        }
-        rows += 1;
-    }
-    let grid = Grid::new(columns, rows).map_err(|cause| fail(cause.to_string()))?;
-    Field::new(grid, values).map_err(|cause| fail(cause.to_string()))
-}
-
-/// Writes heights as CSV, one row of the map a line, each value multiplied by `factor`; values read back exactly.
+/// The side of the cell (m): that of the map, which must be a square, where the file says it, else `given`. If both are there
+/// they must be the same.
 ///
 /// # Errors
-/// Those of the file system.
-pub fn write_csv(path: &Path, field: &Field, factor: f64) -> io::Result<()> {
-    let mut out = BufWriter::new(File::create(path)?);
-    for iy in 0..field.grid().ny() {
-        for (ix, value) in field.row(iy).iter().enumerate() {
-            let comma = if ix == 0 { "" } else { "," };
-            write!(out, "{comma}{:e}", value * factor)?;
-        }
-        writeln!(out)?;
+/// [`CliError::Input`].
+pub fn side(path: &Path, sides: Option<[f64; 2]>, given: Option<f64>) -> Result<Option<f64>, CliError> {
+    let Some([x, y]) = sides else { return Ok(given) };
+    let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SAME_LENGTH;
+    let length = |side: f64| engineering(side, "m");
+    if !same(x, y) {
+        let message = format_args!(
+            "the map is {} by {}, and a periodic cell is a square; rc surface --crop square cuts one out",
+            length(x),
+            length(y)
+        );
+        return Err(CliError::in_file(path, message));
     }
-    out.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
+    match given {
+        Some(cell) if !same(cell, x) => {
+            let message = format_args!(
+                "the map is {} wide, cell says {}; leave cell away, or convert the map to .npy, which has no size",
+                length(x),
+                length(cell)
+            );
+            Err(CliError::in_file(path, message))
+        }
+        Some(cell) => Ok(Some(cell)),
+        None => Ok(Some(x)),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn csv(text: &str) -> Result<Field, CliError> {
-        let dir = tempfile::tempdir().expect("a temporary folder");
-        let path = dir.path().join("map.csv");
-        std::fs::write(&path, text).expect("a temporary file");
-        read(&path)
-    }
-
     #[test]
-    fn a_csv_map_is_read_row_by_row() {
-        let field = csv("# heights\n1, 2, 3\n4, -5e-1, 6\n").expect("a field");
-        assert_eq!((field.grid().nx(), field.grid().ny()), (3, 2));
-        assert_eq!(field.values(), [1.0, 2.0, 3.0, 4.0, -0.5, 6.0]);
-    }
-
-    #[test]
-    fn written_csv_reads_back_exactly() {
-        let dir = tempfile::tempdir().expect("a temporary folder");
-        let path = dir.path().join("map.csv");
-        let field = Field::from_fn(Grid::new(3, 2).expect("a grid"), |x, y| (x - 0.3).exp() * y * 1e-7);
-        write_csv(&path, &field, 1.0).expect("a written file");
-        assert_eq!(read(&path).expect("a field"), field);
-    }
-
-    #[test]
-    fn bad_csv_is_refused_with_its_place() {
-        let cases = [
-            ("1,2\n3\n", "line 2 has 1 values"),
-            ("1,2\n3,x\n", "line 2, value 2"),
-            ("1,\n3,4\n", "line 1, value 2"),
-            ("1,2\n3,nan\n", "row 1, column 1"),
-            ("1,inf\n3,4\n", "row 0, column 1"),
-            ("", "1 to"),
-        ];
-        for (text, expected) in cases {
-            let error = csv(text).expect_err(text).to_string();
-            assert!(error.contains(expected) && !error.contains('\n'), "{text:?}: {error}");
+    fn the_side_is_that_of_the_file_and_must_not_be_contradicted() {
+        let path = Path::new("map.sdf");
+        assert_eq!(side(path, None, Some(2.0)), Ok(Some(2.0)));
+        assert_eq!(side(path, Some([1e-3, 1e-3]), None), Ok(Some(1e-3)));
+        assert_eq!(side(path, Some([1e-3, 1.0005e-3]), Some(1e-3)), Ok(Some(1e-3)));
+        for (sides, given, expected) in [([1e-3, 2e-3], None, "--crop square"), ([1e-3, 1e-3], Some(2e-3), "2 mm")] {
+            let error = side(path, Some(sides), given).expect_err(expected).to_string();
+            assert!(error.contains(expected) && error.contains("map.sdf"), "{error}");
         }
     }
 }

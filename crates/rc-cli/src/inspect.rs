@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use rc_core::{Field, PeriodicCell};
 use rc_fractal::moments_of_grid;
+use rc_heights::{AreaParameters, Crop, HeightMap, Scales, Treatment};
 use serde::Serialize;
 
 use crate::args::InspectArgs;
@@ -12,7 +13,7 @@ use crate::result::ResultFolder;
 use crate::scene_file;
 use crate::statistics::{HeightStatistics, PressureStatistics};
 use crate::summary::{Summary, to_json};
-use crate::{heights, npy, output, report};
+use crate::{height_pictures, heights, npy, output, report};
 
 /// Names of files by which a result is recognised.
 const RESULT_FILES: [&str; 2] = ["summary.json", "pressure.npy"];
@@ -32,6 +33,9 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
     let text = match result_folder(&args.file) {
         Some(_) if args.cell.is_some() => {
             return Err(CliError::input("cell: a result has its own, in its scene.toml; leave --cell away"));
+        }
+        Some(_) if args.out.is_some() => {
+            return Err(CliError::input("out: the pictures of a result are made by rc plot; leave --out away"));
         }
         Some(folder) => inspect_result(&folder, args.json)?,
         None if args.file.file_name().is_some_and(|name| name == "pressure.npy") => {
@@ -71,17 +75,47 @@ fn inspect_result(folder: &Path, json: bool) -> Result<String, CliError> {
 }
 
 fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
-    let side = args.cell.or(scene_file::example().surface.cell).unwrap_or(1.0);
-    let cell = PeriodicCell::new(side)
-        .map_err(|_| CliError::input(format_args!("cell: must be positive and finite (m), not {side}")))?;
-    let mut field = heights::read(&args.file)?;
-    field.values_mut().iter_mut().for_each(|height| *height /= cell.side());
-    if field.max() <= field.min() {
-        let message = format_args!("all heights are {:e}; a flat surface has no statistics", field.max() * side);
+    let map = heights::read(&args.file, Scales { unit: args.unit, height_scale: args.height_scale })?;
+    heights::check_finite(&args.file, &map.heights)?;
+    if map.heights.max() <= map.heights.min() {
+        let message = format_args!("all heights are {:e}; a flat surface has no statistics", map.heights.max());
         return Err(CliError::in_file(&args.file, message));
     }
-    let statistics = HeightStatistics::of(&field, cell.side(), moments_of_grid(&field));
-    Ok(if args.json { to_json(&statistics) } else { report::heights(&statistics) })
+    // Of a map that is not square, one side is compared with the cell.
+    let given = heights::side(&args.file, map.sides.map(|[x, _]| [x, x]), args.cell)?;
+    let side = given.or(scene_file::example().surface.cell).unwrap_or(1.0);
+    PeriodicCell::new(side)
+        .map_err(|_| CliError::input(format_args!("cell: must be positive and finite (m), not {side}")))?;
+    let parameters = AreaParameters::of(&map.heights, map.sides.unwrap_or([side, side]));
+    let (heights, side, note) = in_square(&args.file, map, side)?;
+    let statistics = HeightStatistics { parameters, ..HeightStatistics::of(&heights, side, moments_of_grid(&heights)) };
+    if let Some(folder) = &args.out {
+        output::check_folder(folder)?;
+        height_pictures::write(folder, &heights, &statistics)?;
+    }
+    Ok(if args.json {
+        to_json(&statistics)
+    } else {
+        note.to_owned() + &report::heights(&statistics) + &report::written(args.out.as_deref())
+    })
+}
+
+/// Heights in units of the side of the cell, and that side (m): waves are counted in a square, which of a map that is none is
+/// the middle of it; the note says so.
+fn in_square(path: &Path, map: HeightMap, side: f64) -> Result<(Field, f64, &'static str), CliError> {
+    const CUT: &str = "not a square: all but the parameters of ISO 25178-2 are of the largest square in the middle\n\n";
+    let (map, note) = if heights::side(path, map.sides, None).is_ok() {
+        (map, "")
+    } else {
+        let square = rc_heights::apply(map, &[Treatment::Crop(Crop::Square)]);
+        (square.map_err(|cause| CliError::in_file(path, cause))?.0, CUT)
+    };
+    let side = map.sides.map_or(side, |[x, _]| x);
+    let mut heights = map.heights;
+    for height in heights.values_mut() {
+        *height /= side;
+    }
+    Ok((heights, side, note))
 }
 
 fn finite(path: &Path, field: Field) -> Result<Field, CliError> {

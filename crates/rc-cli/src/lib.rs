@@ -17,7 +17,6 @@ pub mod coarsen;
 pub mod error;
 pub mod heights;
 pub mod memory;
-pub mod npy;
 pub mod output;
 pub mod picture;
 pub mod quantity;
@@ -29,14 +28,20 @@ pub mod scene_file;
 pub mod statistics;
 pub mod summary;
 pub mod surface;
+pub mod treatment;
 pub mod values;
 
+mod height_pictures;
 mod inspect;
+mod manual;
 mod plot;
 mod progress;
 mod solve;
 mod surface_command;
 pub mod sweep;
+
+/// NumPy files, for results and heights alike.
+pub use rc_heights::npy;
 
 use args::{Cli, Command};
 use error::CliError;
@@ -68,6 +73,8 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
         Command::Surface(args) => surface_command::run(args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Plot(args) => plot::run(&args),
+        Command::Completions(args) => manual::completions(args.shell),
+        Command::Man(args) => manual::pages(&args.out),
     }
 }
 

@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use crate::quantity::{digits, engineering};
-use crate::statistics::{HeightStatistics, Histogram, PressureStatistics, SpectrumRow};
+use rc_heights::AreaParameters;
+
+use crate::statistics::{HeightStatistics, Histogram, PressureStatistics, SpectrumRow, TreatmentRow};
 use crate::summary::Summary;
 
 /// A few aligned lines about a solved problem; `side` is λ in m, `e_star` E* in Pa.
@@ -133,7 +135,65 @@ pub fn heights(statistics: &HeightStatistics) -> String {
         ("skewness, kurtosis", format!("{}, {}", digits(s.skewness, 3), digits(s.kurtosis, 4))),
     ];
     let heading = "\n  height about mean   density\n";
-    aligned(&lines) + &spectrum_table(&s.spectrum) + heading + &bars(&s.distribution, "m")
+    treatments(&s.treatments)
+        + &aligned(&lines)
+        + &area_parameters(&s.parameters)
+        + &spectrum_lines(s)
+        + &spectrum_table(&s.spectrum)
+        + heading
+        + &bars(&s.distribution, "m")
+}
+
+/// A line for each state of a map that was treated.
+fn treatments(rows: &[TreatmentRow]) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let heading = "  treatment           points         missing   rms height   rms slope   border step\n".to_owned();
+    let text = rows.iter().fold(heading, |text, row| {
+        let points = format!("{} x {}", row.grid[0], row.grid[1]);
+        let (height, slope) = (engineering(row.rms_height, "m"), digits(row.rms_slope, 3));
+        let step = row.border_step.map_or_else(|| "-".to_owned(), |ratio| digits(ratio, 3));
+        text + &format!("  {:<20}{points:<15}{:<10}{height:<13}{slope:<12}{step}\n", row.treatment, row.missing)
+    });
+    text + "\n"
+}
+
+/// Parameters of ISO 25178-2.
+fn area_parameters(p: &AreaParameters) -> String {
+    let length = |value| engineering(value, "m");
+    let lines = [
+        ("Sa, Sq", format!("{}, {}", length(p.sa), length(p.sq))),
+        ("Ssk, Sku", format!("{}, {}", digits(p.ssk, 3), digits(p.sku, 4))),
+        ("Sp, Sv, Sz", format!("{}, {}, {}", length(p.sp), length(p.sv), length(p.sz))),
+        ("Sdq, Sdr", format!("{}, {} %", digits(p.sdq, 4), digits(100.0 * p.sdr, 4))),
+    ];
+    "\n  ISO 25178-2, from differences of neighbours, no filter\n".to_owned() + &aligned(&lines)
+}
+
+/// Whether the map is periodic, and the power law in its spectrum.
+fn spectrum_lines(s: &HeightStatistics) -> String {
+    let state = if s.windowed {
+        "not periodic (rc surface --periodic), so the spectrum is under a Hann window"
+    } else {
+        "periodic"
+    };
+    let border = format!("{} times the step between neighbours: {state}", digits(s.border_step, 3));
+    let law = match &s.hurst_fit {
+        None => "no part of the spectrum is a power law over a factor 4".to_owned(),
+        Some(fit) => format!(
+            "H = {} from {} to {} waves per cell ({} to {}), C0 = {} m^{}, {} off in ln C",
+            digits(fit.hurst, 3),
+            digits(fit.from_waves, 3),
+            digits(fit.to_waves, 3),
+            engineering(s.cell / fit.from_waves, "m"),
+            engineering(s.cell / fit.to_waves, "m"),
+            digits(fit.c0, 3),
+            digits(2.0 - 2.0 * fit.hurst, 3),
+            digits(fit.deviation, 2)
+        ),
+    };
+    "\n".to_owned() + &aligned(&[("border step", border), ("Hurst exponent", law)])
 }
 
 /// Statistics of a pressure field, with its distribution.

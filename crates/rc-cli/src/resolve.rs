@@ -4,11 +4,13 @@ use std::path::Path;
 
 use rc_core::{Elasticity, Grid, Kernel, PeriodicCell, UnitError};
 use rc_fractal::{MAX_WAVES, Normalisation, SpectrumParams};
+use rc_heights::Scales;
 use rc_kernel::{Love, Spectral};
 use rc_solver::{Control, SolveParams};
 
 use crate::auto_tolerance::auto_tolerance;
 use crate::error::CliError;
+use crate::heights;
 use crate::scene::{Amplitudes, ContactKeys, KernelName, Method, Scene, SurfaceKeys, Truncation};
 use crate::scene_file;
 use crate::surface::{Source, SurfaceProblem};
@@ -90,12 +92,23 @@ fn check_alternatives(scene: &Scene) -> Result<(), String> {
 /// [`CliError::Input`].
 pub fn surface(keys: SurfaceKeys) -> Result<SurfaceProblem, CliError> {
     let defaults = SurfaceKeys { grid: None, ..scene_file::example().surface };
+    let mut keys = keys;
+    // Read for its size alone: such files are small against what a solve takes.
+    if let Some(path) = keys.heights.as_deref() {
+        keys.cell = cell_of_map(path, &keys)?;
+    }
     let mut keys = keys.over(defaults);
     let side = positive("cell", "m", keys.cell)?;
     let cell = PeriodicCell::new(side).map_err(CliError::input)?;
     let grid = keys.grid.map(checked_grid).transpose()?;
     if let Some(path) = keys.heights.clone() {
-        return Ok(SurfaceProblem { cell, source: Source::File { path, expected: grid }, keys });
+        let source = Source::File { path, expected: grid, scales: keys.scales() };
+        return Ok(SurfaceProblem { cell, source, keys });
+    }
+    if keys.scales() != Scales::default() {
+        return Err(CliError::input(
+            "unit and height_scale: are for height maps; give --heights FILE, or leave them away",
+        ));
     }
     let spectrum = spectrum(&keys, side)?;
     let default = GridSpec::square(spectrum.waves.saturating_mul(ELEMENTS_PER_WAVE));
@@ -110,6 +123,14 @@ pub fn surface(keys: SurfaceKeys) -> Result<SurfaceProblem, CliError> {
     }
     keys.grid = Some(GridSpec { nx: grid.nx(), ny: grid.ny() });
     Ok(SurfaceProblem { cell, source: Source::Random { spectrum, grid }, keys })
+}
+
+/// The side of the cell of a height map (m), where its file or the keys say it.
+fn cell_of_map(path: &Path, keys: &SurfaceKeys) -> Result<Option<f64>, CliError> {
+    if keys.cell.is_some() || !rc_heights::format_of(path)?.has_sides() {
+        return Ok(keys.cell);
+    }
+    heights::side(path, heights::read(path, keys.scales())?.sides, None)
 }
 
 /// The parameters of a random surface on the unit cell; `side` is λ in m.
@@ -220,7 +241,10 @@ fn tolerance(given: Option<Tolerance>, elements_per_wave: Option<f64>) -> Result
 }
 
 /// A grid that the libraries can count; what memory it needs depends on the method.
-fn checked_grid(spec: GridSpec) -> Result<Grid, CliError> {
+///
+/// # Errors
+/// [`CliError::Input`].
+pub fn checked_grid(spec: GridSpec) -> Result<Grid, CliError> {
     Grid::new(spec.nx, spec.ny).map_err(|cause| CliError::input(format_args!("grid: {cause}")))
 }
 

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use rc_heights::{LengthUnit, Scales};
 use serde::{Deserialize, Serialize};
 
 use crate::byte_size::ByteSize;
@@ -15,12 +16,19 @@ pub const EXAMPLE: &str = include_str!("../../../data/paper-n64.toml");
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[command(next_help_heading = "Surface")]
 pub struct SurfaceKeys {
-    /// Side λ of the square periodic cell (m)
+    /// Side λ of the square periodic cell (m) [default: that of the height map if its file says it, else 0.01]
     #[arg(long, allow_hyphen_values = true)]
     pub cell: Option<f64>,
-    /// Height map instead of a random surface: .npy (2-D, any real type) or .csv; heights in m
+    /// Height map instead of a random surface: .npy, .csv, .txt, .xyz, .grd, .gsf, .sdf, .x3p, 16-bit .png or .tif; positive
+    /// towards the half-space
     #[arg(long, value_name = "FILE")]
     pub heights: Option<PathBuf>,
+    /// Unit of the lengths of a height map that names none: m, mm, um, nm [default: m]
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<LengthUnit>,
+    /// Height (m) of 1 in a height map that names no unit, as of one level of grey of an image; goes before --unit
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub height_scale: Option<f64>,
     /// N, waves per cell of the shortest wave
     #[arg(long, allow_hyphen_values = true)]
     pub waves: Option<usize>,
@@ -197,15 +205,21 @@ impl SurfaceKeys {
         if self.heights.is_some() {
             lower = Self { cell: lower.cell, ..Self::default() };
         } else if self.generates() {
-            lower.heights = None;
+            (lower.heights, lower.unit, lower.height_scale) = (None, None, None);
         }
         if self.rms.is_some() || self.rms_slope.is_some() || self.c0.is_some() {
             (lower.rms, lower.rms_slope, lower.c0) = (None, None, None);
         }
         or_lower!(self, lower, {
-            cell, heights, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, amplitudes, grid
+            cell, heights, unit, height_scale, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, amplitudes, grid
         });
         self
+    }
+
+    /// What is known of the units of a height map.
+    #[must_use]
+    pub fn scales(&self) -> Scales {
+        Scales { unit: self.unit, height_scale: self.height_scale }
     }
 
     /// Whether any parameter of a random surface is given.

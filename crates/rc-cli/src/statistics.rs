@@ -1,7 +1,8 @@
 //! Statistics of height maps and of pressures, in SI.
 
 use rc_core::Field;
-use rc_fractal::{Moments, radial_spectrum};
+use rc_fractal::{HurstFit, Moments, fit_hurst, radial_spectrum};
+use rc_heights::{AreaParameters, BorderStep, Effect};
 use serde::Serialize;
 
 /// Bins of a histogram.
@@ -34,8 +35,76 @@ pub struct HeightStatistics {
     pub kurtosis: f64,
     /// Probability density of heights about the mean (1/m).
     pub distribution: Histogram,
+    /// Parameters of ISO 25178-2 (m), from differences of neighbours, without a filter.
+    pub parameters: AreaParameters,
+    /// Rms step of heights across the border of the cell over that between neighbours inside; about 1 when periodic.
+    pub border_step: f64,
+    /// Whether the spectrum is that of the heights under Hann's window, because they are not periodic.
+    pub windowed: bool,
+    /// The power law in the spectrum, if there is one.
+    pub hurst_fit: Option<HurstRow>,
     /// Radially averaged power spectral density.
     pub spectrum: Vec<SpectrumRow>,
+    /// What was done to a measured map, state by state.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub treatments: Vec<TreatmentRow>,
+}
+
+/// Border steps above this ratio make a map one that is not periodic; those of a periodic one are about 1.
+const PERIODIC: f64 = 3.0;
+
+/// A power law C = C0 q^(-2(1+H)) through a part of the spectrum.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct HurstRow {
+    /// Hurst exponent H.
+    pub hurst: f64,
+    /// C0, for C in m⁴ and q in rad/m.
+    pub c0: f64,
+    /// First wavenumber of the range, in waves per cell.
+    pub from_waves: f64,
+    /// Last wavenumber of the range, in waves per cell.
+    pub to_waves: f64,
+    /// Rms distance of the spectrum from the law, in ln C.
+    pub deviation: f64,
+}
+
+impl HurstRow {
+    fn new(fit: HurstFit, side: f64) -> Self {
+        let exponent = 2.0 * (1.0 + fit.hurst);
+        let c0 = fit.ln_c.exp() * side.powi(4) * (std::f64::consts::TAU / side).powf(exponent);
+        Self { hurst: fit.hurst, c0, from_waves: fit.from, to_waves: fit.to, deviation: fit.deviation }
+    }
+
+    /// C (m⁴) on the line at `wavenumber` (rad/m).
+    #[must_use]
+    pub fn psd(&self, wavenumber: f64) -> f64 {
+        self.c0 * wavenumber.powf(-2.0 * (1.0 + self.hurst))
+    }
+}
+
+/// A measured map after a treatment.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TreatmentRow {
+    /// The treatment.
+    pub treatment: String,
+    /// Points along x and y.
+    pub grid: [usize; 2],
+    /// Points that are missing.
+    pub missing: usize,
+    /// Rms height about the mean (m).
+    pub rms_height: f64,
+    /// Rms slope from differences of neighbours.
+    pub rms_slope: f64,
+    /// As [`HeightStatistics::border_step`]; `None` while points are missing.
+    pub border_step: Option<f64>,
+}
+
+impl From<&Effect> for TreatmentRow {
+    fn from(effect: &Effect) -> Self {
+        let Effect { missing, rms_height, rms_slope, border_step, .. } = *effect;
+        let grid = [effect.grid.nx(), effect.grid.ny()];
+        Self { treatment: effect.treatment.clone(), grid, missing, rms_height, rms_slope, border_step }
+    }
 }
 
 /// One ring of wave vectors.
@@ -94,7 +163,11 @@ impl HeightStatistics {
         let [second, third, fourth] = central_moments(heights, mean);
         let values = heights.values().iter().map(|height| (height - mean) * side);
         let (low, high) = ((heights.min() - mean) * side, (heights.max() - mean) * side);
-        let spectrum = radial_spectrum(heights).into_iter().map(|bin| SpectrumRow {
+        let border_step = BorderStep::of(heights).ratio();
+        let windowed = border_step > PERIODIC;
+        let rings = if windowed { radial_spectrum(&rc_heights::hann(heights)) } else { radial_spectrum(heights) };
+        let hurst_fit = fit_hurst(&rings).map(|fit| HurstRow::new(fit, side));
+        let spectrum = rings.into_iter().map(|bin| SpectrumRow {
             waves: bin.wavenumber,
             wavenumber: std::f64::consts::TAU * bin.wavenumber / side,
             psd: bin.psd * side.powi(4),
@@ -113,7 +186,12 @@ impl HeightStatistics {
             skewness: third / second.powf(1.5),
             kurtosis: fourth / (second * second),
             distribution: Histogram::of(values, low, high),
+            parameters: AreaParameters::of(heights, [1.0, 1.0]).scaled(side),
+            border_step,
+            windowed,
+            hurst_fit,
             spectrum: spectrum.collect(),
+            treatments: Vec::new(),
         }
     }
 }

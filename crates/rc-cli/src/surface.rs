@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use rc_core::{Field, Grid, PeriodicCell};
 use rc_fractal::{Moments, SpectrumParams, Surface, moments_of_grid};
+use rc_heights::{HeightMap, Scales};
 use rc_solver::HeightSource;
 
 use crate::error::CliError;
@@ -32,6 +33,8 @@ pub enum Source {
         path: PathBuf,
         /// The grid that the user says it has.
         expected: Option<Grid>,
+        /// What the user knows of its units.
+        scales: Scales,
     },
     /// A random surface.
     Random {
@@ -96,7 +99,7 @@ impl SurfaceProblem {
     /// [`CliError::Input`] when the file is no height map, is on another grid than the scene says, or is flat.
     pub fn load(&self) -> Result<LoadedSurface, CliError> {
         match &self.source {
-            Source::File { path, expected } => self.read(path, *expected),
+            Source::File { path, expected, scales } => self.of_map(path, heights::read(path, *scales)?, *expected),
             Source::Random { spectrum, grid } => {
                 let surface = Surface::new(spectrum).map_err(CliError::input)?;
                 Ok(LoadedSurface { shape: Shape::Random(surface), grid: *grid, keys: self.keys.clone() })
@@ -104,8 +107,14 @@ impl SurfaceProblem {
         }
     }
 
-    fn read(&self, path: &Path, expected: Option<Grid>) -> Result<LoadedSurface, CliError> {
-        let as_read = heights::read(path)?;
+    /// A map in metres, read from `path`, as a surface in this cell.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] when points are missing, when it is flat, or of another grid or size than the scene says.
+    pub fn of_map(&self, path: &Path, map: HeightMap, expected: Option<Grid>) -> Result<LoadedSurface, CliError> {
+        heights::side(path, map.sides, Some(self.cell.side()))?;
+        let as_read = map.heights;
+        heights::check_finite(path, &as_read)?;
         let grid = as_read.grid();
         if let Some(expected) = expected.filter(|expected| *expected != grid) {
             let message = format_args!("the map has {grid} elements, grid says {expected}; leave grid away");
@@ -119,7 +128,9 @@ impl SurfaceProblem {
         let scaled = as_read.values().iter().map(|height| height / side).collect();
         let heights = Field::new(grid, scaled).map_err(|cause| CliError::in_file(path, cause))?;
         let spec = GridSpec { nx: grid.nx(), ny: grid.ny() };
-        let keys = SurfaceKeys { heights: Some(HEIGHTS_FILE.into()), grid: Some(spec), ..self.keys.clone() };
+        // The map in a result folder is an array in metres.
+        let (heights_file, unit, height_scale) = (Some(HEIGHTS_FILE.into()), None, None);
+        let keys = SurfaceKeys { heights: heights_file, unit, height_scale, grid: Some(spec), ..self.keys.clone() };
         Ok(LoadedSurface { shape: Shape::Map { heights, as_read }, grid, keys })
     }
 }

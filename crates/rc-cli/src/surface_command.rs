@@ -3,14 +3,15 @@
 use std::path::Path;
 
 use rc_core::Field;
+use rc_heights::{Effect, Treatment, text};
 
 use crate::args::SurfaceArgs;
 use crate::budget::Budget;
 use crate::error::CliError;
 use crate::output::{self, Staged};
 use crate::picture::{Map, MapPicture, Palette, Shade, save_png};
-use crate::scene::{ContactKeys, Scene};
-use crate::statistics::HeightStatistics;
+use crate::scene::{ContactKeys, Scene, SurfaceKeys};
+use crate::statistics::{HeightStatistics, TreatmentRow};
 use crate::summary::to_json;
 use crate::surface::{HEIGHTS_FILE, LoadedSurface};
 use crate::{heights, npy, report, resolve, scene_file};
@@ -22,17 +23,22 @@ use crate::{heights, npy, report, resolve, scene_file};
 pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
     let flags = Scene { surface: args.surface, contact: ContactKeys::default(), run: args.run };
     let scene = resolve::layers(args.scene_file.as_deref(), flags)?;
-    let problem = resolve::surface(scene.surface)?;
+    let treatments = args.treatment.treatments().map_err(|cause| CliError::input(format_args!("resample: {cause}")))?;
     resolve::start_threads(scene.run.threads)?;
     let target = scene.run.out.as_deref();
     if let Some(target) = target {
         output::check_folder(if is_map(target) { target.parent().unwrap_or(Path::new("")) } else { target })?;
     }
-    let side = problem.cell.side();
-    let surface = problem.load()?;
+    let (side, surface, effects) = if treatments.is_empty() {
+        let problem = resolve::surface(scene.surface)?;
+        (problem.cell.side(), problem.load()?, Vec::new())
+    } else {
+        treated(scene.surface, &treatments)?
+    };
     Budget::new(scene.run.memory_limit).check_grid("the surface", surface.grid)?;
     let heights = surface.heights()?;
-    let statistics = HeightStatistics::of(&heights, side, surface.moments());
+    let mut statistics = HeightStatistics::of(&heights, side, surface.moments());
+    statistics.treatments = effects.iter().map(TreatmentRow::from).collect();
     match target {
         Some(target) if is_map(target) => write_map(target, &surface, &heights, side)?,
         Some(folder) => write_folder(folder, &surface, &heights, &statistics, side)?,
@@ -43,6 +49,29 @@ pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
         (false, true) => output::print(&to_json(&statistics)),
         (false, false) => output::print(&(report::heights(&statistics) + &report::written(target))),
     }
+}
+
+/// The side of the cell (m), a height map after `treatments`, and what it was like before them and after each.
+fn treated(keys: SurfaceKeys, treatments: &[Treatment]) -> Result<(f64, LoadedSurface, Vec<Effect>), CliError> {
+    let Some(path) = keys.heights.clone() else {
+        let message =
+            "crop, flip, fill, level, periodic, low_pass and resample are for height maps; give --heights FILE";
+        return Err(CliError::input(message));
+    };
+    let mut map = heights::read(&path, keys.scales())?;
+    // Of a map that is to be cropped to a square, only one side can be compared with the cell.
+    let given = heights::side(&path, map.sides.map(|[x, _]| [x, x]), keys.cell)?;
+    let cell = given.or(scene_file::example().surface.cell).unwrap_or(1.0);
+    map.sides.get_or_insert([cell, cell]);
+    let mut effects = vec![Effect::of(&map, "as read")];
+    let (map, after) = rc_heights::apply(map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
+    effects.extend(after);
+    let cell = heights::side(&path, map.sides, None)?;
+    let expected = keys.grid;
+    let problem = resolve::surface(SurfaceKeys { cell, grid: None, ..keys })?;
+    let expected = expected.map(resolve::checked_grid).transpose()?;
+    let surface = problem.of_map(&path, map, expected)?;
+    Ok((problem.cell.side(), surface, effects))
 }
 
 /// Whether the heights alone are to go into a file of this name.
@@ -58,7 +87,7 @@ fn in_metres<'a>(surface: &'a LoadedSurface, heights: &'a Field, side: f64) -> (
 fn write_map(target: &Path, surface: &LoadedSurface, heights: &Field, side: f64) -> Result<(), CliError> {
     let (field, factor) = in_metres(surface, heights, side);
     let csv = target.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
-    let write = if csv { heights::write_csv } else { npy::write };
+    let write = if csv { text::write } else { npy::write };
     output::write_file(target, |path| write(path, field, factor))
 }
 

@@ -27,6 +27,7 @@
 //! ```
 
 mod draws;
+mod hurst;
 mod moments;
 mod params;
 mod power;
@@ -34,6 +35,7 @@ mod radial;
 mod surface;
 mod synthesis;
 
+pub use hurst::{HurstFit, fit_hurst};
 pub use moments::{Moments, moments_of_grid};
 pub use params::{Amplitudes, MAX_WAVES, Normalisation, SpectrumError, SpectrumParams, Truncation};
 pub use radial::{SpectrumBin, radial_spectrum};

@@ -9,18 +9,21 @@ use crate::repository::Sources;
 const ARROWS: &[(&str, &[&str])] = &[
     ("rc-core", &[]),
     ("rc-fractal", &["rc-core"]),
+    ("rc-heights", &["rc-core"]),
     ("rc-kernel", &["rc-core"]),
     ("rc-quadtree", &["rc-core"]),
     ("rc-theory", &["rc-core"]),
     ("rc-solver", &["rc-core", "rc-kernel", "rc-quadtree"]),
     ("rc-cli", LIBRARIES),
     ("rc-tests", LIBRARIES_AND_CLI),
+    ("rc-fuzz", LIBRARIES_AND_CLI),
     ("xtask", LIBRARIES_AND_CLI),
 ];
 
-const LIBRARIES: &[&str] = &["rc-core", "rc-fractal", "rc-kernel", "rc-quadtree", "rc-solver", "rc-theory"];
+const LIBRARIES: &[&str] =
+    &["rc-core", "rc-fractal", "rc-heights", "rc-kernel", "rc-quadtree", "rc-solver", "rc-theory"];
 const LIBRARIES_AND_CLI: &[&str] =
-    &["rc-core", "rc-fractal", "rc-kernel", "rc-quadtree", "rc-solver", "rc-theory", "rc-cli"];
+    &["rc-core", "rc-fractal", "rc-heights", "rc-kernel", "rc-quadtree", "rc-solver", "rc-theory", "rc-cli"];
 
 /// Checks the manifest of every member. Tests count: an arrow that only tests need is drawn in `tests/`, not in a crate.
 pub(super) fn check(sources: &Sources) -> Vec<Complaint> {

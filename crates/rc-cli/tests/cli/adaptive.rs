@@ -30,7 +30,7 @@ fn reason(summary: &Value) -> &str {
 }
 
 fn field(place: &Place, name: &str) -> Field {
-    rc_cli::npy::read(&place.path(name)).expect("a field")
+    rc_heights::npy::read(&place.path(name)).expect("a field")
 }
 
 /// Counted area, rms pressure and penetration of two solutions of one problem.

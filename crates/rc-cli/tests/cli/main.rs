@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod bad_input;
+mod measured;
 mod solve;
 mod support;
 mod sweep;

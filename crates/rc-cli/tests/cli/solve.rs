@@ -83,8 +83,8 @@ fn fields_and_summary_of_a_solve_agree() {
     let place = Place::new();
     assert_solved(&place.run(&small("1e5", &["--out", "r"])));
     let summary = place.json("r/summary.json");
-    let pressure = rc_cli::npy::read(&place.path("r/pressure.npy")).expect("a field");
-    let gap = rc_cli::npy::read(&place.path("r/gap.npy")).expect("a field");
+    let pressure = rc_heights::npy::read(&place.path("r/pressure.npy")).expect("a field");
+    let gap = rc_heights::npy::read(&place.path("r/gap.npy")).expect("a field");
     let number = |key: &str| summary[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", summary[key]));
     // The load is exact to 1e-10 in a certified solution; the rest is rounding of sums over the grid.
     assert_close("mean of pressure.npy", pressure.mean(), 1e5, 1e-10);
@@ -171,7 +171,7 @@ fn a_control_on_the_command_line_replaces_that_of_the_scene() {
 fn an_output_grid_keeps_the_mean_pressure() {
     let place = Place::new();
     assert_solved(&place.run(&small("1e5", &["--output-grid", "32", "--out", "r"])));
-    let pressure = rc_cli::npy::read(&place.path("r/pressure.npy")).expect("a field");
+    let pressure = rc_heights::npy::read(&place.path("r/pressure.npy")).expect("a field");
     assert_eq!((pressure.grid().nx(), pressure.grid().ny()), (32, 32));
     assert_close("mean pressure", pressure.mean(), 1e5, 1e-10);
 }

@@ -79,6 +79,24 @@ fn summaries_without_the_newer_keys_are_read() {
 }
 
 #[test]
+fn shells_and_man_know_every_command() {
+    let place = Place::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let output = place.run(&["completions", shell]);
+        assert_solved(&output);
+        let script = text(&output.stdout);
+        assert!(script.contains("--low-pass") || script.contains("low-pass"), "{shell}: no flag of rc surface");
+    }
+    assert_solved(&place.run(&["man", "--out", "man"]));
+    let names = place.names("man");
+    for page in ["rc.1", "rc-solve.1", "rc-sweep.1", "rc-sweep-merge.1", "rc-surface.1", "rc-inspect.1", "rc-plot.1"] {
+        assert!(names.iter().any(|name| name == page), "no {page} in {names:?}");
+    }
+    let page = text(&place.bytes("man/rc-solve.1"));
+    assert!(page.starts_with(".ie") && page.contains("penetration"), "{page}");
+}
+
+#[test]
 fn help_is_no_error() {
     let place = Place::new();
     for args in [&["--help"][..], &["--version"], &["solve", "--help"], &["surface", "--help"]] {

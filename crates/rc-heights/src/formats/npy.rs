@@ -1,41 +1,72 @@
 //! NumPy files: two-dimensional arrays of real numbers in, `f64` arrays out.
 
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Write as _};
+use std::io::{self, BufReader, BufWriter, Read, Write as _};
 use std::path::Path;
 
 use npyz::{DType, Deserialize, NpyFile, NpyHeader, Order, TypeChar, WriterBuilder as _};
 use rc_core::{Field, Grid};
 
-use crate::error::CliError;
+use crate::{Format, FormatError, ReadError};
 
-type Reader = BufReader<File>;
+/// Longest header that is read; that of a 2-D array has about 120 bytes. The parser of headers goes one call deeper for each
+/// bracket.
+const LONGEST_HEADER: u32 = 4096;
 
 /// Reads a two-dimensional array of real numbers (any float or integer type, either byte order, C or Fortran order) as a
-/// field: the first index is y, the second x.
+/// field: the first index is y, the second x. Values may be `NaN` or infinite.
 ///
 /// # Errors
-/// [`CliError::Input`] when the file cannot be read, is no npy file, is shorter than it says, or is not 2-D and real.
-pub fn read(path: &Path) -> Result<Field, CliError> {
-    let fail = |message: String| CliError::in_file(path, message);
-    let cut_short = || fail("shorter than its header says".into());
-    let unreadable = |cause: io::Error| match cause.kind() {
-        io::ErrorKind::UnexpectedEof => cut_short(),
-        _ => fail(format!("cannot read: {cause}")),
+/// [`ReadError`] when the file cannot be read, is no npy file, is shorter than it says, or is not 2-D and real.
+pub fn read(path: &Path) -> Result<Field, ReadError> {
+    let field = || {
+        let file = File::open(path).map_err(unreadable)?;
+        let bytes = file.metadata().map_err(unreadable)?.len();
+        read_from(BufReader::new(file), bytes)
     };
-    let file = File::open(path).map_err(unreadable)?;
-    let bytes = file.metadata().map_err(unreadable)?.len();
-    let npy = NpyFile::new(BufReader::new(file)).map_err(|cause| fail(format!("not a valid npy file: {cause}")))?;
-    let grid = grid_of(npy.header()).map_err(fail)?;
-    let order = npy.order();
-    let expected = real_type(&npy.dtype()).map_err(fail)?.1 * npy.len();
-    if bytes < expected {
-        // Said before memory is taken for what a damaged header promises.
-        return Err(cut_short());
+    field().map_err(|problem| ReadError { path: path.to_owned(), problem })
+}
+
+/// [`read()`] of the contents of a file that has `bytes` bytes.
+///
+/// # Errors
+/// [`FormatError`].
+pub fn read_from(mut file: impl Read, bytes: u64) -> Result<Field, FormatError> {
+    let mut start = Vec::new();
+    file.by_ref().take(12).read_to_end(&mut start).map_err(unreadable)?;
+    if let [0x93, b'N', b'U', b'M', b'P', b'Y', version, _, a, b, more @ ..] = start.as_slice() {
+        // Version 1 counts the header with two bytes, later ones with four.
+        let (c, d) = if *version > 1 { more.first_chunk().map_or((0, 0), |[c, d]| (*c, *d)) } else { (0, 0) };
+        let length = u32::from_le_bytes([*a, *b, c, d]);
+        if length > LONGEST_HEADER {
+            return Err(header("length", &length, "the length of the header of a 2-D array, at most 4096"));
+        }
     }
-    let stored = to_f64(npy).map_err(unreadable)?;
-    let values = if order == Order::C { stored } else { transposed(&stored, grid) };
-    Field::new(grid, values).map_err(|cause| fail(cause.to_string()))
+    let invalid = |cause: io::Error| FormatError::Container { format: Format::Npy, reason: cause.to_string() };
+    let npy = NpyFile::new(io::Cursor::new(start).chain(file)).map_err(invalid)?;
+    let grid = grid_of(npy.header())?;
+    let (_, size) = real_type(&npy.dtype())?;
+    let order = npy.order();
+    // Said before memory is taken for what a damaged header promises. A grid has at most 2^40 points.
+    let needed = size * grid.len() as u64;
+    if bytes < needed {
+        return Err(FormatError::CutShort { grid, needed, found: bytes });
+    }
+    let cut_short = |cause: io::Error| match cause.kind() {
+        io::ErrorKind::UnexpectedEof => FormatError::CutShort { grid, needed, found: bytes },
+        _ => unreadable(cause),
+    };
+    let stored = to_f64(npy).map_err(cut_short)?;
+    Ok(super::field(grid, if order == Order::C { stored } else { transposed(&stored, grid) }))
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "the shape that map_err wants")]
+fn unreadable(cause: io::Error) -> FormatError {
+    FormatError::Unreadable(cause.to_string())
+}
+
+fn header(field: &'static str, found: &(impl ToString + ?Sized), expected: &'static str) -> FormatError {
+    FormatError::Field { format: Format::Npy, field, found: found.to_string(), expected }
 }
 
 /// Writes a field as a 2-D `f64` array, C order, little-endian, each value multiplied by `factor`, without a copy of it.
@@ -95,10 +126,13 @@ impl RowWriter {
     }
 }
 
-fn grid_of(header: &NpyHeader) -> Result<Grid, String> {
-    match *header.shape() {
-        [ny, nx] => Grid::new(to_side(nx), to_side(ny)).map_err(|cause| cause.to_string()),
-        ref shape => Err(format!("a height map is a 2-D array, this one has {} dimensions {shape:?}", shape.len())),
+fn grid_of(npy: &NpyHeader) -> Result<Grid, FormatError> {
+    match *npy.shape() {
+        [ny, nx] => Ok(Grid::new(to_side(nx), to_side(ny))?),
+        ref shape => {
+            let found = format!("{shape:?}, {} dimensions", shape.len());
+            Err(header("shape", &found, "that of a 2-D array"))
+        }
     }
 }
 
@@ -108,19 +142,19 @@ fn to_side(n: u64) -> usize {
 }
 
 /// Kind and size in bytes of a real type.
-fn real_type(dtype: &DType) -> Result<(TypeChar, u64), String> {
-    let expected = "a height map has real numbers, of type f2, f4, f8 or an integer type";
+fn real_type(dtype: &DType) -> Result<(TypeChar, u64), FormatError> {
+    let refused = |found: String| header("descr", &found, "that of real numbers: f2, f4, f8 or an integer type");
     let DType::Plain(plain) = dtype else {
-        return Err(format!("{expected}, not records"));
+        return Err(refused("records".to_owned()));
     };
     match (plain.type_char(), plain.size_field()) {
         (TypeChar::Float, size @ (2 | 4 | 8)) => Ok((TypeChar::Float, size)),
         (kind @ (TypeChar::Int | TypeChar::Uint), size @ (1 | 2 | 4 | 8)) => Ok((kind, size)),
-        _ => Err(format!("{expected}, not {plain}")),
+        _ => Err(refused(plain.to_string())),
     }
 }
 
-fn to_f64(npy: NpyFile<Reader>) -> io::Result<Vec<f64>> {
+fn to_f64(npy: NpyFile<impl Read>) -> io::Result<Vec<f64>> {
     match real_type(&npy.dtype()).map_err(io::Error::other)? {
         (TypeChar::Float, 2) => collect(npy, npyz::half::f16::to_f64),
         (TypeChar::Float, 4) => collect(npy, |v: f32| f64::from(v)),
@@ -136,7 +170,7 @@ fn to_f64(npy: NpyFile<Reader>) -> io::Result<Vec<f64>> {
     }
 }
 
-fn collect<T: Deserialize>(npy: NpyFile<Reader>, to_f64: impl Fn(T) -> f64) -> io::Result<Vec<f64>> {
+fn collect<T: Deserialize>(npy: NpyFile<impl Read>, to_f64: impl Fn(T) -> f64) -> io::Result<Vec<f64>> {
     let data = npy.data::<T>().map_err(io::Error::other)?;
     data.map(|value| value.map(&to_f64)).collect()
 }
@@ -201,7 +235,7 @@ mod tests {
         let dir = tempfile::tempdir().expect("a temporary folder");
         for (dtype, bytes) in [("<c16", 96), ("|b1", 6), ("<U4", 96), ("<f8", 47), ("<M8[s]", 48)] {
             let error = read(&write_raw(dir.path(), dtype, false, &vec![0; bytes])).expect_err(dtype);
-            assert_eq!(error.exit_code(), 2, "{dtype}: {error}");
+            assert!(error.to_string().contains("array.npy: "), "{dtype}: {error}");
         }
     }
 

@@ -1,0 +1,122 @@
+//! Measured surfaces on the command line: units, cells, treatments, and what is refused.
+
+use std::path::Path;
+
+use crate::support::{Place, assert_refused, assert_solved, bumps, f8, npy, text};
+
+/// A file of data/formats/.
+fn sample(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/formats").join(name).display().to_string()
+}
+
+#[test]
+fn a_measured_map_becomes_a_surface_that_is_solved() {
+    let place = Place::new();
+    let scan = sample("surfalize-missing.sdf");
+    // 12 x 8 points on 24 µm x 24 µm: a square already, with a hole, and not periodic.
+    assert_refused(&place.run(&["solve", "--heights", &scan, "--pressure", "1e5"]), "--fill laplace");
+    let treat = [
+        "surface",
+        "--heights",
+        &scan,
+        "--fill",
+        "laplace",
+        "--level",
+        "plane",
+        "--periodic",
+        "mirror",
+        "--resample",
+        "32",
+    ];
+    let output = place.run(&[&treat[..], &["--out", "ready"]].concat());
+    assert_solved(&output);
+    let printed = text(&output.stdout);
+    for words in ["as read", "fill laplace", "level plane", "periodic mirror", "resample 32 x 32", "Sdr", "border step"]
+    {
+        assert!(printed.contains(words), "no '{words}' in:\n{printed}");
+    }
+    let json = place.json("ready/surface.json");
+    assert_eq!(json["cell"].as_f64().map(|cell| (cell * 1e9).round()), Some(48_000.0), "twice 24 µm");
+    let treatments = json["treatments"].as_array().expect("a list");
+    assert_eq!(treatments.len(), 5);
+    assert_eq!((treatments[0]["missing"].as_u64(), treatments[1]["missing"].as_u64()), (Some(1), Some(0)));
+    let solve = ["solve", "ready/scene.toml", "--e-star", "1e9", "--pressure", "1e6", "--quiet", "--out", "result"];
+    assert_solved(&place.run(&solve));
+    // The result is repeated from its own folder, where the map has no units any more.
+    let again = ["solve", "result/scene.toml", "--quiet", "--out", "again"];
+    assert_solved(&place.run(&again));
+    assert!(place.bytes("again/pressure.npy") == place.bytes("result/pressure.npy"), "not the same result again");
+}
+
+#[test]
+fn the_cell_is_that_of_the_file_and_units_are_applied_once() {
+    let place = Place::new();
+    let json = |args: &[&str]| -> serde_json::Value {
+        let output = place.run(&[&["inspect", "--json"], args].concat());
+        assert_solved(&output);
+        serde_json::from_slice(&output.stdout).expect("valid JSON")
+    };
+    let from_x3p = json(&[&sample("surfalize.x3p")]);
+    // The same heights as bare numbers, in nm.
+    let from_csv = json(&[&sample("expected.csv"), "--unit", "nm", "--cell", "24e-6"]);
+    let scaled = json(&[&sample("expected.csv"), "--height-scale", "1e-9", "--cell", "24e-6"]);
+    for key in ["cell", "rms_height", "rms_slope", "h_max"] {
+        let of = |json: &serde_json::Value| json[key].as_f64().expect("a number");
+        for other in [&from_csv, &scaled] {
+            assert!((of(other) / of(&from_x3p) - 1.0).abs() < 1e-9, "{key}: {} and {}", of(other), of(&from_x3p));
+        }
+    }
+    let sq = from_x3p["parameters"]["sq"].as_f64().expect("a number");
+    assert!((sq / 0.70065932e-6 - 1.0).abs() < 1e-6, "Sq = {sq}, surfalize says 0.70066 µm");
+}
+
+#[test]
+fn contradictions_and_what_is_missing_are_refused() {
+    let place = Place::new();
+    let (x3p, png) = (sample("surfalize.x3p"), sample("pillow.png"));
+    place.write("map.xyz", "0 0 1\n1 0 2\n2 0 3\n0 1 4\n1 1 5\n2 1 7\n");
+    place.write("map.npy", npy("<f8", false, "(8, 8)", &f8(&bumps(8))));
+    let cases: [(&[&str], &str); 12] = [
+        (&["surface", "--heights", &x3p, "--cell", "1e-3"], "24 µm wide, cell says 1 mm"),
+        (&["surface", "--heights", &x3p, "--unit", "um"], "names its units"),
+        (&["surface", "--heights", &x3p, "--height-scale", "1e-9"], "in metres already"),
+        (&["surface", "--heights", &png], "height_scale"),
+        (&["surface", "--heights", "map.xyz"], "--crop square"),
+        (&["surface", "--heights", "map.npy", "--unit", "V"], "'V' is no unit of length"),
+        (&["surface", "--heights", "map.npy", "--crop", "9"], "not inside the map of 8 x 8"),
+        (&["surface", "--heights", "map.npy", "--crop", "half"], "512x256+100+50"),
+        (&["surface", "--heights", "map.npy", "--low-pass", "1"], "low_pass"),
+        (&["surface", "--heights", "map.npy", "--resample", "0"], "resample"),
+        (&["surface", "--waves", "8", "--level", "plane"], "--heights"),
+        (&["surface", "--waves", "8", "--unit", "um"], "height_scale"),
+    ];
+    for (args, expected) in cases {
+        assert_refused(&place.run(&[args, &["--out", "s"]].concat()), expected);
+    }
+    assert_eq!(place.names("."), ["map.npy", "map.xyz"], "something was written");
+    assert_refused(&place.run(&["solve", "--waves", "8", "--crop", "4"]), "--crop");
+}
+
+#[test]
+fn cut_off_and_damaged_files_are_refused_with_one_line() {
+    let place = Place::new();
+    for name in ["surfalize.x3p", "surfalize-binary.sdf", "surfalize-text.sdf", "pillow.png", "pillow-lzw.tif"] {
+        let bytes = std::fs::read(sample(name)).expect("a sample");
+        place.write(name, &bytes[..bytes.len() / 2]);
+        let refused = |args: &[&str]| assert_refused(&place.run(args), name);
+        refused(&["inspect", name, "--height-scale", "1e-9"]);
+        refused(&["solve", "--heights", name, "--pressure", "1e5", "--out", "r"]);
+    }
+}
+
+#[test]
+fn inspect_draws_a_map_of_any_shape() {
+    let place = Place::new();
+    let points: Vec<String> = (0..48).map(|i| format!("{} {} {}", i % 8, i / 8, (i * 7) % 5)).collect();
+    place.write("map.xyz", points.join("\n"));
+    let output = place.run(&["inspect", "map.xyz", "--unit", "um", "--out", "look"]);
+    assert_solved(&output);
+    assert!(text(&output.stdout).starts_with("not a square"), "{}", text(&output.stdout));
+    let pictures = ["distribution.png", "distribution.svg", "spectrum.png", "spectrum.svg", "surface.png"];
+    assert_eq!(place.names("look"), pictures);
+}

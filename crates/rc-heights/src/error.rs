@@ -1,0 +1,136 @@
+//! Why a file is no height map. Each message is one line: what, where, and what would be right.
+
+use std::path::PathBuf;
+
+use rc_core::{Grid, GridError};
+use thiserror::Error;
+
+use crate::Format;
+
+/// A file that cannot be read.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{}: {problem}", path.display())]
+pub struct ReadError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong with it.
+    pub problem: FormatError,
+}
+
+/// What is wrong with the bytes of a file.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FormatError {
+    /// The file system has no such file, or does not give it.
+    #[error("cannot read: {0}")]
+    Unreadable(String),
+    /// Neither the first bytes nor the extension say what it is.
+    #[error(
+        "neither its first bytes nor its name say what it is; a height map is a .npy, .csv, .txt, .xyz, .grd (Surfer), .gsf \
+         (Gwyddion), .sdf, .x3p, .png or .tif file"
+    )]
+    Unknown,
+    /// The extension promises a format that the first bytes are not of.
+    #[error("not a valid {format} file: {expected}")]
+    Mark {
+        /// The format of the extension.
+        format: Format,
+        /// How such a file begins.
+        expected: &'static str,
+    },
+    /// A library that opens containers says no.
+    #[error("not a valid {format} file: {reason}")]
+    Container {
+        /// The format.
+        format: Format,
+        /// The library's reason.
+        reason: String,
+    },
+    /// A field of a header has a value that it must not have.
+    #[error("{format} header: {field} is '{found}'; it must be {expected}")]
+    Field {
+        /// The format.
+        format: Format,
+        /// The field.
+        field: &'static str,
+        /// Its value.
+        found: String,
+        /// What it must be.
+        expected: &'static str,
+    },
+    /// A header without a field that it must have.
+    #[error("{format} header: {field} is missing; the header is cut off or of another kind")]
+    Missing {
+        /// The format.
+        format: Format,
+        /// The field.
+        field: &'static str,
+    },
+    /// A part of the format that rc does not read.
+    #[error("{format}: {what} cannot be read here; {cure}")]
+    Unsupported {
+        /// The format.
+        format: Format,
+        /// What the file has.
+        what: String,
+        /// What to do.
+        cure: &'static str,
+    },
+    /// Fewer bytes than the header promises.
+    #[error("shorter than its header says: {grid} heights need {needed} bytes, {found} are there; the file is cut off")]
+    CutShort {
+        /// Points along x and y.
+        grid: Grid,
+        /// Bytes that the heights need, at least.
+        needed: u64,
+        /// Bytes that are there.
+        found: u64,
+    },
+    /// Fewer bytes than any header has.
+    #[error("shorter than the header of a {format} file; the file is cut off")]
+    HeaderCutShort {
+        /// The format.
+        format: Format,
+    },
+    /// A word of a text that is no number.
+    #[error("line {line}, value {value}: '{text}' is no number")]
+    NoNumber {
+        /// Line, from 1.
+        line: usize,
+        /// Value in the line, from 1.
+        value: usize,
+        /// The word.
+        text: String,
+    },
+    /// A line of a text with another number of values.
+    #[error("line {line} has {found} values, {expected}")]
+    Columns {
+        /// Line, from 1.
+        line: usize,
+        /// Values in it.
+        found: usize,
+        /// What would be right.
+        expected: String,
+    },
+    /// Points that are not on a regular grid.
+    #[error("the points are on no regular grid: {0}")]
+    Irregular(String),
+    /// A height that is infinite.
+    #[error(
+        "row {row}, column {column} (from 0) is {value}; heights must be finite, and NaN where nothing was measured"
+    )]
+    Infinite {
+        /// Row, from 0.
+        row: usize,
+        /// Column, from 0.
+        column: usize,
+        /// The height.
+        value: f64,
+    },
+    /// No point was measured.
+    #[error("all {0} points are missing; nothing was measured")]
+    Empty(usize),
+    /// A number of points that no grid has.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+}

@@ -1,0 +1,71 @@
+//! Fields of headers: `name = value` lines, and checks of their values.
+
+use std::str::FromStr;
+
+use rc_core::Grid;
+
+use crate::{Format, FormatError};
+
+/// The `name = value` lines of a header.
+#[derive(Clone, Debug)]
+pub(crate) struct Fields<'a> {
+    format: Format,
+    pairs: Vec<(&'a str, &'a str)>,
+}
+
+impl<'a> Fields<'a> {
+    /// Lines without `=` are passed over.
+    pub(crate) fn of(header: &'a str, format: Format) -> Self {
+        let pairs = header.lines().filter_map(|line| line.split_once('='));
+        Self { format, pairs: pairs.map(|(name, value)| (name.trim(), value.trim())).collect() }
+    }
+
+    /// The text of a field, if it is there and not empty.
+    pub(crate) fn text(&self, name: &str) -> Option<&'a str> {
+        let pair = self.pairs.iter().find(|(field, _)| field.eq_ignore_ascii_case(name));
+        pair.map(|(_, value)| *value).filter(|value| !value.is_empty())
+    }
+
+    /// The number that a field must have.
+    pub(crate) fn number<T: FromStr>(&self, name: &'static str) -> Result<T, FormatError> {
+        let format = self.format;
+        self.optional(name)?.ok_or(FormatError::Missing { format, field: name })
+    }
+
+    /// The number of a field, if it is there.
+    pub(crate) fn optional<T: FromStr>(&self, name: &'static str) -> Result<Option<T>, FormatError> {
+        let Some(text) = self.text(name) else { return Ok(None) };
+        text.parse().map(Some).map_err(|_| refused(self.format, name, text, "a number"))
+    }
+
+    /// The grid whose sides are the fields `x` and `y`.
+    pub(crate) fn grid(&self, x: &'static str, y: &'static str) -> Result<Grid, FormatError> {
+        Ok(Grid::new(self.number(x)?, self.number(y)?)?)
+    }
+}
+
+/// A length of a header, checked to be positive and finite.
+pub(crate) fn positive(format: Format, field: &'static str, value: f64) -> Result<f64, FormatError> {
+    if value > 0.0 && value.is_finite() { Ok(value) } else { Err(refused(format, field, &value, "a positive length")) }
+}
+
+/// A factor of a header, checked to be finite and not zero.
+pub(crate) fn factor(format: Format, field: &'static str, value: f64) -> Result<f64, FormatError> {
+    if value != 0.0 && value.is_finite() { Ok(value) } else { Err(refused(format, field, &value, "finite and not 0")) }
+}
+
+/// A field that has another value than it must.
+pub(crate) fn refused(
+    format: Format,
+    field: &'static str,
+    found: &(impl ToString + ?Sized),
+    expected: &'static str,
+) -> FormatError {
+    FormatError::Field { format, field, found: shown(&found.to_string()), expected }
+}
+
+/// The begin of a text that may be long or no text at all.
+pub(crate) fn shown(text: &str) -> String {
+    let start = text.chars().take(40).map(|c| if c.is_control() { '\u{FFFD}' } else { c });
+    start.collect::<String>() + if text.chars().nth(40).is_some() { "…" } else { "" }
+}

@@ -1,0 +1,41 @@
+//! Gwyddion simple field 1.0: a text header, then 32-bit floats, rows from top to bottom
+//! (<http://gwyddion.net/documentation/user-guide-en/gsf.html>).
+
+use super::binary::Number;
+use super::fields::{Fields, positive, refused};
+use crate::{Format, FormatError, HeightMap, LengthUnit, Unit};
+
+/// The first line.
+pub(super) const MARK: &[u8] = b"Gwyddion Simple Field 1.0";
+
+pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
+    let end = bytes.iter().position(|byte| *byte == 0);
+    let end = end.ok_or(FormatError::HeaderCutShort { format: Format::Gsf })?;
+    let header = String::from_utf8_lossy(&bytes[..end]);
+    let fields = Fields::of(&header, Format::Gsf);
+    let grid = fields.grid("XRes", "YRes")?;
+    let (side_unit, side_factor) = unit(&fields, "XYUnits")?;
+    let (height_unit, height_factor) = unit(&fields, "ZUnits")?;
+    let side = |name| {
+        let length: Option<f64> = fields.optional(name)?;
+        length.map(|length| positive(Format::Gsf, name, length * side_factor)).transpose()
+    };
+    // Sizes that are not given are 1 of no unit, which is to say that they are not known.
+    let sides = match (side("XReal")?, side("YReal")?) {
+        (Some(x), Some(y)) => Some([x, y]),
+        _ => None,
+    };
+    // One to four zero bytes fill the header up to a multiple of four.
+    let mut values = Number::F32.values(bytes.get(end + 4 - end % 4..).unwrap_or_default(), grid)?;
+    crate::map::scale(&mut values, height_factor);
+    Ok(HeightMap { heights: super::field(grid, values), height_unit, sides, side_unit })
+}
+
+/// A unit of length and what it is in metres.
+fn unit(fields: &Fields<'_>, name: &'static str) -> Result<(Unit, f64), FormatError> {
+    let Some(text) = fields.text(name) else { return Ok((Unit::Unnamed, 1.0)) };
+    match text.parse::<LengthUnit>() {
+        Ok(unit) => Ok((Unit::Metre, unit.metres())),
+        Err(_) => Err(refused(Format::Gsf, name, text, "a unit of length, as m; other channels are no heights")),
+    }
+}

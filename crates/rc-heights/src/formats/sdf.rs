@@ -1,0 +1,114 @@
+//! ISO 25178-71 surface data files: a header of scales in metres, then heights as text (`a…`) or binary (`b…`). Versions 1.0,
+//! 2.0 (which counts points with 32 bits) and the older name BCR.
+
+use super::binary::{Bytes, Number};
+use super::fields::{Fields, factor, positive, refused, shown};
+use crate::{Format, FormatError, HeightMap, Unit};
+
+use rc_core::Grid;
+
+/// Length of the names of format and version at the start.
+const MARK: usize = 8;
+
+/// What both kinds of header say.
+struct Header {
+    grid: Grid,
+    scales: [f64; 3],
+    compression: u8,
+    data_type: u8,
+}
+
+pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
+    let mut bytes = Bytes::new(bytes, Format::Sdf);
+    let mark = bytes.take(MARK)?;
+    let (header, mut values) = if mark[0] == b'a' { text(bytes.rest())? } else { binary(bytes, mark)? };
+    let [x, y, z] = header.scales;
+    let x = positive(Format::Sdf, "Xscale", x)?;
+    let y = positive(Format::Sdf, "Yscale", y)?;
+    let z = factor(Format::Sdf, "Zscale", z)?;
+    crate::map::scale(&mut values, z);
+    let sides = Some([x * header.grid.nx() as f64, y * header.grid.ny() as f64]);
+    let heights = super::field(header.grid, values);
+    Ok(HeightMap { heights, height_unit: Unit::Metre, sides, side_unit: Unit::Metre })
+}
+
+fn binary(mut bytes: Bytes<'_>, mark: &[u8]) -> Result<(Header, Vec<f64>), FormatError> {
+    // Manufacturer, and the dates when the file was made and changed.
+    bytes.take(10 + 12 + 12)?;
+    let mut count = || if mark.ends_with(b"2.0") { bytes.u32() } else { bytes.u16().map(u32::from) };
+    let (nx, ny) = (count()? as usize, count()? as usize);
+    let grid = Grid::new(nx, ny)?;
+    let scales = [bytes.f64()?, bytes.f64()?, bytes.f64()?];
+    bytes.f64()?; // Resolution of the instrument.
+    let (compression, data_type) = (bytes.u8()?, bytes.u8()?);
+    bytes.u8()?; // Kind of checksum; none is defined.
+    let header = Header { grid, scales, compression, data_type };
+    let (number, missing) = number(&header)?;
+    let mut values = number.values(bytes.rest(), grid)?;
+    for value in &mut values {
+        #[expect(clippy::float_cmp, reason = "the mark of a missing point is one value of the stored type")]
+        if *value == missing {
+            *value = f64::NAN;
+        }
+    }
+    Ok((header, values))
+}
+
+/// The stored type, and the value that marks a point as missing.
+fn number(header: &Header) -> Result<(Number, f64), FormatError> {
+    if header.compression != 0 {
+        let what = "compressed data".to_owned();
+        return Err(FormatError::Unsupported { format: Format::Sdf, what, cure: "save it without compression" });
+    }
+    Ok(match header.data_type {
+        0 => (Number::U8, f64::NAN),
+        1 => (Number::U16, f64::from(u16::MAX)),
+        2 => (Number::U32, f64::from(u32::MAX)),
+        3 => (Number::F32, f64::from(f32::MIN)),
+        4 => (Number::I8, f64::from(i8::MIN)),
+        5 => (Number::I16, f64::from(i16::MIN)),
+        6 => (Number::I32, f64::from(i32::MIN)),
+        7 => (Number::F64, f64::MIN),
+        other => return Err(refused(Format::Sdf, "DataType", &other, "from 0 to 7")),
+    })
+}
+
+/// Header, heights and remarks are ended by a `*` each.
+fn text(bytes: &[u8]) -> Result<(Header, Vec<f64>), FormatError> {
+    let text = String::from_utf8_lossy(bytes);
+    let (header, data) = text.split_once('*').ok_or(FormatError::HeaderCutShort { format: Format::Sdf })?;
+    let fields = Fields::of(header, Format::Sdf);
+    let header = Header {
+        grid: fields.grid("NumPoints", "NumProfiles")?,
+        scales: [fields.number("Xscale")?, fields.number("Yscale")?, fields.number("Zscale")?],
+        compression: fields.optional("Compression")?.unwrap_or(0),
+        data_type: fields.optional("DataType")?.unwrap_or(7),
+    };
+    number(&header)?;
+    let first_line = text[..text.len() - data.len()].lines().count();
+    let values = words(data.split('*').next().unwrap_or_default(), header.grid, first_line)?;
+    Ok((header, values))
+}
+
+/// The heights of `grid`, with `BAD` for a missing point; the text starts at the end of line `line`.
+fn words(data: &str, grid: Grid, line: usize) -> Result<Vec<f64>, FormatError> {
+    let cut_short =
+        |found: usize| FormatError::CutShort { grid, needed: 2 * grid.len() as u64 - 1, found: found as u64 };
+    // A digit for each height and a space between them are the least; said before memory is taken.
+    if data.len() + 1 < grid.len().saturating_mul(2) {
+        return Err(cut_short(data.len()));
+    }
+    let mut values = Vec::with_capacity(grid.len());
+    for (n, row) in data.lines().enumerate() {
+        for (i, word) in row.split_ascii_whitespace().enumerate() {
+            let value = if word == "BAD" { Ok(f64::NAN) } else { word.parse() };
+            let no_number = FormatError::NoNumber { line: line + n, value: i + 1, text: shown(word) };
+            values.push(value.map_err(|_| no_number)?);
+        }
+    }
+    if values.len() == grid.len() {
+        return Ok(values);
+    }
+    let found = format!("{grid}, of which {} heights are there", values.len());
+    Err(refused(Format::Sdf, "NumPoints x NumProfiles", &found, "as many as there are heights"))
+}

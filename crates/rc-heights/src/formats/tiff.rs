@@ -1,0 +1,55 @@
+//! Grayscale TIFF of 16 bits, or of 32-bit floats: the first image, rows from top to bottom.
+
+use std::io::Cursor;
+
+use rc_core::Grid;
+use tiff::ColorType;
+use tiff::decoder::{Decoder, DecodingResult, Limits};
+
+use crate::{Format, FormatError, HeightMap, Unit};
+
+/// What LZW makes of one byte at most: 12 bits stand for 4096 bytes. Deflate makes less.
+const MOST_INFLATION: u64 = 2731;
+
+pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
+    let invalid = |cause: tiff::TiffError| FormatError::Container { format: Format::Tiff, reason: cause.to_string() };
+    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(invalid)?;
+    let (width, height) = decoder.dimensions().map_err(invalid)?;
+    let grid = Grid::new(width as usize, height as usize)?;
+    let size = match decoder.colortype().map_err(invalid)? {
+        ColorType::Gray(16) => 2,
+        ColorType::Gray(32) => 4,
+        other => {
+            let cure = "save it as 16-bit grayscale; 8 bits are too few for heights";
+            return Err(FormatError::Unsupported {
+                format: Format::Tiff,
+                what: format!("an image of {other:?}"),
+                cure,
+            });
+        }
+    };
+    let (needed, found) = (size * grid.len() as u64, (bytes.len() as u64).saturating_mul(MOST_INFLATION));
+    if found < needed {
+        return Err(FormatError::CutShort { grid, needed, found });
+    }
+    let mut limits = Limits::default();
+    let most = usize::try_from(needed).unwrap_or(usize::MAX);
+    (limits.decoding_buffer_size, limits.intermediate_buffer_size) = (most, most.max(1 << 20));
+    let levels = decoder.with_limits(limits).read_image().map_err(invalid)?;
+    let values: Vec<f64> = match levels {
+        DecodingResult::U16(levels) => levels.into_iter().map(f64::from).collect(),
+        DecodingResult::I16(levels) => levels.into_iter().map(f64::from).collect(),
+        DecodingResult::U32(levels) => levels.into_iter().map(f64::from).collect(),
+        DecodingResult::I32(levels) => levels.into_iter().map(f64::from).collect(),
+        DecodingResult::F32(levels) => levels.into_iter().map(f64::from).collect(),
+        _ => {
+            let what = "this type of numbers".to_owned();
+            return Err(FormatError::Unsupported { format: Format::Tiff, what, cure: "save it as 16-bit grayscale" });
+        }
+    };
+    if values.len() != grid.len() {
+        return Err(FormatError::CutShort { grid, needed, found: size * values.len() as u64 });
+    }
+    let heights = super::field(grid, values);
+    Ok(HeightMap { heights, height_unit: Unit::GreyLevel, sides: None, side_unit: Unit::Unnamed })
+}

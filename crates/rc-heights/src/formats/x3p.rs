@@ -1,0 +1,129 @@
+//! ISO 5436-2 (now ISO 25178-72): a zip archive with `main.xml`, heights as binary numbers, and a mask of measured points.
+//!
+//! Lengths are in metres. The checksums of the archive itself are verified; the MD5 sums beside them are not.
+
+use std::io::{Cursor, Read as _};
+
+use rc_core::Grid;
+use roxmltree::{Document, Node};
+use zip::ZipArchive;
+
+use super::binary::Number;
+use super::fields::{factor, positive, refused};
+use crate::{Format, FormatError, HeightMap, Unit};
+
+/// Longest `main.xml`; heights are not in it.
+const LONGEST_XML: u64 = 16 << 20;
+
+/// Deflate makes at most 1032 bytes of one: what is promised beyond that is not there.
+const MOST_INFLATION: u64 = 1032;
+
+type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
+
+pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
+    let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|cause| container(&cause))?;
+    let xml = member(&mut archive, "main.xml", LONGEST_XML)?;
+    let xml = String::from_utf8_lossy(&xml);
+    let document = Document::parse(&xml).map_err(|cause| container(&cause))?;
+    let root = document.root_element();
+    let (number, increments, offset) = axes(root)?;
+    let grid = grid(root)?;
+    let Ok(link) = text(root, "DataLink", "PointDataLink") else {
+        return Err(unsupported("heights inside main.xml", "save them in binary form"));
+    };
+    let needed = number.bytes_of(grid);
+    let found = (bytes.len() as u64).saturating_mul(MOST_INFLATION);
+    if found < needed {
+        return Err(FormatError::CutShort { grid, needed, found });
+    }
+    let mut values = number.values(&member(&mut archive, link, needed)?, grid)?;
+    if let Ok(link) = text(root, "DataLink", "ValidPointsLink") {
+        mask(&mut values, &member(&mut archive, link, needed)?)?;
+    }
+    for value in &mut values {
+        // ISO 5436-2 lets infinities stand for missing points as well.
+        *value = if value.is_infinite() { f64::NAN } else { *value * increments[2] + offset };
+    }
+    let sides = Some([increments[0] * grid.nx() as f64, increments[1] * grid.ny() as f64]);
+    Ok(HeightMap { heights: super::field(grid, values), height_unit: Unit::Metre, sides, side_unit: Unit::Metre })
+}
+
+/// A bit for each point, lowest first; those that are not set were not measured.
+fn mask(values: &mut [f64], bits: &[u8]) -> Result<(), FormatError> {
+    let needed = values.len().div_ceil(8);
+    if bits.len() < needed {
+        let found = format!("{} bytes", bits.len());
+        return Err(refused(Format::X3p, "ValidPointsLink", &found, "a bit for each point"));
+    }
+    for (i, value) in values.iter_mut().enumerate() {
+        if bits[i / 8] >> (i % 8) & 1 == 0 {
+            *value = f64::NAN;
+        }
+    }
+    Ok(())
+}
+
+/// A file of the archive, of `most` bytes at most.
+fn member(archive: &mut Archive<'_>, name: &str, most: u64) -> Result<Vec<u8>, FormatError> {
+    let file = archive.by_name(name).map_err(|cause| container(&format_args!("{name}: {cause}")))?;
+    let mut bytes = Vec::new();
+    let read = file.take(most.saturating_add(1)).read_to_end(&mut bytes);
+    read.map_err(|cause| container(&format_args!("{name}: {cause}")))?;
+    if bytes.len() as u64 > most {
+        return Err(container(&format_args!("{name} has more than the {most} bytes that it should have")));
+    }
+    Ok(bytes)
+}
+
+/// Type of the heights; increments along x, y and z; offset of the heights.
+fn axes(root: Node<'_, '_>) -> Result<(Number, [f64; 3], f64), FormatError> {
+    for axis in ["CX", "CY"] {
+        if text(root, axis, "AxisType")? != "I" {
+            return Err(unsupported("points at coordinates of their own", "save the map on a regular grid"));
+        }
+    }
+    let number = match text(root, "CZ", "DataType")? {
+        "I" => Number::I16,
+        "L" => Number::I32,
+        "F" => Number::F32,
+        "D" => Number::F64,
+        other => return Err(refused(Format::X3p, "CZ DataType", other, "I, L, F or D")),
+    };
+    let length = |axis, field: &'static str, default: Option<f64>| match text(root, axis, field) {
+        Ok(text) => text.parse::<f64>().map_err(|_| refused(Format::X3p, field, text, "a number")),
+        Err(error) => default.ok_or(error),
+    };
+    let x = positive(Format::X3p, "CX Increment", length("CX", "Increment", None)?)?;
+    let y = positive(Format::X3p, "CY Increment", length("CY", "Increment", None)?)?;
+    let z = factor(Format::X3p, "CZ Increment", length("CZ", "Increment", Some(1.0))?)?;
+    Ok((number, [x, y, z], length("CZ", "Offset", Some(0.0))?))
+}
+
+fn grid(root: Node<'_, '_>) -> Result<Grid, FormatError> {
+    let size = |field: &'static str| {
+        let text = text(root, "MatrixDimension", field)?;
+        text.parse::<usize>().map_err(|_| refused(Format::X3p, field, text, "a number of points"))
+    };
+    let grid = Grid::new(size("SizeX")?, size("SizeY")?)?;
+    match size("SizeZ") {
+        Ok(layers) if layers != 1 => Err(unsupported("more than one layer", "save one layer")),
+        _ => Ok(grid),
+    }
+}
+
+/// The text of `field` in the first element called `parent`.
+fn text<'a>(root: Node<'a, '_>, parent: &str, field: &'static str) -> Result<&'a str, FormatError> {
+    let named = |name: &str, node: &Node<'_, '_>| node.is_element() && node.tag_name().name() == name;
+    let parent = root.descendants().find(|node| named(parent, node));
+    let field_of = parent.and_then(|parent| parent.children().find(|node| named(field, node)));
+    let text = field_of.and_then(|node| node.text()).map(str::trim).filter(|text| !text.is_empty());
+    text.ok_or(FormatError::Missing { format: Format::X3p, field })
+}
+
+fn container(reason: &(impl ToString + ?Sized)) -> FormatError {
+    FormatError::Container { format: Format::X3p, reason: reason.to_string() }
+}
+
+fn unsupported(what: &str, cure: &'static str) -> FormatError {
+    FormatError::Unsupported { format: Format::X3p, what: what.to_owned(), cure }
+}

@@ -1,0 +1,85 @@
+//! A part of a map.
+
+use std::fmt;
+use std::str::FromStr;
+
+use rc_core::{Field, Grid};
+
+use super::TreatError;
+use crate::HeightMap;
+
+/// The part that is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Crop {
+    /// The largest square in the middle, by its lengths: a periodic cell is square.
+    Square,
+    /// So many points, in the middle or from a first point on.
+    Points {
+        /// Points along x.
+        nx: usize,
+        /// Points along y.
+        ny: usize,
+        /// The first point along x and y; `None` for the middle.
+        from: Option<[usize; 2]>,
+    },
+}
+
+impl fmt::Display for Crop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Square => f.write_str("square"),
+            Self::Points { nx, ny, from: None } => write!(f, "{nx}x{ny}"),
+            Self::Points { nx, ny, from: Some([x, y]) } => write!(f, "{nx}x{ny}+{x}+{y}"),
+        }
+    }
+}
+
+impl FromStr for Crop {
+    type Err = TreatError;
+
+    fn from_str(text: &str) -> Result<Self, TreatError> {
+        let unknown = || TreatError::Unknown {
+            found: text.to_owned(),
+            expected: "a part of a map: square, or points as 512, 512x256 or 512x256+100+50",
+        };
+        if text == "square" {
+            return Ok(Self::Square);
+        }
+        let mut words = text.split('+');
+        let size = words.next().unwrap_or_default();
+        let (nx, ny) = size.split_once('x').unwrap_or((size, size));
+        let count = |word: &str| word.parse().map_err(|_| unknown());
+        let from = match (words.next(), words.next(), words.next()) {
+            (None, ..) => None,
+            (Some(x), Some(y), None) => Some([count(x)?, count(y)?]),
+            _ => return Err(unknown()),
+        };
+        Ok(Self::Points { nx: count(nx)?, ny: count(ny)?, from })
+    }
+}
+
+pub(super) fn crop(map: &HeightMap, crop: Crop) -> Result<HeightMap, TreatError> {
+    let grid = map.heights.grid();
+    let (nx, ny, from) = match crop {
+        Crop::Points { nx, ny, from } => (nx, ny, from),
+        Crop::Square => {
+            let [dx, dy] = map.spacing();
+            let side = (dx * grid.nx() as f64).min(dy * grid.ny() as f64);
+            let points = |n: usize, step: f64| ((side / step).round() as usize).clamp(1, n);
+            (points(grid.nx(), dx), points(grid.ny(), dy), None)
+        }
+    };
+    let outside = || TreatError::Outside { crop, grid };
+    let room = [grid.nx().checked_sub(nx), grid.ny().checked_sub(ny)];
+    let [Some(x_room), Some(y_room)] = room else { return Err(outside()) };
+    let [x, y] = from.unwrap_or([x_room / 2, y_room / 2]);
+    if x > x_room || y > y_room {
+        return Err(outside());
+    }
+    let part = Grid::new(nx, ny)?;
+    let values = (y..y + ny).flat_map(|iy| &map.heights.row(iy)[x..x + nx]).copied().collect();
+    let heights = Field::new(part, values).expect("as many values as points");
+    let [dx, dy] = map.spacing();
+    let sides = map.sides.map(|_| [dx * nx as f64, dy * ny as f64]);
+    Ok(HeightMap { heights, sides, ..*map })
+}

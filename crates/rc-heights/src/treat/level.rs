@@ -1,0 +1,118 @@
+//! Forms that are taken away: mean, plane, quadratic, by least squares over the measured points.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::{TreatError, mean};
+use crate::HeightMap;
+
+/// The form that is taken away; each holds the ones before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// The mean height.
+    Mean,
+    /// A plane: the tilt of the sample.
+    Plane,
+    /// A polynomial of degree two: tilt and curvature.
+    Quadratic,
+}
+
+impl Level {
+    /// Terms of the polynomial.
+    fn n_terms(self) -> usize {
+        match self {
+            Self::Mean => 1,
+            Self::Plane => 3,
+            Self::Quadratic => 6,
+        }
+    }
+}
+
+impl fmt::Display for Level {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Mean => "mean",
+            Self::Plane => "plane",
+            Self::Quadratic => "quadratic",
+        })
+    }
+}
+
+impl FromStr for Level {
+    type Err = TreatError;
+
+    fn from_str(text: &str) -> Result<Self, TreatError> {
+        let form = [Self::Mean, Self::Plane, Self::Quadratic].into_iter().find(|form| form.to_string() == text);
+        let expected = "a form to take away: mean, plane or quadratic";
+        form.ok_or_else(|| TreatError::Unknown { found: text.to_owned(), expected })
+    }
+}
+
+/// Most terms of a form.
+const MOST: usize = 6;
+
+/// The terms at (`x`, `y`) in [-1, 1]: Legendre polynomials, which are almost orthogonal on a grid.
+fn terms(x: f64, y: f64) -> [f64; MOST] {
+    [1.0, x, y, x * y, 1.5 * x * x - 0.5, 1.5 * y * y - 0.5]
+}
+
+pub(super) fn level(mut map: HeightMap, form: Level) -> Result<HeightMap, TreatError> {
+    let grid = map.heights.grid();
+    let at = |i: usize| {
+        let (x, y) = grid.centre(i % grid.nx(), i / grid.nx());
+        terms(2.0 * x - 1.0, 2.0 * y - 1.0)
+    };
+    // About the mean: what a fit of nanometres on metres would lose otherwise.
+    let (mean, points) = mean(&map.heights);
+    let n = form.n_terms();
+    let (mut matrix, mut right) = ([[0.0; MOST]; MOST], [0.0; MOST]);
+    for (i, height) in map.heights.values().iter().enumerate().filter(|(_, height)| !height.is_nan()) {
+        let t = at(i);
+        for row in 0..n {
+            right[row] += t[row] * (height - mean);
+            for column in 0..=row {
+                matrix[row][column] += t[row] * t[column];
+            }
+        }
+    }
+    let fit = solve(&mut matrix, right, n).ok_or(TreatError::Undetermined { form, points })?;
+    for (i, height) in map.heights.values_mut().iter_mut().enumerate() {
+        let value: f64 = fit[..n].iter().zip(at(i)).map(|(factor, term)| factor * term).sum();
+        *height -= mean + value;
+    }
+    Ok(map)
+}
+
+/// Solves the symmetric positive system whose lower half is given, by its Cholesky factor; `None` where it is singular.
+fn solve(matrix: &mut [[f64; MOST]; MOST], mut right: [f64; MOST], n: usize) -> Option<[f64; MOST]> {
+    for j in 0..n {
+        let diagonal = matrix[j][j];
+        for k in 0..j {
+            matrix[j][j] -= matrix[j][k] * matrix[j][k];
+        }
+        // Points on a line or on a few rows leave nothing but rounding here.
+        if matrix[j][j].is_nan() || matrix[j][j] <= 1e-10 * diagonal {
+            return None;
+        }
+        matrix[j][j] = matrix[j][j].sqrt();
+        for i in j + 1..n {
+            for k in 0..j {
+                matrix[i][j] -= matrix[i][k] * matrix[j][k];
+            }
+            matrix[i][j] /= matrix[j][j];
+        }
+    }
+    for i in 0..n {
+        for k in 0..i {
+            right[i] -= matrix[i][k] * right[k];
+        }
+        right[i] /= matrix[i][i];
+    }
+    for i in (0..n).rev() {
+        for k in i + 1..n {
+            right[i] -= matrix[k][i] * right[k];
+        }
+        right[i] /= matrix[i][i];
+    }
+    Some(right)
+}

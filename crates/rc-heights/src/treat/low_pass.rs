@@ -1,0 +1,32 @@
+//! The Gaussian filter of ISO 16610-61.
+
+use super::TreatError;
+use super::stencil::{Edges, Taps, along_x, along_y};
+use crate::HeightMap;
+
+/// The weight is cut off where it is this many times the width below its peak: exp(-π 2.5²) = 3e-9.
+const REACH: f64 = 2.5;
+
+/// Weights exp(-π (x/αλ)²) with α = √(ln 2/π), so that a wave of length λ keeps half of its amplitude.
+pub(super) fn low_pass(mut map: HeightMap, wavelength: f64, edges: Edges) -> Result<HeightMap, TreatError> {
+    let (grid, spacing) = (map.heights.grid(), map.spacing());
+    let sides = [spacing[0] * grid.nx() as f64, spacing[1] * grid.ny() as f64];
+    let (least, most) = (2.0 * spacing[0].max(spacing[1]), sides[0].min(sides[1]));
+    if !(least..=most).contains(&wavelength) {
+        return Err(TreatError::Wavelength { wavelength, least, most });
+    }
+    let [x, y] = spacing.map(|step| weights(wavelength / step));
+    let taps = |weights: &'_ [f64], i: usize| i as i64 - (weights.len() / 2) as i64;
+    let filtered = along_x(&map.heights, grid.nx(), edges, |i| Taps { first: taps(&x, i), weights: &x });
+    map.heights = along_y(&filtered, grid.ny(), edges, |i| Taps { first: taps(&y, i), weights: &y });
+    Ok(map)
+}
+
+/// Weights for a wavelength in points, sum 1.
+fn weights(wavelength: f64) -> Vec<f64> {
+    let width = (std::f64::consts::LN_2 / std::f64::consts::PI).sqrt() * wavelength;
+    let reach = (REACH * width).ceil() as i64;
+    let at = |i: i64| (-std::f64::consts::PI * (i as f64 / width).powi(2)).exp();
+    let sum: f64 = (-reach..=reach).map(at).sum();
+    (-reach..=reach).map(|i| at(i) / sum).collect()
+}

@@ -1,0 +1,88 @@
+//! Maps whose opposite borders meet.
+
+use std::fmt;
+
+use rc_core::{Field, Grid};
+
+use super::{TreatError, mean};
+use crate::HeightMap;
+
+/// How opposite borders are made to meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Periodic {
+    /// They meet already.
+    AsIs,
+    /// The map and its mirror images: twice the sides, four times the points. Every height stays, and their distribution;
+    /// slopes change sign at the old borders, and what touches there touches twice as wide.
+    Mirror,
+    /// Heights fade to their mean towards the borders (Tukey's window). Sides stay; the outer part of the map is flatter than
+    /// the surface was.
+    Window {
+        /// The part of each side that fades, at each of its ends: above 0, at most 0.5.
+        taper: f64,
+    },
+}
+
+impl fmt::Display for Periodic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::AsIs => f.write_str("as-is"),
+            Self::Mirror => f.write_str("mirror"),
+            Self::Window { taper } => write!(f, "window, taper {taper}"),
+        }
+    }
+}
+
+pub(super) fn periodic(map: HeightMap, how: Periodic) -> Result<HeightMap, TreatError> {
+    match how {
+        Periodic::AsIs => Ok(map),
+        Periodic::Mirror => mirror(&map),
+        Periodic::Window { taper } if taper > 0.0 && taper <= 0.5 => Ok(window(map, |t| tukey(t, taper))),
+        Periodic::Window { taper } => Err(TreatError::Taper(taper)),
+    }
+}
+
+fn mirror(map: &HeightMap) -> Result<HeightMap, TreatError> {
+    let grid = map.heights.grid();
+    let (nx, ny) = (grid.nx(), grid.ny());
+    let twice = Grid::new(2 * nx, 2 * ny)?;
+    let mut values = Vec::with_capacity(twice.len());
+    for iy in (0..ny).chain((0..ny).rev()) {
+        values.extend_from_slice(map.heights.row(iy));
+        values.extend(map.heights.row(iy).iter().rev());
+    }
+    let heights = Field::new(twice, values).expect("as many values as points");
+    Ok(HeightMap { heights, sides: map.sides.map(|sides| sides.map(|side| 2.0 * side)), ..*map })
+}
+
+/// 1 in the middle, down to 0 at both ends within `taper`; `t` in [0, 1].
+fn tukey(t: f64, taper: f64) -> f64 {
+    let from_end = t.min(1.0 - t) / taper;
+    if from_end >= 1.0 { 1.0 } else { 0.5 - 0.5 * (std::f64::consts::PI * from_end).cos() }
+}
+
+/// Heights about their mean times `weight` of both places along the sides, in [0, 1].
+fn window(mut map: HeightMap, weight: impl Fn(f64) -> f64) -> HeightMap {
+    let grid = map.heights.grid();
+    let weights = |n: usize| -> Vec<f64> { (0..n).map(|i| weight((i as f64 + 0.5) / n as f64)).collect() };
+    let (along_x, along_y) = (weights(grid.nx()), weights(grid.ny()));
+    let (mean, _) = mean(&map.heights);
+    for (row, y) in map.heights.values_mut().chunks_exact_mut(grid.nx()).zip(&along_y) {
+        row.iter_mut().zip(&along_x).for_each(|(height, x)| *height = mean + x * y * (*height - mean));
+    }
+    map
+}
+
+/// Heights about their mean under Hann's window, scaled so that the mean square of the window is 1: what the power spectrum
+/// of a map that is not periodic is taken of, as T. D. B. Jacobs, T. Junge and L. Pastewka recommend (Surf. Topogr.: Metrol.
+/// Prop. 5 (2017) 013001).
+#[must_use]
+pub fn hann(heights: &Field) -> Field {
+    // ⟨sin⁴⟩ = 3/8, so the mean square of each factor is 1 after division by √(3/8).
+    let scale = (8.0_f64 / 3.0).sqrt();
+    let (mean, _) = mean(heights);
+    let windowed = window(HeightMap::bare(heights.clone()), |t| scale * (std::f64::consts::PI * t).sin().powi(2));
+    let mut field = windowed.heights;
+    field.values_mut().iter_mut().for_each(|height| *height -= mean);
+    field
+}

@@ -1,0 +1,55 @@
+//! Other numbers of points on the same rectangle.
+
+use rc_core::Grid;
+
+use super::stencil::{Edges, Taps, along_x, along_y};
+use crate::HeightMap;
+
+/// Fewer points are means over their elements; more points are on cubic curves (Catmull and Rom's) through those around.
+pub(super) fn resample(mut map: HeightMap, wanted: Grid, edges: Edges) -> HeightMap {
+    let grid = map.heights.grid();
+    if wanted.nx() != grid.nx() {
+        let table = table(grid.nx(), wanted.nx());
+        map.heights = along_x(&map.heights, wanted.nx(), edges, |i| taps(&table[i]));
+    }
+    if wanted.ny() != grid.ny() {
+        let table = table(grid.ny(), wanted.ny());
+        map.heights = along_y(&map.heights, wanted.ny(), edges, |i| taps(&table[i]));
+    }
+    map
+}
+
+fn taps((first, weights): &(i64, Vec<f64>)) -> Taps<'_> {
+    Taps { first: *first, weights }
+}
+
+/// Weights of the points of `n` for each of `wanted`.
+fn table(n: usize, wanted: usize) -> Vec<(i64, Vec<f64>)> {
+    let ratio = n as f64 / wanted as f64;
+    (0..wanted)
+        .map(|i| if wanted < n { mean(i as f64 * ratio, ratio, n) } else { cubic((i as f64 + 0.5) * ratio - 0.5) })
+        .collect()
+}
+
+/// The mean over [`from`, `from + width`), points being elements of width 1.
+fn mean(from: f64, width: f64, n: usize) -> (i64, Vec<f64>) {
+    let to = (from + width).min(n as f64);
+    let first = from.floor();
+    let last = (to.ceil() - 1.0).max(first);
+    let overlap = |i: i64| (to.min(i as f64 + 1.0) - from.max(i as f64)).max(0.0);
+    let weights: Vec<f64> = (first as i64..=last as i64).map(overlap).collect();
+    let sum: f64 = weights.iter().sum();
+    (first as i64, weights.iter().map(|weight| weight / sum).collect())
+}
+
+fn cubic(at: f64) -> (i64, Vec<f64>) {
+    let t = at - at.floor();
+    let (t2, t3) = (t * t, t * t * t);
+    let weights = [
+        0.5 * (-t3 + 2.0 * t2 - t),
+        0.5 * (3.0 * t3 - 5.0 * t2 + 2.0),
+        0.5 * (-3.0 * t3 + 4.0 * t2 + t),
+        0.5 * (t3 - t2),
+    ];
+    (at.floor() as i64 - 1, weights.to_vec())
+}

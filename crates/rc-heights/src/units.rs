@@ -1,0 +1,135 @@
+//! Units of lengths, as files and users name them.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use thiserror::Error;
+
+/// A unit of length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LengthUnit {
+    /// m.
+    Metre,
+    /// cm.
+    Centimetre,
+    /// mm.
+    Millimetre,
+    /// µm.
+    Micrometre,
+    /// nm.
+    Nanometre,
+    /// Å.
+    Angstrom,
+    /// pm.
+    Picometre,
+}
+
+impl LengthUnit {
+    /// Every unit, its names (the first is how rc writes it) and its length in m.
+    const ALL: [(Self, &[&str], f64); 7] = [
+        (Self::Metre, &["m"], 1.0),
+        (Self::Centimetre, &["cm"], 1e-2),
+        (Self::Millimetre, &["mm"], 1e-3),
+        (Self::Micrometre, &["um", "µm", "μm", "micron"], 1e-6),
+        (Self::Nanometre, &["nm"], 1e-9),
+        (Self::Angstrom, &["angstrom", "Å", "A"], 1e-10),
+        (Self::Picometre, &["pm"], 1e-12),
+    ];
+
+    /// Its length in m.
+    #[must_use]
+    pub fn metres(self) -> f64 {
+        Self::ALL.iter().find(|(unit, ..)| *unit == self).map_or(1.0, |(.., metres)| *metres)
+    }
+}
+
+impl fmt::Display for LengthUnit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(Self::ALL.iter().find(|(unit, ..)| unit == self).map_or("m", |(_, names, _)| names[0]))
+    }
+}
+
+impl Serialize for LengthUnit {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for LengthUnit {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
+    }
+}
+
+impl FromStr for LengthUnit {
+    type Err = UnitError;
+
+    fn from_str(text: &str) -> Result<Self, UnitError> {
+        let unit = Self::ALL.iter().find(|(_, names, _)| names.contains(&text.trim()));
+        unit.map(|(unit, ..)| *unit).ok_or_else(|| UnitError::Unknown { name: text.trim().to_owned() })
+    }
+}
+
+/// What a number of a file means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Metres: the format or the file says so.
+    Metre,
+    /// A length in a unit that the file does not name.
+    Unnamed,
+    /// A level of grey.
+    GreyLevel,
+}
+
+/// What a user knows of a file that does not name its units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Scales {
+    /// The unit of its lengths: of coordinates, and of heights where `height_scale` is not given.
+    pub unit: Option<LengthUnit>,
+    /// The height (m) of one: of a number, or of a level of grey.
+    pub height_scale: Option<f64>,
+}
+
+/// A unit that is not known, or that a file has already.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum UnitError {
+    /// No such unit of length.
+    #[error("'{name}' is no unit of length; m, cm, mm, um, nm, angstrom and pm are")]
+    Unknown {
+        /// As written.
+        name: String,
+    },
+    /// Levels of grey without a scale.
+    #[error("levels of grey have no unit; give the height of one level as height_scale (m)")]
+    GreyLevels,
+    /// A scale that no height can have.
+    #[error("height_scale: must be finite and not 0 (m), not {value}")]
+    Scale {
+        /// As given.
+        value: f64,
+    },
+    /// A scale for heights that are in metres already.
+    #[error("height_scale: the file has its heights in metres already; leave it away")]
+    HeightsInMetres,
+    /// A unit for a file that names its own.
+    #[error("unit: the file names its units already; leave it away")]
+    UnitsNamed,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_unit_reads_back_as_it_is_written_and_all_names_are_read() {
+        for (unit, names, metres) in LengthUnit::ALL {
+            assert_eq!(unit.to_string().parse(), Ok(unit));
+            for name in names {
+                assert_eq!(name.parse::<LengthUnit>().map(LengthUnit::metres), Ok(metres), "{name}");
+            }
+        }
+        assert!("V".parse::<LengthUnit>().is_err(), "a volt is no length");
+    }
+}

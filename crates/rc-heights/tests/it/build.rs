@@ -1,0 +1,188 @@
+//! Small files of each format, built byte by byte from its specification: 3 x 2 points with the heights 1 to 6.
+
+use std::io::{Cursor, Write as _};
+
+use rc_heights::Format;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+/// The heights of every file here, before scales.
+pub(crate) const HEIGHTS: [f64; 6] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+
+fn concat<const N: usize>(values: impl IntoIterator<Item = f64>, bytes: impl Fn(f64) -> [u8; N]) -> Vec<u8> {
+    values.into_iter().flat_map(bytes).collect()
+}
+
+fn f32s(values: [f64; 6]) -> Vec<u8> {
+    concat(values, |v| (v as f32).to_le_bytes())
+}
+
+fn f64s(values: impl IntoIterator<Item = f64>) -> Vec<u8> {
+    concat(values, f64::to_le_bytes)
+}
+
+pub(crate) fn npy() -> Vec<u8> {
+    let mut header = "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }".to_owned();
+    while !(10 + header.len() + 1).is_multiple_of(64) {
+        header.push(' ');
+    }
+    header.push('\n');
+    [b"\x93NUMPY\x01\x00".as_slice(), &(header.len() as u16).to_le_bytes(), header.as_bytes(), &f64s(HEIGHTS)].concat()
+}
+
+/// Lines at x = 10, 12, 14 and y = 5, 8.
+pub(crate) fn surfer_text(heights: &str) -> Vec<u8> {
+    format!("DSAA\n3 2\n10 14\n5 8\n1 6\n{heights}\n").into_bytes()
+}
+
+pub(crate) fn surfer_6(heights: [f64; 6]) -> Vec<u8> {
+    let counts = [3_u16.to_le_bytes(), 2_u16.to_le_bytes()].concat();
+    [b"DSBB".to_vec(), counts, f64s([10.0, 14.0, 5.0, 8.0, 1.0, 6.0]), f32s(heights)].concat()
+}
+
+/// `blank` as in the grid section; a section that rc does not know stands before the data.
+pub(crate) fn surfer_7(version: u32, heights: [f64; 6], blank: f64) -> Vec<u8> {
+    let section = |tag: &[u8; 4], content: Vec<u8>| {
+        [tag.to_vec(), (content.len() as u32).to_le_bytes().to_vec(), content].concat()
+    };
+    let counts = [2_u32.to_le_bytes(), 3_u32.to_le_bytes()].concat();
+    let grid = [counts, f64s([10.0, 5.0, 2.0, 3.0, 1.0, 6.0, 0.0, blank])].concat();
+    [
+        section(b"DSRB", version.to_le_bytes().to_vec()),
+        section(b"GRID", grid),
+        section(b"FLTI", vec![0; 12]),
+        section(b"DATA", f64s(heights)),
+    ]
+    .concat()
+}
+
+/// `fields` as lines; the header is filled up as the specification asks for.
+pub(crate) fn gsf(fields: &str) -> Vec<u8> {
+    let mut bytes = format!("Gwyddion Simple Field 1.0\n{fields}").into_bytes();
+    let zeros = 4 - bytes.len() % 4;
+    bytes.resize(bytes.len() + zeros, 0);
+    [bytes, f32s(HEIGHTS)].concat()
+}
+
+pub(crate) const GSF_FIELDS: &str =
+    "XRes = 3\nYRes=2\nXReal = 6e-6\nYReal = 9e-6\nXYUnits = m\nZUnits = nm\nTitle = h\n";
+
+pub(crate) fn sdf_text(heights: &str) -> Vec<u8> {
+    let head = "aISO-1.0\r\nManufacID = rc\r\nCreateDate = 010120260000\r\nModDate = 010120260000\r\nNumPoints = 3\r\n\
+                NumProfiles = 2\r\nXscale = 2e-6\r\nYscale = 3e-6\r\nZscale = 1e-9\r\nZresolution = -1\r\nCompression = 0\r\n\
+                DataType = 7\r\nCheckType = 0\r\n*\r\n";
+    format!("{head}{heights}\r\n*\r\nRemark = none\r\n*\r\n").into_bytes()
+}
+
+pub(crate) fn sdf_binary(version: &str, data_type: u8, data: &[u8]) -> Vec<u8> {
+    let mut bytes = format!("b{version}rc        010120260000010120260000").into_bytes();
+    for count in [3_u32, 2] {
+        let size = if version == "ISO-2.0" { 4 } else { 2 };
+        bytes.extend(&count.to_le_bytes()[..size]);
+    }
+    bytes.extend(f64s([2e-6, 3e-6, 1e-9, -1.0]));
+    bytes.extend([0, data_type, 0]);
+    bytes.extend(data);
+    bytes
+}
+
+/// The heights 1 to 6 in each type of numbers of the format, with its number there.
+pub(crate) fn sdf_types() -> Vec<(u8, Vec<u8>)> {
+    vec![
+        (0, concat(HEIGHTS, |v| [v as u8])),
+        (1, concat(HEIGHTS, |v| (v as u16).to_le_bytes())),
+        (2, concat(HEIGHTS, |v| (v as u32).to_le_bytes())),
+        (3, f32s(HEIGHTS)),
+        (4, concat(HEIGHTS, |v| (v as i8).to_le_bytes())),
+        (5, concat(HEIGHTS, |v| (v as i16).to_le_bytes())),
+        (6, concat(HEIGHTS, |v| (v as i32).to_le_bytes())),
+        (7, f64s(HEIGHTS)),
+    ]
+}
+
+pub(crate) fn x3p_xml(kind: &str, size: &str, mask: &str) -> String {
+    format!(
+        "<?xml version=\"1.0\"?><p:ISO5436_2 xmlns:p=\"http://www.opengps.eu/2008/ISO5436_2\"><Record1><Revision>ISO5436 - \
+         2000</Revision><FeatureType>SUR</FeatureType><Axes><CX><AxisType>I</AxisType><DataType>D</DataType>\
+         <Increment>2e-6</Increment><Offset>0</Offset></CX><CY><AxisType>I</AxisType><Increment>3e-6</Increment></CY><CZ>\
+         <AxisType>A</AxisType><DataType>{kind}</DataType><Increment>1e-9</Increment><Offset>1e-6</Offset></CZ></Axes>\
+         </Record1><Record3><MatrixDimension>{size}</MatrixDimension><DataLink><PointDataLink>bindata/data.bin\
+         </PointDataLink>{mask}</DataLink></Record3></p:ISO5436_2>"
+    )
+}
+
+pub(crate) const X3P_SIZE: &str = "<SizeX>3</SizeX><SizeY>2</SizeY><SizeZ>1</SizeZ>";
+
+pub(crate) fn zipped(members: &[(&str, &[u8])], method: CompressionMethod) -> Vec<u8> {
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, content) in members {
+        archive.start_file(*name, SimpleFileOptions::default().compression_method(method)).expect("a member");
+        archive.write_all(content).expect("its content");
+    }
+    archive.finish().expect("an archive").into_inner()
+}
+
+/// 16-bit integers; point 4 is marked as missing.
+pub(crate) fn x3p(method: CompressionMethod) -> Vec<u8> {
+    let xml = x3p_xml("I", X3P_SIZE, "<ValidPointsLink>bindata/valid.bin</ValidPointsLink>");
+    let data = concat(HEIGHTS, |v| (v as i16).to_le_bytes());
+    zipped(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &data), ("bindata/valid.bin", &[0b0010_1111])], method)
+}
+
+/// 16-bit grayscale, from the png crate's own encoder.
+pub(crate) fn png(colour: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 3, 2);
+    encoder.set_color(colour);
+    encoder.set_depth(depth);
+    encoder.write_header().expect("a header").write_image_data(data).expect("an image");
+    bytes
+}
+
+pub(crate) fn png_16() -> Vec<u8> {
+    png(png::ColorType::Grayscale, png::BitDepth::Sixteen, &concat(HEIGHTS, |v| (v as u16).to_be_bytes()))
+}
+
+/// One strip without compression, little-endian.
+pub(crate) fn tiff() -> Vec<u8> {
+    // Tag, type (3: short, 4: long), value: the entries of the only directory.
+    let entries: [(u16, u16, u32); 9] = [
+        (256, 3, 3),
+        (257, 3, 2),
+        (258, 3, 16),
+        (259, 3, 1),
+        (262, 3, 1),
+        (273, 4, 8),
+        (277, 3, 1),
+        (278, 3, 2),
+        (279, 4, 12),
+    ];
+    let mut bytes = [b"II*\0".as_slice(), &20_u32.to_le_bytes()].concat();
+    bytes.extend(concat(HEIGHTS, |v| (v as u16).to_le_bytes()));
+    bytes.extend((entries.len() as u16).to_le_bytes());
+    for (tag, kind, value) in entries {
+        bytes.extend([tag.to_le_bytes(), kind.to_le_bytes()].concat());
+        bytes.extend([1_u32.to_le_bytes(), value.to_le_bytes()].concat());
+    }
+    bytes.extend([0; 4]);
+    bytes
+}
+
+/// A valid file of each kind.
+pub(crate) fn all() -> Vec<(&'static str, Format, Vec<u8>)> {
+    vec![
+        ("npy", Format::Npy, npy()),
+        ("csv", Format::Csv, b"1,2,3\n4,5,6\n".to_vec()),
+        ("xyz", Format::Xyz, b"0 0 1\n1 0 2\n2 0 3\n0 1 4\n1 1 5\n2 1 6\n".to_vec()),
+        ("DSAA", Format::Surfer, surfer_text("1 2 3\n4 5 6")),
+        ("DSBB", Format::Surfer, surfer_6(HEIGHTS)),
+        ("DSRB", Format::Surfer, surfer_7(1, HEIGHTS, 1.70141e38)),
+        ("gsf", Format::Gsf, gsf(GSF_FIELDS)),
+        ("sdf text", Format::Sdf, sdf_text("1 2 3\r\n4 5 6")),
+        ("sdf binary", Format::Sdf, sdf_binary("ISO-1.0", 7, &f64s(HEIGHTS))),
+        ("x3p stored", Format::X3p, x3p(CompressionMethod::Stored)),
+        ("x3p deflated", Format::X3p, x3p(CompressionMethod::Deflated)),
+        ("png", Format::Png, png_16()),
+        ("tiff", Format::Tiff, tiff()),
+    ]
+}

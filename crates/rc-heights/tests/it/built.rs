@@ -1,0 +1,203 @@
+//! Files built byte by byte are read as their specifications say; headers that promise too much or nonsense are refused.
+
+use rc_heights::{Format, HeightMap, Unit, parse};
+use zip::CompressionMethod;
+
+use crate::build::{self, HEIGHTS};
+
+/// Heights are `scale` times 1 to 6 plus `offset`, sides as given, both within rounding.
+fn assert_map(name: &str, map: &HeightMap, scale: f64, offset: f64, sides: Option<[f64; 2]>) {
+    assert_eq!((map.heights.grid().nx(), map.heights.grid().ny()), (3, 2), "{name}");
+    for (found, height) in map.heights.values().iter().zip(HEIGHTS) {
+        let expected = scale * height + offset;
+        assert!((found - expected).abs() <= 1e-12 * expected.abs(), "{name}: {found}, expected {expected}");
+    }
+    let difference = |(a, b): (&[f64; 2], &[f64; 2])| a.iter().zip(b).all(|(a, b)| (a / b - 1.0).abs() < 1e-12);
+    assert_eq!(map.sides.is_some(), sides.is_some(), "{name}: {:?}", map.sides);
+    assert!(map.sides.iter().zip(&sides).all(difference), "{name}: {:?}, expected {sides:?}", map.sides);
+}
+
+fn read(name: &str, bytes: &[u8], format: Format) -> HeightMap {
+    parse(bytes, format).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+#[test]
+fn surfer_grids_of_all_versions_are_the_same_map() {
+    let sides = Some([6.0, 6.0]);
+    let mut files = vec![build::surfer_text("1 2 3\n4 5 6"), build::surfer_6(HEIGHTS)];
+    files.extend([1, 2].map(|version| build::surfer_7(version, HEIGHTS, 1.70141e38)));
+    for bytes in files {
+        let map = read("grd", &bytes, Format::Surfer);
+        assert_map("grd", &map, 1.0, 0.0, sides);
+        assert_eq!((map.height_unit, map.side_unit), (Unit::Unnamed, Unit::Unnamed));
+    }
+}
+
+#[test]
+fn missing_points_are_missing_in_every_format_that_has_them() {
+    let mut heights = HEIGHTS;
+    heights[4] = 1.70141e38;
+    let mut low = HEIGHTS;
+    low[4] = -9999.0;
+    let i16s: Vec<u8> = [1, 2, 3, 4, i16::MIN, 6].iter().flat_map(|v| v.to_le_bytes()).collect();
+    let files = [
+        (Format::Csv, b"1 2 3\n4 nan 6".to_vec()),
+        (Format::Xyz, b"0 0 1\n1 0 2\n2 0 3\n0 1 4\n2 1 6\n".to_vec()),
+        (Format::Surfer, build::surfer_text("1 2 3\n4 1.70141e+038 6")),
+        (Format::Surfer, build::surfer_6(heights)),
+        (Format::Surfer, build::surfer_7(1, heights, 1.70141e38)),
+        (Format::Surfer, build::surfer_7(2, low, -9999.0)),
+        (Format::Sdf, build::sdf_text("1 2 3\r\n4 BAD 6")),
+        (Format::Sdf, build::sdf_binary("ISO-1.0", 5, &i16s)),
+        (Format::X3p, build::x3p(CompressionMethod::Deflated)),
+    ];
+    for (format, bytes) in files {
+        let map = read(&format.to_string(), &bytes, format);
+        assert_eq!(map.missing(), 1, "{format}");
+        assert!(map.heights.values()[4].is_nan(), "{format}: {:?}", map.heights.values());
+    }
+}
+
+#[test]
+fn a_simple_field_has_its_units() {
+    let map = read("gsf", &build::gsf(build::GSF_FIELDS), Format::Gsf);
+    assert_map("gsf", &map, 1e-9, 0.0, Some([6e-6, 9e-6]));
+    let bare = read("gsf", &build::gsf("XRes=3\nYRes=2\n"), Format::Gsf);
+    assert_map("gsf", &bare, 1.0, 0.0, None);
+    assert_eq!((map.height_unit, bare.height_unit), (Unit::Metre, Unit::Unnamed));
+}
+
+#[test]
+fn surface_data_files_of_every_kind_are_the_same_map() {
+    let sides = Some([6e-6, 6e-6]);
+    assert_map("text", &read("text", &build::sdf_text("1 2 3 4 5 6"), Format::Sdf), 1e-9, 0.0, sides);
+    for version in ["ISO-1.0", "ISO-2.0", "BCR-1.0"] {
+        for (kind, data) in build::sdf_types() {
+            let map = read(version, &build::sdf_binary(version, kind, &data), Format::Sdf);
+            assert_map(&format!("{version}, type {kind}"), &map, 1e-9, 0.0, sides);
+        }
+    }
+}
+
+#[test]
+fn an_x3p_file_has_increments_and_offset() {
+    let xml = build::x3p_xml("D", build::X3P_SIZE, "");
+    let data: Vec<u8> = HEIGHTS.iter().flat_map(|v| v.to_le_bytes()).collect();
+    let members = [("main.xml", xml.as_bytes()), ("bindata/data.bin", data.as_slice())];
+    let map = read("x3p", &build::zipped(&members, CompressionMethod::Stored), Format::X3p);
+    assert_map("x3p", &map, 1e-9, 1e-6, Some([6e-6, 6e-6]));
+}
+
+#[test]
+fn images_are_levels_of_grey() {
+    for (name, bytes, format) in [("png", build::png_16(), Format::Png), ("tiff", build::tiff(), Format::Tiff)] {
+        let map = read(name, &bytes, format);
+        assert_map(name, &map, 1.0, 0.0, None);
+        assert_eq!(map.height_unit, Unit::GreyLevel, "{name}");
+    }
+}
+
+#[test]
+fn headers_that_promise_terabytes_are_refused_before_memory_is_taken() {
+    let million = "1048576";
+    let mut binary = build::sdf_binary("ISO-2.0", 7, &[0; 64]);
+    // The counts stand after mark, manufacturer and dates.
+    for at in [42, 46] {
+        binary[at..at + 4].copy_from_slice(&(1_u32 << 20).to_le_bytes());
+    }
+    let mut surfer = build::surfer_6(HEIGHTS);
+    surfer[4..8].fill(0x7f);
+    let size = build::X3P_SIZE.replace(">3<", ">1048576<").replace(">2<", ">1048576<");
+    let xml = build::x3p_xml("D", &size, "");
+    let x3p =
+        build::zipped(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &[0; 64])], CompressionMethod::Deflated);
+    let mut tiff = build::tiff();
+    // The directory starts after header and heights: a count, then entries of 12 bytes, their values at 8.
+    for entry in [0, 1, 7] {
+        // Width, height, rows of a strip.
+        let at = 22 + 12 * entry;
+        tiff[at + 8..at + 10].copy_from_slice(&0xffff_u16.to_le_bytes());
+    }
+    let files = [
+        (
+            Format::Npy,
+            [&build::npy()[..10], b"{'descr': '<f8', 'fortran_order': False, 'shape': (1048576, 1048576), }\n"]
+                .concat(),
+        ),
+        (Format::Surfer, format!("DSAA\n{million} {million}\n0 1\n0 1\n0 1\n1 2 3\n").into_bytes()),
+        (Format::Surfer, surfer),
+        (Format::Gsf, build::gsf(&format!("XRes = {million}\nYRes = {million}\n"))),
+        (
+            Format::Sdf,
+            String::from_utf8_lossy(&build::sdf_text("1 2"))
+                .replace("= 3\r", "= 1048576\r")
+                .replace("= 2\r", "= 1048576\r")
+                .into_bytes(),
+        ),
+        (Format::Sdf, binary),
+        (Format::X3p, x3p),
+        (Format::Tiff, tiff),
+    ];
+    for (format, mut bytes) in files {
+        if format == Format::Npy {
+            bytes[8..10].copy_from_slice(&72_u16.to_le_bytes());
+        }
+        let error = parse(&bytes, format).expect_err("a promise").to_string();
+        assert!(error.contains("shorter than its header says"), "{format}: {error}");
+    }
+}
+
+#[test]
+fn wrong_headers_are_named_with_their_field() {
+    let sdf = |from: &str, to: &str| {
+        let text = String::from_utf8_lossy(&build::sdf_text("1 2 3 4 5 6")).replace(from, to);
+        (Format::Sdf, text.into_bytes())
+    };
+    let gsf = |fields: &str| (Format::Gsf, build::gsf(fields));
+    let xml = |xml: String| {
+        let members = [("main.xml", xml.as_bytes()), ("bindata/data.bin", &[0; 48])];
+        (Format::X3p, build::zipped(&members, CompressionMethod::Stored))
+    };
+    let surfer = |text: &str| (Format::Surfer, text.as_bytes().to_vec());
+    let cases = [
+        (sdf("NumPoints = 3", "NumPoints = many"), "NumPoints is 'many'"),
+        (sdf("NumPoints = 3", "Points = 3"), "NumPoints is missing"),
+        (sdf("NumPoints = 3", "NumPoints = 0"), "1 to 1048576"),
+        (sdf("Xscale = 2e-6", "Xscale = -2e-6"), "Xscale is '-0.000002'; it must be a positive length"),
+        (sdf("Zscale = 1e-9", "Zscale = 0"), "Zscale"),
+        (sdf("Compression = 0", "Compression = 1"), "compressed"),
+        (sdf("DataType = 7", "DataType = 9"), "DataType"),
+        (sdf("4 5 6", "4 x 6"), "line 15, value 5: 'x'"),
+        (sdf(" 4 5 6", " 4 5"), "of which 5 heights"),
+        (sdf("*", ""), "shorter than the header"),
+        (gsf("XRes=3\nYRes=2\nZUnits=V\n"), "ZUnits is 'V'"),
+        (gsf("XRes=3\nYRes=2\nXReal=-1\nYReal=1\n"), "XReal"),
+        (gsf("XRes=3\n"), "YRes is missing"),
+        (xml(build::x3p_xml("Q", build::X3P_SIZE, "")), "CZ DataType is 'Q'"),
+        (xml(build::x3p_xml("D", "<SizeX>3</SizeX>", "")), "SizeY is missing"),
+        (xml(build::x3p_xml("D", "<SizeX>3</SizeX><SizeY>2</SizeY><SizeZ>4</SizeZ>", "")), "layer"),
+        (xml(build::x3p_xml("D", build::X3P_SIZE, "").replace("<AxisType>I<", "<AxisType>A<")), "coordinates"),
+        (xml(build::x3p_xml("D", build::X3P_SIZE, "").replace("data.bin", "none.bin")), "none.bin"),
+        (xml("<a>".repeat(100_000)), "x3p"),
+        (surfer("DSAA\n3 2\n0 0\n0 1\n0 1\n1 2 3 4 5 6"), "along x"),
+        (surfer("DSAA\n3 2\n0 1\n0 1\n0 1\n1 2 3 4 b 6"), "height is 'b'"),
+        (surfer("DSAA\n3 2\n0 1\n0 1\n0 1\n1 2 3 4 5555"), "of which 5"),
+        (surfer("DSAA\n3 x"), "rows is 'x'"),
+        ((Format::Png, build::png(png::ColorType::Grayscale, png::BitDepth::Eight, &[0; 6])), "16-bit"),
+        ((Format::Png, build::png(png::ColorType::Rgb, png::BitDepth::Sixteen, &[0; 36])), "16-bit"),
+    ];
+    for ((format, bytes), expected) in cases {
+        let error = parse(&bytes, format).expect_err(expected).to_string();
+        assert!(error.contains(expected), "no '{expected}' in: {error}");
+    }
+}
+
+#[test]
+fn deep_brackets_in_an_array_header_do_not_overflow_the_stack() {
+    for (length, expected) in [(60_000_usize, "at most 4096"), (4000, "npy")] {
+        let header = "(".repeat(length);
+        let bytes = [b"\x93NUMPY\x01\x00".as_slice(), &(length as u16).to_le_bytes(), header.as_bytes()].concat();
+        let error = parse(&bytes, Format::Npy).expect_err("brackets").to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}

@@ -1,0 +1,102 @@
+//! Files that other programs wrote, in data/formats/ (its README says which and how).
+
+use std::path::{Path, PathBuf};
+
+use rc_core::Field;
+use rc_heights::{AreaParameters, FormatError, HeightMap, Unit, read};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/formats")
+}
+
+fn map(name: &str) -> HeightMap {
+    read(&folder().join(name)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The heights of all files, in nm.
+fn expected() -> Field {
+    map("expected.csv").heights
+}
+
+fn worst(found: &Field, expected: &Field, scale: f64) -> f64 {
+    assert_eq!(found.grid(), expected.grid());
+    let differences = found.values().iter().zip(expected.values()).map(|(a, b)| (a - scale * b).abs());
+    differences.fold(0.0, f64::max)
+}
+
+#[test]
+fn surface_formats_of_surfalize_have_heights_and_sides_in_metres() {
+    let expected = expected();
+    // The text has ten decimals of heights scaled to at most ten.
+    for (name, tolerance) in [("surfalize.x3p", 1e-20), ("surfalize-binary.sdf", 1e-20), ("surfalize-text.sdf", 1e-16)]
+    {
+        let map = map(name);
+        let worst = worst(&map.heights, &expected, 1e-9);
+        assert!(worst < tolerance, "{name}: off by {worst:e} m");
+        let [x, y] = map.sides.expect("sides");
+        assert!((x / 24e-6 - 1.0).abs() < 1e-12 && (y / 24e-6 - 1.0).abs() < 1e-12, "{name}: {x} x {y}");
+        assert_eq!((map.height_unit, map.side_unit), (Unit::Metre, Unit::Metre), "{name}");
+    }
+}
+
+#[test]
+fn a_point_that_surfalize_left_out_is_missing() {
+    let map = map("surfalize-missing.sdf");
+    assert_eq!(map.missing(), 1);
+    assert!(map.heights.at(3, 2).is_nan());
+}
+
+#[test]
+fn images_of_pillow_and_tifffile_have_their_levels() {
+    let expected = expected();
+    let (low, span) = (expected.min(), expected.max() - expected.min());
+    let mut levels = expected.clone();
+    levels.values_mut().iter_mut().for_each(|height| *height = ((*height - low) / span * 65535.0).round());
+    for name in ["pillow.png", "pillow-lzw.tif", "tifffile-be.tif"] {
+        // Half of a level: NumPy rounds halves to even.
+        let worst = worst(&map(name).heights, &levels, 1.0);
+        assert!(worst <= 1.0, "{name}: off by {worst} levels");
+    }
+    let worst = worst(&map("tifffile-float.tif").heights, &expected, 1.0);
+    assert!(worst < 1e-4, "floats are off by {worst}, heights are up to 1500");
+}
+
+#[test]
+fn parameters_are_those_of_surfalize() {
+    let map = map("surfalize.x3p");
+    let p = AreaParameters::of(&map.heights, map.sides.expect("sides"));
+    // Printed by surfalize 0.19.2 for the same heights (µm, and % for Sdr).
+    let others = [
+        ("Sa", p.sa, 0.5907421875e-6),
+        ("Sq", p.sq, 0.70065932119326e-6),
+        ("Ssk", p.ssk, 0.11681164880039642),
+        ("Sku", p.sku, 2.1176664829001077),
+        ("Sp", p.sp, 1.478125e-6),
+        ("Sv", p.sv, 1.421875e-6),
+        ("Sz", p.sz, 2.9e-6),
+        ("Sdq", p.sdq, 0.2841113738083583),
+    ];
+    for (name, value, reference) in others {
+        assert!((value / reference - 1.0).abs() < 1e-12, "{name}: {value}, surfalize {reference}");
+    }
+    // It cuts the surface into other triangles; at 8 points a wave that is a few percent.
+    assert!((p.sdr / 0.03878553951034358 - 1.0).abs() < 0.05, "Sdr {}, surfalize 0.0388", p.sdr);
+}
+
+#[test]
+fn a_file_is_known_by_its_first_bytes_whatever_it_is_called() {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    let other = dir.path().join("map.dat");
+    std::fs::copy(folder().join("surfalize.x3p"), &other).expect("a copy");
+    assert_eq!(read(&other).expect("a map").heights, map("surfalize.x3p").heights);
+    for (name, expected) in
+        [("map.grd", "DSAA"), ("map.sdf", "aISO-1.0"), ("map.abc", ".npy"), ("map.npy", "not a valid npy")]
+    {
+        let path = dir.path().join(name);
+        std::fs::write(&path, "1,2\n").expect("a file");
+        let error = read(&path).expect_err(name).to_string();
+        assert!(error.contains(expected) && error.contains(name), "{error}");
+    }
+    let missing = read(&dir.path().join("none.npy")).expect_err("no file");
+    assert!(matches!(missing.problem, FormatError::Unreadable(_)), "{missing}");
+}

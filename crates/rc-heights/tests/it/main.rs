@@ -1,0 +1,7 @@
+//! Readers on files of other programs, on files built byte by byte, and on damaged ones; treatments against closed forms.
+
+mod build;
+mod built;
+mod files;
+mod robustness;
+mod treatments;

@@ -1,0 +1,117 @@
+//! Whatever the bytes, a reader answers with a map or with one line; it never panics.
+
+use proptest::prelude::*;
+use rc_heights::{Format, FormatError, HeightMap, parse};
+
+use crate::build;
+
+const FORMATS: [Format; 9] = [
+    Format::Npy,
+    Format::Csv,
+    Format::Xyz,
+    Format::Surfer,
+    Format::Gsf,
+    Format::Sdf,
+    Format::X3p,
+    Format::Png,
+    Format::Tiff,
+];
+
+/// One line, and a map only of what the bytes can hold.
+fn assert_answer(name: &str, bytes: &[u8], answer: &Result<HeightMap, FormatError>) {
+    match answer {
+        Ok(map) => {
+            let points = map.heights.values().len();
+            assert!(points <= 3000 * bytes.len(), "{name}: {points} points from {} bytes", bytes.len());
+            assert!(map.heights.values().iter().all(|height| !height.is_infinite()), "{name}: infinite heights");
+            let positive = |sides: [f64; 2]| sides.iter().all(|side| *side > 0.0);
+            assert!(map.sides.is_none_or(positive), "{name}: sides {:?}", map.sides);
+        }
+        Err(error) => {
+            let message = error.to_string();
+            assert!(!message.is_empty() && message.len() < 600, "{name}: {message}");
+        }
+    }
+}
+
+#[test]
+fn every_truncation_of_every_file_is_refused_or_still_whole() {
+    for (name, format, bytes) in build::all() {
+        let whole = parse(&bytes, format).unwrap_or_else(|error| panic!("{name}: {error}"));
+        for length in 0..bytes.len() {
+            let answer = parse(&bytes[..length], format);
+            assert_answer(name, &bytes, &answer);
+            // Texts may end anywhere, and what follows the heights (remarks, end marks, directories) may be gone.
+            let text = matches!(format, Format::Csv | Format::Xyz);
+            if let (Ok(map), false) = (answer, text) {
+                let same = map.heights.grid() == whole.heights.grid() && map.missing() == whole.missing();
+                assert!(same, "{name}: {length} of {} bytes were read as another map", bytes.len());
+            }
+        }
+    }
+}
+
+#[test]
+fn a_flipped_bit_of_a_checked_container_is_noticed() {
+    for (name, format, bytes) in build::all() {
+        if !matches!(format, Format::X3p | Format::Png) {
+            continue;
+        }
+        let whole = parse(&bytes, format).expect(name).heights;
+        let changed = (0..bytes.len()).filter(|at| {
+            let mut flipped = bytes.clone();
+            flipped[*at] ^= 1;
+            // Missing points are NaN, so maps are compared as bits.
+            let bits = |field: &rc_core::Field| field.values().iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+            parse(&flipped, format).is_ok_and(|map| bits(&map.heights) != bits(&whole))
+        });
+        assert_eq!(changed.count(), 0, "{name}: heights changed unnoticed");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn arbitrary_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        for format in FORMATS {
+            assert_answer("arbitrary", &bytes, &parse(&bytes, format));
+        }
+    }
+
+    #[test]
+    fn arbitrary_bytes_after_a_mark_never_panic(which in 0_usize..13, bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        let (name, format, valid) = build::all().swap_remove(which);
+        let start = valid.len().min(30);
+        let bytes = [&valid[..start], &bytes].concat();
+        assert_answer(name, &bytes, &parse(&bytes, format));
+    }
+
+    #[test]
+    fn mutated_files_never_panic(
+        which in 0_usize..13,
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
+        cut in any::<prop::sample::Index>(),
+    ) {
+        let (name, format, mut bytes) = build::all().swap_remove(which);
+        for (at, byte) in &changes {
+            let at = at.index(bytes.len());
+            bytes[at] = *byte;
+        }
+        assert_answer(name, &bytes, &parse(&bytes, format));
+        bytes.truncate(cut.index(bytes.len()));
+        assert_answer(name, &bytes, &parse(&bytes, format));
+    }
+
+    #[test]
+    fn texts_of_numbers_never_panic(text in "[-0-9eE.,; \\n#naif\\t]{0,200}") {
+        for format in [Format::Csv, Format::Xyz] {
+            assert_answer("text", text.as_bytes(), &parse(text.as_bytes(), format));
+        }
+        for head in ["DSAA\n3 2\n0 1\n0 1\n0 1\n", "aISO-1.0\n"] {
+            let bytes = [head.as_bytes(), text.as_bytes()].concat();
+            let format = if head.starts_with('D') { Format::Surfer } else { Format::Sdf };
+            assert_answer(head, &bytes, &parse(&bytes, format));
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! Every reader of height maps; the first byte chooses the format.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use rc_heights::{Format, parse};
+
+const FORMATS: [Format; 9] = [
+    Format::Npy,
+    Format::Csv,
+    Format::Xyz,
+    Format::Surfer,
+    Format::Gsf,
+    Format::Sdf,
+    Format::X3p,
+    Format::Png,
+    Format::Tiff,
+];
+
+fuzz_target!(|data: &[u8]| {
+    if let Some((first, bytes)) = data.split_first() {
+        let format = FORMATS[usize::from(*first) % FORMATS.len()];
+        if let Err(error) = parse(bytes, format) {
+            assert!(!error.to_string().is_empty());
+        }
+    }
+});

@@ -1,0 +1,17 @@
+//! Scene files: what parses is resolved as well; what does not is one line.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use rc_cli::{resolve, scene_file};
+
+fuzz_target!(|text: &str| {
+    match scene_file::parse(text) {
+        Ok(mut scene) => {
+            // Files of the machine are none of this.
+            scene.surface.heights = None;
+            let _ = resolve::surface(scene.surface);
+            let _ = resolve::contact(scene.contact, 1.0, None);
+        }
+        Err(message) => assert!(!message.is_empty()),
+    }
+});
