@@ -1,6 +1,7 @@
 //! The task runner: `cargo xtask <command>`, one file per command.
 
 mod bench;
+mod blocks;
 mod ci;
 mod figures;
 mod kernel_error;
