@@ -40,6 +40,7 @@ const QUICK: (&[&str], usize, f64) = (&["waves-16", "hurst-0.3-light"], 2, 0.3);
 ///
 /// Errors are against `data/bench/reference.csv`. Run it on an idle machine. docs/benchmarks.md explains the results.
 #[derive(clap::Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags")]
 pub(crate) struct Args {
     /// Two small scenes only.
     #[arg(long)]

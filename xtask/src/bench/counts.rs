@@ -44,7 +44,7 @@ fn cases() -> Vec<(&'static str, Setting)> {
         ("waves-16", Setting::adaptive(1, 8, Tolerance::Relative(1e-8))),
         ("waves-16", Setting::adaptive(3, 8, auto)),
         ("hurst-0.3-light", Setting::adaptive(0, 16, CERTIFIED)),
-        ("hurst-0.3-light", Setting::adaptive(2, 4, auto)),
+        ("hurst-0.3-light", Setting::adaptive(2, 8, auto)),
         ("waves-32", Setting::uniform(KernelName::Spectral, 8, auto)),
         ("waves-32", Setting::adaptive(0, 16, auto)),
         ("hurst-0.5", Setting::adaptive(2, 8, auto)),
@@ -52,7 +52,7 @@ fn cases() -> Vec<(&'static str, Setting)> {
         ("heavy", Setting::uniform(KernelName::Love, 8, CERTIFIED)),
         ("heavy", Setting::adaptive(1, 8, auto)),
         ("paper", Setting::adaptive(0, 8, CERTIFIED)),
-        ("paper", Setting::adaptive(2, 4, auto)),
+        ("paper", Setting::adaptive(1, 8, auto)),
     ]
 }
 
@@ -148,14 +148,14 @@ mod tests {
 
     #[test]
     fn a_change_names_its_scene_and_a_flipped_element_is_none() {
-        let row = count(&("waves-16", Setting::adaptive(1, 4, Tolerance::Auto))).expect("a solved scene");
+        let row = count(&("waves-16", Setting::adaptive(1, 8, Tolerance::Auto))).expect("a solved scene");
         assert!(row.iterations > 0 && row.applications > row.iterations && row.elements > 100, "{row:?}");
         let flipped = CountRow { elements: row.elements + row.elements / 2000, ..row.clone() };
         assert_eq!(flipped.changes(&row), Vec::<String>::new());
         let slower = CountRow { iterations: row.iterations + 1, elements: 2 * row.elements, ..row.clone() };
         let changes = slower.changes(&row);
         assert!(changes.len() == 2 && changes[0].starts_with("waves-16, adaptive love border level 1"), "{changes:?}");
-        let (none, stored) = (differences(&[], &[row.clone()]), differences(&[row], &[]));
+        let (none, stored) = (differences(&[], std::slice::from_ref(&row)), differences(&[row], &[]));
         assert!(none[0].contains("no longer") && stored[0].contains("is not in"), "{none:?}, {stored:?}");
     }
 }

@@ -66,8 +66,11 @@ fn render(document: &str, sources: &Sources) -> Result<String, String> {
     })
 }
 
+/// In a table, where there is nothing.
+const NONE: &str = "\u{2013}";
+
 /// An error level, as people write it.
-pub(super) fn percent(level: f64) -> String {
+fn percent(level: f64) -> String {
     format!("{} %", digits(100.0 * level, 3))
 }
 
@@ -82,41 +85,34 @@ fn ratio(ratio: Ratio) -> String {
 
 /// Time to an error, ours and the fastest peer's, over all scenes.
 pub(super) fn times(results: &Results<'_>) -> String {
-    let mut table =
-        "| error below | rc, median (scenes) | fastest peer's time over ours, as it reports: median, least | \
-                     with its area corrected by hand: median, least |\n|---|---|---|---|\n"
-            .to_owned();
+    let head = "| error below | rc, median (scenes) | fastest peer's time over ours, as it reports: median, least | with its \
+                area corrected by hand: median, least |\n|---|---|---|---|\n";
     let n_scenes = results.scenes().len();
-    for (quantity, levels) in LEVELS {
-        for &level in levels {
-            let (seconds, n) = results.our_time(quantity, level);
-            let ours = if n > 0 { milliseconds(seconds) } else { "\u{2013}".to_owned() };
-            let cell = |reading| {
-                let ratios = results.ratios(quantity, reading, level);
-                ratios.map_or_else(
-                    || "\u{2013}".to_owned(),
-                    |[least, median]| format!("{}, {}", ratio(median), ratio(least)),
-                )
-            };
-            // Only areas are counted.
-            let corrected = if quantity == Quantity::Area { cell(Reading::Best) } else { String::new() };
-            table.push_str(&format!(
-                "| {}, {} | {ours} ({n} of {n_scenes}) | {} | {corrected} |\n",
-                quantity.name(),
-                percent(level),
-                cell(Reading::Counted)
-            ));
-        }
-    }
-    table
+    let line = |(quantity, level): (Quantity, f64)| {
+        let (seconds, n) = results.our_time(quantity, level);
+        let ours = if n > 0 { milliseconds(seconds) } else { NONE.to_owned() };
+        let cell = |reading| {
+            let ratios = results.ratios(quantity, reading, level);
+            ratios.map_or_else(|| NONE.to_owned(), |[least, median]| format!("{}, {}", ratio(median), ratio(least)))
+        };
+        // Only areas are counted.
+        let corrected = if quantity == Quantity::Area { cell(Reading::Best) } else { String::new() };
+        let as_reported = cell(Reading::Counted);
+        let (name, error) = (quantity.name(), percent(level));
+        format!("| {name}, {error} | {ours} ({n} of {n_scenes}) | {as_reported} | {corrected} |\n")
+    };
+    head.to_owned() + &levels().map(line).collect::<String>()
+}
+
+/// Every error that is asked for.
+fn levels() -> impl Iterator<Item = (Quantity, f64)> {
+    LEVELS.into_iter().flat_map(|(quantity, levels)| levels.iter().map(move |&level| (quantity, level)))
 }
 
 /// What is solved, and the reference values.
 fn scenes(references: &References) -> Result<String, String> {
-    let mut table =
-        "| scene | N | H | seed | σ0/E* | A/A0 | rms pressure / E* | Δ/λ |\n|---|---|---|---|---|---|---|---|\n"
-            .to_owned();
-    for scene in SCENES {
+    let head = "| scene | N | H | seed | σ0/E* | A/A0 | rms pressure / E* | Δ/λ |\n|---|---|---|---|---|---|---|---|\n";
+    let line = |scene: &Scene| {
         let value = |quantity| {
             let row = references.row(scene.name, quantity);
             let row = row.ok_or_else(|| format!("{REFERENCE} has no {} of {}", quantity.name(), scene.name))?;
@@ -124,36 +120,26 @@ fn scenes(references: &References) -> Result<String, String> {
         };
         let values = Quantity::COMPARED.into_iter().map(value).collect::<Result<Vec<_>, String>>()?.join(" | ");
         let Scene { name, waves, hurst, seed, load } = scene;
-        table.push_str(&format!("| {name} | {waves} | {hurst} | {seed} | {load:e} | {values} |\n"));
-    }
-    Ok(table)
+        Ok(format!("| {name} | {waves} | {hurst} | {seed} | {load:e} | {values} |\n"))
+    };
+    Ok(head.to_owned() + &SCENES.iter().map(line).collect::<Result<String, String>>()?)
 }
 
 /// Which setting reaches an error in which time, for one scene; for peers the same.
 fn scene(results: &Results<'_>, scene: &str) -> String {
-    let mut table = "| error below | rc | time | fastest peer, as it reports | time | corrected by hand | time |\n\
-                     |---|---|---|---|---|---|---|\n"
-        .to_owned();
-    for (quantity, levels) in LEVELS {
-        for &level in levels {
-            let cells = |ours, reading| {
-                let row = results.fastest(results.of(scene, ours), (quantity, reading), level);
-                row.map_or_else(
-                    || "not reached | ".to_owned(),
-                    |row| format!("{} | {}", setting(row), milliseconds(row.total_seconds())),
-                )
-            };
-            let corrected = if quantity == Quantity::Area { cells(false, Reading::Best) } else { " | ".to_owned() };
-            table.push_str(&format!(
-                "| {}, {} | {} | {} | {corrected} |\n",
-                quantity.name(),
-                percent(level),
-                cells(true, Reading::Best),
-                cells(false, Reading::Counted)
-            ));
-        }
-    }
-    table
+    let head = "| error below | rc | time | fastest peer, as it reports | time | corrected by hand | time |\n\
+                |---|---|---|---|---|---|---|\n";
+    let line = |(quantity, level): (Quantity, f64)| {
+        let cells = |ours, reading| {
+            let row = results.fastest(results.of(scene, ours), (quantity, reading), level);
+            let found = |row| format!("{} | {}", setting(row), milliseconds(row.total_seconds()));
+            row.map_or_else(|| "not reached | ".to_owned(), found)
+        };
+        let corrected = if quantity == Quantity::Area { cells(false, Reading::Best) } else { " | ".to_owned() };
+        let (ours, as_reported) = (cells(true, Reading::Best), cells(false, Reading::Counted));
+        format!("| {}, {} | {ours} | {as_reported} | {corrected} |\n", quantity.name(), percent(level))
+    };
+    head.to_owned() + &levels().map(line).collect::<String>()
 }
 
 /// How a line was made.

@@ -97,7 +97,9 @@ pub(super) fn families<'a>(rows: impl Iterator<Item = &'a Row>) -> BTreeMap<Fami
     for row in rows {
         families.entry(row.family()).or_default().push(row);
     }
-    families.values_mut().for_each(|rows| rows.sort_by_key(|row| row.elements_per_wave));
+    for rows in families.values_mut() {
+        rows.sort_by_key(|row| row.elements_per_wave);
+    }
     families
 }
 

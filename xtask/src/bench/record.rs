@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::measure::Outcome;
 use super::scenes::Scene;
-use super::setting::{Setting, typed};
+use super::setting::{KernelName, Method, Setting, typed};
 
 /// Correction of a counted area by its edges, in elements an edge: (π - 1 + ln 2)/24 (Yastrebov, Anciaux, Molinari, *Tribol.
 /// Int.* 114 (2017) 161). Peers leave it to their users.
@@ -59,7 +59,7 @@ impl Family {
     pub(super) fn ours(setting: &Setting) -> Self {
         Self {
             program: OURS.to_owned(),
-            method: format!("{:?}", setting.method).to_lowercase(),
+            method: setting.method.name().to_owned(),
             kernel: setting.kernel.kernel().name().to_owned(),
             border_level: setting.border_level,
             tolerance: typed(setting.tolerance),
@@ -70,8 +70,8 @@ impl Family {
     pub(super) fn peer(program: &str, tolerance: &str) -> Self {
         Self {
             program: program.to_owned(),
-            method: "uniform".to_owned(),
-            kernel: "spectral".to_owned(),
+            method: Method::Uniform.name().to_owned(),
+            kernel: KernelName::Spectral.kernel().name().to_owned(),
             border_level: 0,
             tolerance: tolerance.to_owned(),
         }

@@ -39,6 +39,15 @@ pub(super) enum KernelName {
     Spectral,
 }
 
+impl Method {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Uniform => "uniform",
+            Self::Adaptive => "adaptive",
+        }
+    }
+}
+
 impl KernelName {
     pub(super) fn kernel(self) -> &'static dyn Kernel {
         match self {
@@ -88,8 +97,8 @@ impl Setting {
         for border_level in 0..=DEEPEST_BORDER {
             let smallest = elements_per_wave << border_level;
             let (per_wave, per_side) = SMALLEST_ELEMENTS;
-            // The base grid has four elements for the shortest wave, and something must be above it.
-            if smallest < 8 || smallest > per_wave || scene.side(smallest) > per_side {
+            // The base grid has four elements for the shortest wave, and the grid must be above it.
+            if elements_per_wave < 8 || smallest > per_wave || scene.side(smallest) > per_side {
                 continue;
             }
             settings.push(Self::adaptive(border_level, elements_per_wave, Tolerance::Auto));
