@@ -10,6 +10,7 @@ mod repository;
 mod reproduction;
 #[cfg(test)]
 mod snapshot;
+mod stress;
 mod test;
 mod tidy;
 
@@ -50,6 +51,7 @@ enum Command {
     /// Tabulates and draws the truncation error of the image sums against shells and time, beside the exact coefficients
     KernelError(figures::Args),
     Bench(bench::Args),
+    Stress(stress::Args),
 }
 
 fn main() -> anyhow::Result<()> {
@@ -69,5 +71,6 @@ fn main() -> anyhow::Result<()> {
         Command::Reproduction(args) => reproduction::run(&args),
         Command::KernelError(args) => figures::run::<kernel_error::KernelErrors>(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Stress(args) => stress::run(&args),
     }
 }

@@ -5,6 +5,9 @@ use rc_core::Field;
 
 use crate::{Control, SolveError, SolveParams};
 
+/// Height ranges, in λ, for which squares of pressures and their products with gaps neither underflow nor overflow.
+const HEIGHT_RANGE: [f64; 2] = [1e-130, 1e130];
+
 /// Extremes and mean of the heights.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HeightStatistics {
@@ -66,6 +69,10 @@ impl Problem {
         let HeightStatistics { greatest: h_max, least: h_min, mean: h_mean } = statistics;
         let h_range = h_max - h_min;
         let full_contact = h_max - h_mean;
+        let [smallest, greatest] = HEIGHT_RANGE;
+        if h_range != 0.0 && !(smallest..=greatest).contains(&h_range) {
+            return Err(SolveError::HeightRange { value: h_range, smallest, greatest });
+        }
         match control {
             Control::MeanPressure(value) if !(value > 0.0 && value.is_finite()) => {
                 return Err(SolveError::MeanPressure { value });
@@ -81,6 +88,14 @@ impl Problem {
             return Err(SolveError::Tolerance { value, smallest });
         }
         Ok(Self { control, h_max, h_mean, h_range })
+    }
+
+    /// The mean pressure, where it is known beforehand; else 0.
+    pub(crate) fn known_mean_pressure(&self) -> f64 {
+        match self.control {
+            Control::MeanPressure(mean) => mean,
+            Control::Penetration(_) => 0.0,
+        }
     }
 
     /// The constant c in `g = L p - h + c`: h_max - Δ under penetration control; under pressure control Δ is a multiplier

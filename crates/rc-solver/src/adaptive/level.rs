@@ -69,6 +69,11 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         Arc::new(Hierarchy::new(self.base().nx(), elements.clone(), reach))
     }
 
+    /// An operator for fresh gaps of this problem.
+    fn fresh_of<U: Real + Into<f64>>(&self, hierarchy: Arc<Hierarchy>) -> Fresh<U> {
+        Fresh::new(hierarchy, self.problem.known_mean_pressure())
+    }
+
     /// Solves on the elements of the prolonged pressure only, for the next level.
     pub(super) fn prepare_level(&self, grid: Grid, mesh: Mesh, tolerance: f64, observer: &dyn Observer) -> Level {
         let n_levels = self.n_levels(grid);
@@ -77,7 +82,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         let machinery = Machinery {
             corrections: TileOperator::new(Arc::clone(&hierarchy)),
             preconditioner: self.preconditioner.tables(n_levels),
-            fresh: Fresh::<f32>::new(hierarchy),
+            fresh: self.fresh_of::<f32>(hierarchy),
             fresh_response: response.clone(),
             response,
         };
@@ -118,7 +123,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
                 corrections: TileOperator::new(self.hierarchy(&part.elements, self.response.reach())),
                 response,
                 preconditioner,
-                fresh: Fresh::new(self.hierarchy(&part.elements, self.fresh.reach())),
+                fresh: self.fresh_of(self.hierarchy(&part.elements, self.fresh.reach())),
                 fresh_response,
             };
             // Before the descent, which needs the memory.
@@ -145,7 +150,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
 
     /// Elements where the start may touch, judged by the quick operator.
     fn first_candidates(&self, mesh: &Mesh, response: &Tables<f32>, contact_gap: f64) -> Candidates {
-        let mut quick = Fresh::<f32>::new(self.hierarchy(&mesh.elements, self.response.reach()));
+        let mut quick = self.fresh_of::<f32>(self.hierarchy(&mesh.elements, self.response.reach()));
         quick.fill(mesh.pressure.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
         quick.multiply(response);
         // Not a proof yet: the margin stands for the quick operator's error too.
@@ -191,7 +196,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         loop {
             let mut pressure = mesh.elements.moved(&candidates.elements, &mesh.pressure, 0.0);
             let mut gap = vec![0.0; pressure.len()];
-            let mut fresh = Fresh::<T>::new(self.hierarchy(&candidates.elements, self.fresh.reach()));
+            let mut fresh = self.fresh_of::<T>(self.hierarchy(&candidates.elements, self.fresh.reach()));
             info.operator_applications += 1;
             let heights = &candidates.heights;
             let mut sums = fresh_gap(&mut fresh, response, &self.problem, (heights, &pressure, &mut gap));
