@@ -27,6 +27,8 @@ use row::Row;
 /// Stresses the solvers, kernels and operators on purpose: one line for each scene and property, a picture of all, and an
 /// error when a line fails.
 #[derive(clap::Args)]
+// Its own name beside that of the arguments it flattens.
+#[group(id = "stress")]
 pub(crate) struct Args {
     #[command(flatten)]
     figure: figures::Args,
@@ -78,6 +80,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         return mutate::run(args.only.as_deref(), &args.figure.out);
     }
     let started = Instant::now();
+    // Panics are rows of the table; what they print would be in its way.
+    std::panic::set_hook(Box::new(|_| {}));
     let params = Params { only: args.only.clone(), ..Stress::params(args.figure.preset())? };
     let stress = Stress::compute(&params)?;
     for file in figures::write(&stress, &args.figure.out)? {
@@ -189,6 +193,12 @@ impl Picture for Stress {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        use clap::Args as _;
+        Args::augment_args(clap::Command::new("stress")).debug_assert();
+    }
 
     #[test]
     fn the_reduced_set_passes_and_can_be_drawn() {

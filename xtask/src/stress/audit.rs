@@ -1,14 +1,14 @@
 //! The certificate again, by another operator than the one a solution was found with.
 
 use anyhow::Result;
-use rc_core::{Field, Operator};
+use rc_core::{Field, Grid, Operator};
 use rc_kernel::Love;
 use rc_solver::{Control, DirectSum, MultilevelOperator, UniformOperator};
 
 use super::solved::{Method, Solved};
 
-/// Largest side whose displacement is summed directly.
-const DIRECT_SIDE: usize = 64;
+/// Most elements whose displacement is summed directly, in half a second.
+const MOST_DIRECT: usize = 64 * 64;
 
 /// Error of the multilevel operator in an audit, relative to the rms displacement.
 const OPERATOR_ERROR: f64 = 1e-9;
@@ -38,7 +38,8 @@ impl Audit {
     /// Of a pressure and the displacement that it causes.
     pub(crate) fn of_pressure(heights: &Field, pressure: &Field, displacement: &[f64], control: Control) -> Self {
         let p = pressure.values();
-        let range = (heights.max() - heights.min()).max(f64::MIN_POSITIVE);
+        // A flat surface has no range to refer to but the cell's side.
+        let range = Some(heights.max() - heights.min()).filter(|range| *range > 0.0).unwrap_or(1.0);
         // Heights from the highest point: a large constant in them would drown the displacement.
         let top = heights.max();
         let gaps = displacement.iter().zip(heights.values()).map(|(v, h)| v + (top - h));
@@ -60,14 +61,12 @@ impl Audit {
     }
 }
 
-/// L p by another way than the method's own: a direct sum, the multilevel operator for the uniform grid, a Fourier transform
-/// for the others.
+/// L p by another way than the method's own: the multilevel operator for the uniform grid where it can be, a direct sum for
+/// small grids, a Fourier transform for the others.
 fn displacement(pressure: &Field, method: Method) -> Result<Vec<f64>> {
     let (grid, p) = (pressure.grid(), pressure.values());
     let mut v = vec![0.0; p.len()];
-    if grid.nx().max(grid.ny()) <= DIRECT_SIDE {
-        DirectSum::new(grid, method.kernel()).apply(p, &mut v, &mut []);
-    } else if method == Method::Uniform && can_be_multilevel(grid.nx(), grid.ny()) {
+    if method == Method::Uniform && can_be_multilevel(grid) {
         let side = grid.nx();
         let per_side = (side / TILE) as u32;
         let places = (0..per_side).flat_map(|row| (0..per_side).map(move |column| [column, row])).collect();
@@ -84,14 +83,16 @@ fn displacement(pressure: &Field, method: Method) -> Result<Vec<f64>> {
         for (i, value) in displaced.into_iter().enumerate() {
             v[index(i)] = value;
         }
+    } else if grid.len() <= MOST_DIRECT {
+        DirectSum::new(grid, method.kernel()).apply(p, &mut v, &mut []);
     } else {
         UniformOperator::new(grid, method.kernel()).apply(p, &mut v, &mut []);
     }
     Ok(v)
 }
 
-fn can_be_multilevel(nx: usize, ny: usize) -> bool {
-    nx == ny && nx.is_multiple_of(2 * TILE)
+fn can_be_multilevel(grid: Grid) -> bool {
+    grid.nx() == grid.ny() && grid.nx().is_multiple_of(2 * TILE)
 }
 
 /// L p of Love's squares by direct summation, for small grids.

@@ -87,6 +87,7 @@ enum KernelFault {
     Bias(f64),
     Noise(f64),
     NonSymmetry(f64),
+    Changes(f64),
     Moves,
 }
 
@@ -113,7 +114,8 @@ impl Kernel for FaultyKernel {
                 KernelFault::NonSymmetry(part) if kx > ky => value * (1.0 + part),
                 KernelFault::Moves if (kx, ky) == (0, 0) => 0.1,
                 // Another answer each time it is asked.
-                _ => value * if call.is_multiple_of(2) { 1.0 } else { 1.0 + 1e-9 },
+                KernelFault::Changes(part) => value * (1.0 + part * call as f64),
+                _ => value,
             }
         })
     }
@@ -179,6 +181,7 @@ fn kernels(rows: &mut Rows) -> Result<()> {
         KernelFault::Bias(1e-3),
         KernelFault::Noise(1e-2),
         KernelFault::NonSymmetry(1e-2),
+        KernelFault::Changes(1e-4),
         KernelFault::Moves,
     ];
     for fault in faults {
