@@ -22,7 +22,7 @@ use plotters::prelude::DrawingBackend;
 use rc_cli::picture::{Area, Picture, PictureError};
 
 use crate::figures::{self, Figure, Preset, Table};
-use row::Row;
+use row::{Row, Rows, guarded};
 
 /// Stresses the solvers, kernels and operators on purpose: one line for each scene and property, a picture of all, and an
 /// error when a line fails.
@@ -154,9 +154,13 @@ impl Figure for Stress {
 
     fn compute(params: &Params) -> Result<Self> {
         let mut rows = Vec::new();
-        for (name, make) in PARTS {
+        for &(name, make) in PARTS {
             if params.only.as_ref().is_none_or(|only| name.contains(only.as_str())) {
-                rows.extend(make(params.preset)?);
+                rows.extend(guarded(|| make(params.preset)).unwrap_or_else(|error| {
+                    let mut failed = Rows::of(name);
+                    failed.holds("all scenes", "can be compared", "solutions", format!("{error:#}"), false);
+                    failed.finish()
+                }));
             }
         }
         Ok(Self { rows })

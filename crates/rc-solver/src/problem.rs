@@ -44,6 +44,12 @@ impl HeightStatistics {
     }
 }
 
+/// The power of two next to a positive number, by which scaling is exact; 1 for what is none.
+pub(crate) fn power_of_two_near(value: f64) -> f64 {
+    let exponent = value.log2();
+    if exponent.is_finite() { 2.0_f64.powi(exponent.round() as i32) } else { 1.0 }
+}
+
 /// A checked problem, in the quantities that every level shares.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Problem {
@@ -88,14 +94,6 @@ impl Problem {
             return Err(SolveError::Tolerance { value, smallest });
         }
         Ok(Self { control, h_max, h_mean, h_range })
-    }
-
-    /// The mean pressure, where it is known beforehand; else 0.
-    pub(crate) fn known_mean_pressure(&self) -> f64 {
-        match self.control {
-            Control::MeanPressure(mean) => mean,
-            Control::Penetration(_) => 0.0,
-        }
     }
 
     /// The constant c in `g = L p - h + c`: h_max - Δ under penetration control; under pressure control Δ is a multiplier

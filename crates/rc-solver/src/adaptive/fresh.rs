@@ -9,22 +9,30 @@ use rayon::prelude::*;
 
 use super::operator::{BLOCK_CELLS, Hierarchy, Real, Tables, TileOperator};
 use crate::descent::{Blocks, Engine};
+use crate::problem::power_of_two_near;
 
 /// An operator of precision `T` on vectors of double precision.
 pub(super) struct Fresh<T> {
     operator: TileOperator<T>,
     /// Subtracted from every pressure before it is rounded.
     reference: f64,
+    /// The unit of pressures and displacements, a power of two, so that no scene underflows or overflows.
+    unit: f64,
 }
 
 impl<T: Real + Into<f64>> Fresh<T> {
-    /// An operator on `hierarchy` for pressures about `mean`.
+    /// An operator on `hierarchy` for pressures about `mean` and displacements of about `size`.
     ///
     /// A uniform pressure displaces nothing, so where elements cover the cell the mean is taken off: far beyond full contact
     /// its rounding, and its part of the split kernel's error, would be larger than what the heights add to it.
-    pub(super) fn new(hierarchy: Arc<Hierarchy>, mean: f64) -> Self {
+    pub(super) fn new(hierarchy: Arc<Hierarchy>, mean: f64, size: f64) -> Self {
         let reference = if hierarchy.elements().cover_cell() { mean } else { 0.0 };
-        Self { operator: TileOperator::new(hierarchy), reference }
+        Self { operator: TileOperator::new(hierarchy), reference, unit: power_of_two_near(size) }
+    }
+
+    /// What the operator's own displacements are multiples of.
+    pub(super) fn unit(&self) -> f64 {
+        self.unit
     }
 
     pub(super) fn operator(&self) -> &TileOperator<T> {
@@ -44,13 +52,13 @@ impl<T: Real + Into<f64>> Engine<f64> for Fresh<T> {
         S: IndexedParallelIterator,
         R: Send,
     {
-        let reference = self.reference;
+        let (reference, unit) = (self.reference, self.unit);
         self.operator.fill(sources, |source, cells| {
             let mut values = [0.0; BLOCK_CELLS];
             let values = &mut values[..cells.len()];
             let filled = fill(source, values);
             for (cell, &value) in cells.iter_mut().zip(&*values) {
-                *cell = T::rounded(value - reference);
+                *cell = T::rounded((value - reference) / unit);
             }
             filled
         })
@@ -68,7 +76,7 @@ impl<T: Real + Into<f64>> Engine<f64> for Fresh<T> {
         self.operator.take(table, sinks, |sink, cells| {
             let mut values = [0.0; BLOCK_CELLS];
             for (value, &cell) in values.iter_mut().zip(cells) {
-                *value = cell.into();
+                *value = self.unit * cell.into();
             }
             take(sink, &values[..cells.len()])
         })

@@ -139,7 +139,7 @@ impl AdaptiveSolution {
             let tiles = hierarchy.elements().finest();
             // Where the pressure is on part of the cell, the mean over all of it says nothing of its size.
             let mean = if own.cover_cell() { self.info.mean_pressure } else { 0.0 };
-            let mut fresh = Fresh::<f32>::new(Arc::clone(&hierarchy), mean);
+            let mut fresh = Fresh::<f32>::new(Arc::clone(&hierarchy), mean, self.info.penetration_full_contact);
             fresh.fill(values.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
             fresh.multiply(&tables);
             fresh.take(&tables, values.par_chunks_mut(BLOCK_CELLS), |v, cells| v.copy_from_slice(cells));

@@ -131,7 +131,7 @@ pub(crate) fn rescale(
 }
 
 /// Mean of the pressure over a cell of `n_cell` of the smallest elements.
-pub(super) fn mean_pressure(n_cell: f64, blocks: &Blocks, pressure: &[f64]) -> f64 {
+pub(crate) fn mean_pressure(n_cell: f64, blocks: &Blocks, pressure: &[f64]) -> f64 {
     let [sum] = blocks.total(pressure.par_chunks(blocks.len()).map(|block| [block.iter().sum()]).collect());
     sum / n_cell
 }

@@ -20,8 +20,8 @@ use rc_core::{Event, Grid, Observer};
 
 pub(crate) use blocks::Blocks;
 pub(crate) use engine::Engine;
-pub(crate) use gap::{GapSums, fresh_gap, rescale, scale_to_load};
-use gap::{mean_pressure, positive_part, scale_all};
+pub(crate) use gap::{GapSums, fresh_gap, mean_pressure, rescale, scale_to_load};
+use gap::{positive_part, scale_all};
 pub(crate) use outcome::Outcome;
 
 use crate::problem::Problem;
