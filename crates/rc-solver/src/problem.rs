@@ -96,11 +96,11 @@ impl Problem {
         Ok(Self { control, h_max, h_mean, h_range })
     }
 
-    /// The constant c in `g = L p - h + c`: h_max - Δ under penetration control; under pressure control Δ is a multiplier
-    /// and c is left out.
+    /// The constant c in `g = L p - h + c`: h_max - Δ under penetration control. Under pressure control Δ is a multiplier, and
+    /// c is h_max, so that a large constant in the heights is not in the gap, whose sums it would drown.
     pub(crate) fn offset(&self) -> f64 {
         match self.control {
-            Control::MeanPressure(_) => 0.0,
+            Control::MeanPressure(_) => self.h_max,
             Control::Penetration(penetration) => self.h_max - penetration,
         }
     }

@@ -64,7 +64,9 @@ impl Audit {
 /// L p by another way than the method's own: the multilevel operator for the uniform grid where it can be, a direct sum for
 /// small grids, a Fourier transform for the others.
 fn displacement(pressure: &Field, method: Method) -> Result<Vec<f64>> {
-    let (grid, p) = (pressure.grid(), pressure.values());
+    // A constant displaces nothing, and its rounding would be all that is left of a large one.
+    let (grid, mean) = (pressure.grid(), pressure.mean());
+    let p: Vec<f64> = pressure.values().iter().map(|p| p - mean).collect();
     let mut v = vec![0.0; p.len()];
     if method == Method::Uniform && can_be_multilevel(grid) {
         let side = grid.nx();
@@ -75,18 +77,16 @@ fn displacement(pressure: &Field, method: Method) -> Result<Vec<f64>> {
             let ([column, row], cell) = (operator.places()[i / (TILE * TILE)], i % (TILE * TILE));
             (row as usize * TILE + cell / TILE) * side + column as usize * TILE + cell % TILE
         };
-        // A constant displaces nothing, and its rounding would be all that is left of a large one.
-        let mean = pressure.mean();
-        let tiles: Vec<f64> = (0..p.len()).map(|i| p[index(i)] - mean).collect();
+        let tiles: Vec<f64> = (0..p.len()).map(|i| p[index(i)]).collect();
         let mut displaced = vec![0.0; p.len()];
         operator.apply(&tiles, &mut displaced, &mut []);
         for (i, value) in displaced.into_iter().enumerate() {
             v[index(i)] = value;
         }
     } else if grid.len() <= MOST_DIRECT {
-        DirectSum::new(grid, method.kernel()).apply(p, &mut v, &mut []);
+        DirectSum::new(grid, method.kernel()).apply(&p, &mut v, &mut []);
     } else {
-        UniformOperator::new(grid, method.kernel()).apply(p, &mut v, &mut []);
+        UniformOperator::new(grid, method.kernel()).apply(&p, &mut v, &mut []);
     }
     Ok(v)
 }

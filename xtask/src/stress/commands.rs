@@ -12,8 +12,8 @@ use super::heights::{mapped, rough};
 use super::row::{Row, Rows, guarded};
 use crate::figures::Preset;
 
-/// Units change the rounding of the input, which may move an element at the edge of a contact.
-const SAME: f64 = 1e-6;
+/// Units change the rounding of the input, and with it the way of the iteration to a solution that is good to five digits.
+const SAME: f64 = 1e-5;
 
 /// Rms height and load of the scene in units of λ and E*.
 const RMS: f64 = 1e-3;

@@ -14,6 +14,15 @@ use crate::figures::Preset;
 const ADAPTIVE_SIDE: usize = 128;
 const UNIFORM_SIDE: usize = 64;
 
+/// Times the median number of iterations that some scenes may take: where the mean pressure is found last and hardly changes
+/// the penetration; where every element is a peak of its own; where pressures are singular; where a few elements touch and
+/// no coarser grid says which; where the shortest of many waves have four elements or fewer.
+const NEAR_FULL_CONTACT: f64 = 12.0;
+const WHITE_NOISE: f64 = 5.0;
+const EDGES: f64 = 3.0;
+const COLD_START: f64 = 3.0;
+const MANY_WAVES: f64 = 4.0;
+
 /// All scenes of a preset.
 pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     let full = preset == Preset::Full;
@@ -69,7 +78,11 @@ fn loads(method: Method, full: bool) -> Result<Vec<Scene>> {
     let large = thinned(&large, full)
         .into_iter()
         .map(|part| (format!("{part} times the load of full contact"), part * of_full));
-    Ok(small.chain(large).map(|(name, load)| Scene::new(name, &heights, method, Control::MeanPressure(load))).collect())
+    let scene = |(name, load): (String, f64)| {
+        let scene = Scene::new(name, &heights, method, Control::MeanPressure(load));
+        if load < 1e-3 && method != Method::Adaptive { scene.slow(COLD_START) } else { scene }
+    };
+    Ok(small.chain(large).map(scene).collect())
 }
 
 fn penetrations(method: Method, full: bool) -> Result<Vec<Scene>> {
@@ -83,8 +96,7 @@ fn penetrations(method: Method, full: bool) -> Result<Vec<Scene>> {
             format!("{part:e} of full contact")
         };
         let scene = Scene::new(name, &heights, method, Control::Penetration(part * deepest));
-        // The mean pressure is found last, and hardly changes the penetration there.
-        if part > 0.98 { scene.slow() } else { scene }
+        if part > 0.98 { scene.slow(NEAR_FULL_CONTACT) } else { scene }
     };
     Ok(thinned(&parts, full).into_iter().map(scene).collect())
 }
@@ -110,7 +122,8 @@ fn surfaces(method: Method, full: bool) -> Result<Vec<Scene>> {
         };
         let heights = rough(waves, 0.8, 4, side)?;
         let load = 0.02 * slope(&heights);
-        scenes.push(Scene::new(format!("N = {waves}"), &heights, method, Control::MeanPressure(load)));
+        let scene = Scene::new(format!("N = {waves}"), &heights, method, Control::MeanPressure(load));
+        scenes.push(if waves > 100 { scene.slow(MANY_WAVES) } else { scene });
     }
     Ok(scenes)
 }
@@ -149,7 +162,7 @@ fn shape_scenes(method: Method, full: bool) -> Result<Vec<Scene>> {
         let range = shape.heights.max() - shape.heights.min();
         let mut add = |name: String, control| {
             let scene = Scene::new(name, &shape.heights, method, control).unresolved();
-            scenes.push(if shape.name == "white noise" { scene.slow() } else { scene });
+            scenes.push(scene.slow(if shape.name == "white noise" { WHITE_NOISE } else { EDGES }));
         };
         for part in thinned(&[1e-2, 1e-6, 1.0], full) {
             add(format!("{} at a load of {part:.0e} H", shape.name), Control::MeanPressure(part * range));
@@ -167,7 +180,7 @@ fn grids(full: bool) -> Result<Vec<Scene>> {
     for (nx, ny) in thinned(&sides, full) {
         let grid = Grid::new(nx, ny)?;
         let wave = |t: f64| (std::f64::consts::TAU * t).cos();
-        let heights = Field::from_fn(grid, |x, y| 1e-3 * (wave(x) + wave(y) + 0.3 * wave(2.0 * x + 0.1)));
+        let heights = Field::from_fn(grid, |x, y| 1e-3 * (wave(x + 0.1) + wave(y + 0.2) + 0.3 * wave(2.0 * x)));
         let control = Control::MeanPressure(1e-3);
         for method in [Method::Uniform, Method::Spectral] {
             scenes.push(Scene::new(format!("grid {grid}"), &heights, method, control));

@@ -16,13 +16,10 @@ const AUDIT_SLACK: f64 = 0.1;
 
 /// The same for the adaptive method on heights with edges and spikes that no grid resolves: its operator is a hundred times
 /// less accurate there than on contacts.
-const UNRESOLVED_SLACK: f64 = 0.75;
+const UNRESOLVED_SLACK: f64 = 1.0;
 
 /// Iterations may be this many times the median of all scenes of the method.
 const ITERATION_FACTOR: f64 = 2.0;
-
-/// The same for scenes that are known to need more.
-const SLOW_FACTOR: f64 = 12.0;
 
 /// A contact problem with a name.
 #[derive(Clone)]
@@ -48,9 +45,9 @@ impl Scene {
         if self.method == Method::Adaptive { Self { slack: UNRESOLVED_SLACK, ..self } } else { self }
     }
 
-    /// Known to take more iterations than others.
-    pub(crate) fn slow(self) -> Self {
-        Self { iteration_factor: SLOW_FACTOR, ..self }
+    /// Known to take up to `factor` times the median number of iterations.
+    pub(crate) fn slow(self, factor: f64) -> Self {
+        Self { iteration_factor: factor, ..self }
     }
 
     pub(crate) fn solve(&self) -> Result<Solved> {

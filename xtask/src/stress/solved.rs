@@ -53,6 +53,11 @@ impl Solved {
 
 /// Solves to `tolerance`.
 pub(crate) fn solve(heights: &Field, method: Method, control: Control, tolerance: f64) -> Result<Solved> {
+    let asked = || format!("{} {control:?} to {tolerance:e}", method.name());
+    try_solve(heights, method, control, tolerance).with_context(asked)
+}
+
+fn try_solve(heights: &Field, method: Method, control: Control, tolerance: f64) -> Result<Solved> {
     let solve = SolveParams { tolerance, ..SolveParams::certified() };
     match method {
         Method::Uniform | Method::Spectral => {

@@ -123,7 +123,12 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
                 return Level { elements: candidates.elements, pressure, gap, outcome, evaluated, info };
             }
             // What is nearer to contact than the error may come into it yet.
-            let near = outcome.contact_gap + outcome.certificate.penetration * self.problem.h_range;
+            let error = match outcome.mean_pressure {
+                // Nothing presses, when coarser levels have lost a contact that they hardly resolve: it begins anew.
+                0.0 => CANDIDATE_MARGIN,
+                _ => outcome.certificate.penetration,
+            };
+            let near = outcome.contact_gap + error * self.problem.h_range;
             let part = Part::choose(&candidates, &mesh.elements, &pressure, &gap, near);
             let machinery = Machinery {
                 corrections: TileOperator::new(self.hierarchy(&part.elements, self.response.reach())),
