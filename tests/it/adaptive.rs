@@ -323,3 +323,22 @@ fn nothing_penetrates_between_coarse_elements() {
     let least = free.map(|((v, h), _)| v - h + offset).fold(f64::INFINITY, f64::min);
     assert!(least > -2e-6 * range, "a point outside contact penetrates by {:e}", -least / range);
 }
+
+/// Far beyond full contact the mean pressure is so large that its rounding in single precision would hide the heights.
+#[test]
+fn loads_far_beyond_full_contact_are_solved() {
+    let surface = surface(8, 0.8, 1);
+    let heights = surface.sample(Grid::square(256).expect("a grid"));
+    for pressure in [1.0, 2.0, 1e3, 1e6] {
+        let control = Control::MeanPressure(pressure);
+        let solution = adaptive(HeightSource::Surface(&surface, 256), control, 1e-6);
+        assert!(solution.is_full_contact(), "{pressure:e}: contact is not full");
+        let exact = solve_uniform(&heights, &Love, control, &SolveParams::certified(), &Silent).expect("full contact");
+        let scale = (exact.pressure.max() - exact.pressure.min()).max(1e-15 * pressure);
+        let adaptive = field(&solution);
+        let differences = adaptive.values().iter().zip(exact.pressure.values()).map(|(a, b)| (a - b).abs());
+        let worst = differences.fold(0.0, f64::max);
+        // The tolerance is on heights; the shortest waves need the largest pressures for the same height.
+        assert!(worst <= 1e-3 * scale, "{pressure:e}: off by {worst:e} of {scale:e}");
+    }
+}

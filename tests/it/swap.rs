@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use rc_core::testing::{check_height_field, check_kernel};
 use rc_core::{EdgeBias, Grid, HeightField, Kernel, Silent, Symbol};
-use rc_solver::{Control, SolveParams, Status, solve_uniform};
+use rc_kernel::Love;
+use rc_solver::{Control, SolveError, SolveParams, Status, solve_uniform};
 
 /// An elastic layer of thickness `depth` bonded to a rigid base, incompressible limit left aside: the half-space response
 /// times a factor that tends to 1 for short waves and to 0 for waves longer than the layer is thick.
@@ -61,5 +62,39 @@ fn own_surface_and_own_half_space_drive_the_solver() {
     for iy in 1..128 {
         let worst = (0..128).map(|ix| (thin.pressure.at(ix, iy) - thin.pressure.at(ix, 0)).abs()).fold(0.0, f64::max);
         assert!(worst <= 1e-3 * thin.pressure.max(), "row {iy} differs by {worst:e}");
+    }
+}
+
+/// Love's squares, but for one wave.
+struct Broken {
+    eigenvalue: f64,
+}
+
+impl Kernel for Broken {
+    fn name(&self) -> &'static str {
+        "broken"
+    }
+
+    fn symbol(&self, grid: Grid) -> Symbol<'_> {
+        let love = Love.symbol(grid);
+        Box::new(move |kx, ky| if (kx, ky) == (1, 2) { self.eigenvalue } else { love(kx, ky) })
+    }
+
+    fn edge_bias(&self) -> EdgeBias {
+        Love.edge_bias()
+    }
+}
+
+#[test]
+fn a_half_space_that_answers_nan_is_an_error_and_no_contact() {
+    let heights = Weierstrass.sample(Grid::square(32).expect("grid"));
+    let depth = heights.max() - heights.mean();
+    for eigenvalue in [f64::NAN, f64::INFINITY] {
+        let kernel = Broken { eigenvalue };
+        for control in [Control::MeanPressure(1e-4), Control::MeanPressure(10.0), Control::Penetration(0.3 * depth)] {
+            let solved = solve_uniform(&heights, &kernel, control, &SolveParams::certified(), &Silent);
+            let error = solved.err().map(|error| matches!(error, SolveError::NotConverged { .. }));
+            assert_eq!(error, Some(true), "{eigenvalue}, {control:?}");
+        }
     }
 }

@@ -26,6 +26,7 @@ use anyhow::{Context, Result};
 use rc_cli::picture::{Picture, save_png, save_svg};
 
 use crate::repository;
+pub(crate) use solve::pressure_field;
 pub(crate) use table::{Table, number};
 
 /// How large a figure is computed.

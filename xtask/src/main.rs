@@ -12,6 +12,7 @@ mod repository;
 mod reproduction;
 #[cfg(test)]
 mod snapshot;
+mod stress;
 mod test;
 mod tidy;
 
@@ -54,6 +55,7 @@ enum Command {
     /// Measures the error of area, rms pressure and mean gap on usual meshes, and how often their error bars hold it
     Accuracy(figures::Args),
     Bench(bench::Args),
+    Stress(stress::Args),
 }
 
 fn main() -> anyhow::Result<()> {
@@ -74,5 +76,6 @@ fn main() -> anyhow::Result<()> {
         Command::KernelError(args) => figures::run::<kernel_error::KernelErrors>(&args),
         Command::Accuracy(args) => figures::run::<accuracy::Accuracy>(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Stress(args) => stress::run(&args),
     }
 }

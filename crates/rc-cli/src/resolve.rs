@@ -248,19 +248,23 @@ pub fn checked_grid(spec: GridSpec) -> Result<Grid, CliError> {
     Grid::new(spec.nx, spec.ny).map_err(|cause| CliError::input(format_args!("grid: {cause}")))
 }
 
-/// Checks the number of worker threads and starts them; all cores when it is not given.
+/// Checks the number of worker threads and starts them. When it is not given, they are all cores, or as many as this process
+/// has already.
 ///
 /// # Errors
-/// [`CliError::Input`].
+/// [`CliError::Input`]: a number out of range, or another one than this process has already.
 pub fn start_threads(threads: Option<usize>) -> Result<usize, CliError> {
     const MOST: usize = 1024;
     let builder = rayon::ThreadPoolBuilder::new();
-    let builder = match threads {
-        None => builder,
-        Some(n @ 1..=MOST) => builder.num_threads(n),
+    match threads {
+        // Started on first use.
+        None => {}
+        Some(n @ 1..=MOST) => match builder.num_threads(n).build_global() {
+            Err(_) if rayon::current_num_threads() == n => {}
+            started => started.map_err(|cause| CliError::input(format_args!("threads: {cause}")))?,
+        },
         Some(n) => return Err(CliError::input(format_args!("threads: must be from 1 to {MOST}, not {n}"))),
-    };
-    builder.build_global().map_err(|cause| CliError::input(format_args!("threads: {cause}")))?;
+    }
     Ok(rayon::current_num_threads())
 }
 

@@ -19,6 +19,18 @@ pub enum SolveError {
         /// The value.
         value: f64,
     },
+    /// The peak-to-valley height is neither 0 nor of a size whose products with pressures are numbers.
+    #[error(
+        "the range of the heights must be 0 or from {smallest:e} to {greatest:e} (in units of the cell side), not {value:e}"
+    )]
+    HeightRange {
+        /// h_max - h_min, in λ.
+        value: f64,
+        /// The smallest that can be solved for.
+        smallest: f64,
+        /// The greatest.
+        greatest: f64,
+    },
     /// The mean pressure is not positive and finite.
     #[error("the mean pressure must be positive and finite, not {value}")]
     MeanPressure {

@@ -5,6 +5,9 @@ use rc_core::Field;
 
 use crate::{Control, SolveError, SolveParams};
 
+/// Height ranges, in λ, for which squares of pressures and their products with gaps neither underflow nor overflow.
+const HEIGHT_RANGE: [f64; 2] = [1e-130, 1e130];
+
 /// Extremes and mean of the heights.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HeightStatistics {
@@ -41,6 +44,12 @@ impl HeightStatistics {
     }
 }
 
+/// The power of two next to a positive number, by which scaling is exact; 1 for what is none.
+pub(crate) fn power_of_two_near(value: f64) -> f64 {
+    let exponent = value.log2();
+    if exponent.is_finite() { 2.0_f64.powi(exponent.round() as i32) } else { 1.0 }
+}
+
 /// A checked problem, in the quantities that every level shares.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Problem {
@@ -66,6 +75,10 @@ impl Problem {
         let HeightStatistics { greatest: h_max, least: h_min, mean: h_mean } = statistics;
         let h_range = h_max - h_min;
         let full_contact = h_max - h_mean;
+        let [smallest, greatest] = HEIGHT_RANGE;
+        if h_range != 0.0 && !(smallest..=greatest).contains(&h_range) {
+            return Err(SolveError::HeightRange { value: h_range, smallest, greatest });
+        }
         match control {
             Control::MeanPressure(value) if !(value > 0.0 && value.is_finite()) => {
                 return Err(SolveError::MeanPressure { value });
@@ -83,11 +96,11 @@ impl Problem {
         Ok(Self { control, h_max, h_mean, h_range })
     }
 
-    /// The constant c in `g = L p - h + c`: h_max - Δ under penetration control; under pressure control Δ is a multiplier
-    /// and c is left out.
+    /// The constant c in `g = L p - h + c`: h_max - Δ under penetration control. Under pressure control Δ is a multiplier, and
+    /// c is h_max, so that a large constant in the heights is not in the gap, whose sums it would drown.
     pub(crate) fn offset(&self) -> f64 {
         match self.control {
-            Control::MeanPressure(_) => 0.0,
+            Control::MeanPressure(_) => self.h_max,
             Control::Penetration(penetration) => self.h_max - penetration,
         }
     }

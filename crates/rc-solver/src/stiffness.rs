@@ -5,6 +5,7 @@ use rc_core::{Field, Kernel};
 
 use crate::descent::Engine;
 use crate::fft::{Convolution, SymbolTable};
+use crate::problem::power_of_two_near;
 
 /// The iteration ends when a step adds less than this fraction; what later steps would add is of the same order.
 const SMALLEST_GAIN: f64 = 3e-4;
@@ -44,8 +45,10 @@ pub(crate) fn stiffness_of<C: Engine<f32>>(
     let zeros = || vec![0.0_f32; pressure.len()];
     let (mut residual, mut z, mut t, mut u) = (zeros(), zeros(), zeros(), zeros());
     // The first direction is the pressure itself: its best multiple has the secant stiffness σ0²/mean(p v).
+    // Its size is taken away: no multiple of it underflows.
+    let size = power_of_two_near(pressure.iter().copied().fold(0.0, f64::max));
     for (t, &p) in t.iter_mut().zip(pressure) {
-        *t = p as f32;
+        *t = (p / size) as f32;
     }
     for (residual, &c) in residual.iter_mut().zip(&in_contact) {
         *residual = f32::from(u8::from(c));

@@ -202,4 +202,10 @@ fn bad_input_is_refused_with_its_value() {
     broken.values_mut()[16 * 3 + 5] = f64::NAN;
     let error = solve(&broken, &Love, Control::MeanPressure(1e-3), 1e-6).expect_err("NaN");
     assert!(matches!(error, SolveError::Height { ix: 5, iy: 3, .. }), "{error}");
+    // Squares of what such heights lead to underflow, or their range is not a number.
+    for size in [1e-305, 1.7e308] {
+        let scaled = Field::from_fn(heights.grid(), |x, _| if x < 0.5 { size } else { -size });
+        let error = solve(&scaled, &Love, Control::MeanPressure(1e-3), 1e-6).expect_err("a size out of range");
+        assert!(matches!(error, SolveError::HeightRange { .. }), "{error}");
+    }
 }

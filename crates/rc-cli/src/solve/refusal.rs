@@ -15,6 +15,12 @@ pub(super) fn in_si(error: &SolveError, side: f64, contact: &ContactProblem) -> 
             full_contact * side,
             value * side
         )),
+        SolveError::HeightRange { value, smallest, greatest } => CliError::input(format_args!(
+            "heights: their range must be 0 or from {:e} to {:e} m, not {:e} m",
+            smallest * side,
+            greatest * side,
+            value * side
+        )),
         SolveError::MeanPressure { value } => CliError::input(format_args!(
             "pressure: must be positive and finite (Pa), not {}",
             value * contact.elasticity.e_star()

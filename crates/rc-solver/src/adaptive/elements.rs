@@ -90,6 +90,12 @@ impl Elements {
         Self::new(self.levels.iter().zip(&self.starts).map(level).collect())
     }
 
+    /// Whether they cover the whole cell.
+    pub(crate) fn cover_cell(&self) -> bool {
+        let areas = self.levels.iter().enumerate().map(|(coarser, tiles)| tiles.n_cells() << (2 * coarser));
+        areas.sum::<usize>() == self.finest().side().pow(2)
+    }
+
     /// Where the cells of the level `coarser` times coarser than the finest are in a vector.
     pub(crate) fn cells(&self, coarser: usize) -> Range<usize> {
         self.starts[coarser]..self.starts[coarser] + self.levels[coarser].n_cells()

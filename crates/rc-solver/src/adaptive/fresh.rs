@@ -9,17 +9,34 @@ use rayon::prelude::*;
 
 use super::operator::{BLOCK_CELLS, Hierarchy, Real, Tables, TileOperator};
 use crate::descent::{Blocks, Engine};
+use crate::problem::power_of_two_near;
 
 /// An operator of precision `T` on vectors of double precision.
-pub(super) struct Fresh<T>(TileOperator<T>);
+pub(super) struct Fresh<T> {
+    operator: TileOperator<T>,
+    /// Subtracted from every pressure before it is rounded.
+    reference: f64,
+    /// The unit of pressures and displacements, a power of two, so that no scene underflows or overflows.
+    unit: f64,
+}
 
 impl<T: Real + Into<f64>> Fresh<T> {
-    pub(super) fn new(hierarchy: Arc<Hierarchy>) -> Self {
-        Self(TileOperator::new(hierarchy))
+    /// An operator on `hierarchy` for pressures about `mean` and displacements of about `size`.
+    ///
+    /// A uniform pressure displaces nothing, so where elements cover the cell the mean is taken off: far beyond full contact
+    /// its rounding, and its part of the split kernel's error, would be larger than what the heights add to it.
+    pub(super) fn new(hierarchy: Arc<Hierarchy>, mean: f64, size: f64) -> Self {
+        let reference = if hierarchy.elements().cover_cell() { mean } else { 0.0 };
+        Self { operator: TileOperator::new(hierarchy), reference, unit: power_of_two_near(size) }
+    }
+
+    /// What the operator's own displacements are multiples of.
+    pub(super) fn unit(&self) -> f64 {
+        self.unit
     }
 
     pub(super) fn operator(&self) -> &TileOperator<T> {
-        &self.0
+        &self.operator
     }
 }
 
@@ -27,7 +44,7 @@ impl<T: Real + Into<f64>> Engine<f64> for Fresh<T> {
     type Table = Tables<T>;
 
     fn blocks(&self) -> Blocks {
-        self.0.blocks()
+        self.operator.blocks()
     }
 
     fn fill<S, R>(&mut self, sources: S, fill: impl Fn(S::Item, &mut [f64]) -> R + Sync) -> Vec<R>
@@ -35,19 +52,20 @@ impl<T: Real + Into<f64>> Engine<f64> for Fresh<T> {
         S: IndexedParallelIterator,
         R: Send,
     {
-        self.0.fill(sources, |source, cells| {
+        let (reference, unit) = (self.reference, self.unit);
+        self.operator.fill(sources, |source, cells| {
             let mut values = [0.0; BLOCK_CELLS];
             let values = &mut values[..cells.len()];
             let filled = fill(source, values);
             for (cell, &value) in cells.iter_mut().zip(&*values) {
-                *cell = T::rounded(value);
+                *cell = T::rounded((value - reference) / unit);
             }
             filled
         })
     }
 
     fn multiply(&mut self, table: &Tables<T>) {
-        self.0.multiply(table);
+        self.operator.multiply(table);
     }
 
     fn take<K, R>(&self, table: &Tables<T>, sinks: K, take: impl Fn(K::Item, &[f64]) -> R + Sync) -> Vec<R>
@@ -55,16 +73,16 @@ impl<T: Real + Into<f64>> Engine<f64> for Fresh<T> {
         K: IndexedParallelIterator,
         R: Send,
     {
-        self.0.take(table, sinks, |sink, cells| {
+        self.operator.take(table, sinks, |sink, cells| {
             let mut values = [0.0; BLOCK_CELLS];
             for (value, &cell) in values.iter_mut().zip(cells) {
-                *value = cell.into();
+                *value = self.unit * cell.into();
             }
             take(sink, &values[..cells.len()])
         })
     }
 
     fn set_mean(&self, table: &mut Tables<T>, eigenvalue: f64) {
-        self.0.set_mean(table, eigenvalue);
+        self.operator.set_mean(table, eigenvalue);
     }
 }

@@ -12,7 +12,8 @@ use super::fresh::Fresh;
 use super::operator::{BLOCK_CELLS, Hierarchy, Reach, Real, Tables, TileOperator};
 use super::split::split;
 use super::survey::{Remainder, possible_contact};
-use crate::descent::{Descent, Engine, Machinery, Outcome, Start, fresh_gap, rescale, scale_to_load};
+use crate::Control;
+use crate::descent::{Descent, Engine, Machinery, Outcome, Start, fresh_gap, mean_pressure, rescale, scale_to_load};
 use crate::solution::LevelInfo;
 
 /// The finest level is first solved to the tolerance times this, then the gap is computed afresh: corrections are applied with
@@ -70,6 +71,16 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         Arc::new(Hierarchy::new(self.base().nx(), elements.clone(), reach))
     }
 
+    /// An operator for gaps under pressures like that of `mesh`.
+    fn fresh_of<U: Real + Into<f64>>(&self, hierarchy: Arc<Hierarchy>, mesh: &Mesh) -> Fresh<U> {
+        let n_cell = (mesh.elements.finest().side() as f64).powi(2);
+        let mean = match self.problem.control {
+            Control::MeanPressure(mean) => mean,
+            Control::Penetration(_) => mean_pressure(n_cell, &mesh.elements.division(), &mesh.pressure),
+        };
+        Fresh::new(hierarchy, mean, self.problem.h_range)
+    }
+
     /// Solves on the elements of the prolonged pressure only, for the next level.
     pub(super) fn prepare_level(&self, grid: Grid, mesh: Mesh, tolerance: f64, observer: &dyn Observer) -> Level {
         let n_levels = self.n_levels(grid);
@@ -78,7 +89,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         let machinery = Machinery {
             corrections: TileOperator::new(Arc::clone(&hierarchy)),
             preconditioner: self.preconditioner.tables(n_levels),
-            fresh: Fresh::<f32>::new(hierarchy),
+            fresh: self.fresh_of::<f32>(hierarchy, &mesh),
             fresh_response: response.clone(),
             response,
         };
@@ -113,13 +124,18 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
                 return Level { elements: candidates.elements, pressure, gap, outcome, evaluated, info };
             }
             // What is nearer to contact than the error may come into it yet.
-            let near = outcome.contact_gap + outcome.certificate.penetration * self.problem.h_range;
+            let error = match outcome.mean_pressure {
+                // Nothing presses, when coarser levels have lost a contact that they hardly resolve: it begins anew.
+                0.0 => CANDIDATE_MARGIN,
+                _ => outcome.certificate.penetration,
+            };
+            let near = outcome.contact_gap + error * self.problem.h_range;
             let part = Part::choose(&candidates, &mesh.elements, &pressure, &gap, near);
             let machinery = Machinery {
                 corrections: TileOperator::new(self.hierarchy(&part.elements, self.response.reach())),
                 response,
                 preconditioner,
-                fresh: Fresh::new(self.hierarchy(&part.elements, self.fresh.reach())),
+                fresh: self.fresh_of(self.hierarchy(&part.elements, self.fresh.reach()), &mesh),
                 fresh_response,
             };
             // Before the descent, which needs the memory.
@@ -146,7 +162,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
 
     /// Elements where the start may touch, judged by the quick operator.
     fn first_candidates(&self, mesh: &Mesh, response: &Tables<f32>, contact_gap: f64) -> Candidates {
-        let mut quick = Fresh::<f32>::new(self.hierarchy(&mesh.elements, self.response.reach()));
+        let mut quick = self.fresh_of::<f32>(self.hierarchy(&mesh.elements, self.response.reach()), mesh);
         quick.fill(mesh.pressure.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
         quick.multiply(response);
         // Not a proof yet: the margin stands for the quick operator's error too.
@@ -174,6 +190,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         let greatest = pressure.par_iter().copied().reduce(|| 0.0, f64::max);
         let remainder = Remainder {
             values: operator.operator().base_displacement(),
+            unit: operator.unit(),
             curvature: greatest * unit_curvature,
             error: 1e-5 * self.problem.h_range,
         };
@@ -192,7 +209,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         loop {
             let mut pressure = mesh.elements.moved(&candidates.elements, &mesh.pressure, 0.0);
             let mut gap = vec![0.0; pressure.len()];
-            let mut fresh = Fresh::<T>::new(self.hierarchy(&candidates.elements, self.fresh.reach()));
+            let mut fresh = self.fresh_of::<T>(self.hierarchy(&candidates.elements, self.fresh.reach()), mesh);
             info.operator_applications += 1;
             let heights = &candidates.heights;
             let mut sums = fresh_gap(&mut fresh, response, &self.problem, (heights, &pressure, &mut gap));

@@ -82,8 +82,7 @@ impl AdaptiveSolution {
     /// Whether every element is in contact, and elements are everywhere.
     #[must_use]
     pub fn is_full_contact(&self) -> bool {
-        let areas = self.elements.levels().iter().enumerate().map(|(coarser, tiles)| tiles.n_cells() << (2 * coarser));
-        areas.sum::<usize>() == self.finest.len() && self.n_elements() == self.elements.n_cells()
+        self.elements.cover_cell() && self.n_elements() == self.elements.n_cells()
     }
 
     /// Tiles of the grid, and the mean pressure on its cells.
@@ -140,7 +139,9 @@ impl AdaptiveSolution {
             let hierarchy = Arc::new(Hierarchy::new(self.base.nx(), Elements::uniform(tiles), prepared.reach()));
             let mut values = own.moved(hierarchy.elements(), &pressure, 0.0);
             let tiles = hierarchy.elements().finest();
-            let mut fresh = Fresh::<f32>::new(Arc::clone(&hierarchy));
+            // Where the pressure is on part of the cell, the mean over all of it says nothing of its size.
+            let mean = if own.cover_cell() { self.info.mean_pressure } else { 0.0 };
+            let mut fresh = Fresh::<f32>::new(Arc::clone(&hierarchy), mean, self.info.penetration_full_contact);
             fresh.fill(values.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
             fresh.multiply(&tables);
             fresh.take(&tables, values.par_chunks_mut(BLOCK_CELLS), |v, cells| v.copy_from_slice(cells));

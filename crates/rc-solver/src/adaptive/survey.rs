@@ -17,6 +17,8 @@ const SIDE: usize = 3 * TILE;
 pub(super) struct Remainder<'a, T> {
     /// The smooth remainder at the centres of the base grid, tile by tile, tiles row by row.
     pub(super) values: &'a [T],
+    /// What the values are multiples of, in λ.
+    pub(super) unit: f64,
     /// Bound of its second derivatives along the axes.
     pub(super) curvature: f64,
     /// Bound of the error of the values.
@@ -44,7 +46,7 @@ pub(super) fn possible_contact<T: Real + Into<f64>>(
             let mut found = Vec::new();
             for cell in 0..CELLS {
                 let (x, y) = (cell % TILE, cell / TILE);
-                let least = least_around(&patch, TILE + x, TILE + y) - slack;
+                let least = remainder.unit * least_around(&patch, TILE + x, TILE + y) - slack;
                 let (bx, by) = (column as usize * TILE + x, row as usize * TILE + y);
                 let reaches =
                     |blocks: usize, ix: usize, iy: usize| least - heights.upper_bound(blocks, ix, iy) < contact_gap;

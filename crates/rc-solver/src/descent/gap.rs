@@ -37,7 +37,7 @@ impl GapSums {
     };
 
     pub(super) fn add_element(&mut self, p: f64, g: f64, h: f64) {
-        self.min_gap = self.min_gap.min(g);
+        self.min_gap = lesser(self.min_gap, g);
         if p > 0.0 {
             self.pressure += p;
             self.pressure_gap += p * g;
@@ -55,7 +55,7 @@ impl GapSums {
                 pressure: sum.pressure + area * block.pressure,
                 pressure_gap: sum.pressure_gap + area * block.pressure_gap,
                 pressure_height: sum.pressure_height + area * block.pressure_height,
-                min_gap: sum.min_gap.min(block.min_gap),
+                min_gap: lesser(sum.min_gap, block.min_gap),
                 contact_gap: sum.contact_gap + area * block.contact_gap,
                 n_contact: sum.n_contact + area * block.n_contact,
             }
@@ -92,6 +92,16 @@ impl GapSums {
     }
 }
 
+/// The lesser of two gaps; NaN when one is, which `f64::min` would pass over: what is not a number must not pass for contact.
+fn lesser(a: f64, b: f64) -> f64 {
+    if b < a || b.is_nan() { b } else { a }
+}
+
+/// The positive part of an error; NaN stays, since it is no small one.
+pub(super) fn positive_part(error: f64) -> f64 {
+    if error < 0.0 { 0.0 } else { error }
+}
+
 /// Computes the gap `g` under pressure `p`, from a fresh application of L, on elements with heights `h`.
 pub(crate) fn fresh_gap<F: Engine<f64>>(
     engine: &mut F,
@@ -121,7 +131,7 @@ pub(crate) fn rescale(
 }
 
 /// Mean of the pressure over a cell of `n_cell` of the smallest elements.
-pub(super) fn mean_pressure(n_cell: f64, blocks: &Blocks, pressure: &[f64]) -> f64 {
+pub(crate) fn mean_pressure(n_cell: f64, blocks: &Blocks, pressure: &[f64]) -> f64 {
     let [sum] = blocks.total(pressure.par_chunks(blocks.len()).map(|block| [block.iter().sum()]).collect());
     sum / n_cell
 }

@@ -20,8 +20,8 @@ use rc_core::{Event, Grid, Observer};
 
 pub(crate) use blocks::Blocks;
 pub(crate) use engine::Engine;
-pub(crate) use gap::{GapSums, fresh_gap, rescale, scale_to_load};
-use gap::{mean_pressure, scale_all};
+pub(crate) use gap::{GapSums, fresh_gap, mean_pressure, rescale, scale_to_load};
+use gap::{positive_part, scale_all};
 pub(crate) use outcome::Outcome;
 
 use crate::problem::Problem;
@@ -260,11 +260,12 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
     fn error(&self, sums: &GapSums) -> f64 {
         let mean_gap = sums.mean_gap();
         let penetration = (mean_gap - sums.min_gap) / self.problem.h_range;
-        match self.problem.control {
+        positive_part(match self.problem.control {
             Control::MeanPressure(_) => penetration,
+            // NaN in the mean is in both.
+            Control::Penetration(_) if penetration.is_nan() => penetration,
             Control::Penetration(_) => penetration.max(mean_gap.abs() / self.problem.h_range),
-        }
-        .max(0.0)
+        })
     }
 
     /// Conjugate-gradient steps on the active elements, then the projection.

@@ -1,6 +1,6 @@
 //! What a pressure amounts to: its certificate and its observables.
 
-use super::gap::GapSums;
+use super::gap::{GapSums, positive_part};
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues, SolveInfo};
 use crate::{Certificate, Control};
@@ -25,7 +25,7 @@ impl Outcome {
         let h_range = problem.h_range;
         let mean_pressure = sums.pressure / n_cell;
         let mean_gap = sums.mean_gap();
-        let penetration = ((mean_gap - sums.min_gap) / h_range).max(0.0);
+        let penetration = positive_part((mean_gap - sums.min_gap) / h_range);
         let load = match problem.control {
             Control::MeanPressure(wanted) => (mean_pressure - wanted).abs() / wanted,
             Control::Penetration(_) => mean_gap.abs() / h_range,

@@ -10,8 +10,15 @@ use crate::solution::{LevelInfo, Solution, SolveInfo, Status};
 use crate::{Certificate, Control};
 
 /// The solution when `mean_pressure` closes every gap: v = h - mean(h) and p = σ0 + L⁻¹ h, provided that is nowhere
-/// tensile. (For the spectral kernel p̂ = E*|q|ĥ/2.) `None` otherwise.
-pub(super) fn solve(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64, problem: &Problem) -> Option<Solution> {
+/// tensile. (For the spectral kernel p̂ = E*|q|ĥ/2.) `None` otherwise, and where rounding or a faulty kernel leave more than
+/// `tolerance` of an error.
+pub(super) fn solve(
+    heights: &Field,
+    kernel: &dyn Kernel,
+    mean_pressure: f64,
+    problem: &Problem,
+    tolerance: f64,
+) -> Option<Solution> {
     if proves_partial_contact(heights, kernel, mean_pressure) {
         return None;
     }
@@ -41,7 +48,9 @@ pub(super) fn solve(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64, pr
     if least.into_iter().fold(f64::INFINITY, f64::min) < 0.0 {
         return None;
     }
-    Some(certified(heights, kernel, mean_pressure, problem, pressure))
+    let solution = certified(heights, kernel, mean_pressure, problem, pressure);
+    let Certificate { penetration, load, .. } = solution.info.certificate;
+    (penetration <= tolerance && load <= Certificate::LOAD_TOLERANCE).then_some(solution)
 }
 
 /// A pressure p ≥ 0 has no Fourier coefficient above its mean. Full contact prescribes them, and the longest waves are the
@@ -92,7 +101,12 @@ fn certified(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64, problem: 
     }
     let approach = weighted / total;
     gap.values_mut().par_iter_mut().for_each(|g| *g -= approach);
-    let worst = if problem.h_range > 0.0 { (-gap.min() / problem.h_range).max(0.0) } else { 0.0 };
+    let worst = match problem.h_range {
+        // A sum that is not a number gives away a gap that is none, which the minimum passes over.
+        _ if !approach.is_finite() => f64::NAN,
+        range if range > 0.0 => (-gap.min() / range).max(0.0),
+        _ => 0.0,
+    };
     let mean = total / grid.len() as f64;
     let load = (mean - mean_pressure).abs() / mean_pressure;
     let info = SolveInfo {

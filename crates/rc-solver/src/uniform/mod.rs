@@ -38,7 +38,7 @@ pub fn solve_uniform(
 ) -> Result<Solution, SolveError> {
     let problem = Problem::check(heights, control, params)?;
     if let Control::MeanPressure(mean_pressure) = control
-        && let Some(solution) = full_contact::solve(heights, kernel, mean_pressure, &problem)
+        && let Some(solution) = full_contact::solve(heights, kernel, mean_pressure, &problem, params.tolerance)
     {
         return Ok(solution);
     }

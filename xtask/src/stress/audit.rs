@@ -1,0 +1,103 @@
+//! The certificate again, by another operator than the one a solution was found with.
+
+use anyhow::Result;
+use rc_core::{Field, Grid, Operator};
+use rc_kernel::Love;
+use rc_solver::{Control, DirectSum, MultilevelOperator, UniformOperator};
+
+use super::solved::{Method, Solved};
+
+/// Most elements whose displacement is summed directly, in half a second.
+const MOST_DIRECT: usize = 64 * 64;
+
+/// Error of the multilevel operator in an audit, relative to the rms displacement.
+const OPERATOR_ERROR: f64 = 1e-9;
+
+/// Cells per side of a tile of the multilevel operator.
+const TILE: usize = 8;
+
+/// How far a pressure is from solving a contact problem.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Audit {
+    /// Pressures that are NaN, infinite or negative.
+    pub(crate) n_bad: usize,
+    /// |mean p - σ0| / σ0, or |Δ found - Δ| / H.
+    pub(crate) load: f64,
+    /// max(-g) / H, with the pressure-weighted mean of g at zero.
+    pub(crate) penetration: f64,
+    /// Σ p |g| / (H Σ p).
+    pub(crate) complementarity: f64,
+}
+
+impl Audit {
+    /// Of a solution; its own certificate is not looked at.
+    pub(crate) fn of(heights: &Field, solved: &Solved, method: Method, control: Control) -> Result<Self> {
+        Ok(Self::of_pressure(heights, &solved.pressure, &displacement(&solved.pressure, method)?, control))
+    }
+
+    /// Of a pressure and the displacement that it causes.
+    pub(crate) fn of_pressure(heights: &Field, pressure: &Field, displacement: &[f64], control: Control) -> Self {
+        let p = pressure.values();
+        // A flat surface has no range to refer to but the cell's side.
+        let range = Some(heights.max() - heights.min()).filter(|range| *range > 0.0).unwrap_or(1.0);
+        // Heights from the highest point: a large constant in them would drown the displacement.
+        let top = heights.max();
+        let gaps = displacement.iter().zip(heights.values()).map(|(v, h)| v + (top - h));
+        let gaps: Vec<f64> = gaps.collect();
+        let total: f64 = p.iter().sum();
+        // Weights first: products of tiny pressures and gaps underflow.
+        let approach: f64 = p.iter().zip(&gaps).map(|(p, g)| p / total * g).sum();
+        let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+        let load = match control {
+            Control::MeanPressure(wanted) => (total / p.len() as f64 / wanted - 1.0).abs(),
+            Control::Penetration(wanted) => (approach - wanted).abs() / range,
+        };
+        Self {
+            n_bad: p.iter().filter(|p| !(p.is_finite() && **p >= 0.0)).count(),
+            load,
+            penetration: (approach - least) / range,
+            complementarity: p.iter().zip(&gaps).map(|(p, g)| p / total * (g - approach).abs()).sum::<f64>() / range,
+        }
+    }
+}
+
+/// L p by another way than the method's own: the multilevel operator for the uniform grid where it can be, a direct sum for
+/// small grids, a Fourier transform for the others.
+fn displacement(pressure: &Field, method: Method) -> Result<Vec<f64>> {
+    // A constant displaces nothing, and its rounding would be all that is left of a large one.
+    let (grid, mean) = (pressure.grid(), pressure.mean());
+    let p: Vec<f64> = pressure.values().iter().map(|p| p - mean).collect();
+    let mut v = vec![0.0; p.len()];
+    if method == Method::Uniform && can_be_multilevel(grid) {
+        let side = grid.nx();
+        let per_side = (side / TILE) as u32;
+        let places = (0..per_side).flat_map(|row| (0..per_side).map(move |column| [column, row])).collect();
+        let operator = MultilevelOperator::new(side / 2, side, places, OPERATOR_ERROR)?;
+        let index = |i: usize| {
+            let ([column, row], cell) = (operator.places()[i / (TILE * TILE)], i % (TILE * TILE));
+            (row as usize * TILE + cell / TILE) * side + column as usize * TILE + cell % TILE
+        };
+        let tiles: Vec<f64> = (0..p.len()).map(|i| p[index(i)]).collect();
+        let mut displaced = vec![0.0; p.len()];
+        operator.apply(&tiles, &mut displaced, &mut []);
+        for (i, value) in displaced.into_iter().enumerate() {
+            v[index(i)] = value;
+        }
+    } else if grid.len() <= MOST_DIRECT {
+        DirectSum::new(grid, method.kernel()).apply(&p, &mut v, &mut []);
+    } else {
+        UniformOperator::new(grid, method.kernel()).apply(&p, &mut v, &mut []);
+    }
+    Ok(v)
+}
+
+fn can_be_multilevel(grid: Grid) -> bool {
+    grid.nx() == grid.ny() && grid.nx().is_multiple_of(2 * TILE)
+}
+
+/// L p of Love's squares by direct summation, for small grids.
+pub(crate) fn direct(pressure: &Field) -> Vec<f64> {
+    let mut v = vec![0.0; pressure.values().len()];
+    DirectSum::new(pressure.grid(), &Love).apply(pressure.values(), &mut v, &mut []);
+    v
+}
