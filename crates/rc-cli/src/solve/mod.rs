@@ -1,5 +1,6 @@
 //! `rc solve`: one contact problem, from scene to files.
 
+mod dry_run;
 mod files;
 mod found;
 mod method;
@@ -85,11 +86,15 @@ impl<'a> Solved<'a> {
 /// # Errors
 /// [`CliError`] of every kind.
 pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
+    let dry_run = args.dry_run;
     let scene = scene_of(args)?;
     let started = Instant::now();
     let surface = resolve::surface(scene.surface)?;
     let contact = resolve::contact(scene.contact, surface.cell.side(), surface.elements_per_wave())?;
     let threads = resolve::start_threads(scene.run.threads)?;
+    if dry_run {
+        return dry_run::run(&surface, &contact, &scene.run, threads);
+    }
     execute(&surface, &contact, &scene.run, threads, started)
 }
 
@@ -128,6 +133,9 @@ fn execute(
 fn scene_of(args: SolveArgs) -> Result<Scene, CliError> {
     if args.scene_file.is_some() || !args.scene.is_empty() {
         return resolve::layers(args.scene_file.as_deref(), args.scene);
+    }
+    if args.dry_run {
+        return Ok(scene_file::example());
     }
     output::tell(&format!(
         "No scene given: solving the embedded example (the paper's surface, N = 64, σ0/E* = 8.9e-4), writing to \
