@@ -51,6 +51,9 @@ pub struct SolveArgs {
     /// What is given here holds against the scene file.
     #[command(flatten)]
     pub scene: Scene,
+    /// Print the elements, memory and time to be expected, and solve nothing
+    #[arg(long, help_heading = "Run")]
+    pub dry_run: bool,
 }
 
 const SOLVE_HELP: &str = "\

@@ -88,7 +88,8 @@ fn with_error(value: f64, error: f64) -> String {
 }
 
 /// Lines of a name and its value.
-fn aligned(lines: &[(&str, String)]) -> String {
+/// Lines of a name and a value, aligned.
+pub(crate) fn aligned(lines: &[(&str, String)]) -> String {
     lines.iter().fold(String::new(), |text, (name, value)| text + &format!("  {name:<19}{value}\n"))
 }
 

@@ -1,6 +1,7 @@
 //! `rc solve`: one contact problem, from scene to files.
 
 mod area_error;
+mod dry_run;
 mod files;
 mod found;
 mod method;
@@ -91,14 +92,21 @@ impl<'a> Solved<'a> {
 /// # Errors
 /// [`CliError`] of every kind.
 pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
+    let dry_run = args.dry_run;
     let scene = scene_of(args)?;
     let started = Instant::now();
     if let Some(wanted) = scene.contact.area_error {
+        if dry_run {
+            return Err(CliError::input("dry_run: what area_error will choose is not known before; give grid instead"));
+        }
         return area_error::run(scene, wanted, started);
     }
     let surface = resolve::surface(scene.surface)?;
     let contact = resolve::contact(scene.contact, surface.cell.side(), surface.elements_per_wave())?;
     let threads = resolve::start_threads(scene.run.threads)?;
+    if dry_run {
+        return dry_run::run(&surface, &contact, &scene.run, threads);
+    }
     execute(&surface, &contact, &scene.run, threads, started)
 }
 
@@ -142,6 +150,9 @@ fn finish(solved: &Solved<'_>, surface: &SurfaceProblem, run: &RunKeys, threads:
 fn scene_of(args: SolveArgs) -> Result<Scene, CliError> {
     if args.scene_file.is_some() || !args.scene.is_empty() {
         return resolve::layers(args.scene_file.as_deref(), args.scene);
+    }
+    if args.dry_run {
+        return Ok(scene_file::example());
     }
     output::tell(&format!(
         "No scene given: solving the embedded example (the paper's surface, N = 64, σ0/E* = 8.9e-4), writing to \

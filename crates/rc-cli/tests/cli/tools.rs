@@ -97,6 +97,30 @@ fn shells_and_man_know_every_command() {
 }
 
 #[test]
+fn a_dry_run_tells_elements_memory_and_time_and_does_nothing() {
+    let place = Place::new();
+    let scene = ["--waves", "32", "--pressure", "446395", "--out", "r"];
+    let output = place.run(&[&["solve", "--dry-run", "--json"], &scene[..]].concat());
+    assert_solved(&output);
+    assert_eq!(place.names("."), Vec::<String>::new(), "something was written");
+    let expected: serde_json::Value = serde_json::from_slice(&output.stdout).expect("valid JSON");
+    assert_solved(&place.run(&[&["solve", "--quiet"], &scene[..]].concat()));
+    let solved = place.json("r/summary.json");
+    // Times depend on the machine; the others are the claim.
+    for (estimate, fact) in
+        [("elements", "cells_evaluated"), ("memory_bytes", "peak_memory_bytes"), ("area_fraction", "area_fraction")]
+    {
+        let value = |json: &serde_json::Value, key: &str| json[key].as_f64().unwrap_or_else(|| panic!("no {key}"));
+        let ratio = value(&expected, estimate) / value(&solved, fact);
+        assert!((0.5..2.0).contains(&ratio), "{estimate}: estimated {ratio} times what it was");
+    }
+    assert!(expected["wall_seconds"].as_f64().is_some_and(|seconds| seconds > 0.0));
+    let printed = place.run(&["solve", "--dry-run", "--waves", "8", "--method", "gauss-seidel", "--pressure", "1e5"]);
+    assert!(text(&printed.stdout).contains("not known before"), "{}", text(&printed.stdout));
+    assert_refused(&place.run(&["solve", "--dry-run", "--waves", "8"]), "exactly one");
+}
+
+#[test]
 fn help_is_no_error() {
     let place = Place::new();
     for args in [&["--help"][..], &["--version"], &["solve", "--help"], &["surface", "--help"]] {

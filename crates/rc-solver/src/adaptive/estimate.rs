@@ -37,6 +37,8 @@ pub struct Estimate {
     pub area_fraction: f64,
     /// Part of the cell in tiles where contact is possible, on the grid.
     pub tile_fraction: f64,
+    /// Cells of these tiles, those of border levels included.
+    pub cells: f64,
     /// Memory of the adaptive method, in bytes.
     pub adaptive_bytes: f64,
 }
@@ -62,6 +64,7 @@ impl Estimate {
         Self {
             area_fraction,
             tile_fraction,
+            cells: n_cells,
             adaptive_bytes: BYTES_PER_CELL * n_cells + BYTES_PER_PLACE * n_finest + base_bytes(base.grid().nx()),
         }
     }
