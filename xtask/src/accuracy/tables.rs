@@ -126,9 +126,8 @@ fn solve(mut equations: [[f64; 4]; 3]) -> [f64; 3] {
     for pivot in 0..3 {
         for row in (0..3).filter(|&row| row != pivot) {
             let factor = equations[row][pivot] / equations[pivot][pivot];
-            for column in pivot..4 {
-                equations[row][column] -= factor * equations[pivot][column];
-            }
+            let subtracted = equations[pivot].map(|value| factor * value);
+            equations[row].iter_mut().zip(subtracted).for_each(|(value, subtracted)| *value -= subtracted);
         }
     }
     std::array::from_fn(|i| equations[i][3] / equations[i][i])

@@ -18,9 +18,13 @@ const SAME_NUMBER: f64 = 1e-8;
 
 const LOAD: Control = Control::MeanPressure(1e-3);
 
+/// Compares what one group of invariances says.
+type Part = fn(&mut Rows, Preset) -> Result<()>;
+
+#[expect(clippy::unnecessary_wraps, reason = "as the other groups")]
 pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     let mut rows = Rows::of("invariances");
-    let parts: [(&str, fn(&mut Rows, Preset) -> Result<()>); 6] = [
+    let parts: [(&str, Part); 6] = [
         ("scaling", scaling),
         ("motions", motions),
         ("fractions of an element", fractions),
