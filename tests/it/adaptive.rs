@@ -342,3 +342,17 @@ fn loads_far_beyond_full_contact_are_solved() {
         assert!(worst <= 1e-3 * scale, "{pressure:e}: off by {worst:e} of {scale:e}");
     }
 }
+
+/// Coarser levels hold a sharp edge as a line of single elements, which interpolation to the next level loses.
+#[test]
+fn a_contact_that_coarser_levels_lose_is_found_again() {
+    let grid = Grid::square(128).expect("a grid");
+    let step = Field::from_fn(grid, |x, _| if x < 0.5 { 0.0 } else { 1e-2 });
+    let plateau_with_pit = Field::from_fn(grid, |x, y| if x < 0.01 && y < 0.01 { -1e-2 } else { 0.0 });
+    for (heights, pressure) in [(step, 1e-4), (plateau_with_pit, 1e-8)] {
+        let control = Control::MeanPressure(pressure);
+        let solution = adaptive(HeightSource::Map(&heights), control, 1e-6);
+        assert_close("mean pressure", solution.info.mean_pressure, pressure, 1e-10);
+        assert_agrees_with_uniform(&heights, &solution, control);
+    }
+}

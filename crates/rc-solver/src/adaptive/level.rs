@@ -166,7 +166,9 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         quick.fill(mesh.pressure.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
         quick.multiply(response);
         // Not a proof yet: the margin stands for the quick operator's error too.
-        let level = contact_gap + CANDIDATE_MARGIN * self.problem.h_range;
+        // No contact is nearer than first touch, though coarser heights may reach beyond the highest point.
+        let first_touch = self.problem.offset() - self.problem.h_max;
+        let level = contact_gap.max(first_touch) + CANDIDATE_MARGIN * self.problem.h_range;
         let curvature = self.response.remainder_curvature();
         let places =
             self.possible_contact(&quick, curvature, &mesh.pressure, mesh.elements.coarsest().per_side(), level);
