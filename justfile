@@ -20,7 +20,7 @@ tidy:
 figures:
     cargo xtask figures
 
-# Run time against error on ten scenes.
+# Run time against error.
 bench:
     cargo xtask bench
 

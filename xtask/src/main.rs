@@ -2,7 +2,6 @@
 
 mod accuracy;
 mod bench;
-mod blocks;
 mod ci;
 mod figures;
 mod kernel_error;
