@@ -12,6 +12,7 @@ mod reproduction;
 #[cfg(test)]
 mod snapshot;
 mod stress;
+mod swap;
 mod test;
 mod tidy;
 
@@ -55,6 +56,7 @@ enum Command {
     Accuracy(figures::Args),
     Bench(bench::Args),
     Stress(stress::Args),
+    Swap(swap::Args),
 }
 
 fn main() -> anyhow::Result<()> {
@@ -76,5 +78,6 @@ fn main() -> anyhow::Result<()> {
         Command::Accuracy(args) => figures::run::<accuracy::Accuracy>(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Stress(args) => stress::run(&args),
+        Command::Swap(args) => swap::run(&args),
     }
 }

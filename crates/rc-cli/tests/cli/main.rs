@@ -3,6 +3,7 @@
 mod adaptive;
 mod bad_input;
 mod measured;
+mod report;
 mod solve;
 mod support;
 mod sweep;
