@@ -11,7 +11,7 @@ use anyhow::{Result, bail};
 
 use crate::repository::{self, Sources};
 
-/// Checks dependency arrows, paper map, snapshots, house rules and the numbers of docs/reproduction.md (also a test, so `cargo xtask test` runs it).
+/// Checks dependency arrows, paper map, snapshots, house rules and the numbers of docs/reproduction.md, docs/benchmarks.md and README.md (also a test, so `cargo xtask test` runs it).
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
@@ -28,6 +28,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("snapshots", snapshots::check),
     ("culture", culture::check),
     ("reproduction", crate::reproduction::check),
+    ("benchmark", crate::bench::check_documents),
 ];
 
 #[expect(clippy::print_stdout, reason = "the result of the command")]
