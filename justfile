@@ -20,7 +20,7 @@ tidy:
 figures:
     cargo xtask figures
 
-# Run time against error.
+# Run time against error on ten scenes.
 bench:
     cargo xtask bench
 

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod bench;
+mod blocks;
 mod ci;
 mod figures;
 mod kernel_error;

@@ -12,14 +12,13 @@ use anyhow::{Context, Result};
 use rc_cli::quantity::digits;
 use toml::Table as Toml;
 
+use crate::blocks;
 use crate::repository::{self, Sources};
 use rows::{ROWS, Row};
 
 const DOCUMENT: &str = "docs/reproduction.md";
 const RUN: &str = "data/runs/paper/";
 const PAPER: &str = "data/paper.csv";
-const BEGIN: &str = "<!-- numbers: ";
-const END: &str = "<!-- end of numbers -->";
 
 /// Rewrites the numbers of docs/reproduction.md from the archived run, as `cargo xtask figures --archive` does
 #[derive(clap::Args)]
@@ -50,18 +49,7 @@ pub(crate) fn check(sources: &Sources) -> Vec<String> {
 
 /// The document with its blocks filled in.
 fn render(sources: &Sources) -> Result<String, String> {
-    let document = sources.get(DOCUMENT).ok_or_else(|| format!("{DOCUMENT} is missing; restore it from history"))?;
-    let mut text = String::new();
-    let mut rest = document.as_str();
-    while let Some((before, after)) = rest.split_once(BEGIN) {
-        let (name, after) =
-            after.split_once(" -->").ok_or_else(|| format!("{DOCUMENT}: `{BEGIN}` without ` -->`; close it"))?;
-        let (_, after) = after.split_once(END).ok_or_else(|| format!("{DOCUMENT}: no `{END}` after {name}; add it"))?;
-        let block = if name == "run" { run_block(sources)? } else { figure_block(name, sources)? };
-        text.extend([before, BEGIN, name, " -->\n\n", &block, "\n", END]);
-        rest = after;
-    }
-    Ok(text + rest)
+    blocks::fill(DOCUMENT, sources, |name| if name == "run" { run_block(sources) } else { figure_block(name, sources) })
 }
 
 /// Version, times and memory of the run.
@@ -155,6 +143,7 @@ fn ours(row: &Row, sources: &Sources) -> Result<(f64, Option<f64>), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::blocks::{BEGIN, END};
 
     fn sources(document: &str) -> Sources {
         let files = [

@@ -12,7 +12,8 @@ use anyhow::{Result, bail};
 
 use crate::repository::{self, Sources};
 
-/// Checks dependency arrows, licences and versions of dependencies, paper map, snapshots, house rules and the numbers of docs/reproduction.md (also a test, so `cargo xtask test` runs it).
+/// Checks dependency arrows, licences and versions of dependencies, paper map, snapshots, house rules and the numbers of
+/// docs/reproduction.md, docs/benchmarks.md and README.md (also a test, so `cargo xtask test` runs it).
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
@@ -30,6 +31,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("culture", culture::check),
     ("dependencies", dependencies::check),
     ("reproduction", crate::reproduction::check),
+    ("benchmark", crate::bench::check_documents),
 ];
 
 #[expect(clippy::print_stdout, reason = "the result of the command")]

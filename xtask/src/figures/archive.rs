@@ -131,7 +131,10 @@ fn processor_seconds() -> Option<f64> {
 }
 
 /// The version in the root manifest.
-fn version() -> Result<String> {
+///
+/// # Errors
+/// When the manifest has none.
+pub(crate) fn version() -> Result<String> {
     let manifest: Toml = include_str!("../../../Cargo.toml").parse()?;
     let version = manifest.get("workspace").and_then(|workspace| workspace.get("package")?.get("version")?.as_str());
     Ok(version.context("Cargo.toml has no workspace.package.version; add it")?.to_owned())

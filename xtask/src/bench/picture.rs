@@ -1,0 +1,163 @@
+//! The picture of the benchmark: error against time, a panel each for area, rms pressure and penetration.
+
+use plotters::prelude::DrawingBackend;
+use plotters::style::RGBColor;
+use rc_cli::picture::{Area, LinePlot, LineStyle, Picture, PictureError, Series, draw_lines};
+
+use super::levels::{Results, families};
+use super::record::{Family, OURS, Row};
+use super::reference::{Quantity, Reading};
+
+const TEXT: f64 = 24.0;
+
+/// Error against time in one scene.
+pub(super) struct ErrorAgainstTime<'a> {
+    pub(super) results: Results<'a>,
+    pub(super) scene: &'a str,
+}
+
+/// What is drawn of a program: the family, its colour (after Okabe and Ito, apart for colour-blind readers), and how the
+/// area is read. Solid lines are best estimates or corrected areas, dashed ones counted areas.
+struct Shown {
+    name: &'static str,
+    of: fn(&Family) -> bool,
+    colour: RGBColor,
+    reading: Reading,
+}
+
+const SHOWN: [Shown; 8] = [
+    Shown {
+        name: "rc, adaptive",
+        of: |f| f.program == OURS && f.method == "adaptive" && f.border_level == 0 && f.tolerance == "auto",
+        colour: RGBColor(0, 114, 178),
+        reading: Reading::Best,
+    },
+    Shown {
+        name: "rc, border level 2",
+        of: |f| f.program == OURS && f.border_level == 2,
+        colour: RGBColor(0, 0, 0),
+        reading: Reading::Best,
+    },
+    Shown {
+        name: "rc, uniform, spectral",
+        of: |f| f.program == OURS && f.kernel == "spectral" && f.tolerance == "auto",
+        colour: RGBColor(86, 180, 233),
+        reading: Reading::Best,
+    },
+    Shown {
+        name: "ASPHER, corrected",
+        of: |f| f.program == "aspher" && f.tolerance == "auto",
+        colour: RGBColor(213, 94, 0),
+        reading: Reading::Best,
+    },
+    Shown {
+        name: "ASPHER, counted",
+        of: |f| f.program == "aspher" && f.tolerance == "auto",
+        colour: RGBColor(213, 94, 0),
+        reading: Reading::Counted,
+    },
+    Shown {
+        name: "Tamaas, corrected",
+        of: |f| f.program == "tamaas",
+        colour: RGBColor(0, 158, 115),
+        reading: Reading::Best,
+    },
+    Shown {
+        name: "Tamaas, counted",
+        of: |f| f.program == "tamaas",
+        colour: RGBColor(0, 158, 115),
+        reading: Reading::Counted,
+    },
+    Shown {
+        name: "ContactMechanics, counted",
+        of: |f| f.program == "contactmechanics",
+        colour: RGBColor(204, 121, 167),
+        reading: Reading::Counted,
+    },
+];
+
+impl ErrorAgainstTime<'_> {
+    /// Times and absolute relative errors, as decades.
+    fn points(&self, shown: &Shown, quantity: Quantity) -> Vec<(f64, f64)> {
+        let rows = self.results.of(self.scene, true).chain(self.results.of(self.scene, false));
+        let rows = families(rows).into_iter().filter(|(family, _)| (shown.of)(family)).flat_map(|(_, rows)| rows);
+        let point = |row: &Row| {
+            let error = self.results.error(row, quantity, shown.reading)?.abs();
+            // An error of zero, where the last digits agree, has no logarithm.
+            Some((row.total_seconds().log10(), error.max(1e-9).log10()))
+        };
+        rows.filter_map(point).collect()
+    }
+
+    fn panel(&self, quantity: Quantity, title: &'static str) -> LinePlot<'static> {
+        let mut series = Vec::new();
+        for shown in &SHOWN {
+            // Counted areas alone differ from other readings.
+            if quantity != Quantity::Area
+                && shown.reading == Reading::Counted
+                && shown.name != "ContactMechanics, counted"
+            {
+                continue;
+            }
+            let points = self.points(shown, quantity);
+            if points.is_empty() {
+                continue;
+            }
+            let counted = shown.reading == Reading::Counted && quantity == Quantity::Area;
+            let style = if counted { LineStyle::Dashed } else { LineStyle::Solid };
+            // The area's panel has the legend; all use the same colours.
+            let name = if quantity == Quantity::Area { shown.name } else { "" };
+            series.push(Series { name: "", points: points.clone(), colour: shown.colour, style: LineStyle::Dots });
+            series.push(Series { name, points, colour: shown.colour, style });
+        }
+        let (x, y) = (range(&series, |at| at.0, 0.1), range(&series, |at| at.1, 0.2));
+        // Room for the legend above the lines.
+        let top = if quantity == Quantity::Area { y.1 + 0.6 * (y.1 - y.0) } else { y.1 };
+        LinePlot { title, x_label: "log10 of time (s)", y_label: "log10 of relative error", x, y: (y.0, top), series }
+    }
+}
+
+/// The range of the points of all series, a little wider.
+fn range(series: &[Series<'_>], of: impl Fn(&(f64, f64)) -> f64, margin: f64) -> (f64, f64) {
+    let values: Vec<f64> = series.iter().flat_map(|series| series.points.iter().map(&of)).collect();
+    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+    if low <= high { (low - margin, high + margin) } else { (-1.0, 1.0) }
+}
+
+impl Picture for ErrorAgainstTime<'_> {
+    fn size(&self) -> (u32, u32) {
+        (2100, 800)
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
+        let titles = ["error of the contact area", "error of the rms pressure", "error of the penetration"];
+        let panels = area.split_evenly((1, 3));
+        for ((panel, quantity), title) in panels.iter().zip(Quantity::COMPARED).zip(titles) {
+            draw_lines(panel, &self.panel(quantity, title), TEXT)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rc_cli::picture::{save_png, save_svg};
+
+    use super::*;
+    use crate::bench::levels::tests::rows;
+    use crate::bench::reference::tests::references;
+
+    #[test]
+    fn the_picture_has_every_program_that_ran() {
+        let (rows, references) = (rows(), references("paper", [0.07, 4e-3, 1.0]));
+        let picture = ErrorAgainstTime { results: Results { rows: &rows, references: &references }, scene: "paper" };
+        let names: Vec<&str> = picture.panel(Quantity::Area, "area").series.iter().map(|series| series.name).collect();
+        assert_eq!(names, ["", "rc, adaptive", "", "Tamaas, corrected", "", "Tamaas, counted"]);
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        for name in ["bench.png", "bench.svg"] {
+            let path = folder.path().join(name);
+            if name.ends_with("png") { save_png(&picture, &path) } else { save_svg(&picture, &path) }.expect("drawn");
+            assert!(path.metadata().expect("a file").len() > 4096, "{name}");
+        }
+    }
+}
