@@ -37,8 +37,7 @@ impl BondedLayer {
         let nu = self.poisson;
         let (decay, stiff) = ((-2.0 * xi).exp(), 3.0 - 4.0 * nu);
         let above = stiff * (1.0 - decay * decay) - 4.0 * xi * decay;
-        let below = stiff * (1.0 + decay * decay)
-            + (4.0 * xi * xi + 10.0 - 24.0 * nu + 16.0 * nu * nu) * decay;
+        let below = stiff * (1.0 + decay * decay) + (4.0 * xi * xi + 10.0 - 24.0 * nu + 16.0 * nu * nu) * decay;
         above / below
     }
 }

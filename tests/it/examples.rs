@@ -21,13 +21,7 @@ pub(crate) mod own_surface;
 
 #[test]
 fn every_example_runs() {
-    let examples = [
-        generate_and_solve::main,
-        height_map::main,
-        load_curve::main,
-        own_kernel::main,
-        own_surface::main,
-    ];
+    let examples = [generate_and_solve::main, height_map::main, load_curve::main, own_kernel::main, own_surface::main];
     for example in examples {
         example().expect("an example ends well");
     }

@@ -108,7 +108,10 @@ mod tests {
         assert_eq!(kernel["package"].as_str(), Some("my-rc-kernel"));
         assert_eq!(kernel["path"].as_str(), Some("crates/my-rc-kernel"));
         assert_eq!(read("crates/my-rc-kernel/src/lib.rs"), FORK);
-        assert!(manifest["profile"]["dev"]["package"].get("rc-solver").is_some(), "profiles stay, so builds are shared");
+        assert!(
+            manifest["profile"]["dev"]["package"].get("rc-solver").is_some(),
+            "profiles stay, so builds are shared"
+        );
         for name in CRATES {
             assert!(copy.path().join("crates").join(name).join("src/lib.rs").is_file(), "{name}");
         }

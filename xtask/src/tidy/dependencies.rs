@@ -14,8 +14,18 @@ use crate::repository::Sources;
 
 /// Licences under which a dependency may be used, by their SPDX identifiers: they ask for no more than to be named.
 const LICENCES: &[&str] = &[
-    "0BSD", "Apache-2.0", "BSD-2-Clause", "BSD-3-Clause", "BSL-1.0", "CC0-1.0", "ISC", "MIT", "MIT-0", "Unicode-3.0",
-    "Unlicense", "Zlib",
+    "0BSD",
+    "Apache-2.0",
+    "BSD-2-Clause",
+    "BSD-3-Clause",
+    "BSL-1.0",
+    "CC0-1.0",
+    "ISC",
+    "MIT",
+    "MIT-0",
+    "Unicode-3.0",
+    "Unlicense",
+    "Zlib",
 ];
 
 /// Crates that are there in several versions, and why that is so.
@@ -49,7 +59,8 @@ struct Package {
 pub(super) fn licences(root: &Path) -> Result<String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let words = ["metadata", "--format-version", "1", "--locked"];
-    let output = Command::new(cargo).args(words).current_dir(root).output().context("could not start `cargo metadata`")?;
+    let output =
+        Command::new(cargo).args(words).current_dir(root).output().context("could not start `cargo metadata`")?;
     if !output.status.success() {
         bail!("`cargo metadata --locked` failed: {}", String::from_utf8_lossy(&output.stderr).trim());
     }
@@ -126,7 +137,9 @@ mod tests {
 
     #[test]
     fn licences_on_the_list_pass_and_others_are_found() {
-        for license in ["\"MIT OR Apache-2.0\"", "\"MIT/Apache-2.0\"", "\"GPL-3.0 OR MIT\"", "\"Apache-2.0 WITH LLVM-exception\""] {
+        for license in
+            ["\"MIT OR Apache-2.0\"", "\"MIT/Apache-2.0\"", "\"GPL-3.0 OR MIT\"", "\"Apache-2.0 WITH LLVM-exception\""]
+        {
             assert_eq!(check_licences(&metadata(license)), Vec::<String>::new(), "{license}");
         }
         for license in ["\"GPL-3.0\"", "\"MIT AND MPL-2.0\"", "null", "\"who knows\""] {
@@ -143,6 +156,9 @@ mod tests {
         };
         assert_eq!(of(&(package("a", "1.0.0") + &package("b", "1.0.0"))), Vec::<String>::new());
         let complaints = of(&(package("a", "1.0.0") + &package("a", "2.0.0")));
-        assert!(complaints.len() == 1 && complaints[0].contains("a is there in the versions 1.0.0 and 2.0.0"), "{complaints:?}");
+        assert!(
+            complaints.len() == 1 && complaints[0].contains("a is there in the versions 1.0.0 and 2.0.0"),
+            "{complaints:?}"
+        );
     }
 }

@@ -19,8 +19,9 @@ class Axis {
       if (log && from === undefined) low = Math.max(low / 1.3, high * SMALLEST_PART);
     }
     Object.assign(this, { low, high, log, start, end, unit });
-    this.scale = log ? { factor: 1, unit } : scaleOf(Math.max(Math.abs(low), Math.abs(high)), unit);
-    this.label = this.scale.unit ? `${label} (${this.scale.unit})` : label;
+    this.scale = scaleOf(Math.max(Math.abs(low), Math.abs(high)), unit);
+    // Over decades each mark has a prefix of its own.
+    this.label = unit && !log ? `${label} (${this.scale.unit})` : label;
   }
 
   place(value) {
@@ -36,7 +37,7 @@ class Axis {
   }
 
   ticks(n) {
-    if (this.log) return logTicks(this.low, this.high).map((value) => [value, digits(value)]);
+    if (this.log) return logTicks(this.low, this.high).map((value) => [value, si(value, this.unit)]);
     const { factor } = this.scale;
     return linearTicks(this.low / factor, this.high / factor, n).map((value) => [value * factor, digits(value)]);
   }

@@ -53,9 +53,9 @@ class SharedView {
   }
 }
 
-/** One map. `reading` makes text of a value. */
+/** One map. `reading` makes text of a value, `ends` those at the ends of the colours; the end of these is `movable`. */
 class FieldMap {
-  constructor({ title, field, colours, view, side, reading, endLabel }) {
+  constructor({ title, field, colours, view, side, reading, ends, movable = true }) {
     Object.assign(this, { field, view, side, reading, colours: colourTable(colours), top: field.max });
     this.bitmap = make("canvas", { width: field.nx, height: field.ny });
     this.canvas = make("canvas");
@@ -63,16 +63,17 @@ class FieldMap {
     this.box = make("div", { class: "map", tabindex: 0, role: "img", "aria-label": title }, this.canvas);
     const bar = make("div", { class: "bar" });
     bar.style.background = `linear-gradient(to right, ${colours.map((c) => `rgb(${c.join(" ")})`).join(", ")})`;
-    this.end = make("span", {}, endLabel(this.top));
+    const end = make("span", {}, ends(this.top)[1]);
     const slider = make("input", { type: "range", min: 5, max: 100, value: 100, "aria-label": `end of the colours of ${title}` });
     slider.addEventListener("input", () => {
       this.top = (field.max * slider.value) / 100;
-      this.end.textContent = (slider.value < 100 ? "≥ " : "") + endLabel(this.top);
+      end.textContent = (slider.value < 100 ? "≥ " : "") + ends(this.top)[1];
       this.colour();
       this.paint();
     });
-    const ends = make("div", { class: "ends" }, make("span", {}, "0"), make("label", {}, "colours", slider), this.end);
-    this.element = make("figure", {}, make("figcaption", {}, title, this.value), this.box, bar, ends);
+    const label = movable ? [make("label", {}, "colours", slider)] : [];
+    const scale = make("div", { class: "ends" }, make("span", {}, ends(this.top)[0]), ...label, end);
+    this.element = make("figure", {}, make("figcaption", {}, title, this.value), this.box, bar, scale);
     this.colour();
     this.listen();
     view.listeners.push(() => this.paint());

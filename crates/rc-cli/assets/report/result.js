@@ -5,14 +5,11 @@ function mapsAndSections({ side, pressure, gap, contact, peak, averaged }) {
   const fields = { pressure: new EmbeddedField(pressure), gap: new EmbeddedField(gap), contact: new EmbeddedField(contact) };
   const view = new SharedView(peak, Math.min(1, 8 / Math.max(pressure.nx, pressure.ny)));
   const map = (title, name, colours, unit) => new FieldMap({
-    title, field: fields[name], colours, view, side,
-    reading: (value) => si(value, unit),
-    endLabel: (value) => si(value, unit, 3),
+    title, field: fields[name], colours, view, side, ends: (value) => ["0", si(value, unit, 3)], reading: (value) => si(value, unit),
   });
   const contactMap = new FieldMap({
-    title: "Contact", field: fields.contact, colours: contact.colours, view, side,
+    title: "Contact", field: fields.contact, colours: contact.colours, view, side, ends: () => ["gap", "contact"], movable: false,
     reading: (value) => (value === 0 ? "gap" : value === 1 ? "contact" : `${digits(100 * value, 3)} % contact`),
-    endLabel: (value) => `${digits(100 * value, 3)} %`,
   });
   const maps = [contactMap, map("Pressure", "pressure", pressure.colours, "Pa"), map("Gap", "gap", gap.colours, "m")];
   const place = make("span", {});
@@ -78,11 +75,12 @@ function sectionCharts(fields, view, side) {
 
 /** P(σ) with the fit of Eq. 7. */
 function stressDistribution({ stress, density, fit, notes }) {
-  const points = (values) => stress.map((s, i) => [s, values[i]]);
+  const { factor, unit } = scaleOf(stress[stress.length - 1], "Pa");
+  const points = (values) => stress.map((s, i) => [s, values[i] * factor]);
   const series = [{ name: "solved", points: points(density), colour: "var(--blue)" }];
   if (fit) series.push({ name: "Persson's form, Eq. 7, fitted", points: points(fit), colour: "var(--red)", dashed: true });
   const chart = new Chart({
-    x: { label: "stress σ", unit: "Pa" }, y: { label: "P(σ), 1/Pa" }, series, switches: ["x", "y"],
+    x: { label: "stress σ", unit: "Pa" }, y: { label: `P(σ) (1/${unit})` }, series, switches: ["x", "y"],
   });
   return make("section", {}, make("h2", {}, "Stress distribution"), chart.element, ...notes.map((text) => make("p", { class: "quiet" }, text)));
 }

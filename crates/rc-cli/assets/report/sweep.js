@@ -19,7 +19,7 @@ function sweepPage(data) {
   const area = { key: "area", label: "contact area A/A0" };
   const penetration = { key: "penetration", label: "penetration Δ", unit: "m" };
   const gap = { key: "gap", label: "mean gap", unit: "m" };
-  const stiffness = { key: "stiffness", label: "stiffness, Pa/m" };
+  const stiffness = { key: "stiffness", label: "stiffness", unit: "Pa/m" };
   const both = ["x", "y"];
   return [
     make("h2", {}, "Curves"),

@@ -78,8 +78,7 @@ impl Values {
 pub(super) fn write(path: &Path, data: &Dataset) -> io::Result<()> {
     let mut xml = Writer::new_with_indent(BufWriter::new(File::create(path)?), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", None, None)))?;
-    let file =
-        [("type", data.kind), ("version", "1.0"), ("byte_order", "LittleEndian"), ("header_type", "UInt64")];
+    let file = [("type", data.kind), ("version", "1.0"), ("byte_order", "LittleEndian"), ("header_type", "UInt64")];
     xml.create_element("VTKFile").with_attributes(file).write_inner_content(|xml| {
         write_head(xml, data)?;
         xml.create_element("AppendedData").with_attribute(("encoding", "raw")).write_inner_content(|xml| {
@@ -164,9 +163,11 @@ mod tests {
         let mark = b"<AppendedData encoding=\"raw\">_";
         let start = bytes.windows(mark.len()).position(|window| window == mark).expect("the mark") + mark.len();
         let head = String::from_utf8_lossy(&bytes[..start]);
-        for (name, offset, length, first) in
-            [("a", 0, 2, vec![7, 9]), ("b", 10, 16, 1.5_f64.to_le_bytes().to_vec()), ("c", 34, 8, (-3_i64).to_le_bytes().to_vec())]
-        {
+        for (name, offset, length, first) in [
+            ("a", 0, 2, vec![7, 9]),
+            ("b", 10, 16, 1.5_f64.to_le_bytes().to_vec()),
+            ("c", 34, 8, (-3_i64).to_le_bytes().to_vec()),
+        ] {
             let line = head.lines().find(|line| line.contains(&format!("Name=\"{name}\""))).expect("a line");
             assert!(line.contains(&format!("offset=\"{offset}\"")), "{line}");
             let at = start + offset;

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::command::{flags, quoted};
 use super::{Body, Command, Page, Text, Tile, made};
 use crate::error::CliError;
-use crate::quantity::{digits, engineering};
+use crate::quantity::{Scale, digits, engineering};
 use crate::sweep::{TABLE_FILE, settings_in};
 
 /// The columns of `sweep.csv` that the page uses, in SI.
@@ -86,7 +86,8 @@ pub(super) fn page(folder: &Path) -> Result<Page, CliError> {
 
 fn read(path: &Path) -> Result<Vec<Row>, CliError> {
     let fail = |cause: csv::Error| CliError::in_file(path, format_args!("not a table of rc sweep: {cause}"));
-    let rows: Vec<Row> = csv::Reader::from_path(path).map_err(fail)?.deserialize().collect::<Result<_, _>>().map_err(fail)?;
+    let rows: Vec<Row> =
+        csv::Reader::from_path(path).map_err(fail)?.deserialize().collect::<Result<_, _>>().map_err(fail)?;
     if rows.is_empty() { Err(CliError::in_file(path, "has no rows")) } else { Ok(rows) }
 }
 
@@ -140,7 +141,8 @@ fn tiles(rows: &[Row]) -> Vec<Tile> {
     };
     let from_to = |of, unit| {
         let (low, high) = range(of);
-        format!("{} – {}", engineering(low, unit), engineering(high, unit))
+        let scale = Scale::of(high, unit);
+        format!("{} – {} {}", digits(low / scale.factor, 3), digits(high / scale.factor, 3), scale.unit())
     };
     let (low, high) = range(|row| 100.0 * row.area_fraction);
     let seconds: f64 = rows.iter().map(|row| row.wall_seconds).sum();

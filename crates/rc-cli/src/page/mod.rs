@@ -31,11 +31,8 @@ pub(crate) fn run(args: &ReportArgs) -> Result<(), CliError> {
     if target.is_dir() {
         return Err(CliError::in_file(&target, format_args!("is a folder; give --out FILE, as {PAGE_FILE}")));
     }
-    let page = if args.folder.join(TABLE_FILE).is_file() {
-        curves::page(&args.folder)?
-    } else {
-        contact::page(&args.folder)?
-    };
+    let page =
+        if args.folder.join(TABLE_FILE).is_file() { curves::page(&args.folder)? } else { contact::page(&args.folder)? };
     output::check_folder(target.parent().unwrap_or(Path::new("")))?;
     output::write_file(&target, |path| output::write_synced(path, document::html(&page).as_bytes()))?;
     if args.quiet { Ok(()) } else { output::print(&format!("{}\n", target.display())) }

@@ -150,7 +150,10 @@ fn a_result_is_exported_for_paraview() {
     let mark = b"<AppendedData encoding=\"raw\">_";
     let start = bytes.windows(mark.len()).position(|window| window == mark).expect("the arrays") + mark.len();
     let head = text(&bytes[..start]);
-    assert!(head.contains("WholeExtent=\"0 128 0 128 0 0\"") && head.contains("Spacing=\"7.8125e-5 7.8125e-5"), "{head}");
+    assert!(
+        head.contains("WholeExtent=\"0 128 0 128 0 0\"") && head.contains("Spacing=\"7.8125e-5 7.8125e-5"),
+        "{head}"
+    );
     let stored = rc_cli::npy::read(&place.path("r/pressure.npy")).expect("the pressure");
     // Contact comes first: a length, and a byte for each element; then the length of the pressure.
     let first = start + 8 + stored.grid().len() + 8;
@@ -163,6 +166,8 @@ fn a_result_is_exported_for_paraview() {
     assert!(head.contains(&format!("NumberOfCells=\"{elements}\"")), "{elements} elements");
     assert_solved(&place.run(&small("1e5", &["--method", "uniform", "--out", "u"])));
     assert_solved(&place.run(&["export", "u", "--quiet"]));
-    assert!(place.names("u").contains(&"fields.vti".to_owned()) && !place.names("u").contains(&"elements.vtu".to_owned()));
+    assert!(
+        place.names("u").contains(&"fields.vti".to_owned()) && !place.names("u").contains(&"elements.vtu".to_owned())
+    );
     assert_refused(&place.run(&["export", "vtk"]), "summary.json");
 }
