@@ -4,6 +4,8 @@ mod accuracy;
 mod bench;
 mod blocks;
 mod ci;
+mod dist;
+mod docs;
 mod figures;
 mod kernel_error;
 mod numeric;
@@ -58,6 +60,8 @@ enum Command {
     Bench(bench::Args),
     Stress(stress::Args),
     Swap(swap::Args),
+    Dist(dist::Args),
+    Docs(docs::Args),
 }
 
 fn main() -> anyhow::Result<()> {
@@ -80,5 +84,7 @@ fn main() -> anyhow::Result<()> {
         Command::Bench(args) => bench::run(&args),
         Command::Stress(args) => stress::run(&args),
         Command::Swap(args) => swap::run(&args),
+        Command::Dist(args) => dist::run(&args),
+        Command::Docs(args) => docs::run(&args),
     }
 }

@@ -40,8 +40,7 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
     let copy = tempfile::tempdir().context("could not make a temporary folder")?;
     prepare(&repository::root(), copy.path())?;
     // The same third-party crates are not built again.
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| repository::root().join("target"), Into::into);
-    TEST.run_in(copy.path(), &["--target-dir".to_owned(), target.to_string_lossy().into_owned()])
+    TEST.run_in(copy.path(), &["--target-dir".to_owned(), repository::target().to_string_lossy().into_owned()])
 }
 
 /// Makes the workspace with the fork.

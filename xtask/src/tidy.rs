@@ -5,6 +5,8 @@
 mod arrows;
 mod culture;
 mod dependencies;
+mod guide;
+mod packages;
 mod paper_map;
 mod snapshots;
 
@@ -12,7 +14,7 @@ use anyhow::{Result, bail};
 
 use crate::repository::{self, Sources};
 
-/// Checks dependency arrows, licences and versions of dependencies, paper map, snapshots, house rules and the numbers of
+/// Checks dependency arrows, licences and versions of dependencies, paper map, guide, snapshots, house rules and the numbers of
 /// docs/reproduction.md, docs/benchmarks.md and README.md (also a test, so `cargo xtask test` runs it).
 #[derive(clap::Args)]
 pub(crate) struct Args {}
@@ -30,6 +32,8 @@ const CHECKS: &[(&str, Check)] = &[
     ("snapshots", snapshots::check),
     ("culture", culture::check),
     ("dependencies", dependencies::check),
+    ("guide", guide::check),
+    ("packages", packages::check),
     ("reproduction", crate::reproduction::check),
     ("benchmark", crate::bench::check_documents),
 ];

@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod bad_input;
+mod guide;
 mod measured;
 mod report;
 mod solve;
