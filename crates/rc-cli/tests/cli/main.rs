@@ -6,6 +6,7 @@ mod measured;
 mod solve;
 mod support;
 mod sweep;
+mod sweep_damaged;
 mod sweep_interrupted;
 mod sweep_refused;
 mod tools;
