@@ -168,6 +168,40 @@ mod tests {
         assert_eq!((check(&sources(&text)).len(), check(&sources(&document)).len()), (0, 1));
     }
 
+    /// What the archived run has to show: snapshots of the reduced set and `--check` allow small changes, these do not.
+    #[test]
+    fn the_archived_run_keeps_its_promises() {
+        let sources = repository::read_sources(&repository::root()).expect("the repository");
+        let number = |what: &str| {
+            let row = ROWS.iter().find(|row| row.what == what).unwrap_or_else(|| panic!("no row {what}"));
+            ours(row, &sources).unwrap_or_else(|error| panic!("{what}: {error}"))
+        };
+        for waves in ["64", "128"] {
+            let of = |what: &str| number(&format!("{what}, N = {waves}")).0;
+            assert!(of("R² (the paper: above)") > 0.9999, "N = {waves}");
+            assert!(of("first bin (2e-4 E*) over the peak") < 0.05, "N = {waves}");
+            let slope = of("d log P/d log σ from 0.01 to 0.1 of the peak stress");
+            assert!((slope - 1.0).abs() < 0.1, "N = {waves}: {slope}");
+            let of_fit =
+                ROWS.iter().find(|row| row.figure == "fig8" && row.what.starts_with("erf") && row.waves == waves);
+            let area =
+                ROWS.iter().find(|row| row.figure == "fig8" && row.what.starts_with("A/A0") && row.waves == waves);
+            let [of_fit, area] = [of_fit, area].map(|row| ours(row.expect("a row"), &sources).expect("a number").0);
+            assert!((of_fit / area - 1.0).abs() < 0.02, "N = {waves}: {of_fit} and {area}");
+        }
+        // The paper's means of seven have an error like ours of seven.
+        for (waves, printed) in [("64", 0.0673), ("128", 0.0588)] {
+            let (mean, error) = number(&format!("the same, mean of 28 realisations, N = {waves}"));
+            let of_seven = number(&format!("A/A0 at σ0/E* = 8.9e-4, N = {waves}")).1;
+            let error = error.expect("an error").hypot(of_seven.expect("an error"));
+            assert!((mean - printed).abs() < 2.0 * error, "N = {waves}: {mean} ± {error}");
+        }
+        let run: Toml = sources["data/runs/paper/run.toml"].parse().expect("run.toml");
+        let limit = |key: &str| run[key].as_float().or_else(|| run[key].as_integer().map(|n| n as f64));
+        assert!(limit("seconds").is_some_and(|seconds| seconds < 600.0));
+        assert!(limit("peak_memory_megabytes").is_some_and(|megabytes| megabytes < 2000.0));
+    }
+
     #[test]
     fn what_is_missing_is_named() {
         let unknown = check(&sources(&format!("{BEGIN}fig9 -->{END}")));

@@ -32,6 +32,9 @@ pub struct ContactProblem {
     pub method: Option<Method>,
     /// Tolerance and limits.
     pub params: SolveParams,
+    /// Whether it is a row of a sweep, which must not depend on the memory of the machine: a method that does not fit is an error, and
+    /// another one is no way out.
+    pub is_one_of_many: bool,
     /// The keys as resolved, for `scene.toml`.
     pub keys: ContactKeys,
 }
@@ -212,7 +215,7 @@ pub fn contact(keys: ContactKeys, side: f64, elements_per_wave: Option<f64>) -> 
         ));
     }
     let params = SolveParams { tolerance: tolerance(keys.tolerance, elements_per_wave)?, ..SolveParams::certified() };
-    Ok(ContactProblem { elasticity, control, kernel, method, params, keys })
+    Ok(ContactProblem { elasticity, control, kernel, method, params, is_one_of_many: false, keys })
 }
 
 fn elasticity(keys: &ContactKeys) -> Result<Elasticity, CliError> {

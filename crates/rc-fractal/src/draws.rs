@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rustfft::num_complex::Complex64;
+use rc_fft::Complex64;
 
 use crate::Amplitudes;
 

@@ -39,5 +39,5 @@ pub use hurst::{HurstFit, fit_hurst};
 pub use moments::{Moments, moments_of_grid};
 pub use params::{Amplitudes, MAX_WAVES, Normalisation, SpectrumError, SpectrumParams, Truncation};
 pub use radial::{SpectrumBin, radial_spectrum};
-pub use rustfft::num_complex::Complex64;
+pub use rc_fft::Complex64;
 pub use surface::{SampleError, Surface};

@@ -2,9 +2,7 @@
 
 use rayon::prelude::*;
 use rc_core::Field;
-use realfft::RealFftPlanner;
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex64;
+use rc_fft::{Complex64, Plan};
 
 /// Columns that the second pass gathers at once, so that every cache line of the first pass's result is read once.
 const PANEL: usize = 8;
@@ -39,7 +37,7 @@ impl PowerSpectrum {
         let (nx, ny) = (heights.grid().nx(), heights.grid().ny());
         let width = nx / 2 + 1;
         let rows = transform_rows(heights, width);
-        let fft = FftPlanner::new().plan_fft_forward(ny);
+        let fft = f64::complex_forward(ny);
         let per_element = 1.0 / (nx * ny) as f64;
         let buffers = || (vec![Complex64::ZERO; PANEL * ny], vec![Complex64::ZERO; fft.get_inplace_scratch_len()]);
         let mut values = vec![0.0; width * ny];
@@ -76,7 +74,7 @@ impl PowerSpectrum {
 fn transform_rows(heights: &Field, width: usize) -> Vec<Complex64> {
     let nx = heights.grid().nx();
     let mean = heights.mean();
-    let fft = RealFftPlanner::<f64>::new().plan_fft_forward(nx);
+    let fft = f64::real_forward(nx);
     let mut rows = vec![Complex64::ZERO; width * heights.grid().ny()];
     let buffers = || (fft.make_input_vec(), fft.make_scratch_vec());
     rows.par_chunks_exact_mut(width).enumerate().for_each_init(buffers, |(row, scratch), (iy, spectrum)| {

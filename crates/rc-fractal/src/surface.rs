@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 use rc_core::{Field, Grid, HeightField};
-use rustfft::num_complex::Complex64;
+use rc_fft::Complex64;
 use thiserror::Error;
 
 use crate::draws::draw_column;

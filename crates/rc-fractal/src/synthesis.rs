@@ -7,9 +7,7 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 use rc_core::{Field, Grid};
-use realfft::RealFftPlanner;
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex64;
+use rc_fft::{Complex64, Plan};
 
 use crate::surface::reach;
 
@@ -31,7 +29,7 @@ pub(crate) fn synthesise(columns: &[Vec<Complex64>], grid: Grid) -> Field {
 /// element by which the first centre is off the corner.
 fn transform_columns(columns: &[Vec<Complex64>], grid: Grid) -> Vec<Complex64> {
     let ny = grid.ny();
-    let fft = FftPlanner::new().plan_fft_inverse(ny);
+    let fft = f64::complex_inverse(ny);
     let to_centre_y: Vec<Complex64> = (0..columns.len()).map(|ky| half_element(ky, ny)).collect();
     let mut result = vec![Complex64::ZERO; columns.len() * ny];
     let scratch = || vec![Complex64::ZERO; fft.get_inplace_scratch_len()];
@@ -52,7 +50,7 @@ fn transform_columns(columns: &[Vec<Complex64>], grid: Grid) -> Vec<Complex64> {
 /// Second pass: row by row from complex to real.
 fn transform_rows(waves_by_row: &[Complex64], n_columns: usize, field: &mut Field) {
     let (nx, ny) = (field.grid().nx(), field.grid().ny());
-    let fft = RealFftPlanner::<f64>::new().plan_fft_inverse(nx);
+    let fft = f64::real_inverse(nx);
     let folds: Vec<Fold> = (0..n_columns).map(|kx| Fold::of(kx, nx)).collect();
     let buffers = || (vec![Complex64::ZERO; BLOCK * n_columns], fft.make_input_vec(), fft.make_scratch_vec());
     let blocks = field.values_mut().par_chunks_mut(BLOCK * nx).enumerate();

@@ -3,7 +3,7 @@
 use plotters::prelude::{
     Circle, DashedLineSeries, DrawingBackend, EmptyElement, LineSeries, PathElement, Rectangle, TriangleMarker,
 };
-use plotters::style::{BLACK, Color, RGBColor, WHITE};
+use plotters::style::{BLACK, Color, RGBColor};
 
 use super::chart::{BLUE, Chart, Drawn, RED, Side, TEXT, write};
 
@@ -141,7 +141,8 @@ pub(crate) fn square<B: DrawingBackend>(
     right: i32,
     colour: RGBColor,
 ) -> Drawn<(), B> {
-    let ring = |half: i32, fill: RGBColor| Rectangle::new([(right - half, -half), (right + half, half)], fill.filled());
-    chart.draw_series([EmptyElement::at(at) + ring(12, colour) + ring(8, WHITE)])?;
+    // Hollow: what is compared with it is under it.
+    let frame = Rectangle::new([(right - 11, -11), (right + 11, 11)], colour.stroke_width(4));
+    chart.draw_series([EmptyElement::at(at) + frame])?;
     Ok(())
 }

@@ -115,6 +115,8 @@ pub(super) const ROWS: &[Row] = &[
     row("fig5", "slope of the line, N = 128", FIG5, "slope of the line").waves("128"),
     row("fig5", "κ of the line, N = 64", FIG5, "kappa of the line").waves("64"),
     row("fig5", "κ of the line, N = 128", FIG5, "kappa of the line").waves("128"),
+    row("fig5", "κ at σ0/E* = 8.9e-4, N = 64", FIG5, KAPPA).waves("64"),
+    row("fig5", "κ at σ0/E* = 8.9e-4, N = 128", FIG5, KAPPA).waves("128"),
     row("fig5", "R² (the paper: above), N = 64", FIG5, "R squared").waves("64").paper("fig5_r_squared").digits(5),
     row("fig5", "R² (the paper: above), N = 128", FIG5, "R squared").waves("128").paper("fig5_r_squared").digits(5),
     row("fig5", "R² up to σ0/E* = 4e-3, N = 64", FIG5, "R squared up to 4e-3").waves("64").digits(5),
@@ -128,8 +130,12 @@ pub(super) const ROWS: &[Row] = &[
         .waves("64"),
     row("fig7", "d log10 σ0 / d(Δ/h_max), N = 128", FIG7, "d log10(load) / d(penetration/h_max) of realisations")
         .waves("128"),
+    row("fig7", "the same of the averages (the line drawn), N = 64", FIG7, DRAWN).waves("64"),
+    row("fig7", "the same of the averages (the line drawn), N = 128", FIG7, DRAWN).waves("128"),
     row("fig7", "R² of the averages, N = 64", FIG7, "R squared of averages").waves("64").digits(5),
     row("fig7", "R² of the averages, N = 128", FIG7, "R squared of averages").waves("128").digits(5),
+    row("fig7", "lowest R² of a realisation, N = 64", FIG7, "lowest R squared of realisations").waves("64"),
+    row("fig7", "lowest R² of a realisation, N = 128", FIG7, "lowest R squared of realisations").waves("128"),
     row("fig7", "u0/h_rms, N = 64", FIG7, "u0").waves("64"),
     row("fig7", "u0/h_rms, N = 128", FIG7, "u0").waves("128"),
     row("fig7", "Persson's u0/h_rms, γ = 0.40", FIG7, "Persson's u0 for gamma 0.40").waves("64"),
@@ -171,4 +177,6 @@ pub(super) const ROWS: &[Row] = &[
 ];
 
 const MORE: &str = "area fraction of all realisations";
+const KAPPA: &str = "kappa at the load of the printed areas";
+const DRAWN: &str = "d log10(load) / d(penetration/h_max) of averages";
 const SLOPE: &str = "slope from 0.01 to 0.1 of the peak stress";

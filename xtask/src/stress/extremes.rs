@@ -161,7 +161,7 @@ fn shape_scenes(method: Method, full: bool) -> Result<Vec<Scene>> {
     for shape in shapes(side(method))? {
         let range = shape.heights.max() - shape.heights.min();
         let mut add = |name: String, control| {
-            let scene = Scene::new(name, &shape.heights, method, control).unresolved();
+            let scene = Scene::new(name, &shape.heights, method, control);
             scenes.push(scene.slow(if shape.name == "white noise" { WHITE_NOISE } else { EDGES }));
         };
         for part in thinned(&[1e-2, 1e-6, 1.0], full) {

@@ -14,10 +14,6 @@ pub(crate) const TOLERANCE: f64 = 1e-6;
 /// What an audit may find beyond the tolerance, relative to it: its own rounding, and the error of the other operator.
 const AUDIT_SLACK: f64 = 0.1;
 
-/// The same for the adaptive method on heights with edges and spikes that no grid resolves: its operator is a hundred times
-/// less accurate there than on contacts.
-const UNRESOLVED_SLACK: f64 = 1.0;
-
 /// Iterations may be this many times the median of all scenes of the method.
 const ITERATION_FACTOR: f64 = 2.0;
 
@@ -38,11 +34,6 @@ impl Scene {
         let name = format!("{} {}", method.name(), name.into());
         let (slack, iteration_factor) = (AUDIT_SLACK, ITERATION_FACTOR);
         Self { name, heights: heights.clone(), method, control, tolerance: TOLERANCE, slack, iteration_factor }
-    }
-
-    /// With heights that the grid does not resolve.
-    pub(crate) fn unresolved(self) -> Self {
-        if self.method == Method::Adaptive { Self { slack: UNRESOLVED_SLACK, ..self } } else { self }
     }
 
     /// Known to take up to `factor` times the median number of iterations.

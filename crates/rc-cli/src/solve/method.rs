@@ -76,7 +76,7 @@ impl<'a> Chooser<'a, '_> {
         }
         match self.on_grid(Plan::Uniform, cheaper_on_grid(100.0 * area)) {
             // The adaptive method fits, or it would not be prepared.
-            Err(_) => {
+            Err(_) if !self.contact.is_one_of_many => {
                 let why = "the uniform grid is cheaper but does not fit into memory";
                 Ok(adaptive(problem, format!("adaptive: at an estimated contact area of {percent} % {why}")))
             }
@@ -106,6 +106,7 @@ impl<'a> Chooser<'a, '_> {
         if let AdaptiveError::Memory { area_percent, .. } = error {
             let reason = match area_percent.filter(|percent| *percent > 100.0 * Estimate::GREATEST_ADAPTIVE_AREA) {
                 Some(percent) => cheaper_on_grid(percent),
+                None if self.contact.is_one_of_many => return Err(self.refuse(error)),
                 None => "uniform: the adaptive method does not fit into memory".into(),
             };
             return self.on_grid(Plan::Uniform, reason).map_err(|_| self.refuse(error));

@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::plan::MOST_ROWS;
 use super::settings;
 use super::shard::{Shape, Shard};
 use crate::error::CliError;
@@ -14,7 +15,7 @@ use crate::error::CliError;
 pub(super) const JOURNAL_FILE: &str = "sweep.jsonl";
 
 /// First key of the first line, by which a journal is recognised.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// The cells of a row by the names of their columns, in order.
 pub(super) type Cells = Map<String, Value>;
@@ -36,6 +37,14 @@ pub(super) struct Header {
 struct Line {
     row: usize,
     cells: Cells,
+    crc32: u32,
+}
+
+impl Line {
+    fn new(row: usize, cells: Cells) -> Self {
+        let crc32 = crc32fast::hash(format!("{row}{}", Value::Object(cells.clone())).as_bytes());
+        Self { row, cells, crc32 }
+    }
 }
 
 impl Header {
@@ -56,6 +65,12 @@ impl Header {
                 format_args!("this folder holds another sweep: {difference}; give its settings, or another --out"),
             ));
         }
+        if there.shape != self.shape {
+            return Err(CliError::in_file(
+                folder,
+                "the number of rows in its journal is not that of its settings: it is damaged",
+            ));
+        }
         if there.shard != self.shard {
             let (there, here) = (there.shard, self.shard);
             return Err(CliError::in_file(folder, format_args!("holds shard {there}, not {here}; give another --out")));
@@ -66,7 +81,7 @@ impl Header {
 
 /// A line of the journal for the row `row`.
 pub(super) fn row_line(row: usize, cells: &Cells) -> String {
-    to_line(&Line { row, cells: cells.clone() })
+    to_line(&Line::new(row, cells.clone()))
 }
 
 fn to_line(value: &impl Serialize) -> String {
@@ -97,14 +112,14 @@ impl Content {
         let mut lines = bytes.split_inclusive(|&byte| byte == b'\n').peekable();
         let first = lines.next().filter(|line| line.ends_with(b"\n"));
         let header: Option<Header> = first.and_then(|line| serde_json::from_slice(line).ok());
-        let header = header.filter(|header| header.rc_sweep == FORMAT);
+        let header = header.filter(|header| header.rc_sweep == FORMAT && header.shape.rows() <= MOST_ROWS);
         let header = header.ok_or_else(|| CliError::in_file(&path, "not a journal of rc sweep"))?;
         let mut content = Self { header, rows: Rows::new(), whole: first.map_or(0, <[u8]>::len) as u64 };
         let mut number = 1;
         while let Some(line) = lines.next() {
             number += 1;
             match content.parse(line) {
-                Some(Line { row, cells }) => content.rows.insert(row, cells),
+                Some(Line { row, cells, .. }) => content.rows.insert(row, cells),
                 None if lines.peek().is_none() => break,
                 None => return Err(CliError::in_file(&path, format_args!("line {number} is damaged; remove it"))),
             };
@@ -117,6 +132,7 @@ impl Content {
     fn parse(&self, line: &[u8]) -> Option<Line> {
         let whole = line.strip_suffix(b"\n")?;
         let line: Line = serde_json::from_slice(whole).ok()?;
-        (line.row < self.header.shape.rows()).then_some(line)
+        let is_sound = Line::new(line.row, line.cells.clone()).crc32 == line.crc32;
+        (is_sound && line.row < self.header.shape.rows()).then_some(line)
     }
 }

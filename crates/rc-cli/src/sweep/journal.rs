@@ -8,7 +8,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::content::{Cells, Content, Header, JOURNAL_FILE, Rows, row_line};
-use super::lock::Lock;
+use super::lock::{ANOTHER_PROCESS, Lock};
 use crate::error::CliError;
 use crate::output;
 
@@ -20,6 +20,8 @@ pub(super) struct Journal {
     /// Bytes of whole lines.
     length: u64,
     pub(super) rows: Rows,
+    /// Whether the folder was not there before.
+    made_folder: bool,
     /// Why a row could not be kept; after that none is.
     failure: Option<CliError>,
     /// Held as long as this process may write.
@@ -54,15 +56,19 @@ impl Journal {
         output::check_folder(folder)?;
         let path = folder.join(JOURNAL_FILE);
         let fail = |cause: io::Error| CliError::write(&path, cause);
+        let made_folder = !folder.exists();
         std::fs::create_dir_all(folder).map_err(fail)?;
         let mut new = output::temporary_in(folder).map_err(fail)?;
         let line = header.to_line();
         new.write_all(line.as_bytes()).and_then(|()| new.as_file().sync_all()).map_err(fail)?;
-        // Whoever made one in the meantime keeps it.
-        let file = new.persist_noclobber(&path).map_err(|error| fail(error.error))?;
+        // Whoever made one in the meantime keeps it (and may have taken this temporary file for a leftover).
+        let file = new.persist_noclobber(&path).map_err(|error| match path.exists() {
+            true => CliError::in_file(folder, ANOTHER_PROCESS),
+            false => fail(error.error),
+        })?;
         let lock = Lock::take(&file, folder)?;
         let file = OpenOptions::new().append(true).open(&path).map_err(fail)?;
-        Ok(Self { path, file, length: line.len() as u64, rows: Rows::new(), failure: None, _lock: lock })
+        Ok(Self { path, file, length: line.len() as u64, rows: Rows::new(), made_folder, failure: None, _lock: lock })
     }
 
     fn reopen(folder: &Path, header: &Header) -> Result<Self, CliError> {
@@ -74,7 +80,15 @@ impl Journal {
         let content = Content::read(folder)?;
         header.check_same(&content.header, folder)?;
         file.set_len(content.whole).map_err(fail)?;
-        Ok(Self { path, file, length: content.whole, rows: content.rows, failure: None, _lock: lock })
+        Ok(Self {
+            path,
+            file,
+            length: content.whole,
+            rows: content.rows,
+            made_folder: false,
+            failure: None,
+            _lock: lock,
+        })
     }
 
     /// Keeps a row. When it returns, the row is on disk; after an error the rows before still are, and no part of this one.
@@ -89,8 +103,11 @@ impl Journal {
         if let Err(cause) = self.file.write_all(line.as_bytes()).and_then(|()| self.file.sync_data()) {
             // What cannot be cut now is cut when the sweep is resumed.
             let _ = self.file.set_len(self.length);
-            let kept = self.rows.len();
-            let message = format_args!("{cause}; the {kept} rows before are kept, and --resume goes on with them");
+            let message = match self.rows.len() {
+                0 => cause.to_string(),
+                1 => format!("{cause}; the row before is kept, and --resume goes on with it"),
+                kept => format!("{cause}; the {kept} rows before are kept, and --resume goes on with them"),
+            };
             let failure = CliError::write(&self.path, message);
             self.failure = Some(failure.clone());
             return Err(failure);
@@ -100,12 +117,16 @@ impl Journal {
         Ok(())
     }
 
-    /// Takes away a journal without rows, and its folder if nothing else is in it: there is nothing to go on with.
+    /// Takes away a sweep without rows, and its folder if this process made it: there is nothing to go on with.
     pub(super) fn discard_empty(&self, folder: &Path) {
         if self.rows.is_empty() {
-            // What cannot be removed does no harm: --resume takes it.
+            // What cannot be removed does no harm: --resume takes it. The journal goes last, as long as it is there so does the rest.
+            let _ = std::fs::remove_dir_all(folder.join(super::ROWS_FOLDER));
+            let _ = std::fs::remove_file(folder.join(super::TABLE_FILE));
             let _ = std::fs::remove_file(&self.path);
-            let _ = std::fs::remove_dir(folder);
+            if self.made_folder {
+                let _ = std::fs::remove_dir(folder);
+            }
         }
     }
 }

@@ -5,6 +5,9 @@ use std::path::Path;
 
 use crate::error::CliError;
 
+/// Why a sweep is not touched.
+pub(super) const ANOTHER_PROCESS: &str = "another process is writing this sweep; wait for it, or give another --out";
+
 /// Held until dropped; it goes with the process, however that ends.
 #[derive(Debug)]
 pub(super) struct Lock {
@@ -24,10 +27,7 @@ impl Lock {
         let Ok(file) = file.try_clone() else { return Ok(Self { _file: None }) };
         match Flock::lock(file, FlockArg::LockExclusiveNonblock) {
             Ok(file) => Ok(Self { _file: Some(file) }),
-            Err((_, Errno::EWOULDBLOCK)) => Err(CliError::in_file(
-                folder,
-                "another process is writing this sweep; wait for it, or give another --out",
-            )),
+            Err((_, Errno::EWOULDBLOCK)) => Err(CliError::in_file(folder, ANOTHER_PROCESS)),
             Err(_) => Ok(Self { _file: None }),
         }
     }

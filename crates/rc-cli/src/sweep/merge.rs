@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::content::{Content, Header, JOURNAL_FILE, Rows, row_line};
 use super::shard::Shard;
-use super::{FILES, check_converged, fields_folder, settings, table};
+use super::{FILES, ROWS_FOLDER, check_converged, fields_folder, has_fields, row_name, settings, table};
 use crate::args::MergeArgs;
 use crate::error::CliError;
 use crate::output::{self, Staged};
@@ -25,11 +25,10 @@ pub(super) fn run(args: &MergeArgs) -> Result<(), CliError> {
         None => return Err(CliError::input("no folder to merge; give those of all shards")),
     };
     if header.settings["fields"] == true {
-        copy_fields(&shards, &args.out)?;
+        check_fields(&shards)?;
     }
     let n_shards = shards.len();
-    let rows: Rows = shards.into_iter().flat_map(|(_, content)| content.rows).collect();
-    write(&args.out, &header, &rows)?;
+    let rows = write(&args.out, &header, &shards)?;
     let path = args.out.join(table::TABLE_FILE);
     if !args.quiet {
         output::print(&format!("{} rows of {n_shards} shards\n\nwritten to {}\n", rows.len(), path.display()))?;
@@ -78,28 +77,44 @@ fn check_same_sweep(first: &Path, there: &Header, folder: &Path, here: &Header) 
     Ok(())
 }
 
-fn write(out: &Path, header: &Header, rows: &Rows) -> Result<(), CliError> {
+/// Writes the sweep in one go: nothing of it appears unless all of it can be copied.
+fn write(out: &Path, header: &Header, shards: &[(&Path, Content)]) -> Result<Rows, CliError> {
+    let rows: Rows = shards.iter().flat_map(|(_, content)| content.rows.clone()).collect();
     let lines = rows.iter().map(|(&row, cells)| row_line(row, cells));
     let journal: String = std::iter::once(header.to_line()).chain(lines).collect();
-    let csv = table::to_csv(rows).map_err(|cause| CliError::write(&out.join(table::TABLE_FILE), cause))?;
+    let csv = table::to_csv(&rows).map_err(|cause| CliError::write(&out.join(table::TABLE_FILE), cause))?;
     let mut staged = Staged::new(out)?;
+    if header.settings["fields"] == true {
+        staged.add(ROWS_FOLDER, |path| copy_fields(shards, path))?;
+    }
     staged.add_text(JOURNAL_FILE, &journal)?;
     staged.add(table::TABLE_FILE, |path| output::write_synced(path, &csv))?;
-    staged.commit()
+    staged.commit()?;
+    Ok(rows)
 }
 
-/// Copies the result folder of each row.
-fn copy_fields(shards: &[(&Path, Content)], out: &Path) -> Result<(), CliError> {
+/// The result folder of each row must be there before any is copied.
+fn check_fields(shards: &[(&Path, Content)]) -> Result<(), CliError> {
+    for (folder, content) in shards {
+        if let Some(row) = content.rows.keys().find(|&&row| !has_fields(folder, row)) {
+            let missing = fields_folder(folder, *row);
+            let message = "the fields of this row are missing; --resume in the folder of the shard makes them again";
+            return Err(CliError::in_file(&missing, message));
+        }
+    }
+    Ok(())
+}
+
+/// Copies the result folder of each row into `rows`.
+fn copy_fields(shards: &[(&Path, Content)], rows: &Path) -> std::io::Result<()> {
     for (folder, content) in shards {
         for &row in content.rows.keys() {
-            let from = fields_folder(folder, row);
-            let unreadable = |cause: std::io::Error| CliError::in_file(&from, format_args!("cannot read: {cause}"));
-            let mut staged = Staged::new(&fields_folder(out, row))?;
-            for entry in std::fs::read_dir(&from).map_err(unreadable)? {
-                let entry = entry.map_err(unreadable)?;
-                staged.add(&entry.file_name().to_string_lossy(), |path| std::fs::copy(entry.path(), path).map(drop))?;
+            let to = rows.join(row_name(row));
+            std::fs::create_dir_all(&to)?;
+            for entry in std::fs::read_dir(fields_folder(folder, row))? {
+                let entry = entry?;
+                std::fs::copy(entry.path(), to.join(entry.file_name()))?;
             }
-            staged.commit()?;
         }
     }
     Ok(())

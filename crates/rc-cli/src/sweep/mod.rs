@@ -65,8 +65,10 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
 /// Solves what is missing, writes the table, says what happened.
 fn execute(plan: &Plan, shard: Shard, journal: Journal, folder: &Path, threads: usize) -> Result<(), CliError> {
     let started = Instant::now();
-    let (n_rows, n_before) = (shard.rows(plan.shape()).count(), journal.rows.len());
-    let todo: Vec<usize> = shard.rows(plan.shape()).filter(|row| !journal.rows.contains_key(row)).collect();
+    let is_done = |row: &usize| journal.rows.contains_key(row) && (!plan.fields || has_fields(folder, *row));
+    let todo: Vec<usize> = shard.rows(plan.shape()).filter(|row| !is_done(row)).collect();
+    let n_rows = shard.rows(plan.shape()).count();
+    let n_before = n_rows - todo.len();
     if !todo.is_empty() {
         table::write(folder, &journal.rows)?;
     }
@@ -77,13 +79,13 @@ fn execute(plan: &Plan, shard: Shard, journal: Journal, folder: &Path, threads: 
     bar.clear();
     let journal = locked(&journal);
     let written = table::write(folder, &journal.rows);
-    if solved.is_err() {
+    if let Err(error) = solved {
         // What it says comes first: on a full disk, for one, the table fails as well.
         journal.discard_empty(folder);
-        return solved;
+        return Err(with_count(error, n_rows - journal.rows.len(), journal.rows.len()));
     }
     let path = written?;
-    if plan.run.json {
+    if plan.run.json && !plan.run.quiet {
         output::print(&summary::to_json(&journal.rows.values().collect::<Vec<_>>()))?;
     } else if !plan.run.quiet {
         let seconds = quantity::digits(started.elapsed().as_secs_f64(), 3);
@@ -94,6 +96,16 @@ fn execute(plan: &Plan, shard: Shard, journal: Journal, folder: &Path, threads: 
         ))?;
     }
     check_converged(&journal.rows, &path)
+}
+
+/// The error of a row, and how many there are of which kind.
+fn with_count(error: CliError, missing: usize, kept: usize) -> CliError {
+    match error {
+        CliError::Input(message) if kept > 0 => CliError::input(format_args!(
+            "{message}; {missing} rows cannot be solved, the other {kept} are in {TABLE_FILE}"
+        )),
+        other => other,
+    }
 }
 
 /// An error when a row did not converge.
@@ -116,7 +128,16 @@ pub(crate) fn settings_in(folder: &Path) -> Option<serde_json::Value> {
 
 /// The folder for the fields of row `index` in the folder of a sweep: numbered from 1, as the lines of the table.
 fn fields_folder(sweep: &Path, index: usize) -> PathBuf {
-    sweep.join(ROWS_FOLDER).join(format!("{:04}", index + 1))
+    sweep.join(ROWS_FOLDER).join(row_name(index))
+}
+
+fn row_name(index: usize) -> String {
+    format!("{:04}", index + 1)
+}
+
+/// Whether the fields of a row are there; the summary is written last.
+fn has_fields(sweep: &Path, index: usize) -> bool {
+    fields_folder(sweep, index).join("summary.json").exists()
 }
 
 #[cfg(test)]

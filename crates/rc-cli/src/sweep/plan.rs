@@ -10,6 +10,9 @@ use crate::resolve::{self, ContactProblem};
 use crate::scene::{ContactKeys, RunKeys, Scene};
 use crate::surface::{Source, SurfaceProblem};
 
+/// Most rows of a sweep; beyond it a number was mistyped.
+pub(super) const MOST_ROWS: usize = 1_000_000;
+
 /// What is prescribed in every row of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ControlKind {
@@ -95,6 +98,15 @@ impl Plan {
         let mut surfaces = Vec::new();
         for (name, scene) in &scenes {
             let loads = loads(args, control, &scene.contact)?;
+            let n_seeds = args.seeds.as_ref().map_or(1, |Seeds(seeds)| seeds.len());
+            if scenes.len().saturating_mul(n_seeds).saturating_mul(loads.len()) > MOST_ROWS {
+                let message = format_args!(
+                    "{} scenes x {n_seeds} seeds x {} loads are more than {MOST_ROWS} rows; give shorter lists",
+                    scenes.len(),
+                    loads.len()
+                );
+                return Err(CliError::input(message));
+            }
             for keys in seeded(args.seeds.as_ref(), name, scene)? {
                 surfaces.push(PlannedSurface::new(name, keys, control, &loads)?);
             }
@@ -127,6 +139,8 @@ impl Plan {
         let load = surface.loads[index % loads];
         let keys = self.control.with_load(&surface.contact, Some(load));
         let contact = resolve::contact(keys, surface.problem.cell.side(), surface.problem.elements_per_wave())?;
+        // The memory of a machine must not decide on the digits of a row.
+        let contact = ContactProblem { is_one_of_many: true, ..contact };
         Ok(Row { index, surface, load, contact })
     }
 }

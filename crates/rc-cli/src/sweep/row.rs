@@ -69,7 +69,10 @@ pub(super) fn solve(plan: &Plan, row: &Row<'_>, surfaces: &LatestSurface, thread
         {
             return Err(CliError::write(&folder, cause));
         }
-        solved.write(&folder, &summary)?;
+        solved.write(&folder, &summary).inspect_err(|_| {
+            // A row is there whole or not at all. What stays is replaced when the row is solved again.
+            let _ = std::fs::remove_dir_all(&folder);
+        })?;
     }
     Ok(cells(plan, row, &summary))
 }

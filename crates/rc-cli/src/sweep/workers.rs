@@ -17,13 +17,14 @@ pub(super) fn locked(journal: &Mutex<Journal>) -> MutexGuard<'_, Journal> {
     journal.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Solves the rows `todo` of `plan` on `threads` threads and keeps each as it is done. After an error no row is begun.
+/// Solves the rows `todo` of `plan` on `threads` threads and keeps each as it is done. After a failure no row is begun; a row whose load
+/// is impossible is left out.
 ///
 /// Rows are solved side by side as far as memory allows. That is faster than all threads on one row for small surfaces, and
 /// no slower for large ones (docs/sweeps.md).
 ///
 /// # Errors
-/// The first [`CliError`] of a row.
+/// The first [`CliError`] of a row, failures first.
 pub(super) fn run(
     plan: &Plan,
     todo: &[usize],
@@ -49,7 +50,8 @@ pub(super) fn run(
         let running: Vec<_> = pools.iter().map(|pool| scope.spawn(move || pool.install(|| work.run()))).collect();
         running.into_iter().map(join).collect()
     });
-    results.into_iter().collect()
+    let (refused, others): (Vec<_>, Vec<_>) = results.into_iter().partition(|r| matches!(r, Err(CliError::Input(_))));
+    others.into_iter().chain(refused).collect()
 }
 
 /// The result of a worker; a panic goes on here.
@@ -88,6 +90,7 @@ struct Work<'a> {
 impl Work<'_> {
     /// Takes rows until there are none, or a row failed.
     fn run(&self) -> Result<(), CliError> {
+        let mut refused = Ok(());
         while !self.stop.load(Ordering::Relaxed) {
             let Some(&index) = self.todo.get(self.next.fetch_add(1, Ordering::Relaxed)) else { break };
             let kept = self
@@ -95,13 +98,17 @@ impl Work<'_> {
                 .row(index)
                 .and_then(|row| row::solve(self.plan, &row, &self.surfaces, self.threads))
                 .and_then(|cells| locked(self.journal).append(index, cells));
-            if kept.is_err() {
-                self.stop.store(true, Ordering::Relaxed);
-                return kept;
+            match kept {
+                Ok(()) => self.bar.one_more(),
+                // A load that this surface cannot carry says nothing about the others.
+                Err(CliError::Input(_)) => refused = refused.and(kept),
+                Err(_) => {
+                    self.stop.store(true, Ordering::Relaxed);
+                    return kept;
+                }
             }
-            self.bar.one_more();
         }
-        Ok(())
+        refused
     }
 }
 

@@ -8,6 +8,7 @@ mod report;
 mod solve;
 mod support;
 mod sweep;
+mod sweep_damaged;
 mod sweep_interrupted;
 mod sweep_refused;
 mod tools;

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use rc_core::{Grid, Observer};
 
-use super::Solver;
 use super::element_heights::element_heights;
 use super::elements::Elements;
 use super::fresh::Fresh;
 use super::operator::{BLOCK_CELLS, Hierarchy, Reach, Real, Tables, TileOperator};
+use super::solver::Solver;
 use super::split::split;
 use super::survey::{Remainder, possible_contact};
 use crate::Control;

@@ -1,7 +1,7 @@
 //! What an iteration needs to know of the mesh: how a table (of L, or of its approximate inverse) is applied to a vector.
 
 use rayon::prelude::*;
-use rustfft::FftNum;
+use rc_fft::Plan;
 
 use super::Blocks;
 use crate::fft::{BLOCK_ROWS, Convolution, SymbolTable};
@@ -35,7 +35,7 @@ pub(crate) trait Engine<T> {
     fn set_mean(&self, table: &mut Self::Table, eigenvalue: f64);
 }
 
-impl<T: FftNum> Engine<T> for Convolution<T> {
+impl<T: Plan> Engine<T> for Convolution<T> {
     type Table = SymbolTable<T>;
 
     fn blocks(&self) -> Blocks {

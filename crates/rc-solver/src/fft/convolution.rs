@@ -9,9 +9,7 @@ use std::sync::{Arc, Mutex};
 
 use rayon::prelude::*;
 use rc_core::Grid;
-use realfft::num_complex::Complex;
-use realfft::{ComplexToReal, FftNum, RealFftPlanner, RealToComplex};
-use rustfft::{Fft, FftPlanner};
+use rc_fft::{Complex, ComplexToReal, Fft, Plan, RealToComplex};
 
 use super::SymbolTable;
 
@@ -46,14 +44,10 @@ struct Workspace<T> {
     scratch: Vec<Complex<T>>,
 }
 
-impl<T: FftNum> Convolution<T> {
+impl<T: Plan> Convolution<T> {
     pub(crate) fn new(grid: Grid) -> Self {
-        let mut real_planner = RealFftPlanner::new();
-        let mut planner = FftPlanner::new();
-        let row_forward = real_planner.plan_fft_forward(grid.nx());
-        let row_inverse = real_planner.plan_fft_inverse(grid.nx());
-        let column_forward = planner.plan_fft_forward(grid.ny());
-        let column_inverse = planner.plan_fft_inverse(grid.ny());
+        let (row_forward, row_inverse) = (T::real_forward(grid.nx()), T::real_inverse(grid.nx()));
+        let (column_forward, column_inverse) = (T::complex_forward(grid.ny()), T::complex_inverse(grid.ny()));
         let scratch_len = [
             row_forward.get_scratch_len(),
             row_inverse.get_scratch_len(),
@@ -209,7 +203,7 @@ fn lock<T>(workspaces: &[Mutex<Workspace<T>>]) -> std::sync::MutexGuard<'_, Work
 }
 
 /// Tiles (rows of a few columns) to padded columns.
-fn gather<T: FftNum>(tiles: &[&mut [Complex<T>]], panel: &mut [Complex<T>], width: usize) {
+fn gather<T: Plan>(tiles: &[&mut [Complex<T>]], panel: &mut [Complex<T>], width: usize) {
     let stride = panel.len() / width;
     for (tile_idx, tile) in tiles.iter().enumerate() {
         for (column_idx, column) in panel.chunks_exact_mut(stride).enumerate() {
@@ -222,7 +216,7 @@ fn gather<T: FftNum>(tiles: &[&mut [Complex<T>]], panel: &mut [Complex<T>], widt
 }
 
 /// Padded columns back to tiles.
-fn scatter<T: FftNum>(panel: &[Complex<T>], tiles: &mut [&mut [Complex<T>]], width: usize) {
+fn scatter<T: Plan>(panel: &[Complex<T>], tiles: &mut [&mut [Complex<T>]], width: usize) {
     let stride = panel.len() / width;
     for (tile_idx, tile) in tiles.iter_mut().enumerate() {
         for (column_idx, column) in panel.chunks_exact(stride).enumerate() {
@@ -235,7 +229,7 @@ fn scatter<T: FftNum>(panel: &[Complex<T>], tiles: &mut [&mut [Complex<T>]], wid
 }
 
 /// Multiplies a column by the symbol, which is even in ky.
-fn scale_column<T: FftNum>(column: &mut [Complex<T>], symbol: &[T]) {
+fn scale_column<T: Plan>(column: &mut [Complex<T>], symbol: &[T]) {
     let ny = column.len();
     let (low, high) = column.split_at_mut(symbol.len());
     for (value, &factor) in low.iter_mut().zip(symbol) {

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use rc_core::Grid;
-use realfft::FftNum;
+use rc_fft::Plan;
 
 /// Eigenvalues for 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2, columns of constant kx contiguous, with the 1/(nx·ny) of the inverse
 /// transform folded in.
@@ -12,7 +12,7 @@ pub(crate) struct SymbolTable<T> {
     values: Vec<T>,
 }
 
-impl<T: FftNum> SymbolTable<T> {
+impl<T: Plan> SymbolTable<T> {
     /// Tabulates `eigenvalue(kx, ky)`; on a square grid, where it is symmetric, only for ky ≥ kx.
     pub(crate) fn new(grid: Grid, eigenvalue: impl Fn(usize, usize) -> f64 + Sync) -> Self {
         let column_len = grid.ny() / 2 + 1;

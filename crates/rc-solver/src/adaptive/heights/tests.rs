@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rc_core::testing::quasi_random;
 use rc_core::{Field, Grid, HeightField};
-use rustfft::num_complex::Complex64;
+use rc_fft::Complex64;
 
 use super::{HeightSource, Heights, TILE};
 use crate::SolveError;

@@ -69,7 +69,7 @@ pub(super) fn transform(frequency: f64) -> f64 {
 mod tests {
     use std::f64::consts::TAU;
 
-    use rustfft::num_complex::Complex64;
+    use rc_fft::Complex64;
 
     use super::*;
 

@@ -1,9 +1,9 @@
 //! The arithmetic of the inner loops, in single or double precision, with or without fused multiply-add.
 
-use rustfft::FftNum;
+use rc_fft::Plan;
 
 /// `f32` or `f64`.
-pub(crate) trait Real: FftNum + Default {
+pub(crate) trait Real: Plan + Default {
     /// Rounded from double precision.
     fn rounded(value: f64) -> Self;
 

@@ -5,6 +5,8 @@ use rand_chacha::ChaCha8Rng;
 use rc_kernel::{PeriodicLove, ScaleSplit, SplitParams};
 
 use super::*;
+use crate::adaptive::SINGLE_PRECISION;
+use crate::adaptive::roughness::{ERROR_OF_ROUGHNESS, roughness};
 use crate::adaptive::tiles::quarters;
 
 /// Radii of spots a few elements of a base grid wide.
@@ -203,5 +205,45 @@ fn the_operator_is_symmetric_in_the_areas() {
         let [lp, lq] = [&p, &q].map(|p| apply::<f64>(&split, 64, elements.clone(), p));
         let (there, back) = (product(&q, &lp), product(&p, &lq));
         assert!((there - back).abs() < 1e-12 * product(&p, &lp), "{there} and {back}");
+    }
+}
+
+/// Pressures as rough as can be: noise on every element, on half, on a tenth of them, elements by turns, and one alone.
+fn rough_pressures(n_elements: usize) -> Vec<Vec<f64>> {
+    let mut rng = ChaCha8Rng::seed_from_u64(9);
+    let mut pressures: Vec<Vec<f64>> = [0.0, 0.5, 0.9]
+        .map(|none| (0..n_elements).map(|_| (rng.random::<f64>() - none).max(0.0)).collect())
+        .into_iter()
+        .collect();
+    pressures.push((0..n_elements).map(|i| f64::from(u8::from((i + i / TILE).is_multiple_of(2)))).collect());
+    pressures.push((0..n_elements).map(|i| f64::from(u8::from(i == n_elements / 3))).collect());
+    pressures
+}
+
+#[test]
+fn on_rough_pressures_the_error_is_in_proportion_to_the_roughness() {
+    let finest = ScaleSplit::new(SplitParams::for_error(SplitParams::SMALLEST_ERROR).expect("a bound in range"));
+    for (base, side) in [(64, 128), (64, 512)] {
+        let elements = Elements::uniform(TileSet::full(side / TILE));
+        for mut p in rough_pressures(elements.len()) {
+            // As fresh gaps do: a uniform pressure displaces nothing.
+            let mean = p.iter().sum::<f64>() / p.len() as f64;
+            p.iter_mut().for_each(|p| *p -= mean);
+            let better = apply::<f64>(&finest, base, elements.clone(), &p);
+            let allowed = ERROR_OF_ROUGHNESS * roughness(&elements, &p);
+            for bound in [1e-6, 2e-9] {
+                let split = ScaleSplit::new(SplitParams::for_error(bound).expect("a bound in range"));
+                let v = match bound {
+                    SINGLE_PRECISION.. => apply::<f32>(&split, base, elements.clone(), &p),
+                    _ => apply::<f64>(&split, base, elements.clone(), &p),
+                };
+                let greatest = v.iter().zip(&better).fold(0.0_f64, |greatest, (a, b)| greatest.max((a - b).abs()));
+                assert!(
+                    greatest < allowed * bound,
+                    "{bound:e}, {base} to {side}: {greatest:e} for {:e}",
+                    allowed * bound
+                );
+            }
+        }
     }
 }
