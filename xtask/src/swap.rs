@@ -20,7 +20,7 @@ const FORK: &str = include_str!("swap/my_rc_kernel.rs");
 const SWAPPED: &str = include_str!("swap/swapped.rs");
 
 /// What the solver needs of the workspace.
-const CRATES: &[&str] = &["rc-core", "rc-kernel", "rc-quadtree", "rc-solver"];
+const CRATES: &[&str] = &["rc-core", "rc-fft", "rc-kernel", "rc-quadtree", "rc-solver"];
 
 /// The fork has another name, and the crate that it forks as `upstream`.
 const FORK_MANIFEST: &str = r#"
