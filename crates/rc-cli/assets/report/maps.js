@@ -9,7 +9,9 @@ class EmbeddedField {
     const step = max / (2 ** bits - 1);
     this.values = new Float64Array(count);
     for (let i = 0; i < count; i += 1) this.values[i] = step * (bits === 16 ? view.getUint16(2 * i, true) : bytes[i]);
-    Object.assign(this, { nx, ny, max });
+    const least = this.values.reduce((low, value) => Math.min(low, value), max);
+    // In full contact, what there is to see is far from zero.
+    Object.assign(this, { nx, ny, max, low: least > 0.5 * max ? least : 0 });
   }
 
   /** The value at a point, in parts of the cell; periodic. */
@@ -56,23 +58,24 @@ class SharedView {
 /** One map. `reading` makes text of a value, `ends` those at the ends of the colours; the end of these is `movable`. */
 class FieldMap {
   constructor({ title, field, colours, view, side, reading, ends, movable = true }) {
-    Object.assign(this, { field, view, side, reading, colours: colourTable(colours), top: field.max });
+    Object.assign(this, { field, view, side, reading, colours: colourTable(colours), low: movable ? field.low : 0, top: field.max });
     this.bitmap = make("canvas", { width: field.nx, height: field.ny });
     this.canvas = make("canvas");
     this.value = make("span", { class: "quiet" });
     this.box = make("div", { class: "map", tabindex: 0, role: "img", "aria-label": title }, this.canvas);
     const bar = make("div", { class: "bar" });
     bar.style.background = `linear-gradient(to right, ${colours.map((c) => `rgb(${c.join(" ")})`).join(", ")})`;
-    const end = make("span", {}, ends(this.top)[1]);
+    const [least, greatest] = ends(this.low, this.top);
+    const end = make("span", {}, greatest);
     const slider = make("input", { type: "range", min: 5, max: 100, value: 100, "aria-label": `end of the colours of ${title}` });
     slider.addEventListener("input", () => {
-      this.top = (field.max * slider.value) / 100;
-      end.textContent = (slider.value < 100 ? "≥ " : "") + ends(this.top)[1];
+      this.top = this.low + ((field.max - this.low) * slider.value) / 100;
+      end.textContent = (slider.value < 100 ? "≥ " : "") + ends(this.low, this.top)[1];
       this.colour();
       this.paint();
     });
     const label = movable ? [make("label", {}, "colours", slider)] : [];
-    const scale = make("div", { class: "ends" }, make("span", {}, ends(this.top)[0]), ...label, end);
+    const scale = make("div", { class: "ends" }, make("span", {}, least), ...label, end);
     this.element = make("figure", {}, make("figcaption", {}, title, this.value), this.box, bar, scale);
     this.colour();
     this.listen();
@@ -85,11 +88,11 @@ class FieldMap {
     const { nx, ny, values } = this.field;
     const context = this.bitmap.getContext("2d");
     const picture = context.createImageData(nx, ny);
-    const factor = this.top > 0 ? 255 / this.top : 0;
+    const factor = this.top > this.low ? 255 / (this.top - this.low) : 0;
+    const shade = (value) => this.colours[Math.max(0, Math.min(255, Math.round((value - this.low) * factor)))];
     for (let iy = 0; iy < ny; iy += 1) {
       for (let ix = 0; ix < nx; ix += 1) {
-        const [r, g, b] = this.colours[Math.min(255, Math.round(values[iy * nx + ix] * factor))];
-        picture.data.set([r, g, b, 255], 4 * ((ny - 1 - iy) * nx + ix));
+        picture.data.set([...shade(values[iy * nx + ix]), 255], 4 * ((ny - 1 - iy) * nx + ix));
       }
     }
     context.putImageData(picture, 0, 0);

@@ -5,7 +5,7 @@ function mapsAndSections({ side, pressure, gap, contact, peak, averaged }) {
   const fields = { pressure: new EmbeddedField(pressure), gap: new EmbeddedField(gap), contact: new EmbeddedField(contact) };
   const view = new SharedView(peak, Math.min(1, 8 / Math.max(pressure.nx, pressure.ny)));
   const map = (title, name, colours, unit) => new FieldMap({
-    title, field: fields[name], colours, view, side, ends: (value) => ["0", si(value, unit, 3)], reading: (value) => si(value, unit),
+    title, field: fields[name], colours, view, side, ends: (low, high) => [low > 0 ? si(low, unit, 4) : "0", si(high, unit, 4)], reading: (value) => si(value, unit),
   });
   const contactMap = new FieldMap({
     title: "Contact", field: fields.contact, colours: contact.colours, view, side, ends: () => ["gap", "contact"], movable: false,
@@ -59,7 +59,7 @@ function sectionCharts(fields, view, side) {
     const start = charts.axis === "x" ? view.x : view.y;
     return {
       x: { label: charts.axis, unit: "m", from: start * side, to: (start + view.size) * side },
-      y: { label: name, unit, from: 0 },
+      y: { label: name, unit, from: fields[name].low },
       series: [{ name: "", points: points(fields[name], charts.axis), colour }],
     };
   };

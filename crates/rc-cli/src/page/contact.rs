@@ -25,6 +25,9 @@ const BINS: usize = 80;
 /// Bins of the sizes of spots, for each factor of ten in the diameter.
 const BINS_PER_DECADE: f64 = 8.0;
 
+/// Gaps below this part of the highest point's height are none.
+const ROUNDING: f64 = 1e-9;
+
 /// What the load must be carried to, whatever the tolerance.
 const LOAD_LIMIT: f64 = 1e-10;
 
@@ -177,12 +180,14 @@ fn commands(folder: &Path, scene: &Scene) -> Vec<Command> {
 }
 
 fn maps(result: &ResultFolder) -> Maps {
-    let ResultFolder { side, pressure, gap, .. } = result;
+    let ResultFolder { side, pressure, gap, summary, .. } = result;
     let [pressures, gaps] = [pressure, gap].map(|field| pixel_means(field, |value| value));
     let contact = pixel_means(pressure, |value| f64::from(u8::from(value > 0.0)));
     let pixels = pressures.grid();
     let peak = (0..pixels.len()).max_by(|a, b| pressures.values()[*a].total_cmp(&pressures.values()[*b])).unwrap_or(0);
     let (x, y) = pixels.centre(peak % pixels.nx(), peak / pixels.nx());
+    // In full contact, gaps are rounding.
+    let widest = Some(gaps.max()).filter(|gap| *gap > ROUNDING * summary.penetration_full_contact).unwrap_or(0.0);
     let grid = pressure.grid();
     let averaged = if grid == pixels {
         "Every element is a pixel.".to_owned()
@@ -192,7 +197,7 @@ fn maps(result: &ResultFolder) -> Maps {
     Maps {
         side: *side,
         pressure: EmbeddedField::new(&pressures, pressures.max(), Bits::Sixteen, Palette::Heat),
-        gap: EmbeddedField::new(&gaps, gaps.max(), Bits::Sixteen, Palette::Viridis),
+        gap: EmbeddedField::new(&gaps, widest, Bits::Sixteen, Palette::Viridis),
         contact: EmbeddedField::new(&contact, 1.0, Bits::Eight, Palette::Ink),
         peak: [x, y],
         averaged,

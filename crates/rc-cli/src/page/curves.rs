@@ -67,15 +67,15 @@ pub(super) fn page(folder: &Path) -> Result<Page, CliError> {
     let rows = read(&folder.join(TABLE_FILE))?;
     let scenes: Vec<SceneCurves> = groups(&rows, |row| &row.scene).into_iter().map(SceneCurves::of).collect();
     let surfaces: usize = scenes.iter().map(|scene| scene.seeds.len()).sum();
-    let failed = rows.iter().filter(|row| row.status == "not_converged").count();
     let settings = settings_in(folder);
+    let (status, good) = status(&rows, settings.as_ref());
     let text = settings.as_ref().and_then(|settings| serde_json::to_string_pretty(settings).ok());
     let files = text.map(|text| Text { title: "Settings of the sweep", text }).into_iter().collect();
     Ok(Page {
         title: format!("Sweep of {}", folder.file_name().unwrap_or(folder.as_os_str()).display()),
         subtitle: format!("{} rows: {surfaces} surfaces, given {}", rows.len(), rows[0].control),
-        status: if failed == 0 { "all converged".to_owned() } else { format!("{failed} not converged") },
-        good: failed == 0,
+        status,
+        good,
         tiles: tiles(&rows),
         commands: settings.as_ref().map_or_else(Vec::new, commands),
         files,
@@ -89,6 +89,22 @@ fn read(path: &Path) -> Result<Vec<Row>, CliError> {
     let rows: Vec<Row> =
         csv::Reader::from_path(path).map_err(fail)?.deserialize().collect::<Result<_, _>>().map_err(fail)?;
     if rows.is_empty() { Err(CliError::in_file(path, "has no rows")) } else { Ok(rows) }
+}
+
+/// Whether all rows that were planned are there and converged. Those of an interrupted sweep, of other shards, and under loads
+/// that a surface cannot take, are missing.
+fn status(rows: &[Row], settings: Option<&Value>) -> (String, bool) {
+    let surfaces = settings.and_then(|settings| settings["surfaces"].as_array());
+    let loads = |surface: &Value| surface["loads"].as_array().map_or(0, Vec::len);
+    let planned = surfaces.map_or(rows.len(), |surfaces| surfaces.iter().map(loads).sum());
+    let failed = rows.iter().filter(|row| row.status == "not_converged").count();
+    if failed > 0 {
+        (format!("{failed} not converged"), false)
+    } else if rows.len() < planned {
+        (format!("{} of {planned} rows", rows.len()), false)
+    } else {
+        ("all converged".to_owned(), true)
+    }
 }
 
 /// Runs of rows with the same key.

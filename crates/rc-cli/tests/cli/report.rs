@@ -75,6 +75,14 @@ fn the_page_of_a_sweep_has_its_curves_and_the_command_that_repeats_it() {
     assert_eq!((seeds.len(), seeds[0].as_array().map(Vec::len)), (2, Some(3)));
     let mean = |key: &str, i: usize| page["scenes"][0]["mean"][i][key].as_f64().expect("a number");
     assert!(mean("area", 0) < mean("area", 1) && mean("penetration", 1) < mean("penetration", 2), "curves rise");
+    assert_eq!((&page["status"], &page["good"]), (&"all converged".into(), &true.into()));
+    let whole = place.bytes("s/sweep.csv");
+    let cut = whole[..whole.len() - 1].iter().rposition(|&byte| byte == b'\n').expect("lines") + 1;
+    std::fs::create_dir(place.path("part")).expect("a folder");
+    place.write("part/sweep.csv", &whole[..cut]);
+    place.write("part/sweep.jsonl", place.bytes("s/sweep.jsonl"));
+    assert_solved(&place.run(&["report", "part"]));
+    assert_eq!(data(&text(&place.bytes("part/report.html")))["status"], "5 of 6 rows");
     repeat(&place, &page["commands"][0]);
     let without_times = |name: &str| -> Vec<String> {
         let table = text(&place.bytes(name));
@@ -93,6 +101,12 @@ fn pages_of_full_contact_of_no_convergence_and_of_height_maps_are_made() {
         assert_solved(&place.run(&["report", folder]));
         self_contained(&place, &format!("{folder}/report.html"));
     }
+    let full = data(&text(&place.bytes("full/report.html")));
+    assert_eq!(
+        (&full["status"], full["maps"]["gap"]["max"].as_f64()),
+        (&"full contact".into(), Some(0.0)),
+        "rounding is no gap"
+    );
     let page = data(&text(&place.bytes("map/report.html")));
     assert_eq!(page["commands"].as_array().map(Vec::len), Some(1), "flags alone do not bring a map back");
     let mut summary = place.json("map/summary.json");
