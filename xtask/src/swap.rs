@@ -12,7 +12,8 @@ use toml::{Table, Value};
 use crate::process::Step;
 use crate::repository;
 
-/// Builds the solver with a tiny fork of rc-kernel in place of the original, in a temporary workspace, and runs its tests there.
+/// Builds the solver with a tiny fork of rc-kernel in place of the original, in a workspace in target/swap, and runs its tests
+/// there.
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
@@ -37,10 +38,14 @@ upstream = { path = "../rc-kernel", package = "rc-kernel" }
 const TEST: Step = Step { environment: &[], words: &["test", "-p", "rc-solver"] };
 
 pub(crate) fn run(_args: &Args) -> Result<()> {
-    let copy = tempfile::tempdir().context("could not make a temporary folder")?;
-    prepare(&repository::root(), copy.path())?;
-    // The same third-party crates are not built again.
-    TEST.run_in(copy.path(), &["--target-dir".to_owned(), repository::target().to_string_lossy().into_owned()])
+    let folder = repository::target().join("swap");
+    let copy = folder.join("workspace");
+    if copy.exists() {
+        fs::remove_dir_all(&copy).with_context(|| format!("could not remove {}", copy.display()))?;
+    }
+    prepare(&repository::root(), &copy)?;
+    // Crates of others are built once for all runs.
+    TEST.run_in(&copy, &["--target-dir".to_owned(), folder.join("target").to_string_lossy().into_owned()])
 }
 
 /// Makes the workspace with the fork.

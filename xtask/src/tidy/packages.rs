@@ -52,7 +52,7 @@ mod tests {
 
     #[test]
     fn a_manifest_without_a_field_is_found() {
-        let fields: String = FIELDS.iter().map(|field| format!("{field}.workspace = true\n")).collect();
+        let fields = FIELDS.join(".workspace = true\n") + ".workspace = true\n";
         let manifest = format!("[package]\nname = \"a\"\ndescription = \"A crate.\"\n{fields}");
         assert_eq!(check_manifest("crates/a/Cargo.toml", &manifest), Vec::<String>::new());
         assert_eq!(check_manifest("crates/a/Cargo.toml", &manifest.replace("readme.workspace = true", "")).len(), 1);

@@ -74,9 +74,9 @@ function sectionCharts(fields, view, side) {
 }
 
 /** P(σ) with the fit of Eq. 7. */
-function stressDistribution({ stress, density, fit, notes }) {
+function stressDistribution({ values: stress, density, fit, notes }) {
   const { factor, unit } = scaleOf(stress[stress.length - 1], "Pa");
-  const points = (values) => stress.map((s, i) => [s, values[i] * factor]);
+  const points = (of) => stress.map((s, i) => [s, of[i] * factor]);
   const series = [{ name: "solved", points: points(density), colour: "var(--blue)" }];
   if (fit) series.push({ name: "Persson's form, Eq. 7, fitted", points: points(fit), colour: "var(--red)", dashed: true });
   const chart = new Chart({

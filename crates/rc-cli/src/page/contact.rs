@@ -62,7 +62,7 @@ struct Maps {
 #[derive(Clone, Debug, Serialize)]
 struct Stress {
     /// Middles of bins (Pa).
-    stress: Vec<f64>,
+    values: Vec<f64>,
     /// 1/Pa.
     density: Vec<f64>,
     fit: Vec<f64>,
@@ -229,7 +229,7 @@ fn stress(result: &ResultFolder) -> Option<Stress> {
         ),
     ];
     let fitted = stress.iter().map(|&s| fit.density(s)).collect();
-    Some(Stress { stress, density: distribution.density, fit: fitted, notes })
+    Some(Stress { values: stress, density: distribution.density, fit: fitted, notes })
 }
 
 /// Spots of the stored pressure; `None` without contact.
@@ -262,7 +262,9 @@ fn spots(result: &ResultFolder) -> Option<Spots> {
     let low = diameter(last.elements as f64) / 10_f64.powf(0.5 / BINS_PER_DECADE);
     let bin = |elements: usize| ((diameter(elements as f64) / low).log10() * BINS_PER_DECADE) as usize;
     let mut counts = vec![0; bin(first.elements) + 1];
-    spots.iter().for_each(|spot| counts[bin(spot.elements)] += 1);
+    for spot in &spots {
+        counts[bin(spot.elements)] += 1;
+    }
     let diameters = (0..=counts.len()).map(|k| low * 10_f64.powf(k as f64 / BINS_PER_DECADE)).collect();
     let note = format!(
         "Spots are joined across edges of elements, and across the sides of the cell. The smallest are as large as the \
