@@ -28,6 +28,7 @@ pub mod scene_file;
 pub mod statistics;
 pub mod summary;
 pub mod surface;
+pub mod time_limit;
 pub mod treatment;
 pub mod values;
 
@@ -37,6 +38,7 @@ mod manual;
 mod plot;
 mod progress;
 mod solve;
+mod stop;
 mod surface_command;
 pub mod sweep;
 

@@ -4,6 +4,7 @@ mod adaptive;
 mod bad_input;
 mod measured;
 mod solve;
+mod stopped;
 mod support;
 mod sweep;
 mod sweep_damaged;
