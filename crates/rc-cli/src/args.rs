@@ -13,7 +13,7 @@ use crate::treatment::TreatmentKeys;
 /// Contact of rough elastic surfaces.
 ///
 /// SI units; any consistent system works too (cell 1, E* 1 gives dimensionless results).
-/// Exit codes: 0 solved, 2 bad input, 3 not converged, 4 could not write.
+/// Exit codes: 0 solved, 2 bad input, 3 not converged, 4 could not write, 130 interrupted.
 #[derive(Parser, Clone, Debug)]
 #[command(name = "rc", version, max_term_width = 120, disable_help_subcommand = true)]
 pub struct Cli {

@@ -5,6 +5,8 @@ use std::process::ExitCode;
 
 use thiserror::Error;
 
+use crate::stop::INTERRUPTED;
+
 /// Why a command did not end well. Each message is one line: what, where, and what would be right.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum CliError {
@@ -14,19 +16,23 @@ pub enum CliError {
     /// The solver did not reach the tolerance; the results are written and marked. Exit code 3.
     #[error("{0}")]
     NotConverged(String),
+    /// The command was interrupted; what there was is written and marked. Exit code 130.
+    #[error("{0}")]
+    Interrupted(String),
     /// A result could not be written. Exit code 4.
     #[error("{0}")]
     Write(String),
 }
 
 impl CliError {
-    /// Exit code of the process: 2 bad input, 3 not converged, 4 could not write.
+    /// Exit code of the process: 2 bad input, 3 not converged, 4 could not write, 130 interrupted.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Input(_) => 2,
             Self::NotConverged(_) => 3,
             Self::Write(_) => 4,
+            Self::Interrupted(_) => INTERRUPTED,
         }
     }
 

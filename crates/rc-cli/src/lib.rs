@@ -43,6 +43,7 @@ pub mod spots;
 pub mod statistics;
 pub mod summary;
 pub mod surface;
+pub mod time_limit;
 pub mod treatment;
 pub mod values;
 
@@ -54,6 +55,7 @@ mod page;
 mod plot;
 mod progress;
 mod solve;
+mod stop;
 mod surface_command;
 pub mod sweep;
 

@@ -5,6 +5,8 @@ use std::io::IsTerminal as _;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rc_core::{Event, Observer};
 
+use crate::stop::{Reason, Stop};
+
 /// Length of the bar: the steps in which the error is shown to fall.
 const STEPS: u64 = 1000;
 
@@ -12,6 +14,7 @@ const STEPS: u64 = 1000;
 #[derive(Debug)]
 pub(crate) struct Progress {
     bar: ProgressBar,
+    stop: Stop,
 }
 
 impl Progress {
@@ -25,7 +28,21 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template("{prefix} [{bar:20}] {msg}") {
             bar.set_style(style.progress_chars("=> "));
         }
-        Self { bar }
+        Self { bar, stop: Stop::default() }
+    }
+
+    /// The same with what ends the solve early.
+    #[must_use]
+    pub(crate) fn until(self, stop: Stop) -> Self {
+        // `Self` has a destructor, so its parts cannot be moved.
+        let mut progress = self;
+        progress.stop = stop;
+        progress
+    }
+
+    /// Why the solve had to end, if it had to.
+    pub(crate) fn stopped(&self) -> Option<Reason> {
+        self.stop.reason()
     }
 
     /// Says what is done before the first level.
@@ -47,6 +64,10 @@ impl Observer for Progress {
             }
             _ => {}
         }
+    }
+
+    fn should_stop(&self) -> bool {
+        self.stop.reason().is_some()
     }
 }
 

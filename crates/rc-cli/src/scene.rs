@@ -7,6 +7,7 @@ use rc_heights::{LengthUnit, Scales};
 use serde::{Deserialize, Serialize};
 
 use crate::byte_size::ByteSize;
+use crate::time_limit::TimeLimit;
 use crate::values::{Fraction, GridSpec, Tolerance};
 
 /// The embedded example: the paper's surface with N = 64 at σ0/E* = 8.9e-4. Also the source of defaults.
@@ -114,6 +115,10 @@ pub struct RunKeys {
     /// Most memory, as 500MB, 2GB or bytes: what is estimated to need more is refused before any work
     #[arg(long, value_name = "SIZE", allow_hyphen_values = true)]
     pub memory_limit: Option<ByteSize>,
+    /// Most time, in seconds or as 90s, 5min, 1h: a solve that takes longer ends with what there is, marked not_converged; a sweep
+    /// begins no further row
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    pub time_limit: Option<TimeLimit>,
     /// Print nothing but errors
     #[arg(long)]
     #[serde(default)]
@@ -255,7 +260,7 @@ impl RunKeys {
     /// These keys laid over `lower`; `quiet` and `json` hold when either says so.
     #[must_use]
     pub fn over(mut self, lower: Self) -> Self {
-        or_lower!(self, lower, { out, threads, memory_limit });
+        or_lower!(self, lower, { out, threads, memory_limit, time_limit });
         self.quiet |= lower.quiet;
         self.json |= lower.json;
         self

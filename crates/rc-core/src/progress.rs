@@ -32,6 +32,11 @@ pub enum Event {
 pub trait Observer: Sync {
     /// Takes note of an event.
     fn notify(&self, event: &Event);
+
+    /// Whether to end now, with what there is: it is returned as not converged. Asked between iterations.
+    fn should_stop(&self) -> bool {
+        false
+    }
 }
 
 /// The observer that ignores everything.

@@ -12,8 +12,11 @@ use super::heights::{mapped, rough};
 use super::row::{Row, Rows, guarded};
 use crate::figures::Preset;
 
-/// Units change the rounding of the input, and with it the way of the iteration to a solution that is good to five digits.
-const SAME: f64 = 1e-5;
+/// Units change the rounding of the input, and with it the way of the iteration.
+const SAME: f64 = 1e-6;
+
+/// So that the way makes no difference.
+const TOLERANCE: &str = "1e-8";
 
 /// Rms height and load of the scene in units of λ and E*.
 const RMS: f64 = 1e-3;
@@ -72,7 +75,20 @@ fn rc(words: &[String]) -> Result<(), (u8, String)> {
 }
 
 fn solve(units: Units, method: &str, folder: &Path) -> Result<ResultFolder, (u8, String)> {
-    let words = ["solve", "--waves", "8", "--grid", "128", "--seed", "1", "--quiet", "--method", method];
+    let words = [
+        "solve",
+        "--waves",
+        "8",
+        "--grid",
+        "128",
+        "--seed",
+        "1",
+        "--quiet",
+        "--tolerance",
+        TOLERANCE,
+        "--method",
+        method,
+    ];
     let keys = [
         ("--cell", units.cell),
         ("--e-star", units.e_star),

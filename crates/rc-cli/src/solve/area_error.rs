@@ -9,6 +9,7 @@ use crate::progress::Progress;
 use crate::quantity::digits;
 use crate::resolve;
 use crate::scene::{ContactKeys, Scene, SurfaceKeys};
+use crate::stop::{self, Stop};
 use crate::surface::SurfaceProblem;
 use crate::values::{Fraction, GridSpec, Tolerance};
 
@@ -40,7 +41,8 @@ pub(super) fn run(scene: Scene, Fraction(wanted): Fraction, started: Instant) ->
     let threads = resolve::start_threads(run.threads)?;
     let tolerance = contact_keys.tolerance.or(Some(Tolerance::Auto));
     let contact_keys = ContactKeys { area_error: None, tolerance, ..contact_keys };
-    let progress = Progress::new(run.quiet);
+    stop::listen();
+    let progress = Progress::new(run.quiet).until(Stop::at(started, run.time_limit));
     let mut elements_per_wave = COARSEST;
     loop {
         let (surface, side) = on_grid(&surface_keys, elements_per_wave)?;
@@ -50,8 +52,7 @@ pub(super) fn run(scene: Scene, Fraction(wanted): Fraction, started: Instant) ->
         let solved = Solved::new(&loaded, &contact, surface.cell.side(), &run, started, &progress)?;
         let error = solved.relative_area_error();
         if error <= wanted || solved.failure().is_some() {
-            drop(progress);
-            return finish(&solved, &surface, &run, threads);
+            return finish(&solved, &surface, &run, threads, progress);
         }
         if elements_per_wave >= FINEST {
             return Err(CliError::input(format_args!(

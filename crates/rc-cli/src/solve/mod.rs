@@ -21,6 +21,7 @@ use crate::output;
 use crate::progress::Progress;
 use crate::resolve::{self, ContactProblem};
 use crate::scene::{RunKeys, Scene};
+use crate::stop::{self, Reason, Stop};
 use crate::summary::Summary;
 use crate::surface::{LoadedSurface, SurfaceProblem};
 use crate::{report, scene_file};
@@ -104,6 +105,7 @@ pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
     let surface = resolve::surface(scene.surface)?;
     let contact = resolve::contact(scene.contact, surface.cell.side(), surface.elements_per_wave())?;
     let threads = resolve::start_threads(scene.run.threads)?;
+    stop::listen();
     if dry_run {
         return dry_run::run(&surface, &contact, &scene.run, threads);
     }
@@ -121,29 +123,38 @@ fn execute(
     if let Some(folder) = &run.out {
         output::check_folder(folder)?;
     }
-    let progress = Progress::new(run.quiet);
+    let progress = Progress::new(run.quiet).until(Stop::at(started, run.time_limit));
     progress.say("heights");
     let loaded = surface.load()?;
     let solved = Solved::new(&loaded, contact, surface.cell.side(), run, started, &progress)?;
-    // The bar goes before anything is printed.
-    drop(progress);
-    finish(&solved, surface, run, threads)
+    finish(&solved, surface, run, threads, progress)
 }
 
 /// Writes and prints.
-fn finish(solved: &Solved<'_>, surface: &SurfaceProblem, run: &RunKeys, threads: usize) -> Result<(), CliError> {
+fn finish(
+    solved: &Solved<'_>,
+    surface: &SurfaceProblem,
+    run: &RunKeys,
+    threads: usize,
+    progress: Progress,
+) -> Result<(), CliError> {
+    let stopped = progress.stopped();
+    // The bar goes before anything is printed.
+    drop(progress);
     let summary = solved.summary(threads);
     if let Some(folder) = &run.out {
         solved.write(folder, &summary)?;
     }
     print_summary(&summary, surface, solved.contact, run)?;
-    match solved.failure() {
-        None => Ok(()),
-        Some(message) if run.out.is_some() => {
-            Err(CliError::NotConverged(format!("{message}; the results are written and marked not_converged")))
+    let Some(message) = solved.failure() else { return Ok(()) };
+    let written = if run.out.is_some() { "; the results are written and marked not_converged" } else { "" };
+    Err(match stopped {
+        Some(Reason::Interrupted) => CliError::Interrupted(format!("interrupted: {message}{written}")),
+        Some(Reason::TimeLimit(limit)) => {
+            CliError::NotConverged(format!("time_limit: {limit} were not enough: {message}{written}"))
         }
-        Some(message) => Err(CliError::NotConverged(message.to_owned())),
-    }
+        None => CliError::NotConverged(format!("{message}{written}")),
+    })
 }
 
 /// The scene of the command line; without any argument the embedded example, into its folder.

@@ -8,9 +8,7 @@ use super::journal::Journal;
 use super::table;
 use super::workers::locked;
 use crate::output;
-
-/// Exit code of a process that was interrupted, as shells have it.
-const INTERRUPTED: i32 = 130;
+use crate::stop::INTERRUPTED;
 
 /// From now on an interrupt writes the table of the rows so far and ends the process.
 pub(super) fn install(folder: PathBuf, journal: Arc<Mutex<Journal>>, bar: RowBar, n_rows: usize) {
@@ -24,7 +22,7 @@ pub(super) fn install(folder: PathBuf, journal: Arc<Mutex<Journal>>, bar: RowBar
             Ok(path) => format!("interrupted: {kept} of {n_rows} rows are in {}; --resume goes on", path.display()),
             Err(error) => format!("interrupted: {kept} of {n_rows} rows are kept, --resume goes on; {error}"),
         });
-        std::process::exit(INTERRUPTED);
+        std::process::exit(INTERRUPTED.into());
     };
     // Without a handler an interrupt ends the process at once, which loses no row either.
     let _ = ctrlc::set_handler(handler);

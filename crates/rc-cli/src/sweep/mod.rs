@@ -95,6 +95,11 @@ fn execute(plan: &Plan, shard: Shard, journal: Journal, folder: &Path, threads: 
             path.display()
         ))?;
     }
+    if let (missing @ 1.., Some(limit)) = (n_rows - journal.rows.len(), plan.run.time_limit) {
+        return Err(CliError::NotConverged(format!(
+            "time_limit: after {limit} {missing} of {n_rows} rows are not solved; --resume goes on"
+        )));
+    }
     check_converged(&journal.rows, &path)
 }
 

@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 use super::bar::RowBar;
 use super::journal::Journal;
@@ -10,6 +11,7 @@ use super::plan::Plan;
 use super::row::{self, LatestSurface};
 use crate::budget::Budget;
 use crate::error::CliError;
+use crate::stop::Stop;
 
 /// The journal as workers and the handler of interrupts share it. Every row in it is whole, so a worker that panicked leaves
 /// it usable.
@@ -41,6 +43,7 @@ pub(super) fn run(
         bar,
         next: AtomicUsize::new(0),
         stop: AtomicBool::new(false),
+        limit: Stop::at(Instant::now(), plan.run.time_limit),
         surfaces: LatestSurface::default(),
     };
     let pools: Vec<rayon::ThreadPool> =
@@ -84,6 +87,8 @@ struct Work<'a> {
     bar: &'a RowBar,
     next: AtomicUsize,
     stop: AtomicBool,
+    /// Rows that have begun are finished.
+    limit: Stop,
     surfaces: LatestSurface,
 }
 
@@ -91,7 +96,7 @@ impl Work<'_> {
     /// Takes rows until there are none, or a row failed.
     fn run(&self) -> Result<(), CliError> {
         let mut refused = Ok(());
-        while !self.stop.load(Ordering::Relaxed) {
+        while !self.stop.load(Ordering::Relaxed) && self.limit.reason().is_none() {
             let Some(&index) = self.todo.get(self.next.fetch_add(1, Ordering::Relaxed)) else { break };
             let kept = self
                 .plan

@@ -6,6 +6,7 @@ mod guide;
 mod measured;
 mod report;
 mod solve;
+mod stopped;
 mod support;
 mod sweep;
 mod sweep_damaged;

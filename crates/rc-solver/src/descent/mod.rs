@@ -195,7 +195,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
                 // Caution: clip after every step, forget the directions.
                 (steps, self.curvature) = (1, f64::INFINITY);
             }
-            if iteration >= max_iterations || rounds_since_best > 3 * PATIENCE {
+            if iteration >= max_iterations || rounds_since_best > 3 * PATIENCE || observer.should_stop() {
                 let sums = self.refresh();
                 return self.outcome(&sums, false);
             }

@@ -247,6 +247,10 @@ impl<'a> Procedure<'a> {
         // (ii) The deformed layer as it was, lowered to the new penetration, meets the surface.
         self.add_penetrating(0.0);
         for _ in 0..self.params.max_checks {
+            if self.observer.should_stop() {
+                self.settled = false;
+                break;
+            }
             self.relax(residual)?;
             self.displace()?;
             // (vi) The double check. An element under tension has no gap, so it is not added right back.

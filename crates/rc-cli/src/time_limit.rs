@@ -1,0 +1,76 @@
+//! Limits of time, as people write them: `90`, `90s`, `5min`, `1h 30m`.
+
+use std::fmt;
+use std::str::FromStr;
+use std::time::Duration;
+
+use serde::de::{self, Deserializer, Visitor};
+use serde::{Deserialize, Serialize, Serializer};
+
+/// A time above zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TimeLimit(pub Duration);
+
+impl fmt::Display for TimeLimit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        humantime::format_duration(self.0).fmt(f)
+    }
+}
+
+impl FromStr for TimeLimit {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let seconds = text.trim().parse().ok().and_then(|seconds: f64| Duration::try_from_secs_f64(seconds).ok());
+        let time = seconds.or_else(|| humantime::parse_duration(text).ok()).filter(|time| !time.is_zero());
+        time.map(Self)
+            .ok_or_else(|| format!("a time is a number of seconds above 0, or as 90s, 5min, 1h 30m, not '{text}'"))
+    }
+}
+
+impl Serialize for TimeLimit {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_f64(self.0.as_secs_f64())
+    }
+}
+
+impl<'de> Deserialize<'de> for TimeLimit {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct TimeVisitor;
+        impl Visitor<'_> for TimeVisitor {
+            type Value = TimeLimit;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number of seconds above 0, or \"90s\", \"5min\", \"1h 30m\"")
+            }
+
+            fn visit_i64<E: de::Error>(self, value: i64) -> Result<TimeLimit, E> {
+                self.visit_str(&value.to_string())
+            }
+
+            fn visit_f64<E: de::Error>(self, value: f64) -> Result<TimeLimit, E> {
+                self.visit_str(&value.to_string())
+            }
+
+            fn visit_str<E: de::Error>(self, value: &str) -> Result<TimeLimit, E> {
+                value.parse().map_err(E::custom)
+            }
+        }
+        deserializer.deserialize_any(TimeVisitor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_numbers_or_have_units() {
+        for (text, seconds) in [("90", 90.0), ("0.5", 0.5), ("90s", 90.0), ("5min", 300.0), ("1h 30m", 5400.0)] {
+            assert_eq!(text.parse(), Ok(TimeLimit(Duration::from_secs_f64(seconds))), "{text}");
+        }
+        for text in ["", "0", "-1", "nan", "inf", "1e300", "5 parsecs", "0s"] {
+            assert!(text.parse::<TimeLimit>().is_err(), "'{text}' was read as a time");
+        }
+    }
+}

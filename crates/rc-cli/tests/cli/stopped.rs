@@ -1,0 +1,59 @@
+//! What ends a command before its time: a limit, or Ctrl-C. What there is by then is written and marked.
+
+use crate::support::{Place, assert_refused, assert_solved, text};
+use crate::sweep::{result, sweep};
+
+/// A solve of some seconds.
+const LONG: [&str; 10] =
+    ["solve", "--waves", "64", "--grid", "2048", "--pressure", "446395", "--tolerance", "1e-9", "--quiet"];
+
+#[test]
+fn a_solve_that_takes_too_long_is_written_and_marked() {
+    let place = Place::new();
+    for method in ["uniform", "adaptive"] {
+        let output = place.run(&[&LONG[..], &["--method", method, "--time-limit", "0.2s", "--out", method]].concat());
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{method}: {message}");
+        assert!(message.starts_with("error: time_limit: 200ms were not enough: "), "{method}: {message}");
+        assert_eq!(message.lines().count(), 1, "{message}");
+        let summary = place.json(&format!("{method}/summary.json"));
+        assert_eq!(summary["status"], "not_converged");
+        assert!(summary["penetration_error"].as_f64().is_some_and(|error| error > 1e-9), "{summary}");
+        assert!(place.path(method).join("pressure.npy").exists());
+    }
+    let enough = ["solve", "--waves", "4", "--grid", "64", "--pressure", "1e5", "--quiet", "--time-limit", "1h"];
+    assert_solved(&place.run(&enough));
+    assert_refused(&place.run(&[&LONG[..], &["--time-limit", "soon"]].concat()), "not 'soon'");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_solve_is_written_and_marked() {
+    let place = Place::new();
+    let child = std::process::Command::new(env!("CARGO_BIN_EXE_rc"))
+        .args([&LONG[..], &["--method", "uniform", "--threads", "1", "--out", "r"]].concat())
+        .current_dir(place.folder())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .expect("rc runs");
+    std::thread::sleep(std::time::Duration::from_millis(700));
+    let signal = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
+    assert!(signal.success());
+    let output = child.wait_with_output().expect("it ends");
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(130), "{message}");
+    assert!(message.contains("error: interrupted: "), "{message}");
+    assert_eq!(place.json("r/summary.json")["status"], "not_converged");
+}
+
+#[test]
+fn a_sweep_begins_no_row_after_its_time_and_goes_on_later() {
+    let place = Place::new();
+    assert_solved(&place.run(&sweep("whole", &["--threads", "1"])));
+    let output = place.run(&sweep("short", &["--threads", "1", "--time-limit", "0.01"]));
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    assert!(message.contains("of 12 rows are not solved; --resume goes on"), "{message}");
+    assert_solved(&place.run(&sweep("short", &["--threads", "1", "--resume"])));
+    assert_eq!(result(&place.path("short")), result(&place.path("whole")));
+}
