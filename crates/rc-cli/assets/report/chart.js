@@ -1,6 +1,6 @@
 // Line charts as SVG, with linear or logarithmic axes that can be switched, and a reading at the pointer.
 
-const CHART = { width: 580, height: 330, left: 66, right: 14, top: 10, bottom: 46 };
+const CHART = { width: 600, height: 330, left: 92, right: 14, top: 10, bottom: 46 };
 
 /** What a logarithmic axis shows, over its largest value: below is rounding. */
 const SMALLEST_PART = 1e-7;
@@ -108,8 +108,8 @@ class Chart {
       const y = this.up.place(value);
       return [shape("line", { x1: left, x2: width - right, y1: y, y2: y, class: "grid" }), text(left - 7, y + 4, "end", label)];
     });
-    const turned = { transform: `rotate(-90 14 ${middle.y})` };
-    return [...across, ...up, text(middle.x, height - 8, "middle", this.across.label), text(14, middle.y, "middle", this.up.label, turned)];
+    const turned = { transform: `rotate(-90 10 ${middle.y})` };
+    return [...across, ...up, text(middle.x, height - 8, "middle", this.across.label), text(10, middle.y, "middle", this.up.label, turned)];
   }
 
   curve({ points, colour, kind = "line", dashed, faint }) {

@@ -14,6 +14,7 @@ function copyButton(text) {
 }
 
 function commands(list) {
+  if (list.length === 0) return [make("p", {}, "Not known: the folder has no journal (sweep.jsonl) that this version of rc reads.")];
   return list.flatMap(({ text, note }) => [
     make("p", {}, note), make("pre", {}, text), make("div", { class: "controls" }, copyButton(text)),
   ]);
