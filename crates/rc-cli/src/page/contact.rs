@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::command::{flags, quoted};
 use super::embedded::{Bits, EmbeddedField, MOST_PIXELS, pixel_means};
+use super::spot_sizes::SpotSizes;
 use super::{Body, Command, Page, Text, Tile, made};
 use crate::error::CliError;
 use crate::heights::check_finite;
@@ -15,15 +16,11 @@ use crate::picture::Palette;
 use crate::quantity::{digits, engineering};
 use crate::result::ResultFolder;
 use crate::scene::Scene;
-use crate::spots::contact_spots;
 use crate::summary::Summary;
 use crate::{report, scene_file};
 
 /// Bins of the stress distribution.
 const BINS: usize = 80;
-
-/// Bins of the sizes of spots, for each factor of ten in the diameter.
-const BINS_PER_DECADE: f64 = 8.0;
 
 /// Gaps below this part of the highest point's height are none.
 const ROUNDING: f64 = 1e-9;
@@ -36,7 +33,7 @@ const LOAD_LIMIT: f64 = 1e-10;
 pub(super) struct Contact {
     maps: Maps,
     stress: Option<Stress>,
-    spots: Option<Spots>,
+    spots: Option<SpotSizes>,
     certificate: Certificate,
     /// Names and values, as `rc solve` prints them.
     lines: Vec<(&'static str, String)>,
@@ -67,16 +64,6 @@ struct Stress {
     density: Vec<f64>,
     fit: Vec<f64>,
     notes: Vec<String>,
-}
-
-/// Contact spots by size.
-#[derive(Clone, Debug, Serialize)]
-struct Spots {
-    rows: Vec<(&'static str, String)>,
-    /// Ends of bins: diameters of circles of the same area (m).
-    diameters: Vec<f64>,
-    counts: Vec<usize>,
-    note: String,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -125,7 +112,7 @@ pub(super) fn page(folder: &Path) -> Result<Page, CliError> {
         body: Body::Result(Box::new(Contact {
             maps: maps(&result),
             stress: stress(&result),
-            spots: spots(&result),
+            spots: SpotSizes::of(&result.pressure, result.side),
             certificate: certificate(summary),
             lines: report::solved_lines(summary, result.side, result.e_star),
         })),
@@ -230,48 +217,6 @@ fn stress(result: &ResultFolder) -> Option<Stress> {
     ];
     let fitted = stress.iter().map(|&s| fit.density(s)).collect();
     Some(Stress { values: stress, density: distribution.density, fit: fitted, notes })
-}
-
-/// Spots of the stored pressure; `None` without contact.
-fn spots(result: &ResultFolder) -> Option<Spots> {
-    let ResultFolder { pressure, side, .. } = result;
-    let spots = contact_spots(pressure);
-    let (first, last) = (spots.first()?, spots.last()?);
-    let element = side * side / pressure.grid().len() as f64;
-    let diameter = |elements: f64| 2.0 * (elements * element / std::f64::consts::PI).sqrt();
-    let (elements, load) =
-        spots.iter().fold((0, 0.0), |(elements, load), spot| (elements + spot.elements, load + spot.pressure));
-    let percent = |part: f64| format!("{} %", digits(100.0 * part, 3));
-    let single = spots.iter().filter(|spot| spot.elements == 1).count();
-    let mean = elements as f64 / spots.len() as f64;
-    let rows = vec![
-        ("spots", spots.len().to_string()),
-        ("of them single elements", single.to_string()),
-        ("mean area", format!("{} of the cell", percent(mean / pressure.grid().len() as f64))),
-        (
-            "largest",
-            format!(
-                "{} across, {} of the contact, {} of the load",
-                engineering(diameter(first.elements as f64), "m"),
-                percent(first.elements as f64 / elements as f64),
-                percent(first.pressure / load)
-            ),
-        ),
-        ("median", format!("{} across", engineering(diameter(spots[spots.len() / 2].elements as f64), "m"))),
-    ];
-    let low = diameter(last.elements as f64) / 10_f64.powf(0.5 / BINS_PER_DECADE);
-    let bin = |elements: usize| ((diameter(elements as f64) / low).log10() * BINS_PER_DECADE) as usize;
-    let mut counts = vec![0; bin(first.elements) + 1];
-    for spot in &spots {
-        counts[bin(spot.elements)] += 1;
-    }
-    let diameters = (0..=counts.len()).map(|k| low * 10_f64.powf(k as f64 / BINS_PER_DECADE)).collect();
-    let note = format!(
-        "Spots are joined across edges of elements, and across the sides of the cell. The smallest are as large as the \
-         elements, {} wide: how many there are depends on the grid.",
-        engineering(element.sqrt(), "m")
-    );
-    Some(Spots { rows, diameters, counts, note })
 }
 
 fn certificate(s: &Summary) -> Certificate {

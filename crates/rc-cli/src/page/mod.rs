@@ -9,6 +9,7 @@ mod contact;
 mod curves;
 mod document;
 mod embedded;
+mod spot_sizes;
 
 use std::path::Path;
 
