@@ -3,6 +3,7 @@
 mod adaptive;
 mod bisinusoidal;
 mod contact_area;
+mod examples;
 mod full_contact;
 mod gauss_seidel;
 mod hertz;

@@ -4,6 +4,8 @@ mod accuracy;
 mod bench;
 mod blocks;
 mod ci;
+mod dist;
+mod docs;
 mod figures;
 mod kernel_error;
 mod numeric;
@@ -13,6 +15,7 @@ mod reproduction;
 #[cfg(test)]
 mod snapshot;
 mod stress;
+mod swap;
 mod test;
 mod tidy;
 
@@ -56,6 +59,9 @@ enum Command {
     Accuracy(figures::Args),
     Bench(bench::Args),
     Stress(stress::Args),
+    Swap(swap::Args),
+    Dist(dist::Args),
+    Docs(docs::Args),
 }
 
 fn main() -> anyhow::Result<()> {
@@ -77,5 +83,8 @@ fn main() -> anyhow::Result<()> {
         Command::Accuracy(args) => figures::run::<accuracy::Accuracy>(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Stress(args) => stress::run(&args),
+        Command::Swap(args) => swap::run(&args),
+        Command::Dist(args) => dist::run(&args),
+        Command::Docs(args) => docs::run(&args),
     }
 }

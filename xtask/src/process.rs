@@ -1,5 +1,6 @@
 //! Steps that run cargo, announced before they run.
 
+use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
@@ -27,8 +28,16 @@ impl Step {
     ///
     /// # Errors
     /// When cargo cannot be started, or fails.
-    #[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
     pub(crate) fn run(&self, extra: &[String]) -> Result<()> {
+        self.run_in(&repository::root(), extra)
+    }
+
+    /// As [`Step::run`], in another folder.
+    ///
+    /// # Errors
+    /// When cargo cannot be started, or fails.
+    #[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
+    pub(crate) fn run_in(&self, folder: &Path, extra: &[String]) -> Result<()> {
         let line = [self.shell_line()].into_iter().chain(extra.iter().cloned()).collect::<Vec<_>>().join(" ");
         eprintln!("$ {line}");
         let start = Instant::now();
@@ -38,7 +47,7 @@ impl Step {
             .args(self.words)
             .args(extra)
             .envs(self.environment.iter().copied())
-            .current_dir(repository::root())
+            .current_dir(folder)
             .status()
             .with_context(|| format!("could not start `{line}`; is cargo installed?"))?;
         if !status.success() {

@@ -4,6 +4,9 @@
 
 mod arrows;
 mod culture;
+mod dependencies;
+mod guide;
+mod packages;
 mod paper_map;
 mod snapshots;
 
@@ -11,7 +14,8 @@ use anyhow::{Result, bail};
 
 use crate::repository::{self, Sources};
 
-/// Checks dependency arrows, paper map, snapshots, house rules and the numbers of docs/reproduction.md, docs/benchmarks.md and README.md (also a test, so `cargo xtask test` runs it).
+/// Checks dependency arrows, licences and versions of dependencies, paper map, guide, snapshots, house rules and the numbers of
+/// docs/reproduction.md, docs/benchmarks.md and README.md (also a test, so `cargo xtask test` runs it).
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
@@ -27,18 +31,32 @@ const CHECKS: &[(&str, Check)] = &[
     ("paper map", paper_map::check),
     ("snapshots", snapshots::check),
     ("culture", culture::check),
+    ("dependencies", dependencies::check),
+    ("guide", guide::check),
+    ("packages", packages::check),
     ("reproduction", crate::reproduction::check),
     ("benchmark", crate::bench::check_documents),
 ];
 
 #[expect(clippy::print_stdout, reason = "the result of the command")]
 pub(crate) fn run(_args: &Args) -> Result<()> {
-    let complaints = check_all(&repository::read_sources(&repository::root())?);
+    let complaints = check_all(&sources()?);
     if !complaints.is_empty() {
         bail!("{} untidy:\n{}", complaints.len(), complaints.join("\n"));
     }
     println!("tidy: {}", CHECKS.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", "));
     Ok(())
+}
+
+/// The texts that are checked: those of the repository, and the licences of what it depends on.
+///
+/// # Errors
+/// When a file cannot be read, or cargo fails.
+fn sources() -> Result<Sources> {
+    let root = repository::root();
+    let mut sources = repository::read_sources(&root)?;
+    sources.insert(dependencies::LICENCES_FILE.to_owned(), dependencies::licences(&root)?);
+    Ok(sources)
 }
 
 fn check_all(sources: &Sources) -> Vec<Complaint> {
@@ -54,8 +72,7 @@ mod tests {
 
     #[test]
     fn the_repository_is_tidy() {
-        let sources = repository::read_sources(&repository::root()).expect("the sources can be read");
-        let complaints = check_all(&sources);
+        let complaints = check_all(&sources().expect("the sources can be read"));
         assert!(complaints.is_empty(), "{} untidy:\n{}", complaints.len(), complaints.join("\n"));
     }
 }

@@ -35,6 +35,10 @@ pub enum Command {
     Inspect(InspectArgs),
     /// Pictures of a result
     Plot(PlotArgs),
+    /// A result or a sweep as one HTML page that needs no network: maps to zoom, sections, curves, certificate, parameters
+    Report(ReportArgs),
+    /// A result as files of other programs: VTK, for ParaView, PyVista and VisIt
+    Export(ExportArgs),
     /// Completions of commands and flags for a shell, on standard output
     Completions(CompletionsArgs),
     /// Manual pages of all commands
@@ -197,6 +201,50 @@ pub struct PlotArgs {
     #[arg(long)]
     pub quiet: bool,
 }
+
+/// Arguments of `rc report`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = REPORT_HELP)]
+pub struct ReportArgs {
+    /// Folder of a result (rc solve --out) or of a sweep (rc sweep --out)
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// The page [default: report.html in DIR]
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Do not print the name of the page
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+const REPORT_HELP: &str = "\
+The page is one file of at most 2 MB, which loads nothing: it can be sent by mail and opened anywhere. Of a result: maps of \
+contact, pressure and gap, sections through the cursor, the stress distribution with a fit of Eq. 7, contact spots, certificate, \
+parameters, the command that repeats it. Of a sweep: area-load and load-penetration curves and the rows. Fields are averaged \
+to 512 x 512 pixels.";
+
+/// Arguments of `rc export`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXPORT_HELP)]
+pub struct ExportArgs {
+    /// Folder of a result
+    #[arg(value_name = "RESULT_DIR")]
+    pub folder: PathBuf,
+    /// VTK's XML files [the only format yet, and so the default]
+    #[arg(long)]
+    pub vtk: bool,
+    /// Folder for the files [default: the result's own]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Do not list the files
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+const EXPORT_HELP: &str = "\
+Writes fields.vti: pressure (Pa), gap (m), contact (0 or 1) and, of a height map, height (m), as values of the cells of an \
+image; and elements.vtu, if the result has elements.csv: the elements of the adaptive mesh as quadrilaterals, with pressure (Pa) and \
+size (m). Lengths in m. In ParaView: open, Apply, colour by pressure; fields above the plane: Cell Data to Point Data, Warp By Scalar.";
 
 /// Arguments of `rc completions`.
 #[derive(Args, Clone, Debug)]

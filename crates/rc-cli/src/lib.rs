@@ -3,6 +3,20 @@
 //! The way of a solve: [`args`] and [`scene_file`] give a [`scene`], [`resolve`] checks it and turns it into a problem in
 //! units of λ and E*, the libraries solve it, [`summary`] turns it back into SI, [`output`] writes files that are there whole
 //! or not at all. [`picture`] is general enough for figures made elsewhere.
+//!
+//! ```
+//! use clap::Parser as _;
+//! use rc_cli::{args::Cli, result::ResultFolder, run};
+//!
+//! // As `rc solve …` does it; the result is read back from its folder.
+//! let folder = tempfile::tempdir()?;
+//! let command = ["rc", "solve", "--waves", "8", "--grid", "64", "--pressure", "1e5", "--quiet", "--out"];
+//! run(Cli::try_parse_from(command.map(Into::into).into_iter().chain([folder.path().as_os_str().to_owned()]))?)?;
+//! let result = ResultFolder::read(folder.path())?;
+//! assert_eq!(result.summary.status, "converged");
+//! assert!((result.pressure.mean() / 1e5 - 1.0).abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use std::process::ExitCode;
 
@@ -25,6 +39,7 @@ pub mod resolve;
 pub mod result;
 pub mod scene;
 pub mod scene_file;
+pub mod spots;
 pub mod statistics;
 pub mod summary;
 pub mod surface;
@@ -32,9 +47,11 @@ pub mod time_limit;
 pub mod treatment;
 pub mod values;
 
+mod export;
 mod height_pictures;
 mod inspect;
 mod manual;
+mod page;
 mod plot;
 mod progress;
 mod solve;
@@ -75,6 +92,8 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
         Command::Surface(args) => surface_command::run(args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Plot(args) => plot::run(&args),
+        Command::Report(args) => page::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Completions(args) => manual::completions(args.shell),
         Command::Man(args) => manual::pages(&args.out),
     }

@@ -11,9 +11,18 @@ use crate::summary::Summary;
 /// A few aligned lines about a solved problem; `side` is λ in m, `e_star` E* in Pa.
 #[must_use]
 pub fn solved(summary: &Summary, side: f64, e_star: f64) -> String {
+    headline(summary) + &aligned(&solved_lines(summary, side, e_star))
+}
+
+/// The stiffness of the contact.
+pub(crate) fn stiffness(s: &Summary) -> String {
+    s.contact_stiffness.map_or_else(|| "infinite".into(), |value| engineering(value, "Pa/m"))
+}
+
+/// The lines of [`solved`]: names and values.
+pub(crate) fn solved_lines(summary: &Summary, side: f64, e_star: f64) -> Vec<(&'static str, String)> {
     let s = summary;
     let percent = |fraction: f64| digits(100.0 * fraction, 4);
-    let stiffness = s.contact_stiffness.map_or_else(|| "infinite".into(), |value| engineering(value, "Pa/m"));
     let mut lines = vec![
         ("method", s.method_reason.as_ref().unwrap_or(&s.method).clone()),
         (
@@ -57,7 +66,7 @@ pub fn solved(summary: &Summary, side: f64, e_star: f64) -> String {
             ),
         ),
         ("mean gap", engineering(s.mean_gap, "m")),
-        ("stiffness", stiffness),
+        ("stiffness", stiffness(s)),
         ("elastic energy", engineering(s.elastic_energy, "J")),
         (
             "certificate",
@@ -70,7 +79,7 @@ pub fn solved(summary: &Summary, side: f64, e_star: f64) -> String {
     if let (Some(evaluated), Some(proven)) = (s.cells_evaluated, s.cells_proven) {
         lines.push(("cells", format!("{evaluated} evaluated, {proven} proven out of contact")));
     }
-    headline(s) + &aligned(&lines)
+    lines
 }
 
 fn levels(n: usize) -> &'static str {
@@ -78,7 +87,7 @@ fn levels(n: usize) -> &'static str {
 }
 
 /// `7.183 ± 0.008`: both with the last digit that the error leaves certain.
-fn with_error(value: f64, error: f64) -> String {
+pub(crate) fn with_error(value: f64, error: f64) -> String {
     if error > 0.0 && error.is_finite() {
         let decimals = (-error.log10().floor()).clamp(0.0, 12.0) as usize;
         format!("{value:.decimals$} ± {error:.decimals$}")
@@ -87,7 +96,6 @@ fn with_error(value: f64, error: f64) -> String {
     }
 }
 
-/// Lines of a name and its value.
 /// Lines of a name and a value, aligned.
 pub(crate) fn aligned(lines: &[(&str, String)]) -> String {
     lines.iter().fold(String::new(), |text, (name, value)| text + &format!("  {name:<19}{value}\n"))

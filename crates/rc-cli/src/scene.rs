@@ -11,7 +11,7 @@ use crate::time_limit::TimeLimit;
 use crate::values::{Fraction, GridSpec, Tolerance};
 
 /// The embedded example: the paper's surface with N = 64 at σ0/E* = 8.9e-4. Also the source of defaults.
-pub const EXAMPLE: &str = include_str!("../../../data/paper-n64.toml");
+pub const EXAMPLE: &str = include_str!("../assets/paper-n64.toml");
 
 /// The rough surface: a file, or the parameters of a random one (Eq. 9-14).
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -13,6 +13,37 @@
 //! - **Means** are over the whole cell (nominal area A0) unless a name says "contact".
 //! - **rms slope** is the isotropic one, √⟨|∇h|²⟩.
 //!
+//! # Example: a surface of one's own
+//!
+//! ```
+//! use rc_core::{Elasticity, Grid, HeightField, PeriodicCell};
+//!
+//! /// A sphere of radius 1 λ in the middle of the cell, as the paraboloid of Hertz.
+//! struct Sphere;
+//!
+//! impl HeightField for Sphere {
+//!     fn height(&self, x: f64, y: f64) -> f64 {
+//!         let from_middle = |place: f64| place - place.floor() - 0.5;
+//!         -(from_middle(x).powi(2) + from_middle(y).powi(2)) / 2.0
+//!     }
+//!     fn band_limit(&self) -> Option<usize> {
+//!         None
+//!     }
+//! }
+//!
+//! // What a solver takes: heights in λ at the centres of elements ...
+//! let heights = Sphere.sample(Grid::square(64)?);
+//! assert_eq!(heights.at(32, 31), -2.0 * (0.5_f64 / 64.0).powi(2) / 2.0);
+//!
+//! // ... and pressures in E*. A cell of 10 mm, steel, 1 MPa:
+//! let (cell, steel) = (PeriodicCell::new(10e-3)?, Elasticity::from_young_poisson(210e9, 0.3)?);
+//! let (highest, pressure) = (heights.max() * cell.side(), 1e6 / steel.e_star());
+//! assert!(highest < 0.0 && (pressure / 4.333e-6 - 1.0).abs() < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The feature `testing` has a check for each trait; `tests/examples/` of the repository goes on from here.
+//!
 //! The paper is Putignano, Afferrante, Carbone, Demelio, *A new efficient numerical method for contact mechanics of rough
 //! surfaces*, Int. J. Solids Struct. 49 (2012) 338-343; "Eq. (n)" without another source means its equations.
 

@@ -4,6 +4,29 @@
 //! pressure σ0 (Δ is then the multiplier) or a given penetration Δ (σ0 is then a result). [`solve_adaptive`] does it on
 //! an adaptive mesh whose elements follow the contact, [`solve_uniform`] on uniform grids, [`solve_gauss_seidel`] by the paper's own procedure on an adaptive mesh, and
 //! [`solve_dense`], slowly, by elimination: what the other two are tested against. Conventions and units: see [`rc_core`].
+//!
+//! ```
+//! use std::f64::consts::{PI, TAU};
+//!
+//! use rc_core::{Field, Grid, Silent};
+//! use rc_kernel::Love;
+//! use rc_solver::{AdaptiveParams, Control, HeightSource, Observables, SolveParams, solve_adaptive, solve_uniform};
+//!
+//! // Westergaard's wave at half the load of full contact, π E* a/λ: half of it touches.
+//! let amplitude = 1e-3;
+//! let heights = Field::from_fn(Grid::square(128)?, |x, _| amplitude * (TAU * x).cos());
+//! let load = Control::MeanPressure(0.5 * PI * amplitude);
+//! let solution = solve_uniform(&heights, &Love, load, &SolveParams::certified(), &Silent)?;
+//! let found = Observables::of(&solution, &Love);
+//! assert!((found.area.fraction - 0.5).abs() < 0.01, "A/A0 = {}", found.area.fraction);
+//!
+//! // Work that follows the contact; the same pressure, at a penetration that is given now.
+//! let depth = Control::Penetration(solution.info.penetration);
+//! let adaptive = solve_adaptive(HeightSource::Map(&heights), depth, &AdaptiveParams::certified(), &Silent)?;
+//! assert!((adaptive.info.mean_pressure / solution.info.mean_pressure - 1.0).abs() < 1e-4);
+//! assert!(adaptive.info.certificate.penetration <= 1e-6);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod adaptive;
 mod certificate;

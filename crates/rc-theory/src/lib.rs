@@ -16,6 +16,22 @@
 //! | [`persson_gap`] | mean gap of a random surface at low loads | a theory, without a highest asperity |
 //!
 //! [`lattice`] holds the constants of the periodic half-space.
+//!
+//! ```
+//! use rc_theory::hertz::{Hertz, PeriodicHertz};
+//! use rc_theory::persson::Persson;
+//!
+//! // A sphere of radius λ pressed until the contact has the radius λ/10: in a periodic cell it carries nearly the same load.
+//! let (free, periodic) = (Hertz { radius: 1.0 }, PeriodicHertz { radius: 1.0 });
+//! let contact = periodic.at_contact_radius(0.1)?;
+//! assert!((contact.load / free.load(0.1) - 1.0).abs() < 0.02);
+//! assert!((contact.peak_pressure / free.peak_pressure(0.1) - 1.0).abs() < 0.02);
+//!
+//! // Contact area of a random surface with rms slope 0.03 at σ0 = 1e-3 E*: κ σ0/slope with κ = 1.6.
+//! let area = Persson::from_rms_slope(1e-3, 0.03).area_fraction();
+//! assert!((area / (Persson::KAPPA * 1e-3 / 0.03) - 1.0).abs() < 1e-3);
+//! # Ok::<(), rc_theory::OutOfRange>(())
+//! ```
 
 use thiserror::Error;
 

@@ -47,6 +47,28 @@ impl Persson {
         Ok(Self { mean_pressure, lambda: (0.5 * mean_pressure / z).powi(2) })
     }
 
+    /// The Λ of Eq. 7 that is nearest to `densities` (stress, P) by least squares, the mean stress given.
+    ///
+    /// One parameter: a search by golden sections in ln Λ, between limits where Eq. 7 has its peak far below and far beyond the
+    /// stresses given. Any unit of stress will do here, as long as all three are in it.
+    #[must_use]
+    pub fn fit(mean_pressure: f64, densities: &[(f64, f64)]) -> Self {
+        let largest = densities.iter().fold(0.0, |largest: f64, at| largest.max(at.0));
+        let of = |logarithm: f64| Self { mean_pressure, lambda: logarithm.exp() };
+        let misfit = |logarithm: f64| {
+            let persson = of(logarithm);
+            densities.iter().map(|&(stress, density)| (density - persson.density(stress)).powi(2)).sum::<f64>()
+        };
+        let section = 0.5 * (5_f64.sqrt() - 1.0);
+        let (mut low, mut high) = ((1e-6 * largest * largest).ln(), (largest * largest).ln());
+        // The interval shrinks to 1e-13 of itself.
+        for _ in 0..62 {
+            let (left, right) = (high - section * (high - low), low + section * (high - low));
+            if misfit(left) < misfit(right) { high = right } else { low = left }
+        }
+        of(0.5 * (low + high))
+    }
+
     /// P(σ) of Eq. 7, in 1/E*, for a stress in E*; 0 for σ ≤ 0, where non-contact is a separate peak of weight 1 - A/A0.
     #[must_use]
     pub fn density(self, stress: f64) -> f64 {
@@ -132,6 +154,21 @@ mod tests {
         }
         for area in [0.0, -0.1, 1.0, 1.5, f64::NAN] {
             assert!(Persson::from_area_fraction(0.01, area).is_err(), "area {area}");
+        }
+    }
+
+    #[test]
+    fn the_fit_finds_the_lambda_of_eq_7() {
+        for exact in [Persson { mean_pressure: 8.9e-4, lambda: 5.5e-5 }, Persson { mean_pressure: 0.02, lambda: 1e-4 }]
+        {
+            let densities: Vec<(f64, f64)> =
+                (1..200).map(|k| 2.5e-4 * f64::from(k)).map(|stress| (stress, exact.density(stress))).collect();
+            let found = Persson::fit(exact.mean_pressure, &densities);
+            assert!((found.lambda / exact.lambda - 1.0).abs() < 1e-6, "{found:?} against {exact:?}");
+            // The unit of stress does not matter.
+            let pascals: Vec<(f64, f64)> = densities.iter().map(|&(s, p)| (5e8 * s, p / 5e8)).collect();
+            let found = Persson::fit(5e8 * exact.mean_pressure, &pascals).lambda / 25e16;
+            assert!((found / exact.lambda - 1.0).abs() < 1e-6, "{found:e} against {exact:?}");
         }
     }
 

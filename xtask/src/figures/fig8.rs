@@ -12,7 +12,7 @@ use rc_theory::persson::Persson;
 
 use plotters::prelude::DrawingBackend;
 
-use super::fit::{Line, Sample, fit_persson};
+use super::fit::{Line, Sample};
 use super::marks::{STYLES, Style};
 use super::solve::{Contact, solve};
 use super::sweep::ELEMENTS_PER_WAVE;
@@ -207,7 +207,7 @@ impl Realisation {
         let distribution = StressDistribution::of(&pressure, &equal);
         Ok(Self {
             area: area.fraction,
-            lambda: fit_persson(params.load, &points(&distribution)).lambda,
+            lambda: Persson::fit(params.load, &points(&distribution)).lambda,
             equal: distribution,
             equal_elements: histogram(&pressure, &equal),
             small: StressDistribution::of(&pressure, &small),
@@ -254,7 +254,7 @@ impl Curve {
             mean_stress: sample(&|one| {
                 points(&one.equal).iter().map(|&(stress, density)| stress * density * params.bin_width).sum()
             }),
-            fit: fit_persson(params.load, &averages),
+            fit: Persson::fit(params.load, &averages),
             lambda: sample(&|one| one.lambda),
         })
     }

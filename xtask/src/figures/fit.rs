@@ -1,6 +1,4 @@
-//! Fits and averages of figures: a straight line, Λ of Eq. 7, mean and scatter.
-
-use rc_theory::persson::Persson;
+//! Fits and averages of figures: a straight line, mean and scatter.
 
 /// A straight line by least squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,27 +54,6 @@ impl Sample {
     }
 }
 
-/// The Λ of Eq. 7 that is nearest to `densities` (stress, P) by least squares, the mean stress given.
-///
-/// One parameter: a search by golden sections in ln Λ, between limits where Eq. 7 has its peak far below and far beyond the
-/// stresses given.
-pub(crate) fn fit_persson(mean_pressure: f64, densities: &[(f64, f64)]) -> Persson {
-    let largest = densities.iter().fold(0.0, |largest: f64, at| largest.max(at.0));
-    let of = |logarithm: f64| Persson { mean_pressure, lambda: logarithm.exp() };
-    let misfit = |logarithm: f64| {
-        let persson = of(logarithm);
-        densities.iter().map(|&(stress, density)| (density - persson.density(stress)).powi(2)).sum::<f64>()
-    };
-    let section = 0.5 * (5_f64.sqrt() - 1.0);
-    let (mut low, mut high) = ((1e-6 * largest * largest).ln(), (largest * largest).ln());
-    // The interval shrinks to 1e-13 of itself.
-    for _ in 0..62 {
-        let (left, right) = (high - section * (high - low), low + section * (high - low));
-        if misfit(left) < misfit(right) { high = right } else { low = left }
-    }
-    of(0.5 * (low + high))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -101,16 +78,5 @@ mod tests {
         let sample = Sample::of(&[1.0, 2.0, 3.0, 6.0]);
         assert!((sample.mean - 3.0).abs() < 1e-15 && (sample.deviation - (14_f64 / 3.0).sqrt()).abs() < 1e-14);
         assert!((sample.error() - (14_f64 / 12.0).sqrt()).abs() < 1e-14, "{sample:?}");
-    }
-
-    #[test]
-    fn the_fit_finds_the_lambda_of_eq_7() {
-        for exact in [Persson { mean_pressure: 8.9e-4, lambda: 5.5e-5 }, Persson { mean_pressure: 0.02, lambda: 1e-4 }]
-        {
-            let densities: Vec<(f64, f64)> =
-                (1..200).map(|k| 2.5e-4 * f64::from(k)).map(|stress| (stress, exact.density(stress))).collect();
-            let found = fit_persson(exact.mean_pressure, &densities);
-            assert!((found.lambda / exact.lambda - 1.0).abs() < 1e-6, "{found:?} against {exact:?}");
-        }
     }
 }

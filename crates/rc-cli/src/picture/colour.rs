@@ -56,14 +56,20 @@ const VIRIDIS: [(u8, u8, u8); 17] = [
 const INK: [(u8, u8, u8); 2] = [(238, 240, 242), (23, 28, 40)];
 
 impl Palette {
-    /// The colour of `value`; values outside [0, 1] get the colour of the nearest end, `NaN` that of 0.
+    /// Colours (red, green, blue) at equal steps of the value, the first at 0 and the last at 1; linear between them.
     #[must_use]
-    pub fn colour(self, value: f64) -> RGBColor {
-        let table: &[(u8, u8, u8)] = match self {
+    pub fn anchors(self) -> &'static [(u8, u8, u8)] {
+        match self {
             Self::Heat => &HEAT,
             Self::Viridis => &VIRIDIS,
             Self::Ink => &INK,
-        };
+        }
+    }
+
+    /// The colour of `value`; values outside [0, 1] get the colour of the nearest end, `NaN` that of 0.
+    #[must_use]
+    pub fn colour(self, value: f64) -> RGBColor {
+        let table = self.anchors();
         let place = value.clamp(0.0, 1.0) * (table.len() - 1) as f64;
         let below = (place as usize).min(table.len() - 2);
         let part = if place.is_nan() { 0.0 } else { place - below as f64 };

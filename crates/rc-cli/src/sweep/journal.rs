@@ -62,9 +62,8 @@ impl Journal {
         let line = header.to_line();
         new.write_all(line.as_bytes()).and_then(|()| new.as_file().sync_all()).map_err(fail)?;
         // Whoever made one in the meantime keeps it (and may have taken this temporary file for a leftover).
-        let file = new.persist_noclobber(&path).map_err(|error| match path.exists() {
-            true => CliError::in_file(folder, ANOTHER_PROCESS),
-            false => fail(error.error),
+        let file = new.persist_noclobber(&path).map_err(|error| {
+            if path.exists() { CliError::in_file(folder, ANOTHER_PROCESS) } else { fail(error.error) }
         })?;
         let lock = Lock::take(&file, folder)?;
         let file = OpenOptions::new().append(true).open(&path).map_err(fail)?;

@@ -23,12 +23,12 @@ use std::time::Instant;
 
 pub use self::lists::{Loads, Seeds};
 pub use self::shard::Shard;
+pub(crate) use self::table::TABLE_FILE;
 
 use self::bar::RowBar;
-use self::content::{Cells, Header, JOURNAL_FILE, Rows};
+use self::content::{Cells, Content, Header, JOURNAL_FILE, Rows};
 use self::journal::Journal;
 use self::plan::Plan;
-use self::table::TABLE_FILE;
 use self::workers::locked;
 use crate::args::{SweepArgs, SweepCommand};
 use crate::error::CliError;
@@ -124,6 +124,11 @@ fn check_converged(rows: &Rows, table: &Path) -> Result<(), CliError> {
             table.display()
         ))),
     }
+}
+
+/// The settings of the sweep in `folder`, from its journal, if there is one that can be read.
+pub(crate) fn settings_in(folder: &Path) -> Option<serde_json::Value> {
+    Some(Content::read(folder).ok()?.header.settings)
 }
 
 /// The folder for the fields of row `index` in the folder of a sweep: numbered from 1, as the lines of the table.

@@ -9,7 +9,7 @@ use crate::error::CliError;
 use crate::output;
 
 /// The table's name in the folder of a sweep.
-pub(super) const TABLE_FILE: &str = "sweep.csv";
+pub(crate) const TABLE_FILE: &str = "sweep.csv";
 
 /// Writes the table of `rows`, if there are any.
 ///

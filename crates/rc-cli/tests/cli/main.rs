@@ -2,7 +2,9 @@
 
 mod adaptive;
 mod bad_input;
+mod guide;
 mod measured;
+mod report;
 mod solve;
 mod stopped;
 mod support;

@@ -1,0 +1,197 @@
+// Maps of fields on the periodic cell: shared zoom and cursor, colours with a movable end.
+
+/** A field as it is embedded: base64 of little-endian whole numbers, of which the greatest possible one is `max`. */
+class EmbeddedField {
+  constructor({ nx, ny, bits, max, data }) {
+    const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
+    const view = new DataView(bytes.buffer);
+    const count = nx * ny;
+    const step = max / (2 ** bits - 1);
+    this.values = new Float64Array(count);
+    for (let i = 0; i < count; i += 1) this.values[i] = step * (bits === 16 ? view.getUint16(2 * i, true) : bytes[i]);
+    const least = this.values.reduce((low, value) => Math.min(low, value), max);
+    // In full contact, what there is to see is far from zero.
+    Object.assign(this, { nx, ny, max, low: least > 0.5 * max ? least : 0 });
+  }
+
+  /** The value at a point, in parts of the cell; periodic. */
+  at(x, y) {
+    const index = (place, n) => Math.min(Math.floor((place - Math.floor(place)) * n), n - 1);
+    return this.values[index(y, this.ny) * this.nx + index(x, this.nx)];
+  }
+}
+
+/** Colours between the given ones, as 256 triples. */
+function colourTable(anchors) {
+  return Array.from({ length: 256 }, (_, i) => {
+    const place = (i / 255) * (anchors.length - 1);
+    const below = Math.min(Math.floor(place), anchors.length - 2);
+    return anchors[below].map((from, c) => Math.round(from + (place - below) * (anchors[below + 1][c] - from)));
+  });
+}
+
+/** What several maps show together: the visible part of the cell, and the cursor. Lengths in parts of the cell. */
+class SharedView {
+  constructor(cursor, smallest) {
+    Object.assign(this, { x: 0, y: 0, size: 1, cursor, smallest, pinned: false, listeners: [] });
+  }
+
+  change() {
+    for (const listener of this.listeners) listener();
+  }
+
+  /** Zooms about a point that stays where it is. */
+  zoom(factor, [x, y] = this.cursor) {
+    const size = Math.min(1, Math.max(this.smallest, this.size * factor));
+    const ratio = size / this.size;
+    Object.assign(this, { x: x - (x - this.x) * ratio, y: y - (y - this.y) * ratio, size });
+    if (size === 1) Object.assign(this, { x: Math.round(this.x), y: Math.round(this.y) });
+    this.change();
+  }
+
+  reset() {
+    Object.assign(this, { x: 0, y: 0, size: 1, pinned: false });
+    this.change();
+  }
+}
+
+/** One map. `reading` makes text of a value, `ends` those at the ends of the colours; the end of these is `movable`. */
+class FieldMap {
+  constructor({ title, field, colours, view, side, reading, ends, movable = true }) {
+    Object.assign(this, { field, view, side, reading, colours: colourTable(colours), low: movable ? field.low : 0, top: field.max });
+    this.bitmap = make("canvas", { width: field.nx, height: field.ny });
+    this.canvas = make("canvas");
+    this.value = make("span", { class: "quiet" });
+    this.box = make("div", { class: "map", tabindex: 0, role: "img", "aria-label": title }, this.canvas);
+    const bar = make("div", { class: "bar" });
+    bar.style.background = `linear-gradient(to right, ${colours.map((c) => `rgb(${c.join(" ")})`).join(", ")})`;
+    const [least, greatest] = ends(this.low, this.top);
+    const end = make("span", {}, greatest);
+    const slider = make("input", { type: "range", min: 5, max: 100, value: 100, "aria-label": `end of the colours of ${title}` });
+    slider.addEventListener("input", () => {
+      this.top = this.low + ((field.max - this.low) * slider.value) / 100;
+      end.textContent = (slider.value < 100 ? "≥ " : "") + ends(this.low, this.top)[1];
+      this.colour();
+      this.paint();
+    });
+    const label = movable ? [make("label", {}, "colours", slider)] : [];
+    const scale = make("div", { class: "ends" }, make("span", {}, least), ...label, end);
+    this.element = make("figure", {}, make("figcaption", {}, title, this.value), this.box, bar, scale);
+    this.colour();
+    this.listen();
+    view.listeners.push(() => this.paint());
+    new ResizeObserver(() => this.paint()).observe(this.box);
+  }
+
+  /** The field as a picture of one pixel per value, y upwards. */
+  colour() {
+    const { nx, ny, values } = this.field;
+    const context = this.bitmap.getContext("2d");
+    const picture = context.createImageData(nx, ny);
+    const factor = this.top > this.low ? 255 / (this.top - this.low) : 0;
+    const shade = (value) => this.colours[Math.max(0, Math.min(255, Math.round((value - this.low) * factor)))];
+    for (let iy = 0; iy < ny; iy += 1) {
+      for (let ix = 0; ix < nx; ix += 1) {
+        picture.data.set([...shade(values[iy * nx + ix]), 255], 4 * ((ny - 1 - iy) * nx + ix));
+      }
+    }
+    context.putImageData(picture, 0, 0);
+  }
+
+  paint() {
+    const { view, canvas } = this;
+    const pixels = Math.max(1, Math.round(this.box.clientWidth * (window.devicePixelRatio || 1)));
+    if (canvas.width !== pixels) canvas.width = canvas.height = pixels;
+    const context = canvas.getContext("2d");
+    const cell = pixels / view.size;
+    context.imageSmoothingEnabled = cell < this.field.nx;
+    for (let i = Math.floor(view.x); i < view.x + view.size; i += 1) {
+      for (let j = Math.floor(view.y); j < view.y + view.size; j += 1) {
+        context.drawImage(this.bitmap, (i - view.x) * cell, pixels - (j + 1 - view.y) * cell, cell, cell);
+      }
+    }
+    this.paintCursor(context, pixels, cell);
+    this.paintRuler(context, pixels, cell);
+    this.value.textContent = this.reading(this.field.at(...view.cursor));
+  }
+
+  paintCursor(context, pixels, cell) {
+    const [x, y] = this.view.cursor;
+    const [left, top] = [(x - this.view.x) * cell, pixels - (y - this.view.y) * cell];
+    for (const [colour, width] of [["rgb(255 255 255 / 0.75)", 3], [this.view.pinned ? "#d4002a" : "rgb(20 30 60 / 0.75)", 1]]) {
+      context.strokeStyle = colour;
+      context.lineWidth = width * (window.devicePixelRatio || 1);
+      context.beginPath();
+      context.moveTo(left, 0);
+      context.lineTo(left, pixels);
+      context.moveTo(0, top);
+      context.lineTo(pixels, top);
+      context.stroke();
+    }
+  }
+
+  /** A round length, in the corner. */
+  paintRuler(context, pixels, cell) {
+    const unit = window.devicePixelRatio || 1;
+    const length = roundBelow((0.3 * pixels * this.side) / cell);
+    const [width, margin, text] = [(length / this.side) * cell, 10 * unit, si(length, "m")];
+    context.font = `${12 * unit}px system-ui, sans-serif`;
+    const room = Math.max(width, context.measureText(text).width) + 2 * margin;
+    context.fillStyle = "rgb(255 255 255 / 0.85)";
+    context.fillRect(0, pixels - 34 * unit, room, 34 * unit);
+    context.fillStyle = "#10151d";
+    context.fillText(text, margin, pixels - 15 * unit);
+    context.fillRect(margin, pixels - 9 * unit, width, 3 * unit);
+  }
+
+  /** Point of the cell under the pointer. */
+  point(event) {
+    const box = this.box.getBoundingClientRect();
+    const part = [(event.clientX - box.left) / box.width, 1 - (event.clientY - box.top) / box.height];
+    return [this.view.x + part[0] * this.view.size, this.view.y + part[1] * this.view.size];
+  }
+
+  listen() {
+    const { view, canvas } = this;
+    let grip = null;
+    let moved = false;
+    canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      view.zoom(Math.exp(0.0015 * event.deltaY), this.point(event));
+    }, { passive: false });
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      [grip, moved] = [this.point(event), false];
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      const point = this.point(event);
+      if (grip) {
+        const far = Math.hypot(point[0] - grip[0], point[1] - grip[1]) > 0.01 * view.size;
+        moved = moved || far;
+        if (moved) Object.assign(view, { x: view.x + grip[0] - point[0], y: view.y + grip[1] - point[1] });
+      } else if (!view.pinned) {
+        view.cursor = point;
+      }
+      view.change();
+    });
+    canvas.addEventListener("pointerup", (event) => {
+      if (!moved) Object.assign(view, { cursor: this.point(event), pinned: !view.pinned });
+      grip = null;
+      view.change();
+    });
+    canvas.addEventListener("pointercancel", () => { grip = null; });
+    this.box.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  key(event) {
+    const { view } = this;
+    const step = 0.02 * view.size;
+    const moves = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowDown: [0, -step], ArrowUp: [0, step] };
+    const factors = { "+": 0.8, "=": 0.8, "-": 1.25 };
+    if (moves[event.key]) view.cursor = view.cursor.map((place, i) => place + moves[event.key][i]);
+    else if (factors[event.key]) view.zoom(factors[event.key]);
+    else return;
+    event.preventDefault();
+    view.change();
+  }
+}

@@ -1,0 +1,112 @@
+// The page of one solved contact.
+
+/** The maps, and the sections through their cursor. */
+function mapsAndSections({ side, pressure, gap, contact, peak, averaged }) {
+  const fields = { pressure: new EmbeddedField(pressure), gap: new EmbeddedField(gap), contact: new EmbeddedField(contact) };
+  const view = new SharedView(peak, Math.min(1, 8 / Math.max(pressure.nx, pressure.ny)));
+  const map = (title, name, colours, unit) => new FieldMap({
+    title, field: fields[name], colours, view, side, ends: (low, high) => [low > 0 ? si(low, unit, 4) : "0", si(high, unit, 4)], reading: (value) => si(value, unit),
+  });
+  const contactMap = new FieldMap({
+    title: "Contact", field: fields.contact, colours: contact.colours, view, side, ends: () => ["gap", "contact"], movable: false,
+    reading: (value) => (value === 0 ? "gap" : value === 1 ? "contact" : `${digits(100 * value, 3)} % contact`),
+  });
+  const maps = [contactMap, map("Pressure", "pressure", pressure.colours, "Pa"), map("Gap", "gap", gap.colours, "m")];
+  const place = make("span", {});
+  const sections = sectionCharts(fields, view, side);
+  const along = (text, axis) => make("button", {
+    "aria-pressed": axis === "x",
+    onclick: (event) => {
+      for (const other of event.target.parentNode.querySelectorAll("[aria-pressed]")) other.setAttribute("aria-pressed", other === event.target);
+      sections.axis = axis;
+      sections.refresh();
+    },
+  }, text);
+  const controls = make("div", { class: "controls" },
+    make("button", { onclick: () => view.zoom(0.5) }, "zoom in"), make("button", { onclick: () => view.zoom(2) }, "zoom out"),
+    make("button", { onclick: () => view.reset() }, "whole cell"),
+    make("span", {}, along("section along x", "x"), " ", along("along y", "y")), place);
+  view.listeners.push(() => {
+    const wrapped = view.cursor.map((part) => si((part - Math.floor(part)) * side, "m"));
+    place.textContent = `x = ${wrapped[0]}, y = ${wrapped[1]}${view.pinned ? " (held: click to let go)" : ""}`;
+  });
+  view.change();
+  const help = "The wheel zooms, dragging moves (the cell is periodic), a click holds the cursor; arrow keys, + and − do the same. ";
+  return [
+    make("h2", {}, "Maps"),
+    make("div", { class: "columns" }, ...maps.map((one) => one.element)),
+    controls,
+    make("p", { class: "quiet" }, help + averaged),
+    make("h2", {}, "Section through the cursor"),
+    make("div", { class: "columns wide" }, sections.pressure.element, sections.gap.element),
+  ];
+}
+
+/** Pressure and gap along a line through the cursor, over the visible part of the cell. */
+function sectionCharts(fields, view, side) {
+  const charts = { axis: "x" };
+  const points = (field, axis) => {
+    const n = axis === "x" ? field.nx : field.ny;
+    const start = axis === "x" ? view.x : view.y;
+    const first = Math.ceil(start * n - 0.5);
+    const count = Math.max(2, Math.round(view.size * n));
+    return Array.from({ length: count }, (_, i) => {
+      const part = (first + i + 0.5) / n;
+      return [part * side, axis === "x" ? field.at(part, view.cursor[1]) : field.at(view.cursor[0], part)];
+    });
+  };
+  const options = (name, unit, colour) => {
+    const start = charts.axis === "x" ? view.x : view.y;
+    return {
+      x: { label: charts.axis, unit: "m", from: start * side, to: (start + view.size) * side },
+      y: { label: name, unit, from: fields[name].low },
+      series: [{ name: "", points: points(fields[name], charts.axis), colour }],
+    };
+  };
+  charts.pressure = new Chart(options("pressure", "Pa", "var(--red)"));
+  charts.gap = new Chart(options("gap", "m", "var(--blue)"));
+  charts.refresh = () => {
+    charts.pressure.update(options("pressure", "Pa", "var(--red)"));
+    charts.gap.update(options("gap", "m", "var(--blue)"));
+  };
+  view.listeners.push(charts.refresh);
+  return charts;
+}
+
+/** P(σ) with the fit of Eq. 7. */
+function stressDistribution({ values: stress, density, fit, notes }) {
+  const { factor, unit } = scaleOf(stress[stress.length - 1], "Pa");
+  const points = (of) => stress.map((s, i) => [s, of[i] * factor]);
+  const series = [{ name: "solved", points: points(density), colour: "var(--blue)" }];
+  if (fit) series.push({ name: "Persson's form, Eq. 7, fitted", points: points(fit), colour: "var(--red)", dashed: true });
+  const chart = new Chart({
+    x: { label: "stress σ", unit: "Pa" }, y: { label: `P(σ) (1/${unit})` }, series, switches: ["x", "y"],
+  });
+  return make("section", {}, make("h2", {}, "Stress distribution"), chart.element, ...notes.map((text) => make("p", { class: "quiet" }, text)));
+}
+
+/** Contact spots by size. */
+function contactSpots({ rows, diameters, counts, note }) {
+  const steps = diameters.map((edge, i) => [edge, i < counts.length ? counts[i] : 0]);
+  const chart = new Chart({
+    x: { label: "diameter of a circle of the same area", unit: "m", log: true, from: diameters[0], to: diameters[diameters.length - 1] },
+    y: { label: "spots", from: 0 },
+    series: [{ name: "", points: [[diameters[0], 0], ...steps], colour: "var(--blue)", kind: "steps" }],
+  });
+  return make("section", {}, make("h2", {}, "Contact spots"), chart.element, table(rows), make("p", { class: "quiet" }, note));
+}
+
+/** The certificate: each error beside what it may be. */
+function certificate({ rows, note }) {
+  const line = ({ name, value, limit, holds }) => [name, value, limit, [holds ? "good" : "bad", holds ? "holds" : "exceeded"]];
+  return make("section", {}, make("h2", {}, "Certificate"), table(rows.map(line), ["", "error", "may be", ""]), make("p", { class: "quiet" }, note));
+}
+
+function resultPage(data) {
+  const half = (...children) => make("div", { class: "columns wide" }, ...children);
+  return [
+    ...mapsAndSections(data.maps),
+    half(...[data.stress && stressDistribution(data.stress), data.spots && contactSpots(data.spots)].filter(Boolean)),
+    half(certificate(data.certificate), make("section", {}, make("h2", {}, "Result"), table(data.lines))),
+  ];
+}

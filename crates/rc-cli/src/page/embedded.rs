@@ -1,0 +1,106 @@
+//! Fields small enough to be in a page: means over at most 512 x 512 pixels, as whole numbers.
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use rc_core::Field;
+use serde::Serialize;
+
+use crate::picture::{Palette, PixelMean};
+
+/// Most pixels per side.
+pub(super) const MOST_PIXELS: usize = 512;
+
+/// Whole numbers of this many bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Bits {
+    Eight,
+    Sixteen,
+}
+
+/// A field as the script reads it.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct EmbeddedField {
+    nx: usize,
+    ny: usize,
+    /// 8 or 16: a value is its whole number times `max` over the greatest such number.
+    bits: u8,
+    /// Greatest value.
+    max: f64,
+    /// Base64 of the numbers, little-endian, row by row from y = 0.
+    data: String,
+    /// Colours from 0 to `max`.
+    colours: &'static [(u8, u8, u8)],
+}
+
+/// The mean of `value` over the elements of each pixel.
+pub(super) fn pixel_means(field: &Field, value: impl Fn(f64) -> f64) -> Field {
+    let mut means = PixelMean::new(field.grid(), MOST_PIXELS);
+    for iy in 0..field.grid().ny() {
+        let row = field.row(iy);
+        means.take(|ix| value(row[ix]));
+    }
+    means.finish()
+}
+
+impl EmbeddedField {
+    /// `pixels`, of values from 0 to `max`. What is above 0 is at least 1 step above it, so that contact stays contact.
+    pub(super) fn new(pixels: &Field, max: f64, bits: Bits, palette: Palette) -> Self {
+        let greatest = match bits {
+            Bits::Eight => f64::from(u8::MAX),
+            Bits::Sixteen => f64::from(u16::MAX),
+        };
+        let number = |value: &f64| {
+            let part = if max > 0.0 && *value > 0.0 { (value / max * greatest).round().max(1.0) } else { 0.0 };
+            part.min(greatest) as u16
+        };
+        let numbers = pixels.values().iter().map(number);
+        let bytes: Vec<u8> = match bits {
+            Bits::Eight => numbers.map(|number| number as u8).collect(),
+            Bits::Sixteen => numbers.flat_map(u16::to_le_bytes).collect(),
+        };
+        Self {
+            nx: pixels.grid().nx(),
+            ny: pixels.grid().ny(),
+            bits: if bits == Bits::Eight { 8 } else { 16 },
+            max,
+            data: STANDARD.encode(bytes),
+            colours: palette.anchors(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rc_core::Grid;
+
+    #[test]
+    fn values_are_within_half_a_step_and_contact_stays_contact() {
+        let grid = Grid::new(3, 2).expect("a grid");
+        let values = vec![0.0, 1e-12, 0.3, 1.0, 2.0, 1.999];
+        let field = Field::new(grid, values.clone()).expect("a field");
+        for (bits, steps) in [(Bits::Eight, 255.0), (Bits::Sixteen, 65535.0)] {
+            let embedded = EmbeddedField::new(&field, 2.0, bits, Palette::Ink);
+            let bytes = STANDARD.decode(&embedded.data).expect("base64");
+            let numbers: Vec<u16> = match bits {
+                Bits::Eight => bytes.iter().map(|byte| u16::from(*byte)).collect(),
+                Bits::Sixteen => bytes.chunks(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]])).collect(),
+            };
+            assert_eq!((numbers[0], numbers[1], f64::from(numbers[4])), (0, 1, steps));
+            for (number, value) in numbers.iter().zip(&values).skip(2) {
+                let read = f64::from(*number) * 2.0 / steps;
+                assert!((read - value).abs() <= 1.0 / steps, "{value} became {read}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_empty_field_is_all_zeros_and_a_large_one_is_averaged() {
+        let zero = Field::zeros(Grid::square(2).expect("a grid"));
+        assert_eq!(EmbeddedField::new(&zero, 0.0, Bits::Eight, Palette::Ink).data, STANDARD.encode([0; 4]));
+        let large = Field::from_fn(Grid::new(2048, 100).expect("a grid"), |x, _| x);
+        let means = pixel_means(&large, |value| value);
+        assert_eq!((means.grid().nx(), means.grid().ny()), (512, 100));
+        assert!((means.mean() - large.mean()).abs() < 1e-12, "{} against {}", means.mean(), large.mean());
+    }
+}

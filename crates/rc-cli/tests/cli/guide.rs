@@ -1,0 +1,103 @@
+//! Every command line of README and guide is run, and every flag that they name exists.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::CommandFactory as _;
+
+use crate::support::{Place, bumps, f8, npy, text};
+
+/// Begin of a block of which every line that begins with `rc` is run; `sh,ignore` marks those that take too long.
+const RUN: &str = "```sh";
+const IGNORED: &str = "```sh,ignore";
+
+/// Most blocks that may be ignored, of all documents.
+const MOST_IGNORED: usize = 2;
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// README and guide: names and texts.
+fn documents() -> Vec<(String, String)> {
+    let mut paths = vec![repository().join("README.md")];
+    let entries = fs::read_dir(repository().join("docs")).expect("the guide");
+    paths.extend(
+        entries.map(|entry| entry.expect("an entry").path()).filter(|path| path.extension().is_some_and(|e| e == "md")),
+    );
+    paths.sort();
+    paths.into_iter().map(|path| (path.display().to_string(), fs::read_to_string(&path).expect("a text"))).collect()
+}
+
+/// The lines of blocks that are run, with their numbers.
+fn commands(document: &str) -> Vec<(usize, String)> {
+    let mut inside = false;
+    let mut commands = Vec::new();
+    for (number, line) in document.lines().enumerate() {
+        if line.starts_with("```") {
+            inside = line == RUN;
+        } else if inside && line.starts_with("rc ") {
+            let command = line.split(" #").next().unwrap_or_default();
+            commands.push((number + 1, command.trim().to_owned()));
+        }
+    }
+    commands
+}
+
+/// The files that the documents say one has: a measured map, a sphere, scenes, the file of an instrument.
+fn prepare(place: &Place) {
+    place.write("map.npy", npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
+    let n = 256;
+    let x = |i: usize| (i as f64 - n as f64 / 2.0) * 1e-2 / n as f64;
+    let sphere = (0..n * n).flat_map(|i| (-(x(i % n).powi(2) + x(i / n).powi(2)) / 2e-2).to_le_bytes());
+    place.write("sphere.npy", npy("<f8", false, "(256, 256)", &sphere.collect::<Vec<u8>>()));
+    place.write("a.toml", "waves = 8\ngrid = 64\n");
+    place.write("b.toml", "waves = 8\ngrid = 64\nhurst = 0.5\n");
+    fs::copy(repository().join("data/formats/surfalize.x3p"), place.path("scan.x3p"))
+        .expect("the file of an instrument");
+}
+
+#[test]
+fn every_command_line_of_the_documents_ends_well() {
+    let mut n_commands = 0;
+    for (name, document) in documents() {
+        let place = Place::new();
+        prepare(&place);
+        for (number, command) in commands(&document) {
+            let words: Vec<&str> = command.split_whitespace().skip(1).collect();
+            let output = place.run(&words);
+            assert_eq!(output.status.code(), Some(0), "{name}:{number}: {command}\n{}", text(&output.stderr));
+            n_commands += 1;
+        }
+    }
+    assert!(n_commands > 40, "only {n_commands} command lines were found");
+    let ignored: usize = documents().iter().map(|(_, document)| document.matches(IGNORED).count()).sum();
+    assert!(ignored <= MOST_IGNORED, "{ignored} blocks are not run");
+}
+
+/// In the text, `rc solve --flag` names a command and flags that there are.
+#[test]
+fn commands_and_flags_in_the_text_exist() {
+    let rc = rc_cli::args::Cli::command();
+    let mut n_flags = 0;
+    for (name, document) in documents() {
+        for span in
+            document.split('`').skip(1).step_by(2).filter(|span| span.starts_with("rc ") && !span.contains("rc-"))
+        {
+            let mut words = span.split_whitespace().skip(1).peekable();
+            let mut command = &rc;
+            while let Some(next) = words.peek().and_then(|word| command.find_subcommand(word)) {
+                command = next;
+                words.next();
+            }
+            let known = |flag: &str| {
+                flag == "help" || flag == "version" || command.get_arguments().any(|a| a.get_long() == Some(flag))
+            };
+            for flag in words.filter_map(|word| word.strip_prefix("--")) {
+                assert!(known(flag), "{name}: `{span}`: {} has no --{flag}", command.get_name());
+                n_flags += 1;
+            }
+        }
+    }
+    assert!(n_flags > 10, "only {n_flags} flags were found");
+}

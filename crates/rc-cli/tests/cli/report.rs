@@ -1,0 +1,187 @@
+//! `rc report` and `rc export`: results for the eyes, and for other programs.
+
+use std::process::Command;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::Value;
+
+use crate::support::{Place, assert_refused, assert_solved, small, text};
+
+/// The data in a page.
+fn data(page: &str) -> Value {
+    let (_, rest) = page.split_once("id=\"data\">").expect("the element with the data");
+    serde_json::from_str(rest.split("</script>").next().expect("its end")).expect("valid JSON")
+}
+
+/// A page's data, of which the file must need no other.
+fn self_contained(place: &Place, name: &str) -> Value {
+    let page = text(&place.bytes(name));
+    let addresses = page.matches("http").count();
+    assert_eq!(addresses, page.matches("\"http://www.w3.org/2000/svg\"").count() + 1, "an address that is no name");
+    assert!(page.contains("http-equiv=\"Content-Security-Policy\""), "the last of them");
+    for word in ["src=", "href=", "@import", "url(data", "fetch("] {
+        assert!(!page.contains(word), "{word} in the page");
+    }
+    assert!(page.len() < 2_500_000, "{} bytes", page.len());
+    data(&page)
+}
+
+/// Runs a command line of a page.
+fn repeat(place: &Place, line: &Value) {
+    let line = line["text"].as_str().expect("a command line");
+    let words: Vec<&str> = line.split(' ').collect();
+    assert_eq!(words[0], "rc", "{line}");
+    assert_solved(&place.run(&words[1..]));
+}
+
+#[test]
+fn the_page_of_a_result_has_its_fields_and_the_commands_that_repeat_it() {
+    let place = Place::new();
+    assert_solved(&place.run(&small("1e5", &["--seed", "3", "--out", "r"])));
+    assert_solved(&place.run(&["report", "r"]));
+    let page = self_contained(&place, "r/report.html");
+    assert_eq!((&page["kind"], &page["status"]), (&"result".into(), &"converged".into()));
+    let field = &page["maps"]["pressure"];
+    let bytes = STANDARD.decode(field["data"].as_str().expect("text")).expect("base64");
+    let max = field["max"].as_f64().expect("a number");
+    let stored = rc_cli::npy::read(&place.path("r/pressure.npy")).expect("the pressure");
+    assert_eq!(bytes.len(), 2 * stored.grid().len());
+    for (pair, p) in bytes.chunks(2).zip(stored.values()) {
+        let shown = f64::from(u16::from_le_bytes([pair[0], pair[1]])) * max / 65535.0;
+        assert!((shown - p).abs() <= max / 65535.0, "{p} is shown as {shown}");
+        assert_eq!(shown > 0.0, *p > 0.0, "contact is shown as it is");
+    }
+    assert!(page["certificate"]["rows"].as_array().is_some_and(|rows| rows.iter().all(|row| row["holds"] == true)));
+    let counts = page["spots"]["counts"].as_array().expect("counts").iter().filter_map(Value::as_u64).sum::<u64>();
+    assert_eq!(page["spots"]["rows"][0][1], counts.to_string().as_str(), "spots in the bins and in the table");
+    let commands = page["commands"].as_array().expect("commands");
+    assert_eq!(commands.len(), 2, "{commands:?}");
+    for command in commands {
+        repeat(&place, command);
+        assert!(place.bytes("again/pressure.npy") == place.bytes("r/pressure.npy"), "{command} gives another result");
+    }
+}
+
+#[test]
+fn the_page_of_a_sweep_has_its_curves_and_the_command_that_repeats_it() {
+    let place = Place::new();
+    let sweep = ["sweep", "--waves", "8", "--grid", "64", "--pressures", "1e4:1e6:3", "--seeds", "1..2"];
+    assert_solved(&place.run(&[&sweep[..], &["--quiet", "--out", "s"]].concat()));
+    assert_solved(&place.run(&["report", "s", "--out", "page.html", "--quiet"]));
+    let page = self_contained(&place, "page.html");
+    assert_eq!(page["kind"], "sweep");
+    let seeds = page["scenes"][0]["seeds"].as_array().expect("curves");
+    assert_eq!((seeds.len(), seeds[0].as_array().map(Vec::len)), (2, Some(3)));
+    let mean = |key: &str, i: usize| page["scenes"][0]["mean"][i][key].as_f64().expect("a number");
+    assert!(mean("area", 0) < mean("area", 1) && mean("penetration", 1) < mean("penetration", 2), "curves rise");
+    assert_eq!((&page["status"], &page["good"]), (&"all converged".into(), &true.into()));
+    let whole = place.bytes("s/sweep.csv");
+    let cut = whole[..whole.len() - 1].iter().rposition(|&byte| byte == b'\n').expect("lines") + 1;
+    std::fs::create_dir(place.path("part")).expect("a folder");
+    place.write("part/sweep.csv", &whole[..cut]);
+    place.write("part/sweep.jsonl", place.bytes("s/sweep.jsonl"));
+    assert_solved(&place.run(&["report", "part"]));
+    assert_eq!(data(&text(&place.bytes("part/report.html")))["status"], "5 of 6 rows");
+    repeat(&place, &page["commands"][0]);
+    let without_times = |name: &str| -> Vec<String> {
+        let table = text(&place.bytes(name));
+        table.lines().map(|line| line.split(',').take(8).collect::<Vec<_>>().join(",")).collect()
+    };
+    assert_eq!(without_times("again/sweep.csv"), without_times("s/sweep.csv"));
+}
+
+#[test]
+fn pages_of_full_contact_of_no_convergence_and_of_height_maps_are_made() {
+    let place = Place::new();
+    assert_solved(&place.run(&small("1e9", &["--out", "full"])));
+    assert_solved(&place.run(&["surface", "--waves", "8", "--grid", "64", "--quiet", "--out", "map.npy"]));
+    assert_solved(&place.run(&["solve", "--heights", "map.npy", "--pressure", "1e5", "--quiet", "--out", "map"]));
+    for folder in ["full", "map"] {
+        assert_solved(&place.run(&["report", folder]));
+        self_contained(&place, &format!("{folder}/report.html"));
+    }
+    let full = data(&text(&place.bytes("full/report.html")));
+    assert_eq!(
+        (&full["status"], full["maps"]["gap"]["max"].as_f64()),
+        (&"full contact".into(), Some(0.0)),
+        "rounding is no gap"
+    );
+    let page = data(&text(&place.bytes("map/report.html")));
+    assert_eq!(page["commands"].as_array().map(Vec::len), Some(1), "flags alone do not bring a map back");
+    let mut summary = place.json("map/summary.json");
+    summary["status"] = "not_converged".into();
+    place.write("map/summary.json", summary.to_string());
+    assert_solved(&place.run(&["report", "map"]));
+    assert_eq!(data(&text(&place.bytes("map/report.html")))["good"], false);
+}
+
+#[test]
+fn what_is_no_result_has_no_page() {
+    let place = Place::new();
+    assert_refused(&place.run(&["report", "nothing"]), "nothing");
+    std::fs::create_dir(place.path("empty")).expect("a folder");
+    assert_refused(&place.run(&["report", "empty"]), "summary.json");
+    std::fs::create_dir(place.path("s")).expect("a folder");
+    place.write("s/sweep.csv", "seed,control_value\n1,2\n");
+    assert_refused(&place.run(&["report", "s"]), "sweep.csv");
+    place.write("s/sweep.csv", "");
+    assert_refused(&place.run(&["report", "s"]), "no rows");
+    assert_eq!(place.names("s"), ["sweep.csv"], "something was written");
+    assert_solved(&place.run(&small("1e5", &["--out", "r"])));
+    assert_refused(&place.run(&["report", "r", "--out", "empty"]), "is a folder");
+}
+
+/// Only where there is a Chromium; no other test draws the page.
+#[test]
+#[expect(clippy::print_stderr, reason = "a test that looked at nothing says so")]
+fn a_browser_draws_the_page() {
+    let browsers = ["chromium", "chromium-browser", "google-chrome", "chrome"];
+    let here = |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success());
+    let Some(browser) = browsers.into_iter().find(here) else {
+        eprintln!("no Chromium on this machine: the script of the page was not run");
+        return;
+    };
+    let place = Place::new();
+    assert_solved(&place.run(&small("1e5", &["--out", "r"])));
+    assert_solved(&place.run(&["report", "r"]));
+    let address = format!("file://{}", place.path("r/report.html").display());
+    let flags = ["--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"];
+    let output = Command::new(browser).args(flags).arg(address).output().expect("the browser runs");
+    let page = text(&output.stdout);
+    assert!(page.contains("data-ready=\"yes\""), "the script failed: {}", text(&output.stderr));
+    assert_eq!(page.matches("<canvas").count(), 3, "maps");
+    assert_eq!(page.matches("<svg").count(), 4, "two sections, the distribution and the spots");
+}
+
+#[test]
+fn a_result_is_exported_for_paraview() {
+    let place = Place::new();
+    assert_solved(&place.run(&small("1e5", &["--out", "r"])));
+    assert_solved(&place.run(&["export", "r", "--vtk", "--out", "vtk"]));
+    assert_eq!(place.names("vtk"), ["elements.vtu", "fields.vti"]);
+    let bytes = place.bytes("vtk/fields.vti");
+    let mark = b"<AppendedData encoding=\"raw\">_";
+    let start = bytes.windows(mark.len()).position(|window| window == mark).expect("the arrays") + mark.len();
+    let head = text(&bytes[..start]);
+    assert!(
+        head.contains("WholeExtent=\"0 128 0 128 0 0\"") && head.contains("Spacing=\"7.8125e-5 7.8125e-5"),
+        "{head}"
+    );
+    let stored = rc_cli::npy::read(&place.path("r/pressure.npy")).expect("the pressure");
+    // Contact comes first: a length, and a byte for each element; then the length of the pressure.
+    let first = start + 8 + stored.grid().len() + 8;
+    for (i, p) in stored.values().iter().enumerate() {
+        let at = first + 8 * i;
+        assert_eq!(bytes[at..at + 8], p.to_le_bytes(), "element {i}");
+    }
+    let elements = text(&place.bytes("r/elements.csv")).lines().count() - 1;
+    let head = text(&place.bytes("vtk/elements.vtu"));
+    assert!(head.contains(&format!("NumberOfCells=\"{elements}\"")), "{elements} elements");
+    assert_solved(&place.run(&small("1e5", &["--method", "uniform", "--out", "u"])));
+    assert_solved(&place.run(&["export", "u", "--quiet"]));
+    assert!(
+        place.names("u").contains(&"fields.vti".to_owned()) && !place.names("u").contains(&"elements.vtu".to_owned())
+    );
+    assert_refused(&place.run(&["export", "vtk"]), "summary.json");
+}

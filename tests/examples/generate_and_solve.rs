@@ -1,0 +1,30 @@
+//! A random surface, pressed against a half-space: contact area with its error bar, pressures, certificate.
+//!
+//! `cargo run -p rc-tests --example generate_and_solve`. Units: cell side λ = 1, E* = 1.
+#![expect(clippy::print_stdout, reason = "what an example is for")]
+
+use std::error::Error;
+
+use rc_core::Silent;
+use rc_fractal::{SpectrumParams, Surface};
+use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, HeightSource, solve_adaptive};
+
+/// The paper's surface with 32 waves and seed 1, at the paper's load, on 1024 x 1024 elements.
+pub(crate) fn solve() -> Result<AdaptiveSolution, Box<dyn Error>> {
+    let surface = Surface::new(&SpectrumParams::paper(32, 1))?;
+    println!("rms height {:.4e} λ, rms slope {:.4}", surface.moments().rms_height, surface.moments().rms_slope);
+
+    let source = HeightSource::Surface(&surface, 1024);
+    let control = Control::MeanPressure(8.9e-4);
+    Ok(solve_adaptive(source, control, &AdaptiveParams::certified(), &Silent)?)
+}
+
+pub(crate) fn main() -> Result<(), Box<dyn Error>> {
+    let solution = solve()?;
+    let found = solution.observables();
+    println!("A/A0 = {:.4} ± {:.4}", found.area.fraction, found.area.error);
+    println!("greatest pressure {:.4} E*, mean gap {:.4e} λ", found.max_pressure, found.mean_gap);
+    println!("{} elements of {} in contact", solution.n_elements(), solution.grid());
+    println!("{:?}", solution.info.certificate);
+    Ok(())
+}

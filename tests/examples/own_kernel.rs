@@ -1,0 +1,80 @@
+//! An own kernel: an elastic layer of finite thickness, bonded to a rigid base, instead of the half-space.
+//!
+//! `cargo run -p rc-tests --example own_kernel`. Units: cell side λ = 1, E* = 1 (of the layer's material).
+#![expect(clippy::print_stdout, reason = "what an example is for")]
+
+use std::error::Error;
+use std::f64::consts::TAU;
+
+use rc_core::{EdgeBias, Grid, Kernel, Silent, Symbol};
+use rc_fractal::{SpectrumParams, Surface};
+use rc_kernel::Spectral;
+use rc_solver::{Control, Observables, SolveParams, solve_uniform};
+
+/// A layer on a rigid base to which it sticks, loaded without friction.
+///
+/// A pressure wave of wavenumber q displaces it by 2/(E* q) · M(q d), with ξ = q d:
+///
+/// ```text
+/// M(ξ) = [(3-4ν) sinh 2ξ - 2ξ] / [(3-4ν) cosh 2ξ + 2ξ² + 5 - 12ν + 8ν²]
+/// ```
+///
+/// (R. H. Bentall, K. L. Johnson, *An elastic strip in plane rolling contact*, Int. J. Mech. Sci. 10 (1968) 637-663; in this
+/// form G. Carbone, L. Mangialardi, J. Mech. Phys. Solids 56 (2008) 684-706.) M → 1 for short waves, the half-space, and
+/// M → ξ (1-2ν)/(2(1-ν)²) for long ones: there each column of the layer is a spring. The mean displacement is not part of v
+/// (Eq. 3); under a mean pressure σ0 the layer yields by that of these springs in addition.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BondedLayer {
+    /// d, in λ.
+    pub(crate) thickness: f64,
+    /// ν of the layer.
+    pub(crate) poisson: f64,
+}
+
+impl BondedLayer {
+    /// M(ξ), numerator and denominator times 2 exp(-2ξ), so that short waves do not overflow.
+    pub(crate) fn factor(self, xi: f64) -> f64 {
+        let nu = self.poisson;
+        let (decay, stiff) = ((-2.0 * xi).exp(), 3.0 - 4.0 * nu);
+        let above = stiff * (1.0 - decay * decay) - 4.0 * xi * decay;
+        let below = stiff * (1.0 + decay * decay) + (4.0 * xi * xi + 10.0 - 24.0 * nu + 16.0 * nu * nu) * decay;
+        above / below
+    }
+}
+
+impl Kernel for BondedLayer {
+    fn name(&self) -> &'static str {
+        "bonded-layer"
+    }
+
+    fn symbol(&self, grid: Grid) -> Symbol<'_> {
+        let half_space = Spectral.symbol(grid);
+        Box::new(move |kx, ky| {
+            let q = TAU * f64::hypot(kx as f64, ky as f64);
+            half_space(kx, ky) * self.factor(q * self.thickness)
+        })
+    }
+
+    /// At the edge of a contact only short waves matter, and for these the layer is a half-space.
+    fn edge_bias(&self) -> EdgeBias {
+        Spectral.edge_bias()
+    }
+}
+
+pub(crate) fn main() -> Result<(), Box<dyn Error>> {
+    let heights = Surface::new(&SpectrumParams::paper(16, 1))?.sample_on(Grid::square(256)?)?;
+    let control = Control::MeanPressure(2e-3);
+    let solve = |kernel: &dyn Kernel| -> Result<(), Box<dyn Error>> {
+        let solution = solve_uniform(&heights, kernel, control, &SolveParams::certified(), &Silent)?;
+        let found = Observables::of(&solution, kernel);
+        let (name, area) = (kernel.name(), found.area.fraction);
+        println!("{name:<14} A/A0 = {area:.4}, Δ = {:.4e} λ", solution.info.penetration);
+        Ok(())
+    };
+    solve(&Spectral)?;
+    for thickness in [1.0, 0.1, 0.03] {
+        println!("thickness {thickness} λ:");
+        solve(&BondedLayer { thickness, poisson: 0.3 })?;
+    }
+    Ok(())
+}

@@ -1,0 +1,59 @@
+//! The guide: every document is a chapter, and no link leads nowhere.
+
+use super::Complaint;
+use crate::repository::{Sources, has_extension};
+
+const SUMMARY: &str = "docs/SUMMARY.md";
+
+/// Checks that each document is in the summary, and links between texts.
+pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
+    let summary = sources.get(SUMMARY).map_or("", String::as_str);
+    let documents =
+        sources.keys().filter_map(|path| path.strip_prefix("docs/")).filter(|name| has_extension(name, "md"));
+    let missing = documents.filter(|name| *name != "SUMMARY.md" && !summary.contains(&format!("({name})")));
+    let missing = missing.map(|name| format!("docs/{name} is no chapter; add it to {SUMMARY}"));
+    let texts = sources.iter().filter(|(path, _)| has_extension(path, "md"));
+    missing.chain(texts.flat_map(|(path, text)| check_links(path, text, sources))).collect()
+}
+
+fn check_links(path: &str, text: &str, sources: &Sources) -> Vec<Complaint> {
+    let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    // Folders and pictures are no texts, other addresses are not ours.
+    let files = links.map(|link| link.split('#').next().unwrap_or_default());
+    let files = files.filter(|link| !link.contains("://") && ["md", "rs"].iter().any(|e| has_extension(link, e)));
+    let lost = files.filter(|link| !sources.contains_key(&joined(folder, link)));
+    lost.map(|link| format!("{path}: no file at the link {link}; correct it")).collect()
+}
+
+/// The path of a link from a file in `folder`.
+fn joined(folder: &str, link: &str) -> String {
+    let mut parts: Vec<&str> = folder.split('/').filter(|part| !part.is_empty()).collect();
+    for part in link.split('/') {
+        match part {
+            "." => {}
+            ".." => drop(parts.pop()),
+            name => parts.push(name),
+        }
+    }
+    parts.join("/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn documents_that_are_no_chapters_and_lost_links_are_found() {
+        let mut sources = Sources::new();
+        let mut add = |path: &str, text: &str| drop(sources.insert(path.to_owned(), text.to_owned()));
+        add(SUMMARY, "- [A](a.md)\n");
+        add("docs/a.md", "[up](../README.md#use) [picture](images/a.png) [out](https://example.org/b.md)");
+        add("README.md", "[a](docs/a.md)");
+        assert_eq!(check(&sources), Vec::<String>::new());
+        sources.insert("docs/b.md".to_owned(), "[nowhere](c.md)".to_owned());
+        let complaints = check(&sources);
+        assert_eq!(complaints.len(), 2, "{complaints:?}");
+        assert!(complaints[0].contains("b.md is no chapter") && complaints[1].contains("c.md"), "{complaints:?}");
+    }
+}

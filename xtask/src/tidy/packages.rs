@@ -1,0 +1,70 @@
+//! What a crate needs to be published, and to build from what is published.
+
+use toml::{Table, Value};
+
+use super::Complaint;
+use crate::repository::{Sources, has_extension};
+
+/// Fields of `[package]` that each crate takes from the workspace; its description is its own.
+const FIELDS: &[&str] = &["version", "edition", "rust-version", "license", "readme", "keywords", "categories"];
+
+/// Macros that read a file of the sources.
+const INCLUDES: &[&str] = &[concat!("include_", "str!(\""), concat!("include_", "bytes!(\"")];
+
+/// Checks manifests in `crates/`, and that sources there include nothing from outside of their crate: a package would lack it.
+pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
+    let files = sources.iter().filter(|(path, _)| path.starts_with("crates/"));
+    files
+        .flat_map(|(path, text)| match path.rsplit('/').next() {
+            Some("Cargo.toml") => check_manifest(path, text),
+            Some(name) if has_extension(name, "rs") && path.contains("/src/") => check_includes(path, text),
+            _ => Vec::new(),
+        })
+        .collect()
+}
+
+fn check_manifest(path: &str, text: &str) -> Vec<Complaint> {
+    let manifest: Table = text.parse().unwrap_or_default();
+    let package = manifest.get("package").and_then(Value::as_table).cloned().unwrap_or_default();
+    let inherited =
+        |field: &str| package.get(field).and_then(|value| value.get("workspace")) == Some(&Value::Boolean(true));
+    let missing = FIELDS.iter().filter(|field| !inherited(field));
+    let mut complaints: Vec<Complaint> = missing
+        .map(|field| format!("{path}: no `{field}.workspace = true`, which a published crate needs; add it"))
+        .collect();
+    if package.get("description").and_then(Value::as_str).is_none_or(str::is_empty) {
+        complaints.push(format!("{path}: no description; say in one sentence what the crate is"));
+    }
+    complaints
+}
+
+fn check_includes(path: &str, text: &str) -> Vec<Complaint> {
+    // From a file so many folders deep in its crate, one `..` more leads out of it.
+    let depth = path.split('/').count() - 3;
+    let included = INCLUDES.iter().flat_map(|name| text.split(name).skip(1));
+    let outside = included.filter_map(|rest| rest.split('"').next()).filter(|file| file.matches("../").count() > depth);
+    outside.map(|file| format!("{path}: includes {file} from outside of its crate; move it into the crate")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_manifest_without_a_field_is_found() {
+        let fields = FIELDS.join(".workspace = true\n") + ".workspace = true\n";
+        let manifest = format!("[package]\nname = \"a\"\ndescription = \"A crate.\"\n{fields}");
+        assert_eq!(check_manifest("crates/a/Cargo.toml", &manifest), Vec::<String>::new());
+        assert_eq!(check_manifest("crates/a/Cargo.toml", &manifest.replace("readme.workspace = true", "")).len(), 1);
+        assert_eq!(check_manifest("crates/a/Cargo.toml", &manifest.replace("A crate.", "")).len(), 1);
+    }
+
+    #[test]
+    fn an_included_file_of_another_folder_is_found() {
+        let text = |file: &str| format!("const A: &str = {}{file}\");", INCLUDES[0]);
+        for (path, file) in [("crates/a/src/lib.rs", "../b.txt"), ("crates/a/src/c/d.rs", "../../b.txt")] {
+            assert_eq!(check_includes(path, &text(file)), Vec::<String>::new());
+            assert_eq!(check_includes(path, &text(&format!("../{file}"))).len(), 1, "{path}");
+        }
+    }
+}
