@@ -31,11 +31,13 @@
 mod adaptive;
 mod certificate;
 mod contact_area;
+mod contact_spots;
 mod control;
 mod dense;
 mod descent;
 mod error;
 mod fft;
+mod gap_distribution;
 mod gauss_seidel;
 mod observables;
 mod operator;
@@ -52,9 +54,11 @@ pub use adaptive::{
 };
 pub use certificate::Certificate;
 pub use contact_area::ContactArea;
+pub use contact_spots::ContactSpot;
 pub use control::Control;
 pub use dense::solve_dense;
 pub use error::SolveError;
+pub use gap_distribution::GapDistribution;
 pub use gauss_seidel::{Coefficient, GaussSeidelError, GaussSeidelParams, solve_gauss_seidel};
 pub use observables::Observables;
 pub use operator::{DirectSum, UniformOperator};

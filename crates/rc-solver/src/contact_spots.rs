@@ -1,0 +1,134 @@
+//! Contact spots: the connected parts of the contact, with their areas located below the element.
+
+use rc_core::{EdgeBias, Field, Grid};
+
+use crate::ContactArea;
+use crate::contact_area::EdgeSums;
+
+/// One connected part of the contact, across edges of elements and the sides of the periodic cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactSpot {
+    /// Elements of it.
+    pub elements: usize,
+    /// Its area over that of the cell, from the edges between the centres of elements, as [`ContactArea::fraction`]: the spots add up to
+    /// the contact area. A spot of one element may be off by half of it.
+    pub area_fraction: f64,
+    /// Length of its edge, in λ ([`ContactArea::perimeter`]).
+    pub perimeter: f64,
+    /// 1 less its holes.
+    pub euler_number: f64,
+    /// Its part of the mean pressure, in E*.
+    pub mean_pressure: f64,
+}
+
+impl ContactSpot {
+    /// The spots of a contact, largest first; of equal ones, the one that begins in an earlier row. `pressure` and `gap` are those of
+    /// [`ContactArea::of`], and so is `bias`.
+    ///
+    /// # Panics
+    /// When the two are not on the same grid.
+    #[must_use]
+    pub fn all(pressure: &Field, gap: &Field, bias: EdgeBias) -> Vec<Self> {
+        assert_eq!(pressure.grid(), gap.grid(), "pressure and gap on the same grid");
+        let grid = pressure.grid();
+        let (nx, ny) = (grid.nx(), grid.ny());
+        let side = 1.0 / nx.max(ny) as f64;
+        let at = |ix: usize, iy: usize, dx: isize, dy: isize| {
+            let wrap = |i: usize, d: isize, n: usize| (i + 2 * n).wrapping_add_signed(d) % n;
+            let place = grid.index(wrap(ix, dx, nx), wrap(iy, dy, ny));
+            [pressure.values()[place], gap.values()[place]]
+        };
+        let mut waiting: Vec<bool> = pressure.values().iter().map(|p| *p > 0.0).collect();
+        let (mut front, mut spots) = (Vec::new(), Vec::new());
+        for start in 0..grid.len() {
+            if !std::mem::take(&mut waiting[start]) {
+                continue;
+            }
+            let (mut sums, mut load) = (EdgeSums::default(), 0.0);
+            front.push(start);
+            while let Some(element) = front.pop() {
+                let (ix, iy) = (element % nx, element / nx);
+                load += pressure.values()[element];
+                sums.add(side, &|dx, dy| at(ix, iy, dx, dy));
+                front.extend(neighbours(grid, ix, iy).into_iter().filter(|&next| std::mem::take(&mut waiting[next])));
+            }
+            let area = ContactArea::from_sums(&[sums], grid.len(), bias);
+            spots.push(Self {
+                elements: sums.n_contact,
+                area_fraction: area.fraction,
+                perimeter: area.perimeter,
+                euler_number: area.euler_number,
+                mean_pressure: load / grid.len() as f64,
+            });
+        }
+        spots.sort_by(|a, b| b.area_fraction.total_cmp(&a.area_fraction));
+        spots
+    }
+}
+
+/// The elements across the four edges of one, around the periodic cell.
+fn neighbours(grid: Grid, ix: usize, iy: usize) -> [usize; 4] {
+    let (nx, ny) = (grid.nx(), grid.ny());
+    [
+        grid.index((ix + 1) % nx, iy),
+        grid.index((ix + nx - 1) % nx, iy),
+        grid.index(ix, (iy + 1) % ny),
+        grid.index(ix, (iy + ny - 1) % ny),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use rc_core::Kernel as _;
+    use rc_kernel::Love;
+
+    use super::*;
+
+    /// Two Hertz-like contacts of radii 0.2 and 0.1, one of them across a corner of the cell.
+    #[test]
+    fn spots_have_the_areas_of_circles_and_add_up_to_the_contact() {
+        let grid = Grid::square(256).expect("a grid");
+        let circles = [([0.02, 0.97], 0.2_f64), ([0.47, 0.52], 0.1)];
+        let depth = |x: f64, y: f64| {
+            let inside = circles.map(|([cx, cy], a)| {
+                let wrap = |d: f64| d - d.round();
+                a - wrap(x - cx).hypot(wrap(y - cy))
+            });
+            inside[0].max(inside[1])
+        };
+        let pressure = Field::from_fn(grid, |x, y| depth(x, y).max(0.0).sqrt());
+        let gap = Field::from_fn(grid, |x, y| 4.0 / 3.0 * (-depth(x, y)).max(0.0).powf(1.5));
+        // Heights as exact as these have no first-order error to be taken off.
+        let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_bend: 0.0 };
+        let spots = ContactSpot::all(&pressure, &gap, none);
+        assert_eq!(spots.len(), 2);
+        for (spot, (_, a)) in spots.iter().zip(circles) {
+            let (area, edge) = (std::f64::consts::PI * a * a, std::f64::consts::TAU * a);
+            assert!((spot.area_fraction / area - 1.0).abs() < 5e-3, "{spot:?} against {area}");
+            assert!((spot.perimeter / edge - 1.0).abs() < 2e-2, "{spot:?} against {edge}");
+            assert!((spot.euler_number - 1.0).abs() < 1e-12, "{spot:?}");
+        }
+        let bias = Love.edge_bias();
+        let (spots, all) = (ContactSpot::all(&pressure, &gap, bias), ContactArea::of(&pressure, &gap, bias));
+        let sum = |of: fn(&ContactSpot) -> f64| spots.iter().map(of).sum::<f64>();
+        assert!((sum(|spot| spot.area_fraction) / all.fraction - 1.0).abs() < 1e-12);
+        assert!((sum(|spot| spot.mean_pressure) / pressure.mean() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn spots_join_across_edges_and_the_sides_of_the_cell_and_not_across_corners() {
+        #[rustfmt::skip]
+        let values = vec![
+            1.0, 0.0, 0.0, 2.0,
+            0.0, 3.0, 0.0, 0.0,
+            0.0, 0.0, 0.0, 0.0,
+            5.0, 0.0, 0.0, 0.0,
+        ];
+        let grid = Grid::square(4).expect("a grid");
+        let field = Field::new(grid, values).expect("a field");
+        let spots = ContactSpot::all(&field, &Field::zeros(grid), Love.edge_bias());
+        assert_eq!(spots.iter().map(|spot| spot.elements).collect::<Vec<_>>(), [3, 1]);
+        assert!((spots[0].mean_pressure - 0.5).abs() < 1e-15, "{spots:?}");
+        assert_eq!(ContactSpot::all(&Field::zeros(grid), &Field::zeros(grid), Love.edge_bias()), []);
+    }
+}
