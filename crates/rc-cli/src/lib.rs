@@ -39,7 +39,6 @@ pub mod resolve;
 pub mod result;
 pub mod scene;
 pub mod scene_file;
-pub mod spots;
 pub mod statistics;
 pub mod summary;
 pub mod surface;

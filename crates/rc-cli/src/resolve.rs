@@ -49,10 +49,16 @@ impl ContactProblem {
     /// The kernel itself.
     #[must_use]
     pub fn kernel(&self) -> &'static dyn Kernel {
-        match self.kernel {
-            KernelName::Love => &Love,
-            KernelName::Spectral => &Spectral,
-        }
+        kernel(self.kernel)
+    }
+}
+
+/// The kernel of this name.
+#[must_use]
+pub fn kernel(name: KernelName) -> &'static dyn Kernel {
+    match name {
+        KernelName::Love => &Love,
+        KernelName::Spectral => &Spectral,
     }
 }
 

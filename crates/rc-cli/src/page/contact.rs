@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use rc_solver::StressDistribution;
+use rc_core::{Field, Kernel};
+use rc_solver::{ContactSpot, StressDistribution};
 use rc_theory::persson::Persson;
 use serde::Serialize;
 
@@ -15,9 +16,9 @@ use crate::heights::check_finite;
 use crate::picture::Palette;
 use crate::quantity::{digits, engineering};
 use crate::result::ResultFolder;
-use crate::scene::Scene;
+use crate::scene::{KernelName, Scene};
 use crate::summary::Summary;
-use crate::{report, scene_file};
+use crate::{report, resolve, scene_file};
 
 /// Bins of the stress distribution.
 const BINS: usize = 80;
@@ -112,7 +113,7 @@ pub(super) fn page(folder: &Path) -> Result<Page, CliError> {
         body: Body::Result(Box::new(Contact {
             maps: maps(&result),
             stress: stress(&result),
-            spots: SpotSizes::of(&result.pressure, result.side),
+            spots: spots(&result, resolve::kernel(scene.contact.kernel.unwrap_or(KernelName::Love))),
             certificate: certificate(summary),
             lines: report::solved_lines(summary, result.side, result.e_star),
         })),
@@ -217,6 +218,18 @@ fn stress(result: &ResultFolder) -> Option<Stress> {
     ];
     let fitted = stress.iter().map(|&s| fit.density(s)).collect();
     Some(Stress { values: stress, density: distribution.density, fit: fitted, notes })
+}
+
+/// Spots of the stored fields, in the units in which their edges are located.
+fn spots(result: &ResultFolder, kernel: &dyn Kernel) -> Option<SpotSizes> {
+    let ResultFolder { side, e_star, pressure, gap, .. } = result;
+    let over = |field: &Field, unit: f64| {
+        let mut field = field.clone();
+        field.values_mut().iter_mut().for_each(|value| *value /= unit);
+        field
+    };
+    let spots = ContactSpot::all(&over(pressure, *e_star), &over(gap, *side), kernel.edge_bias());
+    SpotSizes::of(&spots, pressure.grid(), *side)
 }
 
 fn certificate(s: &Summary) -> Certificate {
