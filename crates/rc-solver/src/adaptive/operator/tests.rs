@@ -228,7 +228,9 @@ fn on_rough_pressures_the_error_is_in_proportion_to_the_roughness() {
         for mut p in rough_pressures(elements.len()) {
             // As fresh gaps do: a uniform pressure displaces nothing.
             let mean = p.iter().sum::<f64>() / p.len() as f64;
-            p.iter_mut().for_each(|p| *p -= mean);
+            for p in &mut p {
+                *p -= mean;
+            }
             let better = apply::<f64>(&finest, base, elements.clone(), &p);
             let allowed = ERROR_OF_ROUGHNESS * roughness(&elements, &p);
             for bound in [1e-6, 2e-9] {
