@@ -120,6 +120,28 @@ fn a_dry_run_tells_elements_memory_and_time_and_does_nothing() {
     assert_refused(&place.run(&["solve", "--dry-run", "--waves", "8"]), "exactly one");
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn the_memory_of_the_program_that_starts_it_does_not_count() {
+    let place = Place::new();
+    let large = vec![1.0_f64; 50 << 20];
+    assert_solved(&place.run(&[
+        "solve",
+        "--waves",
+        "8",
+        "--grid",
+        "64",
+        "--pressure",
+        "446395",
+        "--quiet",
+        "--out",
+        "r",
+    ]));
+    let peak = place.json("r/summary.json")["peak_memory_bytes"].as_u64().expect("Linux says");
+    let ours = 8 * large.iter().sum::<f64>() as u64;
+    assert!(peak < ours / 2, "{peak} bytes, {ours} of the program that started it");
+}
+
 #[test]
 fn help_is_no_error() {
     let place = Place::new();
