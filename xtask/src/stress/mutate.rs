@@ -11,7 +11,7 @@ use anyhow::{Context, Result, bail, ensure};
 use crate::figures::Table;
 use crate::repository;
 
-/// What is not copied: history and results.
+/// What is not copied of the workspace: history and results.
 const RESULTS: &[&str] = &[".git", "figures", "rc-result", "target"];
 
 /// A mutant that runs longer than this hangs, which is found too.
@@ -35,6 +35,8 @@ enum Outcome {
     Failed(usize),
     /// It ended without a table, or not at all.
     Broken(&'static str),
+    /// There is nothing to run: the list has to be mended.
+    NotCompiled,
 }
 
 impl Outcome {
@@ -43,7 +45,12 @@ impl Outcome {
             Self::Missed => "missed".into(),
             Self::Failed(n_rows) => format!("{n_rows} rows fail"),
             Self::Broken(how) => (*how).into(),
+            Self::NotCompiled => "does not compile".into(),
         }
+    }
+
+    fn is_found(&self) -> bool {
+        matches!(self, Self::Failed(_) | Self::Broken(_))
     }
 }
 
@@ -51,11 +58,11 @@ impl Outcome {
 #[expect(clippy::print_stdout, reason = "the result of the command")]
 pub(crate) fn run(only: Option<&str>, out: &Path) -> Result<()> {
     let copy = tempfile::tempdir().context("a temporary folder")?;
-    copy_folder(&repository::root(), copy.path())?;
+    copy_workspace(copy.path())?;
     fs::create_dir_all(out).with_context(|| format!("could not make {}; give another --out", out.display()))?;
     let sound = stress(copy.path())?;
     ensure!(sound == Outcome::Missed, "the sources as they are do not pass: {}", sound.text());
-    let mut lines = Vec::new();
+    let (mut lines, mut outcomes) = (Vec::new(), Vec::new());
     for mutation in mutations()?.iter().filter(|mutation| only.is_none_or(|only| mutation.name.contains(only))) {
         let file = copy.path().join(&mutation.file);
         let text = fs::read_to_string(&file).with_context(|| format!("could not read {}", file.display()))?;
@@ -66,9 +73,10 @@ pub(crate) fn run(only: Option<&str>, out: &Path) -> Result<()> {
         lines.push(vec![mutation.name.clone(), mutation.file.clone(), outcome.text()]);
         let table = Table::new("mutations", &["mutation", "file", "outcome"], lines.iter().cloned());
         fs::write(out.join("mutations.csv"), table.csv).context("could not write mutations.csv")?;
+        outcomes.push(outcome);
     }
-    let n_found = lines.iter().filter(|line| line[2] != Outcome::Missed.text()).count();
-    println!("{n_found} of {} mutations found", lines.len());
+    println!("{} of {} mutations found", outcomes.iter().filter(|outcome| outcome.is_found()).count(), outcomes.len());
+    ensure!(!outcomes.contains(&Outcome::NotCompiled), "some mutations do not compile: mend mutations.toml");
     Ok(())
 }
 
@@ -99,6 +107,7 @@ impl Mutation {
 }
 
 /// Builds the copy and runs its reduced set.
+#[expect(clippy::print_stderr, reason = "why a mutation does not compile")]
 fn stress(copy: &Path) -> Result<Outcome> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let out = copy.join("target/stress");
@@ -115,7 +124,8 @@ fn stress(copy: &Path) -> Result<Outcome> {
         .output()
         .context("could not start cargo")?;
     if !build.status.success() {
-        bail!("a mutation does not compile:\n{}", String::from_utf8_lossy(&build.stderr));
+        eprintln!("{}", String::from_utf8_lossy(&build.stderr));
+        return Ok(Outcome::NotCompiled);
     }
     let mut run = Command::new(copy.join("target/release/xtask"))
         .args(["stress", "--quick", "--out"])
@@ -143,17 +153,22 @@ fn stress(copy: &Path) -> Result<Outcome> {
     })
 }
 
-/// Copies a folder, but not what is history or result.
-fn copy_folder(from: &Path, to: &Path) -> Result<()> {
+/// Copies the workspace, but not what is history or result.
+fn copy_workspace(to: &Path) -> Result<()> {
+    copy_folder(&repository::root(), to, RESULTS)
+}
+
+/// Copies a folder, but not its entries with the names in `without`.
+fn copy_folder(from: &Path, to: &Path, without: &[&str]) -> Result<()> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from).with_context(|| format!("could not list {}", from.display()))? {
         let entry = entry?;
         let (name, target) = (entry.file_name(), to.join(entry.file_name()));
-        if RESULTS.iter().any(|result| *result == name) {
+        if without.iter().any(|result| *result == name) {
             continue;
         }
         if entry.file_type()?.is_dir() {
-            copy_folder(&entry.path(), &target)?;
+            copy_folder(&entry.path(), &target, &[])?;
         } else {
             fs::copy(entry.path(), &target).with_context(|| format!("could not copy {}", entry.path().display()))?;
         }
@@ -164,6 +179,18 @@ fn copy_folder(from: &Path, to: &Path) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_copy_has_every_source_and_no_results() {
+        let copy = tempfile::tempdir().expect("a temporary folder");
+        copy_workspace(copy.path()).expect("a copy");
+        for module in
+            ["xtask/src/figures/all.rs", "xtask/src/stress/mutate.rs", "crates/rc-cli/src/main.rs", "Cargo.lock"]
+        {
+            assert!(copy.path().join(module).is_file(), "no {module}");
+        }
+        assert!(!copy.path().join("target").exists() && !copy.path().join(".git").exists());
+    }
 
     #[test]
     fn every_mutation_changes_one_place_of_the_sources() {
