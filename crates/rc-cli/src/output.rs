@@ -107,6 +107,14 @@ impl Staged {
     }
 }
 
+/// Prints the files that a command has written into `folder`, a line each.
+///
+/// # Errors
+/// [`CliError::Write`].
+pub(crate) fn print_names(folder: &Path, names: &[String]) -> Result<(), CliError> {
+    print(&names.iter().fold(String::new(), |text, name| text + &format!("{}\n", folder.join(name).display())))
+}
+
 /// Writes one file that appears whole or not at all; `write` gets the path of a temporary file beside it.
 ///
 /// # Errors

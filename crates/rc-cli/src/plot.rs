@@ -8,7 +8,6 @@ use rc_core::Field;
 
 use crate::args::PlotArgs;
 use crate::error::CliError;
-use crate::heights::check_finite;
 use crate::output::{self, Staged};
 use crate::picture::{
     Area, ContactPicture, LinePlot, LineStyle, Map, MapPicture, Palette, Picture, PictureError, Series, Shade,
@@ -29,16 +28,11 @@ const TEXT: f64 = 26.0;
 /// # Errors
 /// [`CliError`].
 pub(crate) fn run(args: &PlotArgs) -> Result<(), CliError> {
-    let result = ResultFolder::read(&args.folder)?;
-    check_finite(&args.folder.join("pressure.npy"), &result.pressure)?;
-    check_finite(&args.folder.join("gap.npy"), &result.gap)?;
+    let result = ResultFolder::read_finite(&args.folder)?;
     let target = args.out.as_deref().unwrap_or(&args.folder);
     output::check_folder(target)?;
     let names = write(target, &result)?;
-    if args.quiet {
-        return Ok(());
-    }
-    output::print(&names.iter().fold(String::new(), |text, name| text + &format!("{}\n", target.join(name).display())))
+    if args.quiet { Ok(()) } else { output::print_names(target, &names) }
 }
 
 fn write(target: &Path, result: &ResultFolder) -> Result<Vec<String>, CliError> {

@@ -5,6 +5,7 @@ use std::path::Path;
 use rc_core::Field;
 
 use crate::error::CliError;
+use crate::heights::check_finite;
 use crate::summary::Summary;
 use crate::{npy, resolve, scene_file};
 
@@ -51,5 +52,16 @@ impl ResultFolder {
             return Err(CliError::in_file(&folder.join("gap.npy"), message));
         }
         Ok(Self { summary, side, e_star, pressure, gap })
+    }
+
+    /// Reads a result folder whose fields are to be drawn, or handed on.
+    ///
+    /// # Errors
+    /// Those of [`ResultFolder::read`], and [`CliError::Input`] for a value that is not finite.
+    pub fn read_finite(folder: &Path) -> Result<Self, CliError> {
+        let result = Self::read(folder)?;
+        check_finite(&folder.join("pressure.npy"), &result.pressure)?;
+        check_finite(&folder.join("gap.npy"), &result.gap)?;
+        Ok(result)
     }
 }

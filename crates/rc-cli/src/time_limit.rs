@@ -4,8 +4,9 @@ use std::fmt;
 use std::str::FromStr;
 use std::time::Duration;
 
-use serde::de::{self, Deserializer, Visitor};
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::values::number_or_text;
 
 /// A time above zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,27 +37,7 @@ impl Serialize for TimeLimit {
 
 impl<'de> Deserialize<'de> for TimeLimit {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct TimeVisitor;
-        impl Visitor<'_> for TimeVisitor {
-            type Value = TimeLimit;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number of seconds above 0, or \"90s\", \"5min\", \"1h 30m\"")
-            }
-
-            fn visit_i64<E: de::Error>(self, value: i64) -> Result<TimeLimit, E> {
-                self.visit_str(&value.to_string())
-            }
-
-            fn visit_f64<E: de::Error>(self, value: f64) -> Result<TimeLimit, E> {
-                self.visit_str(&value.to_string())
-            }
-
-            fn visit_str<E: de::Error>(self, value: &str) -> Result<TimeLimit, E> {
-                value.parse().map_err(E::custom)
-            }
-        }
-        deserializer.deserialize_any(TimeVisitor)
+        number_or_text(deserializer, "a number of seconds above 0, or \"90s\", \"5min\", \"1h 30m\"")
     }
 }
 

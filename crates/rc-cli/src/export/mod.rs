@@ -6,7 +6,6 @@ use std::path::Path;
 
 use crate::args::ExportArgs;
 use crate::error::CliError;
-use crate::heights::check_finite;
 use crate::npy;
 use crate::output::{self, Staged};
 use crate::result::ResultFolder;
@@ -24,9 +23,7 @@ const VTK_QUAD: u8 = 9;
 /// # Errors
 /// [`CliError`].
 pub(crate) fn run(args: &ExportArgs) -> Result<(), CliError> {
-    let result = ResultFolder::read(&args.folder)?;
-    check_finite(&args.folder.join("pressure.npy"), &result.pressure)?;
-    check_finite(&args.folder.join("gap.npy"), &result.gap)?;
+    let result = ResultFolder::read_finite(&args.folder)?;
     let target = args.out.as_deref().unwrap_or(&args.folder);
     output::check_folder(target)?;
     let fields = fields(&args.folder, result)?;
@@ -39,10 +36,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), CliError> {
     }
     let names = staged.names().to_vec();
     staged.commit()?;
-    if args.quiet {
-        return Ok(());
-    }
-    output::print(&names.iter().fold(String::new(), |text, name| text + &format!("{}\n", target.join(name).display())))
+    if args.quiet { Ok(()) } else { output::print_names(target, &names) }
 }
 
 /// Pressure, gap, contact, and heights if the result has them, as values of the cells of an image: a value belongs to the

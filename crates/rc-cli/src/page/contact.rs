@@ -12,7 +12,6 @@ use super::embedded::{Bits, EmbeddedField, MOST_PIXELS, pixel_means};
 use super::spot_sizes::SpotSizes;
 use super::{Body, Command, Page, Text, Tile, made};
 use crate::error::CliError;
-use crate::heights::check_finite;
 use crate::picture::Palette;
 use crate::quantity::{digits, engineering};
 use crate::result::ResultFolder;
@@ -86,9 +85,7 @@ struct CertificateRow {
 /// # Errors
 /// [`CliError::Input`] when it is no result folder.
 pub(super) fn page(folder: &Path) -> Result<Page, CliError> {
-    let result = ResultFolder::read(folder)?;
-    check_finite(&folder.join("pressure.npy"), &result.pressure)?;
-    check_finite(&folder.join("gap.npy"), &result.gap)?;
+    let result = ResultFolder::read_finite(folder)?;
     let scene_path = folder.join("scene.toml");
     let scene_text = std::fs::read_to_string(&scene_path)
         .map_err(|cause| CliError::in_file(&scene_path, format_args!("cannot read this scene file: {cause}")))?;

@@ -26,6 +26,25 @@ fn a_solve_that_takes_too_long_is_written_and_marked() {
     assert_refused(&place.run(&[&LONG[..], &["--time-limit", "soon"]].concat()), "not 'soon'");
 }
 
+#[test]
+fn what_is_stopped_at_once_has_numbers_all_the_same() {
+    let place = Place::new();
+    for method in ["uniform", "adaptive", "gauss-seidel"] {
+        let scene =
+            ["solve", "--waves", "8", "--grid", "128", "--pressure", "446395", "--quiet", "--time-limit", "1us"];
+        let output = place.run(&[&scene[..], &["--method", method, "--out", method]].concat());
+        assert_eq!(output.status.code(), Some(3), "{method}: {}", text(&output.stderr));
+        let summary = place.json(&format!("{method}/summary.json"));
+        for key in ["mean_pressure", "penetration", "mean_gap", "area_fraction", "rms_pressure"] {
+            assert!(summary[key].is_number(), "{method}: {key} is {}", summary[key]);
+        }
+        assert!(summary["mean_pressure"].as_f64().is_some_and(|pressure| pressure > 0.0), "{method}: {summary}");
+        let largest = ["complementarity_error", "penetration_error", "load_error"].map(|key| summary[key].as_f64());
+        assert!(largest.iter().flatten().any(|error| *error > 1e-6), "{method} claims to have converged: {summary}");
+        assert_solved(&place.run(&["plot", method, "--quiet"]));
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupted_solve_is_written_and_marked() {

@@ -202,6 +202,9 @@ impl<'a> Procedure<'a> {
             let early = step < steps || matches!(self.problem.control, Control::MeanPressure(_));
             let tolerance = if early { self.params.tolerance.max(EARLY_TOLERANCE) } else { self.params.tolerance };
             self.settle(step as f64 / steps as f64 * penetration, tolerance)?;
+            if self.observer.should_stop() {
+                break;
+            }
         }
         Ok(())
     }
@@ -212,6 +215,9 @@ impl<'a> Procedure<'a> {
         self.increase_to(expected.min(0.999 * full))?;
         let (mut low, mut high) = ((0.0, 0.0), (full, f64::INFINITY));
         for _ in 0..MOST_SECANT_STEPS {
+            if self.observer.should_stop() {
+                break;
+            }
             let here = (self.penetration, self.mean_pressure());
             if (here.1 / mean - 1.0).abs() <= self.params.tolerance {
                 return self.settle(here.0, self.params.tolerance);
@@ -247,10 +253,6 @@ impl<'a> Procedure<'a> {
         // (ii) The deformed layer as it was, lowered to the new penetration, meets the surface.
         self.add_penetrating(0.0);
         for _ in 0..self.params.max_checks {
-            if self.observer.should_stop() {
-                self.settled = false;
-                break;
-            }
             self.relax(residual)?;
             self.displace()?;
             // (vi) The double check. An element under tension has no gap, so it is not added right back.
@@ -264,6 +266,11 @@ impl<'a> Procedure<'a> {
             });
             let unchanged = removed + added == 0;
             self.settled = unchanged && residual <= wanted;
+            // After the first sweeps, so that there is something to return.
+            if self.observer.should_stop() {
+                self.settled = false;
+                break;
+            }
             if self.settled {
                 break;
             }
