@@ -50,6 +50,6 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let solution = solve()?;
     let found = solution.observables();
     println!("A/A0 = {:.4} ± {:.4}", found.area.fraction, found.area.error);
-    println!("stiffness {:.4} E*/λ, mean gap {:.4e} λ", found.contact_stiffness, found.mean_gap);
+    println!("stiffness {:.4} E*/λ, mean gap {:.4e} λ", solution.contact_stiffness(), found.mean_gap);
     Ok(())
 }

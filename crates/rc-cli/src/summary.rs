@@ -39,9 +39,11 @@ pub struct Summary {
     pub area_fraction_error: f64,
     /// Length of the edges of all contacts (m).
     pub contact_perimeter: Option<f64>,
-    /// Root mean square of the pressure over the cell (Pa).
+    /// Root mean square of the pressure over the cell (Pa), of the elements.
     pub rms_pressure: f64,
-    /// Estimated discretisation error of `rms_pressure` (Pa); null when no coarser grid was solved.
+    /// The same with what the elements at edges of contacts miss (Pa): the best estimate.
+    pub rms_pressure_corrected: Option<f64>,
+    /// Estimated discretisation error of `rms_pressure_corrected` (Pa); null when no coarser grid was solved.
     pub rms_pressure_error: Option<f64>,
     /// Greatest pressure (Pa).
     pub max_pressure: f64,

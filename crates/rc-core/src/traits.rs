@@ -23,8 +23,8 @@ pub trait HeightField: Sync {
 /// Eigenvalues of an elastic operator on one grid: maps (|kx|, |ky|), up to half the grid, to the eigenvalue.
 pub type Symbol<'a> = Box<dyn Fn(usize, usize) -> f64 + Send + Sync + 'a>;
 
-/// What to take off a contact area whose edges were located between elements, in areas of an element, so that its
-/// first-order error vanishes.
+/// What the discretisation does to the edges of contacts: what to take off an area whose edges were located between elements, in
+/// areas of an element, so that its first-order error vanishes; and the like for the square of the pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeBias {
     /// For each edge between an element in contact and one out of it.
@@ -34,6 +34,8 @@ pub struct EdgeBias {
     /// For the sum over edges of how far the gap two elements out is from the law that holds near a straight edge: between
     /// contacts that are close, and at edges that curve, it bends away from it.
     pub per_bend: f64,
+    /// Not of the area, but of Σ p² over elements: what it misses for each edge, over the square of the pressure beside the edge.
+    pub per_square: f64,
 }
 
 /// The elastic response of a periodic half-space to pressure on a uniform grid.

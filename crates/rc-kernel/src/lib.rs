@@ -81,6 +81,6 @@ impl Kernel for Love {
     }
 
     fn edge_bias(&self) -> EdgeBias {
-        EdgeBias { per_edge: 0.029, per_contact: -0.21, per_bend: -0.0275 }
+        EdgeBias { per_edge: 0.029, per_contact: -0.21, per_bend: -0.0275, per_square: -0.06 }
     }
 }

@@ -3,7 +3,7 @@
 use rc_core::{EdgeBias, Field, Grid};
 
 use crate::ContactArea;
-use crate::contact_area::EdgeSums;
+use crate::contact_area::{EdgeSums, around};
 
 /// One connected part of the contact, across edges of elements and the sides of the periodic cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,37 +33,47 @@ impl ContactSpot {
         let grid = pressure.grid();
         let (nx, ny) = (grid.nx(), grid.ny());
         let side = 1.0 / nx.max(ny) as f64;
-        let at = |ix: usize, iy: usize, dx: isize, dy: isize| {
-            let wrap = |i: usize, d: isize, n: usize| (i + 2 * n).wrapping_add_signed(d) % n;
-            let place = grid.index(wrap(ix, dx, nx), wrap(iy, dy, ny));
-            [pressure.values()[place], gap.values()[place]]
-        };
-        let mut waiting: Vec<bool> = pressure.values().iter().map(|p| *p > 0.0).collect();
-        let (mut front, mut spots) = (Vec::new(), Vec::new());
-        for start in 0..grid.len() {
-            if !std::mem::take(&mut waiting[start]) {
-                continue;
-            }
+        let spot = |elements: Vec<usize>| {
             let (mut sums, mut load) = (EdgeSums::default(), 0.0);
-            front.push(start);
-            while let Some(element) = front.pop() {
-                let (ix, iy) = (element % nx, element / nx);
+            for &element in &elements {
                 load += pressure.values()[element];
-                sums.add(side, &|dx, dy| at(ix, iy, dx, dy));
-                front.extend(neighbours(grid, ix, iy).into_iter().filter(|&next| std::mem::take(&mut waiting[next])));
+                let at = [element % nx, element / nx];
+                sums.add(side, &around((pressure.values(), gap.values()), [nx, ny], at, 0.0));
             }
             let area = ContactArea::from_sums(&[sums], grid.len(), bias);
-            spots.push(Self {
-                elements: sums.n_contact,
+            Self {
+                elements: elements.len(),
                 area_fraction: area.fraction,
                 perimeter: area.perimeter,
                 euler_number: area.euler_number,
                 mean_pressure: load / grid.len() as f64,
-            });
-        }
+            }
+        };
+        let mut spots: Vec<Self> = connected_elements(pressure).into_iter().map(spot).collect();
         spots.sort_by(|a, b| b.area_fraction.total_cmp(&a.area_fraction));
         spots
     }
+}
+
+/// The elements in contact of each spot, connected across their edges and the sides of the cell; in the order in which spots begin.
+#[must_use]
+pub fn connected_elements(pressure: &Field) -> Vec<Vec<usize>> {
+    let grid = pressure.grid();
+    let mut waiting: Vec<bool> = pressure.values().iter().map(|p| *p > 0.0).collect();
+    let mut spots = Vec::new();
+    for start in 0..grid.len() {
+        if !std::mem::take(&mut waiting[start]) {
+            continue;
+        }
+        let (mut spot, mut next) = (vec![start], 0);
+        while let Some(&element) = spot.get(next) {
+            next += 1;
+            let beside = neighbours(grid, element % grid.nx(), element / grid.nx());
+            spot.extend(beside.into_iter().filter(|&place| std::mem::take(&mut waiting[place])));
+        }
+        spots.push(spot);
+    }
+    spots
 }
 
 /// The elements across the four edges of one, around the periodic cell.
@@ -99,7 +109,7 @@ mod tests {
         let pressure = Field::from_fn(grid, |x, y| depth(x, y).max(0.0).sqrt());
         let gap = Field::from_fn(grid, |x, y| 4.0 / 3.0 * (-depth(x, y)).max(0.0).powf(1.5));
         // Heights as exact as these have no first-order error to be taken off.
-        let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_bend: 0.0 };
+        let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_bend: 0.0, per_square: 0.0 };
         let spots = ContactSpot::all(&pressure, &gap, none);
         assert_eq!(spots.len(), 2);
         for (spot, (_, a)) in spots.iter().zip(circles) {
@@ -130,5 +140,19 @@ mod tests {
         assert_eq!(spots.iter().map(|spot| spot.elements).collect::<Vec<_>>(), [3, 1]);
         assert!((spots[0].mean_pressure - 0.5).abs() < 1e-15, "{spots:?}");
         assert_eq!(ContactSpot::all(&Field::zeros(grid), &Field::zeros(grid), Love.edge_bias()), []);
+    }
+
+    #[test]
+    fn the_sides_of_the_cell_join_and_full_contact_is_one() {
+        let count = |rows: [&str; 4]| {
+            let values = rows.iter().flat_map(|row| row.bytes()).map(|byte| f64::from(u8::from(byte == b'#')));
+            let map = Field::new(Grid::square(4).expect("a grid"), values.collect()).expect("16 values");
+            connected_elements(&map).len()
+        };
+        assert_eq!(count(["#..#", "....", "....", "...."]), 1);
+        assert_eq!(count(["#...", "....", "....", "#..."]), 1);
+        assert_eq!(count(["#...", ".#..", "....", "...."]), 2);
+        assert_eq!(count(["....", "....", "....", "...."]), 0);
+        assert_eq!(count(["####", "####", "####", "####"]), 1);
     }
 }

@@ -54,7 +54,7 @@ pub use adaptive::{
 };
 pub use certificate::Certificate;
 pub use contact_area::ContactArea;
-pub use contact_spots::ContactSpot;
+pub use contact_spots::{ContactSpot, connected_elements};
 pub use control::Control;
 pub use dense::solve_dense;
 pub use error::SolveError;

@@ -1,9 +1,10 @@
 //! What a solve returns.
 
-use rc_core::{Field, Grid};
+use rc_core::{Field, Grid, Kernel};
 use rc_quadtree::Mesh;
 
 use crate::Certificate;
+use crate::stiffness::contact_stiffness;
 
 /// How a solve ended well. (Ending badly is a [`crate::SolveError`].)
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,8 +31,6 @@ pub struct LevelInfo {
 /// What a level found that the next finer one is compared with, to estimate its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LevelValues {
-    /// A/A0, the best estimate.
-    pub area_fraction: f64,
     /// Root mean square of the pressure, in E*.
     pub rms_pressure: f64,
     /// Penetration Δ, in λ, from the greatest height of the finest grid.
@@ -93,4 +92,16 @@ pub struct Solution {
     pub elements: Option<MeshPressure>,
     /// How it was found and how good it is.
     pub info: SolveInfo,
+}
+
+impl Solution {
+    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact. `kernel` is the one
+    /// that the solution was found with, a few applications of which it takes.
+    #[must_use]
+    pub fn contact_stiffness(&self, kernel: &dyn Kernel) -> f64 {
+        match self.status {
+            Status::FullContact => f64::INFINITY,
+            Status::Converged => contact_stiffness(&self.pressure, kernel),
+        }
+    }
 }

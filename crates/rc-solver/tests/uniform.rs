@@ -72,7 +72,7 @@ fn penetration_control_inverts_pressure_control() {
         assert_eq!(by_pressure.status, Status::Converged, "partial contact is meant");
         let penetration = Control::Penetration(by_pressure.info.penetration);
         let by_penetration = solve(&heights, &Spectral, penetration, 1e-10).expect("solvable");
-        let stiffness = Observables::of(&by_pressure, &Spectral).contact_stiffness;
+        let stiffness = by_pressure.contact_stiffness(&Spectral);
         // Both errors are penetrations below 1e-10 of the range 0.02; the stiffness turns them into pressures.
         let allowed = 4e-12 * stiffness;
         let difference = (by_penetration.info.mean_pressure - mean_pressure).abs();
@@ -123,7 +123,7 @@ fn stiffness_is_the_slope_of_load_over_penetration() {
         };
         let (low, middle, high) = (at(0.999), at(1.0), at(1.001));
         let slope = (high.info.mean_pressure - low.info.mean_pressure) / (high.info.penetration - low.info.penetration);
-        let stiffness = Observables::of(&middle, &Love).contact_stiffness;
+        let stiffness = middle.contact_stiffness(&Love);
         // The contact set changes by whole elements between the two loads: a few per mille of the slope.
         assert!((stiffness / slope - 1.0).abs() < 5e-3, "at {mean_pressure}: {stiffness} against {slope}");
         let work = high.info.elastic_energy - low.info.elastic_energy;

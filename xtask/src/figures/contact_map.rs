@@ -1,4 +1,4 @@
-//! Where a pressure is positive: spots, blocks, and runs of elements.
+//! Where a pressure is positive: blocks and runs of elements.
 
 use rc_core::Field;
 
@@ -39,37 +39,6 @@ impl ContactMap {
         runs
     }
 
-    /// Number of contact spots: sets of elements connected through their sides, across the borders of the cell too.
-    pub(crate) fn n_spots(&self) -> usize {
-        let mut seen = vec![false; self.inside.len()];
-        let mut to_visit = Vec::new();
-        let mut n_spots = 0;
-        for seed in 0..self.inside.len() {
-            if !self.inside[seed] || seen[seed] {
-                continue;
-            }
-            n_spots += 1;
-            seen[seed] = true;
-            to_visit.push(seed);
-            while let Some(element) = to_visit.pop() {
-                for neighbour in self.neighbours(element) {
-                    if self.inside[neighbour] && !seen[neighbour] {
-                        seen[neighbour] = true;
-                        to_visit.push(neighbour);
-                    }
-                }
-            }
-        }
-        n_spots
-    }
-
-    fn neighbours(&self, element: usize) -> [usize; 4] {
-        let (n, ix, iy) = (self.n, element % self.n, element / self.n);
-        let (left, right) = ((ix + n - 1) % n, (ix + 1) % n);
-        let (below, above) = ((iy + n - 1) % n, (iy + 1) % n);
-        [iy * n + left, iy * n + right, below * n + ix, above * n + ix]
-    }
-
     /// Fraction in contact of each of `m` × `m` equal blocks, row by row. Side `m` divides the side of the map.
     pub(crate) fn block_fractions(&self, m: usize) -> Vec<f64> {
         let block = self.n / m;
@@ -101,15 +70,6 @@ mod tests {
         let expected =
             vec![Run { iy: 0, from: 1, to: 3 }, Run { iy: 1, from: 0, to: 1 }, Run { iy: 1, from: 3, to: 4 }];
         assert_eq!(map(&[".##.", "#..#", "....", "...."]).runs(), expected);
-    }
-
-    #[test]
-    fn spots_join_across_the_borders_of_the_cell_but_not_across_corners() {
-        assert_eq!(map(&["#..#", "....", "....", "...."]).n_spots(), 1);
-        assert_eq!(map(&["#...", "....", "....", "#..."]).n_spots(), 1);
-        assert_eq!(map(&["#...", ".#..", "....", "...."]).n_spots(), 2);
-        assert_eq!(map(&["....", "....", "....", "...."]).n_spots(), 0);
-        assert_eq!(map(&["####", "####", "####", "####"]).n_spots(), 1);
     }
 
     #[test]

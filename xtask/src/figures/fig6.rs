@@ -10,7 +10,7 @@ use plotters::prelude::DrawingBackend;
 use rc_cli::picture::{Area, Map, Picture, PictureError, Shade, draw_map};
 use rc_core::Field;
 use rc_fractal::{SpectrumParams, Surface};
-use rc_solver::Control;
+use rc_solver::{Control, connected_elements};
 
 use super::contact_map::ContactMap;
 use super::solve::solve;
@@ -131,7 +131,7 @@ fn contact(case: &Case, params: &Params) -> Result<Contact> {
         area_cells: area.cells,
         area: area.fraction,
         perimeter: area.perimeter,
-        n_spots: ContactMap::of(&solved.pressure).n_spots(),
+        n_spots: connected_elements(&solved.pressure).len(),
         rms_slope,
         kappa: area.fraction * rms_slope / params.mean_pressure,
         penetration: solved.info.penetration / solved.info.penetration_full_contact,

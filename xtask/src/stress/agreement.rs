@@ -95,7 +95,7 @@ fn methods(rows: &mut Rows) -> Result<()> {
         rows.at_most(&scene, "adaptive against uniform penetration", penetration, 1e-6);
         let area = (adaptive.observables.area.cells / uniform.observables.area.cells - 1.0).abs();
         rows.at_most(&scene, "adaptive against uniform area", area, 2e-3);
-        let stiffness = (adaptive.observables.contact_stiffness / uniform.observables.contact_stiffness - 1.0).abs();
+        let stiffness = (adaptive.stiffness / uniform.stiffness - 1.0).abs();
         rows.at_most(&scene, "adaptive against uniform stiffness", stiffness, 1e-2);
     }
     Ok(())

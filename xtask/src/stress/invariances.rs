@@ -60,7 +60,7 @@ fn scaling(rows: &mut Rows, _: Preset) -> Result<()> {
             let n_different = pairs.filter(|(a, b)| a.to_bits() != (*b * factor).to_bits()).count();
             let scene = format!("{} heights and load times 2^{exponent}", method.name());
             rows.at_most(&scene, "pressures with other digits", n_different as f64, 0.0);
-            let stiffness = scaled.observables.contact_stiffness / plain.observables.contact_stiffness - 1.0;
+            let stiffness = scaled.stiffness / plain.stiffness - 1.0;
             rows.at_most(&scene, "stiffness", stiffness.abs(), 1e-12);
         }
         let plain = solve(&heights, method, LOAD, tight(method))?;

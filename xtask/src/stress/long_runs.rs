@@ -62,7 +62,7 @@ pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
 pub(crate) fn fingerprint(i: usize) -> Result<u64> {
     let &(method, side, load) = SCENES.get(i).with_context(|| format!("there is no scene {i}"))?;
     let solved = solve(&rough(4, 0.8, i as u64, side)?, method, Control::MeanPressure(load), 1e-6)?;
-    let numbers = [solved.info.penetration, solved.info.elastic_energy, solved.observables.contact_stiffness];
+    let numbers = [solved.info.penetration, solved.info.elastic_energy, solved.stiffness];
     // FNV-1a, whose every step can be undone, so that one other bit is another number.
     let mix = |hash: u64, value: &f64| (hash ^ value.to_bits()).wrapping_mul(0x0100_0000_01b3);
     Ok(solved.pressure.values().iter().chain(&numbers).fold(0xcbf2_9ce4_8422_2325, mix))

@@ -90,7 +90,7 @@ impl Scene {
 /// Everything a solution says of itself, but the stiffness, which is infinite in full contact.
 fn numbers_of(solved: &Solved) -> [f64; 11] {
     let (info, observables) = (&solved.info, &solved.observables);
-    let stiffness = observables.contact_stiffness;
+    let stiffness = solved.stiffness;
     [
         info.mean_pressure,
         info.penetration,

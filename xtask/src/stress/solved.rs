@@ -41,6 +41,8 @@ pub(crate) struct Solved {
     pub(crate) pressure: Field,
     pub(crate) info: SolveInfo,
     pub(crate) observables: Observables,
+    /// dσ0/dΔ, in E*/λ.
+    pub(crate) stiffness: f64,
 }
 
 impl Solved {
@@ -63,14 +65,14 @@ fn try_solve(heights: &Field, method: Method, control: Control, tolerance: f64) 
         Method::Uniform | Method::Spectral => {
             let kernel = method.kernel();
             let solution = solve_uniform(heights, kernel, control, &solve, &Silent)?;
-            let observables = Observables::of(&solution, kernel);
-            Ok(Solved { pressure: solution.pressure, info: solution.info, observables })
+            let (observables, stiffness) = (Observables::of(&solution, kernel), solution.contact_stiffness(kernel));
+            Ok(Solved { pressure: solution.pressure, info: solution.info, observables, stiffness })
         }
         Method::Adaptive => {
             let params = AdaptiveParams { solve, ..AdaptiveParams::certified() };
             let solution = solve_adaptive(HeightSource::Map(heights), control, &params, &Silent)?;
-            let observables = solution.observables();
-            Ok(Solved { pressure: pressure_field(&solution)?, info: solution.info, observables })
+            let (observables, stiffness) = (solution.observables(), solution.contact_stiffness());
+            Ok(Solved { pressure: pressure_field(&solution)?, info: solution.info, observables, stiffness })
         }
         Method::GaussSeidel => {
             let params = GaussSeidelParams { tolerance, uniform_elements: true, ..GaussSeidelParams::paper() };
@@ -78,8 +80,8 @@ fn try_solve(heights: &Field, method: Method, control: Control, tolerance: f64) 
             let coefficient = |dx: f64, dy: f64, half_side: f64| love.coefficient(dx, dy, half_side);
             let coefficient: Coefficient<'_> = &coefficient;
             let solution = solve_gauss_seidel(heights, &Love, coefficient, control, &params, &Silent)?;
-            let observables = Observables::of(&solution, &Love);
-            Ok(Solved { pressure: solution.pressure, info: solution.info, observables })
+            let (observables, stiffness) = (Observables::of(&solution, &Love), solution.contact_stiffness(&Love));
+            Ok(Solved { pressure: solution.pressure, info: solution.info, observables, stiffness })
         }
     }
 }

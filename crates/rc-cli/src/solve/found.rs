@@ -140,8 +140,17 @@ impl<'a> Found<'a> {
 
     pub(super) fn contact_area(&self, contact: &ContactProblem) -> ContactArea {
         match &self.pressure {
-            Pressure::Whole(solution) => ContactArea::of_solution(solution, contact.kernel()),
+            Pressure::Whole(solution) => {
+                ContactArea::of(&solution.pressure, &solution.gap, contact.kernel().edge_bias())
+            }
             Pressure::Tiles { solution, .. } => solution.contact_area(),
+        }
+    }
+
+    pub(super) fn contact_stiffness(&self, contact: &ContactProblem) -> f64 {
+        match &self.pressure {
+            Pressure::Whole(solution) => solution.contact_stiffness(contact.kernel()),
+            Pressure::Tiles { solution, .. } => solution.contact_stiffness(),
         }
     }
 

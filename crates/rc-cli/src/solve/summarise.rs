@@ -13,7 +13,7 @@ pub(super) fn summarise(solved: &Solved<'_>, threads: usize) -> Summary {
     let info = found.info();
     let observables = found.observables(contact);
     let grid = found.grid();
-    let stiffness = observables.contact_stiffness * e_star / side;
+    let stiffness = found.contact_stiffness(contact) * e_star / side;
     let (cells_evaluated, cells_proven) = found.evaluated_and_proven();
     // Not before: the time to the certified solution does not include what the solution does not need.
     let moments = solved.surface.moments();
@@ -39,6 +39,7 @@ pub(super) fn summarise(solved: &Solved<'_>, threads: usize) -> Summary {
         area_fraction_error: observables.area.error,
         contact_perimeter: Some(observables.area.perimeter * side),
         rms_pressure: observables.rms_pressure * e_star,
+        rms_pressure_corrected: Some(observables.rms_pressure_corrected * e_star),
         rms_pressure_error: observables.rms_pressure_error.map(|error| error * e_star),
         max_pressure: observables.max_pressure * e_star,
         mean_gap: observables.mean_gap * side,

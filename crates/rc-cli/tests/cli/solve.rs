@@ -7,7 +7,7 @@ use std::time::Duration;
 use crate::support::{Place, assert_refused, assert_solved, bumps, f8, npy, small, text};
 
 /// Keys of `summary.json`, in their order.
-pub(crate) const KEYS: [&str; 39] = [
+pub(crate) const KEYS: [&str; 40] = [
     "status",
     "control",
     "kernel",
@@ -25,6 +25,7 @@ pub(crate) const KEYS: [&str; 39] = [
     "area_fraction_error",
     "contact_perimeter",
     "rms_pressure",
+    "rms_pressure_corrected",
     "rms_pressure_error",
     "max_pressure",
     "mean_gap",

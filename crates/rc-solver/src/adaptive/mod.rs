@@ -149,11 +149,15 @@ impl<'a> AdaptiveProblem<'a> {
         } else {
             self.solve_in::<f64>(observer)
         };
-        let level = &solved.level;
-        let finer = self.split_for(&level.elements, &level.pressure).filter(|finer| finer.cutoff > solved.split.cutoff);
-        match finer.filter(|_| level.outcome.certificate.penetration <= self.params.solve.tolerance) {
-            Some(finer) => self.finish(self.solver::<f64>(finer).improve(solved, observer)),
-            None => self.finish(solved),
+        let needed = self.error_for(&solved.level.elements, &solved.level.pressure);
+        let is_solved = solved.level.outcome.certificate.penetration <= self.params.solve.tolerance;
+        match finer_split(solved.split, needed).filter(|_| is_solved) {
+            Some(finer) => {
+                let solved = self.solver::<f64>(finer).improve(solved, observer);
+                let needed = self.error_for(&solved.level.elements, &solved.level.pressure);
+                self.finish(solved, needed)
+            }
+            None => self.finish(solved, needed),
         }
     }
 
@@ -161,10 +165,8 @@ impl<'a> AdaptiveProblem<'a> {
     fn solve_in<T: Real + Into<f64>>(&self, observer: &dyn Observer) -> Solved {
         let solver = self.solver::<T>(self.split);
         let start = solver.prepare(observer);
-        match self
-            .split_for(&start.mesh.elements, &start.mesh.pressure)
-            .filter(|finer| finer.cutoff > self.split.cutoff)
-        {
+        let needed = self.error_for(&start.mesh.elements, &start.mesh.pressure);
+        match finer_split(self.split, needed) {
             Some(finer) => self.solver::<f64>(finer).take_over(start, observer),
             None => solver.finish(start, observer),
         }
@@ -186,23 +188,16 @@ impl<'a> AdaptiveProblem<'a> {
         if needed < self.operator_error() { needed } else { self.operator_error() }
     }
 
-    /// The operator that this pressure needs, or the best that there is.
-    fn split_for(&self, elements: &Elements, pressure: &[f64]) -> Option<SplitParams> {
-        SplitParams::for_error(self.error_for(elements, pressure).max(SplitParams::SMALLEST_ERROR))
-    }
-
-    /// Wraps up what the levels found.
-    fn finish(&self, solved: Solved) -> Result<AdaptiveSolution, AdaptiveError> {
+    /// Wraps up what the levels found, under a pressure that needs an error of L of `needed`.
+    fn finish(&self, solved: Solved, needed: f64) -> Result<AdaptiveSolution, AdaptiveError> {
         let Solved { grid, level, levels, coarser, .. } = solved;
         // Where even the best operator is not good enough for so rough a pressure, its error is part of the certificate.
-        let needed = self.error_for(&level.elements, &level.pressure);
         let Level { elements, pressure, gap, mut outcome, evaluated, info: LevelInfo { iterations, .. } } = level;
         if needed < SplitParams::SMALLEST_ERROR {
             let error = PART_OF_ROUGHNESS * self.params.solve.tolerance * SplitParams::SMALLEST_ERROR / needed;
             outcome.certificate.penetration += error;
             outcome.certificate.complementarity += error;
         }
-        // Without the coarser level's: it does not know all gaps beside contacts, and the bars hold without (`xtask accuracy`).
         let area = contact_area(&elements, &pressure, (&gap, outcome.contact_gap), grid);
         let border_level = self.params.border_level;
         let solution = AdaptiveSolution {
@@ -261,6 +256,11 @@ pub fn solve_adaptive(
     observer: &dyn Observer,
 ) -> Result<AdaptiveSolution, AdaptiveError> {
     AdaptiveProblem::new(source, control, params)?.solve(observer)
+}
+
+/// A better operator than `split`, if an error of `needed` asks for one: the best that there is at most.
+fn finer_split(split: SplitParams, needed: f64) -> Option<SplitParams> {
+    SplitParams::for_error(needed.max(SplitParams::SMALLEST_ERROR)).filter(|finer| finer.cutoff > split.cutoff)
 }
 
 /// The source on the grid of the smallest elements.

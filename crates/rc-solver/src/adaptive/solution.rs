@@ -12,7 +12,7 @@ use super::fresh::Fresh;
 use super::operator::{BLOCK_CELLS, Hierarchy, Prepared, TileOperator};
 use super::tiles::{CELLS, TILE, TileSet, put_tile};
 use crate::descent::Engine;
-use crate::observables::{mean_gap_error, rms_pressure_error};
+use crate::observables::{corrected, mean_gap_error, rms_pressure_error};
 use crate::stiffness::stiffness_of;
 use crate::{ContactArea, Observables, SolveInfo};
 
@@ -186,16 +186,19 @@ impl AdaptiveSolution {
         Observables {
             area: self.area,
             rms_pressure,
+            rms_pressure_corrected: corrected(rms_pressure, &self.area),
             rms_pressure_error: rms_pressure_error(&self.info, &self.area, rms_pressure),
             max_pressure: self.pressure.par_iter().copied().reduce(|| 0.0, f64::max),
             mean_gap: self.info.penetration_full_contact - self.info.penetration,
             mean_gap_error: mean_gap_error(&self.info, &self.area),
             elastic_energy: self.info.elastic_energy,
-            contact_stiffness: self.contact_stiffness(),
         }
     }
 
-    fn contact_stiffness(&self) -> f64 {
+    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact. Takes a few
+    /// applications of L.
+    #[must_use]
+    pub fn contact_stiffness(&self) -> f64 {
         if self.is_full_contact() {
             return f64::INFINITY;
         }

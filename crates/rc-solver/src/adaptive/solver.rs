@@ -4,7 +4,6 @@ use rc_core::{Event, Grid, Observer};
 use rc_kernel::{Love, ScaleSplit, SplitParams};
 
 use super::AdaptiveParams;
-use super::contact_area::contact_area;
 use super::elements::Elements;
 use super::heights::Heights;
 use super::level::{Level, Mesh};
@@ -85,7 +84,7 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
             let level = self.prepare_level(grid, mesh, tolerance, observer);
             infos.push(level.info);
             if above + 1 == n_above {
-                coarser = Some(self.values(grid, &level));
+                coarser = Some(self.values(&level));
             }
             contact_gap = level.outcome.contact_gap;
             mesh = self.refined(&level, above >= n_above - self.border_level);
@@ -134,10 +133,9 @@ impl<'a, T: Real + Into<f64>> Solver<'a, T> {
     }
 
     /// What a level found.
-    fn values(&self, grid: Grid, level: &Level) -> LevelValues {
-        let Level { elements, pressure, gap, outcome, .. } = level;
+    fn values(&self, level: &Level) -> LevelValues {
+        let Level { elements, pressure, outcome, .. } = level;
         LevelValues {
-            area_fraction: contact_area(elements, pressure, (gap, outcome.contact_gap), grid).fraction,
             rms_pressure: solution::rms_pressure(elements, pressure),
             penetration: self.problem.h_max + outcome.approach,
         }

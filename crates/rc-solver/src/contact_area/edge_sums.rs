@@ -22,6 +22,8 @@ pub(crate) struct EdgeSums {
     pub(crate) shift: f64,
     /// Σ of [`Edge::bend`] over the second of these.
     pub(crate) bend: f64,
+    /// Σ p² of the elements inside, over all edges.
+    pub(crate) squares: f64,
     /// Corners where one of the four elements that meet is in contact, less those where three are: four times the number of
     /// contacts less that of holes in them.
     pub(crate) turns: isize,
@@ -43,6 +45,7 @@ impl EdgeSums {
                 continue;
             }
             self.edges += 1;
+            self.squares += pressure * pressure;
             let gap_ratio = |steps: isize| at(steps * dx, steps * dy)[1] / (pressure * side);
             if let Some(edge) = Edge::new(gap_ratio(1)) {
                 self.shift += edge.position() - 0.5;
@@ -87,6 +90,7 @@ impl Add for EdgeSums {
             known: [self.known[0] + other.known[0], self.known[1] + other.known[1]],
             shift: self.shift + other.shift,
             bend: self.bend + other.bend,
+            squares: self.squares + other.squares,
             turns: self.turns + other.turns,
         }
     }

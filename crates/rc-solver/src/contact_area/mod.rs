@@ -10,10 +10,9 @@ mod edge_sums;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use rayon::prelude::*;
-use rc_core::{EdgeBias, Field, Kernel};
+use rc_core::{EdgeBias, Field};
 
 pub(crate) use self::edge_sums::EdgeSums;
-use crate::Solution;
 
 /// Contact area relative to the nominal area.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,10 +28,12 @@ pub struct ContactArea {
     pub euler_number: f64,
     /// Sum over edges of the bend of the gap outside them, see [`EdgeBias::per_bend`].
     pub edge_bend: f64,
+    /// What the elements' mean of p² over the cell misses, in E*²: see [`EdgeBias::per_square`].
+    pub missing_square: f64,
     /// Best estimate, from the edges between the centres of elements.
     pub fraction: f64,
     /// Estimated error of `fraction`, which holds the true one in 95 of 100 scenes or more (`cargo xtask accuracy` measures it):
-    /// from the number of edges, what was taken off the count, and the difference to a coarser mesh where one was solved.
+    /// from the number of edges, and what was taken off the count.
     pub error: f64,
 }
 
@@ -42,9 +43,6 @@ const SCATTER: f64 = 0.22;
 
 /// Error over all that was taken off the count: what the bias of many edges may be off.
 const ERROR_OF_TERM: f64 = 0.04;
-
-/// Error over the difference to the solution on elements twice as large: small contacts that no element sees show there only.
-const ERROR_OF_DIFFERENCE: f64 = 0.2;
 
 impl ContactArea {
     /// The contact area of `pressure` and `gap` (E* = 1, λ = 1; the gap zero in contact) on a uniform grid; `bias` is that of the
@@ -58,13 +56,6 @@ impl ContactArea {
         Self::of_values(pressure.grid().nx(), pressure.values(), (gap.values(), 0.0), bias)
     }
 
-    /// The contact area of `solution`, which was found with `kernel`, its coarser level taken into account for the error.
-    #[must_use]
-    pub fn of_solution(solution: &Solution, kernel: &dyn Kernel) -> Self {
-        let area = Self::of(&solution.pressure, &solution.gap, kernel.edge_bias());
-        solution.info.coarser.map_or(area, |coarser| area.with_coarser(coarser.area_fraction))
-    }
-
     /// The same of values row by row, `nx` a row; `contact_gap` is the gap of what is in contact.
     pub(crate) fn of_values(nx: usize, pressure: &[f64], (gap, contact_gap): (&[f64], f64), bias: EdgeBias) -> Self {
         let ny = pressure.len() / nx;
@@ -72,12 +63,7 @@ impl ContactArea {
         let row_sums = |(iy, row): (usize, &[f64])| {
             let mut sums = EdgeSums::default();
             for ix in (0..nx).filter(|&ix| row[ix] > 0.0) {
-                let at = |dx: isize, dy: isize| {
-                    let wrap = |i: usize, d: isize, n: usize| (i + n).wrapping_add_signed(d) % n;
-                    let place = wrap(iy, dy, ny) * nx + wrap(ix, dx, nx);
-                    [pressure[place], gap[place] - contact_gap]
-                };
-                sums.add(side, &at);
+                sums.add(side, &around((pressure, gap), [nx, ny], [ix, iy], contact_gap));
             }
             sums
         };
@@ -95,6 +81,7 @@ impl ContactArea {
             perimeter: 0.0,
             euler_number: 0.0,
             edge_bend: 0.0,
+            missing_square: 0.0,
             fraction: 0.0,
             error: 0.0,
         };
@@ -111,6 +98,7 @@ impl ContactArea {
             scatter += (SCATTER * size).powi(2) * edges;
             area.euler_number += contacts;
             area.edge_bend += bend;
+            area.missing_square += size * bias.per_square * sums.squares;
             area.perimeter_edges += sums.edges << coarser;
             area.perimeter += PI / 8.0 * size.sqrt() * (edges + FRAC_1_SQRT_2 * sums.diagonals as f64);
         }
@@ -124,10 +112,18 @@ impl ContactArea {
     pub fn relative_error(&self) -> f64 {
         if self.fraction > 0.0 { self.error / self.fraction } else { 0.0 }
     }
+}
 
-    /// With the error that the fraction found on elements twice as large adds.
-    #[must_use]
-    pub(crate) fn with_coarser(self, coarser: f64) -> Self {
-        Self { error: self.error.hypot(ERROR_OF_DIFFERENCE * (self.fraction - coarser)), ..self }
+/// Pressure, and gap less that of contact, at places around an element of a periodic grid.
+pub(crate) fn around<'a>(
+    (pressure, gap): (&'a [f64], &'a [f64]),
+    [nx, ny]: [usize; 2],
+    [ix, iy]: [usize; 2],
+    contact_gap: f64,
+) -> impl Fn(isize, isize) -> [f64; 2] + 'a {
+    let wrap = |i: usize, d: isize, n: usize| (i + n).wrapping_add_signed(d) % n;
+    move |dx, dy| {
+        let place = wrap(iy, dy, ny) * nx + wrap(ix, dx, nx);
+        [pressure[place], gap[place] - contact_gap]
     }
 }

@@ -5,11 +5,11 @@ use rc_core::{Event, Field, Kernel, Observer};
 
 use super::levels::coarsen;
 use super::prolongation::prolong;
+use crate::SolveParams;
 use crate::descent::{Descent, Machinery, Outcome, Start};
 use crate::fft::{Convolution, SymbolTable};
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues};
-use crate::{ContactArea, SolveParams};
 
 /// Grids with fewer elements per side cost nothing, so no coarser ones prepare them.
 const SMALLEST_SIDE: usize = 64;
@@ -62,16 +62,8 @@ impl<'a> Climb<'a> {
 
     /// What a grid with `above` levels above it found; nobody asks when there is more than one.
     fn values(&self, descent: &UniformDescent<'_>, outcome: &Outcome, above: usize) -> Option<LevelValues> {
-        let (nx, pressure) = (descent.grid().nx(), descent.pressure());
         (above == 1).then(|| LevelValues {
-            area_fraction: ContactArea::of_values(
-                nx,
-                pressure,
-                (descent.gap(), outcome.contact_gap),
-                self.kernel.edge_bias(),
-            )
-            .fraction,
-            rms_pressure: rms(pressure),
+            rms_pressure: rms(descent.pressure()),
             penetration: self.problem.h_max + outcome.approach,
         })
     }
