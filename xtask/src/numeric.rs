@@ -1,4 +1,4 @@
-//! Comparison of tables: text must agree exactly, numbers within a tolerance.
+//! Medians, and comparison of tables: text must agree exactly, numbers within a tolerance.
 //!
 //! FFT code paths depend on the processor, so the last digits of a result may; a table that changed in its sixth digit is
 //! the same table, and one that changed in its fourth is not.
@@ -35,11 +35,27 @@ impl Numeric {
     }
 }
 
+/// The middle of values, or the mean of the two in the middle; NaN without any.
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    match values.len() {
+        0 => f64::NAN,
+        n if n % 2 == 1 => values[n / 2],
+        n => 0.5 * (values[n / 2 - 1] + values[n / 2]),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     const TOLERANCE: Numeric = Numeric { absolute: 1e-12, relative: 1e-6 };
+
+    #[test]
+    fn medians() {
+        assert_eq!((median(vec![4.0, 1.0, 2.0, 3.0]), median(vec![5.0])), (2.5, 5.0));
+        assert!(median(Vec::new()).is_nan());
+    }
 
     #[test]
     fn numbers_within_the_tolerance_agree() {

@@ -1,4 +1,4 @@
-//! The test set of scenes: seeds, exponents, numbers of waves and loads that were not used to choose anything.
+//! Sets of scenes: seeds, exponents, numbers of waves and loads.
 
 use anyhow::Result;
 use rc_core::{Field, Grid};
@@ -13,9 +13,35 @@ const LOADS: (f64, f64) = (3e-3, 0.6);
 /// Hurst exponents that scenes go through.
 const HURST: [f64; 5] = [0.8, 0.3, 0.5, 1.0, 0.65];
 
+/// What scenes are for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Set {
+    /// Not used to choose anything.
+    Test,
+    /// Constants were fitted on these.
+    Calibration,
+}
+
+impl Set {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Test => "test",
+            Self::Calibration => "calibration",
+        }
+    }
+
+    fn first_seed(self) -> u64 {
+        match self {
+            Self::Test => 1000,
+            Self::Calibration => 2000,
+        }
+    }
+}
+
 /// A surface and a load.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scene {
+    pub(super) set: Set,
     pub(super) waves: usize,
     pub(super) hurst: f64,
     pub(super) seed: u64,
@@ -23,23 +49,26 @@ pub(super) struct Scene {
     pub(super) mean_pressure: f64,
 }
 
-impl Scene {
-    /// The first `n` scenes whose shortest waves are one of `waves` to the cell.
-    pub(super) fn first(n: usize, waves: &[usize]) -> Vec<Self> {
+impl Set {
+    /// The first `n` scenes of the set whose shortest waves are one of `waves` to the cell.
+    pub(super) fn scenes(self, n: usize, waves: &[usize]) -> Vec<Scene> {
         let (least, most) = LOADS;
         let scene = |i: usize| {
             // Loads in an order that does not follow the other cycles: steps of the golden ratio.
             let place = (i as f64 * 0.618_033_988_749_895).fract();
-            Self {
+            Scene {
+                set: self,
                 waves: waves[i % waves.len()],
                 hurst: HURST[i % HURST.len()],
-                seed: 1000 + i as u64,
+                seed: self.first_seed() + i as u64,
                 mean_pressure: RMS_SLOPE * least * (most / least).powf(place),
             }
         };
         (0..n).map(scene).collect()
     }
+}
 
+impl Scene {
     /// Heights with this many elements per side.
     pub(super) fn heights(&self, side: usize) -> Result<Field> {
         let spectrum = SpectrumParams {

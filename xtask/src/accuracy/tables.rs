@@ -1,11 +1,14 @@
 //! The numbers as tables.
 
+use super::scenes::Set;
 use super::{Accuracy, Case, rms};
 use crate::figures::{Table, number};
+use crate::numeric::median;
 
-/// For each kernel and mesh: rms error of each estimator of the area, and the part of the scenes whose bars hold the error.
+/// For each set, kernel and mesh: rms error of each estimator of the area, and the part of the scenes whose bars hold the error.
 pub(super) fn summary(accuracy: &Accuracy) -> Table {
     let header = [
+        "set",
         "kernel",
         "elements_per_wave",
         "scenes",
@@ -17,14 +20,19 @@ pub(super) fn summary(accuracy: &Accuracy) -> Table {
         "area_worst_percent",
         "area_bar_percent",
         "area_covered_percent",
+        "rms_pressure_median_percent",
+        "rms_pressure_corrected_median_percent",
         "rms_pressure_covered_percent",
         "mean_gap_covered_percent",
         "stress_distance_mean_percent",
         "stress_first_bin_mean_percent",
+        "stress_first_bin_of_limit_mean_percent",
     ];
-    let rows = ["love", "spectral"].into_iter().flat_map(|kernel| {
+    let kernels =
+        [Set::Test, Set::Calibration].into_iter().flat_map(|set| ["love", "spectral"].map(|kernel| (set, kernel)));
+    let rows = kernels.flat_map(|(set, kernel)| {
         accuracy.meshes.iter().map(move |&mesh| {
-            let cases: Vec<&Case> = accuracy.of(kernel, mesh).collect();
+            let cases: Vec<&Case> = accuracy.of(set, kernel, mesh).collect();
             let n = cases.len() as f64;
             let of = |estimator: usize| rms(cases.iter().map(|case| 100.0 * case.area_errors()[estimator]));
             let mean = cases.iter().map(|case| 100.0 * case.area_errors()[3]).sum::<f64>() / n;
@@ -38,11 +46,20 @@ pub(super) fn summary(accuracy: &Accuracy) -> Table {
                 100.0 * ratios.iter().filter(|ratio| ratio.abs() <= 1.0).count() as f64 / ratios.len() as f64
             };
             let mean_of = |value: fn(&Case) -> f64| 100.0 * cases.iter().map(|case| value(case)).sum::<f64>() / n;
-            let stress =
-                [mean_of(|case| case.distribution.distance), mean_of(|case| case.distribution.first_bin)].map(number);
+            let median_of =
+                |value: fn(&Case) -> f64| 100.0 * median(cases.iter().map(|case| value(case).abs()).collect());
+            let plain = median_of(|case| case.found.rms_pressure / case.limit.rms_pressure - 1.0);
+            let corrected = median_of(|case| case.found.rms_pressure_corrected / case.limit.rms_pressure - 1.0);
+            let stress = [
+                mean_of(|case| case.distribution.distance),
+                mean_of(|case| case.distribution.first_bin),
+                mean_of(|case| case.distribution.first_bin_of_limit),
+            ]
+            .map(number);
             let numbers =
-                [of(0), of(1), of(2), of(3), mean, worst, bar, covered(0), covered(1), covered(2)].map(number);
-            [kernel.to_owned(), mesh.to_string(), cases.len().to_string()]
+                [of(0), of(1), of(2), of(3), mean, worst, bar, covered(0), plain, corrected, covered(1), covered(2)]
+                    .map(number);
+            [set.name().to_owned(), kernel.to_owned(), mesh.to_string(), cases.len().to_string()]
                 .into_iter()
                 .chain(numbers)
                 .chain(stress)
@@ -55,6 +72,7 @@ pub(super) fn summary(accuracy: &Accuracy) -> Table {
 /// Every scene on every mesh.
 pub(super) fn cases(accuracy: &Accuracy) -> Table {
     let header = [
+        "set",
         "kernel",
         "elements_per_wave",
         "waves",
@@ -72,6 +90,7 @@ pub(super) fn cases(accuracy: &Accuracy) -> Table {
         "perimeter_edges",
         "euler_number",
         "rms_pressure_relative_error",
+        "rms_pressure_corrected_relative_error",
         "rms_pressure_relative_bar",
         "mean_gap_relative_error",
         "mean_gap_relative_bar",
@@ -89,24 +108,27 @@ pub(super) fn cases(accuracy: &Accuracy) -> Table {
             area.perimeter_edges as f64,
             area.euler_number,
             found.rms_pressure / limit.rms_pressure - 1.0,
+            found.rms_pressure_corrected / limit.rms_pressure - 1.0,
             found.rms_pressure_error.map_or(f64::NAN, |bar| bar / limit.rms_pressure),
             found.mean_gap / limit.mean_gap - 1.0,
             found.mean_gap_error.map_or(f64::NAN, |bar| bar / limit.mean_gap),
             area.error,
         ];
-        let first = [case.kernel.to_owned(), case.mesh.to_string(), scene.waves.to_string()];
+        let first =
+            [scene.set.name().to_owned(), case.kernel.to_owned(), case.mesh.to_string(), scene.waves.to_string()];
         let first = first.into_iter().chain([number(scene.hurst), scene.seed.to_string()]);
         first.chain(numbers.chain(rest).chain(stress).map(number)).collect()
     });
     Table::new("cases", &header, rows)
 }
 
-/// For each kernel, the change of [`rc_core::EdgeBias`] that would fit these scenes best, in the least-squares sense.
+/// For each kernel, the change of [`rc_core::EdgeBias`] that would fit the scenes for calibration best: in the least-squares sense,
+/// and in the median of the scenes for the squares.
 pub(super) fn calibration(accuracy: &Accuracy) -> Table {
     let rows = ["love", "spectral"].into_iter().map(|kernel| {
         // Normal equations of (area - limit) n = a edges + b contacts + c bend, each scene weighed by its edges.
         let mut equations = [[0.0; 4]; 3];
-        for case in accuracy.cases.iter().filter(|case| case.kernel == kernel) {
+        for case in accuracy.of_set(Set::Calibration).filter(|case| case.kernel == kernel) {
             let area = &case.found.area;
             let error = (area.fraction - case.limit.area) * (case.side * case.side) as f64;
             let terms = [area.perimeter_edges as f64, area.euler_number, area.edge_bend, error];
@@ -116,9 +138,16 @@ pub(super) fn calibration(accuracy: &Accuracy) -> Table {
                 }
             }
         }
-        [kernel.to_owned()].into_iter().chain(solve(equations).map(number)).collect()
+        let of_kernel = accuracy.of_set(Set::Calibration).filter(|case| case.kernel == kernel);
+        let per_square = of_kernel.map(Case::more_per_square).filter(|more| more.is_finite());
+        let median = median(per_square.collect());
+        [kernel.to_owned()].into_iter().chain(solve(equations).into_iter().chain([median]).map(number)).collect()
     });
-    Table::new("calibration", &["kernel", "more_per_edge", "more_per_contact", "more_per_bend"], rows)
+    Table::new(
+        "calibration",
+        &["kernel", "more_per_edge", "more_per_contact", "more_per_bend", "more_per_square"],
+        rows,
+    )
 }
 
 /// Solves three linear equations, the last column being the right-hand side, by elimination; they are symmetric and definite.

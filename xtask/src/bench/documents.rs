@@ -59,12 +59,21 @@ fn render(document: &str, sources: &Sources) -> Result<String, String> {
             "bench-machine" => machine(source(MACHINE)?),
             "bench-scenes" => scenes(&references),
             "bench-scene" => Ok(scene(&results, SCENES[0].name)),
+            "bench-equal" => {
+                Ok(EQUAL_HEAD.to_owned() + &EQUAL_MESHES.map(|scene| equal_meshes(&results, scene)).concat())
+            }
             _ => Err(format!(
-                "{document}: no numbers are called `{name}`; there are bench, bench-machine, bench-scenes, bench-scene"
+                "{document}: no numbers are called `{name}`; there are bench, bench-equal, bench-machine, bench-scenes, bench-scene"
             )),
         }
     })
 }
+
+/// Scenes of the table of equal meshes, and its tolerance.
+const EQUAL_MESHES: [&str; 3] = ["paper", "waves-128", "heavy"];
+const EQUAL_TOLERANCE: &str = "1e-6";
+const EQUAL_HEAD: &str = "| scene, elements | fastest peer | its time, memory | over ours: adaptive, `love`; memory | \
+                          uniform, `spectral`; memory |\n|---|---|---|---|---|\n";
 
 /// In a table, where there is nothing.
 const NONE: &str = "\u{2013}";
@@ -140,6 +149,36 @@ fn scene(results: &Results<'_>, scene: &str) -> String {
         format!("| {}, {} | {ours} | {as_reported} | {corrected} |\n", quantity.name(), percent(level))
     };
     head.to_owned() + &levels().map(line).collect::<String>()
+}
+
+/// Our time beside the fastest peer's on the same mesh, both certified to the same tolerance.
+fn equal_meshes(results: &Results<'_>, scene: &str) -> String {
+    let same = |row: &&Row| row.tolerance == EQUAL_TOLERANCE && row.border_level == 0;
+    let line = |peer: &Row| {
+        let ours = |method: &str, kernel: &str| {
+            let row = results.of(scene, true).filter(same).find(|row| {
+                row.elements_per_wave == peer.elements_per_wave && row.method == method && row.kernel == kernel
+            });
+            let memory = |row: &Row| row.memory_mb.map_or_else(|| NONE.to_owned(), |memory| format!("{memory:.0} MB"));
+            let cell = |row: &Row| format!("{:.1}, {}", peer.seconds / row.total_seconds(), memory(row));
+            row.map_or_else(|| NONE.to_owned(), cell)
+        };
+        let (adaptive, uniform) = (ours("adaptive", "love"), ours("uniform", "spectral"));
+        let Row { elements_per_wave, program, seconds, memory_mb, .. } = peer;
+        let memory = memory_mb.map_or_else(|| NONE.to_owned(), |memory| format!("{memory:.0} MB"));
+        let time = milliseconds(*seconds);
+        format!("| {scene}, λ_min/{elements_per_wave} | {program} | {time}, {memory} | {adaptive} | {uniform} |\n")
+    };
+    let mut fastest: Vec<&Row> = Vec::new();
+    for row in results.of(scene, false).filter(same) {
+        match fastest.iter_mut().find(|other| other.elements_per_wave == row.elements_per_wave) {
+            Some(other) if other.seconds <= row.seconds => {}
+            Some(other) => *other = row,
+            None => fastest.push(row),
+        }
+    }
+    fastest.sort_by_key(|row| row.elements_per_wave);
+    fastest.into_iter().map(line).collect()
 }
 
 /// How a line was made.

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::record::{Family, OURS, Row, median};
+use super::record::{Family, OURS, Row};
 use super::reference::{Quantity, Reading, References};
+use crate::numeric::median;
 
 /// The errors that are asked for, by quantity.
 pub(super) const LEVELS: [(Quantity, &[f64]); 2] =

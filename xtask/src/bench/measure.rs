@@ -119,7 +119,7 @@ pub(super) fn measure(scene: &Scene, setting: &Setting) -> Result<Outcome> {
         area: Some(observables.area.fraction),
         area_bar: Some(observables.area.error),
         edges: observables.area.perimeter_edges as u64,
-        rms_pressure: observables.rms_pressure,
+        rms_pressure: observables.rms_pressure_corrected,
         mean_gap: observables.mean_gap,
     })
 }

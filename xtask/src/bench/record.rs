@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::measure::Outcome;
 use super::scenes::Scene;
 use super::setting::{KernelName, Method, Setting, typed};
+use crate::numeric::median;
 
 /// Correction of a counted area by its edges, in elements an edge: (π - 1 + ln 2)/24 (Yastrebov, Anciaux, Molinari, *Tribol.
 /// Int.* 114 (2017) 161). Peers leave it to their users.
@@ -135,16 +136,6 @@ pub(super) fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }
 
-/// The middle value, or the mean of both; NaN of none.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    match values.len() {
-        0 => f64::NAN,
-        n if n % 2 == 1 => values[n / 2],
-        n => 0.5 * (values[n / 2 - 1] + values[n / 2]),
-    }
-}
-
 /// Records from CSV text; `name` is that of the file, for errors.
 ///
 /// # Errors
@@ -219,11 +210,5 @@ pub(super) mod tests {
         let row = Row::of(&SCENES[0], &Family::peer("tamaas", "1e-6"), 4, &[outcome(1.0, None)]).expect("one repeat");
         let expected = 0.07 - PUBLISHED_CORRECTION * 1000.0 / 65536.0;
         assert!((row.area - expected).abs() < 1e-10, "{} against {expected}", row.area);
-    }
-
-    #[test]
-    fn the_median_of_an_even_number_is_between() {
-        assert_eq!((median(vec![4.0, 1.0, 2.0, 3.0]), median(vec![5.0])), (2.5, 5.0));
-        assert!(median(Vec::new()).is_nan());
     }
 }
