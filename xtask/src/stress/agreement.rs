@@ -6,6 +6,7 @@ use rc_core::{Grid, Operator};
 use rc_kernel::{Love, Spectral};
 use rc_solver::{Control, DirectSum, MultilevelOperator, UniformOperator};
 
+use super::audit::multilevel;
 use super::heights::rough;
 use super::invariances::verdict;
 use super::row::{Row, Rows};
@@ -20,6 +21,7 @@ const SAME_BY_ADAPTIVE: f64 = 1e-3;
 pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     let mut rows = Rows::of("agreement");
     operators(&mut rows)?;
+    levels(&mut rows)?;
     methods(&mut rows)?;
     limits(&mut rows, preset)?;
     threads(&mut rows)?;
@@ -59,6 +61,22 @@ fn operators(rows: &mut Rows) -> Result<()> {
         let uniform = apply(&vec![1.0; n]).iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         rows.at_most(name, "displacement of a uniform load", uniform / scale, rounding);
         rows.holds(name, "energy", "> 0", format!("{:.3e}", dot(&a, &la)), dot(&a, &la) > 0.0);
+    }
+    Ok(())
+}
+
+/// The multilevel operator does what a Fourier transform does, over any number of levels.
+fn levels(rows: &mut Rows) -> Result<()> {
+    for (base, side) in [(16, 32), (16, 64), (16, 128), (32, 256)] {
+        let grid = Grid::square(side)?;
+        let p: Vec<f64> = (0..grid.len()).map(|i| quasi_random(i) - 0.5).collect();
+        let (mut v, transformed) = (multilevel(grid, &p, base)?, UniformOperator::new(grid, &Love));
+        let mut expected = vec![0.0; p.len()];
+        transformed.apply(&p, &mut expected, &mut []);
+        let square = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>();
+        v.iter_mut().zip(&expected).for_each(|(v, expected)| *v -= expected);
+        let scene = format!("multilevel, {base} to {side} elements");
+        rows.at_most(&scene, "difference to a Fourier transform", (square(&v) / square(&expected)).sqrt(), 1e-8);
     }
     Ok(())
 }

@@ -69,24 +69,30 @@ fn displacement(pressure: &Field, method: Method) -> Result<Vec<f64>> {
     let p: Vec<f64> = pressure.values().iter().map(|p| p - mean).collect();
     let mut v = vec![0.0; p.len()];
     if method == Method::Uniform && can_be_multilevel(grid) {
-        let side = grid.nx();
-        let per_side = (side / TILE) as u32;
-        let places = (0..per_side).flat_map(|row| (0..per_side).map(move |column| [column, row])).collect();
-        let operator = MultilevelOperator::new(side / 2, side, places, OPERATOR_ERROR)?;
-        let index = |i: usize| {
-            let ([column, row], cell) = (operator.places()[i / (TILE * TILE)], i % (TILE * TILE));
-            (row as usize * TILE + cell / TILE) * side + column as usize * TILE + cell % TILE
-        };
-        let tiles: Vec<f64> = (0..p.len()).map(|i| p[index(i)]).collect();
-        let mut displaced = vec![0.0; p.len()];
-        operator.apply(&tiles, &mut displaced, &mut []);
-        for (i, value) in displaced.into_iter().enumerate() {
-            v[index(i)] = value;
-        }
+        v = multilevel(grid, &p, grid.nx() / 2)?;
     } else if grid.len() <= MOST_DIRECT {
         DirectSum::new(grid, method.kernel()).apply(&p, &mut v, &mut []);
     } else {
         UniformOperator::new(grid, method.kernel()).apply(&p, &mut v, &mut []);
+    }
+    Ok(v)
+}
+
+/// L p on a square grid by the multilevel operator, every element a finest one, above a base grid of side `base`.
+pub(crate) fn multilevel(grid: Grid, p: &[f64], base: usize) -> Result<Vec<f64>> {
+    let side = grid.nx();
+    let per_side = (side / TILE) as u32;
+    let places = (0..per_side).flat_map(|row| (0..per_side).map(move |column| [column, row])).collect();
+    let operator = MultilevelOperator::new(base, side, places, OPERATOR_ERROR)?;
+    let index = |i: usize| {
+        let ([column, row], cell) = (operator.places()[i / (TILE * TILE)], i % (TILE * TILE));
+        (row as usize * TILE + cell / TILE) * side + column as usize * TILE + cell % TILE
+    };
+    let tiles: Vec<f64> = (0..p.len()).map(|i| p[index(i)]).collect();
+    let (mut displaced, mut v) = (vec![0.0; p.len()], vec![0.0; p.len()]);
+    operator.apply(&tiles, &mut displaced, &mut []);
+    for (i, value) in displaced.into_iter().enumerate() {
+        v[index(i)] = value;
     }
     Ok(v)
 }

@@ -24,12 +24,13 @@ type Part = fn(&mut Rows, Preset) -> Result<()>;
 #[expect(clippy::unnecessary_wraps, reason = "as the other groups")]
 pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     let mut rows = Rows::of("invariances");
-    let parts: [(&str, Part); 6] = [
+    let parts: [(&str, Part); 7] = [
         ("scaling", scaling),
         ("motions", motions),
         ("fractions of an element", fractions),
         ("surfaces", surfaces),
         ("round trips", round_trips),
+        ("slopes", slopes),
         ("monotony", monotony),
     ];
     for (name, part) in parts {
@@ -197,6 +198,23 @@ fn round_trips(rows: &mut Rows, _: Preset) -> Result<()> {
             let scene = format!("{} {part} of full contact", method.name());
             let error = (back.info.penetration / (part * deepest) - 1.0).abs();
             rows.at_most(&scene, "penetration to load and back", error, 1e2 * tolerance);
+        }
+    }
+    Ok(())
+}
+
+/// The stiffness is the slope of the load over the penetration.
+fn slopes(rows: &mut Rows, _: Preset) -> Result<()> {
+    for method in [Method::Uniform, Method::Spectral, Method::Adaptive] {
+        let heights = rough(8, 0.8, 16, side(method))?;
+        for load in [1e-4, 1e-3, 1e-2] {
+            let at = |factor: f64| solve(&heights, method, Control::MeanPressure(factor * load), tight(method));
+            let (less, here, more) = (at(0.999)?, at(1.0)?, at(1.001)?);
+            let rise = more.info.penetration - less.info.penetration;
+            let slope = (more.info.mean_pressure - less.info.mean_pressure) / rise;
+            let scene = format!("{} load {load:.0e} E*", method.name());
+            // The contact changes by whole elements between the two loads.
+            rows.at_most(&scene, "stiffness against slope", (here.stiffness / slope - 1.0).abs(), 6e-3);
         }
     }
     Ok(())

@@ -54,7 +54,7 @@ impl Outcome {
     }
 }
 
-/// Builds and stresses each mutation whose name contains `only`, in a copy of the workspace; writes `mutations.csv` into `out`.
+/// Builds and stresses each mutation whose name contains one of `only` (separated by commas), in a copy of the workspace; writes `mutations.csv` into `out`.
 #[expect(clippy::print_stdout, reason = "the result of the command")]
 pub(crate) fn run(only: Option<&str>, out: &Path) -> Result<()> {
     let copy = tempfile::tempdir().context("a temporary folder")?;
@@ -63,7 +63,7 @@ pub(crate) fn run(only: Option<&str>, out: &Path) -> Result<()> {
     let sound = stress(copy.path())?;
     ensure!(sound == Outcome::Missed, "the sources as they are do not pass: {}", sound.text());
     let (mut lines, mut outcomes) = (Vec::new(), Vec::new());
-    for mutation in mutations()?.iter().filter(|mutation| only.is_none_or(|only| mutation.name.contains(only))) {
+    for mutation in mutations()?.iter().filter(|mutation| mutation.is_asked_for(only)) {
         let file = copy.path().join(&mutation.file);
         let text = fs::read_to_string(&file).with_context(|| format!("could not read {}", file.display()))?;
         fs::write(&file, mutation.applied(&text)?).with_context(|| format!("could not write {}", file.display()))?;
@@ -96,6 +96,10 @@ fn mutations() -> Result<Vec<Mutation>> {
 }
 
 impl Mutation {
+    fn is_asked_for(&self, only: Option<&str>) -> bool {
+        only.is_none_or(|only| only.split(',').any(|part| self.name.contains(part.trim())))
+    }
+
     /// The text of the file with the fault in it.
     fn applied(&self, text: &str) -> Result<String> {
         let count = text.matches(&self.original).count();

@@ -36,6 +36,11 @@ impl Scene {
         Self { name, heights: heights.clone(), method, control, tolerance: TOLERANCE, slack, iteration_factor }
     }
 
+    /// Solved exactly, without an iteration.
+    pub(crate) fn exact(self) -> Self {
+        Self { iteration_factor: 0.0, ..self }
+    }
+
     /// Known to take up to `factor` times the median number of iterations.
     pub(crate) fn slow(self, factor: f64) -> Self {
         Self { iteration_factor: factor, ..self }

@@ -109,11 +109,19 @@ impl Content {
         let bytes = std::fs::read(&path).map_err(|cause| {
             CliError::in_file(folder, format_args!("no sweep of rc here ({JOURNAL_FILE} cannot be read: {cause})"))
         })?;
+        Self::of_bytes(&bytes, &path)
+    }
+
+    /// What `bytes` say, those of the journal at `path`.
+    ///
+    /// # Errors
+    /// As [`Content::read`].
+    pub(super) fn of_bytes(bytes: &[u8], path: &Path) -> Result<Self, CliError> {
         let mut lines = bytes.split_inclusive(|&byte| byte == b'\n').peekable();
         let first = lines.next().filter(|line| line.ends_with(b"\n"));
         let header: Option<Header> = first.and_then(|line| serde_json::from_slice(line).ok());
         let header = header.filter(|header| header.rc_sweep == FORMAT && header.shape.rows() <= MOST_ROWS);
-        let header = header.ok_or_else(|| CliError::in_file(&path, "not a journal of rc sweep"))?;
+        let header = header.ok_or_else(|| CliError::in_file(path, "not a journal of rc sweep"))?;
         let mut content = Self { header, rows: Rows::new(), whole: first.map_or(0, <[u8]>::len) as u64 };
         let mut number = 1;
         while let Some(line) = lines.next() {
@@ -121,7 +129,7 @@ impl Content {
             match content.parse(line) {
                 Some(Line { row, cells, .. }) => content.rows.insert(row, cells),
                 None if lines.peek().is_none() => break,
-                None => return Err(CliError::in_file(&path, format_args!("line {number} is damaged; remove it"))),
+                None => return Err(CliError::in_file(path, format_args!("line {number} is damaged; remove it"))),
             };
             content.whole += line.len() as u64;
         }

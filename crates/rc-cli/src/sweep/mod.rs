@@ -62,6 +62,14 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     execute(&plan, shard, journal, &folder, threads)
 }
 
+/// Finished rows in the journal of a sweep (`sweep.jsonl`), whose last line may be incomplete.
+///
+/// # Errors
+/// [`CliError::Input`] when it is no journal, or a line before the last is damaged.
+pub fn finished_rows(journal: &[u8]) -> Result<usize, CliError> {
+    Content::of_bytes(journal, Path::new(JOURNAL_FILE)).map(|content| content.rows.len())
+}
+
 /// Solves what is missing, writes the table, says what happened.
 fn execute(plan: &Plan, shard: Shard, journal: Journal, folder: &Path, threads: usize) -> Result<(), CliError> {
     let started = Instant::now();

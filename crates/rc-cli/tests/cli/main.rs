@@ -5,6 +5,7 @@ mod bad_input;
 mod guide;
 mod measured;
 mod report;
+mod robustness;
 mod solve;
 mod stopped;
 mod support;
