@@ -58,6 +58,6 @@ pub mod testing;
 
 pub use field::{Field, ShapeError};
 pub use grid::{Grid, GridError};
-pub use progress::{Event, Observer, Silent};
+pub use progress::{Event, Observer, Rows, Silent, Snapshot};
 pub use traits::{EdgeBias, HeightField, Kernel, Operator, Symbol};
 pub use units::{Elasticity, PeriodicCell, UnitError};

@@ -1,12 +1,15 @@
 //! The elements of a mesh: tiles of the finest level, and tiles of coarser ones where the pressure is smooth.
 
+use std::borrow::Cow;
+use std::convert::Infallible;
 use std::ops::Range;
 
 use rayon::prelude::*;
+use rc_core::{Grid, Observer, Snapshot};
 
 use super::operator::{BLOCK_CELLS, Patch};
 use super::tiles::{CELLS, TILE, TileSet, cell_over, means_of_quarter, quarters};
-use crate::descent::Blocks;
+use crate::descent::{Blocks, Shown};
 
 /// Disjoint tiles of one or more levels, finest first.
 ///
@@ -228,6 +231,18 @@ impl Elements {
         (coarser, values)
     }
 
+    /// Tiles of the coarsest level, and the mean over smaller elements on their cells.
+    pub(crate) fn on_coarsest<'a>(&self, values: &'a [f64]) -> (TileSet, Cow<'a, [f64]>) {
+        if self.levels.len() == 1 {
+            return (self.finest().clone(), Cow::Borrowed(values));
+        }
+        let (mut coarser, mut values) = self.without_finest(values);
+        while coarser.levels.len() > 1 {
+            (coarser, values) = coarser.without_finest(&values);
+        }
+        (coarser.finest().clone(), Cow::Owned(values))
+    }
+
     /// Values on the elements of `to`, whose tiles are those here, parts of them, or new ones; `elsewhere` on new ones, and in
     /// what fills vectors up.
     pub(crate) fn moved(&self, to: &Self, values: &[f64], elsewhere: f64) -> Vec<f64> {
@@ -247,5 +262,19 @@ impl Elements {
             });
         }
         result
+    }
+}
+
+impl Shown for Elements {
+    fn show(&self, pressure: &[f64], observer: &dyn Observer) {
+        let grid = Grid::square(self.coarsest().side()).expect("a level of a checked grid");
+        let rows = |take: &mut dyn FnMut(&[f64])| {
+            let (tiles, pressure) = self.on_coarsest(pressure);
+            let Ok(()) = tiles.rows(&pressure, |_, rows| {
+                take(rows);
+                Ok::<_, Infallible>(())
+            });
+        };
+        observer.look(&Snapshot::new(grid, &rows));
     }
 }

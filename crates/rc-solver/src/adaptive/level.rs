@@ -96,7 +96,7 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
         let heights = element_heights(self.heights, &mesh.elements);
         let start = Start::Pressure(mesh.pressure);
         let mut descent = Descent::new(&heights, grid, machinery, &self.problem, start);
-        let outcome = descent.run(tolerance, self.params.max_iterations, false, observer);
+        let outcome = descent.run(tolerance, self.params.max_iterations, false, observer, &mesh.elements);
         let info = descent.info();
         let (pressure, gap) = descent.into_vectors(0.0);
         Level { evaluated: gap.len(), elements: mesh.elements, pressure, gap, outcome, info }
@@ -144,9 +144,9 @@ impl<T: Real + Into<f64>> Solver<'_, T> {
             let mut descent = Descent::new(&part.heights, grid, machinery, &self.problem, start);
             let tolerance = self.params.tolerance;
             let most = self.params.max_iterations;
-            descent.run(FIRST_TOLERANCE * tolerance, most, false, observer);
+            descent.run(FIRST_TOLERANCE * tolerance, most, false, observer, &part.elements);
             descent.renew();
-            let reached = descent.run(LAST_TOLERANCE * tolerance, most, false, observer).converged;
+            let reached = descent.run(LAST_TOLERANCE * tolerance, most, false, observer, &part.elements).converged;
             gave_up = !reached;
             let done = descent.info();
             info.iterations += done.iterations;

@@ -87,14 +87,7 @@ impl AdaptiveSolution {
 
     /// Tiles of the grid, and the mean pressure on its cells.
     fn on_grid(&self) -> (TileSet, Cow<'_, [f64]>) {
-        if self.border_level == 0 {
-            return (self.elements.finest().clone(), Cow::Borrowed(&self.pressure));
-        }
-        let (mut elements, mut pressure) = self.elements.without_finest(&self.pressure);
-        while elements.levels().len() > 1 {
-            (elements, pressure) = elements.without_finest(&pressure);
-        }
-        (elements.finest().clone(), Cow::Owned(pressure))
+        self.elements.on_coarsest(&self.pressure)
     }
 
     /// Hands out the pressure on the grid, in the mean over smaller elements, eight rows at a time, in order: the index of the
@@ -102,20 +95,9 @@ impl AdaptiveSolution {
     ///
     /// # Errors
     /// What `take` returns.
-    pub fn pressure_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+    pub fn pressure_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         let (tiles, pressure) = self.on_grid();
-        let n = tiles.side();
-        let mut rows = vec![0.0; TILE * n];
-        for row in 0..tiles.per_side() {
-            rows.fill(0.0);
-            for column in 0..tiles.per_side() {
-                if let Some(tile) = tiles.find(column as i64, row as i64) {
-                    put_tile(&mut rows, n, column, &pressure[tile * CELLS..][..CELLS]);
-                }
-            }
-            take(row * TILE, &rows)?;
-        }
-        Ok(())
+        tiles.rows(&pressure, take)
     }
 
     /// Hands out the displacement v of the grid's pressure, rows of tiles at a time as [`AdaptiveSolution::pressure_rows`]

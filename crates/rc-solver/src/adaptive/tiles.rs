@@ -81,6 +81,26 @@ impl TileSet {
         (tile != NONE).then_some(tile as usize)
     }
 
+    /// Hands out the whole level, zero where there is no tile, a row of tiles at a time: the index of the first row, and the rows
+    /// one after the other. Stops at the first error.
+    pub(crate) fn rows<E>(
+        &self,
+        values: &[f64],
+        mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut rows = vec![0.0; TILE * self.side()];
+        for row in 0..self.per_side {
+            rows.fill(0.0);
+            for column in 0..self.per_side {
+                if let Some(tile) = self.find(column as i64, row as i64) {
+                    put_tile(&mut rows, self.side(), column, &values[tile * CELLS..][..CELLS]);
+                }
+            }
+            take(row * TILE, &rows)?;
+        }
+        Ok(())
+    }
+
     /// These tiles and those within `halo` cells of them.
     pub(crate) fn around(&self, halo: usize) -> Self {
         let (n, reach) = (self.per_side as i64, halo.div_ceil(TILE) as i64);

@@ -14,6 +14,7 @@ mod engine;
 mod gap;
 mod outcome;
 mod rows;
+mod shown;
 
 use rayon::prelude::*;
 use rc_core::{Event, Grid, Observer};
@@ -23,6 +24,7 @@ pub(crate) use engine::Engine;
 pub(crate) use gap::{GapSums, fresh_gap, mean_pressure, rescale, scale_to_load};
 use gap::{positive_part, scale_all};
 pub(crate) use outcome::Outcome;
+pub(crate) use shown::Shown;
 
 use crate::problem::Problem;
 use crate::solution::LevelInfo;
@@ -153,13 +155,15 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
         self.info.grid.len() as f64
     }
 
-    /// Iterates until the error is within `tolerance`; with `certify`, until a fresh application says so.
+    /// Iterates until the error is within `tolerance`; with `certify`, until a fresh application says so. `mesh` is where the
+    /// observer sees the pressure.
     pub(crate) fn run(
         &mut self,
         tolerance: f64,
         max_iterations: usize,
         certify: bool,
         observer: &dyn Observer,
+        mesh: &impl Shown,
     ) -> Outcome {
         let mut sums = self.start();
         let (mut best, mut rounds_since_best, mut steps) = (f64::INFINITY, 0, STEPS_PER_ROUND);
@@ -168,6 +172,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
             let mut error = self.error(&sums);
             let iteration = self.info.iterations;
             observer.notify(&Event::Iteration { iteration, error, tolerance, n_contact: sums.n_contact as usize });
+            mesh.show(&self.p, observer);
             if error <= tolerance {
                 if !certify {
                     return self.outcome(&sums, true);

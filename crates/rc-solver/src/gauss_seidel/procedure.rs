@@ -1,6 +1,6 @@
 //! Steps (i) to (vi) of the procedure of Sec. 2, which solves Eq. 4 on the elements in contact.
 
-use rc_core::{Event, Field, Kernel, Observer, Operator};
+use rc_core::{Event, Field, Kernel, Observer, Operator, Snapshot};
 use rc_quadtree::{Mask, Mesh, MeshKind, MeshParams, Reconstruction, count, transfer};
 
 use super::coefficients::{Coefficient, Coefficients, Site};
@@ -264,6 +264,7 @@ impl<'a> Procedure<'a> {
                 tolerance,
                 n_contact: self.mesh.len(),
             });
+            self.show();
             let unchanged = removed + added == 0;
             self.settled = unchanged && residual <= wanted;
             // After the first sweeps, so that there is something to return.
@@ -280,6 +281,15 @@ impl<'a> Procedure<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Lets the observer look at the pressure.
+    fn show(&self) {
+        let rows = |take: &mut dyn FnMut(&[f64])| {
+            let field = self.mesh.to_field(&self.pressure, self.info.grid);
+            take(field.expect("a value for each element").values());
+        };
+        self.observer.look(&Snapshot::new(self.info.grid, &rows));
     }
 
     /// Steps (iii) and (iv): meshes the contact and relaxes the pressure until v is as prescribed, to `residual`.

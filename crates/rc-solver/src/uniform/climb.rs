@@ -86,7 +86,7 @@ impl<'a> Climb<'a> {
         let tolerance = if above == 0 { wanted } else { coarse_tolerance(above - 1).max(wanted) };
         let machinery = machinery(heights, self.kernel);
         let mut descent = Descent::new(heights.values(), grid, machinery, self.problem, start);
-        let outcome = descent.run(tolerance, self.params.max_iterations, above == 0, self.observer);
+        let outcome = descent.run(tolerance, self.params.max_iterations, above == 0, self.observer, &grid);
         levels.push(descent.info());
         (descent, outcome)
     }
