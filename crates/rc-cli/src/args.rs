@@ -58,6 +58,9 @@ pub struct SolveArgs {
     /// Print the elements, memory and time to be expected, and solve nothing
     #[arg(long, help_heading = "Run")]
     pub dry_run: bool,
+    /// While solving, keep a picture of the contact so far in DIR/watch.png (DIR: --out), drawn anew once a second at most
+    #[arg(long, help_heading = "Run")]
+    pub watch: bool,
 }
 
 const SOLVE_HELP: &str = "\
@@ -71,7 +74,11 @@ it can be: kernel love, and a square grid that halves into levels. --method adap
 
 DIR receives summary.json, pressure.npy (Pa), gap.npy (m), contact.png and scene.toml, from which the result can be repeated; \
 elements.csv (m, m, m, Pa) from the methods with elements of their own, adaptive and gauss-seidel; and heights.npy, if the \
-heights came from a file. In the summary, iterations and operator_applications are those of the finest level.";
+heights came from a file. In the summary, iterations and operator_applications are those of the finest level.
+
+rc solve --waves 256 --pressure 446395 --out result --watch shows the contact as it emerges, from coarse grids to fine ones: open \
+result/watch.png in a viewer that reloads. The picture looks as contact.png does, is replaced as a whole, and is removed when the \
+result is there, which does not depend on it.";
 
 /// Arguments of `rc sweep`.
 #[derive(Args, Clone, Debug)]

@@ -57,6 +57,7 @@ mod solve;
 mod stop;
 mod surface_command;
 pub mod sweep;
+mod watch;
 
 /// NumPy files, for results and heights alike.
 pub use rc_heights::npy;

@@ -3,9 +3,10 @@
 use std::io::IsTerminal as _;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use rc_core::{Event, Observer};
+use rc_core::{Event, Observer, Snapshot};
 
 use crate::stop::{Reason, Stop};
+use crate::watch::Watch;
 
 /// Length of the bar: the steps in which the error is shown to fall.
 const STEPS: u64 = 1000;
@@ -15,6 +16,7 @@ const STEPS: u64 = 1000;
 pub(crate) struct Progress {
     bar: ProgressBar,
     stop: Stop,
+    watch: Option<Watch>,
 }
 
 impl Progress {
@@ -28,7 +30,7 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template("{prefix} [{bar:20}] {msg}") {
             bar.set_style(style.progress_chars("=> "));
         }
-        Self { bar, stop: Stop::default() }
+        Self { bar, stop: Stop::default(), watch: None }
     }
 
     /// The same with what ends the solve early.
@@ -37,6 +39,14 @@ impl Progress {
         // `Self` has a destructor, so its parts cannot be moved.
         let mut progress = self;
         progress.stop = stop;
+        progress
+    }
+
+    /// The same with what draws the solve.
+    #[must_use]
+    pub(crate) fn watched_by(self, watch: Option<Watch>) -> Self {
+        let mut progress = self;
+        progress.watch = watch;
         progress
     }
 
@@ -63,6 +73,12 @@ impl Observer for Progress {
                 self.bar.set_message(format!("iteration {iteration}, error {error:.0e} of {tolerance:.0e}"));
             }
             _ => {}
+        }
+    }
+
+    fn look(&self, pressure: &Snapshot<'_>) {
+        if let Some(watch) = &self.watch {
+            watch.look(pressure);
         }
     }
 

@@ -70,7 +70,8 @@ impl ContactRows {
             contact: self.contact.finish(),
             pressure: self.pressure.finish(),
             fraction: self.in_contact as f64 / self.grid.len() as f64,
-            greatest: self.greatest,
+            // What is still being solved may have no finite pressure, or none above zero.
+            greatest: if self.greatest.is_finite() { self.greatest.max(0.0) } else { 0.0 },
             pressure_unit,
             side,
         }

@@ -2,14 +2,13 @@
 
 use std::time::Instant;
 
-use super::{Solved, finish};
+use super::{Solved, finish, observer};
 use crate::error::CliError;
 use crate::output;
-use crate::progress::Progress;
 use crate::quantity::digits;
 use crate::resolve;
 use crate::scene::{ContactKeys, Scene, SurfaceKeys};
-use crate::stop::{self, Stop};
+use crate::stop;
 use crate::surface::SurfaceProblem;
 use crate::values::{Fraction, GridSpec, Tolerance};
 
@@ -28,7 +27,7 @@ const ORDER: f64 = 1.5;
 ///
 /// # Errors
 /// [`CliError`] of every kind.
-pub(super) fn run(scene: Scene, Fraction(wanted): Fraction, started: Instant) -> Result<(), CliError> {
+pub(super) fn run(scene: Scene, Fraction(wanted): Fraction, watch: bool, started: Instant) -> Result<(), CliError> {
     let Scene { surface: surface_keys, contact: contact_keys, run } = scene;
     if surface_keys.heights.is_some() {
         return Err(CliError::input(
@@ -42,11 +41,16 @@ pub(super) fn run(scene: Scene, Fraction(wanted): Fraction, started: Instant) ->
     let tolerance = contact_keys.tolerance.or(Some(Tolerance::Auto));
     let contact_keys = ContactKeys { area_error: None, tolerance, ..contact_keys };
     stop::listen();
-    let progress = Progress::new(run.quiet).until(Stop::at(started, run.time_limit));
-    let mut elements_per_wave = COARSEST;
-    loop {
+    let problem = |elements_per_wave: usize| {
         let (surface, side) = on_grid(&surface_keys, elements_per_wave)?;
         let contact = resolve::contact(contact_keys.clone(), surface.cell.side(), surface.elements_per_wave())?;
+        Ok::<_, CliError>((surface, contact, side))
+    };
+    let mut elements_per_wave = COARSEST;
+    let (surface, contact, _) = problem(elements_per_wave)?;
+    let progress = observer(&run, watch, &surface, &contact, started);
+    loop {
+        let (surface, contact, side) = problem(elements_per_wave)?;
         progress.say("heights");
         let loaded = surface.load()?;
         let solved = Solved::new(&loaded, &contact, surface.cell.side(), &run, started, &progress)?;

@@ -24,6 +24,7 @@ use crate::scene::{RunKeys, Scene};
 use crate::stop::{self, Reason, Stop};
 use crate::summary::Summary;
 use crate::surface::{LoadedSurface, SurfaceProblem};
+use crate::watch::Watch;
 use crate::{report, scene_file};
 
 /// Where the run without arguments writes.
@@ -93,14 +94,20 @@ impl<'a> Solved<'a> {
 /// # Errors
 /// [`CliError`] of every kind.
 pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
-    let dry_run = args.dry_run;
+    let (dry_run, watch) = (args.dry_run, args.watch);
+    if dry_run && watch {
+        return Err(CliError::input("watch: a dry run has nothing to be seen; leave one of the two away"));
+    }
     let scene = scene_of(args)?;
+    if watch && scene.run.out.is_none() {
+        return Err(CliError::input("watch: the picture is in the folder of the results; name it with --out"));
+    }
     let started = Instant::now();
     if let Some(wanted) = scene.contact.area_error {
         if dry_run {
             return Err(CliError::input("dry_run: what area_error will choose is not known before; give grid instead"));
         }
-        return area_error::run(scene, wanted, started);
+        return area_error::run(scene, wanted, watch, started);
     }
     let surface = resolve::surface(scene.surface)?;
     let contact = resolve::contact(scene.contact, surface.cell.side(), surface.elements_per_wave())?;
@@ -109,7 +116,20 @@ pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
     if dry_run {
         return dry_run::run(&surface, &contact, &scene.run, threads);
     }
-    execute(&surface, &contact, &scene.run, threads, started)
+    execute(&surface, &contact, &scene.run, watch, threads, started)
+}
+
+/// What tells of a solve, draws it, and ends it early.
+fn observer(
+    run: &RunKeys,
+    watch: bool,
+    surface: &SurfaceProblem,
+    contact: &ContactProblem,
+    started: Instant,
+) -> Progress {
+    let folder = run.out.as_deref().filter(|_| watch);
+    let watch = folder.map(|folder| Watch::new(folder, contact.elasticity.e_star(), surface.cell.side()));
+    Progress::new(run.quiet).until(Stop::at(started, run.time_limit)).watched_by(watch)
 }
 
 /// Solves, writes and prints.
@@ -117,13 +137,14 @@ fn execute(
     surface: &SurfaceProblem,
     contact: &ContactProblem,
     run: &RunKeys,
+    watch: bool,
     threads: usize,
     started: Instant,
 ) -> Result<(), CliError> {
     if let Some(folder) = &run.out {
         output::check_folder(folder)?;
     }
-    let progress = Progress::new(run.quiet).until(Stop::at(started, run.time_limit));
+    let progress = observer(run, watch, surface, contact, started);
     progress.say("heights");
     let loaded = surface.load()?;
     let solved = Solved::new(&loaded, contact, surface.cell.side(), run, started, &progress)?;
@@ -139,12 +160,12 @@ fn finish(
     progress: Progress,
 ) -> Result<(), CliError> {
     let stopped = progress.stopped();
-    // The bar goes before anything is printed.
-    drop(progress);
     let summary = solved.summary(threads);
     if let Some(folder) = &run.out {
         solved.write(folder, &summary)?;
     }
+    // The bar goes before anything is printed, the picture of --watch not before the result is there.
+    drop(progress);
     print_summary(&summary, surface, solved.contact, run)?;
     let Some(message) = solved.failure() else { return Ok(()) };
     let written = if run.out.is_some() { "; the results are written and marked not_converged" } else { "" };
@@ -202,7 +223,7 @@ mod tests {
         let mut contact = resolve::contact(scene.contact, surface.cell.side(), None).expect("a contact");
         contact.params.max_iterations = 1;
         let run = RunKeys { out: Some(dir.path().join("r")), quiet: true, ..RunKeys::default() };
-        let error = execute(&surface, &contact, &run, 1, Instant::now()).expect_err("one iteration is too few");
+        let error = execute(&surface, &contact, &run, false, 1, Instant::now()).expect_err("one iteration is too few");
         assert_eq!(error.exit_code(), 3, "{error}");
         assert!(error.to_string().contains("complementarity error"), "no residuals: {error}");
         let text = std::fs::read_to_string(dir.path().join("r/summary.json")).expect("a summary");

@@ -14,3 +14,4 @@ mod sweep_damaged;
 mod sweep_interrupted;
 mod sweep_refused;
 mod tools;
+mod watched;
