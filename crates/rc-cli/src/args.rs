@@ -37,7 +37,7 @@ pub enum Command {
     Plot(PlotArgs),
     /// A result or a sweep as one HTML page that needs no network: maps to zoom, sections, curves, certificate, parameters
     Report(ReportArgs),
-    /// A result as files of other programs: VTK, for ParaView, PyVista and VisIt
+    /// A result as files of other programs: VTK for ParaView, PyVista and VisIt, Zarr for Python
     Export(ExportArgs),
     /// Completions of commands and flags for a shell, on standard output
     Completions(CompletionsArgs),
@@ -237,9 +237,12 @@ pub struct ExportArgs {
     /// Folder of a result
     #[arg(value_name = "RESULT_DIR")]
     pub folder: PathBuf,
-    /// VTK's XML files [the only format yet, and so the default]
+    /// VTK's XML files, for ParaView, PyVista and VisIt [the default]
     #[arg(long)]
     pub vtk: bool,
+    /// A Zarr group, for Python (zarr, xarray) and other readers of large fields
+    #[arg(long)]
+    pub zarr: bool,
     /// Folder for the files [default: the result's own]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -249,9 +252,12 @@ pub struct ExportArgs {
 }
 
 const EXPORT_HELP: &str = "\
-Writes fields.vti: pressure (Pa), gap (m), contact (0 or 1) and, of a height map, height (m), as values of the cells of an \
+--vtk writes fields.vti: pressure (Pa), gap (m), contact (0 or 1) and, of a height map, height (m), as values of the cells of an \
 image; and elements.vtu, if the result has elements.csv: the elements of the adaptive mesh as quadrilaterals, with pressure (Pa) and \
-size (m). Lengths in m. In ParaView: open, Apply, colour by pressure; fields above the plane: Cell Data to Point Data, Warp By Scalar.";
+size (m). Lengths in m. In ParaView: open, Apply, colour by pressure; fields above the plane: Cell Data to Point Data, Warp By Scalar.
+
+--zarr writes the folder fields.zarr, a Zarr group (version 2): the same fields, and the coordinates x and y (m) of the centres of \
+elements, in compressed chunks of at most 1024 x 1024 values, with units as attributes. In Python: xarray.open_zarr(\"result/fields.zarr\").";
 
 /// Arguments of `rc completions`.
 #[derive(Args, Clone, Debug)]

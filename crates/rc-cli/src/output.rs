@@ -10,6 +10,9 @@ use crate::error::CliError;
 /// Begin of the names of what is on its way to a final name. A process that is killed may leave it behind.
 const PARTIAL: &str = ".rc-partial-";
 
+/// Begin of the names of what has made room, among the hidden files.
+const EARLIER: &str = "earlier-";
+
 /// Begin of the name of the folder that [`check_folder`] makes for a moment.
 const PROBE: &str = ".rc-probe-";
 
@@ -36,7 +39,7 @@ fn or_here(path: &Path) -> &Path {
     if path.as_os_str().is_empty() { Path::new(".") } else { path }
 }
 
-/// A set of files on their way into a folder. They are written into a hidden folder inside it, and get their final names
+/// A set of files, or of folders with files, on their way into a folder. They are written into a hidden folder inside it, and get their final names
 /// together in [`Staged::commit`]; dropped before that, they vanish.
 #[derive(Debug)]
 pub struct Staged {
@@ -58,7 +61,7 @@ impl Staged {
         Ok(Self { folder, hidden, names: Vec::new() })
     }
 
-    /// Adds the file `name`, which `write` writes to the path that it is given.
+    /// Adds the file or folder `name`, which `write` writes to the path that it is given.
     ///
     /// # Errors
     /// [`CliError::Write`] with the error of `write`.
@@ -86,24 +89,36 @@ impl Staged {
         &self.names
     }
 
-    /// Gives the files their final names, in the order in which they were added. The last one is the mark of a complete
+    /// Gives them their final names, in the order in which they were added. The last one is the mark of a complete
     /// set: an earlier file of its name goes first, so that it never describes files of another run.
     ///
     /// # Errors
     /// [`CliError::Write`].
     pub fn commit(self) -> Result<(), CliError> {
         if let Some(mark) = self.names.last() {
-            let path = self.folder.join(mark);
-            match std::fs::remove_file(&path) {
-                Err(cause) if cause.kind() != io::ErrorKind::NotFound => return Err(CliError::write(&path, cause)),
-                _ => {}
-            }
+            self.make_room(mark)?;
         }
         for name in &self.names {
-            let path = self.folder.join(name);
-            std::fs::rename(self.hidden.path().join(name), &path).map_err(|cause| CliError::write(&path, cause))?;
+            let (from, path) = (self.hidden.path().join(name), self.folder.join(name));
+            if from.is_dir() {
+                // A file replaces another by itself.
+                self.make_room(name)?;
+            }
+            std::fs::rename(from, &path).map_err(|cause| CliError::write(&path, cause))?;
         }
         Ok(())
+    }
+
+    /// Moves what has the name of a staged file or folder to where it vanishes; a folder for a folder only.
+    fn make_room(&self, name: &str) -> Result<(), CliError> {
+        let path = self.folder.join(name);
+        let Ok(earlier) = path.symlink_metadata() else { return Ok(()) };
+        let moved = match (earlier.is_dir(), self.hidden.path().join(name).is_dir()) {
+            (true, false) => Err(io::Error::from(io::ErrorKind::IsADirectory)),
+            (false, true) => Err(io::Error::from(io::ErrorKind::NotADirectory)),
+            _ => std::fs::rename(&path, self.hidden.path().join(format!("{EARLIER}{name}"))),
+        };
+        moved.map_err(|cause| CliError::write(&path, cause))
     }
 }
 
@@ -223,6 +238,30 @@ mod tests {
             assert_eq!(names(&folder), ["a.txt", "summary.json"]);
             assert_eq!(std::fs::read_to_string(folder.join("a.txt")).expect("the file"), text);
         }
+    }
+
+    #[test]
+    fn a_folder_replaces_a_folder_as_a_whole_and_nothing_else() {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        let staged = |inner: &str| {
+            let mut staged = Staged::new(dir.path()).expect("a writable folder");
+            let write = |path: &Path| {
+                std::fs::create_dir(path)?;
+                write_synced(&path.join(inner), b"")
+            };
+            staged.add("f", write).expect("a staged folder");
+            staged.add_text("mark", "").expect("a staged file");
+            staged.commit()
+        };
+        for inner in ["old", "new"] {
+            staged(inner).expect("a committed set");
+            assert_eq!(names(dir.path()), ["f", "mark"]);
+            assert_eq!(names(&dir.path().join("f")), [inner]);
+        }
+        std::fs::remove_dir_all(dir.path().join("f")).expect("the folder");
+        std::fs::write(dir.path().join("f"), "").expect("a file in its way");
+        assert_eq!(staged("new").expect_err("a file").exit_code(), 4);
+        assert!(dir.path().join("f").is_file(), "the file is gone");
     }
 
     #[test]

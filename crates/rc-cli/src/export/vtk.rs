@@ -2,6 +2,7 @@
 //!
 //! Format: *VTK File Formats*, <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -11,24 +12,24 @@ use quick_xml::events::{BytesDecl, Event};
 
 /// A named array.
 #[derive(Clone, Debug)]
-pub(super) struct Array {
+pub(super) struct Array<'a> {
     name: &'static str,
     /// Values for each point or cell.
     components: usize,
-    values: Values,
+    values: Values<'a>,
 }
 
 /// What an array holds.
 #[derive(Clone, Debug)]
-pub(super) enum Values {
-    Float64(Vec<f64>),
+pub(super) enum Values<'a> {
+    Float64(Cow<'a, [f64]>),
     Int64(Vec<i64>),
     UInt8(Vec<u8>),
 }
 
 /// A data set of one piece.
 #[derive(Clone, Debug)]
-pub(super) struct Dataset {
+pub(super) struct Dataset<'a> {
     /// VTK's name of its kind.
     pub(super) kind: &'static str,
     /// Attributes of the whole.
@@ -36,16 +37,16 @@ pub(super) struct Dataset {
     /// Attributes of its one piece.
     pub(super) piece: Vec<(&'static str, String)>,
     /// Arrays by the section that they belong to.
-    pub(super) sections: Vec<(&'static str, Vec<Array>)>,
+    pub(super) sections: Vec<(&'static str, Vec<Array<'a>>)>,
 }
 
-impl Array {
-    pub(super) fn new(name: &'static str, components: usize, values: Values) -> Self {
+impl<'a> Array<'a> {
+    pub(super) fn new(name: &'static str, components: usize, values: Values<'a>) -> Self {
         Self { name, components, values }
     }
 }
 
-impl Values {
+impl Values<'_> {
     fn kind(&self) -> &'static str {
         match self {
             Self::Float64(_) => "Float64",
@@ -75,7 +76,7 @@ impl Values {
 ///
 /// # Errors
 /// Those of the file system.
-pub(super) fn write(path: &Path, data: &Dataset) -> io::Result<()> {
+pub(super) fn write(path: &Path, data: &Dataset<'_>) -> io::Result<()> {
     let mut xml = Writer::new_with_indent(BufWriter::new(File::create(path)?), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", None, None)))?;
     let file = [("type", data.kind), ("version", "1.0"), ("byte_order", "LittleEndian"), ("header_type", "UInt64")];
@@ -97,7 +98,7 @@ pub(super) fn write(path: &Path, data: &Dataset) -> io::Result<()> {
 }
 
 /// What there is, and where.
-fn write_head(xml: &mut Writer<impl Write>, data: &Dataset) -> io::Result<()> {
+fn write_head(xml: &mut Writer<impl Write>, data: &Dataset<'_>) -> io::Result<()> {
     let mut offset = 0;
     let whole = data.whole.iter().map(|(name, value)| (*name, value.as_str()));
     xml.create_element(data.kind).with_attributes(whole).write_inner_content(|xml| {
@@ -116,7 +117,7 @@ fn write_head(xml: &mut Writer<impl Write>, data: &Dataset) -> io::Result<()> {
 }
 
 /// One array's line; `offset` goes on to the next.
-fn write_array_head(xml: &mut Writer<impl Write>, array: &Array, offset: &mut u64) -> io::Result<()> {
+fn write_array_head(xml: &mut Writer<impl Write>, array: &Array<'_>, offset: &mut u64) -> io::Result<()> {
     let [components, at] = [array.components.to_string(), offset.to_string()];
     let attributes = [
         ("type", array.values.kind()),
@@ -131,8 +132,8 @@ fn write_array_head(xml: &mut Writer<impl Write>, array: &Array, offset: &mut u6
     Ok(())
 }
 
-impl Dataset {
-    fn arrays(&self) -> impl Iterator<Item = &Array> {
+impl Dataset<'_> {
+    fn arrays(&self) -> impl Iterator<Item = &Array<'_>> {
         self.sections.iter().flat_map(|(_, arrays)| arrays)
     }
 }
@@ -151,7 +152,7 @@ mod tests {
                 "CellData",
                 vec![
                     Array::new("a", 1, Values::UInt8(vec![7, 9])),
-                    Array::new("b", 1, Values::Float64(vec![1.5, -2.0])),
+                    Array::new("b", 1, Values::Float64(vec![1.5, -2.0].into())),
                     Array::new("c", 1, Values::Int64(vec![-3])),
                 ],
             )],

@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod bad_input;
+mod export;
 mod guide;
 mod measured;
 mod report;

@@ -1,4 +1,4 @@
-//! `rc report` and `rc export`: results for the eyes, and for other programs.
+//! `rc report`: results for the eyes.
 
 use std::process::Command;
 
@@ -152,36 +152,4 @@ fn a_browser_draws_the_page() {
     assert!(page.contains("data-ready=\"yes\""), "the script failed: {}", text(&output.stderr));
     assert_eq!(page.matches("<canvas").count(), 3, "maps");
     assert_eq!(page.matches("<svg").count(), 4, "two sections, the distribution and the spots");
-}
-
-#[test]
-fn a_result_is_exported_for_paraview() {
-    let place = Place::new();
-    assert_solved(&place.run(&small("1e5", &["--out", "r"])));
-    assert_solved(&place.run(&["export", "r", "--vtk", "--out", "vtk"]));
-    assert_eq!(place.names("vtk"), ["elements.vtu", "fields.vti"]);
-    let bytes = place.bytes("vtk/fields.vti");
-    let mark = b"<AppendedData encoding=\"raw\">_";
-    let start = bytes.windows(mark.len()).position(|window| window == mark).expect("the arrays") + mark.len();
-    let head = text(&bytes[..start]);
-    assert!(
-        head.contains("WholeExtent=\"0 128 0 128 0 0\"") && head.contains("Spacing=\"7.8125e-5 7.8125e-5"),
-        "{head}"
-    );
-    let stored = rc_cli::npy::read(&place.path("r/pressure.npy")).expect("the pressure");
-    // Contact comes first: a length, and a byte for each element; then the length of the pressure.
-    let first = start + 8 + stored.grid().len() + 8;
-    for (i, p) in stored.values().iter().enumerate() {
-        let at = first + 8 * i;
-        assert_eq!(bytes[at..at + 8], p.to_le_bytes(), "element {i}");
-    }
-    let elements = text(&place.bytes("r/elements.csv")).lines().count() - 1;
-    let head = text(&place.bytes("vtk/elements.vtu"));
-    assert!(head.contains(&format!("NumberOfCells=\"{elements}\"")), "{elements} elements");
-    assert_solved(&place.run(&small("1e5", &["--method", "uniform", "--out", "u"])));
-    assert_solved(&place.run(&["export", "u", "--quiet"]));
-    assert!(
-        place.names("u").contains(&"fields.vti".to_owned()) && !place.names("u").contains(&"elements.vtu".to_owned())
-    );
-    assert_refused(&place.run(&["export", "vtk"]), "summary.json");
 }

@@ -1,0 +1,55 @@
+//! The fields of a result as a Zarr group that xarray opens as a data set: variables on the dimensions y and x.
+
+use serde_json::json;
+
+use super::Fields;
+use super::zarr::{Array, Group, Values};
+
+/// Name of the group in the folder of the result.
+pub(super) const GROUP: &str = "fields.zarr";
+
+/// Dimensions of a field: rows, columns.
+const PLANE: &[&str] = &["y", "x"];
+
+/// Pressure, gap, contact, heights if there are any, and the coordinates of the centres of elements.
+pub(super) fn group(fields: &Fields) -> Group<'_> {
+    let Fields { status, side, e_star, pressure, gap, height } = fields;
+    let grid = pressure.grid();
+    let plane = |name, units, meaning, values| Array {
+        name,
+        dimensions: PLANE,
+        shape: vec![grid.ny(), grid.nx()],
+        units,
+        meaning,
+        values,
+    };
+    let axis = |name, dimensions, n: usize, meaning| Array {
+        name,
+        dimensions,
+        shape: vec![n],
+        units: "m",
+        meaning,
+        values: Values::Float64((0..n).map(|i| (i as f64 + 0.5) / n as f64 * side).collect()),
+    };
+    let mut arrays = vec![
+        plane("pressure", "Pa", "contact pressure", Values::Float64(pressure.values().into())),
+        plane("gap", "m", "gap between the surfaces", Values::Float64(gap.values().into())),
+        plane("contact", "1", "1 where the pressure is positive", Values::UInt8(fields.contact())),
+    ];
+    arrays.extend(height.iter().map(|height| {
+        let meaning = "height of the rigid surface, positive towards the half-space";
+        plane("height", "m", meaning, Values::Float64(height.values().into()))
+    }));
+    arrays.push(axis("y", &["y"], grid.ny(), "centre of the element"));
+    arrays.push(axis("x", &["x"], grid.nx(), "centre of the element"));
+    let attributes = json!({
+        "source": concat!("rc ", env!("CARGO_PKG_VERSION")),
+        "status": status,
+        "cell": side,
+        "cell_units": "m",
+        "cell_meaning": "side of the periodic cell, the same along x and y",
+        "e_star": e_star,
+        "e_star_units": "Pa",
+    });
+    Group { attributes, arrays }
+}

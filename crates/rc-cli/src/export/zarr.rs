@@ -1,0 +1,161 @@
+//! Zarr groups: a folder for each array, a file for each compressed chunk, and what they are as JSON.
+//!
+//! Format: *Zarr storage specification version 2*, <https://zarr-specs.readthedocs.io/en/latest/v2/v2.0.html>, which every reader
+//! knows; dimensions are named as xarray asks for, in `_ARRAY_DIMENSIONS`. Written by hand, as it is this page of code: the crate
+//! `zarrs` (0.23, default features off) brings more than 70 packages along that are not here yet and needs a newer compiler than ours.
+
+use std::borrow::Cow;
+use std::fs;
+use std::io::{self, Write as _};
+use std::path::Path;
+
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+use crate::error::CliError;
+use crate::output::write_synced;
+
+/// Most values of a chunk along each dimension: 8 MiB of `f64`, few files and yet pieces that fit anywhere.
+const CHUNK: usize = 1024;
+
+/// The file that marks a group.
+const GROUP_FILE: &str = ".zgroup";
+
+/// Level of compression: higher ones take three times as long for 1 % of the size, since digits of fields are noise.
+const LEVEL: u32 = 1;
+
+/// Arrays with common attributes.
+pub(super) struct Group<'a> {
+    pub(super) attributes: Value,
+    pub(super) arrays: Vec<Array<'a>>,
+}
+
+/// An array of one or two dimensions, row-major.
+pub(super) struct Array<'a> {
+    pub(super) name: &'static str,
+    pub(super) dimensions: &'static [&'static str],
+    pub(super) shape: Vec<usize>,
+    pub(super) units: &'static str,
+    pub(super) meaning: &'static str,
+    pub(super) values: Values<'a>,
+}
+
+/// What an array holds.
+pub(super) enum Values<'a> {
+    Float64(Cow<'a, [f64]>),
+    UInt8(Vec<u8>),
+}
+
+/// Refuses a folder at `path` that is no group, and would have to make room for one.
+///
+/// # Errors
+/// [`CliError::Input`].
+pub(super) fn check_place(path: &Path) -> Result<(), CliError> {
+    if path.is_dir() && !path.join(GROUP_FILE).is_file() {
+        return Err(CliError::in_file(
+            path,
+            "a folder that is no Zarr group is in the way; move it, or choose another --out",
+        ));
+    }
+    Ok(())
+}
+
+/// Writes a group to the folder `path`, which it makes.
+///
+/// # Errors
+/// Those of the file system.
+pub(super) fn write(path: &Path, group: &Group<'_>) -> io::Result<()> {
+    fs::create_dir(path)?;
+    // All metadata once more in one file: readers need not look for arrays, which they cannot over a network.
+    let mut all = serde_json::Map::new();
+    let mut describe = |name: String, value: Value| {
+        write_synced(&path.join(&name), format!("{value:#}\n").as_bytes())?;
+        all.insert(name, value);
+        Ok::<_, io::Error>(())
+    };
+    describe(GROUP_FILE.to_owned(), json!({ "zarr_format": 2 }))?;
+    describe(".zattrs".to_owned(), group.attributes.clone())?;
+    for array in &group.arrays {
+        fs::create_dir(path.join(array.name))?;
+        describe(format!("{}/.zarray", array.name), array.description())?;
+        describe(format!("{}/.zattrs", array.name), array.attributes())?;
+        array.write_chunks(&path.join(array.name))?;
+    }
+    let consolidated = json!({ "zarr_consolidated_format": 1, "metadata": all });
+    write_synced(&path.join(".zmetadata"), format!("{consolidated:#}\n").as_bytes())
+}
+
+impl Array<'_> {
+    fn description(&self) -> Value {
+        let kind = match self.values {
+            Values::Float64(_) => "<f8",
+            Values::UInt8(_) => "|u1",
+        };
+        json!({
+            "zarr_format": 2,
+            "shape": self.shape,
+            "chunks": self.chunk_shape(),
+            "dtype": kind,
+            "compressor": { "id": "zlib", "level": LEVEL },
+            // No value stands for a missing one: xarray would take a zero here for it, and zero pressure for nothing.
+            "fill_value": null,
+            "order": "C",
+            "filters": null,
+        })
+    }
+
+    fn attributes(&self) -> Value {
+        json!({ "_ARRAY_DIMENSIONS": self.dimensions, "units": self.units, "long_name": self.meaning })
+    }
+
+    fn chunk_shape(&self) -> Vec<usize> {
+        self.shape.iter().map(|&n| n.min(CHUNK)).collect()
+    }
+
+    /// Writes every chunk, named by its place.
+    fn write_chunks(&self, folder: &Path) -> io::Result<()> {
+        let [ny, nx] = rows_and_columns(&self.shape);
+        let [height, width] = rows_and_columns(&self.chunk_shape());
+        let (down, across) = (ny.div_ceil(height), nx.div_ceil(width));
+        (0..down * across).into_par_iter().try_for_each(|i| {
+            let (row, column) = (i / across, i % across);
+            let name = if self.shape.len() == 1 { column.to_string() } else { format!("{row}.{column}") };
+            let mut chunk = ZlibEncoder::new(Vec::new(), Compression::new(LEVEL));
+            chunk.write_all(&self.chunk([row * height, column * width], [height, width]))?;
+            write_synced(&folder.join(name), &chunk.finish()?)
+        })
+    }
+
+    /// The bytes of the chunk that begins at this row and column. What of it is beyond the array is zero: all chunks are equally
+    /// large.
+    fn chunk(&self, [first_row, first_column]: [usize; 2], [height, width]: [usize; 2]) -> Vec<u8> {
+        let [ny, nx] = rows_and_columns(&self.shape);
+        let size = match self.values {
+            Values::Float64(_) => 8,
+            Values::UInt8(_) => 1,
+        };
+        let mut bytes = Vec::with_capacity(height * width * size);
+        for row in first_row..(first_row + height).min(ny) {
+            let values = row * nx + first_column..row * nx + (first_column + width).min(nx);
+            let end = bytes.len() + width * size;
+            match &self.values {
+                Values::Float64(all) => bytes.extend(all[values].iter().flat_map(|value| value.to_le_bytes())),
+                Values::UInt8(all) => bytes.extend_from_slice(&all[values]),
+            }
+            bytes.resize(end, 0);
+        }
+        bytes.resize(height * width * size, 0);
+        bytes
+    }
+}
+
+/// A list is one row.
+fn rows_and_columns(shape: &[usize]) -> [usize; 2] {
+    match *shape {
+        [n] => [1, n],
+        [ny, nx] => [ny, nx],
+        _ => unreachable!("arrays here have one or two dimensions"),
+    }
+}
