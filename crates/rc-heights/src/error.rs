@@ -86,6 +86,18 @@ pub enum FormatError {
         /// Bytes that are there.
         found: u64,
     },
+    /// More bytes than the header promises.
+    #[error(
+        "longer than its header says: {grid} heights need {needed} bytes, {found} are there; the header is of another map"
+    )]
+    Surplus {
+        /// Points along x and y.
+        grid: Grid,
+        /// Bytes that the heights need.
+        needed: u64,
+        /// Bytes that are there.
+        found: u64,
+    },
     /// Fewer bytes than any header has.
     #[error("shorter than the header of a {format} file; the file is cut off")]
     HeaderCutShort {

@@ -99,6 +99,18 @@ impl Number {
             Self::F64 => each(stored, f64::from_le_bytes),
         })
     }
+
+    /// The values of `grid`, which are all that `bytes` has.
+    ///
+    /// # Errors
+    /// [`FormatError::CutShort`], before memory is taken; [`FormatError::Surplus`].
+    pub(crate) fn values_alone(self, bytes: &[u8], grid: Grid) -> Result<Vec<f64>, FormatError> {
+        let (needed, found) = (self.bytes_of(grid), bytes.len() as u64);
+        if found > needed {
+            return Err(FormatError::Surplus { grid, needed, found });
+        }
+        self.values(bytes, grid)
+    }
 }
 
 fn each<const N: usize>(bytes: &[u8], number: impl Fn([u8; N]) -> f64) -> Vec<f64> {

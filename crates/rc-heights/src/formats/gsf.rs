@@ -23,10 +23,14 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     // Sizes that are not given are 1 of no unit, which is to say that they are not known.
     let sides = match (side("XReal")?, side("YReal")?) {
         (Some(x), Some(y)) => Some([x, y]),
-        _ => None,
+        (None, None) => None,
+        (x, _) => {
+            let field = if x.is_none() { "XReal" } else { "YReal" };
+            return Err(FormatError::Missing { format: Format::Gsf, field });
+        }
     };
     // One to four zero bytes fill the header up to a multiple of four.
-    let mut values = Number::F32.values(bytes.get(end + 4 - end % 4..).unwrap_or_default(), grid)?;
+    let mut values = Number::F32.values_alone(bytes.get(end + 4 - end % 4..).unwrap_or_default(), grid)?;
     crate::map::scale(&mut values, height_factor);
     Ok(HeightMap { heights: super::field(grid, values), height_unit, sides, side_unit })
 }

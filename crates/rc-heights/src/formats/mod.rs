@@ -60,7 +60,7 @@ impl std::fmt::Display for Format {
 }
 
 /// Bytes at the start of a file that say what it is.
-const MARKS: [(&[u8], Format); 15] = [
+const MARKS: [(&[u8], Format); 17] = [
     (b"\x93NUMPY", Format::Npy),
     (b"DSAA", Format::Surfer),
     (b"DSBB", Format::Surfer),
@@ -72,6 +72,9 @@ const MARKS: [(&[u8], Format); 15] = [
     (b"bISO-2.0", Format::Sdf),
     (b"aBCR-1.0", Format::Sdf),
     (b"bBCR-1.0", Format::Sdf),
+    // What Gwyddion makes of the same.
+    (b"aBCR-0.0", Format::Sdf),
+    (b"bBCR-0.0", Format::Sdf),
     (b"PK\x03\x04", Format::X3p),
     (b"\x89PNG\r\n\x1a\n", Format::Png),
     (b"II*\0", Format::Tiff),
@@ -98,10 +101,9 @@ impl Format {
         let mark = |format, expected| Err(FormatError::Mark { format, expected });
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         match extension.as_deref() {
-            Some("csv") => Ok(Self::Csv),
             Some("xyz") => Ok(Self::Xyz),
             // Three numbers a line are points; no map has only three columns.
-            Some("txt") => Ok(if xyz::looks_like_points(start) { Self::Xyz } else { Self::Csv }),
+            Some("csv" | "txt") => Ok(if xyz::looks_like_points(start) { Self::Xyz } else { Self::Csv }),
             Some("npy") => mark(Self::Npy, "it must begin with \\x93NUMPY; numpy.save writes such files"),
             Some("grd") => mark(Self::Surfer, "it must begin with DSAA, DSBB or DSRB"),
             Some("gsf") => mark(Self::Gsf, "it must begin with the line 'Gwyddion Simple Field 1.0'"),

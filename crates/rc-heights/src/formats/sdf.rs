@@ -1,5 +1,6 @@
 //! ISO 25178-71 surface data files: a header of scales in metres, then heights as text (`a…`) or binary (`b…`). Versions 1.0,
-//! 2.0 (which counts points with 32 bits) and the older name BCR.
+//! 2.0 (which counts points with 32 bits) and the older proposal BCR, which marks missing points by the greatest number of a type
+//! where the standard takes the lowest.
 
 use super::binary::{Bytes, Number};
 use super::fields::{Fields, factor, positive, refused, shown};
@@ -10,12 +11,16 @@ use rc_core::Grid;
 /// Length of the names of format and version at the start.
 const MARK: usize = 8;
 
+/// Bytes that Olympus puts between header and heights of binary files of version 1.0.
+const OLYMPUS_EXTRA: usize = 8;
+
 /// What both kinds of header say.
 struct Header {
     grid: Grid,
     scales: [f64; 3],
     compression: u8,
     data_type: u8,
+    check_type: u8,
 }
 
 pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
@@ -40,10 +45,12 @@ fn binary(mut bytes: Bytes<'_>, mark: &[u8]) -> Result<(Header, Vec<f64>), Forma
     let grid = Grid::new(nx, ny)?;
     let scales = [bytes.f64()?, bytes.f64()?, bytes.f64()?];
     bytes.f64()?; // Resolution of the instrument.
-    let (compression, data_type) = (bytes.u8()?, bytes.u8()?);
-    bytes.u8()?; // Kind of checksum; none is defined.
-    let header = Header { grid, scales, compression, data_type };
-    let (number, missing) = number(&header)?;
+    let (compression, data_type, check_type) = (bytes.u8()?, bytes.u8()?, bytes.u8()?);
+    let header = Header { grid, scales, compression, data_type, check_type };
+    let (number, missing) = number(&header, mark[1..].starts_with(b"BCR"))?;
+    if mark == b"bISO-1.0" && bytes.rest().len() as u64 == number.bytes_of(grid) + OLYMPUS_EXTRA as u64 {
+        bytes.take(OLYMPUS_EXTRA)?;
+    }
     let mut values = number.values(bytes.rest(), grid)?;
     for value in &mut values {
         #[expect(clippy::float_cmp, reason = "the mark of a missing point is one value of the stored type")]
@@ -54,43 +61,56 @@ fn binary(mut bytes: Bytes<'_>, mark: &[u8]) -> Result<(Header, Vec<f64>), Forma
     Ok((header, values))
 }
 
-/// The stored type, and the value that marks a point as missing.
-fn number(header: &Header) -> Result<(Number, f64), FormatError> {
+/// The stored type, and the value that marks a point as missing: the lowest of a type, and in files of BCR the greatest. Of
+/// unsigned types, where the lowest may be a height, it is the greatest; of bytes the standard has none.
+fn number(header: &Header, bcr: bool) -> Result<(Number, f64), FormatError> {
     if header.compression != 0 {
         let what = "compressed data".to_owned();
         return Err(FormatError::Unsupported { format: Format::Sdf, what, cure: "save it without compression" });
     }
+    if header.check_type != 0 {
+        let what = format!("data with a checksum (CheckType {})", header.check_type);
+        return Err(FormatError::Unsupported { format: Format::Sdf, what, cure: "save it without one" });
+    }
+    let either = |low: f64, high: f64| if bcr { high } else { low };
     Ok(match header.data_type {
-        0 => (Number::U8, f64::NAN),
+        0 => (Number::U8, either(f64::NAN, f64::from(u8::MAX))),
         1 => (Number::U16, f64::from(u16::MAX)),
         2 => (Number::U32, f64::from(u32::MAX)),
-        3 => (Number::F32, f64::from(f32::MIN)),
-        4 => (Number::I8, f64::from(i8::MIN)),
-        5 => (Number::I16, f64::from(i16::MIN)),
-        6 => (Number::I32, f64::from(i32::MIN)),
-        7 => (Number::F64, f64::MIN),
+        3 => (Number::F32, either(f64::from(f32::MIN), f64::from(f32::MAX))),
+        4 => (Number::I8, either(f64::from(i8::MIN), f64::from(i8::MAX))),
+        5 => (Number::I16, either(f64::from(i16::MIN), f64::from(i16::MAX))),
+        6 => (Number::I32, either(f64::from(i32::MIN), f64::from(i32::MAX))),
+        7 => (Number::F64, either(f64::MIN, f64::MAX)),
         other => return Err(refused(Format::Sdf, "DataType", &other, "from 0 to 7")),
     })
 }
 
-/// Header, heights and remarks are ended by a `*` each.
+/// Header, heights and remarks are ended by a `*` each, which after the header is alone in its line: a name may have one.
 fn text(bytes: &[u8]) -> Result<(Header, Vec<f64>), FormatError> {
     let text = String::from_utf8_lossy(bytes);
-    let (header, data) = text.split_once('*').ok_or(FormatError::HeaderCutShort { format: Format::Sdf })?;
+    let mut end = 0;
+    let mut lines = text.split_inclusive('\n').map(|line| {
+        end += line.len();
+        (line.trim() == "*", end)
+    });
+    let ended = lines.find(|(ends, _)| *ends).ok_or(FormatError::HeaderCutShort { format: Format::Sdf })?;
+    let (header, data) = text.split_at(ended.1);
     let fields = Fields::of(header, Format::Sdf);
+    let first_line = header.lines().count() + 1;
     let header = Header {
         grid: fields.grid("NumPoints", "NumProfiles")?,
         scales: [fields.number("Xscale")?, fields.number("Yscale")?, fields.number("Zscale")?],
         compression: fields.optional("Compression")?.unwrap_or(0),
         data_type: fields.optional("DataType")?.unwrap_or(7),
+        check_type: fields.optional("CheckType")?.unwrap_or(0),
     };
-    number(&header)?;
-    let first_line = text[..text.len() - data.len()].lines().count();
+    number(&header, false)?;
     let values = words(data.split('*').next().unwrap_or_default(), header.grid, first_line)?;
     Ok((header, values))
 }
 
-/// The heights of `grid`, with `BAD` for a missing point; the text starts at the end of line `line`.
+/// The heights of `grid`, with `BAD` for a missing point; the text starts with line `line`.
 fn words(data: &str, grid: Grid, line: usize) -> Result<Vec<f64>, FormatError> {
     let cut_short =
         |found: usize| FormatError::CutShort { grid, needed: 2 * grid.len() as u64 - 1, found: found as u64 };

@@ -8,8 +8,12 @@ use super::binary::{Bytes, Number};
 use super::fields::{positive, refused, shown};
 use crate::{Format, FormatError, HeightMap, Unit};
 
-/// Heights from here on are missing points (1.70141e38 in texts, to fewer digits in some).
+/// Heights from here on are missing points (1.70141e38 in texts, to fewer digits in some); infinite ones are damage.
 const MISSING: f64 = 1.70140e38;
+
+fn is_missing(value: f64) -> bool {
+    value >= MISSING && value.is_finite()
+}
 
 /// The tag of the header of version 7, "DSRB".
 const HEADER: u32 = 0x4252_5344;
@@ -51,7 +55,7 @@ fn version_6(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     let (x, y) = ([bytes.f64()?, bytes.f64()?], [bytes.f64()?, bytes.f64()?]);
     bytes.take(16)?; // Lowest and greatest height.
     let spacing = [spacing(SPACING_X, x[0], x[1], nx)?, spacing(SPACING_Y, y[0], y[1], ny)?];
-    Ok(map(grid, spacing, Number::F32.values(bytes.rest(), grid)?, |value| value >= MISSING))
+    Ok(map(grid, spacing, Number::F32.values_alone(bytes.rest(), grid)?, is_missing))
 }
 
 /// Sections, each with its tag and size; those that are not needed are skipped.
@@ -68,7 +72,7 @@ fn version_7(bytes: &[u8]) -> Result<HeightMap, FormatError> {
                 let values = Number::F64.values(&available[..size.min(available.len())], grid)?;
                 #[expect(clippy::float_cmp, reason = "version 2 marks missing points by one exact value")]
                 let missing = |value: f64| if version == 1 { value >= blank } else { value == blank };
-                return Ok(map(grid, spacing, values, |value| missing(value) || value >= MISSING));
+                return Ok(map(grid, spacing, values, |value| missing(value) || is_missing(value)));
             }
             (DATA, None) => return Err(FormatError::Missing { format: Format::Surfer, field: "GRID" }),
             _ => drop(section(&mut bytes, size)?),
@@ -112,13 +116,14 @@ fn text(bytes: &[u8]) -> Result<HeightMap, FormatError> {
         return Err(cut_short);
     }
     let mut values = Vec::with_capacity(grid.len());
-    for word in words.take(grid.len()) {
+    for word in words.by_ref().take(grid.len()) {
         let expected = "a number";
         values.push(word.parse().map_err(|_| refused(Format::Surfer, "height", &shown(word), expected))?);
     }
-    if values.len() < grid.len() {
-        let found = format!("{grid}, of which {} heights are there", values.len());
+    let there = values.len() + words.count();
+    if there != grid.len() {
+        let found = format!("{grid}, of which {there} heights are there");
         return Err(refused(Format::Surfer, "columns x rows", &found, "as many as there are heights"));
     }
-    Ok(map(grid, spacing, values, |value| value >= MISSING))
+    Ok(map(grid, spacing, values, is_missing))
 }

@@ -10,8 +10,8 @@ use super::fields::shown;
 use crate::FormatError;
 
 /// Numbers with commas between them, or semicolons (then commas may stand for decimal points, as spreadsheets of many countries
-/// write them), or blanks; a row of the map a line. Empty lines and lines that start with `#` are passed over; `NaN` is a
-/// missing point.
+/// write them), or blanks; a row of the map a line, which a line feed, a carriage return, or both end. Empty lines and lines that
+/// start with `#` are passed over; `NaN` is a missing point.
 ///
 /// # Errors
 /// [`FormatError`] with line and value.
@@ -39,8 +39,13 @@ pub fn parse(bytes: &[u8]) -> Result<Field, FormatError> {
 /// Lines with data and their numbers, from 1.
 pub(super) fn data_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
-    let lines = text.lines().map(str::trim).enumerate();
-    lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).map(|(n, line)| (n + 1, line))
+    // A carriage return before a line feed belongs to it; any other ends a line.
+    let lines = text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'));
+    lines
+        .map(str::trim)
+        .enumerate()
+        .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
+        .map(|(n, line)| (n + 1, line))
 }
 
 /// The values of a line; nothing between two commas is a value that is no number.
@@ -84,6 +89,8 @@ mod tests {
             "\u{FEFF}1;2;3\r\n4;-0,5;6\r\n",
             "1 2 3\n\n  4\t-0.5 6",
             "1\t2\t3\n4\t-.5\t6\n",
+            "1 2 3\r4 -0.5 6\r",
+            "1 2 3\r\n\r\n4 -0.5 6\r\n",
         ];
         for text in texts {
             let field = parse(text.as_bytes()).expect(text);
@@ -106,6 +113,9 @@ mod tests {
         let cases = [
             ("1,2\n3\n", "line 2 has 1 values"),
             ("1,2\n3,x\n", "line 2, value 2"),
+            ("1,2\r3,x\r", "line 2, value 2"),
+            ("1,2\r\n\r\n3,x\r\n", "line 3, value 2"),
+            ("1 2 3\n4 5\r6\n", "line 2 has 2 values"),
             ("1,\n3,4\n", "line 1, value 2"),
             ("1;2\n3,5;4,,5\n", "line 2, value 2"),
             ("1,2\n3,inf\n", "row 1, column 1"),

@@ -33,8 +33,9 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
         return Err(FormatError::CutShort { grid, needed, found });
     }
     let mut limits = Limits::default();
-    let most = usize::try_from(needed).unwrap_or(usize::MAX);
-    (limits.decoding_buffer_size, limits.intermediate_buffer_size) = (most, most.max(1 << 20));
+    limits.decoding_buffer_size = usize::try_from(needed).unwrap_or(usize::MAX);
+    // What is stored of a strip or tile: a tile may be larger than the image, but not than the file.
+    limits.intermediate_buffer_size = bytes.len().max(1 << 20);
     let levels = decoder.with_limits(limits).read_image().map_err(invalid)?;
     let values: Vec<f64> = match levels {
         DecodingResult::U16(levels) => levels.into_iter().map(f64::from).collect(),

@@ -16,7 +16,7 @@ const SAME_LINE: f64 = 2e-7;
 pub(super) fn looks_like_points(start: &[u8]) -> bool {
     let text = String::from_utf8_lossy(start);
     // The last line may be cut off.
-    let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
+    let whole = text.rsplit_once(['\n', '\r']).map_or("", |(whole, _)| whole);
     let three = |(_, line): (usize, &str)| words(line).filter(|word| number(word, true).is_some()).count() == 3;
     let lines: Vec<bool> = data_lines(whole).map(three).collect();
     // One line of a title may come first.

@@ -86,6 +86,27 @@ pub(crate) fn sdf_binary(version: &str, data_type: u8, data: &[u8]) -> Vec<u8> {
     bytes
 }
 
+/// Heights in each type of numbers of the format, all 0 but the fourth, its lowest number, and the fifth, its greatest.
+pub(crate) fn sdf_limits() -> Vec<(u8, Vec<u8>)> {
+    macro_rules! limits {
+        ($type:ident) => {
+            [$type::default(), $type::default(), $type::default(), $type::MIN, $type::MAX, $type::default()]
+                .map($type::to_le_bytes)
+                .concat()
+        };
+    }
+    vec![
+        (0, limits!(u8)),
+        (1, limits!(u16)),
+        (2, limits!(u32)),
+        (3, limits!(f32)),
+        (4, limits!(i8)),
+        (5, limits!(i16)),
+        (6, limits!(i32)),
+        (7, limits!(f64)),
+    ]
+}
+
 /// The heights 1 to 6 in each type of numbers of the format, with its number there.
 pub(crate) fn sdf_types() -> Vec<(u8, Vec<u8>)> {
     vec![
@@ -145,20 +166,51 @@ pub(crate) fn png_16() -> Vec<u8> {
 
 /// One strip without compression, little-endian.
 pub(crate) fn tiff() -> Vec<u8> {
-    // Tag, type (3: short, 4: long), value: the entries of the only directory.
-    let entries: [(u16, u16, u32); 9] = [
-        (256, 3, 3),
-        (257, 3, 2),
-        (258, 3, 16),
-        (259, 3, 1),
-        (262, 3, 1),
-        (273, 4, 8),
-        (277, 3, 1),
-        (278, 3, 2),
-        (279, 4, 12),
-    ];
-    let mut bytes = [b"II*\0".as_slice(), &20_u32.to_le_bytes()].concat();
-    bytes.extend(concat(HEIGHTS, |v| (v as u16).to_le_bytes()));
+    tiff_of(
+        &concat(HEIGHTS, |v| (v as u16).to_le_bytes()),
+        &[
+            (256, 3, 3),
+            (257, 3, 2),
+            (258, 3, 16),
+            (259, 3, 1),
+            (262, 3, 1),
+            (273, 4, 8),
+            (277, 3, 1),
+            (278, 3, 2),
+            (279, 4, 12),
+        ],
+    )
+}
+
+/// The same in the corner of one tile of `side` x `side` points.
+pub(crate) fn tiff_tiled(side: usize) -> Vec<u8> {
+    let mut tile = vec![0; 2 * side * side];
+    for (i, height) in HEIGHTS.iter().enumerate() {
+        let at = 2 * (i / 3 * side + i % 3);
+        tile[at..at + 2].copy_from_slice(&(*height as u16).to_le_bytes());
+    }
+    let (n, bytes) = (side as u32, tile.len() as u32);
+    tiff_of(
+        &tile,
+        &[
+            (256, 3, 3),
+            (257, 3, 2),
+            (258, 3, 16),
+            (259, 3, 1),
+            (262, 3, 1),
+            (277, 3, 1),
+            (322, 3, n),
+            (323, 3, n),
+            (324, 4, 8),
+            (325, 4, bytes),
+        ],
+    )
+}
+
+/// `data`, then the only directory: tag, type (3: short, 4: long), value.
+fn tiff_of(data: &[u8], entries: &[(u16, u16, u32)]) -> Vec<u8> {
+    let mut bytes = [b"II*\0".as_slice(), &(8 + data.len() as u32).to_le_bytes()].concat();
+    bytes.extend(data);
     bytes.extend((entries.len() as u16).to_le_bytes());
     for (tag, kind, value) in entries {
         bytes.extend([tag.to_le_bytes(), kind.to_le_bytes()].concat());

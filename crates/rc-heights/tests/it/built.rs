@@ -80,6 +80,53 @@ fn surface_data_files_of_every_kind_are_the_same_map() {
 }
 
 #[test]
+fn the_standard_marks_missing_points_by_the_lowest_number_and_bcr_by_the_greatest() {
+    for (version, greatest) in [("ISO-1.0", false), ("ISO-2.0", false), ("BCR-1.0", true), ("BCR-0.0", true)] {
+        for (kind, data) in build::sdf_limits() {
+            let map = read(version, &build::sdf_binary(version, kind, &data), Format::Sdf);
+            let unsigned = kind <= 2;
+            // Of bytes the standard has no mark.
+            let expected = match (greatest || unsigned, kind) {
+                (_, 0) if !greatest => vec![],
+                (true, _) => vec![4],
+                (false, _) => vec![3],
+            };
+            let missing: Vec<usize> = (0..6).filter(|i| map.heights.values()[*i].is_nan()).collect();
+            assert_eq!(missing, expected, "{version}, type {kind}");
+        }
+    }
+    let bytes = build::sdf_binary("BCR-0.0", 7, &[0; 48]);
+    assert_eq!(Format::of("map".as_ref(), &bytes), Ok(Format::Sdf));
+    assert_eq!(Format::of("map".as_ref(), b"aBCR-0.0\n"), Ok(Format::Sdf));
+}
+
+#[test]
+fn eight_bytes_that_olympus_adds_to_the_header_are_no_heights() {
+    let data = &build::sdf_types()[5].1;
+    let extra = |version: &str, bytes: &[u8]| build::sdf_binary(version, 5, &[bytes, data].concat());
+    let map = read("Olympus", &extra("ISO-1.0", &[5, 0, 0, 0, 1, 0, 0, 0]), Format::Sdf);
+    assert_map("Olympus", &map, 1e-9, 0.0, Some([6e-6, 6e-6]));
+    // Other lengths and versions have remarks behind the heights.
+    for (version, bytes) in [("ISO-1.0", &[0; 7][..]), ("ISO-2.0", &[0; 8])] {
+        let map = read(version, &extra(version, bytes), Format::Sdf);
+        assert!(map.heights.values()[0].abs() < 1e-15, "{version}: {:?}", map.heights.values());
+    }
+}
+
+#[test]
+fn the_header_of_a_surface_data_file_ends_with_a_line_of_a_star() {
+    let text = String::from_utf8_lossy(&build::sdf_text("1 2 3 4 5 6")).replace("ManufacID = rc", "ManufacID = r*c");
+    assert_map("star", &read("star", text.as_bytes(), Format::Sdf), 1e-9, 0.0, Some([6e-6, 6e-6]));
+}
+
+#[test]
+fn a_tile_may_be_larger_than_its_image() {
+    for side in [16, 1024] {
+        assert_map("tiles", &read("tiles", &build::tiff_tiled(side), Format::Tiff), 1.0, 0.0, None);
+    }
+}
+
+#[test]
 fn an_x3p_file_has_increments_and_offset() {
     let xml = build::x3p_xml("D", build::X3P_SIZE, "");
     let data: Vec<u8> = HEIGHTS.iter().flat_map(|v| v.to_le_bytes()).collect();
@@ -159,6 +206,9 @@ fn wrong_headers_are_named_with_their_field() {
         (Format::X3p, build::zipped(&members, CompressionMethod::Stored))
     };
     let surfer = |text: &str| (Format::Surfer, text.as_bytes().to_vec());
+    let mut checked = build::sdf_binary("ISO-1.0", 7, &[0; 48]);
+    // The last byte of the header.
+    checked[80] = 3;
     let cases = [
         (sdf("NumPoints = 3", "NumPoints = many"), "NumPoints is 'many'"),
         (sdf("NumPoints = 3", "Points = 3"), "NumPoints is missing"),
@@ -167,12 +217,21 @@ fn wrong_headers_are_named_with_their_field() {
         (sdf("Zscale = 1e-9", "Zscale = 0"), "Zscale"),
         (sdf("Compression = 0", "Compression = 1"), "compressed"),
         (sdf("DataType = 7", "DataType = 9"), "DataType"),
+        (sdf("CheckType = 0", "CheckType = 1"), "a checksum (CheckType 1)"),
+        ((Format::Sdf, checked), "a checksum (CheckType 3)"),
         (sdf("4 5 6", "4 x 6"), "line 15, value 5: 'x'"),
         (sdf(" 4 5 6", " 4 5"), "of which 5 heights"),
         (sdf("*", ""), "shorter than the header"),
         (gsf("XRes=3\nYRes=2\nZUnits=V\n"), "ZUnits is 'V'"),
         (gsf("XRes=3\nYRes=2\nXReal=-1\nYReal=1\n"), "XReal"),
         (gsf("XRes=3\n"), "YRes is missing"),
+        (gsf("XRes=3\nYRes=2\nXReal=1\n"), "YReal is missing"),
+        (gsf("XRes=3\nYRes=2\nYReal=1\n"), "XReal is missing"),
+        ((Format::Gsf, [build::gsf(build::GSF_FIELDS), vec![0]].concat()), "need 24 bytes, 25 are there"),
+        ((Format::Surfer, [build::surfer_6(HEIGHTS), vec![0; 4]].concat()), "need 24 bytes, 28 are there"),
+        ((Format::Surfer, build::surfer_text("1 2 3\n4 5 6\n7")), "of which 7 heights"),
+        ((Format::Surfer, build::surfer_text("1 2 3\n4 inf 6")), "row 1, column 1 (from 0) is inf"),
+        ((Format::Surfer, build::surfer_6([1.0, 2.0, 3.0, 4.0, f64::INFINITY, 6.0])), "is inf"),
         (xml(build::x3p_xml("Q", build::X3P_SIZE, "")), "CZ DataType is 'Q'"),
         (xml(build::x3p_xml("D", "<SizeX>3</SizeX>", "")), "SizeY is missing"),
         (xml(build::x3p_xml("D", "<SizeX>3</SizeX><SizeY>2</SizeY><SizeZ>4</SizeZ>", "")), "layer"),

@@ -97,6 +97,18 @@ fn a_file_is_known_by_its_first_bytes_whatever_it_is_called() {
         let error = read(&path).expect_err(name).to_string();
         assert!(error.contains(expected) && error.contains(name), "{error}");
     }
+    // Three numbers a line are points, in a .csv as in a .txt.
+    for (name, columns) in [("points.csv", 3), ("points.txt", 3), ("rows.csv", 4)] {
+        let path = dir.path().join(name);
+        let line = |i: u32| format!("{},{},{}{}\n", i % 2, i / 2, i * 7, if columns == 4 { ",1" } else { "" });
+        std::fs::write(&path, (0..4).map(line).collect::<String>()).expect("a file");
+        let map = read(&path).expect(name);
+        assert_eq!(
+            (map.heights.grid().nx(), map.sides.is_some()),
+            (if columns == 4 { 4 } else { 2 }, columns == 3),
+            "{name}"
+        );
+    }
     let missing = read(&dir.path().join("none.npy")).expect_err("no file");
     assert!(matches!(missing.problem, FormatError::Unreadable(_)), "{missing}");
 }
