@@ -3,13 +3,10 @@
 use std::path::Path;
 
 use rc_core::Field;
-use rc_heights::{HeightMap, Scales};
+use rc_heights::{HeightMap, SAME_LENGTH, Scales};
 
 use crate::error::CliError;
 use crate::quantity::engineering;
-
-/// Sides and cells that differ by less than this part are the same length.
-const SAME_LENGTH: f64 = 1e-3;
 
 /// Reads a height map of any format of `rc-heights`, in metres; `NaN` where nothing was measured. Row `iy` of the file is row
 /// `iy` of the field.

@@ -104,8 +104,12 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
 /// the middle of it; the note says so.
 fn in_square(path: &Path, map: HeightMap, side: f64) -> Result<(Field, f64, &'static str), CliError> {
     const CUT: &str = "not a square: all but the parameters of ISO 25178-2 are of the largest square in the middle\n\n";
+    const TAKEN: &str = "a map without a size is taken for a square, as rc solve takes it, so its points here are rectangles; rc surface \
+                         --crop square takes them for squares\n\n";
+    let grid = map.heights.grid();
     let (map, note) = if heights::side(path, map.sides, None).is_ok() {
-        (map, "")
+        let taken = map.sides.is_none() && grid.nx() != grid.ny();
+        (map, if taken { TAKEN } else { "" })
     } else {
         let square = rc_heights::apply(map, &[Treatment::Crop(Crop::Square)]);
         (square.map_err(|cause| CliError::in_file(path, cause))?.0, CUT)

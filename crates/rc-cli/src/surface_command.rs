@@ -25,6 +25,7 @@ pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
     let scene = resolve::layers(args.scene_file.as_deref(), flags)?;
     let treatments = args.treatment.treatments().map_err(|cause| CliError::input(format_args!("resample: {cause}")))?;
     resolve::start_threads(scene.run.threads)?;
+    let budget = Budget::new(scene.run.memory_limit);
     let target = scene.run.out.as_deref();
     if let Some(target) = target {
         output::check_folder(if is_map(target) { target.parent().unwrap_or(Path::new("")) } else { target })?;
@@ -33,9 +34,9 @@ pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
         let problem = resolve::surface(scene.surface)?;
         (problem.cell.side(), problem.load()?, Vec::new())
     } else {
-        treated(scene.surface, &treatments)?
+        treated(scene.surface, &treatments, budget)?
     };
-    Budget::new(scene.run.memory_limit).check_grid("the surface", surface.grid)?;
+    budget.check_grid("the surface", surface.grid)?;
     let heights = surface.heights()?;
     let mut statistics = HeightStatistics::of(&heights, side, surface.moments());
     statistics.treatments = effects.iter().map(TreatmentRow::from).collect();
@@ -52,7 +53,11 @@ pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
 }
 
 /// The side of the cell (m), a height map after `treatments`, and what it was like before them and after each.
-fn treated(keys: SurfaceKeys, treatments: &[Treatment]) -> Result<(f64, LoadedSurface, Vec<Effect>), CliError> {
+fn treated(
+    keys: SurfaceKeys,
+    treatments: &[Treatment],
+    budget: Budget,
+) -> Result<(f64, LoadedSurface, Vec<Effect>), CliError> {
     let Some(path) = keys.heights.clone() else {
         let message =
             "crop, flip, fill, level, periodic, low_pass and resample are for height maps; give --heights FILE";
@@ -62,7 +67,12 @@ fn treated(keys: SurfaceKeys, treatments: &[Treatment]) -> Result<(f64, LoadedSu
     // Of a map that is to be cropped to a square, only one side can be compared with the cell.
     let given = heights::side(&path, map.sides.map(|[x, _]| [x, x]), keys.cell)?;
     let cell = given.or(scene_file::example().surface.cell).unwrap_or(1.0);
-    map.sides.get_or_insert([cell, cell]);
+    // A map without a size has points that are equally far apart along both sides.
+    map.sides = map.sides.or_else(|| Some(map.sides_of_width(cell)));
+    let grids = rc_heights::grids_after(&map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
+    for (grid, treatment) in grids.into_iter().zip(treatments) {
+        budget.check_grid(&format!("the map after {treatment}"), grid)?;
+    }
     let mut effects = vec![Effect::of(&map, "as read")];
     let (map, after) = rc_heights::apply(map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
     effects.extend(after);

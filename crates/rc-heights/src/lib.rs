@@ -37,5 +37,7 @@ pub use error::{FormatError, ReadError};
 pub use formats::{Format, format_of, npy, parse, read, text};
 pub use map::{BorderStep, HeightMap};
 pub use parameters::AreaParameters;
-pub use treat::{Crop, Edges, Effect, Fill, Flip, Level, Periodic, TreatError, Treatment, apply, hann};
+pub use treat::{
+    Crop, Edges, Effect, Fill, Flip, Level, Periodic, SAME_LENGTH, TreatError, Treatment, apply, grids_after, hann,
+};
 pub use units::{LengthUnit, Scales, Unit, UnitError};

@@ -33,8 +33,12 @@ impl HeightMap {
     pub fn in_metres(mut self, scales: Scales) -> Result<Self, UnitError> {
         let unit = scales.unit.map_or(1.0, crate::LengthUnit::metres);
         let unnamed = |is: Unit| is == Unit::Unnamed;
-        if scales.unit.is_some() && !unnamed(self.height_unit) && !(self.sides.is_some() && unnamed(self.side_unit)) {
-            return Err(UnitError::UnitsNamed);
+        let unit_has_use = unnamed(self.height_unit) || self.sides.is_some() && unnamed(self.side_unit);
+        match (self.height_unit, scales) {
+            (Unit::GreyLevel, Scales { height_scale: None, .. }) => return Err(UnitError::GreyLevels),
+            (Unit::GreyLevel, Scales { unit: Some(_), .. }) if !unit_has_use => return Err(UnitError::UnitOfLevels),
+            (_, Scales { unit: Some(_), .. }) if !unit_has_use => return Err(UnitError::UnitsNamed),
+            _ => {}
         }
         let factor = match (self.height_unit, scales.height_scale) {
             (_, Some(value)) if value == 0.0 || !value.is_finite() => return Err(UnitError::Scale { value }),
@@ -58,10 +62,17 @@ impl HeightMap {
         self.heights.values().iter().filter(|height| height.is_nan()).count()
     }
 
-    /// Distances of points along x and y, in the unit of the sides; with no sides, those of a unit square.
+    /// Sides of the rectangle along x and y if that along x is `width` and points are equally far apart along both, as of an image.
+    #[must_use]
+    pub fn sides_of_width(&self, width: f64) -> [f64; 2] {
+        let grid = self.heights.grid();
+        [width, width * (grid.ny() as f64 / grid.nx() as f64)]
+    }
+
+    /// Distances of points along x and y, in the unit of the sides; with no sides, those of [`HeightMap::sides_of_width`] 1.
     #[must_use]
     pub fn spacing(&self) -> [f64; 2] {
-        let (grid, sides) = (self.heights.grid(), self.sides.unwrap_or([1.0, 1.0]));
+        let (grid, sides) = (self.heights.grid(), self.sides.unwrap_or_else(|| self.sides_of_width(1.0)));
         [sides[0] / grid.nx() as f64, sides[1] / grid.ny() as f64]
     }
 }
@@ -141,6 +152,9 @@ mod tests {
             (Metre, Metre, um, Err(UnitError::UnitsNamed)),
             (Metre, Metre, Scales { unit: None, ..nm }, Err(UnitError::HeightsInMetres)),
             (GreyLevel, Metre, none, Err(UnitError::GreyLevels)),
+            (GreyLevel, Unnamed, um, Err(UnitError::GreyLevels)),
+            (GreyLevel, Metre, nm, Err(UnitError::UnitOfLevels)),
+            (GreyLevel, Unnamed, nm, Ok((1e-9, 3e-6))),
             (GreyLevel, Metre, Scales { unit: None, ..nm }, Ok((1e-9, 3.0))),
         ];
         for (heights, sides, scales, expected) in cases {

@@ -76,11 +76,12 @@ fn contradictions_and_what_is_missing_are_refused() {
     let (x3p, png) = (sample("surfalize.x3p"), sample("pillow.png"));
     place.write("map.xyz", "0 0 1\n1 0 2\n2 0 3\n0 1 4\n1 1 5\n2 1 7\n");
     place.write("map.npy", npy("<f8", false, "(8, 8)", &f8(&bumps(8))));
-    let cases: [(&[&str], &str); 12] = [
+    let cases: [(&[&str], &str); 13] = [
         (&["surface", "--heights", &x3p, "--cell", "1e-3"], "24 µm wide, cell says 1 mm"),
         (&["surface", "--heights", &x3p, "--unit", "um"], "names its units"),
         (&["surface", "--heights", &x3p, "--height-scale", "1e-9"], "in metres already"),
         (&["surface", "--heights", &png], "height_scale"),
+        (&["surface", "--heights", &png, "--unit", "um", "--height-scale", "1e-9"], "leave unit away"),
         (&["surface", "--heights", "map.xyz"], "--crop square"),
         (&["surface", "--heights", "map.npy", "--unit", "V"], "'V' is no unit of length"),
         (&["surface", "--heights", "map.npy", "--crop", "9"], "not inside the map of 8 x 8"),
@@ -95,6 +96,40 @@ fn contradictions_and_what_is_missing_are_refused() {
     }
     assert_eq!(place.names("."), ["map.npy", "map.xyz"], "something was written");
     assert_refused(&place.run(&["solve", "--waves", "8", "--crop", "4"]), "--crop");
+}
+
+#[test]
+fn points_of_a_map_without_a_size_are_squares_when_it_is_treated() {
+    let place = Place::new();
+    let heights: Vec<f32> =
+        (0..48 * 32).map(|i| ((i % 48) as f32 * 0.3).sin() * 1e-6 + (i / 48) as f32 * 1e-8).collect();
+    place.write("map.npy", npy("<f8", false, "(32, 48)", &f8(&heights)));
+    let treat = ["surface", "--heights", "map.npy", "--cell", "3e-3"];
+    assert_solved(&place.run(&[&treat[..], &["--crop", "square", "--out", "square", "--quiet"]].concat()));
+    let json = place.json("square/surface.json");
+    assert_eq!(json["cell"].as_f64().map(|cell| (cell * 1e9).round()), Some(2e6), "32 of 48 points on 3 mm");
+    assert_eq!(json["treatments"][1]["grid"], serde_json::json!([32, 32]));
+    assert_refused(&place.run(&[&treat[..], &["--level", "plane"]].concat()), "the map is 3 mm by 2 mm");
+    // Without a treatment it is spread over the cell, as rc solve does, and rc inspect says so.
+    assert_solved(&place.run(&[&treat[..], &["--quiet"]].concat()));
+    let output = place.run(&["inspect", "map.npy", "--cell", "3e-3"]);
+    assert_solved(&output);
+    assert!(text(&output.stdout).starts_with("a map without a size is taken for a square"), "{}", text(&output.stdout));
+}
+
+#[test]
+fn a_treated_map_that_does_not_fit_is_refused_before_it_is_made() {
+    let place = Place::new();
+    place.write("map.npy", npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
+    let treat = ["surface", "--heights", "map.npy", "--out", "s"];
+    for (flags, expected) in [
+        (&["--resample", "1048576"][..], "the map after resample 1048576 x 1048576 on"),
+        (&["--periodic", "mirror", "--memory-limit", "1MB"], "the map after periodic mirror on 128 x 128"),
+        (&["--resample", "1048576x2", "--memory-limit", "1MB"], "memory_limit"),
+    ] {
+        assert_refused(&place.run(&[&treat[..], flags].concat()), expected);
+    }
+    assert_eq!(place.names("."), ["map.npy"]);
 }
 
 #[test]

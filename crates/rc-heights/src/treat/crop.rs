@@ -58,15 +58,16 @@ impl FromStr for Crop {
     }
 }
 
-pub(super) fn crop(map: &HeightMap, crop: Crop) -> Result<HeightMap, TreatError> {
-    let grid = map.heights.grid();
+/// Lengths that differ by less than this part are the same, where a map must be a square.
+pub const SAME_LENGTH: f64 = 1e-3;
+
+/// The part of `grid` that is kept, points being `spacing` apart: its first point and its grid.
+pub(super) fn part(grid: Grid, spacing: [f64; 2], crop: Crop) -> Result<([usize; 2], Grid), TreatError> {
     let (nx, ny, from) = match crop {
         Crop::Points { nx, ny, from } => (nx, ny, from),
         Crop::Square => {
-            let [dx, dy] = map.spacing();
-            let side = (dx * grid.nx() as f64).min(dy * grid.ny() as f64);
-            let points = |n: usize, step: f64| ((side / step).round() as usize).clamp(1, n);
-            (points(grid.nx(), dx), points(grid.ny(), dy), None)
+            let [nx, ny] = square(grid, spacing).ok_or(TreatError::NoSquare { grid, spacing })?;
+            (nx, ny, None)
         }
     };
     let outside = || TreatError::Outside { crop, grid };
@@ -76,10 +77,25 @@ pub(super) fn crop(map: &HeightMap, crop: Crop) -> Result<HeightMap, TreatError>
     if x > x_room || y > y_room {
         return Err(outside());
     }
-    let part = Grid::new(nx, ny)?;
-    let values = (y..y + ny).flat_map(|iy| &map.heights.row(iy)[x..x + nx]).copied().collect();
-    let heights = Field::new(part, values).expect("as many values as points");
+    Ok(([x, y], Grid::new(nx, ny)?))
+}
+
+/// Points along x and y of the largest part whose sides are the same within [`SAME_LENGTH`].
+fn square(grid: Grid, [dx, dy]: [f64; 2]) -> Option<[usize; 2]> {
+    let most = ((dy * grid.ny() as f64 / dx).round() as usize).clamp(1, grid.nx());
+    (1..=most).rev().find_map(|nx| {
+        let ny = ((dx * nx as f64 / dy).round() as usize).clamp(1, grid.ny());
+        let ratio = (dx * nx as f64) / (dy * ny as f64);
+        ((ratio - 1.0).abs() <= SAME_LENGTH).then_some([nx, ny])
+    })
+}
+
+pub(super) fn crop(map: &HeightMap, crop: Crop) -> Result<HeightMap, TreatError> {
     let [dx, dy] = map.spacing();
+    let ([x, y], grid) = part(map.heights.grid(), [dx, dy], crop)?;
+    let (nx, ny) = (grid.nx(), grid.ny());
+    let values = (y..y + ny).flat_map(|iy| &map.heights.row(iy)[x..x + nx]).copied().collect();
+    let heights = Field::new(grid, values).expect("as many values as points");
     let sides = map.sides.map(|_| [dx * nx as f64, dy * ny as f64]);
     Ok(HeightMap { heights, sides, ..*map })
 }

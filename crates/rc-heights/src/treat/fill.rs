@@ -1,6 +1,7 @@
 //! Heights for points that were not measured.
 
-use std::collections::VecDeque;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 use std::fmt;
 use std::str::FromStr;
 
@@ -12,7 +13,7 @@ use crate::HeightMap;
 pub enum Fill {
     /// The smoothest membrane through the points around (∇²h = 0): no new peaks, no new valleys.
     Laplace,
-    /// The height of the nearest measured point.
+    /// The height of the nearest measured point, by length.
     Nearest,
     /// The lowest measured height: what was too deep or too steep to be measured does not touch.
     Lowest,
@@ -44,11 +45,12 @@ const MOST_STEPS: usize = 20_000;
 /// Part of the first residual at which the iteration ends.
 const TOLERANCE: f64 = 1e-8;
 
-/// A map without a measured point is returned as it is.
-pub(super) fn fill(mut map: HeightMap, how: Fill) -> HeightMap {
+/// The filled map, and what is to be said of it. A map without a measured point is returned as it is.
+pub(super) fn fill(mut map: HeightMap, how: Fill) -> (HeightMap, String) {
+    let mut note = String::new();
     let holes: Vec<usize> = (0..map.heights.values().len()).filter(|i| map.heights.values()[*i].is_nan()).collect();
     if holes.is_empty() || holes.len() == map.heights.values().len() {
-        return map;
+        return (map, note);
     }
     match how {
         Fill::Lowest => {
@@ -60,10 +62,13 @@ pub(super) fn fill(mut map: HeightMap, how: Fill) -> HeightMap {
         Fill::Nearest => nearest(&mut map),
         Fill::Laplace => {
             nearest(&mut map);
-            laplace(&mut map, &holes);
+            let left = laplace(&mut map, &holes, MOST_STEPS);
+            if left > TOLERANCE {
+                note = format!(", which stopped after {MOST_STEPS} steps at {left:.0e} of its first residual");
+            }
         }
     }
-    map
+    (map, note)
 }
 
 /// The points beside point `i`, those along x first.
@@ -75,25 +80,42 @@ fn neighbours(i: usize, nx: usize, ny: usize) -> impl Iterator<Item = (usize, bo
     along(along_x, true).chain(along(along_y, false))
 }
 
-/// Fronts that start at all measured points and go one point at a time; ties in a fixed order.
+/// Fronts that start at all measured points: a hole gets the height of the point that is nearest to it of those that fill its
+/// neighbours, which is the nearest of all but for differences below a distance of points; ties in a fixed order.
 fn nearest(map: &mut HeightMap) {
     let (nx, ny) = (map.heights.grid().nx(), map.heights.grid().ny());
+    let [dx, dy] = map.spacing();
+    // Squared lengths are not negative, so their bits have their order.
+    let squared = |i: usize, j: usize| {
+        let [x, y] = [(i % nx).abs_diff(j % nx) as f64 * dx, (i / nx).abs_diff(j / nx) as f64 * dy];
+        (x * x + y * y).to_bits()
+    };
     let values = map.heights.values_mut();
-    let at_hole = |values: &[f64], i: usize| neighbours(i, nx, ny).any(|(j, _)| values[j].is_nan());
-    let mut front: VecDeque<usize> =
-        (0..values.len()).filter(|i| !values[*i].is_nan() && at_hole(values, *i)).collect();
-    while let Some(i) = front.pop_front() {
-        for (j, _) in neighbours(i, nx, ny) {
-            if values[j].is_nan() {
-                values[j] = values[i];
-                front.push_back(j);
-            }
+    let mut front = BinaryHeap::new();
+    for i in (0..values.len()).filter(|i| !values[*i].is_nan()) {
+        let holes = around(i, nx, ny).filter(|j| values[*j].is_nan());
+        front.extend(holes.map(|hole| Reverse((squared(hole, i), hole, i))));
+    }
+    while let Some(Reverse((_, hole, from))) = front.pop() {
+        if values[hole].is_nan() {
+            values[hole] = values[from];
+            let holes = around(hole, nx, ny).filter(|j| values[*j].is_nan());
+            front.extend(holes.map(|next| Reverse((squared(next, from), next, from))));
         }
     }
 }
 
-/// Conjugate gradients for Σ w (h_i - h_j) = 0 over the neighbours of each hole, from the heights that the holes have.
-fn laplace(map: &mut HeightMap, holes: &[usize]) {
+/// The eight points around point `i`, or those of them that there are.
+fn around(i: usize, nx: usize, ny: usize) -> impl Iterator<Item = usize> {
+    let (ix, iy) = (i % nx, i / nx);
+    let rows = iy.saturating_sub(1)..(iy + 2).min(ny);
+    let columns = ix.saturating_sub(1)..(ix + 2).min(nx);
+    rows.flat_map(move |y| columns.clone().map(move |x| y * nx + x)).filter(move |j| *j != i)
+}
+
+/// Conjugate gradients for Σ w (h_i - h_j) = 0 over the neighbours of each hole, from the heights that the holes have, in
+/// `most` steps at most. Returns what is left of the first residual.
+fn laplace(map: &mut HeightMap, holes: &[usize], most: usize) -> f64 {
     let (nx, ny) = (map.heights.grid().nx(), map.heights.grid().ny());
     let [dx, dy] = map.spacing();
     let weight = |along_x: bool| if along_x { dy / dx } else { dx / dy };
@@ -116,10 +138,10 @@ fn laplace(map: &mut HeightMap, holes: &[usize]) {
     let mut r = residual(values);
     let mut p = r.clone();
     let mut rr = dot(&r, &r);
-    let enough = rr * TOLERANCE * TOLERANCE;
-    for _ in 0..MOST_STEPS {
-        if rr <= enough {
-            return;
+    let first = rr;
+    for _ in 0..most {
+        if rr <= first * TOLERANCE * TOLERANCE {
+            break;
         }
         let ap = apply(&p);
         let alpha = rr / dot(&p, &ap);
@@ -128,5 +150,31 @@ fn laplace(map: &mut HeightMap, holes: &[usize]) {
         let next = dot(&r, &r);
         p.iter_mut().zip(&r).for_each(|(p, r)| *p = r + next / rr * *p);
         rr = next;
+    }
+    if first > 0.0 { (rr / first).sqrt() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use rc_core::{Field, Grid};
+
+    use super::*;
+
+    /// As many steps as there are holes are enough but for rounding.
+    #[test]
+    fn an_iteration_that_was_stopped_says_how_far_it_came() {
+        let map = || {
+            let mut heights = Field::from_fn(Grid::square(20).expect("a grid"), |x, y| x * x + 3.0 * x * y);
+            heights.values_mut()[105..290].fill(f64::NAN);
+            HeightMap::bare(heights)
+        };
+        let holes: Vec<usize> = (105..290).collect();
+        let left = |most| {
+            let mut map = map();
+            nearest(&mut map);
+            laplace(&mut map, &holes, most)
+        };
+        assert!(left(3) > 1e-3 && left(200) <= TOLERANCE, "{:e} after 3 steps, {:e} after 200", left(3), left(200));
+        assert_eq!(fill(map(), Fill::Laplace).1, "", "an iteration that came to its end");
     }
 }

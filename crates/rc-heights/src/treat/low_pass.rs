@@ -7,11 +7,15 @@ use crate::HeightMap;
 /// The weight is cut off where it is this many times the width below its peak: exp(-π 2.5²) = 3e-9.
 const REACH: f64 = 2.5;
 
+/// Least wavelength in points: shorter waves of the sampled weights are those of longer ones. A wave of four points keeps 0.5 +
+/// 0.002, of longer ones less too much.
+const LEAST_POINTS: f64 = 4.0;
+
 /// Weights exp(-π (x/αλ)²) with α = √(ln 2/π), so that a wave of length λ keeps half of its amplitude.
 pub(super) fn low_pass(mut map: HeightMap, wavelength: f64, edges: Edges) -> Result<HeightMap, TreatError> {
     let (grid, spacing) = (map.heights.grid(), map.spacing());
     let sides = [spacing[0] * grid.nx() as f64, spacing[1] * grid.ny() as f64];
-    let (least, most) = (2.0 * spacing[0].max(spacing[1]), sides[0].min(sides[1]));
+    let (least, most) = (LEAST_POINTS * spacing[0].max(spacing[1]), sides[0].min(sides[1]));
     if !(least..=most).contains(&wavelength) {
         return Err(TreatError::Wavelength { wavelength, least, most });
     }

@@ -16,7 +16,7 @@ use thiserror::Error;
 
 use crate::{BorderStep, HeightMap};
 
-pub use crop::Crop;
+pub use crop::{Crop, SAME_LENGTH};
 pub use fill::Fill;
 pub use flip::Flip;
 pub use level::Level;
@@ -36,7 +36,8 @@ pub enum Treatment {
     Level(Level),
     /// Make opposite borders meet.
     Periodic(Periodic),
-    /// Take short waves away with a Gaussian filter that halves waves of this length (ISO 16610-61).
+    /// Take short waves away with a Gaussian filter that halves waves of this length (ISO 16610-61), which must be four points or
+    /// more: weights at points cannot tell shorter waves from longer ones.
     LowPass {
         /// In the unit of the sides.
         wavelength: f64,
@@ -79,6 +80,18 @@ pub enum TreatError {
         /// The map.
         grid: Grid,
     },
+    /// Points that are so far apart that no number of them is as long as another.
+    #[error(
+        "crop: no part of the map of {grid} points, {:e} apart along x and {:e} along y, is a square within 0.1 %",
+        spacing[0],
+        spacing[1]
+    )]
+    NoSquare {
+        /// The map.
+        grid: Grid,
+        /// Distances of points along x and y.
+        spacing: [f64; 2],
+    },
     /// A treatment that needs every height.
     #[error("{treatment}: {missing} points are missing; fill them first (fill)")]
     Missing {
@@ -96,11 +109,11 @@ pub enum TreatError {
         points: usize,
     },
     /// A wavelength that the map does not have.
-    #[error("low_pass: must be from {least:e} (two points) to {most:e} (the shorter side), not {wavelength:e}")]
+    #[error("low_pass: must be from {least:e} (four points) to {most:e} (the shorter side), not {wavelength:e}")]
     Wavelength {
         /// As given.
         wavelength: f64,
-        /// Two points.
+        /// Four points.
         least: f64,
         /// The shorter side.
         most: f64,
@@ -116,7 +129,7 @@ pub enum TreatError {
 /// What a map is like after a treatment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Effect {
-    /// The treatment, in words; "as read" before the first.
+    /// The treatment, in words, and whether it ended early; "as read" before the first.
     pub treatment: String,
     /// Points along x and y.
     pub grid: Grid,
@@ -159,30 +172,57 @@ pub fn apply(map: HeightMap, treatments: &[Treatment]) -> Result<(HeightMap, Vec
     let (mut map, mut edges) = (map, Edges::Mirrored);
     let mut effects = Vec::with_capacity(treatments.len());
     for treatment in treatments {
-        map = one(map, *treatment, edges)?;
+        let note;
+        (map, note) = one(map, *treatment, edges)?;
         if matches!(treatment, Treatment::Periodic(_)) {
             edges = Edges::Periodic;
         }
-        effects.push(Effect::of(&map, treatment));
+        effects.push(Effect::of(&map, &format!("{treatment}{note}")));
     }
     Ok((map, effects))
 }
 
-fn one(map: HeightMap, treatment: Treatment, edges: Edges) -> Result<HeightMap, TreatError> {
+/// The grid of `map` after each treatment, without treating it: what a program compares with its memory first. No treatment has
+/// a larger one on its way.
+///
+/// # Errors
+/// [`TreatError`] of the first treatment whose part is not inside the map, or whose grid is none.
+pub fn grids_after(map: &HeightMap, treatments: &[Treatment]) -> Result<Vec<Grid>, TreatError> {
+    let (mut grid, mut spacing) = (map.heights.grid(), map.spacing());
+    let next = |treatment: &Treatment| -> Result<Grid, TreatError> {
+        let after = match *treatment {
+            Treatment::Crop(crop) => crop::part(grid, spacing, crop)?.1,
+            Treatment::Periodic(Periodic::Mirror) => Grid::new(2 * grid.nx(), 2 * grid.ny())?,
+            Treatment::Resample(wanted) => {
+                let ratio = |n: usize, wanted: usize| n as f64 / wanted as f64;
+                spacing = [spacing[0] * ratio(grid.nx(), wanted.nx()), spacing[1] * ratio(grid.ny(), wanted.ny())];
+                wanted
+            }
+            _ => grid,
+        };
+        grid = after;
+        Ok(after)
+    };
+    treatments.iter().map(next).collect()
+}
+
+/// The map after `treatment`, and what is to be said of it.
+fn one(map: HeightMap, treatment: Treatment, edges: Edges) -> Result<(HeightMap, String), TreatError> {
     let missing = map.missing();
     let complete = matches!(treatment, Treatment::Periodic(_) | Treatment::LowPass { .. } | Treatment::Resample(_));
     if complete && missing > 0 {
         return Err(TreatError::Missing { treatment, missing });
     }
-    match treatment {
+    let treated = match treatment {
         Treatment::Crop(crop) => crop::crop(&map, crop),
         Treatment::Flip(axis) => Ok(flip::flip(map, axis)),
-        Treatment::Fill(how) => Ok(fill::fill(map, how)),
+        Treatment::Fill(how) => return Ok(fill::fill(map, how)),
         Treatment::Level(form) => level::level(map, form),
         Treatment::Periodic(how) => periodic::periodic(map, how),
         Treatment::LowPass { wavelength } => low_pass::low_pass(map, wavelength, edges),
         Treatment::Resample(grid) => Ok(resample::resample(map, grid, edges)),
-    }
+    };
+    treated.map(|map| (map, String::new()))
 }
 
 /// Root mean square about the mean of the values that are there; `NaN` without any.

@@ -1,6 +1,6 @@
 //! Other numbers of points on the same rectangle.
 
-use rc_core::Grid;
+use rc_core::{Field, Grid};
 
 use super::stencil::{Edges, Taps, along_x, along_y};
 use crate::HeightMap;
@@ -8,14 +8,22 @@ use crate::HeightMap;
 /// Fewer points are means over their elements; more points are on cubic curves (Catmull and Rom's) through those around.
 pub(super) fn resample(mut map: HeightMap, wanted: Grid, edges: Edges) -> HeightMap {
     let grid = map.heights.grid();
-    if wanted.nx() != grid.nx() {
+    let across = |field: Field| {
         let table = table(grid.nx(), wanted.nx());
-        map.heights = along_x(&map.heights, wanted.nx(), edges, |i| taps(&table[i]));
-    }
-    if wanted.ny() != grid.ny() {
+        along_x(&field, wanted.nx(), edges, |i| taps(&table[i]))
+    };
+    let up = |field: Field| {
         let table = table(grid.ny(), wanted.ny());
-        map.heights = along_y(&map.heights, wanted.ny(), edges, |i| taps(&table[i]));
-    }
+        along_y(&field, wanted.ny(), edges, |i| taps(&table[i]))
+    };
+    // What is between is not larger than both ends: that becomes shorter first which becomes shorter.
+    map.heights = match (wanted.nx() != grid.nx(), wanted.ny() != grid.ny()) {
+        (true, true) if wanted.ny() < grid.ny() && wanted.nx() > grid.nx() => across(up(map.heights)),
+        (true, true) => up(across(map.heights)),
+        (true, false) => across(map.heights),
+        (false, true) => up(map.heights),
+        (false, false) => map.heights,
+    };
     map
 }
 

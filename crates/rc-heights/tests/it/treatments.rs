@@ -4,7 +4,10 @@
 use std::f64::consts::TAU;
 
 use rc_core::{Field, Grid};
-use rc_heights::{Crop, Effect, Fill, Flip, HeightMap, Level, Periodic, TreatError, Treatment, Unit, apply, hann};
+use rc_heights::{
+    Crop, Effect, Fill, Flip, HeightMap, Level, Periodic, SAME_LENGTH, TreatError, Treatment, Unit, apply, grids_after,
+    hann,
+};
 
 /// A map on a rectangle of `sides` m.
 fn map(nx: usize, ny: usize, sides: [f64; 2], height: impl Fn(f64, f64) -> f64) -> HeightMap {
@@ -124,9 +127,17 @@ fn the_filter_halves_waves_of_its_length() {
         // exp(-π (αλq)²) = 2^-(λ/wavelength)², and the weights are cut off at 3e-9.
         assert!((kept - expected).abs() < 1e-6, "{waves} waves: {kept} is kept, expected {expected}");
     }
-    let tilted = map(64, 64, sides, |x, _| x);
-    let refused = apply(tilted, &[Treatment::LowPass { wavelength: 2e-3 }]);
-    assert!(matches!(refused, Err(TreatError::Wavelength { .. })), "{refused:?}");
+    // Four points a wave are the least: what the weights at points make of shorter waves is not what they say.
+    let shortest = map(64, 64, sides, |x, _| (TAU * 16.0 * x / 1e-3).cos());
+    let low_pass = Treatment::LowPass { wavelength: 1e-3 / 16.0 };
+    let (filtered, _) =
+        apply(shortest.clone(), &[Treatment::Periodic(Periodic::AsIs), low_pass]).expect("a filtered map");
+    let kept = filtered.heights.rms() / shortest.heights.rms();
+    assert!((kept - 0.5).abs() < 3e-3, "{kept} of four points a wave is kept");
+    for wavelength in [2e-3, 3.9e-3 / 64.0, f64::NAN] {
+        let refused = apply(shortest.clone(), &[Treatment::LowPass { wavelength }]);
+        assert!(matches!(refused, Err(TreatError::Wavelength { .. })), "{refused:?}");
+    }
 }
 
 #[test]
@@ -161,6 +172,98 @@ fn parts_are_where_they_are_asked_for() {
     }
     for text in ["", "2x", "2+1", "2x2+1+1+1", "squares", "-1"] {
         assert!(text.parse::<Crop>().is_err(), "'{text}' was read as a part");
+    }
+}
+
+#[test]
+fn the_square_of_any_map_is_one_that_is_accepted() {
+    // Points as many and as far apart as instruments make them, and few points at awkward distances.
+    let cases = [
+        (1024, 768, 1.0, 1.0),
+        (640, 480, 1.0, 1.11),
+        (97, 61, 0.73, 1.0),
+        (50, 50, 1.0, 1.37),
+        (7, 90, 2.6, 0.4),
+        (4000, 3000, 1.0, 1.0),
+    ];
+    for (nx, ny, dx, dy) in cases {
+        let sides = [dx * nx as f64, dy * ny as f64];
+        let (square, _) = treated(map(nx, ny, sides, |x, _| x), Treatment::Crop(Crop::Square));
+        let [x, y] = square.sides.expect("sides");
+        assert!((x / y - 1.0).abs() <= SAME_LENGTH, "{nx} x {ny}, {dx} x {dy}: {x} x {y}");
+        // Not needlessly small: nothing larger is a square, up to the shorter side.
+        let grid = square.heights.grid();
+        for larger in grid.nx() + 1..=(sides[0].min(sides[1]) / dx) as usize {
+            let fits = |ny: usize| (dx * larger as f64 / (dy * ny as f64) - 1.0).abs() <= SAME_LENGTH;
+            assert!(!(1..=ny).any(fits), "{larger} points along x are a square too, not only {grid}");
+        }
+    }
+    let image = HeightMap { sides: None, ..map(16, 12, [1.0, 1.0], |x, _| x) };
+    let (square, effect) = treated(image, Treatment::Crop(Crop::Square));
+    assert_eq!(
+        (square.sides, effect.grid),
+        (None, Grid::square(12).expect("a grid")),
+        "points without a size are squares"
+    );
+    let refused = apply(map(3, 3, [3.0, 3.0 * 2.3], |x, _| x), &[Treatment::Crop(Crop::Square)]);
+    assert!(matches!(refused, Err(TreatError::NoSquare { .. })), "{refused:?}");
+}
+
+#[test]
+fn grids_are_known_before_the_map_is_treated() {
+    let grid = |nx, ny| Grid::new(nx, ny).expect("a grid");
+    let original = map(30, 20, [3.0, 1.0], |x, y| x + y);
+    let treatments = [
+        Treatment::Crop("24x20".parse().expect("a part")),
+        Treatment::Level(Level::Plane),
+        Treatment::Periodic(Periodic::Mirror),
+        Treatment::Resample(grid(60, 10)),
+        Treatment::Crop(Crop::Square),
+    ];
+    let (_, effects) = apply(original.clone(), &treatments).expect("a treated map");
+    let expected: Vec<Grid> = effects.iter().map(|effect| effect.grid).collect();
+    assert_eq!(grids_after(&original, &treatments), Ok(expected));
+    let large = Treatment::Resample(grid(1 << 20, 1 << 20));
+    assert_eq!(grids_after(&original, &[large]), Ok(vec![grid(1 << 20, 1 << 20)]), "no memory is taken");
+}
+
+#[test]
+fn resampling_in_either_order_is_the_same_map() {
+    let fine = map(24, 40, [1.0, 1.0], |x, y| (TAU * (2.0 * x + y)).sin());
+    let resample = |nx, ny| Treatment::Resample(Grid::new(nx, ny).expect("a grid"));
+    let (both, _) = treated(fine.clone(), resample(90, 7));
+    let (steps, _) = apply(fine, &[resample(90, 40), resample(90, 7)]).expect("a map");
+    let off = both.heights.values().iter().zip(steps.heights.values()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    // Rounding of sums of some ten heights of order 1.
+    assert!(off < 1e-14, "off by {off:e}");
+}
+
+#[test]
+fn the_nearest_height_is_the_nearest_by_length() {
+    // Points are ten times as far apart along x as along y: what is three points away along y is nearer than a neighbour along x.
+    let mut holed = map(9, 9, [9.0, 0.9], |x, y| 10.0 * x.floor() + (10.0 * y).floor());
+    for iy in 3..6 {
+        let i = holed.heights.grid().index(4, iy);
+        holed.heights.values_mut()[i] = f64::NAN;
+    }
+    let (filled, _) = treated(holed.clone(), Treatment::Fill(Fill::Nearest));
+    let [below, above] = [2, 6].map(|iy| holed.heights.at(4, iy));
+    assert_eq!([3, 5].map(|iy| filled.heights.at(4, iy)), [below, above]);
+    assert!([below, above].contains(&filled.heights.at(4, 4)), "{}", filled.heights.at(4, 4));
+    // A large hole against a search over all points.
+    let mut wide = map(30, 40, [3.0, 1.0], |x, y| x + 31.7 * y);
+    for i in (0..1200).filter(|i| i % 97 != 0) {
+        wide.heights.values_mut()[i] = f64::NAN;
+    }
+    let (filled, _) = treated(wide.clone(), Treatment::Fill(Fill::Nearest));
+    let place = |i: usize| [(i % 30) as f64 * 0.1, (i / 30) as f64 * 0.025];
+    let apart = |i: usize, j: usize| (place(i)[0] - place(j)[0]).hypot(place(i)[1] - place(j)[1]);
+    let there: Vec<usize> = (0..1200).step_by(97).collect();
+    for i in 0..1200 {
+        let least = there.iter().map(|j| apart(i, *j)).fold(f64::INFINITY, f64::min);
+        let from =
+            there.iter().find(|j| wide.heights.values()[**j] == filled.heights.values()[i]).expect("a measured height");
+        assert!(apart(i, *from) < least + 0.025, "point {i}: {} away, the nearest {least}", apart(i, *from));
     }
 }
 
