@@ -54,6 +54,13 @@ impl ResultFolder {
         Ok(Self { summary, side, e_star, pressure, gap })
     }
 
+    /// Whether the fields are those of the elements that were solved, and not their means over blocks (`output_grid`).
+    #[must_use]
+    pub fn is_of_elements(&self) -> bool {
+        let grid = self.pressure.grid();
+        self.summary.grid == [grid.nx(), grid.ny()]
+    }
+
     /// Reads a result folder whose fields are to be drawn, or handed on.
     ///
     /// # Errors

@@ -49,18 +49,21 @@ impl Persson {
 
     /// The Λ of Eq. 7 that is nearest to `densities` (stress, P) by least squares, the mean stress given.
     ///
-    /// One parameter: a search by golden sections in ln Λ, between limits where Eq. 7 has its peak far below and far beyond the
-    /// stresses given. Any unit of stress will do here, as long as all three are in it.
+    /// One parameter: a search by golden sections in ln Λ, between limits where Eq. 7 is far narrower than the range of the
+    /// stresses given, or has its peak far beyond them. Any unit of stress will do here, as long as all three are in it.
     #[must_use]
     pub fn fit(mean_pressure: f64, densities: &[(f64, f64)]) -> Self {
         let largest = densities.iter().fold(0.0, |largest: f64, at| largest.max(at.0));
+        let least = densities.iter().fold(largest, |least, at| least.min(at.0));
+        // In full contact all may be near their mean, or even the same.
+        let range = if least > 0.5 * largest { (largest - least).max(1e-9 * largest) } else { largest };
         let of = |logarithm: f64| Self { mean_pressure, lambda: logarithm.exp() };
         let misfit = |logarithm: f64| {
             let persson = of(logarithm);
             densities.iter().map(|&(stress, density)| (density - persson.density(stress)).powi(2)).sum::<f64>()
         };
         let section = 0.5 * (5_f64.sqrt() - 1.0);
-        let (mut low, mut high) = ((1e-6 * largest * largest).ln(), (largest * largest).ln());
+        let (mut low, mut high) = ((1e-6 * range * range).ln(), (largest * largest).ln());
         // The interval shrinks to 1e-13 of itself.
         for _ in 0..62 {
             let (left, right) = (high - section * (high - low), low + section * (high - low));
@@ -159,6 +162,12 @@ mod tests {
 
     #[test]
     fn the_fit_finds_the_lambda_of_eq_7() {
+        // Far beyond full contact, the stresses are all near their mean.
+        let far = Persson { mean_pressure: 5.0, lambda: 1e-8 };
+        let densities: Vec<(f64, f64)> =
+            (-100..=100).map(|k| 5.0 + 5e-6 * f64::from(k)).map(|stress| (stress, far.density(stress))).collect();
+        let found = Persson::fit(5.0, &densities);
+        assert!((found.lambda / far.lambda - 1.0).abs() < 1e-6, "{found:?} against {far:?}");
         for exact in [Persson { mean_pressure: 8.9e-4, lambda: 5.5e-5 }, Persson { mean_pressure: 0.02, lambda: 1e-4 }]
         {
             let densities: Vec<(f64, f64)> =

@@ -9,8 +9,9 @@ const SMALLEST_PART = 1e-7;
 class Axis {
   constructor({ label, unit = "", log = false, from, to }, values, start, end) {
     const usable = values.filter((value) => Number.isFinite(value) && (!log || value > 0));
-    let low = from ?? Math.min(...usable, log ? Infinity : 0);
-    let high = to ?? Math.max(...usable);
+    // Not Math.min(...usable): a call has no room for the arguments of a long sweep.
+    let low = from ?? usable.reduce((least, value) => Math.min(least, value), log ? Infinity : 0);
+    let high = to ?? usable.reduce((greatest, value) => Math.max(greatest, value), -Infinity);
     if (!Number.isFinite(low) || !Number.isFinite(high) || !(high > low)) {
       const middle = Number.isFinite(high) && high > 0 ? high : 1;
       [low, high] = log ? [middle / 3, middle * 3] : [0, 1.5 * middle];

@@ -1,15 +1,16 @@
 // The page of one solved contact.
 
 /** The maps, and the sections through their cursor. */
-function mapsAndSections({ side, pressure, gap, contact, peak, averaged }) {
+function mapsAndSections({ side, pressure, gap, contact, of_elements: ofElements, peak, averaged }) {
   const fields = { pressure: new EmbeddedField(pressure), gap: new EmbeddedField(gap), contact: new EmbeddedField(contact) };
   const view = new SharedView(peak, Math.min(1, 8 / Math.max(pressure.nx, pressure.ny)));
   const map = (title, name, colours, unit) => new FieldMap({
     title, field: fields[name], colours, view, side, ends: (low, high) => [low > 0 ? si(low, unit, 4) : "0", si(high, unit, 4)], reading: (value) => si(value, unit),
   });
+  const touching = ofElements ? "contact" : "touched";
   const contactMap = new FieldMap({
-    title: "Contact", field: fields.contact, colours: contact.colours, view, side, ends: () => ["gap", "contact"], movable: false,
-    reading: (value) => (value === 0 ? "gap" : value === 1 ? "contact" : `${digits(100 * value, 3)} % contact`),
+    title: ofElements ? "Contact" : "Touched", field: fields.contact, colours: contact.colours, view, side, ends: () => ["gap", touching], movable: false,
+    reading: (value) => (value === 0 ? "gap" : value === 1 ? touching : `${digits(100 * value, 3)} % ${touching}`),
   });
   const maps = [contactMap, map("Pressure", "pressure", pressure.colours, "Pa"), map("Gap", "gap", gap.colours, "m")];
   const place = make("span", {});
@@ -31,7 +32,7 @@ function mapsAndSections({ side, pressure, gap, contact, peak, averaged }) {
     place.textContent = `x = ${wrapped[0]}, y = ${wrapped[1]}${view.pinned ? " (held: click to let go)" : ""}`;
   });
   view.change();
-  const help = "The wheel zooms, dragging moves (the cell is periodic), a click holds the cursor; arrow keys, + and − do the same. ";
+  const help = "The wheel zooms, dragging moves (the cell is periodic), a click holds the cursor; arrow keys move the cursor, + and − zoom. ";
   return [
     make("h2", {}, "Maps"),
     make("div", { class: "columns" }, ...maps.map((one) => one.element)),
@@ -76,11 +77,13 @@ function sectionCharts(fields, view, side) {
 /** P(σ) with the fit of Eq. 7. */
 function stressDistribution({ values: stress, density, fit, notes }) {
   const { factor, unit } = scaleOf(stress[stress.length - 1], "Pa");
+  // In full contact, what there is to see is far from zero.
+  const full = stress[0] > 0.5 * stress[stress.length - 1];
   const points = (of) => stress.map((s, i) => [s, of[i] * factor]);
   const series = [{ name: "solved", points: points(density), colour: "var(--blue)" }];
   if (fit) series.push({ name: "Persson's form, Eq. 7, fitted", points: points(fit), colour: "var(--red)", dashed: true });
   const chart = new Chart({
-    x: { label: "stress σ", unit: "Pa" }, y: { label: `P(σ) (1/${unit})` }, series, switches: ["x", "y"],
+    x: { label: "stress σ", unit: "Pa", from: full ? stress[0] : undefined }, y: { label: `P(σ) (1/${unit})` }, series, switches: ["x", "y"],
   });
   return make("section", {}, make("h2", {}, "Stress distribution"), chart.element, ...notes.map((text) => make("p", { class: "quiet" }, text)));
 }
@@ -98,7 +101,7 @@ function contactSpots({ rows, diameters, counts, note }) {
 
 /** The certificate: each error beside what it may be. */
 function certificate({ rows, note }) {
-  const line = ({ name, value, limit, holds }) => [name, value, limit, [holds ? "good" : "bad", holds ? "holds" : "exceeded"]];
+  const line = ({ name, value, limit, holds }) => [name, value, limit, [holds === false ? "bad" : "good", { true: "holds", false: "exceeded" }[holds] || ""]];
   return make("section", {}, make("h2", {}, "Certificate"), table(rows.map(line), ["", "error", "may be", ""]), make("p", { class: "quiet" }, note));
 }
 

@@ -8,6 +8,7 @@ function sweepChart(title, { scenes }, x, y, switches) {
     const several = seeds.length > 1;
     const thin = several ? seeds.map((rows) => ({ name: "", points: pick(rows), colour, faint: true })) : [];
     const label = several ? `${name ? `${name}: ` : ""}mean of ${seeds.length} surfaces` : name;
+    if (mean.length === 0) return [...thin, { name, points: [], colour }];
     return [...thin, { name: label, points: pick(mean), colour }, { name: "", points: pick(mean), colour, kind: "dots" }];
   });
   const chart = new Chart({ x: { ...x }, y: { ...y }, series, switches });

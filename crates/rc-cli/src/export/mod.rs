@@ -68,17 +68,21 @@ struct Fields {
     gap: Field,
     /// m, of a height map.
     height: Option<Field>,
+    /// What 1 in [`Fields::contact`] says: `contact` of elements, `touched` of means over them, above 0 where any of them is in contact.
+    contact_name: &'static str,
 }
 
 impl Fields {
     /// Reads them from the folder of a result.
     fn read(folder: &Path) -> Result<Self, CliError> {
-        let ResultFolder { summary, side, e_star, pressure, gap } = ResultFolder::read_finite(folder)?;
+        let result = ResultFolder::read_finite(folder)?;
+        let contact_name = if result.is_of_elements() { "contact" } else { "touched" };
+        let ResultFolder { summary, side, e_star, pressure, gap } = result;
         let heights = folder.join(HEIGHTS_FILE);
         let height = heights.is_file().then(|| npy::read(&heights)).transpose()?;
         // With --output-grid, pressure and gap are coarser than the heights.
         let height = height.filter(|height| height.grid() == pressure.grid());
-        Ok(Self { status: summary.status, side, e_star, pressure, gap, height })
+        Ok(Self { status: summary.status, side, e_star, pressure, gap, height, contact_name })
     }
 
     /// 1 where the pressure is positive, else 0.

@@ -11,7 +11,7 @@ pub(super) fn image(fields: &Fields) -> Dataset<'_> {
     let Fields { side, pressure, gap, height, .. } = fields;
     let grid = pressure.grid();
     let mut cells = vec![
-        Array::new("contact", 1, Values::UInt8(fields.contact())),
+        Array::new(fields.contact_name, 1, Values::UInt8(fields.contact())),
         Array::new("pressure", 1, Values::Float64(pressure.values().into())),
         Array::new("gap", 1, Values::Float64(gap.values().into())),
     ];

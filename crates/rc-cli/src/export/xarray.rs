@@ -13,7 +13,7 @@ const PLANE: &[&str] = &["y", "x"];
 
 /// Pressure, gap, contact, heights if there are any, and the coordinates of the centres of elements.
 pub(super) fn group(fields: &Fields) -> Group<'_> {
-    let Fields { status, side, e_star, pressure, gap, height } = fields;
+    let Fields { status, side, e_star, pressure, gap, height, contact_name } = fields;
     let grid = pressure.grid();
     let plane = |name, units, meaning, values| Array {
         name,
@@ -34,7 +34,7 @@ pub(super) fn group(fields: &Fields) -> Group<'_> {
     let mut arrays = vec![
         plane("pressure", "Pa", "contact pressure", Values::Float64(pressure.values().into())),
         plane("gap", "m", "gap between the surfaces", Values::Float64(gap.values().into())),
-        plane("contact", "1", "1 where the pressure is positive", Values::UInt8(fields.contact())),
+        plane(contact_name, "1", "1 where the pressure is positive", Values::UInt8(fields.contact())),
     ];
     arrays.extend(height.iter().map(|height| {
         let meaning = "height of the rigid surface, positive towards the half-space";

@@ -2,7 +2,7 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use rc_core::Field;
+use rc_core::{Field, Grid};
 use serde::Serialize;
 
 use crate::picture::{Palette, PixelMean};
@@ -32,25 +32,34 @@ pub(super) struct EmbeddedField {
     colours: &'static [(u8, u8, u8)],
 }
 
-/// The mean of `value` over the elements of each pixel.
-pub(super) fn pixel_means(field: &Field, value: impl Fn(f64) -> f64) -> Field {
-    let mut means = PixelMean::new(field.grid(), MOST_PIXELS);
-    for iy in 0..field.grid().ny() {
-        let row = field.row(iy);
-        means.take(|ix| value(row[ix]));
+/// The mean of `value`, of the number of an element, over the elements of each pixel.
+pub(super) fn pixel_means(grid: Grid, value: impl Fn(usize) -> f64) -> Field {
+    let mut means = PixelMean::new(grid, MOST_PIXELS);
+    for iy in 0..grid.ny() {
+        means.take(|ix| value(grid.index(ix, iy)));
     }
     means.finish()
 }
 
 impl EmbeddedField {
     /// `pixels`, of values from 0 to `max`. What is above 0 is at least 1 step above it, so that contact stays contact.
-    pub(super) fn new(pixels: &Field, max: f64, bits: Bits, palette: Palette) -> Self {
+    pub(super) fn of_contact(pixels: &Field, max: f64, bits: Bits, palette: Palette) -> Self {
+        Self::new(pixels, max, bits, palette, 1.0)
+    }
+
+    /// `pixels`, of values from 0 to `max`, each the nearest number.
+    pub(super) fn of_gap(pixels: &Field, max: f64, bits: Bits, palette: Palette) -> Self {
+        Self::new(pixels, max, bits, palette, 0.0)
+    }
+
+    /// What is above 0 becomes `least` or more.
+    fn new(pixels: &Field, max: f64, bits: Bits, palette: Palette, least: f64) -> Self {
         let greatest = match bits {
             Bits::Eight => f64::from(u8::MAX),
             Bits::Sixteen => f64::from(u16::MAX),
         };
         let number = |value: &f64| {
-            let part = if max > 0.0 && *value > 0.0 { (value / max * greatest).round().max(1.0) } else { 0.0 };
+            let part = if max > 0.0 && *value > 0.0 { (value / max * greatest).round().max(least) } else { 0.0 };
             part.min(greatest) as u16
         };
         let numbers = pixels.values().iter().map(number);
@@ -72,7 +81,6 @@ impl EmbeddedField {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rc_core::Grid;
 
     #[test]
     fn values_are_within_half_a_step_and_contact_stays_contact() {
@@ -80,13 +88,17 @@ mod tests {
         let values = vec![0.0, 1e-12, 0.3, 1.0, 2.0, 1.999];
         let field = Field::new(grid, values.clone()).expect("a field");
         for (bits, steps) in [(Bits::Eight, 255.0), (Bits::Sixteen, 65535.0)] {
-            let embedded = EmbeddedField::new(&field, 2.0, bits, Palette::Ink);
-            let bytes = STANDARD.decode(&embedded.data).expect("base64");
-            let numbers: Vec<u16> = match bits {
-                Bits::Eight => bytes.iter().map(|byte| u16::from(*byte)).collect(),
-                Bits::Sixteen => bytes.chunks(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]])).collect(),
+            let numbers = |embedded: &EmbeddedField| -> Vec<u16> {
+                let bytes = STANDARD.decode(&embedded.data).expect("base64");
+                match bits {
+                    Bits::Eight => bytes.iter().map(|byte| u16::from(*byte)).collect(),
+                    Bits::Sixteen => bytes.chunks(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]])).collect(),
+                }
             };
+            let gaps = numbers(&EmbeddedField::of_gap(&field, 2.0, bits, Palette::Ink));
+            let numbers = numbers(&EmbeddedField::of_contact(&field, 2.0, bits, Palette::Ink));
             assert_eq!((numbers[0], numbers[1], f64::from(numbers[4])), (0, 1, steps));
+            assert_eq!((gaps[1], &gaps[2..]), (0, &numbers[2..]), "a gap of nothing is none");
             for (number, value) in numbers.iter().zip(&values).skip(2) {
                 let read = f64::from(*number) * 2.0 / steps;
                 assert!((read - value).abs() <= 1.0 / steps, "{value} became {read}");
@@ -97,9 +109,9 @@ mod tests {
     #[test]
     fn an_empty_field_is_all_zeros_and_a_large_one_is_averaged() {
         let zero = Field::zeros(Grid::square(2).expect("a grid"));
-        assert_eq!(EmbeddedField::new(&zero, 0.0, Bits::Eight, Palette::Ink).data, STANDARD.encode([0; 4]));
+        assert_eq!(EmbeddedField::of_contact(&zero, 0.0, Bits::Eight, Palette::Ink).data, STANDARD.encode([0; 4]));
         let large = Field::from_fn(Grid::new(2048, 100).expect("a grid"), |x, _| x);
-        let means = pixel_means(&large, |value| value);
+        let means = pixel_means(large.grid(), |i| large.values()[i]);
         assert_eq!((means.grid().nx(), means.grid().ny()), (512, 100));
         assert!((means.mean() - large.mean()).abs() < 1e-12, "{} against {}", means.mean(), large.mean());
     }

@@ -52,6 +52,7 @@ fn the_page_of_a_result_has_its_fields_and_the_commands_that_repeat_it() {
         assert!((shown - p).abs() <= max / 65535.0, "{p} is shown as {shown}");
         assert_eq!(shown > 0.0, *p > 0.0, "contact is shown as it is");
     }
+    assert_eq!(page["maps"]["of_elements"], true);
     assert!(page["certificate"]["rows"].as_array().is_some_and(|rows| rows.iter().all(|row| row["holds"] == true)));
     let counts = page["spots"]["counts"].as_array().expect("counts").iter().filter_map(Value::as_u64).sum::<u64>();
     assert_eq!(page["spots"]["rows"][0][1], counts.to_string().as_str(), "spots in the bins and in the table");
@@ -114,6 +115,24 @@ fn pages_of_full_contact_of_no_convergence_and_of_height_maps_are_made() {
     place.write("map/summary.json", summary.to_string());
     assert_solved(&place.run(&["report", "map"]));
     assert_eq!(data(&text(&place.bytes("map/report.html")))["good"], false);
+}
+
+#[test]
+fn means_over_blocks_are_not_taken_for_elements() {
+    let place = Place::new();
+    assert_solved(&place.run(&small("1e5", &["--output-grid", "32", "--out", "r"])));
+    assert_solved(&place.run(&["report", "r"]));
+    let page = self_contained(&place, "r/report.html");
+    assert_eq!(page["maps"]["of_elements"], false);
+    let says = page["maps"]["averaged"].as_str().expect("text");
+    assert!(says.contains("32 x 32 values of 128 x 128 elements"), "{says}");
+    assert!(page["stress"].is_null() && page["spots"].is_null(), "what needs the elements is left out");
+    assert_solved(&place.run(&["export", "r", "--quiet"]));
+    let head = text(&place.bytes("r/fields.vti"));
+    assert!(head.contains("Name=\"touched\"") && !head.contains("Name=\"contact\""), "{}", &head[..2000]);
+    assert_solved(&place.run(&["export", "r", "--zarr", "--quiet", "--out", "z"]));
+    let names = place.names("z/fields.zarr");
+    assert!(names.contains(&"touched".to_owned()) && !names.contains(&"contact".to_owned()), "{names:?}");
 }
 
 #[test]
