@@ -89,7 +89,9 @@ fn milliseconds(seconds: f64) -> String {
 
 fn ratio(ratio: Ratio) -> String {
     let sign = if ratio.at_least { "> " } else { "" };
-    format!("{sign}{:.0}", ratio.value)
+    // One digit behind the point only where it decides who is faster.
+    let digits = usize::from(ratio.value < 9.95);
+    format!("{sign}{:.digits$}", ratio.value)
 }
 
 /// Time to an error, ours and the fastest peer's, over all scenes.
