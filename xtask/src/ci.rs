@@ -4,7 +4,7 @@ use anyhow::Result;
 
 use crate::process::Step;
 
-/// Checks format, lints and documentation, then runs every test; stops at the first failure.
+/// Checks format, lints and documentation, then runs every test, and the solver's with a fork of a crate; stops at the first failure.
 ///
 /// The same steps as the script `.ci/run`.
 #[derive(clap::Args)]
@@ -16,6 +16,7 @@ pub(crate) const STEPS: &[Step] = &[
     Step { environment: &[], words: &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"] },
     Step { environment: &[("RUSTDOCFLAGS", "-D warnings")], words: &["doc", "--workspace", "--no-deps"] },
     Step { environment: &[], words: &["xtask", "test"] },
+    Step { environment: &[], words: &["xtask", "swap"] },
 ];
 
 pub(crate) fn run(_args: &Args) -> Result<()> {
