@@ -32,7 +32,7 @@ pub struct ContactArea {
     pub missing_square: f64,
     /// Best estimate, from the edges between the centres of elements.
     pub fraction: f64,
-    /// Estimated error of `fraction`, which holds the true one in 95 of 100 scenes or more (`cargo xtask accuracy` measures it):
+    /// Estimated error of `fraction`, which holds the true one in 93 of 100 scenes or more (`cargo xtask accuracy` measures it):
     /// from the number of edges, and what was taken off the count.
     pub error: f64,
 }
