@@ -16,8 +16,8 @@ pub(crate) struct GapSums {
     pub(super) pressure: f64,
     /// Σ p g
     pub(super) pressure_gap: f64,
-    /// Σ p h
-    pub(super) pressure_height: f64,
+    /// Σ p (h - c), with the constant c of `g = L p - h + c`
+    pub(super) pressure_overlap: f64,
     /// min g
     pub(super) min_gap: f64,
     /// Σ g over p > 0
@@ -30,18 +30,18 @@ impl GapSums {
     pub(super) const EMPTY: Self = Self {
         pressure: 0.0,
         pressure_gap: 0.0,
-        pressure_height: 0.0,
+        pressure_overlap: 0.0,
         min_gap: f64::INFINITY,
         contact_gap: 0.0,
         n_contact: 0.0,
     };
 
-    pub(super) fn add_element(&mut self, p: f64, g: f64, h: f64) {
+    pub(super) fn add_element(&mut self, p: f64, g: f64, overlap: f64) {
         self.min_gap = lesser(self.min_gap, g);
         if p > 0.0 {
             self.pressure += p;
             self.pressure_gap += p * g;
-            self.pressure_height += p * h;
+            self.pressure_overlap += p * overlap;
             self.contact_gap += g;
             self.n_contact += 1.0;
         }
@@ -54,7 +54,7 @@ impl GapSums {
             Self {
                 pressure: sum.pressure + area * block.pressure,
                 pressure_gap: sum.pressure_gap + area * block.pressure_gap,
-                pressure_height: sum.pressure_height + area * block.pressure_height,
+                pressure_overlap: sum.pressure_overlap + area * block.pressure_overlap,
                 min_gap: lesser(sum.min_gap, block.min_gap),
                 contact_gap: sum.contact_gap + area * block.contact_gap,
                 n_contact: sum.n_contact + area * block.n_contact,
@@ -68,8 +68,8 @@ impl GapSums {
     }
 
     /// Σ p v
-    pub(super) fn work(&self, problem: &Problem) -> f64 {
-        self.pressure_gap + self.pressure_height - problem.offset() * self.pressure
+    pub(super) fn work(&self) -> f64 {
+        self.pressure_gap + self.pressure_overlap
     }
 
     /// The gap of elements in contact: its mean, or zero where the penetration is prescribed.
@@ -84,9 +84,8 @@ impl GapSums {
     /// The factor on the pressure that makes its weighted mean gap zero, under penetration control.
     pub(crate) fn scale_to_penetration(&self, problem: &Problem) -> Option<f64> {
         let Control::Penetration(_) = problem.control else { return None };
-        let wanted = self.pressure_height - problem.offset() * self.pressure;
-        let displaced = self.pressure_gap + wanted;
-        let scale = wanted / displaced;
+        let displaced = self.work();
+        let scale = self.pressure_overlap / displaced;
         let possible = scale.is_finite() && displaced > 0.0;
         possible.then(|| scale.clamp(GREATEST_SCALING.recip(), GREATEST_SCALING))
     }
@@ -147,6 +146,6 @@ pub(crate) fn scale_to_load(problem: &Problem, n_cell: f64, blocks: &Blocks, pre
     }
 }
 
-pub(super) fn scale_all(values: &mut [f64], factor: f64) {
+fn scale_all(values: &mut [f64], factor: f64) {
     values.par_iter_mut().for_each(|value| *value *= factor);
 }

@@ -12,19 +12,22 @@
 mod blocks;
 mod engine;
 mod gap;
+mod mean;
 mod outcome;
 mod rows;
 mod shown;
+mod start;
 
 use rayon::prelude::*;
 use rc_core::{Event, Grid, Observer};
 
 pub(crate) use blocks::Blocks;
 pub(crate) use engine::Engine;
+use gap::positive_part;
 pub(crate) use gap::{GapSums, fresh_gap, mean_pressure, rescale, scale_to_load};
-use gap::{positive_part, scale_all};
 pub(crate) use outcome::Outcome;
 pub(crate) use shown::Shown;
+pub(crate) use start::Start;
 
 use crate::problem::Problem;
 use crate::solution::LevelInfo;
@@ -54,16 +57,6 @@ pub(crate) struct Machinery<C: Engine<f32>, F: Engine<f64>> {
     pub(crate) fresh: F,
     /// L.
     pub(crate) fresh_response: F::Table,
-}
-
-/// Where a descent starts.
-pub(crate) enum Start {
-    /// From a uniform pressure, or from what the rigid surface would displace.
-    Nothing,
-    /// From this pressure, up to a factor.
-    Pressure(Vec<f64>),
-    /// From this pressure, of which the gap is known.
-    Known { pressure: Vec<f64>, gap: Vec<f64> },
 }
 
 /// Pressure, gap and everything that one level needs to improve them.
@@ -208,38 +201,6 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
         }
     }
 
-    /// First pressure and gap.
-    fn start(&mut self) -> GapSums {
-        let n_cell = self.n_cell();
-        let present = mean_pressure(n_cell, &self.blocks, &self.p);
-        let usable = self.has_start && present > 0.0;
-        if self.has_gap && usable {
-            return match self.problem.control {
-                Control::MeanPressure(mean) => self.rescale(mean / present),
-                Control::Penetration(_) => {
-                    let sums = self.rescale(1.0);
-                    sums.scale_to_penetration(self.problem).map_or(sums, |scale| self.rescale(scale))
-                }
-            };
-        }
-        match self.problem.control {
-            Control::MeanPressure(_) if usable => scale_to_load(self.problem, n_cell, &self.blocks, &mut self.p),
-            Control::MeanPressure(mean) => {
-                let share = n_cell / self.p.len() as f64;
-                self.p.fill(mean * share);
-            }
-            Control::Penetration(_) if usable => {}
-            // What the rigid surface would displace: the right places, and `refresh` finds the amount.
-            Control::Penetration(_) => {
-                let offset = self.problem.offset();
-                for (p, h) in self.p.iter_mut().zip(self.heights) {
-                    *p = (h - offset).max(0.0);
-                }
-            }
-        }
-        self.refresh()
-    }
-
     /// Computes the gap afresh between two runs.
     pub(crate) fn renew(&mut self) {
         self.refresh();
@@ -248,10 +209,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
     /// The gap from a fresh application of L, in double precision, and the pressure at the prescribed load or penetration.
     fn refresh(&mut self) -> GapSums {
         let sums = self.fresh_gap();
-        let Some(scale) = sums.scale_to_penetration(self.problem) else { return self.settle(sums) };
-        scale_all(&mut self.p, scale);
-        let sums = self.fresh_gap();
-        self.settle(sums)
+        self.meet_penetration(sums)
     }
 
     fn fresh_gap(&mut self) -> GapSums {
@@ -286,12 +244,14 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
             return *sums;
         }
         let mut t_mean = t_sum / n_active;
+        let fixed_load = matches!(self.problem.control, Control::MeanPressure(_));
+        // A uniform pressure on the whole cell displaces nothing: no step along it is long enough, and others would be scaled with it.
+        let fixed_mean = fixed_load || n_active >= self.n_cell();
         for step in 0..steps {
             let [z_sum, zu, u_sum] = self.precondition();
-            let fixed_load = matches!(self.problem.control, Control::MeanPressure(_));
-            let z_mean = if fixed_load { z_sum / n_active } else { 0.0 };
+            let z_mean = if fixed_mean { z_sum / n_active } else { 0.0 };
             let beta = ((zu - z_mean * u_sum) / self.curvature).max(0.0);
-            let shift = if fixed_load { z_mean - beta * t_mean } else { 0.0 };
+            let shift = if fixed_mean { z_mean - beta * t_mean } else { 0.0 };
             let [curvature, slope, u_sum] = self.respond(beta, shift);
             // A direction that does not lead down would undo progress; it is dropped, and the next one starts afresh.
             let leads_down = curvature > 0.0 && slope < 0.0;
@@ -308,19 +268,6 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
             self.advance(length);
         }
         *sums
-    }
-
-    /// Under penetration control the mean pressure is free too. It is preconditioned by the stiffness of the present
-    /// pressure to being scaled, σ0²/mean(p v), which grows without bound towards full contact as the true one does.
-    fn precondition_mean(&mut self, sums: &GapSums) {
-        let Control::Penetration(_) = self.problem.control else { return };
-        let n = self.n_cell();
-        let work = sums.work(self.problem);
-        let stiffness = sums.pressure * sums.pressure / (n * work);
-        if stiffness.is_finite() && work > 0.0 {
-            let Machinery { corrections, preconditioner, .. } = &mut self.machinery;
-            corrections.set_mean(preconditioner, stiffness);
-        }
     }
 
     /// Chooses the active elements and starts the transform of their residual. Returns their number and Σ t.
@@ -421,10 +368,7 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
                 rows::take_clipped(rows, response, scale, offset, h, (p, g))
             });
         let sums = GapSums::total(&self.blocks, sums);
-        match sums.scale_to_penetration(self.problem) {
-            None => self.settle(sums),
-            Some(scale) => self.rescale(scale),
-        }
+        self.meet_penetration(sums)
     }
 
     fn rescale(&mut self, scale: f64) -> GapSums {

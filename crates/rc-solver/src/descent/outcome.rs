@@ -36,7 +36,7 @@ impl Outcome {
             certificate: Certificate { complementarity: penetration, penetration, load },
             mean_pressure,
             approach: mean_gap - problem.offset(),
-            elastic_energy: 0.5 * sums.work(problem) / n_cell,
+            elastic_energy: 0.5 * sums.work() / n_cell,
             contact_gap: sums.zero_gap(problem),
         }
     }

@@ -1,7 +1,8 @@
 //! The vector work of the iteration, on a block of rows at a time, with the sums that decide the next step.
 //!
 //! Each function fills the rows of a convolution or takes them, so the vectors pass through the cache once. Sums are in
-//! double precision and in a fixed order: element by element in a block, then block by block.
+//! double precision and in a fixed order: element by element in a block, then block by block. What the heights overlap the rigid
+//! plane, h - c, is taken first: a constant in the heights, however large, then cancels before anything is added to it.
 
 use super::gap::GapSums;
 
@@ -9,8 +10,9 @@ use super::gap::GapSums;
 pub(super) fn fresh_gap(displacement: &[f64], offset: f64, h: &[f64], p: &[f64], g: &mut [f64]) -> GapSums {
     let mut sums = GapSums::EMPTY;
     for (((&v, &h), &p), g) in displacement.iter().zip(h).zip(p).zip(g) {
-        *g = v - h + offset;
-        sums.add_element(p, *g, h);
+        let overlap = h - offset;
+        *g = v - overlap;
+        sums.add_element(p, *g, overlap);
     }
     sums
 }
@@ -19,9 +21,10 @@ pub(super) fn fresh_gap(displacement: &[f64], offset: f64, h: &[f64], p: &[f64],
 pub(super) fn rescale(scale: f64, offset: f64, h: &[f64], p: &mut [f64], g: &mut [f64]) -> GapSums {
     let mut sums = GapSums::EMPTY;
     for ((&h, p), g) in h.iter().zip(p).zip(g) {
+        let overlap = h - offset;
         *p *= scale;
-        *g = scale * (*g + h - offset) - h + offset;
-        sums.add_element(*p, *g, h);
+        *g = scale * (*g + overlap) - overlap;
+        sums.add_element(*p, *g, overlap);
     }
     sums
 }
@@ -140,9 +143,10 @@ pub(super) fn take_clipped(
 ) -> GapSums {
     let mut sums = GapSums::EMPTY;
     for (((&v, &h), p), g) in rows.iter().zip(h).zip(p.iter_mut()).zip(g) {
+        let overlap = h - offset;
         *p *= scale;
-        *g = scale * (*g + range * f64::from(v) + h - offset) - h + offset;
-        sums.add_element(*p, *g, h);
+        *g = scale * (*g + range * f64::from(v) + overlap) - overlap;
+        sums.add_element(*p, *g, overlap);
     }
     sums
 }
