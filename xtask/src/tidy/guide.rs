@@ -1,4 +1,4 @@
-//! The guide: every document is a chapter, and no link leads nowhere.
+//! The guide: every document is a chapter, no link leads nowhere, and those of chapters hold in the book.
 
 use super::Complaint;
 use crate::repository::{Sources, has_extension};
@@ -21,9 +21,16 @@ fn check_links(path: &str, text: &str, sources: &Sources) -> Vec<Complaint> {
     let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
     // Folders and pictures are no texts, other addresses are not ours.
     let files = links.map(|link| link.split('#').next().unwrap_or_default());
-    let files = files.filter(|link| !link.contains("://") && ["md", "rs"].iter().any(|e| has_extension(link, e)));
-    let lost = files.filter(|link| !sources.contains_key(&joined(folder, link)));
-    lost.map(|link| format!("{path}: no file at the link {link}; correct it")).collect()
+    let ours = files.filter(|link| !link.contains("://"));
+    let complaint = |link: &str| {
+        let target = joined(folder, link);
+        if folder == "docs" && !link.is_empty() && !target.starts_with("docs/") {
+            return Some(format!("{path}: the link {link} leads out of the book; name the file without a link"));
+        }
+        let is_text = ["md", "rs"].iter().any(|e| has_extension(link, e));
+        (is_text && !sources.contains_key(&target)).then(|| format!("{path}: no file at the link {link}; correct it"))
+    };
+    ours.filter_map(complaint).collect()
 }
 
 /// The path of a link from a file in `folder`.
@@ -48,12 +55,15 @@ mod tests {
         let mut sources = Sources::new();
         let mut add = |path: &str, text: &str| drop(sources.insert(path.to_owned(), text.to_owned()));
         add(SUMMARY, "- [A](a.md)\n");
-        add("docs/a.md", "[up](../README.md#use) [picture](images/a.png) [out](https://example.org/b.md)");
-        add("README.md", "[a](docs/a.md)");
+        add("docs/a.md", "[up](#use) [picture](images/a.png) [out](https://example.org/b.md)");
+        add("README.md", "[a](docs/a.md) [data](data)");
         assert_eq!(check(&sources), Vec::<String>::new());
-        sources.insert("docs/b.md".to_owned(), "[nowhere](c.md)".to_owned());
+        sources.insert("docs/b.md".to_owned(), "[nowhere](c.md) [out](../data)".to_owned());
         let complaints = check(&sources);
-        assert_eq!(complaints.len(), 2, "{complaints:?}");
-        assert!(complaints[0].contains("b.md is no chapter") && complaints[1].contains("c.md"), "{complaints:?}");
+        let expected = ["b.md is no chapter", "c.md; correct", "../data leads out"];
+        assert_eq!(complaints.len(), expected.len(), "{complaints:?}");
+        for (complaint, expected) in complaints.iter().zip(expected) {
+            assert!(complaint.contains(expected), "{complaints:?}");
+        }
     }
 }
