@@ -37,13 +37,17 @@ pub(crate) fn run(args: &PlotArgs) -> Result<(), CliError> {
 
 fn write(target: &Path, result: &ResultFolder) -> Result<Vec<String>, CliError> {
     let ResultFolder { pressure, gap, side, .. } = result;
+    let of_elements = result.is_of_elements();
     let contact = ContactPicture::of(pressure, 1.0, *side);
+    // Of means over blocks, the picture of the solve is the better one, and stays.
+    let (contact, contact_name) =
+        if of_elements { (contact, "contact.png") } else { (contact.of_blocks(), "touched.png") };
     let shade = Shade::Values { range: (0.0, gap.max()), palette: Palette::Viridis, factor: 1.0, unit: "m" };
     let gap_map = MapPicture(Map { title: "Gap", field: gap, shade, side: *side });
-    let sections = Sections::of(pressure, gap, *side);
-    let distribution = Distribution::of(pressure);
+    let sections = Sections::of(pressure, gap, *side, of_elements);
+    let distribution = Distribution::of(pressure, of_elements);
     let mut staged = Staged::new(target)?;
-    staged.add("contact.png", |path| save_png(&contact, path))?;
+    staged.add(contact_name, |path| save_png(&contact, path))?;
     staged.add("gap.png", |path| save_png(&gap_map, path))?;
     staged.add("sections.png", |path| save_png(&sections, path))?;
     staged.add("sections.svg", |path| save_svg(&sections, path))?;
@@ -83,19 +87,20 @@ impl Profile {
 }
 
 impl Sections {
-    fn of(pressure: &Field, gap: &Field, side: f64) -> Self {
+    fn of(pressure: &Field, gap: &Field, side: f64, of_elements: bool) -> Self {
         let grid = pressure.grid();
         let peak = (0..grid.len()).max_by(|a, b| pressure.values()[*a].total_cmp(&pressure.values()[*b])).unwrap_or(0);
         let iy = peak / grid.nx();
         let scale = Scale::of(side, "m");
         let step = side / scale.factor / grid.nx() as f64;
-        let y = (iy as f64 + 0.5) / grid.ny() as f64 * side;
+        let y = crate::quantity::engineering((iy as f64 + 0.5) / grid.ny() as f64 * side, "m");
+        let greatest = if of_elements { "greatest pressure" } else { "greatest mean pressure of a block" };
         Self {
             pressure: Profile::of(pressure, iy, step, "Pa"),
             gap: Profile::of(gap, iy, step, "m"),
             length_unit: scale.unit(),
             length: side / scale.factor,
-            title: format!("Section through the greatest pressure, y = {}", crate::quantity::engineering(y, "m")),
+            title: format!("Section through the {greatest}, y = {y}"),
         }
     }
 
@@ -129,8 +134,9 @@ impl Picture for Sections {
     }
 }
 
-/// The distribution of the pressure in contact.
+/// The distribution of the pressure in contact, or of the mean pressure of blocks that are touched.
 struct Distribution {
+    of_elements: bool,
     points: Vec<(f64, f64)>,
     unit: String,
     mean: f64,
@@ -138,13 +144,14 @@ struct Distribution {
 }
 
 impl Distribution {
-    fn of(pressure: &Field) -> Self {
+    fn of(pressure: &Field, of_elements: bool) -> Self {
         let statistics = PressureStatistics::of(pressure);
         let scale = Scale::of(statistics.max_pressure, "Pa");
         let bins: Vec<(f64, f64)> =
             statistics.distribution.bins().map(|(p, density)| (p / scale.factor, density * scale.factor)).collect();
         let highest = bins.iter().fold(0.0_f64, |highest, bin| highest.max(bin.1));
         Self {
+            of_elements,
             points: bins,
             unit: scale.unit(),
             mean: statistics.mean_contact_pressure / scale.factor,
@@ -167,15 +174,20 @@ impl Picture for Distribution {
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
         let top = above(self.max.1);
         let mean = vec![(self.mean, 0.0), (self.mean, top)];
+        let (title, solved, their_mean) = if self.of_elements {
+            ("Distribution of the pressure in contact", "elements in contact", "mean in contact")
+        } else {
+            ("Distribution of the mean pressure of touched blocks", "touched blocks", "mean of touched blocks")
+        };
         let plot = LinePlot {
-            title: "Distribution of the pressure in contact",
+            title,
             x_label: &format!("pressure ({})", self.unit),
             y_label: &format!("probability density (1/{})", self.unit),
             x: (0.0, above(self.max.0)),
             y: (0.0, top),
             series: vec![
-                Series { name: "elements in contact", points: self.steps(), colour: BLUE, style: LineStyle::Solid },
-                Series { name: "mean in contact", points: mean, colour: RED, style: LineStyle::Dashed },
+                Series { name: solved, points: self.steps(), colour: BLUE, style: LineStyle::Solid },
+                Series { name: their_mean, points: mean, colour: RED, style: LineStyle::Dashed },
             ],
         };
         draw_lines(area, &plot, TEXT)

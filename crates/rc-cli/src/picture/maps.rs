@@ -12,9 +12,11 @@ pub struct ContactPicture {
     contact: Field,
     /// Mean pressure of each pixel.
     pressure: Field,
-    /// Part of the elements in contact.
+    /// Part of the values that are above zero.
     fraction: f64,
-    /// Greatest pressure of an element.
+    /// Whether the values are those of elements, and not means over blocks of them.
+    of_elements: bool,
+    /// Greatest pressure of a value.
     greatest: f64,
     /// A pressure of 1, in Pa.
     pressure_unit: f64,
@@ -29,6 +31,12 @@ impl ContactPicture {
         let mut rows = ContactRows::new(pressure.grid());
         rows.take(pressure.values());
         rows.finish(pressure_unit, side)
+    }
+
+    /// The same picture of means over blocks: a block with a pressure is touched, not in contact as a whole.
+    #[must_use]
+    pub fn of_blocks(self) -> Self {
+        Self { of_elements: false, ..self }
     }
 }
 
@@ -70,6 +78,7 @@ impl ContactRows {
             contact: self.contact.finish(),
             pressure: self.pressure.finish(),
             fraction: self.in_contact as f64 / self.grid.len() as f64,
+            of_elements: true,
             // What is still being solved may have no finite pressure, or none above zero.
             greatest: if self.greatest.is_finite() { self.greatest.max(0.0) } else { 0.0 },
             pressure_unit,
@@ -94,7 +103,8 @@ impl Picture for ContactPicture {
         let (contact, height) = map_extent(SIDE, TEXT, false);
         let (pressure, _) = map_extent(SIDE, TEXT, true);
         let panel = |left: u32, width: u32| area.clone().shrink((left as i32, (MARGIN / 2) as i32), (width, height));
-        let title = format!("Contact: {} % of the elements", crate::quantity::digits(100.0 * self.fraction, 3));
+        let (name, values) = if self.of_elements { ("Contact", "elements") } else { ("Touched", "blocks") };
+        let title = format!("{name}: {} % of the {values}", crate::quantity::digits(100.0 * self.fraction, 3));
         let contact_map = Map { title: &title, field: &self.contact, shade: Shade::PartOfContact, side: self.side };
         draw_map(&panel(MARGIN, contact), &contact_map, TEXT)?;
         let shade = Shade::Values {
@@ -145,6 +155,21 @@ mod tests {
         let text = std::fs::read_to_string(svg).expect("the SVG file");
         assert_eq!(text.matches("<image").count(), 3, "two maps and a colour bar");
         assert!(text.contains("MPa") && text.len() < 1_000_000, "{} bytes", text.len());
+    }
+
+    #[test]
+    fn means_over_blocks_are_touched() {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        let svg = dir.path().join("a.svg");
+        let pressure = Field::from_fn(Grid::square(4).expect("a grid"), |x, _| (x - 0.5).max(0.0));
+        let title = |picture: &ContactPicture| {
+            save_svg(picture, &svg).expect("an SVG file");
+            let text = std::fs::read_to_string(&svg).expect("the SVG file");
+            text.lines().find(|line| line.contains(" % of ")).map(|line| line.trim().to_owned())
+        };
+        let picture = ContactPicture::of(&pressure, 1.0, 1.0);
+        assert_eq!(title(&picture).as_deref(), Some("Contact: 50 % of the elements"));
+        assert_eq!(title(&picture.of_blocks()).as_deref(), Some("Touched: 50 % of the blocks"));
     }
 
     #[test]

@@ -59,6 +59,19 @@ fn results_are_inspected_and_plotted() {
 }
 
 #[test]
+fn means_over_blocks_are_plotted_as_touched() {
+    let place = Place::new();
+    assert_solved(&place.run(&small("1e5", &["--output-grid", "32", "--out", "r"])));
+    let of_elements = place.bytes("r/contact.png");
+    assert_solved(&place.run(&["plot", "r", "--quiet"]));
+    assert!(place.bytes("r/contact.png") == of_elements, "the picture of the elements is gone");
+    assert!(place.names("r").contains(&"touched.png".to_owned()), "{:?}", place.names("r"));
+    let distribution = text(&place.bytes("r/distribution.svg"));
+    assert!(distribution.contains("touched blocks") && !distribution.contains("in contact"));
+    assert!(text(&place.bytes("r/sections.svg")).contains("mean pressure of a block"));
+}
+
+#[test]
 fn summaries_without_the_newer_keys_are_read() {
     let place = Place::new();
     assert_solved(&place.run(&small("1e5", &["--out", "r"])));
