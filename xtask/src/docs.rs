@@ -1,30 +1,64 @@
-//! `cargo xtask docs`: the guide as a book, and the documentation of the crates.
+//! `cargo xtask docs`: the documentation of the crates, and the guide as a book.
 
-use std::io::ErrorKind;
-use std::process::Command;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail};
 
 use crate::process::Step;
 use crate::repository;
 
-/// Builds the guide into target/book, where mdbook is installed, and the documentation of all crates.
+/// Builds the documentation of all crates, and the guide into target/book, with the mdbook that is installed or else one of its
+/// own in target/tools.
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
 const CRATES: Step =
     Step { environment: &[("RUSTDOCFLAGS", "-D warnings")], words: &["doc", "--workspace", "--no-deps"] };
 
-#[expect(clippy::print_stderr, reason = "a task runner says what it does not do")]
+/// Without the server of `mdbook serve`, and with the search.
+const INSTALL: Step = Step {
+    environment: &[],
+    words: &[
+        "install",
+        "mdbook",
+        "--locked",
+        "--version",
+        "0.5.4",
+        "--no-default-features",
+        "--features",
+        "search",
+        "--root",
+    ],
+};
+
+#[expect(clippy::print_stdout, reason = "the result of the command")]
 pub(crate) fn run(_args: &Args) -> Result<()> {
-    let book = Command::new("mdbook").args(["build", "docs"]).current_dir(repository::root()).status();
-    match book {
-        Ok(status) if status.success() => {}
-        Ok(_) => bail!("`mdbook build docs` failed"),
-        Err(error) if error.kind() == ErrorKind::NotFound => eprintln!(
-            "no mdbook here, so no book: `cargo install mdbook --locked`; the chapters are readable as they are, from docs/introduction.md"
-        ),
-        Err(error) => return Err(error).context("could not start mdbook"),
+    // The crates first: they need no network.
+    CRATES.run(&[])?;
+    let folder = repository::target();
+    println!("{}", folder.join("doc/rc_core/index.html").display());
+    let book = folder.join("book");
+    let mut build = Command::new(mdbook()?);
+    build.args(["build", "docs", "--dest-dir"]).arg(&book).current_dir(repository::root());
+    let status = build.status().context("could not start mdbook")?;
+    if !status.success() {
+        bail!("`mdbook build docs` failed");
     }
-    CRATES.run(&[])
+    println!("{}", book.join("index.html").display());
+    Ok(())
+}
+
+/// The mdbook of this machine, or else ours, which is installed the first time.
+fn mdbook() -> Result<PathBuf> {
+    let tools = repository::target().join("tools");
+    let ours = tools.join("bin").join("mdbook").with_extension(std::env::consts::EXE_EXTENSION);
+    let starts = |program: &PathBuf| Command::new(program).arg("--version").stdout(Stdio::null()).status().is_ok();
+    if let Some(found) = [PathBuf::from("mdbook"), ours.clone()].into_iter().find(starts) {
+        return Ok(found);
+    }
+    INSTALL.run(&[tools.to_string_lossy().into_owned()]).context(
+        "no book: there is no mdbook, and it could not be installed; the chapters are readable as they are, from docs/introduction.md",
+    )?;
+    Ok(ours)
 }
