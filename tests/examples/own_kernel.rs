@@ -50,7 +50,7 @@ impl Kernel for BondedLayer {
     fn symbol(&self, grid: Grid) -> Symbol<'_> {
         let half_space = Spectral.symbol(grid);
         Box::new(move |kx, ky| {
-            let q = TAU * f64::hypot(kx as f64, ky as f64);
+            let q = TAU * grid.waves(kx, ky);
             half_space(kx, ky) * self.factor(q * self.thickness)
         })
     }

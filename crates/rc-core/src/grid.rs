@@ -1,15 +1,19 @@
-//! The uniform grid on the unit cell.
+//! The uniform grid on the periodic cell.
 
 use thiserror::Error;
 
-/// A uniform grid of `nx` × `ny` elements on the square periodic cell of side 1.
+/// A uniform grid of `nx` × `ny` elements on the periodic cell, whose side along x is 1.
 ///
-/// Elements are squares when `nx == ny`, rectangles otherwise.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// The cell is a square unless [`Grid::in_cell`] says otherwise, so elements are squares when `nx == ny`, rectangles otherwise.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     nx: usize,
     ny: usize,
+    cell_ratio: f64,
 }
+
+// The ratio is never NaN.
+impl Eq for Grid {}
 
 /// A grid that cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -23,22 +27,43 @@ pub enum GridError {
         /// Elements along y, as given.
         ny: usize,
     },
+    /// A cell is too long and narrow.
+    #[error("the sides of a cell may differ by a factor of {} at most", Grid::GREATEST_CELL_RATIO)]
+    CellRatio,
 }
 
 impl Grid {
     /// Largest number of elements per side: 2^20, far beyond memory, so that index arithmetic cannot overflow.
     pub const MAX_SIDE: usize = 1 << 20;
 
-    /// A grid of `nx` × `ny` elements.
+    /// Largest ratio of the sides of a cell, the longer to the shorter.
+    pub const GREATEST_CELL_RATIO: f64 = 1e3;
+
+    /// A grid of `nx` × `ny` elements on the square cell.
     ///
     /// # Errors
     /// [`GridError::Side`] when a side is 0 or above [`Grid::MAX_SIDE`].
     pub fn new(nx: usize, ny: usize) -> Result<Self, GridError> {
-        let side_ok = |n: usize| (1..=Self::MAX_SIDE).contains(&n);
-        if side_ok(nx) && side_ok(ny) { Ok(Self { nx, ny }) } else { Err(GridError::Side { nx, ny }) }
+        Self::in_cell(nx, ny, 1.0)
     }
 
-    /// A grid of `n` × `n` elements.
+    /// A grid of `nx` × `ny` elements on a rectangular cell, whose side along y is `cell_ratio` times that along x.
+    ///
+    /// # Errors
+    /// As [`Grid::new`]; [`GridError::CellRatio`].
+    pub fn in_cell(nx: usize, ny: usize, cell_ratio: f64) -> Result<Self, GridError> {
+        let side_ok = |n: usize| (1..=Self::MAX_SIDE).contains(&n);
+        if !(side_ok(nx) && side_ok(ny)) {
+            return Err(GridError::Side { nx, ny });
+        }
+        let greatest = Self::GREATEST_CELL_RATIO;
+        if !(greatest.recip()..=greatest).contains(&cell_ratio) {
+            return Err(GridError::CellRatio);
+        }
+        Ok(Self { nx, ny, cell_ratio })
+    }
+
+    /// A grid of `n` × `n` elements on the square cell.
     ///
     /// # Errors
     /// As [`Grid::new`].
@@ -58,6 +83,33 @@ impl Grid {
         self.ny
     }
 
+    /// Side of the cell along y over that along x: 1 for a square. The side along x is the unit of length, so this is the area of
+    /// the cell too.
+    #[must_use]
+    pub fn cell_ratio(self) -> f64 {
+        self.cell_ratio
+    }
+
+    /// Whether the cell is a square.
+    #[must_use]
+    pub fn has_square_cell(self) -> bool {
+        self.cell_ratio == 1.0
+    }
+
+    /// Whether x and y may change places: a square cell, with as many elements along both.
+    #[must_use]
+    pub fn is_square(self) -> bool {
+        self.nx == self.ny && self.has_square_cell()
+    }
+
+    /// Another number of elements on the same cell.
+    ///
+    /// # Errors
+    /// As [`Grid::new`].
+    pub fn with_elements(self, nx: usize, ny: usize) -> Result<Self, GridError> {
+        Self::in_cell(nx, ny, self.cell_ratio)
+    }
+
     /// Number of elements.
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "a grid is never empty")]
@@ -68,13 +120,13 @@ impl Grid {
     /// Element sides (along x, along y), in λ.
     #[must_use]
     pub fn spacing(self) -> (f64, f64) {
-        (1.0 / self.nx as f64, 1.0 / self.ny as f64)
+        (1.0 / self.nx as f64, self.cell_ratio / self.ny as f64)
     }
 
     /// Centre of element (`ix`, `iy`), in λ.
     #[must_use]
     pub fn centre(self, ix: usize, iy: usize) -> (f64, f64) {
-        ((ix as f64 + 0.5) / self.nx as f64, (iy as f64 + 0.5) / self.ny as f64)
+        ((ix as f64 + 0.5) / self.nx as f64, self.cell_ratio * (iy as f64 + 0.5) / self.ny as f64)
     }
 
     /// Index of element (`ix`, `iy`) in a field.
@@ -83,7 +135,13 @@ impl Grid {
         iy * self.nx + ix
     }
 
-    /// Largest wavenumber that the grid resolves in every direction: waves strictly below half its smaller side.
+    /// |k| of the wave with `kx` and `ky` periods along the sides of the cell, in waves per λ.
+    #[must_use]
+    pub fn waves(self, kx: usize, ky: usize) -> f64 {
+        ((kx as f64).powi(2) + (ky as f64 / self.cell_ratio).powi(2)).sqrt()
+    }
+
+    /// Largest number of waves per side of the cell that the grid resolves along both: strictly below half its smaller number of elements.
     #[must_use]
     pub fn resolved_wavenumber(self) -> usize {
         (self.nx.min(self.ny) - 1) / 2
@@ -93,5 +151,25 @@ impl Grid {
 impl std::fmt::Display for Grid {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{} x {}", self.nx, self.ny)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_may_be_a_rectangle() {
+        let grid = Grid::in_cell(8, 4, 0.5).expect("a grid");
+        assert_eq!(grid.spacing(), (0.125, 0.125));
+        assert_eq!(grid.centre(7, 3), (0.9375, 0.4375));
+        assert!((grid.waves(3, 2) - 5.0).abs() < 1e-15, "3 along x, 2 on half the length");
+        assert_eq!(grid.with_elements(4, 2), Grid::in_cell(4, 2, 0.5));
+        assert!(!grid.is_square() && !Grid::in_cell(4, 4, 0.5).expect("a grid").is_square());
+        assert!(Grid::square(4).expect("a grid").is_square());
+        for ratio in [0.0, -1.0, f64::NAN, f64::INFINITY, 1001.0, 9e-4] {
+            assert_eq!(Grid::in_cell(8, 4, ratio), Err(GridError::CellRatio), "{ratio}");
+        }
+        assert_eq!(Grid::in_cell(0, 4, 1.0), Err(GridError::Side { nx: 0, ny: 4 }));
     }
 }

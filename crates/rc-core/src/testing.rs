@@ -38,7 +38,8 @@ pub fn check_height_field(surface: &dyn HeightField) {
     }
 }
 
-/// Checks a [`Kernel`]: zero at k = 0, positive and finite elsewhere, symmetric under x ↔ y on a square grid.
+/// Checks a [`Kernel`]: zero at k = 0, positive and finite elsewhere, symmetric under x ↔ y on a square grid; the same on a
+/// rectangular cell as on the square of its copies.
 ///
 /// # Panics
 /// When the contract is broken.
@@ -58,6 +59,20 @@ pub fn check_kernel(kernel: &dyn Kernel) {
                         "symbol ({kx}, {ky}) = {value}, mirrored {mirrored}"
                     );
                 }
+            }
+        }
+    }
+    // Three copies make a square, with square elements and with others.
+    for (nx, ny) in [(24, 8), (12, 10)] {
+        let part = kernel.symbol(Grid::in_cell(nx, ny, 1.0 / 3.0).expect("small grid"));
+        let whole = kernel.symbol(Grid::new(nx, 3 * ny).expect("small grid"));
+        for ky in 0..=ny / 2 {
+            for kx in 0..=nx / 2 {
+                let (value, copies) = (part(kx, ky), whole(kx, 3 * ky));
+                assert!(
+                    (value - copies).abs() <= 1e-13 * value,
+                    "the symbol at ({kx}, {ky}) of a third of a cell is {value}, of its three copies {copies}"
+                );
             }
         }
     }

@@ -63,7 +63,7 @@ impl SpectralSums {
 
 /// Moments of a height map, with spectral derivatives through one Fourier transform; the mean height is removed first.
 ///
-/// Exact for a surface whose waves the grid resolves (|kx| < nx/2, |ky| < ny/2), whatever the sides of the grid; test
+/// Exact for a surface whose waves the grid resolves (|kx| < nx/2, |ky| < ny/2), whatever the sides of the grid and of the cell; test
 /// `moments_of_a_resolved_grid_equal_the_exact_sums` shows 1e-10. A wave of exactly half a side counts with that wavenumber.
 #[must_use]
 pub fn moments_of_grid(heights: &Field) -> Moments {
@@ -72,7 +72,7 @@ pub fn moments_of_grid(heights: &Field) -> Moments {
     for column in spectrum.columns() {
         let mut sums = SpectralSums::default();
         for (ky, power) in column.powers() {
-            sums.add((column.kx * column.kx + ky * ky) as f64, power);
+            sums.add(column.squared_wavenumber(ky), power);
         }
         total = total.plus(sums, column.multiplicity as f64);
     }

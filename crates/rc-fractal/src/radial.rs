@@ -11,7 +11,7 @@ use crate::power::PowerSpectrum;
 pub struct SpectrumBin {
     /// Mean |k| of the ring's wave vectors, in waves per cell.
     pub wavenumber: f64,
-    /// Mean of C = |`a_k`|²/(2π)² over the ring's wave vectors, in λ⁴.
+    /// Mean of C = |`a_k`|² A0/(2π)² over the ring's wave vectors, in λ⁴; A0 = 1 for a square cell.
     pub psd: f64,
     /// Number of wave vectors in the ring, k and -k counted both.
     pub n_modes: usize,
@@ -19,7 +19,7 @@ pub struct SpectrumBin {
 
 /// Radially averaged C(q) of a height map: rings of width 1 about |k| = 1, 2, 3, …, shortest wavenumber first.
 ///
-/// Every wave vector of the grid except k = 0 is in one ring, hence Σ (2π)² `psd` · `n_modes` = ⟨h²⟩ about the mean, exactly
+/// Every wave vector of the grid except k = 0 is in one ring, hence Σ (2π)² `psd` · `n_modes` / A0 = ⟨h²⟩ about the mean, exactly
 /// (Parseval; the sum is ∫ C d²q). Rings beyond half the shorter side of the grid reach into the corners of its wave vectors only.
 /// A ring averages over |k| ± ½, so C of a power law comes out high where the ring is wide against |k|, and low in the ring at the
 /// truncation, half of which is empty. Source: T. D. B. Jacobs, T. Junge, L. Pastewka, *Quantitative characterization of surface
@@ -39,24 +39,29 @@ fn binned_spectrum(heights: &Field, rings_per_wave: f64) -> Vec<SpectrumBin> {
         power: f64,
     }
     let grid = heights.grid();
-    let largest = (grid.nx() as f64 / 2.0).hypot(grid.ny() as f64 / 2.0);
-    let mut rings = vec![Ring::default(); (largest * rings_per_wave).round() as usize + 1];
+    let ratio = grid.cell_ratio();
+    let largest = (grid.nx() as f64 / 2.0).hypot(grid.ny() as f64 / 2.0 / ratio);
+    let mut rings = vec![Ring::default(); (largest * rings_per_wave).round() as usize + 2];
     for column in PowerSpectrum::of(heights).columns() {
         let weight = column.multiplicity as f64;
         for (ky, power) in column.powers() {
-            let wavenumber = ((column.kx * column.kx + ky * ky) as f64).sqrt();
-            let ring = &mut rings[(wavenumber * rings_per_wave).round() as usize];
+            let wavenumber = column.squared_wavenumber(ky).sqrt();
+            // The mean height is no wave.
+            if wavenumber == 0.0 {
+                continue;
+            }
+            // In a cell longer along y waves may be longer than its side along x.
+            let ring = &mut rings[((wavenumber * rings_per_wave).round() as usize).max(1)];
             ring.n_modes += column.multiplicity;
             ring.wavenumbers += weight * wavenumber;
             ring.power += weight * power;
         }
     }
-    // The mean height is alone in ring 0 and is not a wave.
-    let waves = rings.iter().skip(1).filter(|ring| ring.n_modes > 0);
+    let waves = rings.iter().filter(|ring| ring.n_modes > 0);
     waves
         .map(|ring| {
             let count = ring.n_modes as f64;
-            let psd = ring.power / (TAU * TAU * count);
+            let psd = ring.power * ratio / (TAU * TAU * count);
             SpectrumBin { wavenumber: ring.wavenumbers / count, psd, n_modes: ring.n_modes }
         })
         .collect()

@@ -38,6 +38,9 @@ pub enum SampleError {
         /// The smallest side that would do, 2N + 1.
         smallest: usize,
     },
+    /// The surface repeats itself in squares.
+    #[error("a random surface is periodic on a square cell, not on one whose sides differ")]
+    RectangularCell,
 }
 
 impl Surface {
@@ -98,9 +101,12 @@ impl Surface {
     /// Equal to [`HeightField::sample`], which takes any grid and would return aliased waves on a coarser one.
     ///
     /// # Errors
-    /// [`SampleError::TooCoarse`] when a side has less than 2N + 1 elements.
+    /// [`SampleError::TooCoarse`] when a side has less than 2N + 1 elements; [`SampleError::RectangularCell`].
     pub fn sample_on(&self, grid: Grid) -> Result<Field, SampleError> {
         let waves = self.waves();
+        if !grid.has_square_cell() {
+            return Err(SampleError::RectangularCell);
+        }
         if grid.resolved_wavenumber() < waves {
             return Err(SampleError::TooCoarse { grid, waves, smallest: 2 * waves + 1 });
         }

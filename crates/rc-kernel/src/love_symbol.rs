@@ -40,18 +40,20 @@ pub(crate) struct LoveSymbol {
 impl LoveSymbol {
     /// Fits the rest and tabulates what depends on one component of the wave: 1.6 ms, and 0.3 µs for each element of a side.
     pub(crate) fn new(grid: Grid) -> Self {
-        let swapped = grid.nx() > grid.ny();
-        let (n_long, n_short) = if swapped { (grid.ny(), grid.nx()) } else { (grid.nx(), grid.ny()) };
-        let aspect = n_short as f64 / n_long as f64;
-        let sum = AliasSum::<TERMS>::new((1.0 / n_long as f64, 1.0 / n_short as f64));
+        // Number of elements, and how many of them are as long as the unit.
+        let [x, y] = [(grid.nx(), grid.nx() as f64), (grid.ny(), grid.ny() as f64 / grid.cell_ratio())];
+        let swapped = x.1 > y.1;
+        let ((n_long, per_long), (n_short, per_short)) = if swapped { (y, x) } else { (x, y) };
+        let aspect = per_short / per_long;
+        let sum = AliasSum::<TERMS>::new((1.0 / per_long, 1.0 / per_short));
         let (long, short, table) = if aspect <= LARGEST_BLOCK_ASPECT {
             // With this reach, the singularities of the rest are nowhere closer than for squares and 3 x 3 aliases.
             let reach = ((1.5 * aspect - 0.5).ceil() as usize, 1);
             let table = interpolate(|theta| sum.outside_block(theta, reach));
-            (Axis::new(n_long, &block(reach.0)), Axis::new(n_short, &block(reach.1)), table)
+            (Axis::new(n_long, per_long, &block(reach.0)), Axis::new(n_short, per_short, &block(reach.1)), table)
         } else {
             let table = interpolate(|theta| sum.outside_row(theta));
-            (Axis::new(n_long, &weighted_row()), Axis::new(n_short, &block(0)), table)
+            (Axis::new(n_long, per_long, &weighted_row()), Axis::new(n_short, per_short, &block(0)), table)
         };
         let collapse = |&mapped: &f64| std::array::from_fn(|j| chebyshev(&table[j], mapped));
         let rest = long.mapped.iter().map(collapse).collect();
@@ -96,8 +98,8 @@ struct Aliases<const L: usize> {
 }
 
 impl<const L: usize> Axis<L> {
-    /// `aliases`: (m, weight in the sum).
-    fn new(n: usize, aliases: &[(f64, f64)]) -> Self {
+    /// For `n` elements, of which `per_unit` are as long as the unit; `aliases`: (m, weight in the sum).
+    fn new(n: usize, per_unit: f64, aliases: &[(f64, f64)]) -> Self {
         // Where the aliases do not fill the last entry, alias 2 with weight 0 does: its denominator is never 0.
         let alias = |entry: usize, lane: usize| aliases.get(entry * L + lane).copied().unwrap_or((2.0, 0.0));
         let stride = aliases.len().div_ceil(L);
@@ -107,7 +109,7 @@ impl<const L: usize> Axis<L> {
             let damping = Damping::new(theta);
             near.extend((0..stride).map(|entry| Aliases {
                 damping: std::array::from_fn(|lane| alias(entry, lane).1 * damping.at(alias(entry, lane).0)),
-                squared: std::array::from_fn(|lane| ((theta + PI * alias(entry, lane).0) * n as f64).powi(2)),
+                squared: std::array::from_fn(|lane| ((theta + PI * alias(entry, lane).0) * per_unit).powi(2)),
             }));
         }
         let mapped = (0..=n / 2).map(|k| 2.0 * (phase(k, n) / FRAC_PI_2).powi(2) - 1.0).collect();

@@ -15,11 +15,11 @@ impl Kernel for Spectral {
         "spectral"
     }
 
-    fn symbol(&self, _grid: Grid) -> Symbol<'_> {
+    fn symbol(&self, grid: Grid) -> Symbol<'_> {
         // 2/|q| with q = 2πk.
-        Box::new(|kx, ky| {
-            let squared = (kx * kx + ky * ky) as f64;
-            if squared == 0.0 { 0.0 } else { 1.0 / (PI * squared.sqrt()) }
+        Box::new(move |kx, ky| {
+            let waves = grid.waves(kx, ky);
+            if waves == 0.0 { 0.0 } else { 1.0 / (PI * waves) }
         })
     }
 

@@ -44,7 +44,7 @@ impl Mask {
     /// [`MeshError::NotSquare`] when the cells of the field are rectangles.
     pub fn positive(field: &Field) -> Result<Self, MeshError> {
         let grid = field.grid();
-        if grid.nx() != grid.ny() {
+        if !grid.is_square() {
             return Err(MeshError::NotSquare { grid });
         }
         Ok(Self { side: grid.nx(), cells: field.values().iter().map(|&v| v > 0.0).collect() })

@@ -45,7 +45,7 @@ impl Mesh {
     }
 
     fn depth_of_grid(&self, grid: Grid) -> Result<u32, MeshError> {
-        if grid.nx() == grid.ny() { depth_of(grid.nx(), self.base()) } else { Err(MeshError::NotSquare { grid }) }
+        if grid.is_square() { depth_of(grid.nx(), self.base()) } else { Err(MeshError::NotSquare { grid }) }
     }
 }
 

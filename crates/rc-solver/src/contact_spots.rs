@@ -3,7 +3,7 @@
 use rc_core::{EdgeBias, Field, Grid};
 
 use crate::ContactArea;
-use crate::contact_area::{EdgeSums, around};
+use crate::contact_area::{EdgeSums, around, shortest_side};
 
 /// One connected part of the contact, across edges of elements and the sides of the periodic cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +32,7 @@ impl ContactSpot {
         assert_eq!(pressure.grid(), gap.grid(), "pressure and gap on the same grid");
         let grid = pressure.grid();
         let (nx, ny) = (grid.nx(), grid.ny());
-        let side = 1.0 / nx.max(ny) as f64;
+        let side = shortest_side(grid);
         let spot = |elements: Vec<usize>| {
             let (mut sums, mut load) = (EdgeSums::default(), 0.0);
             for &element in &elements {
@@ -40,7 +40,7 @@ impl ContactSpot {
                 let at = [element % nx, element / nx];
                 sums.add(side, &around((pressure.values(), gap.values()), [nx, ny], at, 0.0));
             }
-            let area = ContactArea::from_sums(&[sums], grid.len(), bias);
+            let area = ContactArea::from_sums(&[sums], grid, bias);
             Self {
                 elements: elements.len(),
                 area_fraction: area.fraction,

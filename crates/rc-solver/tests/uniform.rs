@@ -132,6 +132,45 @@ fn stiffness_is_the_slope_of_load_over_penetration() {
     }
 }
 
+/// A cell whose copies make a square has the solution of that square: with square elements and with others, on one grid and on nested
+/// ones, by load and by penetration.
+#[test]
+fn a_rectangular_cell_is_a_part_of_the_square_of_its_copies() {
+    for (nx, ny, copies) in [(48, 24, 2), (40, 32, 2), (192, 64, 3), (128, 128, 2)] {
+        let rectangle = Grid::in_cell(nx, ny, 1.0 / copies as f64).expect("grid");
+        let wave = |x: f64, y: f64| {
+            let y = copies as f64 * y;
+            let wave = |a: f64, kx: f64, ky: f64, phase: f64| a * (TAU * (kx * x + ky * y + phase)).cos();
+            wave(5e-3, 1.0, 0.0, 0.1) + wave(4e-3, 1.0, 1.0, 0.37) + wave(2e-3, 3.0, -2.0, 0.8)
+        };
+        let part = Field::from_fn(rectangle, wave);
+        let whole = Field::from_fn(Grid::new(nx, copies * ny).expect("grid"), wave);
+        for kernel in [&Love as &dyn Kernel, &Spectral] {
+            for control in [Control::MeanPressure(2e-3), Control::Penetration(8e-3)] {
+                let [a, b] = [&part, &whole].map(|heights| solve(heights, kernel, control, 1e-9).expect("solvable"));
+                let scale = b.pressure.max();
+                for (i, p) in b.pressure.values().iter().enumerate() {
+                    let same = a.pressure.values()[i % part.grid().len()];
+                    assert!((p - same).abs() < 1e-5 * scale, "{nx} x {ny}, element {i}: {same} and {p}");
+                }
+                let close = |what: &str, a: f64, b: f64| {
+                    assert!((a / b - 1.0).abs() < 1e-5, "{what} of {nx} x {ny}: {a}, of {copies} copies {b}");
+                };
+                let [of_a, of_b] = [&a, &b].map(|solution| Observables::of(solution, kernel));
+                close("penetration", a.info.penetration, b.info.penetration);
+                close("mean pressure", a.info.mean_pressure, b.info.mean_pressure);
+                close("area", of_a.area.fraction, of_b.area.fraction);
+                close("perimeter", copies as f64 * of_a.area.perimeter, of_b.area.perimeter);
+                close("rms pressure", of_a.rms_pressure_corrected, of_b.rms_pressure_corrected);
+                close("mean gap", of_a.mean_gap, of_b.mean_gap);
+                close("energy of a unit of area", of_a.elastic_energy, of_b.elastic_energy);
+                let [of_a, of_b] = [&a, &b].map(|solution| solution.contact_stiffness(kernel));
+                assert!((of_a / of_b - 1.0).abs() < 1e-3, "stiffness {of_a}, of {copies} copies {of_b}");
+            }
+        }
+    }
+}
+
 #[test]
 fn results_are_bitwise_equal_for_any_number_of_threads() {
     let heights = bumps(130, 128);

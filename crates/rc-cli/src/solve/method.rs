@@ -87,7 +87,7 @@ impl<'a> Chooser<'a, '_> {
     /// Prepares the adaptive method, if it does for this scene and fits into memory.
     fn prepare(&self) -> Result<AdaptiveProblem<'a>, AdaptiveError> {
         let grid = self.surface.grid;
-        if grid.nx() != grid.ny() {
+        if grid.has_square_cell() && grid.nx() != grid.ny() {
             // Said here, since a surface is handed over with one side.
             return Err(AdaptiveError::Grid { nx: grid.nx(), ny: grid.ny(), smallest: 128 });
         }
@@ -127,6 +127,7 @@ impl<'a> Chooser<'a, '_> {
     fn obstacle(&self, error: &AdaptiveError) -> Option<String> {
         let grid = self.surface.grid;
         match error {
+            AdaptiveError::RectangularCell => Some("the cell is not a square".into()),
             AdaptiveError::Grid { nx, ny, .. } if nx != ny => Some(format!("{grid} elements are not square")),
             AdaptiveError::Grid { .. } | AdaptiveError::Base { .. } => {
                 Some(format!("{grid} elements do not divide into adaptive levels"))

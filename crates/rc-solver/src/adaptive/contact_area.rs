@@ -52,5 +52,5 @@ pub(super) fn contact_area(
         chunks.into_iter().fold(EdgeSums::default(), |a, b| a + b)
     };
     let sums: Vec<EdgeSums> = (0..elements.levels().len()).map(of_level).collect();
-    ContactArea::from_sums(&sums, finest.len(), Love.edge_bias())
+    ContactArea::from_sums(&sums, finest, Love.edge_bias())
 }

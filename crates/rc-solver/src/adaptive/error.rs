@@ -13,6 +13,9 @@ pub enum AdaptiveError {
     /// The problem itself is not valid; never [`SolveError::NotConverged`].
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// Squares of the mesh are halves of halves of the cell.
+    #[error("the adaptive method needs a square cell")]
+    RectangularCell,
     /// The grid does not divide into tiles.
     #[error(
         "the adaptive method needs a square grid of at least {smallest} elements per side, 16 or a larger power of 2 times \

@@ -108,6 +108,11 @@ impl<'a> AdaptiveProblem<'a> {
     /// # Errors
     /// [`AdaptiveError`], but not [`AdaptiveError::NotConverged`].
     pub fn new(source: HeightSource<'a>, control: Control, params: &AdaptiveParams) -> Result<Self, AdaptiveError> {
+        if let HeightSource::Map(map) = source
+            && !map.grid().has_square_cell()
+        {
+            return Err(AdaptiveError::RectangularCell);
+        }
         let error = params.operator_error.min(OPERATOR_ERROR_PER_TOLERANCE * params.solve.tolerance);
         let split = SplitParams::for_error(error)
             .ok_or(AdaptiveError::OperatorError { value: error, smallest: SplitParams::SMALLEST_ERROR })?;

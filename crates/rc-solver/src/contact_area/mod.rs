@@ -10,7 +10,7 @@ mod edge_sums;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use rayon::prelude::*;
-use rc_core::{EdgeBias, Field};
+use rc_core::{EdgeBias, Field, Grid};
 
 pub(crate) use self::edge_sums::EdgeSums;
 
@@ -53,13 +53,12 @@ impl ContactArea {
     #[must_use]
     pub fn of(pressure: &Field, gap: &Field, bias: EdgeBias) -> Self {
         assert_eq!(pressure.grid(), gap.grid(), "pressure and gap on the same grid");
-        Self::of_values(pressure.grid().nx(), pressure.values(), (gap.values(), 0.0), bias)
+        Self::of_values(pressure.grid(), pressure.values(), (gap.values(), 0.0), bias)
     }
 
-    /// The same of values row by row, `nx` a row; `contact_gap` is the gap of what is in contact.
-    pub(crate) fn of_values(nx: usize, pressure: &[f64], (gap, contact_gap): (&[f64], f64), bias: EdgeBias) -> Self {
-        let ny = pressure.len() / nx;
-        let side = 1.0 / nx.max(ny) as f64;
+    /// The same of values row by row; `contact_gap` is the gap of what is in contact.
+    pub(crate) fn of_values(grid: Grid, pressure: &[f64], (gap, contact_gap): (&[f64], f64), bias: EdgeBias) -> Self {
+        let (nx, ny, side) = (grid.nx(), grid.ny(), shortest_side(grid));
         let row_sums = |(iy, row): (usize, &[f64])| {
             let mut sums = EdgeSums::default();
             for ix in (0..nx).filter(|&ix| row[ix] > 0.0) {
@@ -69,12 +68,12 @@ impl ContactArea {
         };
         let rows: Vec<EdgeSums> = pressure.par_chunks(nx).enumerate().map(row_sums).collect();
         let sums = rows.into_iter().fold(EdgeSums::default(), |a, b| a + b);
-        Self::from_sums(&[sums], pressure.len(), bias)
+        Self::from_sums(&[sums], grid, bias)
     }
 
-    /// From the sums over elements of one size each: the smallest ones, of which the cell has room for `n_cell`, then those twice
-    /// as large, and so on.
-    pub(crate) fn from_sums(sums: &[EdgeSums], n_cell: usize, bias: EdgeBias) -> Self {
+    /// From the sums over elements of one size each: the smallest ones, those of the grid `finest`, then those twice as large, and so
+    /// on.
+    pub(crate) fn from_sums(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> Self {
         let mut area = Self {
             cells: 0.0,
             perimeter_edges: 0,
@@ -85,7 +84,7 @@ impl ContactArea {
             fraction: 0.0,
             error: 0.0,
         };
-        let smallest = 1.0 / n_cell as f64;
+        let smallest = 1.0 / finest.len() as f64;
         let mut scatter = 0.0;
         for (coarser, sums) in sums.iter().enumerate() {
             let size = smallest * f64::from(1_u32 << (2 * coarser));
@@ -100,7 +99,8 @@ impl ContactArea {
             area.edge_bend += bend;
             area.missing_square += size * bias.per_square * sums.squares;
             area.perimeter_edges += sums.edges << coarser;
-            area.perimeter += PI / 8.0 * size.sqrt() * (edges + FRAC_1_SQRT_2 * sums.diagonals as f64);
+            let side = (size * finest.cell_ratio()).sqrt();
+            area.perimeter += PI / 8.0 * side * (edges + FRAC_1_SQRT_2 * sums.diagonals as f64);
         }
         area.fraction = area.fraction.clamp(0.0, 1.0);
         area.error = scatter.sqrt().hypot(ERROR_OF_TERM * (area.cells - area.fraction));
@@ -112,6 +112,12 @@ impl ContactArea {
     pub fn relative_error(&self) -> f64 {
         if self.fraction > 0.0 { self.error / self.fraction } else { 0.0 }
     }
+}
+
+/// The shorter side of elements, in λ.
+pub(crate) fn shortest_side(grid: Grid) -> f64 {
+    let (x, y) = grid.spacing();
+    x.min(y)
 }
 
 /// Pressure, and gap less that of contact, at places around an element of a periodic grid.

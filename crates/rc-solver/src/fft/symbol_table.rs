@@ -13,10 +13,10 @@ pub(crate) struct SymbolTable<T> {
 }
 
 impl<T: Plan> SymbolTable<T> {
-    /// Tabulates `eigenvalue(kx, ky)`; on a square grid, where it is symmetric, only for ky ≥ kx.
+    /// Tabulates `eigenvalue(kx, ky)`; on a square grid of a square cell, where it is symmetric, only for ky ≥ kx.
     pub(crate) fn new(grid: Grid, eigenvalue: impl Fn(usize, usize) -> f64 + Sync) -> Self {
         let column_len = grid.ny() / 2 + 1;
-        let symmetric = grid.nx() == grid.ny();
+        let symmetric = grid.is_square();
         let scale = 1.0 / grid.len() as f64;
         let mut values = vec![T::zero(); (grid.nx() / 2 + 1) * column_len];
         values.par_chunks_exact_mut(column_len).enumerate().for_each(|(kx, column)| {

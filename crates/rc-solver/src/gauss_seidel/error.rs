@@ -13,8 +13,10 @@ pub enum GaussSeidelError {
     /// The problem itself is refused, or was not solved; as for the other methods.
     #[error(transparent)]
     Solve(#[from] SolveError),
-    /// The elements of the mesh must be squares.
-    #[error("the mesh has square elements, so the grid must have as many along x as along y, not {grid}")]
+    /// The elements of the mesh must be squares, in a square cell.
+    #[error(
+        "the mesh has square elements in a square cell, so the grid must have as many along x as along y, not {grid}"
+    )]
     NotSquare {
         /// Grid of the heights.
         grid: Grid,

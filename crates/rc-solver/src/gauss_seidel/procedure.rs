@@ -66,7 +66,7 @@ pub fn solve_gauss_seidel(
 
 fn check(heights: &Field, params: &GaussSeidelParams) -> Result<(), GaussSeidelError> {
     let grid = heights.grid();
-    if grid.nx() != grid.ny() {
+    if !grid.is_square() {
         return Err(GaussSeidelError::NotSquare { grid });
     }
     let bad = |what, wanted, value| Err(GaussSeidelError::Parameter { what, wanted, value });

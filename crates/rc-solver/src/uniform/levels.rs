@@ -18,7 +18,7 @@ pub(crate) fn coarsen(heights: &Field, smallest_side: usize) -> Vec<Field> {
         if !(can_halve(nx) && can_halve(ny)) {
             return levels;
         }
-        let Ok(grid) = Grid::new(nx / 2, ny / 2) else { return levels };
+        let Ok(grid) = finer.grid().with_elements(nx / 2, ny / 2) else { return levels };
         let next = halve(finer, grid);
         levels.push(next);
     }
