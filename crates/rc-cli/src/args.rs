@@ -181,6 +181,9 @@ pub struct InspectArgs {
     /// its scene.toml]
     #[arg(long, allow_hyphen_values = true)]
     pub cell: Option<f64>,
+    /// Side of a rectangular cell along y (m) [default: that of its file if it says it, else that along x]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub cell_y: Option<f64>,
     /// Unit of the lengths of a height map that names none: m, mm, um, nm [default: m]
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<LengthUnit>,

@@ -39,7 +39,7 @@ impl BlockMean {
     #[must_use]
     pub fn new(grid: Grid, spec: GridSpec) -> Self {
         assert!(divides(grid, spec), "{spec} does not divide {grid}");
-        let coarse = Grid::new(spec.nx, spec.ny).expect("the sides divide those of a grid");
+        let coarse = grid.with_elements(spec.nx, spec.ny).expect("the sides divide those of a grid");
         Self { grid, sums: Field::zeros(coarse), next_row: 0 }
     }
 

@@ -39,35 +39,28 @@ pub fn check_finite(path: &Path, field: &Field) -> Result<(), CliError> {
     }
 }
 
-/// The side of the cell (m): that of the map, which must be a square, where the file says it, else `given`. If both are there
-/// they must be the same.
+/// Sides of the cell along x and y (m): those of the map where its file says them, else what is `given`. If both are there they must
+/// be the same. The second is `None` for a square.
 ///
 /// # Errors
 /// [`CliError::Input`].
-pub fn side(path: &Path, sides: Option<[f64; 2]>, given: Option<f64>) -> Result<Option<f64>, CliError> {
-    let Some([x, y]) = sides else { return Ok(given) };
+pub fn sides(path: &Path, of_file: Option<[f64; 2]>, given: [Option<f64>; 2]) -> Result<[Option<f64>; 2], CliError> {
+    let Some(of_file) = of_file else { return Ok(given) };
     let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SAME_LENGTH;
     let length = |side: f64| engineering(side, "m");
-    if !same(x, y) {
-        let message = format_args!(
-            "the map is {} by {}, and a periodic cell is a square; rc surface --crop square cuts one out",
-            length(x),
-            length(y)
-        );
-        return Err(CliError::in_file(path, message));
-    }
-    match given {
-        Some(cell) if !same(cell, x) => {
+    for ((given, side), (key, extent)) in given.iter().zip(of_file).zip([("cell", "wide"), ("cell_y", "high")]) {
+        if let Some(given) = given.filter(|given| !same(*given, side)) {
             let message = format_args!(
-                "the map is {} wide, cell says {}; leave cell away, or convert the map to .npy, which has no size",
-                length(x),
-                length(cell)
+                "the map is {} {extent}, {key} says {}; leave {key} away, or convert the map to .npy, which has no size",
+                length(side),
+                length(given)
             );
-            Err(CliError::in_file(path, message))
+            return Err(CliError::in_file(path, message));
         }
-        Some(cell) => Ok(Some(cell)),
-        None => Ok(Some(x)),
     }
+    let [x, y] = of_file;
+    let x_of_cell = given[0].unwrap_or(x);
+    Ok([Some(x_of_cell), if same(x, y) { given[1] } else { Some(given[1].unwrap_or(y)) }])
 }
 
 #[cfg(test)]
@@ -75,13 +68,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_side_is_that_of_the_file_and_must_not_be_contradicted() {
+    fn the_sides_are_those_of_the_file_and_must_not_be_contradicted() {
         let path = Path::new("map.sdf");
-        assert_eq!(side(path, None, Some(2.0)), Ok(Some(2.0)));
-        assert_eq!(side(path, Some([1e-3, 1e-3]), None), Ok(Some(1e-3)));
-        assert_eq!(side(path, Some([1e-3, 1.0005e-3]), Some(1e-3)), Ok(Some(1e-3)));
-        for (sides, given, expected) in [([1e-3, 2e-3], None, "--crop square"), ([1e-3, 1e-3], Some(2e-3), "2 mm")] {
-            let error = side(path, Some(sides), given).expect_err(expected).to_string();
+        let none = [None, None];
+        assert_eq!(sides(path, None, [Some(2.0), None]), Ok([Some(2.0), None]));
+        assert_eq!(sides(path, Some([1e-3, 1e-3]), none), Ok([Some(1e-3), None]));
+        assert_eq!(sides(path, Some([1e-3, 1.0005e-3]), [Some(1e-3), None]), Ok([Some(1e-3), None]));
+        assert_eq!(sides(path, Some([1e-3, 2e-3]), none), Ok([Some(1e-3), Some(2e-3)]));
+        assert_eq!(sides(path, Some([1e-3, 2e-3]), [None, Some(2e-3)]), Ok([Some(1e-3), Some(2e-3)]));
+        let contradictions = [([Some(2e-3), None], "cell says 2 mm"), ([None, Some(3e-3)], "cell_y says 3 mm")];
+        for (given, expected) in contradictions {
+            let error = sides(path, Some([1e-3, 1e-3]), given).expect_err(expected).to_string();
             assert!(error.contains(expected) && error.contains("map.sdf"), "{error}");
         }
     }

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use rc_core::{Field, PeriodicCell};
+use rc_core::{Field, Grid, PeriodicCell};
 use rc_fractal::moments_of_grid;
-use rc_heights::{AreaParameters, Crop, HeightMap, Scales, Treatment};
+use rc_heights::Scales;
 use serde::Serialize;
 
 use crate::args::InspectArgs;
@@ -81,14 +81,16 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
         let message = format_args!("all heights are {:e}; a flat surface has no statistics", map.heights.max());
         return Err(CliError::in_file(&args.file, message));
     }
-    // Of a map that is not square, one side is compared with the cell.
-    let given = heights::side(&args.file, map.sides.map(|[x, _]| [x, x]), args.cell)?;
-    let side = given.or(scene_file::example().surface.cell).unwrap_or(1.0);
-    PeriodicCell::new(side)
-        .map_err(|_| CliError::input(format_args!("cell: must be positive and finite (m), not {side}")))?;
-    let parameters = AreaParameters::of(&map.heights, map.sides.unwrap_or([side, side]));
-    let (heights, side, note) = in_square(&args.file, map, side)?;
-    let statistics = HeightStatistics { parameters, ..HeightStatistics::of(&heights, side, moments_of_grid(&heights)) };
+    let [side, side_y] = heights::sides(&args.file, map.sides, [args.cell, args.cell_y])?;
+    let side = side.or(scene_file::example().surface.cell).unwrap_or(1.0);
+    let cell = PeriodicCell::rectangle(side, side_y.unwrap_or(side))
+        .map_err(|cause| CliError::input(format_args!("cell: {cause}")))?;
+    let (nx, ny) = (map.heights.grid().nx(), map.heights.grid().ny());
+    let grid = Grid::in_cell(nx, ny, cell.ratio()).map_err(|cause| CliError::in_file(&args.file, cause))?;
+    let in_cell = map.heights.values().iter().map(|height| height / side).collect();
+    let heights = Field::new(grid, in_cell).expect("as many elements as before");
+    let note = if map.sides.is_none() && side_y.is_none() && nx != ny { TAKEN } else { "" };
+    let statistics = HeightStatistics::of(&heights, side, moments_of_grid(&heights));
     if let Some(folder) = &args.out {
         output::check_folder(folder)?;
         height_pictures::write(folder, &heights, &statistics)?;
@@ -100,27 +102,8 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
     })
 }
 
-/// Heights in units of the side of the cell, and that side (m): waves are counted in a square, which of a map that is none is
-/// the middle of it; the note says so.
-fn in_square(path: &Path, map: HeightMap, side: f64) -> Result<(Field, f64, &'static str), CliError> {
-    const CUT: &str = "not a square: all but the parameters of ISO 25178-2 are of the largest square in the middle\n\n";
-    const TAKEN: &str = "a map without a size is taken for a square, as rc solve takes it, so its points here are rectangles; rc surface \
-                         --crop square takes them for squares\n\n";
-    let grid = map.heights.grid();
-    let (map, note) = if heights::side(path, map.sides, None).is_ok() {
-        let taken = map.sides.is_none() && grid.nx() != grid.ny();
-        (map, if taken { TAKEN } else { "" })
-    } else {
-        let square = rc_heights::apply(map, &[Treatment::Crop(Crop::Square)]);
-        (square.map_err(|cause| CliError::in_file(path, cause))?.0, CUT)
-    };
-    let side = map.sides.map_or(side, |[x, _]| x);
-    let mut heights = map.heights;
-    for height in heights.values_mut() {
-        *height /= side;
-    }
-    Ok((heights, side, note))
-}
+const TAKEN: &str = "a map without a size is taken for a square, as rc solve takes it, so its points here are rectangles; --cell-y says \
+                     how long its other side is\n\n";
 
 fn finite(path: &Path, field: Field) -> Result<Field, CliError> {
     heights::check_finite(path, &field)?;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::quantity::{digits, engineering};
+use rc_core::Grid;
 use rc_heights::AreaParameters;
 
 use crate::statistics::{HeightStatistics, Histogram, PressureStatistics, SpectrumRow, TreatmentRow};
@@ -122,12 +123,24 @@ fn converged(s: &Summary) -> String {
     format!("converged in {} fine iterations, {} nested {}", s.iterations, s.levels, levels(s.levels))
 }
 
+/// The size of a cell of side `side` along x (m).
+#[must_use]
+pub fn cell(side: f64, grid: Grid) -> String {
+    sides(side, side * grid.cell_ratio())
+}
+
+/// One side of a square, both of a rectangle (m).
+fn sides(x: f64, y: f64) -> String {
+    let x_text = engineering(x, "m");
+    if x == y { x_text } else { format!("{x_text} by {}", engineering(y, "m")) }
+}
+
 /// Statistics of a height map, with a short table of its spectrum and its distribution.
 #[must_use]
 pub fn heights(statistics: &HeightStatistics) -> String {
     let s = statistics;
     let lines = [
-        ("cell", format!("{} with {} x {} elements", engineering(s.cell, "m"), s.grid[0], s.grid[1])),
+        ("cell", format!("{} with {} x {} elements", sides(s.cell, s.cell_y), s.grid[0], s.grid[1])),
         (
             "heights",
             format!(

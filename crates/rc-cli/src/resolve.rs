@@ -99,16 +99,24 @@ fn check_alternatives(scene: &Scene) -> Result<(), String> {
 ///
 /// # Errors
 /// [`CliError::Input`].
-pub fn surface(keys: SurfaceKeys) -> Result<SurfaceProblem, CliError> {
-    let defaults = SurfaceKeys { grid: None, ..scene_file::example().surface };
-    let mut keys = keys;
+pub fn surface(mut keys: SurfaceKeys) -> Result<SurfaceProblem, CliError> {
     // Read for its size alone: such files are small against what a solve takes.
     if let Some(path) = keys.heights.as_deref() {
-        keys.cell = cell_of_map(path, &keys)?;
+        [keys.cell, keys.cell_y] = sides_of_map(path, &keys)?;
     }
+    surface_in_cell(keys)
+}
+
+/// The same where a height map has no other sides than the keys say.
+///
+/// # Errors
+/// [`CliError::Input`].
+pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceProblem, CliError> {
+    let defaults = SurfaceKeys { grid: None, ..scene_file::example().surface };
     let mut keys = keys.over(defaults);
     let side = positive("cell", "m", keys.cell)?;
-    let cell = PeriodicCell::new(side).map_err(CliError::input)?;
+    let side_y = keys.cell_y.map_or(Ok(side), |side_y| positive("cell_y", "m", Some(side_y)))?;
+    let cell = PeriodicCell::rectangle(side, side_y).map_err(CliError::input)?;
     let grid = keys.grid.map(checked_grid).transpose()?;
     if let Some(path) = keys.heights.clone() {
         let source = Source::File { path, expected: grid, scales: keys.scales() };
@@ -117,6 +125,11 @@ pub fn surface(keys: SurfaceKeys) -> Result<SurfaceProblem, CliError> {
     if keys.scales() != Scales::default() {
         return Err(CliError::input(
             "unit and height_scale: are for height maps; give --heights FILE, or leave them away",
+        ));
+    }
+    if keys.cell_y.is_some() {
+        return Err(CliError::input(
+            "cell_y: is for height maps; a random surface has a square cell, so leave it away",
         ));
     }
     let spectrum = spectrum(&keys, side)?;
@@ -134,12 +147,13 @@ pub fn surface(keys: SurfaceKeys) -> Result<SurfaceProblem, CliError> {
     Ok(SurfaceProblem { cell, source: Source::Random { spectrum, grid }, keys })
 }
 
-/// The side of the cell of a height map (m), where its file or the keys say it.
-fn cell_of_map(path: &Path, keys: &SurfaceKeys) -> Result<Option<f64>, CliError> {
-    if keys.cell.is_some() || !rc_heights::format_of(path)?.has_sides() {
-        return Ok(keys.cell);
+/// Sides of the cell of a height map (m), where its file or the keys say them.
+fn sides_of_map(path: &Path, keys: &SurfaceKeys) -> Result<[Option<f64>; 2], CliError> {
+    let given = [keys.cell, keys.cell_y];
+    if !rc_heights::format_of(path)?.has_sides() {
+        return Ok(given);
     }
-    heights::side(path, heights::read(path, keys.scales())?.sides, None)
+    heights::sides(path, heights::read(path, keys.scales())?.sides, given)
 }
 
 /// The parameters of a random surface on the unit cell; `side` is λ in m.

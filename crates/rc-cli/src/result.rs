@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rc_core::Field;
+use rc_core::{Field, Grid};
 
 use crate::error::CliError;
 use crate::heights::check_finite;
@@ -14,7 +14,7 @@ use crate::{npy, resolve, scene_file};
 pub struct ResultFolder {
     /// The summary.
     pub summary: Summary,
-    /// Side λ of the cell (m), from the scene as it was solved.
+    /// Side λ of the cell along x (m), from the scene as it was solved; the grid of the fields knows the other.
     pub side: f64,
     /// E* (Pa), from the same scene.
     pub e_star: f64,
@@ -45,8 +45,8 @@ impl ResultFolder {
         let side =
             side.ok_or_else(|| CliError::in_file(&scene_path, "cell: must be given, positive and finite (m)"))?;
         let e_star = resolve::contact(scene.contact, side, None)?.elasticity.e_star();
-        let pressure = npy::read(&folder.join("pressure.npy"))?;
-        let gap = npy::read(&folder.join("gap.npy"))?;
+        let field = |name: &str| in_cell(&folder.join(name), scene.surface.cell_y.map_or(1.0, |side_y| side_y / side));
+        let (pressure, gap) = (field("pressure.npy")?, field("gap.npy")?);
         if gap.grid() != pressure.grid() {
             let message = format_args!("{} elements, but pressure.npy has {}", gap.grid(), pressure.grid());
             return Err(CliError::in_file(&folder.join("gap.npy"), message));
@@ -71,4 +71,15 @@ impl ResultFolder {
         check_finite(&folder.join("gap.npy"), &result.gap)?;
         Ok(result)
     }
+}
+
+/// Reads a field on a cell whose side along y is `cell_ratio` times that along x.
+///
+/// # Errors
+/// [`CliError::Input`].
+pub fn in_cell(path: &Path, cell_ratio: f64) -> Result<Field, CliError> {
+    let field = npy::read(path)?;
+    let grid = Grid::in_cell(field.grid().nx(), field.grid().ny(), cell_ratio);
+    let grid = grid.map_err(|cause| CliError::in_file(path, format_args!("cell_y of its scene.toml: {cause}")))?;
+    Ok(Field::new(grid, field.into_values()).expect("as many elements as before"))
 }

@@ -17,9 +17,13 @@ pub const EXAMPLE: &str = include_str!("../assets/paper-n64.toml");
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[command(next_help_heading = "Surface")]
 pub struct SurfaceKeys {
-    /// Side λ of the square periodic cell (m) [default: that of the height map if its file says it, else 0.01]
+    /// Side λ of the periodic cell (m), along x [default: that of the height map if its file says it, else 0.01]
     #[arg(long, allow_hyphen_values = true)]
     pub cell: Option<f64>,
+    /// Side of a rectangular cell along y (m), of a height map [default: that of the height map if its file says it, else that
+    /// along x]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub cell_y: Option<f64>,
     /// Height map instead of a random surface: .npy, .csv, .txt, .xyz, .grd, .gsf, .sdf, .x3p, 16-bit .png or .tif; positive
     /// towards the half-space
     #[arg(long, value_name = "FILE")]
@@ -208,15 +212,15 @@ impl SurfaceKeys {
     #[must_use]
     pub fn over(mut self, mut lower: Self) -> Self {
         if self.heights.is_some() {
-            lower = Self { cell: lower.cell, ..Self::default() };
+            lower = Self { cell: lower.cell, cell_y: lower.cell_y, ..Self::default() };
         } else if self.generates() {
-            (lower.heights, lower.unit, lower.height_scale) = (None, None, None);
+            (lower.heights, lower.unit, lower.height_scale, lower.cell_y) = (None, None, None, None);
         }
         if self.rms.is_some() || self.rms_slope.is_some() || self.c0.is_some() {
             (lower.rms, lower.rms_slope, lower.c0) = (None, None, None);
         }
         or_lower!(self, lower, {
-            cell, heights, unit, height_scale, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, amplitudes, grid
+            cell, cell_y, heights, unit, height_scale, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, amplitudes, grid
         });
         self
     }

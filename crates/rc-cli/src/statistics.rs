@@ -13,8 +13,10 @@ const BINS: usize = 40;
 pub struct HeightStatistics {
     /// Elements along x and y.
     pub grid: [usize; 2],
-    /// Side of the cell (m).
+    /// Side of the cell along x (m).
     pub cell: f64,
+    /// Side of the cell along y (m).
+    pub cell_y: f64,
     /// Mean height (m).
     pub mean: f64,
     /// Lowest height (m).
@@ -176,6 +178,7 @@ impl HeightStatistics {
         Self {
             grid: [grid.nx(), grid.ny()],
             cell: side,
+            cell_y: side * grid.cell_ratio(),
             mean: mean * side,
             h_min: heights.min() * side,
             h_max: heights.max() * side,
@@ -186,7 +189,7 @@ impl HeightStatistics {
             skewness: third / second.powf(1.5),
             kurtosis: fourth / (second * second),
             distribution: Histogram::of(values, low, high),
-            parameters: AreaParameters::of(heights, [1.0, 1.0]).scaled(side),
+            parameters: AreaParameters::of(heights, [1.0, grid.cell_ratio()]).scaled(side),
             border_step,
             windowed,
             hurst_fit,

@@ -112,11 +112,13 @@ impl SurfaceProblem {
     /// # Errors
     /// [`CliError::Input`] when points are missing, when it is flat, or of another grid or size than the scene says.
     pub fn of_map(&self, path: &Path, map: HeightMap, expected: Option<Grid>) -> Result<LoadedSurface, CliError> {
-        heights::side(path, map.sides, Some(self.cell.side()))?;
+        heights::sides(path, map.sides, [Some(self.cell.side()), self.keys.cell_y])?;
         let as_read = map.heights;
         heights::check_finite(path, &as_read)?;
-        let grid = as_read.grid();
-        if let Some(expected) = expected.filter(|expected| *expected != grid) {
+        let (nx, ny) = (as_read.grid().nx(), as_read.grid().ny());
+        let grid = Grid::in_cell(nx, ny, self.cell.ratio())
+            .map_err(|cause| CliError::in_file(path, format_args!("cell_y: {cause}")))?;
+        if let Some(expected) = expected.filter(|expected| (expected.nx(), expected.ny()) != (nx, ny)) {
             let message = format_args!("the map has {grid} elements, grid says {expected}; leave grid away");
             return Err(CliError::in_file(path, message));
         }
@@ -127,7 +129,7 @@ impl SurfaceProblem {
         let side = self.cell.side();
         let scaled = as_read.values().iter().map(|height| height / side).collect();
         let heights = Field::new(grid, scaled).map_err(|cause| CliError::in_file(path, cause))?;
-        let spec = GridSpec { nx: grid.nx(), ny: grid.ny() };
+        let spec = GridSpec { nx, ny };
         // The map in a result folder is an array in metres.
         let (heights_file, unit, height_scale) = (Some(HEIGHTS_FILE.into()), None, None);
         let keys = SurfaceKeys { heights: heights_file, unit, height_scale, grid: Some(spec), ..self.keys.clone() };

@@ -60,15 +60,14 @@ fn treated(
 ) -> Result<(f64, LoadedSurface, Vec<Effect>), CliError> {
     let Some(path) = keys.heights.clone() else {
         let message =
-            "crop, flip, fill, level, periodic, low_pass and resample are for height maps; give --heights FILE";
+            "crop, flip, fill, level, periodic, low_pass, resample and repeat are for height maps; give --heights FILE";
         return Err(CliError::input(message));
     };
     let mut map = heights::read(&path, keys.scales())?;
-    // Of a map that is to be cropped to a square, only one side can be compared with the cell.
-    let given = heights::side(&path, map.sides.map(|[x, _]| [x, x]), keys.cell)?;
-    let cell = given.or(scene_file::example().surface.cell).unwrap_or(1.0);
+    let [cell, cell_y] = heights::sides(&path, map.sides, [keys.cell, keys.cell_y])?;
+    let cell = cell.or(scene_file::example().surface.cell).unwrap_or(1.0);
     // A map without a size has points that are equally far apart along both sides.
-    map.sides = map.sides.or_else(|| Some(map.sides_of_width(cell)));
+    map.sides = map.sides.or_else(|| Some(cell_y.map_or_else(|| map.sides_of_width(cell), |cell_y| [cell, cell_y])));
     let grids = rc_heights::grids_after(&map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
     for (grid, treatment) in grids.into_iter().zip(treatments) {
         budget.check_grid(&format!("the map after {treatment}"), grid)?;
@@ -76,9 +75,9 @@ fn treated(
     let mut effects = vec![Effect::of(&map, "as read")];
     let (map, after) = rc_heights::apply(map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
     effects.extend(after);
-    let cell = heights::side(&path, map.sides, None)?;
+    let [cell, cell_y] = heights::sides(&path, map.sides, [None, None])?;
     let expected = keys.grid;
-    let problem = resolve::surface(SurfaceKeys { cell, grid: None, ..keys })?;
+    let problem = resolve::surface_in_cell(SurfaceKeys { cell, cell_y, grid: None, ..keys })?;
     let expected = expected.map(resolve::checked_grid).transpose()?;
     let surface = problem.of_map(&path, map, expected)?;
     Ok((problem.cell.side(), surface, effects))

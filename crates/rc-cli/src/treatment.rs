@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use rc_core::{Grid, GridError};
-use rc_heights::{Crop, Fill, Flip, Level, Periodic, Treatment};
+use rc_heights::{Crop, Fill, Flip, Level, Periodic, Repeat, Treatment};
 
 use crate::values::GridSpec;
 
@@ -35,6 +35,9 @@ pub struct TreatmentKeys {
     /// Other numbers of points on the same area: 512, or 512x256; fewer are means, more are on cubic curves
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub resample: Option<GridSpec>,
+    /// Copies of a periodic map beside each other: square (as many as make the cell a square, which the adaptive method needs), or 3x4
+    #[arg(long, value_name = "COPIES")]
+    pub repeat: Option<Repeat>,
 }
 
 /// Names of ways to make a map periodic.
@@ -68,6 +71,7 @@ impl TreatmentKeys {
         treatments.extend(self.periodic.map(periodic).map(Treatment::Periodic));
         treatments.extend(self.low_pass.map(|wavelength| Treatment::LowPass { wavelength }));
         treatments.extend(resample.map(Treatment::Resample));
+        treatments.extend(self.repeat.map(Treatment::Repeat));
         Ok(treatments)
     }
 }

@@ -26,31 +26,46 @@ fn positive(what: &'static str, value: f64) -> Result<f64, UnitError> {
     if value > 0.0 && value.is_finite() { Ok(value) } else { Err(UnitError::NotPositive { what, value }) }
 }
 
-/// The square periodic cell, side λ.
+/// The periodic cell: a square of side λ, or a rectangle whose side along x is λ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeriodicCell {
     side: f64,
+    side_y: f64,
 }
 
 impl PeriodicCell {
-    /// A cell of side `side` (m).
+    /// A square of side `side` (m).
     ///
     /// # Errors
     /// [`UnitError::NotPositive`].
     pub fn new(side: f64) -> Result<Self, UnitError> {
-        Ok(Self { side: positive("the cell side", side)? })
+        Self::rectangle(side, side)
     }
 
-    /// Side λ (m).
+    /// A rectangle of sides `side` along x and `side_y` along y (m).
+    ///
+    /// # Errors
+    /// [`UnitError::NotPositive`].
+    pub fn rectangle(side: f64, side_y: f64) -> Result<Self, UnitError> {
+        Ok(Self { side: positive("the cell side", side)?, side_y: positive("the cell side along y", side_y)? })
+    }
+
+    /// Side λ along x (m), the unit of length.
     #[must_use]
     pub fn side(self) -> f64 {
         self.side
     }
 
-    /// Nominal area A0 = λ² (m²).
+    /// Side along y over side along x, as [`crate::Grid::cell_ratio`].
+    #[must_use]
+    pub fn ratio(self) -> f64 {
+        self.side_y / self.side
+    }
+
+    /// Nominal area A0 (m²); λ² for a square.
     #[must_use]
     pub fn nominal_area(self) -> f64 {
-        self.side * self.side
+        self.side * self.side_y
     }
 }
 

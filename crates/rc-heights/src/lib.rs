@@ -38,6 +38,7 @@ pub use formats::{Format, format_of, npy, parse, read, text};
 pub use map::{BorderStep, HeightMap};
 pub use parameters::AreaParameters;
 pub use treat::{
-    Crop, Edges, Effect, Fill, Flip, Level, Periodic, SAME_LENGTH, TreatError, Treatment, apply, grids_after, hann,
+    Crop, Edges, Effect, Fill, Flip, Level, MOST_COPIES, Periodic, Repeat, SAME_LENGTH, TreatError, Treatment, apply,
+    grids_after, hann,
 };
 pub use units::{LengthUnit, Scales, Unit, UnitError};

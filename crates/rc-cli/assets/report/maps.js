@@ -57,12 +57,13 @@ class SharedView {
 
 /** One map. `reading` makes text of a value, `ends` those at the ends of the colours; the end of these is `movable`. */
 class FieldMap {
-  constructor({ title, field, colours, view, side, reading, ends, movable = true }) {
-    Object.assign(this, { field, view, side, reading, colours: colourTable(colours), low: movable ? field.low : 0, top: field.max });
+  constructor({ title, field, colours, view, sides, reading, ends, movable = true }) {
+    Object.assign(this, { field, view, side: sides[0], ratio: sides[1] / sides[0], reading, colours: colourTable(colours), low: movable ? field.low : 0, top: field.max });
     this.bitmap = make("canvas", { width: field.nx, height: field.ny });
     this.canvas = make("canvas");
     this.value = make("span", { class: "quiet" });
     this.box = make("div", { class: "map", tabindex: 0, role: "img", "aria-label": title }, this.canvas);
+    this.box.style.aspectRatio = 1 / this.ratio;
     const bar = make("div", { class: "bar" });
     bar.style.background = `linear-gradient(to right, ${colours.map((c) => `rgb(${c.join(" ")})`).join(", ")})`;
     const [least, greatest] = ends(this.low, this.top);
@@ -101,47 +102,51 @@ class FieldMap {
   paint() {
     const { view, canvas } = this;
     const pixels = Math.max(1, Math.round(this.box.clientWidth * (window.devicePixelRatio || 1)));
-    if (canvas.width !== pixels) canvas.width = canvas.height = pixels;
+    const high = Math.max(1, Math.round(pixels * this.ratio));
+    if (canvas.width !== pixels) Object.assign(canvas, { width: pixels, height: high });
     const context = canvas.getContext("2d");
-    const cell = pixels / view.size;
+    const [cell, cellHigh] = [pixels / view.size, high / view.size];
     context.imageSmoothingEnabled = cell < this.field.nx;
     for (let i = Math.floor(view.x); i < view.x + view.size; i += 1) {
       for (let j = Math.floor(view.y); j < view.y + view.size; j += 1) {
-        context.drawImage(this.bitmap, (i - view.x) * cell, pixels - (j + 1 - view.y) * cell, cell, cell);
+        context.drawImage(this.bitmap, (i - view.x) * cell, high - (j + 1 - view.y) * cellHigh, cell, cellHigh);
       }
     }
-    this.paintCursor(context, pixels, cell);
-    this.paintRuler(context, pixels, cell);
+    this.paintCursor(context);
+    this.paintRuler(context);
     this.value.textContent = this.reading(this.field.at(...view.cursor));
   }
 
-  paintCursor(context, pixels, cell) {
+  paintCursor(context) {
+    const { width: wide, height: high } = this.canvas;
     const [x, y] = this.view.cursor;
-    const [left, top] = [(x - this.view.x) * cell, pixels - (y - this.view.y) * cell];
+    const [left, top] = [((x - this.view.x) / this.view.size) * wide, high - ((y - this.view.y) / this.view.size) * high];
     for (const [colour, width] of [["rgb(255 255 255 / 0.75)", 3], [this.view.pinned ? "#d4002a" : "rgb(20 30 60 / 0.75)", 1]]) {
       context.strokeStyle = colour;
       context.lineWidth = width * (window.devicePixelRatio || 1);
       context.beginPath();
       context.moveTo(left, 0);
-      context.lineTo(left, pixels);
+      context.lineTo(left, high);
       context.moveTo(0, top);
-      context.lineTo(pixels, top);
+      context.lineTo(wide, top);
       context.stroke();
     }
   }
 
   /** A round length, in the corner. */
-  paintRuler(context, pixels, cell) {
+  paintRuler(context) {
     const unit = window.devicePixelRatio || 1;
-    const length = roundBelow((0.3 * pixels * this.side) / cell);
-    const [width, margin, text] = [(length / this.side) * cell, 10 * unit, si(length, "m")];
+    const { width: wide, height: high } = this.canvas;
+    const visible = this.side * this.view.size;
+    const length = roundBelow(0.3 * visible);
+    const [width, margin, text] = [(length / visible) * wide, 10 * unit, si(length, "m")];
     context.font = `${12 * unit}px system-ui, sans-serif`;
     const room = Math.max(width, context.measureText(text).width) + 2 * margin;
     context.fillStyle = "rgb(255 255 255 / 0.85)";
-    context.fillRect(0, pixels - 34 * unit, room, 34 * unit);
+    context.fillRect(0, high - 34 * unit, room, 34 * unit);
     context.fillStyle = "#10151d";
-    context.fillText(text, margin, pixels - 15 * unit);
-    context.fillRect(margin, pixels - 9 * unit, width, 3 * unit);
+    context.fillText(text, margin, high - 15 * unit);
+    context.fillRect(margin, high - 9 * unit, width, 3 * unit);
   }
 
   /** Point of the cell under the pointer. */

@@ -1,20 +1,20 @@
 // The page of one solved contact.
 
 /** The maps, and the sections through their cursor. */
-function mapsAndSections({ side, pressure, gap, contact, of_elements: ofElements, peak, averaged }) {
+function mapsAndSections({ sides, pressure, gap, contact, of_elements: ofElements, peak, averaged }) {
   const fields = { pressure: new EmbeddedField(pressure), gap: new EmbeddedField(gap), contact: new EmbeddedField(contact) };
   const view = new SharedView(peak, Math.min(1, 8 / Math.max(pressure.nx, pressure.ny)));
   const map = (title, name, colours, unit) => new FieldMap({
-    title, field: fields[name], colours, view, side, ends: (low, high) => [low > 0 ? si(low, unit, 4) : "0", si(high, unit, 4)], reading: (value) => si(value, unit),
+    title, field: fields[name], colours, view, sides, ends: (low, high) => [low > 0 ? si(low, unit, 4) : "0", si(high, unit, 4)], reading: (value) => si(value, unit),
   });
   const touching = ofElements ? "contact" : "touched";
   const contactMap = new FieldMap({
-    title: ofElements ? "Contact" : "Touched", field: fields.contact, colours: contact.colours, view, side, ends: () => ["gap", touching], movable: false,
+    title: ofElements ? "Contact" : "Touched", field: fields.contact, colours: contact.colours, view, sides, ends: () => ["gap", touching], movable: false,
     reading: (value) => (value === 0 ? "gap" : value === 1 ? touching : `${digits(100 * value, 3)} % ${touching}`),
   });
   const maps = [contactMap, map("Pressure", "pressure", pressure.colours, "Pa"), map("Gap", "gap", gap.colours, "m")];
   const place = make("span", {});
-  const sections = sectionCharts(fields, view, side);
+  const sections = sectionCharts(fields, view, sides);
   const along = (text, axis) => make("button", {
     "aria-pressed": axis === "x",
     onclick: (event) => {
@@ -28,7 +28,7 @@ function mapsAndSections({ side, pressure, gap, contact, of_elements: ofElements
     make("button", { onclick: () => view.reset() }, "whole cell"),
     make("span", {}, along("section along x", "x"), " ", along("along y", "y")), place);
   view.listeners.push(() => {
-    const wrapped = view.cursor.map((part) => si((part - Math.floor(part)) * side, "m"));
+    const wrapped = view.cursor.map((part, axis) => si((part - Math.floor(part)) * sides[axis], "m"));
     place.textContent = `x = ${wrapped[0]}, y = ${wrapped[1]}${view.pinned ? " (held: click to let go)" : ""}`;
   });
   view.change();
@@ -44,8 +44,9 @@ function mapsAndSections({ side, pressure, gap, contact, of_elements: ofElements
 }
 
 /** Pressure and gap along a line through the cursor, over the visible part of the cell. */
-function sectionCharts(fields, view, side) {
+function sectionCharts(fields, view, sides) {
   const charts = { axis: "x" };
+  const side = () => sides[charts.axis === "x" ? 0 : 1];
   const points = (field, axis) => {
     const n = axis === "x" ? field.nx : field.ny;
     const start = axis === "x" ? view.x : view.y;
@@ -53,13 +54,13 @@ function sectionCharts(fields, view, side) {
     const count = Math.max(2, Math.round(view.size * n));
     return Array.from({ length: count }, (_, i) => {
       const part = (first + i + 0.5) / n;
-      return [part * side, axis === "x" ? field.at(part, view.cursor[1]) : field.at(view.cursor[0], part)];
+      return [part * side(), axis === "x" ? field.at(part, view.cursor[1]) : field.at(view.cursor[0], part)];
     });
   };
   const options = (name, unit, colour) => {
     const start = charts.axis === "x" ? view.x : view.y;
     return {
-      x: { label: charts.axis, unit: "m", from: start * side, to: (start + view.size) * side },
+      x: { label: charts.axis, unit: "m", from: start * side(), to: (start + view.size) * side() },
       y: { label: name, unit, from: fields[name].low },
       series: [{ name: "", points: points(fields[name], charts.axis), colour }],
     };

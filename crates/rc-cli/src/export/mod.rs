@@ -11,9 +11,8 @@ use rc_core::Field;
 
 use crate::args::ExportArgs;
 use crate::error::CliError;
-use crate::npy;
 use crate::output::{self, Staged};
-use crate::result::ResultFolder;
+use crate::result::{ResultFolder, in_cell};
 use crate::surface::HEIGHTS_FILE;
 
 /// Elements of methods that have their own.
@@ -58,7 +57,7 @@ fn add_vtk(staged: &mut Staged, folder: &Path, fields: &Fields) -> Result<(), Cl
 struct Fields {
     /// `status` of the summary.
     status: String,
-    /// λ (m).
+    /// λ, along x (m).
     side: f64,
     /// E* (Pa).
     e_star: f64,
@@ -79,7 +78,7 @@ impl Fields {
         let contact_name = if result.is_of_elements() { "contact" } else { "touched" };
         let ResultFolder { summary, side, e_star, pressure, gap } = result;
         let heights = folder.join(HEIGHTS_FILE);
-        let height = heights.is_file().then(|| npy::read(&heights)).transpose()?;
+        let height = heights.is_file().then(|| in_cell(&heights, pressure.grid().cell_ratio())).transpose()?;
         // With --output-grid, pressure and gap are coarser than the heights.
         let height = height.filter(|height| height.grid() == pressure.grid());
         Ok(Self { status: summary.status, side, e_star, pressure, gap, height, contact_name })

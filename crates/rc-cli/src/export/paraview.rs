@@ -16,7 +16,7 @@ pub(super) fn image(fields: &Fields) -> Dataset<'_> {
         Array::new("gap", 1, Values::Float64(gap.values().into())),
     ];
     cells.extend(height.iter().map(|height| Array::new("height", 1, Values::Float64(height.values().into()))));
-    let (dx, dy) = (side / grid.nx() as f64, side / grid.ny() as f64);
+    let (dx, dy) = (side / grid.nx() as f64, side * grid.cell_ratio() / grid.ny() as f64);
     let extent = format!("0 {} 0 {} 0 0", grid.nx(), grid.ny());
     let whole = vec![
         ("WholeExtent", extent.clone()),

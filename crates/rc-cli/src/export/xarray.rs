@@ -23,13 +23,13 @@ pub(super) fn group(fields: &Fields) -> Group<'_> {
         meaning,
         values,
     };
-    let axis = |name, dimensions, n: usize, meaning| Array {
+    let axis = |name, dimensions, centres: Vec<f64>| Array {
         name,
         dimensions,
-        shape: vec![n],
+        shape: vec![centres.len()],
         units: "m",
-        meaning,
-        values: Values::Float64((0..n).map(|i| (i as f64 + 0.5) / n as f64 * side).collect()),
+        meaning: "centre of the element",
+        values: Values::Float64(centres.into()),
     };
     let mut arrays = vec![
         plane("pressure", "Pa", "contact pressure", Values::Float64(pressure.values().into())),
@@ -40,14 +40,15 @@ pub(super) fn group(fields: &Fields) -> Group<'_> {
         let meaning = "height of the rigid surface, positive towards the half-space";
         plane("height", "m", meaning, Values::Float64(height.values().into()))
     }));
-    arrays.push(axis("y", &["y"], grid.ny(), "centre of the element"));
-    arrays.push(axis("x", &["x"], grid.nx(), "centre of the element"));
+    arrays.push(axis("y", &["y"], (0..grid.ny()).map(|iy| grid.centre(0, iy).1 * side).collect()));
+    arrays.push(axis("x", &["x"], (0..grid.nx()).map(|ix| grid.centre(ix, 0).0 * side).collect()));
     let attributes = json!({
         "source": concat!("rc ", env!("CARGO_PKG_VERSION")),
         "status": status,
         "cell": side,
         "cell_units": "m",
-        "cell_meaning": "side of the periodic cell, the same along x and y",
+        "cell_y": side * grid.cell_ratio(),
+        "cell_meaning": "side of the periodic cell along x; cell_y is that along y",
         "e_star": e_star,
         "e_star_units": "Pa",
     });

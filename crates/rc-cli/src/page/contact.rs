@@ -41,8 +41,8 @@ pub(super) struct Contact {
 
 #[derive(Clone, Debug, Serialize)]
 struct Maps {
-    /// Side of the cell (m).
-    side: f64,
+    /// Sides of the cell along x and y (m).
+    sides: [f64; 2],
     /// Pa.
     pressure: EmbeddedField,
     /// m.
@@ -134,7 +134,7 @@ fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
         "{surface}: rms height {}, rms slope {}, in a cell of {}; E* = {}; {} x {} elements, kernel {}, method {}",
         engineering(s.rms_height, "m"),
         digits(s.rms_slope, 4),
-        engineering(result.side, "m"),
+        report::cell(result.side, result.pressure.grid()),
         engineering(result.e_star, "Pa"),
         s.grid[0],
         s.grid[1],
@@ -199,12 +199,12 @@ fn maps(result: &ResultFolder) -> Maps {
         )
     };
     Maps {
-        side: *side,
+        sides: [*side, side * grid.cell_ratio()],
         pressure: EmbeddedField::of_contact(&pressures, pressures.max(), Bits::Sixteen, Palette::Heat),
         gap: EmbeddedField::of_gap(&gaps, widest, Bits::Sixteen, Palette::Viridis),
         contact: EmbeddedField::of_contact(&contact, 1.0, Bits::Eight, Palette::Ink),
         of_elements,
-        peak: [x, y],
+        peak: [x, y / grid.cell_ratio()],
         averaged,
     }
 }

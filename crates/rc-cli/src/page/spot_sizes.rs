@@ -25,13 +25,14 @@ pub(super) struct SpotSizes {
 }
 
 impl SpotSizes {
-    /// Of spots, largest first, that were found on `grid` in a cell of this side (m); `None` without contact.
+    /// Of spots, largest first, that were found on `grid` in a cell of this side along x (m); `None` without contact.
     pub(super) fn of(spots: &[ContactSpot], grid: Grid, side: f64) -> Option<Self> {
         let (largest, smallest) = (spots.first()?, spots.last()?);
         let element = (grid.len() as f64).recip();
         // What is located of a spot of one element may be too little for a size.
         let area = |spot: &ContactSpot| spot.area_fraction.max(SMALLEST_SPOT * element);
-        let diameter = |spot: &ContactSpot| 2.0 * side * (area(spot) / PI).sqrt();
+        let root_of_cell = side * grid.cell_ratio().sqrt();
+        let diameter = |spot: &ContactSpot| 2.0 * root_of_cell * (area(spot) / PI).sqrt();
         // The smallest spot is in the middle of the first bin.
         let low = diameter(smallest) / 10_f64.powf(0.5 / BINS_PER_DECADE);
         let bin = |spot: &ContactSpot| ((diameter(spot) / low).log10() * BINS_PER_DECADE) as usize;
@@ -46,7 +47,7 @@ impl SpotSizes {
             note: format!(
                 "Spots are joined across edges of elements, and across the sides of the cell; their edges are located between \
                  elements. The smallest are about as large as the elements, {} wide: how many there are depends on the grid.",
-                engineering(side * element.sqrt(), "m")
+                engineering(root_of_cell * element.sqrt(), "m")
             ),
         })
     }

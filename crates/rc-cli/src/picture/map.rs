@@ -4,7 +4,7 @@ use plotters::element::{BitMapElement, Rectangle, Text};
 use plotters::prelude::{DrawingBackend, IntoFont as _};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{BLACK, Color as _, RGBColor, TextStyle};
-use rc_core::Field;
+use rc_core::{Field, Grid};
 
 use super::{Area, FONT, Palette, PictureError, Raster};
 use crate::quantity::{Scale, engineering, label, round_below, ticks};
@@ -18,7 +18,7 @@ pub struct Map<'a> {
     pub field: &'a Field,
     /// How it is shown.
     pub shade: Shade,
-    /// Side of the cell, for the scale bar (m).
+    /// Side of the cell along x, for the scale bar (m).
     pub side: f64,
 }
 
@@ -49,11 +49,19 @@ const BAR_GAP: f64 = 0.6;
 const BAR_WIDTH: f64 = 0.9;
 const BAR_LABELS: f64 = 3.2;
 
-/// Width of a map without and with a colour bar for the side `side` of its bitmap, and its height, all in pixels.
+/// Width of a map without and with a colour bar for a bitmap of this size, and its height, all in pixels.
 #[must_use]
-pub fn map_extent(side: u32, font: f64, colour_bar: bool) -> (u32, u32) {
+pub fn map_extent((width, height): (u32, u32), font: f64, colour_bar: bool) -> (u32, u32) {
     let bar = if colour_bar { BAR_GAP + BAR_WIDTH + BAR_LABELS } else { 0.0 };
-    (side + (bar * font) as u32, side + ((TITLE + FOOT) * font) as u32)
+    (width + (bar * font) as u32, height + ((TITLE + FOOT) * font) as u32)
+}
+
+/// Size of the bitmap of a cell, as large as `most` allows.
+#[must_use]
+pub fn bitmap_size(grid: Grid, most: (u32, u32)) -> (u32, u32) {
+    let ratio = grid.cell_ratio();
+    let width = f64::from(most.0).min(f64::from(most.1) / ratio);
+    ((width as u32).max(1), ((width * ratio) as u32).max(1))
 }
 
 /// Draws `map` into `area`, as large as fits, with text of `font` pixels.
@@ -62,39 +70,39 @@ pub fn map_extent(side: u32, font: f64, colour_bar: bool) -> (u32, u32) {
 /// [`PictureError`] of the backend.
 pub fn draw_map<B: DrawingBackend>(area: &Area<B>, map: &Map<'_>, font: f64) -> Result<(), PictureError> {
     let (width, height) = area.dim_in_pixel();
-    let (bar_width, text_height) =
-        (map_extent(0, font, matches!(map.shade, Shade::Values { .. })).0, map_extent(0, font, false).1);
-    let side = width.saturating_sub(bar_width).min(height.saturating_sub(text_height)).max(1);
+    let (bar_width, text_height) = map_extent((0, 0), font, matches!(map.shade, Shade::Values { .. }));
+    let most = (width.saturating_sub(bar_width), height.saturating_sub(text_height));
+    let size = bitmap_size(map.field.grid(), most);
     let top = (TITLE * font) as i32;
-    text(area, map.title, (side as i32 / 2, (TITLE * font / 2.0) as i32), HPos::Center, font)?;
+    text(area, map.title, (size.0 as i32 / 2, (TITLE * font / 2.0) as i32), HPos::Center, font)?;
 
-    let raster = rasterise(map, side);
-    let bitmap = BitMapElement::with_owned_buffer((0, top), (side, side), raster.rgb)
+    let raster = rasterise(map, size);
+    let bitmap = BitMapElement::with_owned_buffer((0, top), size, raster.rgb)
         .ok_or_else(|| PictureError::new("the bitmap has another size than its area"))?;
     area.draw(&bitmap).map_err(PictureError::new)?;
-    let bottom = top + side as i32;
-    frame(area, (0, top), (side as i32, bottom))?;
-    scale_bar(area, map.side, side, bottom, font)?;
+    let (right, bottom) = (size.0 as i32, top + size.1 as i32);
+    frame(area, (0, top), (right, bottom))?;
+    scale_bar(area, map.side, size.0, bottom, font)?;
     match map.shade {
         Shade::Contact | Shade::PartOfContact => Ok(()),
         Shade::Values { range, palette, factor, unit } => {
-            let left = side as i32 + (BAR_GAP * font) as i32;
+            let left = right + (BAR_GAP * font) as i32;
             let bar = ColourBar { low: range.0 * factor, high: range.1 * factor, palette, unit };
-            bar.draw(area, (left, top), side, font)
+            bar.draw(area, (left, top), size.1, font)
         }
     }
 }
 
-fn rasterise(map: &Map<'_>, side: u32) -> Raster {
+fn rasterise(map: &Map<'_>, size: (u32, u32)) -> Raster {
     match map.shade {
         Shade::Contact => {
             let inside = |value: f64| if value > 0.0 { 1.0 } else { 0.0 };
-            Raster::of(map.field, (side, side), inside, |part| Palette::Ink.colour(part))
+            Raster::of(map.field, size, inside, |part| Palette::Ink.colour(part))
         }
-        Shade::PartOfContact => Raster::of(map.field, (side, side), |part| part, |part| Palette::Ink.colour(part)),
+        Shade::PartOfContact => Raster::of(map.field, size, |part| part, |part| Palette::Ink.colour(part)),
         Shade::Values { range: (low, high), palette, .. } => {
             let span = if high > low { high - low } else { 1.0 };
-            Raster::of(map.field, (side, side), |value| value, |value| palette.colour((value - low) / span))
+            Raster::of(map.field, size, |value| value, |value| palette.colour((value - low) / span))
         }
     }
 }

@@ -3,7 +3,7 @@
 use plotters::prelude::DrawingBackend;
 use rc_core::{Field, Grid};
 
-use super::{Area, Map, Palette, Picture, PictureError, PixelMean, Shade, draw_map, map_extent};
+use super::{Area, Map, Palette, Picture, PictureError, PixelMean, Shade, bitmap_size, draw_map, map_extent};
 
 /// Contact map and pressure side by side, at the resolution of the picture.
 #[derive(Clone, Debug)]
@@ -87,21 +87,27 @@ impl ContactRows {
     }
 }
 
-/// Side of a map, its text, and the space around it, in pixels.
+/// Longer side of a map, its text, and the space around it, in pixels.
 const SIDE: u32 = 900;
 const TEXT: f64 = 30.0;
 const MARGIN: u32 = 36;
 
+impl ContactPicture {
+    /// Sizes of the two maps with their text.
+    fn panels(&self) -> [(u32, u32); 2] {
+        let bitmap = bitmap_size(self.contact.grid(), (SIDE, SIDE));
+        [false, true].map(|colour_bar| map_extent(bitmap, TEXT, colour_bar))
+    }
+}
+
 impl Picture for ContactPicture {
     fn size(&self) -> (u32, u32) {
-        let (contact, height) = map_extent(SIDE, TEXT, false);
-        let (pressure, _) = map_extent(SIDE, TEXT, true);
+        let [(contact, height), (pressure, _)] = self.panels();
         (contact + pressure + 3 * MARGIN, height + MARGIN)
     }
 
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
-        let (contact, height) = map_extent(SIDE, TEXT, false);
-        let (pressure, _) = map_extent(SIDE, TEXT, true);
+        let [(contact, height), (pressure, _)] = self.panels();
         let panel = |left: u32, width: u32| area.clone().shrink((left as i32, (MARGIN / 2) as i32), (width, height));
         let (name, values) = if self.of_elements { ("Contact", "elements") } else { ("Touched", "blocks") };
         let title = format!("{name}: {} % of the {values}", crate::quantity::digits(100.0 * self.fraction, 3));
@@ -124,7 +130,8 @@ pub struct MapPicture<'a>(pub Map<'a>);
 
 impl Picture for MapPicture<'_> {
     fn size(&self) -> (u32, u32) {
-        let (width, height) = map_extent(SIDE, TEXT, matches!(self.0.shade, Shade::Values { .. }));
+        let bitmap = bitmap_size(self.0.field.grid(), (SIDE, SIDE));
+        let (width, height) = map_extent(bitmap, TEXT, matches!(self.0.shade, Shade::Values { .. }));
         (width + 2 * MARGIN, height + MARGIN)
     }
 

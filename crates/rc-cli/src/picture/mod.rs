@@ -19,7 +19,7 @@ use thiserror::Error;
 pub use colour::Palette;
 pub use font::{FONT, register_font};
 pub use lines::{LinePlot, LineStyle, Series, draw_lines};
-pub use map::{Map, Shade, draw_map, map_extent};
+pub use map::{Map, Shade, bitmap_size, draw_map, map_extent};
 pub use maps::{ContactPicture, ContactRows, MapPicture};
 pub use raster::{PixelMean, Raster};
 

@@ -56,7 +56,8 @@ impl PixelMean {
     /// When `most` is 0.
     #[must_use]
     pub fn new(grid: Grid, most: usize) -> Self {
-        let pixels = Grid::new(grid.nx().min(most), grid.ny().min(most)).expect("not more pixels than elements");
+        let pixels =
+            grid.with_elements(grid.nx().min(most), grid.ny().min(most)).expect("not more pixels than elements");
         Self { grid, sums: Field::zeros(pixels), next_row: 0 }
     }
 

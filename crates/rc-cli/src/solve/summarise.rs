@@ -45,7 +45,7 @@ pub(super) fn summarise(solved: &Solved<'_>, threads: usize) -> Summary {
         mean_gap: observables.mean_gap * side,
         mean_gap_error: observables.mean_gap_error.map(|error| error * side),
         contact_stiffness: Some(stiffness).filter(|value| value.is_finite()),
-        elastic_energy: observables.elastic_energy * e_star * side.powi(3),
+        elastic_energy: observables.elastic_energy * e_star * side.powi(3) * solved.surface.grid.cell_ratio(),
         rms_height: moments.rms_height * side,
         rms_slope: moments.rms_slope,
         h_max: found.h_max * side,

@@ -6,6 +6,7 @@ mod flip;
 mod level;
 mod low_pass;
 mod periodic;
+mod repeat;
 mod resample;
 mod stencil;
 
@@ -21,6 +22,7 @@ pub use fill::Fill;
 pub use flip::Flip;
 pub use level::Level;
 pub use periodic::{Periodic, hann};
+pub use repeat::{MOST_COPIES, Repeat};
 pub use stencil::Edges;
 
 /// One treatment.
@@ -44,6 +46,8 @@ pub enum Treatment {
     },
     /// Other numbers of points on the same rectangle.
     Resample(Grid),
+    /// Copies beside each other.
+    Repeat(Repeat),
 }
 
 impl fmt::Display for Treatment {
@@ -56,6 +60,7 @@ impl fmt::Display for Treatment {
             Self::Periodic(how) => write!(f, "periodic {how}"),
             Self::LowPass { wavelength } => write!(f, "low-pass {wavelength:e}"),
             Self::Resample(grid) => write!(f, "resample {grid}"),
+            Self::Repeat(repeat) => write!(f, "repeat {repeat}"),
         }
     }
 }
@@ -91,6 +96,12 @@ pub enum TreatError {
         grid: Grid,
         /// Distances of points along x and y.
         spacing: [f64; 2],
+    },
+    /// Sides of which no whole numbers are as long as each other.
+    #[error("repeat: no copies of {:e} by {:e} make a square within 0.1 %, with 16 at most along a side; crop it first", sides[0], sides[1])]
+    NoSquareOfCopies {
+        /// Sides along x and y.
+        sides: [f64; 2],
     },
     /// A treatment that needs every height.
     #[error("{treatment}: {missing} points are missing; fill them first (fill)")]
@@ -198,6 +209,10 @@ pub fn grids_after(map: &HeightMap, treatments: &[Treatment]) -> Result<Vec<Grid
                 spacing = [spacing[0] * ratio(grid.nx(), wanted.nx()), spacing[1] * ratio(grid.ny(), wanted.ny())];
                 wanted
             }
+            Treatment::Repeat(repeat) => {
+                let sides = [spacing[0] * grid.nx() as f64, spacing[1] * grid.ny() as f64];
+                repeat::copies(grid, sides, repeat)?.1
+            }
             _ => grid,
         };
         grid = after;
@@ -221,6 +236,7 @@ fn one(map: HeightMap, treatment: Treatment, edges: Edges) -> Result<(HeightMap,
         Treatment::Periodic(how) => periodic::periodic(map, how),
         Treatment::LowPass { wavelength } => low_pass::low_pass(map, wavelength, edges),
         Treatment::Resample(grid) => Ok(resample::resample(map, grid, edges)),
+        Treatment::Repeat(times) => repeat::repeat(&map, times),
     };
     treated.map(|map| (map, String::new()))
 }

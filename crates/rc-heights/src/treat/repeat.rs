@@ -1,0 +1,102 @@
+//! Copies of a periodic map beside each other.
+
+use std::fmt;
+use std::str::FromStr;
+
+use rc_core::{Field, Grid};
+
+use super::{SAME_LENGTH, TreatError};
+use crate::HeightMap;
+
+/// How often a map is repeated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Repeat {
+    /// As often as makes the cell a square, at most [`MOST_COPIES`] times along a side: the same contact, in a cell that every method
+    /// takes.
+    Square,
+    /// So often along x and along y.
+    Times([usize; 2]),
+}
+
+/// Most copies along a side.
+pub const MOST_COPIES: usize = 16;
+
+impl fmt::Display for Repeat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Square => f.write_str("square"),
+            Self::Times([x, y]) => write!(f, "{x}x{y}"),
+        }
+    }
+}
+
+impl FromStr for Repeat {
+    type Err = TreatError;
+
+    fn from_str(text: &str) -> Result<Self, TreatError> {
+        let unknown =
+            || TreatError::Unknown { found: text.to_owned(), expected: "square, or copies along x and y as 3x4" };
+        if text == "square" {
+            return Ok(Self::Square);
+        }
+        let times = |word: &str| word.parse().ok().filter(|n| (1..=MOST_COPIES).contains(n)).ok_or_else(unknown);
+        let (x, y) = text.split_once('x').ok_or_else(unknown)?;
+        Ok(Self::Times([times(x)?, times(y)?]))
+    }
+}
+
+/// Copies along x and y of a map with these sides, and the grid of all of them.
+pub(super) fn copies(grid: Grid, sides: [f64; 2], repeat: Repeat) -> Result<([usize; 2], Grid), TreatError> {
+    let [x, y] = match repeat {
+        Repeat::Times(times) => times,
+        Repeat::Square => square(sides).ok_or(TreatError::NoSquareOfCopies { sides })?,
+    };
+    Ok(([x, y], Grid::new(x * grid.nx(), y * grid.ny())?))
+}
+
+/// The fewest copies that are as long along x as along y, within [`SAME_LENGTH`].
+fn square([side_x, side_y]: [f64; 2]) -> Option<[usize; 2]> {
+    let fits = |x: usize, y: usize| (x as f64 * side_x / (y as f64 * side_y) - 1.0).abs() <= SAME_LENGTH;
+    (1..=MOST_COPIES).flat_map(|x| (1..=MOST_COPIES).map(move |y| [x, y])).find(|&[x, y]| fits(x, y))
+}
+
+pub(super) fn repeat(map: &HeightMap, repeat: Repeat) -> Result<HeightMap, TreatError> {
+    let (grid, [dx, dy]) = (map.heights.grid(), map.spacing());
+    let sides = [dx * grid.nx() as f64, dy * grid.ny() as f64];
+    let ([x, y], all) = copies(grid, sides, repeat)?;
+    let rows = (0..y).flat_map(|_| 0..grid.ny());
+    let values = rows.flat_map(|iy| std::iter::repeat_n(map.heights.row(iy), x).flatten().copied()).collect();
+    let heights = Field::new(all, values).expect("as many values as points");
+    Ok(HeightMap { heights, sides: map.sides.map(|[a, b]| [x as f64 * a, y as f64 * b]), ..*map })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn copies_make_a_square_where_few_do() {
+        assert_eq!(square([2e-3, 2e-3]), Some([1, 1]));
+        assert_eq!(square([4e-3, 3e-3]), Some([3, 4]));
+        assert_eq!(square([1e-3, 16e-3]), Some([16, 1]));
+        assert_eq!(square([1.0, 3f64.sqrt()]), None);
+        let grid = Grid::new(3, 2).expect("a grid");
+        let map = HeightMap { sides: Some([3.0, 2.0]), ..HeightMap::bare(Field::from_fn(grid, |x, y| 10.0 * y + x)) };
+        let repeated = repeat(&map, Repeat::Square).expect("2 x 3 copies");
+        assert_eq!((repeated.heights.grid(), repeated.sides), (Grid::new(6, 6).expect("a grid"), Some([6.0, 6.0])));
+        for iy in 0..6 {
+            for ix in 0..6 {
+                assert_eq!(repeated.heights.at(ix, iy).to_bits(), map.heights.at(ix % 3, iy % 2).to_bits());
+            }
+        }
+    }
+
+    #[test]
+    fn words_are_read_and_others_refused() {
+        assert_eq!("square".parse(), Ok(Repeat::Square));
+        assert_eq!("3x4".parse(), Ok(Repeat::Times([3, 4])));
+        for wrong in ["", "3", "0x1", "17x1", "3x", "axb", "-1x2"] {
+            assert!(wrong.parse::<Repeat>().is_err(), "{wrong}");
+        }
+    }
+}
