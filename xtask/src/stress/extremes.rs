@@ -183,15 +183,18 @@ fn shape_scenes(method: Method, full: bool) -> Result<Vec<Scene>> {
 
 /// Grids without a middle, without neighbours, or of one element.
 fn grids(full: bool) -> Result<Vec<Scene>> {
-    let sides = [(1, 1), (2, 2), (1, 64), (64, 1), (3, 5), (63, 63), (48, 80), (61, 7), (128, 2), (2, 128)];
+    let square = [(1, 1), (2, 2), (1, 64), (64, 1), (3, 5), (63, 63), (48, 80), (61, 7), (128, 2), (2, 128)];
+    let rectangles = [(64, 32, 0.5), (32, 32, 0.5), (24, 72, 3.0), (40, 10, 7.3), (64, 1, 1e-3), (16, 512, 1e3)];
+    let grids = thinned(&square, full).into_iter().map(|(nx, ny)| (nx, ny, 1.0)).chain(thinned(&rectangles, full));
     let mut scenes = Vec::new();
-    for (nx, ny) in thinned(&sides, full) {
-        let grid = Grid::new(nx, ny)?;
+    for (nx, ny, ratio) in grids {
+        let grid = Grid::in_cell(nx, ny, ratio)?;
         let wave = |t: f64| (std::f64::consts::TAU * t).cos();
-        let heights = Field::from_fn(grid, |x, y| 1e-3 * (wave(x + 0.1) + wave(y + 0.2) + 0.3 * wave(2.0 * x)));
+        let heights = Field::from_fn(grid, |x, y| 1e-3 * (wave(x + 0.1) + wave(y / ratio + 0.2) + 0.3 * wave(2.0 * x)));
         let control = Control::MeanPressure(1e-3);
         for method in [Method::Uniform, Method::Spectral] {
-            scenes.push(Scene::new(format!("grid {grid}"), &heights, method, control));
+            let cell = if ratio == 1.0 { String::new() } else { format!(", cell of 1 x {ratio}") };
+            scenes.push(Scene::new(format!("grid {grid}{cell}"), &heights, method, control));
         }
     }
     let flat = Field::from_fn(Grid::square(32)?, |_, _| 0.25);

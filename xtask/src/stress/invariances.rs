@@ -24,9 +24,10 @@ type Part = fn(&mut Rows, Preset) -> Result<()>;
 #[expect(clippy::unnecessary_wraps, reason = "as the other groups")]
 pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     let mut rows = Rows::of("invariances");
-    let parts: [(&str, Part); 7] = [
+    let parts: [(&str, Part); 8] = [
         ("scaling", scaling),
         ("motions", motions),
+        ("copies", copies),
         ("fractions of an element", fractions),
         ("surfaces", surfaces),
         ("round trips", round_trips),
@@ -97,6 +98,27 @@ fn moved(field: &Field, motion: Motion) -> Result<Field> {
         field.at(x, y)
     };
     Ok(Field::new(field.grid(), (0..n * n).map(value).collect())?)
+}
+
+/// A rectangular cell has the pressure of the square of its copies.
+fn copies(rows: &mut Rows, _: Preset) -> Result<()> {
+    for method in [Method::Uniform, Method::Spectral] {
+        for (nx, ny, n) in [(64, 32, 2), (40, 24, 3), (128, 16, 8)] {
+            let wave = |t: f64| (std::f64::consts::TAU * t).cos();
+            let bumps = |x: f64, y: f64| 1e-2 * (wave(x + y + 0.1) + wave(2.0 * x - y) + 0.4 * wave(3.0 * x + 0.3));
+            // y in parts of the rectangle's side.
+            let times = n as f64;
+            let part = Field::from_fn(Grid::in_cell(nx, ny, 1.0 / times)?, |x, y| bumps(x, times * y));
+            let whole = Field::from_fn(Grid::new(nx, n * ny)?, |x, y| bumps(x, times * y));
+            let [part, whole] = [solve(&part, method, LOAD, TIGHT)?, solve(&whole, method, LOAD, TIGHT)?];
+            let copied = Field::new(whole.pressure.grid(), part.pressure.values().repeat(n))?;
+            let scene = format!("{} {n} copies of {nx} x {ny} elements", method.name());
+            rows.at_most(&scene, "pressure", whole.distance(&copied), SAME_PRESSURE);
+            let penetration = (part.info.penetration / whole.info.penetration - 1.0).abs();
+            rows.at_most(&scene, "penetration", penetration, SAME_NUMBER);
+        }
+    }
+    Ok(())
 }
 
 /// Motions of the heights move the pressure, constants added to them change nothing.

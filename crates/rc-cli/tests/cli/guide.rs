@@ -44,9 +44,12 @@ fn commands(document: &str) -> Vec<(usize, String)> {
     commands
 }
 
-/// The files that the documents say one has: a measured map, a sphere, scenes, the file of an instrument.
+/// The files that the documents say one has: measured maps, a sphere, scenes, the file of an instrument.
 fn prepare(place: &Place) {
     place.write("map.npy", npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
+    let wide = |i: usize| (0.3 * (i % 128) as f64).sin() * 1e-6 + (0.2 * (i / 128) as f64).cos() * 1e-6;
+    let wide = (0..128 * 64).flat_map(|i| wide(i).to_le_bytes()).collect::<Vec<u8>>();
+    place.write("wide.npy", npy("<f8", false, "(64, 128)", &wide));
     let n = 256;
     let x = |i: usize| (i as f64 - n as f64 / 2.0) * 1e-2 / n as f64;
     let sphere = (0..n * n).flat_map(|i| (-(x(i % n).powi(2) + x(i / n).powi(2)) / 2e-2).to_le_bytes());
