@@ -65,13 +65,12 @@ fn inspect_result(folder: &Path, json: bool) -> Result<String, CliError> {
         return Err(CliError::in_file(folder, format_args!("not a result; inspect {} instead", heights.display())));
     }
     let result = ResultFolder::read(folder)?;
+    let sides = result.sides();
     let pressure = PressureStatistics::of(&finite(&folder.join("pressure.npy"), result.pressure)?);
     if json {
         return Ok(to_json(&ResultStatistics { summary: result.summary, pressure }));
     }
-    Ok(report::solved(&result.summary, result.side, result.e_star)
-        + "\nstored pressure\n"
-        + &report::pressure(&pressure))
+    Ok(report::solved(&result.summary, sides, result.e_star) + "\nstored pressure\n" + &report::pressure(&pressure))
 }
 
 fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {

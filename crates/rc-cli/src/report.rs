@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use crate::quantity::{digits, engineering};
-use rc_core::Grid;
 use rc_heights::AreaParameters;
 
 use crate::statistics::{HeightStatistics, Histogram, PressureStatistics, SpectrumRow, TreatmentRow};
@@ -11,8 +10,8 @@ use crate::summary::Summary;
 
 /// A few aligned lines about a solved problem; `side` is λ in m, `e_star` E* in Pa.
 #[must_use]
-pub fn solved(summary: &Summary, side: f64, e_star: f64) -> String {
-    headline(summary) + &aligned(&solved_lines(summary, side, e_star))
+pub fn solved(summary: &Summary, sides: [f64; 2], e_star: f64) -> String {
+    headline(summary) + &aligned(&solved_lines(summary, sides, e_star))
 }
 
 /// The stiffness of the contact.
@@ -21,20 +20,14 @@ pub(crate) fn stiffness(s: &Summary) -> String {
 }
 
 /// The lines of [`solved`]: names and values.
-pub(crate) fn solved_lines(summary: &Summary, side: f64, e_star: f64) -> Vec<(&'static str, String)> {
+pub(crate) fn solved_lines(summary: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'static str, String)> {
     let s = summary;
     let percent = |fraction: f64| digits(100.0 * fraction, 4);
     let mut lines = vec![
         ("method", s.method_reason.as_ref().unwrap_or(&s.method).clone()),
         (
             "cell",
-            format!(
-                "{} with {} x {} elements, E* = {}",
-                engineering(side, "m"),
-                s.grid[0],
-                s.grid[1],
-                engineering(e_star, "Pa")
-            ),
+            format!("{} with {} x {} elements, E* = {}", cell(sides), s.grid[0], s.grid[1], engineering(e_star, "Pa")),
         ),
         (
             "surface",
@@ -123,16 +116,11 @@ fn converged(s: &Summary) -> String {
     format!("converged in {} fine iterations, {} nested {}", s.iterations, s.levels, levels(s.levels))
 }
 
-/// The size of a cell of side `side` along x (m).
+/// The size of a cell: one side of a square, both of a rectangle (m).
 #[must_use]
-pub fn cell(side: f64, grid: Grid) -> String {
-    sides(side, side * grid.cell_ratio())
-}
-
-/// One side of a square, both of a rectangle (m).
-fn sides(x: f64, y: f64) -> String {
-    let x_text = engineering(x, "m");
-    if x == y { x_text } else { format!("{x_text} by {}", engineering(y, "m")) }
+pub fn cell([x, y]: [f64; 2]) -> String {
+    let side = engineering(x, "m");
+    if x == y { side } else { format!("{side} by {}", engineering(y, "m")) }
 }
 
 /// Statistics of a height map, with a short table of its spectrum and its distribution.
@@ -140,7 +128,7 @@ fn sides(x: f64, y: f64) -> String {
 pub fn heights(statistics: &HeightStatistics) -> String {
     let s = statistics;
     let lines = [
-        ("cell", format!("{} with {} x {} elements", sides(s.cell, s.cell_y), s.grid[0], s.grid[1])),
+        ("cell", format!("{} with {} x {} elements", cell([s.cell, s.cell_y]), s.grid[0], s.grid[1])),
         (
             "heights",
             format!(

@@ -54,6 +54,12 @@ impl ResultFolder {
         Ok(Self { summary, side, e_star, pressure, gap })
     }
 
+    /// Sides of the cell along x and y (m).
+    #[must_use]
+    pub fn sides(&self) -> [f64; 2] {
+        [self.side, self.side * self.pressure.grid().cell_ratio()]
+    }
+
     /// Whether the fields are those of the elements that were solved, and not their means over blocks (`output_grid`).
     #[must_use]
     pub fn is_of_elements(&self) -> bool {

@@ -56,6 +56,12 @@ impl PeriodicCell {
         self.side
     }
 
+    /// Sides along x and y (m).
+    #[must_use]
+    pub fn sides(self) -> [f64; 2] {
+        [self.side, self.side_y]
+    }
+
     /// Side along y over side along x, as [`crate::Grid::cell_ratio`].
     #[must_use]
     pub fn ratio(self) -> f64 {

@@ -98,7 +98,7 @@ pub(crate) fn multilevel(grid: Grid, p: &[f64], base: usize) -> Result<Vec<f64>>
 }
 
 fn can_be_multilevel(grid: Grid) -> bool {
-    grid.nx() == grid.ny() && grid.nx().is_multiple_of(2 * TILE)
+    grid.is_square() && grid.nx().is_multiple_of(2 * TILE)
 }
 
 /// L p of Love's squares by direct summation, for small grids.

@@ -115,7 +115,7 @@ pub(super) fn page(folder: &Path) -> Result<Page, CliError> {
             maps: maps(&result),
             stress: stress(&result),
             certificate: certificate(summary),
-            lines: report::solved_lines(summary, result.side, result.e_star),
+            lines: report::solved_lines(summary, result.sides(), result.e_star),
             // Last: it takes the fields.
             spots: spots(result, kernel),
         })),
@@ -134,7 +134,7 @@ fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
         "{surface}: rms height {}, rms slope {}, in a cell of {}; E* = {}; {} x {} elements, kernel {}, method {}",
         engineering(s.rms_height, "m"),
         digits(s.rms_slope, 4),
-        report::cell(result.side, result.pressure.grid()),
+        report::cell(result.sides()),
         engineering(result.e_star, "Pa"),
         s.grid[0],
         s.grid[1],
@@ -170,7 +170,7 @@ fn commands(folder: &Path, scene: &Scene) -> Vec<Command> {
 }
 
 fn maps(result: &ResultFolder) -> Maps {
-    let ResultFolder { side, pressure, gap, summary, .. } = result;
+    let ResultFolder { pressure, gap, summary, .. } = result;
     let (grid, of_elements) = (pressure.grid(), result.is_of_elements());
     let (p, g) = (pressure.values(), gap.values());
     let pressures = pixel_means(grid, |i| p[i]);
@@ -199,7 +199,7 @@ fn maps(result: &ResultFolder) -> Maps {
         )
     };
     Maps {
-        sides: [*side, side * grid.cell_ratio()],
+        sides: result.sides(),
         pressure: EmbeddedField::of_contact(&pressures, pressures.max(), Bits::Sixteen, Palette::Heat),
         gap: EmbeddedField::of_gap(&gaps, widest, Bits::Sixteen, Palette::Viridis),
         contact: EmbeddedField::of_contact(&contact, 1.0, Bits::Eight, Palette::Ink),

@@ -204,7 +204,7 @@ fn print_summary(
         (true, _) => Ok(()),
         (false, true) => output::print(&summary.to_json()),
         (false, false) => {
-            let text = report::solved(summary, surface.cell.side(), contact.elasticity.e_star());
+            let text = report::solved(summary, surface.cell.sides(), contact.elasticity.e_star());
             output::print(&(text + &report::written(run.out.as_deref())))
         }
     }
