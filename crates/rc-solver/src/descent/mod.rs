@@ -206,7 +206,8 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
         self.refresh();
     }
 
-    /// The gap from a fresh application of L, in double precision, and the pressure at the prescribed load or penetration.
+    /// The gap from a fresh application of L, in double precision, and the pressure at the prescribed load or penetration: the gap follows
+    /// scaling to rounding, since v is linear in p.
     fn refresh(&mut self) -> GapSums {
         let sums = self.fresh_gap();
         self.meet_penetration(sums)
