@@ -53,7 +53,9 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
 fn mdbook() -> Result<PathBuf> {
     let tools = repository::target().join("tools");
     let ours = tools.join("bin").join("mdbook").with_extension(std::env::consts::EXE_EXTENSION);
-    let starts = |program: &PathBuf| Command::new(program).arg("--version").stdout(Stdio::null()).status().is_ok();
+    let starts = |program: &PathBuf| {
+        Command::new(program).arg("--version").stdout(Stdio::null()).status().is_ok_and(|status| status.success())
+    };
     if let Some(found) = [PathBuf::from("mdbook"), ours.clone()].into_iter().find(starts) {
         return Ok(found);
     }

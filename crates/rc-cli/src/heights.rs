@@ -59,8 +59,7 @@ pub fn sides(path: &Path, of_file: Option<[f64; 2]>, given: [Option<f64>; 2]) ->
         }
     }
     let [x, y] = of_file;
-    let x_of_cell = given[0].unwrap_or(x);
-    Ok([Some(x_of_cell), if same(x, y) { given[1] } else { Some(given[1].unwrap_or(y)) }])
+    Ok([Some(given[0].unwrap_or(x)), (!same(x, y)).then(|| given[1].unwrap_or(y))])
 }
 
 #[cfg(test)]

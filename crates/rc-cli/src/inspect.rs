@@ -31,8 +31,10 @@ struct ResultStatistics {
 /// [`CliError::Input`] when the file is neither a height map nor of a result.
 pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
     let text = match result_folder(&args.file) {
-        Some(_) if args.cell.is_some() => {
-            return Err(CliError::input("cell: a result has its own, in its scene.toml; leave --cell away"));
+        Some(_) if args.cell.is_some() || args.cell_y.is_some() => {
+            return Err(CliError::input(
+                "cell: a result has its own, in its scene.toml; leave --cell and --cell-y away",
+            ));
         }
         Some(_) if args.out.is_some() => {
             return Err(CliError::input("out: the pictures of a result are made by rc plot; leave --out away"));
@@ -82,8 +84,7 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
     }
     let [side, side_y] = heights::sides(&args.file, map.sides, [args.cell, args.cell_y])?;
     let side = side.or(scene_file::example().surface.cell).unwrap_or(1.0);
-    let cell = PeriodicCell::rectangle(side, side_y.unwrap_or(side))
-        .map_err(|cause| CliError::input(format_args!("cell: {cause}")))?;
+    let cell = PeriodicCell::rectangle(side, side_y.unwrap_or(side)).map_err(CliError::input)?;
     let (nx, ny) = (map.heights.grid().nx(), map.heights.grid().ny());
     let grid = Grid::in_cell(nx, ny, cell.ratio()).map_err(|cause| CliError::in_file(&args.file, cause))?;
     let in_cell = map.heights.values().iter().map(|height| height / side).collect();

@@ -208,13 +208,16 @@ macro_rules! or_lower {
 
 impl SurfaceKeys {
     /// These keys laid over `lower`. A key given here also removes its alternatives below: a height map the parameters of
-    /// a random surface (and the reverse), and each of `rms`, `rms_slope`, `c0` the other two.
+    /// a random surface (and the reverse), each of `rms`, `rms_slope`, `c0` the other two, and `cell` the other side.
     #[must_use]
     pub fn over(mut self, mut lower: Self) -> Self {
         if self.heights.is_some() {
             lower = Self { cell: lower.cell, cell_y: lower.cell_y, ..Self::default() };
         } else if self.generates() {
             (lower.heights, lower.unit, lower.height_scale, lower.cell_y) = (None, None, None, None);
+        }
+        if self.cell.is_some() {
+            lower.cell_y = None;
         }
         if self.rms.is_some() || self.rms_slope.is_some() || self.c0.is_some() {
             (lower.rms, lower.rms_slope, lower.c0) = (None, None, None);

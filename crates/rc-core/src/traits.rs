@@ -2,7 +2,7 @@
 
 use crate::{Field, Grid};
 
-/// A periodic rough surface on the unit cell.
+/// A rough surface, periodic on the square cell of side 1.
 ///
 /// Implementations: a realised spectrum, a measured map, a sphere. [`crate::testing::check_height_field`] (feature
 /// `testing`) checks the contract.
@@ -13,8 +13,8 @@ pub trait HeightField: Sync {
     /// The largest wavenumber (waves per cell) in any direction, or `None` when the surface is not band-limited.
     fn band_limit(&self) -> Option<usize>;
 
-    /// Heights at the element centres of `grid`. Equal to [`HeightField::height`] there up to rounding; implementations
-    /// that have a fast transform override it.
+    /// Heights at the element centres of `grid`. Equal to [`HeightField::height`] there up to rounding, so they are periodic on a square
+    /// cell only; implementations that have a fast transform override it.
     fn sample(&self, grid: Grid) -> Field {
         Field::from_fn(grid, |x, y| self.height(x, y))
     }
@@ -47,7 +47,7 @@ pub trait Kernel: Sync {
 
     /// The symbol of `v = L p` on `grid`, in units of λ/E*: the factor between the pressure wave exp(2πi k·x) on element
     /// centres and its displacement. Even in kx and in ky, so it is asked for 0 ≤ kx ≤ nx/2, 0 ≤ ky ≤ ny/2 only; on a
-    /// square grid symmetric in kx and ky, so it may be asked for ky ≥ kx only. Zero at k = 0 (Eq. 3: the displacement has zero mean) and positive elsewhere.
+    /// [square](Grid::is_square) grid symmetric in kx and ky, so it may be asked for ky ≥ kx only. Zero at k = 0 (Eq. 3: the displacement has zero mean) and positive elsewhere.
     fn symbol(&self, grid: Grid) -> Symbol<'_>;
 
     /// How far the discretisation shifts the edges of contacts: it is first order in the element size, and depends on the

@@ -9,7 +9,7 @@ use crate::power::PowerSpectrum;
 /// One ring of wave vectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectrumBin {
-    /// Mean |k| of the ring's wave vectors, in waves per cell.
+    /// Mean |k| of the ring's wave vectors, in waves per λ.
     pub wavenumber: f64,
     /// Mean of C = |`a_k`|² A0/(2π)² over the ring's wave vectors, in λ⁴; A0 = 1 for a square cell.
     pub psd: f64,
@@ -17,7 +17,8 @@ pub struct SpectrumBin {
     pub n_modes: usize,
 }
 
-/// Radially averaged C(q) of a height map: rings of width 1 about |k| = 1, 2, 3, …, shortest wavenumber first.
+/// Radially averaged C(q) of a height map: rings of width 1 about |k| = 1, 2, 3, …, shortest wavenumber first; in
+/// waves per longer side of a rectangular cell.
 ///
 /// Every wave vector of the grid except k = 0 is in one ring, hence Σ (2π)² `psd` · `n_modes` / A0 = ⟨h²⟩ about the mean, exactly
 /// (Parseval; the sum is ∫ C d²q). Rings beyond half the shorter side of the grid reach into the corners of its wave vectors only.
@@ -27,7 +28,8 @@ pub struct SpectrumBin {
 /// and `rings_add_up_to_the_mean_square_height`.
 #[must_use]
 pub fn radial_spectrum(heights: &Field) -> Vec<SpectrumBin> {
-    binned_spectrum(heights, 1.0)
+    // The longest waves of a cell that is longer along y are shorter than one per side along x.
+    binned_spectrum(heights, heights.grid().cell_ratio().max(1.0))
 }
 
 /// The same with `rings_per_wave` rings for each unit of |k|; every ring that holds a wave vector is returned.
@@ -41,23 +43,19 @@ fn binned_spectrum(heights: &Field, rings_per_wave: f64) -> Vec<SpectrumBin> {
     let grid = heights.grid();
     let ratio = grid.cell_ratio();
     let largest = (grid.nx() as f64 / 2.0).hypot(grid.ny() as f64 / 2.0 / ratio);
-    let mut rings = vec![Ring::default(); (largest * rings_per_wave).round() as usize + 2];
+    let mut rings = vec![Ring::default(); (largest * rings_per_wave).round() as usize + 1];
     for column in PowerSpectrum::of(heights).columns() {
         let weight = column.multiplicity as f64;
         for (ky, power) in column.powers() {
             let wavenumber = column.squared_wavenumber(ky).sqrt();
-            // The mean height is no wave.
-            if wavenumber == 0.0 {
-                continue;
-            }
-            // In a cell longer along y waves may be longer than its side along x.
-            let ring = &mut rings[((wavenumber * rings_per_wave).round() as usize).max(1)];
+            let ring = &mut rings[(wavenumber * rings_per_wave).round() as usize];
             ring.n_modes += column.multiplicity;
             ring.wavenumbers += weight * wavenumber;
             ring.power += weight * power;
         }
     }
-    let waves = rings.iter().filter(|ring| ring.n_modes > 0);
+    // The mean height is alone in ring 0 and is not a wave.
+    let waves = rings.iter().skip(1).filter(|ring| ring.n_modes > 0);
     waves
         .map(|ring| {
             let count = ring.n_modes as f64;

@@ -144,7 +144,11 @@ impl HeightField for Surface {
     }
 
     fn sample(&self, grid: Grid) -> Field {
-        synthesise(&self.columns, grid)
+        if grid.has_square_cell() {
+            synthesise(&self.columns, grid)
+        } else {
+            Field::from_fn(grid, |x, y| self.height(x, y))
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Elastic half-space kernels on the periodic unit cell (Eq. 2-6), in units of λ and E*.
+//! Elastic half-space kernels on the periodic cell (Eq. 2-6), in units of λ and E*.
 //!
 //! The paper's operator is `v_i = Σ_j L_ij p_j` (Eq. 4): element j under uniform pressure and all its periodic images
 //! (Eq. 5), less the mean displacement (Eq. 6). Both sums diverge and their difference converges like 1/(number of images),
@@ -60,7 +60,7 @@ use love_symbol::LoveSymbol;
 use rc_core::{EdgeBias, Grid, Kernel, Symbol};
 
 /// The paper's element: uniform pressure on each element, displacement at its centre, summed over all periodic images
-/// (Eq. 4-6) without truncation. Elements are squares on a grid with nx = ny, and rectangles otherwise.
+/// (Eq. 4-6) without truncation. Elements are squares or rectangles, and so is the cell.
 ///
 /// Its symbol is `Σ 2/|q| sinc(q_x hx/2) sinc(q_y hy/2)` over the aliases q of the wave, for elements of hx × hy.
 ///

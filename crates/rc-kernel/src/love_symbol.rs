@@ -206,8 +206,12 @@ mod tests {
             (1, 1024),
             (1 << 15, 1),
         ];
-        for (nx, ny) in sizes {
-            let grid = Grid::new(nx, ny).expect("grid");
+        let square = sizes.map(|(nx, ny)| Grid::new(nx, ny).expect("grid"));
+        let rectangles =
+            [(48, 16, 1.0 / 3.0), (16, 48, 3.0), (20, 24, 2.5), (24, 20, 0.1), (9, 64, 40.0), (64, 9, 0.02)];
+        let rectangles = rectangles.map(|(nx, ny, ratio)| Grid::in_cell(nx, ny, ratio).expect("grid"));
+        for grid in square.into_iter().chain(rectangles) {
+            let (nx, ny) = (grid.nx(), grid.ny());
             let symbol = LoveSymbol::new(grid);
             for kx in waves(nx) {
                 for ky in waves(ny).into_iter().skip(usize::from(kx == 0)) {

@@ -167,3 +167,19 @@ fn near_coefficients_are_free_space_less_the_images() {
         }
     }
 }
+
+/// Copies along x of a cell that is longer along y make a square; its side is the unit of length then.
+#[test]
+fn a_cell_longer_along_y_is_a_part_of_the_square_of_its_copies() {
+    for (nx, ny, copies) in [(8, 24, 3), (10, 12, 3), (6, 48, 5)] {
+        for kernel in [&Love as &dyn Kernel, &Spectral] {
+            let part = kernel.symbol(Grid::in_cell(nx, ny, copies as f64).expect("a grid"));
+            let whole = kernel.symbol(Grid::new(copies * nx, ny).expect("a grid"));
+            for (kx, ky) in (0..=nx / 2).flat_map(|kx| (0..=ny / 2).map(move |ky| (kx, ky))).skip(1) {
+                let (value, of_copies) = (part(kx, ky), copies as f64 * whole(copies * kx, ky));
+                let name = kernel.name();
+                assert!((value / of_copies - 1.0).abs() < 1e-13, "{name} ({kx}, {ky}): {value}, of copies {of_copies}");
+            }
+        }
+    }
+}

@@ -3,7 +3,7 @@
 use rc_core::{EdgeBias, Field, Grid};
 
 use crate::ContactArea;
-use crate::contact_area::{EdgeSums, around, shortest_side};
+use crate::contact_area::{EdgeSums, around};
 
 /// One connected part of the contact, across edges of elements and the sides of the periodic cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,13 +32,13 @@ impl ContactSpot {
         assert_eq!(pressure.grid(), gap.grid(), "pressure and gap on the same grid");
         let grid = pressure.grid();
         let (nx, ny) = (grid.nx(), grid.ny());
-        let side = shortest_side(grid);
+        let sides = grid.spacing().into();
         let spot = |elements: Vec<usize>| {
             let (mut sums, mut load) = (EdgeSums::default(), 0.0);
             for &element in &elements {
                 load += pressure.values()[element];
                 let at = [element % nx, element / nx];
-                sums.add(side, &around((pressure.values(), gap.values()), [nx, ny], at, 0.0));
+                sums.add(sides, &around((pressure.values(), gap.values()), [nx, ny], at, 0.0));
             }
             let area = ContactArea::from_sums(&[sums], grid, bias);
             Self {

@@ -16,12 +16,12 @@ const UNIFORM_SIDE: usize = 64;
 
 /// Times the median number of iterations that some scenes may take: where the mean pressure is found on a grid that no coarser one
 /// prepares, and hardly changes the penetration; where every element is a peak or a pit of its own; where the shortest of many waves have
-/// four elements or fewer, and coarser grids miss them; where waves are a hundred times as long as contacts are wide. Each is a tenth above what was measured, over the lower median of both sets.
-const NEAR_FULL_CONTACT: f64 = 3.1;
+/// four elements or fewer, and coarser grids miss them; where waves are 100 times as long as contacts are wide. Each is a tenth above what was measured, over the lower median of both sets.
+const NEAR_FULL_CONTACT: f64 = 2.6;
 const SINGLE_ELEMENTS: f64 = 2.5;
-const WHITE_NOISE: f64 = 4.7;
-const FEW_ELEMENTS: f64 = 4.0;
-const LONG_CELL: f64 = 16.3;
+const WHITE_NOISE: f64 = 4.4;
+const FEW_ELEMENTS: f64 = 3.2;
+const LONG_CELL: f64 = 3.9;
 
 /// All scenes of a preset.
 pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
@@ -185,8 +185,16 @@ fn shape_scenes(method: Method, full: bool) -> Result<Vec<Scene>> {
 /// Grids without a middle, without neighbours, or of one element.
 fn grids(full: bool) -> Result<Vec<Scene>> {
     let square = [(1, 1), (2, 2), (1, 64), (64, 1), (3, 5), (63, 63), (48, 80), (61, 7), (128, 2), (2, 128)];
-    let rectangles =
-        [(64, 32, 0.5), (32, 32, 0.5), (24, 72, 3.0), (40, 10, 7.3), (64, 1, 1e-2), (16, 256, 16.0), (16, 512, 1e2)];
+    let rectangles = [
+        (64, 32, 0.5),
+        (32, 32, 0.5),
+        (24, 72, 3.0),
+        (40, 10, 7.3),
+        (64, 1, 1e-2),
+        (16, 256, 16.0),
+        (256, 16, 1.0 / 16.0),
+        (16, 512, 1e2),
+    ];
     let grids = thinned(&square, full).into_iter().map(|(nx, ny)| (nx, ny, 1.0)).chain(thinned(&rectangles, full));
     let mut scenes = Vec::new();
     for (nx, ny, ratio) in grids {
@@ -197,7 +205,8 @@ fn grids(full: bool) -> Result<Vec<Scene>> {
         for method in [Method::Uniform, Method::Spectral] {
             let cell = if ratio == 1.0 { String::new() } else { format!(", cell of 1 x {ratio}") };
             let scene = Scene::new(format!("grid {grid}{cell}"), &heights, method, control);
-            scenes.push(if ratio > 10.0 { scene.slow(LONG_CELL) } else { scene });
+            let length = f64::max(ratio, ratio.recip());
+            scenes.push(if nx.min(ny) > 1 && length > 50.0 { scene.slow(LONG_CELL) } else { scene });
         }
     }
     let flat = Field::from_fn(Grid::square(32)?, |_, _| 0.25);

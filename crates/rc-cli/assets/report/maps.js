@@ -58,12 +58,12 @@ class SharedView {
 /** One map. `reading` makes text of a value, `ends` those at the ends of the colours; the end of these is `movable`. */
 class FieldMap {
   constructor({ title, field, colours, view, sides, reading, ends, movable = true }) {
-    Object.assign(this, { field, view, side: sides[0], ratio: sides[1] / sides[0], reading, colours: colourTable(colours), low: movable ? field.low : 0, top: field.max });
+    Object.assign(this, { field, view, side: sides[0], shape: Math.min(4, Math.max(0.25, sides[1] / sides[0])), reading, colours: colourTable(colours), low: movable ? field.low : 0, top: field.max });
     this.bitmap = make("canvas", { width: field.nx, height: field.ny });
     this.canvas = make("canvas");
     this.value = make("span", { class: "quiet" });
     this.box = make("div", { class: "map", tabindex: 0, role: "img", "aria-label": title }, this.canvas);
-    this.box.style.aspectRatio = 1 / this.ratio;
+    this.box.style.aspectRatio = 1 / this.shape;
     const bar = make("div", { class: "bar" });
     bar.style.background = `linear-gradient(to right, ${colours.map((c) => `rgb(${c.join(" ")})`).join(", ")})`;
     const [least, greatest] = ends(this.low, this.top);
@@ -102,7 +102,7 @@ class FieldMap {
   paint() {
     const { view, canvas } = this;
     const pixels = Math.max(1, Math.round(this.box.clientWidth * (window.devicePixelRatio || 1)));
-    const high = Math.max(1, Math.round(pixels * this.ratio));
+    const high = Math.max(1, Math.round(pixels * this.shape));
     if (canvas.width !== pixels) Object.assign(canvas, { width: pixels, height: high });
     const context = canvas.getContext("2d");
     const [cell, cellHigh] = [pixels / view.size, high / view.size];

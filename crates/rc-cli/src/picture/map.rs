@@ -44,6 +44,7 @@ pub enum Shade {
 
 /// Sizes, in units of the font size.
 const TITLE: f64 = 1.9;
+const TITLE_WIDTH: f64 = 16.0;
 const FOOT: f64 = 2.0;
 const BAR_GAP: f64 = 0.6;
 const BAR_WIDTH: f64 = 0.9;
@@ -53,13 +54,17 @@ const BAR_LABELS: f64 = 3.2;
 #[must_use]
 pub fn map_extent((width, height): (u32, u32), font: f64, colour_bar: bool) -> (u32, u32) {
     let bar = if colour_bar { BAR_GAP + BAR_WIDTH + BAR_LABELS } else { 0.0 };
-    (width + (bar * font) as u32, height + ((TITLE + FOOT) * font) as u32)
+    let least = if width > 0 { (TITLE_WIDTH * font) as u32 } else { 0 };
+    ((width + (bar * font) as u32).max(least), height + ((TITLE + FOOT) * font) as u32)
 }
+
+/// Longest picture of a cell: one that is longer is drawn shorter than it is, or nothing would be seen of its width.
+const LONGEST: f64 = 4.0;
 
 /// Size of the bitmap of a cell, as large as `most` allows.
 #[must_use]
 pub fn bitmap_size(grid: Grid, most: (u32, u32)) -> (u32, u32) {
-    let ratio = grid.cell_ratio();
+    let ratio = grid.cell_ratio().clamp(LONGEST.recip(), LONGEST);
     let width = f64::from(most.0).min(f64::from(most.1) / ratio);
     ((width as u32).max(1), ((width * ratio) as u32).max(1))
 }
@@ -74,7 +79,9 @@ pub fn draw_map<B: DrawingBackend>(area: &Area<B>, map: &Map<'_>, font: f64) -> 
     let most = (width.saturating_sub(bar_width), height.saturating_sub(text_height));
     let size = bitmap_size(map.field.grid(), most);
     let top = (TITLE * font) as i32;
-    text(area, map.title, (size.0 as i32 / 2, (TITLE * font / 2.0) as i32), HPos::Center, font)?;
+    let (place, anchor) =
+        if f64::from(size.0) < TITLE_WIDTH * font { (0, HPos::Left) } else { (size.0 as i32 / 2, HPos::Center) };
+    text(area, map.title, (place, (TITLE * font / 2.0) as i32), anchor, font)?;
 
     let raster = rasterise(map, size);
     let bitmap = BitMapElement::with_owned_buffer((0, top), size, raster.rgb)
@@ -153,7 +160,8 @@ impl ColourBar {
         let scale = Scale::of(self.low.abs().max(self.high.abs()), self.unit);
         text(area, &scale.unit(), (left, (TITLE * font / 2.0) as i32), HPos::Left, font)?;
         let (low, high) = (self.low / scale.factor, self.high / scale.factor);
-        for tick in ticks(low, high, 6) {
+        let most_ticks = (f64::from(height) / (1.5 * font)) as usize;
+        for tick in ticks(low, high, most_ticks.clamp(2, 6)) {
             let part = if high > low { (tick - low) / (high - low) } else { 0.0 };
             let y = bottom - (part * f64::from(height)).round() as i32;
             let mark = Rectangle::new([(right, y - 1), (right + (0.25 * font) as i32, y + 1)], BLACK.filled());

@@ -151,6 +151,9 @@ impl<'a> Chooser<'a, '_> {
             AdaptiveError::Grid { .. } | AdaptiveError::Base { .. } => {
                 CliError::input(format_args!("grid: {error}; --method uniform takes any grid"))
             }
+            AdaptiveError::RectangularCell => CliError::input(format_args!(
+                "cell_y: {error}; rc surface --repeat square makes one of copies, --method uniform takes any"
+            )),
             AdaptiveError::Memory { needed, area_percent, .. } => {
                 let grid = self.surface.grid;
                 let part = match area_percent {

@@ -82,10 +82,10 @@ fn what_does_not_go_with_a_rectangle_is_refused() {
     for method in ["adaptive", "gauss-seidel"] {
         refused(&[&["--heights", "map.npy", "--method", method], &CELL[..]].concat(), "square cell");
     }
-    for (side, expected) in [("0", "cell_y"), ("nan", "cell_y"), ("-1", "cell_y"), ("1e9", "factor of 100")] {
+    for (side, expected) in [("0", "cell_y"), ("nan", "cell_y"), ("-1", "cell_y"), ("1e9", "factor of 10000")] {
         refused(&["--heights", "map.npy", "--cell", "2e-3", "--cell-y", side], expected);
     }
     let repeat = ["surface", "--heights", "map.npy", "--repeat", "square", "--cell", "1.4142135", "--cell-y", "1"];
-    assert_refused(&place.run(&repeat), "no copies of");
+    assert_refused(&place.run(&repeat), "no copies of 128 x 64 points");
     assert_eq!(place.names("."), ["map.npy"]);
 }

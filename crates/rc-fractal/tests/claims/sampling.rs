@@ -1,7 +1,7 @@
 //! One surface, whatever the grid, the method or the number of threads.
 
-use rc_core::{Grid, HeightField, testing};
-use rc_fractal::{Amplitudes, SampleError, SpectrumParams, Truncation, moments_of_grid, radial_spectrum};
+use rc_core::{Field, Grid, HeightField, testing};
+use rc_fractal::{Amplitudes, SampleError, SpectrumParams, Surface, Truncation, moments_of_grid, radial_spectrum};
 
 use crate::surface;
 
@@ -84,4 +84,42 @@ fn a_coarse_grid_is_refused_with_the_smallest_that_would_do() {
         "a grid of 64 x 40 is too coarse for 20 waves: it needs at least 41 elements per side"
     );
     assert!(surface.sample_on(Grid::square(41).expect("small")).is_ok());
+}
+
+/// A map on a rectangular cell and the square of its copies: the same moments, and the same power in all rings together.
+#[test]
+fn a_rectangle_has_the_moments_of_its_copies_and_all_of_the_power() {
+    let copies = 4;
+    let wave = |x: f64, y: f64| {
+        let wave = |a: f64, kx: f64, ky: f64| a * (std::f64::consts::TAU * (kx * x + ky * y) + kx).cos();
+        wave(3e-3, 2.0, 1.0) + wave(1e-3, 5.0, -3.0) + wave(2e-3, 0.0, 2.0)
+    };
+    for (nx, ny, ratio) in [(48, 24, 0.25), (24, 48, 4.0)] {
+        let part = Field::from_fn(Grid::in_cell(nx, ny, ratio).expect("a grid"), |x, y| wave(x, y / ratio));
+        let whole = if ratio < 1.0 {
+            Field::from_fn(Grid::new(nx, copies * ny).expect("a grid"), |x, y| wave(x, y / ratio))
+        } else {
+            // In units of the longer side.
+            Field::from_fn(Grid::new(copies * nx, ny).expect("a grid"), |x, y| wave(ratio * x, y) / ratio)
+        };
+        let unit = ratio.max(1.0);
+        let (a, b) = (moments_of_grid(&part), moments_of_grid(&whole));
+        for (a, b) in [
+            (a.rms_height, b.rms_height * unit),
+            (a.rms_slope, b.rms_slope),
+            (a.rms_curvature, b.rms_curvature / unit),
+            (a.nayak, b.nayak),
+        ] {
+            assert!((a / b - 1.0).abs() < 1e-12, "{a} of the rectangle, {b} of its copies");
+        }
+        let rings = radial_spectrum(&part);
+        let power: f64 = rings.iter().map(|ring| ring.psd * ring.n_modes as f64).sum();
+        let power = std::f64::consts::TAU.powi(2) * power / ratio;
+        assert!((power / a.rms_height.powi(2) - 1.0).abs() < 1e-12, "{power} in the rings");
+    }
+    let surface = Surface::new(&SpectrumParams::paper(4, 1)).expect("a surface");
+    let rectangle = Grid::in_cell(32, 16, 0.5).expect("a grid");
+    assert_eq!(surface.sample_on(rectangle), Err(SampleError::RectangularCell));
+    let (x, y) = rectangle.centre(5, 7);
+    assert!((surface.sample(rectangle).at(5, 7) - surface.height(x, y)).abs() < 1e-15, "sampled as evaluated");
 }

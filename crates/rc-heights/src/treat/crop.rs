@@ -11,7 +11,7 @@ use crate::HeightMap;
 /// The part that is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crop {
-    /// The largest square in the middle, by its lengths: a periodic cell is square.
+    /// The largest square in the middle, by its lengths: what every method takes.
     Square,
     /// So many points, in the middle or from a first point on.
     Points {

@@ -98,8 +98,15 @@ pub enum TreatError {
         spacing: [f64; 2],
     },
     /// Sides of which no whole numbers are as long as each other.
-    #[error("repeat: no copies of {:e} by {:e} make a square within 0.1 %, with 16 at most along a side; crop it first", sides[0], sides[1])]
+    #[error(
+        "repeat: no copies of {grid} points on {:.6e} by {:.6e}, 16 at most along a side, have square points and make a square; \
+         crop or resample it first",
+        sides[0],
+        sides[1]
+    )]
     NoSquareOfCopies {
+        /// The map.
+        grid: Grid,
         /// Sides along x and y.
         sides: [f64; 2],
     },

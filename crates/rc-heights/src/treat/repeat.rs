@@ -34,8 +34,10 @@ impl FromStr for Repeat {
     type Err = TreatError;
 
     fn from_str(text: &str) -> Result<Self, TreatError> {
-        let unknown =
-            || TreatError::Unknown { found: text.to_owned(), expected: "square, or copies along x and y as 3x4" };
+        let unknown = || TreatError::Unknown {
+            found: text.to_owned(),
+            expected: "square, or 1 to 16 copies along x and y as 3x4",
+        };
         if text == "square" {
             return Ok(Self::Square);
         }
@@ -49,15 +51,18 @@ impl FromStr for Repeat {
 pub(super) fn copies(grid: Grid, sides: [f64; 2], repeat: Repeat) -> Result<([usize; 2], Grid), TreatError> {
     let [x, y] = match repeat {
         Repeat::Times(times) => times,
-        Repeat::Square => square(sides).ok_or(TreatError::NoSquareOfCopies { sides })?,
+        Repeat::Square => square(grid, sides).ok_or(TreatError::NoSquareOfCopies { grid, sides })?,
     };
     Ok(([x, y], Grid::new(x * grid.nx(), y * grid.ny())?))
 }
 
-/// The fewest copies that are as long along x as along y, within [`SAME_LENGTH`].
-fn square([side_x, side_y]: [f64; 2]) -> Option<[usize; 2]> {
-    let fits = |x: usize, y: usize| (x as f64 * side_x / (y as f64 * side_y) - 1.0).abs() <= SAME_LENGTH;
-    (1..=MOST_COPIES).flat_map(|x| (1..=MOST_COPIES).map(move |y| [x, y])).find(|&[x, y]| fits(x, y))
+/// The fewest copies that are as long along x as along y, within [`SAME_LENGTH`], and have as many points.
+fn square(grid: Grid, [side_x, side_y]: [f64; 2]) -> Option<[usize; 2]> {
+    let fits = |&[x, y]: &[usize; 2]| {
+        let ratio = x as f64 * side_x / (y as f64 * side_y);
+        (ratio - 1.0).abs() <= SAME_LENGTH && x * grid.nx() == y * grid.ny()
+    };
+    (1..=MOST_COPIES).flat_map(|x| (1..=MOST_COPIES).map(move |y| [x, y])).find(fits)
 }
 
 pub(super) fn repeat(map: &HeightMap, repeat: Repeat) -> Result<HeightMap, TreatError> {
@@ -76,10 +81,17 @@ mod tests {
 
     #[test]
     fn copies_make_a_square_where_few_do() {
-        assert_eq!(square([2e-3, 2e-3]), Some([1, 1]));
-        assert_eq!(square([4e-3, 3e-3]), Some([3, 4]));
-        assert_eq!(square([1e-3, 16e-3]), Some([16, 1]));
-        assert_eq!(square([1.0, 3f64.sqrt()]), None);
+        let of = |nx, ny, sides| square(Grid::new(nx, ny).expect("a grid"), sides);
+        assert_eq!(of(64, 64, [2e-3, 2e-3]), Some([1, 1]));
+        assert_eq!(of(1024, 768, [4e-3, 3e-3]), Some([3, 4]));
+        assert_eq!(of(8, 128, [1e-3, 16e-3]), Some([16, 1]));
+        assert_eq!(of(64, 64, [1.0, 3f64.sqrt()]), None);
+        assert_eq!(of(64, 64, [2e-3, 1e-3]), None, "points are no squares");
+        assert_eq!(
+            of(302, 194, [604e-6, 388e-6]),
+            None,
+            "9 and 14 copies are a square within 0.1 %, their points are not"
+        );
         let grid = Grid::new(3, 2).expect("a grid");
         let map = HeightMap { sides: Some([3.0, 2.0]), ..HeightMap::bare(Field::from_fn(grid, |x, y| 10.0 * y + x)) };
         let repeated = repeat(&map, Repeat::Square).expect("2 x 3 copies");

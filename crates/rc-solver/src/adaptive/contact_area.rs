@@ -33,7 +33,7 @@ pub(super) fn contact_area(
             let mut sums = EdgeSums::default();
             for (x, y) in (0..CELLS).map(|cell| (TILE + cell % TILE, TILE + cell / TILE)) {
                 if pressure[y][x] > 0.0 {
-                    sums.add(side, &|dx, dy| {
+                    sums.add([side; 2], &|dx, dy| {
                         let (x, y) = (x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
                         [pressure[y][x], gap[y][x] - contact_gap]
                     });

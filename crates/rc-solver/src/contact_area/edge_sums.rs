@@ -14,6 +14,8 @@ pub(crate) struct EdgeSums {
     pub(crate) n_contact: usize,
     /// Pairs of neighbours, in and out of contact.
     pub(crate) edges: usize,
+    /// Those of them that are neighbours along x.
+    pub(crate) along_x: usize,
     /// The same of neighbours across a corner.
     pub(crate) diagonals: usize,
     /// Edges where the gap beside the contact is known, and those where the next one is too.
@@ -31,8 +33,8 @@ pub(crate) struct EdgeSums {
 
 impl EdgeSums {
     /// Adds an element in contact. `at` gives pressure and gap at a place from it, in elements; the gap may be NaN where it is not
-    /// known. `side` is that of the element.
-    pub(crate) fn add(&mut self, side: f64, at: &impl Fn(isize, isize) -> [f64; 2]) {
+    /// known. `sides` are those of the element.
+    pub(crate) fn add(&mut self, sides: [f64; 2], at: &impl Fn(isize, isize) -> [f64; 2]) {
         self.n_contact += 1;
         let free = AROUND.map(|[dx, dy]| at(dx, dy)[0] <= 0.0);
         if free == [false; 8] {
@@ -45,6 +47,8 @@ impl EdgeSums {
                 continue;
             }
             self.edges += 1;
+            self.along_x += usize::from(dy == 0);
+            let side = if dy == 0 { sides[0] } else { sides[1] };
             self.squares += pressure * pressure;
             let gap_ratio = |steps: isize| at(steps * dx, steps * dy)[1] / (pressure * side);
             if let Some(edge) = Edge::new(gap_ratio(1)) {
@@ -86,6 +90,7 @@ impl Add for EdgeSums {
         Self {
             n_contact: self.n_contact + other.n_contact,
             edges: self.edges + other.edges,
+            along_x: self.along_x + other.along_x,
             diagonals: self.diagonals + other.diagonals,
             known: [self.known[0] + other.known[0], self.known[1] + other.known[1]],
             shift: self.shift + other.shift,

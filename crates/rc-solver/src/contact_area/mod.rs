@@ -44,6 +44,10 @@ const SCATTER: f64 = 0.22;
 /// Error over all that was taken off the count: what the bias of many edges may be off.
 const ERROR_OF_TERM: f64 = 0.04;
 
+/// The same where elements are no squares, for which the bias is not calibrated: 0.1 % of the area is the mean error on elements of 1 : 2,
+/// 0.2 % on 1 : 4, where 4 and 6 % are taken off.
+const ERROR_OF_RECTANGLES: f64 = 0.1;
+
 impl ContactArea {
     /// The contact area of `pressure` and `gap` (E* = 1, λ = 1; the gap zero in contact) on a uniform grid; `bias` is that of the
     /// kernel they were found with. One pass; only elements in contact cost more than a look.
@@ -58,11 +62,11 @@ impl ContactArea {
 
     /// The same of values row by row; `contact_gap` is the gap of what is in contact.
     pub(crate) fn of_values(grid: Grid, pressure: &[f64], (gap, contact_gap): (&[f64], f64), bias: EdgeBias) -> Self {
-        let (nx, ny, side) = (grid.nx(), grid.ny(), shortest_side(grid));
+        let (nx, ny, sides) = (grid.nx(), grid.ny(), grid.spacing().into());
         let row_sums = |(iy, row): (usize, &[f64])| {
             let mut sums = EdgeSums::default();
             for ix in (0..nx).filter(|&ix| row[ix] > 0.0) {
-                sums.add(side, &around((pressure, gap), [nx, ny], [ix, iy], contact_gap));
+                sums.add(sides, &around((pressure, gap), [nx, ny], [ix, iy], contact_gap));
             }
             sums
         };
@@ -84,7 +88,8 @@ impl ContactArea {
             fraction: 0.0,
             error: 0.0,
         };
-        let smallest = 1.0 / finest.len() as f64;
+        let (smallest, sides) = (1.0 / finest.len() as f64, finest.spacing().into());
+        let error_of_term = if are_squares(sides) { ERROR_OF_TERM } else { ERROR_OF_RECTANGLES };
         let mut scatter = 0.0;
         for (coarser, sums) in sums.iter().enumerate() {
             let size = smallest * f64::from(1_u32 << (2 * coarser));
@@ -99,11 +104,10 @@ impl ContactArea {
             area.edge_bend += bend;
             area.missing_square += size * bias.per_square * sums.squares;
             area.perimeter_edges += sums.edges << coarser;
-            let side = (size * finest.cell_ratio()).sqrt();
-            area.perimeter += PI / 8.0 * side * (edges + FRAC_1_SQRT_2 * sums.diagonals as f64);
+            area.perimeter += length(sums, sides.map(|side| side * f64::from(1_u32 << coarser)));
         }
         area.fraction = area.fraction.clamp(0.0, 1.0);
-        area.error = scatter.sqrt().hypot(ERROR_OF_TERM * (area.cells - area.fraction));
+        area.error = scatter.sqrt().hypot(error_of_term * (area.cells - area.fraction));
         area
     }
 
@@ -114,10 +118,20 @@ impl ContactArea {
     }
 }
 
-/// The shorter side of elements, in λ.
-pub(crate) fn shortest_side(grid: Grid) -> f64 {
-    let (x, y) = grid.spacing();
-    x.min(y)
+/// Length of all edges of elements with these sides: Crofton's formula for eight directions on squares, for four on rectangles.
+fn length(sums: &EdgeSums, sides: [f64; 2]) -> f64 {
+    let (along_x, along_y) = (sums.along_x as f64, (sums.edges - sums.along_x) as f64);
+    let [x, y] = sides;
+    if are_squares(sides) {
+        PI / 8.0 * (x * y).sqrt() * (along_x + along_y + FRAC_1_SQRT_2 * sums.diagonals as f64)
+    } else {
+        PI / 4.0 * (y * along_x + x * along_y)
+    }
+}
+
+/// Whether elements are squares but for rounding.
+fn are_squares([x, y]: [f64; 2]) -> bool {
+    (x / y - 1.0).abs() < 1e-6
 }
 
 /// Pressure, and gap less that of contact, at places around an element of a periodic grid.

@@ -81,13 +81,16 @@ impl GapSums {
         }
     }
 
-    /// The factor on the pressure that makes its weighted mean gap zero, under penetration control.
+    /// The factor on the pressure that makes its weighted mean gap zero, under penetration control; within [`GREATEST_SCALING`].
     pub(crate) fn scale_to_penetration(&self, problem: &Problem) -> Option<f64> {
         let Control::Penetration(_) = problem.control else { return None };
-        let displaced = self.work();
-        let scale = self.pressure_overlap / displaced;
-        let possible = scale.is_finite() && displaced > 0.0;
-        possible.then(|| scale.clamp(GREATEST_SCALING.recip(), GREATEST_SCALING))
+        self.scale_to_no_gap().map(|scale| scale.clamp(GREATEST_SCALING.recip(), GREATEST_SCALING))
+    }
+
+    /// The factor on the pressure that makes its weighted mean gap zero.
+    pub(super) fn scale_to_no_gap(&self) -> Option<f64> {
+        let scale = self.pressure_overlap / self.work();
+        (scale.is_finite() && self.work() > 0.0).then_some(scale)
     }
 }
 

@@ -10,7 +10,7 @@ use crate::Control;
 const LARGE_CONTACT: f64 = 0.7;
 
 impl<C: Engine<f32>, F: Engine<f64>> Descent<'_, C, F> {
-    /// Brings the pressure to the prescribed penetration, if one is: scales it, so that its weighted mean gap is zero.
+    /// Brings the pressure to the prescribed penetration, if one is: scales it, so that its weighted mean gap is zero, or nearer to it.
     ///
     /// Where all elements press although the penetration is less than that of full contact, the mean pressure is too large by the
     /// least one, at least. Taken off all of them it displaces nothing and lowers the energy, while scaling would undo what already

@@ -37,12 +37,10 @@ use crate::{Certificate, Control};
 /// 37, 36, 36 convolutions, but only 2 does it everywhere from 0.1 % to 86 % contact.
 const STEPS_PER_ROUND: usize = 2;
 
-/// The error, relative to the least since the last time, from which on directions are not trusted. Without it N = 512 at 16384² went from
-/// 5e-4 to 3e-3 and needed 72 iterations at one load, 30 at a load that differs in its seventh digit. Under a prescribed penetration just
-/// below full contact the error goes up and down by itself, and a descent without directions does not converge.
-const ASTRAY: f64 = 1.5;
-
-/// Rounds without progress before the iteration becomes cautious, and then gives up.
+/// Rounds without progress before directions are forgotten, and three times as many before the iteration gives up. From the first of them
+/// on tensile pressures are clipped after every step: where pressures are smooth over many contacts, steps are large, contacts change under
+/// them, and two steps between clippings lead astray. In cells 50 and 100 times as long as wide, 15 of 144 loads did not converge without
+/// this rule, and 1 with it, in half the iterations; N = 1024 on 2304² needs 29 instead of 36, and other scenes are as before.
 const PATIENCE: usize = 20;
 
 /// What applies L and its approximate inverse on one level.
@@ -160,7 +158,6 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
     ) -> Outcome {
         let mut sums = self.start();
         let (mut best, mut rounds_since_best, mut steps) = (f64::INFINITY, 0, STEPS_PER_ROUND);
-        let mut least = f64::INFINITY;
         loop {
             let mut error = self.error(&sums);
             let iteration = self.info.iterations;
@@ -181,17 +178,10 @@ impl<'a, C: Engine<f32>, F: Engine<f64>> Descent<'a, C, F> {
                 (best, rounds_since_best) = (error, 0);
             } else {
                 rounds_since_best += 1;
-            }
-            least = least.min(error);
-            if error > ASTRAY * least && matches!(self.problem.control, Control::MeanPressure(_)) {
-                // Directions that met other contacts are forgotten before they lead further away; once, or slow scenes whose error
-                // goes up and down would have no directions left.
-                self.curvature = f64::INFINITY;
-                least = error;
+                steps = 1;
             }
             if rounds_since_best == PATIENCE {
-                // Caution: clip after every step, forget the directions.
-                (steps, self.curvature) = (1, f64::INFINITY);
+                self.curvature = f64::INFINITY;
             }
             if iteration >= max_iterations || rounds_since_best > 3 * PATIENCE || observer.should_stop() {
                 let sums = self.refresh();

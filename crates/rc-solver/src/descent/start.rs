@@ -44,8 +44,12 @@ impl<C: Engine<f32>, F: Engine<f64>> Descent<'_, C, F> {
             Control::MeanPressure(mean) if !usable => return self.overlap_of_load(mean),
             Control::MeanPressure(_) => scale_to_load(self.problem, n_cell, &self.blocks, &mut self.p),
             Control::Penetration(_) if usable => {}
-            // The right places, and `refresh` finds the amount.
-            Control::Penetration(_) => self.overlap(self.problem.offset()),
+            // The right places; how hard they press is found at once.
+            Control::Penetration(_) => {
+                self.overlap(self.problem.offset());
+                let sums = self.fresh_gap();
+                return sums.scale_to_no_gap().map_or(sums, |scale| self.rescale(scale));
+            }
         }
         self.refresh()
     }
@@ -87,8 +91,8 @@ impl<C: Engine<f32>, F: Engine<f64>> Descent<'_, C, F> {
                 break;
             }
         }
-        let share = n_cell / self.p.len() as f64;
-        self.p.fill(wanted * share);
+        self.p.fill(wanted);
+        scale_to_load(self.problem, n_cell, &self.blocks, &mut self.p);
         self.refresh()
     }
 }

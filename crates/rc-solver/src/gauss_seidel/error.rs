@@ -15,7 +15,8 @@ pub enum GaussSeidelError {
     Solve(#[from] SolveError),
     /// The elements of the mesh must be squares, in a square cell.
     #[error(
-        "the mesh has square elements in a square cell, so the grid must have as many along x as along y, not {grid}"
+        "the mesh has square elements in a square cell, not {grid} in one of 1 by {ratio}",
+        ratio = grid.cell_ratio()
     )]
     NotSquare {
         /// Grid of the heights.

@@ -7,15 +7,18 @@ use rc_core::{Field, Grid};
 /// keeps 99.9 % of a wave of eight fine elements, where averaging would keep 92 %.
 const MIDPOINT: [f64; 6] = [3.0 / 256.0, -25.0 / 256.0, 150.0 / 256.0, 150.0 / 256.0, -25.0 / 256.0, 3.0 / 256.0];
 
+/// Elements across a long cell on its coarsest grid, at least.
+const SMALLEST_WIDTH: usize = 8;
+
 /// The heights on coarser and coarser grids, finest of them first, each with half the elements per side, as long as that
-/// leaves whole elements, at least `smallest_side` of them.
+/// leaves whole elements, at least `smallest_side` of them along the side with more; a long cell is in need of coarser grids too.
 pub(crate) fn coarsen(heights: &Field, smallest_side: usize) -> Vec<Field> {
     let mut levels: Vec<Field> = Vec::new();
     loop {
         let finer = levels.last().unwrap_or(heights);
         let (nx, ny) = (finer.grid().nx(), finer.grid().ny());
-        let can_halve = |n: usize| n.is_multiple_of(2) && n >= 2 * smallest_side;
-        if !(can_halve(nx) && can_halve(ny)) {
+        let large = nx.max(ny) >= 2 * smallest_side && nx.min(ny) >= 2 * SMALLEST_WIDTH.min(smallest_side);
+        if !(large && nx.is_multiple_of(2) && ny.is_multiple_of(2)) {
             return levels;
         }
         let Ok(grid) = finer.grid().with_elements(nx / 2, ny / 2) else { return levels };

@@ -8,7 +8,6 @@
 use rayon::prelude::*;
 
 use super::UniformDescent;
-use crate::contact_area::shortest_side;
 
 /// The start on the grid with twice as many elements per side.
 pub(crate) fn prolong(coarse: &UniformDescent<'_>) -> Vec<f64> {
@@ -35,7 +34,8 @@ pub(crate) fn level_function(coarse: &UniformDescent<'_>) -> Vec<f64> {
     let (nx, ny) = (coarse.grid().nx(), coarse.grid().ny());
     let (pressure, gap) = (coarse.pressure(), coarse.gap());
     let zero_gap = coarse.contact_gap();
-    let spacing = shortest_side(coarse.grid());
+    let (x, y) = coarse.grid().spacing();
+    let spacing = x.min(y);
     let mut level = vec![0.0; nx * ny];
     level.par_chunks_mut(nx).enumerate().for_each(|(iy, row)| {
         let rows = [(iy + ny - 1) % ny, iy, (iy + 1) % ny].map(|y| &pressure[y * nx..(y + 1) * nx]);
