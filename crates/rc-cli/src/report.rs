@@ -120,7 +120,7 @@ fn converged(s: &Summary) -> String {
 #[must_use]
 pub fn cell([x, y]: [f64; 2]) -> String {
     let side = engineering(x, "m");
-    if x == y { side } else { format!("{side} by {}", engineering(y, "m")) }
+    if (x - y).abs() <= 1e-12 * x { side } else { format!("{side} by {}", engineering(y, "m")) }
 }
 
 /// Statistics of a height map, with a short table of its spectrum and its distribution.

@@ -87,5 +87,5 @@ pub fn in_cell(path: &Path, cell_ratio: f64) -> Result<Field, CliError> {
     let field = npy::read(path)?;
     let grid = Grid::in_cell(field.grid().nx(), field.grid().ny(), cell_ratio);
     let grid = grid.map_err(|cause| CliError::in_file(path, format_args!("cell_y of its scene.toml: {cause}")))?;
-    Ok(Field::new(grid, field.into_values()).expect("as many elements as before"))
+    Field::new(grid, field.into_values()).map_err(|cause| CliError::in_file(path, cause))
 }

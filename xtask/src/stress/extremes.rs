@@ -203,7 +203,7 @@ fn grids(full: bool) -> Result<Vec<Scene>> {
         let heights = Field::from_fn(grid, |x, y| 1e-3 * (wave(x + 0.1) + wave(y / ratio + 0.2) + 0.3 * wave(2.0 * x)));
         let control = Control::MeanPressure(1e-3);
         for method in [Method::Uniform, Method::Spectral] {
-            let cell = if ratio == 1.0 { String::new() } else { format!(", cell of 1 x {ratio}") };
+            let cell = if grid.has_square_cell() { String::new() } else { format!(", cell of 1 x {ratio}") };
             let scene = Scene::new(format!("grid {grid}{cell}"), &heights, method, control);
             let length = f64::max(ratio, ratio.recip());
             scenes.push(if nx.min(ny) > 1 && length > 50.0 { scene.slow(LONG_CELL) } else { scene });

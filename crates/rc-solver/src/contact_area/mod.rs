@@ -46,7 +46,7 @@ const ERROR_OF_TERM: f64 = 0.04;
 
 /// The same where elements are no squares, for which the bias is not calibrated: 0.1 % of the area is the mean error on elements of 1 : 2,
 /// 0.2 % on 1 : 4, where 4 and 6 % are taken off.
-const ERROR_OF_RECTANGLES: f64 = 0.1;
+const ERROR_OF_RECTANGLES: f64 = 0.2;
 
 impl ContactArea {
     /// The contact area of `pressure` and `gap` (E* = 1, λ = 1; the gap zero in contact) on a uniform grid; `bias` is that of the
