@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rc_core::Field;
+use rc_core::{Field, Grid, PeriodicCell};
 use rc_heights::{HeightMap, SAME_LENGTH, Scales};
 
 use crate::error::CliError;
@@ -60,6 +60,17 @@ pub fn sides(path: &Path, of_file: Option<[f64; 2]>, given: [Option<f64>; 2]) ->
     }
     let [x, y] = of_file;
     Ok([Some(given[0].unwrap_or(x)), (!same(x, y)).then(|| given[1].unwrap_or(y))])
+}
+
+/// The heights of a map (m) in λ, on the grid of its points in `cell`.
+///
+/// # Errors
+/// [`CliError::Input`] when the sides of the cell differ too much.
+pub fn in_cell(path: &Path, map: &Field, cell: PeriodicCell) -> Result<Field, CliError> {
+    let grid = Grid::in_cell(map.grid().nx(), map.grid().ny(), cell.ratio())
+        .map_err(|cause| CliError::in_file(path, format_args!("cell_y: {cause}")))?;
+    let heights = map.values().iter().map(|height| height / cell.side()).collect();
+    Field::new(grid, heights).map_err(|cause| CliError::in_file(path, cause))
 }
 
 #[cfg(test)]

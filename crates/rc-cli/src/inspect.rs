@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use rc_core::{Field, Grid, PeriodicCell};
+use rc_core::{Field, PeriodicCell};
 use rc_fractal::moments_of_grid;
 use rc_heights::Scales;
 use serde::Serialize;
@@ -85,11 +85,9 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
     let [side, side_y] = heights::sides(&args.file, map.sides, [args.cell, args.cell_y])?;
     let side = side.or(scene_file::example().surface.cell).unwrap_or(1.0);
     let cell = PeriodicCell::rectangle(side, side_y.unwrap_or(side)).map_err(CliError::input)?;
-    let (nx, ny) = (map.heights.grid().nx(), map.heights.grid().ny());
-    let grid = Grid::in_cell(nx, ny, cell.ratio()).map_err(|cause| CliError::in_file(&args.file, cause))?;
-    let in_cell = map.heights.values().iter().map(|height| height / side).collect();
-    let heights = Field::new(grid, in_cell).expect("as many elements as before");
-    let note = if map.sides.is_none() && side_y.is_none() && nx != ny { TAKEN } else { "" };
+    let heights = heights::in_cell(&args.file, &map.heights, cell)?;
+    let grid = heights.grid();
+    let note = if map.sides.is_none() && side_y.is_none() && grid.nx() != grid.ny() { TAKEN } else { "" };
     let statistics = HeightStatistics::of(&heights, side, moments_of_grid(&heights));
     if let Some(folder) = &args.out {
         output::check_folder(folder)?;
@@ -102,6 +100,7 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
     })
 }
 
+/// Said of a map that could mean two things.
 const TAKEN: &str = "a map without a size is taken for a square, as rc solve takes it, so its points here are rectangles; --cell-y says \
                      how long its other side is\n\n";
 

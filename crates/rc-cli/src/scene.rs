@@ -336,6 +336,11 @@ mod tests {
             SurfaceKeys { waves: Some(8), grid: Some(GridSpec::square(64)), cell: Some(2.0), ..Default::default() };
         let merged = map.clone().over(random.clone());
         assert_eq!((merged.waves, merged.grid, merged.cell), (None, None, Some(2.0)));
+        let rectangle = || SurfaceKeys { cell: Some(2.0), cell_y: Some(1.0), ..Default::default() };
+        let other = SurfaceKeys { cell: Some(4.0), ..Default::default() }.over(rectangle());
+        assert_eq!((other.cell, other.cell_y), (Some(4.0), None), "the other side was that of another cell");
+        let same = SurfaceKeys { grid: Some(GridSpec::square(64)), ..Default::default() }.over(rectangle());
+        assert_eq!((same.cell, same.cell_y), (Some(2.0), Some(1.0)));
         assert_eq!(random.over(map).heights, None);
     }
 }

@@ -115,9 +115,9 @@ impl SurfaceProblem {
         heights::sides(path, map.sides, [Some(self.cell.side()), self.keys.cell_y])?;
         let as_read = map.heights;
         heights::check_finite(path, &as_read)?;
-        let (nx, ny) = (as_read.grid().nx(), as_read.grid().ny());
-        let grid = Grid::in_cell(nx, ny, self.cell.ratio())
-            .map_err(|cause| CliError::in_file(path, format_args!("cell_y: {cause}")))?;
+        let heights = heights::in_cell(path, &as_read, self.cell)?;
+        let grid = heights.grid();
+        let (nx, ny) = (grid.nx(), grid.ny());
         if let Some(expected) = expected.filter(|expected| (expected.nx(), expected.ny()) != (nx, ny)) {
             let message = format_args!("the map has {grid} elements, grid says {expected}; leave grid away");
             return Err(CliError::in_file(path, message));
@@ -126,9 +126,6 @@ impl SurfaceProblem {
             let message = format_args!("all heights are {:e}; a flat surface has no contact problem", as_read.max());
             return Err(CliError::in_file(path, message));
         }
-        let side = self.cell.side();
-        let scaled = as_read.values().iter().map(|height| height / side).collect();
-        let heights = Field::new(grid, scaled).map_err(|cause| CliError::in_file(path, cause))?;
         let spec = GridSpec { nx, ny };
         // The map in a result folder is an array in metres.
         let (heights_file, unit, height_scale) = (Some(HEIGHTS_FILE.into()), None, None);

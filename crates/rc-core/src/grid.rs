@@ -140,10 +140,17 @@ impl Grid {
     /// |k| of the wave with `kx` and `ky` periods along the sides of the cell, in waves per λ.
     #[must_use]
     pub fn waves(self, kx: usize, ky: usize) -> f64 {
-        ((kx as f64).powi(2) + (ky as f64 / self.cell_ratio).powi(2)).sqrt()
+        self.squared_waves(kx, ky).sqrt()
     }
 
-    /// Largest number of waves per side of the cell that the grid resolves along both: strictly below half its smaller number of elements.
+    /// |k|² of the same wave.
+    #[must_use]
+    pub fn squared_waves(self, kx: usize, ky: usize) -> f64 {
+        (kx as f64).powi(2) + (ky as f64 / self.cell_ratio).powi(2)
+    }
+
+    /// Largest number of waves per side of the cell that the grid resolves along both: strictly below half its smaller number of
+    /// elements.
     #[must_use]
     pub fn resolved_wavenumber(self) -> usize {
         (self.nx.min(self.ny) - 1) / 2

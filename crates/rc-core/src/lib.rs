@@ -2,14 +2,14 @@
 //!
 //! # Conventions (of every crate of this workspace)
 //!
-//! - **Units.** Libraries compute with cell side λ = 1 (along x, where a cell is a rectangle) and E* = E/(1-ν²) = 1 in `f64`. Lengths are multiples of λ, pressures
-//!   multiples of E*. Only `rc-cli` knows metres and pascals; [`PeriodicCell`] and [`Elasticity`] convert.
+//! - **Units.** Libraries compute with cell side λ = 1 (along x, where a cell is a rectangle) and E* = E/(1-ν²) = 1 in `f64`. Lengths are
+//!   multiples of λ, pressures multiples of E*. Only `rc-cli` knows metres and pascals; [`PeriodicCell`] and [`Elasticity`] convert.
 //! - **Signs.** Pressure p ≥ 0 is compression. Heights h are those of the rigid surface, positive towards the half-space.
 //!   Gap g ≥ 0. The interface displacement v has zero mean over the cell, and `g = v - (h - h_max + Δ)` with penetration Δ.
 //! - **Layout.** Fields are row-major, `index = iy * nx + ix`. The origin of the cell is its corner; point (ix, iy) is the
 //!   **centre** of its element, ((ix + ½)/nx, (iy + ½)/ny) on a square cell ([`Grid::centre`]).
-//! - **Fourier.** Wavenumbers k are integers, waves per cell; q = 2πk on a square cell ([`Grid::waves`]). A forward transform carries no factor, the inverse
-//!   carries 1/(nx·ny). The symbol of an operator is its eigenvalue for the wave exp(2πi k·x).
+//! - **Fourier.** Wavenumbers k are integers, waves per cell; q = 2πk on a square cell ([`Grid::waves`]). A forward transform carries no
+//!   factor, the inverse carries 1/(nx·ny). The symbol of an operator is its eigenvalue for the wave exp(2πi k·x).
 //! - **Means** are over the whole cell (nominal area A0) unless a name says "contact".
 //! - **rms slope** is the isotropic one, √⟨|∇h|²⟩.
 //!

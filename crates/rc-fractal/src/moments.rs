@@ -72,7 +72,7 @@ pub fn moments_of_grid(heights: &Field) -> Moments {
     for column in spectrum.columns() {
         let mut sums = SpectralSums::default();
         for (ky, power) in column.powers() {
-            sums.add(column.squared_wavenumber(ky), power);
+            sums.add(heights.grid().squared_waves(column.kx, ky), power);
         }
         total = total.plus(sums, column.multiplicity as f64);
     }

@@ -11,7 +11,6 @@ const PANEL: usize = 8;
 pub(crate) struct PowerSpectrum {
     nx: usize,
     ny: usize,
-    cell_ratio: f64,
     /// Column by column: `values[kx * ny + (ky mod ny)]`.
     values: Vec<f64>,
 }
@@ -21,16 +20,10 @@ pub(crate) struct PowerColumn<'a> {
     pub(crate) kx: usize,
     /// 2 when the column also stands for -kx, whose waves are the conjugates; 1 for kx = 0 and for half the side.
     pub(crate) multiplicity: usize,
-    cell_ratio: f64,
     values: &'a [f64],
 }
 
 impl PowerColumn<'_> {
-    /// |k|² of the wave `ky`, in waves per side of the cell along x.
-    pub(crate) fn squared_wavenumber(&self, ky: usize) -> f64 {
-        (self.kx as f64).powi(2) + (ky as f64 / self.cell_ratio).powi(2)
-    }
-
     /// (|ky|, |a|²) of every wave of the column.
     pub(crate) fn powers(&self) -> impl Iterator<Item = (usize, f64)> {
         let ny = self.values.len();
@@ -63,7 +56,7 @@ impl PowerSpectrum {
         });
         // Rounding leaves a trace of the mean, which is not a wave.
         values[0] = 0.0;
-        Self { nx, ny, cell_ratio: heights.grid().cell_ratio(), values }
+        Self { nx, ny, values }
     }
 
     /// The columns kx = 0, 1, …, nx/2.
@@ -72,7 +65,6 @@ impl PowerSpectrum {
         self.values.chunks_exact(self.ny).enumerate().map(move |(kx, values)| PowerColumn {
             kx,
             multiplicity: if own_mirror(kx) { 1 } else { 2 },
-            cell_ratio: self.cell_ratio,
             values,
         })
     }

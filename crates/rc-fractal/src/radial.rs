@@ -47,7 +47,7 @@ fn binned_spectrum(heights: &Field, rings_per_wave: f64) -> Vec<SpectrumBin> {
     for column in PowerSpectrum::of(heights).columns() {
         let weight = column.multiplicity as f64;
         for (ky, power) in column.powers() {
-            let wavenumber = column.squared_wavenumber(ky).sqrt();
+            let wavenumber = grid.waves(column.kx, ky);
             let ring = &mut rings[(wavenumber * rings_per_wave).round() as usize];
             ring.n_modes += column.multiplicity;
             ring.wavenumbers += weight * wavenumber;

@@ -125,6 +125,26 @@ mod tests {
         assert!((sum(|spot| spot.mean_pressure) / pressure.mean() - 1.0).abs() < 1e-12);
     }
 
+    /// A round contact on elements that are no squares has the area and the edge that it has on squares of the same size: each edge is
+    /// located with the side of the element across it.
+    #[test]
+    fn elements_that_are_no_squares_locate_edges_as_well() {
+        let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_bend: 0.0, per_square: 0.0 };
+        let depth = |x: f64, y: f64| 0.23 - (x - 0.501).hypot(y - 0.497);
+        let found = |nx: usize, ny: usize| {
+            let grid = Grid::new(nx, ny).expect("a grid");
+            let pressure = Field::from_fn(grid, |x, y| depth(x, y).max(0.0).sqrt());
+            let gap = Field::from_fn(grid, |x, y| 4.0 / 3.0 * (-depth(x, y)).max(0.0).powf(1.5));
+            ContactArea::of(&pressure, &gap, none)
+        };
+        let squares = found(256, 256);
+        for (nx, ny) in [(256, 128), (128, 256), (512, 128), (128, 512)] {
+            let others = found(nx, ny);
+            assert!((others.fraction / squares.fraction - 1.0).abs() < 1.5e-3, "{nx} x {ny}: {others:?}, {squares:?}");
+            assert!((others.perimeter / squares.perimeter - 1.0).abs() < 5e-3, "{nx} x {ny}: {others:?}, {squares:?}");
+        }
+    }
+
     #[test]
     fn spots_join_across_edges_and_the_sides_of_the_cell_and_not_across_corners() {
         #[rustfmt::skip]

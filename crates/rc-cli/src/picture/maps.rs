@@ -180,6 +180,16 @@ mod tests {
     }
 
     #[test]
+    fn pictures_have_the_shape_of_the_cell_up_to_one_to_four() {
+        for (ratio, expected) in
+            [(1.0, (900, 900)), (0.5, (900, 450)), (3.0, (300, 900)), (50.0, (225, 900)), (0.02, (900, 225))]
+        {
+            let grid = Grid::in_cell(64, 64, ratio).expect("a grid");
+            assert_eq!(bitmap_size(grid, (SIDE, SIDE)), expected, "{ratio}");
+        }
+    }
+
+    #[test]
     fn fields_without_contact_or_contrast_are_drawn() {
         let dir = tempfile::tempdir().expect("a temporary folder");
         for value in [0.0, 3.0] {
