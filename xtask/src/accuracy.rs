@@ -6,9 +6,9 @@ mod tables;
 
 use anyhow::{Context, Result};
 use plotters::prelude::{DrawingBackend, RGBColor};
-use rc_cli::picture::{Area, LinePlot, LineStyle, Picture, PictureError, Series, draw_lines};
 use rc_core::{EdgeBias, Kernel, Silent};
 use rc_kernel::{Love, Spectral};
+use rc_plot::{Area, LinePlot, LineStyle, Picture, PictureError, Series, draw_lines};
 use rc_solver::{Control, Observables, SolveParams, StressDistribution, solve_uniform};
 
 use self::scenes::{Scene, Set};

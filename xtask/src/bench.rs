@@ -22,7 +22,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use rc_cli::picture::{save_png, save_svg};
+use rc_plot::{save_png, save_svg};
 
 use crate::figures::Table;
 use crate::repository;

@@ -23,7 +23,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use rc_cli::picture::{Picture, save_png, save_svg};
+use rc_plot::{Picture, save_png, save_svg};
 
 use crate::repository;
 pub(crate) use solve::pressure_field;

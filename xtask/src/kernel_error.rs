@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use anyhow::Result;
 use plotters::prelude::{BLACK, DrawingBackend, RGBColor};
-use rc_cli::picture::{Area, LinePlot, LineStyle, Picture, PictureError, Series, draw_lines};
 use rc_kernel::{LoadForm, PeriodicLove, truncated_coefficient, truncation_error_bound};
+use rc_plot::{Area, LinePlot, LineStyle, Picture, PictureError, Series, draw_lines};
 
 use crate::figures::{Figure, Preset, Table, number};
 

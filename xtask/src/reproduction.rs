@@ -9,7 +9,7 @@ mod rows;
 use std::fs;
 
 use anyhow::{Context, Result};
-use rc_cli::quantity::digits;
+use rc_core::quantity::digits;
 use toml::Table as Toml;
 
 use crate::blocks;

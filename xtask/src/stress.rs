@@ -19,7 +19,7 @@ use std::time::Instant;
 
 use anyhow::{Result, bail};
 use plotters::prelude::DrawingBackend;
-use rc_cli::picture::{Area, Picture, PictureError};
+use rc_plot::{Area, Picture, PictureError};
 
 use crate::figures::{self, Figure, Preset, Table};
 use row::{Row, Rows, guarded};

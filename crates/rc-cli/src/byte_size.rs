@@ -34,7 +34,7 @@ impl fmt::Display for ByteSize {
             1e9..1e12 => ("GB", 1e9),
             _ => ("TB", 1e12),
         };
-        write!(f, "{} {name}", crate::quantity::digits(bytes / factor, 3))
+        write!(f, "{} {name}", rc_core::quantity::digits(bytes / factor, 3))
     }
 }
 

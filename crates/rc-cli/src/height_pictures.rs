@@ -8,12 +8,12 @@ use rc_core::Field;
 
 use crate::error::CliError;
 use crate::output::Staged;
-use crate::picture::{
+use crate::statistics::HeightStatistics;
+use rc_core::quantity::{Scale, digits};
+use rc_plot::{
     Area, LinePlot, LineStyle, Map, MapPicture, Palette, Picture, PictureError, Series, Shade, draw_lines, save_png,
     save_svg,
 };
-use crate::quantity::{Scale, digits};
-use crate::statistics::HeightStatistics;
 
 const BLUE: RGBColor = RGBColor(38, 92, 158);
 const RED: RGBColor = RGBColor(190, 60, 50);

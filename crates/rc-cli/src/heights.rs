@@ -6,7 +6,7 @@ use rc_core::{Field, Grid, PeriodicCell};
 use rc_heights::{HeightMap, SAME_LENGTH, Scales};
 
 use crate::error::CliError;
-use crate::quantity::engineering;
+use rc_core::quantity::engineering;
 
 /// Reads a height map of any format of `rc-heights`, in metres; `NaN` where nothing was measured. Row `iy` of the file is row
 /// `iy` of the field.

@@ -2,7 +2,7 @@
 //!
 //! The way of a solve: [`args`] and [`scene_file`] give a [`scene`], [`resolve`] checks it and turns it into a problem in
 //! units of λ and E*, the libraries solve it, [`summary`] turns it back into SI, [`output`] writes files that are there whole
-//! or not at all. [`picture`] is general enough for figures made elsewhere.
+//! or not at all.
 //!
 //! ```
 //! use clap::Parser as _;
@@ -32,8 +32,6 @@ pub mod error;
 pub mod heights;
 pub mod memory;
 pub mod output;
-pub mod picture;
-pub mod quantity;
 pub mod report;
 pub mod resolve;
 pub mod result;

@@ -9,13 +9,13 @@ use rc_core::Field;
 use crate::args::PlotArgs;
 use crate::error::CliError;
 use crate::output::{self, Staged};
-use crate::picture::{
+use crate::result::ResultFolder;
+use crate::statistics::PressureStatistics;
+use rc_core::quantity::Scale;
+use rc_plot::{
     Area, ContactPicture, LinePlot, LineStyle, Map, MapPicture, Palette, Picture, PictureError, Series, Shade,
     draw_lines, save_png, save_svg,
 };
-use crate::quantity::Scale;
-use crate::result::ResultFolder;
-use crate::statistics::PressureStatistics;
 
 const BLUE: RGBColor = RGBColor(38, 92, 158);
 const RED: RGBColor = RGBColor(190, 60, 50);
@@ -93,7 +93,7 @@ impl Sections {
         let iy = peak / grid.nx();
         let scale = Scale::of(side, "m");
         let step = side / scale.factor / grid.nx() as f64;
-        let y = crate::quantity::engineering(grid.centre(0, iy).1 * side, "m");
+        let y = rc_core::quantity::engineering(grid.centre(0, iy).1 * side, "m");
         let greatest = if of_elements { "greatest pressure" } else { "greatest mean pressure of a block" };
         Self {
             pressure: Profile::of(pressure, iy, step, "Pa"),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::quantity::{digits, engineering};
+use rc_core::quantity::{digits, engineering};
 use rc_heights::AreaParameters;
 
 use crate::statistics::{HeightStatistics, Histogram, PressureStatistics, SpectrumRow, TreatmentRow};

@@ -9,12 +9,12 @@ use crate::args::SurfaceArgs;
 use crate::budget::Budget;
 use crate::error::CliError;
 use crate::output::{self, Staged};
-use crate::picture::{Map, MapPicture, Palette, Shade, save_png};
 use crate::scene::{ContactKeys, Scene, SurfaceKeys};
 use crate::statistics::{HeightStatistics, TreatmentRow};
 use crate::summary::to_json;
 use crate::surface::{HEIGHTS_FILE, LoadedSurface};
 use crate::{heights, npy, report, resolve, scene_file};
+use rc_plot::{Map, MapPicture, Palette, Shade, save_png};
 
 /// Runs `rc surface`.
 ///

@@ -8,7 +8,7 @@ use rc_core::Snapshot;
 
 use crate::error::CliError;
 use crate::output;
-use crate::picture::{ContactRows, save_png};
+use rc_plot::{ContactRows, save_png};
 
 /// The picture, in the folder of the result. Not contact.png, which belongs to the result that may be there already.
 const PICTURE: &str = "watch.png";

@@ -53,6 +53,8 @@ mod progress;
 mod traits;
 mod units;
 
+pub mod quantity;
+
 #[cfg(feature = "testing")]
 pub mod testing;
 

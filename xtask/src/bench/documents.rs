@@ -3,7 +3,7 @@
 use std::fs;
 
 use anyhow::{Context, Result};
-use rc_cli::quantity::digits;
+use rc_core::quantity::digits;
 use toml::Table as Toml;
 
 use super::levels::{LEVELS, Ratio, Results};

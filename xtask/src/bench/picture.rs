@@ -2,7 +2,7 @@
 
 use plotters::prelude::DrawingBackend;
 use plotters::style::RGBColor;
-use rc_cli::picture::{Area, LinePlot, LineStyle, Picture, PictureError, Series, draw_lines};
+use rc_plot::{Area, LinePlot, LineStyle, Picture, PictureError, Series, draw_lines};
 
 use super::levels::{Results, families};
 use super::record::{Family, OURS, Row};
@@ -141,7 +141,7 @@ impl Picture for ErrorAgainstTime<'_> {
 
 #[cfg(test)]
 mod tests {
-    use rc_cli::picture::{save_png, save_svg};
+    use rc_plot::{save_png, save_svg};
 
     use super::*;
     use crate::bench::levels::tests::rows;

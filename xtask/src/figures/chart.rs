@@ -8,7 +8,7 @@ use plotters::prelude::{
 };
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{BLACK, Color, TextStyle, WHITE};
-use rc_cli::picture::{Area, FONT};
+use rc_plot::{Area, FONT};
 
 /// Text, in pixels.
 pub(crate) const TEXT: f64 = 30.0;
@@ -96,7 +96,7 @@ fn builder<'b, B: DrawingBackend>(area: &Area<B>) -> ChartBuilder<'_, 'b, B> {
 /// A number on an axis. Ticks are sums of steps, so their last digits are rounding.
 fn label(value: f64) -> String {
     // Adding zero turns -0 into 0.
-    rc_cli::quantity::label(1e-9 * (1e9 * value).round() + 0.0)
+    rc_core::quantity::label(1e-9 * (1e9 * value).round() + 0.0)
 }
 
 /// Text of a size and colour.

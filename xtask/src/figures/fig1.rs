@@ -8,9 +8,9 @@ use std::f64::consts::TAU;
 use anyhow::Result;
 use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, PathElement, Polygon, RGBColor};
 use plotters::style::{BLACK, Color};
-use rc_cli::picture::{Area, Picture, PictureError};
 use rc_core::{Field, Grid, Silent};
 use rc_fractal::{SpectrumParams, Surface};
+use rc_plot::{Area, Picture, PictureError};
 use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, HeightSource, SolveParams, solve_adaptive};
 
 use super::chart::{Axes, BLUE, Chart, Drawn, GREY, RED, Side, dimension, write};

@@ -6,8 +6,8 @@
 use anyhow::Result;
 use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, PathElement};
 use plotters::style::{BLACK, Color, RGBColor};
-use rc_cli::picture::{Area, Picture, PictureError};
 use rc_kernel::{PeriodicLove, ewald_phi};
+use rc_plot::{Area, Picture, PictureError};
 
 use super::chart::{Axes, BLUE, Drawn, GREY, RED, Side, write};
 use super::{Figure, Preset, Table, number};

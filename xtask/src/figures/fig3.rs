@@ -10,10 +10,10 @@ use std::f64::consts::TAU;
 use anyhow::{Context, Result, ensure};
 use plotters::prelude::{Circle, DrawingBackend, EmptyElement, LineSeries, Rectangle};
 use plotters::style::{BLACK, Color, RGBColor, WHITE};
-use rc_cli::picture::{Area, Picture, PictureError};
 use rc_core::{Field, Grid, HeightField, Silent};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Love;
+use rc_plot::{Area, Picture, PictureError};
 use rc_quadtree::{Mask, MeshKind, MeshParams, count};
 use rc_solver::{Control, SolveParams, Status, solve_uniform};
 

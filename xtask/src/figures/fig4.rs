@@ -10,8 +10,8 @@ use plotters::prelude::{
     BLACK, Cartesian2d, ChartBuilder, ChartContext, Circle, Color, DashedLineSeries, DrawingAreaErrorKind,
     DrawingBackend, IntoFont, LineSeries, RGBColor, Rectangle,
 };
-use rc_cli::picture::{Area, FONT, Picture, PictureError};
 use rc_core::{Elasticity, Field, Grid, PeriodicCell, Silent};
+use rc_plot::{Area, FONT, Picture, PictureError};
 use rc_solver::{AdaptiveParams, Control, HeightSource, SolveParams, solve_adaptive};
 use rc_theory::hertz::{Hertz, PeriodicHertz};
 

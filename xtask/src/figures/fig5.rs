@@ -5,7 +5,7 @@
 use anyhow::Result;
 use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries};
 use plotters::style::{BLACK, Color};
-use rc_cli::picture::{Area, Picture, PictureError};
+use rc_plot::{Area, Picture, PictureError};
 use rc_theory::persson::Persson;
 
 use super::chart::{Axes, Chart, Drawn, GREY, Side, write};

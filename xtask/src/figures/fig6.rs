@@ -7,9 +7,9 @@ use std::f64::consts::TAU;
 
 use anyhow::Result;
 use plotters::prelude::DrawingBackend;
-use rc_cli::picture::{Area, Map, Picture, PictureError, Shade, draw_map};
 use rc_core::Field;
 use rc_fractal::{SpectrumParams, Surface};
+use rc_plot::{Area, Map, Picture, PictureError, Shade, draw_map};
 use rc_solver::{Control, connected_elements};
 
 use super::contact_map::ContactMap;

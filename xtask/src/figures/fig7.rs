@@ -8,7 +8,7 @@
 use anyhow::Result;
 use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, RGBColor, Rectangle};
 use plotters::style::{BLACK, Color};
-use rc_cli::picture::{Area, Picture, PictureError};
+use rc_plot::{Area, Picture, PictureError};
 use rc_theory::persson_gap::SelfAffineBand;
 
 use super::chart::{Axes, Drawn, GREY, Side, write};

@@ -4,9 +4,9 @@
 //! elements shows is drawn beside it. Realisations are averaged bin by bin.
 
 use anyhow::Result;
-use rc_cli::picture::{Area, Picture, PictureError};
 use rc_core::Field;
 use rc_fractal::{SpectrumParams, Surface};
+use rc_plot::{Area, Picture, PictureError};
 use rc_solver::{Control, StressDistribution};
 use rc_theory::persson::Persson;
 

@@ -4,7 +4,7 @@ use plotters::element::{Rectangle, Text};
 use plotters::prelude::{DrawingBackend, IntoFont as _};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{BLACK, Color as _, RGBColor, TextStyle};
-use rc_cli::picture::{Area, FONT, Palette, PictureError};
+use rc_plot::{Area, FONT, Palette, PictureError};
 
 use super::row::Row;
 

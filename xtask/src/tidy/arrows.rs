@@ -14,6 +14,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("rc-kernel", &["rc-core"]),
     ("rc-quadtree", &["rc-core"]),
     ("rc-theory", &["rc-core"]),
+    ("rc-plot", &["rc-core"]),
     ("rc-solver", &["rc-core", "rc-fft", "rc-kernel", "rc-quadtree"]),
     ("rc-cli", LIBRARIES),
     ("rc-tests", LIBRARIES_AND_CLI),
@@ -22,9 +23,19 @@ const ARROWS: &[(&str, &[&str])] = &[
 ];
 
 const LIBRARIES: &[&str] =
-    &["rc-core", "rc-fft", "rc-fractal", "rc-heights", "rc-kernel", "rc-quadtree", "rc-solver", "rc-theory"];
-const LIBRARIES_AND_CLI: &[&str] =
-    &["rc-core", "rc-fft", "rc-fractal", "rc-heights", "rc-kernel", "rc-quadtree", "rc-solver", "rc-theory", "rc-cli"];
+    &["rc-core", "rc-fft", "rc-fractal", "rc-heights", "rc-kernel", "rc-plot", "rc-quadtree", "rc-solver", "rc-theory"];
+const LIBRARIES_AND_CLI: &[&str] = &[
+    "rc-core",
+    "rc-fft",
+    "rc-fractal",
+    "rc-heights",
+    "rc-kernel",
+    "rc-plot",
+    "rc-quadtree",
+    "rc-solver",
+    "rc-theory",
+    "rc-cli",
+];
 
 /// Checks the manifest of every member. Tests count: an arrow that only tests need is drawn in `tests/`, not in a crate.
 pub(super) fn check(sources: &Sources) -> Vec<Complaint> {

@@ -12,12 +12,12 @@ use super::embedded::{Bits, EmbeddedField, MOST_PIXELS, pixel_means};
 use super::spot_sizes::SpotSizes;
 use super::{Body, Command, Page, Text, Tile, made};
 use crate::error::CliError;
-use crate::picture::Palette;
-use crate::quantity::{digits, engineering};
 use crate::result::ResultFolder;
 use crate::scene::{KernelName, Scene};
 use crate::summary::Summary;
 use crate::{report, resolve, scene_file};
+use rc_core::quantity::{digits, engineering};
+use rc_plot::Palette;
 
 /// Bins of the stress distribution.
 const BINS: usize = 80;

@@ -5,7 +5,7 @@ use base64::engine::general_purpose::STANDARD;
 use rc_core::{Field, Grid};
 use serde::Serialize;
 
-use crate::picture::{Palette, PixelMean};
+use rc_plot::{Palette, PixelMean};
 
 /// Most pixels per side.
 pub(super) const MOST_PIXELS: usize = 512;

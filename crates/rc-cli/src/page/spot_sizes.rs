@@ -6,7 +6,7 @@ use rc_core::Grid;
 use rc_solver::ContactSpot;
 use serde::Serialize;
 
-use crate::quantity::{digits, engineering};
+use rc_core::quantity::{digits, engineering};
 
 /// Bins for each factor of ten in the diameter.
 const BINS_PER_DECADE: f64 = 8.0;

@@ -5,12 +5,12 @@ use std::time::Instant;
 use super::{Solved, finish, observer};
 use crate::error::CliError;
 use crate::output;
-use crate::quantity::digits;
 use crate::resolve;
 use crate::scene::{ContactKeys, Scene, SurfaceKeys};
 use crate::stop;
 use crate::surface::SurfaceProblem;
 use crate::values::{Fraction, GridSpec, Tolerance};
+use rc_core::quantity::digits;
 
 /// Elements per shortest wave of the first grid, and of the last that is tried.
 const COARSEST: usize = 4;

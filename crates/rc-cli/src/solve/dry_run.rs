@@ -9,12 +9,12 @@ use crate::byte_size::ByteSize;
 use crate::coarsen::check_factor;
 use crate::error::CliError;
 use crate::output;
-use crate::quantity::digits;
 use crate::report;
 use crate::resolve::ContactProblem;
 use crate::scene::RunKeys;
 use crate::summary::to_json;
 use crate::surface::SurfaceProblem;
+use rc_core::quantity::digits;
 
 /// Processor seconds for each cell of the adaptive method at a tolerance of 1e-6 or more: measured 1.1e-6 to 1.5e-6 for cells that are
 /// evaluated, of which the estimate counts 0.55 to 0.9 (512² to 4096², 0.9 % to 20 % contact, H = 0.3 and 0.8).

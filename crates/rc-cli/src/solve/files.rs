@@ -12,13 +12,13 @@ use crate::coarsen::BlockMean;
 use crate::error::CliError;
 use crate::npy::{self, RowWriter};
 use crate::output::Staged;
-use crate::picture::{ContactPicture, ContactRows, save_png};
 use crate::resolve::ContactProblem;
 use crate::scene::ContactKeys;
 use crate::scene_file;
 use crate::summary::Summary;
 use crate::surface::HEIGHTS_FILE;
 use crate::values::GridSpec;
+use rc_plot::{ContactPicture, ContactRows, save_png};
 
 /// Factors that make lengths metres and pressures pascals.
 #[derive(Clone, Copy)]

@@ -5,10 +5,10 @@ use rc_solver::{AdaptiveError, AdaptiveParams, AdaptiveProblem, Estimate};
 use super::refusal;
 use crate::budget::Budget;
 use crate::error::CliError;
-use crate::quantity::digits;
 use crate::resolve::ContactProblem;
 use crate::scene::{KernelName, Method, RunKeys};
 use crate::surface::LoadedSurface;
+use rc_core::quantity::digits;
 
 /// A method, prepared as far as it goes before solving, and why it is this one.
 pub(super) struct Choice<'a> {

@@ -32,7 +32,9 @@ use self::plan::Plan;
 use self::workers::locked;
 use crate::args::{SweepArgs, SweepCommand};
 use crate::error::CliError;
-use crate::{output, quantity, resolve, summary};
+use rc_core::quantity;
+
+use crate::{output, resolve, summary};
 
 /// What a sweep has in its folder; `rows` has a folder for the fields of each row.
 const FILES: [&str; 3] = [JOURNAL_FILE, TABLE_FILE, ROWS_FOLDER];

@@ -2,7 +2,7 @@
 
 use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, Rectangle};
 use plotters::style::{BLACK, Color, WHITE};
-use rc_cli::picture::Area;
+use rc_plot::Area;
 
 use super::{Bin, Curve, Fig8};
 use crate::figures::chart::{Axes, Drawn, GREY, Side, write};

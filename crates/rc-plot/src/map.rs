@@ -6,8 +6,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{BLACK, Color as _, RGBColor, TextStyle};
 use rc_core::{Field, Grid};
 
-use super::{Area, FONT, Palette, PictureError, Raster};
-use crate::quantity::{Scale, engineering, label, round_below, ticks};
+use crate::{Area, FONT, Palette, PictureError, Raster};
+use rc_core::quantity::{Scale, engineering, label, round_below, ticks};
 
 /// A map of a field over the cell.
 #[derive(Clone, Copy, Debug)]

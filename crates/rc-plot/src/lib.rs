@@ -4,19 +4,19 @@
 //! area of a larger picture, so figures are put together from them.
 
 mod colour;
+mod file;
 mod font;
 mod lines;
 mod map;
 mod maps;
 mod raster;
 
-use std::path::Path;
-
 use plotters::coord::Shift;
-use plotters::prelude::{BitMapBackend, DrawingArea, DrawingBackend, IntoDrawingArea as _, SVGBackend, WHITE};
+use plotters::prelude::{DrawingArea, DrawingBackend};
 use thiserror::Error;
 
 pub use colour::Palette;
+pub use file::{save_png, save_svg};
 pub use font::{FONT, register_font};
 pub use lines::{LinePlot, LineStyle, Series, draw_lines};
 pub use map::{Map, Shade, bitmap_size, draw_map, map_extent};
@@ -48,27 +48,4 @@ pub trait Picture {
     /// # Errors
     /// [`PictureError`] of the backend.
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError>;
-}
-
-/// Saves a picture as PNG.
-///
-/// # Errors
-/// [`PictureError`].
-pub fn save_png(picture: &impl Picture, path: &Path) -> Result<(), PictureError> {
-    save(picture, &BitMapBackend::new(path, picture.size()).into_drawing_area())
-}
-
-/// Saves a picture as SVG; maps in it are embedded bitmaps.
-///
-/// # Errors
-/// [`PictureError`].
-pub fn save_svg(picture: &impl Picture, path: &Path) -> Result<(), PictureError> {
-    save(picture, &SVGBackend::new(path, picture.size()).into_drawing_area())
-}
-
-fn save<B: DrawingBackend>(picture: &impl Picture, area: &Area<B>) -> Result<(), PictureError> {
-    register_font();
-    area.fill(&WHITE).map_err(PictureError::new)?;
-    picture.draw(area)?;
-    area.present().map_err(PictureError::new)
 }

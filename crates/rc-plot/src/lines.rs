@@ -6,8 +6,8 @@ use plotters::prelude::{DrawingBackend, IntoFont as _};
 use plotters::series::{DashedLineSeries, LineSeries};
 use plotters::style::{BLACK, Color as _, RGBColor, WHITE};
 
-use super::{Area, FONT, PictureError};
-use crate::quantity::label;
+use crate::{Area, FONT, PictureError};
+use rc_core::quantity::label;
 
 /// A plot of one or more series.
 #[derive(Clone, Debug)]

@@ -8,7 +8,7 @@ use plotters::style::{FontStyle, register_font as register};
 pub const FONT: &str = "sans-serif";
 
 /// A subset of `DejaVu` Sans: the letters and signs that pictures use.
-static BYTES: &[u8] = include_bytes!("../../assets/DejaVuSans-subset.ttf");
+static BYTES: &[u8] = include_bytes!("../assets/DejaVuSans-subset.ttf");
 
 /// Registers the embedded font under [`FONT`]; needed once before text is drawn, and done by the `save` functions.
 ///

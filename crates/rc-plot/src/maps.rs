@@ -3,7 +3,7 @@
 use plotters::prelude::DrawingBackend;
 use rc_core::{Field, Grid};
 
-use super::{Area, Map, Palette, Picture, PictureError, PixelMean, Shade, bitmap_size, draw_map, map_extent};
+use crate::{Area, Map, Palette, Picture, PictureError, PixelMean, Shade, bitmap_size, draw_map, map_extent};
 
 /// Contact map and pressure side by side, at the resolution of the picture.
 #[derive(Clone, Debug)]
@@ -110,7 +110,7 @@ impl Picture for ContactPicture {
         let [(contact, height), (pressure, _)] = self.panels();
         let panel = |left: u32, width: u32| area.clone().shrink((left as i32, (MARGIN / 2) as i32), (width, height));
         let (name, values) = if self.of_elements { ("Contact", "elements") } else { ("Touched", "blocks") };
-        let title = format!("{name}: {} % of the {values}", crate::quantity::digits(100.0 * self.fraction, 3));
+        let title = format!("{name}: {} % of the {values}", rc_core::quantity::digits(100.0 * self.fraction, 3));
         let contact_map = Map { title: &title, field: &self.contact, shade: Shade::PartOfContact, side: self.side };
         draw_map(&panel(MARGIN, contact), &contact_map, TEXT)?;
         let shade = Shade::Values {
@@ -145,7 +145,7 @@ impl Picture for MapPicture<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::{save_png, save_svg};
+    use crate::{save_png, save_svg};
 
     #[test]
     fn a_picture_has_its_size_and_maps_in_svg_are_bitmaps() {
