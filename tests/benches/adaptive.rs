@@ -9,7 +9,7 @@ use rc_core::{Field, Grid, HeightField, Operator, Silent};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Love;
 use rc_solver::{
-    AdaptiveParams, Control, HeightSource, MultilevelOperator, SolveParams, UniformOperator, solve_adaptive,
+    AdaptiveParams, Control, HeightSource, IterationParams, MultilevelOperator, UniformOperator, solve_adaptive,
     solve_uniform,
 };
 
@@ -85,6 +85,6 @@ fn uniform_solve(bencher: Bencher<'_, '_>, pressure: f64) {
     let heights: Field = SURFACE.sample(Grid::square(SIDE).expect("a grid"));
     let control = Control::MeanPressure(pressure);
     bencher.counter(ItemsCount::new(SIDE * SIDE)).bench(|| {
-        solve_uniform(&heights, &Love, control, &SolveParams::certified(), &Silent).expect("a solvable scene")
+        solve_uniform(&heights, &Love, control, &IterationParams::certified(), &Silent).expect("a solvable scene")
     });
 }

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use rc_core::{EdgeBias, Grid, Kernel, Silent, Symbol};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Spectral;
-use rc_solver::{Control, Observables, SolveParams, solve_uniform};
+use rc_solver::{Control, IterationParams, Observables, solve_uniform};
 
 /// A layer on a rigid base to which it sticks, loaded without friction.
 ///
@@ -65,7 +65,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let heights = Surface::new(&SpectrumParams::paper(16, 1))?.sample_on(Grid::square(256)?)?;
     let control = Control::MeanPressure(2e-3);
     let solve = |kernel: &dyn Kernel| -> Result<(), Box<dyn Error>> {
-        let solution = solve_uniform(&heights, kernel, control, &SolveParams::certified(), &Silent)?;
+        let solution = solve_uniform(&heights, kernel, control, &IterationParams::certified(), &Silent)?;
         let found = Observables::of(&solution, kernel);
         let (name, area) = (kernel.name(), found.area.fraction);
         println!("{name:<14} A/A0 = {area:.4}, Δ = {:.4e} λ", solution.info.penetration);

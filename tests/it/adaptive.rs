@@ -6,8 +6,8 @@ use rc_core::{Field, Grid, HeightField, Operator, Silent};
 use rc_fractal::{Normalisation, SpectrumParams, Surface};
 use rc_kernel::Love;
 use rc_solver::{
-    AdaptiveError, AdaptiveParams, AdaptiveProblem, AdaptiveSolution, Control, Estimate, HeightSource, Observables,
-    SolveParams, UniformOperator, solve_adaptive, solve_uniform,
+    AdaptiveError, AdaptiveParams, AdaptiveProblem, AdaptiveSolution, Control, Estimate, HeightSource, IterationParams,
+    Observables, UniformOperator, solve_adaptive, solve_uniform,
 };
 use rc_theory::hertz::PeriodicHertz;
 
@@ -24,7 +24,7 @@ fn surface(waves: usize, hurst: f64, seed: u64) -> Surface {
 }
 
 fn adaptive(source: HeightSource<'_>, control: Control, tolerance: f64) -> AdaptiveSolution {
-    let solve = SolveParams { tolerance, ..SolveParams::certified() };
+    let solve = IterationParams { tolerance, ..IterationParams::certified() };
     let params = AdaptiveParams { solve, ..AdaptiveParams::certified() };
     solve_adaptive(source, control, &params, &Silent).expect("a solvable scene")
 }
@@ -42,7 +42,7 @@ fn field(solution: &AdaptiveSolution) -> Field {
 
 /// Area by counting and rms pressure within 0.2 %, penetration within 0.05 % of the uniform solution, at equal elements.
 fn assert_agrees_with_uniform(heights: &Field, solution: &AdaptiveSolution, control: Control) {
-    let params = SolveParams::certified();
+    let params = IterationParams::certified();
     let uniform = solve_uniform(heights, &Love, control, &params, &Silent).expect("a solvable scene");
     let (of_uniform, of_adaptive) = (Observables::of(&uniform, &Love), solution.observables());
     assert_close("area by counting", of_adaptive.area.cells, of_uniform.area.cells, 2e-3);
@@ -73,7 +73,8 @@ fn the_smallest_loads_are_not_lost() {
     for pressure in [1e-6, 1e-8, 1e-10] {
         let control = Control::MeanPressure(pressure);
         let solution = adaptive(HeightSource::Surface(&surface, 512), control, 1e-6);
-        let uniform = solve_uniform(&heights, &Love, control, &SolveParams::certified(), &Silent).expect("solvable");
+        let uniform =
+            solve_uniform(&heights, &Love, control, &IterationParams::certified(), &Silent).expect("solvable");
         assert_close("mean pressure", solution.info.mean_pressure, pressure, 1e-10);
         let range = heights.max() - heights.min();
         let difference = (solution.info.penetration - uniform.info.penetration).abs();
@@ -167,7 +168,7 @@ fn tight_tolerances_are_reached() {
     let solution = adaptive(HeightSource::Surface(&surface, 256), control, 1e-9);
     assert!(solution.info.certificate.penetration <= 1e-9, "{}", solution.info.certificate);
     let heights = surface.sample(Grid::square(256).expect("a grid"));
-    let params = SolveParams { tolerance: 1e-9, ..SolveParams::certified() };
+    let params = IterationParams { tolerance: 1e-9, ..IterationParams::certified() };
     let uniform = solve_uniform(&heights, &Love, control, &params, &Silent).expect("a solvable scene");
     assert_close("rms pressure", solution.observables().rms_pressure, uniform.pressure.rms(), 1e-6);
 }
@@ -333,7 +334,8 @@ fn loads_far_beyond_full_contact_are_solved() {
         let control = Control::MeanPressure(pressure);
         let solution = adaptive(HeightSource::Surface(&surface, 256), control, 1e-6);
         assert!(solution.is_full_contact(), "{pressure:e}: contact is not full");
-        let exact = solve_uniform(&heights, &Love, control, &SolveParams::certified(), &Silent).expect("full contact");
+        let exact =
+            solve_uniform(&heights, &Love, control, &IterationParams::certified(), &Silent).expect("full contact");
         let scale = (exact.pressure.max() - exact.pressure.min()).max(1e-15 * pressure);
         let adaptive = field(&solution);
         let differences = adaptive.values().iter().zip(exact.pressure.values()).map(|(a, b)| (a - b).abs());
@@ -353,7 +355,7 @@ fn a_contact_that_coarser_levels_lose_is_found_again() {
     let solution = adaptive(HeightSource::Map(&heights), control, 1e-6);
     assert_close("mean pressure", solution.info.mean_pressure, pressure, 1e-10);
     // Not the located edges: at a sharp edge the pressure does not end as a root, and only the count means anything.
-    let uniform = solve_uniform(&heights, &Love, control, &SolveParams::certified(), &Silent).expect("solvable");
+    let uniform = solve_uniform(&heights, &Love, control, &IterationParams::certified(), &Silent).expect("solvable");
     let (of_uniform, of_adaptive) = (Observables::of(&uniform, &Love), solution.observables());
     assert_close("area by counting", of_adaptive.area.cells, of_uniform.area.cells, 2e-3);
     assert_close("rms pressure", of_adaptive.rms_pressure, of_uniform.rms_pressure, 2e-3);

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rc_core::testing::{check_height_field, check_kernel};
 use rc_core::{Field, Grid, HeightField as _, Kernel as _, Silent};
-use rc_solver::{Control, SolveParams, solve_uniform};
+use rc_solver::{Control, IterationParams, solve_uniform};
 
 use crate::assert_close;
 
@@ -81,7 +81,7 @@ fn a_wave_on_a_thin_layer_is_pressed_as_on_springs() {
     let heights = Field::from_fn(grid, |x, _| amplitude * (TAU * x).cos());
     let compliance = thin.symbol(grid)(1, 0);
     let control = Control::MeanPressure(2.0 * amplitude / compliance);
-    let solution = solve_uniform(&heights, &thin, control, &SolveParams::certified(), &Silent).expect("solvable");
+    let solution = solve_uniform(&heights, &thin, control, &IterationParams::certified(), &Silent).expect("solvable");
     let swing = solution.pressure.max() - solution.pressure.mean();
     let highest = (TAU * 0.5 / 64.0).cos();
     assert_close("swing of the pressure", swing, amplitude * highest / compliance, 1e-9);

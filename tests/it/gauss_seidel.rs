@@ -3,12 +3,12 @@
 use rc_core::{Field, Grid, Kernel as _, Silent};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::{Love, PeriodicLove};
-use rc_solver::{ContactArea, Control, GaussSeidelParams, Solution, solve_gauss_seidel};
+use rc_solver::{ContactArea, Control, GaussSeidelParams, GridSolution, solve_gauss_seidel};
 use rc_theory::hertz::PeriodicHertz;
 
 use crate::{assert_close, solved};
 
-fn by_the_paper(heights: &Field, control: Control, tolerance: f64) -> Solution {
+fn by_the_paper(heights: &Field, control: Control, tolerance: f64) -> GridSolution {
     let periodic = PeriodicLove::new();
     let coefficient = |dx: f64, dy: f64, half_side: f64| periodic.coefficient(dx, dy, half_side);
     let params = GaussSeidelParams { tolerance, ..GaussSeidelParams::paper() };
@@ -17,7 +17,7 @@ fn by_the_paper(heights: &Field, control: Control, tolerance: f64) -> Solution {
 }
 
 /// Contact area of the adaptive solution, with the edges located on the finest grid.
-fn contact_area(solution: &Solution) -> f64 {
+fn contact_area(solution: &GridSolution) -> f64 {
     ContactArea::of(&solution.pressure, &solution.gap, Love.edge_bias()).fraction
 }
 

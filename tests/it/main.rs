@@ -16,7 +16,7 @@ mod westergaard;
 use std::path::{Path, PathBuf};
 
 use rc_core::{Field, Kernel, Silent};
-use rc_solver::{Control, Solution, SolveParams, solve_uniform};
+use rc_solver::{Control, GridSolution, IterationParams, solve_uniform};
 
 /// A file of the repository's `data/`.
 fn data_path(name: &str) -> PathBuf {
@@ -24,8 +24,8 @@ fn data_path(name: &str) -> PathBuf {
 }
 
 /// A solution to `tolerance`, or a failed test.
-fn solved(heights: &Field, kernel: &dyn Kernel, control: Control, tolerance: f64) -> Solution {
-    let params = SolveParams { tolerance, ..SolveParams::certified() };
+fn solved(heights: &Field, kernel: &dyn Kernel, control: Control, tolerance: f64) -> GridSolution {
+    let params = IterationParams { tolerance, ..IterationParams::certified() };
     solve_uniform(heights, kernel, control, &params, &Silent).unwrap_or_else(|error| panic!("{control:?}: {error}"))
 }
 

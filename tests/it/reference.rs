@@ -2,7 +2,7 @@
 
 use rc_core::{Field, Grid, Silent};
 use rc_kernel::Spectral;
-use rc_solver::{Control, Observables, SolveParams, solve_uniform};
+use rc_solver::{Control, IterationParams, Observables, solve_uniform};
 use serde::Deserialize;
 
 use crate::data_path;
@@ -38,7 +38,7 @@ fn assert_close(what: &str, case: usize, value: f64, reference: f64, relative: f
 fn spectral_solutions_agree_with_independent_programs() {
     let text = std::fs::read_to_string(data_path("reference/spectral-256.json")).expect("reference cases");
     let cases: Vec<Case> = serde_json::from_str(&text).expect("reference cases parse");
-    let params = SolveParams { tolerance: 1e-9, ..SolveParams::certified() };
+    let params = IterationParams { tolerance: 1e-9, ..IterationParams::certified() };
     for (number, case) in cases.iter().enumerate() {
         let heights = heights(&case.heights);
         let control = Control::MeanPressure(case.mean_pressure);

@@ -4,17 +4,17 @@ use std::f64::consts::{PI, TAU};
 
 use rc_core::{Field, Grid, Silent};
 use rc_kernel::Love;
-use rc_solver::{Control, Solution, SolveParams, StressDistribution, solve_uniform};
+use rc_solver::{Control, GridSolution, IterationParams, StressDistribution, solve_uniform};
 use rc_theory::hertz::{PeriodicContact, PeriodicHertz};
 use rc_theory::westergaard::Westergaard;
 
-fn solve(heights: &Field, mean_pressure: f64) -> Solution {
-    let params = SolveParams { tolerance: 1e-9, ..SolveParams::certified() };
+fn solve(heights: &Field, mean_pressure: f64) -> GridSolution {
+    let params = IterationParams { tolerance: 1e-9, ..IterationParams::certified() };
     solve_uniform(heights, &Love, Control::MeanPressure(mean_pressure), &params, &Silent).expect("a solvable scene")
 }
 
 /// A sphere with its apex `offset` elements from a corner of elements, 51 elements per contact radius.
-fn sphere(offset: f64) -> (Solution, PeriodicContact) {
+fn sphere(offset: f64) -> (GridSolution, PeriodicContact) {
     let exact = PeriodicHertz { radius: 1.0 }.at_contact_radius(0.1).expect("a small contact");
     let n = 512;
     let apex = 0.5 + offset / n as f64;

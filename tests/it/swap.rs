@@ -3,7 +3,7 @@
 use rc_core::testing::{check_height_field, check_kernel};
 use rc_core::{EdgeBias, Field, Grid, HeightField, Kernel, Silent, Symbol};
 use rc_kernel::Love;
-use rc_solver::{Control, SolveError, SolveParams, Status, solve_uniform};
+use rc_solver::{Control, IterationError, IterationParams, Status, solve_uniform};
 
 use crate::examples::own_kernel::BondedLayer;
 use crate::examples::own_surface::Weierstrass;
@@ -20,7 +20,7 @@ fn own_surface_and_own_half_space_drive_the_solver() {
     check_height_field(&Weierstrass::default());
     let heights = heights(128);
     let solve = |kernel: &dyn Kernel| {
-        let params = SolveParams::certified();
+        let params = IterationParams::certified();
         solve_uniform(&heights, kernel, Control::MeanPressure(5e-4), &params, &Silent).expect("solvable")
     };
     let (thin, thick) = (solve(&layer), solve(&rc_kernel::Spectral));
@@ -57,8 +57,8 @@ fn a_half_space_that_answers_nan_is_an_error_and_no_contact() {
     for eigenvalue in [f64::NAN, f64::INFINITY] {
         let kernel = Broken { eigenvalue };
         for control in [Control::MeanPressure(1e-4), Control::MeanPressure(10.0), Control::Penetration(0.3 * depth)] {
-            let solved = solve_uniform(&heights, &kernel, control, &SolveParams::certified(), &Silent);
-            let error = solved.err().map(|error| matches!(error, SolveError::NotConverged { .. }));
+            let solved = solve_uniform(&heights, &kernel, control, &IterationParams::certified(), &Silent);
+            let error = solved.err().map(|error| matches!(error, IterationError::NotConverged { .. }));
             assert_eq!(error, Some(true), "{eigenvalue}, {control:?}");
         }
     }

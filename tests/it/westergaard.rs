@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rc_core::{Field, Grid, Kernel};
 use rc_kernel::{Love, Spectral};
-use rc_solver::{ContactArea, Control, Solution};
+use rc_solver::{ContactArea, Control, GridSolution};
 use rc_theory::westergaard::Westergaard;
 
 use crate::{assert_close, solved};
@@ -18,7 +18,7 @@ fn wave(n: usize, along_x: bool) -> Field {
 }
 
 /// Relative L2 error of the pressure.
-fn pressure_error(solution: &Solution, theory: Westergaard, mean_pressure: f64, along_x: bool) -> f64 {
+fn pressure_error(solution: &GridSolution, theory: Westergaard, mean_pressure: f64, along_x: bool) -> f64 {
     let exact =
         Field::from_fn(solution.pressure.grid(), |x, y| theory.pressure(if along_x { x } else { y }, mean_pressure));
     let difference: Vec<f64> = solution.pressure.values().iter().zip(exact.values()).map(|(p, e)| p - e).collect();
@@ -28,7 +28,7 @@ fn pressure_error(solution: &Solution, theory: Westergaard, mean_pressure: f64, 
 /// Contact width with the edges located between centres. Counting elements leaves an uncertainty of an element. At an edge
 /// p = c √s inside and g = (4c/3) s^{3/2} outside, with s the distance and the same c, so the last pressure inside and the
 /// first gap outside, one element apart, determine both.
-fn contact_width(solution: &Solution, along_x: bool) -> f64 {
+fn contact_width(solution: &GridSolution, along_x: bool) -> f64 {
     let n = solution.pressure.grid().nx();
     let line =
         |field: &Field| -> Vec<f64> { (0..n).map(|i| if along_x { field.at(i, 0) } else { field.at(0, i) }).collect() };

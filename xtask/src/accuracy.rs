@@ -9,7 +9,7 @@ use plotters::prelude::{DrawingBackend, RGBColor};
 use rc_core::{EdgeBias, Kernel, Silent};
 use rc_kernel::{Love, Spectral};
 use rc_plot::{Area, LinePlot, LineStyle, Picture, PictureError, Series, draw_lines};
-use rc_solver::{Control, Observables, SolveParams, StressDistribution, solve_uniform};
+use rc_solver::{Control, IterationParams, Observables, StressDistribution, solve_uniform};
 
 use self::scenes::{Scene, Set};
 use crate::figures::{Figure, Preset, Table};
@@ -182,7 +182,7 @@ fn cases_of(scene: Scene, params: &Params) -> Result<Vec<Case>> {
 fn solve(scene: Scene, kernel: &dyn Kernel, side: usize) -> Result<(Observables, StressDistribution)> {
     let heights = scene.heights(side)?;
     let control = Control::MeanPressure(scene.mean_pressure);
-    let solution = solve_uniform(&heights, kernel, control, &SolveParams::certified(), &Silent)?;
+    let solution = solve_uniform(&heights, kernel, control, &IterationParams::certified(), &Silent)?;
     let edges: Vec<f64> = (0..=N_BINS).map(|bin| bin as f64 * BIN_OVER_RMS_SLOPE * scenes::RMS_SLOPE).collect();
     Ok((Observables::of(&solution, kernel), StressDistribution::of(&solution.pressure, &edges)))
 }

@@ -6,7 +6,7 @@ use rc_core::{Elasticity, Grid, Kernel, PeriodicCell, UnitError};
 use rc_fractal::{MAX_WAVES, Normalisation, SpectrumParams};
 use rc_heights::Scales;
 use rc_kernel::{Love, Spectral};
-use rc_solver::{Control, SolveParams};
+use rc_solver::{Control, IterationParams};
 
 use crate::auto_tolerance::auto_tolerance;
 use crate::error::CliError;
@@ -31,7 +31,7 @@ pub struct ContactProblem {
     /// Method of solution, where one is asked for.
     pub method: Option<Method>,
     /// Tolerance and limits.
-    pub params: SolveParams,
+    pub params: IterationParams,
     /// Whether it is a row of a sweep, which must not depend on the memory of the machine: a method that does not fit is an error, and
     /// another one is no way out.
     pub is_one_of_many: bool,
@@ -234,7 +234,8 @@ pub fn contact(keys: ContactKeys, side: f64, elements_per_wave: Option<f64>) -> 
             "border_level: only the adaptive method, with kernel love, halves elements at the edges of contacts",
         ));
     }
-    let params = SolveParams { tolerance: tolerance(keys.tolerance, elements_per_wave)?, ..SolveParams::certified() };
+    let params =
+        IterationParams { tolerance: tolerance(keys.tolerance, elements_per_wave)?, ..IterationParams::certified() };
     Ok(ContactProblem { elasticity, control, kernel, method, params, is_one_of_many: false, keys })
 }
 
@@ -259,7 +260,7 @@ fn tolerance(given: Option<Tolerance>, elements_per_wave: Option<f64>) -> Result
             Err(CliError::input(format_args!("tolerance: must be between 0 and 1, as 1e-6, not {value}")))
         }
         Some(Tolerance::Auto) => Ok(auto_tolerance(elements_per_wave)),
-        None => Ok(SolveParams::certified().tolerance),
+        None => Ok(IterationParams::certified().tolerance),
     }
 }
 

@@ -4,7 +4,7 @@ use rc_core::{Field, Kernel, Operator};
 
 use crate::operator::DirectSum;
 use crate::problem::Problem;
-use crate::{Control, SolveError, SolveParams};
+use crate::{Control, IterationError, IterationParams};
 
 /// Pressures (in E*) on the grid of `heights` under a given penetration (in λ), by elimination on the elements in contact:
 /// solve `Σ_j L_ij p_j = h_i - h_max + Δ` there, release elements under tension, take in elements that penetrate, until
@@ -14,9 +14,9 @@ use crate::{Control, SolveError, SolveParams};
 /// definite operators of this workspace.
 ///
 /// # Errors
-/// [`SolveError`] for heights or a penetration out of range.
-pub fn solve_dense(heights: &Field, kernel: &dyn Kernel, penetration: f64) -> Result<Option<Field>, SolveError> {
-    let problem = Problem::check(heights, Control::Penetration(penetration), &SolveParams::certified())?;
+/// [`IterationError`] for heights or a penetration out of range.
+pub fn solve_dense(heights: &Field, kernel: &dyn Kernel, penetration: f64) -> Result<Option<Field>, IterationError> {
+    let problem = Problem::check(heights, Control::Penetration(penetration), &IterationParams::certified())?;
     let grid = heights.grid();
     let operator = DirectSum::new(grid, kernel);
     let prescribed: Vec<f64> = heights.values().iter().map(|h| h - problem.offset()).collect();

@@ -3,12 +3,12 @@
 use rc_core::Grid;
 use thiserror::Error;
 
-use crate::{Certificate, Solution};
+use crate::{Certificate, GridSolution};
 
 /// A contact problem that was not solved.
 #[derive(Clone, Debug, Error)]
 #[non_exhaustive]
-pub enum SolveError {
+pub enum IterationError {
     /// A height is NaN or infinite.
     #[error("height at element ({ix}, {iy}) is {value}; heights must be finite")]
     Height {
@@ -66,6 +66,6 @@ pub enum SolveError {
         /// Residuals of the best pressure found.
         certificate: Certificate,
         /// The best pressure found, on the finest grid, with its gap.
-        solution: Box<Solution>,
+        solution: Box<GridSolution>,
     },
 }

@@ -10,13 +10,13 @@
 //!
 //! use rc_core::{Field, Grid, Silent};
 //! use rc_kernel::Love;
-//! use rc_solver::{AdaptiveParams, Control, HeightSource, Observables, SolveParams, solve_adaptive, solve_uniform};
+//! use rc_solver::{AdaptiveParams, Control, HeightSource, Observables, IterationParams, solve_adaptive, solve_uniform};
 //!
 //! // Westergaard's wave at half the load of full contact, π E* a/λ: half of it touches.
 //! let amplitude = 1e-3;
 //! let heights = Field::from_fn(Grid::square(128)?, |x, _| amplitude * (TAU * x).cos());
 //! let load = Control::MeanPressure(0.5 * PI * amplitude);
-//! let solution = solve_uniform(&heights, &Love, load, &SolveParams::certified(), &Silent)?;
+//! let solution = solve_uniform(&heights, &Love, load, &IterationParams::certified(), &Silent)?;
 //! let found = Observables::of(&solution, &Love);
 //! assert!((found.area.fraction - 0.5).abs() < 0.01, "A/A0 = {}", found.area.fraction);
 //!
@@ -57,12 +57,12 @@ pub use contact_area::ContactArea;
 pub use contact_spots::{ContactSpot, connected_elements};
 pub use control::Control;
 pub use dense::solve_dense;
-pub use error::SolveError;
+pub use error::IterationError;
 pub use gap_distribution::GapDistribution;
 pub use gauss_seidel::{Coefficient, GaussSeidelError, GaussSeidelParams, solve_gauss_seidel};
 pub use observables::Observables;
 pub use operator::{DirectSum, UniformOperator};
-pub use params::SolveParams;
-pub use solution::{LevelInfo, LevelValues, MeshPressure, Solution, SolveInfo, Status};
+pub use params::IterationParams;
+pub use solution::{GridSolution, LevelInfo, LevelValues, MeshPressure, SolveInfo, Status};
 pub use stress_distribution::StressDistribution;
 pub use uniform::{UNIFORM_BYTES_PER_ELEMENT, solve_uniform};

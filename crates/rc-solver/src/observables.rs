@@ -2,7 +2,7 @@
 
 use rc_core::Kernel;
 
-use crate::{ContactArea, Solution, SolveInfo};
+use crate::{ContactArea, GridSolution, SolveInfo};
 
 /// Observables of a solution, in units of λ and E*.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,9 +27,9 @@ pub struct Observables {
 
 impl Observables {
     /// Evaluates the observables of `solution`, which was found with `kernel`: one pass over the fields. The stiffness, which takes
-    /// more, is [`Solution::contact_stiffness`].
+    /// more, is [`GridSolution::contact_stiffness`].
     #[must_use]
-    pub fn of(solution: &Solution, kernel: &dyn Kernel) -> Self {
+    pub fn of(solution: &GridSolution, kernel: &dyn Kernel) -> Self {
         let info = &solution.info;
         let rms_pressure = solution.pressure.rms();
         let area = ContactArea::of(&solution.pressure, &solution.gap, kernel.edge_bias());

@@ -2,7 +2,7 @@
 
 /// How accurately, and within which limits, a contact problem is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SolveParams {
+pub struct IterationParams {
     /// Bound on [`crate::Certificate::complementarity`] and [`crate::Certificate::penetration`]; both are relative to the
     /// peak-to-valley height h_max - h_min.
     pub tolerance: f64,
@@ -10,7 +10,7 @@ pub struct SolveParams {
     pub max_iterations: usize,
 }
 
-impl SolveParams {
+impl IterationParams {
     /// The smallest tolerance that can be certified: below it the rounding of L p in double precision decides.
     pub const SMALLEST_TOLERANCE: f64 = 1e-13;
 

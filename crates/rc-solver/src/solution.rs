@@ -6,7 +6,7 @@ use rc_quadtree::Mesh;
 use crate::Certificate;
 use crate::stiffness::contact_stiffness;
 
-/// How a solve ended well. (Ending badly is a [`crate::SolveError`].)
+/// How a solve ended well. (Ending badly is a [`crate::IterationError`].)
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     /// Iterated until the certificate met the tolerance.
@@ -81,7 +81,7 @@ pub struct MeshPressure {
 
 /// A solved contact problem.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Solution {
+pub struct GridSolution {
     /// Pressure, in E*, ≥ 0.
     pub pressure: Field,
     /// Gap, in λ, with the pressure-weighted mean 0; at points in contact it is zero within the tolerance.
@@ -94,7 +94,7 @@ pub struct Solution {
     pub info: SolveInfo,
 }
 
-impl Solution {
+impl GridSolution {
     /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact. `kernel` is the one
     /// that the solution was found with, a few applications of which it takes.
     #[must_use]

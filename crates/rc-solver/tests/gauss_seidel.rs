@@ -3,8 +3,8 @@
 use rc_core::{Field, Grid, Operator, Silent};
 use rc_kernel::{Love, PeriodicLove};
 use rc_solver::{
-    Control, GaussSeidelError, GaussSeidelParams, Observables, Solution, SolveError, SolveParams, UniformOperator,
-    solve_dense, solve_gauss_seidel, solve_uniform,
+    Control, GaussSeidelError, GaussSeidelParams, GridSolution, IterationError, IterationParams, Observables,
+    UniformOperator, solve_dense, solve_gauss_seidel, solve_uniform,
 };
 
 const TAU: f64 = std::f64::consts::TAU;
@@ -17,13 +17,17 @@ fn bumps(n: usize) -> Field {
     })
 }
 
-fn by_the_paper(heights: &Field, control: Control, params: &GaussSeidelParams) -> Result<Solution, GaussSeidelError> {
+fn by_the_paper(
+    heights: &Field,
+    control: Control,
+    params: &GaussSeidelParams,
+) -> Result<GridSolution, GaussSeidelError> {
     let periodic = PeriodicLove::new();
     solve_gauss_seidel(heights, &Love, &|dx, dy, d| periodic.coefficient(dx, dy, d), control, params, &Silent)
 }
 
-fn uniform(heights: &Field, control: Control, tolerance: f64) -> Solution {
-    let params = SolveParams { tolerance, ..SolveParams::certified() };
+fn uniform(heights: &Field, control: Control, tolerance: f64) -> GridSolution {
+    let params = IterationParams { tolerance, ..IterationParams::certified() };
     solve_uniform(heights, &Love, control, &params, &Silent).expect("solvable")
 }
 
@@ -126,7 +130,7 @@ fn what_cannot_be_done_is_refused_before_any_work() {
         assert!(matches!(error, GaussSeidelError::Parameter { .. }), "{error}");
     }
     let deep = refuse(paper, Control::Penetration(1.0));
-    assert!(matches!(deep, GaussSeidelError::Solve(SolveError::Penetration { .. })), "{deep}");
+    assert!(matches!(deep, GaussSeidelError::Solve(IterationError::Penetration { .. })), "{deep}");
     let rectangles = Field::zeros(Grid::new(8, 16).expect("grid"));
     let error = by_the_paper(&rectangles, Control::MeanPressure(1.0), &paper).expect_err("rectangles");
     assert!(matches!(error, GaussSeidelError::NotSquare { .. }), "{error}");
@@ -137,6 +141,6 @@ fn too_few_sweeps_are_an_error_that_carries_the_residuals() {
     let heights = bumps(64);
     let params = GaussSeidelParams { max_sweeps: 1, max_checks: 1, ..GaussSeidelParams::paper() };
     let error = by_the_paper(&heights, Control::Penetration(4e-3), &params).expect_err("not converged");
-    let GaussSeidelError::Solve(SolveError::NotConverged { certificate, .. }) = error else { panic!("{error}") };
+    let GaussSeidelError::Solve(IterationError::NotConverged { certificate, .. }) = error else { panic!("{error}") };
     assert!(certificate.penetration > 1e-6, "{certificate}");
 }

@@ -4,7 +4,7 @@ use rc_core::testing::quasi_random;
 use rc_core::{Field, Grid, Kernel, Operator, Silent};
 use rc_kernel::{Love, Spectral};
 use rc_solver::{
-    Certificate, Control, DirectSum, Observables, Solution, SolveError, SolveParams, Status, solve_uniform,
+    Certificate, Control, DirectSum, GridSolution, IterationError, IterationParams, Observables, Status, solve_uniform,
 };
 
 const TAU: f64 = std::f64::consts::TAU;
@@ -17,8 +17,13 @@ fn bumps(nx: usize, ny: usize) -> Field {
     })
 }
 
-fn solve(heights: &Field, kernel: &dyn Kernel, control: Control, tolerance: f64) -> Result<Solution, SolveError> {
-    let params = SolveParams { tolerance, ..SolveParams::certified() };
+fn solve(
+    heights: &Field,
+    kernel: &dyn Kernel,
+    control: Control,
+    tolerance: f64,
+) -> Result<GridSolution, IterationError> {
+    let params = IterationParams { tolerance, ..IterationParams::certified() };
     solve_uniform(heights, kernel, control, &params, &Silent)
 }
 
@@ -214,9 +219,11 @@ fn flat_surface_is_in_full_contact_at_any_load() {
 #[test]
 fn running_out_of_iterations_is_an_error_that_carries_the_residuals() {
     let heights = bumps(64, 64);
-    let params = SolveParams { tolerance: 1e-9, max_iterations: 2 };
+    let params = IterationParams { tolerance: 1e-9, max_iterations: 2 };
     let result = solve_uniform(&heights, &Love, Control::MeanPressure(1e-3), &params, &Silent);
-    let Err(SolveError::NotConverged { certificate, solution, .. }) = result else { panic!("expected NotConverged") };
+    let Err(IterationError::NotConverged { certificate, solution, .. }) = result else {
+        panic!("expected NotConverged")
+    };
     assert!(certificate.penetration > 1e-9, "{certificate}");
     let found = recomputed(&heights, &Love, &solution.pressure, 1e-3);
     assert!((found.penetration - certificate.penetration).abs() < 1e-12, "stated {certificate}, found {found}");
@@ -227,24 +234,27 @@ fn bad_input_is_refused_with_its_value() {
     let heights = bumps(16, 16);
     let refused = |control, tolerance| solve(&heights, &Love, control, tolerance).expect_err("bad input");
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(refused(Control::MeanPressure(value), 1e-6), SolveError::MeanPressure { .. }), "{value}");
-        assert!(matches!(refused(Control::Penetration(value), 1e-6), SolveError::Penetration { .. }), "{value}");
+        assert!(matches!(refused(Control::MeanPressure(value), 1e-6), IterationError::MeanPressure { .. }), "{value}");
+        assert!(matches!(refused(Control::Penetration(value), 1e-6), IterationError::Penetration { .. }), "{value}");
     }
     let full = heights.max() - heights.mean();
     assert!(
-        matches!(refused(Control::Penetration(full), 1e-6), SolveError::Penetration { full_contact, .. } if full_contact.to_bits() == full.to_bits())
+        matches!(refused(Control::Penetration(full), 1e-6), IterationError::Penetration { full_contact, .. } if full_contact.to_bits() == full.to_bits())
     );
     for tolerance in [0.0, 1.0, -1e-6, 1e-17, f64::NAN] {
-        assert!(matches!(refused(Control::MeanPressure(1e-3), tolerance), SolveError::Tolerance { .. }), "{tolerance}");
+        assert!(
+            matches!(refused(Control::MeanPressure(1e-3), tolerance), IterationError::Tolerance { .. }),
+            "{tolerance}"
+        );
     }
     let mut broken = heights.clone();
     broken.values_mut()[16 * 3 + 5] = f64::NAN;
     let error = solve(&broken, &Love, Control::MeanPressure(1e-3), 1e-6).expect_err("NaN");
-    assert!(matches!(error, SolveError::Height { ix: 5, iy: 3, .. }), "{error}");
+    assert!(matches!(error, IterationError::Height { ix: 5, iy: 3, .. }), "{error}");
     // Squares of what such heights lead to underflow, or their range is not a number.
     for size in [1e-305, 1.7e308] {
         let scaled = Field::from_fn(heights.grid(), |x, _| if x < 0.5 { size } else { -size });
         let error = solve(&scaled, &Love, Control::MeanPressure(1e-3), 1e-6).expect_err("a size out of range");
-        assert!(matches!(error, SolveError::HeightRange { .. }), "{error}");
+        assert!(matches!(error, IterationError::HeightRange { .. }), "{error}");
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use rc_core::{Event, Field, Grid, Observer, Silent, Snapshot};
 use rc_kernel::{Love, PeriodicLove};
 use rc_solver::{
-    AdaptiveParams, Control, GaussSeidelParams, HeightSource, SolveParams, solve_adaptive, solve_gauss_seidel,
+    AdaptiveParams, Control, GaussSeidelParams, HeightSource, IterationParams, solve_adaptive, solve_gauss_seidel,
     solve_uniform,
 };
 
@@ -50,7 +50,7 @@ type Method = fn(&Field, &dyn Observer) -> Field;
 
 fn by_uniform(heights: &Field, observer: &dyn Observer) -> Field {
     let control = Control::MeanPressure(MEAN_PRESSURE);
-    solve_uniform(heights, &Love, control, &SolveParams::certified(), observer).expect("solvable").pressure
+    solve_uniform(heights, &Love, control, &IterationParams::certified(), observer).expect("solvable").pressure
 }
 
 fn by_adaptive(heights: &Field, observer: &dyn Observer) -> Field {

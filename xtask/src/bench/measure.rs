@@ -4,7 +4,9 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use rc_core::{Grid, Silent};
-use rc_solver::{AdaptiveParams, AdaptiveProblem, HeightSource, Observables, SolveInfo, SolveParams, solve_uniform};
+use rc_solver::{
+    AdaptiveParams, AdaptiveProblem, HeightSource, IterationParams, Observables, SolveInfo, solve_uniform,
+};
 use serde::{Deserialize, Serialize};
 
 use super::scenes::Scene;
@@ -55,7 +57,7 @@ pub(super) struct Outcome {
 /// # Errors
 /// When a solve fails.
 pub(super) fn solve(scene: &Scene, setting: &Setting) -> Result<Solved> {
-    let params = SolveParams { tolerance: setting.relative_tolerance(), ..SolveParams::certified() };
+    let params = IterationParams { tolerance: setting.relative_tolerance(), ..IterationParams::certified() };
     let solved = match setting.method {
         Method::Uniform => uniform(scene, setting, &params),
         Method::Adaptive => adaptive(scene, setting, params),
@@ -63,7 +65,7 @@ pub(super) fn solve(scene: &Scene, setting: &Setting) -> Result<Solved> {
     solved.with_context(|| format!("scene {}, {setting}", scene.name))
 }
 
-fn uniform(scene: &Scene, setting: &Setting, params: &SolveParams) -> Result<Solved> {
+fn uniform(scene: &Scene, setting: &Setting, params: &IterationParams) -> Result<Solved> {
     let heights = scene.surface()?.sample_on(Grid::square(scene.side(setting.elements_per_wave))?)?;
     let kernel = setting.kernel.kernel();
     let start = Instant::now();
@@ -80,7 +82,7 @@ fn uniform(scene: &Scene, setting: &Setting, params: &SolveParams) -> Result<Sol
     })
 }
 
-fn adaptive(scene: &Scene, setting: &Setting, solve: SolveParams) -> Result<Solved> {
+fn adaptive(scene: &Scene, setting: &Setting, solve: IterationParams) -> Result<Solved> {
     let surface = scene.surface()?;
     let params = AdaptiveParams { solve, border_level: setting.border_level, ..AdaptiveParams::certified() };
     let start = Instant::now();

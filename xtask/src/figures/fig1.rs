@@ -11,7 +11,7 @@ use plotters::style::{BLACK, Color};
 use rc_core::{Field, Grid, Silent};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_plot::{Area, Picture, PictureError};
-use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, HeightSource, SolveParams, solve_adaptive};
+use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, HeightSource, IterationParams, solve_adaptive};
 
 use super::chart::{Axes, BLUE, Chart, Drawn, GREY, RED, Side, dimension, write};
 use super::solve::{displacement_field, pressure_field};
@@ -91,7 +91,7 @@ impl Figure for Fig1 {
     fn compute(params: &Params) -> Result<Self> {
         let surface = Surface::new(&SpectrumParams::paper(params.waves, params.seed))?;
         let heights = surface.sample_on(Grid::square(params.grid)?)?;
-        let solve = SolveParams { tolerance: params.tolerance, ..SolveParams::certified() };
+        let solve = IterationParams { tolerance: params.tolerance, ..IterationParams::certified() };
         let adaptive = AdaptiveParams { solve, ..AdaptiveParams::certified() };
         let control = Control::MeanPressure(params.mean_pressure);
         let solution = solve_adaptive(HeightSource::Surface(&surface, params.grid), control, &adaptive, &Silent)?;

@@ -15,7 +15,7 @@ use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Love;
 use rc_plot::{Area, Picture, PictureError};
 use rc_quadtree::{Mask, MeshKind, MeshParams, count};
-use rc_solver::{Control, SolveParams, Status, solve_uniform};
+use rc_solver::{Control, IterationParams, Status, solve_uniform};
 
 use super::chart::{Axes, BLUE, Chart, Drawn, GREEN, RED, Side, write};
 use super::solve::solve;
@@ -151,7 +151,7 @@ fn partial_contact(params: &Params, surface: &Surface, mean_pressure: f64) -> Re
 /// least pressure.
 fn full_contact(params: &Params, heights: &Field) -> Result<State> {
     let control = Control::MeanPressure(CRUSHING);
-    let solution = solve_uniform(heights, &Love, control, &SolveParams::certified(), &Silent)?;
+    let solution = solve_uniform(heights, &Love, control, &IterationParams::certified(), &Silent)?;
     ensure!(solution.status == Status::FullContact, "σ0 = {CRUSHING} E* leaves gaps; the surface is too steep");
     let least = solution.pressure.min();
     State::of(params, &solution.pressure, solution.info.penetration, CRUSHING - least)

@@ -12,7 +12,7 @@ use plotters::prelude::{
 };
 use rc_core::{Elasticity, Field, Grid, PeriodicCell, Silent};
 use rc_plot::{Area, FONT, Picture, PictureError};
-use rc_solver::{AdaptiveParams, Control, HeightSource, SolveParams, solve_adaptive};
+use rc_solver::{AdaptiveParams, Control, HeightSource, IterationParams, solve_adaptive};
 use rc_theory::hertz::{Hertz, PeriodicHertz};
 
 use super::contact_map::{ContactMap, Run};
@@ -105,7 +105,7 @@ impl Figure for Fig4 {
     fn compute(params: &Params) -> Result<Self> {
         let (heights, apex) = sphere(params)?;
         let control = Control::Penetration(params.penetration / params.cell);
-        let solve = SolveParams { tolerance: params.tolerance, ..SolveParams::certified() };
+        let solve = IterationParams { tolerance: params.tolerance, ..IterationParams::certified() };
         let adaptive = AdaptiveParams { solve, ..AdaptiveParams::certified() };
         let solution = solve_adaptive(HeightSource::Map(&heights), control, &adaptive, &Silent)?;
         let solution =

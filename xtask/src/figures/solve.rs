@@ -4,8 +4,8 @@ use anyhow::Result;
 use rc_core::{Field, Grid, HeightField, Silent};
 use rc_kernel::Love;
 use rc_solver::{
-    AdaptiveParams, AdaptiveProblem, AdaptiveSolution, ContactArea, Control, Estimate, HeightSource, Observables,
-    SolveInfo, SolveParams, solve_uniform,
+    AdaptiveParams, AdaptiveProblem, AdaptiveSolution, ContactArea, Control, Estimate, HeightSource, IterationParams,
+    Observables, SolveInfo, solve_uniform,
 };
 
 /// A solved contact, in units of λ and E*.
@@ -20,7 +20,7 @@ pub(crate) struct Contact {
 /// Solves for `surface` on `side` × `side` elements: adaptively, where the estimated contact area says that this is faster,
 /// else on the uniform grid.
 pub(crate) fn solve(surface: &dyn HeightField, side: usize, control: Control, tolerance: f64) -> Result<Contact> {
-    let solve = SolveParams { tolerance, ..SolveParams::certified() };
+    let solve = IterationParams { tolerance, ..IterationParams::certified() };
     let params = AdaptiveParams { solve, ..AdaptiveParams::certified() };
     let problem = AdaptiveProblem::new(HeightSource::Surface(surface, side), control, &params)?;
     if problem.estimate().area_fraction > Estimate::GREATEST_ADAPTIVE_AREA {

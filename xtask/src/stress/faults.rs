@@ -6,7 +6,7 @@ use anyhow::{Result, ensure};
 use rc_core::testing::{check_kernel, check_operator, quasi_random};
 use rc_core::{EdgeBias, Field, Grid, Kernel, Operator, Silent, Symbol};
 use rc_kernel::Love;
-use rc_solver::{Control, SolveParams, UniformOperator, solve_uniform};
+use rc_solver::{Control, IterationParams, UniformOperator, solve_uniform};
 
 use super::audit::{Audit, direct};
 use super::heights::{mapped, rough};
@@ -193,7 +193,7 @@ fn kernels(rows: &mut Rows) -> Result<()> {
             // Nothing that such a kernel returns is a solution.
             for control in [control, Control::Penetration(0.3 * (heights.max() - heights.mean()))] {
                 let solved =
-                    guarded(|| Ok(solve_uniform(&heights, &kernel, control, &SolveParams::certified(), &Silent)?));
+                    guarded(|| Ok(solve_uniform(&heights, &kernel, control, &IterationParams::certified(), &Silent)?));
                 let name =
                     format!("{scene} {}", if control_is_load(control) { "to a load" } else { "to a penetration" });
                 let reported = matches!(&solved, Err(error) if !error.to_string().starts_with("panic"));
@@ -226,7 +226,7 @@ fn control_is_load(control: Control) -> bool {
 /// A solve with `kernel`, audited with Love's.
 fn outcome(heights: &Field, kernel: &dyn Kernel, control: Control) -> Result<()> {
     guarded(|| {
-        let params = SolveParams { tolerance: TOLERANCE, ..SolveParams::certified() };
+        let params = IterationParams { tolerance: TOLERANCE, ..IterationParams::certified() };
         let pressure = solve_uniform(heights, kernel, control, &params, &Silent)?.pressure;
         let audit = Audit::of_pressure(heights, &pressure, &direct(&pressure), control);
         ensure!(audit.n_bad == 0, "audit: {} pressures that are not finite or negative", audit.n_bad);
@@ -268,7 +268,7 @@ fn inputs(rows: &mut Rows) -> Result<()> {
         ),
     ];
     for (name, heights, control, tolerance) in cases {
-        let params = SolveParams { tolerance, ..SolveParams::certified() };
+        let params = IterationParams { tolerance, ..IterationParams::certified() };
         let solved = guarded(|| Ok(solve_uniform(&heights, &Love, control, &params, &Silent)?));
         let reported = matches!(&solved, Err(error) if !error.to_string().starts_with("panic"));
         let said = solved.map_or_else(|error| format!("{error:#}"), |_| "converged".to_owned());

@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use rc_core::{Field, Kernel, Silent};
 use rc_kernel::{Love, PeriodicLove, Spectral};
 use rc_solver::{
-    AdaptiveParams, Coefficient, Control, GaussSeidelParams, HeightSource, Observables, SolveInfo, SolveParams,
+    AdaptiveParams, Coefficient, Control, GaussSeidelParams, HeightSource, IterationParams, Observables, SolveInfo,
     solve_adaptive, solve_dense, solve_gauss_seidel, solve_uniform,
 };
 
@@ -60,7 +60,7 @@ pub(crate) fn solve(heights: &Field, method: Method, control: Control, tolerance
 }
 
 fn try_solve(heights: &Field, method: Method, control: Control, tolerance: f64) -> Result<Solved> {
-    let solve = SolveParams { tolerance, ..SolveParams::certified() };
+    let solve = IterationParams { tolerance, ..IterationParams::certified() };
     match method {
         Method::Uniform | Method::Spectral => {
             let kernel = method.kernel();

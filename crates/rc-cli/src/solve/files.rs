@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 
 use rc_core::{Field, Grid};
-use rc_solver::{AdaptiveProblem, AdaptiveSolution, MeshPressure, Solution};
+use rc_solver::{AdaptiveProblem, AdaptiveSolution, GridSolution, MeshPressure};
 
 use super::Solved;
 use super::found::Pressure;
@@ -48,7 +48,7 @@ pub(super) fn write(folder: &Path, solved: &Solved<'_>, summary: &Summary) -> Re
 
 fn add_whole(
     staged: &mut Staged,
-    solution: &Solution,
+    solution: &GridSolution,
     output_grid: Option<GridSpec>,
     units: Units,
 ) -> Result<(), CliError> {

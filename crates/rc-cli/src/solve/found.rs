@@ -3,8 +3,8 @@
 use rc_core::{Field, Grid};
 use rc_kernel::PeriodicLove;
 use rc_solver::{
-    AdaptiveError, AdaptiveProblem, AdaptiveSolution, ContactArea, GaussSeidelError, GaussSeidelParams, Observables,
-    Solution, SolveError, SolveInfo, Status, solve_gauss_seidel, solve_uniform,
+    AdaptiveError, AdaptiveProblem, AdaptiveSolution, ContactArea, GaussSeidelError, GaussSeidelParams, GridSolution,
+    IterationError, Observables, SolveInfo, Status, solve_gauss_seidel, solve_uniform,
 };
 
 use super::method::Plan;
@@ -27,7 +27,7 @@ pub(super) struct Found<'a> {
 
 /// A solution, whole or on the tiles that contact touches.
 pub(super) enum Pressure<'a> {
-    Whole(Box<Solution>),
+    Whole(Box<GridSolution>),
     Tiles {
         solution: Box<AdaptiveSolution>,
         /// What it solves, heights included.
@@ -80,14 +80,14 @@ impl<'a> Found<'a> {
 
     fn of_whole(
         method: Method,
-        result: Result<Solution, SolveError>,
+        result: Result<GridSolution, IterationError>,
         heights: &Field,
         contact: &ContactProblem,
         side: f64,
     ) -> Result<Self, CliError> {
         let (solution, failure) = match result {
             Ok(solution) => (Box::new(solution), None),
-            Err(SolveError::NotConverged { grid, iterations, certificate, solution }) => {
+            Err(IterationError::NotConverged { grid, iterations, certificate, solution }) => {
                 (solution, Some(not_converged(grid, iterations, &certificate, contact.params.tolerance)))
             }
             Err(error) => return Err(in_si(&error, side, contact)),
@@ -167,7 +167,7 @@ fn by_gauss_seidel(
     heights: &Field,
     contact: &ContactProblem,
     progress: &Progress,
-) -> Result<Result<Solution, SolveError>, CliError> {
+) -> Result<Result<GridSolution, IterationError>, CliError> {
     let periodic = PeriodicLove::new();
     let coefficient = |dx: f64, dy: f64, half_side: f64| periodic.coefficient(dx, dy, half_side);
     let params = GaussSeidelParams { tolerance: contact.params.tolerance, ..GaussSeidelParams::paper() };

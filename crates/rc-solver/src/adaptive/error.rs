@@ -4,15 +4,15 @@ use rc_core::Grid;
 use thiserror::Error;
 
 use super::AdaptiveSolution;
-use crate::{Certificate, SolveError};
+use crate::{Certificate, IterationError};
 
 /// A contact problem that the adaptive method did not solve.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum AdaptiveError {
-    /// The problem itself is not valid; never [`SolveError::NotConverged`].
+    /// The problem itself is not valid; never [`IterationError::NotConverged`].
     #[error(transparent)]
-    Solve(#[from] SolveError),
+    Solve(#[from] IterationError),
     /// Squares of the mesh are halves of halves of the cell.
     #[error("the adaptive method needs a square cell")]
     RectangularCell,

@@ -41,7 +41,7 @@ use self::solver::{Solved, Solver};
 use self::tiles::TILE;
 use crate::problem::Problem;
 use crate::solution::LevelInfo;
-use crate::{Certificate, Control, SolveParams};
+use crate::{Certificate, Control, IterationParams};
 
 /// Operator errors from here on are reached in single precision.
 const SINGLE_PRECISION: f64 = 1e-6;
@@ -64,7 +64,7 @@ const SMALLEST_BASE: usize = 64;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdaptiveParams {
     /// Tolerance of the certificate and limit of iterations.
-    pub solve: SolveParams,
+    pub solve: IterationParams,
     /// Bound on the error of one application of L, relative to the rms displacement, on pressures of contacts
     /// ([`SplitParams`] has the measurements). A tolerance below a third of it lowers it, and so does a pressure so rough that the
     /// tolerance would not hold.
@@ -79,11 +79,11 @@ pub struct AdaptiveParams {
 }
 
 impl AdaptiveParams {
-    /// As [`SolveParams::certified`], L to 1e-6, no limit of memory.
+    /// As [`IterationParams::certified`], L to 1e-6, no limit of memory.
     #[must_use]
     pub fn certified() -> Self {
         Self {
-            solve: SolveParams::certified(),
+            solve: IterationParams::certified(),
             operator_error: 1e-6,
             border_level: 0,
             base_side: None,

@@ -13,7 +13,7 @@ use super::refinement::State;
 use super::solution;
 use super::split;
 use super::tiles::{TILE, TileSet};
-use crate::SolveParams;
+use crate::IterationParams;
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues};
 use crate::uniform::{self, Climb, Climbed};
@@ -40,7 +40,7 @@ pub(super) struct FinestStart {
 pub(super) struct Solver<'a, T> {
     pub(super) heights: &'a Heights<'a>,
     pub(super) problem: Problem,
-    pub(super) params: SolveParams,
+    pub(super) params: IterationParams,
     border_level: usize,
     split: SplitParams,
     /// L, and its approximate inverse, for corrections.

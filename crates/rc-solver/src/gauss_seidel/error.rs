@@ -4,7 +4,7 @@ use rc_core::Grid;
 use rc_quadtree::MeshError;
 use thiserror::Error;
 
-use crate::SolveError;
+use crate::IterationError;
 
 /// A contact problem that the paper's procedure did not solve.
 #[derive(Debug, Error)]
@@ -12,7 +12,7 @@ use crate::SolveError;
 pub enum GaussSeidelError {
     /// The problem itself is refused, or was not solved; as for the other methods.
     #[error(transparent)]
-    Solve(#[from] SolveError),
+    Solve(#[from] IterationError),
     /// The elements of the mesh must be squares, in a square cell.
     #[error(
         "the mesh has square elements in a square cell, not {grid} in one of 1 by {ratio}",

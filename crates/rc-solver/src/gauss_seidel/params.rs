@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaussSeidelParams {
     /// Bound on complementarity and penetration errors, relative to the peak-to-valley height, as
-    /// [`crate::SolveParams::tolerance`]. Evaluated at the points of collocation: centres of elements in contact, and all
+    /// [`crate::IterationParams::tolerance`]. Evaluated at the points of collocation: centres of elements in contact, and all
     /// points of the finest grid out of contact.
     pub tolerance: f64,
     /// Increments in which the penetration is reached.

@@ -8,9 +8,9 @@ use super::sweep::{self, Limits};
 use super::{GaussSeidelError, GaussSeidelParams};
 use crate::operator::UniformOperator;
 use crate::problem::Problem;
-use crate::solution::{LevelInfo, MeshPressure, Solution, SolveInfo, Status};
+use crate::solution::{GridSolution, LevelInfo, MeshPressure, SolveInfo, Status};
 use crate::uniform::coarsen;
-use crate::{Certificate, Control, SolveError, SolveParams, solve_uniform};
+use crate::{Certificate, Control, IterationError, IterationParams, solve_uniform};
 
 /// Largest element, in finest elements: beyond it coarsening saves nothing and heights at centres would need more levels.
 const LARGEST_DOUBLINGS: u32 = 5;
@@ -51,9 +51,9 @@ pub fn solve_gauss_seidel(
     control: Control,
     params: &GaussSeidelParams,
     observer: &dyn Observer,
-) -> Result<Solution, GaussSeidelError> {
+) -> Result<GridSolution, GaussSeidelError> {
     check(heights, params)?;
-    let solve_params = SolveParams { tolerance: params.tolerance, ..SolveParams::certified() };
+    let solve_params = IterationParams { tolerance: params.tolerance, ..IterationParams::certified() };
     let problem = Problem::check(heights, control, &solve_params)?;
     let expected = estimate(heights, kernel, control, params)?;
     let mut procedure = Procedure::new(heights, kernel, coefficient, &problem, params, observer)?;
@@ -108,11 +108,11 @@ fn estimate(
         Control::Penetration(value) => Control::Penetration(value.min(0.999 * full_contact)),
         Control::MeanPressure(_) => control,
     };
-    let solve_params = SolveParams { tolerance: 1e-4, ..SolveParams::certified() };
+    let solve_params = IterationParams { tolerance: 1e-4, ..IterationParams::certified() };
     let control = at_most(coarse.max() - coarse.mean());
     let solution = match solve_uniform(coarse, kernel, control, &solve_params, &rc_core::Silent) {
         Ok(solution) => solution,
-        Err(SolveError::NotConverged { solution, .. }) => *solution,
+        Err(IterationError::NotConverged { solution, .. }) => *solution,
         Err(error) => return Err(error.into()),
     };
     let side = heights.grid().nx();
@@ -358,7 +358,7 @@ impl<'a> Procedure<'a> {
     }
 
     /// The solution with its certificate, from fresh sums.
-    fn finish(mut self, control: Control) -> Result<Solution, GaussSeidelError> {
+    fn finish(mut self, control: Control) -> Result<GridSolution, GaussSeidelError> {
         let area: Vec<f64> = self.mesh.elements().map(|element| element.area()).collect();
         let weighted = |p: &[f64], values: &[f64]| -> f64 {
             p.iter().zip(&area).zip(values).map(|((p, area), value)| p * area * value).sum()
@@ -401,12 +401,12 @@ impl<'a> Procedure<'a> {
         };
         let pressure = self.mesh.to_field(&self.pressure, self.info.grid)?;
         let elements = Some(MeshPressure { mesh: self.mesh, pressure: self.pressure });
-        let solution = Solution { pressure, gap: field, status: Status::Converged, elements, info };
+        let solution = GridSolution { pressure, gap: field, status: Status::Converged, elements, info };
         let tension = solution.pressure.min() < 0.0;
         if self.settled && !tension && error <= self.params.tolerance && load <= Certificate::LOAD_TOLERANCE {
             return Ok(solution);
         }
         let (grid, iterations) = (self.info.grid, self.info.iterations);
-        Err(SolveError::NotConverged { grid, iterations, certificate, solution: Box::new(solution) }.into())
+        Err(IterationError::NotConverged { grid, iterations, certificate, solution: Box::new(solution) }.into())
     }
 }

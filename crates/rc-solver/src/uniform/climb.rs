@@ -5,7 +5,7 @@ use rc_core::{Event, Field, Kernel, Observer};
 
 use super::levels::coarsen;
 use super::prolongation::prolong;
-use crate::SolveParams;
+use crate::IterationParams;
 use crate::descent::{Descent, Machinery, Outcome, Start};
 use crate::fft::{Convolution, SymbolTable};
 use crate::problem::Problem;
@@ -28,7 +28,7 @@ pub(crate) type UniformDescent<'a> = Descent<'a, Convolution<f32>, Convolution<f
 pub(crate) struct Climb<'a> {
     pub(crate) kernel: &'a dyn Kernel,
     pub(crate) problem: &'a Problem,
-    pub(crate) params: SolveParams,
+    pub(crate) params: IterationParams,
     /// Levels that others will add above the last grid; without any, it is solved to the tolerance and certified.
     pub(crate) n_above: usize,
     pub(crate) observer: &'a dyn Observer,

@@ -6,7 +6,7 @@ use rc_core::{Field, Kernel};
 use crate::fft::{BLOCK_ROWS, Convolution, SymbolTable};
 use crate::operator::UniformOperator;
 use crate::problem::Problem;
-use crate::solution::{LevelInfo, Solution, SolveInfo, Status};
+use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
 use crate::{Certificate, Control};
 
 /// The solution when `mean_pressure` closes every gap: v = h - mean(h) and p = σ0 + L⁻¹ h, provided that is nowhere
@@ -18,7 +18,7 @@ pub(super) fn solve(
     mean_pressure: f64,
     problem: &Problem,
     tolerance: f64,
-) -> Option<Solution> {
+) -> Option<GridSolution> {
     if proves_partial_contact(heights, kernel, mean_pressure) {
         return None;
     }
@@ -87,7 +87,13 @@ fn proves_partial_contact(heights: &Field, kernel: &dyn Kernel, mean_pressure: f
 }
 
 /// The solution with its certificate, from a fresh application of L.
-fn certified(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64, problem: &Problem, pressure: Field) -> Solution {
+fn certified(
+    heights: &Field,
+    kernel: &dyn Kernel,
+    mean_pressure: f64,
+    problem: &Problem,
+    pressure: Field,
+) -> GridSolution {
     let grid = heights.grid();
     let operator = UniformOperator::new(grid, kernel);
     let mut gap = Field::zeros(grid);
@@ -119,5 +125,5 @@ fn certified(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64, problem: 
         coarser: None,
     };
     debug_assert!(matches!(problem.control, Control::MeanPressure(_)));
-    Solution { pressure, gap, status: Status::FullContact, elements: None, info }
+    GridSolution { pressure, gap, status: Status::FullContact, elements: None, info }
 }

@@ -11,8 +11,8 @@ pub(crate) use self::climb::{Climb, Climbed, UniformDescent, coarse_tolerance};
 pub(crate) use self::levels::coarsen;
 pub(crate) use self::prolongation::{level_function, outside_level};
 use crate::problem::Problem;
-use crate::solution::{Solution, Status};
-use crate::{Control, SolveError, SolveParams};
+use crate::solution::{GridSolution, Status};
+use crate::{Control, IterationError, IterationParams};
 
 /// Bytes for each element that [`solve_uniform`] is assumed to need at its peak, heights included; 64 to 67 were measured at
 /// 2048² and 4096².
@@ -28,14 +28,14 @@ pub const UNIFORM_BYTES_PER_ELEMENT: u64 = 80;
 /// The result is bitwise the same for any number of threads.
 ///
 /// # Errors
-/// [`SolveError`]: heights that are not finite, a control or tolerance out of range, or no convergence.
+/// [`IterationError`]: heights that are not finite, a control or tolerance out of range, or no convergence.
 pub fn solve_uniform(
     heights: &Field,
     kernel: &dyn Kernel,
     control: Control,
-    params: &SolveParams,
+    params: &IterationParams,
     observer: &dyn Observer,
-) -> Result<Solution, SolveError> {
+) -> Result<GridSolution, IterationError> {
     let problem = Problem::check(heights, control, params)?;
     if let Control::MeanPressure(mean_pressure) = control
         && let Some(solution) = full_contact::solve(heights, kernel, mean_pressure, &problem, params.tolerance)
@@ -50,17 +50,17 @@ pub fn solve_uniform(
 fn finish(
     Climbed { descent, outcome, levels, coarser }: Climbed<'_>,
     problem: &Problem,
-) -> Result<Solution, SolveError> {
+) -> Result<GridSolution, IterationError> {
     let grid = descent.grid();
     let (iterations, certificate) = (descent.info().iterations, outcome.certificate);
     let info = outcome.info(problem, levels, coarser);
     let (pressure, gap) = descent.into_vectors(outcome.approach + problem.offset());
     let field = |values| Field::new(grid, values).expect("a value for each element");
     let (pressure, gap) = (field(pressure), field(gap));
-    let solution = Solution { pressure, gap, status: Status::Converged, elements: None, info };
+    let solution = GridSolution { pressure, gap, status: Status::Converged, elements: None, info };
     if outcome.converged {
         Ok(solution)
     } else {
-        Err(SolveError::NotConverged { grid, iterations, certificate, solution: Box::new(solution) })
+        Err(IterationError::NotConverged { grid, iterations, certificate, solution: Box::new(solution) })
     }
 }
