@@ -5,12 +5,11 @@
 use std::sync::LazyLock;
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use rc_core::{Field, Grid, HeightField, Operator, Silent};
+use rc_core::{Field, Grid, HeightField, HeightSource, Operator, Silent};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Love;
 use rc_solver::{
-    AdaptiveParams, Control, HeightSource, IterationParams, MultilevelOperator, UniformOperator, solve_adaptive,
-    solve_uniform,
+    AdaptiveParams, Control, IterationParams, MultilevelOperator, UniformOperator, solve_adaptive, solve_uniform,
 };
 
 /// The paper's surface with N = 64.
@@ -75,7 +74,7 @@ const SIDE: usize = 1024;
 fn adaptive_solve(bencher: Bencher<'_, '_>, pressure: f64) {
     let control = Control::MeanPressure(pressure);
     bencher.counter(ItemsCount::new(SIDE * SIDE)).bench(|| {
-        let source = HeightSource::Surface(&*SURFACE, SIDE);
+        let source = HeightSource::Surface { surface: &*SURFACE, grid: Grid::square(SIDE).expect("a grid") };
         solve_adaptive(source, control, &AdaptiveParams::certified(), &Silent).expect("a solvable scene")
     });
 }

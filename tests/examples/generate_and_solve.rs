@@ -5,16 +5,16 @@
 
 use std::error::Error;
 
-use rc_core::Silent;
+use rc_core::{Grid, HeightSource, Silent};
 use rc_fractal::{SpectrumParams, Surface};
-use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, HeightSource, solve_adaptive};
+use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, solve_adaptive};
 
 /// The paper's surface with 32 waves and seed 1, at the paper's load, on 1024 x 1024 elements.
 pub(crate) fn solve() -> Result<AdaptiveSolution, Box<dyn Error>> {
     let surface = Surface::new(&SpectrumParams::paper(32, 1))?;
     println!("rms height {:.4e} λ, rms slope {:.4}", surface.moments().rms_height, surface.moments().rms_slope);
 
-    let source = HeightSource::Surface(&surface, 1024);
+    let source = HeightSource::Surface { surface: &surface, grid: Grid::square(1024)? };
     let control = Control::MeanPressure(8.9e-4);
     Ok(solve_adaptive(source, control, &AdaptiveParams::certified(), &Silent)?)
 }

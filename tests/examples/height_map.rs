@@ -6,9 +6,9 @@
 use std::error::Error;
 use std::path::Path;
 
-use rc_core::Silent;
+use rc_core::{HeightSource, Silent};
 use rc_heights::{Crop, Fill, Level, Periodic, Scales, Treatment, apply, read};
-use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, HeightSource, solve_adaptive};
+use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, solve_adaptive};
 
 /// Of any format of `rc_heights::Format`; this one has its heights in units of its side.
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/reference/heights-256-n32-h0.8-s101.npy");

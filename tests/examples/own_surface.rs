@@ -6,8 +6,8 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use rc_core::{HeightField, Silent};
-use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, HeightSource, solve_adaptive};
+use rc_core::{Grid, HeightField, HeightSource, Silent};
+use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, solve_adaptive};
 
 /// h(x, y) = a Σ_n 2^(-nH) [cos(2π 2^n x) + cos(2π 2^n y + n)], n from 0.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +42,7 @@ impl HeightField for Weierstrass {
 
 pub(crate) fn solve() -> Result<AdaptiveSolution, Box<dyn Error>> {
     let surface = Weierstrass::default();
-    let source = HeightSource::Surface(&surface, 512);
+    let source = HeightSource::Surface { surface: &surface, grid: Grid::square(512)? };
     Ok(solve_adaptive(source, Control::MeanPressure(1e-3), &AdaptiveParams::certified(), &Silent)?)
 }
 

@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
-use rc_core::{Field, Grid, HeightField, Operator, Silent};
+use rc_core::{Field, Grid, HeightField, HeightSource, Operator, Silent};
 use rc_fractal::{Normalisation, SpectrumParams, Surface};
 use rc_kernel::Love;
 use rc_solver::{
-    AdaptiveError, AdaptiveParams, AdaptiveProblem, AdaptiveSolution, Control, Estimate, HeightSource, IterationParams,
-    Observables, UniformOperator, solve_adaptive, solve_uniform,
+    AdaptiveError, AdaptiveParams, AdaptiveProblem, AdaptiveSolution, Control, Estimate, IterationParams, Observables,
+    UniformOperator, solve_adaptive, solve_uniform,
 };
 use rc_theory::hertz::PeriodicHertz;
 
@@ -60,7 +60,11 @@ fn agrees_with_the_uniform_grid_for_all_hurst_exponents_and_loads() {
         let surface = surface(waves, hurst, 11);
         let heights = surface.sample(Grid::square(512).expect("a grid"));
         let control = Control::MeanPressure(pressure);
-        let solution = adaptive(HeightSource::Surface(&surface, 512), control, 1e-6);
+        let solution = adaptive(
+            HeightSource::Surface { surface: &surface, grid: Grid::square(512).expect("a grid") },
+            control,
+            1e-6,
+        );
         assert_agrees_with_uniform(&heights, &solution, control);
     }
 }
@@ -72,7 +76,11 @@ fn the_smallest_loads_are_not_lost() {
     let heights = surface.sample(Grid::square(512).expect("a grid"));
     for pressure in [1e-6, 1e-8, 1e-10] {
         let control = Control::MeanPressure(pressure);
-        let solution = adaptive(HeightSource::Surface(&surface, 512), control, 1e-6);
+        let solution = adaptive(
+            HeightSource::Surface { surface: &surface, grid: Grid::square(512).expect("a grid") },
+            control,
+            1e-6,
+        );
         let uniform =
             solve_uniform(&heights, &Love, control, &IterationParams::certified(), &Silent).expect("solvable");
         assert_close("mean pressure", solution.info.mean_pressure, pressure, 1e-10);
@@ -88,7 +96,8 @@ fn penetration_control_agrees_and_returns_the_penetration() {
     let surface = surface(32, 0.8, 4);
     let heights = surface.sample(Grid::square(512).expect("a grid"));
     let control = Control::Penetration(0.5 * heights.max());
-    let solution = adaptive(HeightSource::Surface(&surface, 512), control, 1e-6);
+    let solution =
+        adaptive(HeightSource::Surface { surface: &surface, grid: Grid::square(512).expect("a grid") }, control, 1e-6);
     assert_close("penetration", solution.info.penetration, 0.5 * heights.max(), 1e-9);
     assert_agrees_with_uniform(&heights, &solution, control);
 }
@@ -109,7 +118,11 @@ fn nothing_penetrates_where_nothing_was_evaluated() {
     for (seed, pressure) in [(1, 1e-4), (2, MEAN_PRESSURE), (3, 4e-3)] {
         let surface = surface(48, 0.7, seed);
         let grid = Grid::square(1024).expect("a grid");
-        let solution = adaptive(HeightSource::Surface(&surface, 1024), Control::MeanPressure(pressure), 1e-6);
+        let solution = adaptive(
+            HeightSource::Surface { surface: &surface, grid: Grid::square(1024).expect("a grid") },
+            Control::MeanPressure(pressure),
+            1e-6,
+        );
         assert_eq!(solution.evaluated + solution.proven, grid.len());
         if pressure < 1e-3 {
             assert!(2 * solution.proven > grid.len(), "only {} of {} cells are proven", solution.proven, grid.len());
@@ -137,7 +150,7 @@ fn nothing_penetrates_where_nothing_was_evaluated() {
 fn gap_rows_are_displacement_less_height() {
     let surface = surface(16, 0.8, 4);
     let (grid, params) = (Grid::square(512).expect("a grid"), AdaptiveParams::certified());
-    let source = HeightSource::Surface(&surface, 512);
+    let source = HeightSource::Surface { surface: &surface, grid: Grid::square(512).expect("a grid") };
     let problem = AdaptiveProblem::new(source, Control::MeanPressure(MEAN_PRESSURE), &params).expect("a valid scene");
     let solution = problem.solve(&Silent).expect("a solvable scene");
     let (mut gap, mut displacement) = (Vec::new(), Vec::new());
@@ -165,7 +178,8 @@ fn gap_rows_are_displacement_less_height() {
 fn tight_tolerances_are_reached() {
     let surface = surface(16, 0.8, 5);
     let control = Control::MeanPressure(MEAN_PRESSURE);
-    let solution = adaptive(HeightSource::Surface(&surface, 256), control, 1e-9);
+    let solution =
+        adaptive(HeightSource::Surface { surface: &surface, grid: Grid::square(256).expect("a grid") }, control, 1e-9);
     assert!(solution.info.certificate.penetration <= 1e-9, "{}", solution.info.certificate);
     let heights = surface.sample(Grid::square(256).expect("a grid"));
     let params = IterationParams { tolerance: 1e-9, ..IterationParams::certified() };
@@ -195,7 +209,11 @@ fn results_do_not_depend_on_the_number_of_threads() {
     let solve = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         pool.install(|| {
-            field(&adaptive(HeightSource::Surface(&surface, 512), Control::MeanPressure(MEAN_PRESSURE), 1e-6))
+            field(&adaptive(
+                HeightSource::Surface { surface: &surface, grid: Grid::square(512).expect("a grid") },
+                Control::MeanPressure(MEAN_PRESSURE),
+                1e-6,
+            ))
         })
     };
     let (one, three) = (solve(1), solve(3));
@@ -205,7 +223,11 @@ fn results_do_not_depend_on_the_number_of_threads() {
 #[test]
 fn elements_carry_the_load() {
     let surface = surface(16, 0.8, 2);
-    let solution = adaptive(HeightSource::Surface(&surface, 512), Control::MeanPressure(MEAN_PRESSURE), 1e-6);
+    let solution = adaptive(
+        HeightSource::Surface { surface: &surface, grid: Grid::square(512).expect("a grid") },
+        Control::MeanPressure(MEAN_PRESSURE),
+        1e-6,
+    );
     let load: f64 = solution.elements().map(|e| e.pressure * e.side * e.side).sum();
     assert_close("load", load, MEAN_PRESSURE, 1e-10);
     assert_eq!(solution.elements().count(), solution.n_elements());
@@ -216,7 +238,7 @@ fn estimates_are_right_within_a_factor_of_two() {
     let surface = surface(32, 0.8, 3);
     for pressure in [3e-4, MEAN_PRESSURE, 4e-3] {
         let control = Control::MeanPressure(pressure);
-        let source = HeightSource::Surface(&surface, 1024);
+        let source = HeightSource::Surface { surface: &surface, grid: Grid::square(1024).expect("a grid") };
         let problem = AdaptiveProblem::new(source, control, &AdaptiveParams::certified()).expect("a valid scene");
         let Estimate { area_fraction, tile_fraction, .. } = problem.estimate();
         let solution = problem.solve(&Silent).expect("a solvable scene");
@@ -232,7 +254,13 @@ fn what_cannot_be_done_is_said_before_any_work() {
     let surface = surface(32, 0.8, 3);
     let control = Control::MeanPressure(MEAN_PRESSURE);
     let error = |side: usize, params: AdaptiveParams| {
-        solve_adaptive(HeightSource::Surface(&surface, side), control, &params, &Silent).expect_err("an error")
+        solve_adaptive(
+            HeightSource::Surface { surface: &surface, grid: Grid::square(side).expect("a grid") },
+            control,
+            &params,
+            &Silent,
+        )
+        .expect_err("an error")
     };
     let params = AdaptiveParams::certified();
     assert!(matches!(error(500, params), AdaptiveError::Grid { .. }), "500 does not divide into tiles twice");
@@ -251,7 +279,7 @@ fn what_cannot_be_done_is_said_before_any_work() {
 fn a_pressure_that_is_not_positive_is_refused() {
     let surface = surface(16, 0.8, 1);
     for control in [Control::MeanPressure(-1.0), Control::MeanPressure(f64::NAN), Control::Penetration(1.0)] {
-        let source = HeightSource::Surface(&surface, 256);
+        let source = HeightSource::Surface { surface: &surface, grid: Grid::square(256).expect("a grid") };
         let error = solve_adaptive(source, control, &AdaptiveParams::certified(), &Silent).expect_err("an error");
         assert!(matches!(error, AdaptiveError::Solve(_)), "{control:?}: {error}");
     }
@@ -265,7 +293,13 @@ fn border_levels_refine_edges_only() {
     let control = Control::MeanPressure(MEAN_PRESSURE);
     let solve = |side: usize, border_level: usize| {
         let params = AdaptiveParams { border_level, ..AdaptiveParams::certified() };
-        solve_adaptive(HeightSource::Surface(&surface, side), control, &params, &Silent).expect("a solvable scene")
+        solve_adaptive(
+            HeightSource::Surface { surface: &surface, grid: Grid::square(side).expect("a grid") },
+            control,
+            &params,
+            &Silent,
+        )
+        .expect("a solvable scene")
     };
     let mut counts = Vec::new();
     for border_level in 1..=4 {
@@ -302,7 +336,13 @@ fn nothing_penetrates_between_coarse_elements() {
     let surface = surface(24, 0.7, 5);
     let control = Control::MeanPressure(MEAN_PRESSURE);
     let params = AdaptiveParams { border_level: 2, ..AdaptiveParams::certified() };
-    let solution = solve_adaptive(HeightSource::Surface(&surface, 256), control, &params, &Silent).expect("solvable");
+    let solution = solve_adaptive(
+        HeightSource::Surface { surface: &surface, grid: Grid::square(256).expect("a grid") },
+        control,
+        &params,
+        &Silent,
+    )
+    .expect("solvable");
     // The pressure of every element, on the grid of the smallest.
     let grid = Grid::square(1024).expect("a grid");
     let mut pressure = vec![0.0; grid.len()];
@@ -332,7 +372,11 @@ fn loads_far_beyond_full_contact_are_solved() {
     let heights = surface.sample(Grid::square(256).expect("a grid"));
     for pressure in [1.0, 2.0, 1e3, 1e6] {
         let control = Control::MeanPressure(pressure);
-        let solution = adaptive(HeightSource::Surface(&surface, 256), control, 1e-6);
+        let solution = adaptive(
+            HeightSource::Surface { surface: &surface, grid: Grid::square(256).expect("a grid") },
+            control,
+            1e-6,
+        );
         assert!(solution.is_full_contact(), "{pressure:e}: contact is not full");
         let exact =
             solve_uniform(&heights, &Love, control, &IterationParams::certified(), &Silent).expect("full contact");

@@ -3,10 +3,9 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use rc_core::{Field, Grid, PeriodicCell};
+use rc_core::{Field, Grid, HeightSource, PeriodicCell};
 use rc_fractal::{Moments, SpectrumParams, Surface, moments_of_grid};
 use rc_heights::{HeightMap, Scales};
-use rc_solver::HeightSource;
 
 use crate::error::CliError;
 use crate::heights;
@@ -153,7 +152,9 @@ impl LoadedSurface {
     #[must_use]
     pub fn source(&self) -> HeightSource<'_> {
         match &self.shape {
-            Shape::Random(surface) => HeightSource::Surface(surface, self.grid.nx()),
+            Shape::Random(surface) => {
+                HeightSource::Surface { surface: surface, grid: Grid::square(self.grid.nx()).expect("a grid") }
+            }
             Shape::Map { heights, .. } => HeightSource::Map(heights),
         }
     }

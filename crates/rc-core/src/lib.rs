@@ -50,6 +50,7 @@
 mod field;
 mod grid;
 mod progress;
+mod source;
 mod traits;
 mod units;
 
@@ -61,5 +62,6 @@ pub mod testing;
 pub use field::{Field, ShapeError};
 pub use grid::{Grid, GridError};
 pub use progress::{Event, Observer, Rows, Silent, Snapshot};
+pub use source::HeightSource;
 pub use traits::{EdgeBias, HeightField, Kernel, Operator, Symbol};
-pub use units::{Elasticity, PeriodicCell, UnitError};
+pub use units::{Elasticity, PeriodicCell, UnitError, Units};

@@ -1,6 +1,6 @@
 //! The traits that a research fork implements to bring its own surface, half-space or operator.
 
-use crate::{Field, Grid};
+use crate::{Field, Grid, HeightSource};
 
 /// A rough surface, periodic on the square cell of side 1.
 ///
@@ -17,6 +17,14 @@ pub trait HeightField: Sync {
     /// cell only; implementations that have a fast transform override it.
     fn sample(&self, grid: Grid) -> Field {
         Field::from_fn(grid, |x, y| self.height(x, y))
+    }
+
+    /// The surface as the heights of a contact problem on `grid`. Nothing is evaluated yet.
+    fn on(&self, grid: Grid) -> HeightSource<'_>
+    where
+        Self: Sized,
+    {
+        HeightSource::Surface { surface: self, grid }
     }
 }
 
@@ -53,6 +61,12 @@ pub trait Kernel: Sync {
     /// How far the discretisation shifts the edges of contacts: it is first order in the element size, and depends on the
     /// kernel (`docs/accuracy.md` has the calibration of the ones here).
     fn edge_bias(&self) -> EdgeBias;
+
+    /// Whether this is the half-space whose displacements `rc_kernel::ScaleSplit` splits by scale, under pressures that are constant on
+    /// elements. The adaptive method is made of that split, so it serves only such a kernel.
+    fn is_split_by_scale(&self) -> bool {
+        false
+    }
 }
 
 /// A linear map from pressure to zero-mean displacement: `v = L p` (Eq. 4), symmetric for uniform grids.

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::{Field, Grid, GridError};
+
 /// A physical quantity that cannot be.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -107,5 +109,91 @@ impl Elasticity {
     #[must_use]
     pub fn e_star(self) -> f64 {
         self.e_star
+    }
+}
+
+/// The units of a scene: lengths are multiples of the side λ of its cell, pressures multiples of its E*.
+///
+/// ```
+/// use rc_core::{Elasticity, PeriodicCell, Units};
+///
+/// let units = Units::new(PeriodicCell::new(10e-3)?, Elasticity::from_young_poisson(210e9, 0.3)?);
+/// assert_eq!(units.length(5e-3), 0.5);
+/// assert!((units.pressure(1e6) - 4.333e-6).abs() < 1e-9);
+/// assert_eq!(units.metres(0.5), 5e-3);
+/// # Ok::<(), rc_core::UnitError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Units {
+    cell: PeriodicCell,
+    elasticity: Elasticity,
+}
+
+impl Units {
+    /// The units of a cell and a half-space.
+    #[must_use]
+    pub fn new(cell: PeriodicCell, elasticity: Elasticity) -> Self {
+        Self { cell, elasticity }
+    }
+
+    /// The cell.
+    #[must_use]
+    pub fn cell(self) -> PeriodicCell {
+        self.cell
+    }
+
+    /// The half-space.
+    #[must_use]
+    pub fn elasticity(self) -> Elasticity {
+        self.elasticity
+    }
+
+    /// A length (m) in λ.
+    #[must_use]
+    pub fn length(self, metres: f64) -> f64 {
+        metres / self.cell.side()
+    }
+
+    /// A pressure (Pa) in E*.
+    #[must_use]
+    pub fn pressure(self, pascals: f64) -> f64 {
+        pascals / self.elasticity.e_star()
+    }
+
+    /// A length (λ) in m.
+    #[must_use]
+    pub fn metres(self, length: f64) -> f64 {
+        length * self.cell.side()
+    }
+
+    /// A pressure (E*) in Pa.
+    #[must_use]
+    pub fn pascals(self, pressure: f64) -> f64 {
+        pressure * self.elasticity.e_star()
+    }
+
+    /// A stiffness per area (E*/λ) in Pa/m.
+    #[must_use]
+    pub fn pascals_per_metre(self, stiffness: f64) -> f64 {
+        stiffness * self.elasticity.e_star() / self.cell.side()
+    }
+
+    /// An energy per nominal area (E* λ) as that of the cell, in J.
+    #[must_use]
+    pub fn joules(self, energy: f64) -> f64 {
+        energy * self.elasticity.e_star() * self.cell.side().powi(3) * self.cell.ratio()
+    }
+
+    /// A height map (m) in λ, on the grid of its points in the cell.
+    ///
+    /// # Errors
+    /// [`GridError::CellRatio`] when the sides of the cell differ too much.
+    pub fn heights(self, map: &Field) -> Result<Field, GridError> {
+        let grid = Grid::in_cell(map.grid().nx(), map.grid().ny(), self.cell.ratio())?;
+        let mut heights = Field::zeros(grid);
+        for (height, &metres) in heights.values_mut().iter_mut().zip(map.values()) {
+            *height = self.length(metres);
+        }
+        Ok(heights)
     }
 }

@@ -83,4 +83,8 @@ impl Kernel for Love {
     fn edge_bias(&self) -> EdgeBias {
         EdgeBias { per_edge: 0.029, per_contact: -0.21, per_bend: -0.0275, per_square: -0.06 }
     }
+
+    fn is_split_by_scale(&self) -> bool {
+        true
+    }
 }

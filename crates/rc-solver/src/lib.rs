@@ -10,7 +10,7 @@
 //!
 //! use rc_core::{Field, Grid, Silent};
 //! use rc_kernel::Love;
-//! use rc_solver::{AdaptiveParams, Control, HeightSource, Observables, IterationParams, solve_adaptive, solve_uniform};
+//! use rc_solver::{AdaptiveParams, Control, Observables, IterationParams, solve_adaptive, solve_uniform};
 //!
 //! // Westergaard's wave at half the load of full contact, π E* a/λ: half of it touches.
 //! let amplitude = 1e-3;
@@ -22,7 +22,7 @@
 //!
 //! // Work that follows the contact; the same pressure, at a penetration that is given now.
 //! let depth = Control::Penetration(solution.info.penetration);
-//! let adaptive = solve_adaptive(HeightSource::Map(&heights), depth, &AdaptiveParams::certified(), &Silent)?;
+//! let adaptive = solve_adaptive((&heights).into(), depth, &AdaptiveParams::certified(), &Silent)?;
 //! assert!((adaptive.info.mean_pressure / solution.info.mean_pressure - 1.0).abs() < 1e-4);
 //! assert!(adaptive.info.certificate.penetration <= 1e-6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -39,18 +39,21 @@ mod error;
 mod fft;
 mod gap_distribution;
 mod gauss_seidel;
+mod method;
 mod observables;
 mod operator;
 mod params;
 mod problem;
 mod solution;
+mod solve;
 mod stiffness;
 mod stress_distribution;
+mod tolerance;
 mod uniform;
 
 pub use adaptive::{
-    AdaptiveError, AdaptiveParams, AdaptiveProblem, AdaptiveSolution, ContactElement, Estimate, HeightSource,
-    MultilevelOperator, solve_adaptive,
+    AdaptiveError, AdaptiveParams, AdaptiveProblem, AdaptiveSolution, ContactElement, Estimate, MultilevelOperator,
+    solve_adaptive,
 };
 pub use certificate::Certificate;
 pub use contact_area::ContactArea;
@@ -60,9 +63,12 @@ pub use dense::solve_dense;
 pub use error::IterationError;
 pub use gap_distribution::GapDistribution;
 pub use gauss_seidel::{Coefficient, GaussSeidelError, GaussSeidelParams, solve_gauss_seidel};
+pub use method::{Method, MethodReason};
 pub use observables::Observables;
 pub use operator::{DirectSum, UniformOperator};
 pub use params::IterationParams;
 pub use solution::{GridSolution, LevelInfo, LevelValues, MeshPressure, SolveInfo, Status};
+pub use solve::{ContactProblem, Cost, Plan, Solution, SolveError, SolveParams, solve};
 pub use stress_distribution::StressDistribution;
+pub use tolerance::Tolerance;
 pub use uniform::{UNIFORM_BYTES_PER_ELEMENT, solve_uniform};

@@ -1,18 +1,32 @@
 //! What a solve returns.
 
 use rc_core::{Field, Grid, Kernel};
-use rc_quadtree::Mesh;
+use rc_quadtree::{Element, Mesh};
 
-use crate::Certificate;
 use crate::stiffness::contact_stiffness;
+use crate::{Certificate, ContactElement};
 
-/// How a solve ended well. (Ending badly is a [`crate::IterationError`].)
+/// How a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     /// Iterated until the certificate met the tolerance.
     Converged,
     /// Contact is complete: the exact solution, without iteration.
     FullContact,
+    /// The certificate exceeds the tolerance: the best pressure that was found.
+    NotConverged,
+}
+
+impl Status {
+    /// As in summaries: `converged`, `full_contact` or `not_converged`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::FullContact => "full_contact",
+            Self::NotConverged => "not_converged",
+        }
+    }
 }
 
 /// The work done on one level.
@@ -79,6 +93,17 @@ pub struct MeshPressure {
     pub pressure: Vec<f64>,
 }
 
+impl MeshPressure {
+    /// The elements with their pressures.
+    pub(crate) fn elements(&self) -> impl Iterator<Item = ContactElement> + '_ {
+        let elements = self.mesh.elements().zip(&self.pressure);
+        elements.map(|(element, &pressure)| {
+            let Element { x, y, side, .. } = element;
+            ContactElement { x, y, side, pressure }
+        })
+    }
+}
+
 /// A solved contact problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridSolution {
@@ -101,7 +126,18 @@ impl GridSolution {
     pub fn contact_stiffness(&self, kernel: &dyn Kernel) -> f64 {
         match self.status {
             Status::FullContact => f64::INFINITY,
-            Status::Converged => contact_stiffness(&self.pressure, kernel),
+            Status::Converged | Status::NotConverged => contact_stiffness(&self.pressure, kernel),
         }
+    }
+
+    /// Elements that carry unknowns.
+    pub(crate) fn n_elements(&self) -> usize {
+        self.elements.as_ref().map_or(self.pressure.grid().len(), |elements| elements.mesh.len())
+    }
+
+    /// Elements in contact.
+    pub(crate) fn n_in_contact(&self) -> usize {
+        let of_grid = || self.pressure.values().iter().filter(|&&p| p > 0.0).count();
+        self.elements.as_ref().map_or_else(of_grid, |elements| elements.mesh.len())
     }
 }

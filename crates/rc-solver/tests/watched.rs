@@ -2,11 +2,10 @@
 
 use std::sync::Mutex;
 
-use rc_core::{Event, Field, Grid, Observer, Silent, Snapshot};
+use rc_core::{Event, Field, Grid, HeightSource, Observer, Silent, Snapshot};
 use rc_kernel::{Love, PeriodicLove};
 use rc_solver::{
-    AdaptiveParams, Control, GaussSeidelParams, HeightSource, IterationParams, solve_adaptive, solve_gauss_seidel,
-    solve_uniform,
+    AdaptiveParams, Control, GaussSeidelParams, IterationParams, solve_adaptive, solve_gauss_seidel, solve_uniform,
 };
 
 const TAU: f64 = std::f64::consts::TAU;
@@ -113,7 +112,13 @@ fn elements_of_several_sizes_are_shown_on_the_grid() {
     let watching = Watching::default();
     let params = AdaptiveParams { border_level: 2, ..AdaptiveParams::certified() };
     let control = Control::MeanPressure(MEAN_PRESSURE);
-    let solution = solve_adaptive(HeightSource::Surface(&Wave, 128), control, &params, &watching).expect("solvable");
+    let solution = solve_adaptive(
+        HeightSource::Surface { surface: &Wave, grid: Grid::square(128).expect("a grid") },
+        control,
+        &params,
+        &watching,
+    )
+    .expect("solvable");
     let seen = watching.seen.into_inner().expect("one thread");
     let last = seen.last().expect("at least one");
     assert_eq!(last.grid(), solution.grid());

@@ -5,7 +5,8 @@
 
 use anyhow::{Context, Result};
 use rc_cli::values::Tolerance;
-use rc_solver::{AdaptiveParams, AdaptiveProblem, HeightSource};
+use rc_core::{Grid, HeightSource};
+use rc_solver::{AdaptiveParams, AdaptiveProblem};
 
 use super::extrapolation::{Counted, Limit, area_limit, richardson};
 use super::measure::{Solved, solve};
@@ -119,6 +120,10 @@ fn greatest_height(scene: &Scene) -> Result<f64> {
     let surface = scene.surface()?;
     let (side, [.., border_level]) = BORDER;
     let params = AdaptiveParams { border_level, ..AdaptiveParams::certified() };
-    let problem = AdaptiveProblem::new(HeightSource::Surface(&surface, side), scene.control(), &params);
+    let problem = AdaptiveProblem::new(
+        HeightSource::Surface { surface: &surface, grid: Grid::square(side)? },
+        scene.control(),
+        &params,
+    );
     Ok(problem.with_context(|| format!("scene {}", scene.name))?.h_max())
 }

@@ -3,10 +3,8 @@
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use rc_core::{Grid, Silent};
-use rc_solver::{
-    AdaptiveParams, AdaptiveProblem, HeightSource, IterationParams, Observables, SolveInfo, solve_uniform,
-};
+use rc_core::{Grid, HeightSource, Silent};
+use rc_solver::{AdaptiveParams, AdaptiveProblem, IterationParams, Observables, SolveInfo, solve_uniform};
 use serde::{Deserialize, Serialize};
 
 use super::scenes::Scene;
@@ -86,7 +84,8 @@ fn adaptive(scene: &Scene, setting: &Setting, solve: IterationParams) -> Result<
     let surface = scene.surface()?;
     let params = AdaptiveParams { solve, border_level: setting.border_level, ..AdaptiveParams::certified() };
     let start = Instant::now();
-    let source = HeightSource::Surface(&surface, scene.side(setting.elements_per_wave));
+    let source =
+        HeightSource::Surface { surface: &surface, grid: Grid::square(scene.side(setting.elements_per_wave))? };
     let solution = AdaptiveProblem::new(source, scene.control(), &params)?.solve(&Silent)?;
     let seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();

@@ -8,10 +8,10 @@ use std::f64::consts::TAU;
 use anyhow::Result;
 use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, PathElement, Polygon, RGBColor};
 use plotters::style::{BLACK, Color};
-use rc_core::{Field, Grid, Silent};
+use rc_core::{Field, Grid, HeightSource, Silent};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_plot::{Area, Picture, PictureError};
-use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, HeightSource, IterationParams, solve_adaptive};
+use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, IterationParams, solve_adaptive};
 
 use super::chart::{Axes, BLUE, Chart, Drawn, GREY, RED, Side, dimension, write};
 use super::solve::{displacement_field, pressure_field};
@@ -94,7 +94,12 @@ impl Figure for Fig1 {
         let solve = IterationParams { tolerance: params.tolerance, ..IterationParams::certified() };
         let adaptive = AdaptiveParams { solve, ..AdaptiveParams::certified() };
         let control = Control::MeanPressure(params.mean_pressure);
-        let solution = solve_adaptive(HeightSource::Surface(&surface, params.grid), control, &adaptive, &Silent)?;
+        let solution = solve_adaptive(
+            HeightSource::Surface { surface: &surface, grid: Grid::square(params.grid)? },
+            control,
+            &adaptive,
+            &Silent,
+        )?;
         Self::of(params, &heights, &solution)
     }
 

@@ -10,9 +10,9 @@ use plotters::prelude::{
     BLACK, Cartesian2d, ChartBuilder, ChartContext, Circle, Color, DashedLineSeries, DrawingAreaErrorKind,
     DrawingBackend, IntoFont, LineSeries, RGBColor, Rectangle,
 };
-use rc_core::{Elasticity, Field, Grid, PeriodicCell, Silent};
+use rc_core::{Elasticity, Field, Grid, HeightSource, PeriodicCell, Silent};
 use rc_plot::{Area, FONT, Picture, PictureError};
-use rc_solver::{AdaptiveParams, Control, HeightSource, IterationParams, solve_adaptive};
+use rc_solver::{AdaptiveParams, Control, IterationParams, solve_adaptive};
 use rc_theory::hertz::{Hertz, PeriodicHertz};
 
 use super::contact_map::{ContactMap, Run};

@@ -1,11 +1,11 @@
 //! One contact of a surface on the finest grid, by the faster of the two methods.
 
 use anyhow::Result;
-use rc_core::{Field, Grid, HeightField, Silent};
+use rc_core::{Field, Grid, HeightField, HeightSource, Silent};
 use rc_kernel::Love;
 use rc_solver::{
-    AdaptiveParams, AdaptiveProblem, AdaptiveSolution, ContactArea, Control, Estimate, HeightSource, IterationParams,
-    Observables, SolveInfo, solve_uniform,
+    AdaptiveParams, AdaptiveProblem, AdaptiveSolution, ContactArea, Control, Estimate, IterationParams, Observables,
+    SolveInfo, solve_uniform,
 };
 
 /// A solved contact, in units of λ and E*.
@@ -22,7 +22,8 @@ pub(crate) struct Contact {
 pub(crate) fn solve(surface: &dyn HeightField, side: usize, control: Control, tolerance: f64) -> Result<Contact> {
     let solve = IterationParams { tolerance, ..IterationParams::certified() };
     let params = AdaptiveParams { solve, ..AdaptiveParams::certified() };
-    let problem = AdaptiveProblem::new(HeightSource::Surface(surface, side), control, &params)?;
+    let problem =
+        AdaptiveProblem::new(HeightSource::Surface { surface: surface, grid: Grid::square(side)? }, control, &params)?;
     if problem.estimate().area_fraction > Estimate::GREATEST_ADAPTIVE_AREA {
         drop(problem);
         let heights = surface.sample(Grid::square(side)?);

@@ -1,11 +1,11 @@
 //! One solve of a height map by any method, in one form.
 
 use anyhow::{Context, Result};
-use rc_core::{Field, Kernel, Silent};
+use rc_core::{Field, HeightSource, Kernel, Silent};
 use rc_kernel::{Love, PeriodicLove, Spectral};
 use rc_solver::{
-    AdaptiveParams, Coefficient, Control, GaussSeidelParams, HeightSource, IterationParams, Observables, SolveInfo,
-    solve_adaptive, solve_dense, solve_gauss_seidel, solve_uniform,
+    AdaptiveParams, Coefficient, Control, GaussSeidelParams, IterationParams, Observables, SolveInfo, solve_adaptive,
+    solve_dense, solve_gauss_seidel, solve_uniform,
 };
 
 use crate::figures::pressure_field;

@@ -23,14 +23,13 @@ mod split;
 mod survey;
 pub(crate) mod tiles;
 
-use rc_core::{Grid, Observer};
+use rc_core::{Grid, HeightSource, Observer};
 use rc_kernel::SplitParams;
 
 use self::contact_area::contact_area;
 use self::elements::Elements;
 pub use self::error::AdaptiveError;
 pub use self::estimate::Estimate;
-pub use self::heights::HeightSource;
 use self::heights::Heights;
 use self::level::Level;
 pub use self::multilevel::MultilevelOperator;
@@ -108,11 +107,7 @@ impl<'a> AdaptiveProblem<'a> {
     /// # Errors
     /// [`AdaptiveError`], but not [`AdaptiveError::NotConverged`].
     pub fn new(source: HeightSource<'a>, control: Control, params: &AdaptiveParams) -> Result<Self, AdaptiveError> {
-        if let HeightSource::Map(map) = source
-            && !map.grid().has_square_cell()
-        {
-            return Err(AdaptiveError::RectangularCell);
-        }
+        check_square(source.grid())?;
         let error = params.operator_error.min(OPERATOR_ERROR_PER_TOLERANCE * params.solve.tolerance);
         let split = SplitParams::for_error(error)
             .ok_or(AdaptiveError::OperatorError { value: error, smallest: SplitParams::SMALLEST_ERROR })?;
@@ -133,6 +128,12 @@ impl<'a> AdaptiveProblem<'a> {
     #[must_use]
     pub fn estimate(&self) -> Estimate {
         Estimate::new(&self.heights, self.params.border_level, self.problem.control)
+    }
+
+    /// The same problem without a borrow: a map of heights is copied.
+    pub(crate) fn into_owned(self) -> AdaptiveProblem<'static> {
+        let Self { heights, problem, params, split } = self;
+        AdaptiveProblem { heights: heights.into_owned(), problem, params, split }
     }
 
     /// The greatest height over the finest grid, in λ.
@@ -205,7 +206,11 @@ impl<'a> AdaptiveProblem<'a> {
         }
         let area = contact_area(&elements, &pressure, (&gap, outcome.contact_gap), grid);
         let border_level = self.params.border_level;
+        let certificate = outcome.certificate;
+        let converged =
+            certificate.penetration <= self.params.solve.tolerance && certificate.load <= Certificate::LOAD_TOLERANCE;
         let solution = AdaptiveSolution {
+            converged,
             base: self.heights.base().grid(),
             grid: Grid::square(grid.nx() >> border_level).expect("a coarser grid than the finest"),
             finest: grid,
@@ -217,8 +222,7 @@ impl<'a> AdaptiveProblem<'a> {
             evaluated,
             proven: grid.len() - evaluated,
         };
-        let certificate = outcome.certificate;
-        if certificate.penetration <= self.params.solve.tolerance && certificate.load <= Certificate::LOAD_TOLERANCE {
+        if converged {
             Ok(solution)
         } else {
             Err(AdaptiveError::NotConverged { grid, iterations, certificate, solution: Box::new(solution) })
@@ -263,6 +267,16 @@ pub fn solve_adaptive(
     AdaptiveProblem::new(source, control, params)?.solve(observer)
 }
 
+/// Refuses a cell that is not a square, and one that has not as many elements along x as along y.
+fn check_square(grid: Grid) -> Result<(), AdaptiveError> {
+    let (nx, ny) = (grid.nx(), grid.ny());
+    match grid.has_square_cell() {
+        false => Err(AdaptiveError::RectangularCell),
+        true if nx != ny => Err(AdaptiveError::Grid { nx, ny, smallest: 2 * SMALLEST_BASE }),
+        true => Ok(()),
+    }
+}
+
 /// A better operator than `split`, if an error of `needed` asks for one: the best that there is at most.
 fn finer_split(split: SplitParams, needed: f64) -> Option<SplitParams> {
     SplitParams::for_error(needed.max(SplitParams::SMALLEST_ERROR)).filter(|finer| finer.cutoff > split.cutoff)
@@ -272,12 +286,14 @@ fn finer_split(split: SplitParams, needed: f64) -> Option<SplitParams> {
 fn with_border_level(source: HeightSource<'_>, border_level: usize) -> Result<HeightSource<'_>, AdaptiveError> {
     match source {
         _ if border_level == 0 => Ok(source),
-        HeightSource::Surface(surface, side) if surface.band_limit().is_some() => {
+        HeightSource::Surface { surface, grid } if surface.band_limit().is_some() => {
+            let side = grid.nx();
             let finest = (border_level < 32).then(|| side.checked_shl(border_level as u32)).flatten();
             let finest = finest.filter(|&finest| finest >> border_level == side && finest <= DEEPEST_SIDE);
             let deepest = (DEEPEST_SIDE / side.max(1)).checked_ilog2().unwrap_or(0);
             let finest = finest.ok_or(AdaptiveError::BorderLevel { border_level, side, deepest })?;
-            Ok(HeightSource::Surface(surface, finest))
+            let grid = Grid::square(finest).expect("a side of at most the deepest one");
+            Ok(HeightSource::Surface { surface, grid })
         }
         _ => Err(AdaptiveError::BorderOfMap),
     }
@@ -296,16 +312,16 @@ fn check_memory(limit: Option<u64>, bytes: f64, area_percent: Option<f64>) -> Re
 
 /// Checks or chooses the elements per side of the base grid.
 fn base_side(source: &HeightSource<'_>, wanted: Option<usize>) -> Result<usize, AdaptiveError> {
-    let (nx, ny, waves) = match source {
-        HeightSource::Surface(surface, side) => (*side, *side, surface.band_limit()),
-        HeightSource::Map(map) => (map.grid().nx(), map.grid().ny(), None),
+    let finest = source.grid().nx();
+    let waves = match source {
+        HeightSource::Surface { surface, .. } => surface.band_limit(),
+        HeightSource::Map(_) => None,
     };
-    let finest = nx;
     if let Some(base) = wanted {
         let fits = base >= TILE && base.is_multiple_of(TILE) && base > 2 * waves.unwrap_or(0) && 2 * base <= finest;
         let divides = fits && finest.is_multiple_of(base) && (finest / base).is_power_of_two();
         let error = AdaptiveError::Base { base, waves: waves.unwrap_or(0), finest };
-        return if divides && nx == ny { Ok(base) } else { Err(error) };
+        return if divides { Ok(base) } else { Err(error) };
     }
     // A map may hold waves as short as a few elements: two levels above the base grid are safe, and three on large maps.
     let least = match waves {
@@ -320,8 +336,7 @@ fn base_side(source: &HeightSource<'_>, wanted: Option<usize>) -> Result<usize, 
     if base == finest && finest.is_multiple_of(2 * TILE) && finest / 2 > 2 * waves.unwrap_or(0) {
         base /= 2;
     }
-    let allowed = nx == ny && base < finest && Grid::square(finest).is_ok();
-    if allowed { Ok(base) } else { Err(AdaptiveError::Grid { nx, ny, smallest: 2 * least }) }
+    if base < finest { Ok(base) } else { Err(AdaptiveError::Grid { nx: finest, ny: finest, smallest: 2 * least }) }
 }
 
 /// Most elements per side of the grid of the smallest elements: where tiles are is looked up in tables of 4 bytes for 64 of
@@ -349,7 +364,7 @@ mod tests {
 
     #[test]
     fn the_base_grid_follows_the_waves_and_the_divisors() {
-        let base = |side, waves| base_side(&HeightSource::Surface(&Waves(waves), side), None);
+        let base = |side, waves| base_side(&Waves(waves).on(Grid::square(side).expect("a grid")), None);
         for (side, waves, expected) in [(2048, 64, 256), (32768, 1024, 4096), (128, 8, 64), (1_000_000, 8, 125_000)] {
             assert_eq!(base(side, waves).ok(), Some(expected), "{side}, {waves} waves");
         }
@@ -369,7 +384,7 @@ mod tests {
             }
         }
         let params = AdaptiveParams { memory_limit: Some(100_000_000), ..AdaptiveParams::certified() };
-        let source = HeightSource::Surface(&Unsampled, 32768);
+        let source = Unsampled.on(Grid::square(32768).expect("a grid"));
         let error = AdaptiveProblem::new(source, Control::MeanPressure(1e-3), &params).err();
         assert!(matches!(error, Some(AdaptiveError::Memory { limit: 100, area_percent: None, .. })), "{error:?}");
     }

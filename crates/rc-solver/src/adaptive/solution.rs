@@ -13,6 +13,7 @@ use super::operator::{BLOCK_CELLS, Hierarchy, Prepared, TileOperator};
 use super::tiles::{CELLS, TILE, TileSet, put_tile};
 use crate::descent::Engine;
 use crate::observables::{corrected, mean_gap_error, rms_pressure_error};
+use crate::solution::Status;
 use crate::stiffness::stiffness_of;
 use crate::{ContactArea, Observables, SolveInfo};
 
@@ -35,6 +36,8 @@ pub struct ContactElement {
 /// a time, for files and pictures.
 #[derive(Clone, Debug)]
 pub struct AdaptiveSolution {
+    /// Whether the certificate meets the tolerance.
+    pub(super) converged: bool,
     pub(super) base: Grid,
     pub(super) grid: Grid,
     /// The grid of the smallest elements.
@@ -83,6 +86,20 @@ impl AdaptiveSolution {
     #[must_use]
     pub fn is_full_contact(&self) -> bool {
         self.elements.cover_cell() && self.n_elements() == self.elements.n_cells()
+    }
+
+    /// How the solve ended.
+    pub(crate) fn status(&self) -> Status {
+        match self.converged {
+            false => Status::NotConverged,
+            true if self.is_full_contact() => Status::FullContact,
+            true => Status::Converged,
+        }
+    }
+
+    /// The grid of the smallest elements.
+    pub(crate) fn finest_grid(&self) -> Grid {
+        self.finest
     }
 
     /// Tiles of the grid, and the mean pressure on its cells.

@@ -401,9 +401,11 @@ impl<'a> Procedure<'a> {
         };
         let pressure = self.mesh.to_field(&self.pressure, self.info.grid)?;
         let elements = Some(MeshPressure { mesh: self.mesh, pressure: self.pressure });
-        let solution = GridSolution { pressure, gap: field, status: Status::Converged, elements, info };
-        let tension = solution.pressure.min() < 0.0;
-        if self.settled && !tension && error <= self.params.tolerance && load <= Certificate::LOAD_TOLERANCE {
+        let within = error <= self.params.tolerance && load <= Certificate::LOAD_TOLERANCE;
+        let converged = self.settled && within && pressure.min() >= 0.0;
+        let status = if converged { Status::Converged } else { Status::NotConverged };
+        let solution = GridSolution { pressure, gap: field, status, elements, info };
+        if converged {
             return Ok(solution);
         }
         let (grid, iterations) = (self.info.grid, self.info.iterations);

@@ -57,7 +57,13 @@ fn finish(
     let (pressure, gap) = descent.into_vectors(outcome.approach + problem.offset());
     let field = |values| Field::new(grid, values).expect("a value for each element");
     let (pressure, gap) = (field(pressure), field(gap));
-    let solution = GridSolution { pressure, gap, status: Status::Converged, elements: None, info };
+    let solution = GridSolution {
+        pressure,
+        gap,
+        status: if outcome.converged { Status::Converged } else { Status::NotConverged },
+        elements: None,
+        info,
+    };
     if outcome.converged {
         Ok(solution)
     } else {

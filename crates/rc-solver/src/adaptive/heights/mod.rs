@@ -16,7 +16,7 @@ mod window;
 use std::borrow::Cow;
 
 use rayon::prelude::*;
-use rc_core::{Field, Grid, HeightField};
+use rc_core::{Field, Grid, HeightField, HeightSource};
 
 use super::tiles::{TILE, put_tile};
 use crate::IterationError;
@@ -24,15 +24,6 @@ use crate::problem::HeightStatistics;
 use crate::uniform::coarsen;
 use bounds::Bounds;
 use interpolation::{Interpolation, smallest_side};
-
-/// Where heights come from.
-#[derive(Clone, Copy)]
-pub enum HeightSource<'a> {
-    /// A surface, and the elements per side of the finest grid it is wanted on.
-    Surface(&'a dyn HeightField, usize),
-    /// Heights on the finest grid, which is square.
-    Map(&'a Field),
-}
 
 /// Heights at the centres of the levels `base_side · 2^k`, k = 0, …, K, of cells per side.
 ///
@@ -64,7 +55,8 @@ impl<'a> Heights<'a> {
                 assert_eq!(map.grid().nx(), map.grid().ny(), "a map of heights must be square");
                 Self::of_map(Cow::Borrowed(map), base_side)
             }
-            HeightSource::Surface(surface, finest_side) => {
+            HeightSource::Surface { surface, grid } => {
+                let finest_side = grid.nx();
                 let level = surface.band_limit().map(|limit| (limit, interpolation_level(limit, base_side)));
                 match level {
                     // A level finer than the interpolation grid; whole tiles on it are what extremes are searched in.
@@ -122,6 +114,13 @@ impl<'a> Heights<'a> {
             mean: of_samples.mean,
         };
         Ok(Self { base_side, finest_side, grids, interpolation: Some(interpolation), bounds, extremes })
+    }
+
+    /// The same heights without a borrow: a map is copied.
+    pub(crate) fn into_owned(self) -> Heights<'static> {
+        let Self { base_side, finest_side, grids, interpolation, bounds, extremes } = self;
+        let grids = grids.into_iter().map(|grid| Cow::Owned(grid.into_owned())).collect();
+        Heights { base_side, finest_side, grids, interpolation, bounds, extremes }
     }
 
     /// Cells per side of the finest level.

@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use rc_core::testing::quasi_random;
-use rc_core::{Field, Grid, HeightField};
+use rc_core::{Field, Grid, HeightField, HeightSource};
 use rc_fft::Complex64;
 
-use super::{HeightSource, Heights, TILE};
+use super::{Heights, TILE};
 use crate::IterationError;
 use crate::uniform::coarsen;
 
@@ -152,7 +152,11 @@ fn tiles_of_all_levels_are_exact_to_nine_digits_of_the_rms_height() {
         for hurst in [0.1, 0.8, 1.0] {
             // A thousand times the rms height must cost three digits of rounding only, not of interpolation.
             let surface = SelfAffine::new(waves, hurst, 1e3);
-            let heights = Heights::new(HeightSource::Surface(&surface, finest), base).expect("finite");
+            let heights = Heights::new(
+                HeightSource::Surface { surface: &surface, grid: Grid::square(finest).expect("a grid") },
+                base,
+            )
+            .expect("finite");
             assert_eq!(heights.finest_side(), finest);
             assert_eq!(heights.base(), &surface.sample(square(base)));
             let sides = (0..).map(|k| base << k).take_while(|&side| side <= finest);
@@ -168,7 +172,9 @@ fn tiles_of_all_levels_are_exact_to_nine_digits_of_the_rms_height() {
 fn tiles_far_below_a_cell_of_the_interpolation_grid_are_exact() {
     let surface = SelfAffine::new(5, 0.8, 0.0);
     let side = 32 << 10;
-    let heights = Heights::new(HeightSource::Surface(&surface, side), 32).expect("finite");
+    let heights =
+        Heights::new(HeightSource::Surface { surface: &surface, grid: Grid::square(side).expect("a grid") }, 32)
+            .expect("finite");
     let mut tile = [0.0; TILE * TILE];
     for (tx, ty) in [(0, 0), (4095, 4095), (63, 64), (2047, 1), (1234, 3210)] {
         heights.tile(side, tx, ty, &mut tile);
@@ -188,7 +194,11 @@ fn bounds_of_a_surface_hold_in_every_block_and_are_close() {
         [(32, 32, 1024, 0.8, 0.03), (32, 32, 1024, 0.1, 0.1), (16, 128, 512, 0.8, 0.03), (25, 100, 800, 0.8, 0.03)];
     for (waves, base, finest, hurst, close) in cases {
         let surface = SelfAffine::new(waves, hurst, -50.0);
-        let heights = Heights::new(HeightSource::Surface(&surface, finest), base).expect("finite");
+        let heights = Heights::new(
+            HeightSource::Surface { surface: &surface, grid: Grid::square(finest).expect("a grid") },
+            base,
+        )
+        .expect("finite");
         let field = surface.sample(square(finest));
         for blocks in (0..).map(|k| (base / 4) << k).take_while(|&blocks| blocks <= finest) {
             let (least, mean) = excess(&heights, &field, blocks);
@@ -203,7 +213,11 @@ fn bounds_of_a_surface_hold_in_every_block_and_are_close() {
 fn bounds_and_extremes_hold_for_the_shortest_waves_alone() {
     for (waves, base) in [(8, 32), (7, 28), (5, 32)] {
         let surface = EggBox { waves };
-        let heights = Heights::new(HeightSource::Surface(&surface, 16 * base), base).expect("finite");
+        let heights = Heights::new(
+            HeightSource::Surface { surface: &surface, grid: Grid::square(16 * base).expect("a grid") },
+            base,
+        )
+        .expect("finite");
         let field = surface.sample(square(16 * base));
         for blocks in [base / 4, base, 2 * base] {
             let (least, mean) = excess(&heights, &field, blocks);
@@ -219,7 +233,11 @@ fn bounds_and_extremes_hold_for_the_shortest_waves_alone() {
 fn extremes_are_those_of_every_centre_of_the_finest_grid() {
     for (waves, base, finest) in [(32, 32, 512), (32, 64, 512), (32, 8, 512), (25, 100, 800), (3, 20, 640)] {
         let surface = SelfAffine::new(waves, 0.8, 7.0);
-        let heights = Heights::new(HeightSource::Surface(&surface, finest), base).expect("finite");
+        let heights = Heights::new(
+            HeightSource::Surface { surface: &surface, grid: Grid::square(finest).expect("a grid") },
+            base,
+        )
+        .expect("finite");
         let exact = extremes_of(&surface.sample(square(finest)));
         for (found, exact) in extremes(&heights).into_iter().zip(exact) {
             assert!((found - exact).abs() <= 1e-9, "{waves} waves on {finest}: {found} against {exact}");
@@ -231,7 +249,9 @@ fn extremes_are_those_of_every_centre_of_the_finest_grid() {
 fn a_surface_that_the_finest_grid_barely_resolves_is_sampled_there() {
     let surface = SelfAffine::new(32, 0.8, 0.0);
     // 120 < 4 · 32, and 60 elements per side cannot even represent the waves.
-    let heights = Heights::new(HeightSource::Surface(&surface, 120), 60).expect("finite");
+    let heights =
+        Heights::new(HeightSource::Surface { surface: &surface, grid: Grid::square(120).expect("a grid") }, 60)
+            .expect("finite");
     let field = surface.sample(square(120));
     assert!(worst_tile(&heights, &field) == 0.0);
     assert_eq!(extremes(&heights), extremes_of(&field));
@@ -241,7 +261,9 @@ fn a_surface_that_the_finest_grid_barely_resolves_is_sampled_there() {
 #[test]
 fn a_flat_surface_has_its_height_everywhere() {
     let surface = SelfAffine { waves: 0, mean: 0.25, columns: vec![vec![Complex64::ZERO]] };
-    let heights = Heights::new(HeightSource::Surface(&surface, 256), 16).expect("finite");
+    let heights =
+        Heights::new(HeightSource::Surface { surface: &surface, grid: Grid::square(256).expect("a grid") }, 16)
+            .expect("finite");
     assert!(worst_tile(&heights, &surface.sample(square(256))) == 0.0);
     assert_eq!(extremes(&heights), vec![0.25; 3]);
     assert!((heights.upper_bound(32, 3, 4) - 0.25).abs() < f64::EPSILON);
@@ -266,7 +288,8 @@ fn a_map_keeps_its_values_and_its_bounds_are_its_maxima() {
 
 #[test]
 fn a_surface_without_band_limit_is_a_map() {
-    let heights = Heights::new(HeightSource::Surface(&Ridge, 256), 32).expect("finite");
+    let heights = Heights::new(HeightSource::Surface { surface: &Ridge, grid: Grid::square(256).expect("a grid") }, 32)
+        .expect("finite");
     let map = Ridge.sample(square(256));
     assert!(worst_tile(&heights, &map) == 0.0);
     assert_eq!(extremes(&heights), extremes_of(&map));
@@ -283,7 +306,10 @@ fn heights_that_are_not_finite_are_refused() {
         assert!(found, "{error:?}");
         let mut surface = SelfAffine::new(3, 0.8, 0.0);
         surface.mean = bad;
-        assert!(Heights::new(HeightSource::Surface(&surface, 256), 16).is_err());
+        assert!(
+            Heights::new(HeightSource::Surface { surface: &surface, grid: Grid::square(256).expect("a grid") }, 16)
+                .is_err()
+        );
     }
 }
 
@@ -293,7 +319,9 @@ fn heights_do_not_depend_on_the_number_of_threads() {
     let with_threads = |n_threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().expect("a pool");
         pool.install(|| {
-            let heights = Heights::new(HeightSource::Surface(&surface, 800), 50).expect("finite");
+            let heights =
+                Heights::new(HeightSource::Surface { surface: &surface, grid: Grid::square(800).expect("a grid") }, 50)
+                    .expect("finite");
             let mut tile = [0.0; TILE * TILE];
             heights.tile(800, 99, 13, &mut tile);
             let bounds: Vec<f64> = (0..10_000).map(|i| heights.upper_bound(100, i % 100, i / 100)).collect();

@@ -1,0 +1,116 @@
+//! The methods, and why one of them solves a problem.
+
+use std::fmt;
+
+use rc_core::Grid;
+use rc_core::quantity::digits;
+
+/// How a contact problem is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// Preconditioned conjugate gradients on elements that follow the contact: work and memory are those of the contact.
+    Adaptive,
+    /// The same on all elements of the grid.
+    Uniform,
+    /// The procedure of the paper (Sec. 2): Gauss-Seidel on an adaptive mesh, at the cost of a dense matrix.
+    GaussSeidel,
+}
+
+impl Method {
+    /// Name as in scene files and summaries: `adaptive`, `uniform`, `gauss-seidel`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Adaptive => "adaptive",
+            Self::Uniform => "uniform",
+            Self::GaussSeidel => "gauss-seidel",
+        }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Why a problem is solved by its method.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum MethodReason {
+    /// [`crate::SolveParams::method`] names it.
+    AskedFor(Method),
+    /// Only the adaptive method divides elements at contact edges.
+    BorderLevel,
+    /// The adaptive method is the cheaper one.
+    SmallContact {
+        /// Estimated contact area, in percent of the nominal one.
+        percent: f64,
+    },
+    /// The uniform grid is the cheaper one.
+    LargeContact {
+        /// Estimated contact area, in percent of the nominal one.
+        percent: f64,
+    },
+    /// The uniform grid would be cheaper but exceeds the memory limit.
+    UniformDoesNotFit {
+        /// Estimated contact area, in percent of the nominal one.
+        percent: f64,
+    },
+    /// The base grid of the adaptive method exceeds the memory limit.
+    AdaptiveDoesNotFit,
+    /// The kernel has no split by scale.
+    NoSplitOfKernel {
+        /// Name of the kernel.
+        kernel: &'static str,
+    },
+    /// The adaptive method needs a square cell.
+    CellNotSquare,
+    /// The adaptive method needs as many elements along x as along y.
+    GridNotSquare {
+        /// The grid.
+        grid: Grid,
+    },
+    /// The adaptive method needs a grid that can be halved.
+    NoLevels {
+        /// The grid.
+        grid: Grid,
+    },
+    /// A flat surface touches everywhere.
+    Flat,
+    /// The adaptive operator is not accurate enough for the tolerance.
+    ToleranceTooSmall {
+        /// The tolerance.
+        tolerance: f64,
+    },
+}
+
+impl fmt::Display for MethodReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let round = |percent: &f64| digits(*percent, 2);
+        match self {
+            Self::AskedFor(method) => write!(f, "{method}: asked for"),
+            Self::BorderLevel => write!(f, "adaptive: a border level is asked for"),
+            Self::SmallContact { percent } => {
+                write!(f, "adaptive: an estimated contact area of {} %", round(percent))
+            }
+            Self::LargeContact { percent } => {
+                write!(f, "uniform: an estimated contact area of {} % is cheaper on the uniform grid", round(percent))
+            }
+            Self::UniformDoesNotFit { percent } => write!(
+                f,
+                "adaptive: at an estimated contact area of {} % the uniform grid is cheaper but does not fit into memory",
+                round(percent)
+            ),
+            Self::AdaptiveDoesNotFit => write!(f, "uniform: the adaptive method does not fit into memory"),
+            Self::NoSplitOfKernel { kernel } => write!(f, "uniform: the kernel {kernel} has no adaptive form"),
+            Self::CellNotSquare => write!(f, "uniform: the cell is not a square"),
+            Self::GridNotSquare { grid } => write!(f, "uniform: {grid} elements are not square"),
+            Self::NoLevels { grid } => write!(f, "uniform: {grid} elements do not divide into adaptive levels"),
+            Self::Flat => write!(f, "uniform: a flat surface has nothing to adapt to"),
+            Self::ToleranceTooSmall { tolerance } => {
+                write!(f, "uniform: the adaptive operator cannot certify a tolerance of {tolerance:e}")
+            }
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! The coarsest grid that gives the contact area as accurately as wanted.
+
+use rc_core::{Grid, HeightSource, Observer};
+
+use super::{ContactProblem, Solution, SolveError, SolveParams};
+
+/// Elements per shortest wave of the first grid, and of the last that is tried.
+const COARSEST: usize = 4;
+const FINEST: usize = 256;
+
+/// Fewest elements per side of the first grid.
+const SMALLEST_SIDE: usize = 64;
+
+/// Order at which the error bar falls with the element side: most of it is the scatter of edges, √(edges) element areas.
+const ORDER: f64 = 1.5;
+
+/// Solves on finer and finer grids until the error bar of the contact area is at most `wanted` of it.
+pub(super) fn solve<'a>(
+    problem: ContactProblem<'a>,
+    wanted: f64,
+    params: &SolveParams,
+    observer: &dyn Observer,
+) -> Result<Solution<'a>, SolveError> {
+    let HeightSource::Surface { surface, .. } = problem.heights else { return Err(SolveError::NoWaves) };
+    let waves = surface.band_limit().filter(|&waves| waves > 0).ok_or(SolveError::NoWaves)?;
+    let mut elements_per_wave = COARSEST;
+    loop {
+        let side = side(waves, elements_per_wave);
+        let grid = Grid::square(side).map_err(|_| SolveError::NoWaves)?;
+        let heights = HeightSource::Surface { surface, grid };
+        let solution = ContactProblem { heights, ..problem }.solve(params, observer)?;
+        let reached = solution.area().relative_error();
+        if reached <= wanted {
+            return Ok(solution);
+        }
+        if elements_per_wave >= FINEST {
+            return Err(SolveError::AreaError { wanted, reached, side });
+        }
+        elements_per_wave = next(elements_per_wave, reached / wanted);
+    }
+}
+
+/// Elements per side of the grid with this many for the shortest wave, or more where the grid would be tiny.
+fn side(waves: usize, elements_per_wave: usize) -> usize {
+    let mut side = waves.saturating_mul(elements_per_wave);
+    while side < SMALLEST_SIDE * elements_per_wave / COARSEST {
+        side *= 2;
+    }
+    side
+}
+
+/// Elements per wave for an error this many times smaller.
+fn next(elements_per_wave: usize, factor: f64) -> usize {
+    let halvings = (factor.log2() / ORDER).ceil().max(1.0) as u32;
+    (elements_per_wave << halvings.min(8)).min(FINEST)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_next_grid_is_where_the_error_should_be_reached() {
+        for (factor, expected) in [(1.01, 8), (2.8, 8), (2.9, 16), (8.0, 16), (9.0, 32), (1e9, 256)] {
+            assert_eq!(next(4, factor), expected, "{factor}");
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! The choice of the method: the one that is asked for, else the adaptive one where it fits and is the cheaper one.
+
+use rc_core::Grid;
+
+use super::plan::Prepared;
+use super::{ContactProblem, Plan, SolveError, SolveParams};
+use crate::adaptive::AdaptiveProblem;
+use crate::{AdaptiveError, Estimate, Method, MethodReason, UNIFORM_BYTES_PER_ELEMENT};
+
+/// Checks the problem and chooses its method.
+pub(super) fn plan<'a>(problem: ContactProblem<'a>, params: &SolveParams) -> Result<Plan<'a>, SolveError> {
+    let tolerance = params.tolerance.relative(problem.heights.elements_per_wave());
+    let choice = Choice { problem, params, tolerance };
+    let (prepared, reason) = match params.method {
+        None => choice.automatic(),
+        Some(method) => {
+            choice.check_asked_for(method)?;
+            let prepared = match method {
+                Method::Adaptive => Prepared::Adaptive(Box::new(choice.prepare()?)),
+                Method::Uniform | Method::GaussSeidel => choice.on_grid(method)?,
+            };
+            Ok((prepared, MethodReason::AskedFor(method)))
+        }
+    }?;
+    Ok(Plan { problem, params: *params, tolerance, prepared, reason })
+}
+
+struct Choice<'a, 'b> {
+    problem: ContactProblem<'a>,
+    params: &'b SolveParams,
+    tolerance: f64,
+}
+
+type Chosen<'a> = Result<(Prepared<'a>, MethodReason), SolveError>;
+
+impl<'a> Choice<'a, '_> {
+    /// Refuses a method that cannot solve with this kernel or border level.
+    fn check_asked_for(&self, method: Method) -> Result<(), SolveError> {
+        let kernel = self.problem.kernel;
+        match method {
+            Method::Adaptive | Method::GaussSeidel if !kernel.is_split_by_scale() => {
+                Err(SolveError::Kernel { method, kernel: kernel.name() })
+            }
+            Method::Uniform | Method::GaussSeidel if self.params.border_level > 0 => {
+                Err(SolveError::BorderLevel { method })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn automatic(&self) -> Chosen<'a> {
+        let kernel = self.problem.kernel;
+        let has_border = self.params.border_level > 0;
+        if !kernel.is_split_by_scale() {
+            if has_border {
+                return Err(SolveError::Kernel { method: Method::Adaptive, kernel: kernel.name() });
+            }
+            return Ok((self.on_grid(Method::Uniform)?, MethodReason::NoSplitOfKernel { kernel: kernel.name() }));
+        }
+        let adaptive = match self.prepare() {
+            Ok(adaptive) => adaptive,
+            Err(error) if has_border => return Err(error.into()),
+            Err(error) => return self.without_adaptive(error),
+        };
+        let percent = 100.0 * adaptive.estimate().area_fraction;
+        let adaptive = Prepared::Adaptive(Box::new(adaptive));
+        if has_border {
+            return Ok((adaptive, MethodReason::BorderLevel));
+        }
+        if percent <= 100.0 * Estimate::GREATEST_ADAPTIVE_AREA {
+            return Ok((adaptive, MethodReason::SmallContact { percent }));
+        }
+        match self.on_grid(Method::Uniform) {
+            Ok(uniform) => Ok((uniform, MethodReason::LargeContact { percent })),
+            // The adaptive method fits, or it would not be prepared.
+            Err(_) if self.params.method_follows_memory => Ok((adaptive, MethodReason::UniformDoesNotFit { percent })),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Prepares the adaptive method, if it fits the problem and the memory.
+    fn prepare(&self) -> Result<AdaptiveProblem<'a>, AdaptiveError> {
+        AdaptiveProblem::new(self.problem.heights, self.problem.control, &self.params.adaptive(self.tolerance))
+    }
+
+    /// The uniform grid where the adaptive method does not fit, if that helps.
+    fn without_adaptive(&self, error: AdaptiveError) -> Chosen<'a> {
+        let Some(reason) = self.obstacle(&error) else { return Err(error.into()) };
+        match self.on_grid(Method::Uniform) {
+            Ok(uniform) => Ok((uniform, reason)),
+            // Neither fits; the adaptive method needs less.
+            Err(_) if matches!(error, AdaptiveError::Memory { .. }) => Err(error.into()),
+            Err(other) => Err(other),
+        }
+    }
+
+    /// Why the uniform method solves a problem that the adaptive one refuses with `error`; `None` when it is refused too.
+    fn obstacle(&self, error: &AdaptiveError) -> Option<MethodReason> {
+        let grid = self.problem.heights.grid();
+        let is_large = |percent: &f64| *percent > 100.0 * Estimate::GREATEST_ADAPTIVE_AREA;
+        match error {
+            AdaptiveError::Memory { area_percent, .. } => match area_percent.filter(is_large) {
+                Some(percent) => Some(MethodReason::LargeContact { percent }),
+                None => self.params.method_follows_memory.then_some(MethodReason::AdaptiveDoesNotFit),
+            },
+            AdaptiveError::RectangularCell => Some(MethodReason::CellNotSquare),
+            AdaptiveError::Grid { nx, ny, .. } if nx != ny => Some(MethodReason::GridNotSquare { grid }),
+            AdaptiveError::Grid { .. } | AdaptiveError::Base { .. } => Some(MethodReason::NoLevels { grid }),
+            AdaptiveError::Flat => Some(MethodReason::Flat),
+            AdaptiveError::OperatorError { .. } => Some(MethodReason::ToleranceTooSmall { tolerance: self.tolerance }),
+            _ => None,
+        }
+    }
+
+    /// A method that stores every element of the grid, if it fits into memory.
+    fn on_grid(&self, method: Method) -> Result<Prepared<'a>, SolveError> {
+        let grid = self.problem.heights.grid();
+        let needed = uniform_bytes(grid);
+        match self.params.memory_limit {
+            Some(limit) if needed > limit as f64 => {
+                Err(SolveError::Memory { method, grid, needed: needed as u64, limit })
+            }
+            _ if method == Method::GaussSeidel => Ok(Prepared::GaussSeidel),
+            _ => Ok(Prepared::Uniform),
+        }
+    }
+}
+
+/// Bytes that a method that stores every element needs.
+pub(super) fn uniform_bytes(grid: Grid) -> f64 {
+    grid.len() as f64 * UNIFORM_BYTES_PER_ELEMENT as f64
+}

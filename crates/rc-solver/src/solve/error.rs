@@ -1,0 +1,97 @@
+//! Why a contact problem was not solved.
+
+use rc_core::Grid;
+use thiserror::Error;
+
+use super::Solution;
+use crate::{AdaptiveError, Certificate, GaussSeidelError, IterationError, Method};
+
+/// A contact problem that was not solved.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// Heights, load or tolerance are out of range.
+    #[error(transparent)]
+    Problem(IterationError),
+    /// The adaptive method does not fit the problem, and none other is allowed.
+    #[error(transparent)]
+    Adaptive(AdaptiveError),
+    /// The paper's procedure does not fit the problem.
+    #[error(transparent)]
+    GaussSeidel(GaussSeidelError),
+    /// The method is made for Love's squares.
+    #[error("the {method} method needs the kernel love, not {kernel}")]
+    Kernel {
+        /// The method asked for.
+        method: Method,
+        /// Name of the kernel.
+        kernel: &'static str,
+    },
+    /// A border level is asked of a method without one.
+    #[error("only the adaptive method divides elements at contact edges, not the {method} one")]
+    BorderLevel {
+        /// The method asked for.
+        method: Method,
+    },
+    /// A method that stores every element exceeds the memory limit.
+    #[error("the {method} method on {grid} elements needs about {needed} bytes, more than the limit of {limit}")]
+    Memory {
+        /// The method.
+        method: Method,
+        /// The grid.
+        grid: Grid,
+        /// Estimate, in bytes.
+        needed: u64,
+        /// Limit, in bytes.
+        limit: u64,
+    },
+    /// A grid cannot be chosen for heights whose shortest wave is not known.
+    #[error("the grid follows an error of the area only for a band-limited surface; a height map has its own grid")]
+    NoWaves,
+    /// The finest grid that is tried is not accurate enough.
+    #[error("an error of the area of {wanted} of it cannot be reached; with {side} elements per side it is {reached}")]
+    AreaError {
+        /// Relative error that was wanted.
+        wanted: f64,
+        /// Relative error on the last grid.
+        reached: f64,
+        /// Elements per side of that grid.
+        side: usize,
+    },
+    /// The iteration limit was reached, the error no longer falls, or the observer ended the solve.
+    #[error("not converged on {grid} elements after {iterations} iterations: {certificate}")]
+    NotConverged {
+        /// Grid of the finest level.
+        grid: Grid,
+        /// Iterations on it.
+        iterations: usize,
+        /// Residuals of the best pressure found.
+        certificate: Certificate,
+        /// The best solution found.
+        solution: Box<Solution<'static>>,
+    },
+}
+
+impl From<IterationError> for SolveError {
+    fn from(error: IterationError) -> Self {
+        Self::Problem(error)
+    }
+}
+
+impl From<AdaptiveError> for SolveError {
+    fn from(error: AdaptiveError) -> Self {
+        match error {
+            AdaptiveError::Solve(error) => Self::Problem(error),
+            other => Self::Adaptive(other),
+        }
+    }
+}
+
+impl From<GaussSeidelError> for SolveError {
+    fn from(error: GaussSeidelError) -> Self {
+        match error {
+            GaussSeidelError::Solve(error) => Self::Problem(error),
+            other => Self::GaussSeidel(other),
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! The kernel of a solution, which may outlive the caller's.
+
+use rc_core::{EdgeBias, Grid, Kernel, Symbol};
+
+/// The kernel that a solution on a uniform grid was found with.
+pub(super) enum KernelOfGrid<'a> {
+    /// The caller's.
+    Borrowed(&'a dyn Kernel),
+    /// Its symbol on the grid of the solution.
+    Tabulated(TabulatedKernel),
+}
+
+/// A kernel that is known on one grid.
+pub(super) struct TabulatedKernel {
+    name: &'static str,
+    bias: EdgeBias,
+    grid: Grid,
+    /// Eigenvalues for 0 ≤ kx ≤ nx/2, then 0 ≤ ky ≤ ny/2, columns of constant kx contiguous.
+    values: Vec<f64>,
+}
+
+impl KernelOfGrid<'_> {
+    /// The kernel without a borrow, for `grid` alone.
+    pub(super) fn into_owned(self, grid: Grid) -> KernelOfGrid<'static> {
+        KernelOfGrid::Tabulated(match self {
+            Self::Borrowed(kernel) => TabulatedKernel::new(kernel, grid),
+            Self::Tabulated(kernel) => kernel,
+        })
+    }
+
+    fn get(&self) -> &dyn Kernel {
+        match self {
+            Self::Borrowed(kernel) => *kernel,
+            Self::Tabulated(kernel) => kernel,
+        }
+    }
+}
+
+impl TabulatedKernel {
+    fn new(kernel: &dyn Kernel, grid: Grid) -> Self {
+        let symbol = kernel.symbol(grid);
+        let columns = 0..=grid.nx() / 2;
+        let values = columns.flat_map(|kx| (0..=grid.ny() / 2).map(move |ky| (kx, ky))).map(|(kx, ky)| symbol(kx, ky));
+        Self { name: kernel.name(), bias: kernel.edge_bias(), grid, values: values.collect() }
+    }
+}
+
+impl Kernel for TabulatedKernel {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn symbol(&self, grid: Grid) -> Symbol<'_> {
+        assert_eq!(grid, self.grid, "a tabulated kernel is asked for the grid of its solution only");
+        Box::new(|kx, ky| self.values[kx * (self.grid.ny() / 2 + 1) + ky])
+    }
+
+    fn edge_bias(&self) -> EdgeBias {
+        self.bias
+    }
+}
+
+impl Kernel for KernelOfGrid<'_> {
+    fn name(&self) -> &'static str {
+        self.get().name()
+    }
+
+    fn symbol(&self, grid: Grid) -> Symbol<'_> {
+        self.get().symbol(grid)
+    }
+
+    fn edge_bias(&self) -> EdgeBias {
+        self.get().edge_bias()
+    }
+}

@@ -1,0 +1,325 @@
+//! What a solve returns, whatever the method.
+
+use std::convert::Infallible;
+use std::sync::OnceLock;
+
+use rc_core::{Field, Grid, Kernel, Operator as _};
+
+use super::SolveError;
+use super::kernel_of_grid::KernelOfGrid;
+use crate::adaptive::{AdaptiveProblem, AdaptiveSolution};
+use crate::solution::Status;
+use crate::{
+    Certificate, ContactArea, ContactElement, GridSolution, Method, MethodReason, Observables, SolveInfo,
+    UniformOperator,
+};
+
+/// A solved contact problem.
+///
+/// Pressures are in E*, lengths in λ, areas relative to the nominal area. Fields are on [`Solution::grid`]. Those of the adaptive method
+/// are made when they are first asked for; [`Solution::pressure_rows`] and [`Solution::gap_rows`] never hold them whole.
+pub struct Solution<'a> {
+    how: HowSolved,
+    status: Status,
+    h_max: f64,
+    pressures: Pressures<'a>,
+    pressure: OnceLock<Field>,
+    gap: OnceLock<Field>,
+    observables: OnceLock<Observables>,
+    stiffness: OnceLock<f64>,
+}
+
+/// What a solution keeps of its plan.
+#[derive(Clone, Debug)]
+pub(super) struct HowSolved {
+    pub(super) method: Method,
+    pub(super) reason: MethodReason,
+    pub(super) tolerance: f64,
+    pub(super) kernel: &'static str,
+}
+
+impl HowSolved {
+    pub(super) fn new(method: Method, reason: MethodReason, tolerance: f64, kernel: &dyn Kernel) -> Self {
+        Self { method, reason, tolerance, kernel: kernel.name() }
+    }
+}
+
+/// Pressures on the grid, or on the tiles that contact touches.
+enum Pressures<'a> {
+    Grid {
+        solution: GridSolution,
+        kernel: KernelOfGrid<'a>,
+    },
+    Tiles {
+        solution: AdaptiveSolution,
+        /// What it solves, heights included.
+        problem: Box<AdaptiveProblem<'a>>,
+    },
+}
+
+impl<'a> Solution<'a> {
+    /// Of a method that stores every element of the grid.
+    pub(super) fn on_grid(how: HowSolved, kernel: &'a dyn Kernel, solution: GridSolution, h_max: f64) -> Self {
+        let status = solution.status;
+        let kernel = KernelOfGrid::Borrowed(kernel);
+        Self::new(how, status, h_max, Pressures::Grid { solution, kernel })
+    }
+
+    /// Of the adaptive method.
+    pub(super) fn on_tiles(how: HowSolved, solution: AdaptiveSolution, problem: Box<AdaptiveProblem<'a>>) -> Self {
+        let (status, h_max) = (solution.status(), problem.h_max());
+        Self::new(how, status, h_max, Pressures::Tiles { solution, problem })
+    }
+
+    fn new(how: HowSolved, status: Status, h_max: f64, pressures: Pressures<'a>) -> Self {
+        Self {
+            how,
+            status,
+            h_max,
+            pressures,
+            pressure: OnceLock::new(),
+            gap: OnceLock::new(),
+            observables: OnceLock::new(),
+            stiffness: OnceLock::new(),
+        }
+    }
+
+    /// The same solution without borrows. The adaptive method's keeps a copy of a map, and that of a grid the symbol of its kernel.
+    #[must_use]
+    pub fn into_owned(self) -> Solution<'static> {
+        let pressures = match self.pressures {
+            Pressures::Grid { solution, kernel } => {
+                let kernel = kernel.into_owned(solution.pressure.grid());
+                Pressures::Grid { solution, kernel }
+            }
+            Pressures::Tiles { solution, problem } => {
+                Pressures::Tiles { solution, problem: Box::new(problem.into_owned()) }
+            }
+        };
+        let Self { how, status, h_max, pressure, gap, observables, stiffness, .. } = self;
+        Solution { how, status, h_max, pressures, pressure, gap, observables, stiffness }
+    }
+
+    /// The error of a solution that did not converge.
+    pub(super) fn into_error(self) -> SolveError {
+        let (grid, iterations, certificate) = (self.finest_grid(), self.info().fine_iterations(), self.certificate());
+        SolveError::NotConverged { grid, iterations, certificate, solution: Box::new(self.into_owned()) }
+    }
+
+    /// How the solve ended.
+    #[must_use]
+    pub fn status(&self) -> Status {
+        self.status
+    }
+
+    /// The method.
+    #[must_use]
+    pub fn method(&self) -> Method {
+        self.how.method
+    }
+
+    /// Why it was this one.
+    #[must_use]
+    pub fn reason(&self) -> &MethodReason {
+        &self.how.reason
+    }
+
+    /// The tolerance as a number, relative to the peak-to-valley height.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.how.tolerance
+    }
+
+    /// Name of the kernel.
+    #[must_use]
+    pub fn kernel(&self) -> &'static str {
+        self.how.kernel
+    }
+
+    /// How the solution was found and how good it is: certificate, load, penetration, energy, and the work on each level.
+    #[must_use]
+    pub fn info(&self) -> &SolveInfo {
+        match &self.pressures {
+            Pressures::Grid { solution, .. } => &solution.info,
+            Pressures::Tiles { solution, .. } => &solution.info,
+        }
+    }
+
+    /// Residuals from a fresh application of L on the returned pressure, for the whole cell.
+    #[must_use]
+    pub fn certificate(&self) -> Certificate {
+        self.info().certificate
+    }
+
+    /// The grid of the fields.
+    #[must_use]
+    pub fn grid(&self) -> Grid {
+        match &self.pressures {
+            Pressures::Grid { solution, .. } => solution.pressure.grid(),
+            Pressures::Tiles { solution, .. } => solution.grid(),
+        }
+    }
+
+    /// The grid of the smallest elements: finer than [`Solution::grid`] where a border level was asked for.
+    fn finest_grid(&self) -> Grid {
+        match &self.pressures {
+            Pressures::Grid { solution, .. } => solution.pressure.grid(),
+            Pressures::Tiles { solution, .. } => solution.finest_grid(),
+        }
+    }
+
+    /// Maximum height on the grid of the smallest elements, in λ.
+    #[must_use]
+    pub fn h_max(&self) -> f64 {
+        self.h_max
+    }
+
+    /// The contact area with its error bar.
+    #[must_use]
+    pub fn area(&self) -> ContactArea {
+        self.observables().area
+    }
+
+    /// Area, pressure, gap, energy.
+    #[must_use]
+    pub fn observables(&self) -> &Observables {
+        self.observables.get_or_init(|| match &self.pressures {
+            Pressures::Grid { solution, kernel } => Observables::of(solution, kernel),
+            Pressures::Tiles { solution, .. } => solution.observables(),
+        })
+    }
+
+    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact. Takes a few applications of L
+    /// the first time.
+    #[must_use]
+    pub fn stiffness(&self) -> f64 {
+        *self.stiffness.get_or_init(|| match &self.pressures {
+            Pressures::Grid { solution, kernel } => solution.contact_stiffness(kernel),
+            Pressures::Tiles { solution, .. } => solution.contact_stiffness(),
+        })
+    }
+
+    /// Number of elements that carry unknowns: those in contact on an adaptive mesh, all of a uniform grid.
+    #[must_use]
+    pub fn n_elements(&self) -> usize {
+        match &self.pressures {
+            Pressures::Grid { solution, .. } => solution.n_elements(),
+            Pressures::Tiles { solution, .. } => solution.n_elements(),
+        }
+    }
+
+    /// Number of elements in contact.
+    #[must_use]
+    pub fn n_in_contact(&self) -> usize {
+        match &self.pressures {
+            Pressures::Grid { solution, .. } => solution.n_in_contact(),
+            Pressures::Tiles { solution, .. } => solution.n_elements(),
+        }
+    }
+
+    /// The elements of a mesh that is not the grid itself, those in contact with their pressures; `None` for the uniform method.
+    #[must_use]
+    pub fn elements(&self) -> Option<Box<dyn Iterator<Item = ContactElement> + '_>> {
+        match &self.pressures {
+            Pressures::Grid { solution, .. } => solution.elements.as_ref().map(|mesh| Box::new(mesh.elements()) as _),
+            Pressures::Tiles { solution, .. } => Some(Box::new(solution.elements())),
+        }
+    }
+
+    /// Elements of the grid whose gap the certificate computed.
+    #[must_use]
+    pub fn n_evaluated(&self) -> usize {
+        match &self.pressures {
+            Pressures::Grid { solution, .. } => solution.pressure.grid().len(),
+            Pressures::Tiles { solution, .. } => solution.evaluated,
+        }
+    }
+
+    /// Elements of the grid that are proven to be out of contact without computing their gap: all others.
+    #[must_use]
+    pub fn n_proven(&self) -> usize {
+        match &self.pressures {
+            Pressures::Grid { .. } => 0,
+            Pressures::Tiles { solution, .. } => solution.proven,
+        }
+    }
+
+    /// The pressure on the grid, in E*, ≥ 0. On smaller elements it is their mean.
+    #[must_use]
+    pub fn pressure(&self) -> &Field {
+        match &self.pressures {
+            Pressures::Grid { solution, .. } => &solution.pressure,
+            Pressures::Tiles { .. } => self.pressure.get_or_init(|| self.collect(|take| self.pressure_rows(take))),
+        }
+    }
+
+    /// The gap on the grid, in λ, with its pressure-weighted mean at zero; zero in contact within the tolerance.
+    #[must_use]
+    pub fn gap(&self) -> &Field {
+        match &self.pressures {
+            Pressures::Grid { solution, .. } => &solution.gap,
+            Pressures::Tiles { .. } => self.gap.get_or_init(|| self.collect(|take| self.gap_rows(take))),
+        }
+    }
+
+    /// The displacement v on the grid, in λ, of mean zero. Takes one application of L.
+    #[must_use]
+    pub fn displacement(&self) -> Field {
+        match &self.pressures {
+            Pressures::Grid { solution, kernel } => {
+                let mut displacement = Field::zeros(self.grid());
+                let operator = UniformOperator::new(self.grid(), kernel);
+                operator.apply(solution.pressure.values(), displacement.values_mut(), &mut []);
+                displacement
+            }
+            Pressures::Tiles { solution, .. } => self.collect(|take| solution.displacement_rows(take)),
+        }
+    }
+
+    /// Hands out [`Solution::pressure`] in order, some rows at a time: the index of the first row, and the rows one after the other. Stops
+    /// at the first error.
+    ///
+    /// # Errors
+    /// What `take` returns.
+    pub fn pressure_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        match (&self.pressures, self.pressure.get()) {
+            (Pressures::Grid { solution, .. }, _) => take(0, solution.pressure.values()),
+            (_, Some(pressure)) => take(0, pressure.values()),
+            (Pressures::Tiles { solution, .. }, None) => solution.pressure_rows(take),
+        }
+    }
+
+    /// Hands out [`Solution::gap`] as [`Solution::pressure_rows`] does the pressure, for the adaptive method at about the cost of one
+    /// application of L on the whole grid.
+    ///
+    /// # Errors
+    /// What `take` returns.
+    pub fn gap_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        match (&self.pressures, self.gap.get()) {
+            (Pressures::Grid { solution, .. }, _) => take(0, solution.gap.values()),
+            (_, Some(gap)) => take(0, gap.values()),
+            (Pressures::Tiles { solution, problem }, None) => problem.gap_rows(solution, take),
+        }
+    }
+
+    /// A field on the grid from its rows, which `rows` hands out in order.
+    fn collect(
+        &self,
+        rows: impl FnOnce(&mut dyn FnMut(usize, &[f64]) -> Result<(), Infallible>) -> Result<(), Infallible>,
+    ) -> Field {
+        let mut values = Vec::with_capacity(self.grid().len());
+        let Ok(()) = rows(&mut |_, rows| {
+            values.extend_from_slice(rows);
+            Ok(())
+        });
+        Field::new(self.grid(), values).expect("as many values as the grid has elements")
+    }
+}
+
+impl std::fmt::Debug for Solution<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut out = f.debug_struct("Solution");
+        out.field("how", &self.how).field("status", &self.status).field("grid", &self.grid());
+        out.field("info", self.info()).finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,173 @@
+//! `rc_solver::solve` and what comes out of it, whatever the method.
+
+use std::convert::Infallible;
+
+use rc_core::{Elasticity, Field, Grid, HeightField as _, PeriodicCell, Silent, Units};
+use rc_fractal::{SpectrumParams, Surface};
+use rc_kernel::Spectral;
+use rc_solver::{
+    AdaptiveError, ContactProblem, Control, Method, MethodReason, Solution, SolveError, SolveParams, Status, Tolerance,
+    solve,
+};
+
+const LOAD: Control = Control::MeanPressure(8.9e-4);
+
+fn surface(waves: usize) -> Surface {
+    Surface::new(&SpectrumParams::paper(waves, 1)).expect("a surface")
+}
+
+fn square(side: usize) -> Grid {
+    Grid::square(side).expect("a grid")
+}
+
+fn rows_of(solution: &Solution<'_>, gap: bool) -> Vec<f64> {
+    let mut values = Vec::new();
+    let take = |_: usize, rows: &[f64]| {
+        values.extend_from_slice(rows);
+        Ok::<(), Infallible>(())
+    };
+    let Ok(()) = if gap { solution.gap_rows(take) } else { solution.pressure_rows(take) };
+    values
+}
+
+#[test]
+fn every_method_gives_one_kind_of_solution() {
+    let surface = surface(8);
+    let solved = [Method::Adaptive, Method::Uniform, Method::GaussSeidel].map(|method| {
+        let params = SolveParams::default().by(method);
+        let solution = solve(surface.on(square(128)), LOAD, &params).expect("a solvable scene");
+        assert_eq!((solution.method(), solution.status()), (method, Status::Converged));
+        assert_eq!(solution.reason(), &MethodReason::AskedFor(method));
+        assert_eq!(rows_of(&solution, false), solution.pressure().values(), "{method}: rows before the field");
+        assert_eq!(rows_of(&solution, true), solution.gap().values(), "{method}: rows before the field");
+        assert_eq!(solution.elements().is_some(), method != Method::Uniform);
+        let counted = solution.pressure().values().iter().filter(|&&p| p > 0.0).count();
+        assert!((counted as f64 / 16384.0 - solution.area().cells).abs() < 1e-12, "{method}");
+        assert!(solution.certificate().penetration <= 1e-6 && solution.gap().min() > -1e-6, "{method}");
+        assert_eq!(solution.n_evaluated() + solution.n_proven(), 16384);
+        solution
+    });
+    let [adaptive, uniform, paper] = &solved;
+    // One operator, one discretisation; the paper's elements are larger inside contacts.
+    let off = |a: f64, b: f64| (a / b - 1.0).abs();
+    assert!(off(adaptive.area().fraction, uniform.area().fraction) < 2e-3);
+    assert!(off(adaptive.stiffness(), uniform.stiffness()) < 5e-3);
+    assert!(off(paper.area().fraction, uniform.area().fraction) < 2e-2);
+    let v = |solution: &Solution<'_>| solution.displacement();
+    let (a, b) = (v(adaptive), v(uniform));
+    let worst = a.values().iter().zip(b.values()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(worst < 1e-3 * b.max(), "displacements differ by {worst:e}");
+}
+
+#[test]
+fn the_method_is_chosen_by_the_estimated_area() {
+    let surface = surface(16);
+    let chosen = |pressure: f64, side: usize, params: &SolveParams| {
+        let problem = ContactProblem::new(surface.on(square(side)), Control::MeanPressure(pressure));
+        problem.plan(params).expect("a valid scene").reason().clone()
+    };
+    let params = SolveParams::default();
+    assert!(matches!(chosen(8.9e-4, 256, &params), MethodReason::SmallContact { percent } if percent < 15.0));
+    assert!(matches!(chosen(2e-2, 256, &params), MethodReason::LargeContact { percent } if percent > 35.0));
+    assert!(matches!(chosen(8.9e-4, 250, &params), MethodReason::NoLevels { .. }));
+    let tight = SolveParams::to_tolerance(1e-12);
+    assert!(matches!(chosen(8.9e-4, 256, &tight), MethodReason::ToleranceTooSmall { .. }));
+    let border = SolveParams { border_level: 1, ..params };
+    assert_eq!(chosen(2e-2, 256, &border), MethodReason::BorderLevel);
+    let problem = ContactProblem::new(surface.on(square(256)), LOAD).with_kernel(&Spectral);
+    assert_eq!(
+        problem.plan(&params).expect("a scene").reason().to_string(),
+        "uniform: the kernel spectral has no adaptive form"
+    );
+}
+
+#[test]
+fn memory_refuses_or_changes_the_method() {
+    let surface = surface(16);
+    let plan = |limit: u64, follows: bool, pressure: f64| {
+        let params =
+            SolveParams { memory_limit: Some(limit), method_follows_memory: follows, ..SolveParams::default() };
+        let problem = ContactProblem::new(surface.on(square(512)), Control::MeanPressure(pressure));
+        problem.plan(&params).map(|plan| plan.reason().clone())
+    };
+    // 80 bytes an element of the uniform grid are 21 MB; at 40 % the tiles take less than that.
+    assert!(matches!(plan(20_500_000, true, 1.1e-2), Ok(MethodReason::UniformDoesNotFit { .. })));
+    assert!(matches!(plan(20_500_000, false, 1.1e-2), Err(SolveError::Memory { method: Method::Uniform, .. })));
+    for follows in [true, false] {
+        let refused = plan(100_000, follows, 8.9e-4);
+        assert!(matches!(refused, Err(SolveError::Adaptive(AdaptiveError::Memory { .. }))), "{refused:?}");
+    }
+}
+
+#[test]
+fn non_convergence_is_an_error_with_the_best_solution_that_outlives_its_heights() {
+    for method in [Method::Adaptive, Method::Uniform] {
+        let heights = surface(8).sample(square(128));
+        let params = SolveParams { max_iterations: 1, ..SolveParams::default().by(method) };
+        let error = solve(&heights, LOAD, &params).expect_err("one iteration is too few");
+        drop(heights);
+        let SolveError::NotConverged { solution, certificate, .. } = error else { panic!("{error}") };
+        assert_eq!((solution.status(), solution.method()), (Status::NotConverged, method));
+        assert!(certificate.penetration > 1e-6 && solution.gap().rms() > 0.0 && solution.stiffness() > 0.0);
+    }
+}
+
+#[test]
+fn an_owned_solution_says_the_same() {
+    let heights = surface(8).sample(square(128));
+    for method in [Method::Adaptive, Method::Uniform] {
+        let params = SolveParams::default().by(method);
+        let borrowed = solve(&heights, LOAD, &params).expect("solvable");
+        let owned = solve(&heights, LOAD, &params).expect("solvable").into_owned();
+        assert_eq!(borrowed.stiffness().to_bits(), owned.stiffness().to_bits());
+        assert_eq!(borrowed.gap(), owned.gap());
+        assert_eq!(borrowed.observables(), owned.observables());
+    }
+}
+
+#[test]
+fn what_a_method_cannot_do_is_refused_by_name() {
+    let surface = surface(8);
+    let problem = ContactProblem::new(surface.on(square(128)), LOAD);
+    let refused = |problem: ContactProblem<'_>, params: SolveParams| problem.plan(&params).expect_err("refused");
+    let adaptive = SolveParams::default().by(Method::Adaptive);
+    assert!(matches!(refused(problem.with_kernel(&Spectral), adaptive), SolveError::Kernel { kernel: "spectral", .. }));
+    let border = SolveParams { border_level: 2, ..SolveParams::default().by(Method::Uniform) };
+    assert!(matches!(refused(problem, border), SolveError::BorderLevel { method: Method::Uniform }));
+    let error = refused(ContactProblem::new(surface.on(square(128)), Control::MeanPressure(-1.0)), adaptive);
+    assert!(matches!(error, SolveError::Problem(_)), "{error}");
+}
+
+#[test]
+fn the_grid_follows_the_wanted_error_of_the_area() {
+    let surface = surface(16);
+    let params = SolveParams { tolerance: Tolerance::Auto, ..SolveParams::default() };
+    let problem = ContactProblem::new(surface.on(square(1)), LOAD);
+    let coarse = problem.solve_to_area_error(0.03, &params, &Silent).expect("solvable");
+    let fine = problem.solve_to_area_error(0.005, &params, &Silent).expect("solvable");
+    assert!(coarse.area().relative_error() <= 0.03 && fine.area().relative_error() <= 0.005);
+    assert!(fine.grid().nx() > coarse.grid().nx());
+    assert!((fine.area().fraction / coarse.area().fraction - 1.0).abs() < 0.03);
+    let map = surface.sample(square(64));
+    let error = ContactProblem::new(&map, LOAD).solve_to_area_error(0.01, &params, &Silent).expect_err("a map");
+    assert!(matches!(error, SolveError::NoWaves));
+}
+
+#[test]
+fn metres_and_pascals_go_in_through_one_conversion() {
+    let units = Units::new(
+        PeriodicCell::new(1e-2).expect("a cell"),
+        Elasticity::from_young_poisson(0.4e9, 0.45).expect("a material"),
+    );
+    let surface = surface(8);
+    let in_metres = Field::from_fn(square(128), |x, y| 1e-2 * surface.height(x, y));
+    let heights = units.heights(&in_metres).expect("a square cell");
+    let solution = solve(&heights, Control::pascals(446_395.0, units), &SolveParams::default()).expect("solvable");
+    let other = solve(surface.on(square(128)), LOAD, &SolveParams::default()).expect("solvable");
+    let (here, there) = (solution.area().fraction, other.area().fraction);
+    assert!((here / there - 1.0).abs() < 1e-5, "{here} and {there}");
+    assert!((units.pascals(solution.pressure().mean()) / 446_395.0 - 1.0).abs() < 1e-9);
+    let depth = Control::metres(units.metres(solution.info().penetration), units);
+    let again = solve(&heights, depth, &SolveParams::default()).expect("solvable");
+    assert!((again.info().mean_pressure / solution.info().mean_pressure - 1.0).abs() < 1e-3);
+}
