@@ -5,12 +5,10 @@
 use std::sync::LazyLock;
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use rc_core::{Field, Grid, HeightField, HeightSource, Operator, Silent};
+use rc_core::{Field, Grid, HeightField, Operator};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Love;
-use rc_solver::{
-    AdaptiveParams, Control, IterationParams, MultilevelOperator, UniformOperator, solve_adaptive, solve_uniform,
-};
+use rc_solver::{Control, Method, MultilevelOperator, SolveParams, UniformOperator, solve};
 
 /// The paper's surface with N = 64.
 static SURFACE: LazyLock<Surface> =
@@ -74,8 +72,8 @@ const SIDE: usize = 1024;
 fn adaptive_solve(bencher: Bencher<'_, '_>, pressure: f64) {
     let control = Control::MeanPressure(pressure);
     bencher.counter(ItemsCount::new(SIDE * SIDE)).bench(|| {
-        let source = HeightSource::Surface { surface: &*SURFACE, grid: Grid::square(SIDE).expect("a grid") };
-        solve_adaptive(source, control, &AdaptiveParams::certified(), &Silent).expect("a solvable scene")
+        let heights = SURFACE.on(Grid::square(SIDE).expect("a grid"));
+        solve(heights, control, &SolveParams::default().by(Method::Adaptive)).expect("a solvable scene")
     });
 }
 
@@ -83,7 +81,7 @@ fn adaptive_solve(bencher: Bencher<'_, '_>, pressure: f64) {
 fn uniform_solve(bencher: Bencher<'_, '_>, pressure: f64) {
     let heights: Field = SURFACE.sample(Grid::square(SIDE).expect("a grid"));
     let control = Control::MeanPressure(pressure);
-    bencher.counter(ItemsCount::new(SIDE * SIDE)).bench(|| {
-        solve_uniform(&heights, &Love, control, &IterationParams::certified(), &Silent).expect("a solvable scene")
-    });
+    bencher
+        .counter(ItemsCount::new(SIDE * SIDE))
+        .bench(|| solve(&heights, control, &SolveParams::default().by(Method::Uniform)).expect("a solvable scene"));
 }

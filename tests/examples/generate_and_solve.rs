@@ -5,26 +5,25 @@
 
 use std::error::Error;
 
-use rc_core::{Grid, HeightSource, Silent};
+use rc_core::{Grid, HeightField as _};
 use rc_fractal::{SpectrumParams, Surface};
-use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, solve_adaptive};
+use rc_solver::{Control, Solution, SolveParams};
 
 /// The paper's surface with 32 waves and seed 1, at the paper's load, on 1024 x 1024 elements.
-pub(crate) fn solve() -> Result<AdaptiveSolution, Box<dyn Error>> {
+pub(crate) fn solve() -> Result<Solution<'static>, Box<dyn Error>> {
     let surface = Surface::new(&SpectrumParams::paper(32, 1))?;
     println!("rms height {:.4e} λ, rms slope {:.4}", surface.moments().rms_height, surface.moments().rms_slope);
 
-    let source = HeightSource::Surface { surface: &surface, grid: Grid::square(1024)? };
-    let control = Control::MeanPressure(8.9e-4);
-    Ok(solve_adaptive(source, control, &AdaptiveParams::certified(), &Silent)?)
+    let heights = surface.on(Grid::square(1024)?);
+    Ok(rc_solver::solve(heights, Control::MeanPressure(8.9e-4), &SolveParams::default())?.into_owned())
 }
 
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let solution = solve()?;
     let found = solution.observables();
     println!("A/A0 = {:.4} ± {:.4}", found.area.fraction, found.area.error);
-    println!("greatest pressure {:.4} E*, mean gap {:.4e} λ", found.max_pressure, found.mean_gap);
+    println!("maximum pressure {:.4} E*, mean gap {:.4e} λ", found.max_pressure, found.mean_gap);
     println!("{} elements of {} in contact", solution.n_elements(), solution.grid());
-    println!("{:?}", solution.info.certificate);
+    println!("{:?}", solution.info().certificate);
     Ok(())
 }

@@ -6,9 +6,9 @@
 use std::error::Error;
 use std::path::Path;
 
-use rc_core::{HeightSource, Silent};
+use rc_core::{Elasticity, PeriodicCell, Units};
 use rc_heights::{Crop, Fill, Level, Periodic, Scales, Treatment, apply, read};
-use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, solve_adaptive};
+use rc_solver::{Control, Solution, SolveParams};
 
 /// Of any format of `rc_heights::Format`; this one has its heights in units of its side.
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/reference/heights-256-n32-h0.8-s101.npy");
@@ -17,7 +17,7 @@ const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/reference/heigh
 const SIDE: f64 = 1e-3;
 const E_STAR: f64 = 1e9;
 
-pub(crate) fn solve() -> Result<AdaptiveSolution, Box<dyn Error>> {
+pub(crate) fn solve() -> Result<Solution<'static>, Box<dyn Error>> {
     let map = read(Path::new(FILE))?.in_metres(Scales { height_scale: Some(SIDE), ..Scales::default() })?;
     let treatments = [
         Treatment::Crop(Crop::Square),
@@ -31,16 +31,15 @@ pub(crate) fn solve() -> Result<AdaptiveSolution, Box<dyn Error>> {
     }
     // Mirrored, the map is twice as wide as the file's.
     let side = map.sides.map_or(2.0 * SIDE, |[x, _]| x);
-    let mut heights = map.heights;
-    heights.values_mut().iter_mut().for_each(|height| *height /= side);
-    let control = Control::MeanPressure(1e6 / E_STAR);
-    Ok(solve_adaptive(HeightSource::Map(&heights), control, &AdaptiveParams::certified(), &Silent)?)
+    let units = Units::new(PeriodicCell::new(side)?, Elasticity::from_e_star(E_STAR)?);
+    let heights = units.heights(&map.heights)?;
+    Ok(rc_solver::solve(&heights, Control::pascals(1e6, units), &SolveParams::default())?.into_owned())
 }
 
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let solution = solve()?;
     let found = solution.observables();
     println!("contact area {:.2} ± {:.2} %", 100.0 * found.area.fraction, 100.0 * found.area.error);
-    println!("greatest pressure {:.3e} Pa", found.max_pressure * E_STAR);
+    println!("maximum pressure {:.3e} Pa", found.max_pressure * E_STAR);
     Ok(())
 }

@@ -5,9 +5,9 @@
 
 use std::error::Error;
 
-use rc_core::{Grid, HeightSource, Silent};
+use rc_core::{Grid, HeightField as _};
 use rc_fractal::{SpectrumParams, Surface};
-use rc_solver::{AdaptiveParams, Control, solve_adaptive};
+use rc_solver::{Control, SolveParams, solve};
 
 /// Mean pressure, contact area A/A0 and penetration.
 pub(crate) type Point = [f64; 3];
@@ -17,9 +17,9 @@ pub(crate) fn curve() -> Result<(Vec<Point>, f64), Box<dyn Error>> {
     let surface = Surface::new(&SpectrumParams::paper(16, 1))?;
     let mut points = Vec::new();
     for load in (0..7).map(|k| 1e-5 * 10_f64.powf(0.5 * f64::from(k))) {
-        let source = HeightSource::Surface { surface: &surface, grid: Grid::square(512)? };
-        let solution = solve_adaptive(source, Control::MeanPressure(load), &AdaptiveParams::certified(), &Silent)?;
-        points.push([load, solution.observables().area.fraction, solution.info.penetration]);
+        let heights = surface.on(Grid::square(512)?);
+        let solution = solve(heights, Control::MeanPressure(load), &SolveParams::default())?;
+        points.push([load, solution.area().fraction, solution.info().penetration]);
     }
     Ok((points, surface.moments().rms_slope))
 }

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use rc_core::{EdgeBias, Grid, Kernel, Silent, Symbol};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Spectral;
-use rc_solver::{Control, IterationParams, Observables, solve_uniform};
+use rc_solver::{ContactProblem, Control, SolveParams};
 
 /// A layer on a rigid base to which it sticks, loaded without friction.
 ///
@@ -65,10 +65,10 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let heights = Surface::new(&SpectrumParams::paper(16, 1))?.sample_on(Grid::square(256)?)?;
     let control = Control::MeanPressure(2e-3);
     let solve = |kernel: &dyn Kernel| -> Result<(), Box<dyn Error>> {
-        let solution = solve_uniform(&heights, kernel, control, &IterationParams::certified(), &Silent)?;
-        let found = Observables::of(&solution, kernel);
-        let (name, area) = (kernel.name(), found.area.fraction);
-        println!("{name:<14} A/A0 = {area:.4}, Δ = {:.4e} λ", solution.info.penetration);
+        let problem = ContactProblem::new(&heights, control).with_kernel(kernel);
+        let solution = problem.solve(&SolveParams::default(), &Silent).map_err(|error| error.to_string())?;
+        let (name, area) = (kernel.name(), solution.area().fraction);
+        println!("{name:<14} A/A0 = {area:.4}, Δ = {:.4e} λ", solution.info().penetration);
         Ok(())
     };
     solve(&Spectral)?;

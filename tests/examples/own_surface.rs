@@ -6,8 +6,8 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use rc_core::{Grid, HeightField, HeightSource, Silent};
-use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, solve_adaptive};
+use rc_core::{Grid, HeightField};
+use rc_solver::{Control, Solution, SolveParams};
 
 /// h(x, y) = a Σ_n 2^(-nH) [cos(2π 2^n x) + cos(2π 2^n y + n)], n from 0.
 #[derive(Clone, Copy, Debug)]
@@ -40,16 +40,16 @@ impl HeightField for Weierstrass {
     }
 }
 
-pub(crate) fn solve() -> Result<AdaptiveSolution, Box<dyn Error>> {
+pub(crate) fn solve() -> Result<Solution<'static>, Box<dyn Error>> {
     let surface = Weierstrass::default();
-    let source = HeightSource::Surface { surface: &surface, grid: Grid::square(512)? };
-    Ok(solve_adaptive(source, Control::MeanPressure(1e-3), &AdaptiveParams::certified(), &Silent)?)
+    let heights = surface.on(Grid::square(512)?);
+    Ok(rc_solver::solve(heights, Control::MeanPressure(1e-3), &SolveParams::default())?.into_owned())
 }
 
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let solution = solve()?;
     let found = solution.observables();
     println!("A/A0 = {:.4} ± {:.4}", found.area.fraction, found.area.error);
-    println!("stiffness {:.4} E*/λ, mean gap {:.4e} λ", solution.contact_stiffness(), found.mean_gap);
+    println!("stiffness {:.4} E*/λ, mean gap {:.4e} λ", solution.stiffness(), found.mean_gap);
     Ok(())
 }

@@ -6,8 +6,7 @@ use rc_core::{Field, Grid, HeightField, HeightSource, Operator, Silent};
 use rc_fractal::{Normalisation, SpectrumParams, Surface};
 use rc_kernel::Love;
 use rc_solver::{
-    AdaptiveError, AdaptiveParams, AdaptiveProblem, AdaptiveSolution, Control, Estimate, IterationParams, Observables,
-    UniformOperator, solve_adaptive, solve_uniform,
+    AdaptiveError, ContactProblem, Control, Method, Solution, SolveError, SolveParams, Status, UniformOperator, solve,
 };
 use rc_theory::hertz::PeriodicHertz;
 
@@ -23,34 +22,30 @@ fn surface(waves: usize, hurst: f64, seed: u64) -> Surface {
     Surface::new(&params).expect("a valid spectrum")
 }
 
-fn adaptive(source: HeightSource<'_>, control: Control, tolerance: f64) -> AdaptiveSolution {
-    let solve = IterationParams { tolerance, ..IterationParams::certified() };
-    let params = AdaptiveParams { solve, ..AdaptiveParams::certified() };
-    solve_adaptive(source, control, &params, &Silent).expect("a solvable scene")
+/// The parameters of the adaptive method, certified.
+fn certified() -> SolveParams {
+    SolveParams::default().by(Method::Adaptive)
 }
 
-/// Pressures on the whole grid.
-fn field(solution: &AdaptiveSolution) -> Field {
-    let mut values = Vec::with_capacity(solution.grid().len());
-    let rows = solution.pressure_rows(|_, rows| {
-        values.extend_from_slice(rows);
-        Ok::<(), ()>(())
-    });
-    rows.expect("no row fails");
-    Field::new(solution.grid(), values).expect("all rows")
+fn adaptive<'a>(source: impl Into<HeightSource<'a>>, control: Control, tolerance: f64) -> Solution<'a> {
+    solve(source, control, &SolveParams::to_tolerance(tolerance).by(Method::Adaptive)).expect("a solvable scene")
+}
+
+/// A solution on the uniform grid.
+fn on_uniform_grid(heights: &Field, control: Control, tolerance: f64) -> Solution<'_> {
+    solve(heights, control, &SolveParams::to_tolerance(tolerance).by(Method::Uniform)).expect("a solvable scene")
 }
 
 /// Area by counting and rms pressure within 0.2 %, penetration within 0.05 % of the uniform solution, at equal elements.
-fn assert_agrees_with_uniform(heights: &Field, solution: &AdaptiveSolution, control: Control) {
-    let params = IterationParams::certified();
-    let uniform = solve_uniform(heights, &Love, control, &params, &Silent).expect("a solvable scene");
-    let (of_uniform, of_adaptive) = (Observables::of(&uniform, &Love), solution.observables());
+fn assert_agrees_with_uniform(heights: &Field, solution: &Solution<'_>, control: Control) {
+    let uniform = on_uniform_grid(heights, control, 1e-6);
+    let (of_uniform, of_adaptive) = (uniform.observables(), solution.observables());
     assert_close("area by counting", of_adaptive.area.cells, of_uniform.area.cells, 2e-3);
     assert_close("area", of_adaptive.area.fraction, of_uniform.area.fraction, 2e-3);
     assert_close("rms pressure", of_adaptive.rms_pressure, of_uniform.rms_pressure, 2e-3);
-    assert_close("mean pressure", solution.info.mean_pressure, uniform.info.mean_pressure, 1e-3);
-    assert_close("penetration", solution.info.penetration, uniform.info.penetration, 5e-4);
-    assert_close("stiffness", solution.contact_stiffness(), uniform.contact_stiffness(&Love), 1e-2);
+    assert_close("mean pressure", solution.info().mean_pressure, uniform.info().mean_pressure, 1e-3);
+    assert_close("penetration", solution.info().penetration, uniform.info().penetration, 5e-4);
+    assert_close("stiffness", solution.stiffness(), uniform.stiffness(), 1e-2);
     assert_close("energy", of_adaptive.elastic_energy, of_uniform.elastic_energy, 1e-3);
 }
 
@@ -60,11 +55,7 @@ fn agrees_with_the_uniform_grid_for_all_hurst_exponents_and_loads() {
         let surface = surface(waves, hurst, 11);
         let heights = surface.sample(Grid::square(512).expect("a grid"));
         let control = Control::MeanPressure(pressure);
-        let solution = adaptive(
-            HeightSource::Surface { surface: &surface, grid: Grid::square(512).expect("a grid") },
-            control,
-            1e-6,
-        );
+        let solution = adaptive(surface.on(Grid::square(512).expect("a grid")), control, 1e-6);
         assert_agrees_with_uniform(&heights, &solution, control);
     }
 }
@@ -76,18 +67,13 @@ fn the_smallest_loads_are_not_lost() {
     let heights = surface.sample(Grid::square(512).expect("a grid"));
     for pressure in [1e-6, 1e-8, 1e-10] {
         let control = Control::MeanPressure(pressure);
-        let solution = adaptive(
-            HeightSource::Surface { surface: &surface, grid: Grid::square(512).expect("a grid") },
-            control,
-            1e-6,
-        );
-        let uniform =
-            solve_uniform(&heights, &Love, control, &IterationParams::certified(), &Silent).expect("solvable");
-        assert_close("mean pressure", solution.info.mean_pressure, pressure, 1e-10);
+        let solution = adaptive(surface.on(Grid::square(512).expect("a grid")), control, 1e-6);
+        let uniform = on_uniform_grid(&heights, control, 1e-6);
+        assert_close("mean pressure", solution.info().mean_pressure, pressure, 1e-10);
         let range = heights.max() - heights.min();
-        let difference = (solution.info.penetration - uniform.info.penetration).abs();
+        let difference = (solution.info().penetration - uniform.info().penetration).abs();
         assert!(difference < 3e-6 * range, "{pressure:e}: penetrations differ by {difference:e}");
-        assert!(10 * solution.evaluated < 512 * 512, "{pressure:e}: {} cells evaluated", solution.evaluated);
+        assert!(10 * solution.n_evaluated() < 512 * 512, "{pressure:e}: {} cells evaluated", solution.n_evaluated());
     }
 }
 
@@ -96,9 +82,8 @@ fn penetration_control_agrees_and_returns_the_penetration() {
     let surface = surface(32, 0.8, 4);
     let heights = surface.sample(Grid::square(512).expect("a grid"));
     let control = Control::Penetration(0.5 * heights.max());
-    let solution =
-        adaptive(HeightSource::Surface { surface: &surface, grid: Grid::square(512).expect("a grid") }, control, 1e-6);
-    assert_close("penetration", solution.info.penetration, 0.5 * heights.max(), 1e-9);
+    let solution = adaptive(surface.on(Grid::square(512).expect("a grid")), control, 1e-6);
+    assert_close("penetration", solution.info().penetration, 0.5 * heights.max(), 1e-9);
     assert_agrees_with_uniform(&heights, &solution, control);
 }
 
@@ -107,7 +92,7 @@ fn a_map_of_heights_goes_the_same_way() {
     let surface = surface(24, 0.8, 9);
     let heights = surface.sample(Grid::square(512).expect("a grid"));
     let control = Control::MeanPressure(MEAN_PRESSURE);
-    let of_map = adaptive(HeightSource::Map(&heights), control, 1e-6);
+    let of_map = adaptive(&heights, control, 1e-6);
     assert_agrees_with_uniform(&heights, &of_map, control);
 }
 
@@ -118,30 +103,26 @@ fn nothing_penetrates_where_nothing_was_evaluated() {
     for (seed, pressure) in [(1, 1e-4), (2, MEAN_PRESSURE), (3, 4e-3)] {
         let surface = surface(48, 0.7, seed);
         let grid = Grid::square(1024).expect("a grid");
-        let solution = adaptive(
-            HeightSource::Surface { surface: &surface, grid: Grid::square(1024).expect("a grid") },
-            Control::MeanPressure(pressure),
-            1e-6,
-        );
-        assert_eq!(solution.evaluated + solution.proven, grid.len());
+        let solution = adaptive(surface.on(Grid::square(1024).expect("a grid")), Control::MeanPressure(pressure), 1e-6);
+        assert_eq!(solution.n_evaluated() + solution.n_proven(), grid.len());
         if pressure < 1e-3 {
-            assert!(2 * solution.proven > grid.len(), "only {} of {} cells are proven", solution.proven, grid.len());
+            assert!(
+                2 * solution.n_proven() > grid.len(),
+                "only {} of {} cells are proven",
+                solution.n_proven(),
+                grid.len()
+            );
         }
-        let (p, heights) = (field(&solution), surface.sample(grid));
+        let (p, heights) = (solution.pressure(), surface.sample(grid));
         let mut v = vec![0.0; grid.len()];
         UniformOperator::new(grid, &Love).apply(p.values(), &mut v, &mut []);
-        let offset = solution.gap_offset(heights.max());
+        let offset = heights.max() - solution.info().penetration;
         let range = heights.max() - heights.min();
         let least = v.iter().zip(heights.values()).map(|(v, h)| v - h + offset).fold(f64::INFINITY, f64::min);
         // The tolerance, and the error of the multilevel operator.
         assert!(least > -1.2e-6 * range, "seed {seed}: a gap of {:e} of the height range", least / range);
-        let mut from_rows = Vec::new();
-        let rows = solution.displacement_rows(|_, rows| {
-            from_rows.extend_from_slice(rows);
-            Ok::<(), ()>(())
-        });
-        rows.expect("no row fails");
-        let worst = v.iter().zip(&from_rows).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let from_rows = solution.displacement();
+        let worst = v.iter().zip(from_rows.values()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(worst < 2e-6 * range, "displacement rows are off by {:e} of the height range", worst / range);
     }
 }
@@ -149,26 +130,20 @@ fn nothing_penetrates_where_nothing_was_evaluated() {
 #[test]
 fn gap_rows_are_displacement_less_height() {
     let surface = surface(16, 0.8, 4);
-    let (grid, params) = (Grid::square(512).expect("a grid"), AdaptiveParams::certified());
-    let source = HeightSource::Surface { surface: &surface, grid: Grid::square(512).expect("a grid") };
-    let problem = AdaptiveProblem::new(source, Control::MeanPressure(MEAN_PRESSURE), &params).expect("a valid scene");
-    let solution = problem.solve(&Silent).expect("a solvable scene");
-    let (mut gap, mut displacement) = (Vec::new(), Vec::new());
-    let rows = problem.gap_rows(&solution, |first, rows| {
+    let grid = Grid::square(512).expect("a grid");
+    let solution = adaptive(surface.on(grid), Control::MeanPressure(MEAN_PRESSURE), 1e-6);
+    let mut gap = Vec::new();
+    let rows = solution.gap_rows(|first, rows| {
         assert_eq!(first * 512, gap.len(), "rows come in order");
         gap.extend_from_slice(rows);
         Ok::<(), ()>(())
     });
     rows.expect("no row fails");
-    let rows = solution.displacement_rows(|_, rows| {
-        displacement.extend_from_slice(rows);
-        Ok::<(), ()>(())
-    });
-    rows.expect("no row fails");
+    let displacement = solution.displacement();
     assert_eq!(gap.len(), grid.len());
     let heights = surface.sample(grid);
-    let offset = solution.gap_offset(heights.max());
-    let expected = displacement.iter().zip(heights.values()).map(|(v, h)| v - h + offset);
+    let offset = heights.max() - solution.info().penetration;
+    let expected = displacement.values().iter().zip(heights.values()).map(|(v, h)| v - h + offset);
     let worst = expected.zip(&gap).map(|(expected, gap)| (expected - gap).abs()).fold(0.0, f64::max);
     // Heights on tiles are interpolated to 1e-9 of their rms.
     assert!(worst < 2e-9 * heights.rms(), "off by {worst:e}, rms height {:e}", heights.rms());
@@ -178,13 +153,11 @@ fn gap_rows_are_displacement_less_height() {
 fn tight_tolerances_are_reached() {
     let surface = surface(16, 0.8, 5);
     let control = Control::MeanPressure(MEAN_PRESSURE);
-    let solution =
-        adaptive(HeightSource::Surface { surface: &surface, grid: Grid::square(256).expect("a grid") }, control, 1e-9);
-    assert!(solution.info.certificate.penetration <= 1e-9, "{}", solution.info.certificate);
+    let solution = adaptive(surface.on(Grid::square(256).expect("a grid")), control, 1e-9);
+    assert!(solution.info().certificate.penetration <= 1e-9, "{}", solution.info().certificate);
     let heights = surface.sample(Grid::square(256).expect("a grid"));
-    let params = IterationParams { tolerance: 1e-9, ..IterationParams::certified() };
-    let uniform = solve_uniform(&heights, &Love, control, &params, &Silent).expect("a solvable scene");
-    assert_close("rms pressure", solution.observables().rms_pressure, uniform.pressure.rms(), 1e-6);
+    let uniform = on_uniform_grid(&heights, control, 1e-9);
+    assert_close("rms pressure", solution.observables().rms_pressure, uniform.pressure().rms(), 1e-6);
 }
 
 #[test]
@@ -195,12 +168,12 @@ fn a_sphere_is_hertzs() {
     let grid = Grid::square(n).expect("a grid");
     let centre = grid.centre(n / 2, n / 2).0;
     let heights = Field::from_fn(grid, |x, y| -0.5 * ((x - centre).powi(2) + (y - centre).powi(2)));
-    let solution = adaptive(HeightSource::Map(&heights), Control::MeanPressure(exact.load), 1e-7);
+    let solution = adaptive(&heights, Control::MeanPressure(exact.load), 1e-7);
     let observables = solution.observables();
     assert_close("area", observables.area.fraction, PI * 0.01, 5e-3);
-    assert_close("penetration", solution.info.penetration, exact.penetration, 5e-4);
+    assert_close("penetration", solution.info().penetration, exact.penetration, 5e-4);
     assert_close("peak pressure", observables.max_pressure, exact.peak_pressure, 5e-4);
-    assert!(4 * solution.evaluated < n * n, "{} cells evaluated", solution.evaluated);
+    assert!(4 * solution.n_evaluated() < n * n, "{} cells evaluated", solution.n_evaluated());
 }
 
 #[test]
@@ -209,11 +182,8 @@ fn results_do_not_depend_on_the_number_of_threads() {
     let solve = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         pool.install(|| {
-            field(&adaptive(
-                HeightSource::Surface { surface: &surface, grid: Grid::square(512).expect("a grid") },
-                Control::MeanPressure(MEAN_PRESSURE),
-                1e-6,
-            ))
+            let grid = Grid::square(512).expect("a grid");
+            adaptive(surface.on(grid), Control::MeanPressure(MEAN_PRESSURE), 1e-6).pressure().clone()
         })
     };
     let (one, three) = (solve(1), solve(3));
@@ -223,14 +193,10 @@ fn results_do_not_depend_on_the_number_of_threads() {
 #[test]
 fn elements_carry_the_load() {
     let surface = surface(16, 0.8, 2);
-    let solution = adaptive(
-        HeightSource::Surface { surface: &surface, grid: Grid::square(512).expect("a grid") },
-        Control::MeanPressure(MEAN_PRESSURE),
-        1e-6,
-    );
-    let load: f64 = solution.elements().map(|e| e.pressure * e.side * e.side).sum();
+    let solution = adaptive(surface.on(Grid::square(512).expect("a grid")), Control::MeanPressure(MEAN_PRESSURE), 1e-6);
+    let load: f64 = solution.elements().expect("a mesh").map(|e| e.pressure * e.side * e.side).sum();
     assert_close("load", load, MEAN_PRESSURE, 1e-10);
-    assert_eq!(solution.elements().count(), solution.n_elements());
+    assert_eq!(solution.elements().expect("a mesh").count(), solution.n_elements());
 }
 
 #[test]
@@ -238,13 +204,15 @@ fn estimates_are_right_within_a_factor_of_two() {
     let surface = surface(32, 0.8, 3);
     for pressure in [3e-4, MEAN_PRESSURE, 4e-3] {
         let control = Control::MeanPressure(pressure);
-        let source = HeightSource::Surface { surface: &surface, grid: Grid::square(1024).expect("a grid") };
-        let problem = AdaptiveProblem::new(source, control, &AdaptiveParams::certified()).expect("a valid scene");
-        let Estimate { area_fraction, tile_fraction, .. } = problem.estimate();
-        let solution = problem.solve(&Silent).expect("a solvable scene");
+        let problem = ContactProblem::new(surface.on(Grid::square(1024).expect("a grid")), control);
+        let plan = problem.plan(&certified()).expect("a valid scene");
+        let cost = plan.cost();
+        let area_fraction = cost.area_fraction.expect("the adaptive method estimates it");
+        let tile_fraction = cost.elements.expect("the adaptive method estimates them") / (1024.0 * 1024.0);
+        let solution = plan.solve(&Silent).expect("a solvable scene");
         let area = solution.observables().area.cells;
         assert!(area_fraction / area < 2.0 && area / area_fraction < 2.0, "{area_fraction} for {area}");
-        let evaluated = solution.evaluated as f64 / (1024.0 * 1024.0);
+        let evaluated = solution.n_evaluated() as f64 / (1024.0 * 1024.0);
         assert!(tile_fraction / evaluated < 2.0 && evaluated / tile_fraction < 2.0, "{tile_fraction} for {evaluated}");
     }
 }
@@ -253,25 +221,21 @@ fn estimates_are_right_within_a_factor_of_two() {
 fn what_cannot_be_done_is_said_before_any_work() {
     let surface = surface(32, 0.8, 3);
     let control = Control::MeanPressure(MEAN_PRESSURE);
-    let error = |side: usize, params: AdaptiveParams| {
-        solve_adaptive(
-            HeightSource::Surface { surface: &surface, grid: Grid::square(side).expect("a grid") },
-            control,
-            &params,
-            &Silent,
-        )
-        .expect_err("an error")
+    let refused = |source: HeightSource<'_>, params: SolveParams| match solve(source, control, &params) {
+        Err(SolveError::Adaptive(error)) => error,
+        other => panic!("not refused: {other:?}"),
     };
-    let params = AdaptiveParams::certified();
+    let error = |side: usize, params| refused(surface.on(Grid::square(side).expect("a grid")), params);
+    let params = certified();
     assert!(matches!(error(500, params), AdaptiveError::Grid { .. }), "500 does not divide into tiles twice");
-    let small = AdaptiveParams { base_side: Some(64), ..params };
+    let small = SolveParams { base_side: Some(64), ..params };
     assert!(matches!(error(1024, small), AdaptiveError::Base { waves: 32, .. }), "64 elements for 32 waves");
-    let little = AdaptiveParams { memory_limit: Some(1_000_000), ..params };
+    let little = SolveParams { memory_limit: Some(1_000_000), ..params };
     assert!(matches!(error(1024, little), AdaptiveError::Memory { limit: 1, .. }));
-    let exact = AdaptiveParams { operator_error: 1e-14, ..params };
+    let exact = SolveParams { operator_error: 1e-14, ..params };
     assert!(matches!(error(1024, exact), AdaptiveError::OperatorError { .. }));
     let flat = Field::zeros(Grid::square(512).expect("a grid"));
-    let error = solve_adaptive(HeightSource::Map(&flat), control, &params, &Silent).expect_err("an error");
+    let error = refused((&flat).into(), params);
     assert!(matches!(error, AdaptiveError::Flat), "{error}");
 }
 
@@ -279,9 +243,9 @@ fn what_cannot_be_done_is_said_before_any_work() {
 fn a_pressure_that_is_not_positive_is_refused() {
     let surface = surface(16, 0.8, 1);
     for control in [Control::MeanPressure(-1.0), Control::MeanPressure(f64::NAN), Control::Penetration(1.0)] {
-        let source = HeightSource::Surface { surface: &surface, grid: Grid::square(256).expect("a grid") };
-        let error = solve_adaptive(source, control, &AdaptiveParams::certified(), &Silent).expect_err("an error");
-        assert!(matches!(error, AdaptiveError::Solve(_)), "{control:?}: {error}");
+        let source = surface.on(Grid::square(256).expect("a grid"));
+        let error = solve(source, control, &certified()).expect_err("an error");
+        assert!(matches!(error, SolveError::Problem(_)), "{control:?}: {error}");
     }
 }
 
@@ -291,32 +255,28 @@ fn a_pressure_that_is_not_positive_is_refused() {
 fn border_levels_refine_edges_only() {
     let surface = surface(8, 0.8, 1);
     let control = Control::MeanPressure(MEAN_PRESSURE);
-    let solve = |side: usize, border_level: usize| {
-        let params = AdaptiveParams { border_level, ..AdaptiveParams::certified() };
-        solve_adaptive(
-            HeightSource::Surface { surface: &surface, grid: Grid::square(side).expect("a grid") },
-            control,
-            &params,
-            &Silent,
-        )
-        .expect("a solvable scene")
+    let with_border = |side: usize, border_level: usize| {
+        let params = SolveParams { border_level, ..certified() };
+        solve(surface.on(Grid::square(side).expect("a grid")), control, &params).expect("a solvable scene")
     };
     let mut counts = Vec::new();
     for border_level in 1..=4 {
-        let (edges, everywhere) = (solve(256, border_level), solve(256 << border_level, 0));
+        let (edges, everywhere) = (with_border(256, border_level), with_border(256 << border_level, 0));
         let (of_edges, of_all) = (edges.observables(), everywhere.observables());
         assert_close("area by counting", of_edges.area.cells, of_all.area.cells, 2e-3);
         assert_close("area", of_edges.area.fraction, of_all.area.fraction, 2e-3);
         assert_close("rms pressure", of_edges.rms_pressure, of_all.rms_pressure, 2e-3);
-        assert_close("penetration", edges.info.penetration, everywhere.info.penetration, 5e-4);
-        assert_close("stiffness", edges.contact_stiffness(), everywhere.contact_stiffness(), 1e-2);
+        assert_close("penetration", edges.info().penetration, everywhere.info().penetration, 5e-4);
+        assert_close("stiffness", edges.stiffness(), everywhere.stiffness(), 1e-2);
         assert_eq!(edges.grid().nx(), 256);
-        assert_close("mean pressure on the grid", field(&edges).mean(), MEAN_PRESSURE, 1e-12);
-        let load: f64 = edges.elements().map(|element| element.pressure * element.side * element.side).sum();
+        assert_close("mean pressure on the grid", edges.pressure().mean(), MEAN_PRESSURE, 1e-12);
+        let load: f64 =
+            edges.elements().expect("a mesh").map(|element| element.pressure * element.side * element.side).sum();
         assert_close("mean pressure of the elements", load, MEAN_PRESSURE, 1e-12);
         counts.push((edges.n_elements() as f64, of_edges.area.cells));
         if border_level == 4 {
-            let with_side = |n: f64| edges.elements().filter(|e| e.side.to_bits() == n.recip().to_bits()).count();
+            let with_side =
+                |n: f64| edges.elements().expect("a mesh").filter(|e| e.side.to_bits() == n.recip().to_bits()).count();
             assert!(with_side(4096.0) > with_side(2048.0) && with_side(1024.0) > 0, "elements are coarser inside");
             assert!(4 * edges.n_elements() < everywhere.n_elements(), "{}", edges.n_elements());
         }
@@ -335,18 +295,12 @@ fn border_levels_refine_edges_only() {
 fn nothing_penetrates_between_coarse_elements() {
     let surface = surface(24, 0.7, 5);
     let control = Control::MeanPressure(MEAN_PRESSURE);
-    let params = AdaptiveParams { border_level: 2, ..AdaptiveParams::certified() };
-    let solution = solve_adaptive(
-        HeightSource::Surface { surface: &surface, grid: Grid::square(256).expect("a grid") },
-        control,
-        &params,
-        &Silent,
-    )
-    .expect("solvable");
+    let params = SolveParams { border_level: 2, ..certified() };
+    let solution = solve(surface.on(Grid::square(256).expect("a grid")), control, &params).expect("solvable");
     // The pressure of every element, on the grid of the smallest.
     let grid = Grid::square(1024).expect("a grid");
     let mut pressure = vec![0.0; grid.len()];
-    for element in solution.elements() {
+    for element in solution.elements().expect("a mesh") {
         let n = (element.side * 1024.0).round() as usize;
         let corner = |centre: f64| ((centre - 0.5 * element.side) * 1024.0).round() as usize;
         for row in 0..n {
@@ -358,7 +312,7 @@ fn nothing_penetrates_between_coarse_elements() {
     let mut displacement = vec![0.0; grid.len()];
     operator.apply(&pressure, &mut displacement, &mut vec![0.0; operator.scratch_len()]);
     let heights = surface.sample(grid);
-    let offset = heights.max() - solution.info.penetration;
+    let offset = heights.max() - solution.info().penetration;
     let range = heights.max() - heights.min();
     let free = displacement.iter().zip(heights.values()).zip(&pressure).filter(|&(_, &p)| p == 0.0);
     let least = free.map(|((v, h), _)| v - h + offset).fold(f64::INFINITY, f64::min);
@@ -372,17 +326,12 @@ fn loads_far_beyond_full_contact_are_solved() {
     let heights = surface.sample(Grid::square(256).expect("a grid"));
     for pressure in [1.0, 2.0, 1e3, 1e6] {
         let control = Control::MeanPressure(pressure);
-        let solution = adaptive(
-            HeightSource::Surface { surface: &surface, grid: Grid::square(256).expect("a grid") },
-            control,
-            1e-6,
-        );
-        assert!(solution.is_full_contact(), "{pressure:e}: contact is not full");
-        let exact =
-            solve_uniform(&heights, &Love, control, &IterationParams::certified(), &Silent).expect("full contact");
-        let scale = (exact.pressure.max() - exact.pressure.min()).max(1e-15 * pressure);
-        let adaptive = field(&solution);
-        let differences = adaptive.values().iter().zip(exact.pressure.values()).map(|(a, b)| (a - b).abs());
+        let solution = adaptive(surface.on(Grid::square(256).expect("a grid")), control, 1e-6);
+        assert_eq!(solution.status(), Status::FullContact, "{pressure:e}");
+        let exact = on_uniform_grid(&heights, control, 1e-6);
+        let exact = exact.pressure();
+        let scale = (exact.max() - exact.min()).max(1e-15 * pressure);
+        let differences = solution.pressure().values().iter().zip(exact.values()).map(|(a, b)| (a - b).abs());
         let worst = differences.fold(0.0, f64::max);
         // The tolerance is on heights; the shortest waves need the largest pressures for the same height.
         assert!(worst <= 1e-3 * scale, "{pressure:e}: off by {worst:e} of {scale:e}");
@@ -396,12 +345,12 @@ fn a_contact_that_coarser_levels_lose_is_found_again() {
     let step = Field::from_fn(grid, |x, _| if x < 0.5 { 0.0 } else { 1e-2 });
     let (heights, pressure) = (step, 1e-4);
     let control = Control::MeanPressure(pressure);
-    let solution = adaptive(HeightSource::Map(&heights), control, 1e-6);
-    assert_close("mean pressure", solution.info.mean_pressure, pressure, 1e-10);
+    let solution = adaptive(&heights, control, 1e-6);
+    assert_close("mean pressure", solution.info().mean_pressure, pressure, 1e-10);
     // Not the located edges: at a sharp edge the pressure does not end as a root, and only the count means anything.
-    let uniform = solve_uniform(&heights, &Love, control, &IterationParams::certified(), &Silent).expect("solvable");
-    let (of_uniform, of_adaptive) = (Observables::of(&uniform, &Love), solution.observables());
+    let uniform = on_uniform_grid(&heights, control, 1e-6);
+    let (of_uniform, of_adaptive) = (uniform.observables(), solution.observables());
     assert_close("area by counting", of_adaptive.area.cells, of_uniform.area.cells, 2e-3);
     assert_close("rms pressure", of_adaptive.rms_pressure, of_uniform.rms_pressure, 2e-3);
-    assert_close("penetration", solution.info.penetration, uniform.info.penetration, 5e-4);
+    assert_close("penetration", solution.info().penetration, uniform.info().penetration, 5e-4);
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rc_core::{Field, Grid};
 use rc_kernel::Love;
-use rc_solver::{Control, Observables};
+use rc_solver::Control;
 use rc_theory::bisinusoidal::BiSinusoidal;
 
 use crate::{assert_close, data_path, solved};
@@ -23,7 +23,7 @@ fn bisinusoidal_contact_matches_the_table() {
     for row in rows {
         let [fraction, area, mean_gap, peak] = row[..] else { panic!("four columns") };
         let solution = solved(&heights, &Love, Control::MeanPressure(fraction * full_contact), 1e-8);
-        let observed = Observables::of(&solution, &Love);
+        let observed = solution.observables();
         let gap_error = (observed.mean_gap / AMPLITUDE - mean_gap).abs();
         assert!(gap_error <= 1e-3, "P = {fraction}: mean gap {} D, table {mean_gap} D", observed.mean_gap / AMPLITUDE);
         assert_close(&format!("P = {fraction}: peak pressure"), observed.max_pressure / full_contact, peak, 2e-3);

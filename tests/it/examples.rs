@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use rc_core::testing::{check_height_field, check_kernel};
-use rc_core::{Field, Grid, HeightField as _, Kernel as _, Silent};
-use rc_solver::{Control, IterationParams, solve_uniform};
+use rc_core::{Field, Grid, HeightField as _, Kernel as _};
+use rc_solver::Control;
 
-use crate::assert_close;
+use crate::{assert_close, solved};
 
 #[path = "../examples/generate_and_solve.rs"]
 mod generate_and_solve;
@@ -33,14 +33,14 @@ fn the_first_example_solves_a_surface_like_the_papers() {
     let solution = generate_and_solve::solve().expect("solvable");
     let area = solution.observables().area;
     assert!((0.07..0.09).contains(&area.fraction), "A/A0 = {}", area.fraction);
-    assert!(solution.info.certificate.complementarity <= 1e-6 && solution.info.certificate.load <= 1e-10);
+    assert!(solution.info().certificate.complementarity <= 1e-6 && solution.info().certificate.load <= 1e-10);
 }
 
 /// The same numbers in pascals: p = 1e6 Pa at E* = 1e9 Pa is σ0/E* = 1e-3.
 #[test]
 fn the_height_map_carries_its_load() {
     let solution = height_map::solve().expect("solvable");
-    assert_close("mean pressure", solution.info.mean_pressure, 1e-3, 1e-10);
+    assert_close("mean pressure", solution.info().mean_pressure, 1e-3, 1e-10);
     assert_eq!(solution.grid(), Grid::square(512).expect("a grid"), "mirrored once");
 }
 
@@ -81,8 +81,8 @@ fn a_wave_on_a_thin_layer_is_pressed_as_on_springs() {
     let heights = Field::from_fn(grid, |x, _| amplitude * (TAU * x).cos());
     let compliance = thin.symbol(grid)(1, 0);
     let control = Control::MeanPressure(2.0 * amplitude / compliance);
-    let solution = solve_uniform(&heights, &thin, control, &IterationParams::certified(), &Silent).expect("solvable");
-    let swing = solution.pressure.max() - solution.pressure.mean();
+    let solution = solved(&heights, &thin, control, 1e-6);
+    let swing = solution.pressure().max() - solution.pressure().mean();
     let highest = (TAU * 0.5 / 64.0).cos();
     assert_close("swing of the pressure", swing, amplitude * highest / compliance, 1e-9);
 }
@@ -91,8 +91,8 @@ fn a_wave_on_a_thin_layer_is_pressed_as_on_springs() {
 fn the_own_surface_is_solved() {
     check_height_field(&own_surface::Weierstrass::default());
     let solution = own_surface::solve().expect("solvable");
-    assert_close("mean pressure", solution.info.mean_pressure, 1e-3, 1e-10);
+    assert_close("mean pressure", solution.info().mean_pressure, 1e-3, 1e-10);
     let heights = own_surface::Weierstrass::default().sample(solution.grid());
     let full = heights.max() - heights.mean();
-    assert_close("penetration of full contact", solution.info.penetration_full_contact, full, 1e-12);
+    assert_close("penetration of full contact", solution.info().penetration_full_contact, full, 1e-12);
 }

@@ -17,17 +17,18 @@ mod westergaard;
 use std::path::{Path, PathBuf};
 
 use rc_core::{Field, Kernel, Silent};
-use rc_solver::{Control, GridSolution, IterationParams, solve_uniform};
+use rc_solver::{ContactProblem, Control, Method, Solution, SolveParams};
 
 /// A file of the repository's `data/`.
 fn data_path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../data").join(name)
 }
 
-/// A solution to `tolerance`, or a failed test.
-fn solved(heights: &Field, kernel: &dyn Kernel, control: Control, tolerance: f64) -> GridSolution {
-    let params = IterationParams { tolerance, ..IterationParams::certified() };
-    solve_uniform(heights, kernel, control, &params, &Silent).unwrap_or_else(|error| panic!("{control:?}: {error}"))
+/// A solution on the uniform grid to `tolerance`, or a failed test.
+fn solved(heights: &Field, kernel: &dyn Kernel, control: Control, tolerance: f64) -> Solution<'static> {
+    let params = SolveParams::to_tolerance(tolerance).by(Method::Uniform);
+    let solution = ContactProblem::new(heights, control).with_kernel(kernel).solve(&params, &Silent);
+    solution.unwrap_or_else(|error| panic!("{control:?}: {error}")).into_owned()
 }
 
 /// Fails unless `value` is within `relative` of `reference`.

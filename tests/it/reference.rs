@@ -1,11 +1,11 @@
 //! Cases solved to 1e-10 by two independent programs (`data/reference/README.md`).
 
-use rc_core::{Field, Grid, Silent};
+use rc_core::{Field, Grid};
 use rc_kernel::Spectral;
-use rc_solver::{Control, IterationParams, Observables, solve_uniform};
+use rc_solver::Control;
 use serde::Deserialize;
 
-use crate::data_path;
+use crate::{data_path, solved};
 
 #[derive(Deserialize)]
 struct Case {
@@ -38,12 +38,11 @@ fn assert_close(what: &str, case: usize, value: f64, reference: f64, relative: f
 fn spectral_solutions_agree_with_independent_programs() {
     let text = std::fs::read_to_string(data_path("reference/spectral-256.json")).expect("reference cases");
     let cases: Vec<Case> = serde_json::from_str(&text).expect("reference cases parse");
-    let params = IterationParams { tolerance: 1e-9, ..IterationParams::certified() };
     for (number, case) in cases.iter().enumerate() {
         let heights = heights(&case.heights);
         let control = Control::MeanPressure(case.mean_pressure);
-        let solution = solve_uniform(&heights, &Spectral, control, &params, &Silent).expect("solvable");
-        let observed = Observables::of(&solution, &Spectral);
+        let solution = solved(&heights, &Spectral, control, 1e-9);
+        let observed = solution.observables();
         let area = observed.area.cells;
         assert!((area - case.area_fraction_cells).abs() <= 2e-4, "case {number}: area {area}");
         let edges = observed.area.perimeter_edges.abs_diff(case.perimeter_edges);
@@ -51,7 +50,7 @@ fn spectral_solutions_agree_with_independent_programs() {
         assert_close("h_max", number, heights.max(), case.h_max, 1e-14);
         assert_close("rms pressure", number, observed.rms_pressure, case.rms_pressure, 1e-6);
         assert_close("max pressure", number, observed.max_pressure, case.max_pressure, 1e-5);
-        assert_close("penetration", number, solution.info.penetration, case.penetration, 1e-6);
+        assert_close("penetration", number, solution.info().penetration, case.penetration, 1e-6);
         assert!((observed.mean_gap - case.mean_gap).abs() <= 1e-6 * case.h_max, "case {number}: mean gap");
     }
 }

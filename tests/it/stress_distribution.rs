@@ -2,19 +2,20 @@
 
 use std::f64::consts::{PI, TAU};
 
-use rc_core::{Field, Grid, Silent};
+use rc_core::{Field, Grid};
 use rc_kernel::Love;
-use rc_solver::{Control, GridSolution, IterationParams, StressDistribution, solve_uniform};
+use rc_solver::{Control, Solution, StressDistribution};
 use rc_theory::hertz::{PeriodicContact, PeriodicHertz};
 use rc_theory::westergaard::Westergaard;
 
-fn solve(heights: &Field, mean_pressure: f64) -> GridSolution {
-    let params = IterationParams { tolerance: 1e-9, ..IterationParams::certified() };
-    solve_uniform(heights, &Love, Control::MeanPressure(mean_pressure), &params, &Silent).expect("a solvable scene")
+use crate::solved;
+
+fn solve(heights: &Field, mean_pressure: f64) -> Solution<'static> {
+    solved(heights, &Love, Control::MeanPressure(mean_pressure), 1e-9)
 }
 
 /// A sphere with its apex `offset` elements from a corner of elements, 51 elements per contact radius.
-fn sphere(offset: f64) -> (GridSolution, PeriodicContact) {
+fn sphere(offset: f64) -> (Solution<'static>, PeriodicContact) {
     let exact = PeriodicHertz { radius: 1.0 }.at_contact_radius(0.1).expect("a small contact");
     let n = 512;
     let apex = 0.5 + offset / n as f64;
@@ -29,7 +30,7 @@ fn the_stress_of_a_sphere_starts_linearly() {
     for offset in [0.0, 0.3, 0.5] {
         let (solution, exact) = sphere(offset);
         let edges: Vec<f64> = (0..10).map(|k| 0.1 * f64::from(k) * exact.peak_pressure).collect();
-        let found = StressDistribution::of(&solution.pressure, &edges);
+        let found = StressDistribution::of(solution.pressure(), &edges);
         let area = PI * exact.contact_radius.powi(2);
         for (bin, density) in found.density.iter().enumerate() {
             let expected = area * (edges[bin] + edges[bin + 1]) / exact.peak_pressure.powi(2);
@@ -49,9 +50,9 @@ fn a_histogram_of_elements_does_not() {
     let width = 0.02 * exact.peak_pressure;
     let area = PI * exact.contact_radius.powi(2);
     let expected = area * 0.02 * 0.02;
-    let n = solution.pressure.values().iter().filter(|&&p| p > 0.0 && p < width).count();
-    let counted = n as f64 / solution.pressure.grid().len() as f64;
-    let found = StressDistribution::of(&solution.pressure, &[0.0, width]).density[0] * width;
+    let n = solution.pressure().values().iter().filter(|&&p| p > 0.0 && p < width).count();
+    let counted = n as f64 / solution.pressure().grid().len() as f64;
+    let found = StressDistribution::of(solution.pressure(), &[0.0, width]).density[0] * width;
     assert!((found / expected - 1.0).abs() < 0.06, "{found:e} against {expected:e}");
     assert!(!(0.5..2.0).contains(&(counted / expected)), "counting gives {counted:e}, {expected:e} is right");
 }
@@ -65,7 +66,7 @@ fn the_stress_of_a_wave_is_exact_in_every_bin() {
     let solution = solve(&heights, mean_pressure);
     let peak = wave.peak_pressure(mean_pressure);
     let edges: Vec<f64> = (0..10).map(|k| 0.1 * f64::from(k) * peak).collect();
-    let found = StressDistribution::of(&solution.pressure, &edges);
+    let found = StressDistribution::of(solution.pressure(), &edges);
     // The pressure falls from the middle of the contact to its edge: the place of a stress by bisection.
     let place = |stress: f64| {
         let (mut inside, mut outside) = (0.0, 0.5);

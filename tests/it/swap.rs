@@ -3,7 +3,7 @@
 use rc_core::testing::{check_height_field, check_kernel};
 use rc_core::{EdgeBias, Field, Grid, HeightField, Kernel, Silent, Symbol};
 use rc_kernel::Love;
-use rc_solver::{Control, IterationError, IterationParams, Status, solve_uniform};
+use rc_solver::{ContactProblem, Control, MethodReason, SolveError, SolveParams, Status};
 
 use crate::examples::own_kernel::BondedLayer;
 use crate::examples::own_surface::Weierstrass;
@@ -19,14 +19,14 @@ fn own_surface_and_own_half_space_drive_the_solver() {
     check_kernel(&layer);
     check_height_field(&Weierstrass::default());
     let heights = heights(128);
-    let solve = |kernel: &dyn Kernel| {
-        let params = IterationParams::certified();
-        solve_uniform(&heights, kernel, Control::MeanPressure(5e-4), &params, &Silent).expect("solvable")
-    };
-    let (thin, thick) = (solve(&layer), solve(&rc_kernel::Spectral));
-    assert_eq!((thin.status, thick.status), (Status::Converged, Status::Converged));
+    let problem = ContactProblem::new(&heights, Control::MeanPressure(5e-4));
+    let solve =
+        |problem: ContactProblem<'_>| problem.solve(&SolveParams::default(), &Silent).expect("solvable").into_owned();
+    let (thin, thick) = (solve(problem.with_kernel(&layer)), solve(problem.with_kernel(&rc_kernel::Spectral)));
+    assert_eq!((thin.status(), thick.status()), (Status::Converged, Status::Converged));
+    assert_eq!(thin.reason(), &MethodReason::NoSplitOfKernel { kernel: "bonded-layer" });
     // A thin layer on a rigid base yields less than a half-space, so the same load penetrates less.
-    let (a, b) = (thin.info.penetration, thick.info.penetration);
+    let (a, b) = (thin.info().penetration, thick.info().penetration);
     assert!(a < 0.9 * b, "layer {a:e}, half-space {b:e}");
 }
 
@@ -57,8 +57,9 @@ fn a_half_space_that_answers_nan_is_an_error_and_no_contact() {
     for eigenvalue in [f64::NAN, f64::INFINITY] {
         let kernel = Broken { eigenvalue };
         for control in [Control::MeanPressure(1e-4), Control::MeanPressure(10.0), Control::Penetration(0.3 * depth)] {
-            let solved = solve_uniform(&heights, &kernel, control, &IterationParams::certified(), &Silent);
-            let error = solved.err().map(|error| matches!(error, IterationError::NotConverged { .. }));
+            let problem = ContactProblem::new(&heights, control).with_kernel(&kernel);
+            let solved = problem.solve(&SolveParams::default(), &Silent);
+            let error = solved.err().map(|error| matches!(error, SolveError::NotConverged { .. }));
             assert_eq!(error, Some(true), "{eigenvalue}, {control:?}");
         }
     }

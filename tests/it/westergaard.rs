@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rc_core::{Field, Grid, Kernel};
 use rc_kernel::{Love, Spectral};
-use rc_solver::{ContactArea, Control, GridSolution};
+use rc_solver::{ContactArea, Control, Solution};
 use rc_theory::westergaard::Westergaard;
 
 use crate::{assert_close, solved};
@@ -18,21 +18,21 @@ fn wave(n: usize, along_x: bool) -> Field {
 }
 
 /// Relative L2 error of the pressure.
-fn pressure_error(solution: &GridSolution, theory: Westergaard, mean_pressure: f64, along_x: bool) -> f64 {
+fn pressure_error(solution: &Solution<'_>, theory: Westergaard, mean_pressure: f64, along_x: bool) -> f64 {
     let exact =
-        Field::from_fn(solution.pressure.grid(), |x, y| theory.pressure(if along_x { x } else { y }, mean_pressure));
-    let difference: Vec<f64> = solution.pressure.values().iter().zip(exact.values()).map(|(p, e)| p - e).collect();
+        Field::from_fn(solution.pressure().grid(), |x, y| theory.pressure(if along_x { x } else { y }, mean_pressure));
+    let difference: Vec<f64> = solution.pressure().values().iter().zip(exact.values()).map(|(p, e)| p - e).collect();
     Field::new(exact.grid(), difference).expect("same grid").rms() / exact.rms()
 }
 
 /// Contact width with the edges located between centres. Counting elements leaves an uncertainty of an element. At an edge
 /// p = c √s inside and g = (4c/3) s^{3/2} outside, with s the distance and the same c, so the last pressure inside and the
 /// first gap outside, one element apart, determine both.
-fn contact_width(solution: &GridSolution, along_x: bool) -> f64 {
-    let n = solution.pressure.grid().nx();
+fn contact_width(solution: &Solution<'_>, along_x: bool) -> f64 {
+    let n = solution.pressure().grid().nx();
     let line =
         |field: &Field| -> Vec<f64> { (0..n).map(|i| if along_x { field.at(i, 0) } else { field.at(0, i) }).collect() };
-    let (pressure, gap) = (line(&solution.pressure), line(&solution.gap));
+    let (pressure, gap) = (line(solution.pressure()), line(solution.gap()));
     // The crest is at the ends of the cell, so contact is [0, a) and (1 - a, 1).
     let edge = |at: &dyn Fn(usize) -> usize| {
         let first_out = (0..n).find(|&i| pressure[at(i)] <= 0.0).expect("partial contact");
@@ -63,9 +63,9 @@ fn waves_along_x_and_along_y_match_westergaard() {
                 let width = theory.area_fraction(mean_pressure);
                 assert_close("contact width", contact_width(&solution, along_x), width, 5e-3);
                 // The crest lies between two centres: Δ from the crest itself.
-                let penetration = solution.info.penetration + AMPLITUDE - heights.max();
+                let penetration = solution.info().penetration + AMPLITUDE - heights.max();
                 assert_close("penetration", penetration, theory.penetration(mean_pressure), 1e-4);
-                assert_close("energy", solution.info.elastic_energy, theory.energy(mean_pressure), 5e-4);
+                assert_close("energy", solution.info().elastic_energy, theory.energy(mean_pressure), 5e-4);
             }
         }
     }
@@ -81,7 +81,7 @@ fn penetration_control_finds_the_mean_pressure() {
         let missing = AMPLITUDE - heights.max();
         let penetration = theory.penetration(mean_pressure) - missing;
         let solution = solved(&heights, &Spectral, Control::Penetration(penetration), 1e-9);
-        assert_close("mean pressure", solution.info.mean_pressure, mean_pressure, 3e-4);
+        assert_close("mean pressure", solution.info().mean_pressure, mean_pressure, 3e-4);
     }
 }
 
@@ -97,7 +97,7 @@ fn error_falls_with_the_grid() {
         // The square root at the edge limits the L2 error to first order; eight times finer must gain at least four.
         assert!(errors[3] < 0.25 * errors[0], "{}: {errors:?}", kernel.name());
         let solution = solved(&wave(512, true), kernel, Control::MeanPressure(mean_pressure), 1e-9);
-        let area = ContactArea::of(&solution.pressure, &solution.gap, kernel.edge_bias());
+        let area = ContactArea::of(solution.pressure(), solution.gap(), kernel.edge_bias());
         assert!((area.cells - theory.area_fraction(mean_pressure)).abs() <= 2.0 / 512.0, "{area:?}");
     }
 }
