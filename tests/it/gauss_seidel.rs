@@ -1,6 +1,6 @@
 //! The paper's procedure on its adaptive mesh: Hertz with the paper's parameters, and a rough surface.
 
-use rc_core::{Field, Grid, Kernel as _, Silent};
+use rc_core::{DVec2, Field, Grid, Kernel as _, Silent};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::{Love, PeriodicLove};
 use rc_solver::{ContactArea, Control, GaussSeidelParams, Solution, solve_gauss_seidel};
@@ -10,7 +10,7 @@ use crate::{assert_close, solved};
 
 fn by_the_paper(heights: &Field, control: Control, tolerance: f64) -> Solution {
     let periodic = PeriodicLove::new();
-    let coefficient = |dx: f64, dy: f64, half_side: f64| periodic.coefficient(dx, dy, half_side);
+    let coefficient = |offset: DVec2, half_side: f64| periodic.coefficient(offset, half_side);
     let params = GaussSeidelParams { tolerance, ..GaussSeidelParams::paper() };
     solve_gauss_seidel(heights, &Love, &coefficient, control, &params, &Silent)
         .unwrap_or_else(|error| panic!("{control:?}: {error}"))
@@ -29,7 +29,7 @@ fn papers_sphere_on_the_adaptive_mesh_matches_periodic_hertz() {
     let grid = Grid::square(512).expect("grid");
     // At the centre of a block of eight elements, so that a large element sits on the peak and not four around it.
     let centre = 260.0 / 512.0;
-    let heights = Field::from_fn(grid, |x, y| -0.5 * ((x - centre).powi(2) + (y - centre).powi(2)));
+    let heights = Field::from_fn(grid, |DVec2 { x, y }| -0.5 * ((x - centre).powi(2) + (y - centre).powi(2)));
     // Centres of elements miss the apex, so h_max of the grid is that much lower.
     let solution = by_the_paper(&heights, Control::Penetration(2.5e-3 + heights.max()), 1e-7);
     let elements = solution.elements.as_ref().expect("a mesh");
