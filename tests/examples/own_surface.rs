@@ -6,7 +6,7 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use rc_core::{Grid, HeightField};
+use rc_core::{DVec2, Grid, HeightField};
 use rc_solver::{Control, Solution, SolveParams};
 
 /// h(x, y) = a Σ_n 2^(-nH) [cos(2π 2^n x) + cos(2π 2^n y + n)], n from 0.
@@ -27,7 +27,7 @@ impl Default for Weierstrass {
 }
 
 impl HeightField for Weierstrass {
-    fn height(&self, x: f64, y: f64) -> f64 {
+    fn height(&self, DVec2 { x, y }: DVec2) -> f64 {
         let octave = |n: u32| {
             let waves = TAU * f64::from(1_u32 << n);
             2_f64.powf(-f64::from(n) * self.hurst) * ((waves * x).cos() + (waves * y + f64::from(n)).cos())

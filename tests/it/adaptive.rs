@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use rc_core::{Field, Grid, HeightField, HeightSource, Operator, Silent};
+use rc_core::{DVec2, Field, Grid, HeightField, HeightSource, Operator, Silent};
 use rc_fractal::{Normalisation, SpectrumParams, Surface};
 use rc_kernel::Love;
 use rc_solver::{
@@ -166,8 +166,8 @@ fn a_sphere_is_hertzs() {
     let exact = PeriodicHertz { radius: 1.0 }.at_contact_radius(0.1).expect("a small contact");
     let n = 1024;
     let grid = Grid::square(n).expect("a grid");
-    let centre = grid.centre(n / 2, n / 2).0;
-    let heights = Field::from_fn(grid, |x, y| -0.5 * ((x - centre).powi(2) + (y - centre).powi(2)));
+    let centre = grid.centre(n / 2, n / 2).x;
+    let heights = Field::from_fn(grid, |DVec2 { x, y }| -0.5 * ((x - centre).powi(2) + (y - centre).powi(2)));
     let solution = adaptive(&heights, Control::MeanPressure(exact.load), 1e-7);
     let observables = solution.observables();
     assert_close("area", observables.area.fraction, PI * 0.01, 5e-3);
@@ -342,7 +342,7 @@ fn loads_far_beyond_full_contact_are_solved() {
 #[test]
 fn a_contact_that_coarser_levels_lose_is_found_again() {
     let grid = Grid::square(128).expect("a grid");
-    let step = Field::from_fn(grid, |x, _| if x < 0.5 { 0.0 } else { 1e-2 });
+    let step = Field::from_fn(grid, |at| if at.x < 0.5 { 0.0 } else { 1e-2 });
     let (heights, pressure) = (step, 1e-4);
     let control = Control::MeanPressure(pressure);
     let solution = adaptive(&heights, control, 1e-6);

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use rc_core::{Field, Grid};
+use rc_core::{DVec2, Field, Grid};
 use rc_kernel::Love;
 use rc_solver::Control;
 use rc_theory::bisinusoidal::BiSinusoidal;
@@ -14,7 +14,7 @@ const AMPLITUDE: f64 = 1e-2;
 #[test]
 fn bisinusoidal_contact_matches_the_table() {
     let grid = Grid::square(512).expect("grid");
-    let heights = Field::from_fn(grid, |x, y| AMPLITUDE * (TAU * x).cos() * (TAU * y).cos());
+    let heights = Field::from_fn(grid, |DVec2 { x, y }| AMPLITUDE * (TAU * x).cos() * (TAU * y).cos());
     let full_contact = BiSinusoidal { amplitude: AMPLITUDE }.full_contact_pressure();
     let text = std::fs::read_to_string(data_path("reference/bisinusoidal.csv")).expect("table");
     let rows: Vec<Vec<f64>> =

@@ -1,6 +1,6 @@
 //! The estimate of the contact area against exact contacts, beside counting elements.
 
-use rc_core::{Field, Grid, Kernel};
+use rc_core::{DVec2, Field, Grid, Kernel};
 use rc_kernel::{Love, Spectral};
 use rc_solver::{ContactArea, Control};
 use rc_theory::elliptic::EllipticContact;
@@ -12,7 +12,7 @@ use crate::solved;
 /// Heights -(A x² + B y²) about a point near the middle of the cell, turned by `angle`.
 fn paraboloid(n: usize, [a, b]: [f64; 2], (x0, y0): (f64, f64), angle: f64) -> Field {
     let (sin, cos) = angle.sin_cos();
-    Field::from_fn(Grid::square(n).expect("grid"), |x, y| {
+    Field::from_fn(Grid::square(n).expect("grid"), |DVec2 { x, y }| {
         let (x, y) = (x - 0.5 - x0, y - 0.5 - y0);
         let (along, across) = (cos * x + sin * y, cos * y - sin * x);
         -(a * along * along + b * across * across)
@@ -76,7 +76,7 @@ fn of_strips_along_the_elements_half_the_count_s_error_is_left() {
         for shift in [0.0, 0.3, 0.5] {
             let pressure = wave.full_contact_pressure() * f64::sin(0.5 * std::f64::consts::PI * fraction).powi(2);
             let heights =
-                Field::from_fn(grid, |x, _| 0.01 * (std::f64::consts::TAU * (x - 0.5 - shift / n as f64)).cos());
+                Field::from_fn(grid, |at| 0.01 * (std::f64::consts::TAU * (at.x - 0.5 - shift / n as f64)).cos());
             for kernel in [&Love as &dyn Kernel, &Spectral] {
                 let [found, counted, _] = errors(&heights, kernel, pressure, fraction);
                 let bound = 0.5 * counted.abs() + 0.01;

@@ -78,7 +78,7 @@ fn a_wave_on_a_thin_layer_is_pressed_as_on_springs() {
     let thin = own_kernel::BondedLayer { thickness: 1e-3, poisson: 0.3 };
     let grid = Grid::square(64).expect("a grid");
     let amplitude = 1e-4;
-    let heights = Field::from_fn(grid, |x, _| amplitude * (TAU * x).cos());
+    let heights = Field::from_fn(grid, |at| amplitude * (TAU * at.x).cos());
     let compliance = thin.symbol(grid)(1, 0);
     let control = Control::MeanPressure(2.0 * amplitude / compliance);
     let solution = solved(&heights, &thin, control, 1e-6);

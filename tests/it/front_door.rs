@@ -160,7 +160,7 @@ fn metres_and_pascals_go_in_through_one_conversion() {
         Elasticity::from_young_poisson(0.4e9, 0.45).expect("a material"),
     );
     let surface = surface(8);
-    let in_metres = Field::from_fn(square(128), |x, y| 1e-2 * surface.height(x, y));
+    let in_metres = Field::from_fn(square(128), |at| 1e-2 * surface.height(at));
     let heights = units.heights(&in_metres).expect("a square cell");
     let solution = solve(&heights, Control::pascals(446_395.0, units), &SolveParams::default()).expect("solvable");
     let other = solve(surface.on(square(128)), LOAD, &SolveParams::default()).expect("solvable");

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use rc_core::Grid;
+use rc_core::{DVec2, Grid};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Spectral;
 use rc_solver::{Control, Status};
@@ -18,7 +18,7 @@ fn full_contact_pressure_is_half_q_times_the_spectrum() {
     assert_eq!(solution.status(), Status::FullContact);
     let grid = heights.grid();
     for (ix, iy) in [(0, 0), (7, 3), (18, 20), (35, 39), (11, 38)] {
-        let (x, y) = grid.centre(ix, iy);
+        let DVec2 { x, y } = grid.centre(ix, iy);
         let mut exact = 0.1;
         for ky in -8_i64..=8 {
             for kx in -8_i64..=8 {

@@ -1,6 +1,6 @@
 //! The paper's procedure on its adaptive mesh: Hertz with the paper's parameters, and a rough surface.
 
-use rc_core::{Field, Grid, Kernel as _};
+use rc_core::{DVec2, Field, Grid, Kernel as _};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Love;
 use rc_solver::{ContactArea, ContactElement, Control, Method, Solution, SolveParams, solve};
@@ -26,7 +26,7 @@ fn papers_sphere_on_the_adaptive_mesh_matches_periodic_hertz() {
     let grid = Grid::square(512).expect("grid");
     // At the centre of a block of eight elements, so that a large element sits on the peak and not four around it.
     let centre = 260.0 / 512.0;
-    let heights = Field::from_fn(grid, |x, y| -0.5 * ((x - centre).powi(2) + (y - centre).powi(2)));
+    let heights = Field::from_fn(grid, |DVec2 { x, y }| -0.5 * ((x - centre).powi(2) + (y - centre).powi(2)));
     // Centres of elements miss the apex, so h_max of the grid is that much lower.
     let solution = by_the_paper(&heights, Control::Penetration(2.5e-3 + heights.max()), 1e-7);
     let elements: Vec<ContactElement> = solution.elements().expect("a mesh").collect();

@@ -1,6 +1,6 @@
 //! A sphere in the periodic cell, against the periodic correction of Hertz.
 
-use rc_core::{Field, Grid, Kernel};
+use rc_core::{DVec2, Field, Grid, Kernel};
 use rc_kernel::{Love, Spectral};
 use rc_solver::{ContactArea, Control};
 use rc_theory::hertz::PeriodicHertz;
@@ -10,8 +10,8 @@ use crate::{assert_close, solved};
 /// Paraboloid of radius `radius` with its apex at the centre of an element.
 fn sphere(n: usize, radius: f64) -> Field {
     let grid = Grid::square(n).expect("grid");
-    let centre = grid.centre(n / 2, n / 2).0;
-    Field::from_fn(grid, |x, y| {
+    let centre = grid.centre(n / 2, n / 2).x;
+    Field::from_fn(grid, |DVec2 { x, y }| {
         let nearest = |u: f64| (u - centre + 0.5).rem_euclid(1.0) - 0.5;
         -(nearest(x).powi(2) + nearest(y).powi(2)) / (2.0 * radius)
     })

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use rc_core::{Field, Grid};
+use rc_core::{DVec2, Field, Grid};
 use rc_kernel::Love;
 use rc_solver::{Control, Solution, StressDistribution};
 use rc_theory::hertz::{PeriodicContact, PeriodicHertz};
@@ -20,7 +20,8 @@ fn sphere(offset: f64) -> (Solution<'static>, PeriodicContact) {
     let n = 512;
     let apex = 0.5 + offset / n as f64;
     let nearest = |x: f64| (x - apex + 0.5).rem_euclid(1.0) - 0.5;
-    let heights = Field::from_fn(Grid::square(n).expect("a grid"), |x, y| -0.5 * nearest(x).hypot(nearest(y)).powi(2));
+    let heights =
+        Field::from_fn(Grid::square(n).expect("a grid"), |DVec2 { x, y }| -0.5 * nearest(x).hypot(nearest(y)).powi(2));
     (solve(&heights, exact.load), exact)
 }
 
@@ -62,7 +63,7 @@ fn a_histogram_of_elements_does_not() {
 fn the_stress_of_a_wave_is_exact_in_every_bin() {
     let wave = Westergaard { amplitude: 1e-3 };
     let mean_pressure = 0.3 * wave.full_contact_pressure();
-    let heights = Field::from_fn(Grid::square(512).expect("a grid"), |x, _| wave.amplitude * (TAU * x).cos());
+    let heights = Field::from_fn(Grid::square(512).expect("a grid"), |at| wave.amplitude * (TAU * at.x).cos());
     let solution = solve(&heights, mean_pressure);
     let peak = wave.peak_pressure(mean_pressure);
     let edges: Vec<f64> = (0..10).map(|k| 0.1 * f64::from(k) * peak).collect();

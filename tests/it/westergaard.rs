@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use rc_core::{Field, Grid, Kernel};
+use rc_core::{DVec2, Field, Grid, Kernel};
 use rc_kernel::{Love, Spectral};
 use rc_solver::{ContactArea, Control, Solution};
 use rc_theory::westergaard::Westergaard;
@@ -14,13 +14,14 @@ const AMPLITUDE: f64 = 1e-2;
 /// The wave along x or along y on n × n elements.
 fn wave(n: usize, along_x: bool) -> Field {
     let grid = Grid::square(n).expect("grid");
-    Field::from_fn(grid, |x, y| AMPLITUDE * (TAU * if along_x { x } else { y }).cos())
+    Field::from_fn(grid, |DVec2 { x, y }| AMPLITUDE * (TAU * if along_x { x } else { y }).cos())
 }
 
 /// Relative L2 error of the pressure.
 fn pressure_error(solution: &Solution<'_>, theory: Westergaard, mean_pressure: f64, along_x: bool) -> f64 {
-    let exact =
-        Field::from_fn(solution.pressure().grid(), |x, y| theory.pressure(if along_x { x } else { y }, mean_pressure));
+    let exact = Field::from_fn(solution.pressure().grid(), |at| {
+        theory.pressure(if along_x { at.x } else { at.y }, mean_pressure)
+    });
     let difference: Vec<f64> = solution.pressure().values().iter().zip(exact.values()).map(|(p, e)| p - e).collect();
     Field::new(exact.grid(), difference).expect("same grid").rms() / exact.rms()
 }

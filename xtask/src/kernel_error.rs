@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Result;
 use plotters::prelude::{BLACK, DrawingBackend, RGBColor};
+use rc_core::DVec2;
 use rc_kernel::{LoadForm, PeriodicLove, truncated_coefficient, truncation_error_bound};
 use rc_plot::{Area, LinePlot, LineStyle, Picture, PictureError, Series, draw_lines};
 
@@ -52,17 +53,16 @@ struct Case {
 #[derive(Clone, Copy, Debug)]
 struct Offset {
     name: &'static str,
-    dx: f64,
-    dy: f64,
+    at: DVec2,
 }
 
 impl Offset {
     /// The neighbour, a point midway, and the corner of the cell.
     fn all(half_side: f64) -> [Self; 3] {
         [
-            Self { name: "near", dx: 2.0 * half_side, dy: 0.0 },
-            Self { name: "mid", dx: 0.25, dy: 0.1 },
-            Self { name: "far", dx: 0.5, dy: 0.5 },
+            Self { name: "near", at: DVec2::new(2.0 * half_side, 0.0) },
+            Self { name: "mid", at: DVec2::new(0.25, 0.1) },
+            Self { name: "far", at: DVec2::splat(0.5) },
         ]
     }
 }
@@ -128,25 +128,25 @@ fn case(
     (form, name): (LoadForm, &'static str),
 ) -> Result<Case> {
     let area = 4.0 * half_side * half_side;
-    let exact = love.try_coefficient(offset.dx, offset.dy, half_side)?;
-    let truncated = truncated_coefficient(offset.dx, offset.dy, half_side, shells, form)?;
+    let exact = love.try_coefficient(offset.at, half_side)?;
+    let truncated = truncated_coefficient(offset.at, half_side, shells, form)?;
     let bound = truncation_error_bound(half_side, shells, form) / area;
     Ok(Case { form: name, half_side, offset, shells, error: (truncated - exact).abs() / area, bound })
 }
 
 fn exact_time(love: PeriodicLove, half_side: f64, offset: Offset) -> Timing {
     // Targets in a small square around the offset, a thousand at a time.
-    let targets: Vec<(f64, f64)> =
-        (0..1000).map(|i| (offset.dx + 1e-5 * f64::from(i % 32), offset.dy + 1e-5 * f64::from(i / 32))).collect();
-    let row = || targets.iter().map(|&(x, y)| love.coefficient(x, y, black_box(half_side))).sum::<f64>();
+    let targets: Vec<DVec2> =
+        (0..1000).map(|i| offset.at + 1e-5 * DVec2::new(f64::from(i % 32), f64::from(i / 32))).collect();
+    let row = || targets.iter().map(|&at| love.coefficient(at, black_box(half_side))).sum::<f64>();
     Timing { half_side, offset: offset.name, shells: None, nanoseconds: nanoseconds(row) / targets.len() as f64 }
 }
 
 fn truncated_time(shells: usize) -> Result<Timing> {
     let [_, offset, _] = Offset::all(SHOWN);
-    let of = |dx: f64| truncated_coefficient(dx, offset.dy, SHOWN, shells, LoadForm::Plain);
-    of(offset.dx)?;
-    let nanoseconds = nanoseconds(|| of(black_box(offset.dx)));
+    let of = |at: DVec2| truncated_coefficient(at, SHOWN, shells, LoadForm::Plain);
+    of(offset.at)?;
+    let nanoseconds = nanoseconds(|| of(black_box(offset.at)));
     Ok(Timing { half_side: SHOWN, offset: offset.name, shells: Some(shells), nanoseconds })
 }
 
@@ -166,8 +166,8 @@ impl KernelErrors {
     fn errors(&self) -> Table {
         let header = ["form", "half_side", "offset", "dx", "dy", "shells", "error_over_area", "bound_over_area"];
         let rows = self.cases.iter().map(|case| {
-            let Offset { name, dx, dy } = case.offset;
-            let [half_side, dx, dy, error, bound] = [case.half_side, dx, dy, case.error, case.bound].map(number);
+            let Offset { name, at } = case.offset;
+            let [half_side, dx, dy, error, bound] = [case.half_side, at.x, at.y, case.error, case.bound].map(number);
             vec![case.form.to_owned(), half_side, name.to_owned(), dx, dy, case.shells.to_string(), error, bound]
         });
         Table::new("errors", &header, rows)

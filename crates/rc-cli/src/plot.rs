@@ -93,7 +93,7 @@ impl Sections {
         let iy = peak / grid.nx();
         let scale = Scale::of(side, "m");
         let step = side / scale.factor / grid.nx() as f64;
-        let y = rc_core::quantity::engineering(grid.centre(0, iy).1 * side, "m");
+        let y = rc_core::quantity::engineering(grid.centre(0, iy).y * side, "m");
         let greatest = if of_elements { "greatest pressure" } else { "greatest mean pressure of a block" };
         Self {
             pressure: Profile::of(pressure, iy, step, "Pa"),

@@ -1,5 +1,6 @@
 //! Values on a grid.
 
+use glam::DVec2;
 use thiserror::Error;
 
 use crate::Grid;
@@ -40,14 +41,13 @@ impl Field {
         Self { grid, values: vec![0.0; grid.len()] }
     }
 
-    /// A field from a function of the element centre (x, y), in λ.
+    /// A field from a function of the element centre, in λ.
     #[must_use]
-    pub fn from_fn(grid: Grid, mut value: impl FnMut(f64, f64) -> f64) -> Self {
+    pub fn from_fn(grid: Grid, mut value: impl FnMut(DVec2) -> f64) -> Self {
         let mut values = Vec::with_capacity(grid.len());
         for iy in 0..grid.ny() {
             for ix in 0..grid.nx() {
-                let (x, y) = grid.centre(ix, iy);
-                values.push(value(x, y));
+                values.push(value(grid.centre(ix, iy)));
             }
         }
         Self { grid, values }

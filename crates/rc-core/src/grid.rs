@@ -1,5 +1,6 @@
 //! The uniform grid on the periodic cell.
 
+use glam::DVec2;
 use thiserror::Error;
 
 /// A uniform grid of `nx` × `ny` elements on the periodic cell, whose side along x is 1.
@@ -121,14 +122,14 @@ impl Grid {
 
     /// Element sides (along x, along y), in λ.
     #[must_use]
-    pub fn spacing(self) -> (f64, f64) {
-        (1.0 / self.nx as f64, self.cell_ratio / self.ny as f64)
+    pub fn spacing(self) -> DVec2 {
+        DVec2::new(1.0 / self.nx as f64, self.cell_ratio / self.ny as f64)
     }
 
     /// Centre of element (`ix`, `iy`), in λ.
     #[must_use]
-    pub fn centre(self, ix: usize, iy: usize) -> (f64, f64) {
-        ((ix as f64 + 0.5) / self.nx as f64, self.cell_ratio * (iy as f64 + 0.5) / self.ny as f64)
+    pub fn centre(self, ix: usize, iy: usize) -> DVec2 {
+        DVec2::new((ix as f64 + 0.5) / self.nx as f64, self.cell_ratio * (iy as f64 + 0.5) / self.ny as f64)
     }
 
     /// Index of element (`ix`, `iy`) in a field.
@@ -170,8 +171,8 @@ mod tests {
     #[test]
     fn a_cell_may_be_a_rectangle() {
         let grid = Grid::in_cell(8, 4, 0.5).expect("a grid");
-        assert_eq!(grid.spacing(), (0.125, 0.125));
-        assert_eq!(grid.centre(7, 3), (0.9375, 0.4375));
+        assert_eq!(grid.spacing(), DVec2::splat(0.125));
+        assert_eq!(grid.centre(7, 3), DVec2::new(0.9375, 0.4375));
         assert!((grid.waves(3, 2) - 5.0).abs() < 1e-15, "3 along x, 2 on half the length");
         assert_eq!(grid.with_elements(4, 2), Grid::in_cell(4, 2, 0.5));
         assert!(!grid.is_square() && !Grid::in_cell(4, 4, 0.5).expect("a grid").is_square());

@@ -6,6 +6,7 @@
 //!   multiples of λ, pressures multiples of E*. Only `rc-cli` knows metres and pascals; [`PeriodicCell`] and [`Elasticity`] convert.
 //! - **Signs.** Pressure p ≥ 0 is compression. Heights h are those of the rigid surface, positive towards the half-space.
 //!   Gap g ≥ 0. The interface displacement v has zero mean over the cell, and `g = v - (h - h_max + Δ)` with penetration Δ.
+//! - **Points**, offsets and wave vectors of floats are [`DVec2`], that of `glam`.
 //! - **Layout.** Fields are row-major, `index = iy * nx + ix`. The origin of the cell is its corner; point (ix, iy) is the
 //!   **centre** of its element, ((ix + ½)/nx, (iy + ½)/ny) on a square cell ([`Grid::centre`]).
 //! - **Fourier.** Wavenumbers k are integers, waves per cell; q = 2πk on a square cell ([`Grid::waves`]). A forward transform carries no
@@ -16,15 +17,15 @@
 //! # Example: a surface of one's own
 //!
 //! ```
-//! use rc_core::{Elasticity, Grid, HeightField, PeriodicCell};
+//! use rc_core::{DVec2, Elasticity, Grid, HeightField, PeriodicCell};
 //!
 //! /// A sphere of radius 1 λ in the middle of the cell, as the paraboloid of Hertz.
 //! struct Sphere;
 //!
 //! impl HeightField for Sphere {
-//!     fn height(&self, x: f64, y: f64) -> f64 {
-//!         let from_middle = |place: f64| place - place.floor() - 0.5;
-//!         -(from_middle(x).powi(2) + from_middle(y).powi(2)) / 2.0
+//!     fn height(&self, at: DVec2) -> f64 {
+//!         let from_middle = at - at.floor() - 0.5;
+//!         -from_middle.length_squared() / 2.0
 //!     }
 //!     fn band_limit(&self) -> Option<usize> {
 //!         None
@@ -58,6 +59,8 @@ pub mod quantity;
 
 #[cfg(feature = "testing")]
 pub mod testing;
+
+pub use glam::DVec2;
 
 pub use field::{Field, ShapeError};
 pub use grid::{Grid, GridError};

@@ -2,7 +2,7 @@
 //!
 //! Each function panics with a sentence that says what failed, so a test is one call.
 
-use crate::{Grid, HeightField, Kernel, Operator};
+use crate::{DVec2, Grid, HeightField, Kernel, Operator};
 
 /// A reproducible pseudo-random value in [0, 1) for index `i` (a Weyl sequence: no dependency, no state).
 #[must_use]
@@ -21,18 +21,18 @@ pub fn check_height_field(surface: &dyn HeightField) {
     let scale = sampled.max().abs().max(sampled.min().abs()).max(f64::MIN_POSITIVE);
     for n in 0..97 {
         let i = n * (grid.len() - 1) / 96;
-        let (x, y) = grid.centre(i % grid.nx(), i / grid.nx());
-        let h = surface.height(x, y);
-        assert!(h.is_finite(), "height at ({x}, {y}) is {h}");
+        let at = grid.centre(i % grid.nx(), i / grid.nx());
+        let h = surface.height(at);
+        assert!(h.is_finite(), "height at {at} is {h}");
         let differences = [
             ("sample", (sampled.values()[i] - h).abs()),
-            ("period in x", (surface.height(x + 1.0, y) - h).abs()),
-            ("period in y", (surface.height(x, y - 1.0) - h).abs()),
+            ("period in x", (surface.height(at + DVec2::X) - h).abs()),
+            ("period in y", (surface.height(at - DVec2::Y) - h).abs()),
         ];
         for (what, difference) in differences {
             assert!(
                 difference <= 1e-9 * scale,
-                "{what}: off by {difference:e} at ({x}, {y}), heights are of order {scale:e}"
+                "{what}: off by {difference:e} at {at}, heights are of order {scale:e}"
             );
         }
     }

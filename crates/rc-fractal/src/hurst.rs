@@ -155,7 +155,7 @@ mod tests {
     #[test]
     fn a_single_wave_has_no_exponent() {
         let grid = Grid::square(64).expect("a grid");
-        let wave = rc_core::Field::from_fn(grid, |x, _| (std::f64::consts::TAU * 5.0 * x).cos());
+        let wave = rc_core::Field::from_fn(grid, |at| (std::f64::consts::TAU * 5.0 * at.x).cos());
         assert_eq!(fit_hurst(&radial_spectrum(&wave)), None);
     }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use rayon::prelude::*;
-use rc_core::{Field, Grid, HeightField};
+use rc_core::{DVec2, Field, Grid, HeightField};
 use rc_fft::Complex64;
 use thiserror::Error;
 
@@ -123,8 +123,8 @@ impl Surface {
 }
 
 impl HeightField for Surface {
-    fn height(&self, x: f64, y: f64) -> f64 {
-        let along_y: Vec<Complex64> = (0..=self.waves()).map(|ky| wave(ky, y)).collect();
+    fn height(&self, at: DVec2) -> f64 {
+        let along_y: Vec<Complex64> = (0..=self.waves()).map(|ky| wave(ky, at.y)).collect();
         let mut height = 0.0;
         for (kx, column) in self.columns.iter().enumerate() {
             let reach = reach(column);
@@ -134,7 +134,7 @@ impl HeightField for Surface {
             }
             // Columns kx and -kx are conjugates of each other.
             let multiplicity = if kx == 0 { 1.0 } else { 2.0 };
-            height += multiplicity * (sum * wave(kx, x)).re;
+            height += multiplicity * (sum * wave(kx, at.x)).re;
         }
         height
     }
@@ -147,7 +147,7 @@ impl HeightField for Surface {
         if grid.has_square_cell() {
             synthesise(&self.columns, grid)
         } else {
-            Field::from_fn(grid, |x, y| self.height(x, y))
+            Field::from_fn(grid, |at| self.height(at))
         }
     }
 }

@@ -127,7 +127,7 @@ impl BorderStep {
 
 #[cfg(test)]
 mod tests {
-    use rc_core::Grid;
+    use rc_core::{DVec2, Grid};
 
     use super::*;
     use crate::LengthUnit;
@@ -172,10 +172,11 @@ mod tests {
     #[test]
     fn a_wave_is_periodic_and_a_ramp_is_not() {
         let grid = Grid::square(64).expect("a grid");
-        let wave = BorderStep::of(&Field::from_fn(grid, |x, y| (std::f64::consts::TAU * (x + 2.0 * y)).sin()));
+        let wave =
+            BorderStep::of(&Field::from_fn(grid, |DVec2 { x, y }| (std::f64::consts::TAU * (x + 2.0 * y)).sin()));
         // Differences across the border are those at one phase, inside at all phases: within √2.
         assert!(wave.ratio() < 1.5, "ratio of a wave {}", wave.ratio());
-        let ramp = BorderStep::of(&Field::from_fn(grid, |x, _| x));
+        let ramp = BorderStep::of(&Field::from_fn(grid, |at| at.x));
         assert!(ramp.ratio() > 40.0, "ratio of a ramp {}", ramp.ratio());
     }
 }

@@ -94,7 +94,7 @@ fn developed(heights: &Field, [dx, dy]: [f64; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use rc_core::Grid;
+    use rc_core::{DVec2, Grid};
 
     use super::*;
 
@@ -103,7 +103,7 @@ mod tests {
         use std::f64::consts::{PI, TAU};
         let (amplitude, waves, side) = (2e-6, 4.0, 1e-3);
         let grid = Grid::square(1024).expect("a grid");
-        let field = Field::from_fn(grid, |x, _| 7e-6 + amplitude * (TAU * waves * x).sin());
+        let field = Field::from_fn(grid, |at| 7e-6 + amplitude * (TAU * waves * at.x).sin());
         let p = AreaParameters::of(&field, [side, side]);
         let slope = TAU * waves * amplitude / side;
         let exact = [
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn a_plane_has_its_slope_and_its_area() {
-        let field = Field::from_fn(Grid::new(5, 9).expect("a grid"), |x, y| 3.0 * x + 4.0 * y);
+        let field = Field::from_fn(Grid::new(5, 9).expect("a grid"), |DVec2 { x, y }| 3.0 * x + 4.0 * y);
         let p = AreaParameters::of(&field, [1.0, 1.0]);
         assert!((p.sdq - 5.0).abs() < 1e-12 && (p.sdr - (26_f64.sqrt() - 1.0)).abs() < 1e-12, "{p:?}");
     }

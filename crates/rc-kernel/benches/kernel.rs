@@ -3,7 +3,7 @@
 //! `cargo bench -p rc-kernel`. Each sample of a benchmark of values is 1000 values.
 
 use divan::{Bencher, black_box};
-use rc_core::{Grid, Kernel};
+use rc_core::{DVec2, Grid, Kernel};
 use rc_kernel::{Love, Spectral, love_alias_sum, love_displacement};
 
 const VALUES: usize = 1000;
@@ -16,9 +16,8 @@ fn main() {
 #[divan::bench(args = [0.5, 1.5, 2.4, 2.6, 8.0, 50.0, 1e4])]
 fn displacement(bencher: Bencher<'_, '_>, distance: f64) {
     let slope = |i: usize| i as f64 / VALUES as f64;
-    bencher
-        .counter(VALUES)
-        .bench(|| (0..VALUES).map(|i| love_displacement(black_box(distance), distance * slope(i), 1.0)).sum::<f64>());
+    let offset = |i: usize| DVec2::new(black_box(distance), distance * slope(i));
+    bencher.counter(VALUES).bench(|| (0..VALUES).map(|i| love_displacement(offset(i), 1.0)).sum::<f64>());
 }
 
 /// One row of the symbol; elements are squares, at most 2:1, and longer.

@@ -3,6 +3,7 @@
 //! `cargo bench -p rc-kernel --bench periodic`. Each sample of a benchmark of values is 1000 values.
 
 use divan::{Bencher, black_box};
+use rc_core::DVec2;
 use rc_kernel::{LoadForm, PeriodicLove, ewald_coefficient, truncated_coefficient};
 
 const VALUES: usize = 1000;
@@ -18,30 +19,30 @@ fn coefficient(bencher: Bencher<'_, '_>, (level, distance): (i32, f64)) {
     let half_side = 0.5_f64.powi(level);
     let offsets = ring(distance);
     // Makes the table.
-    let _ = love.coefficient(0.1, 0.1, half_side);
+    let _ = love.coefficient(DVec2::splat(0.1), half_side);
     bencher.counter(VALUES).bench(|| {
         let half_side = black_box(half_side);
-        offsets.iter().map(|&(x, y)| love.coefficient(x, y, half_side)).sum::<f64>()
+        offsets.iter().map(|&offset| love.coefficient(offset, half_side)).sum::<f64>()
     });
 }
 
 /// Offsets all around the source, in an order without a pattern.
-fn ring(distance: f64) -> Vec<(f64, f64)> {
+fn ring(distance: f64) -> Vec<DVec2> {
     let point = |i: usize| (2.4 * i as f64).sin_cos();
-    (0..VALUES).map(point).map(|(sin, cos)| (distance * cos, distance * sin)).collect()
+    (0..VALUES).map(point).map(|(sin, cos)| distance * DVec2::new(cos, sin)).collect()
 }
 
 /// Sizes from λ/4 to λ/2048 in random order, targets anywhere in the cell: a row of L on an adaptive mesh.
 #[divan::bench]
 fn mixed_sizes(bencher: Bencher<'_, '_>) {
     let love = PeriodicLove::new();
-    let requests: Vec<(f64, f64, f64)> = (0..VALUES)
+    let requests: Vec<(DVec2, f64)> = (0..VALUES)
         .map(|i| {
             let random = |factor: f64| (factor * i as f64).fract();
-            (random(0.618034) - 0.5, random(0.414214) - 0.5, 0.5_f64.powi(3 + (10.0 * random(0.732051)) as i32))
+            (DVec2::new(random(0.618034), random(0.414214)) - 0.5, 0.5_f64.powi(3 + (10.0 * random(0.732051)) as i32))
         })
         .collect();
-    bencher.counter(VALUES).bench(|| requests.iter().map(|&(x, y, d)| love.coefficient(x, y, d)).sum::<f64>());
+    bencher.counter(VALUES).bench(|| requests.iter().map(|&(offset, d)| love.coefficient(offset, d)).sum::<f64>());
 }
 
 /// Sizes that are no power of two: with a table of their own, and without.
@@ -51,8 +52,8 @@ fn other_sizes(bencher: Bencher<'_, '_>, table: bool) {
     let half_side = 1.0 / 96.0;
     let source = love.source(half_side).expect("a source");
     let offsets = ring(0.4);
-    let of = |&(x, y): &(f64, f64)| {
-        if table { source.coefficient(x, y) } else { love.coefficient(x, y, black_box(half_side)) }
+    let of = |&offset: &DVec2| {
+        if table { source.coefficient(offset) } else { love.coefficient(offset, black_box(half_side)) }
     };
     bencher.counter(VALUES).bench(|| offsets.iter().map(of).sum::<f64>());
 }
@@ -71,10 +72,11 @@ fn make_a_handle() -> PeriodicLove {
 /// One coefficient from K shells of images.
 #[divan::bench(args = [1, 8, 64])]
 fn truncated(shells: usize) -> f64 {
-    truncated_coefficient(black_box(0.25), 0.1, 1.0 / 128.0, shells, LoadForm::Plain).expect("a valid request")
+    truncated_coefficient(DVec2::new(black_box(0.25), 0.1), 1.0 / 128.0, shells, LoadForm::Plain)
+        .expect("a valid request")
 }
 
 #[divan::bench]
 fn slow_truth() -> f64 {
-    ewald_coefficient(black_box(0.25), 0.1, 1.0 / 128.0)
+    ewald_coefficient(DVec2::new(black_box(0.25), 0.1), 1.0 / 128.0)
 }

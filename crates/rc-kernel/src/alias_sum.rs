@@ -40,7 +40,7 @@ pub fn love_alias_sum(grid: Grid, kx: usize, ky: usize) -> f64 {
     if kx == 0 && ky == 0 {
         return 0.0;
     }
-    AliasSum::<TERMS>::new(grid.spacing()).full((phase(kx, nx), phase(ky, ny)))
+    AliasSum::<TERMS>::new(grid.spacing().into()).full((phase(kx, nx), phase(ky, ny)))
 }
 
 /// θ = π k/n.

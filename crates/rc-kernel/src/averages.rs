@@ -5,6 +5,8 @@
 //! For one size of square this mean, as a function of the offset, is cut into patches on which a polynomial of degree 7
 //! in each coordinate is enough.
 
+use rc_core::DVec2;
+
 use crate::lattice::ewald_remainder;
 use crate::polynomial::{chebyshev_coefficients, chebyshev_point, chebyshev_values, gauss_legendre, to_powers};
 
@@ -44,7 +46,7 @@ impl Remainder {
         let mut values = vec![0.0; TERMS * TERMS];
         for i in 0..TERMS {
             for j in 0..=i {
-                let value = ewald_remainder(point(i), point(j));
+                let value = ewald_remainder(DVec2::new(point(i), point(j)));
                 values[i * TERMS + j] = value;
                 values[j * TERMS + i] = value;
             }
@@ -52,9 +54,9 @@ impl Remainder {
         Self { coefficients: chebyshev_coefficients(&values, TERMS), gauss: gauss_legendre() }
     }
 
-    /// Mean of ψ over the square of half-side `half_side` ≤ [`MAX_HALF_SIDE`] around (`x`, `y`), |x|, |y| ≤ 1/2.
-    pub(crate) fn mean(&self, x: f64, y: f64, half_side: f64) -> f64 {
-        let (along_x, along_y) = (self.means(x, half_side), self.means(y, half_side));
+    /// Mean of ψ over the square of half-side `half_side` ≤ [`MAX_HALF_SIDE`] around `centre`, |x|, |y| ≤ 1/2.
+    pub(crate) fn mean(&self, centre: DVec2, half_side: f64) -> f64 {
+        let (along_x, along_y) = (self.means(centre.x, half_side), self.means(centre.y, half_side));
         dot(&self.contract(&along_x), &along_y)
     }
 
@@ -115,11 +117,12 @@ impl MeanTable {
 
     /// The table of means given by themselves, at offsets (x, y) with 0 ≤ y, x ≤ 1/2: for squares larger than
     /// [`MAX_HALF_SIDE`].
-    pub(crate) fn of_means(mean: impl Fn(f64, f64) -> f64) -> Self {
+    pub(crate) fn of_means(mean: impl Fn(DVec2) -> f64) -> Self {
         let half_patch = 0.25 / PATCHES as f64;
         let point = |patch: usize, at: usize| half_patch * ((2 * patch + 1) as f64 + chebyshev_point(at, DEGREES));
         let patch = |i: usize, j: usize| {
-            let points = (0..DEGREES * DEGREES).map(|at| mean(point(i, at / DEGREES), point(j, at % DEGREES)));
+            let points =
+                (0..DEGREES * DEGREES).map(|at| mean(DVec2::new(point(i, at / DEGREES), point(j, at % DEGREES))));
             to_powers(&chebyshev_coefficients(&points.collect::<Vec<f64>>(), DEGREES))
         };
         Self { patches: (0..PATCHES).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| patch(i, j)).collect() }
@@ -157,10 +160,11 @@ mod tests {
         let rule = gauss_legendre::<40>();
         for half_side in [MAX_HALF_SIDE, 0.05, 1e-3] {
             for (x, y) in [(0.0, 0.0), (0.5, 0.0), (0.5, 0.5), (0.31, 0.47)] {
-                let along_y = |u: f64| rule.map(|(point, weight)| weight * ewald_remainder(u, y + half_side * point));
+                let along_y =
+                    |u: f64| rule.map(|(point, weight)| weight * ewald_remainder(DVec2::new(u, y + half_side * point)));
                 let rows = rule.map(|(point, weight)| weight * along_y(x + half_side * point).iter().sum::<f64>());
                 let reference: f64 = rows.iter().sum();
-                let value = remainder.mean(x, y, half_side);
+                let value = remainder.mean(DVec2::new(x, y), half_side);
                 let error = (value - reference).abs();
                 assert!(
                     error <= 3e-14,
@@ -176,11 +180,11 @@ mod tests {
         for half_side in [MAX_HALF_SIDE, 0.0625, 0.01, 0.0] {
             let table = MeanTable::new(&remainder, half_side);
             for at in 0..41 * 41_i32 {
-                let (x, y) = (f64::from(at % 41) / 80.0, f64::from(at / 41) / 80.0);
-                if y <= x {
-                    let (value, reference) = (table.mean(x, y), remainder.mean(x, y, half_side));
+                let offset = DVec2::new(f64::from(at % 41) / 80.0, f64::from(at / 41) / 80.0);
+                if offset.y <= offset.x {
+                    let (value, reference) = (table.mean(offset.x, offset.y), remainder.mean(offset, half_side));
                     let error = (value - reference).abs();
-                    assert!(error <= 5e-13, "({x}, {y}), d = {half_side}: {value}, reference {reference}, {error:.1e}");
+                    assert!(error <= 5e-13, "{offset}, d = {half_side}: {value}, reference {reference}, {error:.1e}");
                 }
             }
         }

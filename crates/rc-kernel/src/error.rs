@@ -1,17 +1,16 @@
 //! What can be wrong with a request for a periodic coefficient.
 
+use rc_core::DVec2;
 use thiserror::Error;
 
 /// Why a periodic coefficient, or its number of image shells, cannot be given. Lengths are in units of λ.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum KernelError {
     /// An offset is infinite or not a number.
-    #[error("offset ({dx}, {dy}) between target and source is not finite")]
+    #[error("offset ({x}, {y}) between target and source is not finite", x = .offset.x, y = .offset.y)]
     Offset {
-        /// Offset along x.
-        dx: f64,
-        /// Offset along y.
-        dy: f64,
+        /// The offset that was given.
+        offset: DVec2,
     },
     /// A half side is not in (0, 1/2]: the source is empty, or overlaps its own images.
     #[error("half side {half_side} of the source is not in (0, 0.5] cell sides")]

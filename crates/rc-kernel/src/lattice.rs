@@ -6,6 +6,8 @@
 
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
+use rc_core::DVec2;
+
 use crate::love_displacement;
 use crate::polynomial::gauss_legendre;
 
@@ -16,7 +18,7 @@ const SHELLS: i32 = 3;
 /// parameters, 27 digits).
 pub const LATTICE_CONSTANT: f64 = -3.900_264_920_001_956;
 
-/// φ at offset (`x`, `y`) from a source, in units of 1/λ; +∞ on the source and its images.
+/// φ at `offset` from a source, in units of 1/λ; +∞ on the source and its images.
 ///
 /// ```text
 /// φ(r) = Σ_R erfc(√π |r - R|)/|r - R| + Σ_{n≠0} erfc(√π |n|)/|n| cos(2π n·r) - 2
@@ -27,20 +29,26 @@ pub const LATTICE_CONSTANT: f64 = -3.900_264_920_001_956;
 ///
 /// *Accuracy*: 1e-14 absolute, and relative near a source (test `lattice_function_has_its_known_values`).
 #[must_use]
-pub fn ewald_phi(x: f64, y: f64) -> f64 {
-    let (x, y) = (wrap(x), wrap(y));
-    let r = x.hypot(y);
-    libm::erfc(PI.sqrt() * r) / r + images_and_waves(x, y)
+pub fn ewald_phi(offset: DVec2) -> f64 {
+    let nearest = wrapped(offset);
+    let r = nearest.x.hypot(nearest.y);
+    libm::erfc(PI.sqrt() * r) / r + images_and_waves(nearest)
 }
 
-/// φ - 1/r at (`x`, `y`), |x|, |y| ≤ 0.6: smooth, what all images but the nearest and the background add.
-pub(crate) fn ewald_remainder(x: f64, y: f64) -> f64 {
-    let r = x.hypot(y);
+/// φ - 1/r at `offset`, |x|, |y| ≤ 0.6: a smooth function, the sum of all images but the nearest and of the background.
+pub(crate) fn ewald_remainder(offset: DVec2) -> f64 {
+    let r = offset.x.hypot(offset.y);
     let own = if r == 0.0 { 2.0 } else { libm::erf(PI.sqrt() * r) / r };
-    images_and_waves(x, y) - own
+    images_and_waves(offset) - own
 }
 
-/// The offset to the nearest image, in [-1/2, 1/2]; odd in `x`, and exact.
+/// The offset to the nearest image, in [-1/2, 1/2]²; odd in both coordinates, and exact.
+#[inline]
+pub(crate) fn wrapped(offset: DVec2) -> DVec2 {
+    DVec2::new(wrap(offset.x), wrap(offset.y))
+}
+
+/// One coordinate of [`wrapped`].
 #[inline]
 pub(crate) fn wrap(x: f64) -> f64 {
     // Adding 3 · 2^51 leaves no digits after the point. Faster than `round`, which older processors have no instruction for.
@@ -50,7 +58,7 @@ pub(crate) fn wrap(x: f64) -> f64 {
 }
 
 /// Ewald's sum without the charge at the origin.
-fn images_and_waves(x: f64, y: f64) -> f64 {
+fn images_and_waves(DVec2 { x, y }: DVec2) -> f64 {
     let root_pi = PI.sqrt();
     let (mut images, mut waves) = (0.0, 0.0);
     for k in -SHELLS..=SHELLS {
@@ -79,24 +87,24 @@ fn images_and_waves(x: f64, y: f64) -> f64 {
 /// *Accuracy*: 2e-14 of the larger of |L| and (2d)², by comparison with a 17-digit table (test
 /// `coefficients_match_the_seventeen_digit_table`). `half_side` must be in (0, 1/2]; NaN otherwise.
 #[must_use]
-pub fn ewald_coefficient(dx: f64, dy: f64, half_side: f64) -> f64 {
+pub fn ewald_coefficient(offset: DVec2, half_side: f64) -> f64 {
     if !(half_side > 0.0 && half_side <= 0.5) {
         return f64::NAN;
     }
-    let (x, y) = (wrap(dx), wrap(dy));
+    let nearest = wrapped(offset);
     if half_side > 0.125 {
         let half = 0.5 * half_side;
         let quarters = [(-half, -half), (half, half), (-half, half), (half, -half)];
-        return quarters.iter().map(|(u, v)| ewald_coefficient(x + u, y + v, half)).sum();
+        return quarters.iter().map(|&centre| ewald_coefficient(nearest + DVec2::from(centre), half)).sum();
     }
     let rule = gauss_legendre::<24>();
     let mut mean = 0.0;
     for (u, weight_u) in rule {
         for (v, weight_v) in rule {
-            mean += weight_u * weight_v * ewald_remainder(x + half_side * u, y + half_side * v);
+            mean += weight_u * weight_v * ewald_remainder(nearest + half_side * DVec2::new(u, v));
         }
     }
-    love_displacement(x, y, half_side) + 4.0 * half_side * half_side * FRAC_1_PI * mean
+    love_displacement(nearest, half_side) + 4.0 * half_side * half_side * FRAC_1_PI * mean
 }
 
 #[cfg(test)]
@@ -110,16 +118,13 @@ mod tests {
             [(0.5, 0.5, -1.6155426267128243), (0.5, 0.0, -1.1423611466445647), (0.25, 0.1, -0.01824371850081752)];
         for (x, y, reference) in known {
             for (x, y) in [(x, y), (y, -x), (x + 1.0, y - 3.0)] {
-                let error = (ewald_phi(x, y) - reference).abs();
-                assert!(
-                    error <= 1e-14,
-                    "at ({x}, {y}): {}, reference {reference}, off by {error:.1e}",
-                    ewald_phi(x, y)
-                );
+                let value = ewald_phi(DVec2::new(x, y));
+                let error = (value - reference).abs();
+                assert!(error <= 1e-14, "at ({x}, {y}): {value}, reference {reference}, off by {error:.1e}");
             }
         }
-        assert!((ewald_remainder(0.0, 0.0) - LATTICE_CONSTANT).abs() <= 1e-14);
-        assert!(ewald_phi(2.0, -1.0) == f64::INFINITY);
+        assert!((ewald_remainder(DVec2::ZERO) - LATTICE_CONSTANT).abs() <= 1e-14);
+        assert!(ewald_phi(DVec2::new(2.0, -1.0)) == f64::INFINITY);
     }
 
     #[test]
@@ -131,7 +136,7 @@ mod tests {
         for (x, y) in [(0.02_f64, 0.0_f64), (0.014, 0.014), (0.01, 0.017)] {
             let (r2, cos_4) = (x * x + y * y, 1.0 - 8.0 * (x * y / (x * x + y * y)).powi(2));
             let expected = 0.25 * S3 * r2 + (9.0 * S5 + 35.0 * C4 * cos_4) / 64.0 * r2 * r2;
-            let value = ewald_remainder(x, y) - LATTICE_CONSTANT;
+            let value = ewald_remainder(DVec2::new(x, y)) - LATTICE_CONSTANT;
             assert!((value - expected).abs() <= 20.0 * r2.powi(3), "at ({x}, {y}): {value:e}, expected {expected:e}");
         }
     }

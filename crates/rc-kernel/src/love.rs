@@ -6,14 +6,16 @@
 
 use std::f64::consts::FRAC_1_PI;
 
+use rc_core::DVec2;
+
 use crate::multipoles::multipole_series;
 
 /// Distance, in half-sides and along the farther axis, from which the multipole series is used. Measured on 15 500 points:
 /// from here on the logarithms lose digits (2e-15 at 4), and the series does not (6e-16 at most).
 const FAR: f64 = 2.5;
 
-/// Displacement at offset (`x`, `y`) from the centre of a square of half-side `half_side` d under unit pressure, in units
-/// of λ when `x`, `y`, `half_side` are:
+/// Displacement at `offset` from the centre of a square of half-side `half_side` d under unit pressure, in units
+/// of λ when `offset` and `half_side` are:
 ///
 /// ```text
 /// u = 1/(π E*) ∫∫ ds / |r - s|       over |s_x|, |s_y| ≤ d,  with E* = 1.
@@ -26,8 +28,14 @@ const FAR: f64 = 2.5;
 /// and x ↔ y. *Cost*: 60 ns near the square, 95 ns at 2.5 half-sides, 40 ns at 8, 25 ns at 50.
 ///
 /// `half_side` must be positive, and the rest finite; NaN otherwise, or what the formula gives.
+#[inline]
 #[must_use]
-pub fn love_displacement(x: f64, y: f64, half_side: f64) -> f64 {
+pub fn love_displacement(offset: DVec2, half_side: f64) -> f64 {
+    // Two numbers are passed in floating-point registers, a struct is not.
+    displacement_at(offset.x, offset.y, half_side)
+}
+
+fn displacement_at(x: f64, y: f64, half_side: f64) -> f64 {
     let (x, y) = (x.abs(), y.abs());
     let (long, short) = if x >= y { (x, y) } else { (y, x) };
     let ratio = half_side / long;

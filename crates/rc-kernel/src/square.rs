@@ -84,6 +84,8 @@ fn ln(number: f64) -> f64 {
 mod tests {
     use std::f64::consts::PI;
 
+    use rc_core::DVec2;
+
     use super::*;
     use crate::love_displacement;
 
@@ -96,7 +98,7 @@ mod tests {
             for &y in offsets.iter().filter(|y| **y <= x) {
                 let (x, y) = (x * half_side, y * half_side);
                 let value = square_integral(x, y, half_side) / PI;
-                let reference = love_displacement(x, y, half_side);
+                let reference = love_displacement(DVec2::new(x, y), half_side);
                 let error = (value / reference - 1.0).abs();
                 assert!(error <= 1e-13, "at ({x}, {y}): {value:e}, reference {reference:e}, off by {error:.1e}");
             }

@@ -2,7 +2,9 @@
 
 use std::f64::consts::{FRAC_1_PI, SQRT_2};
 
-use crate::lattice::wrap;
+use rc_core::DVec2;
+
+use crate::lattice::wrapped;
 use crate::{KernelError, love_displacement};
 
 /// Most shells of images that are ever summed: 4 million images, a second for one coefficient.
@@ -33,8 +35,8 @@ impl LoadForm {
     }
 }
 
-/// `L_ij = l_ij - l_m` (Eq. 4-6) with the images |h|, |k| ≤ K = `shells`, for a source of half-side `half_side` d at offset
-/// (`dx`, `dy`) = target minus source, in units of λ (displacement λ p/E*).
+/// `L_ij = l_ij - l_m` (Eq. 4-6) with the images |h|, |k| ≤ K = `shells`, for a source of half-side `half_side` d at `offset`
+/// = target minus source, in units of λ (displacement λ p/E*).
 ///
 /// l_ij and l_m diverge separately. Here each image of the source is summed together with its part of the counter-load,
 /// (2K + 1)² differences that fall as R⁻² (R⁻³ for opposite images together), from the outermost shell inwards. As in
@@ -47,21 +49,15 @@ impl LoadForm {
 ///
 /// # Errors
 /// [`KernelError`]: an offset that is not finite, `half_side` not in (0, 1/2], `shells` 0 or above [`MAX_SHELLS`].
-pub fn truncated_coefficient(
-    dx: f64,
-    dy: f64,
-    half_side: f64,
-    shells: usize,
-    form: LoadForm,
-) -> Result<f64, KernelError> {
-    check_offset(dx, dy)?;
+pub fn truncated_coefficient(offset: DVec2, half_side: f64, shells: usize, form: LoadForm) -> Result<f64, KernelError> {
+    check_offset(offset)?;
     check_half_side(half_side)?;
     check_shells(shells)?;
-    let (x, y) = (wrap(dx), wrap(dy));
+    let nearest = wrapped(offset);
     let (load, pressure) = (form.half_side(), form.pressure(half_side));
     let image = |h: i32, k: i32| {
-        let (h, k) = (f64::from(h), f64::from(k));
-        love_displacement(x + h, y + k, half_side) - pressure * love_displacement(h, k, load)
+        let image = DVec2::new(f64::from(h), f64::from(k));
+        love_displacement(nearest + image, half_side) - pressure * love_displacement(image, load)
     };
     // Four at a time, a quarter turn apart: what falls as R⁻² cancels in each sum.
     let turned = |h: i32, k: i32| (image(h, k) + image(-h, -k)) + (image(-k, h) + image(k, -h));
@@ -126,8 +122,8 @@ pub fn shells_for(half_side: f64, tolerance: f64, form: LoadForm) -> Result<usiz
     Ok(high)
 }
 
-pub(crate) fn check_offset(dx: f64, dy: f64) -> Result<(), KernelError> {
-    if dx.is_finite() && dy.is_finite() { Ok(()) } else { Err(KernelError::Offset { dx, dy }) }
+pub(crate) fn check_offset(offset: DVec2) -> Result<(), KernelError> {
+    if offset.is_finite() { Ok(()) } else { Err(KernelError::Offset { offset }) }
 }
 
 pub(crate) fn check_half_side(half_side: f64) -> Result<(), KernelError> {

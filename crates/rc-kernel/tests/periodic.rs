@@ -6,7 +6,7 @@ use std::path::Path;
 use proptest::prelude::{ProptestConfig, prop_assert, proptest};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rc_core::{Grid, Kernel};
+use rc_core::{DVec2, Grid, Kernel};
 use rc_kernel::{
     KernelError, LoadForm, Love, MAX_SHELLS, PeriodicLove, ewald_coefficient, shells_for, truncated_coefficient,
     truncation_error_bound,
@@ -28,10 +28,12 @@ fn coefficients_match_the_seventeen_digit_table() {
         let (n, reference) = (row[0], row[3]);
         let (x, y, half_side) = (row[1] / n, row[2] / n, 0.5 / n);
         let source = love.source(half_side).expect("a source");
-        let slow = ewald_coefficient(x, y, half_side);
-        for (value, allowed) in
-            [(love.coefficient(x, y, half_side), 1e-12), (source.coefficient(x, y), 1e-12), (slow, 4e-14)]
-        {
+        let slow = ewald_coefficient(DVec2::new(x, y), half_side);
+        for (value, allowed) in [
+            (love.coefficient(DVec2::new(x, y), half_side), 1e-12),
+            (source.coefficient(DVec2::new(x, y)), 1e-12),
+            (slow, 4e-14),
+        ] {
             let error = (PI * value / reference - 1.0).abs();
             assert!(error <= allowed, "{line}: {:e}, off by {error:.1e}", PI * value);
         }
@@ -55,8 +57,8 @@ fn coefficients_match_the_quadrature_of_ewald_sums() {
         offsets.extend((0..12).map(|_| (random.random_range(-0.5..0.5), random.random_range(-0.5..0.5))));
         offsets.extend((0..6).map(|_| (random.random_range(-4.0..4.0) * d, random.random_range(-4.0..4.0) * d)));
         for (x, y) in offsets {
-            let reference = ewald_coefficient(x, y, d);
-            for value in [love.coefficient(x, y, d), source.coefficient(x, y)] {
+            let reference = ewald_coefficient(DVec2::new(x, y), d);
+            for value in [love.coefficient(DVec2::new(x, y), d), source.coefficient(DVec2::new(x, y))] {
                 let error = (value - reference).abs() / scale(reference, d);
                 let worst = if d > 0.125 { &mut worst_of_half_cells } else { &mut worst };
                 *worst = worst.max(error);
@@ -84,7 +86,7 @@ fn the_inverse_transform_of_the_symbol_gives_the_coefficients() {
     let love = PeriodicLove::new();
     for at in 0..N * N {
         let (i, j) = (at % N, at / N);
-        let value = love.coefficient(i as f64 / N as f64, j as f64 / N as f64, 0.5 / N as f64);
+        let value = love.coefficient(DVec2::new(i as f64 / N as f64, j as f64 / N as f64), 0.5 / N as f64);
         let error = (value - reference[at]).abs();
         assert!(error <= 1e-13 * reference[0], "({i}, {j}): {value:e}, symbol {:e}, off by {error:.1e}", reference[at]);
     }
@@ -118,7 +120,7 @@ fn a_uniform_load_on_any_tiling_moves_nothing() {
         let area: f64 = tiles.iter().map(|&(_, _, d)| 4.0 * d * d).sum();
         assert!((area - 1.0).abs() < 1e-12, "the tiling covers the cell: {area}");
         for &(x, y, _) in tiles.iter().step_by(tiles.len().div_ceil(40)) {
-            let row = tiles.iter().map(|&(u, v, d)| love.coefficient(x - u, y - v, d));
+            let row = tiles.iter().map(|&(u, v, d)| love.coefficient(DVec2::new(x - u, y - v), d));
             let (sum, absolute) = row.fold((0.0, 0.0), |(sum, absolute), l| (sum + l, absolute + l.abs()));
             assert!(
                 sum.abs() <= 1e-13 * absolute,
@@ -134,7 +136,11 @@ fn a_load_on_the_whole_cell_moves_nothing() {
     let love = PeriodicLove::new();
     // Four squares of side λ/2, each with their accuracy.
     for (x, y) in [(0.0, 0.0), (0.5, 0.5), (0.1, -0.3)] {
-        assert!(love.coefficient(x, y, 0.5).abs() <= 2e-13, "at ({x}, {y}): {:e}", love.coefficient(x, y, 0.5));
+        assert!(
+            love.coefficient(DVec2::new(x, y), 0.5).abs() <= 2e-13,
+            "at ({x}, {y}): {:e}",
+            love.coefficient(DVec2::new(x, y), 0.5)
+        );
     }
 }
 
@@ -146,11 +152,15 @@ fn symmetric_offsets_have_the_same_coefficient() {
         let source = love.source(d).expect("a source");
         for _ in 0..50 {
             let (x, y): (f64, f64) = (random.random_range(-1.0..1.0), random.random_range(-1.0..1.0));
-            let (value, of_source) = (love.coefficient(x, y, d), source.coefficient(x, y));
+            let (value, of_source) = (love.coefficient(DVec2::new(x, y), d), source.coefficient(DVec2::new(x, y)));
             for (u, v) in [(-x, y), (x, -y), (-x, -y), (y, x), (-y, x), (y, -x), (-y, -x)] {
-                assert_eq!(love.coefficient(u, v, d).to_bits(), value.to_bits(), "({x}, {y}) and ({u}, {v}), d = {d}");
                 assert_eq!(
-                    source.coefficient(u, v).to_bits(),
+                    love.coefficient(DVec2::new(u, v), d).to_bits(),
+                    value.to_bits(),
+                    "({x}, {y}) and ({u}, {v}), d = {d}"
+                );
+                assert_eq!(
+                    source.coefficient(DVec2::new(u, v)).to_bits(),
                     of_source.to_bits(),
                     "source: ({x}, {y}) and ({u}, {v}), d = {d}"
                 );
@@ -167,7 +177,8 @@ fn neutral_loads_on_a_uniform_grid_have_positive_energy() {
     // A uniform load moves nothing, so L + 1 is positive definite when L is on neutral loads. Cholesky, in place.
     let mut a: Vec<Vec<f64>> = (0..N * N)
         .map(|i| {
-            let entry = |j: usize| love.coefficient(offset(i % N, j % N), offset(i / N, j / N), 0.5 / N as f64);
+            let entry =
+                |j: usize| love.coefficient(DVec2::new(offset(i % N, j % N), offset(i / N, j / N)), 0.5 / N as f64);
             (0..N * N).map(|j| 1.0 + entry(j)).collect()
         })
         .collect();
@@ -196,8 +207,8 @@ fn truncation_error_is_below_its_bound() {
                 let d = 0.5_f64.powi(case % 6 + 1) * random.random_range(0.7..1.0);
                 let random_offset = (random.random_range(-0.5..0.5), random.random_range(-0.5..0.5));
                 let (x, y) = [(0.0, 0.0), (0.5, 0.5), random_offset, random_offset][case as usize % 4];
-                let value = truncated_coefficient(x, y, d, shells, form).expect("a valid request");
-                let error = (value - love.coefficient(x, y, d)).abs();
+                let value = truncated_coefficient(DVec2::new(x, y), d, shells, form).expect("a valid request");
+                let error = (value - love.coefficient(DVec2::new(x, y), d)).abs();
                 let bound = truncation_error_bound(d, shells, form);
                 tightest = tightest.max(error / bound);
                 assert!(error <= bound, "({x}, {y}), d = {d}, {shells} shells, {form:?}: {error:e} above {bound:e}");
@@ -214,8 +225,8 @@ fn truncation_errors_are_those_measured_for_small_sources() {
     let (d, shells) = (1.0 / 128.0, 40);
     for (x, y, printed, plain) in [(0.0, 0.0, 0.94, 0.235), (0.25, 0.1, 0.84, 0.13), (0.5, 0.5, 0.23, -0.47)] {
         for (form, expected) in [(LoadForm::Printed, printed), (LoadForm::Plain, plain)] {
-            let value = truncated_coefficient(x, y, d, shells, form).expect("a valid request");
-            let e = (value - love.coefficient(x, y, d)) * PI * (shells as f64 + 0.5) / (4.0 * d * d);
+            let value = truncated_coefficient(DVec2::new(x, y), d, shells, form).expect("a valid request");
+            let e = (value - love.coefficient(DVec2::new(x, y), d)) * PI * (shells as f64 + 0.5) / (4.0 * d * d);
             assert!((e - expected).abs() < 0.006, "({x}, {y}), {form:?}: e = {e}, expected {expected}");
         }
     }
@@ -225,9 +236,9 @@ fn truncation_errors_are_those_measured_for_small_sources() {
 fn eq_6_as_printed_has_the_limit_of_the_plain_form() {
     let love = PeriodicLove::new();
     for (x, y, d) in [(0.0, 0.0, 0.01), (0.3, 0.1, 0.0625), (0.5, 0.5, 0.25)] {
-        let exact = love.coefficient(x, y, d);
+        let exact = love.coefficient(DVec2::new(x, y), d);
         for form in [LoadForm::Plain, LoadForm::Printed] {
-            let at = |shells: usize| truncated_coefficient(x, y, d, shells, form).expect("a valid request");
+            let at = |shells: usize| truncated_coefficient(DVec2::new(x, y), d, shells, form).expect("a valid request");
             // The error is c/(K + ½) + O(K⁻³): two values give the limit.
             let limit = |k: usize| ((2 * k) as f64 + 0.5) * at(2 * k) - (k as f64 + 0.5) * at(k);
             let errors = [8, 16, 32].map(|k| (limit(k) / k as f64 - exact).abs() / scale(exact, d));
@@ -256,20 +267,20 @@ fn bad_requests_are_typed_errors() {
     let love = PeriodicLove::new();
     let form = LoadForm::Plain;
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        assert!(matches!(love.try_coefficient(bad, 0.0, 0.1), Err(KernelError::Offset { .. })));
-        assert!(matches!(truncated_coefficient(0.0, bad, 0.1, 1, form), Err(KernelError::Offset { .. })));
+        assert!(matches!(love.try_coefficient(DVec2::new(bad, 0.0), 0.1), Err(KernelError::Offset { .. })));
+        assert!(matches!(truncated_coefficient(DVec2::new(0.0, bad), 0.1, 1, form), Err(KernelError::Offset { .. })));
     }
     for half_side in [0.0, -0.1, 0.500001, 1e300, f64::NAN, f64::INFINITY] {
-        let error = love.try_coefficient(0.0, 0.0, half_side).expect_err("a bad size");
+        let error = love.try_coefficient(DVec2::ZERO, half_side).expect_err("a bad size");
         assert!(matches!(error, KernelError::HalfSide { .. }), "{error}");
         assert!(love.source(half_side).is_err() && shells_for(half_side, 1e-3, form).is_err());
-        assert!(truncated_coefficient(0.0, 0.0, half_side, 1, form).is_err());
+        assert!(truncated_coefficient(DVec2::ZERO, half_side, 1, form).is_err());
         assert!(truncation_error_bound(half_side, 1, form) == f64::INFINITY);
-        assert!(ewald_coefficient(0.0, 0.0, half_side).is_nan());
+        assert!(ewald_coefficient(DVec2::ZERO, half_side).is_nan());
     }
-    assert_eq!(truncated_coefficient(0.0, 0.0, 0.1, 0, form), Err(KernelError::NoShells));
+    assert_eq!(truncated_coefficient(DVec2::ZERO, 0.1, 0, form), Err(KernelError::NoShells));
     let shells = MAX_SHELLS + 1;
-    assert_eq!(truncated_coefficient(0.0, 0.0, 0.1, shells, form), Err(KernelError::TooManyShells { shells }));
+    assert_eq!(truncated_coefficient(DVec2::ZERO, 0.1, shells, form), Err(KernelError::TooManyShells { shells }));
     assert!(truncation_error_bound(0.1, 0, form) == f64::INFINITY);
     for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(shells_for(0.1, tolerance, form), Err(KernelError::Tolerance { .. })));
@@ -283,10 +294,10 @@ fn bad_requests_are_typed_errors() {
 fn the_smallest_sources_are_points() {
     let love = PeriodicLove::new();
     for d in [1e-7, 1e-20, 1e-100, 1e-150] {
-        let value = love.try_coefficient(0.3, 0.1, d).expect("a valid request") / (4.0 * d * d);
-        let phi = rc_kernel::ewald_phi(0.3, 0.1) / PI;
+        let value = love.try_coefficient(DVec2::new(0.3, 0.1), d).expect("a valid request") / (4.0 * d * d);
+        let phi = rc_kernel::ewald_phi(DVec2::new(0.3, 0.1)) / PI;
         assert!((value - phi).abs() <= 1e-12, "d = {d}: {value}, point load {phi}");
-        let own = love.try_coefficient(0.0, 0.0, d).expect("a valid request") / d;
+        let own = love.try_coefficient(DVec2::ZERO, d).expect("a valid request") / d;
         // The images take 4 d C/π, that is 4.97 d.
         assert!((own - 8.0 * 1.0_f64.asinh() / PI).abs() <= 5.0 * d + 1e-14, "d = {d}: {own}");
     }
@@ -304,7 +315,7 @@ proptest! {
         let to_length = |i: i64| i as f64 / (1_i64 << 40) as f64;
         let (x, y, d) = (to_length(x), to_length(y), 0.5_f64.powi(level));
         let love = PeriodicLove::new();
-        let (here, there) = (love.coefficient(x, y, d), love.coefficient(x + f64::from(h), y + f64::from(k), d));
+        let (here, there) = (love.coefficient(DVec2::new(x, y), d), love.coefficient(DVec2::new(x + f64::from(h), y + f64::from(k)), d));
         prop_assert!((here - there).abs() <= 1e-13 * scale(here, d), "({x}, {y}) + ({h}, {k}), d = {d}: {here:e}, {there:e}");
     }
 
@@ -313,8 +324,8 @@ proptest! {
         let love = PeriodicLove::new();
         let h = 0.5 * d;
         let quarters = [(-h, -h), (h, -h), (-h, h), (h, h)];
-        let sum: f64 = quarters.iter().map(|(u, v)| love.coefficient(x + u, y + v, h)).sum();
-        let whole = love.coefficient(x, y, d);
+        let sum: f64 = quarters.iter().map(|(u, v)| love.coefficient(DVec2::new(x + u, y + v), h)).sum();
+        let whole = love.coefficient(DVec2::new(x, y), d);
         prop_assert!((sum - whole).abs() <= 1e-12 * scale(whole, d), "({x}, {y}), d = {d}: {whole:e}, quarters {sum:e}");
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use rc_core::testing::{check_kernel, quasi_random};
-use rc_core::{Grid, Kernel};
+use rc_core::{DVec2, Grid, Kernel};
 use rc_kernel::{Love, Spectral, love_alias_sum, love_displacement};
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
@@ -29,7 +29,7 @@ fn matches_reference_values_everywhere() {
     assert!(rows.len() >= 60, "the table is complete");
     for row in rows {
         let (x, y, half_side, reference) = (row[0], row[1], row[2], row[3]);
-        let value = love_displacement(x, y, half_side);
+        let value = love_displacement(DVec2::new(x, y), half_side);
         let error = (value / reference - 1.0).abs();
         // 1e-15, and the rounding of the reference to a double and of this division.
         assert!(
@@ -37,7 +37,7 @@ fn matches_reference_values_everywhere() {
             "at ({x}, {y}), d = {half_side}: {value:e}, reference {reference:e}, off by {error:.1e}"
         );
         for (u, v) in [(-x, y), (x, -y), (y, x), (-y, -x)] {
-            let mirrored = love_displacement(u, v, half_side);
+            let mirrored = love_displacement(DVec2::new(u, v), half_side);
             assert!(mirrored.to_bits() == value.to_bits(), "not symmetric at ({u}, {v})");
         }
     }
@@ -52,8 +52,8 @@ fn a_square_is_the_sum_of_its_quarters() {
         let dyadic = |fraction: f64| (fraction * distance * 2.0_f64.powi(32)).round() / 2.0_f64.powi(32);
         let (x, y) = (dyadic(1.0), dyadic(quasi_random(7 * i + 3)));
         let quarters = [(0.5, 0.5), (0.5, -0.5), (-0.5, 0.5), (-0.5, -0.5)];
-        let sum: f64 = quarters.iter().map(|(a, b)| love_displacement(x + a, y + b, 0.5)).sum();
-        let whole = love_displacement(x, y, 1.0);
+        let sum: f64 = quarters.iter().map(|(a, b)| love_displacement(DVec2::new(x + a, y + b), 0.5)).sum();
+        let whole = love_displacement(DVec2::new(x, y), 1.0);
         let error = (sum / whole - 1.0).abs();
         assert!(error <= 2e-15, "at ({x}, {y}): whole {whole:e}, quarters {sum:e}, off by {error:.1e}");
     }
@@ -63,7 +63,7 @@ fn a_square_is_the_sum_of_its_quarters() {
 fn displacement_is_smooth_where_the_series_takes_over() {
     // Third differences of a smooth function over 1e-6 are 1e-18: what is left is rounding, eight times that of a value.
     for y in [0.0, 1.0, 1.7, 2.5] {
-        let at = |i: i32| love_displacement(2.5 + 1e-6 * f64::from(i), y, 1.0);
+        let at = |i: i32| love_displacement(DVec2::new(2.5 + 1e-6 * f64::from(i), y), 1.0);
         let jump = (at(1) - 3.0 * at(0) + 3.0 * at(-1) - at(-2)).abs() / at(0);
         assert!(jump <= 8e-15, "jump {jump:e} at y = {y}");
     }
@@ -73,14 +73,14 @@ fn displacement_is_smooth_where_the_series_takes_over() {
 fn extreme_arguments_give_limits_and_no_panics() {
     let centre = 8.0 * (1.0 + 2.0_f64.sqrt()).ln() / PI;
     for scale in [1e-300, 1e-150, 1.0, 1e150, 1e300] {
-        let value = love_displacement(0.0, 0.0, scale) / scale;
+        let value = love_displacement(DVec2::ZERO, scale) / scale;
         assert!((value / centre - 1.0).abs() <= 1e-15, "at the centre, d = {scale:e}: {value}");
     }
-    let faint = love_displacement(1e200, 0.0, 1.0) * 1e200;
+    let faint = love_displacement(DVec2::new(1e200, 0.0), 1.0) * 1e200;
     assert!((faint * PI / 4.0 - 1.0).abs() <= 1e-15, "monopole at R = 1e200: {faint}");
-    assert!(love_displacement(f64::INFINITY, 1.0, 1.0) == 0.0, "at infinity");
+    assert!(love_displacement(DVec2::new(f64::INFINITY, 1.0), 1.0) == 0.0, "at infinity");
     for (x, y, half_side) in [(f64::NAN, 0.0, 1.0), (0.0, f64::NAN, 1.0), (9.0, f64::NAN, 1.0), (1.0, 1.0, f64::NAN)] {
-        assert!(love_displacement(x, y, half_side).is_nan(), "NaN in ({x}, {y}, {half_side}) is lost");
+        assert!(love_displacement(DVec2::new(x, y), half_side).is_nan(), "NaN in ({x}, {y}, {half_side}) is lost");
     }
 }
 
@@ -158,7 +158,8 @@ fn near_coefficients_are_free_space_less_the_images() {
         let side = 1.0 / n as f64;
         for (i, j) in [(0_u8, 0_u8), (1, 0), (1, 1), (2, 1), (4, 4), (6, 0)] {
             let (x, y) = (f64::from(i) * side, f64::from(j) * side);
-            let expected = love_displacement(x, y, 0.5 * side) + side * side * images(x, y, 0.5 * side) / PI;
+            let expected =
+                love_displacement(DVec2::new(x, y), 0.5 * side) + side * side * images(x, y, 0.5 * side) / PI;
             let value = coefficients[usize::from(j) * n + usize::from(i)];
             // The sixth order is below 2 r⁶, with r up to the far corner of the square; and the transform rounds.
             let next = side * side * 2.0 / PI * (x.hypot(y) + side / 2.0_f64.sqrt()).powi(6);

@@ -144,13 +144,15 @@ impl Picture for MapPicture<'_> {
 
 #[cfg(test)]
 mod tests {
+    use rc_core::DVec2;
+
     use super::*;
     use crate::{save_png, save_svg};
 
     #[test]
     fn a_picture_has_its_size_and_maps_in_svg_are_bitmaps() {
         let dir = tempfile::tempdir().expect("a temporary folder");
-        let pressure = Field::from_fn(Grid::new(60, 50).expect("a grid"), |x, y| (x - y).max(0.0));
+        let pressure = Field::from_fn(Grid::new(60, 50).expect("a grid"), |DVec2 { x, y }| (x - y).max(0.0));
         let picture = ContactPicture::of(&pressure, 3e6, 1e-2);
         let (png, svg) = (dir.path().join("a.png"), dir.path().join("a.svg"));
         save_png(&picture, &png).expect("a PNG file");
@@ -168,7 +170,7 @@ mod tests {
     fn means_over_blocks_are_touched() {
         let dir = tempfile::tempdir().expect("a temporary folder");
         let svg = dir.path().join("a.svg");
-        let pressure = Field::from_fn(Grid::square(4).expect("a grid"), |x, _| (x - 0.5).max(0.0));
+        let pressure = Field::from_fn(Grid::square(4).expect("a grid"), |at| (at.x - 0.5).max(0.0));
         let title = |picture: &ContactPicture| {
             save_svg(picture, &svg).expect("an SVG file");
             let text = std::fs::read_to_string(&svg).expect("the SVG file");
@@ -193,7 +195,7 @@ mod tests {
     fn fields_without_contact_or_contrast_are_drawn() {
         let dir = tempfile::tempdir().expect("a temporary folder");
         for value in [0.0, 3.0] {
-            let pressure = Field::from_fn(Grid::new(1, 1).expect("a grid"), |_, _| value);
+            let pressure = Field::from_fn(Grid::new(1, 1).expect("a grid"), |_| value);
             let picture = ContactPicture::of(&pressure, 1.0, 1.0);
             save_png(&picture, &dir.path().join("a.png")).expect("a PNG file");
         }

@@ -100,6 +100,8 @@ fn span(i: usize, pixels: usize, elements: usize) -> (usize, usize) {
 
 #[cfg(test)]
 mod tests {
+    use rc_core::DVec2;
+
     use super::*;
 
     #[test]
@@ -115,7 +117,8 @@ mod tests {
     #[test]
     fn means_over_pixels_give_the_same_picture_bit_for_bit() {
         for (nx, ny) in [(50, 70), (7, 90), (3, 2)] {
-            let field = Field::from_fn(Grid::new(nx, ny).expect("a grid"), |x, y| (7.0 * x).sin() * (y - 0.3));
+            let field =
+                Field::from_fn(Grid::new(nx, ny).expect("a grid"), |DVec2 { x, y }| (7.0 * x).sin() * (y - 0.3));
             let mut mean = PixelMean::new(field.grid(), 16);
             (0..ny).for_each(|iy| mean.take(|ix| field.at(ix, iy)));
             let colour = |v: f64| {

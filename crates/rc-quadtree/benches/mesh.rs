@@ -5,15 +5,16 @@
 use std::{f64::consts::TAU, sync::LazyLock};
 
 use divan::{Bencher, black_box, counter::ItemsCount};
+use rc_core::DVec2;
 use rc_quadtree::{Edge, Mask, Mesh, MeshKind, MeshParams, Reconstruction, count, transfer};
 
 /// Two thirds of the cell, in patches with borders on several scales.
 static MASK: LazyLock<Mask> = LazyLock::new(|| {
-    let rough = |x: f64, y: f64| {
+    let rough = |DVec2 { x, y }: DVec2| {
         let wave = |k: f64, phase: f64| (TAU * k * x + phase).cos() * (TAU * k * y + 2.0 * phase).sin() / k.sqrt();
         wave(3.0, 0.1) + wave(7.0, 0.7) + wave(17.0, 1.9) + wave(41.0, 2.3) + wave(97.0, 0.4)
     };
-    Mask::from_predicate(4096, |x, y| rough(x, y) > -0.15).expect("4096 is a side")
+    Mask::from_predicate(4096, |at| rough(at) > -0.15).expect("4096 is a side")
 });
 
 const KINDS: [MeshKind; 3] = [MeshKind::Uniform, MeshKind::AdaptiveUniform, MeshKind::Adaptive];

@@ -1,5 +1,7 @@
 //! The invariants of a mesh, checked one by one.
 
+use rc_core::DVec2;
+
 use crate::{Edge, Key, MAX_LEVEL, Mesh, Neighbour, refine::touching_blocks};
 
 impl Mesh {
@@ -15,7 +17,11 @@ impl Mesh {
         self.assert_squares();
         for (index, &key) in self.keys().iter().enumerate() {
             let element = self.element(index);
-            assert_eq!(self.locate(element.x, element.y), Some(index), "centre of {key:?} is located elsewhere");
+            assert_eq!(
+                self.locate(DVec2::new(element.x, element.y)),
+                Some(index),
+                "centre of {key:?} is located elsewhere"
+            );
             self.assert_balanced(key);
             for edge in Edge::ALL {
                 self.assert_seen_from_across(index, edge);

@@ -10,14 +10,15 @@
 //!    with the load kept; [`Mesh::border`] walks along the edge of a set of elements.
 //!
 //! ```
+//! use rc_core::DVec2;
 //! use rc_quadtree::{Mask, Mesh, MeshKind, MeshParams, Reconstruction, transfer};
 //!
-//! let mask = Mask::from_predicate(256, |x, y| (x - 0.5).hypot(y - 0.5) < 0.3)?;
+//! let mask = Mask::from_predicate(256, |at| at.distance(DVec2::splat(0.5)) < 0.3)?;
 //! let mesh = Mesh::from_mask(&mask, MeshKind::Adaptive, &MeshParams::default())?;
 //! assert!(4 * mesh.len() < mask.count(), "{} elements for {} cells", mesh.len(), mask.count());
 //!
 //! let pressure: Vec<f64> = mesh.elements().map(|e| 1.0 - e.x).collect();
-//! let finer = mesh.split(&[mesh.locate(0.5, 0.5).expect("the centre is in contact")])?;
+//! let finer = mesh.split(&[mesh.locate(DVec2::splat(0.5)).expect("the centre is in contact")])?;
 //! let moved = transfer(&mesh, &finer, &pressure, Reconstruction::Limited)?;
 //! assert!((finer.load(&moved.values)? - mesh.load(&pressure)?).abs() < 1e-15);
 //! # Ok::<(), rc_quadtree::MeshError>(())

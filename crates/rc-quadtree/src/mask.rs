@@ -1,6 +1,6 @@
 //! The contact set on the finest uniform grid.
 
-use rc_core::{Field, Grid};
+use rc_core::{DVec2, Field, Grid};
 
 use crate::{MeshError, error::check_length};
 
@@ -22,18 +22,15 @@ impl Mask {
         Ok(Self { side, cells })
     }
 
-    /// A mask from a predicate of the cell centre (x, y), in λ.
+    /// A mask from a predicate of the cell centre, in λ.
     ///
     /// # Errors
     /// [`MeshError::Grid`] when `side` is 0 or above [`Grid::MAX_SIDE`].
-    pub fn from_predicate(side: usize, mut in_contact: impl FnMut(f64, f64) -> bool) -> Result<Self, MeshError> {
+    pub fn from_predicate(side: usize, mut in_contact: impl FnMut(DVec2) -> bool) -> Result<Self, MeshError> {
         let grid = Grid::square(side)?;
         let mut cells = Vec::with_capacity(grid.len());
         for iy in 0..side {
-            cells.extend((0..side).map(|ix| {
-                let (x, y) = grid.centre(ix, iy);
-                in_contact(x, y)
-            }));
+            cells.extend((0..side).map(|ix| in_contact(grid.centre(ix, iy))));
         }
         Ok(Self { side, cells })
     }
@@ -148,7 +145,7 @@ mod tests {
 
     #[test]
     fn widening_one_cell_gives_a_square_across_the_seam() {
-        let mask = Mask::from_predicate(8, |x, y| x < 0.1 && y < 0.1).expect("8 is a side");
+        let mask = Mask::from_predicate(8, |DVec2 { x, y }| x < 0.1 && y < 0.1).expect("8 is a side");
         let wide = mask.widened(2);
         assert_eq!(wide.iter().filter(|&&c| c).count(), 25);
         assert!(wide[7 * 8 + 6], "cell (6, 7) is within two of (0, 0) across the corner");

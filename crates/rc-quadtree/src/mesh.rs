@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use rc_core::DVec2;
+
 use crate::{
     Key, MAX_LEVEL, MeshError,
     error::{check_base, check_length},
@@ -230,17 +232,17 @@ impl Mesh {
         Ok(self.elements().zip(pressure).map(|(e, p)| p * e.area()).sum())
     }
 
-    /// The element that contains the point (x, y), in λ, taken periodically; none outside, and for coordinates that
+    /// The element that contains the point `at`, in λ, taken periodically; none outside, and for coordinates that
     /// are not finite. Elements own their lower and left edges.
     #[must_use]
-    pub fn locate(&self, x: f64, y: f64) -> Option<usize> {
-        if !(x.is_finite() && y.is_finite()) {
+    pub fn locate(&self, at: DVec2) -> Option<usize> {
+        if !at.is_finite() {
             return None;
         }
         let per_side = (self.base as u32) << MAX_LEVEL;
         // A tiny negative coordinate wraps to 1.0 by rounding: it belongs to the last column.
         let cell = |v: f64| ((v.rem_euclid(1.0) * f64::from(per_side)) as u32).min(per_side - 1);
-        self.find(Key::new(MAX_LEVEL, cell(x), cell(y)))
+        self.find(Key::new(MAX_LEVEL, cell(at.x), cell(at.y)))
     }
 
     /// The element that is the square `block` or contains it.

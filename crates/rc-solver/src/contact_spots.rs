@@ -89,7 +89,7 @@ fn neighbours(grid: Grid, ix: usize, iy: usize) -> [usize; 4] {
 
 #[cfg(test)]
 mod tests {
-    use rc_core::Kernel as _;
+    use rc_core::{DVec2, Kernel as _};
     use rc_kernel::Love;
 
     use super::*;
@@ -106,8 +106,8 @@ mod tests {
             });
             inside[0].max(inside[1])
         };
-        let pressure = Field::from_fn(grid, |x, y| depth(x, y).max(0.0).sqrt());
-        let gap = Field::from_fn(grid, |x, y| 4.0 / 3.0 * (-depth(x, y)).max(0.0).powf(1.5));
+        let pressure = Field::from_fn(grid, |DVec2 { x, y }| depth(x, y).max(0.0).sqrt());
+        let gap = Field::from_fn(grid, |DVec2 { x, y }| 4.0 / 3.0 * (-depth(x, y)).max(0.0).powf(1.5));
         // Heights as exact as these have no first-order error to be taken off.
         let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_bend: 0.0, per_square: 0.0 };
         let spots = ContactSpot::all(&pressure, &gap, none);
@@ -133,8 +133,8 @@ mod tests {
         let depth = |x: f64, y: f64| 0.23 - (x - 0.501).hypot(y - 0.497);
         let found = |nx: usize, ny: usize| {
             let grid = Grid::new(nx, ny).expect("a grid");
-            let pressure = Field::from_fn(grid, |x, y| depth(x, y).max(0.0).sqrt());
-            let gap = Field::from_fn(grid, |x, y| 4.0 / 3.0 * (-depth(x, y)).max(0.0).powf(1.5));
+            let pressure = Field::from_fn(grid, |DVec2 { x, y }| depth(x, y).max(0.0).sqrt());
+            let gap = Field::from_fn(grid, |DVec2 { x, y }| 4.0 / 3.0 * (-depth(x, y)).max(0.0).powf(1.5));
             ContactArea::of(&pressure, &gap, none)
         };
         let squares = found(256, 256);

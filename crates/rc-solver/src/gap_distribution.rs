@@ -43,7 +43,7 @@ impl GapDistribution {
 
 #[cfg(test)]
 mod tests {
-    use rc_core::Grid;
+    use rc_core::{DVec2, Grid};
 
     use super::*;
 
@@ -54,8 +54,8 @@ mod tests {
         let radius = |x: f64, y: f64| (x - 0.5).hypot(y - 0.49);
         for (n, bound) in [(128, 4e-2), (512, 1e-2)] {
             let grid = Grid::square(n).expect("a grid");
-            let gap = Field::from_fn(grid, |x, y| (radius(x, y) - a).max(0.0).powf(1.5));
-            let pressure = Field::from_fn(grid, |x, y| (a - radius(x, y)).max(0.0).sqrt());
+            let gap = Field::from_fn(grid, |DVec2 { x, y }| (radius(x, y) - a).max(0.0).powf(1.5));
+            let pressure = Field::from_fn(grid, |DVec2 { x, y }| (a - radius(x, y)).max(0.0).sqrt());
             let edges: Vec<f64> = (0..=10).map(|k| far.powf(1.5) * f64::from(k) / 10.0).collect();
             let found = GapDistribution::of(&gap, &pressure, &edges);
             let area = |g: f64| std::f64::consts::PI * ((a + g.powf(2.0 / 3.0)).powi(2) - a * a);
@@ -71,7 +71,7 @@ mod tests {
     #[test]
     fn full_contact_has_no_gaps() {
         let grid = Grid::new(10, 7).expect("a grid");
-        let found = GapDistribution::of(&Field::zeros(grid), &Field::from_fn(grid, |_, _| 1.0), &[0.0, 1.0]);
+        let found = GapDistribution::of(&Field::zeros(grid), &Field::from_fn(grid, |_| 1.0), &[0.0, 1.0]);
         assert_eq!((found.open_fraction, found.density), (0.0, vec![0.0]));
     }
 }

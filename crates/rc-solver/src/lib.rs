@@ -14,7 +14,7 @@
 //!
 //! // Westergaard's wave at half the load of full contact, π E* a/λ: half of it touches.
 //! let amplitude = 1e-3;
-//! let heights = Field::from_fn(Grid::square(128)?, |x, _| amplitude * (TAU * x).cos());
+//! let heights = Field::from_fn(Grid::square(128)?, |at| amplitude * (TAU * at.x).cos());
 //! let load = Control::MeanPressure(0.5 * PI * amplitude);
 //! let solution = solve_uniform(&heights, &Love, load, &IterationParams::certified(), &Silent)?;
 //! let found = Observables::of(&solution, &Love);

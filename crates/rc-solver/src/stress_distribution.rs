@@ -179,7 +179,7 @@ impl<'a> Exceedance<'a> {
 
 #[cfg(test)]
 mod tests {
-    use rc_core::Grid;
+    use rc_core::{DVec2, Grid};
 
     use super::*;
 
@@ -189,7 +189,9 @@ mod tests {
     fn a_paraboloid_of_squared_pressure_has_a_linear_distribution() {
         for (n, bound) in [(128, 5e-2), (512, 1.3e-2)] {
             let radius: f64 = 0.2;
-            let p = |x: f64, y: f64| (1.0 - ((x - 0.5).powi(2) + (y - 0.49).powi(2)) / radius.powi(2)).max(0.0).sqrt();
+            let p = |DVec2 { x, y }: DVec2| {
+                (1.0 - ((x - 0.5).powi(2) + (y - 0.49).powi(2)) / radius.powi(2)).max(0.0).sqrt()
+            };
             let pressure = Field::from_fn(Grid::square(n).expect("a grid"), p);
             let edges: Vec<f64> = (0..=10).map(|k| 0.1 * f64::from(k)).collect();
             let found = StressDistribution::of(&pressure, &edges);
@@ -205,7 +207,7 @@ mod tests {
     #[test]
     fn full_contact_is_counted_once_and_none_not_at_all() {
         let grid = Grid::new(10, 7).expect("a grid");
-        let of = |p: f64| StressDistribution::of(&Field::from_fn(grid, |_, _| p), &[0.0, 1.0, 2.0]);
+        let of = |p: f64| StressDistribution::of(&Field::from_fn(grid, |_| p), &[0.0, 1.0, 2.0]);
         let (full, none) = (of(1.5), of(0.0));
         assert!((full.area_fraction - 1.0).abs() < 1e-14 && full.density[0] == 0.0, "{full:?}");
         assert!((full.density[1] - 1.0).abs() < 1e-14, "{full:?}");
@@ -224,7 +226,7 @@ mod tests {
 
     #[test]
     fn edges_that_make_no_bins_give_no_densities() {
-        let pressure = Field::from_fn(Grid::square(4).expect("a grid"), |_, _| 1.0);
+        let pressure = Field::from_fn(Grid::square(4).expect("a grid"), |_| 1.0);
         for edges in [&[][..], &[1.0], &[2.0, 1.0], &[f64::NAN, -1.0]] {
             let found = StressDistribution::of(&pressure, edges);
             assert!(found.density.iter().all(|&density| density == 0.0), "{found:?}");

@@ -1,6 +1,6 @@
 //! The paper's procedure against the uniform solver, against Hertz, and against its own sums.
 
-use rc_core::{Field, Grid, Operator, Silent};
+use rc_core::{DVec2, Field, Grid, Operator, Silent};
 use rc_kernel::{Love, PeriodicLove};
 use rc_solver::{
     Control, GaussSeidelError, GaussSeidelParams, GridSolution, IterationError, IterationParams, Observables,
@@ -11,7 +11,7 @@ const TAU: f64 = std::f64::consts::TAU;
 
 /// Bumps of different height, no symmetry.
 fn bumps(n: usize) -> Field {
-    Field::from_fn(Grid::square(n).expect("grid"), |x, y| {
+    Field::from_fn(Grid::square(n).expect("grid"), |DVec2 { x, y }| {
         let wave = |a: f64, kx: f64, ky: f64, phase: f64| a * (TAU * (kx * x + ky * y + phase)).cos();
         wave(5e-3, 1.0, 0.0, 0.1) + wave(4e-3, 1.0, 2.0, 0.37) + wave(2e-3, 3.0, -2.0, 0.8) + wave(1e-3, -2.0, 5.0, 0.5)
     })
@@ -23,7 +23,7 @@ fn by_the_paper(
     params: &GaussSeidelParams,
 ) -> Result<GridSolution, GaussSeidelError> {
     let periodic = PeriodicLove::new();
-    solve_gauss_seidel(heights, &Love, &|dx, dy, d| periodic.coefficient(dx, dy, d), control, params, &Silent)
+    solve_gauss_seidel(heights, &Love, &|offset, d| periodic.coefficient(offset, d), control, params, &Silent)
 }
 
 fn uniform(heights: &Field, control: Control, tolerance: f64) -> GridSolution {
@@ -76,9 +76,9 @@ fn displacement_by_fft_is_the_direct_sum() {
     UniformOperator::new(heights.grid(), &Love).apply(solution.pressure.values(), &mut by_fft, &mut []);
     let periodic = PeriodicLove::new();
     for i in (0..64 * 64).step_by(131) {
-        let (x, y) = heights.grid().centre(i % 64, i / 64);
+        let at = heights.grid().centre(i % 64, i / 64);
         let sources = elements.mesh.elements().zip(&elements.pressure);
-        let sum: f64 = sources.map(|(e, p)| periodic.coefficient(x - e.x, y - e.y, e.half_side()) * p).sum();
+        let sum: f64 = sources.map(|(e, p)| periodic.coefficient(at - DVec2::new(e.x, e.y), e.half_side()) * p).sum();
         assert!((sum - by_fft[i]).abs() <= 1e-12 * heights.max(), "at {i}: {sum:e} against {:e}", by_fft[i]);
     }
 }

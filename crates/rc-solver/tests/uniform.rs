@@ -1,7 +1,7 @@
 //! The uniform solver against slow truth and against itself.
 
 use rc_core::testing::quasi_random;
-use rc_core::{Field, Grid, Kernel, Operator, Silent};
+use rc_core::{DVec2, Field, Grid, Kernel, Operator, Silent};
 use rc_kernel::{Love, Spectral};
 use rc_solver::{
     Certificate, Control, DirectSum, GridSolution, IterationError, IterationParams, Observables, Status, solve_uniform,
@@ -11,7 +11,7 @@ const TAU: f64 = std::f64::consts::TAU;
 
 /// A bumpy surface without symmetry, peak-to-valley of order 0.02.
 fn bumps(nx: usize, ny: usize) -> Field {
-    Field::from_fn(Grid::new(nx, ny).expect("grid"), |x, y| {
+    Field::from_fn(Grid::new(nx, ny).expect("grid"), |DVec2 { x, y }| {
         let wave = |a: f64, kx: f64, ky: f64, phase: f64| a * (TAU * (kx * x + ky * y + phase)).cos();
         wave(5e-3, 1.0, 0.0, 0.1) + wave(4e-3, 1.0, 2.0, 0.37) + wave(2e-3, 3.0, -2.0, 0.8) + wave(1e-3, -2.0, 5.0, 0.5)
     })
@@ -89,7 +89,7 @@ fn penetration_control_inverts_pressure_control() {
 fn full_contact_is_exact_without_iteration() {
     let heights = bumps(90, 72);
     // |q| h / 2 of each wave of `bumps`.
-    let exact = Field::from_fn(heights.grid(), |x, y| {
+    let exact = Field::from_fn(heights.grid(), |DVec2 { x, y }| {
         let wave = |a: f64, kx: f64, ky: f64, phase: f64| {
             0.5 * TAU * f64::hypot(kx, ky) * a * (TAU * (kx * x + ky * y + phase)).cos()
         };
@@ -143,7 +143,7 @@ fn stiffness_is_the_slope_of_load_over_penetration() {
 fn a_rectangular_cell_is_a_part_of_the_square_of_its_copies() {
     for (nx, ny, copies) in [(48, 24, 2), (40, 32, 2), (192, 64, 3), (128, 128, 2)] {
         let rectangle = Grid::in_cell(nx, ny, 1.0 / copies as f64).expect("grid");
-        let wave = |x: f64, y: f64| {
+        let wave = |DVec2 { x, y }: DVec2| {
             let y = copies as f64 * y;
             let wave = |a: f64, kx: f64, ky: f64, phase: f64| a * (TAU * (kx * x + ky * y + phase)).cos();
             wave(5e-3, 1.0, 0.0, 0.1) + wave(4e-3, 1.0, 1.0, 0.37) + wave(2e-3, 3.0, -2.0, 0.8)
@@ -210,7 +210,7 @@ fn white_noise_is_solved_and_scales_exactly() {
 
 #[test]
 fn flat_surface_is_in_full_contact_at_any_load() {
-    let flat = Field::from_fn(Grid::new(16, 8).expect("grid"), |_, _| 0.25);
+    let flat = Field::from_fn(Grid::new(16, 8).expect("grid"), |_| 0.25);
     let solution = solve(&flat, &Love, Control::MeanPressure(1e-9), 1e-6).expect("solvable");
     assert_eq!(solution.status, Status::FullContact);
     assert!(solution.pressure.values().iter().all(|&p| (p - 1e-9).abs() < 1e-24));
@@ -253,7 +253,7 @@ fn bad_input_is_refused_with_its_value() {
     assert!(matches!(error, IterationError::Height { ix: 5, iy: 3, .. }), "{error}");
     // Squares of what such heights lead to underflow, or their range is not a number.
     for size in [1e-305, 1.7e308] {
-        let scaled = Field::from_fn(heights.grid(), |x, _| if x < 0.5 { size } else { -size });
+        let scaled = Field::from_fn(heights.grid(), |at| if at.x < 0.5 { size } else { -size });
         let error = solve(&scaled, &Love, Control::MeanPressure(1e-3), 1e-6).expect_err("a size out of range");
         assert!(matches!(error, IterationError::HeightRange { .. }), "{error}");
     }

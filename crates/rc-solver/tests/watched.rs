@@ -2,7 +2,7 @@
 
 use std::sync::Mutex;
 
-use rc_core::{Event, Field, Grid, HeightSource, Observer, Silent, Snapshot};
+use rc_core::{DVec2, Event, Field, Grid, HeightSource, Observer, Silent, Snapshot};
 use rc_kernel::{Love, PeriodicLove};
 use rc_solver::{
     AdaptiveParams, Control, GaussSeidelParams, IterationParams, solve_adaptive, solve_gauss_seidel, solve_uniform,
@@ -38,7 +38,7 @@ impl Observer for Watching {
 }
 
 fn bumps(n: usize) -> Field {
-    Field::from_fn(Grid::square(n).expect("grid"), |x, y| {
+    Field::from_fn(Grid::square(n).expect("grid"), |DVec2 { x, y }| {
         let wave = |a: f64, kx: f64, ky: f64, phase: f64| a * (TAU * (kx * x + ky * y + phase)).cos();
         wave(5e-3, 1.0, 0.0, 0.1) + wave(4e-3, 1.0, 2.0, 0.37) + wave(2e-3, 3.0, -2.0, 0.8) + wave(1e-3, -2.0, 5.0, 0.5)
     })
@@ -67,7 +67,7 @@ fn by_gauss_seidel(heights: &Field, observer: &dyn Observer) -> Field {
     let periodic = PeriodicLove::new();
     let params = GaussSeidelParams { uniform_elements: true, ..GaussSeidelParams::paper() };
     let control = Control::MeanPressure(MEAN_PRESSURE);
-    let coefficient = |dx: f64, dy: f64, d: f64| periodic.coefficient(dx, dy, d);
+    let coefficient = |offset: DVec2, half_side: f64| periodic.coefficient(offset, half_side);
     solve_gauss_seidel(heights, &Love, &coefficient, control, &params, observer).expect("solvable").pressure
 }
 
@@ -102,7 +102,7 @@ fn a_watched_solve_finds_the_same_bits_and_shows_them_at_the_end() {
 fn elements_of_several_sizes_are_shown_on_the_grid() {
     struct Wave;
     impl rc_core::HeightField for Wave {
-        fn height(&self, x: f64, y: f64) -> f64 {
+        fn height(&self, DVec2 { x, y }: DVec2) -> f64 {
             5e-3 * (TAU * x).cos() + 4e-3 * (TAU * (x + 2.0 * y)).cos()
         }
         fn band_limit(&self) -> Option<usize> {

@@ -60,7 +60,7 @@ mod tests {
         let full = wave.full_contact_pressure();
         // Odd, so that the trough x = ½ is the centre of an element.
         let grid = Grid::new(15, 2).expect("small");
-        let pressure = Field::from_fn(grid, |x, _| wave.pressure(x, 2.0 * full));
+        let pressure = Field::from_fn(grid, |at| wave.pressure(at.x, 2.0 * full));
         assert_close("p^", smallest_mean_pressure(&pressure), full, 1e-14);
     }
 

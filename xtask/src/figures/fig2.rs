@@ -6,6 +6,7 @@
 use anyhow::Result;
 use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, PathElement};
 use plotters::style::{BLACK, Color, RGBColor};
+use rc_core::DVec2;
 use rc_kernel::{PeriodicLove, ewald_phi};
 use rc_plot::{Area, Picture, PictureError};
 
@@ -107,7 +108,7 @@ impl Case {
         Self {
             inverse_half_side,
             stress: x.iter().map(|&x| stress(x)).collect(),
-            response: x.iter().map(|&x| kernel.coefficient(x, 0.0, half_side)).collect(),
+            response: x.iter().map(|&x| kernel.coefficient(DVec2::new(x, 0.0), half_side)).collect(),
             mean_stress: area * stress(0.0) + (1.0 - area) * stress(0.5),
             mean_response: mean_response(kernel, inverse_half_side),
         }
@@ -135,18 +136,18 @@ impl Case {
 fn mean_response(kernel: PeriodicLove, inverse_half_side: usize) -> f64 {
     let half_side = (inverse_half_side as f64).recip();
     let (side, n_tiles) = (2.0 * half_side, inverse_half_side / 2);
-    let sum_at = |x: f64, y: f64| {
-        let tiles = (0..n_tiles).flat_map(|i| (0..n_tiles).map(move |j| (i as f64 * side, j as f64 * side)));
-        tiles.map(|(tile_x, tile_y)| kernel.coefficient(x + tile_x, y + tile_y, half_side)).sum::<f64>()
+    let sum_at = |at: DVec2| {
+        let tiles = (0..n_tiles).flat_map(|i| (0..n_tiles).map(move |j| DVec2::new(i as f64, j as f64) * side));
+        tiles.map(|tile| kernel.coefficient(at + tile, half_side)).sum::<f64>()
     };
-    let points = (0..4).flat_map(|i| (0..4).map(move |j| (f64::from(i) * side / 4.0, f64::from(j) * side / 4.0)));
-    let sums = points.map(|(x, y)| side * side * sum_at(x, y));
+    let points = (0..4).flat_map(|i| (0..4).map(move |j| DVec2::new(f64::from(i), f64::from(j)) * side / 4.0));
+    let sums = points.map(|at| side * side * sum_at(at));
     sums.fold(0.0, |greatest: f64, sum| if sum.abs() > greatest.abs() { sum } else { greatest })
 }
 
 /// The displacement of a point load of 1 in E* λ²: 𝓛 of Eq. (3).
 fn point_response(x: f64) -> f64 {
-    std::f64::consts::FRAC_1_PI * ewald_phi(x, 0.0)
+    std::f64::consts::FRAC_1_PI * ewald_phi(DVec2::new(x, 0.0))
 }
 
 impl Fig2 {
@@ -156,7 +157,7 @@ impl Fig2 {
         let kernel = PeriodicLove::new();
         let rows = self.cases.iter().map(|case| {
             let d = case.half_side();
-            let at = |x: f64| kernel.coefficient(x, 0.0, d);
+            let at = |x: f64| kernel.coefficient(DVec2::new(x, 0.0), d);
             [d, case.load(), case.mean_stress, case.mean_response, at(0.0), at(d), at(0.5)].map(number).into()
         });
         Table::new("summary", &header, rows)

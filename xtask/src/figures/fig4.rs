@@ -10,7 +10,7 @@ use plotters::prelude::{
     BLACK, Cartesian2d, ChartBuilder, ChartContext, Circle, Color, DashedLineSeries, DrawingAreaErrorKind,
     DrawingBackend, IntoFont, LineSeries, RGBColor, Rectangle,
 };
-use rc_core::{Elasticity, Field, Grid, HeightSource, PeriodicCell, Silent};
+use rc_core::{DVec2, Elasticity, Field, Grid, HeightSource, PeriodicCell, Silent};
 use rc_plot::{Area, FONT, Picture, PictureError};
 use rc_solver::{AdaptiveParams, Control, IterationParams, solve_adaptive};
 use rc_theory::hertz::{Hertz, PeriodicHertz};
@@ -148,10 +148,10 @@ impl Picture for Fig4 {
 fn sphere(params: &Params) -> Result<(Field, usize)> {
     let grid = Grid::square(params.grid)?;
     let apex = params.grid / 2;
-    let (centre, _) = grid.centre(apex, apex);
+    let centre = grid.centre(apex, apex).x;
     let to_image = |x: f64| (x - centre) - (x - centre).round();
     let curvature = params.cell / params.radius;
-    Ok((Field::from_fn(grid, |x, y| -0.5 * curvature * to_image(x).hypot(to_image(y)).powi(2)), apex))
+    Ok((Field::from_fn(grid, |DVec2 { x, y }| -0.5 * curvature * to_image(x).hypot(to_image(y)).powi(2)), apex))
 }
 
 /// Hertz at the given Δ: in the periodic cell, and on the infinite half-space.

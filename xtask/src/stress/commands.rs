@@ -142,7 +142,7 @@ fn bad_values(field: &Field, least: f64) -> usize {
 /// Height maps that are hard to solve, or none at all.
 fn files(rows: &mut Rows, place: &Path) -> Result<()> {
     let rough = rough(8, 0.8, 1, 64)?;
-    let single = Field::from_fn(Grid::square(1)?, |_, _| 3e-4);
+    let single = Field::from_fn(Grid::square(1)?, |_| 3e-4);
     let flat = "2: all heights are";
     // Name, heights, pressure, status or exit code.
     let maps = [

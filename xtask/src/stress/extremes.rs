@@ -1,7 +1,7 @@
 //! Scenes at the ends of every range: loads, penetrations, Hurst exponents, waves, offsets, sizes of numbers, shapes, grids.
 
 use anyhow::Result;
-use rc_core::{Field, Grid};
+use rc_core::{DVec2, Field, Grid};
 use rc_solver::Control;
 
 use super::heights::{mapped, rough, shapes};
@@ -201,7 +201,8 @@ fn grids(full: bool) -> Result<Vec<Scene>> {
     for (nx, ny, ratio) in grids {
         let grid = Grid::in_cell(nx, ny, ratio)?;
         let wave = |t: f64| (std::f64::consts::TAU * t).cos();
-        let heights = Field::from_fn(grid, |x, y| 1e-3 * (wave(x + 0.1) + wave(y / ratio + 0.2) + 0.3 * wave(2.0 * x)));
+        let heights =
+            Field::from_fn(grid, |DVec2 { x, y }| 1e-3 * (wave(x + 0.1) + wave(y / ratio + 0.2) + 0.3 * wave(2.0 * x)));
         let control = Control::MeanPressure(1e-3);
         for method in [Method::Uniform, Method::Spectral] {
             let cell = if grid.has_square_cell() { String::new() } else { format!(", cell of 1 x {ratio}") };
@@ -210,7 +211,7 @@ fn grids(full: bool) -> Result<Vec<Scene>> {
             scenes.push(if nx.min(ny) > 1 && length > 50.0 { scene.slow(LONG_CELL) } else { scene });
         }
     }
-    let flat = Field::from_fn(Grid::square(32)?, |_, _| 0.25);
+    let flat = Field::from_fn(Grid::square(32)?, |_| 0.25);
     scenes.push(Scene::new("flat surface", &flat, Method::Uniform, Control::MeanPressure(1e-3)));
     Ok(scenes)
 }

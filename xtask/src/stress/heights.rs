@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use anyhow::Result;
 use rc_core::testing::quasi_random;
-use rc_core::{Field, Grid};
+use rc_core::{DVec2, Field, Grid};
 use rc_fractal::{SpectrumParams, Surface};
 
 /// Peak-to-valley height of the shapes.
@@ -33,31 +33,33 @@ pub(crate) fn mapped(heights: &Field, map: impl Fn(f64) -> f64) -> Field {
 pub(crate) fn shapes(side: usize) -> Result<Vec<Shape>> {
     let grid = Grid::square(side)?;
     let n = side as f64;
-    let from = |name, height: &dyn Fn(f64, f64) -> f64| Shape { name, heights: Field::from_fn(grid, height) };
-    // Distance to (a, b) on the periodic cell.
-    let distance = |x: f64, y: f64, a: f64, b: f64| {
+    let from = |name, height: &dyn Fn(DVec2) -> f64| Shape { name, heights: Field::from_fn(grid, height) };
+    // Distance on the periodic cell.
+    let distance = |a: DVec2, b: DVec2| {
         let wrap = |t: f64| t - t.round();
-        f64::hypot(wrap(x - a), wrap(y - b))
+        f64::hypot(wrap(a.x - b.x), wrap(a.y - b.y))
     };
-    let middle = (0.5 + 0.5 / n, 0.5 + 0.5 / n);
-    let one = |x: f64, y: f64| distance(x, y, middle.0, middle.1) < 0.25 / n;
-    let bump = move |x: f64, y: f64, a: f64, b: f64| (1.0 - 40.0 * distance(x, y, a, b).powi(2)).max(0.0);
-    let noise = |x: f64, y: f64| quasi_random((n * y) as usize * side + (n * x) as usize + 7);
-    let peaks = [middle.0 - 0.25, middle.0 + 0.25];
+    let middle = DVec2::splat(0.5 + 0.5 / n);
+    let one = |at: DVec2| distance(at, middle) < 0.25 / n;
+    let bump = |at: DVec2, centre: DVec2| (1.0 - 40.0 * distance(at, centre).powi(2)).max(0.0);
+    let noise = |at: DVec2| quasi_random((n * at.y) as usize * side + (n * at.x) as usize + 7);
+    let peaks = [-0.25, 0.25].map(|dx| middle + DVec2::new(dx, 0.0));
     Ok(vec![
-        from("one spike", &|x, y| if one(x, y) { RANGE } else { 0.0 }),
-        from("one pit", &|x, y| if one(x, y) { -RANGE } else { 0.0 }),
-        from("two equal peaks", &|x, y| RANGE * bump(x, y, peaks[0], middle.1).max(bump(x, y, peaks[1], middle.1))),
-        from("plateau without curvature", &|x, y| RANGE * (2.0 * bump(x, y, middle.0, middle.1)).min(1.0)),
-        from("square punch", &|x, y| if (x - 0.5).abs().max((y - 0.5).abs()) < 0.2 { RANGE } else { 0.0 }),
-        from("round punch", &|x, y| if distance(x, y, 0.5, 0.5) < 0.2 { RANGE } else { 0.0 }),
-        from("strip punch", &|x, _| if (x - 0.5).abs() < 0.1 { RANGE } else { 0.0 }),
-        from("cone", &|x, y| -RANGE * distance(x, y, middle.0, middle.1)),
-        from("ridge of one wave", &|x, _| 0.5 * RANGE * (TAU * x).cos()),
-        from("chequered", &|x, y| if ((n * x) as usize + (n * y) as usize).is_multiple_of(2) { RANGE } else { 0.0 }),
-        from("white noise", &|x, y| RANGE * noise(x, y)),
-        from("bump across the corner", &|x, y| RANGE * bump(x, y, 0.0, 0.0)),
-        from("bump across the seam", &|x, y| RANGE * bump(x, y, 0.0, middle.1)),
-        from("step of two levels", &|x, _| if x < 0.5 { 0.0 } else { RANGE }),
+        from("one spike", &|at: DVec2| if one(at) { RANGE } else { 0.0 }),
+        from("one pit", &|at: DVec2| if one(at) { -RANGE } else { 0.0 }),
+        from("two equal peaks", &|at: DVec2| RANGE * bump(at, peaks[0]).max(bump(at, peaks[1]))),
+        from("plateau without curvature", &|at: DVec2| RANGE * (2.0 * bump(at, middle)).min(1.0)),
+        from("square punch", &|at: DVec2| if (at - 0.5).abs().max_element() < 0.2 { RANGE } else { 0.0 }),
+        from("round punch", &|at: DVec2| if distance(at, DVec2::splat(0.5)) < 0.2 { RANGE } else { 0.0 }),
+        from("strip punch", &|at: DVec2| if (at.x - 0.5).abs() < 0.1 { RANGE } else { 0.0 }),
+        from("cone", &|at: DVec2| -RANGE * distance(at, middle)),
+        from("ridge of one wave", &|at: DVec2| 0.5 * RANGE * (TAU * at.x).cos()),
+        from("chequered", &|at: DVec2| {
+            if ((n * at.x) as usize + (n * at.y) as usize).is_multiple_of(2) { RANGE } else { 0.0 }
+        }),
+        from("white noise", &|at: DVec2| RANGE * noise(at)),
+        from("bump across the corner", &|at: DVec2| RANGE * bump(at, DVec2::ZERO)),
+        from("bump across the seam", &|at: DVec2| RANGE * bump(at, DVec2::new(0.0, middle.y))),
+        from("step of two levels", &|at: DVec2| if at.x < 0.5 { 0.0 } else { RANGE }),
     ])
 }

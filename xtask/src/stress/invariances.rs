@@ -1,7 +1,7 @@
 //! What must not change a result, or must change it in a known way.
 
 use anyhow::Result;
-use rc_core::{Field, Grid, HeightField};
+use rc_core::{DVec2, Field, Grid, HeightField};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_solver::Control;
 
@@ -108,8 +108,8 @@ fn copies(rows: &mut Rows, _: Preset) -> Result<()> {
             let bumps = |x: f64, y: f64| 1e-2 * (wave(x + y + 0.1) + wave(2.0 * x - y) + 0.4 * wave(3.0 * x + 0.3));
             // y in parts of the rectangle's side.
             let times = n as f64;
-            let part = Field::from_fn(Grid::in_cell(nx, ny, 1.0 / times)?, |x, y| bumps(x, times * y));
-            let whole = Field::from_fn(Grid::new(nx, n * ny)?, |x, y| bumps(x, times * y));
+            let part = Field::from_fn(Grid::in_cell(nx, ny, 1.0 / times)?, |DVec2 { x, y }| bumps(x, times * y));
+            let whole = Field::from_fn(Grid::new(nx, n * ny)?, |DVec2 { x, y }| bumps(x, times * y));
             let [part, whole] = [solve(&part, method, LOAD, TIGHT)?, solve(&whole, method, LOAD, TIGHT)?];
             let copied = Field::new(whole.pressure.grid(), part.pressure.values().repeat(n))?;
             let scene = format!("{} {n} copies of {nx} x {ny} elements", method.name());
@@ -145,10 +145,10 @@ fn motions(rows: &mut Rows, _: Preset) -> Result<()> {
 
 /// A surface moved by any part of an element is the same surface: only the grid sees it from elsewhere.
 fn fractions(rows: &mut Rows, _: Preset) -> Result<()> {
-    struct Moved<'a>(&'a Surface, f64, f64);
+    struct Moved<'a>(&'a Surface, DVec2);
     impl HeightField for Moved<'_> {
-        fn height(&self, x: f64, y: f64) -> f64 {
-            self.0.height(x + self.1, y + self.2)
+        fn height(&self, at: DVec2) -> f64 {
+            self.0.height(at + self.1)
         }
         fn band_limit(&self) -> Option<usize> {
             self.0.band_limit()
@@ -160,7 +160,7 @@ fn fractions(rows: &mut Rows, _: Preset) -> Result<()> {
     let plain = solve(&surface.sample_on(grid)?, Method::Uniform, LOAD, 1e-8)?;
     for (dx, dy) in [(0.5, 0.0), (0.25, 0.75), (1e-6, 0.3)] {
         let scene = format!("moved by {dx} and {dy} elements");
-        let heights = Moved(&surface, dx / n as f64, dy / n as f64).sample(grid);
+        let heights = Moved(&surface, DVec2::new(dx, dy) / n as f64).sample(grid);
         let other = solve(&heights, Method::Uniform, LOAD, 1e-8)?;
         let ratio = |of: fn(&Solved) -> f64| (of(&other) / of(&plain) - 1.0).abs();
         // Discretisation errors at 32 elements to the shortest wave.

@@ -3,7 +3,7 @@
 use std::f64::consts::SQRT_2;
 
 use anyhow::{Context, Result, ensure};
-use rc_core::{Grid, Kernel};
+use rc_core::{DVec2, Grid, Kernel};
 use rc_kernel::{Love, PeriodicLove, Spectral, love_alias_sum, love_displacement};
 
 use super::row::{Row, Rows};
@@ -66,7 +66,7 @@ fn free(rows: &mut Rows) -> Result<()> {
         } else {
             format!("squares of half side 1e{}", half_side.log10().round())
         };
-        (scene, (love_displacement(x, y, half_side) / reference - 1.0).abs())
+        (scene, (love_displacement(DVec2::new(x, y), half_side) / reference - 1.0).abs())
     });
     worst(rows, "Love's square", FREE, errors);
     Ok(())
@@ -78,13 +78,13 @@ fn periodic(rows: &mut Rows) -> Result<()> {
     let errors = lines.iter().map(|&[dx, dy, half_side, reference]| {
         // Where the coefficient changes sign only its error relative to the source has a meaning.
         let scale = reference.abs().max(4.0 * half_side * half_side);
-        let error = (love.coefficient(dx, dy, half_side) - reference).abs() / scale;
+        let error = (love.coefficient(DVec2::new(dx, dy), half_side) - reference).abs() / scale;
         (format!("all images of half side {half_side:e}"), error)
     });
     worst(rows, "periodic sum", PERIODIC, errors);
     let images = lines.iter().map(|&[dx, dy, half_side, _]| {
-        let here = love.coefficient(dx, dy, half_side);
-        let there = [(-dx, dy), (dx, -dy), (dy, dx)].map(|(u, v)| love.coefficient(u, v, half_side));
+        let here = love.coefficient(DVec2::new(dx, dy), half_side);
+        let there = [(-dx, dy), (dx, -dy), (dy, dx)].map(|image| love.coefficient(image.into(), half_side));
         (format!("all images of half side {half_side:e}"), there.iter().map(|v| (v - here).abs()).fold(0.0, f64::max))
     });
     worst(rows, "symmetry of the periodic sum", 0.0, images);

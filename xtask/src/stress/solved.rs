@@ -1,7 +1,7 @@
 //! One solve of a height map by any method, in one form.
 
 use anyhow::{Context, Result};
-use rc_core::{Field, HeightSource, Kernel, Silent};
+use rc_core::{DVec2, Field, HeightSource, Kernel, Silent};
 use rc_kernel::{Love, PeriodicLove, Spectral};
 use rc_solver::{
     AdaptiveParams, Coefficient, Control, GaussSeidelParams, IterationParams, Observables, SolveInfo, solve_adaptive,
@@ -77,7 +77,7 @@ fn try_solve(heights: &Field, method: Method, control: Control, tolerance: f64) 
         Method::GaussSeidel => {
             let params = GaussSeidelParams { tolerance, uniform_elements: true, ..GaussSeidelParams::paper() };
             let love = PeriodicLove::new();
-            let coefficient = |dx: f64, dy: f64, half_side: f64| love.coefficient(dx, dy, half_side);
+            let coefficient = |offset: DVec2, half_side: f64| love.coefficient(offset, half_side);
             let coefficient: Coefficient<'_> = &coefficient;
             let solution = solve_gauss_seidel(heights, &Love, coefficient, control, &params, &Silent)?;
             let (observables, stiffness) = (Observables::of(&solution, &Love), solution.contact_stiffness(&Love));

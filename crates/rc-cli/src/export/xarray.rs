@@ -40,8 +40,8 @@ pub(super) fn group(fields: &Fields) -> Group<'_> {
         let meaning = "height of the rigid surface, positive towards the half-space";
         plane("height", "m", meaning, Values::Float64(height.values().into()))
     }));
-    arrays.push(axis("y", &["y"], (0..grid.ny()).map(|iy| grid.centre(0, iy).1 * side).collect()));
-    arrays.push(axis("x", &["x"], (0..grid.nx()).map(|ix| grid.centre(ix, 0).0 * side).collect()));
+    arrays.push(axis("y", &["y"], (0..grid.ny()).map(|iy| grid.centre(0, iy).y * side).collect()));
+    arrays.push(axis("x", &["x"], (0..grid.nx()).map(|ix| grid.centre(ix, 0).x * side).collect()));
     let attributes = json!({
         "source": concat!("rc ", env!("CARGO_PKG_VERSION")),
         "status": status,

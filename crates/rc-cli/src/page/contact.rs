@@ -179,7 +179,7 @@ fn maps(result: &ResultFolder) -> Maps {
     let contact = pixel_means(grid, |i| f64::from(u8::from(p[i] > 0.0)));
     let pixels = pressures.grid();
     let peak = (0..pixels.len()).max_by(|a, b| pressures.values()[*a].total_cmp(&pressures.values()[*b])).unwrap_or(0);
-    let (x, y) = pixels.centre(peak % pixels.nx(), peak / pixels.nx());
+    let peak_at = pixels.centre(peak % pixels.nx(), peak / pixels.nx());
     // In full contact, gaps are rounding.
     let widest = Some(gaps.max()).filter(|gap| *gap > ROUNDING * summary.penetration_full_contact).unwrap_or(0.0);
     let what = if of_elements { "element" } else { "stored value" };
@@ -204,7 +204,7 @@ fn maps(result: &ResultFolder) -> Maps {
         gap: EmbeddedField::of_gap(&gaps, widest, Bits::Sixteen, Palette::Viridis),
         contact: EmbeddedField::of_contact(&contact, 1.0, Bits::Eight, Palette::Ink),
         of_elements,
-        peak: [x, y / grid.cell_ratio()],
+        peak: [peak_at.x, peak_at.y / grid.cell_ratio()],
         averaged,
     }
 }
@@ -336,7 +336,7 @@ mod tests {
             0.5 * (low + high)
         };
         for mean_pressure in [1e-2, 1e-1, 5.0] {
-            let pressure = Field::from_fn(grid, |x, _| mean_pressure + spread * quantile(1.0 - (2.0 * x - 1.0).abs()));
+            let pressure = Field::from_fn(grid, |at| mean_pressure + spread * quantile(1.0 - (2.0 * at.x - 1.0).abs()));
             let gap = Field::zeros(grid);
             // Of this slope, spread² is the variance of full contact.
             let summary = summary(grid, mean_pressure, 2.0 * spread, None);

@@ -110,7 +110,7 @@ mod tests {
     fn an_empty_field_is_all_zeros_and_a_large_one_is_averaged() {
         let zero = Field::zeros(Grid::square(2).expect("a grid"));
         assert_eq!(EmbeddedField::of_contact(&zero, 0.0, Bits::Eight, Palette::Ink).data, STANDARD.encode([0; 4]));
-        let large = Field::from_fn(Grid::new(2048, 100).expect("a grid"), |x, _| x);
+        let large = Field::from_fn(Grid::new(2048, 100).expect("a grid"), |at| at.x);
         let means = pixel_means(large.grid(), |i| large.values()[i]);
         assert_eq!((means.grid().nx(), means.grid().ny()), (512, 100));
         assert!((means.mean() - large.mean()).abs() < 1e-12, "{} against {}", means.mean(), large.mean());

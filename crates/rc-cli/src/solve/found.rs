@@ -1,6 +1,6 @@
 //! What a method found, and how.
 
-use rc_core::{Field, Grid};
+use rc_core::{DVec2, Field, Grid};
 use rc_kernel::PeriodicLove;
 use rc_solver::{
     AdaptiveError, AdaptiveProblem, AdaptiveSolution, ContactArea, GaussSeidelError, GaussSeidelParams, GridSolution,
@@ -169,7 +169,7 @@ fn by_gauss_seidel(
     progress: &Progress,
 ) -> Result<Result<GridSolution, IterationError>, CliError> {
     let periodic = PeriodicLove::new();
-    let coefficient = |dx: f64, dy: f64, half_side: f64| periodic.coefficient(dx, dy, half_side);
+    let coefficient = |offset: DVec2, half_side: f64| periodic.coefficient(offset, half_side);
     let params = GaussSeidelParams { tolerance: contact.params.tolerance, ..GaussSeidelParams::paper() };
     match solve_gauss_seidel(heights, contact.kernel(), &coefficient, contact.control, &params, progress) {
         Ok(solution) => Ok(Ok(solution)),

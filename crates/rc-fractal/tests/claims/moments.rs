@@ -1,6 +1,6 @@
 //! Exact moments, and moments of grids.
 
-use rc_core::{Field, Grid, HeightField};
+use rc_core::{DVec2, Field, Grid, HeightField};
 use rc_fractal::{Amplitudes, Moments, Normalisation, SpectrumParams, Truncation, moments_of_grid};
 
 use crate::{assert_close, surface};
@@ -52,14 +52,15 @@ fn moments_of_a_resolved_grid_equal_the_exact_sums() {
 fn the_mean_height_does_not_count() {
     let surface = surface(SpectrumParams::paper(10, 3));
     let grid = Grid::new(32, 27).expect("small");
-    let shifted = Field::from_fn(grid, |x, y| surface.height(x, y) + 0.25);
+    let shifted = Field::from_fn(grid, |at| surface.height(at) + 0.25);
     assert_same("shifted by 0.25", moments_of_grid(&shifted), surface.moments());
 }
 
 #[test]
 fn one_wave_has_the_moments_of_a_cosine() {
     let q = 2.0 * std::f64::consts::PI * 5.0;
-    let cosine = Field::from_fn(Grid::new(40, 17).expect("small"), |x, y| 0.02 * (q * (0.6 * x + 0.8 * y)).cos());
+    let cosine =
+        Field::from_fn(Grid::new(40, 17).expect("small"), |DVec2 { x, y }| 0.02 * (q * (0.6 * x + 0.8 * y)).cos());
     let rms = 0.02 / 2.0_f64.sqrt();
     let expected = Moments { rms_height: rms, rms_slope: q * rms, rms_curvature: q * q * rms / 2.0, nayak: 1.5 };
     assert_same("cosine of wave vector (3, 4)", moments_of_grid(&cosine), expected);

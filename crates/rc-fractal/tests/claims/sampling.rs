@@ -1,6 +1,6 @@
 //! One surface, whatever the grid, the method or the number of threads.
 
-use rc_core::{Field, Grid, HeightField, testing};
+use rc_core::{DVec2, Field, Grid, HeightField, testing};
 use rc_fractal::{Amplitudes, SampleError, SpectrumParams, Surface, Truncation, moments_of_grid, radial_spectrum};
 
 use crate::surface;
@@ -23,8 +23,8 @@ fn synthesis_equals_the_direct_sum_on_any_grid() {
         let heights = surface.sample(grid);
         for step in 0..37 {
             let index = step * (grid.len() - 1) / 36;
-            let (x, y) = grid.centre(index % nx, index / nx);
-            let (fast, direct) = (heights.values()[index], surface.height(x, y));
+            let at = grid.centre(index % nx, index / nx);
+            let (fast, direct) = (heights.values()[index], surface.height(at));
             let error = (fast - direct).abs() / scale;
             // Rounding of 6560 waves whose sizes add up to about 40 rms.
             assert!(error <= 1e-13, "{grid}, element {index}: {fast:e}, direct sum {direct:e}, error {error:.1e} rms");
@@ -44,7 +44,7 @@ fn the_direct_sum_is_the_definition() {
                 expected += a.re * phase.cos() - a.im * phase.sin();
             }
         }
-        let height = surface.height(x, y);
+        let height = surface.height(DVec2::new(x, y));
         let error = (height - expected).abs() / 1.3e-3;
         assert!(error <= 1e-13, "h({x}, {y}) = {height:e}, Eq. 10 gives {expected:e}, error {error:.1e} rms");
     }
@@ -53,7 +53,8 @@ fn the_direct_sum_is_the_definition() {
 #[test]
 fn heights_far_from_the_cell_are_as_accurate_as_inside() {
     let surface = surface(SpectrumParams::paper(64, 1));
-    let (near, far) = (surface.height(0.375, 0.625), surface.height(1_048_576.375, -1_048_575.375));
+    let (near, far) =
+        (surface.height(DVec2::new(0.375, 0.625)), surface.height(DVec2::new(1_048_576.375, -1_048_575.375)));
     assert!((near - far).abs() <= 1e-13 * 1.3e-3, "{near:e} in the cell, {far:e} a million cells away");
 }
 
@@ -95,12 +96,12 @@ fn a_rectangle_has_the_moments_of_its_copies_and_all_of_the_power() {
         wave(3e-3, 2.0, 1.0) + wave(1e-3, 5.0, -3.0) + wave(2e-3, 0.0, 2.0)
     };
     for (nx, ny, ratio) in [(48, 24, 0.25), (24, 48, 4.0)] {
-        let part = Field::from_fn(Grid::in_cell(nx, ny, ratio).expect("a grid"), |x, y| wave(x, y / ratio));
+        let part = Field::from_fn(Grid::in_cell(nx, ny, ratio).expect("a grid"), |DVec2 { x, y }| wave(x, y / ratio));
         let whole = if ratio < 1.0 {
-            Field::from_fn(Grid::new(nx, copies * ny).expect("a grid"), |x, y| wave(x, y / ratio))
+            Field::from_fn(Grid::new(nx, copies * ny).expect("a grid"), |DVec2 { x, y }| wave(x, y / ratio))
         } else {
             // In units of the longer side.
-            Field::from_fn(Grid::new(copies * nx, ny).expect("a grid"), |x, y| wave(ratio * x, y) / ratio)
+            Field::from_fn(Grid::new(copies * nx, ny).expect("a grid"), |DVec2 { x, y }| wave(ratio * x, y) / ratio)
         };
         let unit = ratio.max(1.0);
         let (a, b) = (moments_of_grid(&part), moments_of_grid(&whole));
@@ -120,6 +121,6 @@ fn a_rectangle_has_the_moments_of_its_copies_and_all_of_the_power() {
     let surface = Surface::new(&SpectrumParams::paper(4, 1)).expect("a surface");
     let rectangle = Grid::in_cell(32, 16, 0.5).expect("a grid");
     assert_eq!(surface.sample_on(rectangle), Err(SampleError::RectangularCell));
-    let (x, y) = rectangle.centre(5, 7);
-    assert!((surface.sample(rectangle).at(5, 7) - surface.height(x, y)).abs() < 1e-15, "sampled as evaluated");
+    let direct = surface.height(rectangle.centre(5, 7));
+    assert!((surface.sample(rectangle).at(5, 7) - direct).abs() < 1e-15, "sampled as evaluated");
 }

@@ -153,7 +153,7 @@ fn unit_rings_follow_the_power_law() {
 
 #[test]
 fn a_flat_map_has_an_empty_spectrum() {
-    let rings = radial_spectrum(&rc_core::Field::from_fn(Grid::new(5, 8).expect("small"), |_, _| 3.0));
+    let rings = radial_spectrum(&rc_core::Field::from_fn(Grid::new(5, 8).expect("small"), |_| 3.0));
     assert!(rings.iter().all(|ring| ring.psd == 0.0), "{rings:?}");
     assert!(radial_spectrum(&rc_core::Field::zeros(Grid::square(1).expect("small"))).is_empty());
 }

@@ -183,6 +183,8 @@ fn transposed(stored: &[f64], grid: Grid) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use rc_core::DVec2;
+
     use super::*;
 
     fn write_raw(dir: &Path, dtype: &str, order: bool, data: &[u8]) -> std::path::PathBuf {
@@ -257,7 +259,7 @@ mod tests {
         let dir = tempfile::tempdir().expect("a temporary folder");
         let path = dir.path().join("field.npy");
         let grid = Grid::new(3, 2).expect("a grid");
-        let field = Field::from_fn(grid, |x, y| (x - 0.3).exp() * y);
+        let field = Field::from_fn(grid, |DVec2 { x, y }| (x - 0.3).exp() * y);
         write(&path, &field, 1.0).expect("a written file");
         assert_eq!(read(&path).expect("a field"), field);
     }

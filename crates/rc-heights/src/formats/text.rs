@@ -80,6 +80,8 @@ pub fn write(path: &Path, field: &Field, factor: f64) -> io::Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use rc_core::DVec2;
+
     use super::*;
 
     #[test]
@@ -103,7 +105,7 @@ mod tests {
     fn written_text_reads_back_exactly() {
         let dir = tempfile::tempdir().expect("a temporary folder");
         let path = dir.path().join("map.csv");
-        let field = Field::from_fn(Grid::new(3, 2).expect("a grid"), |x, y| (x - 0.3).exp() * y * 1e-7);
+        let field = Field::from_fn(Grid::new(3, 2).expect("a grid"), |DVec2 { x, y }| (x - 0.3).exp() * y * 1e-7);
         write(&path, &field, 1.0).expect("a written file");
         assert_eq!(crate::read(&path).expect("a map").heights, field);
     }

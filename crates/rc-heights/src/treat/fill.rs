@@ -156,7 +156,7 @@ fn laplace(map: &mut HeightMap, holes: &[usize], most: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use rc_core::{Field, Grid};
+    use rc_core::{DVec2, Field, Grid};
 
     use super::*;
 
@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn an_iteration_that_was_stopped_says_how_far_it_came() {
         let map = || {
-            let mut heights = Field::from_fn(Grid::square(20).expect("a grid"), |x, y| x * x + 3.0 * x * y);
+            let mut heights = Field::from_fn(Grid::square(20).expect("a grid"), |DVec2 { x, y }| x * x + 3.0 * x * y);
             heights.values_mut()[105..290].fill(f64::NAN);
             HeightMap::bare(heights)
         };

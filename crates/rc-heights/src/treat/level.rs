@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use rc_core::DVec2;
+
 use super::{TreatError, mean};
 use crate::HeightMap;
 
@@ -51,17 +53,14 @@ impl FromStr for Level {
 /// Most terms of a form.
 const MOST: usize = 6;
 
-/// The terms at (`x`, `y`) in [-1, 1]: Legendre polynomials, which are almost orthogonal on a grid.
-fn terms(x: f64, y: f64) -> [f64; MOST] {
+/// The terms at a point of [-1, 1]²: Legendre polynomials, which are almost orthogonal on a grid.
+fn terms(DVec2 { x, y }: DVec2) -> [f64; MOST] {
     [1.0, x, y, x * y, 1.5 * x * x - 0.5, 1.5 * y * y - 0.5]
 }
 
 pub(super) fn level(mut map: HeightMap, form: Level) -> Result<HeightMap, TreatError> {
     let grid = map.heights.grid();
-    let at = |i: usize| {
-        let (x, y) = grid.centre(i % grid.nx(), i / grid.nx());
-        terms(2.0 * x - 1.0, 2.0 * y - 1.0)
-    };
+    let at = |i: usize| terms(2.0 * grid.centre(i % grid.nx(), i / grid.nx()) - 1.0);
     // About the mean: what a fit of nanometres on metres would lose otherwise.
     let (mean, points) = mean(&map.heights);
     let n = form.n_terms();

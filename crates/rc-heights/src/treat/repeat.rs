@@ -77,6 +77,8 @@ pub(super) fn repeat(map: &HeightMap, repeat: Repeat) -> Result<HeightMap, Treat
 
 #[cfg(test)]
 mod tests {
+    use rc_core::DVec2;
+
     use super::*;
 
     #[test]
@@ -93,7 +95,10 @@ mod tests {
             "9 and 14 copies are a square within 0.1 %, their points are not"
         );
         let grid = Grid::new(3, 2).expect("a grid");
-        let map = HeightMap { sides: Some([3.0, 2.0]), ..HeightMap::bare(Field::from_fn(grid, |x, y| 10.0 * y + x)) };
+        let map = HeightMap {
+            sides: Some([3.0, 2.0]),
+            ..HeightMap::bare(Field::from_fn(grid, |DVec2 { x, y }| 10.0 * y + x))
+        };
         let repeated = repeat(&map, Repeat::Square).expect("2 x 3 copies");
         assert_eq!((repeated.heights.grid(), repeated.sides), (Grid::new(6, 6).expect("a grid"), Some([6.0, 6.0])));
         for iy in 0..6 {

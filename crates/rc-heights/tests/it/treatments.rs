@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use rc_core::{Field, Grid};
+use rc_core::{DVec2, Field, Grid};
 use rc_heights::{
     Crop, Effect, Fill, Flip, HeightMap, Level, Periodic, SAME_LENGTH, TreatError, Treatment, Unit, apply, grids_after,
     hann,
@@ -11,7 +11,8 @@ use rc_heights::{
 
 /// A map on a rectangle of `sides` m.
 fn map(nx: usize, ny: usize, sides: [f64; 2], height: impl Fn(f64, f64) -> f64) -> HeightMap {
-    let heights = Field::from_fn(Grid::new(nx, ny).expect("a grid"), |x, y| height(x * sides[0], y * sides[1]));
+    let heights =
+        Field::from_fn(Grid::new(nx, ny).expect("a grid"), |DVec2 { x, y }| height(x * sides[0], y * sides[1]));
     HeightMap { heights, height_unit: Unit::Metre, sides: Some(sides), side_unit: Unit::Metre }
 }
 

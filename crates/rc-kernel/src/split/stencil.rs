@@ -2,6 +2,8 @@
 
 use std::f64::consts::FRAC_1_PI;
 
+use rc_core::DVec2;
+
 use super::window::Window;
 use crate::love_displacement;
 use crate::polynomial::gauss_legendre;
@@ -62,14 +64,14 @@ impl Stencil {
 pub(super) fn love(window: &Window, cutoff: usize) -> Stencil {
     let rule = gauss_legendre::<POINTS>();
     Stencil::new(cutoff, |dx, dy| {
-        let (x, y) = (dx as f64, dy as f64);
-        love_displacement(x, y, 0.5) - mean_remainder(window, cutoff as f64, (x, y), &rule)
+        let offset = DVec2::new(dx as f64, dy as f64);
+        love_displacement(offset, 0.5) - mean_remainder(window, cutoff as f64, offset, &rule)
     })
 }
 
 /// Mean of `Ψ(r/c)/(π r)` over the unit square around `centre`. The window ends at r = c with a kink: a square that it
 /// crosses is halved a few times.
-fn mean_remainder(window: &Window, cutoff: f64, (x, y): (f64, f64), rule: &[(f64, f64)]) -> f64 {
+fn mean_remainder(window: &Window, cutoff: f64, DVec2 { x, y }: DVec2, rule: &[(f64, f64)]) -> f64 {
     let (nearest, farthest) = ((x - 0.5).max(0.0).hypot((y - 0.5).max(0.0)), (x + 0.5).hypot(y + 0.5));
     let parts = if nearest < cutoff && cutoff < farthest { 8 } else { 2 };
     let side = 1.0 / f64::from(parts);

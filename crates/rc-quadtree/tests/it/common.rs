@@ -1,5 +1,6 @@
 //! Contact sets for the tests: discs on the periodic cell, and brute-force looks at a mask.
 
+use rc_core::DVec2;
 use rc_quadtree::{Mask, Mesh};
 
 /// A disc: centre (x, y) and radius in λ.
@@ -14,7 +15,8 @@ fn apart(a: f64, b: f64) -> f64 {
 /// Contact in any of the `spots`, except in the `holes`, around the periodic cell.
 pub(crate) fn discs(side: usize, spots: &[Disc], holes: &[Disc]) -> Mask {
     let inside = |x: f64, y: f64, &(cx, cy, r): &Disc| apart(x, cx).hypot(apart(y, cy)) < r;
-    let contact = |x: f64, y: f64| spots.iter().any(|d| inside(x, y, d)) && !holes.iter().any(|d| inside(x, y, d));
+    let contact =
+        |DVec2 { x, y }: DVec2| spots.iter().any(|d| inside(x, y, d)) && !holes.iter().any(|d| inside(x, y, d));
     Mask::from_predicate(side, contact).expect("a side of a test is small")
 }
 

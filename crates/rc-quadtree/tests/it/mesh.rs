@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::common::{at, discs, painted, with_halo};
-use rc_core::{Field, Grid};
+use rc_core::{DVec2, Field, Grid};
 use rc_quadtree::{
     Edge, Key, MAX_BASE, MAX_LEVEL, Mask, Mesh, MeshError, MeshKind, MeshParams, Neighbour, count, plan,
 };
@@ -136,7 +136,7 @@ fn full_contact_is_the_roots_and_no_contact_is_empty() {
         let none = Mesh::from_mask(&mask(false), MeshKind::Adaptive, &params).expect("the side suits the base");
         none.assert_well_formed();
         assert!(none.is_empty() && none.counts().is_empty());
-        assert_eq!(none.locate(0.5, 0.5), None);
+        assert_eq!(none.locate(DVec2::splat(0.5)), None);
     }
 }
 
@@ -174,13 +174,13 @@ fn every_cell_centre_is_located_in_the_element_that_covers_it() {
     for kind in [MeshKind::AdaptiveUniform, MeshKind::Adaptive] {
         let mesh = build(&mask, kind);
         for (ix, iy) in (0..96).flat_map(|iy| (0..96).map(move |ix| (ix, iy))) {
-            let (x, y) = grid.centre(ix, iy);
-            let found = mesh.locate(x - 2.0, y + 5.0);
-            assert_eq!(found, mesh.locate(x, y), "the same point of another cell");
+            let at = grid.centre(ix, iy);
+            let found = mesh.locate(at + DVec2::new(-2.0, 5.0));
+            assert_eq!(found, mesh.locate(at), "the same point of another cell");
             assert_eq!(found.is_some(), mask.cells()[grid.index(ix, iy)], "cell ({ix}, {iy}) of {kind:?}");
             if let Some(element) = found.map(|i| mesh.element(i)) {
                 let reach = element.half_side();
-                assert!((x - element.x).abs() < reach && (y - element.y).abs() < reach, "({x}, {y}) in {element:?}");
+                assert!((at.x - element.x).abs() < reach && (at.y - element.y).abs() < reach, "{at} in {element:?}");
             }
         }
     }
@@ -189,11 +189,11 @@ fn every_cell_centre_is_located_in_the_element_that_covers_it() {
 #[test]
 fn odd_points_are_wrapped_or_outside() {
     let mesh = Mesh::uniform(3, 4).expect("small");
-    let last = mesh.locate(1.0 - 1e-9, 0.5);
-    assert_eq!(mesh.locate(-1e-300, 0.5), last, "just left of the cell is its last column");
-    assert_eq!(mesh.locate(1.0, 0.5), mesh.locate(0.0, 0.5));
+    let last = mesh.locate(DVec2::new(1.0 - 1e-9, 0.5));
+    assert_eq!(mesh.locate(DVec2::new(-1e-300, 0.5)), last, "just left of the cell is its last column");
+    assert_eq!(mesh.locate(DVec2::new(1.0, 0.5)), mesh.locate(DVec2::new(0.0, 0.5)));
     for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        assert_eq!(mesh.locate(x, 0.5), None);
+        assert_eq!(mesh.locate(DVec2::new(x, 0.5)), None);
     }
 }
 
@@ -212,7 +212,7 @@ fn elements_within_a_square_are_those_it_contains() {
 fn neighbours_wrap_around_the_cell() {
     let mesh = Mesh::uniform(3, 1).expect("small");
     let place = |i: usize| (mesh.keys()[i].ix(), mesh.keys()[i].iy());
-    let corner = mesh.locate(0.0, 0.0).expect("everything is in the mesh");
+    let corner = mesh.locate(DVec2::ZERO).expect("everything is in the mesh");
     for (edge, expected) in [(Edge::Left, (5, 0)), (Edge::Right, (1, 0)), (Edge::Down, (0, 5)), (Edge::Up, (0, 1))] {
         let Neighbour::Same(j) = mesh.neighbour(corner, edge) else { panic!("{edge:?}: not of the same size") };
         assert_eq!(place(j), expected, "{edge:?}");
@@ -249,21 +249,21 @@ fn splitting_ripples_across_the_seam() {
     // Splitting the lower left element twice more makes its neighbours across both seams too coarse.
     let mut mesh = Mesh::uniform(1, 2).expect("small");
     for _ in 0..3 {
-        let corner = mesh.locate(0.0, 0.0).expect("everything is in the mesh");
+        let corner = mesh.locate(DVec2::ZERO).expect("everything is in the mesh");
         mesh = mesh.split(&[corner]).expect("not deep");
         mesh.assert_well_formed();
     }
-    let level_at = |x, y| mesh.locate(x, y).map(|i| mesh.element(i).level);
-    assert_eq!(level_at(0.0, 0.0), Some(5));
-    assert!(level_at(0.999, 0.999) >= Some(4), "across the corner: {:?}", level_at(0.999, 0.999));
-    assert_eq!(level_at(0.6, 0.6), Some(2), "far away nothing is split");
+    let level_at = |along_both| mesh.locate(DVec2::splat(along_both)).map(|i| mesh.element(i).level);
+    assert_eq!(level_at(0.0), Some(5));
+    assert!(level_at(0.999) >= Some(4), "across the corner: {:?}", level_at(0.999));
+    assert_eq!(level_at(0.6), Some(2), "far away nothing is split");
     assert_eq!(mesh.area(), 1.0, "splitting keeps the area exactly");
 }
 
 #[test]
 fn merging_keeps_what_balance_or_marks_forbid() {
     let fine = Mesh::uniform(1, 3).expect("small");
-    let corner = fine.locate(0.0, 0.0).expect("everything is in the mesh");
+    let corner = fine.locate(DVec2::ZERO).expect("everything is in the mesh");
     let mesh = fine.split(&[corner]).expect("not deep");
     let all: Vec<usize> = (0..mesh.len()).collect();
     let merged = mesh.merge(&all).expect("indices are right");
@@ -276,7 +276,7 @@ fn merging_keeps_what_balance_or_marks_forbid() {
 #[test]
 fn fields_are_averaged_and_painted() {
     let grid = Grid::square(96).expect("a grid");
-    let field = Field::from_fn(grid, |x, y| 1.0 + (7.0 * x).sin() * (3.0 * y).cos());
+    let field = Field::from_fn(grid, |DVec2 { x, y }| 1.0 + (7.0 * x).sin() * (3.0 * y).cos());
     let mesh = build(&spots(96), MeshKind::Adaptive);
     let values = mesh.from_field(&field).expect("96 = 3 * 32");
     for side in [3, 24, 96, 192] {

@@ -345,7 +345,7 @@ const DEEPEST_SIDE: usize = 1 << 17;
 
 #[cfg(test)]
 mod tests {
-    use rc_core::HeightField;
+    use rc_core::{DVec2, HeightField};
 
     use super::*;
 
@@ -353,7 +353,7 @@ mod tests {
     struct Waves(usize);
 
     impl HeightField for Waves {
-        fn height(&self, _x: f64, _y: f64) -> f64 {
+        fn height(&self, _at: DVec2) -> f64 {
             0.0
         }
 
@@ -375,7 +375,7 @@ mod tests {
     fn a_base_grid_above_the_limit_is_refused_before_heights_are_sampled() {
         struct Unsampled;
         impl HeightField for Unsampled {
-            fn height(&self, _x: f64, _y: f64) -> f64 {
+            fn height(&self, _at: DVec2) -> f64 {
                 panic!("sampled")
             }
 

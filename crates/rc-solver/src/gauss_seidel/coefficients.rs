@@ -4,10 +4,11 @@
 //! integers. A table for each size of source, over offsets folded into a quarter of the cell, replaces the n² matrix.
 
 use rayon::prelude::*;
+use rc_core::DVec2;
 use rc_quadtree::Mesh;
 
-/// `coefficient(dx, dy, half_side)`: L_ij of Eq. 4-6 for a source of half-side d and the offset of the target, in λ/E*.
-pub type Coefficient<'a> = &'a (dyn Fn(f64, f64, f64) -> f64 + Sync);
+/// `coefficient(offset, half_side)`: L_ij of Eq. 4-6 for a source of half-side d and the offset of the target, in λ/E*.
+pub type Coefficient<'a> = &'a (dyn Fn(DVec2, f64) -> f64 + Sync);
 
 /// One element as the sums see it: centre on the lattice, and size of the source.
 #[derive(Clone, Copy, Debug)]
@@ -77,7 +78,8 @@ impl<'a> Coefficients<'a> {
         let half = 0.5 / f64::from(self.side);
         // In one order, so that values with and without a table are the same.
         let (long, short) = (dx.max(dy), dx.min(dy));
-        (self.coefficient)(f64::from(long) * half, f64::from(short) * half, half * f64::from(1_u32 << doublings))
+        let offset = DVec2::new(f64::from(long) * half, f64::from(short) * half);
+        (self.coefficient)(offset, half * f64::from(1_u32 << doublings))
     }
 
     /// Offset of two coordinates, folded to the nearest image.

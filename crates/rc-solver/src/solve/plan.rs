@@ -99,7 +99,7 @@ impl<'a> Plan<'a> {
         let ContactProblem { heights, kernel, control } = self.problem;
         let heights = heights.heights();
         let periodic = PeriodicLove::new();
-        let coefficient = |dx: f64, dy: f64, half_side: f64| periodic.coefficient(dx, dy, half_side);
+        let coefficient = |offset, half_side| periodic.coefficient(offset, half_side);
         let params = GaussSeidelParams { tolerance: self.tolerance, ..self.params.gauss_seidel };
         let result = match solve_gauss_seidel(&heights, kernel, &coefficient, control, &params, observer) {
             Err(GaussSeidelError::Solve(error)) => Err(error),

@@ -53,11 +53,13 @@ fn halve(finer: &Field, grid: Grid) -> Field {
 mod tests {
     use std::f64::consts::PI;
 
+    use rc_core::DVec2;
+
     use super::*;
 
     #[test]
     fn halving_samples_a_resolved_wave_at_the_coarse_centres() {
-        let wave = |x: f64, y: f64| (2.0 * PI * (5.0 * x + 3.0 * y)).cos();
+        let wave = |DVec2 { x, y }: DVec2| (2.0 * PI * (5.0 * x + 3.0 * y)).cos();
         let fine = Field::from_fn(Grid::new(160, 128).expect("grid"), wave);
         let coarse = coarsen(&fine, 64);
         let grid = Grid::new(80, 64).expect("grid");

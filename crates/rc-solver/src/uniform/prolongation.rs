@@ -34,8 +34,7 @@ pub(crate) fn level_function(coarse: &UniformDescent<'_>) -> Vec<f64> {
     let (nx, ny) = (coarse.grid().nx(), coarse.grid().ny());
     let (pressure, gap) = (coarse.pressure(), coarse.gap());
     let zero_gap = coarse.contact_gap();
-    let (x, y) = coarse.grid().spacing();
-    let spacing = x.min(y);
+    let spacing = coarse.grid().spacing().min_element();
     let mut level = vec![0.0; nx * ny];
     level.par_chunks_mut(nx).enumerate().for_each(|(iy, row)| {
         let rows = [(iy + ny - 1) % ny, iy, (iy + 1) % ny].map(|y| &pressure[y * nx..(y + 1) * nx]);

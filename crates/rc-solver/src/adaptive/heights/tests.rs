@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use rc_core::testing::quasi_random;
-use rc_core::{Field, Grid, HeightField, HeightSource};
+use rc_core::{DVec2, Field, Grid, HeightField, HeightSource};
 use rc_fft::Complex64;
 
 use super::{Heights, TILE};
@@ -53,7 +53,7 @@ impl SelfAffine {
 }
 
 impl HeightField for SelfAffine {
-    fn height(&self, x: f64, y: f64) -> f64 {
+    fn height(&self, DVec2 { x, y }: DVec2) -> f64 {
         self.at(&self.along_x(y), x)
     }
 
@@ -64,9 +64,9 @@ impl HeightField for SelfAffine {
     fn sample(&self, grid: Grid) -> Field {
         let mut field = Field::zeros(grid);
         for (iy, row) in field.values_mut().chunks_exact_mut(grid.nx()).enumerate() {
-            let along_x = self.along_x(grid.centre(0, iy).1);
+            let along_x = self.along_x(grid.centre(0, iy).y);
             for (ix, height) in row.iter_mut().enumerate() {
-                *height = self.at(&along_x, grid.centre(ix, iy).0);
+                *height = self.at(&along_x, grid.centre(ix, iy).x);
             }
         }
         field
@@ -77,7 +77,7 @@ impl HeightField for SelfAffine {
 struct Ridge;
 
 impl HeightField for Ridge {
-    fn height(&self, x: f64, y: f64) -> f64 {
+    fn height(&self, DVec2 { x, y }: DVec2) -> f64 {
         (TAU * x).sin().abs() + 0.3 * (TAU * y).cos().abs()
     }
 
@@ -92,7 +92,7 @@ struct EggBox {
 }
 
 impl HeightField for EggBox {
-    fn height(&self, x: f64, y: f64) -> f64 {
+    fn height(&self, DVec2 { x, y }: DVec2) -> f64 {
         (TAU * self.waves as f64 * x).cos() * (TAU * self.waves as f64 * y).cos()
     }
 
@@ -179,8 +179,7 @@ fn tiles_far_below_a_cell_of_the_interpolation_grid_are_exact() {
     for (tx, ty) in [(0, 0), (4095, 4095), (63, 64), (2047, 1), (1234, 3210)] {
         heights.tile(side, tx, ty, &mut tile);
         for (i, height) in tile.iter().enumerate() {
-            let (x, y) = square(side).centre(tx * TILE + i % TILE, ty * TILE + i / TILE);
-            let exact = surface.height(x, y);
+            let exact = surface.height(square(side).centre(tx * TILE + i % TILE, ty * TILE + i / TILE));
             assert!((height - exact).abs() <= 1e-9, "({tx}, {ty}) {i}: {height} against {exact}");
         }
     }
@@ -271,7 +270,7 @@ fn a_flat_surface_has_its_height_everywhere() {
 
 #[test]
 fn a_map_keeps_its_values_and_its_bounds_are_its_maxima() {
-    let map = Field::from_fn(square(400), |x, y| 3.0 + quasi_random((997.0 * x + 31.0 * y * 400.0) as usize));
+    let map = Field::from_fn(square(400), |DVec2 { x, y }| 3.0 + quasi_random((997.0 * x + 31.0 * y * 400.0) as usize));
     let heights = Heights::new(HeightSource::Map(&map), 50).expect("finite");
     assert!(worst_tile(&heights, &map) == 0.0, "the finest level is the map");
     let coarser = coarsen(&map, 50);

@@ -2,6 +2,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rc_core::DVec2;
 use rc_kernel::{PeriodicLove, ScaleSplit, SplitParams};
 
 use super::*;
@@ -77,18 +78,12 @@ fn error_against_exact_sums(tiles: &TileSet, p: &[f64], v: &[f64]) -> f64 {
         let place = tiles.places()[i / CELLS];
         let cell = i % CELLS;
         let x = (f64::from(place[0]) * 8.0 + (cell % TILE) as f64 + 0.5) / side;
-        (x, (f64::from(place[1]) * 8.0 + (cell / TILE) as f64 + 0.5) / side)
+        DVec2::new(x, (f64::from(place[1]) * 8.0 + (cell / TILE) as f64 + 0.5) / side)
     };
     let (mut difference, mut size) = (0.0, 0.0);
     for i in (0..p.len()).step_by(p.len() / 200) {
-        let (x, y) = centre(i);
         let sources = p.iter().enumerate().filter(|&(_, &p)| p != 0.0);
-        let sum: f64 = sources
-            .map(|(j, p)| {
-                let (sx, sy) = centre(j);
-                p * exact.coefficient(x - sx, y - sy, half_side)
-            })
-            .sum();
+        let sum: f64 = sources.map(|(j, p)| p * exact.coefficient(centre(i) - centre(j), half_side)).sum();
         difference += (v[i] - sum).powi(2);
         size += sum * sum;
     }
@@ -142,13 +137,13 @@ fn pressures(elements: &Elements, seed: u64) -> Vec<f64> {
 }
 
 /// Centres of the finest elements that the element at `cell` of level `coarser` consists of.
-fn finest_centres(elements: &Elements, coarser: usize, cell: usize) -> impl Iterator<Item = (f64, f64)> {
+fn finest_centres(elements: &Elements, coarser: usize, cell: usize) -> impl Iterator<Item = DVec2> {
     let tiles = &elements.levels()[coarser];
     let [column, row] = tiles.places()[cell / CELLS].map(|i| i as usize * TILE);
     let (x, y) = (column + cell % CELLS % TILE, row + cell % CELLS / TILE);
     let (n, side) = (1_usize << coarser, (tiles.side() << coarser) as f64);
     let centre = move |i: usize, part: usize| ((i * n + part) as f64 + 0.5) / side;
-    (0..n * n).map(move |part| (centre(x, part % n), centre(y, part / n)))
+    (0..n * n).map(move |part| DVec2::new(centre(x, part % n), centre(y, part / n)))
 }
 
 #[test]
@@ -161,7 +156,7 @@ fn elements_of_several_sizes_agree_with_exact_means() {
             assert!(elements.levels().iter().all(|tiles| tiles.len() > 8), "all sizes take part");
             let p = pressures(&elements, seed);
             let v = apply::<f64>(&ScaleSplit::new(params), base, elements.clone(), &p);
-            let sources: Vec<((f64, f64), f64)> = (0..elements.levels().len())
+            let sources: Vec<(DVec2, f64)> = (0..elements.levels().len())
                 .flat_map(|coarser| elements.cells(coarser).enumerate().map(move |(cell, i)| (coarser, cell, i)))
                 .filter(|&(_, _, i)| p[i] != 0.0)
                 .flat_map(|(coarser, cell, i)| finest_centres(&elements, coarser, cell).zip(std::iter::repeat(p[i])))
@@ -170,9 +165,8 @@ fn elements_of_several_sizes_agree_with_exact_means() {
                 let (mut difference, mut size) = (0.0, 0.0);
                 let n_cells = elements.cells(coarser).len();
                 for cell in (0..n_cells).step_by(n_cells / 40) {
-                    let centres: Vec<(f64, f64)> = finest_centres(&elements, coarser, cell).collect();
-                    let coefficient =
-                        |(x, y): (f64, f64), (sx, sy): (f64, f64)| exact.coefficient(x - sx, y - sy, 0.5 / side as f64);
+                    let centres: Vec<DVec2> = finest_centres(&elements, coarser, cell).collect();
+                    let coefficient = |target: DVec2, source| exact.coefficient(target - source, 0.5 / side as f64);
                     let sum: f64 =
                         centres.iter().map(|&x| sources.iter().map(|&(s, p)| p * coefficient(x, s)).sum::<f64>()).sum();
                     let mean = sum / centres.len() as f64;
