@@ -1,37 +1,10 @@
 //! `cargo xtask bench`: run time against error, ours and that of other programs.
 
-mod child;
-mod counts;
-mod documents;
-mod extrapolation;
-mod levels;
-mod machine;
-mod make_reference;
-mod measure;
-mod peers;
-mod picture;
-mod python;
-mod record;
-mod reference;
-mod round;
-mod scenes;
-mod setting;
-
-use std::fs;
 use std::path::PathBuf;
-use std::time::Instant;
 
-use anyhow::{Context, Result};
-use rc_plot::{save_png, save_svg};
-
-use crate::figures::Table;
-use crate::repository;
-pub(crate) use documents::check as check_documents;
-use levels::Results;
-use picture::ErrorAgainstTime;
-use reference::{Quantity, Reading, References};
-use round::{Found, Plan};
-use scenes::{SCENES, Scene};
+use anyhow::Result;
+use rc_bench::bench::{self, Params, PeerParams, Scene};
+use rc_figures::repository;
 
 /// Scenes, repeats and patience of `--quick`.
 const QUICK: (&[&str], usize, f64) = (&["waves-16", "hurst-0.3-light"], 2, 0.3);
@@ -88,125 +61,28 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<()> {
     match args {
-        Args { job: Some(job), .. } => child::work(job),
-        Args { check: true, .. } => counts::check(),
-        Args { accept: true, .. } => counts::accept(),
-        Args { tables: true, .. } => documents::update(),
-        Args { make_reference: true, .. } => make_reference::run(&chosen(args)?),
-        Args { peer_heights: Some(folder), .. } => save_heights(folder, &chosen(args)?),
-        _ => measure(args),
+        Args { job: Some(job), .. } => bench::work(job),
+        Args { check: true, .. } => bench::check(),
+        Args { accept: true, .. } => bench::accept(),
+        Args { tables: true, .. } => bench::update_documents(),
+        Args { make_reference: true, .. } => bench::make_reference(&chosen(args)?),
+        Args { peer_heights: Some(folder), .. } => bench::save_heights(folder, &chosen(args)?),
+        _ => bench::measure(&params(args)?),
     }
 }
 
 /// The scenes that are asked for.
 fn chosen(args: &Args) -> Result<Vec<Scene>> {
-    match (args.scenes.is_empty(), args.quick) {
-        (false, _) => args.scenes.iter().map(|name| Scene::named(name)).collect(),
-        (true, true) => QUICK.0.iter().map(|name| Scene::named(name)).collect(),
-        (true, false) => Ok(SCENES.to_vec()),
-    }
+    if args.scenes.is_empty() && args.quick { bench::scenes(QUICK.0) } else { bench::scenes(&args.scenes) }
 }
 
-fn save_heights(folder: &PathBuf, scenes: &[Scene]) -> Result<()> {
-    fs::create_dir_all(folder).with_context(|| format!("could not make {}", folder.display()))?;
-    for scene in scenes {
-        let meshes = setting::MESHES.into_iter().map(|mesh| scene.side(mesh));
-        for side in meshes.filter(|&side| side <= setting::LARGEST_UNIFORM) {
-            child::save_heights(scene, side, &folder.join(format!("{}-{side}.npy", scene.name)))?;
-        }
-    }
-    Ok(())
-}
-
-fn measure(args: &Args) -> Result<()> {
-    let references = References::read()?;
-    let python = if args.peers { interpreter(args) } else { None };
-    let (repeats, peer_seconds) =
-        if args.quick { (QUICK.1, QUICK.2) } else { (args.repeats.max(1), args.peer_seconds) };
-    let plan = Plan { scenes: chosen(args)?, repeats, peer_seconds };
-    let start = Instant::now();
-    let found = round::run(&plan, python.as_deref())?;
-    let seconds = start.elapsed().as_secs_f64();
-    report(&Results { rows: &found.rows, references: &references });
-    save(args, &found, &references, seconds)
-}
-
-/// The interpreter with the peers; when there is none, the run goes on without them.
-#[expect(clippy::print_stderr, reason = "peers are left out")]
-fn interpreter(args: &Args) -> Option<PathBuf> {
-    let found = python::interpreter(args.python.as_deref());
-    found.inspect_err(|error| eprintln!("peers are skipped: {error:#}")).ok()
-}
-
-/// Prints every line with its errors, and the table of times.
-#[expect(clippy::print_stdout, reason = "the result of the command")]
-fn report(results: &Results<'_>) {
-    let header = [
-        "scene",
-        "program",
-        "method",
-        "kernel",
-        "border",
-        "mesh",
-        "tolerance",
-        "iterations",
-        "seconds",
-        "observables",
-        "MB",
-        "area_counted",
-        "area",
-        "rms_pressure",
-        "penetration",
-    ];
-    let rows = results.rows.iter().map(|row| {
-        let error = |quantity, reading| {
-            results.error(row, quantity, reading).map_or_else(|| "-".to_owned(), |error| format!("{error:+.1e}"))
-        };
-        vec![
-            row.scene.clone(),
-            row.program.clone(),
-            row.method.clone(),
-            row.kernel.clone(),
-            row.border_level.to_string(),
-            row.elements_per_wave.to_string(),
-            row.tolerance.clone(),
-            row.iterations.map_or_else(|| "-".to_owned(), |n| n.to_string()),
-            format!("{:.4}", row.seconds),
-            format!("{:.4}", row.observables_seconds),
-            row.memory_mb.map_or_else(|| "-".to_owned(), |memory| format!("{memory:.0}")),
-            error(Quantity::Area, Reading::Counted),
-            error(Quantity::Area, Reading::Best),
-            error(Quantity::RmsPressure, Reading::Best),
-            error(Quantity::Penetration, Reading::Best),
-        ]
-    });
-    println!("{}", Table::new("bench", &header, rows).aligned());
-    println!("{}", documents::times(results));
-}
-
-/// Writes the lines, the machine and the picture.
-fn save(args: &Args, found: &Found, references: &References, seconds: f64) -> Result<()> {
-    fs::create_dir_all(&args.out)
-        .with_context(|| format!("could not make {}; give another --out", args.out.display()))?;
-    let (csv, machine) =
-        (record::to_csv(&found.rows)?, toml::to_string(&machine::description(&found.peers, seconds)?)?);
-    record::write(&args.out.join("bench.csv"), &csv)?;
-    record::write(&args.out.join("bench.toml"), &machine)?;
-    let results = Results { rows: &found.rows, references };
-    let Some(&scene) = results.scenes().first() else { return Ok(()) };
-    let picture = ErrorAgainstTime { results, scene };
-    let (svg, png) = (args.out.join("bench.svg"), args.out.join("bench.png"));
-    save_svg(&picture, &svg).with_context(|| format!("could not draw {}", svg.display()))?;
-    save_png(&picture, &png).with_context(|| format!("could not draw {}", png.display()))?;
-    if args.archive {
-        let root = repository::root();
-        record::write(&root.join(documents::BENCH), &csv)?;
-        record::write(&root.join(documents::MACHINE), &machine)?;
-        for name in ["bench.svg", "bench.png"] {
-            let to = root.join("docs/images").join(name);
-            fs::copy(args.out.join(name), &to).with_context(|| format!("could not write {}", to.display()))?;
-        }
-        documents::update()?;
-    }
-    Ok(())
+fn params(args: &Args) -> Result<Params> {
+    let (repeats, seconds) = if args.quick { (QUICK.1, QUICK.2) } else { (args.repeats, args.peer_seconds) };
+    Ok(Params {
+        scenes: chosen(args)?,
+        repeats,
+        peers: args.peers.then(|| PeerParams { python: args.python.clone(), seconds }),
+        out: args.out.clone(),
+        archive: args.archive,
+    })
 }

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, bail};
+use rc_figures::repository;
 
 use crate::process::Step;
-use crate::repository;
 
 /// Builds the stripped binary `rc`, static where the musl target of this machine is installed, and says where it is and how
 /// large.

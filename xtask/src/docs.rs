@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail};
+use rc_figures::repository;
 
 use crate::process::Step;
-use crate::repository;
 
 /// Builds the documentation of all crates, and the guide into target/book, with the mdbook that is installed or else one of its
 /// own in target/tools.

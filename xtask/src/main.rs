@@ -1,25 +1,20 @@
 //! The task runner: `cargo xtask <command>`, one file per command.
 
-mod accuracy;
 mod bench;
-mod blocks;
 mod ci;
 mod dist;
 mod docs;
 mod figures;
-mod kernel_error;
-mod numeric;
+mod mutate;
 mod process;
-mod repository;
-mod reproduction;
-#[cfg(test)]
-mod snapshot;
 mod stress;
 mod swap;
 mod test;
 mod tidy;
 
 use clap::{Parser, Subcommand};
+use rc_bench::{Accuracy, KernelErrors};
+use rc_figures::{Fig1, Fig2, Fig3, Fig4, Fig5, Fig6, Fig7, Fig8};
 
 /// Tests, checks, figures and benchmarks of rc. Needs nothing but cargo.
 #[derive(Parser)]
@@ -51,8 +46,8 @@ enum Command {
     /// Draws Fig. 8: the stress distribution, the fit of Eq. (7), and the approach to zero
     Fig8(figures::Args),
     /// Draws every figure of the paper; compares with the archived run, or archives the run
-    Figures(figures::all::Args),
-    Reproduction(reproduction::Args),
+    Figures(figures::AllArgs),
+    Reproduction(figures::ReproductionArgs),
     /// Tabulates and draws the truncation error of the image sums against shells and time, beside the exact coefficients
     KernelError(figures::Args),
     /// Measures the error of area, rms pressure and mean gap on usual meshes, and how often their error bars hold it
@@ -69,22 +64,32 @@ fn main() -> anyhow::Result<()> {
         Command::Test(args) => test::run(&args),
         Command::Tidy(args) => tidy::run(&args),
         Command::Ci(args) => ci::run(&args),
-        Command::Fig1(args) => figures::run::<figures::fig1::Fig1>(&args),
-        Command::Fig2(args) => figures::run::<figures::fig2::Fig2>(&args),
-        Command::Fig3(args) => figures::run::<figures::fig3::Fig3>(&args),
-        Command::Fig4(args) => figures::run::<figures::fig4::Fig4>(&args),
-        Command::Fig5(args) => figures::run::<figures::fig5::Fig5>(&args),
-        Command::Fig6(args) => figures::run::<figures::fig6::Fig6>(&args),
-        Command::Fig7(args) => figures::run::<figures::fig7::Fig7>(&args),
-        Command::Fig8(args) => figures::run::<figures::fig8::Fig8>(&args),
-        Command::Figures(args) => figures::all::run(&args),
-        Command::Reproduction(args) => reproduction::run(&args),
-        Command::KernelError(args) => figures::run::<kernel_error::KernelErrors>(&args),
-        Command::Accuracy(args) => figures::run::<accuracy::Accuracy>(&args),
+        Command::Fig1(args) => figures::run::<Fig1>(&args),
+        Command::Fig2(args) => figures::run::<Fig2>(&args),
+        Command::Fig3(args) => figures::run::<Fig3>(&args),
+        Command::Fig4(args) => figures::run::<Fig4>(&args),
+        Command::Fig5(args) => figures::run::<Fig5>(&args),
+        Command::Fig6(args) => figures::run::<Fig6>(&args),
+        Command::Fig7(args) => figures::run::<Fig7>(&args),
+        Command::Fig8(args) => figures::run::<Fig8>(&args),
+        Command::Figures(args) => figures::run_all(&args),
+        Command::Reproduction(args) => figures::run_reproduction(&args),
+        Command::KernelError(args) => figures::run::<KernelErrors>(&args),
+        Command::Accuracy(args) => figures::run::<Accuracy>(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Stress(args) => stress::run(&args),
         Command::Swap(args) => swap::run(&args),
         Command::Dist(args) => dist::run(&args),
         Command::Docs(args) => docs::run(&args),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        super::Cli::command().debug_assert();
     }
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 
-use crate::repository;
+use rc_figures::repository;
 
 /// One cargo call, as plain data: what continuous integration runs can be listed, compared and printed.
 pub(crate) struct Step {

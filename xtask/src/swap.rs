@@ -7,10 +7,10 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result};
+use rc_figures::repository;
 use toml::{Table, Value};
 
 use crate::process::Step;
-use crate::repository;
 
 /// Builds the solver with a tiny fork of rc-kernel in place of the original, in a workspace in target/swap, and runs its tests
 /// there.

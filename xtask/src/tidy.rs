@@ -12,7 +12,7 @@ mod snapshots;
 
 use anyhow::{Result, bail};
 
-use crate::repository::{self, Sources};
+use rc_figures::repository::{self, Sources};
 
 /// Checks dependency arrows, licences and versions of dependencies, paper map, guide, snapshots, house rules and the numbers of
 /// docs/reproduction.md, docs/benchmarks.md and README.md (also a test, so `cargo xtask test` runs it).
@@ -34,8 +34,8 @@ const CHECKS: &[(&str, Check)] = &[
     ("dependencies", dependencies::check),
     ("guide", guide::check),
     ("packages", packages::check),
-    ("reproduction", crate::reproduction::check),
-    ("benchmark", crate::bench::check_documents),
+    ("reproduction", rc_figures::reproduction::check),
+    ("benchmark", rc_bench::bench::check_documents),
 ];
 
 #[expect(clippy::print_stdout, reason = "the result of the command")]

@@ -1,8 +1,9 @@
 //! House rules that hold in every file.
 
+use rc_figures::repository::{Sources, has_extension};
+
 use super::Complaint;
 use crate::ci;
-use crate::repository::{Sources, has_extension};
 
 /// Longest Rust file, in lines.
 const LONGEST_FILE: usize = 500;

@@ -5,12 +5,12 @@ use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context, Result, bail};
+use rc_figures::repository::Sources;
 use serde::{Deserialize, Serialize};
 use spdx::{Expression, LicenseReq};
 use toml::{Table, Value};
 
 use super::Complaint;
-use crate::repository::Sources;
 
 /// Licences under which a dependency may be used, by their SPDX identifiers: they ask for no more than to be named.
 const LICENCES: &[&str] = &[

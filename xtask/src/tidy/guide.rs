@@ -1,7 +1,8 @@
 //! The guide: every document is a chapter, no link leads nowhere, and those of chapters hold in the book.
 
+use rc_figures::repository::{Sources, has_extension};
+
 use super::Complaint;
-use crate::repository::{Sources, has_extension};
 
 const SUMMARY: &str = "docs/SUMMARY.md";
 

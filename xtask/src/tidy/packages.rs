@@ -1,9 +1,9 @@
 //! What a crate needs to be published, and to build from what is published.
 
+use rc_figures::repository::{Sources, has_extension};
 use toml::{Table, Value};
 
 use super::Complaint;
-use crate::repository::{Sources, has_extension};
 
 /// Fields of `[package]` that each crate takes from the workspace; its description is its own.
 const FIELDS: &[&str] = &["version", "edition", "rust-version", "license", "readme", "keywords", "categories"];
@@ -12,8 +12,9 @@ const FIELDS: &[&str] = &["version", "edition", "rust-version", "license", "read
 const INCLUDES: &[&str] = &[concat!("include_", "str!(\""), concat!("include_", "bytes!(\"")];
 
 /// Checks manifests in `crates/`, and that sources there include nothing from outside of their crate: a package would lack it.
+/// Crates with `publish = false` are left out.
 pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
-    let files = sources.iter().filter(|(path, _)| path.starts_with("crates/"));
+    let files = sources.iter().filter(|(path, _)| path.starts_with("crates/") && is_published(path, sources));
     files
         .flat_map(|(path, text)| match path.rsplit('/').next() {
             Some("Cargo.toml") => check_manifest(path, text),
@@ -21,6 +22,13 @@ pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
             _ => Vec::new(),
         })
         .collect()
+}
+
+/// Whether the crate of the file at `path` is one that is published.
+fn is_published(path: &str, sources: &Sources) -> bool {
+    let name = path.split('/').nth(1).unwrap_or_default();
+    let manifest = sources.get(&format!("crates/{name}/Cargo.toml")).map_or("", String::as_str);
+    !manifest.lines().any(|line| line == "publish = false")
 }
 
 fn check_manifest(path: &str, text: &str) -> Vec<Complaint> {
@@ -57,6 +65,14 @@ mod tests {
         assert_eq!(check_manifest("crates/a/Cargo.toml", &manifest), Vec::<String>::new());
         assert_eq!(check_manifest("crates/a/Cargo.toml", &manifest.replace("readme.workspace = true", "")).len(), 1);
         assert_eq!(check_manifest("crates/a/Cargo.toml", &manifest.replace("A crate.", "")).len(), 1);
+    }
+
+    #[test]
+    fn a_crate_that_is_not_published_needs_no_fields() {
+        let manifest = "[package]\nname = \"a\"\npublish = false\n";
+        let of = |manifest: &str| check(&[("crates/a/Cargo.toml".to_owned(), manifest.to_owned())].into());
+        assert_eq!(of(manifest), Vec::<String>::new());
+        assert!(!of(&manifest.replace("publish = false\n", "")).is_empty());
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! docs/paper-map.md against the code: every equation and figure of the paper has its place, and every place exists.
 
+use rc_figures::repository::{Sources, has_extension};
 use std::collections::BTreeSet;
 
 use super::Complaint;
-use crate::repository::{Sources, has_extension};
 
 const MAP: &str = "docs/paper-map.md";
 /// Rows below this heading are promises, so they carry no links.

@@ -1,7 +1,8 @@
 //! Snapshots: small, wanted by a test, and accepted by a person.
 
+use rc_figures::repository::{Sources, has_extension};
+
 use super::Complaint;
-use crate::repository::{Sources, has_extension};
 
 /// Largest snapshot, in bytes: what a reviewer can still read.
 const LARGEST: usize = 20 * 1024;

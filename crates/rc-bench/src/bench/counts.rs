@@ -1,0 +1,162 @@
+//! The guard against regressions: counts of operations, which do not depend on the machine as times do.
+
+use anyhow::{Context, Result, bail};
+use serde::{Deserialize, Serialize};
+
+use crate::tolerance::Tolerance;
+use rc_figures::repository;
+
+use super::measure::solve;
+use super::record::{from_csv, to_csv, write};
+use super::scenes::Scene;
+use super::setting::{CERTIFIED, KernelName, Setting};
+
+/// Where the counts are.
+const COUNTS: &str = "data/bench/counts.csv";
+
+/// Relative change of the number of elements that is none: where processors differ, an element at a border may flip.
+const SAME_ELEMENTS: f64 = 1e-3;
+
+/// What one solve did, all levels together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct CountRow {
+    scene: String,
+    setting: String,
+    levels: usize,
+    iterations: usize,
+    /// Of L.
+    applications: usize,
+    /// Of the preconditioner.
+    preconditionings: usize,
+    /// On the finest level: iterations, and applications of L with the certificate's.
+    fine_iterations: usize,
+    fine_applications: usize,
+    /// In contact.
+    elements: usize,
+}
+
+/// What is counted: small scenes, each method and kernel, border levels, both kinds of tolerance.
+fn cases() -> Vec<(&'static str, Setting)> {
+    let auto = Tolerance::Auto;
+    vec![
+        ("waves-16", Setting::uniform(KernelName::Spectral, 16, auto)),
+        ("waves-16", Setting::uniform(KernelName::Love, 16, CERTIFIED)),
+        ("waves-16", Setting::adaptive(0, 32, CERTIFIED)),
+        ("waves-16", Setting::adaptive(1, 8, Tolerance::Relative(1e-8))),
+        ("waves-16", Setting::adaptive(3, 8, auto)),
+        ("hurst-0.3-light", Setting::adaptive(0, 16, CERTIFIED)),
+        ("hurst-0.3-light", Setting::adaptive(2, 8, auto)),
+        ("waves-32", Setting::uniform(KernelName::Spectral, 8, auto)),
+        ("waves-32", Setting::adaptive(0, 16, auto)),
+        ("hurst-0.5", Setting::adaptive(2, 8, auto)),
+        ("hurst-0.3", Setting::adaptive(0, 16, CERTIFIED)),
+        ("heavy", Setting::uniform(KernelName::Love, 8, CERTIFIED)),
+        ("heavy", Setting::adaptive(1, 8, auto)),
+        ("paper", Setting::adaptive(0, 8, CERTIFIED)),
+        ("paper", Setting::adaptive(1, 8, auto)),
+    ]
+}
+
+fn count((scene, setting): &(&str, Setting)) -> Result<CountRow> {
+    let solved = solve(&Scene::named(scene)?, setting)?;
+    let levels = &solved.info.levels;
+    Ok(CountRow {
+        scene: (*scene).to_owned(),
+        // Cells hold no commas.
+        setting: setting.to_string().replace(',', ""),
+        levels: levels.len(),
+        iterations: levels.iter().map(|level| level.iterations).sum(),
+        applications: levels.iter().map(|level| level.operator_applications).sum(),
+        preconditionings: levels.iter().map(|level| level.preconditioner_applications).sum(),
+        fine_iterations: solved.info.fine_iterations(),
+        fine_applications: solved.info.fine_operator_applications(),
+        elements: solved.n_elements,
+    })
+}
+
+impl CountRow {
+    /// What changed against the stored counts, named.
+    fn changes(&self, stored: &Self) -> Vec<String> {
+        let exact = [
+            ("levels", stored.levels, self.levels),
+            ("iterations", stored.iterations, self.iterations),
+            ("applications", stored.applications, self.applications),
+            ("preconditionings", stored.preconditionings, self.preconditionings),
+            ("fine iterations", stored.fine_iterations, self.fine_iterations),
+            ("fine applications", stored.fine_applications, self.fine_applications),
+        ];
+        let mut changed: Vec<_> = exact.into_iter().filter(|(_, before, now)| before != now).collect();
+        let allowed = SAME_ELEMENTS * stored.elements as f64;
+        if stored.elements.abs_diff(self.elements) as f64 > allowed {
+            changed.push(("elements", stored.elements, self.elements));
+        }
+        let line = |(what, before, now)| format!("{}, {}: {before} {what} became {now}", self.scene, self.setting);
+        changed.into_iter().map(line).collect()
+    }
+}
+
+/// What differs from the stored counts, a sentence each.
+fn differences(rows: &[CountRow], stored: &[CountRow]) -> Vec<String> {
+    let same = |a: &CountRow, b: &CountRow| (&a.scene, &a.setting) == (&b.scene, &b.setting);
+    let changes = rows.iter().flat_map(|row| match stored.iter().find(|stored| same(stored, row)) {
+        Some(stored) => row.changes(stored),
+        None => vec![format!("{}, {} is not in {COUNTS}", row.scene, row.setting)],
+    });
+    let gone = stored.iter().filter(|stored| !rows.iter().any(|row| same(row, stored)));
+    changes.chain(gone.map(|row| format!("{}, {} is no longer counted", row.scene, row.setting))).collect()
+}
+
+/// Counts again and compares.
+///
+/// # Errors
+/// With every change, and how to accept it.
+pub fn check() -> Result<()> {
+    let path = repository::root().join(COUNTS);
+    let text = std::fs::read_to_string(&path)
+        .with_context(|| format!("could not read {COUNTS}; `cargo xtask bench --accept` makes it"))?;
+    let rows: Vec<CountRow> = cases().iter().map(count).collect::<Result<_>>()?;
+    let differences = differences(&rows, &from_csv::<CountRow>(&text, COUNTS)?);
+    if !differences.is_empty() {
+        bail!(
+            "{} counts of operations changed:\n{}\nIf that is meant, `cargo xtask bench --accept` stores the new ones; say in \
+             the commit why.",
+            differences.len(),
+            differences.join("\n")
+        );
+    }
+    Ok(())
+}
+
+/// Stores the counts of now.
+///
+/// # Errors
+/// When a solve fails or the file cannot be written.
+pub fn accept() -> Result<()> {
+    let rows: Vec<CountRow> = cases().iter().map(count).collect::<Result<_>>()?;
+    write(&repository::root().join(COUNTS), &to_csv(&rows)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn operation_counts_are_as_stored() {
+        if let Err(error) = check() {
+            panic!("{error:#}");
+        }
+    }
+
+    #[test]
+    fn a_change_names_its_scene_and_a_flipped_element_is_none() {
+        let row = count(&("waves-16", Setting::adaptive(1, 8, Tolerance::Auto))).expect("a solved scene");
+        assert!(row.iterations > 0 && row.applications > row.iterations && row.elements > 100, "{row:?}");
+        let flipped = CountRow { elements: row.elements + row.elements / 2000, ..row.clone() };
+        assert_eq!(flipped.changes(&row), Vec::<String>::new());
+        let slower = CountRow { iterations: row.iterations + 1, elements: 2 * row.elements, ..row.clone() };
+        let changes = slower.changes(&row);
+        assert!(changes.len() == 2 && changes[0].starts_with("waves-16, adaptive love border level 1"), "{changes:?}");
+        let (none, stored) = (differences(&[], std::slice::from_ref(&row)), differences(&[row], &[]));
+        assert!(none[0].contains("no longer") && stored[0].contains("is not in"), "{none:?}, {stored:?}");
+    }
+}

@@ -1,0 +1,130 @@
+//! `cargo xtask bench --make-reference`: the reference values, from meshes much finer than those that are compared.
+//!
+//! Areas are counted on elements of up to 1/16384 of the cell at the edges of contacts (`love`); rms pressure and mean gap
+//! converge fastest with `spectral` on uniform grids. All are found again with the other kernel on uniform grids.
+
+use anyhow::{Context, Result};
+use rc_core::{Grid, HeightSource};
+use rc_solver::{AdaptiveParams, AdaptiveProblem};
+
+use crate::tolerance::Tolerance;
+use rc_figures::repository;
+
+use super::extrapolation::{Counted, Limit, area_limit, richardson};
+use super::measure::{Solved, solve};
+use super::record::{from_csv, rounded, to_csv, write};
+use super::reference::{Quantity, REFERENCE, ReferenceRow};
+use super::scenes::{SCENES, Scene};
+use super::setting::{KernelName, Method, Setting};
+
+/// Uniform grids.
+const SIDES: [usize; 3] = [1024, 2048, 4096];
+
+/// The grid whose elements are halved at edges, and how often: 2048 to 16384 elements along a side.
+const BORDER: (usize, [usize; 4]) = (1024, [1, 2, 3, 4]);
+
+/// Of uniform grids: far below what is wanted of rms pressure and gap.
+const TOLERANCE: Tolerance = Tolerance::Relative(1e-8);
+
+/// Of areas: it moves edges by a tenth of the smallest element at most, in either direction.
+const AREA_TOLERANCE: Tolerance = Tolerance::Relative(3e-7);
+
+/// Computes the reference values of `scenes` and puts them into `data/bench/reference.csv`; those of other scenes stay.
+///
+/// # Errors
+/// When a solve fails or the file cannot be written.
+pub fn run(scenes: &[Scene]) -> Result<()> {
+    for scene in scenes {
+        let made = rows(scene)?;
+        let path = repository::root().join(REFERENCE);
+        let text = std::fs::read_to_string(&path).unwrap_or_default();
+        let mut all: Vec<ReferenceRow> = from_csv(&text, REFERENCE)?;
+        all.retain(|row| row.scene != scene.name);
+        all.extend(made);
+        all.sort_by_key(|row| (SCENES.iter().position(|scene| scene.name == row.scene), row.quantity));
+        write(&path, &to_csv(&all)?)?;
+    }
+    Ok(())
+}
+
+/// What a count is above the area, over edges times element area: calibrated on Hertz contacts of 51 elements per radius at random
+/// offsets, to 0.003.
+const LOVE_PERIMETER: f64 = 0.0872;
+const SPECTRAL_PERIMETER: f64 = 0.1013;
+
+fn rows(scene: &Scene) -> Result<Vec<ReferenceRow>> {
+    let uniform = |kernel| {
+        let setting = |elements| Setting::uniform(kernel, elements, TOLERANCE);
+        SIDES.into_iter().map(|side| on(scene, side, setting)).collect::<Result<Vec<_>>>()
+    };
+    let (spectral, love) = (uniform(KernelName::Spectral)?, uniform(KernelName::Love)?);
+    let (side, levels) = BORDER;
+    let deep = levels.iter().map(|&level| on(scene, side, |m| Setting::adaptive(level, m, AREA_TOLERANCE)));
+    let deep = deep.collect::<Result<Vec<_>>>()?;
+    let deep: Vec<Counted> = deep.iter().zip(levels).map(|(solved, level)| counted(solved, side << level)).collect();
+    let counts: Vec<Counted> = spectral.iter().zip(SIDES).map(|(solved, side)| counted(solved, side)).collect();
+    let area = (area_limit(&deep, LOVE_PERIMETER), area_limit(&counts, SPECTRAL_PERIMETER));
+    let both = |of: fn(&Solved) -> f64| -> Result<(Limit, Limit)> { Ok((limit(&spectral, of)?, limit(&love, of)?)) };
+    let rms_pressure = both(|solved| solved.observables.rms_pressure)?;
+    let mean_gap = both(|solved| solved.observables.mean_gap)?;
+    let h_max = greatest_height(scene)?;
+    let penetration = |gap: Limit| Limit { value: h_max - gap.value, ..gap };
+    let quantities = [
+        (Quantity::Area, area),
+        (Quantity::RmsPressure, rms_pressure),
+        (Quantity::Penetration, (penetration(mean_gap.0), penetration(mean_gap.1))),
+        (Quantity::MeanGap, mean_gap),
+    ];
+    Ok(quantities.into_iter().map(|(quantity, limits)| row(scene, quantity, limits)).collect())
+}
+
+/// Numbers with all digits that mean anything, and a few more.
+fn row(scene: &Scene, quantity: Quantity, (limit, check): (Limit, Limit)) -> ReferenceRow {
+    ReferenceRow {
+        scene: scene.name.to_owned(),
+        quantity,
+        value: rounded(limit.value, 10),
+        uncertainty: rounded(limit.uncertainty, 2),
+        other_kernel: rounded(check.value, 10),
+        other_uncertainty: rounded(check.uncertainty, 2),
+    }
+}
+
+#[expect(clippy::print_stdout, reason = "it takes minutes")]
+fn on(scene: &Scene, side: usize, setting: impl Fn(usize) -> Setting) -> Result<Solved> {
+    let setting = setting(side / scene.waves);
+    let solved = solve(scene, &setting)?;
+    let (area, edges) = (solved.observables.area.cells, solved.observables.area.perimeter_edges);
+    let (rms, gap) = (solved.observables.rms_pressure, solved.observables.mean_gap);
+    let border = if setting.method == Method::Adaptive { setting.border_level } else { 0 };
+    println!(
+        "{}: {setting}: counted {area:.9}, {edges} edges of 1/{}, rms {rms:.9e}, gap {gap:.9e}",
+        scene.name,
+        side << border
+    );
+    Ok(solved)
+}
+
+fn counted(solved: &Solved, side: usize) -> Counted {
+    let area = &solved.observables.area;
+    Counted { area: area.cells, n_edges: area.perimeter_edges, side }
+}
+
+/// The limit from the two finest grids.
+fn limit(solved: &[Solved], of: fn(&Solved) -> f64) -> Result<Limit> {
+    let [.., coarse, fine] = solved else { anyhow::bail!("a limit needs two grids") };
+    Ok(richardson(of(coarse), of(fine)))
+}
+
+/// The highest point of the surface, to far less than the uncertainty of a mean gap.
+fn greatest_height(scene: &Scene) -> Result<f64> {
+    let surface = scene.surface()?;
+    let (side, [.., border_level]) = BORDER;
+    let params = AdaptiveParams { border_level, ..AdaptiveParams::certified() };
+    let problem = AdaptiveProblem::new(
+        HeightSource::Surface { surface: &surface, grid: Grid::square(side)? },
+        scene.control(),
+        &params,
+    );
+    Ok(problem.with_context(|| format!("scene {}", scene.name))?.h_max())
+}

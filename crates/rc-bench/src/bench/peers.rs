@@ -1,0 +1,117 @@
+//! Other programs that solve the same problem: a process each, which runs `crates/rc-bench/peers/peers.py`.
+
+use anyhow::{Context, Result};
+use serde::{Deserialize, Serialize};
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::path::Path;
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+
+use crate::tolerance::Tolerance;
+use rc_figures::repository;
+
+use super::measure::Outcome;
+use super::setting::CERTIFIED;
+
+/// A peer and the tolerances it is run with; `None` is its own.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PeerKind {
+    pub(super) name: &'static str,
+    pub(super) tolerances: &'static [Option<Tolerance>],
+}
+
+/// ASPHER's tolerance means what ours does, so it also gets `auto`; that of Tamaas is relative as well; ContactMechanics
+/// derives one from the heights.
+pub(super) const PEERS: [PeerKind; 3] = [
+    PeerKind { name: "aspher", tolerances: &[Some(CERTIFIED), Some(Tolerance::Auto)] },
+    PeerKind { name: "tamaas", tolerances: &[Some(CERTIFIED)] },
+    PeerKind { name: "contactmechanics", tolerances: &[None] },
+];
+
+/// A running peer.
+pub(super) struct Peer {
+    process: Child,
+    questions: ChildStdin,
+    answers: BufReader<ChildStdout>,
+    /// With what changes its speed.
+    pub(super) version: String,
+}
+
+/// The first line of a peer.
+#[derive(Deserialize)]
+struct Greeting {
+    version: String,
+    fftw: bool,
+}
+
+/// One problem.
+#[derive(Serialize)]
+struct Question<'a> {
+    heights: &'a Path,
+    load: f64,
+    tolerance: Option<f64>,
+}
+
+impl Peer {
+    /// Starts a peer with as many threads as we have.
+    ///
+    /// # Errors
+    /// When it cannot be started or imported.
+    pub(super) fn start(python: &Path, kind: &PeerKind) -> Result<Self> {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from).to_string();
+        let mut process = Command::new(python)
+            .arg(repository::root().join("crates/rc-bench/peers/peers.py"))
+            .arg(kind.name)
+            .env("OMP_NUM_THREADS", threads)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .with_context(|| format!("could not start {}", python.display()))?;
+        let questions = process.stdin.take().context("a piped process has an input")?;
+        let answers = BufReader::new(process.stdout.take().context("a piped process has an output")?);
+        let mut peer = Self { process, questions, answers, version: String::new() };
+        let Greeting { version, fftw } = peer
+            .answer()
+            .with_context(|| format!("{} does not start in {}: is it installed there?", kind.name, python.display()))?;
+        peer.version = if fftw { version + " (FFTW)" } else { version };
+        Ok(peer)
+    }
+
+    /// Solves for the heights in a file.
+    ///
+    /// # Errors
+    /// When the peer fails.
+    pub(super) fn solve(&mut self, heights: &Path, load: f64, tolerance: Option<f64>) -> Result<Outcome> {
+        let question = serde_json::to_string(&Question { heights, load, tolerance })?;
+        writeln!(self.questions, "{question}").context("the peer is gone")?;
+        self.answer()
+    }
+
+    fn answer<T: for<'a> Deserialize<'a>>(&mut self) -> Result<T> {
+        let mut line = String::new();
+        self.answers.read_line(&mut line).context("the peer is gone")?;
+        serde_json::from_str(&line).with_context(|| format!("the peer answered '{}'", line.trim()))
+    }
+}
+
+impl Drop for Peer {
+    fn drop(&mut self) {
+        // It may be gone already; either way nothing is left of it.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_peer_that_is_not_installed_is_named() {
+        let error = Peer::start(Path::new("no-such-python-anywhere"), &PEERS[1]).err().map(|error| error.to_string());
+        assert!(error.as_ref().is_some_and(|text| text.contains("no-such-python-anywhere")), "{error:?}");
+        // A program that says nothing is no peer.
+        let error = Peer::start(Path::new("true"), &PEERS[1]).err().map(|error| error.to_string());
+        assert!(error.is_none_or(|text| text.contains("tamaas") || text.contains("true")));
+    }
+}

@@ -1,0 +1,214 @@
+//! The lines of `data/bench/bench.csv`: one solve of one scene by one program, the median of its repeats.
+
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use rc_figures::numeric::median;
+use serde::{Deserialize, Serialize};
+
+use super::measure::Outcome;
+use super::scenes::Scene;
+use super::setting::{KernelName, Method, Setting, typed};
+
+/// Correction of a counted area by its edges, in elements an edge: (π - 1 + ln 2)/24 (Yastrebov, Anciaux, Molinari, *Tribol.
+/// Int.* 114 (2017) 161). Peers leave it to their users.
+pub(super) const PUBLISHED_CORRECTION: f64 = 0.1181141597562;
+
+/// One line; columns that a program has nothing for are empty.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Row {
+    pub(super) scene: String,
+    /// `rc` or the name of a peer.
+    pub(super) program: String,
+    pub(super) method: String,
+    pub(super) kernel: String,
+    pub(super) border_level: usize,
+    pub(super) elements_per_wave: usize,
+    pub(super) tolerance: String,
+    pub(super) status: String,
+    pub(super) iterations: Option<u64>,
+    pub(super) applications: Option<u64>,
+    pub(super) elements: Option<u64>,
+    pub(super) repeats: usize,
+    /// Median, of the solve alone.
+    pub(super) seconds: f64,
+    /// Median, of the evaluation of the observables.
+    pub(super) observables_seconds: f64,
+    /// Peak memory beyond that of the program without a problem.
+    pub(super) memory_mb: Option<f64>,
+    pub(super) area_counted: f64,
+    /// Best estimate; for peers the counted area with the published correction.
+    pub(super) area: f64,
+    /// Error of `area` as stated by the program.
+    pub(super) area_bar: Option<f64>,
+    pub(super) rms_pressure: f64,
+    pub(super) mean_gap: f64,
+}
+
+/// What tells the lines of one program apart, other than scene and mesh.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Family {
+    pub(super) program: String,
+    pub(super) method: String,
+    pub(super) kernel: String,
+    pub(super) border_level: usize,
+    pub(super) tolerance: String,
+}
+
+impl Family {
+    /// The family of our own solves with `setting`.
+    pub(super) fn ours(setting: &Setting) -> Self {
+        Self {
+            program: OURS.to_owned(),
+            method: setting.method.name().to_owned(),
+            kernel: setting.kernel.kernel().name().to_owned(),
+            border_level: setting.border_level,
+            tolerance: typed(setting.tolerance),
+        }
+    }
+
+    /// The family of a peer's solves; all have the point-collocated kernel on a uniform grid.
+    pub(super) fn peer(program: &str, tolerance: &str) -> Self {
+        Self {
+            program: program.to_owned(),
+            method: Method::Uniform.name().to_owned(),
+            kernel: KernelName::Spectral.kernel().name().to_owned(),
+            border_level: 0,
+            tolerance: tolerance.to_owned(),
+        }
+    }
+}
+
+/// Name of this program among the others.
+pub(super) const OURS: &str = "rc";
+
+impl Row {
+    /// The line of repeated solves; the results are those of the first, since they are all the same. `None` without any.
+    pub(super) fn of(scene: &Scene, family: &Family, elements_per_wave: usize, repeats: &[Outcome]) -> Option<Self> {
+        let first = repeats.first()?;
+        let n_cells = (scene.side(elements_per_wave) as f64).powi(2);
+        let Family { program, method, kernel, border_level, tolerance } = family.clone();
+        Some(Self {
+            scene: scene.name.to_owned(),
+            program,
+            method,
+            kernel,
+            border_level,
+            elements_per_wave,
+            tolerance,
+            status: first.status.clone(),
+            iterations: first.iterations,
+            applications: first.applications,
+            elements: first.elements,
+            repeats: repeats.len(),
+            seconds: rounded(median(repeats.iter().map(|one| one.seconds).collect()), 4),
+            observables_seconds: rounded(median(repeats.iter().map(|one| one.observables_seconds).collect()), 4),
+            memory_mb: first.memory_mb.map(|memory| rounded(memory, 3)),
+            area_counted: rounded(first.area_counted, 9),
+            area: rounded(
+                first.area.unwrap_or(first.area_counted - PUBLISHED_CORRECTION * first.edges as f64 / n_cells),
+                9,
+            ),
+            area_bar: first.area_bar.map(|bar| rounded(bar, 3)),
+            rms_pressure: rounded(first.rms_pressure, 9),
+            mean_gap: rounded(first.mean_gap, 9),
+        })
+    }
+
+    pub(super) fn family(&self) -> Family {
+        Family {
+            program: self.program.clone(),
+            method: self.method.clone(),
+            kernel: self.kernel.clone(),
+            border_level: self.border_level,
+            tolerance: self.tolerance.clone(),
+        }
+    }
+
+    /// What an answer takes: the solve, and what has to be computed from the pressure.
+    pub(super) fn total_seconds(&self) -> f64 {
+        self.seconds + self.observables_seconds
+    }
+}
+
+/// `value` with `digits` significant digits.
+pub(super) fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
+}
+
+/// Records from CSV text; `name` is that of the file, for errors.
+///
+/// # Errors
+/// With the line that is not as expected.
+pub(super) fn from_csv<T: for<'a> Deserialize<'a>>(text: &str, name: &str) -> Result<Vec<T>> {
+    let records = csv::Reader::from_reader(text.as_bytes()).into_deserialize().collect::<Result<_, _>>();
+    records.with_context(|| format!("{name} is not as `cargo xtask bench` writes it"))
+}
+
+/// Records as CSV text.
+///
+/// # Errors
+/// Never for the records of this benchmark.
+pub(super) fn to_csv<T: Serialize>(records: &[T]) -> Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    records.iter().try_for_each(|record| writer.serialize(record))?;
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}
+
+/// Writes a text file and says which.
+///
+/// # Errors
+/// Those of the file system.
+#[expect(clippy::print_stdout, reason = "a result of the command")]
+pub(super) fn write(path: &Path, text: &str) -> Result<()> {
+    std::fs::write(path, text).with_context(|| format!("could not write {}", path.display()))?;
+    println!("{}", path.display());
+    Ok(())
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use crate::tolerance::Tolerance;
+
+    use super::*;
+    use crate::bench::scenes::SCENES;
+
+    /// An outcome that took some time.
+    pub(in crate::bench) fn outcome(seconds: f64, area: Option<f64>) -> Outcome {
+        Outcome {
+            status: "converged".to_owned(),
+            iterations: Some(12),
+            applications: None,
+            elements: Some(100),
+            seconds,
+            observables_seconds: 0.25,
+            memory_mb: Some(12.3456),
+            area_counted: 0.07,
+            area,
+            area_bar: None,
+            edges: 1000,
+            rms_pressure: 4e-3,
+            mean_gap: 2.5,
+        }
+    }
+
+    #[test]
+    fn a_line_has_the_median_time_and_survives_csv() {
+        let family = Family::ours(&Setting::adaptive(2, 8, Tolerance::Auto));
+        let repeats = [3.0, 1.0, 2.0].map(|seconds| outcome(seconds, Some(0.068)));
+        let row = Row::of(&SCENES[0], &family, 8, &repeats).expect("three repeats");
+        assert_eq!((row.seconds, row.total_seconds(), row.area, row.memory_mb), (2.0, 2.25, 0.068, Some(12.3)));
+        assert_eq!(row.family(), family);
+        let text = to_csv(std::slice::from_ref(&row)).expect("plain values");
+        assert_eq!(from_csv::<Row>(&text, "bench.csv").expect("its own output"), [row]);
+        let broken = from_csv::<Row>(&text.replace("0.068", "much"), "bench.csv").err();
+        assert!(broken.is_some_and(|error| error.to_string().contains("bench.csv")));
+    }
+
+    #[test]
+    fn a_peers_area_is_corrected_as_published() {
+        let row = Row::of(&SCENES[0], &Family::peer("tamaas", "1e-6"), 4, &[outcome(1.0, None)]).expect("one repeat");
+        let expected = 0.07 - PUBLISHED_CORRECTION * 1000.0 / 65536.0;
+        assert!((row.area - expected).abs() < 1e-10, "{} against {expected}", row.area);
+    }
+}

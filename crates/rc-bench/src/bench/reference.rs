@@ -1,0 +1,166 @@
+//! Reference values of the scenes, `data/bench/reference.csv`, and errors against them.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context, Result};
+use rc_figures::repository;
+use serde::{Deserialize, Serialize};
+
+use super::record::{Row, from_csv};
+
+/// Where the reference values are.
+pub(super) const REFERENCE: &str = "data/bench/reference.csv";
+
+/// What is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Quantity {
+    /// Contact area, relative to the cell.
+    Area,
+    /// Root mean square pressure, in E*.
+    RmsPressure,
+    /// Penetration Δ, in λ, from the highest point of the surface.
+    Penetration,
+    /// Mean gap, in λ.
+    MeanGap,
+}
+
+impl Quantity {
+    /// Those that errors are shown of. (The error of the mean gap is that of the penetration.)
+    pub(super) const COMPARED: [Self; 3] = [Self::Area, Self::RmsPressure, Self::Penetration];
+
+    /// As in sentences.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Area => "area",
+            Self::RmsPressure => "rms pressure",
+            Self::Penetration => "penetration",
+            Self::MeanGap => "mean gap",
+        }
+    }
+}
+
+/// A reference value; the two kernels have one limit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct ReferenceRow {
+    pub(super) scene: String,
+    pub(super) quantity: Quantity,
+    pub(super) value: f64,
+    /// Estimated error of the value.
+    pub(super) uncertainty: f64,
+    /// The limit of uniform grids with the other kernel, found independently.
+    pub(super) other_kernel: f64,
+    /// Estimated error of that.
+    pub(super) other_uncertainty: f64,
+}
+
+/// The reference values by scene and quantity.
+#[derive(Clone, Debug)]
+pub(super) struct References(BTreeMap<(String, Quantity), ReferenceRow>);
+
+/// A number of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Reading {
+    /// The area by counting elements, as peers report it.
+    Counted,
+    /// The best estimate, or for peers the counted area corrected by hand; other quantities have one reading only.
+    Best,
+}
+
+impl References {
+    /// Reads the file of the repository.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub(super) fn read() -> Result<Self> {
+        let path = repository::root().join(REFERENCE);
+        let text = std::fs::read_to_string(&path).with_context(|| {
+            format!("could not read {}; `cargo xtask bench --make-reference` makes it", path.display())
+        })?;
+        Self::from_text(&text)
+    }
+
+    /// From the text of the file.
+    ///
+    /// # Errors
+    /// With the line that is not as expected.
+    pub(super) fn from_text(text: &str) -> Result<Self> {
+        let rows: Vec<ReferenceRow> = from_csv(text, REFERENCE)?;
+        Ok(Self(rows.into_iter().map(|row| ((row.scene.clone(), row.quantity), row)).collect()))
+    }
+
+    /// The reference of a scene, if there is one.
+    pub(super) fn row(&self, scene: &str, quantity: Quantity) -> Option<&ReferenceRow> {
+        self.0.get(&(scene.to_owned(), quantity))
+    }
+
+    /// Relative error of a line, with its sign.
+    ///
+    /// That of a penetration is the one of the mean gap, relative to the penetration: the two add up to the height of the
+    /// highest point, and how well a grid's points meet that point says nothing about a solver.
+    pub(super) fn error(&self, row: &Row, quantity: Quantity, reading: Reading) -> Option<f64> {
+        let reference = self.row(&row.scene, quantity)?.value;
+        let value = match (quantity, reading) {
+            (Quantity::Area, Reading::Counted) => row.area_counted,
+            (Quantity::Area, Reading::Best) => row.area,
+            (Quantity::RmsPressure, _) => row.rms_pressure,
+            (Quantity::MeanGap, _) => row.mean_gap,
+            (Quantity::Penetration, _) => {
+                return Some((self.row(&row.scene, Quantity::MeanGap)?.value - row.mean_gap) / reference);
+            }
+        };
+        Some(value / reference - 1.0)
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::bench::record::to_csv;
+    use crate::bench::scenes::SCENES;
+
+    const ALL: [Quantity; 4] = [Quantity::Area, Quantity::RmsPressure, Quantity::Penetration, Quantity::MeanGap];
+
+    const MEAN_GAP: f64 = 2.5;
+
+    /// References of one scene.
+    pub(in crate::bench) fn references(scene: &str, [area, rms_pressure, penetration]: [f64; 3]) -> References {
+        let values = [area, rms_pressure, penetration, MEAN_GAP].into_iter().zip(ALL);
+        let row = |(value, quantity)| ReferenceRow {
+            scene: scene.to_owned(),
+            quantity,
+            value,
+            uncertainty: 1e-6 * value,
+            other_kernel: value,
+            other_uncertainty: 1e-5 * value,
+        };
+        let text = to_csv(&values.map(row).collect::<Vec<_>>()).expect("plain values");
+        References::from_text(&text).expect("its own output")
+    }
+
+    /// Each scene has its values, and the limits of the two kernels are one within their uncertainties.
+    #[test]
+    fn the_kernels_have_one_limit() {
+        let references = References::read().expect("the file of the repository");
+        for scene in SCENES {
+            for quantity in ALL {
+                let row = references.row(scene.name, quantity);
+                let row = row.unwrap_or_else(|| panic!("no {} of {}", quantity.name(), scene.name));
+                let (apart, allowed) = ((row.value - row.other_kernel).abs(), row.uncertainty + row.other_uncertainty);
+                assert!(apart <= allowed, "{row:?}: {apart:e} apart, {allowed:e} allowed");
+                assert!(row.uncertainty < 1e-4 * row.value, "{row:?} is not good enough to compare with");
+            }
+        }
+    }
+    #[test]
+    fn the_error_of_a_penetration_is_that_of_the_gap() {
+        let references = references("paper", [0.07, 4e-3, 2.0]);
+        let mut row = crate::bench::levels::tests::rows().remove(0);
+        (row.mean_gap, row.area_counted) = (MEAN_GAP + 0.02, 0.0707);
+        let error = |quantity| references.error(&row, quantity, Reading::Counted).unwrap_or(f64::NAN);
+        assert!((error(Quantity::Penetration) + 0.01).abs() < 1e-12, "{}", error(Quantity::Penetration));
+        assert!((error(Quantity::MeanGap) - 0.008).abs() < 1e-12 && (error(Quantity::Area) - 0.01).abs() < 1e-12);
+        row.scene = "unknown".to_owned();
+        assert_eq!(references.error(&row, Quantity::Area, Reading::Best), None);
+    }
+}

@@ -1,0 +1,160 @@
+//! How a scene is solved: method, kernel, mesh, tolerance.
+
+use rc_core::Kernel;
+use rc_kernel::{Love, Spectral};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+use crate::tolerance::Tolerance;
+use crate::tolerance::auto_tolerance;
+
+use super::scenes::Scene;
+
+/// Meshes of the benchmark: elements for the shortest wave.
+pub(super) const MESHES: [usize; 4] = [4, 8, 16, 32];
+
+/// Largest uniform grid.
+pub(super) const LARGEST_UNIFORM: usize = 2048;
+
+/// Most smallest elements for the shortest wave, and along a side of the cell.
+const SMALLEST_ELEMENTS: (usize, usize) = (64, 4096);
+
+/// Deepest border level.
+const DEEPEST_BORDER: usize = 3;
+
+/// The tolerance that is certified by default.
+pub(super) const CERTIFIED: Tolerance = Tolerance::Relative(1e-6);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Method {
+    Uniform,
+    Adaptive,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum KernelName {
+    Love,
+    Spectral,
+}
+
+impl Method {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Uniform => "uniform",
+            Self::Adaptive => "adaptive",
+        }
+    }
+}
+
+impl KernelName {
+    pub(super) fn kernel(self) -> &'static dyn Kernel {
+        match self {
+            Self::Love => &Love,
+            Self::Spectral => &Spectral,
+        }
+    }
+}
+
+/// One way to solve a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Setting {
+    pub(super) method: Method,
+    pub(super) kernel: KernelName,
+    /// How often elements at edges of contacts are halved.
+    pub(super) border_level: usize,
+    /// Elements of the grid for the shortest wave.
+    pub(super) elements_per_wave: usize,
+    pub(super) tolerance: Tolerance,
+}
+
+impl Setting {
+    pub(super) fn uniform(kernel: KernelName, elements_per_wave: usize, tolerance: Tolerance) -> Self {
+        Self { method: Method::Uniform, kernel, border_level: 0, elements_per_wave, tolerance }
+    }
+
+    pub(super) fn adaptive(border_level: usize, elements_per_wave: usize, tolerance: Tolerance) -> Self {
+        Self { method: Method::Adaptive, kernel: KernelName::Love, border_level, elements_per_wave, tolerance }
+    }
+
+    /// The tolerance as a number; `auto` follows the grid, as on the command line.
+    pub(super) fn relative_tolerance(&self) -> f64 {
+        match self.tolerance {
+            Tolerance::Relative(value) => value,
+            Tolerance::Auto => auto_tolerance(self.elements_per_wave as f64),
+        }
+    }
+
+    /// Every setting of one mesh of a scene that is small enough.
+    pub(super) fn of_mesh(scene: &Scene, elements_per_wave: usize) -> Vec<Self> {
+        let mut settings = Vec::new();
+        if scene.side(elements_per_wave) <= LARGEST_UNIFORM {
+            for kernel in [KernelName::Spectral, KernelName::Love] {
+                settings.extend([Tolerance::Auto, CERTIFIED].map(|t| Self::uniform(kernel, elements_per_wave, t)));
+            }
+        }
+        for border_level in 0..=DEEPEST_BORDER {
+            let smallest = elements_per_wave << border_level;
+            let (per_wave, per_side) = SMALLEST_ELEMENTS;
+            // The base grid has four elements for the shortest wave, and the grid must be above it.
+            if elements_per_wave < 8 || smallest > per_wave || scene.side(smallest) > per_side {
+                continue;
+            }
+            settings.push(Self::adaptive(border_level, elements_per_wave, Tolerance::Auto));
+            if border_level == 0 {
+                settings.push(Self::adaptive(border_level, elements_per_wave, CERTIFIED));
+            }
+        }
+        settings
+    }
+}
+
+/// A tolerance as it is typed.
+pub(super) fn typed(tolerance: Tolerance) -> String {
+    match tolerance {
+        Tolerance::Relative(value) => format!("{value:e}"),
+        Tolerance::Auto => "auto".to_owned(),
+    }
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { method, kernel, border_level, elements_per_wave, tolerance } = *self;
+        let kernel = kernel.kernel().name();
+        match method {
+            Method::Uniform => write!(f, "uniform {kernel}")?,
+            Method::Adaptive => write!(f, "adaptive {kernel}, border level {border_level}")?,
+        }
+        write!(f, ", λ_min/{elements_per_wave}, tolerance {}", typed(tolerance))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::scenes::SCENES;
+
+    #[test]
+    fn settings_stay_within_their_bounds() {
+        for scene in SCENES {
+            for mesh in MESHES {
+                let settings = Setting::of_mesh(&scene, mesh);
+                assert!(!settings.is_empty(), "{} has nothing to solve at λ_min/{mesh}", scene.name);
+                for setting in settings {
+                    let side = scene.side(mesh << setting.border_level);
+                    assert!(side <= SMALLEST_ELEMENTS.1, "{}: {setting}", scene.name);
+                    assert!(setting.method == Method::Adaptive || side <= LARGEST_UNIFORM, "{}: {setting}", scene.name);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_setting_is_written_for_people() {
+        let setting = Setting::adaptive(2, 8, Tolerance::Auto);
+        assert_eq!(setting.to_string(), "adaptive love, border level 2, λ_min/8, tolerance auto");
+        let setting = Setting::uniform(KernelName::Spectral, 4, CERTIFIED);
+        assert_eq!(setting.to_string(), "uniform spectral, λ_min/4, tolerance 1e-6");
+    }
+}

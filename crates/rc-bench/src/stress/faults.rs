@@ -1,0 +1,282 @@
+//! Faulty operators and kernels: every fault must be detected and reported, none absorbed.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use anyhow::{Result, ensure};
+use rc_core::testing::{check_kernel, check_operator, quasi_random};
+use rc_core::{EdgeBias, Field, Grid, Kernel, Operator, Silent, Symbol};
+use rc_figures::Preset;
+use rc_kernel::Love;
+use rc_solver::{Control, IterationParams, UniformOperator, solve_uniform};
+
+use super::audit::{Audit, direct};
+use super::heights::{mapped, rough};
+use super::row::{Row, Rows, guarded};
+use super::scene::TOLERANCE;
+
+/// What goes wrong in an application of L.
+#[derive(Clone, Copy, Debug)]
+enum Fault {
+    Noise(f64),
+    Bias(f64),
+    Nan,
+    NonSymmetry(f64),
+    ShiftedIndex,
+    Sign,
+    Stale,
+}
+
+/// An operator with a fault.
+struct Faulty {
+    operator: UniformOperator,
+    side: usize,
+    fault: Fault,
+    applications: AtomicUsize,
+}
+
+impl Operator for Faulty {
+    fn n_elements(&self) -> usize {
+        self.operator.n_elements()
+    }
+
+    fn scratch_len(&self) -> usize {
+        self.operator.scratch_len()
+    }
+
+    fn apply(&self, pressure: &[f64], displacement: &mut [f64], scratch: &mut [f64]) {
+        let before = displacement[0];
+        self.operator.apply(pressure, displacement, scratch);
+        let count = self.applications.fetch_add(1, Ordering::Relaxed);
+        let scale = displacement.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        match self.fault {
+            Fault::Noise(size) => {
+                let noise = |i: usize| size * scale * (quasi_random(i + 7919 * count) - 0.5);
+                displacement.iter_mut().enumerate().for_each(|(i, v)| *v += noise(i));
+            }
+            Fault::Bias(size) => displacement.iter_mut().for_each(|v| *v += size),
+            Fault::Nan => displacement[self.side + 1] = f64::NAN,
+            // Displacements on one side of the cell answer more than those on the other.
+            Fault::NonSymmetry(size) => {
+                let side = self.side;
+                displacement
+                    .iter_mut()
+                    .enumerate()
+                    .for_each(|(i, v)| *v *= 1.0 + size * ((i % side) as f64 / side as f64));
+            }
+            Fault::ShiftedIndex => displacement.rotate_right(1),
+            Fault::Sign => displacement.iter_mut().for_each(|v| *v = -*v),
+            Fault::Stale => displacement[0] = before,
+        }
+    }
+}
+
+/// A kernel with a fault in its symbol.
+struct FaultyKernel {
+    fault: KernelFault,
+    calls: AtomicUsize,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum KernelFault {
+    NanEverywhere,
+    NanAtOneWave,
+    InfiniteAtOneWave,
+    ZeroAtOneWave,
+    NegativeAtOneWave,
+    NegativeEverywhere,
+    Bias(f64),
+    Noise(f64),
+    NonSymmetry(f64),
+    Changes(f64),
+    Moves,
+}
+
+impl Kernel for FaultyKernel {
+    fn name(&self) -> &'static str {
+        "faulty"
+    }
+
+    fn symbol(&self, grid: Grid) -> Symbol<'_> {
+        let (love, fault) = (Love.symbol(grid), self.fault);
+        let call = self.calls.fetch_add(1, Ordering::Relaxed);
+        Box::new(move |kx, ky| {
+            let value = love(kx, ky);
+            let one = (kx, ky) == (1, 2);
+            match fault {
+                KernelFault::NanEverywhere => f64::NAN,
+                KernelFault::NanAtOneWave if one => f64::NAN,
+                KernelFault::InfiniteAtOneWave if one => f64::INFINITY,
+                KernelFault::ZeroAtOneWave if one => 0.0,
+                KernelFault::NegativeAtOneWave if one => -value,
+                KernelFault::NegativeEverywhere => -value,
+                KernelFault::Bias(part) => value * (1.0 + part),
+                KernelFault::Noise(part) => value * (1.0 + part * (quasi_random(131 * kx + ky) - 0.5)),
+                KernelFault::NonSymmetry(part) if kx > ky => value * (1.0 + part),
+                KernelFault::Moves if (kx, ky) == (0, 0) => 0.1,
+                // Another answer each time it is asked.
+                KernelFault::Changes(part) => value * (1.0 + part * call as f64),
+                _ => value,
+            }
+        })
+    }
+
+    fn edge_bias(&self) -> EdgeBias {
+        Love.edge_bias()
+    }
+}
+
+pub(crate) fn rows(_preset: Preset) -> Result<Vec<Row>> {
+    let mut rows = Rows::of("faults");
+    operators(&mut rows)?;
+    kernels(&mut rows)?;
+    inputs(&mut rows)?;
+    Ok(rows.finish())
+}
+
+/// The conformance check of operators finds each fault, and nothing in an operator without one.
+fn operators(rows: &mut Rows) -> Result<()> {
+    let grid = Grid::square(16)?;
+    let check = |operator: &dyn Operator| {
+        guarded(|| {
+            check_operator(operator);
+            Ok(())
+        })
+    };
+    let sound = check(&UniformOperator::new(grid, &Love));
+    rows.holds("sound operator", "conformance", "nothing found", text(&sound), sound.is_ok());
+    let faults = [
+        Fault::Noise(1e-9),
+        Fault::Noise(1e-3),
+        Fault::Bias(1e-9),
+        Fault::Bias(1e-3),
+        Fault::Nan,
+        Fault::NonSymmetry(1e-6),
+        Fault::NonSymmetry(0.1),
+        Fault::ShiftedIndex,
+        Fault::Sign,
+        Fault::Stale,
+    ];
+    for fault in faults {
+        let operator = UniformOperator::new(grid, &Love);
+        let faulty = Faulty { operator, side: grid.nx(), fault, applications: AtomicUsize::new(0) };
+        let found = check(&faulty);
+        rows.holds(&format!("operator with {fault:?}"), "conformance", "detected", text(&found), found.is_err());
+    }
+    Ok(())
+}
+
+/// A solve with a faulty kernel either fails or returns what an audit with the sound one refuses.
+fn kernels(rows: &mut Rows) -> Result<()> {
+    let heights = rough(4, 0.8, 8, 32)?;
+    let control = Control::MeanPressure(1e-3);
+    let sound = outcome(&heights, &Love, control);
+    rows.holds("sound kernel", "solve and audit", "nothing found", text(&sound), sound.is_ok());
+    let faults = [
+        KernelFault::NanEverywhere,
+        KernelFault::NanAtOneWave,
+        KernelFault::InfiniteAtOneWave,
+        KernelFault::ZeroAtOneWave,
+        KernelFault::NegativeAtOneWave,
+        KernelFault::NegativeEverywhere,
+        KernelFault::Bias(1e-3),
+        KernelFault::Noise(1e-2),
+        KernelFault::NonSymmetry(1e-2),
+        KernelFault::Changes(1e-4),
+        KernelFault::Moves,
+    ];
+    for fault in faults {
+        let scene = format!("kernel with {fault:?}");
+        let kernel = FaultyKernel { fault, calls: AtomicUsize::new(0) };
+        let broken =
+            matches!(fault, KernelFault::NanEverywhere | KernelFault::NanAtOneWave | KernelFault::InfiniteAtOneWave);
+        if broken {
+            // Nothing that such a kernel returns is a solution.
+            for control in [control, Control::Penetration(0.3 * (heights.max() - heights.mean()))] {
+                let solved =
+                    guarded(|| Ok(solve_uniform(&heights, &kernel, control, &IterationParams::certified(), &Silent)?));
+                let name =
+                    format!("{scene} {}", if control_is_load(control) { "to a load" } else { "to a penetration" });
+                let reported = matches!(&solved, Err(error) if !error.to_string().starts_with("panic"));
+                let said = solved.map_or_else(|error| format!("{error:#}"), |_| "converged".to_owned());
+                rows.holds(&name, "solve", "an error", said, reported);
+            }
+        }
+        let found = match fault {
+            // Half of a spectrum that is unequal in x and y is never asked for; a mean that moves changes no gap.
+            KernelFault::NonSymmetry(_) | KernelFault::Moves => conformance(&kernel),
+            _ => outcome(&heights, &kernel, control),
+        };
+        rows.holds(&scene, "solve and audit", "detected", text(&found), found.is_err());
+    }
+    Ok(())
+}
+
+/// What the conformance check of kernels finds.
+fn conformance(kernel: &dyn Kernel) -> Result<()> {
+    guarded(|| {
+        check_kernel(kernel);
+        Ok(())
+    })
+}
+
+fn control_is_load(control: Control) -> bool {
+    matches!(control, Control::MeanPressure(_))
+}
+
+/// A solve with `kernel`, audited with Love's.
+fn outcome(heights: &Field, kernel: &dyn Kernel, control: Control) -> Result<()> {
+    guarded(|| {
+        let params = IterationParams { tolerance: TOLERANCE, ..IterationParams::certified() };
+        let pressure = solve_uniform(heights, kernel, control, &params, &Silent)?.pressure;
+        let audit = Audit::of_pressure(heights, &pressure, &direct(&pressure), control);
+        ensure!(audit.n_bad == 0, "audit: {} pressures that are not finite or negative", audit.n_bad);
+        ensure!(audit.penetration <= 1.1 * TOLERANCE, "audit: penetration error {:.1e}", audit.penetration);
+        Ok(())
+    })
+}
+
+/// Heights, loads and tolerances that are no problem at all are refused.
+fn inputs(rows: &mut Rows) -> Result<()> {
+    let heights = rough(4, 0.8, 8, 32)?;
+    let with = |value: f64| {
+        let mut heights = heights.clone();
+        heights.values_mut()[100] = value;
+        heights
+    };
+    let flat = mapped(&heights, |_| 0.5);
+    let load = Control::MeanPressure(1e-3);
+    let cases: Vec<(String, Field, Control, f64)> = vec![
+        ("a height of NaN".into(), with(f64::NAN), load, TOLERANCE),
+        ("an infinite height".into(), with(f64::INFINITY), load, TOLERANCE),
+        ("a height of minus infinity".into(), with(f64::NEG_INFINITY), load, TOLERANCE),
+        ("a load of zero".into(), heights.clone(), Control::MeanPressure(0.0), TOLERANCE),
+        ("a negative load".into(), heights.clone(), Control::MeanPressure(-1e-3), TOLERANCE),
+        ("a load of NaN".into(), heights.clone(), Control::MeanPressure(f64::NAN), TOLERANCE),
+        ("an infinite load".into(), heights.clone(), Control::MeanPressure(f64::INFINITY), TOLERANCE),
+        ("a penetration of zero".into(), heights.clone(), Control::Penetration(0.0), TOLERANCE),
+        ("a penetration beyond full contact".into(), heights.clone(), Control::Penetration(heights.max()), TOLERANCE),
+        ("a penetration of NaN".into(), heights.clone(), Control::Penetration(f64::NAN), TOLERANCE),
+        ("a penetration into a flat surface".into(), flat, Control::Penetration(1e-3), TOLERANCE),
+        ("a tolerance of zero".into(), heights.clone(), load, 0.0),
+        ("a tolerance of NaN".into(), heights.clone(), load, f64::NAN),
+        ("a tolerance below rounding".into(), heights.clone(), load, 1e-15),
+        (
+            "heights whose range overflows".into(),
+            mapped(&heights, |h| if h > 0.0 { 1.7e308 } else { -1.7e308 }),
+            load,
+            TOLERANCE,
+        ),
+    ];
+    for (name, heights, control, tolerance) in cases {
+        let params = IterationParams { tolerance, ..IterationParams::certified() };
+        let solved = guarded(|| Ok(solve_uniform(&heights, &Love, control, &params, &Silent)?));
+        let reported = matches!(&solved, Err(error) if !error.to_string().starts_with("panic"));
+        let said = solved.map_or_else(|error| format!("{error:#}"), |_| "converged".to_owned());
+        rows.holds(&name, "refused", "an error", said, reported);
+    }
+    Ok(())
+}
+
+fn text(found: &Result<()>) -> String {
+    found.as_ref().map_or_else(|error| format!("{error:#}"), |()| "nothing found".to_owned())
+}

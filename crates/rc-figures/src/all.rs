@@ -1,0 +1,84 @@
+//! `cargo xtask figures`: every figure of the paper in one run, compared with the archived one or archived itself.
+
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+
+use crate::archive::{self, Run};
+use crate::figure::{Figure, Preset, report, write};
+use crate::{fig1, fig2, fig3, fig4, fig5, fig6, fig7, fig8, reproduction};
+
+/// What becomes of the archived run in `data/runs/paper/`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Archive {
+    /// It is not looked at.
+    Ignored,
+    /// Every table is compared with it; a difference is an error.
+    Compared,
+    /// This run replaces it: tables, pictures in `docs/images/`, numbers in `docs/reproduction.md`.
+    Replaced,
+}
+
+/// Computes and writes every figure of the paper into `folder`.
+///
+/// # Errors
+/// When a figure cannot be computed or written, or differs from the archived run.
+pub fn run(preset: Preset, folder: &Path, archive: Archive) -> Result<()> {
+    let mut all = All { preset, folder, run: Run::start(preset) };
+    all.compute::<fig1::Fig1>()?;
+    all.compute::<fig2::Fig2>()?;
+    all.compute::<fig3::Fig3>()?;
+    all.compute::<fig4::Fig4>()?;
+    // Fig. 5 and 7 are drawn from one sweep.
+    let fig5 = all.compute::<fig5::Fig5>()?;
+    all.compute::<fig6::Fig6>()?;
+    all.add(|params| Ok(fig7::Fig7::of(params, fig5.into_sweep())))?;
+    all.compute::<fig8::Fig8>()?;
+    let run = all.run;
+    run.save(folder)?;
+    match archive {
+        Archive::Ignored => Ok(()),
+        Archive::Compared => compare(&run),
+        Archive::Replaced => replace(&run, folder),
+    }
+}
+
+fn compare(run: &Run) -> Result<()> {
+    let differences = run.differences(&archive::folder())?;
+    if !differences.is_empty() {
+        bail!("{} tables differ from the archived run:\n{}", differences.len(), differences.join("\n"));
+    }
+    Ok(())
+}
+
+fn replace(run: &Run, folder: &Path) -> Result<()> {
+    run.save(&archive::folder())?;
+    run.save_tables(&archive::folder())?;
+    archive::copy_pictures(folder)?;
+    reproduction::update()
+}
+
+/// The figures so far.
+struct All<'a> {
+    preset: Preset,
+    folder: &'a Path,
+    run: Run,
+}
+
+impl All<'_> {
+    fn compute<F: Figure>(&mut self) -> Result<F> {
+        self.add(|params| F::compute(params))
+    }
+
+    /// Makes, writes and records one figure.
+    fn add<F: Figure>(&mut self, make: impl FnOnce(&F::Params) -> Result<F>) -> Result<F> {
+        let params = F::params(self.preset)?;
+        let start = Instant::now();
+        let figure = make(&params).with_context(|| format!("{} with {params:?}", F::NAME))?;
+        let seconds = start.elapsed().as_secs_f64();
+        report(&figure, &write(&figure, self.folder)?);
+        self.run.add(&figure, &params, seconds);
+        Ok(figure)
+    }
+}

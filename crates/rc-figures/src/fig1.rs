@@ -1,0 +1,339 @@
+//! Fig. 1: a section of a solved contact: rigid rough surface, deformed half-space, penetration Δ and mean planes.
+//!
+//! The paper's figure is a sketch; this one is a solution, along the row of elements through the highest peak, because
+//! there the displacement v takes its largest value, which is Δ (Sec. 2).
+
+use std::f64::consts::TAU;
+
+use anyhow::Result;
+use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, PathElement, Polygon, RGBColor};
+use plotters::style::{BLACK, Color};
+use rc_core::{Field, Grid, HeightSource, Silent};
+use rc_fractal::{SpectrumParams, Surface};
+use rc_plot::{Area, Picture, PictureError};
+use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, IterationParams, solve_adaptive};
+
+use crate::chart::{Axes, BLUE, Chart, Drawn, GREY, RED, Side, dimension, write};
+use crate::solve::{displacement_field, pressure_field};
+use crate::{Figure, Preset, Table, number, paper};
+
+/// The two bodies.
+const RIGID: RGBColor = RGBColor(214, 214, 214);
+const SOFT: RGBColor = RGBColor(203, 223, 242);
+/// Width of the enlarged part, in λ.
+const WINDOW: f64 = 0.25;
+/// Micrometres and millimetres in a metre.
+const MICRO: f64 = 1e6;
+const MILLI: f64 = 1e3;
+
+/// What Fig. 1 is computed from.
+#[derive(Clone, Debug)]
+pub struct Params {
+    /// Number of waves N.
+    waves: usize,
+    /// Elements per side.
+    grid: usize,
+    /// Mean pressure σ0/E*.
+    mean_pressure: f64,
+    /// Seed of the phases.
+    seed: u64,
+    /// Relative tolerance of the solve.
+    tolerance: f64,
+    /// Side λ of the cell (m).
+    cell: f64,
+}
+
+/// One element of the section. Displacements are positive into the half-space (m).
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    /// Distance from the highest peak (m).
+    x: f64,
+    /// Displacement that would touch the rigid surface, h - h_max + Δ.
+    rigid: f64,
+    /// Displacement v of the half-space.
+    deformed: f64,
+    /// σ/E*.
+    pressure: f64,
+}
+
+/// The section and what is measured at it, SI.
+#[derive(Clone, Debug)]
+pub struct Fig1 {
+    cell: f64,
+    mean_pressure: f64,
+    /// Elements of the section, the highest peak in the middle.
+    points: Vec<Point>,
+    /// Δ.
+    penetration: f64,
+    /// Height of the highest peak above the mean plane of the roughness.
+    h_max: f64,
+    /// Mean and greatest displacement over the whole cell.
+    mean_displacement: f64,
+    max_displacement: f64,
+    /// A/A0 of the whole cell.
+    area: f64,
+}
+
+impl Figure for Fig1 {
+    const NAME: &'static str = "fig1";
+    type Params = Params;
+
+    /// The paper's surface with 64 waves on 32 elements per shortest wave (full), and 8 waves on 16 (quick).
+    fn params(preset: Preset) -> Result<Params> {
+        let (waves, grid, tolerance) = match preset {
+            Preset::Full => (paper::value("waves_a")? as usize, 2048, 1e-6),
+            Preset::Quick => (8, 128, 1e-9),
+        };
+        let (mean_pressure, cell) = (paper::value("load")?, TAU / paper::value("q0")?);
+        Ok(Params { waves, grid, mean_pressure, seed: 1, tolerance, cell })
+    }
+
+    fn compute(params: &Params) -> Result<Self> {
+        let surface = Surface::new(&SpectrumParams::paper(params.waves, params.seed))?;
+        let heights = surface.sample_on(Grid::square(params.grid)?)?;
+        let solve = IterationParams { tolerance: params.tolerance, ..IterationParams::certified() };
+        let adaptive = AdaptiveParams { solve, ..AdaptiveParams::certified() };
+        let control = Control::MeanPressure(params.mean_pressure);
+        let solution = solve_adaptive(
+            HeightSource::Surface { surface: &surface, grid: Grid::square(params.grid)? },
+            control,
+            &adaptive,
+            &Silent,
+        )?;
+        Self::of(params, &heights, &solution)
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        vec![self.summary(), self.section()]
+    }
+
+    fn caption(&self) -> Option<String> {
+        let um = |length: f64| format!("{:.1} µm", MICRO * length);
+        Some(format!(
+            "**Fig. 1.** Section of a solved contact through the highest peak of the rigid surface, at σ0/E* = \
+             {:.2e}, where A/A0 = {:.4}. The deformed surface of the half-space touches the rigid surface where v = h \
+             − h_max + Δ (red). The displacement v has zero mean over the cell, so the undeformed mean plane is v = 0, \
+             and v is greatest under the highest peak, where it is the penetration Δ = {}. The mean plane of the \
+             roughness lies h_max = {} above that peak and ū = h_max − Δ = {} above the mean plane of the half-space. \
+             Below, the quarter of the cell around the peak. Heights are exaggerated by the factors in the \
+             corners.\n",
+            self.mean_pressure,
+            self.area,
+            um(self.penetration),
+            um(self.h_max),
+            um(self.h_max - self.penetration),
+        ))
+    }
+}
+
+impl Picture for Fig1 {
+    fn size(&self) -> (u32, u32) {
+        (2100, 1560)
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
+        let (whole, part) = area.split_vertically(880);
+        self.draw_whole(&whole).map_err(PictureError::new)?;
+        self.draw_part(&part).map_err(PictureError::new)
+    }
+}
+
+impl Fig1 {
+    /// The row through the highest peak, shifted around the cell so that the peak is in its middle.
+    fn of(params: &Params, heights: &Field, solution: &AdaptiveSolution) -> Result<Self> {
+        let (n, cell, penetration) = (params.grid, params.cell, solution.info.penetration);
+        let (pressure, displacement) = (pressure_field(solution)?, displacement_field(solution)?);
+        let h_max = heights.max();
+        let peak = heights.values().iter().position(|&h| h >= h_max).unwrap_or(0);
+        let (peak_x, row) = (peak % n, peak / n);
+        let points = (0..n).map(|i| {
+            let ix = (peak_x + n / 2 + i) % n;
+            Point {
+                x: (i as f64 - (n / 2) as f64) * cell / n as f64,
+                rigid: cell * (heights.at(ix, row) - h_max + penetration),
+                deformed: cell * displacement.at(ix, row),
+                pressure: pressure.at(ix, row),
+            }
+        });
+        Ok(Self {
+            cell,
+            mean_pressure: params.mean_pressure,
+            points: points.collect(),
+            penetration: cell * penetration,
+            h_max: cell * solution.info.penetration_full_contact,
+            mean_displacement: cell * displacement.mean(),
+            max_displacement: cell * displacement.max(),
+            area: solution.contact_area().fraction,
+        })
+    }
+
+    fn summary(&self) -> Table {
+        let row = |quantity: &str, unit: &str, value: f64| vec![quantity.to_owned(), unit.to_owned(), number(value)];
+        let in_contact = self.points.iter().filter(|point| point.pressure > 0.0).count();
+        let rows = [
+            row("mean pressure", "E*", self.mean_pressure),
+            row("contact area", "A0", self.area),
+            row("contact along the section", "cell side", in_contact as f64 / self.points.len() as f64),
+            row("penetration", "um", MICRO * self.penetration),
+            row("greatest displacement", "um", MICRO * self.max_displacement),
+            row("mean displacement", "um", MICRO * self.mean_displacement),
+            row("h_max", "um", MICRO * self.h_max),
+            row("mean gap", "um", MICRO * (self.h_max - self.penetration)),
+        ];
+        Table::new("summary", &["quantity", "unit", "value"], rows)
+    }
+
+    fn section(&self) -> Table {
+        let header = ["x_mm", "rigid_um", "displacement_um", "gap_um", "pressure_over_e_star"];
+        let rows = self.points.iter().map(|point| {
+            let gap = point.deformed - point.rigid;
+            let lengths = [point.rigid, point.deformed, gap].map(|length| number(MICRO * length));
+            let [rigid, deformed, gap] = lengths;
+            vec![number(MILLI * point.x), rigid, deformed, gap, number(point.pressure)]
+        });
+        Table::new("section", &header, rows)
+    }
+
+    /// The profiles within `half_width` (m) of the peak; the cell ends with the image of its first point.
+    fn profile(&self, half_width: f64) -> Vec<Heights> {
+        let image = self.points.first().map(|point| Point { x: 0.5 * self.cell, ..*point });
+        let inside = self.points.iter().copied().chain(image).filter(|point| point.x.abs() <= half_width);
+        let heights = inside.map(|point| Heights {
+            x: MILLI * point.x,
+            rigid: -MICRO * point.rigid,
+            soft: -MICRO * point.deformed,
+            touching: point.pressure > 0.0,
+        });
+        heights.collect()
+    }
+
+    /// The whole section with planes and dimensions.
+    fn draw_whole<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
+        let profile = self.profile(0.5 * self.cell);
+        let top = profile.iter().map(|at| at.rigid).fold(0.0, f64::max);
+        let (depth, gap) = (-MICRO * self.penetration, MICRO * (self.h_max - self.penetration));
+        let half = MILLI * 0.5 * self.cell;
+        let mut chart = bodies(area, &profile, half, (1.8 * depth, 1.15 * top))?;
+        for plane in [0.0, gap] {
+            chart.draw_series(DashedLineSeries::new([(-half, plane), (half, plane)], 12, 8, BLACK.stroke_width(2)))?;
+        }
+        let (delta_x, h_max_x, gap_x) = (-0.05 * half, 0.32 * half, -0.92 * half);
+        chart
+            .draw_series([PathElement::new([(delta_x - 0.04 * half, depth), (h_max_x + 0.04 * half, depth)], BLACK)])?;
+        for (x, ends, side, name) in [
+            (delta_x, (0.0, depth), Side::Left, "Δ"),
+            (h_max_x, (gap, depth), Side::Right, "h_max"),
+            (gap_x, (0.0, gap), Side::Right, "h_max − Δ"),
+        ] {
+            dimension(&mut chart, x, ends, BLACK)?;
+            write(&mut chart, (x, 0.5 * (ends.0 + ends.1)), side, name, BLACK)?;
+        }
+        write(&mut chart, (-0.2 * half, gap), Side::Above, "mean plane of the roughness, h = 0", BLACK)?;
+        write(&mut chart, (-0.75 * half, 0.0), Side::Below, "mean plane of the half-space, v = 0", BLACK)?;
+        write(&mut chart, (0.72 * half, 1.05 * top), Side::Below, "rigid rough surface", GREY)?;
+        write(&mut chart, (-0.72 * half, 1.4 * depth), Side::Below, "elastic half-space", BLUE)?;
+        write(&mut chart, (0.42 * half, 0.75 * depth), Side::Below, "contact", RED)
+    }
+
+    /// The surroundings of the peak.
+    fn draw_part<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
+        let half = 0.5 * WINDOW * self.cell;
+        let profile = self.profile(half);
+        let soft = || profile.iter().map(|at| at.soft);
+        let (low, high) = (soft().fold(f64::INFINITY, f64::min), soft().fold(f64::NEG_INFINITY, f64::max));
+        let y = (low - 0.3 * (high - low), high + 0.45 * (high - low));
+        bodies(area, &profile, MILLI * half, y)?;
+        Ok(())
+    }
+}
+
+/// Heights above the mean plane of the half-space, -v, as they are drawn.
+#[derive(Clone, Copy, Debug)]
+struct Heights {
+    /// Distance from the peak (mm).
+    x: f64,
+    /// Rigid surface (µm).
+    rigid: f64,
+    /// Surface of the half-space (µm).
+    soft: f64,
+    touching: bool,
+}
+
+/// Both bodies and their contact, with axes and the exaggeration of heights.
+fn bodies<'a, B: DrawingBackend>(
+    area: &'a Area<B>,
+    profile: &[Heights],
+    half_width: f64,
+    y: (f64, f64),
+) -> Drawn<Chart<'a, B>, B> {
+    let axes =
+        Axes { x: (-half_width, half_width), y, x_label: "x (mm)", y_label: "height −v (µm)", n_labels: (10, 8) };
+    let mut chart = axes.on(area)?;
+    let line = |height: fn(&Heights) -> f64| -> Vec<(f64, f64)> {
+        profile.iter().map(|at| (at.x, height(at).clamp(y.0, y.1))).collect()
+    };
+    for (height, edge, fill, stroke) in [(line(|at| at.rigid), y.1, RIGID, GREY), (line(|at| at.soft), y.0, SOFT, BLUE)]
+    {
+        let ends = [half_width, -half_width].map(|x| (x, edge));
+        chart.draw_series([Polygon::new(height.iter().copied().chain(ends).collect::<Vec<_>>(), fill.filled())])?;
+        chart.draw_series(LineSeries::new(height, stroke.stroke_width(2)))?;
+    }
+    for run in profile.chunk_by(|a, b| a.touching == b.touching).filter(|run| run[0].touching) {
+        let line: Vec<(f64, f64)> = run.iter().map(|at| (at.x, at.soft)).collect();
+        chart.draw_series([PathElement::new(line, RED.stroke_width(6))])?;
+    }
+    // µm per pixel up against mm per pixel along.
+    let (width, height) = chart.plotting_area().dim_in_pixel();
+    let exaggeration = MICRO / MILLI * (f64::from(height) / (y.1 - y.0)) / (f64::from(width) / (2.0 * half_width));
+    let corner = (half_width, y.0 + 0.05 * (y.1 - y.0));
+    write(&mut chart, corner, Side::Left, &format!("heights × {exaggeration:.0}"), BLACK)?;
+    Ok(chart)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::tests::{assert_table, assert_written};
+    use crate::numeric::Numeric;
+
+    /// Displacements come from an operator that is exact to 1e-6 of their rms, which is below h_max; at single points a
+    /// few times that.
+    const DISPLACEMENT_ERROR: f64 = 5e-6;
+
+    fn quick() -> (Params, Fig1) {
+        let params = Fig1::params(Preset::Quick).expect("paper values");
+        let figure = Fig1::compute(&params).expect("the quick figure is solved");
+        (params, figure)
+    }
+
+    #[test]
+    fn the_greatest_displacement_is_the_penetration_and_the_mean_is_zero() {
+        let (_, figure) = quick();
+        let bound = DISPLACEMENT_ERROR * figure.h_max;
+        let Fig1 { max_displacement, penetration, mean_displacement, .. } = figure;
+        let difference = max_displacement - penetration;
+        assert!(difference.abs() < bound, "{max_displacement:e} against {penetration:e}, difference {difference:e}");
+        assert!(mean_displacement.abs() < bound, "mean displacement {mean_displacement:e} above {bound:e}");
+    }
+
+    #[test]
+    fn no_body_is_inside_the_other_and_pressure_is_only_where_they_touch() {
+        let (_, figure) = quick();
+        let bound = DISPLACEMENT_ERROR * figure.h_max;
+        for point in &figure.points {
+            let gap = point.deformed - point.rigid;
+            assert!(gap > -bound, "penetration at {point:?}");
+            assert!(point.pressure == 0.0 || gap < 10.0 * bound, "pressure across a gap of {gap:e} at {point:?}");
+        }
+    }
+
+    #[test]
+    fn quick_figure_1_is_as_reviewed_and_can_be_drawn() {
+        let (params, figure) = quick();
+        // Displacements are exact to about 1e-6 of 20 µm, pressures to the tolerance of 1e-9.
+        let tolerance = Numeric { absolute: 1e-4, relative: 1e-5 };
+        assert_table("fig1-summary", &figure.summary(), tolerance, &format!("{params:?}"));
+        assert_table("fig1-section", &figure.section(), tolerance, &format!("{params:?}"));
+        assert_written(&figure);
+    }
+}

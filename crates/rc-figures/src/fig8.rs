@@ -1,0 +1,357 @@
+//! Fig. 8: the distribution of the interfacial stress for both surfaces, the fit of Eq. 7, and the approach to zero.
+//!
+//! The distribution is resolved below the element at contact edges ([`StressDistribution`]); what a histogram of the same
+//! elements shows is drawn beside it. Realisations are averaged bin by bin.
+
+use anyhow::Result;
+use rc_core::Field;
+use rc_fractal::{SpectrumParams, Surface};
+use rc_plot::{Area, Picture, PictureError};
+use rc_solver::{Control, StressDistribution};
+use rc_theory::persson::Persson;
+
+use plotters::prelude::DrawingBackend;
+
+use crate::fit::{Line, Sample};
+use crate::marks::{STYLES, Style};
+use crate::solve::{Contact, solve};
+use crate::sweep::ELEMENTS_PER_WAVE;
+use crate::{Figure, Preset, Table, number, paper};
+
+mod drawing;
+
+/// The decades of stress, over the stress of the peak, in which the slope of log P against log σ is measured.
+const DECADES: [(f64, f64); 2] = [(0.01, 0.1), (0.004, 0.04)];
+
+/// What Fig. 8 is computed from.
+#[derive(Clone, Debug)]
+pub struct Params {
+    /// Numbers of waves N.
+    waves: Vec<usize>,
+    /// Elements per shortest wave.
+    elements_per_wave: usize,
+    /// Mean pressure σ0/E*.
+    load: f64,
+    /// Seeds of the realisations.
+    seeds: Vec<u64>,
+    /// Relative tolerance of the solves.
+    tolerance: f64,
+    /// Width of the bins, in E*, and their number.
+    bin_width: f64,
+    n_bins: usize,
+    /// Bins for the approach to zero: the first edge, in E*, bins per decade, number.
+    first_edge: f64,
+    per_decade: usize,
+    n_small: usize,
+}
+
+/// The distributions with their fits.
+#[derive(Clone, Debug)]
+pub struct Fig8 {
+    curves: Vec<Curve>,
+    load: f64,
+    /// Areas that the paper prints, for its own surfaces.
+    printed: Option<[f64; 2]>,
+}
+
+/// One surface: averages over realisations, in units of E*.
+#[derive(Clone, Debug)]
+struct Curve {
+    waves: usize,
+    rms_slope: f64,
+    style: Style,
+    /// Equal bins, and bins with equal ratios of their ends, towards zero.
+    bins: Vec<Bin>,
+    small: Vec<Bin>,
+    /// A/A0: the best estimate from counting, and the integral of P.
+    area: Sample,
+    integral: Sample,
+    /// ∫ σ P dσ over all bins.
+    mean_stress: Sample,
+    /// Eq. 7, fitted to the averages, and Λ fitted to each realisation.
+    fit: Persson,
+    lambda: Sample,
+}
+
+/// One bin.
+#[derive(Clone, Copy, Debug)]
+struct Bin {
+    stress: f64,
+    density: Sample,
+    /// From a histogram of elements.
+    of_elements: f64,
+}
+
+/// One realisation.
+struct Realisation {
+    area: f64,
+    equal: StressDistribution,
+    small: StressDistribution,
+    /// Histograms of elements on the same bins.
+    equal_elements: Vec<f64>,
+    small_elements: Vec<f64>,
+    lambda: f64,
+}
+
+impl Figure for Fig8 {
+    const NAME: &'static str = "fig8";
+    type Params = Params;
+
+    /// The paper's surfaces, load and realisations (full); 8 and 16 waves and three realisations (quick).
+    fn params(preset: Preset) -> Result<Params> {
+        let full = Params {
+            waves: paper::both_waves()?.into(),
+            elements_per_wave: ELEMENTS_PER_WAVE,
+            load: paper::value("load")?,
+            seeds: (1..=paper::value("realisations")? as u64).collect(),
+            tolerance: 1e-6,
+            bin_width: 2e-4,
+            n_bins: 400,
+            first_edge: 1e-5,
+            per_decade: 10,
+            n_small: 30,
+        };
+        Ok(match preset {
+            Preset::Full => full,
+            Preset::Quick => Params {
+                waves: vec![8, 16],
+                seeds: vec![1, 2, 3],
+                tolerance: 1e-8,
+                bin_width: 1e-3,
+                n_bins: 80,
+                ..full
+            },
+        })
+    }
+
+    fn compute(params: &Params) -> Result<Self> {
+        let curves = params.waves.iter().zip(STYLES).map(|(&waves, style)| Curve::solve(params, waves, style));
+        let printed = [paper::value("area_fraction_a")?, paper::value("area_fraction_b")?];
+        Ok(Self {
+            curves: curves.collect::<Result<_>>()?,
+            load: params.load,
+            printed: (params.waves == paper::both_waves()?).then_some(printed),
+        })
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        vec![self.summary(), self.bins_table(), self.small_table()]
+    }
+
+    fn caption(&self) -> Option<String> {
+        let fits: Vec<String> = self
+            .curves
+            .iter()
+            .map(|curve| {
+                format!(
+                    "N = {}: Λ = {:.3e} E*², that is {:.3} of the theory's g²/8, and erf(σ0/2√Λ) = {:.4} where A/A0 = {:.4}",
+                    curve.waves,
+                    curve.fit.lambda,
+                    curve.lambda_over_theory(),
+                    curve.fit.area_fraction(),
+                    curve.area.mean
+                )
+            })
+            .collect();
+        let first = self.curves.first()?;
+        Some(format!(
+            "**Fig. 8.** (a) Distribution of the interfacial stress at σ0/E* = {:.2e}, averages of {} realisations in bins of \
+             {:.0e} E*; lines: Eq. (7) with Λ fitted ({}). Inset: the same, semi-logarithmic. (b) The approach to zero on \
+             logarithmic axes: p² is linear across a contact edge, and interpolated so, P falls linearly with σ (grey guide: slope \
+             1), while a histogram of the same elements (thin lines) stays up.\n",
+            self.load,
+            first.n_realisations(),
+            first.bin_width(),
+            fits.join("; "),
+        ))
+    }
+}
+
+impl Picture for Fig8 {
+    fn size(&self) -> (u32, u32) {
+        (2000, 980)
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
+        self.draw_panels(area).map_err(PictureError::new)
+    }
+}
+
+/// P from counting elements: each puts its area into the bin of its pressure.
+fn histogram(pressure: &Field, edges: &[f64]) -> Vec<f64> {
+    let mut counts = vec![0_usize; edges.len().saturating_sub(1)];
+    for &p in pressure.values().iter().filter(|&&p| p > 0.0) {
+        let above = edges.partition_point(|&edge| edge <= p);
+        if let Some(count) = above.checked_sub(1).and_then(|bin| counts.get_mut(bin)) {
+            *count += 1;
+        }
+    }
+    let n = pressure.grid().len() as f64;
+    counts.iter().zip(edges.windows(2)).map(|(&count, edge)| count as f64 / (n * (edge[1] - edge[0]))).collect()
+}
+
+/// Middle stress and density of each bin.
+fn points(distribution: &StressDistribution) -> Vec<(f64, f64)> {
+    let middles = distribution.edges.windows(2).map(|edge| 0.5 * (edge[0] + edge[1]));
+    middles.zip(distribution.density.iter().copied()).collect()
+}
+
+impl Realisation {
+    fn solve(params: &Params, surface: &Surface, waves: usize) -> Result<Self> {
+        let control = Control::MeanPressure(params.load);
+        let Contact { pressure, area, .. } =
+            solve(surface, params.elements_per_wave * waves, control, params.tolerance)?;
+        let equal: Vec<f64> = (0..=params.n_bins).map(|k| k as f64 * params.bin_width).collect();
+        let ratio = 10_f64.powf((params.per_decade as f64).recip());
+        let small: Vec<f64> = (0..=params.n_small).map(|k| params.first_edge * ratio.powi(k as i32)).collect();
+        let distribution = StressDistribution::of(&pressure, &equal);
+        Ok(Self {
+            area: area.fraction,
+            lambda: Persson::fit(params.load, &points(&distribution)).lambda,
+            equal: distribution,
+            equal_elements: histogram(&pressure, &equal),
+            small: StressDistribution::of(&pressure, &small),
+            small_elements: histogram(&pressure, &small),
+        })
+    }
+}
+
+/// Averages of a distribution over realisations.
+fn average(
+    all: &[Realisation],
+    of: impl Fn(&Realisation) -> &StressDistribution,
+    elements: impl Fn(&Realisation) -> &Vec<f64>,
+) -> Vec<Bin> {
+    let Some(first) = all.first() else { return Vec::new() };
+    let bin = |(i, edge): (usize, &[f64])| Bin {
+        stress: 0.5 * (edge[0] + edge[1]),
+        density: Sample::of(&all.iter().map(|one| of(one).density[i]).collect::<Vec<_>>()),
+        of_elements: Sample::of(&all.iter().map(|one| elements(one)[i]).collect::<Vec<_>>()).mean,
+    };
+    of(first).edges.windows(2).enumerate().map(bin).collect()
+}
+
+impl Curve {
+    fn solve(params: &Params, waves: usize, style: Style) -> Result<Self> {
+        let mut all = Vec::new();
+        let mut rms_slope = 0.0;
+        for &seed in &params.seeds {
+            let surface = Surface::new(&SpectrumParams::paper(waves, seed))?;
+            rms_slope = surface.moments().rms_slope;
+            all.push(Realisation::solve(params, &surface, waves)?);
+        }
+        let bins = average(&all, |one| &one.equal, |one| &one.equal_elements);
+        let sample = |of: &dyn Fn(&Realisation) -> f64| Sample::of(&all.iter().map(of).collect::<Vec<_>>());
+        let averages: Vec<(f64, f64)> = bins.iter().map(|bin| (bin.stress, bin.density.mean)).collect();
+        Ok(Self {
+            waves,
+            rms_slope,
+            style,
+            small: average(&all, |one| &one.small, |one| &one.small_elements),
+            bins,
+            area: sample(&|one| one.area),
+            integral: sample(&|one| one.equal.area_fraction),
+            mean_stress: sample(&|one| {
+                points(&one.equal).iter().map(|&(stress, density)| stress * density * params.bin_width).sum()
+            }),
+            fit: Persson::fit(params.load, &averages),
+            lambda: sample(&|one| one.lambda),
+        })
+    }
+
+    fn n_realisations(&self) -> usize {
+        self.area.n()
+    }
+
+    fn bin_width(&self) -> f64 {
+        self.bins.first().map_or(0.0, |bin| 2.0 * bin.stress)
+    }
+
+    fn lambda_over_theory(&self) -> f64 {
+        self.fit.lambda / Persson::from_rms_slope(self.fit.mean_pressure, self.rms_slope).lambda
+    }
+
+    /// Stress and density of the highest bin.
+    fn peak(&self) -> (f64, f64) {
+        let densities = self.bins.iter().map(|bin| (bin.stress, bin.density.mean));
+        densities.fold((0.0, 0.0), |peak, at| if at.1 > peak.1 { at } else { peak })
+    }
+
+    /// The slope of log P against log σ where σ over the stress of the peak is in `decade`.
+    fn small_slope(&self, decade: (f64, f64), density: impl Fn(&Bin) -> f64) -> f64 {
+        let peak = self.peak().0;
+        let inside = self.small.iter().filter(|bin| (decade.0..=decade.1).contains(&(bin.stress / peak)));
+        Line::fit(&inside.map(|bin| (bin.stress.ln(), density(bin).ln())).collect::<Vec<_>>()).slope
+    }
+}
+
+impl Fig8 {
+    fn summary(&self) -> Table {
+        let header = ["quantity", "unit", "waves", "value", "standard_error", "paper"];
+        let rows = self.curves.iter().enumerate().flat_map(|(i, curve)| {
+            let row = |quantity: &str, unit: &str, value: f64, error: Option<f64>, paper: Option<f64>| {
+                let [error, paper] = [error, paper].map(|value| value.map_or_else(String::new, number));
+                vec![quantity.to_owned(), unit.to_owned(), curve.waves.to_string(), number(value), error, paper]
+            };
+            let sample = |quantity: &str, unit: &str, sample: Sample, paper: Option<f64>| {
+                row(quantity, unit, sample.mean, Some(sample.error()), paper)
+            };
+            let printed = self.printed.map(|printed| printed[i]);
+            let implied = printed.and_then(|area| Persson::from_area_fraction(self.load, area).ok());
+            let needed = Persson::from_area_fraction(self.load, curve.area.mean).map_or(f64::NAN, |fit| fit.lambda);
+            let (peak_stress, peak) = curve.peak();
+            let first = curve.bins.first().map_or((f64::NAN, f64::NAN), |bin| (bin.density.mean, bin.of_elements));
+            let slope = |decade, density: fn(&Bin) -> f64| curve.small_slope(decade, density);
+            let [tenth, twenty_fifth] = DECADES;
+            vec![
+                sample("area fraction", "A0", curve.area, printed),
+                sample("integral of P", "A0", curve.integral, printed),
+                sample("mean stress from P", "E*", curve.mean_stress, None),
+                row(
+                    "fitted Lambda",
+                    "E*^2",
+                    curve.fit.lambda,
+                    Some(curve.lambda.error()),
+                    implied.map(|fit| fit.lambda),
+                ),
+                row("Lambda from the area fraction", "E*^2", needed, None, implied.map(|fit| fit.lambda)),
+                row("fitted Lambda over slope^2/8", "1", curve.lambda_over_theory(), None, None),
+                row("erf(load/2 sqrt(Lambda)) of the fit", "A0", curve.fit.area_fraction(), None, printed),
+                row("stress of the peak", "E*", peak_stress, None, None),
+                row("peak of P", "1/E*", peak, None, None),
+                row("first bin over peak", "1", first.0 / peak, None, None),
+                row("first bin over peak by elements", "1", first.1 / peak, None, None),
+                row("slope from 0.01 to 0.1 of the peak stress", "1", slope(tenth, |bin| bin.density.mean), None, None),
+                row("slope from 0.004 to 0.04", "1", slope(twenty_fifth, |bin| bin.density.mean), None, None),
+                row("slope by elements from 0.01 to 0.1", "1", slope(tenth, |bin| bin.of_elements), None, None),
+            ]
+        });
+        Table::new("summary", &header, rows)
+    }
+
+    fn bins_table(&self) -> Table {
+        let header = ["waves", "stress_over_e_star", "density", "standard_deviation", "by_elements", "fit"];
+        let rows = self.curves.iter().flat_map(|curve| {
+            curve.bins.iter().map(|bin| {
+                let fit = curve.fit.density(bin.stress);
+                let numbers = [bin.stress, bin.density.mean, bin.density.deviation, bin.of_elements, fit].map(number);
+                [curve.waves.to_string()].into_iter().chain(numbers).collect()
+            })
+        });
+        Table::new("bins", &header, rows)
+    }
+
+    fn small_table(&self) -> Table {
+        let header = ["waves", "stress_over_e_star", "density", "standard_deviation", "by_elements"];
+        let rows = self.curves.iter().flat_map(|curve| {
+            curve.small.iter().map(|bin| {
+                let numbers = [bin.stress, bin.density.mean, bin.density.deviation, bin.of_elements].map(number);
+                [curve.waves.to_string()].into_iter().chain(numbers).collect()
+            })
+        });
+        Table::new("small", &header, rows)
+    }
+}
+
+#[cfg(test)]
+mod tests;

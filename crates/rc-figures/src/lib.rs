@@ -1,0 +1,44 @@
+//! The figures of the paper, one file per figure: numbers first, then a picture of these numbers.
+//!
+//! A [`Figure`] computes itself from its parameters, and knows its tables and how to draw itself. [`run`] writes one,
+//! [`all::run`] every figure of the paper, and [`reproduction`] puts their numbers into docs/reproduction.md. `rc-bench` uses
+//! [`Table`], [`numeric`], [`snapshot`], [`blocks`] and [`repository`] too.
+
+pub mod all;
+pub mod archive;
+pub mod blocks;
+pub mod memory;
+pub mod numeric;
+pub mod repository;
+pub mod reproduction;
+pub mod snapshot;
+
+mod chart;
+mod contact_map;
+mod fig1;
+mod fig2;
+mod fig3;
+mod fig4;
+mod fig5;
+mod fig6;
+mod fig7;
+mod fig8;
+mod figure;
+mod fit;
+mod marks;
+mod paper;
+mod solve;
+mod sweep;
+mod table;
+
+pub use fig1::Fig1;
+pub use fig2::Fig2;
+pub use fig3::Fig3;
+pub use fig4::Fig4;
+pub use fig5::Fig5;
+pub use fig6::Fig6;
+pub use fig7::Fig7;
+pub use fig8::Fig8;
+pub use figure::{Figure, Preset, run, write};
+pub use solve::pressure_field;
+pub use table::{Table, number};

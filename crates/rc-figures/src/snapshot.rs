@@ -1,0 +1,35 @@
+//! Snapshots of numeric tables, compared as numbers.
+
+use std::path::Path;
+
+use insta::{Comparator, Settings, Snapshot};
+
+use crate::Table;
+use crate::numeric::Numeric;
+
+impl Comparator for Numeric {
+    fn matches(&self, reference: &Snapshot, test: &Snapshot) -> bool {
+        match (reference.as_text(), test.as_text()) {
+            (Some(reference), Some(test)) => self.difference(&reference.to_string(), &test.to_string()).is_none(),
+            _ => false,
+        }
+    }
+
+    fn dyn_clone(&self) -> Box<dyn Comparator> {
+        Box::new(*self)
+    }
+}
+
+/// Asserts that `table` is as in the snapshot `name` in `folder`, and records in it where the numbers come from.
+///
+/// # Panics
+/// When the table differs, as assertions do.
+pub fn assert_table(folder: &Path, name: &str, table: &Table, tolerance: Numeric, parameters: &str) {
+    let mut settings = Settings::clone_current();
+    settings.set_comparator(Box::new(tolerance));
+    settings.set_description(parameters);
+    settings.set_omit_expression(true);
+    settings.set_snapshot_path(folder);
+    settings.set_prepend_module_to_snapshot(false);
+    settings.bind(|| insta::assert_snapshot!(name, &table.csv));
+}

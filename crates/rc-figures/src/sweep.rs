@@ -1,0 +1,180 @@
+//! Loads times realisations of the paper's surfaces: what Fig. 5 and Fig. 7 are drawn from.
+//!
+//! Realisation s of each N has seed s, so those of N = 64 and N = 128 share their long waves, and their difference is that of
+//! the short ones.
+
+use anyhow::{Context, Result};
+use rc_fractal::{SpectrumParams, Surface};
+use rc_solver::Control;
+
+use crate::fit::Sample;
+use crate::solve::solve;
+use crate::{Preset, Table, number, paper};
+
+/// Elements for the shortest wave: side λ_min/32, twice as fine as the paper's.
+pub(crate) const ELEMENTS_PER_WAVE: usize = 32;
+
+/// What is solved.
+#[derive(Clone, Debug)]
+pub(crate) struct Params {
+    /// Numbers of waves N.
+    pub(crate) waves: Vec<usize>,
+    /// Elements per shortest wave.
+    elements_per_wave: usize,
+    /// Mean pressures σ0/E*, increasing.
+    pub(crate) loads: Vec<f64>,
+    /// Seeds of the realisations.
+    seeds: Vec<u64>,
+    /// Further seeds, for one load alone: they tell how far an average of seven may be from that of all surfaces.
+    more_seeds: Vec<u64>,
+    /// That load.
+    more_load: f64,
+    /// Relative tolerance of the solves.
+    tolerance: f64,
+}
+
+impl Params {
+    /// The paper's surfaces and its number of realisations, loads from first touches to nearly full contact (full); 8 and
+    /// 16 waves, three realisations, fewer loads (quick).
+    pub(crate) fn of(preset: Preset) -> Result<Self> {
+        let load = paper::value("load")?;
+        let realisations = paper::value("realisations")? as u64;
+        Ok(match preset {
+            Preset::Full => Self {
+                waves: paper::both_waves()?.into(),
+                elements_per_wave: ELEMENTS_PER_WAVE,
+                loads: vec![1e-5, 3e-5, 1e-4, 2e-4, 4e-4, 6e-4, load, 1.2e-3, 1.5e-3, 2.5e-3, 4e-3, 7e-3],
+                seeds: (1..=realisations).collect(),
+                more_seeds: (realisations + 1..=4 * realisations).collect(),
+                more_load: load,
+                tolerance: 1e-6,
+            },
+            Preset::Quick => Self {
+                waves: vec![8, 16],
+                elements_per_wave: ELEMENTS_PER_WAVE / 2,
+                loads: vec![3e-5, 1e-4, 2e-4, 4e-4, load, 1.5e-3, 4e-3, 1e-2],
+                seeds: vec![1, 2, 3],
+                more_seeds: vec![4, 5, 6],
+                more_load: load,
+                tolerance: 1e-8,
+            },
+        })
+    }
+}
+
+/// One contact. Lengths are relative: to the rms height or the highest point of the surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct State {
+    pub(crate) waves: usize,
+    pub(crate) seed: u64,
+    /// σ0/E*.
+    pub(crate) load: f64,
+    /// A/A0, best estimate.
+    pub(crate) area: f64,
+    /// A/A0 by counting elements.
+    pub(crate) area_cells: f64,
+    /// Δ/h_max.
+    pub(crate) penetration: f64,
+    /// Mean gap over rms height.
+    pub(crate) mean_gap: f64,
+    /// h_max over rms height.
+    pub(crate) h_max: f64,
+}
+
+/// All contacts: by N, realisation, load.
+#[derive(Clone, Debug)]
+pub(crate) struct Sweep {
+    pub(crate) states: Vec<State>,
+    /// The further realisations.
+    more: Vec<State>,
+    pub(crate) surfaces: Vec<SurfaceOf>,
+}
+
+/// What the realisations of one N share: amplitudes are fixed, so all have the same rms slope.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SurfaceOf {
+    pub(crate) waves: usize,
+    pub(crate) rms_slope: f64,
+}
+
+impl Sweep {
+    /// Solves everything, one contact after the other: one solve uses all threads.
+    pub(crate) fn solve(params: &Params) -> Result<Self> {
+        let mut sweep = Self { states: Vec::new(), more: Vec::new(), surfaces: Vec::new() };
+        for &waves in &params.waves {
+            for &seed in &params.seeds {
+                let surface = Surface::new(&SpectrumParams::paper(waves, seed))?;
+                for &load in &params.loads {
+                    sweep.states.push(state(params, &surface, (waves, seed, load))?);
+                }
+            }
+            let mut rms_slope = 0.0;
+            for &seed in &params.more_seeds {
+                let surface = Surface::new(&SpectrumParams::paper(waves, seed))?;
+                rms_slope = surface.moments().rms_slope;
+                sweep.more.push(state(params, &surface, (waves, seed, params.more_load))?);
+            }
+            sweep.surfaces.push(SurfaceOf { waves, rms_slope });
+        }
+        Ok(sweep)
+    }
+
+    /// As [`Sweep::sample`] at the load of the further realisations, with them.
+    pub(crate) fn larger_sample(&self, waves: usize, load: f64, of: impl Fn(&State) -> f64) -> Sample {
+        let more = self.more.iter().filter(|state| state.waves == waves && state.load.total_cmp(&load).is_eq());
+        Sample::of(&self.at(waves, load).chain(more).map(of).collect::<Vec<_>>())
+    }
+
+    /// The contacts of one N and load, by realisation.
+    pub(crate) fn at(&self, waves: usize, load: f64) -> impl Iterator<Item = &State> {
+        self.states.iter().filter(move |state| state.waves == waves && state.load.total_cmp(&load).is_eq())
+    }
+
+    /// Mean and scatter over the realisations.
+    pub(crate) fn sample(&self, waves: usize, load: f64, of: impl Fn(&State) -> f64) -> Sample {
+        Sample::of(&self.at(waves, load).map(of).collect::<Vec<_>>())
+    }
+
+    /// The contacts of each realisation of one N, by load.
+    pub(crate) fn realisations(&self, waves: usize) -> impl Iterator<Item = &[State]> {
+        self.states.chunk_by(|a, b| (a.waves, a.seed) == (b.waves, b.seed)).filter(move |run| run[0].waves == waves)
+    }
+
+    /// Every contact.
+    pub(crate) fn table(&self) -> Table {
+        let header = [
+            "waves",
+            "seed",
+            "mean_pressure_over_e_star",
+            "area_fraction",
+            "area_fraction_by_counting",
+            "penetration_over_h_max",
+            "mean_gap_over_rms_height",
+            "h_max_over_rms_height",
+        ];
+        let rows = self.states.iter().chain(&self.more).map(|state| {
+            let numbers =
+                [state.load, state.area, state.area_cells, state.penetration, state.mean_gap, state.h_max].map(number);
+            [state.waves.to_string(), state.seed.to_string()].into_iter().chain(numbers).collect()
+        });
+        Table::new("realisations", &header, rows)
+    }
+}
+
+fn state(params: &Params, surface: &Surface, (waves, seed, load): (usize, u64, f64)) -> Result<State> {
+    let side = params.elements_per_wave * waves;
+    let contact = solve(surface, side, Control::MeanPressure(load), params.tolerance)
+        .with_context(|| format!("N = {waves}, seed {seed}, σ0/E* = {load:e}"))?;
+    let area = contact.area;
+    let (info, rms_height) = (&contact.info, surface.moments().rms_height);
+    Ok(State {
+        waves,
+        seed,
+        load,
+        area: area.fraction,
+        area_cells: area.cells,
+        penetration: info.penetration / info.penetration_full_contact,
+        mean_gap: (info.penetration_full_contact - info.penetration) / rms_height,
+        h_max: info.penetration_full_contact / rms_height,
+    })
+}

@@ -1,0 +1,54 @@
+//! Tables as CSV text: the numbers of a figure, for people, for snapshots and for other programs.
+
+/// A table with a name, which is also the end of its file's name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Table {
+    /// The end of its file's name.
+    pub name: &'static str,
+    /// Header and rows.
+    pub csv: String,
+}
+
+impl Table {
+    /// A table from its header and rows. Cells hold no commas, so nothing is quoted.
+    #[must_use]
+    pub fn new(name: &'static str, header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Self {
+        let rows = rows.into_iter().map(|row| row.join(","));
+        let lines = [header.join(",")].into_iter().chain(rows);
+        Self { name, csv: lines.map(|line| line + "\n").collect() }
+    }
+
+    /// The table with its columns aligned, for the terminal.
+    #[must_use]
+    pub fn aligned(&self) -> String {
+        let rows: Vec<Vec<&str>> = self.csv.lines().map(|line| line.split(',').collect()).collect();
+        let n_columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+        let width =
+            |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.len()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..n_columns).map(width).collect();
+        let line = |row: &Vec<&str>| {
+            let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:>width$}"));
+            cells.collect::<Vec<_>>().join("  ") + "\n"
+        };
+        rows.iter().map(line).collect()
+    }
+}
+
+/// A number with seven digits, as in every table of this project.
+#[must_use]
+pub fn number(value: f64) -> String {
+    format!("{value:.6e}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_is_csv_and_aligns() {
+        let table =
+            Table::new("t", &["name", "x"], [vec!["a".to_owned(), number(0.5)], vec!["bc".to_owned(), "-".to_owned()]]);
+        assert_eq!(table.csv, "name,x\na,5.000000e-1\nbc,-\n");
+        assert_eq!(table.aligned(), "name            x\n   a  5.000000e-1\n  bc            -\n");
+    }
+}

@@ -1,0 +1,207 @@
+//! Faults in the sources on purpose: which of them the reduced set finds.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, bail, ensure};
+
+use rc_figures::{Table, repository};
+
+/// What is not copied of the workspace: history and results.
+const RESULTS: &[&str] = &[".git", "figures", "rc-result", "target"];
+
+/// A mutant that runs longer than this hangs, which is found too.
+const LONGEST: Duration = Duration::from_secs(900);
+
+/// A change of one place in the sources.
+#[derive(Clone, Debug)]
+pub(crate) struct Mutation {
+    name: String,
+    file: String,
+    original: String,
+    mutated: String,
+}
+
+/// What came of a mutation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Outcome {
+    /// The reduced set passed: nothing noticed.
+    Missed,
+    /// This many rows failed.
+    Failed(usize),
+    /// It ended without a table, or not at all.
+    Broken(&'static str),
+    /// There is nothing to run: the list has to be mended.
+    NotCompiled,
+}
+
+impl Outcome {
+    fn text(&self) -> String {
+        match self {
+            Self::Missed => "missed".into(),
+            Self::Failed(n_rows) => format!("{n_rows} rows fail"),
+            Self::Broken(how) => (*how).into(),
+            Self::NotCompiled => "does not compile".into(),
+        }
+    }
+
+    fn is_found(&self) -> bool {
+        matches!(self, Self::Failed(_) | Self::Broken(_))
+    }
+}
+
+/// Builds and stresses each mutation whose name contains one of `only` (separated by commas), in a copy of the workspace; writes `mutations.csv` into `out`.
+#[expect(clippy::print_stdout, reason = "the result of the command")]
+pub(crate) fn run(only: Option<&str>, out: &Path) -> Result<()> {
+    let copy = tempfile::tempdir().context("a temporary folder")?;
+    copy_workspace(copy.path())?;
+    fs::create_dir_all(out).with_context(|| format!("could not make {}; give another --out", out.display()))?;
+    let sound = stress(copy.path())?;
+    ensure!(sound == Outcome::Missed, "the sources as they are do not pass: {}", sound.text());
+    let (mut lines, mut outcomes) = (Vec::new(), Vec::new());
+    for mutation in mutations()?.iter().filter(|mutation| mutation.is_asked_for(only)) {
+        let file = copy.path().join(&mutation.file);
+        let text = fs::read_to_string(&file).with_context(|| format!("could not read {}", file.display()))?;
+        fs::write(&file, mutation.applied(&text)?).with_context(|| format!("could not write {}", file.display()))?;
+        let outcome = stress(copy.path())?;
+        fs::write(&file, text).with_context(|| format!("could not write {}", file.display()))?;
+        println!("{}: {}", mutation.name, outcome.text());
+        lines.push(vec![mutation.name.clone(), mutation.file.clone(), outcome.text()]);
+        let table = Table::new("mutations", &["mutation", "file", "outcome"], lines.iter().cloned());
+        fs::write(out.join("mutations.csv"), table.csv).context("could not write mutations.csv")?;
+        outcomes.push(outcome);
+    }
+    println!("{} of {} mutations found", outcomes.iter().filter(|outcome| outcome.is_found()).count(), outcomes.len());
+    ensure!(!outcomes.contains(&Outcome::NotCompiled), "some mutations do not compile: mend mutations.toml");
+    Ok(())
+}
+
+/// The list.
+fn mutations() -> Result<Vec<Mutation>> {
+    let table: toml::Table = include_str!("mutate/mutations.toml").parse().context("mutations.toml")?;
+    let list = table.get("mutation").and_then(toml::Value::as_array).context("no [[mutation]]")?;
+    let mutation = |value: &toml::Value| {
+        let text = |key: &str| {
+            let text = value.get(key).and_then(toml::Value::as_str);
+            text.map(str::to_owned).with_context(|| format!("a mutation without `{key}`: {value}"))
+        };
+        let (name, file) = (text("name")?, text("file")?);
+        Ok(Mutation { name, file, original: text("original")?, mutated: text("mutated")? })
+    };
+    list.iter().map(mutation).collect()
+}
+
+impl Mutation {
+    fn is_asked_for(&self, only: Option<&str>) -> bool {
+        only.is_none_or(|only| only.split(',').any(|part| self.name.contains(part.trim())))
+    }
+
+    /// The text of the file with the fault in it.
+    fn applied(&self, text: &str) -> Result<String> {
+        let count = text.matches(&self.original).count();
+        if count != 1 {
+            bail!("`{}` occurs {count} times in {}, not once: mend mutations.toml", self.original, self.file);
+        }
+        Ok(text.replace(&self.original, &self.mutated))
+    }
+}
+
+/// Builds the copy and runs its reduced set.
+#[expect(clippy::print_stderr, reason = "why a mutation does not compile")]
+fn stress(copy: &Path) -> Result<Outcome> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let out = copy.join("target/stress");
+    if out.exists() {
+        fs::remove_dir_all(&out).context("results of the mutation before")?;
+    }
+    // Built quickly rather than to be quick: each mutation is one run of two minutes at most.
+    let build = Command::new(cargo)
+        .args(["build", "--quiet", "--release", "--package", "xtask"])
+        .current_dir(copy)
+        .env("CARGO_TARGET_DIR", copy.join("target"))
+        .envs([("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1"), ("CARGO_PROFILE_RELEASE_DEBUG", "false")])
+        .env("CARGO_PROFILE_RELEASE_INCREMENTAL", "true")
+        .output()
+        .context("could not start cargo")?;
+    if !build.status.success() {
+        eprintln!("{}", String::from_utf8_lossy(&build.stderr));
+        return Ok(Outcome::NotCompiled);
+    }
+    let mut run = Command::new(copy.join("target/release/xtask"))
+        .args(["stress", "--quick", "--out"])
+        .arg(&out)
+        .current_dir(copy)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .context("could not start the mutation")?;
+    let started = Instant::now();
+    while run.try_wait()?.is_none() {
+        if started.elapsed() > LONGEST {
+            run.kill()?;
+            run.wait()?;
+            return Ok(Outcome::Broken("does not end"));
+        }
+        sleep(Duration::from_millis(100));
+    }
+    let Ok(table) = fs::read_to_string(out.join("stress-rows.csv")) else {
+        return Ok(Outcome::Broken("ends without a table"));
+    };
+    Ok(match table.lines().filter(|line| line.ends_with(",fail")).count() {
+        0 => Outcome::Missed,
+        n_failed => Outcome::Failed(n_failed),
+    })
+}
+
+/// Copies the workspace, but not what is history or result.
+fn copy_workspace(to: &Path) -> Result<()> {
+    copy_folder(&repository::root(), to, RESULTS)
+}
+
+/// Copies a folder, but not its entries with the names in `without`.
+fn copy_folder(from: &Path, to: &Path, without: &[&str]) -> Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from).with_context(|| format!("could not list {}", from.display()))? {
+        let entry = entry?;
+        let (name, target) = (entry.file_name(), to.join(entry.file_name()));
+        if without.iter().any(|result| *result == name) {
+            continue;
+        }
+        if entry.file_type()?.is_dir() {
+            copy_folder(&entry.path(), &target, &[])?;
+        } else {
+            fs::copy(entry.path(), &target).with_context(|| format!("could not copy {}", entry.path().display()))?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_copy_has_every_source_and_no_results() {
+        let copy = tempfile::tempdir().expect("a temporary folder");
+        copy_workspace(copy.path()).expect("a copy");
+        for module in ["crates/rc-figures/src/all.rs", "xtask/src/mutate.rs", "crates/rc-cli/src/main.rs", "Cargo.lock"]
+        {
+            assert!(copy.path().join(module).is_file(), "no {module}");
+        }
+        assert!(!copy.path().join("target").exists() && !copy.path().join(".git").exists());
+    }
+
+    #[test]
+    fn every_mutation_changes_one_place_of_the_sources() {
+        let mutations = mutations().expect("a list of mutations");
+        assert!(mutations.len() >= 20, "only {} mutations", mutations.len());
+        for mutation in mutations {
+            let text = fs::read_to_string(repository::root().join(&mutation.file)).expect("a source file");
+            let applied = mutation.applied(&text).expect("one place");
+            assert!(applied != text, "{} changes nothing", mutation.name);
+        }
+    }
+}
