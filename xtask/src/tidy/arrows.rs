@@ -16,14 +16,25 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("rc-theory", &["rc-core"]),
     ("rc-plot", &["rc-core"]),
     ("rc-solver", &["rc-core", "rc-fft", "rc-kernel", "rc-quadtree"]),
+    ("rc-sweep", &["rc-core", "rc-solver"]),
     ("rc-cli", LIBRARIES),
     ("rc-tests", LIBRARIES_AND_CLI),
     ("rc-fuzz", LIBRARIES_AND_CLI),
     ("xtask", LIBRARIES_AND_CLI),
 ];
 
-const LIBRARIES: &[&str] =
-    &["rc-core", "rc-fft", "rc-fractal", "rc-heights", "rc-kernel", "rc-plot", "rc-quadtree", "rc-solver", "rc-theory"];
+const LIBRARIES: &[&str] = &[
+    "rc-core",
+    "rc-fft",
+    "rc-fractal",
+    "rc-heights",
+    "rc-kernel",
+    "rc-plot",
+    "rc-quadtree",
+    "rc-solver",
+    "rc-sweep",
+    "rc-theory",
+];
 const LIBRARIES_AND_CLI: &[&str] = &[
     "rc-core",
     "rc-fft",
@@ -33,6 +44,7 @@ const LIBRARIES_AND_CLI: &[&str] = &[
     "rc-plot",
     "rc-quadtree",
     "rc-solver",
+    "rc-sweep",
     "rc-theory",
     "rc-cli",
 ];
