@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use rc_cli::sweep::finished_rows;
+use rc_sweep::finished_rows;
 
 fuzz_target!(|data: &[u8]| {
     match finished_rows(data) {

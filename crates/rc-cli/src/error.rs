@@ -3,9 +3,12 @@
 use std::path::Path;
 use std::process::ExitCode;
 
+use rc_sweep::files::FileError;
+use rc_sweep::memory::{Bound, MemoryError};
 use thiserror::Error;
 
-use crate::stop::INTERRUPTED;
+/// Exit code of a process that was interrupted, as shells have it.
+pub(crate) const INTERRUPTED: u8 = 130;
 
 /// Why a command did not end well. Each message is one line: what, where, and what would be right.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -57,6 +60,29 @@ impl CliError {
 impl From<rc_heights::ReadError> for CliError {
     fn from(error: rc_heights::ReadError) -> Self {
         Self::input(error)
+    }
+}
+
+impl From<FileError> for CliError {
+    fn from(error: FileError) -> Self {
+        match error {
+            FileError::Folder { .. } => Self::input(format_args!("out: {error}")),
+            _ => Self::Write(error.to_string()),
+        }
+    }
+}
+
+impl From<MemoryError> for CliError {
+    fn from(error: MemoryError) -> Self {
+        let MemoryError { what, needed, available, bound, remedy } = error;
+        match bound {
+            Bound::Limit => Self::input(format_args!(
+                "memory_limit: {what} needs about {needed}, more than the limit of {available}{remedy}"
+            )),
+            Bound::Machine => Self::input(format_args!(
+                "grid: {what} needs about {needed} of memory, this machine has {available}{remedy}"
+            )),
+        }
     }
 }
 

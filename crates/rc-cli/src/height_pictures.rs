@@ -6,14 +6,13 @@ use plotters::prelude::DrawingBackend;
 use plotters::style::RGBColor;
 use rc_core::Field;
 
-use crate::error::CliError;
-use crate::output::Staged;
 use crate::statistics::HeightStatistics;
 use rc_core::quantity::{Scale, digits};
 use rc_plot::{
     Area, LinePlot, LineStyle, Map, MapPicture, Palette, Picture, PictureError, Series, Shade, draw_lines, save_png,
     save_svg,
 };
+use rc_sweep::files::{FileError, Staged};
 
 const BLUE: RGBColor = RGBColor(38, 92, 158);
 const RED: RGBColor = RGBColor(190, 60, 50);
@@ -24,8 +23,8 @@ const TEXT: f64 = 26.0;
 /// Writes `surface.png`, and `spectrum` and `distribution` as PNG and SVG, for `heights` (in λ).
 ///
 /// # Errors
-/// [`CliError::Write`].
-pub(crate) fn write(folder: &Path, heights: &Field, statistics: &HeightStatistics) -> Result<(), CliError> {
+/// [`FileError::Write`].
+pub(crate) fn write(folder: &Path, heights: &Field, statistics: &HeightStatistics) -> Result<(), FileError> {
     let mut staged = Staged::new(folder)?;
     let (range, factor) = ((heights.min(), heights.max()), statistics.cell);
     let shade = Shade::Values { range, palette: Palette::Viridis, factor, unit: "m" };

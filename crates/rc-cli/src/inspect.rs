@@ -12,8 +12,9 @@ use crate::error::CliError;
 use crate::result::ResultFolder;
 use crate::scene_file;
 use crate::statistics::{HeightStatistics, PressureStatistics};
-use crate::summary::{Summary, to_json};
 use crate::{height_pictures, heights, npy, output, report};
+use rc_sweep::files;
+use rc_sweep::{Summary, to_json};
 
 /// Names of files by which a result is recognised.
 const RESULT_FILES: [&str; 2] = ["summary.json", "pressure.npy"];
@@ -90,7 +91,7 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
     let note = if map.sides.is_none() && side_y.is_none() && grid.nx() != grid.ny() { TAKEN } else { "" };
     let statistics = HeightStatistics::of(&heights, side, moments_of_grid(&heights));
     if let Some(folder) = &args.out {
-        output::check_folder(folder)?;
+        files::check_folder(folder)?;
         height_pictures::write(folder, &heights, &statistics)?;
     }
     Ok(if args.json {

@@ -1,7 +1,7 @@
 //! The command line of rc: scenes, files in SI units, summaries and pictures.
 //!
 //! The way of a solve: [`args`] and [`scene_file`] give a [`scene`], [`resolve`] checks it and turns it into a problem in
-//! units of λ and E*, the libraries solve it, [`summary`] turns it back into SI, [`output`] writes files that are there whole
+//! units of λ and E*, the libraries solve it, [`rc_sweep::Summary`] is it in SI, [`rc_sweep::files`] writes files that are there whole
 //! or not at all.
 //!
 //! ```
@@ -25,20 +25,16 @@ use clap::error::ErrorKind;
 
 pub mod args;
 pub mod auto_tolerance;
-pub mod budget;
-pub mod byte_size;
 pub mod coarsen;
 pub mod error;
 pub mod heights;
-pub mod memory;
-pub mod output;
+mod output;
 pub mod report;
 pub mod resolve;
 pub mod result;
 pub mod scene;
 pub mod scene_file;
 pub mod statistics;
-pub mod summary;
 pub mod surface;
 pub mod time_limit;
 pub mod treatment;
@@ -54,8 +50,11 @@ mod progress;
 mod solve;
 mod stop;
 mod surface_command;
-pub mod sweep;
+mod sweep;
 mod watch;
+
+/// Memory of the process and of the machine.
+pub use rc_sweep::memory;
 
 /// NumPy files, for results and heights alike.
 pub use rc_heights::npy;

@@ -7,7 +7,8 @@ use clap_complete::Shell;
 
 use crate::args::Cli;
 use crate::error::CliError;
-use crate::output::{self, Staged};
+use crate::output;
+use rc_sweep::files::{self, Staged};
 
 /// Prints completions.
 ///
@@ -24,13 +25,13 @@ pub(crate) fn completions(shell: Shell) -> Result<(), CliError> {
 /// # Errors
 /// [`CliError`] when the folder cannot be written to.
 pub(crate) fn pages(folder: &Path) -> Result<(), CliError> {
-    output::check_folder(folder)?;
+    files::check_folder(folder)?;
     let mut rc = Cli::command();
     // Gives the commands below their full names.
     rc.build();
     let mut staged = Staged::new(folder)?;
     add_page(&mut staged, &rc)?;
-    staged.commit()
+    Ok(staged.commit()?)
 }
 
 /// The page of `command`, and those of the commands below it.

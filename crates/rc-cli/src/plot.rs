@@ -8,7 +8,7 @@ use rc_core::Field;
 
 use crate::args::PlotArgs;
 use crate::error::CliError;
-use crate::output::{self, Staged};
+use crate::output;
 use crate::result::ResultFolder;
 use crate::statistics::PressureStatistics;
 use rc_core::quantity::Scale;
@@ -16,6 +16,7 @@ use rc_plot::{
     Area, ContactPicture, LinePlot, LineStyle, Map, MapPicture, Palette, Picture, PictureError, Series, Shade,
     draw_lines, save_png, save_svg,
 };
+use rc_sweep::files::{self, Staged};
 
 const BLUE: RGBColor = RGBColor(38, 92, 158);
 const RED: RGBColor = RGBColor(190, 60, 50);
@@ -30,7 +31,7 @@ const TEXT: f64 = 26.0;
 pub(crate) fn run(args: &PlotArgs) -> Result<(), CliError> {
     let result = ResultFolder::read_finite(&args.folder)?;
     let target = args.out.as_deref().unwrap_or(&args.folder);
-    output::check_folder(target)?;
+    files::check_folder(target)?;
     let names = write(target, &result)?;
     if args.quiet { Ok(()) } else { output::print_names(target, &names) }
 }

@@ -6,7 +6,7 @@ use rc_core::quantity::{digits, engineering};
 use rc_heights::AreaParameters;
 
 use crate::statistics::{HeightStatistics, Histogram, PressureStatistics, SpectrumRow, TreatmentRow};
-use crate::summary::Summary;
+use rc_sweep::Summary;
 
 /// A few aligned lines about a solved problem; `side` is λ in m, `e_star` E* in Pa.
 #[must_use]

@@ -6,8 +6,8 @@ use rc_core::{Field, Grid};
 
 use crate::error::CliError;
 use crate::heights::check_finite;
-use crate::summary::Summary;
 use crate::{npy, resolve, scene_file};
+use rc_sweep::Summary;
 
 /// What `rc solve --out` wrote.
 #[derive(Clone, Debug)]

@@ -6,9 +6,9 @@ use clap::{Args, ValueEnum};
 use rc_heights::{LengthUnit, Scales};
 use serde::{Deserialize, Serialize};
 
-use crate::byte_size::ByteSize;
 use crate::time_limit::TimeLimit;
 use crate::values::{Fraction, GridSpec, Tolerance};
+use rc_sweep::memory::ByteSize;
 
 /// The embedded example: the paper's surface with N = 64 at σ0/E* = 8.9e-4. Also the source of defaults.
 pub const EXAMPLE: &str = include_str!("../assets/paper-n64.toml");

@@ -3,11 +3,9 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use crate::error::INTERRUPTED;
 use crate::output;
 use crate::time_limit::TimeLimit;
-
-/// Exit code of a process that was interrupted, as shells have it.
-pub(crate) const INTERRUPTED: u8 = 130;
 
 /// Whether Ctrl-C was pressed, or a job system asked the process to end.
 static IS_INTERRUPTED: AtomicBool = AtomicBool::new(false);

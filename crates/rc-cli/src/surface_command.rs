@@ -6,15 +6,16 @@ use rc_core::Field;
 use rc_heights::{Effect, Treatment, text};
 
 use crate::args::SurfaceArgs;
-use crate::budget::Budget;
 use crate::error::CliError;
-use crate::output::{self, Staged};
+use crate::output;
 use crate::scene::{ContactKeys, Scene, SurfaceKeys};
 use crate::statistics::{HeightStatistics, TreatmentRow};
-use crate::summary::to_json;
 use crate::surface::{HEIGHTS_FILE, LoadedSurface};
 use crate::{heights, npy, report, resolve, scene_file};
 use rc_plot::{Map, MapPicture, Palette, Shade, save_png};
+use rc_sweep::files::{self, FileError, Staged};
+use rc_sweep::memory::Budget;
+use rc_sweep::to_json;
 
 /// Runs `rc surface`.
 ///
@@ -28,7 +29,7 @@ pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
     let budget = Budget::new(scene.run.memory_limit);
     let target = scene.run.out.as_deref();
     if let Some(target) = target {
-        output::check_folder(if is_map(target) { target.parent().unwrap_or(Path::new("")) } else { target })?;
+        files::check_folder(if is_map(target) { target.parent().unwrap_or(Path::new("")) } else { target })?;
     }
     let (side, surface, effects) = if treatments.is_empty() {
         let problem = resolve::surface(scene.surface)?;
@@ -93,11 +94,11 @@ fn in_metres<'a>(surface: &'a LoadedSurface, heights: &'a Field, side: f64) -> (
     surface.as_read().map_or((heights, side), |field| (field, 1.0))
 }
 
-fn write_map(target: &Path, surface: &LoadedSurface, heights: &Field, side: f64) -> Result<(), CliError> {
+fn write_map(target: &Path, surface: &LoadedSurface, heights: &Field, side: f64) -> Result<(), FileError> {
     let (field, factor) = in_metres(surface, heights, side);
     let csv = target.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
     let write = if csv { text::write } else { npy::write };
-    output::write_file(target, |path| write(path, field, factor))
+    files::write_file(target, |path| write(path, field, factor))
 }
 
 fn write_folder(
@@ -106,7 +107,7 @@ fn write_folder(
     heights: &Field,
     statistics: &HeightStatistics,
     side: f64,
-) -> Result<(), CliError> {
+) -> Result<(), FileError> {
     let (field, factor) = in_metres(surface, heights, side);
     let scene = format!(
         "# The surface; `rc solve scene.toml --pressure ...` presses it.\n\n{}",

@@ -4,9 +4,8 @@ use std::fmt;
 use std::str::FromStr;
 use std::time::Duration;
 
+use rc_sweep::number_or_text;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-use crate::values::number_or_text;
 
 /// A time above zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

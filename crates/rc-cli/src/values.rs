@@ -1,44 +1,11 @@
 //! Values of a scene that are more than a number: a grid, a tolerance.
 
 use std::fmt;
-use std::marker::PhantomData;
 use std::str::FromStr;
 
+use rc_sweep::number_or_text;
 use serde::de::{self, Deserializer, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
-
-/// Reads a number, or text, as it is read on the command line; `expected` says what would be right where it is neither.
-pub(crate) fn number_or_text<'de, D, T>(deserializer: D, expected: &'static str) -> Result<T, D::Error>
-where
-    D: Deserializer<'de>,
-    T: FromStr<Err = String>,
-{
-    struct NumberOrText<T>(&'static str, PhantomData<T>);
-    impl<T: FromStr<Err = String>> Visitor<'_> for NumberOrText<T> {
-        type Value = T;
-
-        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            f.write_str(self.0)
-        }
-
-        fn visit_i64<E: de::Error>(self, value: i64) -> Result<T, E> {
-            self.visit_str(&value.to_string())
-        }
-
-        fn visit_u64<E: de::Error>(self, value: u64) -> Result<T, E> {
-            self.visit_str(&value.to_string())
-        }
-
-        fn visit_f64<E: de::Error>(self, value: f64) -> Result<T, E> {
-            self.visit_str(&value.to_string())
-        }
-
-        fn visit_str<E: de::Error>(self, value: &str) -> Result<T, E> {
-            value.parse().map_err(E::custom)
-        }
-    }
-    deserializer.deserialize_any(NumberOrText(expected, PhantomData))
-}
 
 /// Elements per side, as written: `512`, or `512x256` (along x, along y). Checked when the scene is resolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 
 use rc_core::Snapshot;
 
-use crate::error::CliError;
 use crate::output;
 use rc_plot::{ContactRows, save_png};
+use rc_sweep::files::{self, FileError};
 
 /// The picture, in the folder of the result. Not contact.png, which belongs to the result that may be there already.
 const PICTURE: &str = "watch.png";
@@ -73,11 +73,11 @@ impl Watch {
         };
     }
 
-    fn draw(&self, pressure: &Snapshot<'_>) -> Result<(), CliError> {
+    fn draw(&self, pressure: &Snapshot<'_>) -> Result<(), FileError> {
         let mut picture = ContactRows::new(pressure.grid());
         pressure.pressure_rows(|rows| picture.take(rows));
         let picture = picture.finish(self.e_star, self.side);
-        output::write_file(&self.path, |path| save_png(&picture, path))
+        files::write_file(&self.path, |path| save_png(&picture, path))
     }
 }
 

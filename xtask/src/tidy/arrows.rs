@@ -10,13 +10,13 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("rc-core", &[]),
     ("rc-fft", &["rc-core"]),
     ("rc-fractal", &["rc-core", "rc-fft"]),
-    ("rc-heights", &["rc-core", "rc-fft"]),
-    ("rc-kernel", &["rc-core", "rc-fft"]),
-    ("rc-quadtree", &["rc-core", "rc-fft"]),
-    ("rc-theory", &["rc-core", "rc-fft"]),
+    ("rc-heights", &["rc-core"]),
+    ("rc-kernel", &["rc-core"]),
+    ("rc-quadtree", &["rc-core"]),
+    ("rc-theory", &["rc-core"]),
     ("rc-solver", &["rc-core", "rc-fft", "rc-kernel", "rc-quadtree"]),
     ("rc-plot", &["rc-core"]),
-    ("rc-sweep", &["rc-core", "rc-solver", "rc-fractal", "rc-heights"]),
+    ("rc-sweep", &["rc-core", "rc-solver"]),
 ];
 
 /// Crates that may use every library, and these crates beside.

@@ -11,9 +11,10 @@ use rc_core::Field;
 
 use crate::args::ExportArgs;
 use crate::error::CliError;
-use crate::output::{self, Staged};
+use crate::output;
 use crate::result::{ResultFolder, in_cell};
 use crate::surface::HEIGHTS_FILE;
+use rc_sweep::files::{self, Staged};
 
 /// Elements of methods that have their own.
 const ELEMENTS_FILE: &str = "elements.csv";
@@ -25,7 +26,7 @@ const ELEMENTS_FILE: &str = "elements.csv";
 pub(crate) fn run(args: &ExportArgs) -> Result<(), CliError> {
     let fields = Fields::read(&args.folder)?;
     let target = args.out.as_deref().unwrap_or(&args.folder);
-    output::check_folder(target)?;
+    files::check_folder(target)?;
     let (vtk, zarr) = (args.vtk || !args.zarr, args.zarr);
     if zarr {
         zarr::check_place(&target.join(xarray::GROUP))?;

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::error::CliError;
-use crate::output::write_synced;
+use rc_sweep::files::write_synced;
 
 /// Most values of a chunk along each dimension: 8 MiB of `f64`, few files and yet pieces that fit anywhere.
 const CHUNK: usize = 1024;

@@ -14,10 +14,10 @@ use super::{Body, Command, Page, Text, Tile, made};
 use crate::error::CliError;
 use crate::result::ResultFolder;
 use crate::scene::{KernelName, Scene};
-use crate::summary::Summary;
 use crate::{report, resolve, scene_file};
 use rc_core::quantity::{digits, engineering};
 use rc_plot::Palette;
+use rc_sweep::Summary;
 
 /// Bins of the stress distribution.
 const BINS: usize = 80;

@@ -8,8 +8,8 @@ use serde_json::Value;
 use super::command::{flags, quoted};
 use super::{Body, Command, Page, Text, Tile, made};
 use crate::error::CliError;
-use crate::sweep::{TABLE_FILE, settings_in};
 use rc_core::quantity::{Scale, digits, engineering};
+use rc_sweep::{TABLE_FILE, settings_in};
 
 /// The columns of `sweep.csv` that the page uses, in SI.
 #[derive(Clone, Debug, Deserialize)]

@@ -18,7 +18,7 @@ use serde::Serialize;
 use crate::args::ReportArgs;
 use crate::error::CliError;
 use crate::output;
-use crate::sweep::TABLE_FILE;
+use rc_sweep::{TABLE_FILE, files};
 
 /// The page's name in a folder.
 const PAGE_FILE: &str = "report.html";
@@ -34,8 +34,8 @@ pub(crate) fn run(args: &ReportArgs) -> Result<(), CliError> {
     }
     let page =
         if args.folder.join(TABLE_FILE).is_file() { curves::page(&args.folder)? } else { contact::page(&args.folder)? };
-    output::check_folder(target.parent().unwrap_or(Path::new("")))?;
-    output::write_file(&target, |path| output::write_synced(path, document::html(&page).as_bytes()))?;
+    files::check_folder(target.parent().unwrap_or(Path::new("")))?;
+    files::write_file(&target, |path| files::write_synced(path, document::html(&page).as_bytes()))?;
     if args.quiet { Ok(()) } else { output::print(&format!("{}\n", target.display())) }
 }
 

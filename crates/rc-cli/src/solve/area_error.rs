@@ -4,13 +4,13 @@ use std::time::Instant;
 
 use super::{Solved, finish, observer};
 use crate::error::CliError;
-use crate::output;
 use crate::resolve;
 use crate::scene::{ContactKeys, Scene, SurfaceKeys};
 use crate::stop;
 use crate::surface::SurfaceProblem;
 use crate::values::{Fraction, GridSpec, Tolerance};
 use rc_core::quantity::digits;
+use rc_sweep::files;
 
 /// Elements per shortest wave of the first grid, and of the last that is tried.
 const COARSEST: usize = 4;
@@ -35,7 +35,7 @@ pub(super) fn run(scene: Scene, Fraction(wanted): Fraction, watch: bool, started
         ));
     }
     if let Some(folder) = &run.out {
-        output::check_folder(folder)?;
+        files::check_folder(folder)?;
     }
     let threads = resolve::start_threads(run.threads)?;
     let tolerance = contact_keys.tolerance.or(Some(Tolerance::Auto));

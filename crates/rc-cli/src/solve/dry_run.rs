@@ -5,16 +5,16 @@ use serde::Serialize;
 use rc_solver::UNIFORM_BYTES_PER_ELEMENT;
 
 use super::method::{self, Choice, Plan};
-use crate::byte_size::ByteSize;
 use crate::coarsen::check_factor;
 use crate::error::CliError;
 use crate::output;
 use crate::report;
 use crate::resolve::ContactProblem;
 use crate::scene::RunKeys;
-use crate::summary::to_json;
 use crate::surface::SurfaceProblem;
 use rc_core::quantity::digits;
+use rc_sweep::memory::ByteSize;
+use rc_sweep::to_json;
 
 /// Processor seconds for each cell of the adaptive method at a tolerance of 1e-6 or more: measured 1.1e-6 to 1.5e-6 for cells that are
 /// evaluated, of which the estimate counts 0.55 to 0.9 (512² to 4096², 0.9 % to 20 % contact, H = 0.3 and 0.8).

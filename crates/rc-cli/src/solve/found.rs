@@ -120,7 +120,7 @@ impl<'a> Found<'a> {
         }
     }
 
-    /// Elements that carry unknowns, see [`crate::summary::Summary::elements`].
+    /// Elements that carry unknowns, see [`rc_sweep::Summary::elements`].
     pub(super) fn n_elements(&self) -> usize {
         match &self.pressure {
             Pressure::Whole(solution) => {

@@ -3,12 +3,12 @@
 use rc_solver::{AdaptiveError, AdaptiveParams, AdaptiveProblem, Estimate};
 
 use super::refusal;
-use crate::budget::Budget;
 use crate::error::CliError;
 use crate::resolve::ContactProblem;
 use crate::scene::{KernelName, Method, RunKeys};
 use crate::surface::LoadedSurface;
 use rc_core::quantity::digits;
+use rc_sweep::memory::Budget;
 
 /// A method, prepared as far as it goes before solving, and why it is this one.
 pub(super) struct Choice<'a> {
@@ -162,7 +162,7 @@ impl<'a> Chooser<'a, '_> {
                 };
                 let what = format!("the adaptive method on {grid} elements{part}");
                 let refused = self.budget.check(&what, 1e6 * *needed as f64, |_| String::new());
-                refused.err().unwrap_or_else(|| CliError::input(format_args!("memory_limit: {error}")))
+                refused.err().map_or_else(|| CliError::input(format_args!("memory_limit: {error}")), CliError::from)
             }
             AdaptiveError::BorderLevel { .. } | AdaptiveError::BorderOfMap => {
                 CliError::input(format_args!("border_level: {error}"))

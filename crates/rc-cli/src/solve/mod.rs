@@ -2,10 +2,10 @@
 
 mod area_error;
 mod dry_run;
-mod files;
 mod found;
 mod method;
 mod refusal;
+mod result_files;
 mod summarise;
 
 use std::path::{Path, PathBuf};
@@ -22,10 +22,11 @@ use crate::progress::Progress;
 use crate::resolve::{self, ContactProblem};
 use crate::scene::{RunKeys, Scene};
 use crate::stop::{self, Reason, Stop};
-use crate::summary::Summary;
 use crate::surface::{LoadedSurface, SurfaceProblem};
 use crate::watch::Watch;
 use crate::{report, scene_file};
+use rc_sweep::Summary;
+use rc_sweep::files;
 
 /// Where the run without arguments writes.
 const EXAMPLE_FOLDER: &str = "rc-result";
@@ -85,7 +86,7 @@ impl<'a> Solved<'a> {
     /// # Errors
     /// [`CliError::Write`].
     pub(crate) fn write(&self, folder: &Path, summary: &Summary) -> Result<(), CliError> {
-        files::write(folder, self, summary)
+        Ok(result_files::write(folder, self, summary)?)
     }
 }
 
@@ -142,7 +143,7 @@ fn execute(
     started: Instant,
 ) -> Result<(), CliError> {
     if let Some(folder) = &run.out {
-        output::check_folder(folder)?;
+        files::check_folder(folder)?;
     }
     let progress = observer(run, watch, surface, contact, started);
     progress.say("heights");
@@ -213,7 +214,7 @@ fn print_summary(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::summary::Summary;
+    use rc_sweep::Summary;
 
     #[test]
     fn what_did_not_converge_is_written_and_marked() {

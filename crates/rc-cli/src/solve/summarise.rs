@@ -3,8 +3,8 @@
 use rc_solver::Control;
 
 use super::Solved;
-use crate::memory;
-use crate::summary::Summary;
+use rc_sweep::Summary;
+use rc_sweep::memory;
 
 /// The summary in SI.
 pub(super) fn summarise(solved: &Solved<'_>, threads: usize) -> Summary {

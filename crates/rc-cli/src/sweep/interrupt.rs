@@ -1,26 +1,23 @@
 //! Ctrl-C and a job system's signal to end: what is done is put into the table, then the process ends.
 
-use std::path::PathBuf;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
+
+use rc_sweep::Sweep;
 
 use super::bar::RowBar;
-use super::journal::Journal;
-use super::table;
-use super::workers::locked;
+use crate::error::{CliError, INTERRUPTED};
 use crate::output;
-use crate::stop::INTERRUPTED;
 
 /// From now on an interrupt writes the table of the rows so far and ends the process.
-pub(super) fn install(folder: PathBuf, journal: Arc<Mutex<Journal>>, bar: RowBar, n_rows: usize) {
+pub(super) fn install(sweep: Arc<Sweep>, bar: RowBar) {
     let handler = move || {
         // Held until the end, so that no row is kept which the table does not have.
-        let journal = locked(&journal);
+        let kept = sweep.kept();
         bar.clear();
-        let written = table::write(&folder, &journal.rows);
-        let kept = journal.rows.len();
-        output::tell(&match written {
-            Ok(path) => format!("interrupted: {kept} of {n_rows} rows are in {}; --resume goes on", path.display()),
-            Err(error) => format!("interrupted: {kept} of {n_rows} rows are kept, --resume goes on; {error}"),
+        let (n_kept, n_rows) = (kept.rows().len(), sweep.n_rows());
+        output::tell(&match kept.write_table().map_err(CliError::from) {
+            Ok(path) => format!("interrupted: {n_kept} of {n_rows} rows are in {}; --resume goes on", path.display()),
+            Err(error) => format!("interrupted: {n_kept} of {n_rows} rows are kept, --resume goes on; {error}"),
         });
         std::process::exit(INTERRUPTED.into());
     };

@@ -6,30 +6,27 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::plan::MOST_ROWS;
-use super::settings;
-use super::shard::{Shape, Shard};
-use crate::error::CliError;
-
-/// The journal's name in the folder of a sweep.
-pub(super) const JOURNAL_FILE: &str = "sweep.jsonl";
+use crate::error::SweepError;
+use crate::folder::JOURNAL_FILE;
+use crate::settings;
+use crate::shard::{MAX_ROWS, Shape, Shard};
 
 /// First key of the first line, by which a journal is recognised.
 const FORMAT: u32 = 2;
 
 /// The cells of a row by the names of their columns, in order.
-pub(super) type Cells = Map<String, Value>;
+pub type Cells = Map<String, Value>;
 
 /// Finished rows by their index.
-pub(super) type Rows = BTreeMap<usize, Cells>;
+pub type Rows = BTreeMap<usize, Cells>;
 
 /// The first line of a journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Header {
+pub(crate) struct Header {
     rc_sweep: u32,
-    pub(super) shape: Shape,
-    pub(super) shard: Shard,
-    pub(super) settings: Value,
+    pub(crate) shape: Shape,
+    pub(crate) shard: Shard,
+    pub(crate) settings: Value,
 }
 
 /// Any other line.
@@ -48,39 +45,41 @@ impl Line {
 }
 
 impl Header {
-    pub(super) fn new(shape: Shape, shard: Shard, settings: Value) -> Self {
+    pub(crate) fn new(shape: Shape, shard: Shard, settings: Value) -> Self {
         Self { rc_sweep: FORMAT, shape, shard, settings }
     }
 
     /// As a line of the journal.
-    pub(super) fn to_line(&self) -> String {
+    pub(crate) fn to_line(&self) -> String {
         to_line(self)
     }
 
     /// Refuses to go on with the sweep in `folder` when it is not this one.
-    pub(super) fn check_same(&self, there: &Self, folder: &Path) -> Result<(), CliError> {
+    ///
+    /// # Errors
+    /// What differs.
+    pub(crate) fn check_same(&self, there: &Self, folder: &Path) -> Result<(), SweepError> {
+        let folder = folder.to_owned();
         if let Some(difference) = settings::difference(&there.settings, &self.settings) {
-            return Err(CliError::in_file(
-                folder,
-                format_args!("this folder holds another sweep: {difference}; give its settings, or another --out"),
-            ));
+            return Err(SweepError::OtherSettings { folder, difference });
         }
         if there.shape != self.shape {
-            return Err(CliError::in_file(
-                folder,
-                "the number of rows in its journal is not that of its settings: it is damaged",
-            ));
+            return Err(SweepError::DamagedShape { folder });
         }
         if there.shard != self.shard {
-            let (there, here) = (there.shard, self.shard);
-            return Err(CliError::in_file(folder, format_args!("holds shard {there}, not {here}; give another --out")));
+            return Err(SweepError::OtherShard { folder, there: there.shard, here: self.shard });
         }
         Ok(())
+    }
+
+    /// Whether rows keep their fields.
+    pub(crate) fn keeps_fields(&self) -> bool {
+        self.settings["fields"] == true
     }
 }
 
 /// A line of the journal for the row `row`.
-pub(super) fn row_line(row: usize, cells: &Cells) -> String {
+pub(crate) fn row_line(row: usize, cells: &Cells) -> String {
     to_line(&Line::new(row, cells.clone()))
 }
 
@@ -90,25 +89,38 @@ fn to_line(value: &impl Serialize) -> String {
     line
 }
 
+/// Finished rows in the journal of a sweep (`sweep.jsonl`), whose last line may be incomplete.
+///
+/// # Errors
+/// [`SweepError`] when it is not a journal, or a line before the last is damaged.
+pub fn finished_rows(journal: &[u8]) -> Result<usize, SweepError> {
+    Content::of_bytes(journal, Path::new(JOURNAL_FILE)).map(|content| content.rows.len())
+}
+
+/// The settings of the sweep in `folder`, from its journal, if there is one that can be read.
+#[must_use]
+pub fn settings_in(folder: &Path) -> Option<Value> {
+    Some(Content::read(folder).ok()?.header.settings)
+}
+
 /// What a journal holds.
 #[derive(Debug)]
-pub(super) struct Content {
-    pub(super) header: Header,
-    pub(super) rows: Rows,
+pub(crate) struct Content {
+    pub(crate) header: Header,
+    pub(crate) rows: Rows,
     /// Bytes up to the end of the last whole line.
-    pub(super) whole: u64,
+    pub(crate) whole: u64,
 }
 
 impl Content {
     /// Reads the journal in `folder`, but for what a process that was ended left of its last line.
     ///
     /// # Errors
-    /// [`CliError::Input`] when there is none, it is not one, or a line before the last is damaged.
-    pub(super) fn read(folder: &Path) -> Result<Self, CliError> {
+    /// When there is none, it is not one, or a line before the last is damaged.
+    pub(crate) fn read(folder: &Path) -> Result<Self, SweepError> {
         let path = folder.join(JOURNAL_FILE);
-        let bytes = std::fs::read(&path).map_err(|cause| {
-            CliError::in_file(folder, format_args!("no sweep of rc here ({JOURNAL_FILE} cannot be read: {cause})"))
-        })?;
+        let bytes = std::fs::read(&path)
+            .map_err(|cause| SweepError::NoJournal { folder: folder.to_owned(), cause: cause.to_string() })?;
         Self::of_bytes(&bytes, &path)
     }
 
@@ -116,12 +128,12 @@ impl Content {
     ///
     /// # Errors
     /// As [`Content::read`].
-    pub(super) fn of_bytes(bytes: &[u8], path: &Path) -> Result<Self, CliError> {
+    pub(crate) fn of_bytes(bytes: &[u8], path: &Path) -> Result<Self, SweepError> {
         let mut lines = bytes.split_inclusive(|&byte| byte == b'\n').peekable();
         let first = lines.next().filter(|line| line.ends_with(b"\n"));
         let header: Option<Header> = first.and_then(|line| serde_json::from_slice(line).ok());
-        let header = header.filter(|header| header.rc_sweep == FORMAT && header.shape.rows() <= MOST_ROWS);
-        let header = header.ok_or_else(|| CliError::in_file(path, "not a journal of rc sweep"))?;
+        let header = header.filter(|header| header.rc_sweep == FORMAT && header.shape.rows() <= MAX_ROWS);
+        let header = header.ok_or_else(|| SweepError::NotAJournal { path: path.to_owned() })?;
         let mut content = Self { header, rows: Rows::new(), whole: first.map_or(0, <[u8]>::len) as u64 };
         let mut number = 1;
         while let Some(line) = lines.next() {
@@ -129,7 +141,7 @@ impl Content {
             match content.parse(line) {
                 Some(Line { row, cells, .. }) => content.rows.insert(row, cells),
                 None if lines.peek().is_none() => break,
-                None => return Err(CliError::in_file(path, format_args!("line {number} is damaged; remove it"))),
+                None => return Err(SweepError::DamagedLine { path: path.to_owned(), line: number }),
             };
             content.whole += line.len() as u64;
         }

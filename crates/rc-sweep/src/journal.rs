@@ -7,23 +7,24 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::content::{Cells, Content, Header, JOURNAL_FILE, Rows, row_line};
-use super::lock::{ANOTHER_PROCESS, Lock};
-use crate::error::CliError;
-use crate::output;
+use crate::content::{Cells, Content, Header, Rows, row_line};
+use crate::error::SweepError;
+use crate::files::{self, FileError};
+use crate::folder::{FILES, JOURNAL_FILE, ROWS_FOLDER, TABLE_FILE};
+use crate::lock::Lock;
 
 /// The journal of a running sweep.
 #[derive(Debug)]
-pub(super) struct Journal {
+pub(crate) struct Journal {
     path: PathBuf,
     file: File,
     /// Bytes of whole lines.
     length: u64,
-    pub(super) rows: Rows,
+    pub(crate) rows: Rows,
     /// Whether the folder was not there before.
     made_folder: bool,
     /// Why a row could not be kept; after that none is.
-    failure: Option<CliError>,
+    failure: Option<SweepError>,
     /// Held as long as this process may write.
     _lock: Lock,
 }
@@ -32,47 +33,44 @@ impl Journal {
     /// Starts the journal of a new sweep in `folder`, or with `resume` goes on with what is there of the same sweep.
     ///
     /// # Errors
-    /// [`CliError::Input`] when the folder holds something else, [`CliError::Write`].
-    pub(super) fn start(folder: &Path, header: &Header, resume: bool) -> Result<Self, CliError> {
+    /// When the folder holds something else, or cannot be written to.
+    pub(crate) fn start(folder: &Path, header: &Header, resume: bool) -> Result<Self, SweepError> {
         let path = folder.join(JOURNAL_FILE);
         let journal = match (path.symlink_metadata().is_ok(), resume) {
             (true, true) => Self::reopen(folder, header)?,
-            (true, false) => {
-                let message = "holds a sweep already; --resume goes on with it, or give another --out";
-                return Err(CliError::in_file(folder, message));
-            }
+            (true, false) => return Err(SweepError::HoldsSweep { folder: folder.to_owned() }),
             (false, _) => {
                 check_unused(folder, resume)?;
                 Self::create(folder, header)?
             }
         };
         if resume {
-            output::remove_leftovers(folder);
+            files::remove_leftovers(folder);
         }
         Ok(journal)
     }
 
-    fn create(folder: &Path, header: &Header) -> Result<Self, CliError> {
-        output::check_folder(folder)?;
+    fn create(folder: &Path, header: &Header) -> Result<Self, SweepError> {
+        files::check_folder(folder)?;
         let path = folder.join(JOURNAL_FILE);
-        let fail = |cause: io::Error| CliError::write(&path, cause);
+        let fail = |cause: io::Error| SweepError::from(FileError::write(&path, cause));
         let made_folder = !folder.exists();
         std::fs::create_dir_all(folder).map_err(fail)?;
-        let mut new = output::temporary_in(folder).map_err(fail)?;
+        let mut new = files::temporary_in(folder).map_err(fail)?;
         let line = header.to_line();
         new.write_all(line.as_bytes()).and_then(|()| new.as_file().sync_all()).map_err(fail)?;
         // Whoever made one in the meantime keeps it (and may have taken this temporary file for a leftover).
         let file = new.persist_noclobber(&path).map_err(|error| {
-            if path.exists() { CliError::in_file(folder, ANOTHER_PROCESS) } else { fail(error.error) }
+            if path.exists() { SweepError::AnotherProcess { folder: folder.to_owned() } } else { fail(error.error) }
         })?;
         let lock = Lock::take(&file, folder)?;
         let file = OpenOptions::new().append(true).open(&path).map_err(fail)?;
         Ok(Self { path, file, length: line.len() as u64, rows: Rows::new(), made_folder, failure: None, _lock: lock })
     }
 
-    fn reopen(folder: &Path, header: &Header) -> Result<Self, CliError> {
+    fn reopen(folder: &Path, header: &Header) -> Result<Self, SweepError> {
         let path = folder.join(JOURNAL_FILE);
-        let fail = |cause: io::Error| CliError::write(&path, cause);
+        let fail = |cause: io::Error| SweepError::from(FileError::write(&path, cause));
         let file = OpenOptions::new().append(true).open(&path).map_err(fail)?;
         // Before reading: another process may still be writing.
         let lock = Lock::take(&file, folder)?;
@@ -93,8 +91,8 @@ impl Journal {
     /// Keeps a row. When it returns, the row is on disk; after an error the rows before still are, and no part of this one.
     ///
     /// # Errors
-    /// [`CliError::Write`].
-    pub(super) fn append(&mut self, row: usize, cells: Cells) -> Result<(), CliError> {
+    /// [`SweepError::Append`].
+    pub(crate) fn append(&mut self, row: usize, cells: Cells) -> Result<(), SweepError> {
         if let Some(failure) = &self.failure {
             return Err(failure.clone());
         }
@@ -102,12 +100,8 @@ impl Journal {
         if let Err(cause) = self.file.write_all(line.as_bytes()).and_then(|()| self.file.sync_data()) {
             // What cannot be cut now is cut when the sweep is resumed.
             let _ = self.file.set_len(self.length);
-            let message = match self.rows.len() {
-                0 => cause.to_string(),
-                1 => format!("{cause}; the row before is kept, and --resume goes on with it"),
-                kept => format!("{cause}; the {kept} rows before are kept, and --resume goes on with them"),
-            };
-            let failure = CliError::write(&self.path, message);
+            let (path, kept) = (self.path.clone(), self.rows.len());
+            let failure = SweepError::Append { path, cause: cause.to_string(), kept };
             self.failure = Some(failure.clone());
             return Err(failure);
         }
@@ -117,11 +111,11 @@ impl Journal {
     }
 
     /// Takes away a sweep without rows, and its folder if this process made it: there is nothing to go on with.
-    pub(super) fn discard_empty(&self, folder: &Path) {
+    pub(crate) fn discard_empty(&self, folder: &Path) {
         if self.rows.is_empty() {
             // What cannot be removed does no harm: --resume takes it. The journal goes last, as long as it is there so does the rest.
-            let _ = std::fs::remove_dir_all(folder.join(super::ROWS_FOLDER));
-            let _ = std::fs::remove_file(folder.join(super::TABLE_FILE));
+            let _ = std::fs::remove_dir_all(folder.join(ROWS_FOLDER));
+            let _ = std::fs::remove_file(folder.join(TABLE_FILE));
             let _ = std::fs::remove_file(&self.path);
             if self.made_folder {
                 let _ = std::fs::remove_dir(folder);
@@ -131,19 +125,15 @@ impl Journal {
 }
 
 /// Refuses a folder that would mix the files of a sweep with others of the same names, or, to resume, one with any files.
-fn check_unused(folder: &Path, resume: bool) -> Result<(), CliError> {
+fn check_unused(folder: &Path, resume: bool) -> Result<(), SweepError> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Ok(()) };
     let names = entries.filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()));
     // Hidden files are what a process that was ended before its first row may have left.
-    let in_the_way =
-        |name: &String| if resume { !name.starts_with('.') } else { super::FILES.contains(&name.as_str()) };
+    let in_the_way = |name: &String| if resume { !name.starts_with('.') } else { FILES.contains(&name.as_str()) };
     match names.into_iter().find(in_the_way) {
         None => Ok(()),
-        Some(name) if resume => Err(CliError::in_file(
-            folder,
-            format_args!("no sweep to resume: it has {name}, but no {JOURNAL_FILE}; give the folder of a sweep"),
-        )),
-        Some(name) => Err(CliError::in_file(folder, format_args!("has {name} already; give another --out"))),
+        Some(name) if resume => Err(SweepError::NothingToResume { folder: folder.to_owned(), name }),
+        Some(name) => Err(SweepError::InTheWay { folder: folder.to_owned(), name }),
     }
 }
 
@@ -151,8 +141,8 @@ fn check_unused(folder: &Path, resume: bool) -> Result<(), CliError> {
 mod tests {
     use serde_json::json;
 
-    use super::super::shard::{Shape, Shard};
     use super::*;
+    use crate::shard::{Shape, Shard};
 
     fn header(waves: usize) -> Header {
         Header::new(Shape { surfaces: 2, loads: 3 }, Shard::WHOLE, json!({ "waves": waves }))

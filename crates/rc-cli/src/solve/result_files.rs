@@ -9,16 +9,15 @@ use rc_solver::{AdaptiveProblem, AdaptiveSolution, GridSolution, MeshPressure};
 use super::Solved;
 use super::found::Pressure;
 use crate::coarsen::BlockMean;
-use crate::error::CliError;
 use crate::npy::{self, RowWriter};
-use crate::output::Staged;
 use crate::resolve::ContactProblem;
 use crate::scene::ContactKeys;
 use crate::scene_file;
-use crate::summary::Summary;
 use crate::surface::HEIGHTS_FILE;
 use crate::values::GridSpec;
 use rc_plot::{ContactPicture, ContactRows, save_png};
+use rc_sweep::Summary;
+use rc_sweep::files::{FileError, Staged};
 
 /// Factors that make lengths metres and pressures pascals.
 #[derive(Clone, Copy)]
@@ -28,7 +27,7 @@ struct Units {
 }
 
 /// Writes the result folder.
-pub(super) fn write(folder: &Path, solved: &Solved<'_>, summary: &Summary) -> Result<(), CliError> {
+pub(super) fn write(folder: &Path, solved: &Solved<'_>, summary: &Summary) -> Result<(), FileError> {
     let contact = solved.contact;
     let units = Units { side: solved.side, e_star: contact.elasticity.e_star() };
     let mut staged = Staged::new(folder)?;
@@ -51,7 +50,7 @@ fn add_whole(
     solution: &GridSolution,
     output_grid: Option<GridSpec>,
     units: Units,
-) -> Result<(), CliError> {
+) -> Result<(), FileError> {
     let mut add_field = |name: &str, field: &Field, factor: f64| {
         staged.add(name, |path| {
             let mut file = MapFile::create(path, field.grid(), output_grid, factor)?;
@@ -76,7 +75,7 @@ fn add_tiles(
     problem: &AdaptiveProblem<'_>,
     output_grid: Option<GridSpec>,
     units: Units,
-) -> Result<(), CliError> {
+) -> Result<(), FileError> {
     let grid = solution.grid();
     staged.add("pressure.npy", |path| {
         let mut file = MapFile::create(path, grid, output_grid, units.e_star)?;

@@ -1,92 +1,40 @@
-//! What a sweep solves: surfaces (scenes times seeds) and loads, checked before anything is written.
+//! The surfaces of a sweep: scenes times seeds, resolved and checked before anything is written.
 
 use std::path::{Path, PathBuf};
 
-use super::lists::{Loads, Seeds};
-use super::shard::Shape;
-use crate::args::SweepArgs;
+use rc_sweep::{ControlKind, FileMark, Loads, MAX_ROWS, Plan, PlannedSurface, Row, Seeds};
+use serde_json::json;
+
+use super::args::SweepArgs;
 use crate::error::CliError;
 use crate::resolve::{self, ContactProblem};
 use crate::scene::{ContactKeys, RunKeys, Scene};
 use crate::surface::{Source, SurfaceProblem};
 
-/// Most rows of a sweep; beyond it a number was mistyped.
-pub(super) const MOST_ROWS: usize = 1_000_000;
-
-/// What is prescribed in every row of a sweep.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ControlKind {
-    Pressure,
-    Penetration,
-}
-
-impl ControlKind {
-    /// Its key in scenes and summaries.
-    pub(super) fn key(self) -> &'static str {
-        match self {
-            Self::Pressure => "pressure",
-            Self::Penetration => "penetration",
-        }
-    }
-
-    /// `keys` under the load `value`, and no other.
-    pub(super) fn with_load(self, keys: &ContactKeys, value: Option<f64>) -> ContactKeys {
-        let (pressure, penetration) = match self {
-            Self::Pressure => (value, None),
-            Self::Penetration => (None, value),
-        };
-        ContactKeys { pressure, penetration, ..keys.clone() }
-    }
-}
-
 /// One surface with its loads.
 #[derive(Clone, Debug)]
-pub(super) struct PlannedSurface {
+pub(super) struct SweptSurface {
     /// Name of the scene: of its file, without folder and extension.
-    pub(super) scene: String,
+    scene: String,
     /// `None` for a height map.
-    pub(super) seed: Option<u64>,
+    seed: Option<u64>,
     pub(super) problem: SurfaceProblem,
     /// The keys as resolved, without a load.
-    pub(super) contact: ContactKeys,
-    pub(super) loads: Vec<f64>,
+    contact: ContactKeys,
+    loads: Vec<f64>,
 }
 
-impl PlannedSurface {
-    /// Checks the keys of `scene`, under the first load: everything but the load is the same for all of them.
-    fn new(name: &str, scene: Scene, control: ControlKind, loads: &[f64]) -> Result<Self, CliError> {
-        let problem = resolve::surface(scene.surface)?;
-        let seed = problem.keys.seed.filter(|_| matches!(problem.source, Source::Random { .. }));
-        let keys = control.with_load(&scene.contact, loads.first().copied());
-        let contact = resolve::contact(keys, problem.cell.side(), problem.elements_per_wave())?;
-        let contact = control.with_load(&contact.keys, None);
-        Ok(Self { scene: name.to_owned(), seed, problem, contact, loads: loads.to_vec() })
-    }
-}
-
-/// A checked sweep. Rows are ordered by scene, then seed, then load, each as given.
+/// What the scenes and lists of the command line say. Surfaces are ordered by scene, then seed, each as given.
 #[derive(Clone, Debug)]
-pub(super) struct Plan {
-    pub(super) control: ControlKind,
-    pub(super) surfaces: Vec<PlannedSurface>,
-    /// Whether rows say which scene they are of.
-    pub(super) names_scenes: bool,
-    /// Whether each row keeps its fields.
-    pub(super) fields: bool,
+pub(super) struct Surfaces {
+    control: ControlKind,
+    surfaces: Vec<SweptSurface>,
+    n_scenes: usize,
+    keeps_fields: bool,
     pub(super) run: RunKeys,
 }
 
-/// One row.
-pub(super) struct Row<'a> {
-    /// From 0.
-    pub(super) index: usize,
-    pub(super) surface: &'a PlannedSurface,
-    /// Pressure in Pa or penetration in m.
-    pub(super) load: f64,
-    pub(super) contact: ContactProblem,
-}
-
-impl Plan {
+impl Surfaces {
     /// Reads and checks scenes and lists.
     ///
     /// # Errors
@@ -98,59 +46,101 @@ impl Plan {
         let mut surfaces = Vec::new();
         for (name, scene) in &scenes {
             let loads = loads(args, control, &scene.contact)?;
-            let n_seeds = args.seeds.as_ref().map_or(1, |Seeds(seeds)| seeds.len());
-            if scenes.len().saturating_mul(n_seeds).saturating_mul(loads.len()) > MOST_ROWS {
-                let message = format_args!(
-                    "{} scenes x {n_seeds} seeds x {} loads are more than {MOST_ROWS} rows; give shorter lists",
-                    scenes.len(),
-                    loads.len()
-                );
-                return Err(CliError::input(message));
-            }
+            check_rows(args, scenes.len(), loads.len())?;
             for keys in seeded(args.seeds.as_ref(), name, scene)? {
-                surfaces.push(PlannedSurface::new(name, keys, control, &loads)?);
+                surfaces.push(SweptSurface::new(name, keys, control, &loads)?);
             }
         }
         let run = scenes.first().map(|(_, scene)| scene.run.clone()).unwrap_or_default();
-        Ok(Self { control, surfaces, names_scenes: scenes.len() > 1, fields: args.fields, run })
+        Ok(Self { control, surfaces, n_scenes: scenes.len(), keeps_fields: args.fields, run })
     }
 
-    /// Number of surfaces and loads.
-    pub(super) fn shape(&self) -> Shape {
-        Shape { surfaces: self.surfaces.len(), loads: self.surfaces.first().map_or(0, |surface| surface.loads.len()) }
+    /// The plan of the sweep, for which height maps are read once to recognise them later.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] when a map cannot be read.
+    pub(super) fn plan(&self) -> Result<Plan, CliError> {
+        let surfaces = self.surfaces.iter().map(SweptSurface::planned).collect::<Result<_, _>>()?;
+        Ok(Plan {
+            names_scenes: self.n_scenes > 1,
+            keeps_fields: self.keeps_fields,
+            ..Plan::new(self.control, surfaces)
+        })
     }
 
-    /// The folder for the fields of row `index`, if they are kept.
-    pub(super) fn fields_folder(&self, index: usize) -> Option<PathBuf> {
-        let folder = self.run.out.as_deref().filter(|_| self.fields)?;
-        Some(super::fields_folder(folder, index))
+    /// The surface of `row`.
+    pub(super) fn surface(&self, row: &Row) -> &SurfaceProblem {
+        &self.surfaces[row.surface].problem
     }
 
-    /// Row `index`, ready to be solved.
+    /// The contact of `row`, ready to be solved.
     ///
     /// # Errors
     /// [`CliError::Input`] for keys of the contact, the same for all rows of a surface.
-    ///
-    /// # Panics
-    /// When there is no such row.
-    pub(super) fn row(&self, index: usize) -> Result<Row<'_>, CliError> {
-        let loads = self.shape().loads;
-        let surface = &self.surfaces[index / loads];
-        let load = surface.loads[index % loads];
-        let keys = self.control.with_load(&surface.contact, Some(load));
+    pub(super) fn contact(&self, row: &Row) -> Result<ContactProblem, CliError> {
+        let surface = &self.surfaces[row.surface];
+        let keys = with_load(self.control, &surface.contact, Some(row.load));
         let contact = resolve::contact(keys, surface.problem.cell.side(), surface.problem.elements_per_wave())?;
         // The memory of a machine must not decide on the digits of a row.
-        let contact = ContactProblem { is_one_of_many: true, ..contact };
-        Ok(Row { index, surface, load, contact })
+        Ok(ContactProblem { is_one_of_many: true, ..contact })
+    }
+
+    /// Elements of the largest surface.
+    pub(super) fn max_elements(&self) -> f64 {
+        self.surfaces.iter().map(|surface| surface.problem.most_elements()).fold(0.0, f64::max)
     }
 }
 
-impl Row<'_> {
-    /// The row in a message, counted from 1 as in the table.
-    pub(super) fn describe(&self, control: ControlKind) -> String {
-        let seed = self.surface.seed.map_or_else(String::new, |seed| format!("seed {seed}, "));
-        format!("row {} ({seed}{} {:e})", self.index + 1, control.key(), self.load)
+impl SweptSurface {
+    /// Checks the keys of `scene`, under the first load: everything but the load is the same for all of them.
+    fn new(name: &str, scene: Scene, control: ControlKind, loads: &[f64]) -> Result<Self, CliError> {
+        let problem = resolve::surface(scene.surface)?;
+        let seed = problem.keys.seed.filter(|_| matches!(problem.source, Source::Random { .. }));
+        let keys = with_load(control, &scene.contact, loads.first().copied());
+        let contact = resolve::contact(keys, problem.cell.side(), problem.elements_per_wave())?;
+        let contact = with_load(control, &contact.keys, None);
+        Ok(Self { scene: name.to_owned(), seed, problem, contact, loads: loads.to_vec() })
     }
+
+    /// What determines its rows. Where a height map lies does not, so its name and its content count.
+    fn planned(&self) -> Result<PlannedSurface, CliError> {
+        let mut surface = self.problem.keys.clone();
+        let map = match &self.problem.source {
+            Source::Random { .. } => None,
+            Source::File { path, .. } => {
+                surface.heights = path.file_name().map(Into::into);
+                Some(FileMark::of(path)?)
+            }
+        };
+        Ok(PlannedSurface {
+            scene: self.scene.clone(),
+            seed: self.seed,
+            surface: json!(surface),
+            contact: json!(self.contact),
+            loads: self.loads.clone(),
+            map,
+        })
+    }
+}
+
+/// `keys` under the load `value`, and no other.
+fn with_load(control: ControlKind, keys: &ContactKeys, value: Option<f64>) -> ContactKeys {
+    let (pressure, penetration) = match control {
+        ControlKind::Pressure => (value, None),
+        ControlKind::Penetration => (None, value),
+    };
+    ContactKeys { pressure, penetration, ..keys.clone() }
+}
+
+/// Refuses more rows than anyone means.
+fn check_rows(args: &SweepArgs, n_scenes: usize, n_loads: usize) -> Result<(), CliError> {
+    let n_seeds = args.seeds.as_ref().map_or(1, |Seeds(seeds)| seeds.len());
+    if n_scenes.saturating_mul(n_seeds).saturating_mul(n_loads) <= MAX_ROWS {
+        return Ok(());
+    }
+    Err(CliError::input(format_args!(
+        "{n_scenes} scenes x {n_seeds} seeds x {n_loads} loads are more than {MAX_ROWS} rows; give shorter lists"
+    )))
 }
 
 /// Flags that exclude each other.

@@ -3,14 +3,11 @@
 use std::fs::File;
 use std::path::Path;
 
-use crate::error::CliError;
-
-/// Why a sweep is not touched.
-pub(super) const ANOTHER_PROCESS: &str = "another process is writing this sweep; wait for it, or give another --out";
+use crate::error::SweepError;
 
 /// Held until dropped; it goes with the process, however that ends.
 #[derive(Debug)]
-pub(super) struct Lock {
+pub(crate) struct Lock {
     #[cfg(unix)]
     _file: Option<nix::fcntl::Flock<File>>,
 }
@@ -19,15 +16,15 @@ impl Lock {
     /// Locks `file`, of the sweep in `folder`. On a file system without locks nothing is held.
     ///
     /// # Errors
-    /// [`CliError::Input`] when another process has it.
+    /// [`SweepError::AnotherProcess`] when another process has it.
     #[cfg(unix)]
-    pub(super) fn take(file: &File, folder: &Path) -> Result<Self, CliError> {
+    pub(crate) fn take(file: &File, folder: &Path) -> Result<Self, SweepError> {
         use nix::errno::Errno;
         use nix::fcntl::{Flock, FlockArg};
         let Ok(file) = file.try_clone() else { return Ok(Self { _file: None }) };
         match Flock::lock(file, FlockArg::LockExclusiveNonblock) {
             Ok(file) => Ok(Self { _file: Some(file) }),
-            Err((_, Errno::EWOULDBLOCK)) => Err(CliError::in_file(folder, ANOTHER_PROCESS)),
+            Err((_, Errno::EWOULDBLOCK)) => Err(SweepError::AnotherProcess { folder: folder.to_owned() }),
             Err(_) => Ok(Self { _file: None }),
         }
     }
@@ -35,7 +32,7 @@ impl Lock {
     /// Nothing is held where the system has no such locks.
     #[cfg(not(unix))]
     #[expect(clippy::unnecessary_wraps, reason = "the same signature on every system")]
-    pub(super) fn take(_file: &File, _folder: &Path) -> Result<Self, CliError> {
+    pub(crate) fn take(_file: &File, _folder: &Path) -> Result<Self, SweepError> {
         Ok(Self {})
     }
 }

@@ -1,4 +1,10 @@
-//! Memory: what this process used at most, and what the machine has.
+//! Memory: what this process used at most, what the machine has, and what a command may need.
+
+mod budget;
+mod byte_size;
+
+pub use budget::{Bound, Budget, MemoryError};
+pub use byte_size::ByteSize;
 
 /// Peak resident memory of the process, in bytes; `None` where the system does not say.
 #[cfg(unix)]

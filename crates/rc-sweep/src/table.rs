@@ -4,28 +4,26 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::content::Rows;
-use crate::error::CliError;
-use crate::output;
-
-/// The table's name in the folder of a sweep.
-pub(crate) const TABLE_FILE: &str = "sweep.csv";
+use crate::content::{Cells, Rows};
+use crate::error::SweepError;
+use crate::files;
+use crate::folder::TABLE_FILE;
 
 /// Writes the table of `rows`, if there are any.
 ///
 /// # Errors
-/// [`CliError::Write`]; an earlier table is left as it was.
-pub(super) fn write(folder: &Path, rows: &Rows) -> Result<PathBuf, CliError> {
+/// [`SweepError::File`]; an earlier table is left as it was.
+pub(crate) fn write(folder: &Path, rows: &Rows) -> Result<PathBuf, SweepError> {
     let path = folder.join(TABLE_FILE);
     if !rows.is_empty() {
-        let text = to_csv(rows).map_err(|cause| CliError::write(&path, cause))?;
-        output::write_file(&path, |path| output::write_synced(path, &text))?;
+        let text = to_csv(rows).map_err(|cause| SweepError::table(folder, cause))?;
+        files::write_file(&path, |path| files::write_synced(path, &text))?;
     }
     Ok(path)
 }
 
 /// The rows as CSV with a line of column names. Numbers have the digits of the journal.
-pub(super) fn to_csv(rows: &Rows) -> Result<Vec<u8>, String> {
+pub(crate) fn to_csv(rows: &Rows) -> Result<Vec<u8>, String> {
     let mut out = csv::Writer::from_writer(Vec::new());
     if let Some(first) = rows.values().next() {
         out.write_record(first.keys()).map_err(|cause| cause.to_string())?;
@@ -34,6 +32,13 @@ pub(super) fn to_csv(rows: &Rows) -> Result<Vec<u8>, String> {
         out.write_record(cells.values().map(cell)).map_err(|cause| cause.to_string())?;
     }
     out.into_inner().map_err(|cause| cause.to_string())
+}
+
+/// Rows that are marked `not_converged`.
+#[must_use]
+pub fn n_not_converged(rows: &Rows) -> usize {
+    let failed = |cells: &&Cells| cells.get("status").is_some_and(|status| status == "not_converged");
+    rows.values().filter(failed).count()
 }
 
 /// A value as one cell: empty for none, a space between the values of a list.
@@ -51,7 +56,6 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::sweep::content::Cells;
 
     #[test]
     fn cells_are_numbers_text_lists_or_empty() {

@@ -2,10 +2,9 @@
 
 use rc_core::Grid;
 use rc_solver::UNIFORM_BYTES_PER_ELEMENT;
+use thiserror::Error;
 
-use crate::byte_size::ByteSize;
-use crate::error::CliError;
-use crate::memory;
+use super::ByteSize;
 
 /// Memory that there is for a command.
 #[derive(Clone, Copy, Debug)]
@@ -14,11 +13,36 @@ pub struct Budget {
     machine: Option<ByteSize>,
 }
 
+/// What bounds the memory of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bound {
+    /// The limit that the user gave.
+    Limit,
+    /// The memory of the machine.
+    Machine,
+}
+
+/// Something needs more memory than there is.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{what} needs about {needed} of memory, there are {available}{remedy}")]
+pub struct MemoryError {
+    /// What needs it.
+    pub what: String,
+    /// Estimate of what it needs.
+    pub needed: ByteSize,
+    /// What there is.
+    pub available: ByteSize,
+    /// Who says so.
+    pub bound: Bound,
+    /// What would fit, as the end of a sentence; may be empty.
+    pub remedy: String,
+}
+
 impl Budget {
     /// The memory of this machine, and the limit of the user, if there is one.
     #[must_use]
     pub fn new(limit: Option<ByteSize>) -> Self {
-        Self { limit, machine: memory::physical().map(ByteSize) }
+        Self { limit, machine: super::physical().map(ByteSize) }
     }
 
     /// Bytes that there are, as far as that is known.
@@ -31,27 +55,23 @@ impl Budget {
     /// there are.
     ///
     /// # Errors
-    /// [`CliError::Input`] with the estimate.
-    pub fn check(&self, what: &str, needed: f64, remedy: impl Fn(u64) -> String) -> Result<(), CliError> {
-        let exceeds = |bound: &ByteSize| needed > bound.0 as f64;
-        let needs = ByteSize(needed as u64);
-        if let Some(limit) = self.limit.filter(exceeds) {
-            let message = format_args!(
-                "memory_limit: {what} needs about {needs}, more than the limit of {limit}{}",
-                remedy(limit.0)
-            );
-            return Err(CliError::input(message));
-        }
-        match self.machine.filter(exceeds) {
-            Some(machine) => Err(CliError::input(format_args!(
-                "grid: {what} needs about {needs} of memory, this machine has {machine}{}",
-                remedy(machine.0)
-            ))),
-            None => Ok(()),
-        }
+    /// [`MemoryError`].
+    pub fn check(&self, what: &str, needed: f64, remedy: impl Fn(u64) -> String) -> Result<(), MemoryError> {
+        let bounds = [(Bound::Limit, self.limit), (Bound::Machine, self.machine)];
+        let exceeded = bounds.into_iter().find_map(|(bound, bytes)| {
+            let available = bytes.filter(|bytes| needed > bytes.0 as f64)?;
+            Some(MemoryError {
+                what: what.to_owned(),
+                needed: ByteSize(needed as u64),
+                available,
+                bound,
+                remedy: remedy(available.0),
+            })
+        });
+        exceeded.map_or(Ok(()), Err)
     }
 
-    /// How many solves fit side by side, the greatest on `n_elements` elements, whatever their method: within the limit, or half
+    /// How many solves fit side by side, the largest on `n_elements` elements, whatever their method: within the limit, or half
     /// of the machine's memory; at least one.
     #[must_use]
     pub fn solves_at_once(&self, n_elements: f64) -> usize {
@@ -62,8 +82,8 @@ impl Budget {
     /// Refuses a grid on which a method that stores every element, here called `what`, would not fit.
     ///
     /// # Errors
-    /// [`CliError::Input`] that names what is needed, what there is, and the largest grid that fits.
-    pub fn check_grid(&self, what: &str, grid: Grid) -> Result<(), CliError> {
+    /// [`MemoryError`] with the largest grid that fits.
+    pub fn check_grid(&self, what: &str, grid: Grid) -> Result<(), MemoryError> {
         let needed = grid.len() as f64 * UNIFORM_BYTES_PER_ELEMENT as f64;
         let remedy = |available: u64| {
             format!("; at most {} elements per side fit", (available / UNIFORM_BYTES_PER_ELEMENT).isqrt())
@@ -81,15 +101,19 @@ mod tests {
         let budget = Budget { limit: Some(ByteSize(8_000_000)), machine: Some(ByteSize(800_000_000)) };
         let grid = |n| Grid::square(n).expect("a grid");
         assert!(budget.check_grid("it", grid(316)).is_ok());
-        let error = budget.check_grid("it", grid(317)).expect_err("above the limit").to_string();
-        assert!(error.starts_with("memory_limit: it on 317 x 317") && error.contains("at most 316"), "{error}");
+        let error = budget.check_grid("it", grid(317)).expect_err("above the limit");
+        assert_eq!(error.bound, Bound::Limit);
+        let text = error.to_string();
+        assert!(text.starts_with("it on 317 x 317") && text.contains("at most 316"), "{text}");
         assert_eq!(budget.solves_at_once(25_000.0), 4);
         assert_eq!(budget.solves_at_once(1e9), 1);
         let unlimited = Budget { limit: None, ..budget };
         assert_eq!(unlimited.solves_at_once(25_000.0), 200);
         assert!(unlimited.check_grid("it", grid(3162)).is_ok());
-        let error = unlimited.check_grid("it", grid(3163)).expect_err("above the machine").to_string();
+        let error = unlimited.check_grid("it", grid(3163)).expect_err("above the machine");
         assert_eq!((budget.available(), unlimited.available()), (Some(8_000_000), Some(800_000_000)));
-        assert!(error.starts_with("grid: it on 3163 x 3163") && error.contains("has 800 MB"), "{error}");
+        assert_eq!(error.bound, Bound::Machine);
+        let text = error.to_string();
+        assert!(text.starts_with("it on 3163 x 3163") && text.contains("there are 800 MB"), "{text}");
     }
 }

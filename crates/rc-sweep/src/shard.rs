@@ -5,18 +5,22 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
+/// Most rows of a sweep; beyond it a number was mistyped.
+pub const MAX_ROWS: usize = 1_000_000;
+
 /// How many rows a sweep has: row s·L + l is surface s under load l, of S surfaces and L loads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Shape {
+pub struct Shape {
     /// S: scenes times seeds.
-    pub(super) surfaces: usize,
+    pub surfaces: usize,
     /// L: loads of each.
-    pub(super) loads: usize,
+    pub loads: usize,
 }
 
 impl Shape {
     /// Number of rows.
-    pub(super) fn rows(self) -> usize {
+    #[must_use]
+    pub fn rows(self) -> usize {
         self.surfaces.saturating_mul(self.loads)
     }
 }
@@ -32,10 +36,10 @@ pub struct Shard {
 
 impl Shard {
     /// The whole sweep.
-    pub(super) const WHOLE: Self = Self { index: 1, count: 1 };
+    pub const WHOLE: Self = Self { index: 1, count: 1 };
 
     /// The rows of this shard, in order. Rows are dealt load by load, so that each shard gets its part of the heavy ones.
-    pub(super) fn rows(self, shape: Shape) -> impl Iterator<Item = usize> {
+    pub fn rows(self, shape: Shape) -> impl Iterator<Item = usize> {
         (0..shape.rows()).filter(move |row| {
             let (surface, load) = (row / shape.loads, row % shape.loads);
             (load * shape.surfaces + surface) % self.count == self.index - 1

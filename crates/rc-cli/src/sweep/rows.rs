@@ -1,0 +1,81 @@
+//! How a row of a sweep is solved: as `rc solve` solves its scene.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use rc_sweep::{Cells, Latest, Row, RowError, RowSolver, Summary, Sweep, replace_fields};
+use serde_json::{Value, json};
+
+use super::bar::RowBar;
+use super::surfaces::Surfaces;
+use crate::error::CliError;
+use crate::progress::Progress;
+use crate::resolve::ContactProblem;
+use crate::scene::RunKeys;
+use crate::solve::Solved;
+use crate::stop::Stop;
+use crate::surface::LoadedSurface;
+
+/// Solves the rows of a sweep.
+pub(super) struct Rows<'a> {
+    sweep: &'a Sweep,
+    surfaces: &'a Surfaces,
+    /// The surface that was loaded last: its loads follow one another.
+    loaded: Latest<LoadedSurface>,
+    /// All threads of the sweep.
+    threads: usize,
+    limit: Stop,
+    bar: RowBar,
+}
+
+impl<'a> Rows<'a> {
+    /// The rows of `sweep`, whose limit of time begins now.
+    pub(super) fn new(sweep: &'a Sweep, surfaces: &'a Surfaces, threads: usize, bar: RowBar) -> Self {
+        let limit = Stop::at(Instant::now(), surfaces.run.time_limit);
+        Self { sweep, surfaces, loaded: Latest::default(), threads, limit, bar }
+    }
+
+    /// Solves `contact` on the surface of `row`. With fields, the folder of the row is complete when this returns.
+    /// `wall_seconds` includes the time that loading the surface took once.
+    pub(super) fn solve_contact(&self, row: &Row, contact: &ContactProblem) -> Result<Cells, CliError> {
+        let surface = self.surfaces.surface(row);
+        let (loaded, time): (Arc<LoadedSurface>, Duration) = self.loaded.get(row.surface, || surface.load())?;
+        let started = Instant::now().checked_sub(time).unwrap_or_else(Instant::now);
+        let folder = self.sweep.fields_folder(row.index);
+        let run = RunKeys { out: folder.clone(), ..self.surfaces.run.clone() };
+        let solved = Solved::new(&loaded, contact, surface.cell.side(), &run, started, &Progress::new(true))?;
+        let summary = solved.summary(self.threads);
+        if let Some(folder) = folder {
+            write_fields(&folder, &solved, &summary)?;
+        }
+        let Value::Object(cells) = json!(summary) else { return Ok(Cells::new()) };
+        Ok(cells)
+    }
+}
+
+fn write_fields(folder: &Path, solved: &Solved<'_>, summary: &Summary) -> Result<(), CliError> {
+    replace_fields(folder, || solved.write(folder, summary))
+}
+
+impl RowSolver for Rows<'_> {
+    type Error = CliError;
+
+    fn solve(&self, row: &Row) -> Result<Cells, RowError<CliError>> {
+        let cells = self.surfaces.contact(row).and_then(|contact| self.solve_contact(row, &contact));
+        cells.map_err(|error| match error {
+            CliError::Input(message) => {
+                RowError::Refused(CliError::input(format_args!("{}: {message}", self.sweep.plan().describe(row))))
+            }
+            other => RowError::Failed(other),
+        })
+    }
+
+    fn row_kept(&self) {
+        self.bar.one_more();
+    }
+
+    fn should_stop(&self) -> bool {
+        self.limit.reason().is_some()
+    }
+}

@@ -1,0 +1,277 @@
+//! Files that are there whole or not at all.
+
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use tempfile::{NamedTempFile, TempDir};
+use thiserror::Error;
+
+/// Why files are not there.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum FileError {
+    /// No file can be made in this folder; nothing was written.
+    #[error("cannot write to the folder {}: {cause}", folder.display())]
+    Folder {
+        /// The folder.
+        folder: PathBuf,
+        /// Why not.
+        cause: String,
+    },
+    /// This file or folder could not be written.
+    #[error("cannot write {}: {cause}", path.display())]
+    Write {
+        /// The file or folder under its final name.
+        path: PathBuf,
+        /// Why not.
+        cause: String,
+    },
+}
+
+impl FileError {
+    /// `path` could not be written.
+    pub fn write(path: &Path, cause: impl std::fmt::Display) -> Self {
+        Self::Write { path: path.to_owned(), cause: cause.to_string() }
+    }
+}
+
+/// Begin of the names of what is on its way to a final name. A process that is killed may leave it behind.
+const PARTIAL: &str = ".rc-partial-";
+
+/// Begin of the names of what has made room, among the hidden files.
+const EARLIER: &str = "earlier-";
+
+/// Begin of the name of the folder that [`check_folder`] makes for a moment.
+const PROBE: &str = ".rc-probe-";
+
+/// Checks that files can be made in `folder`, or that `folder` itself can be made, and leaves nothing behind.
+///
+/// # Errors
+/// [`FileError::Folder`].
+pub fn check_folder(folder: &Path) -> Result<(), FileError> {
+    let refuse =
+        |cause: &dyn std::fmt::Display| FileError::Folder { folder: folder.to_owned(), cause: cause.to_string() };
+    // Of a folder that does not exist yet, the nearest one above it that does must take it.
+    let existing = folder.ancestors().map(or_here).find(|path| path.symlink_metadata().is_ok());
+    let existing = existing.ok_or_else(|| refuse(&"no such folder"))?;
+    if !existing.is_dir() {
+        return Err(refuse(&format_args!("{} is not a folder", existing.display())));
+    }
+    tempfile::Builder::new().prefix(PROBE).tempdir_in(existing).map_err(|cause| refuse(&cause))?;
+    Ok(())
+}
+
+/// The current folder for the empty path.
+fn or_here(path: &Path) -> &Path {
+    if path.as_os_str().is_empty() { Path::new(".") } else { path }
+}
+
+/// A set of files, or of folders with files, on their way into a folder. They are written into a hidden folder inside it,
+/// and get their final names together in [`Staged::commit`]; dropped before that, they vanish.
+#[derive(Debug)]
+pub struct Staged {
+    folder: PathBuf,
+    hidden: TempDir,
+    names: Vec<String>,
+}
+
+impl Staged {
+    /// Starts a set of files for `folder`, which is made when it does not exist.
+    ///
+    /// # Errors
+    /// [`FileError::Write`].
+    pub fn new(folder: &Path) -> Result<Self, FileError> {
+        let folder = or_here(folder).to_owned();
+        let fail = |cause: io::Error| FileError::write(&folder, cause);
+        std::fs::create_dir_all(&folder).map_err(fail)?;
+        let hidden = tempfile::Builder::new().prefix(PARTIAL).tempdir_in(&folder).map_err(fail)?;
+        Ok(Self { folder, hidden, names: Vec::new() })
+    }
+
+    /// Adds the file or folder `name`, which `write` writes to the path that it is given.
+    ///
+    /// # Errors
+    /// [`FileError::Write`] with the error of `write`.
+    pub fn add<E: std::fmt::Display>(
+        &mut self,
+        name: &str,
+        write: impl FnOnce(&Path) -> Result<(), E>,
+    ) -> Result<(), FileError> {
+        write(&self.hidden.path().join(name)).map_err(|cause| FileError::write(&self.folder.join(name), cause))?;
+        self.names.push(name.to_owned());
+        Ok(())
+    }
+
+    /// Adds the text file `name`.
+    ///
+    /// # Errors
+    /// [`FileError::Write`].
+    pub fn add_text(&mut self, name: &str, text: &str) -> Result<(), FileError> {
+        self.add(name, |path| write_synced(path, text.as_bytes()))
+    }
+
+    /// Names of the files so far.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Gives them their final names, in the order in which they were added. The last one is the mark of a complete
+    /// set: an earlier file of its name goes first, so that it never describes files of another run.
+    ///
+    /// # Errors
+    /// [`FileError::Write`].
+    pub fn commit(self) -> Result<(), FileError> {
+        if let Some(mark) = self.names.last() {
+            self.make_room(mark)?;
+        }
+        for name in &self.names {
+            let (from, path) = (self.hidden.path().join(name), self.folder.join(name));
+            if from.is_dir() {
+                // A file replaces another by itself.
+                self.make_room(name)?;
+            }
+            std::fs::rename(from, &path).map_err(|cause| FileError::write(&path, cause))?;
+        }
+        Ok(())
+    }
+
+    /// Moves what has the name of a staged file or folder to where it vanishes; a folder for a folder only.
+    fn make_room(&self, name: &str) -> Result<(), FileError> {
+        let path = self.folder.join(name);
+        let Ok(earlier) = path.symlink_metadata() else { return Ok(()) };
+        let moved = match (earlier.is_dir(), self.hidden.path().join(name).is_dir()) {
+            (true, false) => Err(io::Error::from(io::ErrorKind::IsADirectory)),
+            (false, true) => Err(io::Error::from(io::ErrorKind::NotADirectory)),
+            _ => std::fs::rename(&path, self.hidden.path().join(format!("{EARLIER}{name}"))),
+        };
+        moved.map_err(|cause| FileError::write(&path, cause))
+    }
+}
+
+/// Writes one file that appears whole or not at all; `write` gets the path of a temporary file beside it.
+///
+/// # Errors
+/// [`FileError::Write`].
+pub fn write_file<E: std::fmt::Display>(
+    path: &Path,
+    write: impl FnOnce(&Path) -> Result<(), E>,
+) -> Result<(), FileError> {
+    let folder = or_here(path.parent().unwrap_or(Path::new("")));
+    let fail = |cause: &dyn std::fmt::Display| FileError::write(path, cause);
+    std::fs::create_dir_all(folder).map_err(|cause| fail(&cause))?;
+    let hidden = tempfile::Builder::new().prefix(PARTIAL).tempdir_in(folder).map_err(|cause| fail(&cause))?;
+    let temporary = hidden.path().join(path.file_name().unwrap_or_default());
+    write(&temporary).map_err(|cause| fail(&cause))?;
+    std::fs::rename(&temporary, path).map_err(|cause| fail(&cause))
+}
+
+/// A hidden file in `folder`, to be filled and given its final name. Others may read it as far as the user lets them.
+///
+/// # Errors
+/// Those of the file system.
+pub fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.prefix(PARTIAL).tempfile_in(folder)
+}
+
+/// Removes what processes that were killed have left in `folder`, as far as it can be removed. No other process may be writing
+/// there.
+pub fn remove_leftovers(folder: &Path) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if name.starts_with(PARTIAL) || name.starts_with(PROBE) {
+            let (path, is_folder) = (entry.path(), entry.file_type().is_ok_and(|kind| kind.is_dir()));
+            // What stays is hidden, and does no harm.
+            let _ = if is_folder { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
+        }
+    }
+}
+
+/// Writes a file and waits until the system has it.
+///
+/// # Errors
+/// Those of the file system.
+pub fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = std::fs::File::create(path)?;
+    file.write_all(bytes)?;
+    file.sync_all()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = std::fs::read_dir(folder).expect("a folder");
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_set_that_is_not_committed_leaves_earlier_files_and_nothing_else() {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        std::fs::write(dir.path().join("a.txt"), "old").expect("a file");
+        let mut staged = Staged::new(dir.path()).expect("a writable folder");
+        staged.add_text("a.txt", "new").expect("a staged file");
+        drop(staged);
+        assert_eq!(names(dir.path()), ["a.txt"]);
+        assert_eq!(std::fs::read_to_string(dir.path().join("a.txt")).expect("the file"), "old");
+    }
+
+    #[test]
+    fn a_committed_set_replaces_earlier_files() {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        let folder = dir.path().join("new/folder");
+        for text in ["first", "second"] {
+            let mut staged = Staged::new(&folder).expect("a writable folder");
+            staged.add_text("a.txt", text).expect("a staged file");
+            staged.add_text("summary.json", text).expect("a staged file");
+            staged.commit().expect("a committed set");
+            assert_eq!(names(&folder), ["a.txt", "summary.json"]);
+            assert_eq!(std::fs::read_to_string(folder.join("a.txt")).expect("the file"), text);
+        }
+    }
+
+    #[test]
+    fn a_folder_replaces_a_folder_as_a_whole_and_nothing_else() {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        let staged = |inner: &str| {
+            let mut staged = Staged::new(dir.path()).expect("a writable folder");
+            let write = |path: &Path| {
+                std::fs::create_dir(path)?;
+                write_synced(&path.join(inner), b"")
+            };
+            staged.add("f", write).expect("a staged folder");
+            staged.add_text("mark", "").expect("a staged file");
+            staged.commit()
+        };
+        for inner in ["old", "new"] {
+            staged(inner).expect("a committed set");
+            assert_eq!(names(dir.path()), ["f", "mark"]);
+            assert_eq!(names(&dir.path().join("f")), [inner]);
+        }
+        std::fs::remove_dir_all(dir.path().join("f")).expect("the folder");
+        std::fs::write(dir.path().join("f"), "").expect("a file in its way");
+        assert!(matches!(staged("new").expect_err("a file"), FileError::Write { .. }));
+        assert!(dir.path().join("f").is_file(), "the file is gone");
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_is_refused_and_a_new_one_is_not_made_yet() {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        std::fs::write(dir.path().join("file"), "").expect("a file");
+        for bad in ["file", "file/sub", "file/sub/sub"] {
+            let error = check_folder(&dir.path().join(bad)).expect_err(bad);
+            assert!(matches!(error, FileError::Folder { .. }), "{error}");
+        }
+        check_folder(&dir.path().join("new/folder")).expect("it could be made");
+        assert_eq!(names(dir.path()), ["file"]);
+    }
+}

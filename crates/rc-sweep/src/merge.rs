@@ -1,0 +1,118 @@
+//! The shards of a sweep as if it had been one.
+
+use std::path::{Path, PathBuf};
+
+use crate::content::{Content, Header, Rows, row_line};
+use crate::error::SweepError;
+use crate::files::{self, Staged};
+use crate::folder::{FILES, JOURNAL_FILE, ROWS_FOLDER, TABLE_FILE, fields_folder, has_fields, row_name};
+use crate::shard::Shard;
+use crate::{settings, table};
+
+/// A sweep that was put together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Merged {
+    /// All rows.
+    pub rows: Rows,
+    /// The table.
+    pub table: PathBuf,
+}
+
+/// Puts the shards in `folders` together as one sweep in `out`.
+///
+/// # Errors
+/// [`SweepError`] when the folders are not all shards of one sweep, complete, or when `out` has a sweep or cannot be
+/// written; nothing is left behind then.
+pub fn merge(folders: &[PathBuf], out: &Path) -> Result<Merged, SweepError> {
+    if let Some(name) = FILES.iter().find(|name| out.join(name).symlink_metadata().is_ok()) {
+        return Err(SweepError::InTheWay { folder: out.to_owned(), name: (*name).to_owned() });
+    }
+    files::check_folder(out)?;
+    let shards = read(folders)?;
+    let (_, first) = shards.first().ok_or(SweepError::NoShards)?;
+    let header = Header::new(first.header.shape, Shard::WHOLE, first.header.settings.clone());
+    if header.keeps_fields() {
+        check_fields(&shards)?;
+    }
+    let rows = write(out, &header, &shards)?;
+    Ok(Merged { rows, table: out.join(TABLE_FILE) })
+}
+
+/// The shards, checked to be all those of one sweep, and complete.
+fn read(folders: &[PathBuf]) -> Result<Vec<(&Path, Content)>, SweepError> {
+    let mut shards: Vec<(&Path, Content)> = Vec::new();
+    for folder in folders {
+        let content = Content::read(folder)?;
+        if let Some((first, other)) = shards.first() {
+            check_same_sweep(first, &other.header, folder, &content.header)?;
+        }
+        let shard = content.header.shard;
+        if let Some((other, _)) = shards.iter().find(|(_, other)| other.header.shard == shard) {
+            let (folder, other) = (folder.clone(), other.to_path_buf());
+            return Err(SweepError::SameShard { folder, other, shard });
+        }
+        let missing = shard.rows(content.header.shape).filter(|row| !content.rows.contains_key(row)).count();
+        if missing > 0 {
+            return Err(SweepError::MissingRows { folder: folder.clone(), shard, missing });
+        }
+        shards.push((folder, content));
+    }
+    let count = shards.first().map_or(0, |(_, content)| content.header.shard.count);
+    let given = |index: usize| shards.iter().any(|(_, content)| content.header.shard.index == index);
+    match (1..=count).find(|&index| !given(index)) {
+        None => Ok(shards),
+        Some(index) => Err(SweepError::MissingShard { shard: Shard { index, count } }),
+    }
+}
+
+fn check_same_sweep(first: &Path, there: &Header, folder: &Path, here: &Header) -> Result<(), SweepError> {
+    let (first, folder) = (first.to_owned(), folder.to_owned());
+    if let Some(difference) = settings::difference(&there.settings, &here.settings) {
+        return Err(SweepError::NotSameSweep { folder, first, difference });
+    }
+    if there.shard.count != here.shard.count {
+        return Err(SweepError::OtherDivision { folder, here: here.shard, first, there: there.shard });
+    }
+    Ok(())
+}
+
+/// Writes the sweep in one go: nothing of it appears unless all of it can be copied.
+fn write(out: &Path, header: &Header, shards: &[(&Path, Content)]) -> Result<Rows, SweepError> {
+    let rows: Rows = shards.iter().flat_map(|(_, content)| content.rows.clone()).collect();
+    let lines = rows.iter().map(|(&row, cells)| row_line(row, cells));
+    let journal: String = std::iter::once(header.to_line()).chain(lines).collect();
+    let csv = table::to_csv(&rows).map_err(|cause| SweepError::table(out, cause))?;
+    let mut staged = Staged::new(out)?;
+    if header.keeps_fields() {
+        staged.add(ROWS_FOLDER, |path| copy_fields(shards, path))?;
+    }
+    staged.add_text(JOURNAL_FILE, &journal)?;
+    staged.add(TABLE_FILE, |path| files::write_synced(path, &csv))?;
+    staged.commit()?;
+    Ok(rows)
+}
+
+/// The result folder of each row must be there before any is copied.
+fn check_fields(shards: &[(&Path, Content)]) -> Result<(), SweepError> {
+    for (folder, content) in shards {
+        if let Some(row) = content.rows.keys().find(|&&row| !has_fields(folder, row)) {
+            return Err(SweepError::MissingFields { folder: fields_folder(folder, *row) });
+        }
+    }
+    Ok(())
+}
+
+/// Copies the result folder of each row into `rows`.
+fn copy_fields(shards: &[(&Path, Content)], rows: &Path) -> std::io::Result<()> {
+    for (folder, content) in shards {
+        for &row in content.rows.keys() {
+            let to = rows.join(row_name(row));
+            std::fs::create_dir_all(&to)?;
+            for entry in std::fs::read_dir(fields_folder(folder, row))? {
+                let entry = entry?;
+                std::fs::copy(entry.path(), to.join(entry.file_name()))?;
+            }
+        }
+    }
+    Ok(())
+}

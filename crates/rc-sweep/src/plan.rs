@@ -1,0 +1,169 @@
+//! What a sweep solves: surfaces and the loads on each.
+
+use std::io;
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+use crate::content::Cells;
+use crate::error::SweepError;
+use crate::shard::Shape;
+
+pub use crate::shard::MAX_ROWS;
+
+/// What is prescribed in every row of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ControlKind {
+    /// The mean pressure (Pa).
+    Pressure,
+    /// The penetration (m).
+    Penetration,
+}
+
+impl ControlKind {
+    /// Its key in scenes and summaries.
+    #[must_use]
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Pressure => "pressure",
+            Self::Penetration => "penetration",
+        }
+    }
+}
+
+/// One surface with its loads, and the settings that determine its rows.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct PlannedSurface {
+    /// Name of the scene that it is of; empty where there is only one.
+    pub scene: String,
+    /// Seed of a random surface.
+    #[serde(skip)]
+    pub seed: Option<u64>,
+    /// The settings of the surface, an object.
+    pub surface: Value,
+    /// The settings of the contact without the load, an object.
+    pub contact: Value,
+    /// Pressures (Pa) or penetrations (m); every surface of a sweep has the same number of them.
+    pub loads: Vec<f64>,
+    /// The height map, where the surface is one. Its place does not determine the rows, its content does.
+    pub map: Option<FileMark>,
+}
+
+/// By which a file is recognised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct FileMark {
+    /// Its length.
+    pub bytes: u64,
+    /// Its checksum.
+    pub crc32: u32,
+}
+
+impl FileMark {
+    /// Reads the file.
+    ///
+    /// # Errors
+    /// [`SweepError::Read`].
+    pub fn of(path: &Path) -> Result<Self, SweepError> {
+        let fail = |cause: io::Error| SweepError::Read { path: path.to_owned(), cause: cause.to_string() };
+        let mut file = std::fs::File::open(path).map_err(fail)?;
+        let mut checksum = Checksum(crc32fast::Hasher::new());
+        let bytes = io::copy(&mut file, &mut checksum).map_err(fail)?;
+        Ok(Self { bytes, crc32: checksum.0.finalize() })
+    }
+}
+
+/// A checksum that is written to.
+struct Checksum(crc32fast::Hasher);
+
+impl io::Write for Checksum {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.update(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// A sweep. Rows are ordered by surface, then load, each as given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// What the loads are.
+    pub control: ControlKind,
+    /// The surfaces.
+    pub surfaces: Vec<PlannedSurface>,
+    /// Whether rows say which scene they are of.
+    pub names_scenes: bool,
+    /// Whether each row keeps its fields, in a folder of its own.
+    pub keeps_fields: bool,
+}
+
+/// One row of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// From 0.
+    pub index: usize,
+    /// Which of the surfaces of the plan, from 0.
+    pub surface: usize,
+    /// Pressure (Pa) or penetration (m).
+    pub load: f64,
+}
+
+impl Plan {
+    /// These surfaces under their loads; rows neither say which scene they are of nor keep fields.
+    #[must_use]
+    pub fn new(control: ControlKind, surfaces: Vec<PlannedSurface>) -> Self {
+        Self { control, surfaces, names_scenes: false, keeps_fields: false }
+    }
+
+    /// Number of surfaces and loads.
+    #[must_use]
+    pub fn shape(&self) -> Shape {
+        Shape { surfaces: self.surfaces.len(), loads: self.surfaces.first().map_or(0, |surface| surface.loads.len()) }
+    }
+
+    /// Row `index`.
+    ///
+    /// # Panics
+    /// When there is no such row.
+    #[must_use]
+    pub fn row(&self, index: usize) -> Row {
+        let loads = self.shape().loads;
+        let surface = index / loads;
+        Row { index, surface, load: self.surfaces[surface].loads[index % loads] }
+    }
+
+    /// Row `index` as a message names it, counted from 1 as in the table: `row 3 (seed 1, pressure 1e5)`.
+    ///
+    /// # Panics
+    /// When there is no such row.
+    #[must_use]
+    pub fn describe(&self, row: &Row) -> String {
+        let seed = self.surfaces[row.surface].seed.map_or_else(String::new, |seed| format!("seed {seed}, "));
+        format!("row {} ({seed}{} {:e})", row.index + 1, self.control.key(), row.load)
+    }
+
+    /// The first columns of a row: scene, if there are several, seed, load.
+    pub(crate) fn leading_cells(&self, row: &Row) -> Cells {
+        let surface = &self.surfaces[row.surface];
+        let mut cells = Map::new();
+        if self.names_scenes {
+            cells.insert("scene".into(), json!(surface.scene));
+        }
+        cells.insert("seed".into(), json!(surface.seed));
+        cells.insert("control_value".into(), json!(row.load));
+        cells
+    }
+
+    /// The settings that determine the rows: the fingerprint of a sweep, in plain text so that a difference can be named.
+    pub(crate) fn settings(&self) -> Value {
+        json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "control": self.control.key(),
+            "fields": self.keeps_fields,
+            "surfaces": self.surfaces,
+        })
+    }
+}

@@ -1,0 +1,102 @@
+//! Rows side by side: who solves which with how many threads.
+
+use std::num::NonZeroUsize;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use crate::content::Cells;
+use crate::error::SweepError;
+use crate::plan::{Plan, Row};
+use crate::row_solver::{RowError, RowSolver, RunError, Workers};
+
+/// Solves the rows `todo` of `plan` and hands each to `keep` as it is done. After a failure no row is begun; a row that is
+/// refused is left out.
+///
+/// Rows are solved side by side as far as memory allows. That is faster than all threads on one row for small surfaces, and
+/// no slower for large ones (docs/sweeps.md).
+///
+/// # Errors
+/// The first one of a row, failures first; the counts of [`RunError::Refused`] are those of the caller.
+pub(crate) fn run<S: RowSolver>(
+    plan: &Plan,
+    todo: &[usize],
+    solver: &S,
+    workers: Workers,
+    keep: &(dyn Fn(&Row, Cells) -> Result<(), SweepError> + Sync),
+) -> Result<(), RunError<S::Error>> {
+    let n_workers = workers.at_once.min(workers.threads).min(todo.len()).max(1);
+    let pools = share(workers.threads, n_workers).map(|n| pool(n.get()));
+    let pools: Vec<rayon::ThreadPool> = pools.collect::<Result<_, SweepError>>()?;
+    let work = Work { plan, todo, solver, keep, next: AtomicUsize::new(0), stop: AtomicBool::new(false) };
+    let results: Vec<Result<(), RunError<S::Error>>> = std::thread::scope(|scope| {
+        let work = &work;
+        let running: Vec<_> = pools.iter().map(|pool| scope.spawn(move || pool.install(|| work.run()))).collect();
+        running.into_iter().map(join).collect()
+    });
+    let (refused, others): (Vec<_>, Vec<_>) =
+        results.into_iter().partition(|result| matches!(result, Err(RunError::Refused { .. })));
+    others.into_iter().chain(refused).collect()
+}
+
+/// The result of a worker; a panic goes on here.
+fn join<T>(worker: std::thread::ScopedJoinHandle<'_, T>) -> T {
+    worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+}
+
+/// Threads of each worker: all of them, in parts as equal as can be.
+fn share(threads: usize, n_workers: usize) -> impl Iterator<Item = NonZeroUsize> {
+    let part = move |i| threads / n_workers + usize::from(i < threads % n_workers);
+    (0..n_workers).map(move |i| NonZeroUsize::new(part(i)).unwrap_or(NonZeroUsize::MIN))
+}
+
+fn pool(threads: usize) -> Result<rayon::ThreadPool, SweepError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|cause| SweepError::Threads { threads, cause: cause.to_string() })
+}
+
+/// What the workers share.
+struct Work<'a, S> {
+    plan: &'a Plan,
+    todo: &'a [usize],
+    solver: &'a S,
+    keep: &'a (dyn Fn(&Row, Cells) -> Result<(), SweepError> + Sync),
+    next: AtomicUsize,
+    stop: AtomicBool,
+}
+
+impl<S: RowSolver> Work<'_, S> {
+    /// Takes rows until there are none, or a row failed.
+    fn run(&self) -> Result<(), RunError<S::Error>> {
+        let mut refused = Ok(());
+        while !self.stop.load(Ordering::Relaxed) && !self.solver.should_stop() {
+            let Some(&index) = self.todo.get(self.next.fetch_add(1, Ordering::Relaxed)) else { break };
+            let row = self.plan.row(index);
+            let result = match self.solver.solve(&row) {
+                Ok(cells) => (self.keep)(&row, cells).map_err(RunError::from),
+                Err(RowError::Refused(error)) => {
+                    refused = refused.and(Err(RunError::Refused { error, missing: 0, kept: 0 }));
+                    continue;
+                }
+                Err(RowError::Failed(error)) => Err(RunError::Failed(error)),
+            };
+            if result.is_err() {
+                self.stop.store(true, Ordering::Relaxed);
+                return result;
+            }
+            self.solver.row_kept();
+        }
+        refused
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_thread_is_used_once() {
+        for (threads, n_workers, expected) in [(2, 2, &[1, 1][..]), (7, 3, &[3, 2, 2]), (4, 1, &[4]), (1, 1, &[1])] {
+            let parts: Vec<usize> = share(threads, n_workers).map(NonZeroUsize::get).collect();
+            assert_eq!(parts, expected);
+        }
+    }
+}
