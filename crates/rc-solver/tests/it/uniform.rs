@@ -4,27 +4,23 @@ use rc_core::testing::quasi_random;
 use rc_core::{DVec2, Field, Grid, Kernel, Operator, Silent};
 use rc_kernel::{Love, Spectral};
 use rc_solver::{
-    Certificate, Control, DirectSum, GridSolution, IterationError, IterationParams, Observables, Status, solve_uniform,
+    Certificate, ContactProblem, Control, DirectSum, IterationError as ProblemError, Method, Solution, SolveError,
+    SolveParams, Status,
 };
 
-const TAU: f64 = std::f64::consts::TAU;
+use crate::bumps;
 
-/// A bumpy surface without symmetry, peak-to-valley of order 0.02.
-fn bumps(nx: usize, ny: usize) -> Field {
-    Field::from_fn(Grid::new(nx, ny).expect("grid"), |DVec2 { x, y }| {
-        let wave = |a: f64, kx: f64, ky: f64, phase: f64| a * (TAU * (kx * x + ky * y + phase)).cos();
-        wave(5e-3, 1.0, 0.0, 0.1) + wave(4e-3, 1.0, 2.0, 0.37) + wave(2e-3, 3.0, -2.0, 0.8) + wave(1e-3, -2.0, 5.0, 0.5)
-    })
-}
+const TAU: f64 = std::f64::consts::TAU;
 
 fn solve(
     heights: &Field,
     kernel: &dyn Kernel,
     control: Control,
     tolerance: f64,
-) -> Result<GridSolution, IterationError> {
-    let params = IterationParams { tolerance, ..IterationParams::certified() };
-    solve_uniform(heights, kernel, control, &params, &Silent)
+) -> Result<Solution<'static>, SolveError> {
+    let params = SolveParams::to_tolerance(tolerance).by(Method::Uniform);
+    let problem = ContactProblem::new(heights, control).with_kernel(kernel);
+    Ok(problem.solve(&params, &Silent)?.into_owned())
 }
 
 /// The certificate, recomputed by direct summation from nothing but the pressure.
@@ -51,11 +47,12 @@ fn certificate_is_what_direct_summation_finds() {
         for kernel in [&Love as &dyn Kernel, &Spectral] {
             let heights = bumps(nx, ny);
             let solution = solve(&heights, kernel, Control::MeanPressure(2e-3), 1e-5).expect("solvable");
-            let (stated, found) = (solution.info.certificate, recomputed(&heights, kernel, &solution.pressure, 2e-3));
+            let (stated, found) =
+                (solution.info().certificate, recomputed(&heights, kernel, solution.pressure(), 2e-3));
             assert!(found.complementarity <= 1e-5 && found.penetration <= 1e-5, "{nx} x {ny}: {found}");
             assert!((stated.complementarity - found.complementarity).abs() < 1e-12, "stated {stated}, found {found}");
             assert!((stated.penetration - found.penetration).abs() < 1e-12, "stated {stated}, found {found}");
-            assert!(found.load <= Certificate::LOAD_TOLERANCE && solution.pressure.min() >= 0.0, "{found}");
+            assert!(found.load <= Certificate::LOAD_TOLERANCE && solution.pressure().min() >= 0.0, "{found}");
         }
     }
 }
@@ -65,7 +62,11 @@ fn tight_tolerances_are_reached_at_every_load() {
     let heights = bumps(96, 64);
     for mean_pressure in [1e-7, 1e-5, 1e-3, 1e-2, 3e-2, 5e-2] {
         let solution = solve(&heights, &Love, Control::MeanPressure(mean_pressure), 1e-12).expect("solvable");
-        assert!(solution.info.certificate.penetration <= 1e-12, "at {mean_pressure}: {}", solution.info.certificate);
+        assert!(
+            solution.info().certificate.penetration <= 1e-12,
+            "at {mean_pressure}: {}",
+            solution.info().certificate
+        );
     }
 }
 
@@ -74,13 +75,13 @@ fn penetration_control_inverts_pressure_control() {
     let heights = bumps(128, 128);
     for mean_pressure in [1e-6, 1e-4, 2e-3, 1e-2, 2e-2] {
         let by_pressure = solve(&heights, &Spectral, Control::MeanPressure(mean_pressure), 1e-10).expect("solvable");
-        assert_eq!(by_pressure.status, Status::Converged, "partial contact is meant");
-        let penetration = Control::Penetration(by_pressure.info.penetration);
+        assert_eq!(by_pressure.status(), Status::Converged, "partial contact is meant");
+        let penetration = Control::Penetration(by_pressure.info().penetration);
         let by_penetration = solve(&heights, &Spectral, penetration, 1e-10).expect("solvable");
-        let stiffness = by_pressure.contact_stiffness(&Spectral);
+        let stiffness = by_pressure.stiffness();
         // Both errors are penetrations below 1e-10 of the range 0.02; the stiffness turns them into pressures.
         let allowed = 4e-12 * stiffness;
-        let difference = (by_penetration.info.mean_pressure - mean_pressure).abs();
+        let difference = (by_penetration.info().mean_pressure - mean_pressure).abs();
         assert!(difference <= allowed, "at {mean_pressure}: differs by {difference:e}, allowed {allowed:e}");
     }
 }
@@ -99,24 +100,24 @@ fn full_contact_is_exact_without_iteration() {
             + wave(1e-3, -2.0, 5.0, 0.5)
     });
     let solution = solve(&heights, &Spectral, Control::MeanPressure(0.1), 1e-6).expect("solvable");
-    assert_eq!((solution.status, solution.info.fine_iterations()), (Status::FullContact, 0));
-    for (p, e) in solution.pressure.values().iter().zip(exact.values()) {
+    assert_eq!((solution.status(), solution.info().fine_iterations()), (Status::FullContact, 0));
+    for (p, e) in solution.pressure().values().iter().zip(exact.values()) {
         assert!((p - e).abs() <= 1e-12 * e, "pressure {p}, exact {e}");
     }
-    assert!((solution.info.penetration - solution.info.penetration_full_contact).abs() < 1e-15);
-    assert!(solution.gap.max() < 1e-15, "gap {}", solution.gap.max());
+    assert!((solution.info().penetration - solution.info().penetration_full_contact).abs() < 1e-15);
+    assert!(solution.gap().max() < 1e-15, "gap {}", solution.gap().max());
 }
 
 #[test]
 fn load_just_below_full_contact_leaves_a_gap_and_just_above_none() {
     let heights = bumps(64, 64);
     let full = solve(&heights, &Love, Control::MeanPressure(1.0), 1e-6).expect("solvable");
-    let threshold = 1.0 - full.pressure.min();
+    let threshold = 1.0 - full.pressure().min();
     let above = solve(&heights, &Love, Control::MeanPressure(threshold * (1.0 + 1e-9)), 1e-6).expect("solvable");
-    assert_eq!(above.status, Status::FullContact);
+    assert_eq!(above.status(), Status::FullContact);
     let below = solve(&heights, &Love, Control::MeanPressure(threshold * 0.99), 1e-9).expect("solvable");
-    assert_eq!(below.status, Status::Converged);
-    assert!(below.gap.max() > 0.0 && below.pressure.min() == 0.0, "a gap opens in the deepest valley");
+    assert_eq!(below.status(), Status::Converged);
+    assert!(below.gap().max() > 0.0 && below.pressure().min() == 0.0, "a gap opens in the deepest valley");
 }
 
 #[test]
@@ -127,12 +128,13 @@ fn stiffness_is_the_slope_of_load_over_penetration() {
             solve(&heights, &Love, Control::MeanPressure(factor * mean_pressure), 1e-11).expect("solvable")
         };
         let (low, middle, high) = (at(0.999), at(1.0), at(1.001));
-        let slope = (high.info.mean_pressure - low.info.mean_pressure) / (high.info.penetration - low.info.penetration);
-        let stiffness = middle.contact_stiffness(&Love);
+        let slope =
+            (high.info().mean_pressure - low.info().mean_pressure) / (high.info().penetration - low.info().penetration);
+        let stiffness = middle.stiffness();
         // The contact set changes by whole elements between the two loads: a few per mille of the slope.
         assert!((stiffness / slope - 1.0).abs() < 5e-3, "at {mean_pressure}: {stiffness} against {slope}");
-        let work = high.info.elastic_energy - low.info.elastic_energy;
-        let expected = mean_pressure * (high.info.penetration - low.info.penetration);
+        let work = high.info().elastic_energy - low.info().elastic_energy;
+        let expected = mean_pressure * (high.info().penetration - low.info().penetration);
         assert!((work / expected - 1.0).abs() < 1e-4, "dU = {work:e}, σ0 dΔ = {expected:e}");
     }
 }
@@ -153,23 +155,23 @@ fn a_rectangular_cell_is_a_part_of_the_square_of_its_copies() {
         for kernel in [&Love as &dyn Kernel, &Spectral] {
             for control in [Control::MeanPressure(2e-3), Control::Penetration(8e-3)] {
                 let [a, b] = [&part, &whole].map(|heights| solve(heights, kernel, control, 1e-9).expect("solvable"));
-                let scale = b.pressure.max();
-                for (i, p) in b.pressure.values().iter().enumerate() {
-                    let same = a.pressure.values()[i % part.grid().len()];
+                let scale = b.pressure().max();
+                for (i, p) in b.pressure().values().iter().enumerate() {
+                    let same = a.pressure().values()[i % part.grid().len()];
                     assert!((p - same).abs() < 1e-5 * scale, "{nx} x {ny}, element {i}: {same} and {p}");
                 }
                 let close = |what: &str, a: f64, b: f64| {
                     assert!((a / b - 1.0).abs() < 1e-5, "{what} of {nx} x {ny}: {a}, of {copies} copies {b}");
                 };
-                let [of_a, of_b] = [&a, &b].map(|solution| Observables::of(solution, kernel));
-                close("penetration", a.info.penetration, b.info.penetration);
-                close("mean pressure", a.info.mean_pressure, b.info.mean_pressure);
+                let [of_a, of_b] = [&a, &b].map(|solution| *solution.observables());
+                close("penetration", a.info().penetration, b.info().penetration);
+                close("mean pressure", a.info().mean_pressure, b.info().mean_pressure);
                 close("area", of_a.area.fraction, of_b.area.fraction);
                 close("perimeter", copies as f64 * of_a.area.perimeter, of_b.area.perimeter);
                 close("rms pressure", of_a.rms_pressure_corrected, of_b.rms_pressure_corrected);
                 close("mean gap", of_a.mean_gap, of_b.mean_gap);
                 close("energy of a unit of area", of_a.elastic_energy, of_b.elastic_energy);
-                let [of_a, of_b] = [&a, &b].map(|solution| solution.contact_stiffness(kernel));
+                let [of_a, of_b] = [&a, &b].map(|solution| solution.stiffness());
                 assert!((of_a / of_b - 1.0).abs() < 1e-3, "stiffness {of_a}, of {copies} copies {of_b}");
             }
         }
@@ -187,8 +189,9 @@ fn results_are_bitwise_equal_for_any_number_of_threads() {
         let one = run(1, control);
         for threads in [2, 3] {
             let other = run(threads, control);
-            assert!(one == other, "1 and {threads} threads differ under {control:?}");
-            let (a, b) = (Observables::of(&one, &Love), Observables::of(&other, &Love));
+            let fields = one.pressure() == other.pressure() && one.gap() == other.gap();
+            assert!(fields && one.info() == other.info(), "1 and {threads} threads differ under {control:?}");
+            let (a, b) = (one.observables(), other.observables());
             assert!(a == b, "observables differ: {a:?}, {b:?}");
         }
     }
@@ -203,7 +206,7 @@ fn white_noise_is_solved_and_scales_exactly() {
     // The problem is linear: powers of two change nothing but exponents, at any scale.
     let scale = 2.0_f64.powi(-120);
     let scaled = solve(&noise(scale), &Love, Control::MeanPressure(scale), 1e-8).expect("solvable");
-    for (a, b) in solution.pressure.values().iter().zip(scaled.pressure.values()) {
+    for (a, b) in solution.pressure().values().iter().zip(scaled.pressure().values()) {
         assert!((a * scale - b).abs() <= 1e-12 * scale, "{a} scaled is not {b:e}");
     }
 }
@@ -212,20 +215,18 @@ fn white_noise_is_solved_and_scales_exactly() {
 fn flat_surface_is_in_full_contact_at_any_load() {
     let flat = Field::from_fn(Grid::new(16, 8).expect("grid"), |_| 0.25);
     let solution = solve(&flat, &Love, Control::MeanPressure(1e-9), 1e-6).expect("solvable");
-    assert_eq!(solution.status, Status::FullContact);
-    assert!(solution.pressure.values().iter().all(|&p| (p - 1e-9).abs() < 1e-24));
+    assert_eq!(solution.status(), Status::FullContact);
+    assert!(solution.pressure().values().iter().all(|&p| (p - 1e-9).abs() < 1e-24));
 }
 
 #[test]
 fn running_out_of_iterations_is_an_error_that_carries_the_residuals() {
     let heights = bumps(64, 64);
-    let params = IterationParams { tolerance: 1e-9, max_iterations: 2 };
-    let result = solve_uniform(&heights, &Love, Control::MeanPressure(1e-3), &params, &Silent);
-    let Err(IterationError::NotConverged { certificate, solution, .. }) = result else {
-        panic!("expected NotConverged")
-    };
+    let params = SolveParams { max_iterations: 2, ..SolveParams::to_tolerance(1e-9).by(Method::Uniform) };
+    let result = ContactProblem::new(&heights, Control::MeanPressure(1e-3)).solve(&params, &Silent);
+    let Err(SolveError::NotConverged { certificate, solution, .. }) = result else { panic!("expected NotConverged") };
     assert!(certificate.penetration > 1e-9, "{certificate}");
-    let found = recomputed(&heights, &Love, &solution.pressure, 1e-3);
+    let found = recomputed(&heights, &Love, solution.pressure(), 1e-3);
     assert!((found.penetration - certificate.penetration).abs() < 1e-12, "stated {certificate}, found {found}");
 }
 
@@ -234,27 +235,39 @@ fn bad_input_is_refused_with_its_value() {
     let heights = bumps(16, 16);
     let refused = |control, tolerance| solve(&heights, &Love, control, tolerance).expect_err("bad input");
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(refused(Control::MeanPressure(value), 1e-6), IterationError::MeanPressure { .. }), "{value}");
-        assert!(matches!(refused(Control::Penetration(value), 1e-6), IterationError::Penetration { .. }), "{value}");
+        assert!(
+            matches!(
+                refused(Control::MeanPressure(value), 1e-6),
+                SolveError::Problem(ProblemError::MeanPressure { .. })
+            ),
+            "{value}"
+        );
+        assert!(
+            matches!(refused(Control::Penetration(value), 1e-6), SolveError::Problem(ProblemError::Penetration { .. })),
+            "{value}"
+        );
     }
     let full = heights.max() - heights.mean();
     assert!(
-        matches!(refused(Control::Penetration(full), 1e-6), IterationError::Penetration { full_contact, .. } if full_contact.to_bits() == full.to_bits())
+        matches!(refused(Control::Penetration(full), 1e-6), SolveError::Problem(ProblemError::Penetration { full_contact, .. }) if full_contact.to_bits() == full.to_bits())
     );
     for tolerance in [0.0, 1.0, -1e-6, 1e-17, f64::NAN] {
         assert!(
-            matches!(refused(Control::MeanPressure(1e-3), tolerance), IterationError::Tolerance { .. }),
+            matches!(
+                refused(Control::MeanPressure(1e-3), tolerance),
+                SolveError::Problem(ProblemError::Tolerance { .. })
+            ),
             "{tolerance}"
         );
     }
     let mut broken = heights.clone();
     broken.values_mut()[16 * 3 + 5] = f64::NAN;
     let error = solve(&broken, &Love, Control::MeanPressure(1e-3), 1e-6).expect_err("NaN");
-    assert!(matches!(error, IterationError::Height { ix: 5, iy: 3, .. }), "{error}");
+    assert!(matches!(error, SolveError::Problem(ProblemError::Height { ix: 5, iy: 3, .. })), "{error}");
     // Squares of what such heights lead to underflow, or their range is not a number.
     for size in [1e-305, 1.7e308] {
         let scaled = Field::from_fn(heights.grid(), |at| if at.x < 0.5 { size } else { -size });
         let error = solve(&scaled, &Love, Control::MeanPressure(1e-3), 1e-6).expect_err("a size out of range");
-        assert!(matches!(error, IterationError::HeightRange { .. }), "{error}");
+        assert!(matches!(error, SolveError::Problem(ProblemError::HeightRange { .. })), "{error}");
     }
 }
