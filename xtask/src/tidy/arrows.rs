@@ -8,7 +8,7 @@ use crate::repository::Sources;
 /// What each room may use; rooms that are not listed here may use nothing until ARCHITECTURE.md gives them an arrow.
 const ARROWS: &[(&str, &[&str])] = &[
     ("rc-core", &[]),
-    ("rc-fft", &[]),
+    ("rc-fft", &["rc-core"]),
     ("rc-fractal", &["rc-core", "rc-fft"]),
     ("rc-heights", &["rc-core"]),
     ("rc-kernel", &["rc-core"]),
