@@ -1,8 +1,20 @@
-//! Plans of Fourier transforms, in both precisions.
+//! Fourier transforms of real fields on a grid: plans, row and column passes, scratch.
+//!
+//! A transform of two dimensions is a pass over rows and a pass over columns, each parallel over blocks that stay in cache. This crate is
+//! the only place that such passes are written:
+//!
+//! | item | what |
+//! |---|---|
+//! | [`Convolution`] | field → inverse FFT( symbol · FFT(field) ), again and again on one grid, in `f32` or `f64` |
+//! | [`SymbolTable`] | the symbol of a convolution, tabulated |
+//! | [`half_plane_values`] | one forward transform of a real field, every wave of the half plane kx ≥ 0 mapped to a number |
+//! | [`field_of_columns`] | one inverse transform of columns kx = 0, 1, … of waves, as many as there are, to a real field |
+//! | [`Plan`] | transforms of one dimension |
+//!
+//! Results are bitwise the same for any number of threads: work is divided over rows and columns, never inside one transform.
 //!
 //! `rustfft` is generic over the number type, so every crate that makes a plan compiles all of its algorithms, for each instruction set
-//! and precision: a million lines of LLVM code, and minutes for each change of `rc-solver`. Here they are compiled once; other crates get
-//! a plan as a trait object.
+//! and precision: a million lines of LLVM code. Here they are compiled once; other crates get a plan as a trait object.
 //!
 //! ```
 //! use rc_fft::{Complex, Plan};
@@ -13,50 +25,15 @@
 //! assert_eq!(values[1], Complex::new(2.0, 0.0));
 //! ```
 
-use std::sync::Arc;
+mod convolution;
+mod half_plane;
+mod plan;
+mod symbol_table;
 
+pub use convolution::{BLOCK_ROWS, Convolution};
+pub use half_plane::{field_of_columns, half_plane_values};
+pub use plan::Plan;
 pub use realfft::{ComplexToReal, RealToComplex};
-use realfft::{FftNum, RealFftPlanner};
 pub use rustfft::Fft;
-use rustfft::FftPlanner;
 pub use rustfft::num_complex::{Complex, Complex64};
-
-/// `f32` or `f64`. Transforms are not normalised: there and back multiplies by the length.
-pub trait Plan: FftNum {
-    /// `Σ x_j exp(-2πi jk/n)` of `n` complex values, in place.
-    fn complex_forward(n: usize) -> Arc<dyn Fft<Self>>;
-
-    /// `Σ x_j exp(+2πi jk/n)` of `n` complex values, in place.
-    fn complex_inverse(n: usize) -> Arc<dyn Fft<Self>>;
-
-    /// From `n` real values to n/2 + 1 complex ones.
-    fn real_forward(n: usize) -> Arc<dyn RealToComplex<Self>>;
-
-    /// From n/2 + 1 complex values to `n` real ones.
-    fn real_inverse(n: usize) -> Arc<dyn ComplexToReal<Self>>;
-}
-
-macro_rules! plan {
-    ($real:ty) => {
-        impl Plan for $real {
-            fn complex_forward(n: usize) -> Arc<dyn Fft<Self>> {
-                FftPlanner::new().plan_fft_forward(n)
-            }
-
-            fn complex_inverse(n: usize) -> Arc<dyn Fft<Self>> {
-                FftPlanner::new().plan_fft_inverse(n)
-            }
-
-            fn real_forward(n: usize) -> Arc<dyn RealToComplex<Self>> {
-                RealFftPlanner::new().plan_fft_forward(n)
-            }
-
-            fn real_inverse(n: usize) -> Arc<dyn ComplexToReal<Self>> {
-                RealFftPlanner::new().plan_fft_inverse(n)
-            }
-        }
-    };
-}
-
-plan!(f32);
-plan!(f64);
+pub use symbol_table::SymbolTable;

@@ -33,7 +33,6 @@ mod params;
 mod power;
 mod radial;
 mod surface;
-mod synthesis;
 
 pub use hurst::{HurstFit, fit_hurst};
 pub use moments::{Moments, moments_of_grid};

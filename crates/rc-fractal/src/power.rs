@@ -1,11 +1,7 @@
-//! Squared wave amplitudes of a height map, by a real-to-complex Fourier transform in two passes.
+//! Squared wave amplitudes of a height map.
 
-use rayon::prelude::*;
 use rc_core::Field;
-use rc_fft::{Complex64, Plan};
-
-/// Columns that the second pass gathers at once, so that every cache line of the first pass's result is read once.
-const PANEL: usize = 8;
+use rc_fft::half_plane_values;
 
 /// |`a_k`|² of a height map without its mean, for the half plane 0 ≤ kx ≤ nx/2.
 pub(crate) struct PowerSpectrum {
@@ -35,25 +31,8 @@ impl PowerSpectrum {
     /// Transforms a height map. Bitwise the same for any number of threads: each value is computed by one of them.
     pub(crate) fn of(heights: &Field) -> Self {
         let (nx, ny) = (heights.grid().nx(), heights.grid().ny());
-        let width = nx / 2 + 1;
-        let rows = transform_rows(heights, width);
-        let fft = f64::complex_forward(ny);
         let per_element = 1.0 / (nx * ny) as f64;
-        let buffers = || (vec![Complex64::ZERO; PANEL * ny], vec![Complex64::ZERO; fft.get_inplace_scratch_len()]);
-        let mut values = vec![0.0; width * ny];
-        values.par_chunks_mut(PANEL * ny).enumerate().for_each_init(buffers, |(panel, scratch), (number, powers)| {
-            let panel = &mut panel[..powers.len()];
-            let (first, n_columns) = (number * PANEL, powers.len() / ny);
-            for (iy, row) in rows.chunks_exact(width).enumerate() {
-                for (column, &wave) in row[first..first + n_columns].iter().enumerate() {
-                    panel[column * ny + iy] = wave;
-                }
-            }
-            fft.process_with_scratch(panel, scratch);
-            for (power, wave) in powers.iter_mut().zip(panel) {
-                *power = (*wave * per_element).norm_sqr();
-            }
-        });
+        let mut values = half_plane_values(heights, heights.mean(), |wave| (wave * per_element).norm_sqr());
         // Rounding leaves a trace of the mean, which is not a wave.
         values[0] = 0.0;
         Self { nx, ny, values }
@@ -68,20 +47,4 @@ impl PowerSpectrum {
             values,
         })
     }
-}
-
-/// The transform of every row less the mean height: ny rows of `width` complex numbers.
-fn transform_rows(heights: &Field, width: usize) -> Vec<Complex64> {
-    let nx = heights.grid().nx();
-    let mean = heights.mean();
-    let fft = f64::real_forward(nx);
-    let mut rows = vec![Complex64::ZERO; width * heights.grid().ny()];
-    let buffers = || (fft.make_input_vec(), fft.make_scratch_vec());
-    rows.par_chunks_exact_mut(width).enumerate().for_each_init(buffers, |(row, scratch), (iy, spectrum)| {
-        for (centred, height) in row.iter_mut().zip(heights.row(iy)) {
-            *centred = height - mean;
-        }
-        fft.process_with_scratch(row, spectrum, scratch).expect("every length is the plan's own");
-    });
-    rows
 }

@@ -4,12 +4,11 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 use rc_core::{DVec2, Field, Grid, HeightField};
-use rc_fft::Complex64;
+use rc_fft::{Complex64, field_of_columns};
 use thiserror::Error;
 
 use crate::draws::draw_column;
 use crate::moments::SpectralSums;
-use crate::synthesis::synthesise;
 use crate::{Moments, Normalisation, SpectrumError, SpectrumParams};
 
 /// One realisation of a [`SpectrumParams`]: a band-limited random surface of zero mean height on the unit cell.
@@ -145,7 +144,7 @@ impl HeightField for Surface {
 
     fn sample(&self, grid: Grid) -> Field {
         if grid.has_square_cell() {
-            synthesise(&self.columns, grid)
+            field_of_columns(&self.columns, grid)
         } else {
             Field::from_fn(grid, |at| self.height(at))
         }
@@ -177,7 +176,7 @@ fn column_sums((kx, column): (usize, &Vec<Complex64>)) -> SpectralSums {
 }
 
 /// Largest ky of a column stored from -reach to reach.
-pub(crate) fn reach(column: &[Complex64]) -> usize {
+fn reach(column: &[Complex64]) -> usize {
     column.len() / 2
 }
 

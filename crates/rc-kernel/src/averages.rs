@@ -7,8 +7,9 @@
 
 use rc_core::DVec2;
 
+use crate::chebyshev::{coefficients_in_two, node, polynomials, to_powers};
+use crate::gauss_legendre::gauss_legendre;
 use crate::lattice::ewald_remainder;
-use crate::polynomial::{chebyshev_coefficients, chebyshev_point, chebyshev_values, gauss_legendre, to_powers};
 
 /// Largest half side of a square that is averaged over: ψ is fitted on the cell with a margin as wide. Beyond the margin
 /// are the nearest images, where ψ is singular; with 1/8, [`TERMS`] are enough for 1e-14.
@@ -42,7 +43,7 @@ type Means = [f64; TERMS];
 
 impl Remainder {
     pub(crate) fn new() -> Self {
-        let point = |i: usize| REACH * (0.5 + 0.5 * chebyshev_point(i, TERMS)).sqrt();
+        let point = |i: usize| REACH * (0.5 + 0.5 * node(i, TERMS)).sqrt();
         let mut values = vec![0.0; TERMS * TERMS];
         for i in 0..TERMS {
             for j in 0..=i {
@@ -51,7 +52,7 @@ impl Remainder {
                 values[j * TERMS + i] = value;
             }
         }
-        Self { coefficients: chebyshev_coefficients(&values, TERMS), gauss: gauss_legendre() }
+        Self { coefficients: coefficients_in_two(&values, TERMS), gauss: gauss_legendre() }
     }
 
     /// Mean of ψ over the square of half-side `half_side` ≤ [`MAX_HALF_SIDE`] around `centre`, |x|, |y| ≤ 1/2.
@@ -65,7 +66,7 @@ impl Remainder {
         let mut means = [0.0; TERMS];
         for &(point, weight) in &self.gauss {
             let u = (x + half_side * point) / REACH;
-            let values = chebyshev_values::<TERMS>(2.0 * u * u - 1.0);
+            let values = polynomials::<TERMS>(2.0 * u * u - 1.0);
             for (mean, value) in means.iter_mut().zip(values) {
                 *mean += weight * value;
             }
@@ -103,14 +104,14 @@ impl MeanTable {
         let half_patch = 0.25 / PATCHES as f64;
         let point = |at: usize| {
             let (patch, point) = (at / DEGREES, at % DEGREES);
-            half_patch * ((2 * patch + 1) as f64 + chebyshev_point(point, DEGREES))
+            half_patch * ((2 * patch + 1) as f64 + node(point, DEGREES))
         };
         let means: Vec<Means> = (0..PATCHES * DEGREES).map(|at| remainder.means(point(at), half_side)).collect();
         let contracted: Vec<Means> = means.iter().map(|means| remainder.contract(means)).collect();
         let patch = |i: usize, j: usize| {
             let (x, y) = (&contracted[i * DEGREES..][..DEGREES], &means[j * DEGREES..][..DEGREES]);
             let values: Vec<f64> = x.iter().flat_map(|x| y.iter().map(move |y| dot(x, y))).collect();
-            to_powers(&chebyshev_coefficients(&values, DEGREES))
+            to_powers(&coefficients_in_two(&values, DEGREES))
         };
         Self { patches: (0..PATCHES).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| patch(i, j)).collect() }
     }
@@ -119,11 +120,11 @@ impl MeanTable {
     /// [`MAX_HALF_SIDE`].
     pub(crate) fn of_means(mean: impl Fn(DVec2) -> f64) -> Self {
         let half_patch = 0.25 / PATCHES as f64;
-        let point = |patch: usize, at: usize| half_patch * ((2 * patch + 1) as f64 + chebyshev_point(at, DEGREES));
+        let point = |patch: usize, at: usize| half_patch * ((2 * patch + 1) as f64 + node(at, DEGREES));
         let patch = |i: usize, j: usize| {
             let points =
                 (0..DEGREES * DEGREES).map(|at| mean(DVec2::new(point(i, at / DEGREES), point(j, at % DEGREES))));
-            to_powers(&chebyshev_coefficients(&points.collect::<Vec<f64>>(), DEGREES))
+            to_powers(&coefficients_in_two(&points.collect::<Vec<f64>>(), DEGREES))
         };
         Self { patches: (0..PATCHES).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| patch(i, j)).collect() }
     }

@@ -8,8 +8,8 @@ use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
 use rc_core::DVec2;
 
+use crate::gauss_legendre::gauss_legendre;
 use crate::love_displacement;
-use crate::polynomial::gauss_legendre;
 
 /// Images and waves per direction. Both sums end below 1e-17 of φ.
 const SHELLS: i32 = 3;

@@ -33,13 +33,14 @@
 mod alias_sum;
 mod averages;
 mod bessel;
+mod chebyshev;
 mod error;
+mod gauss_legendre;
 mod lattice;
 mod love;
 mod love_symbol;
 mod multipoles;
 mod periodic;
-mod polynomial;
 mod spectral;
 mod split;
 mod square;

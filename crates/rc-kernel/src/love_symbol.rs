@@ -16,6 +16,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use rc_core::Grid;
 
 use crate::alias_sum::{AliasSum, Damping, TERMS, alias_range, alternating_weights, phase};
+use crate::chebyshev;
 
 /// Chebyshev nodes per direction: the interpolant converges like 14^-nodes or faster (for squares like 38^-nodes).
 const NODES: usize = 14;
@@ -55,7 +56,7 @@ impl LoveSymbol {
             let table = interpolate(|theta| sum.outside_row(theta));
             (Axis::new(n_long, per_long, &weighted_row()), Axis::new(n_short, per_short, &block(0)), table)
         };
-        let collapse = |&mapped: &f64| std::array::from_fn(|j| chebyshev(&table[j], mapped));
+        let collapse = |&mapped: &f64| std::array::from_fn(|j| chebyshev::sum(&table[j], mapped));
         let rest = long.mapped.iter().map(collapse).collect();
         Self { swapped, long, short, rest }
     }
@@ -66,7 +67,7 @@ impl LoveSymbol {
             return 0.0;
         }
         let (k_long, k_short) = if self.swapped { (ky, kx) } else { (kx, ky) };
-        let mut sums = [chebyshev(&self.rest[k_long], self.short.mapped[k_short]), 0.0];
+        let mut sums = [chebyshev::sum(&self.rest[k_long], self.short.mapped[k_short]), 0.0];
         for short in self.short.near(k_short) {
             let ([damping], [squared]) = (short.damping, short.squared);
             for long in self.long.near(k_long) {
@@ -139,32 +140,16 @@ fn weighted_row() -> Vec<(f64, f64)> {
 /// Chebyshev coefficients in (θ² of the short side, θ² of the long side) of the interpolant of `value((θ long, θ short))`
 /// on [0, π/2]².
 fn interpolate(value: impl Fn((f64, f64)) -> f64) -> [[f64; NODES]; NODES] {
-    let theta = |node: usize| FRAC_PI_2 * f64::midpoint(1.0, node_angle(node).cos()).sqrt();
+    let theta = |node: usize| FRAC_PI_2 * f64::midpoint(1.0, chebyshev::node(node, NODES)).sqrt();
     let over_short: [[f64; NODES]; NODES] =
-        std::array::from_fn(|i| coefficients(&std::array::from_fn(|j| value((theta(i), theta(j))))));
-    std::array::from_fn(|j| coefficients(&std::array::from_fn(|i| over_short[i][j])))
+        std::array::from_fn(|i| coefficients(std::array::from_fn(|j| value((theta(i), theta(j))))));
+    std::array::from_fn(|j| coefficients(std::array::from_fn(|i| over_short[i][j])))
 }
 
 /// Chebyshev coefficients of the interpolant of values at the nodes.
-fn coefficients(values: &[f64; NODES]) -> [f64; NODES] {
-    std::array::from_fn(|k| {
-        let terms = values.iter().enumerate().map(|(i, value)| value * (k as f64 * node_angle(i)).cos());
-        terms.sum::<f64>() * if k == 0 { 1.0 } else { 2.0 } / NODES as f64
-    })
-}
-
-/// The nodes are the cosines of these angles.
-fn node_angle(node: usize) -> f64 {
-    PI * (node as f64 + 0.5) / NODES as f64
-}
-
-/// Σ c_k T_k(x), by Clenshaw's recurrence.
-fn chebyshev(coefficients: &[f64; NODES], x: f64) -> f64 {
-    let (mut b1, mut b2) = (0.0, 0.0);
-    for &c in coefficients[1..].iter().rev() {
-        (b1, b2) = (c + 2.0 * x * b1 - b2, b1);
-    }
-    coefficients[0] + x * b1 - b2
+fn coefficients(values: [f64; NODES]) -> [f64; NODES] {
+    let coefficients = chebyshev::coefficients(&values);
+    std::array::from_fn(|k| coefficients[k])
 }
 
 #[cfg(test)]

@@ -9,6 +9,8 @@
 
 use std::sync::LazyLock;
 
+use crate::chebyshev;
+
 /// Pairs of orders 2i, 2i + 1 in (d/R)²: enough at a distance of 2.5 half-sides.
 const PAIRS: usize = 16;
 
@@ -42,17 +44,11 @@ pub(crate) fn multipole_series(inverse: f64, slope: f64) -> f64 {
 /// The angular sums of orders 2i and 2i + 1 as polynomials in c: cos(4aφ) is the Chebyshev polynomial T_a(c).
 fn powers_of_cosine(i: usize) -> [[f64; 2]; PAIRS] {
     let mut powers = [[0.0; 2]; PAIRS];
-    let (mut previous, mut chebyshev) = ([0.0; PAIRS], [0.0; PAIRS]);
-    chebyshev[0] = 1.0;
-    for a in 0..=i {
+    for (a, polynomial) in chebyshev::powers::<PAIRS>().iter().enumerate().take(i + 1) {
         let multipoles = [multipole(4 * i, 4 * a), multipole(4 * i + 2, 4 * a)];
-        for (power, t) in powers.iter_mut().zip(chebyshev) {
+        for (power, t) in powers.iter_mut().zip(polynomial) {
             *power = [power[0] + multipoles[0] * t, power[1] + multipoles[1] * t];
         }
-        // T_1 = c T_0, and T_(a+1) = 2c T_a - T_(a-1).
-        let factor = if a == 0 { 1.0 } else { 2.0 };
-        let shifted = |k: usize| if k == 0 { 0.0 } else { factor * chebyshev[k - 1] };
-        (previous, chebyshev) = (chebyshev, std::array::from_fn(|k| shifted(k) - previous[k]));
     }
     powers
 }

@@ -36,7 +36,6 @@ mod control;
 mod dense;
 mod descent;
 mod error;
-mod fft;
 mod gap_distribution;
 mod gauss_seidel;
 mod method;

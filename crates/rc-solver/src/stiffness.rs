@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 use rc_core::{Field, Kernel};
+use rc_fft::{Convolution, SymbolTable};
 
 use crate::descent::Engine;
-use crate::fft::{Convolution, SymbolTable};
 use crate::problem::power_of_two_near;
 
 /// The iteration ends when a step adds less than this fraction; what later steps would add is of the same order.

@@ -5,8 +5,8 @@ use std::f64::consts::FRAC_1_PI;
 use rc_core::DVec2;
 
 use super::window::Window;
+use crate::gauss_legendre::gauss_legendre;
 use crate::love_displacement;
-use crate::polynomial::gauss_legendre;
 
 /// Points per direction of the rule on one element.
 const POINTS: usize = 8;

@@ -5,7 +5,8 @@
 //! ```
 
 use crate::bessel::bessel_series;
-use crate::polynomial::gauss_legendre;
+use crate::chebyshev::Series;
+use crate::gauss_legendre::gauss_legendre;
 
 /// Terms of the expansions before those are dropped that do not matter: enough for rounding accuracy up to β = 24 and cutoffs
 /// of 24 elements.
@@ -15,9 +16,9 @@ const TERMS: usize = 64;
 #[derive(Clone, Debug)]
 pub(crate) struct Window {
     /// Ψ(x)/x in Chebyshev polynomials of x², of which it is an entire function.
-    rise: Vec<f64>,
+    rise: Series,
     /// `2 ∫₀¹ χ(x) J₀(q x) dx` in Chebyshev polynomials of q², q ≤ `reach`.
-    transform: Vec<f64>,
+    transform: Series,
     /// q·c at the corner of the coarser level's Brillouin zone, and a little more.
     reach: f64,
 }
@@ -28,7 +29,7 @@ impl Window {
         let rule = gauss_legendre::<TERMS>();
         let total = if shape == 0.0 { 1.0 } else { shape.sinh() / shape };
         // Ψ(x)/x = ∫₀¹ I₀(β√(1 - x² s²)) ds / total.
-        let rise = chebyshev(|square| {
+        let rise = Series::new(TERMS, |square| {
             let integral: f64 = rule
                 .iter()
                 .map(|(s, w)| w * bessel_i0(shape * (1.0 - square * (0.5 + 0.5 * s).powi(2)).max(0.0).sqrt()))
@@ -39,10 +40,10 @@ impl Window {
             .iter()
             .map(|(s, w)| {
                 let x = 0.5 + 0.5 * s;
-                (x, 2.0 * w * (1.0 - x * clenshaw(&rise, x * x)))
+                (x, 2.0 * w * (1.0 - x * rise.at(x * x)))
             })
             .collect();
-        let transform = chebyshev(|square| {
+        let transform = Series::new(TERMS, |square| {
             let q = reach * square.sqrt();
             values.iter().map(|(x, weight)| weight * libm::j0(q * x)).sum()
         });
@@ -51,7 +52,7 @@ impl Window {
 
     /// Ψ(x)/x.
     pub(super) fn rise_over(&self, x: f64) -> f64 {
-        if x < 1.0 { clenshaw(&self.rise, x * x) } else { 1.0 / x }
+        if x < 1.0 { self.rise.at(x * x) } else { 1.0 / x }
     }
 
     /// ∫∫ |∂²f/∂x²| of f = Ψ(r)/r over the plane.
@@ -65,7 +66,7 @@ impl Window {
         let mean = |second: f64, first: f64| {
             cosines.iter().map(|c| (second * c + first * (1.0 - c)).abs()).sum::<f64>() / f64::from(angles)
         };
-        let f = |r: f64| clenshaw(&self.rise, r * r);
+        let f = |r: f64| self.rise.at(r * r);
         let step = 1e-3;
         let inside: f64 = rule
             .iter()
@@ -84,40 +85,13 @@ impl Window {
     /// Transform of `χ(r)/(π r)` at the wavenumber `q`: `2 ∫₀¹ χ(r) J₀(q r) dr`. Beyond the tabulated range it is extended
     /// by its asymptote, 2/q.
     pub(super) fn short_range(&self, q: f64) -> f64 {
-        if q < self.reach { clenshaw(&self.transform, (q / self.reach).powi(2)) } else { 2.0 / q }
+        if q < self.reach { self.transform.at((q / self.reach).powi(2)) } else { 2.0 / q }
     }
 }
 
 /// Modified Bessel function I₀.
 fn bessel_i0(x: f64) -> f64 {
     bessel_series(0.25 * x * x, 0)
-}
-
-/// Chebyshev coefficients of a function on [0, 1].
-fn chebyshev(value: impl Fn(f64) -> f64) -> Vec<f64> {
-    let n = TERMS as f64;
-    let angle = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / n;
-    let values: Vec<f64> = (0..TERMS).map(|i| value(0.5 + 0.5 * angle(i).cos())).collect();
-    let coefficient = |k: usize| -> f64 {
-        let sum: f64 = values.iter().enumerate().map(|(i, v)| v * (k as f64 * angle(i)).cos()).sum();
-        if k == 0 { sum / n } else { 2.0 * sum / n }
-    };
-    let mut coefficients: Vec<f64> = (0..TERMS).map(coefficient).collect();
-    let negligible = 1e-16 * coefficients.iter().fold(0.0_f64, |max, c| max.max(c.abs()));
-    while coefficients.last().is_some_and(|c| c.abs() < negligible) {
-        coefficients.pop();
-    }
-    coefficients
-}
-
-/// Sum of a Chebyshev series on [0, 1].
-fn clenshaw(coefficients: &[f64], x: f64) -> f64 {
-    let t = 2.0 * x - 1.0;
-    let (mut b1, mut b2) = (0.0, 0.0);
-    for &c in coefficients[1..].iter().rev() {
-        (b1, b2) = (2.0 * t * b1 - b2 + c, b1);
-    }
-    t * b1 - b2 + coefficients[0]
 }
 
 #[cfg(test)]

@@ -1,10 +1,9 @@
 //! What an iteration needs to know of the mesh: how a table (of L, or of its approximate inverse) is applied to a vector.
 
 use rayon::prelude::*;
-use rc_fft::Plan;
+use rc_fft::{BLOCK_ROWS, Convolution, Plan, SymbolTable};
 
 use super::Blocks;
-use crate::fft::{BLOCK_ROWS, Convolution, SymbolTable};
 
 /// Applies tables to vectors, block by block, so that the caller's vector work rides along: first the caller fills a vector,
 /// then a table is applied, then the caller takes the result. What closures return is collected in the order of blocks.

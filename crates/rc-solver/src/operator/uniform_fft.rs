@@ -4,8 +4,7 @@ use std::sync::Mutex;
 
 use rayon::prelude::*;
 use rc_core::{Grid, Kernel, Operator};
-
-use crate::fft::{BLOCK_ROWS, Convolution, SymbolTable};
+use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable};
 
 /// `v = L p` (Eq. 4) on a uniform grid: diagonal in Fourier space, in double precision.
 pub struct UniformOperator {

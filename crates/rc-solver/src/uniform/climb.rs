@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 use rc_core::{Event, Field, Kernel, Observer};
+use rc_fft::{Convolution, SymbolTable};
 
 use super::levels::coarsen;
 use super::prolongation::prolong;
 use crate::IterationParams;
 use crate::descent::{Descent, Machinery, Outcome, Start};
-use crate::fft::{Convolution, SymbolTable};
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues};
 

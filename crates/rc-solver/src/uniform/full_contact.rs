@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 use rc_core::{Field, Kernel};
+use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable};
 
-use crate::fft::{BLOCK_ROWS, Convolution, SymbolTable};
 use crate::operator::UniformOperator;
 use crate::problem::Problem;
 use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};

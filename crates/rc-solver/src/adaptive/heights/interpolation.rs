@@ -2,11 +2,11 @@
 
 use rayon::prelude::*;
 use rc_core::Field;
+use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable};
 
 use super::TILE;
 use super::stencil::{MAX_WIDTH, Stencil, Stencils};
 use super::window::{Derivative, ERRORS, HIGHEST_FREQUENCY, TAPS, transform};
-use crate::fft::{BLOCK_ROWS, Convolution, SymbolTable};
 
 /// Coefficients before the first and after the last of a row (and rows before and after), periodic copies, so that no tile
 /// has to look where the cell ends.

@@ -25,6 +25,7 @@ use std::sync::Arc;
 use pulp::Arch;
 use rayon::prelude::*;
 use rc_core::Grid;
+use rc_fft::{BLOCK_ROWS, Convolution};
 
 use self::coarse::{Blur, FromGhosts, Leaves, Means};
 use self::pass::{Lift, Lower};
@@ -36,7 +37,6 @@ pub(crate) use self::tables::{Prepared, Tables};
 use super::elements::Elements;
 use super::tiles::{CELLS, TILE, TileSet};
 use crate::descent::{Blocks, Engine};
-use crate::fft::{BLOCK_ROWS, Convolution};
 
 /// Tiles that one thread works on at a time, and whose values a caller gets at a time.
 const BLOCK_TILES: usize = 16;

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use rc_core::Grid;
+use rc_fft::SymbolTable;
 use rc_kernel::{CoarseElement, Filter, ScaleSplit, Stencil};
 
 use super::Reach;
@@ -10,7 +11,6 @@ use super::coarse::CoarseTable;
 use super::real::Real;
 use super::stencil::Taps;
 use super::transfer::Transfer;
-use crate::fft::SymbolTable;
 
 /// Filters are filled up to one of these numbers of taps, for which the inner loops are compiled, and patches are as large as
 /// that needs.

@@ -1,20 +1,24 @@
-//! The periodic convolution that every application of L and of its preconditioner goes through.
+//! Periodic convolutions of real fields: `field → inverse FFT( symbol · FFT(field) )`.
 //!
-//! Three passes over memory: rows are transformed block by block and left in tiles; panels of a few columns are gathered
-//! from the tiles, transformed, multiplied by the symbol, transformed back and scattered; rows are transformed back. The
-//! caller fills the rows and takes them as they come, so that its own vector work rides along while they are in cache.
-//! Work is parallel over blocks and panels, never inside one transform, so results do not depend on the number of threads.
+//! There are three passes over memory. Rows are transformed block by block and left in tiles. Panels of a few columns are gathered
+//! from the tiles, transformed, multiplied by the symbol, transformed back and scattered. Rows are transformed back. The caller
+//! writes the rows and reads them block by block, so that its own vector work is done while they are in cache. Work is parallel
+//! over blocks and panels, never inside one transform, so results do not depend on the number of threads.
 
 use std::sync::{Arc, Mutex};
 
 use rayon::prelude::*;
 use rc_core::Grid;
-use rc_fft::{Complex, ComplexToReal, Fft, Plan, RealToComplex};
+use realfft::{ComplexToReal, RealToComplex};
+use rustfft::Fft;
+use rustfft::num_complex::Complex;
 
-use super::SymbolTable;
+use crate::{Plan, SymbolTable};
 
-/// Rows per block, and columns per panel: sixteen f32 complex values are two cache lines.
-pub(crate) const BLOCK_ROWS: usize = 16;
+/// Rows per block of a [`Convolution`]: what it asks for and hands out at a time. The last block of a grid may have fewer.
+pub const BLOCK_ROWS: usize = 16;
+
+/// Columns per panel: sixteen f32 complex values are two cache lines.
 const PANEL_COLUMNS: usize = 16;
 
 /// Unused values after each column of a panel. Without them the columns of a grid with a power of two of rows would all
@@ -22,7 +26,31 @@ const PANEL_COLUMNS: usize = 16;
 const PANEL_PADDING: usize = 16;
 
 /// Plans and buffers for convolutions on one grid.
-pub(crate) struct Convolution<T> {
+///
+/// [`Convolution::apply`] is the whole; its three passes are there one by one for callers that do something else between them.
+///
+/// ```
+/// use rayon::prelude::*;
+/// use rc_core::{Field, Grid};
+/// use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable};
+///
+/// // The symbol |k|² turns a wave with one period along x into itself.
+/// let grid = Grid::new(32, 20)?;
+/// let symbol = SymbolTable::<f64>::new(grid, |kx, ky| (kx * kx + ky * ky) as f64);
+/// let wave = Field::from_fn(grid, |at| (std::f64::consts::TAU * at.x).cos());
+/// let mut result = Field::zeros(grid);
+/// let block = BLOCK_ROWS * grid.nx();
+/// Convolution::new(grid).apply(
+///     &symbol,
+///     wave.values().par_chunks(block),
+///     |source, rows| rows.copy_from_slice(source),
+///     result.values_mut().par_chunks_mut(block),
+///     |sink, rows| sink.copy_from_slice(rows),
+/// );
+/// assert!(result.values().iter().zip(wave.values()).all(|(a, b)| (a - b).abs() < 1e-12));
+/// # Ok::<(), rc_core::GridError>(())
+/// ```
+pub struct Convolution<T> {
     grid: Grid,
     row_forward: Arc<dyn RealToComplex<T>>,
     row_inverse: Arc<dyn ComplexToReal<T>>,
@@ -45,7 +73,9 @@ struct Workspace<T> {
 }
 
 impl<T: Plan> Convolution<T> {
-    pub(crate) fn new(grid: Grid) -> Self {
+    /// Plans for `grid`, and a workspace for each thread of the present rayon pool. *Memory*: nx·ny complex numbers of `T`.
+    #[must_use]
+    pub fn new(grid: Grid) -> Self {
         let (row_forward, row_inverse) = (T::real_forward(grid.nx()), T::real_inverse(grid.nx()));
         let (column_forward, column_inverse) = (T::complex_forward(grid.ny()), T::complex_inverse(grid.ny()));
         let scratch_len = [
@@ -69,22 +99,26 @@ impl<T: Plan> Convolution<T> {
     }
 
     /// The grid.
-    pub(crate) fn grid(&self) -> Grid {
+    #[must_use]
+    pub fn grid(&self) -> Grid {
         self.grid
     }
 
-    /// Convolves.
+    /// Convolves with `symbol`, the table of the same grid.
     ///
-    /// `sources` and `sinks` have one item for each [`BLOCK_ROWS`] rows of the grid, in order. `fill` writes the field's
-    /// rows of its block; it is called once for each block before `take` is called at all. `take` receives the rows of the
-    /// result; what it returns is collected in the order of blocks, for the caller to sum.
-    pub(crate) fn apply<S, F, K, R>(
+    /// `sources` and `sinks` have one item for each [`BLOCK_ROWS`] rows of the grid, in order. `write` writes the field's
+    /// rows of its block; it is called once for each block before `read` is called at all. `read` receives the rows of the
+    /// result; its return values are collected in the order of blocks, for the caller to sum.
+    ///
+    /// # Panics
+    /// When `sources` or `sinks` have another length than there are blocks.
+    pub fn apply<S, F, K, R>(
         &mut self,
         symbol: &SymbolTable<T>,
         sources: S,
-        fill: F,
+        write: F,
         sinks: K,
-        take: impl Fn(K::Item, &[T]) -> R + Sync,
+        read: impl Fn(K::Item, &[T]) -> R + Sync,
     ) -> Vec<R>
     where
         S: IndexedParallelIterator,
@@ -92,13 +126,16 @@ impl<T: Plan> Convolution<T> {
         K: IndexedParallelIterator,
         R: Send,
     {
-        self.transform_rows(sources, |source, rows| fill(source, rows));
+        self.transform_rows(sources, |source, rows| write(source, rows));
         self.multiply(symbol);
-        self.take_rows(sinks, take)
+        self.take_rows(sinks, read)
     }
 
-    /// First pass: `fill` and transform rows. Returns what `fill` returns, in the order of blocks.
-    pub(crate) fn transform_rows<S, R>(&mut self, sources: S, fill: impl Fn(S::Item, &mut [T]) -> R + Sync) -> Vec<R>
+    /// First pass: the rows that `write` writes are transformed. Returns what `write` returns, in the order of blocks.
+    ///
+    /// # Panics
+    /// As [`Convolution::apply`].
+    pub fn transform_rows<S, R>(&mut self, sources: S, write: impl Fn(S::Item, &mut [T]) -> R + Sync) -> Vec<R>
     where
         S: IndexedParallelIterator,
         R: Send,
@@ -113,25 +150,19 @@ impl<T: Plan> Convolution<T> {
                 let mut workspace = lock(workspaces);
                 let Workspace { rows, row_spectrum, scratch, .. } = &mut *workspace;
                 let rows = &mut rows[..n_rows * nx];
-                let filled = fill(source, rows);
+                let written = write(source, rows);
                 for (iy, row) in rows.chunks_exact_mut(nx).enumerate() {
                     let transformed = row_forward.process_with_scratch(row, row_spectrum, scratch);
                     transformed.expect("buffers have the lengths of the plan");
-                    let (panels, rest) = row_spectrum.as_chunks::<PANEL_COLUMNS>();
-                    let (tiles, rest_tile) = block.split_at_mut(panels.len() * PANEL_COLUMNS * n_rows);
-                    let (tile_rows, _) = tiles.as_chunks_mut::<PANEL_COLUMNS>();
-                    for (values, tile_row) in panels.iter().zip(tile_rows.iter_mut().skip(iy).step_by(n_rows)) {
-                        *tile_row = *values;
-                    }
-                    rest_tile[iy * rest.len()..][..rest.len()].copy_from_slice(rest);
+                    to_tiles(row_spectrum, block, iy);
                 }
-                filled
+                written
             })
             .collect()
     }
 
-    /// Second pass: columns there, symbol, and back.
-    pub(crate) fn multiply(&mut self, symbol: &SymbolTable<T>) {
+    /// Second pass: columns are transformed, multiplied by the symbol, the table of the same grid, and transformed back.
+    pub fn multiply(&mut self, symbol: &SymbolTable<T>) {
         let (ny, n_columns) = (self.grid.ny(), self.grid.nx() / 2 + 1);
         let (forward, inverse, workspaces) = (&self.column_forward, &self.column_inverse, &self.workspaces);
         let mut panels: Vec<Vec<&mut [Complex<T>]>> = Vec::new();
@@ -159,8 +190,11 @@ impl<T: Plan> Convolution<T> {
         });
     }
 
-    /// Third pass: transform rows back and hand them to `take`.
-    pub(crate) fn take_rows<K, R>(&self, sinks: K, take: impl Fn(K::Item, &[T]) -> R + Sync) -> Vec<R>
+    /// Third pass: rows are transformed back and handed to `read`, whose return values are collected in the order of blocks.
+    ///
+    /// # Panics
+    /// As [`Convolution::apply`].
+    pub fn take_rows<K, R>(&self, sinks: K, read: impl Fn(K::Item, &[T]) -> R + Sync) -> Vec<R>
     where
         K: IndexedParallelIterator,
         R: Send,
@@ -175,13 +209,7 @@ impl<T: Plan> Convolution<T> {
                 let Workspace { rows, row_spectrum, scratch, .. } = &mut *workspace;
                 let rows = &mut rows[..n_rows * nx];
                 for (iy, row) in rows.chunks_exact_mut(nx).enumerate() {
-                    let (panels, rest) = row_spectrum.as_chunks_mut::<PANEL_COLUMNS>();
-                    let (tiles, rest_tile) = block.split_at(panels.len() * PANEL_COLUMNS * n_rows);
-                    let (tile_rows, _) = tiles.as_chunks::<PANEL_COLUMNS>();
-                    for (values, tile_row) in panels.iter_mut().zip(tile_rows.iter().skip(iy).step_by(n_rows)) {
-                        *values = *tile_row;
-                    }
-                    rest.copy_from_slice(&rest_tile[iy * rest.len()..][..rest.len()]);
+                    from_tiles(block, iy, row_spectrum);
                     // These are real up to rounding; the plan insists on exact zeros.
                     row_spectrum[0].im = T::zero();
                     if nx.is_multiple_of(2) {
@@ -190,9 +218,15 @@ impl<T: Plan> Convolution<T> {
                     let transformed = self.row_inverse.process_with_scratch(row_spectrum, row, scratch);
                     transformed.expect("buffers have the lengths of the plan");
                 }
-                take(sink, rows)
+                read(sink, rows)
             })
             .collect()
+    }
+}
+
+impl<T> std::fmt::Debug for Convolution<T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Convolution").field("grid", &self.grid).finish_non_exhaustive()
     }
 }
 
@@ -200,6 +234,30 @@ impl<T: Plan> Convolution<T> {
 fn lock<T>(workspaces: &[Mutex<Workspace<T>>]) -> std::sync::MutexGuard<'_, Workspace<T>> {
     let thread = rayon::current_thread_index().unwrap_or(0) % workspaces.len();
     workspaces[thread].lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+/// Writes row `iy` of a block to the block's tiles, one for each panel of columns.
+fn to_tiles<T: Plan>(row: &[Complex<T>], block: &mut [Complex<T>], iy: usize) {
+    let n_rows = block.len() / row.len();
+    let (panels, rest) = row.as_chunks::<PANEL_COLUMNS>();
+    let (tiles, rest_tile) = block.split_at_mut(panels.len() * PANEL_COLUMNS * n_rows);
+    let (tile_rows, _) = tiles.as_chunks_mut::<PANEL_COLUMNS>();
+    for (values, tile_row) in panels.iter().zip(tile_rows.iter_mut().skip(iy).step_by(n_rows)) {
+        *tile_row = *values;
+    }
+    rest_tile[iy * rest.len()..][..rest.len()].copy_from_slice(rest);
+}
+
+/// Reads row `iy` of a block from the block's tiles.
+fn from_tiles<T: Plan>(block: &[Complex<T>], iy: usize, row: &mut [Complex<T>]) {
+    let n_rows = block.len() / row.len();
+    let (panels, rest) = row.as_chunks_mut::<PANEL_COLUMNS>();
+    let (tiles, rest_tile) = block.split_at(panels.len() * PANEL_COLUMNS * n_rows);
+    let (tile_rows, _) = tiles.as_chunks::<PANEL_COLUMNS>();
+    for (values, tile_row) in panels.iter_mut().zip(tile_rows.iter().skip(iy).step_by(n_rows)) {
+        *values = *tile_row;
+    }
+    rest.copy_from_slice(&rest_tile[iy * rest.len()..][..rest.len()]);
 }
 
 /// Tiles (rows of a few columns) to padded columns.

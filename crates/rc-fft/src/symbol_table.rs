@@ -2,19 +2,23 @@
 
 use rayon::prelude::*;
 use rc_core::Grid;
-use rc_fft::Plan;
 
-/// Eigenvalues for 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2, columns of constant kx contiguous, with the 1/(nx·ny) of the inverse
-/// transform folded in.
-#[derive(Clone)]
-pub(crate) struct SymbolTable<T> {
+use crate::Plan;
+
+/// Eigenvalues of a [`Convolution`](crate::Convolution) for 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2, even in kx and in ky; columns of constant
+/// kx are contiguous, and the 1/(nx·ny) of the inverse transform is a factor of the entries.
+#[derive(Clone, Debug)]
+pub struct SymbolTable<T> {
     column_len: usize,
     values: Vec<T>,
 }
 
 impl<T: Plan> SymbolTable<T> {
-    /// Tabulates `eigenvalue(kx, ky)`; on a square grid of a square cell, where it is symmetric, only for ky ≥ kx.
-    pub(crate) fn new(grid: Grid, eigenvalue: impl Fn(usize, usize) -> f64 + Sync) -> Self {
+    /// Tabulates `eigenvalue(kx, ky)`. On a square grid of a square cell, where it is symmetric, it is asked for ky ≥ kx only.
+    ///
+    /// # Panics
+    /// When `T` cannot hold an `f64`, rounded: `f32` and `f64` can.
+    pub fn new(grid: Grid, eigenvalue: impl Fn(usize, usize) -> f64 + Sync) -> Self {
         let column_len = grid.ny() / 2 + 1;
         let symmetric = grid.is_square();
         let scale = 1.0 / grid.len() as f64;
@@ -34,8 +38,9 @@ impl<T: Plan> SymbolTable<T> {
         Self { column_len, values }
     }
 
-    /// The table of the inverse operator: reciprocals, and 0 at k = 0.
-    pub(crate) fn inverse(&self, grid: Grid) -> SymbolTable<f64>
+    /// The table of the inverse operator on the same grid: reciprocals, and 0 at k = 0.
+    #[must_use]
+    pub fn inverse(&self, grid: Grid) -> SymbolTable<f64>
     where
         T: Into<f64>,
     {
@@ -46,12 +51,13 @@ impl<T: Plan> SymbolTable<T> {
     }
 
     /// Sets the entry at k = 0, factor of the inverse transform included.
-    pub(crate) fn set_mean(&mut self, value: T) {
+    pub fn set_mean(&mut self, value: T) {
         self.values[0] = value;
     }
 
-    /// The table with `convert` applied to every value, as to another precision.
-    pub(crate) fn map<U: Send>(&self, convert: impl Fn(T) -> U + Sync) -> SymbolTable<U> {
+    /// The table with `convert` applied to every entry, as to another precision.
+    #[must_use]
+    pub fn map<U: Send>(&self, convert: impl Fn(T) -> U + Sync) -> SymbolTable<U> {
         let values = self.values.par_iter().map(|&value| convert(value)).collect();
         SymbolTable { column_len: self.column_len, values }
     }

@@ -1,0 +1,151 @@
+//! Transforms between a real field and its waves in the half plane kx ≥ 0, whose conjugates are the others.
+
+use std::f64::consts::PI;
+
+use rayon::prelude::*;
+use rc_core::{Field, Grid};
+use rustfft::num_complex::Complex64;
+
+use crate::Plan;
+
+/// Columns, or rows, that a second pass gathers at once, so that every cache line of the first pass's result is read once.
+const PANEL: usize = 8;
+
+/// `value(w)` of every wave w = Σ f exp(-2πi k·x) of a real field less `offset`, for the half plane 0 ≤ kx ≤ nx/2, column by column:
+/// `values[kx * ny + (ky mod ny)]`.
+///
+/// Phases are those of a field whose first value is at x = 0, not at the centre of an element.
+#[must_use]
+pub fn half_plane_values(field: &Field, offset: f64, value: impl Fn(Complex64) -> f64 + Sync) -> Vec<f64> {
+    let ny = field.grid().ny();
+    let width = field.grid().nx() / 2 + 1;
+    let rows = transformed_rows(field, offset);
+    let fft = f64::complex_forward(ny);
+    let buffers = || (vec![Complex64::ZERO; PANEL * ny], vec![Complex64::ZERO; fft.get_inplace_scratch_len()]);
+    let mut values = vec![0.0; width * ny];
+    values.par_chunks_mut(PANEL * ny).enumerate().for_each_init(buffers, |(panel, scratch), (number, values)| {
+        let panel = &mut panel[..values.len()];
+        let (first, n_columns) = (number * PANEL, values.len() / ny);
+        for (iy, row) in rows.chunks_exact(width).enumerate() {
+            for (column, &wave) in row[first..first + n_columns].iter().enumerate() {
+                panel[column * ny + iy] = wave;
+            }
+        }
+        fft.process_with_scratch(panel, scratch);
+        for (of_wave, &wave) in values.iter_mut().zip(&*panel) {
+            *of_wave = value(wave);
+        }
+    });
+    values
+}
+
+/// The transform of every row less `offset`: ny rows of nx/2 + 1 complex numbers.
+fn transformed_rows(field: &Field, offset: f64) -> Vec<Complex64> {
+    let (nx, ny) = (field.grid().nx(), field.grid().ny());
+    let width = nx / 2 + 1;
+    let fft = f64::real_forward(nx);
+    let mut rows = vec![Complex64::ZERO; width * ny];
+    let buffers = || (fft.make_input_vec(), fft.make_scratch_vec());
+    rows.par_chunks_exact_mut(width).enumerate().for_each_init(buffers, |(row, scratch), (iy, spectrum)| {
+        for (shifted, value) in row.iter_mut().zip(field.row(iy)) {
+            *shifted = value - offset;
+        }
+        fft.process_with_scratch(row, spectrum, scratch).expect("every length is the plan's own");
+    });
+    rows
+}
+
+/// The field Σ a_k exp(2πi k·x) at the element centres of `grid`, for waves in the columns kx = 0, 1, …; those of -kx are their
+/// conjugates, and the column kx = 0 must be its own.
+///
+/// `columns[kx][reach + ky]` is a_k, with 2·reach + 1 entries in that column. Waves too short for the grid are folded onto those with
+/// the same values at its centres, so the result is the direct sum on any grid. Besides the result, as many complex numbers are
+/// stored as there are columns times ny.
+#[must_use]
+pub fn field_of_columns(columns: &[Vec<Complex64>], grid: Grid) -> Field {
+    let waves_by_row = transformed_columns(columns, grid);
+    let mut field = Field::zeros(grid);
+    transform_rows(&waves_by_row, columns.len(), &mut field);
+    field
+}
+
+/// First pass. Column by column: Σ `a_k` exp(2πi (ky y + kx/(2 nx))) over ky, for the ny centres y; the last factor is the half
+/// element by which the first centre is off the corner.
+fn transformed_columns(columns: &[Vec<Complex64>], grid: Grid) -> Vec<Complex64> {
+    let ny = grid.ny();
+    let fft = f64::complex_inverse(ny);
+    let largest_ky = columns.iter().map(|column| reach(column)).max().unwrap_or(0);
+    let to_centre_y: Vec<Complex64> = (0..=largest_ky).map(|ky| half_element(ky, ny)).collect();
+    let mut result = vec![Complex64::ZERO; columns.len() * ny];
+    let scratch = || vec![Complex64::ZERO; fft.get_inplace_scratch_len()];
+    result.par_chunks_exact_mut(ny).zip(columns).enumerate().for_each_init(scratch, |scratch, (kx, (line, column))| {
+        let reach = reach(column);
+        let to_centre_x = half_element(kx, grid.nx());
+        line[0] = column[reach] * to_centre_x;
+        for ky in 1..=reach {
+            let alias = ky % ny;
+            line[alias] += column[reach + ky] * to_centre_y[ky] * to_centre_x;
+            line[(ny - alias) % ny] += column[reach - ky] * to_centre_y[ky].conj() * to_centre_x;
+        }
+        fft.process_with_scratch(line, scratch);
+    });
+    result
+}
+
+/// Second pass: row by row from complex to real, of the columns' transforms, each with ny contiguous values.
+fn transform_rows(waves_by_row: &[Complex64], n_columns: usize, field: &mut Field) {
+    let (nx, ny) = (field.grid().nx(), field.grid().ny());
+    let fft = f64::real_inverse(nx);
+    let folds: Vec<Fold> = (0..n_columns).map(|kx| Fold::of(kx, nx)).collect();
+    let buffers = || (vec![Complex64::ZERO; PANEL * n_columns], fft.make_input_vec(), fft.make_scratch_vec());
+    let blocks = field.values_mut().par_chunks_mut(PANEL * nx).enumerate();
+    blocks.for_each_init(buffers, |(tile, spectrum, scratch), (number, rows)| {
+        let (first, n_rows) = (number * PANEL, rows.len() / nx);
+        for (kx, line) in waves_by_row.chunks_exact(ny).enumerate() {
+            for (row, &wave) in line[first..first + n_rows].iter().enumerate() {
+                tile[row * n_columns + kx] = wave;
+            }
+        }
+        for (row, waves) in rows.chunks_exact_mut(nx).zip(tile.chunks_exact(n_columns)) {
+            spectrum.fill(Complex64::ZERO);
+            for (fold, &wave) in folds.iter().zip(waves) {
+                spectrum[fold.target] += Complex64::new(fold.re * wave.re, fold.im * wave.im);
+            }
+            fft.process_with_scratch(spectrum, row, scratch).expect("lengths are the plan's, end values are real");
+        }
+    });
+}
+
+/// Where a wave goes in the half spectrum of a real row, and with which factors of its parts.
+struct Fold {
+    target: usize,
+    re: f64,
+    im: f64,
+}
+
+impl Fold {
+    /// The complex-to-real transform adds the conjugate of every wave by itself, except of its first (0) and, for even `nx`, last
+    /// (nx/2) one: these are real, and a wave folded onto them brings its conjugate along.
+    fn of(kx: usize, nx: usize) -> Self {
+        let alias = kx % nx;
+        if kx == 0 {
+            Self { target: 0, re: 1.0, im: 0.0 }
+        } else if alias == 0 || 2 * alias == nx {
+            Self { target: alias, re: 2.0, im: 0.0 }
+        } else if 2 * alias < nx {
+            Self { target: alias, re: 1.0, im: 1.0 }
+        } else {
+            Self { target: nx - alias, re: 1.0, im: -1.0 }
+        }
+    }
+}
+
+/// Largest ky of a column that is stored from -reach to reach.
+fn reach(column: &[Complex64]) -> usize {
+    column.len() / 2
+}
+
+/// exp(2πi k s) for half an element s = 1/(2n).
+fn half_element(k: usize, n: usize) -> Complex64 {
+    Complex64::cis(PI * k as f64 / n as f64)
+}
