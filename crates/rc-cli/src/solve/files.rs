@@ -62,7 +62,7 @@ fn add_whole(
     add_field("pressure.npy", &solution.pressure, units.e_star)?;
     add_field("gap.npy", &solution.gap, units.side)?;
     if let Some(MeshPressure { mesh, pressure }) = &solution.elements {
-        let rows = mesh.elements().zip(pressure).map(|(e, &pressure)| [e.x, e.y, e.side, pressure]);
+        let rows = mesh.elements().zip(pressure).map(|(e, &pressure)| [e.centre.x, e.centre.y, e.side, pressure]);
         staged.add("elements.csv", |path| write_elements(path, rows, units))?;
     }
     let picture = ContactPicture::of(&solution.pressure, units.e_star, units.side);
