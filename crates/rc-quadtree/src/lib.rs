@@ -1,6 +1,50 @@
-//! The mesh that the default solver runs on, and the paper's.
+//! The adaptive mesh of squares on the periodic cell, as geometry only: fine along the edges of contacts, coarser inside, nothing
+//! where there is no contact.
+//!
+//! The default solver runs on this mesh:
+//!
+//! | item | what |
+//! |---|---|
+//! | [`TileSet`] | the tiles of one level; a tile is a square of 8 × 8 cells |
+//! | [`Elements`] | elements of several sizes: disjoint tiles of several levels, the layout of vectors, values moved to another mesh |
+//! | [`divide`] | elements of chosen tiles into quarters, with neighbours kept within a factor of 2 |
+//! | [`ContactFields`] | the refinement rule: where elements must be divided |
+//! | [`prolong`], [`prolong_onto`] | a function that is positive in contact, brought to elements half as large |
+//! | [`Patch`], [`gather`] | a tile with its neighbourhood, for stencils and filters |
+//!
+//! Module [`paper`] has the meshes that the paper compares in Fig. 3.
+//!
+//! ```
+//! use rc_quadtree::{Elements, TileSet, divide};
+//!
+//! // 64 × 64 elements; those of the tile in the corner are divided into quarters.
+//! let elements = Elements::uniform(TileSet::full(8));
+//! let chosen = elements.finest().places().iter().map(|&place| place == [0, 0]).collect();
+//! let refined = divide(&elements, vec![chosen], true, 8);
+//! assert_eq!(refined.n_cells(), 64 * 64 + 3 * 64);
+//!
+//! // The quarters have the value of the element that they were.
+//! let values: Vec<f64> = (0..elements.len()).map(|i| i as f64).collect();
+//! let moved = elements.moved(&refined, &values, 0.0);
+//! assert_eq!(moved[refined.cells(0)][..2], [values[0]; 2]);
+//! ```
+//!
+//! Lengths are in λ, the side of the cell. A level is named by how many levels it is coarser than the finest. Places are columns and
+//! rows of tiles, counted from the cell's lower left corner.
 
+mod division;
+mod elements;
 mod morton;
 pub mod paper;
+mod patch;
+mod prolongation;
+mod refinement;
+mod tiles;
+mod transfer;
 
-pub use self::morton::morton_code;
+pub use self::division::divide;
+pub use self::elements::{BLOCK_CELLS, BLOCK_TILES, Elements};
+pub use self::patch::{Patch, gather};
+pub use self::prolongation::{prolong, prolong_onto};
+pub use self::refinement::{ContactFields, RING};
+pub use self::tiles::{CELLS, TILE, TileSet, cell_over, means_of_quarter, put_tile, quarters};

@@ -26,6 +26,12 @@ pub struct Square {
 }
 
 impl Square {
+    /// Half of the side: the paper's d_j (Eq. 5-6 hold with d_j as the half side).
+    #[must_use]
+    pub fn half_side(&self) -> f64 {
+        0.5 * self.side
+    }
+
     /// Area, in λ².
     #[must_use]
     pub fn area(&self) -> f64 {
@@ -67,6 +73,20 @@ impl Mesh {
     #[must_use]
     pub fn elements(&self) -> impl ExactSizeIterator<Item = Square> + '_ {
         self.keys.iter().map(|&key| self.square(key))
+    }
+
+    /// Number of elements of each level, from level 0 to the deepest that occurs.
+    #[must_use]
+    pub fn counts(&self) -> Vec<usize> {
+        let mut counts = Vec::new();
+        for key in &self.keys {
+            let level = key.level() as usize;
+            if counts.len() <= level {
+                counts.resize(level + 1, 0);
+            }
+            counts[level] += 1;
+        }
+        counts
     }
 
     /// Place and size of the square `key` in this cell, whether it is an element or not.

@@ -43,19 +43,6 @@ impl Mesh {
         (block.end() <= self.keys()[index].end()).then_some(index)
     }
 
-    /// Number of elements of each level, from level 0 to the deepest that occurs.
-    pub(super) fn counts(&self) -> Vec<usize> {
-        let mut counts = Vec::new();
-        for key in self.keys() {
-            let level = key.level() as usize;
-            if counts.len() <= level {
-                counts.resize(level + 1, 0);
-            }
-            counts[level] += 1;
-        }
-        counts
-    }
-
     /// Ratio of the area of all elements to that of the cell, exact to rounding of one division.
     pub(super) fn area(&self) -> f64 {
         let cell = (self.base() as u64).pow(2) << (2 * MAX_LEVEL);

@@ -1,0 +1,121 @@
+//! Transfer: values on the elements of one mesh brought to tiles, patches and elements of another mesh.
+
+use std::borrow::Cow;
+
+use rayon::prelude::*;
+
+use crate::elements::Elements;
+use crate::patch::Patch;
+use crate::tiles::{CELLS, TILE, TileSet, cell_over, means_of_quarter, quarters};
+
+impl Elements {
+    /// Copies the values at the place of a tile, from elements of its level or twice as large or half as large: larger ones stand for
+    /// their quarters, smaller ones are averaged. Returns false, and copies nothing, where there are none.
+    fn tile_values(
+        &self,
+        values: &[f64],
+        coarser: usize,
+        (column, row): (i64, i64),
+        mut put: impl FnMut(usize, usize, f64),
+    ) -> bool {
+        if let Some(start) = self.find(coarser, column, row) {
+            for (cell, &value) in values[start..start + CELLS].iter().enumerate() {
+                put(cell % TILE, cell / TILE, value);
+            }
+            return true;
+        }
+        if self.quarter_values(values, coarser + 1, (column, row), &mut put) {
+            return true;
+        }
+        let Some(finer) = coarser.checked_sub(1) else { return false };
+        let mut any = false;
+        let wrap = |i: i64| i.rem_euclid(self.levels()[coarser].per_side() as i64) as u32;
+        for quarter in quarters([wrap(column), wrap(row)]) {
+            let Some(start) = self.find(finer, quarter[0].into(), quarter[1].into()) else { continue };
+            any = true;
+            means_of_quarter(quarter, &values[start..start + CELLS], |cell, mean| put(cell % TILE, cell / TILE, mean));
+        }
+        any
+    }
+
+    /// The same for the place of a tile half as large as those of the level `coarser`, from that level only.
+    fn quarter_values(
+        &self,
+        values: &[f64],
+        coarser: usize,
+        (column, row): (i64, i64),
+        mut put: impl FnMut(usize, usize, f64),
+    ) -> bool {
+        let Some(start) = self.find(coarser, column.div_euclid(2), row.div_euclid(2)) else { return false };
+        let quarter = [column, row].map(|i| i.rem_euclid(2) as u32);
+        for cell in 0..CELLS {
+            let (x, y) = (cell % TILE, cell / TILE);
+            put(x, y, values[start + cell_over(quarter, x, y)]);
+        }
+        true
+    }
+
+    /// The values on a tile and its eight neighbours, `missing` where there are no elements. Elements twice as large stand for their
+    /// quarters, elements half as large are averaged.
+    #[must_use]
+    pub fn around(
+        &self,
+        values: &[f64],
+        coarser: usize,
+        [column, row]: [u32; 2],
+        missing: f64,
+    ) -> Patch<f64, { 3 * TILE }> {
+        let mut patch = [[missing; 3 * TILE]; 3 * TILE];
+        for j in 0..3 {
+            for i in 0..3 {
+                let place = (i64::from(column) + i as i64 - 1, i64::from(row) + j as i64 - 1);
+                self.tile_values(values, coarser, place, |x, y, value| patch[j * TILE + y][i * TILE + x] = value);
+            }
+        }
+        patch
+    }
+
+    /// The mesh without its finest level, and the values: those of the finest level are averaged over elements twice as large.
+    fn without_finest(&self, values: &[f64]) -> (Self, Vec<f64>) {
+        let mut levels = self.levels()[1..].to_vec();
+        levels[0] = levels[0].with(&self.levels()[0].parents(0));
+        let coarser = Self::new(levels);
+        let values = self.moved(&coarser, values, 0.0);
+        (coarser, values)
+    }
+
+    /// Tiles of the coarsest level wherever there are elements, and the values on them: means over smaller elements.
+    #[must_use]
+    pub fn on_coarsest<'a>(&self, values: &'a [f64]) -> (TileSet, Cow<'a, [f64]>) {
+        if self.levels().len() == 1 {
+            return (self.finest().clone(), Cow::Borrowed(values));
+        }
+        let (mut coarser, mut values) = self.without_finest(values);
+        while coarser.levels().len() > 1 {
+            (coarser, values) = coarser.without_finest(&values);
+        }
+        (coarser.finest().clone(), Cow::Owned(values))
+    }
+
+    /// Values on the elements of `to`, whose tiles are tiles of this mesh, quarters of them, unions of four, or new ones. New ones have
+    /// the value `elsewhere`, and so has what fills vectors up.
+    #[must_use]
+    pub fn moved(&self, to: &Self, values: &[f64], elsewhere: f64) -> Vec<f64> {
+        let mut result = vec![elsewhere; to.len()];
+        for (coarser, tiles) in to.levels().iter().enumerate() {
+            // The same level here, unless the other mesh has a finer one.
+            let here = self.levels().iter().position(|level| level.side() == tiles.side());
+            let cells = &mut result[to.cells(coarser)];
+            let sinks = cells.par_chunks_mut(CELLS).zip(tiles.places()).with_min_len(64);
+            sinks.for_each(|(cells, &place)| {
+                let (place, put) =
+                    (place.map(i64::from).into(), |x: usize, y: usize, value| cells[y * TILE + x] = value);
+                match here {
+                    Some(here) => self.tile_values(values, here, place, put),
+                    None => self.quarter_values(values, 0, place, put),
+                };
+            });
+        }
+        result
+    }
+}
