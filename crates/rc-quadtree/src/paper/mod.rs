@@ -27,6 +27,7 @@
 //! [`rc_core`].
 
 mod build;
+mod check;
 mod error;
 mod key;
 mod mark;

@@ -56,3 +56,11 @@ pub(super) fn with_halo(mask: &Mask, reach: i64) -> Vec<bool> {
 pub(super) fn params_for(side: usize) -> MeshParams {
     MeshParams { base: side >> side.trailing_zeros(), ..MeshParams::default() }
 }
+
+impl Mesh {
+    /// Total load Σ p·side² of a pressure per element, in units of E*·λ², summed in Morton order.
+    pub(super) fn load(&self, pressure: &[f64]) -> f64 {
+        assert_eq!(pressure.len(), self.len(), "one pressure for each element");
+        self.elements().zip(pressure).map(|(element, p)| p * element.area()).sum()
+    }
+}

@@ -4,7 +4,6 @@
     reason = "areas and lengths are sums of powers of two and nothing lost is exactly zero, so equality is meant"
 )]
 
-mod check;
 mod common;
 mod meshes;
 mod properties;

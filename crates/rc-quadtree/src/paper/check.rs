@@ -1,15 +1,17 @@
-//! The invariants of a mesh, checked one by one, and sums over its elements.
+//! The invariants of a mesh, checked one by one.
 
-use crate::paper::mesh::Mesh;
-use crate::paper::{Key, MAX_LEVEL};
+use super::key::{Key, MAX_LEVEL};
+use super::mesh::Mesh;
 
 impl Mesh {
-    /// Checks every invariant: squares inside the cell and aligned, strictly sorted without overlap, total area at most that of the
+    /// Checks every invariant, for tests: squares inside the cell and aligned, strictly sorted without overlap, total area at most that of the
     /// cell, 2:1 balance at edges and corners across the periodic seam.
+    ///
+    /// *Cost*: some 10 binary searches an element.
     ///
     /// # Panics
     /// When an invariant does not hold; the text says which and where.
-    pub(super) fn assert_well_formed(&self) {
+    pub fn assert_well_formed(&self) {
         self.assert_squares();
         for &key in self.keys() {
             self.assert_balanced(key);
@@ -48,12 +50,6 @@ impl Mesh {
         let cell = (self.base() as u64).pow(2) << (2 * MAX_LEVEL);
         self.keys().iter().map(|key| key.span()).sum::<u64>() as f64 / cell as f64
     }
-
-    /// Total load Σ p·side² of a pressure per element, in units of E*·λ², summed in Morton order.
-    pub(super) fn load(&self, pressure: &[f64]) -> f64 {
-        assert_eq!(pressure.len(), self.len(), "one pressure for each element");
-        self.elements().zip(pressure).map(|(element, p)| p * element.area()).sum()
-    }
 }
 
 /// The eight squares of the same size that touch `key` at an edge or a corner, around the periodic cell.
@@ -69,33 +65,38 @@ fn step(base: usize, key: Key, dx: i64, dy: i64) -> Key {
     Key::new(key.level(), ix, iy)
 }
 
-/// What `assert_well_formed` says of a mesh that is not.
-fn complaint(mesh: &Mesh) -> String {
-    let panic = std::panic::catch_unwind(|| mesh.assert_well_formed()).expect_err("the mesh is ill-formed");
-    panic.downcast_ref::<String>().cloned().unwrap_or_default()
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-#[test]
-fn unbalanced_corner_across_the_seam_is_found() {
-    // The lower left root touches the upper right one only at a corner, around the periodic cell.
-    let keys = vec![Key::new(0, 0, 0), Key::new(2, 11, 11)];
-    let complaint = complaint(&Mesh::from_sorted(3, keys));
-    assert!(complaint.contains("not 2:1 balanced"), "{complaint}");
-}
+    /// What `assert_well_formed` says of a mesh that is not.
+    fn complaint(mesh: &Mesh) -> String {
+        let panic = std::panic::catch_unwind(|| mesh.assert_well_formed()).expect_err("the mesh is ill-formed");
+        panic.downcast_ref::<String>().cloned().unwrap_or_default()
+    }
 
-#[test]
-fn overlap_is_found() {
-    let complaint = complaint(&Mesh::from_sorted(1, vec![Key::new(1, 0, 0), Key::new(2, 1, 1)]));
-    assert!(complaint.contains("overlap"), "{complaint}");
-}
+    #[test]
+    fn unbalanced_corner_across_the_seam_is_found() {
+        // The lower left root touches the upper right one only at a corner, around the periodic cell.
+        let keys = vec![Key::new(0, 0, 0), Key::new(2, 11, 11)];
+        let complaint = complaint(&Mesh::from_sorted(3, keys));
+        assert!(complaint.contains("not 2:1 balanced"), "{complaint}");
+    }
 
-#[test]
-fn square_outside_the_cell_is_found() {
-    let complaint = complaint(&Mesh::from_sorted(3, vec![Key::new(1, 6, 0)]));
-    assert!(complaint.contains("outside the cell"), "{complaint}");
-}
+    #[test]
+    fn overlap_is_found() {
+        let complaint = complaint(&Mesh::from_sorted(1, vec![Key::new(1, 0, 0), Key::new(2, 1, 1)]));
+        assert!(complaint.contains("overlap"), "{complaint}");
+    }
 
-#[test]
-fn steps_wrap_around_a_cell_of_three_roots() {
-    assert_eq!(step(3, Key::new(1, 0, 5), -1, 1), Key::new(1, 5, 0));
+    #[test]
+    fn square_outside_the_cell_is_found() {
+        let complaint = complaint(&Mesh::from_sorted(3, vec![Key::new(1, 6, 0)]));
+        assert!(complaint.contains("outside the cell"), "{complaint}");
+    }
+
+    #[test]
+    fn steps_wrap_around_a_cell_of_three_roots() {
+        assert_eq!(step(3, Key::new(1, 0, 5), -1, 1), Key::new(1, 5, 0));
+    }
 }
