@@ -304,7 +304,7 @@ fn nothing_penetrates_between_coarse_elements() {
         let n = (element.side * 1024.0).round() as usize;
         let corner = |centre: f64| ((centre - 0.5 * element.side) * 1024.0).round() as usize;
         for row in 0..n {
-            let start = (corner(element.y) + row) * 1024 + corner(element.x);
+            let start = (corner(element.centre.y) + row) * 1024 + corner(element.centre.x);
             pressure[start..start + n].fill(element.pressure);
         }
     }

@@ -14,7 +14,7 @@ use rc_core::{Field, Grid, HeightField, Silent};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Love;
 use rc_plot::{Area, Picture, PictureError};
-use rc_quadtree::{Mask, MeshKind, MeshParams, count};
+use rc_quadtree::paper::{Mask, MeshKind, MeshParams, count};
 use rc_solver::{Control, IterationParams, Status, solve_uniform};
 
 use crate::chart::{Axes, BLUE, Chart, Drawn, GREEN, RED, Side, write};

@@ -1,12 +1,12 @@
-//! Time to count, build, check neighbours and transfer on a mask of 4096² cells in contact to two thirds.
+//! Time to count, build and transfer the paper's meshes of a mask of 4096² cells in contact to two thirds.
 //!
 //! `cargo bench -p rc-quadtree`
 
 use std::{f64::consts::TAU, sync::LazyLock};
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use rc_core::DVec2;
-use rc_quadtree::{Edge, Mask, Mesh, MeshKind, MeshParams, Reconstruction, count, transfer};
+use rc_core::{DVec2, Grid};
+use rc_quadtree::paper::{Mask, Mesh, MeshKind, MeshParams, count, transfer};
 
 /// Two thirds of the cell, in patches with borders on several scales.
 static MASK: LazyLock<Mask> = LazyLock::new(|| {
@@ -14,7 +14,9 @@ static MASK: LazyLock<Mask> = LazyLock::new(|| {
         let wave = |k: f64, phase: f64| (TAU * k * x + phase).cos() * (TAU * k * y + 2.0 * phase).sin() / k.sqrt();
         wave(3.0, 0.1) + wave(7.0, 0.7) + wave(17.0, 1.9) + wave(41.0, 2.3) + wave(97.0, 0.4)
     };
-    Mask::from_predicate(4096, |at| rough(at) > -0.15).expect("4096 is a side")
+    let grid = Grid::square(4096).expect("4096 is a side");
+    let centres = (0..grid.len()).map(|i| grid.centre(i % 4096, i / 4096));
+    Mask::new(4096, centres.map(|at| rough(at) > -0.15).collect()).expect("a value for each cell")
 });
 
 const KINDS: [MeshKind; 3] = [MeshKind::Uniform, MeshKind::AdaptiveUniform, MeshKind::Adaptive];
@@ -39,19 +41,10 @@ fn building(kind: MeshKind) -> Mesh {
 }
 
 #[divan::bench(sample_count = 5)]
-fn four_neighbours_of_every_element(bencher: Bencher<'_, '_>) {
-    let mesh = mesh(MeshKind::Adaptive);
-    bencher.counter(ItemsCount::new(mesh.len())).bench_local(|| {
-        let neighbours = |i| Edge::ALL.iter().map(|&edge| mesh.neighbour(i, edge).indices().count()).sum::<usize>();
-        (0..mesh.len()).map(neighbours).sum::<usize>()
-    });
-}
-
-#[divan::bench(args = [Reconstruction::Constant, Reconstruction::Limited], sample_count = 5)]
-fn transfer_to_the_uniform_mesh(bencher: Bencher<'_, '_>, reconstruction: Reconstruction) {
+fn transfer_to_the_uniform_mesh(bencher: Bencher<'_, '_>) {
     let (from, to) = (mesh(MeshKind::Adaptive), mesh(MeshKind::AdaptiveUniform));
-    let pressure: Vec<f64> = from.elements().map(|e| 1.0 + (TAU * e.x).sin()).collect();
+    let pressure: Vec<f64> = from.elements().map(|element| 1.0 + (TAU * element.centre.x).sin()).collect();
     bencher
         .counter(ItemsCount::new(to.len()))
-        .bench_local(|| transfer(&from, &to, &pressure, reconstruction).expect("one value an element"));
+        .bench_local(|| transfer(&from, &to, &pressure).expect("one value an element"));
 }

@@ -1,48 +1,50 @@
-//! The periodic adaptive mesh of squares: fine along every contact border, coarse inside, nothing outside contact.
+//! The adaptive mesh of squares on the periodic cell, as geometry only: fine along the edges of contacts, coarser inside, nothing
+//! where there is no contact.
 //!
-//! The mesh of the paper (text at Fig. 3) and the two it is compared with, as geometry only; no physics. It is used
-//! in three steps:
+//! The default solver runs on this mesh:
 //!
-//! 1. A [`Mask`] says which cells of the finest uniform grid are in contact.
-//! 2. [`plan()`] decides, purely, which squares shall be elements ([`MeshKind`], [`MeshParams`]); [`count`] stops here.
-//! 3. [`Mesh::from_plan`] builds the [`Mesh`], a sorted list of [`Key`]s. It answers where elements are, which is
-//!    where, and what lies across an edge; it can be split and merged; [`transfer`] brings a pressure to another mesh
-//!    with the load kept; [`Mesh::border`] walks along the edge of a set of elements.
+//! | item | what |
+//! |---|---|
+//! | [`TileSet`] | the tiles of one level; a tile is a square of 8 × 8 cells |
+//! | [`Elements`] | elements of several sizes: disjoint tiles of several levels, the layout of vectors, values moved to another mesh |
+//! | [`divide`] | elements of chosen tiles into quarters, with neighbours kept within a factor of 2 |
+//! | [`ContactFields`] | the refinement rule: where elements must be divided |
+//! | [`prolong`], [`prolong_onto`] | a function that is positive in contact, brought to elements half as large |
+//! | [`Patch`], [`gather`] | a tile with its neighbourhood, for stencils and filters |
+//!
+//! Module [`paper`] has the meshes that the paper compares in Fig. 3.
 //!
 //! ```
-//! use rc_core::DVec2;
-//! use rc_quadtree::{Mask, Mesh, MeshKind, MeshParams, Reconstruction, transfer};
+//! use rc_quadtree::{Elements, TileSet, divide};
 //!
-//! let mask = Mask::from_predicate(256, |at| at.distance(DVec2::splat(0.5)) < 0.3)?;
-//! let mesh = Mesh::from_mask(&mask, MeshKind::Adaptive, &MeshParams::default())?;
-//! assert!(4 * mesh.len() < mask.count(), "{} elements for {} cells", mesh.len(), mask.count());
+//! // 64 × 64 elements; those of the tile in the corner are divided into quarters.
+//! let elements = Elements::uniform(TileSet::full(8));
+//! let chosen = elements.finest().places().iter().map(|&place| place == [0, 0]).collect();
+//! let refined = divide(&elements, vec![chosen], true, 8);
+//! assert_eq!(refined.n_cells(), 64 * 64 + 3 * 64);
 //!
-//! let pressure: Vec<f64> = mesh.elements().map(|e| 1.0 - e.x).collect();
-//! let finer = mesh.split(&[mesh.locate(DVec2::splat(0.5)).expect("the centre is in contact")])?;
-//! let moved = transfer(&mesh, &finer, &pressure, Reconstruction::Limited)?;
-//! assert!((finer.load(&moved.values)? - mesh.load(&pressure)?).abs() < 1e-15);
-//! # Ok::<(), rc_quadtree::MeshError>(())
+//! // The quarters have the value of the element that they were.
+//! let values: Vec<f64> = (0..elements.len()).map(|i| i as f64).collect();
+//! let moved = elements.moved(&refined, &values, 0.0);
+//! assert_eq!(moved[refined.cells(0)][..2], [values[0]; 2]);
 //! ```
 //!
-//! Lengths are in λ, the side of the cell. Everything that is not an element is out of contact. Coordinates of masks
-//! and fields: see [`rc_core`].
+//! Lengths are in λ, the side of the cell. A level is named by how many levels it is coarser than the finest. Places are columns and
+//! rows of tiles, counted from the cell's lower left corner.
 
-mod build;
-mod check;
-mod error;
-mod key;
-mod mark;
-mod mask;
-mod mesh;
-mod perimeter;
-mod raster;
-mod refine;
+mod division;
+mod elements;
+mod morton;
+pub mod paper;
+mod patch;
+mod prolongation;
+mod refinement;
+mod tiles;
 mod transfer;
 
-pub use error::MeshError;
-pub use key::{Key, MAX_BASE, MAX_LEVEL, morton_code};
-pub use mark::{Mark, MeshKind, MeshParams, RefinementPlan, count, plan};
-pub use mask::Mask;
-pub use mesh::{Edge, Element, Mesh, Neighbour};
-pub use perimeter::{BorderEdge, Perimeter};
-pub use transfer::{Reconstruction, Transferred, transfer};
+pub use self::division::divide;
+pub use self::elements::{BLOCK_CELLS, BLOCK_TILES, Elements};
+pub use self::patch::{Patch, gather};
+pub use self::prolongation::{prolong, prolong_onto};
+pub use self::refinement::{ContactFields, RING};
+pub use self::tiles::{CELLS, TILE, TileSet, cell_over, means_of_quarter, put_tile, quarters};

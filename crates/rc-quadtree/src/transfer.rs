@@ -1,126 +1,121 @@
-//! Transfer: a pressure from one mesh to another, with the load kept.
+//! Transfer: values on the elements of one mesh brought to tiles, patches and elements of another mesh.
 
-use crate::{Edge, Key, Mesh, MeshError, Neighbour, error::check_length};
+use std::borrow::Cow;
 
-/// How a pressure varies inside an element when a smaller one receives a part of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Reconstruction {
-    /// Constant, as the boundary elements have it: quarters copy the value.
-    #[default]
-    Constant,
-    /// Linear with limited slopes. Along each axis the slope is the smaller of the two to the neighbours, and zero
-    /// when they differ in sign or a neighbour is missing; both are scaled down until the value stays, in the whole
-    /// element, between the least and the greatest of the element and its neighbours. So quarters keep the load, no
-    /// new extremes appear, and a pressure stays non-negative. (T. J. Barth, D. C. Jespersen, AIAA 89-0366, 1989,
-    /// with a minmod slope.)
-    Limited,
-}
+use rayon::prelude::*;
 
-/// A pressure brought to another mesh.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Transferred {
-    /// One value for each element of the new mesh; 0 where the old mesh has no element.
-    pub values: Vec<f64>,
-    /// Load of the old elements, or parts of them, that the new mesh does not cover, Σ p·area in E*·λ². Exactly 0
-    /// when it covers all.
-    pub lost: f64,
-}
+use crate::elements::Elements;
+use crate::patch::Patch;
+use crate::tiles::{CELLS, TILE, TileSet, cell_over, means_of_quarter, quarters};
 
-/// Brings values per element (a pressure) from one mesh to another, by areas of overlap: merging averages, splitting
-/// copies or reconstructs, new elements get 0.
-///
-/// The load is conserved: `to.load(values) + lost == from.load(old)` to rounding (property test
-/// `transfer_conserves_the_load`). Both meshes are intervals of one Morton curve, so this is one merge of two sorted
-/// lists.
-///
-/// # Errors
-/// [`MeshError::Length`] when there is not one value for each element of `from`; [`MeshError::DifferentBase`].
-pub fn transfer(from: &Mesh, to: &Mesh, old: &[f64], reconstruction: Reconstruction) -> Result<Transferred, MeshError> {
-    check_length(from.len(), old.len())?;
-    if from.base() != to.base() {
-        return Err(MeshError::DifferentBase { from: from.base(), to: to.base() });
-    }
-    let mut values = vec![0.0; to.len()];
-    let mut lost = 0.0;
-    let mut j = 0;
-    for (i, (&source, &value)) in from.keys().iter().zip(old).enumerate() {
-        let slopes = match reconstruction {
-            Reconstruction::Constant => (0.0, 0.0),
-            Reconstruction::Limited => limited_slopes(from, old, i),
-        };
-        let (mut given, mut covered) = (0.0, 0);
-        while let Some(&target) = to.keys().get(j).filter(|target| target.start() < source.end()) {
-            if target.end() > source.start() {
-                let share = Share::new(from, source, target);
-                let part = value + slopes.0 * share.dx + slopes.1 * share.dy;
-                values[j] += part * share.of_target;
-                given += part * share.of_source;
-                covered += share.codes;
+impl Elements {
+    /// Copies the values at the place of a tile, from elements of its level or twice as large or half as large: larger ones stand for
+    /// their quarters, smaller ones are averaged. Returns false, and copies nothing, where there are none.
+    fn tile_values(
+        &self,
+        values: &[f64],
+        coarser: usize,
+        (column, row): (i64, i64),
+        mut put: impl FnMut(usize, usize, f64),
+    ) -> bool {
+        if let Some(start) = self.find(coarser, column, row) {
+            for (cell, &value) in values[start..start + CELLS].iter().enumerate() {
+                put(cell % TILE, cell / TILE, value);
             }
-            if target.end() > source.end() {
-                break;
+            return true;
+        }
+        if self.quarter_values(values, coarser + 1, (column, row), &mut put) {
+            return true;
+        }
+        let Some(finer) = coarser.checked_sub(1) else { return false };
+        let mut any = false;
+        let wrap = |i: i64| i.rem_euclid(self.levels()[coarser].per_side() as i64) as u32;
+        for quarter in quarters([wrap(column), wrap(row)]) {
+            let Some(start) = self.find(finer, quarter[0].into(), quarter[1].into()) else { continue };
+            any = true;
+            means_of_quarter(quarter, &values[start..start + CELLS], |cell, mean| put(cell % TILE, cell / TILE, mean));
+        }
+        any
+    }
+
+    /// The same for the place of a tile half as large as those of the level `coarser`, from that level only.
+    fn quarter_values(
+        &self,
+        values: &[f64],
+        coarser: usize,
+        (column, row): (i64, i64),
+        mut put: impl FnMut(usize, usize, f64),
+    ) -> bool {
+        let Some(start) = self.find(coarser, column.div_euclid(2), row.div_euclid(2)) else { return false };
+        let quarter = [column, row].map(|i| i.rem_euclid(2) as u32);
+        for cell in 0..CELLS {
+            let (x, y) = (cell % TILE, cell / TILE);
+            put(x, y, values[start + cell_over(quarter, x, y)]);
+        }
+        true
+    }
+
+    /// The values on a tile and its eight neighbours, `missing` where there are no elements. Elements twice as large stand for their
+    /// quarters, elements half as large are averaged.
+    #[must_use]
+    pub fn around(
+        &self,
+        values: &[f64],
+        coarser: usize,
+        [column, row]: [u32; 2],
+        missing: f64,
+    ) -> Patch<f64, { 3 * TILE }> {
+        let mut patch = [[missing; 3 * TILE]; 3 * TILE];
+        for j in 0..3 {
+            for i in 0..3 {
+                let place = (i64::from(column) + i as i64 - 1, i64::from(row) + j as i64 - 1);
+                self.tile_values(values, coarser, place, |x, y, value| patch[j * TILE + y][i * TILE + x] = value);
             }
-            j += 1;
         }
-        if covered < source.span() {
-            lost += (value - given) * from.square(source).area();
-        }
+        patch
     }
-    Ok(Transferred { values, lost })
-}
 
-/// The square that two nested squares have in common: the smaller one.
-struct Share {
-    /// Centre of the common square, from the centre of the source, in λ.
-    dx: f64,
-    dy: f64,
-    /// Its area, in Morton codes and in parts of the source and of the target.
-    codes: u64,
-    of_source: f64,
-    of_target: f64,
-}
-
-impl Share {
-    fn new(mesh: &Mesh, source: Key, target: Key) -> Self {
-        let common = if source.contains(target) { target } else { source };
-        let (outer, inner) = (mesh.square(source), mesh.square(common));
-        let codes = common.span();
-        // Powers of two: both quotients are exact.
-        let part = |of: Key| codes as f64 / of.span() as f64;
-        Self { dx: inner.x - outer.x, dy: inner.y - outer.y, codes, of_source: part(source), of_target: part(target) }
+    /// The mesh without its finest level, and the values: those of the finest level are averaged over elements twice as large.
+    fn without_finest(&self, values: &[f64]) -> (Self, Vec<f64>) {
+        let mut levels = self.levels()[1..].to_vec();
+        levels[0] = levels[0].with(&self.levels()[0].parents(0));
+        let coarser = Self::new(levels);
+        let values = self.moved(&coarser, values, 0.0);
+        (coarser, values)
     }
-}
 
-/// Slopes (along x, along y) of [`Reconstruction::Limited`] in element `index`, per λ.
-fn limited_slopes(mesh: &Mesh, values: &[f64], index: usize) -> (f64, f64) {
-    let own = values[index];
-    let side = mesh.element(index).side;
-    let (mut least, mut greatest) = (own, own);
-    let mut slope_across = |edge: Edge| {
-        let neighbour = mesh.neighbour(index, edge);
-        let distance = match neighbour {
-            Neighbour::Outside => return 0.0,
-            Neighbour::Same(_) => side,
-            Neighbour::Coarser(_) => 1.5 * side,
-            Neighbour::Finer(_) => 0.75 * side,
-        };
-        let (mut sum, mut count) = (0.0, 0.0);
-        for j in neighbour.indices() {
-            least = least.min(values[j]);
-            greatest = greatest.max(values[j]);
-            sum += values[j];
-            count += 1.0;
+    /// Tiles of the coarsest level wherever there are elements, and the values on them: means over smaller elements.
+    #[must_use]
+    pub fn on_coarsest<'a>(&self, values: &'a [f64]) -> (TileSet, Cow<'a, [f64]>) {
+        if self.levels().len() == 1 {
+            return (self.finest().clone(), Cow::Borrowed(values));
         }
-        (sum / count - own) / distance
-    };
-    let x = minmod(slope_across(Edge::Right), -slope_across(Edge::Left));
-    let y = minmod(slope_across(Edge::Up), -slope_across(Edge::Down));
-    let rise = 0.5 * side * (x.abs() + y.abs());
-    let allowed = (own - least).min(greatest - own);
-    if rise > allowed { (x * allowed / rise, y * allowed / rise) } else { (x, y) }
-}
+        let (mut coarser, mut values) = self.without_finest(values);
+        while coarser.levels().len() > 1 {
+            (coarser, values) = coarser.without_finest(&values);
+        }
+        (coarser.finest().clone(), Cow::Owned(values))
+    }
 
-/// The one closer to zero when both have the same sign, else zero.
-fn minmod(a: f64, b: f64) -> f64 {
-    if a.signum() == b.signum() { a.signum() * a.abs().min(b.abs()) } else { 0.0 }
+    /// Values on the elements of `to`, whose tiles are tiles of this mesh, quarters of them, unions of four, or new ones. New ones have
+    /// the value `elsewhere`, and so has what fills vectors up.
+    #[must_use]
+    pub fn moved(&self, to: &Self, values: &[f64], elsewhere: f64) -> Vec<f64> {
+        let mut result = vec![elsewhere; to.len()];
+        for (coarser, tiles) in to.levels().iter().enumerate() {
+            // The same level here, unless the other mesh has a finer one.
+            let here = self.levels().iter().position(|level| level.side() == tiles.side());
+            let cells = &mut result[to.cells(coarser)];
+            let sinks = cells.par_chunks_mut(CELLS).zip(tiles.places()).with_min_len(64);
+            sinks.for_each(|(cells, &place)| {
+                let (place, put) =
+                    (place.map(i64::from).into(), |x: usize, y: usize, value| cells[y * TILE + x] = value);
+                match here {
+                    Some(here) => self.tile_values(values, here, place, put),
+                    None => self.quarter_values(values, 0, place, put),
+                };
+            });
+        }
+        result
+    }
 }

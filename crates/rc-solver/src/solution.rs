@@ -1,7 +1,7 @@
 //! What a solve returns.
 
 use rc_core::{Field, Grid, Kernel};
-use rc_quadtree::{Element, Mesh};
+use rc_quadtree::paper::{Mesh, Square};
 
 use crate::stiffness::contact_stiffness;
 use crate::{Certificate, ContactElement};
@@ -98,8 +98,8 @@ impl MeshPressure {
     pub(crate) fn elements(&self) -> impl Iterator<Item = ContactElement> + '_ {
         let elements = self.mesh.elements().zip(&self.pressure);
         elements.map(|(element, &pressure)| {
-            let Element { x, y, side, .. } = element;
-            ContactElement { x, y, side, pressure }
+            let Square { centre, side } = element;
+            ContactElement { centre, side, pressure }
         })
     }
 }

@@ -61,7 +61,7 @@ fn add_whole(
     add_field("pressure.npy", &solution.pressure, units.e_star)?;
     add_field("gap.npy", &solution.gap, units.side)?;
     if let Some(MeshPressure { mesh, pressure }) = &solution.elements {
-        let rows = mesh.elements().zip(pressure).map(|(e, &pressure)| [e.x, e.y, e.side, pressure]);
+        let rows = mesh.elements().zip(pressure).map(|(e, &pressure)| [e.centre.x, e.centre.y, e.side, pressure]);
         staged.add("elements.csv", |path| write_elements(path, rows, units))?;
     }
     let picture = ContactPicture::of(&solution.pressure, units.e_star, units.side);
@@ -87,7 +87,7 @@ fn add_tiles(
         problem.gap_rows(solution, |_, rows| file.take(rows))?;
         file.finish()
     })?;
-    let rows = solution.elements().map(|e| [e.x, e.y, e.side, e.pressure]);
+    let rows = solution.elements().map(|e| [e.centre.x, e.centre.y, e.side, e.pressure]);
     staged.add("elements.csv", |path| write_elements(path, rows, units))?;
     let mut picture = ContactRows::new(grid);
     let Ok(()) = solution.pressure_rows(|_, rows| {

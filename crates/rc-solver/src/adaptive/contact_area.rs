@@ -3,9 +3,8 @@
 use rayon::prelude::*;
 use rc_core::{Grid, Kernel};
 use rc_kernel::Love;
+use rc_quadtree::{CELLS, Elements, TILE};
 
-use super::elements::Elements;
-use super::tiles::{CELLS, TILE};
 use crate::ContactArea;
 use crate::contact_area::EdgeSums;
 

@@ -1,12 +1,11 @@
-//! Heights of elements: of the smallest at their centres, of larger ones in the mean.
+//! Heights of elements: at the centres of the smallest ones, means over larger ones.
 
 use rayon::prelude::*;
+use rc_quadtree::{CELLS, Elements, TileSet, means_of_quarter, quarters};
 
-use super::elements::Elements;
 use super::heights::Heights;
-use super::tiles::{CELLS, TileSet, means_of_quarter, quarters};
 
-/// Heights of all elements. What fills a vector up gets the least height there is, which is never in contact.
+/// Heights of all elements. Values that fill up a vector are the minimum height, which is never in contact.
 pub(super) fn element_heights(heights: &Heights<'_>, elements: &Elements) -> Vec<f64> {
     let mut result = vec![heights.extremes().least; elements.len()];
     for (coarser, tiles) in elements.levels().iter().enumerate() {
@@ -21,9 +20,9 @@ pub(super) fn element_heights(heights: &Heights<'_>, elements: &Elements) -> Vec
     result
 }
 
-/// From heights at centres to means over the centres of the finest elements, 2^`coarser` of them per side, as the displacement
-/// of larger elements is one: with ⟨·⟩ over n × n centres, `⟨h⟩ - h(0) = Δh/24 (1 - 1/n²) d²` up to fourth order, so that
-/// the mean over four gives the one over all.
+/// From heights at centres to means over the centres of the smallest elements, 2^`coarser` of them per side: the displacement of a
+/// larger element is such a mean too. With ⟨·⟩ over n × n centres, `⟨h⟩ - h(0) = Δh/24 (1 - 1/n²) d²` up to fourth order. The mean
+/// over four centres therefore gives the mean over all.
 fn to_means(heights: &Heights<'_>, tiles: &TileSet, place: [u32; 2], coarser: usize, cells: &mut [f64; CELLS]) {
     let ratio = (1.0 - 1.0 / Elements::area(coarser)) / (1.0 - 0.25);
     for quarter in quarters(place) {

@@ -5,39 +5,37 @@
 //! survey proves it.
 
 mod contact_area;
+mod element_blocks;
 mod element_heights;
-mod elements;
 mod error;
 mod estimate;
-mod fresh;
+mod exclusion;
+mod finest_level;
 pub(crate) mod heights;
 mod level;
 mod multilevel;
+mod nested_iteration;
 pub(crate) mod operator;
 mod prolongation;
-mod refinement;
 mod roughness;
+mod scaled_operator;
+mod setup;
 mod solution;
-mod solver;
-mod split;
-mod survey;
-pub(crate) mod tiles;
 
 use rc_core::{Grid, HeightSource, Observer};
 use rc_kernel::SplitParams;
+use rc_quadtree::{Elements, TILE};
 
 use self::contact_area::contact_area;
-use self::elements::Elements;
 pub use self::error::AdaptiveError;
 pub use self::estimate::Estimate;
 use self::heights::Heights;
-use self::level::Level;
+use self::level::SolvedLevel;
 pub use self::multilevel::MultilevelOperator;
+use self::nested_iteration::{NestedIteration, NestedSolution};
 use self::operator::Real;
 use self::roughness::{ERROR_OF_ROUGHNESS, roughness};
 pub use self::solution::{AdaptiveSolution, ContactElement};
-use self::solver::{Solved, Solver};
-use self::tiles::TILE;
 use crate::problem::Problem;
 use crate::solution::LevelInfo;
 use crate::{Certificate, Control, IterationParams};
@@ -168,7 +166,7 @@ impl<'a> AdaptiveProblem<'a> {
     }
 
     /// Solves with fresh gaps in precision `T`, unless the pressure turns out to be too rough for its operator.
-    fn solve_in<T: Real + Into<f64>>(&self, observer: &dyn Observer) -> Solved {
+    fn solve_in<T: Real + Into<f64>>(&self, observer: &dyn Observer) -> NestedSolution {
         let solver = self.solver::<T>(self.split);
         let start = solver.prepare(observer);
         let needed = self.error_for(&start.mesh.elements, &start.mesh.pressure);
@@ -178,8 +176,8 @@ impl<'a> AdaptiveProblem<'a> {
         }
     }
 
-    fn solver<T: Real + Into<f64>>(&self, split: SplitParams) -> Solver<'_, T> {
-        Solver::new(&self.heights, self.problem, &self.params, split)
+    fn solver<T: Real + Into<f64>>(&self, split: SplitParams) -> NestedIteration<'_, T> {
+        NestedIteration::new(&self.heights, self.problem, &self.params, split)
     }
 
     /// Error of L that is asked for.
@@ -195,10 +193,10 @@ impl<'a> AdaptiveProblem<'a> {
     }
 
     /// Wraps up what the levels found, under a pressure that needs an error of L of `needed`.
-    fn finish(&self, solved: Solved, needed: f64) -> Result<AdaptiveSolution, AdaptiveError> {
-        let Solved { grid, level, levels, coarser, .. } = solved;
+    fn finish(&self, solved: NestedSolution, needed: f64) -> Result<AdaptiveSolution, AdaptiveError> {
+        let NestedSolution { grid, level, levels, coarser, .. } = solved;
         // Where even the best operator is not good enough for so rough a pressure, its error is part of the certificate.
-        let Level { elements, pressure, gap, mut outcome, evaluated, info: LevelInfo { iterations, .. } } = level;
+        let SolvedLevel { elements, pressure, gap, mut outcome, evaluated, info: LevelInfo { iterations, .. } } = level;
         if needed < SplitParams::SMALLEST_ERROR {
             let error = PART_OF_ROUGHNESS * self.params.solve.tolerance * SplitParams::SMALLEST_ERROR / needed;
             outcome.certificate.penetration += error;

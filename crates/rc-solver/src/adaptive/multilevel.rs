@@ -5,11 +5,10 @@ use std::sync::{Arc, Mutex};
 use rayon::prelude::*;
 use rc_core::{Grid, Operator};
 use rc_kernel::{ScaleSplit, SplitParams};
+use rc_quadtree::{BLOCK_CELLS, Elements, TILE, TileSet};
 
 use super::AdaptiveError;
-use super::elements::Elements;
-use super::operator::{BLOCK_CELLS, Hierarchy, Prepared, Tables, TileOperator};
-use super::tiles::{TILE, TileSet};
+use super::operator::{Hierarchy, Prepared, Tables, TileOperator};
 use crate::descent::Engine;
 
 /// `v = L p` (Eq. 4) for Love's squares of one size on tiles of 8 × 8 of them, with any tiles left out.

@@ -4,13 +4,13 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use rc_core::Grid;
+use rc_core::{DVec2, Grid};
 use rc_kernel::{ScaleSplit, SplitParams};
+use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, put_tile};
 
-use super::elements::Elements;
-use super::fresh::Fresh;
-use super::operator::{BLOCK_CELLS, Hierarchy, Prepared, TileOperator};
-use super::tiles::{CELLS, TILE, TileSet, put_tile};
+use super::element_blocks::blocks_of;
+use super::operator::{Hierarchy, Prepared, TileOperator};
+use super::scaled_operator::ScaledOperator;
 use crate::descent::Engine;
 use crate::observables::{corrected, mean_gap_error, rms_pressure_error};
 use crate::solution::Status;
@@ -20,10 +20,8 @@ use crate::{ContactArea, Observables, SolveInfo};
 /// One element in contact, in units of λ and E*.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactElement {
-    /// Centre along x.
-    pub x: f64,
-    /// Centre along y.
-    pub y: f64,
+    /// Centre.
+    pub centre: DVec2,
     /// Side of the square.
     pub side: f64,
     /// Pressure, > 0.
@@ -71,7 +69,7 @@ impl AdaptiveSolution {
             cells.filter(|&(_, &pressure)| pressure > 0.0).map(move |(cell, &pressure)| {
                 let x = (column + (cell % TILE) as f64 + 0.5) * side;
                 let y = (row + (cell / TILE) as f64 + 0.5) * side;
-                ContactElement { x, y, side, pressure }
+                ContactElement { centre: DVec2::new(x, y), side, pressure }
             })
         })
     }
@@ -140,7 +138,8 @@ impl AdaptiveSolution {
             let tiles = hierarchy.elements().finest();
             // Where the pressure is on part of the cell, the mean over all of it says nothing of its size.
             let mean = if own.cover_cell() { self.info.mean_pressure } else { 0.0 };
-            let mut fresh = Fresh::<f32>::new(Arc::clone(&hierarchy), mean, self.info.penetration_full_contact);
+            let mut fresh =
+                ScaledOperator::<f32>::new(Arc::clone(&hierarchy), mean, self.info.penetration_full_contact);
             fresh.fill(values.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
             fresh.multiply(&tables);
             fresh.take(&tables, values.par_chunks_mut(BLOCK_CELLS), |v, cells| v.copy_from_slice(cells));
@@ -214,7 +213,7 @@ impl AdaptiveSolution {
 /// Root mean square over the whole cell.
 pub(super) fn rms_pressure(elements: &Elements, pressure: &[f64]) -> f64 {
     let squares = pressure.par_chunks(BLOCK_CELLS).map(|p| [p.iter().map(|p| p * p).sum()]).collect();
-    let [squares] = elements.division().total(squares);
+    let [squares] = blocks_of(elements).total(squares);
     let smallest = elements.finest().side();
     (squares / (smallest * smallest) as f64).sqrt()
 }

@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 use rc_core::DVec2;
-use rc_quadtree::Mesh;
+use rc_quadtree::paper::Mesh;
 
 /// `coefficient(offset, half_side)`: L_ij of Eq. 4-6 for a source of half-side d and the offset of the target, in λ/E*.
 pub type Coefficient<'a> = &'a (dyn Fn(DVec2, f64) -> f64 + Sync);
@@ -43,8 +43,8 @@ impl<'a> Coefficients<'a> {
         let sites: Vec<Site> = mesh
             .elements()
             .map(|element| Site {
-                x: (2.0 * element.x / finest).round() as u32,
-                y: (2.0 * element.y / finest).round() as u32,
+                x: (2.0 * element.centre.x / finest).round() as u32,
+                y: (2.0 * element.centre.y / finest).round() as u32,
                 doublings: (element.side / finest).round().log2() as u32,
             })
             .collect();

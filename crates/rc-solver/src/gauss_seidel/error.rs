@@ -1,7 +1,7 @@
 //! Why the paper's procedure failed.
 
 use rc_core::Grid;
-use rc_quadtree::MeshError;
+use rc_quadtree::paper::MeshError;
 use thiserror::Error;
 
 use crate::IterationError;

@@ -16,7 +16,7 @@ pub struct GaussSeidelParams {
     pub max_sweeps: usize,
     /// Largest number of double checks for one increment.
     pub max_checks: usize,
-    /// Blocks of its own size that a coarse element has around it in contact ([`rc_quadtree::MeshParams::ring`]).
+    /// Blocks of its own size that a coarse element has around it in contact ([`rc_quadtree::paper::MeshParams::ring`]).
     pub ring: usize,
     /// `false`: the paper's mesh; `true`: all elements in contact of the finest size (after Wriggers).
     pub uniform_elements: bool,

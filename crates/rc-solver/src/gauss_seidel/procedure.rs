@@ -1,7 +1,7 @@
 //! Steps (i) to (vi) of the procedure of Sec. 2, which solves Eq. 4 on the elements in contact.
 
 use rc_core::{Event, Field, Kernel, Observer, Operator, Snapshot};
-use rc_quadtree::{Mask, Mesh, MeshKind, MeshParams, Reconstruction, count, transfer};
+use rc_quadtree::paper::{Key, Mask, Mesh, MeshKind, MeshParams, count, transfer};
 
 use super::coefficients::{Coefficient, Coefficients, Site};
 use super::sweep::{self, Limits};
@@ -296,7 +296,7 @@ impl<'a> Procedure<'a> {
     fn relax(&mut self, residual: f64) -> Result<(), GaussSeidelError> {
         let mask = Mask::new(self.info.grid.nx(), self.contact.clone())?;
         let mesh = Mesh::from_mask(&mask, self.kind, &self.mesh_params)?;
-        self.pressure = transfer(&self.mesh, &mesh, &self.pressure, Reconstruction::Constant)?.values;
+        self.pressure = transfer(&self.mesh, &mesh, &self.pressure)?.values;
         self.pressure.iter_mut().for_each(|p| *p = p.max(0.0));
         self.sites = self.coefficients.prepare(&mesh);
         self.mesh = mesh;
@@ -312,7 +312,7 @@ impl<'a> Procedure<'a> {
         let depth = self.mesh_params.base;
         let lowering = self.penetration - self.problem.h_max;
         let finest = self.info.grid.nx();
-        let height = |key: &rc_quadtree::Key| {
+        let height = |key: &Key| {
             let side = depth << key.level();
             let level = (finest / side).trailing_zeros() as usize;
             self.pyramid[level].at(key.ix() as usize, key.iy() as usize) + lowering

@@ -9,7 +9,7 @@ use rc_core::{Field, Kernel, Observer};
 
 pub(crate) use self::climb::{Climb, Climbed, UniformDescent, coarse_tolerance};
 pub(crate) use self::levels::coarsen;
-pub(crate) use self::prolongation::{level_function, outside_level};
+pub(crate) use self::prolongation::{edge_function, edge_function_outside};
 use crate::problem::Problem;
 use crate::solution::{GridSolution, Status};
 use crate::{Control, IterationError, IterationParams};

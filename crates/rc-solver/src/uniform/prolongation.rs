@@ -2,7 +2,7 @@
 //!
 //! Interpolating the pressure itself spreads every contact by half a coarse element, which costs the next level six
 //! iterations. At an edge p = c √s inside and g = (4c/3) s^{3/2} outside, with s the distance to it and the same c
-//! (`E* = 1`), so the level function φ = p² inside, -c² (3g/4c)^{2/3} outside is linear in s across the edge, and bilinear
+//! (`E* = 1`), so the edge function φ = p² inside, -c² (3g/4c)^{2/3} outside is linear in s across the edge, and bilinear
 //! interpolation puts the edge where it belongs.
 
 use rayon::prelude::*;
@@ -11,14 +11,14 @@ use super::UniformDescent;
 
 /// The start on the grid with twice as many elements per side.
 pub(crate) fn prolong(coarse: &UniformDescent<'_>) -> Vec<f64> {
-    let level = level_function(coarse);
+    let function = edge_function(coarse);
     let (nx, ny) = (coarse.grid().nx(), coarse.grid().ny());
     let mut fine = vec![0.0; 4 * nx * ny];
     fine.par_chunks_mut(2 * nx).enumerate().for_each(|(iy, row)| {
         // The centre of a fine element lies a quarter of a coarse element from the centre of the coarse one it is in.
-        let near = &level[(iy / 2) * nx..][..nx];
+        let near = &function[(iy / 2) * nx..][..nx];
         let far_iy = if iy.is_multiple_of(2) { (iy / 2 + ny - 1) % ny } else { (iy / 2 + 1) % ny };
-        let far = &level[far_iy * nx..][..nx];
+        let far = &function[far_iy * nx..][..nx];
         let blend = |ix: usize| 0.75 * near[ix] + 0.25 * far[ix];
         for (ix, pair) in row.chunks_exact_mut(2).enumerate() {
             let (left, here, right) = (blend((ix + nx - 1) % nx), blend(ix), blend((ix + 1) % nx));
@@ -30,13 +30,13 @@ pub(crate) fn prolong(coarse: &UniformDescent<'_>) -> Vec<f64> {
 }
 
 /// φ at the coarse centres.
-pub(crate) fn level_function(coarse: &UniformDescent<'_>) -> Vec<f64> {
+pub(crate) fn edge_function(coarse: &UniformDescent<'_>) -> Vec<f64> {
     let (nx, ny) = (coarse.grid().nx(), coarse.grid().ny());
     let (pressure, gap) = (coarse.pressure(), coarse.gap());
     let zero_gap = coarse.contact_gap();
     let spacing = coarse.grid().spacing().min_element();
-    let mut level = vec![0.0; nx * ny];
-    level.par_chunks_mut(nx).enumerate().for_each(|(iy, row)| {
+    let mut function = vec![0.0; nx * ny];
+    function.par_chunks_mut(nx).enumerate().for_each(|(iy, row)| {
         let rows = [(iy + ny - 1) % ny, iy, (iy + 1) % ny].map(|y| &pressure[y * nx..(y + 1) * nx]);
         for (ix, value) in row.iter_mut().enumerate() {
             let here = rows[1][ix];
@@ -47,7 +47,7 @@ pub(crate) fn level_function(coarse: &UniformDescent<'_>) -> Vec<f64> {
             };
         }
     });
-    level
+    function
 }
 
 /// φ of an element out of contact. c² is estimated from its neighbours in contact, whose centres are about 0.7 elements
@@ -55,11 +55,11 @@ pub(crate) fn level_function(coarse: &UniformDescent<'_>) -> Vec<f64> {
 fn outside(rows: &[&[f64]; 3], ix: usize, gap: f64, spacing: f64) -> f64 {
     let nx = rows[0].len();
     let columns = [(ix + nx - 1) % nx, ix, (ix + 1) % nx];
-    outside_level(rows.iter().flat_map(|row| columns.iter().map(|&column| &row[column])), gap, spacing)
+    edge_function_outside(rows.iter().flat_map(|row| columns.iter().map(|&column| &row[column])), gap, spacing)
 }
 
 /// φ of an element out of contact with these pressures around it.
-pub(crate) fn outside_level<'a>(near: impl Iterator<Item = &'a f64>, gap: f64, spacing: f64) -> f64 {
+pub(crate) fn edge_function_outside<'a>(near: impl Iterator<Item = &'a f64>, gap: f64, spacing: f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for p in near {
         if *p > 0.0 {

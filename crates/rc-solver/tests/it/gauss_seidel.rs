@@ -1,6 +1,6 @@
 //! The paper's procedure against the uniform solver, against Hertz, and against its own sums.
 
-use rc_core::{DVec2, Field, Grid, Operator};
+use rc_core::{Field, Grid, Operator};
 use rc_kernel::{Love, PeriodicLove};
 use rc_solver::{
     ContactElement, Control, GaussSeidelError, GaussSeidelParams, IterationError as ProblemError, Method, Solution,
@@ -74,7 +74,7 @@ fn displacement_by_fft_is_the_direct_sum() {
     let periodic = PeriodicLove::new();
     for i in (0..64 * 64).step_by(131) {
         let at = heights.grid().centre(i % 64, i / 64);
-        let influence = |e: &ContactElement| periodic.coefficient(at - DVec2::new(e.x, e.y), 0.5 * e.side) * e.pressure;
+        let influence = |e: &ContactElement| periodic.coefficient(at - e.centre, 0.5 * e.side) * e.pressure;
         let sum: f64 = elements.iter().map(influence).sum();
         assert!((sum - by_fft[i]).abs() <= 1e-12 * heights.max(), "at {i}: {sum:e} against {:e}", by_fft[i]);
     }

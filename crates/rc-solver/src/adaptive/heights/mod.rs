@@ -17,8 +17,8 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 use rc_core::{Field, Grid, HeightField, HeightSource};
+use rc_quadtree::{TILE, put_tile};
 
-use super::tiles::{TILE, put_tile};
 use crate::IterationError;
 use crate::problem::HeightStatistics;
 use crate::uniform::coarsen;

@@ -9,11 +9,10 @@ use std::marker::PhantomData;
 
 use pulp::{Simd, WithSimd};
 use rc_kernel::CoarseElement;
+use rc_quadtree::{CELLS, Patch, TILE, TileSet, cell_over, gather, means_of_quarter, quarters};
 
-use super::patch::{Patch, gather};
 use super::real::{MultiplyAdd, Real};
 use super::stencil::Taps;
-use crate::adaptive::tiles::{CELLS, TILE, TileSet, cell_over, means_of_quarter, quarters};
 
 /// What coarse elements do, in the precision of the values.
 #[derive(Clone, Debug)]

@@ -12,7 +12,6 @@
 
 mod coarse;
 mod pass;
-mod patch;
 mod real;
 mod stencil;
 mod tables;
@@ -26,23 +25,16 @@ use pulp::Arch;
 use rayon::prelude::*;
 use rc_core::Grid;
 use rc_fft::{BLOCK_ROWS, Convolution};
+use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, Elements, TILE, TileSet};
 
 use self::coarse::{Blur, FromGhosts, Leaves, Means};
 use self::pass::{Lift, Lower};
-pub(crate) use self::patch::{Patch, gather};
 pub(crate) use self::real::Real;
 use self::real::{Fused, MultiplyAdd, Separate};
 use self::tables::Sizes;
 pub(crate) use self::tables::{Prepared, Tables};
-use super::elements::Elements;
-use super::tiles::{CELLS, TILE, TileSet};
+use super::element_blocks::blocks_of;
 use crate::descent::{Blocks, Engine};
-
-/// Tiles that one thread works on at a time, and whose values a caller gets at a time.
-const BLOCK_TILES: usize = 16;
-
-/// Cells in a block.
-pub(crate) const BLOCK_CELLS: usize = BLOCK_TILES * CELLS;
 
 /// The tiles of all levels, coarsest first: the first is the whole base grid, the last has the finest elements.
 pub(crate) struct Hierarchy {
@@ -329,7 +321,7 @@ impl<T: Real> Engine<T> for TileOperator<T> {
     type Table = Tables<T>;
 
     fn blocks(&self) -> Blocks {
-        self.hierarchy.elements.division()
+        blocks_of(&self.hierarchy.elements)
     }
 
     fn fill<S, R>(&mut self, sources: S, fill: impl Fn(S::Item, &mut [T]) -> R + Sync) -> Vec<R>

@@ -3,12 +3,11 @@
 use std::marker::PhantomData;
 
 use pulp::{Simd, WithSimd};
+use rc_quadtree::{CELLS, TILE, TileSet, gather};
 
-use super::patch::gather;
 use super::real::{MultiplyAdd, Real};
 use super::stencil::Taps;
 use super::transfer::Transfer;
-use crate::adaptive::tiles::{CELLS, TILE, TileSet};
 
 /// The densities of tiles from those of the next finer level.
 pub(super) struct Lift<'a, T, A, const N: usize, const UNDER: usize> {

@@ -3,7 +3,7 @@
 use rc_fft::Plan;
 
 /// `f32` or `f64`.
-pub(crate) trait Real: Plan + Default {
+pub(crate) trait Real: Plan + Default + From<f32> {
     /// Rounded from double precision.
     fn rounded(value: f64) -> Self;
 

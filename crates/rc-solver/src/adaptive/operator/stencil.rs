@@ -1,10 +1,9 @@
 //! A stencil applied to one tile.
 
 use rc_kernel::Stencil;
+use rc_quadtree::{CELLS, Patch, TILE};
 
-use super::patch::Patch;
 use super::real::{MultiplyAdd, Real};
-use crate::adaptive::tiles::{CELLS, TILE};
 
 /// The weights of a stencil with their places in a patch of given side.
 #[derive(Clone, Debug)]

@@ -4,11 +4,11 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rc_core::DVec2;
 use rc_kernel::{PeriodicLove, ScaleSplit, SplitParams};
+use rc_quadtree::quarters;
 
 use super::*;
 use crate::adaptive::SINGLE_PRECISION;
 use crate::adaptive::roughness::{ERROR_OF_ROUGHNESS, roughness};
-use crate::adaptive::tiles::quarters;
 
 /// Radii of spots a few elements of a base grid wide.
 const SMALL: [f64; 2] = [0.01, 0.06];

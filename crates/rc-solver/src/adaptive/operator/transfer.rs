@@ -1,10 +1,9 @@
 //! Between two levels: pressures go up by the filter, displacements come down by its transpose.
 
 use rc_kernel::Filter;
+use rc_quadtree::{CELLS, Patch, TILE};
 
-use super::patch::Patch;
 use super::real::{MultiplyAdd, Real};
-use crate::adaptive::tiles::{CELLS, TILE};
 
 /// Half a tile: what a fine tile covers of a coarse one.
 const HALF: usize = TILE / 2;

@@ -1,14 +1,20 @@
-//! A tile with its neighbourhood, copied to one place for the inner loops.
+//! A tile with its neighbourhood, copied to one place for inner loops.
 
-use crate::adaptive::tiles::{CELLS, TILE, TileSet};
+use crate::tiles::{CELLS, TILE, TileSet};
 
-/// `SIDE` × `SIDE` values, `SIDE` a multiple of 8; places without a tile are zero.
-pub(crate) type Patch<T, const SIDE: usize> = [[T; SIDE]; SIDE];
+/// `SIDE` × `SIDE` values, row by row; `SIDE` is a multiple of [`TILE`].
+pub type Patch<T, const SIDE: usize> = [[T; SIDE]; SIDE];
 
-/// Fills `rows` of the patch whose lower left tile is at (`column`, `row`) of the continued level. False when no tile of it
-/// exists; the patch is then undefined.
+/// Fills `rows` of the patch whose lower left tile is at (`column`, `row`) of the periodically continued level. Where there is no
+/// tile, values are those of `T::default()`. Returns false when none of the tiles exists; the patch is then undefined.
+///
+/// `values` has [`CELLS`] values for each of `tiles`.
+///
+/// # Panics
+/// When there are fewer values than that, or rows are outside the patch.
 #[inline(always)]
-pub(crate) fn gather<T: Copy + Default, const SIDE: usize>(
+#[expect(clippy::inline_always, reason = "it is part of vectorised loops, which are compiled for the machine at hand")]
+pub fn gather<T: Copy + Default, const SIDE: usize>(
     values: &[T],
     tiles: &TileSet,
     (column, row): (i64, i64),

@@ -1,10 +1,10 @@
-//! What the mesh promises, from outside, in one test binary.
+//! What the paper's meshes promise.
 #![expect(
     clippy::float_cmp,
     reason = "areas and lengths are sums of powers of two and nothing lost is exactly zero, so equality is meant"
 )]
 
 mod common;
-mod mesh;
+mod meshes;
 mod properties;
-mod transfer;
+mod transfers;

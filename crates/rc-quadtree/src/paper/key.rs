@@ -1,5 +1,7 @@
 //! Keys: the place and size of one square, sorted along the Morton curve.
 
+use crate::morton::morton_code;
+
 /// Deepest level a key can hold: squares of side 2^-20 of a root square.
 pub const MAX_LEVEL: u32 = 20;
 
@@ -21,7 +23,7 @@ pub struct Key(u64);
 
 impl Key {
     /// The square of level `level` at column `ix` and row `iy`, each below `base << level`.
-    pub(crate) fn new(level: u32, ix: u32, iy: u32) -> Self {
+    pub(super) fn new(level: u32, ix: u32, iy: u32) -> Self {
         let to_finest = MAX_LEVEL - level;
         Self::from_code(morton_code(ix << to_finest, iy << to_finest), level)
     }
@@ -49,49 +51,25 @@ impl Key {
     }
 
     /// First Morton code of the square.
-    pub(crate) fn start(self) -> u64 {
+    pub(super) fn start(self) -> u64 {
         self.0 >> LEVEL_BITS
     }
 
     /// Number of Morton codes of the square: its area in units of the smallest square.
-    pub(crate) fn span(self) -> u64 {
+    pub(super) fn span(self) -> u64 {
         1 << (2 * (MAX_LEVEL - self.level()))
     }
 
     /// First Morton code after the square.
-    pub(crate) fn end(self) -> u64 {
+    pub(super) fn end(self) -> u64 {
         self.start() + self.span()
-    }
-
-    /// Is `other` this square or a part of it?
-    #[must_use]
-    pub fn contains(self, other: Self) -> bool {
-        self.start() <= other.start() && other.end() <= self.end()
-    }
-
-    /// The square of twice the side that this one is a quarter of; none for a root square.
-    #[must_use]
-    pub fn parent(self) -> Option<Self> {
-        let level = self.level().checked_sub(1)?;
-        Some(Self::new(level, self.ix() / 2, self.iy() / 2))
     }
 
     /// The four quarters in Morton order: lower left, lower right, upper left, upper right. The level must be below
     /// [`MAX_LEVEL`].
-    pub(crate) fn children(self) -> [Self; 4] {
+    pub(super) fn children(self) -> [Self; 4] {
         let quarter = self.span() / 4;
         std::array::from_fn(|q| Self::from_code(self.start() + q as u64 * quarter, self.level() + 1))
-    }
-
-    /// The square of the same size `dx` columns and `dy` rows away, around the periodic cell of `base` root squares.
-    pub(crate) fn step(self, base: usize, dx: i64, dy: i64) -> Self {
-        Self::wrapped(base, self.level(), i64::from(self.ix()) + dx, i64::from(self.iy()) + dy)
-    }
-
-    /// The square of level `level` at column `ix` and row `iy` of the periodically continued plane.
-    pub(crate) fn wrapped(base: usize, level: u32, ix: i64, iy: i64) -> Self {
-        let per_side = (base as i64) << level;
-        Self::new(level, ix.rem_euclid(per_side) as u32, iy.rem_euclid(per_side) as u32)
     }
 }
 
@@ -101,25 +79,7 @@ impl std::fmt::Debug for Key {
     }
 }
 
-/// Place of the square at column `ix` and row `iy` along the Morton curve through all squares of its size: the bits of `iy` and
-/// `ix` in turn, so that squares near each other are mostly near along the curve. For sorting squares of one size without a
-/// mesh; a [`Key`] holds the size too.
-#[must_use]
-pub fn morton_code(ix: u32, iy: u32) -> u64 {
-    spread(ix) | (spread(iy) << 1)
-}
-
-/// Moves bit i of `v` to bit 2i.
-fn spread(v: u32) -> u64 {
-    let mut v = u64::from(v);
-    v = (v | (v << 16)) & 0x0000_FFFF_0000_FFFF;
-    v = (v | (v << 8)) & 0x00FF_00FF_00FF_00FF;
-    v = (v | (v << 4)) & 0x0F0F_0F0F_0F0F_0F0F;
-    v = (v | (v << 2)) & 0x3333_3333_3333_3333;
-    (v | (v << 1)) & 0x5555_5555_5555_5555
-}
-
-/// Moves bit 2i of `v` to bit i; the inverse of [`spread`].
+/// Moves bit 2i of `v` to bit i; the inverse of the spreading in [`morton_code`].
 fn gather(v: u64) -> u32 {
     let mut v = v & 0x5555_5555_5555_5555;
     v = (v | (v >> 1)) & 0x3333_3333_3333_3333;
@@ -148,21 +108,7 @@ mod tests {
         assert_eq!(children[0].start(), parent.start());
         assert_eq!(children[3].end(), parent.end());
         for child in children {
-            assert_eq!(child.parent(), Some(parent));
-            assert!(parent.contains(child) && !child.contains(parent));
             assert!(parent < child, "an ancestor sorts before its parts");
         }
-    }
-
-    #[test]
-    fn the_morton_code_has_the_bits_of_both_in_turn() {
-        assert_eq!(morton_code(0b101, 0b011), 0b01_10_11);
-        assert_eq!((morton_code(u32::MAX, 0), morton_code(0, u32::MAX)), (u64::MAX / 3, u64::MAX / 3 * 2));
-    }
-
-    #[test]
-    fn steps_wrap_around_a_cell_of_three_roots() {
-        let corner = Key::new(1, 0, 5);
-        assert_eq!(corner.step(3, -1, 1), Key::new(1, 5, 0));
     }
 }

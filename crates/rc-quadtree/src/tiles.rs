@@ -1,16 +1,15 @@
 //! Tiles: the squares of 8 × 8 cells in which a level of the mesh is stored.
 
+use std::ops::{Add, Mul};
 use std::sync::Arc;
 
-use rc_quadtree::morton_code;
-
-use super::operator::Real;
+use crate::morton::morton_code;
 
 /// Cells per side of a tile.
-pub(crate) const TILE: usize = 8;
+pub const TILE: usize = 8;
 
 /// Cells of a tile.
-pub(crate) const CELLS: usize = TILE * TILE;
+pub const CELLS: usize = TILE * TILE;
 
 /// No tile at this place.
 const NONE: u32 = u32::MAX;
@@ -20,7 +19,7 @@ const NONE: u32 = u32::MAX;
 /// A value of the level is at `tile · 64 + row · 8 + column`. Where tiles are is looked up in a table of 4 bytes for each
 /// possible tile: 1/16 byte a cell of the level, the only memory that grows with the cell and not with the contact.
 #[derive(Clone, Debug)]
-pub(crate) struct TileSet {
+pub struct TileSet {
     per_side: usize,
     // Shared: meshes are cloned often, and never changed.
     places: Arc<Vec<[u32; 2]>>,
@@ -28,8 +27,12 @@ pub(crate) struct TileSet {
 }
 
 impl TileSet {
-    /// The tiles at `places` (column, row), each below `per_side`; double ones are dropped.
-    pub(crate) fn new(per_side: usize, mut places: Vec<[u32; 2]>) -> Self {
+    /// The tiles at `places` (column, row) of a level of `per_side` tiles per side, in any order; double ones are dropped.
+    ///
+    /// # Panics
+    /// When a place is outside the level.
+    #[must_use]
+    pub fn new(per_side: usize, mut places: Vec<[u32; 2]>) -> Self {
         places.sort_unstable_by_key(|&[column, row]| morton_code(column, row));
         places.dedup();
         let mut index = vec![NONE; per_side * per_side];
@@ -39,41 +42,54 @@ impl TileSet {
         Self { per_side, places: Arc::new(places), index: Arc::new(index) }
     }
 
-    /// All tiles of a level, row by row.
-    pub(crate) fn full(per_side: usize) -> Self {
+    /// All tiles of a level of `per_side` tiles per side, row by row.
+    #[must_use]
+    pub fn full(per_side: usize) -> Self {
         let places = (0..per_side * per_side).map(|i| [(i % per_side) as u32, (i / per_side) as u32]);
         let index = (0..(per_side * per_side) as u32).collect();
         Self { per_side, places: Arc::new(places.collect()), index: Arc::new(index) }
     }
 
     /// Tiles per side of the whole level.
-    pub(crate) fn per_side(&self) -> usize {
+    #[must_use]
+    pub fn per_side(&self) -> usize {
         self.per_side
     }
 
     /// Cells per side of the whole level.
-    pub(crate) fn side(&self) -> usize {
+    #[must_use]
+    pub fn side(&self) -> usize {
         self.per_side * TILE
     }
 
     /// Number of tiles.
-    pub(crate) fn len(&self) -> usize {
+    #[must_use]
+    pub fn len(&self) -> usize {
         self.places.len()
     }
 
+    /// Is there no tile?
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.places.is_empty()
+    }
+
     /// Number of cells.
-    pub(crate) fn n_cells(&self) -> usize {
+    #[must_use]
+    pub fn n_cells(&self) -> usize {
         self.places.len() * CELLS
     }
 
     /// Column and row of each tile.
-    pub(crate) fn places(&self) -> &[[u32; 2]] {
+    #[must_use]
+    pub fn places(&self) -> &[[u32; 2]] {
         &self.places
     }
 
-    /// The tile at a place of the periodically continued level.
+    /// Index of the tile at a place of the periodically continued level; none where there is no tile.
+    #[must_use]
     #[inline]
-    pub(crate) fn find(&self, column: i64, row: i64) -> Option<usize> {
+    pub fn find(&self, column: i64, row: i64) -> Option<usize> {
         let per_side = self.per_side as i64;
         // Most places are inside, and a division is slow.
         let wrap = |i: i64| if (0..per_side).contains(&i) { i } else { i.rem_euclid(per_side) };
@@ -81,13 +97,15 @@ impl TileSet {
         (tile != NONE).then_some(tile as usize)
     }
 
-    /// Hands out the whole level, zero where there is no tile, a row of tiles at a time: the index of the first row, and the rows
-    /// one after the other. Stops at the first error.
-    pub(crate) fn rows<E>(
-        &self,
-        values: &[f64],
-        mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
-    ) -> Result<(), E> {
+    /// Hands out the values of the whole level, zero where there is no tile, a row of tiles at a time: the index of the first row of
+    /// cells, and eight rows one after the other. Stops at the first error.
+    ///
+    /// # Errors
+    /// What `take` returns.
+    ///
+    /// # Panics
+    /// When there are fewer than [`TileSet::n_cells`] values.
+    pub fn rows<E>(&self, values: &[f64], mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         let mut rows = vec![0.0; TILE * self.side()];
         for row in 0..self.per_side {
             rows.fill(0.0);
@@ -102,7 +120,8 @@ impl TileSet {
     }
 
     /// These tiles and those within `halo` cells of them.
-    pub(crate) fn around(&self, halo: usize) -> Self {
+    #[must_use]
+    pub fn around(&self, halo: usize) -> Self {
         let (n, reach) = (self.per_side as i64, halo.div_ceil(TILE) as i64);
         let mut places = Vec::with_capacity(self.places.len());
         for &[column, row] in self.places() {
@@ -116,13 +135,15 @@ impl TileSet {
     }
 
     /// These tiles and others of the same level.
-    pub(crate) fn with(&self, others: &Self) -> Self {
+    #[must_use]
+    pub fn with(&self, others: &Self) -> Self {
         Self::new(self.per_side, self.places.iter().chain(others.places()).copied().collect())
     }
 
     /// The tiles of the level with half as many cells per side that hold these tiles, or a cell within `halo` cells of that
     /// level from them.
-    pub(crate) fn parents(&self, halo: usize) -> Self {
+    #[must_use]
+    pub fn parents(&self, halo: usize) -> Self {
         let (half, halo) = (self.per_side as i64 / 2, halo as i64);
         let mut marks = vec![false; (half * half) as usize];
         // A tile covers half a tile of the coarser level.
@@ -144,32 +165,42 @@ impl TileSet {
     }
 }
 
-/// Writes a tile into rows of the level, eight of `side` cells each, at this column of tiles.
-pub(crate) fn put_tile(rows: &mut [f64], side: usize, column: usize, tile: &[f64]) {
+/// Writes the [`CELLS`] values of a tile into a row of tiles, which is eight rows of `side` cells each, at this column of tiles.
+///
+/// # Panics
+/// When the column is outside the rows.
+pub fn put_tile(rows: &mut [f64], side: usize, column: usize, tile: &[f64]) {
     for (line, cells) in rows.chunks_exact_mut(side).zip(tile.as_chunks::<TILE>().0) {
         line[column * TILE..][..TILE].copy_from_slice(cells);
     }
 }
 
-/// The places of a tile's quarters, on the level of elements half as large.
-pub(crate) fn quarters([column, row]: [u32; 2]) -> [[u32; 2]; 4] {
+/// The places of a tile's quarters, on the level of elements half as large: lower left, lower right, upper left, upper right.
+#[must_use]
+#[inline]
+pub fn quarters([column, row]: [u32; 2]) -> [[u32; 2]; 4] {
     [0, 1, 2, 3].map(|quarter| [2 * column + quarter % 2, 2 * row + quarter / 2])
 }
 
 /// The cell of a tile that holds cell (`x`, `y`) of its quarter at a place (only whether its column and row are odd matters).
-pub(crate) fn cell_over([column, row]: [u32; 2], x: usize, y: usize) -> usize {
+#[must_use]
+#[inline]
+pub fn cell_over([column, row]: [u32; 2], x: usize, y: usize) -> usize {
     let half = |i: u32| i as usize % 2 * (TILE / 2);
     (half(row) + y / 2) * TILE + half(column) + x / 2
 }
 
 /// Means over two by two cells of a tile's quarter at a place: `put` gets the cell of the tile, and the mean.
+///
+/// # Panics
+/// When `fine` has fewer than [`CELLS`] values.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "it is part of vectorised loops, which are compiled for the machine at hand")]
-pub(crate) fn means_of_quarter<T>(place: [u32; 2], fine: &[T], mut put: impl FnMut(usize, T))
+pub fn means_of_quarter<T>(place: [u32; 2], fine: &[T], mut put: impl FnMut(usize, T))
 where
-    T: Real,
+    T: Copy + From<f32> + Add<Output = T> + Mul<Output = T>,
 {
-    let quarter = T::rounded(0.25);
+    let quarter = T::from(0.25);
     for y in (0..TILE).step_by(2) {
         for x in (0..TILE).step_by(2) {
             let corner = y * TILE + x;

@@ -1,8 +1,8 @@
 //! The contact set on the finest uniform grid.
 
-use rc_core::{DVec2, Field, Grid};
+use rc_core::{Field, Grid};
 
-use crate::{MeshError, error::check_length};
+use super::error::{MeshError, check_length};
 
 /// Which cells of a uniform grid of `side` × `side` cells are in contact, row-major, one byte a cell.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,19 +19,6 @@ impl Mask {
     /// `side · side` cells.
     pub fn new(side: usize, cells: Vec<bool>) -> Result<Self, MeshError> {
         check_length(Grid::square(side)?.len(), cells.len())?;
-        Ok(Self { side, cells })
-    }
-
-    /// A mask from a predicate of the cell centre, in λ.
-    ///
-    /// # Errors
-    /// [`MeshError::Grid`] when `side` is 0 or above [`Grid::MAX_SIDE`].
-    pub fn from_predicate(side: usize, mut in_contact: impl FnMut(DVec2) -> bool) -> Result<Self, MeshError> {
-        let grid = Grid::square(side)?;
-        let mut cells = Vec::with_capacity(grid.len());
-        for iy in 0..side {
-            cells.extend((0..side).map(|ix| in_contact(grid.centre(ix, iy))));
-        }
         Ok(Self { side, cells })
     }
 
@@ -66,7 +53,7 @@ impl Mask {
     }
 
     /// The cells within `reach` rows and columns of contact, around the periodic cell.
-    pub(crate) fn widened(&self, reach: usize) -> Vec<bool> {
+    pub(super) fn widened(&self, reach: usize) -> Vec<bool> {
         if reach == 0 {
             return self.cells.clone();
         }
@@ -79,7 +66,7 @@ impl Mask {
 ///
 /// The square window is the product of a window along x and one along y; each is a running count of unset cells, so
 /// the cost does not depend on `ring`.
-pub(crate) fn eroded(cells: &[bool], side: usize, ring: usize) -> Vec<bool> {
+pub(super) fn eroded(cells: &[bool], side: usize, ring: usize) -> Vec<bool> {
     // A window of half the side to each hand already covers everything.
     let ring = ring.min(side / 2);
     let mut along_x = vec![false; cells.len()];
@@ -145,7 +132,7 @@ mod tests {
 
     #[test]
     fn widening_one_cell_gives_a_square_across_the_seam() {
-        let mask = Mask::from_predicate(8, |DVec2 { x, y }| x < 0.1 && y < 0.1).expect("8 is a side");
+        let mask = Mask::new(8, (0..64).map(|i| i == 0).collect()).expect("8 is a side");
         let wide = mask.widened(2);
         assert_eq!(wide.iter().filter(|&&c| c).count(), 25);
         assert!(wide[7 * 8 + 6], "cell (6, 7) is within two of (0, 0) across the corner");

@@ -1,6 +1,7 @@
 //! Marking: which squares shall be elements, decided from the contact set alone.
 
-use crate::{Mask, MeshError, error::depth_of, mask::eroded};
+use super::error::{MeshError, depth_of};
+use super::mask::{Mask, eroded};
 
 /// The three meshes of Fig. 3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -37,23 +38,14 @@ impl Default for MeshParams {
     }
 }
 
-impl MeshParams {
-    /// The default with the smallest base that suits a grid of `side` cells per side: the odd part of `side`.
-    #[must_use]
-    pub fn for_side(side: usize) -> Self {
-        let base = if side == 0 { 1 } else { side >> side.trailing_zeros() };
-        Self { base, ..Self::default() }
-    }
-}
-
 /// What becomes of one square of one level.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub enum Mark {
+pub(super) enum Mark {
     /// No element here: out of contact.
     Outside,
     /// Elements are smaller than this square.
-    Split,
+    Divided,
     /// This square is an element.
     Element,
     /// This square is a part of a larger element.
@@ -62,51 +54,30 @@ pub enum Mark {
 
 /// A mesh decided but not built: a mark for each square of each level, one byte each, 4/3 bytes a cell of the mask.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RefinementPlan {
+pub(super) struct RefinementPlan {
     base: usize,
     levels: Vec<Vec<Mark>>,
 }
 
 impl RefinementPlan {
     /// Root squares per side.
-    #[must_use]
-    pub fn base(&self) -> usize {
+    pub(super) fn base(&self) -> usize {
         self.base
     }
 
-    /// Level of the finest squares.
-    #[must_use]
-    pub fn depth(&self) -> u32 {
-        self.levels.len() as u32 - 1
+    /// Marks of the squares of each level, from the roots to the finest, row-major, `base · 2^level` per side.
+    pub(super) fn levels(&self) -> &[Vec<Mark>] {
+        &self.levels
     }
 
-    /// Marks of the squares of one level, row-major, `base · 2^level` per side; none below the finest level.
-    #[must_use]
-    pub fn marks(&self, level: u32) -> Option<&[Mark]> {
-        self.levels.get(level as usize).map(Vec::as_slice)
-    }
-
-    /// Number of elements of each level, from level 0 to [`RefinementPlan::depth`].
-    #[must_use]
-    pub fn counts(&self) -> Vec<usize> {
+    /// Number of elements of each level.
+    pub(super) fn counts(&self) -> Vec<usize> {
         self.levels.iter().map(|marks| marks.iter().filter(|&&m| m == Mark::Element).count()).collect()
     }
 }
 
-/// Decides the mesh of a contact set by the paper's "purely geometric criteria" (text at Fig. 3): the smallest elements
-/// along every contact border, doubling towards the inside of each spot, nothing outside contact and halo.
-///
-/// A block of 2^k × 2^k cells is one element, unless it is part of a larger one, when it and `ring` blocks of its own
-/// size around it, around the periodic cell, are all in contact. With a ring of at least 1 the result is 2:1 balanced
-/// at edges and corners without further work: every block of half the side that touches the element has its own ring
-/// within the ring of the element, so it is at least part of an element of half the side.
-///
-/// The plan depends on nothing but the arguments (test `plan_is_pure`). Mirror images have mirrored plans, and so have
-/// images shifted by a multiple of a root square, or of any block no smaller than the largest element.
-///
-/// # Errors [`MeshError::Base`] and [`MeshError::Side`] when the mask has not `base · 2^k` cells per side;
-/// [`MeshError::TooDeep`] when k is above [`crate::MAX_LEVEL`]; [`MeshError::ZeroRing`].
-pub fn plan(mask: &Mask, kind: MeshKind, params: &MeshParams) -> Result<RefinementPlan, MeshError> {
+/// Decides the mesh of [`Mesh::from_mask`](super::Mesh::from_mask), from nothing but the arguments (test `plan_is_pure`).
+pub(super) fn plan(mask: &Mask, kind: MeshKind, params: &MeshParams) -> Result<RefinementPlan, MeshError> {
     let depth = depth_of(mask.side(), params.base)?;
     if params.ring == 0 {
         return Err(MeshError::ZeroRing);
@@ -131,12 +102,14 @@ pub fn plan(mask: &Mask, kind: MeshKind, params: &MeshParams) -> Result<Refineme
     Ok(RefinementPlan { base: params.base, levels })
 }
 
-/// Number of elements of each level of the mesh that [`plan`] decides, from level 0 to the finest, without building it.
+/// Number of elements of each level of the mesh that [`Mesh::from_mask`](super::Mesh::from_mask) builds, from level 0 to the
+/// finest, without building it.
 ///
 /// *Cost*: 4096² cells in about 0.1 s and 4 bytes a cell (`benches/mesh.rs`).
 ///
 /// # Errors
-/// As [`plan`].
+/// [`MeshError::Base`] and [`MeshError::Side`] when the mask has not `base · 2^k` cells per side; [`MeshError::TooDeep`] when k is
+/// above [`MAX_LEVEL`](super::MAX_LEVEL); [`MeshError::ZeroRing`].
 pub fn count(mask: &Mask, kind: MeshKind, params: &MeshParams) -> Result<Vec<usize>, MeshError> {
     Ok(plan(mask, kind, params)?.counts())
 }
@@ -175,7 +148,7 @@ fn mark_level(coarser: Option<&Vec<Mark>>, side: usize, occupied: &[bool], inner
             } else if inner.get(ix).is_some_and(|&inner| inner) {
                 Mark::Element
             } else if occupied {
-                Mark::Split
+                Mark::Divided
             } else {
                 Mark::Outside
             }

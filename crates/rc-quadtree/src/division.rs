@@ -1,23 +1,45 @@
-//! Dividing elements, and keeping the sizes of neighbours within what the operator allows.
+//! Division of elements into quarters, with sizes of neighbours kept within what an operator allows.
 
-use super::elements::Elements;
-use super::tiles::{TILE, TileSet, quarters};
+use crate::elements::Elements;
+use crate::tiles::{TILE, TileSet, quarters};
 
-/// Divides the chosen tiles into quarters of half the element side. `chosen` has a flag for each tile of each level; with
-/// `deepen` a level is added below the finest, without it flags of the finest are void.
+/// Divides the elements of the chosen tiles into quarters. `chosen` has a flag for each tile of each level, finest first.
 ///
-/// Larger neighbours are divided too, so that elements whose sizes differ by a factor of 4 are farther from each other than
-/// `stencil_reach` cells of the size between.
-pub(super) fn split(elements: &Elements, mut chosen: Vec<Vec<bool>>, deepen: bool, stencil_reach: usize) -> Elements {
+/// With `deepen` a level is added below the finest; without it the flags of the finest level are ignored.
+///
+/// Larger neighbours are divided too. Elements whose sizes differ by a factor of 4 are then farther from each other than `reach`
+/// cells of the size between.
+///
+/// # Panics
+/// When `chosen` has fewer levels than `elements`.
+#[must_use]
+pub fn divide(elements: &Elements, mut chosen: Vec<Vec<bool>>, deepen: bool, reach: usize) -> Elements {
     if !deepen {
         chosen[0].fill(false);
     }
+    choose_larger_neighbours(elements, &mut chosen, reach);
     let levels = elements.levels();
-    let reach = stencil_reach.div_ceil(TILE) as i64;
+    let mut result = Vec::with_capacity(levels.len() + 1);
+    if deepen {
+        result.push(TileSet::new(2 * levels[0].per_side(), quarters_of_chosen(&levels[0], &chosen[0]).collect()));
+    }
+    for (coarser, tiles) in levels.iter().enumerate() {
+        let mut places: Vec<[u32; 2]> = with_flag(tiles, &chosen[coarser], false).collect();
+        if let Some(larger) = levels.get(coarser + 1) {
+            places.extend(quarters_of_chosen(larger, &chosen[coarser + 1]));
+        }
+        result.push(TileSet::new(tiles.per_side(), places));
+    }
+    Elements::new(result)
+}
+
+/// Chooses the tiles of each level that are within `reach` cells of a chosen tile of the next finer level.
+fn choose_larger_neighbours(elements: &Elements, chosen: &mut [Vec<bool>], reach: usize) {
+    let levels = elements.levels();
+    let reach = reach.div_ceil(TILE) as i64;
     for coarser in 1..levels.len() {
         let (finer, here) = chosen.split_at_mut(coarser);
-        let divided = levels[coarser - 1].places().iter().zip(&finer[coarser - 1]).filter(|&(_, &chosen)| chosen);
-        for (&[column, row], _) in divided {
+        for [column, row] in with_flag(&levels[coarser - 1], &finer[coarser - 1], true) {
             for y in i64::from(row) - reach..=i64::from(row) + reach {
                 for x in i64::from(column) - reach..=i64::from(column) + reach {
                     if let Some(tile) = levels[coarser].find(x.div_euclid(2), y.div_euclid(2)) {
@@ -27,22 +49,16 @@ pub(super) fn split(elements: &Elements, mut chosen: Vec<Vec<bool>>, deepen: boo
             }
         }
     }
-    let part = |coarser: usize, wanted: bool| {
-        let places = levels[coarser].places().iter().zip(&chosen[coarser]);
-        places.filter(move |&(_, &chosen)| chosen == wanted).map(|(&place, _)| place)
-    };
-    let divided = |coarser: usize| part(coarser, true).flat_map(quarters);
-    let mut result = Vec::with_capacity(levels.len() + 1);
-    if deepen {
-        result.push(TileSet::new(2 * levels[0].per_side(), divided(0).collect()));
-    }
-    for (coarser, tiles) in levels.iter().enumerate() {
-        let places = part(coarser, false);
-        let places =
-            if coarser + 1 < levels.len() { places.chain(divided(coarser + 1)).collect() } else { places.collect() };
-        result.push(TileSet::new(tiles.per_side(), places));
-    }
-    Elements::new(result)
+}
+
+/// Places of the tiles with this flag.
+fn with_flag(tiles: &TileSet, flags: &[bool], wanted: bool) -> impl Iterator<Item = [u32; 2]> {
+    tiles.places().iter().zip(flags).filter(move |&(_, &flag)| flag == wanted).map(|(&place, _)| place)
+}
+
+/// Places, on the next finer level, of the quarters of the chosen tiles.
+fn quarters_of_chosen(tiles: &TileSet, chosen: &[bool]) -> impl Iterator<Item = [u32; 2]> {
+    with_flag(tiles, chosen, true).flat_map(quarters)
 }
 
 #[cfg(test)]
@@ -60,11 +76,11 @@ mod tests {
             let flags = |tiles: &TileSet| tiles.places().iter().map(|place| *place == [0, 0]).collect();
             elements.levels().iter().map(flags).collect::<Vec<Vec<bool>>>()
         };
-        let two = split(&all, corner(&all), true, 8);
+        let two = divide(&all, corner(&all), true, 8);
         assert_eq!(n_tiles(&two), [4, 63]);
         // The quarter in the corner is divided, and so are the three large tiles that touch it across the seams: two of
         // its neighbours' places each are theirs.
-        let three = split(&two, corner(&two), true, 8);
+        let three = divide(&two, corner(&two), true, 8);
         assert_eq!(n_tiles(&three), [4, 3 + 3 * 4, 60]);
         let area: usize = n_tiles(&three).iter().enumerate().map(|(coarser, n)| n << (2 * coarser)).sum();
         assert_eq!(area, 64 * 16);
@@ -79,7 +95,7 @@ mod tests {
         let all = Elements::uniform(TileSet::full(4));
         let values: Vec<f64> = (0..all.len()).map(|i| i as f64).collect();
         let flags = vec![all.levels()[0].places().iter().map(|place| *place == [1, 2]).collect()];
-        let two = split(&all, flags, true, 8);
+        let two = divide(&all, flags, true, 8);
         let moved = all.moved(&two, &values, 0.0);
         let tile = all.levels()[0].find(1, 2).expect("all tiles");
         let fine = two.levels()[0].find(3, 4).expect("a quarter");

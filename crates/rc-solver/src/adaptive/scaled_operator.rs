@@ -1,18 +1,20 @@
-//! Fresh gaps: the operator that certificates come from, in double or in single precision.
+//! The multilevel operator on vectors of double precision, for fresh gaps: certificates come from it.
 //!
-//! In single precision the rounding of L p is below 1e-6 of the rms displacement, as is the error of the split kernel itself;
-//! it takes half the time and memory. Heights and gaps are in double precision either way.
+//! Inside it computes in double or in single precision. In single precision the rounding of L p is below 1e-6 of the rms
+//! displacement, as is the error of the split kernel itself; it takes half the time and memory. Heights and gaps are in double
+//! precision either way.
 
 use std::sync::Arc;
 
 use rayon::prelude::*;
+use rc_quadtree::BLOCK_CELLS;
 
-use super::operator::{BLOCK_CELLS, Hierarchy, Real, Tables, TileOperator};
+use super::operator::{Hierarchy, Real, Tables, TileOperator};
 use crate::descent::{Blocks, Engine};
 use crate::problem::power_of_two_near;
 
 /// An operator of precision `T` on vectors of double precision.
-pub(super) struct Fresh<T> {
+pub(super) struct ScaledOperator<T> {
     operator: TileOperator<T>,
     /// Subtracted from every pressure before it is rounded.
     reference: f64,
@@ -20,27 +22,28 @@ pub(super) struct Fresh<T> {
     unit: f64,
 }
 
-impl<T: Real + Into<f64>> Fresh<T> {
+impl<T: Real + Into<f64>> ScaledOperator<T> {
     /// An operator on `hierarchy` for pressures about `mean` and displacements of about `size`.
     ///
-    /// A uniform pressure displaces nothing, so where elements cover the cell the mean is taken off: far beyond full contact
-    /// its rounding, and its part of the split kernel's error, would be larger than what the heights add to it.
+    /// A uniform pressure displaces nothing, so where elements cover the cell the mean is subtracted. Far beyond full contact its
+    /// rounding, and its part of the split kernel's error, would be larger than the pressure that the heights add to it.
     pub(super) fn new(hierarchy: Arc<Hierarchy>, mean: f64, size: f64) -> Self {
         let reference = if hierarchy.elements().cover_cell() { mean } else { 0.0 };
         Self { operator: TileOperator::new(hierarchy), reference, unit: power_of_two_near(size) }
     }
 
-    /// What the operator's own displacements are multiples of.
+    /// Unit of [`ScaledOperator::base_displacement`], in λ.
     pub(super) fn unit(&self) -> f64 {
         self.unit
     }
 
-    pub(super) fn operator(&self) -> &TileOperator<T> {
-        &self.operator
+    /// See [`TileOperator::base_displacement`].
+    pub(super) fn base_displacement(&self) -> &[T] {
+        self.operator.base_displacement()
     }
 }
 
-impl<T: Real + Into<f64>> Engine<f64> for Fresh<T> {
+impl<T: Real + Into<f64>> Engine<f64> for ScaledOperator<T> {
     type Table = Tables<T>;
 
     fn blocks(&self) -> Blocks {

@@ -3,7 +3,7 @@
 use rc_core::{Grid, GridError};
 use thiserror::Error;
 
-use crate::{MAX_BASE, MAX_LEVEL};
+use super::key::{MAX_BASE, MAX_LEVEL};
 
 /// A mesh, a mask or a field that cannot be used as asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -37,23 +37,9 @@ pub enum MeshError {
         /// The level asked for.
         level: u32,
     },
-    /// A uniform mesh of more than 2^32 elements.
-    #[error("a uniform mesh of {side} x {side} elements is more than can be stored")]
-    TooManyElements {
-        /// Elements per side.
-        side: u64,
-    },
     /// A ring of no blocks would allow coarse elements on the contact border.
     #[error("the ring must be at least 1 block: with 0, coarse elements would touch the contact border")]
     ZeroRing,
-    /// There is no element of this index.
-    #[error("there is no element {index} in a mesh of {len} elements")]
-    NoSuchElement {
-        /// The index asked for.
-        index: usize,
-        /// Number of elements.
-        len: usize,
-    },
     /// The number of values does not match the number of elements or cells.
     #[error("{expected} values are needed, one for each element or cell, not {actual}")]
     Length {
@@ -67,18 +53,18 @@ pub enum MeshError {
     DifferentBase {
         /// Root squares per side of the mesh that has the values.
         from: usize,
-        /// Root squares per side of the mesh that shall receive them.
+        /// Root squares per side of the mesh that receives them.
         to: usize,
     },
 }
 
 /// `Ok` when `actual == expected`.
-pub(crate) fn check_length(expected: usize, actual: usize) -> Result<(), MeshError> {
+pub(super) fn check_length(expected: usize, actual: usize) -> Result<(), MeshError> {
     if actual == expected { Ok(()) } else { Err(MeshError::Length { expected, actual }) }
 }
 
 /// The number of levels below the roots of a grid of `side` cells, log2(side / base).
-pub(crate) fn depth_of(side: usize, base: usize) -> Result<u32, MeshError> {
+pub(super) fn depth_of(side: usize, base: usize) -> Result<u32, MeshError> {
     check_base(base)?;
     let depth = (side / base).checked_ilog2().ok_or(MeshError::Side { side, base })?;
     if depth > MAX_LEVEL {
@@ -88,6 +74,6 @@ pub(crate) fn depth_of(side: usize, base: usize) -> Result<u32, MeshError> {
 }
 
 /// `Ok` when `base` root squares per side can be keyed.
-pub(crate) fn check_base(base: usize) -> Result<(), MeshError> {
+pub(super) fn check_base(base: usize) -> Result<(), MeshError> {
     if (1..=MAX_BASE).contains(&base) { Ok(()) } else { Err(MeshError::Base { base }) }
 }

@@ -1,0 +1,180 @@
+//! The elements of a mesh: tiles of the finest level, and tiles of coarser ones where the pressure is smooth.
+
+use std::ops::Range;
+
+use crate::tiles::{CELLS, TileSet};
+
+/// Tiles that one thread works on at a time.
+pub const BLOCK_TILES: usize = 16;
+
+/// Cells in a block of a vector.
+pub const BLOCK_CELLS: usize = BLOCK_TILES * CELLS;
+
+/// Elements of one or more sizes: the cells of disjoint tiles of one or more levels, finest first.
+///
+/// A level is named by how many levels it is `coarser` than the finest: its elements have 2^`coarser` times the side.
+///
+/// Vectors have one value for each cell: those of the finest level first, then those of the next coarser one and so on. Each level
+/// begins at a whole block of [`BLOCK_CELLS`], so that all cells of a block are of one size. Values between the last cell of a level
+/// and the next block have no element.
+#[derive(Clone, Debug)]
+pub struct Elements {
+    levels: Vec<TileSet>,
+    starts: Vec<usize>,
+}
+
+impl Elements {
+    /// Elements of one size.
+    #[must_use]
+    pub fn uniform(tiles: TileSet) -> Self {
+        Self::new(vec![tiles])
+    }
+
+    /// Elements of the tiles of the finest level, of the next coarser one with half as many per side, and so on.
+    ///
+    /// # Panics
+    /// Without any level.
+    #[must_use]
+    pub fn new(levels: Vec<TileSet>) -> Self {
+        assert!(!levels.is_empty(), "a mesh has at least one level");
+        let mut starts = Vec::with_capacity(levels.len());
+        let mut next = 0_usize;
+        for tiles in &levels {
+            let start = next.next_multiple_of(BLOCK_CELLS);
+            starts.push(start);
+            next = start + tiles.n_cells();
+        }
+        Self { levels, starts }
+    }
+
+    /// Tiles of each level, finest first.
+    #[must_use]
+    pub fn levels(&self) -> &[TileSet] {
+        &self.levels
+    }
+
+    /// The tiles of the finest level.
+    #[must_use]
+    pub fn finest(&self) -> &TileSet {
+        &self.levels[0]
+    }
+
+    /// Number of elements.
+    #[must_use]
+    pub fn n_cells(&self) -> usize {
+        self.levels.iter().map(TileSet::n_cells).sum()
+    }
+
+    /// Is there the tile at a place of the level with `side` cells per side?
+    #[must_use]
+    pub fn has(&self, side: usize, [column, row]: [u32; 2]) -> bool {
+        let level = self.levels.iter().find(|tiles| tiles.side() == side);
+        level.is_some_and(|tiles| tiles.find(column.into(), row.into()).is_some())
+    }
+
+    /// Length of vectors: [`Elements::n_cells`], and what fills up the blocks.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        let last = self.levels.len() - 1;
+        self.starts[last] + self.levels[last].n_cells()
+    }
+
+    /// Is there no element?
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.levels.iter().all(TileSet::is_empty)
+    }
+
+    /// The tiles of the coarsest level.
+    #[must_use]
+    pub fn coarsest(&self) -> &TileSet {
+        &self.levels[self.levels.len() - 1]
+    }
+
+    /// With tiles of the coarsest level at all of `places` that have no elements yet.
+    #[must_use]
+    pub fn with(&self, places: &[[u32; 2]]) -> Self {
+        let last = self.levels.len() - 1;
+        let mut levels = self.levels.clone();
+        let new = places.iter().filter(|&&[column, row]| !self.cover(last, column, row));
+        levels[last] =
+            TileSet::new(levels[last].per_side(), levels[last].places().iter().chain(new).copied().collect());
+        Self::new(levels)
+    }
+
+    /// The tiles for which `wanted` is true; it gets the cells per side of the level, the place and where the cells are.
+    #[must_use]
+    pub fn filtered(&self, wanted: impl Fn(usize, [u32; 2], Range<usize>) -> bool) -> Self {
+        let level = |(tiles, &start): (&TileSet, &usize)| {
+            let places = tiles.places().iter().enumerate();
+            let cells = |tile: usize| start + tile * CELLS..start + (tile + 1) * CELLS;
+            let chosen =
+                places.filter(|&(tile, &place)| wanted(tiles.side(), place, cells(tile))).map(|(_, &place)| place);
+            TileSet::new(tiles.per_side(), chosen.collect())
+        };
+        Self::new(self.levels.iter().zip(&self.starts).map(level).collect())
+    }
+
+    /// Whether they cover the whole cell.
+    #[must_use]
+    pub fn cover_cell(&self) -> bool {
+        let areas = self.levels.iter().enumerate().map(|(coarser, tiles)| tiles.n_cells() << (2 * coarser));
+        areas.sum::<usize>() == self.finest().side().pow(2)
+    }
+
+    /// Where the cells of a level are in a vector.
+    #[must_use]
+    pub fn cells(&self, coarser: usize) -> Range<usize> {
+        self.starts[coarser]..self.starts[coarser] + self.levels[coarser].n_cells()
+    }
+
+    /// The blocks of a vector: how much coarser than the finest level, and which of its tiles.
+    #[must_use]
+    pub fn blocks(&self) -> Vec<(usize, Range<usize>)> {
+        let per_block = BLOCK_CELLS / CELLS;
+        let blocks = |(coarser, tiles): (usize, &TileSet)| {
+            let n = tiles.len();
+            (0..n.div_ceil(per_block)).map(move |i| (coarser, i * per_block..((i + 1) * per_block).min(n)))
+        };
+        self.levels.iter().enumerate().flat_map(blocks).collect()
+    }
+
+    /// Area of an element of a level, in units of the smallest ones.
+    #[must_use]
+    pub fn area(coarser: usize) -> f64 {
+        f64::from(1_u32 << (2 * coarser))
+    }
+
+    /// Side of an element of a level, in λ.
+    #[must_use]
+    pub fn side(&self, coarser: usize) -> f64 {
+        1.0 / self.levels[coarser].side() as f64
+    }
+
+    /// All tiles: how much coarser than the finest, the index among those of its level, and the first cell.
+    pub fn tiles(&self) -> impl Iterator<Item = (usize, usize, usize)> + '_ {
+        let of_level = |(coarser, tiles): (usize, &TileSet)| {
+            let start = self.starts[coarser];
+            (0..tiles.len()).map(move |tile| (coarser, tile, start + tile * CELLS))
+        };
+        self.levels.iter().enumerate().flat_map(of_level)
+    }
+
+    /// The first cell of the tile at a place of a level, when its elements are of that size.
+    pub(crate) fn find(&self, coarser: usize, column: i64, row: i64) -> Option<usize> {
+        let tile = self.levels.get(coarser)?.find(column, row)?;
+        Some(self.starts[coarser] + tile * CELLS)
+    }
+
+    /// Are there elements, of this size or smaller ones, at a place of a level?
+    #[must_use]
+    pub fn cover(&self, coarser: usize, column: u32, row: u32) -> bool {
+        // A tile that is divided has all its quarters.
+        let (mut x, mut y) = (i64::from(column), i64::from(row));
+        (0..=coarser).rev().any(|coarser| {
+            let found = self.levels.get(coarser).is_some_and(|tiles| tiles.find(x, y).is_some());
+            (x, y) = (2 * x, 2 * y);
+            found
+        })
+    }
+}

@@ -1,0 +1,88 @@
+//! Where contact is possible: bounds that exclude it everywhere else.
+//!
+//! The displacement is a smooth part, interpolated from the base grid, plus short-range parts, which are not negative where no
+//! pressure is. The smooth part minus the height, both bounded between the points of the base grid, is then a lower bound of the
+//! gap. Fine cells are looked at only where this bound admits contact.
+
+use rayon::prelude::*;
+use rc_quadtree::{CELLS, Patch, TILE, TileSet, gather};
+
+use super::heights::Heights;
+use super::operator::Real;
+
+/// Side of a patch that holds a tile and its neighbours.
+const SIDE: usize = 3 * TILE;
+
+/// The smooth part of the displacement.
+pub(super) struct SmoothDisplacement<'a, T> {
+    /// Values at the centres of the base grid, tile by tile, tiles row by row.
+    pub(super) values: &'a [T],
+    /// Unit of the values, in λ.
+    pub(super) unit: f64,
+    /// Bound of its second derivatives along the axes.
+    pub(super) curvature: f64,
+    /// Bound of the error of the values, in λ.
+    pub(super) error: f64,
+}
+
+/// The tiles of the level of `per_side` tiles per side where the gap `v - h` may be less than `contact_gap`.
+pub(super) fn possible_contact<T: Real + Into<f64>>(
+    smooth: &SmoothDisplacement<'_, T>,
+    heights: &Heights<'_>,
+    contact_gap: f64,
+    per_side: usize,
+) -> Vec<[u32; 2]> {
+    let base = TileSet::full(heights.base().grid().nx() / TILE);
+    let spacing = 1.0 / base.side() as f64;
+    // Between points of a grid a function is above their minimum minus the sagitta, along either axis.
+    let slack = 0.25 * smooth.curvature * spacing * spacing + smooth.error;
+    let of_tile = |&[column, row]: &[u32; 2]| {
+        let mut patch: Patch<T, SIDE> = [[T::default(); SIDE]; SIDE];
+        let corner = (i64::from(column) - 1, i64::from(row) - 1);
+        gather(smooth.values, &base, corner, TILE - 1..2 * TILE + 1, &mut patch);
+        let mut tiles = Vec::new();
+        for cell in 0..CELLS {
+            let (x, y) = (cell % TILE, cell / TILE);
+            let minimum = smooth.unit * minimum_around(&patch, TILE + x, TILE + y) - slack;
+            let (bx, by) = (column as usize * TILE + x, row as usize * TILE + y);
+            let may_touch =
+                |blocks: usize, ix: usize, iy: usize| minimum - heights.upper_bound(blocks, ix, iy) < contact_gap;
+            if may_touch(base.side(), bx, by) {
+                append_tiles_of_cell(base.side(), per_side, (bx, by), &may_touch, &mut tiles);
+            }
+        }
+        tiles.sort_unstable();
+        tiles.dedup();
+        tiles
+    };
+    let tiles: Vec<Vec<[u32; 2]>> = base.places().par_iter().map(of_tile).collect();
+    tiles.into_iter().flatten().collect()
+}
+
+/// Appends the tile that a cell of the base grid is in, or those tiles in the cell that pass `may_touch` themselves.
+fn append_tiles_of_cell(
+    base_side: usize,
+    per_side: usize,
+    (bx, by): (usize, usize),
+    may_touch: &impl Fn(usize, usize, usize) -> bool,
+    tiles: &mut Vec<[u32; 2]>,
+) {
+    if per_side <= base_side {
+        let cells = base_side / per_side;
+        tiles.push([(bx / cells) as u32, (by / cells) as u32]);
+        return;
+    }
+    let parts = per_side / base_side;
+    for y in by * parts..(by + 1) * parts {
+        for x in bx * parts..(bx + 1) * parts {
+            if may_touch(per_side, x, y) {
+                tiles.push([x as u32, y as u32]);
+            }
+        }
+    }
+}
+
+/// Minimum over a cell and its eight neighbours.
+fn minimum_around<T: Real + Into<f64>>(patch: &Patch<T, SIDE>, x: usize, y: usize) -> f64 {
+    patch[y - 1..=y + 1].iter().flat_map(|row| &row[x - 1..=x + 1]).map(|&v| v.into()).fold(f64::INFINITY, f64::min)
+}

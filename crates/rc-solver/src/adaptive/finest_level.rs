@@ -1,0 +1,229 @@
+//! The finest level: solved to the tolerance, and certified for the whole cell.
+//!
+//! Rounds of two steps. A descent improves the pressure on the elements that press, or nearly do. An evaluation then computes the gap
+//! afresh wherever contact is possible, which gives the certificate, and adds elements until bounds exclude contact everywhere else.
+
+use rayon::prelude::*;
+use rc_core::{Grid, Observer};
+use rc_quadtree::{BLOCK_CELLS, ContactFields, Elements};
+
+use super::element_blocks::blocks_of;
+use super::element_heights::element_heights;
+use super::level::{SolvedLevel, add_work};
+use super::operator::{Real, Tables, TileOperator};
+use super::prolongation::MeshStart;
+use super::scaled_operator::ScaledOperator;
+use super::setup::Setup;
+use crate::descent::{Descent, Engine, Machinery, Outcome, Start, fresh_gap, rescale, scale_to_load};
+use crate::solution::LevelInfo;
+
+/// The finest level is first solved to the tolerance times this, then the gap is computed afresh: corrections are applied with
+/// the quick operator, a few percent off on pressures as rough as corrections are.
+const FIRST_TOLERANCE: f64 = 20.0;
+
+/// The error left to the fresh gap, relative to the tolerance, when corrections end. Two fresh gaps of one pressure, computed on
+/// different tiles, differ by about a tenth of the tolerance in the worst of ten million elements.
+const LAST_TOLERANCE: f64 = 0.7;
+
+/// Rounds of descents and evaluations. Each round but the first starts with elements that the last one has missed; one is the rule,
+/// two are the exception.
+const MAX_ROUNDS: usize = 20;
+
+/// Candidates for contact are chosen with this margin, in units of the height range, so that small changes of the pressure do
+/// not add others.
+const CANDIDATE_MARGIN: f64 = 2e-3;
+
+/// Solves to the tolerance from `start`, whose gap in contact is `contact_gap`, and proves it for the whole cell.
+pub(super) fn solve_finest_level<T: Real + Into<f64>>(
+    setup: &Setup<'_, T>,
+    grid: Grid,
+    start: MeshStart,
+    contact_gap: f64,
+    observer: &dyn Observer,
+) -> SolvedLevel {
+    let mut level = FinestLevel::new(setup, grid, start, contact_gap);
+    let (mut evaluation, _) = level.evaluate();
+    for _ in 0..MAX_ROUNDS {
+        let reached;
+        (level, reached) = level.improve(evaluation, observer);
+        evaluation = level.evaluate_whole_cell();
+        if !reached || evaluation.outcome.certificate.penetration <= setup.params.tolerance {
+            break;
+        }
+    }
+    level.into_solved(evaluation)
+}
+
+/// Elements where contact is possible, with their heights.
+struct Candidates {
+    elements: Elements,
+    heights: Vec<f64>,
+}
+
+/// Pressure and gap on all candidates, and the certificate that follows from them.
+struct Evaluation {
+    pressure: Vec<f64>,
+    gap: Vec<f64>,
+    outcome: Outcome,
+}
+
+/// Tables of the three operators.
+struct OperatorTables<T> {
+    quick: Tables<f32>,
+    preconditioner: Tables<f32>,
+    certified: Tables<T>,
+}
+
+struct FinestLevel<'s, 'a, T> {
+    setup: &'s Setup<'a, T>,
+    tables: OperatorTables<T>,
+    candidates: Candidates,
+    /// The pressure that the last descent has found; the start before the first one.
+    current: MeshStart,
+    info: LevelInfo,
+}
+
+impl<'s, 'a, T: Real + Into<f64>> FinestLevel<'s, 'a, T> {
+    fn new(setup: &'s Setup<'a, T>, grid: Grid, mut start: MeshStart, contact_gap: f64) -> Self {
+        scale_to_load(&setup.problem, grid.len() as f64, &blocks_of(&start.elements), &mut start.pressure);
+        let n_levels = setup.n_levels(grid);
+        let tables = OperatorTables {
+            quick: setup.quick.tables(n_levels),
+            preconditioner: setup.preconditioner.tables(n_levels),
+            certified: setup.certified.tables(n_levels),
+        };
+        let candidates = first_candidates(setup, &start, &tables.quick, contact_gap);
+        let info = LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 };
+        Self { setup, tables, candidates, current: start, info }
+    }
+
+    /// Improves the pressure on the elements near contact. Returns whether the tolerance was reached there.
+    fn improve(self, evaluation: Evaluation, observer: &dyn Observer) -> (Self, bool) {
+        let Self { setup, tables, candidates, current, mut info } = self;
+        let near = NearContact::choose(&candidates, &current.elements, &evaluation, setup.problem.h_range);
+        // The descent needs the memory.
+        drop(evaluation);
+        let machinery = Machinery {
+            corrections: TileOperator::new(setup.hierarchy(&near.elements, setup.quick.reach())),
+            response: tables.quick,
+            preconditioner: tables.preconditioner,
+            fresh: setup.operator(setup.hierarchy(&near.elements, setup.certified.reach()), &current),
+            fresh_response: tables.certified,
+        };
+        drop(current);
+        let start = Start::Known { pressure: near.pressure, gap: near.gap };
+        let mut descent = Descent::new(&near.heights, info.grid, machinery, &setup.problem, start);
+        let (tolerance, max_iterations) = (setup.params.tolerance, setup.params.max_iterations);
+        descent.run(FIRST_TOLERANCE * tolerance, max_iterations, false, observer, &near.elements);
+        descent.renew();
+        let last = descent.run(LAST_TOLERANCE * tolerance, max_iterations, false, observer, &near.elements);
+        add_work(&mut info, &descent.info());
+        let (machinery, pressure) = descent.into_machinery();
+        let Machinery { response: quick, preconditioner, fresh_response: certified, .. } = machinery;
+        let tables = OperatorTables { quick, preconditioner, certified };
+        let current = MeshStart { elements: near.elements, pressure };
+        (Self { setup, tables, candidates, current, info }, last.converged)
+    }
+
+    /// The gap on all candidates, and the operator that it was computed with.
+    fn evaluate(&mut self) -> (Evaluation, ScaledOperator<T>) {
+        let Self { setup, tables, candidates: Candidates { elements, heights }, current, info } = self;
+        let mut pressure = current.elements.moved(elements, &current.pressure, 0.0);
+        let mut gap = vec![0.0; pressure.len()];
+        let mut operator = setup.operator::<T>(setup.hierarchy(elements, setup.certified.reach()), current);
+        info.operator_applications += 1;
+        let vectors = (heights.as_slice(), pressure.as_slice(), gap.as_mut_slice());
+        let mut sums = fresh_gap(&mut operator, &tables.certified, &setup.problem, vectors);
+        if let Some(scale) = sums.scale_to_penetration(&setup.problem) {
+            sums = rescale(scale, &blocks_of(elements), &setup.problem, (heights, &mut pressure, &mut gap));
+        }
+        let outcome = Outcome::new(&setup.problem, &sums, info.grid.len() as f64, true);
+        (Evaluation { pressure, gap, outcome }, operator)
+    }
+
+    /// Evaluates the gap, and adds candidates until no contact is possible elsewhere.
+    fn evaluate_whole_cell(&mut self) -> Evaluation {
+        loop {
+            let (evaluation, operator) = self.evaluate();
+            let more = self.with_more_candidates(&evaluation, &operator);
+            if more.n_cells() <= self.candidates.elements.n_cells() {
+                return evaluation;
+            }
+            self.candidates = Candidates::new(self.setup, more);
+        }
+    }
+
+    /// The elements of the candidates, divided where they are too coarse, and tiles of the coarsest level wherever contact is possible.
+    fn with_more_candidates(&self, evaluation: &Evaluation, operator: &ScaledOperator<T>) -> Elements {
+        let (setup, elements) = (self.setup, &self.candidates.elements);
+        let Evaluation { pressure, gap, outcome } = evaluation;
+        let (curvature, per_side) = (setup.certified.remainder_curvature(), elements.coarsest().per_side());
+        let places = setup.possible_contact(operator, curvature, pressure, per_side, outcome.contact_gap);
+        if elements.levels().len() == 1 {
+            return elements.with(&places);
+        }
+        let fields = ContactFields { elements, pressure, gap, contact_gap: outcome.contact_gap };
+        setup.refined(&fields, false).with(&places)
+    }
+
+    fn into_solved(self, evaluation: Evaluation) -> SolvedLevel {
+        let Self { candidates: Candidates { elements, .. }, info, .. } = self;
+        let Evaluation { pressure, gap, outcome } = evaluation;
+        SolvedLevel { evaluated: elements.n_cells(), elements, pressure, gap, outcome, info }
+    }
+}
+
+impl Candidates {
+    fn new<T>(setup: &Setup<'_, T>, elements: Elements) -> Self {
+        Self { heights: element_heights(setup.heights, &elements), elements }
+    }
+}
+
+/// Elements where the start may touch, judged by the quick operator.
+fn first_candidates<T: Real + Into<f64>>(
+    setup: &Setup<'_, T>,
+    start: &MeshStart,
+    tables: &Tables<f32>,
+    contact_gap: f64,
+) -> Candidates {
+    let MeshStart { elements, pressure } = start;
+    let mut quick = setup.operator::<f32>(setup.hierarchy(elements, setup.quick.reach()), start);
+    quick.fill(pressure.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
+    quick.multiply(tables);
+    // No contact is nearer than first touch, though coarser heights may reach beyond the highest point.
+    let first_touch = setup.problem.offset() - setup.problem.h_max;
+    // This is not a proof yet: the margin stands for the quick operator's error too.
+    let gap = contact_gap.max(first_touch) + CANDIDATE_MARGIN * setup.problem.h_range;
+    let (curvature, per_side) = (setup.quick.remainder_curvature(), elements.coarsest().per_side());
+    let places = setup.possible_contact(&quick, curvature, pressure, per_side, gap);
+    Candidates::new(setup, elements.with(&places))
+}
+
+/// The candidates that a descent works on: those that press somewhere, or nearly do, or did when the round began.
+struct NearContact {
+    elements: Elements,
+    heights: Vec<f64>,
+    pressure: Vec<f64>,
+    gap: Vec<f64>,
+}
+
+impl NearContact {
+    /// `before` are the elements of the last descent.
+    fn choose(candidates: &Candidates, before: &Elements, evaluation: &Evaluation, h_range: f64) -> Self {
+        let Evaluation { pressure, gap, outcome } = evaluation;
+        // Elements that are nearer to contact than the error may come into it yet.
+        let error = match outcome.mean_pressure {
+            // Nothing presses when coarser levels have lost a contact that they hardly resolve: it begins anew.
+            0.0 => CANDIDATE_MARGIN,
+            _ => outcome.certificate.penetration,
+        };
+        let near = outcome.contact_gap + error * h_range;
+        let elements = candidates.elements.filtered(|side, place, cells| {
+            before.has(side, place) || cells.into_iter().any(|i| pressure[i] > 0.0 || gap[i] < near)
+        });
+        let chosen = |values: &[f64], elsewhere: f64| candidates.elements.moved(&elements, values, elsewhere);
+        // Values that fill up a level are as far from contact as can be.
+        let (heights, gap) = (chosen(&candidates.heights, f64::MIN), chosen(gap, f64::MAX));
+        Self { heights, pressure: chosen(pressure, 0.0), gap, elements }
+    }
+}

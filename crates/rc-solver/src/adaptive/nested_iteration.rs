@@ -1,0 +1,171 @@
+//! Nested iteration from the base grid to the finest level: each level prepares the start on the next.
+
+use rc_core::{Event, Grid, Observer};
+use rc_kernel::{Love, SplitParams};
+use rc_quadtree::{TILE, TileSet};
+
+use super::AdaptiveParams;
+use super::finest_level::solve_finest_level;
+use super::heights::Heights;
+use super::level::{SolvedLevel, add_work, solve_coarse_level};
+use super::operator::Real;
+use super::prolongation::{self, MeshStart};
+use super::setup::Setup;
+use super::solution;
+use crate::problem::Problem;
+use crate::solution::{LevelInfo, LevelValues};
+use crate::uniform::{self, Climb, Climbed};
+
+/// The solved finest level, and the work on all levels.
+pub(super) struct NestedSolution {
+    /// The operator that it was solved with.
+    pub(super) split: SplitParams,
+    /// The whole grid of the smallest elements.
+    pub(super) grid: Grid,
+    pub(super) level: SolvedLevel,
+    /// Coarsest first.
+    pub(super) levels: Vec<LevelInfo>,
+    /// Values of the last level but one.
+    pub(super) coarser: Option<LevelValues>,
+}
+
+/// What a level above the base grid begins with.
+pub(super) struct LevelStart {
+    /// The whole grid of the level's smallest elements.
+    grid: Grid,
+    pub(super) mesh: MeshStart,
+    contact_gap: f64,
+    /// The work on coarser levels, coarsest first.
+    levels: Vec<LevelInfo>,
+    /// Values of the level before, when this is the finest one.
+    coarser: Option<LevelValues>,
+}
+
+/// All levels of one problem, with one operator; `T` is the precision of fresh gaps.
+pub(super) struct NestedIteration<'a, T> {
+    setup: Setup<'a, T>,
+}
+
+impl<'a, T: Real + Into<f64>> NestedIteration<'a, T> {
+    pub(super) fn new(heights: &'a Heights<'a>, problem: Problem, params: &AdaptiveParams, split: SplitParams) -> Self {
+        Self { setup: Setup::new(heights, problem, params, split) }
+    }
+
+    /// Solves all levels but the finest, which starts from them.
+    pub(super) fn prepare(&self, observer: &dyn Observer) -> LevelStart {
+        let n_above = (self.setup.heights.finest_side() / self.setup.base().nx()).ilog2() as usize;
+        let mut start = self.solve_base(n_above, observer);
+        for finer in (1..n_above).rev() {
+            start.announce(finer, observer);
+            start = self.solve_level(start, finer, observer);
+        }
+        start.announce(0, observer);
+        start
+    }
+
+    /// Solves the finest level.
+    pub(super) fn finish(&self, start: LevelStart, observer: &dyn Observer) -> NestedSolution {
+        let LevelStart { grid, mesh, contact_gap, mut levels, coarser } = start;
+        let level = solve_finest_level(&self.setup, grid, mesh, contact_gap, observer);
+        levels.push(level.info);
+        NestedSolution { split: self.setup.split, grid, level, levels, coarser }
+    }
+
+    /// Solves the finest level where another operator has prepared it. Where sizes of elements differ they suit the other operator;
+    /// all levels are then solved again.
+    pub(super) fn take_over(&self, start: LevelStart, observer: &dyn Observer) -> NestedSolution {
+        let start = if self.setup.border_level > 0 { self.prepare(observer) } else { start };
+        self.finish(start, observer)
+    }
+
+    /// Solves the finest level again, from a solution with another operator.
+    pub(super) fn improve(&self, solved: NestedSolution, observer: &dyn Observer) -> NestedSolution {
+        let NestedSolution { grid, level, mut levels, coarser, .. } = solved;
+        let SolvedLevel { elements, pressure, outcome, info: before, .. } = level;
+        levels.pop();
+        let mesh = MeshStart { elements, pressure };
+        let start = LevelStart { grid, mesh, contact_gap: outcome.contact_gap, levels, coarser };
+        let mut solved = self.take_over(start, observer);
+        if let Some(finest) = solved.levels.last_mut() {
+            add_work(finest, &before);
+        }
+        solved
+    }
+
+    /// Solves uniform grids up to the base grid, which has `n_above` levels above it.
+    fn solve_base(&self, n_above: usize, observer: &dyn Observer) -> LevelStart {
+        let Setup { heights, problem, params, .. } = &self.setup;
+        let base = heights.base();
+        let climb = Climb { kernel: &Love, problem, params: *params, n_above, observer };
+        let Climbed { descent, outcome, levels, coarser } = climb.to(base);
+        let function = to_tiles(base.grid(), &uniform::edge_function(&descent));
+        let tiles = TileSet::full(base.grid().nx() / TILE);
+        LevelStart {
+            grid: next_finer(base.grid()),
+            mesh: prolongation::refine_all(&tiles, &function),
+            contact_gap: outcome.contact_gap,
+            levels,
+            coarser,
+        }
+    }
+
+    /// Solves a level with `finer` levels above it.
+    fn solve_level(&self, start: LevelStart, finer: usize, observer: &dyn Observer) -> LevelStart {
+        let LevelStart { grid, mesh, mut levels, coarser, .. } = start;
+        let tolerance = uniform::coarse_tolerance(finer - 1).max(self.setup.params.tolerance);
+        let level = solve_coarse_level(&self.setup, grid, mesh, tolerance, observer);
+        levels.push(level.info);
+        LevelStart {
+            grid: next_finer(grid),
+            mesh: self.refined(&level, finer <= self.setup.border_level),
+            contact_gap: level.outcome.contact_gap,
+            levels,
+            coarser: if finer == 1 { Some(self.values(&level)) } else { coarser },
+        }
+    }
+
+    /// The start on elements half as large: of all, or of those `at_edges` of contacts only.
+    fn refined(&self, level: &SolvedLevel, at_edges: bool) -> MeshStart {
+        let SolvedLevel { elements, pressure, gap, outcome, .. } = level;
+        let function = prolongation::edge_function(elements, pressure, gap, outcome.contact_gap);
+        if at_edges {
+            let refined = self.setup.refined(&level.fields(), true);
+            prolongation::refine_some(elements, pressure, &function, refined)
+        } else {
+            prolongation::refine_all(elements.finest(), &function)
+        }
+    }
+
+    fn values(&self, level: &SolvedLevel) -> LevelValues {
+        LevelValues {
+            rms_pressure: solution::rms_pressure(&level.elements, &level.pressure),
+            penetration: self.setup.problem.h_max + level.outcome.approach,
+        }
+    }
+}
+
+impl LevelStart {
+    /// Tells the observer that the level begins; there are `finer` levels above it.
+    fn announce(&self, finer: usize, observer: &dyn Observer) {
+        let level = self.levels.len();
+        observer.notify(&Event::Level { grid: self.grid, level, n_levels: level + 1 + finer });
+    }
+}
+
+/// The grid with twice as many elements per side.
+fn next_finer(grid: Grid) -> Grid {
+    Grid::square(2 * grid.nx()).expect("a level of a checked grid")
+}
+
+/// Values of a grid, tile by tile.
+fn to_tiles(grid: Grid, values: &[f64]) -> Vec<f64> {
+    let tiles = TileSet::full(grid.nx() / TILE);
+    let mut result = Vec::with_capacity(values.len());
+    for &[column, row] in tiles.places() {
+        for y in 0..TILE {
+            let start = (row as usize * TILE + y) * grid.nx() + column as usize * TILE;
+            result.extend_from_slice(&values[start..start + TILE]);
+        }
+    }
+    result
+}
