@@ -49,6 +49,7 @@
 
 mod field;
 mod grid;
+mod histogram;
 mod progress;
 mod source;
 mod traits;
@@ -61,6 +62,7 @@ pub mod testing;
 
 pub use field::{Field, ShapeError};
 pub use grid::{Grid, GridError};
+pub use histogram::Histogram;
 pub use progress::{Event, Observer, Rows, Silent, Snapshot};
 pub use source::HeightSource;
 pub use traits::{EdgeBias, HeightField, Kernel, Operator, Symbol};

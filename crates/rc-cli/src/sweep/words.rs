@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use rc_sweep::{RunError, SweepError, TABLE_FILE};
+use rc_sweep::{Rows, RunError, SweepError, TABLE_FILE};
 
 use crate::error::CliError;
+use crate::scene::time_limit::TimeLimit;
 
 impl From<SweepError> for CliError {
     fn from(error: SweepError) -> Self {
@@ -61,10 +62,21 @@ pub(super) fn of_run(error: RunError<CliError>) -> CliError {
     }
 }
 
-/// That rows did not converge.
-pub(super) fn not_converged(n: usize, n_rows: usize, table: &Path) -> CliError {
+/// That the time was not enough for all rows.
+pub(super) fn out_of_time(limit: TimeLimit, missing: usize, n_rows: usize) -> CliError {
     CliError::NotConverged(format!(
-        "{n} of {n_rows} rows did not converge; they are marked not_converged in {}",
-        table.display()
+        "time_limit: after {limit} {missing} of {n_rows} rows are not solved; --resume goes on"
     ))
+}
+
+/// An error when a row did not converge.
+pub(super) fn check_converged(rows: &Rows, table: &Path) -> Result<(), CliError> {
+    match rc_sweep::n_not_converged(rows) {
+        0 => Ok(()),
+        n => Err(CliError::NotConverged(format!(
+            "{n} of {} rows did not converge; they are marked not_converged in {}",
+            rows.len(),
+            table.display()
+        ))),
+    }
 }

@@ -6,7 +6,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 
-use crate::support::{Place, assert_refused, assert_solved, small, text};
+use crate::support::{Place, assert_refused, assert_solved, map, small, text};
 
 /// The data in a page.
 fn data(page: &str) -> Value {
@@ -97,7 +97,7 @@ fn pages_of_full_contact_of_no_convergence_and_of_height_maps_are_made() {
     let place = Place::new();
     assert_solved(&place.run(&small("1e9", &["--out", "full"])));
     assert_solved(&place.run(&["surface", "--waves", "8", "--grid", "64", "--quiet", "--out", "map.npy"]));
-    assert_solved(&place.run(&["solve", "--heights", "map.npy", "--pressure", "1e5", "--quiet", "--out", "map"]));
+    assert_solved(&place.run(&map("solve", "map.npy", &["--pressure", "1e5", "--quiet", "--out", "map"])));
     for folder in ["full", "map"] {
         assert_solved(&place.run(&["report", folder]));
         self_contained(&place, &format!("{folder}/report.html"));
