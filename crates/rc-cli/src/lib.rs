@@ -1,8 +1,8 @@
 //! The command line of rc: scenes, files in SI units, summaries and pictures.
 //!
-//! The way of a solve: [`args`] and [`scene_file`] give a [`scene`], [`resolve`] checks it and turns it into a problem in
-//! units of λ and E*, the libraries solve it, [`rc_sweep::Summary`] is it in SI, [`rc_sweep::files`] writes files that are there whole
-//! or not at all.
+//! The way of a solve: arguments and file give a [`scene`], [`scene::resolve`] checks it and turns it into a problem in units of
+//! λ and E*, `rc_solver` solves it, [`rc_sweep::Summary`] is the result in SI, [`rc_sweep::files`] writes files that are there
+//! whole or not at all.
 //!
 //! ```
 //! use clap::Parser as _;
@@ -38,13 +38,9 @@ mod solve;
 mod surface;
 mod sweep;
 mod terminal;
-mod words;
+mod text;
 
 pub use files::result;
-/// NumPy files, for results and heights alike.
-pub use rc_heights::npy;
-/// Memory of the process and of the machine.
-pub use rc_sweep::memory;
 
 use args::{Cli, Command};
 use error::CliError;

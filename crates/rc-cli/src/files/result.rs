@@ -5,10 +5,10 @@ use std::path::Path;
 use rc_core::{Field, Grid, PeriodicCell};
 
 use crate::error::CliError;
-use crate::npy;
 use crate::scene::file;
 use crate::scene::heights::check_finite;
 use crate::scene::resolve;
+use rc_heights::npy;
 use rc_sweep::Summary;
 
 /// What `rc solve --out` wrote.

@@ -2,7 +2,7 @@
 
 pub(crate) mod args;
 pub(crate) mod record;
-pub(crate) mod words;
+pub(crate) mod text;
 
 mod pictures;
 
@@ -22,7 +22,7 @@ use crate::files::result::ResultFolder;
 use crate::scene::surface::HEIGHTS_FILE;
 use crate::scene::{file, heights};
 use crate::terminal;
-use crate::words::{solved, written};
+use crate::text::{solved, written};
 
 /// Names of files by which a result is recognised.
 const RESULT_FILES: [&str; 2] = ["summary.json", "pressure.npy"];
@@ -51,7 +51,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
         Some(folder) => inspect_result(&folder, args.json)?,
         None if args.file.file_name().is_some_and(|name| name == "pressure.npy") => {
             let statistics = PressureStatistics::of(&finite(&args.file, npy::read(&args.file)?)?);
-            if args.json { to_json(&statistics) } else { words::pressure(&statistics) }
+            if args.json { to_json(&statistics) } else { text::pressure(&statistics) }
         }
         None => inspect_heights(args)?,
     };
@@ -81,7 +81,7 @@ fn inspect_result(folder: &Path, json: bool) -> Result<String, CliError> {
     if json {
         return Ok(to_json(&ResultStatistics { summary: result.summary, pressure }));
     }
-    Ok(solved(&result.summary, sides, result.e_star) + "\nstored pressure\n" + &words::pressure(&pressure))
+    Ok(solved(&result.summary, sides, result.e_star) + "\nstored pressure\n" + &text::pressure(&pressure))
 }
 
 fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
@@ -105,7 +105,7 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
     Ok(if args.json {
         to_json(&record)
     } else {
-        note.to_owned() + &words::heights(&record) + &written(args.out.as_deref())
+        note.to_owned() + &text::heights(&record) + &written(args.out.as_deref())
     })
 }
 

@@ -16,7 +16,7 @@ use crate::files::result::ResultFolder;
 use crate::scene::file;
 use crate::scene::keys::{KernelName, Scene};
 use crate::scene::resolve;
-use crate::words;
+use crate::text;
 use rc_core::quantity::{digits, engineering};
 use rc_plot::Palette;
 use rc_sweep::Summary;
@@ -118,7 +118,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
             maps: maps(&result),
             stress: stress(&result),
             certificate: certificate(summary),
-            lines: words::solved_lines(summary, result.sides(), result.e_star),
+            lines: text::solved_lines(summary, result.sides(), result.e_star),
             // Last: it takes the fields.
             spots: spots(result, kernel),
         },
@@ -137,7 +137,7 @@ fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
         "{surface}: rms height {}, rms slope {}, in a cell of {}; E* = {}; {} x {} elements, kernel {}, method {}",
         engineering(s.rms_height, "m"),
         digits(s.rms_slope, 4),
-        words::cell(result.sides()),
+        text::cell(result.sides()),
         engineering(result.e_star, "Pa"),
         s.grid[0],
         s.grid[1],
@@ -147,7 +147,7 @@ fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
 }
 
 fn tiles(s: &Summary) -> Vec<Tile> {
-    let area = format!("{} %", words::with_error(100.0 * s.area_fraction, 100.0 * s.area_fraction_error));
+    let area = format!("{} %", text::with_error(100.0 * s.area_fraction, 100.0 * s.area_fraction_error));
     let tile = |name, value| Tile { name, value };
     vec![
         tile("contact area", area),
@@ -155,7 +155,7 @@ fn tiles(s: &Summary) -> Vec<Tile> {
         tile("penetration", engineering(s.penetration, "m")),
         tile("mean gap", engineering(s.mean_gap, "m")),
         tile("greatest pressure", engineering(s.max_pressure, "Pa")),
-        tile("stiffness", words::stiffness(s)),
+        tile("stiffness", text::stiffness(s)),
     ]
 }
 

@@ -127,11 +127,11 @@ pub struct RunKeys {
     /// begins no further row
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     pub time_limit: Option<TimeLimit>,
-    /// Print nothing but errors
+    /// Print nothing but errors and what --json asks for
     #[arg(long)]
     #[serde(default)]
     pub quiet: bool,
-    /// Print the summary as JSON
+    /// Print the summary as JSON, whatever else is said
     #[arg(long)]
     #[serde(default)]
     pub json: bool,

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::solved::Problem;
 use crate::error::CliError;
 use crate::scene::keys::RunKeys;
-use crate::{terminal, words};
+use crate::{terminal, text};
 
 /// Memory of the process besides that of the method.
 const PROCESS_BYTES: f64 = 1e7;
@@ -63,7 +63,7 @@ impl Expected {
         let or_unknown = |text: Option<String>| text.unwrap_or_else(|| "not known before the solve".to_owned());
         let seconds = |value: f64| format!("{} s with {} threads of an idle machine", digits(value, 2), self.threads);
         let elements = |value: f64| format!("{} of {} x {}", digits(value.round(), 3), self.grid[0], self.grid[1]);
-        words::aligned(&[
+        text::aligned(&[
             ("method", self.method.clone()),
             ("elements", or_unknown(self.elements.map(elements))),
             ("memory", or_unknown(self.memory_bytes.map(|bytes| ByteSize(bytes as u64).to_string()))),

@@ -14,7 +14,7 @@ use crate::scene::keys::{ContactKeys, RunKeys, Scene};
 use crate::scene::resolve::{self, ContactSetup};
 use crate::scene::surface::SurfaceSetup;
 use crate::scene::values::{Fraction, ToleranceSpec};
-use crate::{terminal, words};
+use crate::{terminal, text};
 
 /// A resolved scene and how it is run.
 #[derive(Clone, Debug)]
@@ -116,8 +116,8 @@ impl Job {
             (false, true) => Ok(()),
             (false, false) => {
                 let units = self.contact.units;
-                let text = words::solved(summary, units.cell().sides(), units.elasticity().e_star());
-                terminal::print(&(text + &words::written(self.run.out.as_deref())))
+                let text = text::solved(summary, units.cell().sides(), units.elasticity().e_star());
+                terminal::print(&(text + &text::written(self.run.out.as_deref())))
             }
         }
     }

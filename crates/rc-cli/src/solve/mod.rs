@@ -5,7 +5,7 @@ pub(crate) mod solved;
 
 mod dry_run;
 mod job;
-mod refusal;
+mod messages;
 mod result_files;
 
 use std::path::PathBuf;

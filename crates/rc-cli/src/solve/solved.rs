@@ -8,7 +8,7 @@ use rc_solver::{ContactProblem, Plan, Solution, SolveError, SolveParams};
 use rc_sweep::memory::Budget;
 use rc_sweep::{SolveContext, Summary};
 
-use super::{refusal, result_files};
+use super::{messages, result_files};
 use crate::error::CliError;
 use crate::files::coarsen::check_factor;
 use crate::scene::resolve::ContactSetup;
@@ -83,7 +83,7 @@ impl<'a> Problem<'a> {
         let (solution, failure) = match result {
             Ok(solution) => (solution, None),
             Err(SolveError::NotConverged { grid, iterations, certificate, solution }) => {
-                let failure = refusal::not_converged(grid, iterations, &certificate, solution.tolerance());
+                let failure = messages::not_converged(grid, iterations, &certificate, solution.tolerance());
                 (*solution, Some(failure))
             }
             Err(error) => return Err(self.refuse(&error)),
@@ -92,7 +92,7 @@ impl<'a> Problem<'a> {
     }
 
     fn refuse(&self, error: &SolveError) -> CliError {
-        refusal::in_si(error, self.surface, self.contact, self.budget)
+        messages::in_si(error, self.surface, self.contact, self.budget)
     }
 }
 

@@ -15,12 +15,12 @@ use self::args::SurfaceArgs;
 use self::surface_files::{is_map, write_folder, write_map};
 use crate::error::CliError;
 use crate::inspect::record::{SurfaceRecord, TreatmentRow};
-use crate::inspect::words::heights as lines;
+use crate::inspect::text::heights as lines;
 use crate::run::threads;
 use crate::scene::keys::{ContactKeys, RunKeys, Scene, SurfaceKeys};
 use crate::scene::surface::LoadedSurface;
 use crate::scene::{heights, resolve};
-use crate::{terminal, words};
+use crate::{terminal, text};
 
 /// A surface in its cell, and how it came about.
 struct Prepared {
@@ -64,7 +64,7 @@ fn write(Prepared { surface, side, effects }: &Prepared, run: &RunKeys) -> Resul
     match (run.json, run.quiet) {
         (true, _) => terminal::print(&to_json(&record)),
         (false, true) => Ok(()),
-        (false, false) => terminal::print(&(lines(&record) + &words::written(target))),
+        (false, false) => terminal::print(&(lines(&record) + &text::written(target))),
     }
 }
 

@@ -1,7 +1,7 @@
 //! `rc sweep merge`: the shards of a sweep as if it had been one.
 
 use super::args::MergeArgs;
-use super::words;
+use super::messages;
 use crate::error::CliError;
 use crate::terminal;
 
@@ -17,5 +17,5 @@ pub(super) fn run(args: &MergeArgs) -> Result<(), CliError> {
         let table = merged.table.display();
         terminal::print(&format!("{n_rows} rows of {n_shards} shards\n\nwritten to {table}\n"))?;
     }
-    words::check_converged(&merged.rows, &merged.table)
+    messages::check_converged(&merged.rows, &merged.table)
 }

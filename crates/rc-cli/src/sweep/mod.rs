@@ -4,9 +4,9 @@ pub(crate) mod args;
 mod bar;
 mod interrupt;
 mod merge;
+mod messages;
 mod rows;
 mod surfaces;
-mod words;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -51,7 +51,7 @@ fn execute(surfaces: &Surfaces, sweep: Arc<Sweep>, threads: usize) -> Result<(),
     let at_once = Budget::new(surfaces.run.memory_limit).solves_at_once(surfaces.max_elements());
     let finished = sweep.run(&rows, Workers { threads, at_once });
     bar.clear();
-    let table = finished.map_err(words::of_run)?;
+    let table = finished.map_err(messages::of_run)?;
     let kept = sweep.kept();
     match (surfaces.run.json, surfaces.run.quiet) {
         (true, _) => terminal::print(&to_json(&kept.rows().values().collect::<Vec<_>>()))?,
@@ -66,9 +66,9 @@ fn execute(surfaces: &Surfaces, sweep: Arc<Sweep>, threads: usize) -> Result<(),
         }
     }
     if let (missing @ 1.., Some(limit)) = (n_rows - kept.rows().len(), surfaces.run.time_limit) {
-        return Err(words::out_of_time(limit, missing, n_rows));
+        return Err(messages::out_of_time(limit, missing, n_rows));
     }
-    words::check_converged(kept.rows(), &table)
+    messages::check_converged(kept.rows(), &table)
 }
 
 #[cfg(test)]

@@ -45,7 +45,7 @@ fn the_page_of_a_result_has_its_fields_and_the_commands_that_repeat_it() {
     let field = &page["maps"]["pressure"];
     let bytes = STANDARD.decode(field["data"].as_str().expect("text")).expect("base64");
     let max = field["max"].as_f64().expect("a number");
-    let stored = rc_cli::npy::read(&place.path("r/pressure.npy")).expect("the pressure");
+    let stored = rc_heights::npy::read(&place.path("r/pressure.npy")).expect("the pressure");
     assert_eq!(bytes.len(), 2 * stored.grid().len());
     for (pair, p) in bytes.chunks(2).zip(stored.values()) {
         let shown = f64::from(u16::from_le_bytes([pair[0], pair[1]])) * max / 65535.0;

@@ -6,7 +6,7 @@ use rc_heights::AreaParameters;
 use rc_solver::PressureStatistics;
 
 use super::record::{SpectrumRow, SurfaceRecord, TreatmentRow};
-use crate::words::{aligned, cell};
+use crate::text::{aligned, cell};
 
 /// Statistics of a height map, with a short table of its spectrum and its distribution.
 #[must_use]
