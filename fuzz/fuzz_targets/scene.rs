@@ -2,15 +2,16 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use rc_cli::{resolve, scene_file};
+use rc_cli::scene::{file, resolve};
+use rc_core::PeriodicCell;
 
 fuzz_target!(|text: &str| {
-    match scene_file::parse(text) {
+    match file::parse(text) {
         Ok(mut scene) => {
             // Files of the machine are none of this.
             scene.surface.heights = None;
             let _ = resolve::surface(scene.surface);
-            let _ = resolve::contact(scene.contact, 1.0, None);
+            let _ = resolve::contact(scene.contact, PeriodicCell::new(1.0).expect("a cell"));
         }
         Err(message) => assert!(!message.is_empty()),
     }

@@ -1,8 +1,8 @@
 //! The command line of rc: scenes, files in SI units, summaries and pictures.
 //!
-//! The way of a solve: [`args`] and [`scene_file`] give a [`scene`], [`resolve`] checks it and turns it into a problem in
-//! units of λ and E*, the libraries solve it, [`rc_sweep::Summary`] is it in SI, [`rc_sweep::files`] writes files that are there whole
-//! or not at all.
+//! The way of a solve: arguments and file give a [`scene`], [`scene::resolve`] checks it and turns it into a problem in units of
+//! λ and E*, `rc_solver` solves it, [`rc_sweep::Summary`] is the result in SI, [`rc_sweep::files`] writes files that are there
+//! whole or not at all.
 //!
 //! ```
 //! use clap::Parser as _;
@@ -20,44 +20,27 @@
 
 use std::process::ExitCode;
 
-use clap::Parser as _;
 use clap::error::ErrorKind;
+use clap::{CommandFactory as _, Parser as _};
 
 pub mod args;
-pub mod auto_tolerance;
-pub mod coarsen;
 pub mod error;
-pub mod heights;
-mod output;
-pub mod report;
-pub mod resolve;
-pub mod result;
 pub mod scene;
-pub mod scene_file;
-pub mod statistics;
-pub mod surface;
-pub mod time_limit;
-pub mod treatment;
-pub mod values;
 
 mod export;
-mod height_pictures;
+mod files;
 mod inspect;
 mod manual;
-mod page;
 mod plot;
-mod progress;
+mod report;
+mod run;
 mod solve;
-mod stop;
-mod surface_command;
+mod surface;
 mod sweep;
-mod watch;
+mod terminal;
+mod text;
 
-/// Memory of the process and of the machine.
-pub use rc_sweep::memory;
-
-/// NumPy files, for results and heights alike.
-pub use rc_heights::npy;
+pub use files::result;
 
 use args::{Cli, Command};
 use error::CliError;
@@ -72,7 +55,7 @@ pub fn main() -> ExitCode {
     match run(cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            output::tell(&format!("error: {error}"));
+            terminal::tell(&format!("error: {error}"));
             ExitCode::from(&error)
         }
     }
@@ -86,13 +69,13 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
     match cli.command {
         Command::Solve(args) => solve::run(args),
         Command::Sweep(args) => sweep::run(*args),
-        Command::Surface(args) => surface_command::run(args),
+        Command::Surface(args) => surface::run(args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Plot(args) => plot::run(&args),
-        Command::Report(args) => page::run(&args),
+        Command::Report(args) => report::run(&args),
         Command::Export(args) => export::run(&args),
-        Command::Completions(args) => manual::completions(args.shell),
-        Command::Man(args) => manual::pages(&args.out),
+        Command::Completions(args) => manual::completions(Cli::command(), args.shell),
+        Command::Man(args) => manual::pages(Cli::command(), &args.out),
     }
 }
 
@@ -110,6 +93,6 @@ fn refuse(error: &clap::Error) -> ExitCode {
     let before_usage = text.split("\n\nUsage:").next().unwrap_or_default();
     let before_usage = before_usage.split("\n\nFor more information").next().unwrap_or_default();
     let error = CliError::input(before_usage.trim_start_matches("error: "));
-    output::tell(&format!("error: {error}"));
+    terminal::tell(&format!("error: {error}"));
     ExitCode::from(&error)
 }

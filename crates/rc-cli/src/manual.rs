@@ -1,32 +1,52 @@
 //! `rc completions` and `rc man`: what shells and `man` know of the command line, from the same source as `--help`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use clap::CommandFactory as _;
+use clap::Args;
 use clap_complete::Shell;
 
-use crate::args::Cli;
 use crate::error::CliError;
-use crate::output;
+use crate::terminal;
 use rc_sweep::files::{self, Staged};
 
-/// Prints completions.
+/// Arguments of `rc completions`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = COMPLETIONS_HELP)]
+pub(crate) struct CompletionsArgs {
+    /// The shell
+    pub(crate) shell: Shell,
+}
+
+const COMPLETIONS_HELP: &str = "\
+For the current user, in a new shell:
+  bash  rc completions bash > ~/.local/share/bash-completion/completions/rc
+  zsh   rc completions zsh > a folder of $fpath, as the file _rc
+  fish  rc completions fish > ~/.config/fish/completions/rc.fish";
+
+/// Arguments of `rc man`.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct ManArgs {
+    /// Folder that receives rc.1, rc-solve.1 and so on
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+}
+
+/// Prints completions of `rc`.
 ///
 /// # Errors
 /// [`CliError::Write`].
-pub(crate) fn completions(shell: Shell) -> Result<(), CliError> {
+pub(crate) fn completions(mut rc: clap::Command, shell: Shell) -> Result<(), CliError> {
     let mut script = Vec::new();
-    clap_complete::generate(shell, &mut Cli::command(), "rc", &mut script);
-    output::print(&String::from_utf8_lossy(&script))
+    clap_complete::generate(shell, &mut rc, "rc", &mut script);
+    terminal::print(&String::from_utf8_lossy(&script))
 }
 
 /// Writes a page for `rc` and one for each of its commands.
 ///
 /// # Errors
 /// [`CliError`] when the folder cannot be written to.
-pub(crate) fn pages(folder: &Path) -> Result<(), CliError> {
+pub(crate) fn pages(mut rc: clap::Command, folder: &Path) -> Result<(), CliError> {
     files::check_folder(folder)?;
-    let mut rc = Cli::command();
     // Gives the commands below their full names.
     rc.build();
     let mut staged = Staged::new(folder)?;

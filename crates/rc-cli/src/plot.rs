@@ -1,21 +1,21 @@
 //! `rc plot`: pictures of a result.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use clap::Args;
 use plotters::prelude::DrawingBackend;
 use plotters::style::RGBColor;
 use rc_core::Field;
 
-use crate::args::PlotArgs;
 use crate::error::CliError;
-use crate::output;
-use crate::result::ResultFolder;
-use crate::statistics::PressureStatistics;
+use crate::files::result::ResultFolder;
+use crate::terminal;
 use rc_core::quantity::Scale;
 use rc_plot::{
     Area, ContactPicture, LinePlot, LineStyle, Map, MapPicture, Palette, Picture, PictureError, Series, Shade,
     draw_lines, save_png, save_svg,
 };
+use rc_solver::PressureStatistics;
 use rc_sweep::files::{self, Staged};
 
 const BLUE: RGBColor = RGBColor(38, 92, 158);
@@ -23,6 +23,20 @@ const RED: RGBColor = RGBColor(190, 60, 50);
 
 /// Font of the line plots, in pixels.
 const TEXT: f64 = 26.0;
+
+/// Arguments of `rc plot`.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct PlotArgs {
+    /// Folder of a result
+    #[arg(value_name = "RESULT_DIR")]
+    pub(crate) folder: PathBuf,
+    /// Folder for the pictures [default: the result's own]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Do not list the pictures
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
 
 /// Runs `rc plot`.
 ///
@@ -33,7 +47,7 @@ pub(crate) fn run(args: &PlotArgs) -> Result<(), CliError> {
     let target = args.out.as_deref().unwrap_or(&args.folder);
     files::check_folder(target)?;
     let names = write(target, &result)?;
-    if args.quiet { Ok(()) } else { output::print_names(target, &names) }
+    if args.quiet { Ok(()) } else { terminal::print_names(target, &names) }
 }
 
 fn write(target: &Path, result: &ResultFolder) -> Result<Vec<String>, CliError> {

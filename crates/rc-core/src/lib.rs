@@ -50,6 +50,7 @@
 
 mod field;
 mod grid;
+mod histogram;
 mod progress;
 mod source;
 mod traits;
@@ -64,6 +65,7 @@ pub use glam::DVec2;
 
 pub use field::{Field, ShapeError};
 pub use grid::{Grid, GridError};
+pub use histogram::Histogram;
 pub use progress::{Event, Observer, Rows, Silent, Snapshot};
 pub use source::HeightSource;
 pub use traits::{EdgeBias, HeightField, Kernel, Operator, Symbol};

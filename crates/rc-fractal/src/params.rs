@@ -8,6 +8,7 @@ pub const MAX_WAVES: usize = 4096;
 
 /// Which wave vectors belong to a spectrum with N waves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Truncation {
     /// |k| ≤ N: "Fourier components up to q1 = N q0" (below Eq. 1). The isotropic choice, and the default of this project.
     Disc,
@@ -17,6 +18,7 @@ pub enum Truncation {
 
 /// How |`a_k`| is distributed about its mean square of Eq. 13.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Amplitudes {
     /// |`a_k`| is its root mean square in every realisation (Eq. 14, Dirac's delta): all realisations share their moments.
     Fixed,

@@ -117,6 +117,12 @@ impl BorderStep {
         Self { border, inside }
     }
 
+    /// Whether it is that of a periodic map, whose ratio is about 1: at most 3.
+    #[must_use]
+    pub fn is_periodic(self) -> bool {
+        self.ratio() <= 3.0
+    }
+
     /// Border over inside: about 1 for a periodic map, far more for one that was cut out of a larger surface. 1 where both are
     /// zero.
     #[must_use]

@@ -61,6 +61,6 @@ pub use number_or_text::number_or_text;
 pub use plan::{ControlKind, FileMark, MAX_ROWS, Plan, PlannedSurface, Row};
 pub use row_solver::{RowError, RowSolver, RunError, Workers};
 pub use shard::{Shape, Shard};
-pub use summary::{Summary, to_json};
+pub use summary::{SolveContext, Summary, to_json};
 pub use sweep::{Kept, Sweep};
 pub use table::n_not_converged;

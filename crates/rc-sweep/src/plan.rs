@@ -3,6 +3,7 @@
 use std::io;
 use std::path::Path;
 
+use rc_solver::Control;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
@@ -28,6 +29,15 @@ impl ControlKind {
         match self {
             Self::Pressure => "pressure",
             Self::Penetration => "penetration",
+        }
+    }
+}
+
+impl From<Control> for ControlKind {
+    fn from(control: Control) -> Self {
+        match control {
+            Control::MeanPressure(_) => Self::Pressure,
+            Control::Penetration(_) => Self::Penetration,
         }
     }
 }

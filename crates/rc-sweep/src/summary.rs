@@ -1,6 +1,14 @@
 //! The summary of a result: what `summary.json` and `--json` hold, in SI.
 
+use std::time::Duration;
+
+use rc_core::Units;
+use rc_solver::Solution;
 use serde::{Deserialize, Serialize};
+
+use crate::content::Cells;
+use crate::memory;
+use crate::plan::ControlKind;
 
 /// One solved contact problem. Pressures in Pa, lengths in m; fractions are of the nominal area.
 ///
@@ -89,7 +97,85 @@ pub struct Summary {
     pub version: String,
 }
 
+/// What a summary says besides the solution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolveContext {
+    /// What was prescribed.
+    pub control: ControlKind,
+    /// How often elements at the edges of contacts were halved beyond the grid.
+    pub border_level: usize,
+    /// Rms height of the surface about its mean, in λ.
+    pub rms_height: f64,
+    /// Rms slope of the surface.
+    pub rms_slope: f64,
+    /// Time from the parsed scene to the certified solution.
+    pub wall: Duration,
+    /// Worker threads.
+    pub threads: usize,
+}
+
 impl Summary {
+    /// The summary of `solution` in SI. Its memory is that of the process so far.
+    #[must_use]
+    pub fn of(solution: &Solution<'_>, units: Units, context: &SolveContext) -> Self {
+        let (info, observables, grid) = (solution.info(), solution.observables(), solution.grid());
+        let stiffness = units.pascals_per_metre(solution.stiffness());
+        Self {
+            status: solution.status().name().to_owned(),
+            control: context.control.key().to_owned(),
+            kernel: solution.kernel().to_owned(),
+            method: solution.method().name().to_owned(),
+            method_reason: Some(solution.reason().to_string()),
+            grid: [grid.nx(), grid.ny()],
+            border_level: Some(context.border_level),
+            elements: solution.n_elements(),
+            levels: info.levels.len(),
+            mean_pressure: units.pascals(info.mean_pressure),
+            penetration: units.metres(info.penetration),
+            penetration_full_contact: units.metres(info.penetration_full_contact),
+            area_fraction: observables.area.fraction,
+            area_fraction_cells: observables.area.cells,
+            area_fraction_error: observables.area.error,
+            contact_perimeter: Some(units.metres(observables.area.perimeter)),
+            rms_pressure: units.pascals(observables.rms_pressure),
+            rms_pressure_corrected: Some(units.pascals(observables.rms_pressure_corrected)),
+            rms_pressure_error: observables.rms_pressure_error.map(|error| units.pascals(error)),
+            max_pressure: units.pascals(observables.max_pressure),
+            mean_gap: units.metres(observables.mean_gap),
+            mean_gap_error: observables.mean_gap_error.map(|error| units.metres(error)),
+            contact_stiffness: Some(stiffness).filter(|value| value.is_finite()),
+            elastic_energy: units.joules(observables.elastic_energy),
+            rms_height: units.metres(context.rms_height),
+            rms_slope: context.rms_slope,
+            h_max: units.metres(solution.h_max()),
+            complementarity_error: info.certificate.complementarity,
+            penetration_error: info.certificate.penetration,
+            load_error: info.certificate.load,
+            tolerance: Some(solution.tolerance()),
+            cells_evaluated: Some(solution.n_evaluated()),
+            cells_proven: Some(solution.n_proven()),
+            level_iterations: Some(info.levels.iter().map(|level| level.iterations).collect()),
+            iterations: info.fine_iterations(),
+            operator_applications: info.fine_operator_applications(),
+            wall_seconds: context.wall.as_secs_f64(),
+            peak_memory_bytes: memory::peak(),
+            threads: context.threads,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+        }
+    }
+
+    /// The summary as the cells of a row.
+    ///
+    /// # Panics
+    /// Never: a record of numbers and text is an object.
+    #[must_use]
+    pub fn cells(&self) -> Cells {
+        match serde_json::to_value(self) {
+            Ok(serde_json::Value::Object(cells)) => cells,
+            other => unreachable!("a record is an object, not {other:?}"),
+        }
+    }
+
     /// The summary as JSON, one key a line, with a line break at the end.
     #[must_use]
     pub fn to_json(&self) -> String {

@@ -1,5 +1,8 @@
 //! `rc export`: a result as files of other programs: VTK for ParaView, PyVista and VisIt, Zarr for Python and others.
 
+pub(crate) mod args;
+
+mod fields;
 mod paraview;
 mod vtk;
 mod xarray;
@@ -7,13 +10,10 @@ mod zarr;
 
 use std::path::Path;
 
-use rc_core::Field;
-
-use crate::args::ExportArgs;
+use self::args::ExportArgs;
+use self::fields::{Fields, read_elements};
 use crate::error::CliError;
-use crate::output;
-use crate::result::{ResultFolder, in_cell};
-use crate::surface::HEIGHTS_FILE;
+use crate::terminal;
 use rc_sweep::files::{self, Staged};
 
 /// Elements of methods that have their own.
@@ -40,7 +40,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), CliError> {
     }
     let names = staged.names().to_vec();
     staged.commit()?;
-    if args.quiet { Ok(()) } else { output::print_names(target, &names) }
+    if args.quiet { Ok(()) } else { terminal::print_names(target, &names) }
 }
 
 /// Fields and, if there is one, adaptive mesh as VTK's XML files.
@@ -52,55 +52,4 @@ fn add_vtk(staged: &mut Staged, folder: &Path, fields: &Fields) -> Result<(), Cl
         staged.add("elements.vtu", |path| vtk::write(path, &paraview::mesh(&elements)))?;
     }
     Ok(())
-}
-
-/// The fields of a result, all on one grid.
-struct Fields {
-    /// `status` of the summary.
-    status: String,
-    /// λ, along x (m).
-    side: f64,
-    /// E* (Pa).
-    e_star: f64,
-    /// Pa.
-    pressure: Field,
-    /// m.
-    gap: Field,
-    /// m, of a height map.
-    height: Option<Field>,
-    /// What 1 in [`Fields::contact`] says: `contact` of elements, `touched` of means over them, above 0 where any of them is in contact.
-    contact_name: &'static str,
-}
-
-impl Fields {
-    /// Reads them from the folder of a result.
-    fn read(folder: &Path) -> Result<Self, CliError> {
-        let result = ResultFolder::read_finite(folder)?;
-        let contact_name = if result.is_of_elements() { "contact" } else { "touched" };
-        let ResultFolder { summary, side, e_star, pressure, gap } = result;
-        let heights = folder.join(HEIGHTS_FILE);
-        let height = heights.is_file().then(|| in_cell(&heights, pressure.grid().cell_ratio())).transpose()?;
-        // With --output-grid, pressure and gap are coarser than the heights.
-        let height = height.filter(|height| height.grid() == pressure.grid());
-        Ok(Self { status: summary.status, side, e_star, pressure, gap, height, contact_name })
-    }
-
-    /// 1 where the pressure is positive, else 0.
-    fn contact(&self) -> Vec<u8> {
-        self.pressure.values().iter().map(|p| u8::from(*p > 0.0)).collect()
-    }
-}
-
-/// An element as its file has it.
-#[derive(Clone, Copy, Debug, serde::Deserialize)]
-struct Element {
-    x: f64,
-    y: f64,
-    size: f64,
-    pressure: f64,
-}
-
-fn read_elements(path: &Path) -> Result<Vec<Element>, CliError> {
-    let fail = |cause: csv::Error| CliError::in_file(path, format_args!("not elements of rc solve: {cause}"));
-    csv::Reader::from_path(path).map_err(fail)?.deserialize().collect::<Result<_, _>>().map_err(fail)
 }

@@ -1,7 +1,7 @@
 //! The data sets of a result for ParaView: fields as an image, elements as a mesh.
 
+use super::fields::{Element, Fields};
 use super::vtk::{Array, Dataset, Values};
-use super::{Element, Fields};
 
 /// Number of a quadrilateral among VTK's cells.
 const VTK_QUAD: u8 = 9;

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::Fields;
+use super::fields::Fields;
 use super::zarr::{Array, Group, Values};
 
 /// Name of the group in the folder of the result.

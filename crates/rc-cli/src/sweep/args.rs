@@ -5,60 +5,60 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use rc_sweep::{Loads, Seeds, Shard};
 
-use crate::scene::Scene;
+use crate::scene::keys::Scene;
 
 /// Arguments of `rc sweep`.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = SWEEP_HELP, args_conflicts_with_subcommands = true)]
-pub struct SweepArgs {
+pub(crate) struct SweepArgs {
     /// What else there is to do with sweeps.
     #[command(subcommand)]
-    pub command: Option<SweepCommand>,
+    pub(crate) command: Option<SweepCommand>,
     /// Scene files; every seed and load is solved for each
     #[arg(value_name = "SCENE.toml")]
-    pub scene_files: Vec<PathBuf>,
+    pub(crate) scene_files: Vec<PathBuf>,
     /// Mean pressures (Pa): first:last:count, geometric; first:last:count:linear; or values with commas between them
     #[arg(long, value_name = "LIST", help_heading = "Sweep", allow_hyphen_values = true)]
-    pub pressures: Option<Loads>,
+    pub(crate) pressures: Option<Loads>,
     /// Penetrations (m), in the same way, instead of --pressures
     #[arg(long, value_name = "LIST", help_heading = "Sweep", allow_hyphen_values = true)]
-    pub penetrations: Option<Loads>,
+    pub(crate) penetrations: Option<Loads>,
     /// Seeds: 1..7 (both included), or a list with commas
     #[arg(long, value_name = "LIST", help_heading = "Sweep", allow_hyphen_values = true)]
-    pub seeds: Option<Seeds>,
+    pub(crate) seeds: Option<Seeds>,
     /// Keep a result folder for each row, rows/0001 and so on
     #[arg(long, help_heading = "Sweep")]
-    pub fields: bool,
+    pub(crate) fields: bool,
     /// Go on with the sweep in --out; start it, if there is none yet
     #[arg(long, help_heading = "Sweep")]
-    pub resume: bool,
+    pub(crate) resume: bool,
     /// Solve part i of n, for job arrays; `rc sweep merge` puts the parts together
     #[arg(long, value_name = "I/N", help_heading = "Sweep", allow_hyphen_values = true)]
-    pub shard: Option<Shard>,
+    pub(crate) shard: Option<Shard>,
     /// What is given here holds against the scene files.
     #[command(flatten)]
-    pub scene: Scene,
+    pub(crate) scene: Scene,
 }
 
 /// Commands of `rc sweep`.
 #[derive(Subcommand, Clone, Debug)]
-pub enum SweepCommand {
+pub(crate) enum SweepCommand {
     /// Put the shards of a sweep together
     Merge(MergeArgs),
 }
 
 /// Arguments of `rc sweep merge`.
 #[derive(Args, Clone, Debug)]
-pub struct MergeArgs {
+pub(crate) struct MergeArgs {
     /// Folders of all shards of one sweep
     #[arg(value_name = "DIR", required = true)]
-    pub folders: Vec<PathBuf>,
+    pub(crate) folders: Vec<PathBuf>,
     /// Folder for the whole sweep
     #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
+    pub(crate) out: PathBuf,
     /// Print nothing but errors
     #[arg(long)]
-    pub quiet: bool,
+    pub(crate) quiet: bool,
 }
 
 const SWEEP_HELP: &str = "\

@@ -6,7 +6,7 @@ use rc_sweep::Sweep;
 
 use super::bar::RowBar;
 use crate::error::{CliError, INTERRUPTED};
-use crate::output;
+use crate::terminal;
 
 /// From now on an interrupt writes the table of the rows so far and ends the process.
 pub(super) fn install(sweep: Arc<Sweep>, bar: RowBar) {
@@ -15,7 +15,7 @@ pub(super) fn install(sweep: Arc<Sweep>, bar: RowBar) {
         let kept = sweep.kept();
         bar.clear();
         let (n_kept, n_rows) = (kept.rows().len(), sweep.n_rows());
-        output::tell(&match kept.write_table().map_err(CliError::from) {
+        terminal::tell(&match kept.write_table().map_err(CliError::from) {
             Ok(path) => format!("interrupted: {n_kept} of {n_rows} rows are in {}; --resume goes on", path.display()),
             Err(error) => format!("interrupted: {n_kept} of {n_rows} rows are kept, --resume goes on; {error}"),
         });

@@ -1,9 +1,9 @@
 //! `rc sweep merge`: the shards of a sweep as if it had been one.
 
 use super::args::MergeArgs;
-use super::check_converged;
+use super::messages;
 use crate::error::CliError;
-use crate::output;
+use crate::terminal;
 
 /// Runs `rc sweep merge`.
 ///
@@ -15,7 +15,7 @@ pub(super) fn run(args: &MergeArgs) -> Result<(), CliError> {
     if !args.quiet {
         let (n_rows, n_shards) = (merged.rows.len(), args.folders.len());
         let table = merged.table.display();
-        output::print(&format!("{n_rows} rows of {n_shards} shards\n\nwritten to {table}\n"))?;
+        terminal::print(&format!("{n_rows} rows of {n_shards} shards\n\nwritten to {table}\n"))?;
     }
-    check_converged(&merged.rows, &merged.table)
+    messages::check_converged(&merged.rows, &merged.table)
 }

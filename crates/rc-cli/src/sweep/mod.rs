@@ -4,24 +4,24 @@ pub(crate) mod args;
 mod bar;
 mod interrupt;
 mod merge;
+mod messages;
 mod rows;
 mod surfaces;
-mod words;
 
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use rc_core::quantity;
+use rc_core::quantity::digits;
 use rc_sweep::memory::Budget;
-use rc_sweep::{Shard, Sweep, Workers};
+use rc_sweep::{Shard, Sweep, Workers, to_json};
 
 use self::args::{SweepArgs, SweepCommand};
 use self::bar::RowBar;
 use self::rows::Rows;
 use self::surfaces::Surfaces;
 use crate::error::CliError;
-use crate::{output, resolve};
+use crate::run::threads;
+use crate::terminal;
 
 /// Runs `rc sweep`.
 ///
@@ -35,7 +35,7 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     let missing = || CliError::input("out: a sweep keeps its rows in a folder; give --out DIR");
     let folder = surfaces.run.out.clone().ok_or_else(missing)?;
     let plan = surfaces.plan()?;
-    let threads = resolve::start_threads(surfaces.run.threads)?;
+    let threads = threads::start(surfaces.run.threads)?;
     let sweep = Sweep::start(plan, args.shard.unwrap_or(Shard::WHOLE), &folder, args.resume)?;
     execute(&surfaces, Arc::new(sweep), threads)
 }
@@ -51,30 +51,24 @@ fn execute(surfaces: &Surfaces, sweep: Arc<Sweep>, threads: usize) -> Result<(),
     let at_once = Budget::new(surfaces.run.memory_limit).solves_at_once(surfaces.max_elements());
     let finished = sweep.run(&rows, Workers { threads, at_once });
     bar.clear();
-    let table = finished.map_err(words::of_run)?;
+    let table = finished.map_err(messages::of_run)?;
     let kept = sweep.kept();
-    if surfaces.run.json && !surfaces.run.quiet {
-        output::print(&rc_sweep::to_json(&kept.rows().values().collect::<Vec<_>>()))?;
-    } else if !surfaces.run.quiet {
-        let seconds = quantity::digits(started.elapsed().as_secs_f64(), 3);
-        let before = if n_before > 0 { format!(" ({n_before} kept from before)") } else { String::new() };
-        let table = table.display();
-        output::print(&format!("{n_rows} rows{before} in {seconds} s, {threads} threads\n\nwritten to {table}\n"))?;
+    match (surfaces.run.json, surfaces.run.quiet) {
+        (true, _) => terminal::print(&to_json(&kept.rows().values().collect::<Vec<_>>()))?,
+        (false, true) => {}
+        (false, false) => {
+            let seconds = digits(started.elapsed().as_secs_f64(), 3);
+            let before = if n_before > 0 { format!(" ({n_before} kept from before)") } else { String::new() };
+            let table = table.display();
+            terminal::print(&format!(
+                "{n_rows} rows{before} in {seconds} s, {threads} threads\n\nwritten to {table}\n"
+            ))?;
+        }
     }
     if let (missing @ 1.., Some(limit)) = (n_rows - kept.rows().len(), surfaces.run.time_limit) {
-        return Err(CliError::NotConverged(format!(
-            "time_limit: after {limit} {missing} of {n_rows} rows are not solved; --resume goes on"
-        )));
+        return Err(messages::out_of_time(limit, missing, n_rows));
     }
-    check_converged(kept.rows(), &table)
-}
-
-/// An error when a row did not converge.
-fn check_converged(rows: &rc_sweep::Rows, table: &Path) -> Result<(), CliError> {
-    match rc_sweep::n_not_converged(rows) {
-        0 => Ok(()),
-        n => Err(words::not_converged(n, rows.len(), table)),
-    }
+    messages::check_converged(kept.rows(), &table)
 }
 
 #[cfg(test)]

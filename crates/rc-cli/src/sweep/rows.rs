@@ -4,18 +4,17 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use rc_core::Silent;
+use rc_sweep::memory::Budget;
 use rc_sweep::{Cells, Latest, Row, RowError, RowSolver, Summary, Sweep, replace_fields};
-use serde_json::{Value, json};
 
 use super::bar::RowBar;
 use super::surfaces::Surfaces;
 use crate::error::CliError;
-use crate::progress::Progress;
-use crate::resolve::ContactProblem;
-use crate::scene::RunKeys;
-use crate::solve::Solved;
-use crate::stop::Stop;
-use crate::surface::LoadedSurface;
+use crate::run::stop::Stop;
+use crate::scene::resolve::ContactSetup;
+use crate::scene::surface::LoadedSurface;
+use crate::solve::solved::{Problem, Solved};
 
 /// Solves the rows of a sweep.
 pub(super) struct Rows<'a> {
@@ -38,19 +37,19 @@ impl<'a> Rows<'a> {
 
     /// Solves `contact` on the surface of `row`. With fields, the folder of the row is complete when this returns.
     /// `wall_seconds` includes the time that loading the surface took once.
-    pub(super) fn solve_contact(&self, row: &Row, contact: &ContactProblem) -> Result<Cells, CliError> {
+    pub(super) fn solve_contact(&self, row: &Row, contact: &ContactSetup) -> Result<Cells, CliError> {
         let surface = self.surfaces.surface(row);
         let (loaded, time): (Arc<LoadedSurface>, Duration) = self.loaded.get(row.surface, || surface.load())?;
         let started = Instant::now().checked_sub(time).unwrap_or_else(Instant::now);
         let folder = self.sweep.fields_folder(row.index);
-        let run = RunKeys { out: folder.clone(), ..self.surfaces.run.clone() };
-        let solved = Solved::new(&loaded, contact, surface.cell.side(), &run, started, &Progress::new(true))?;
+        let budget = Budget::new(self.surfaces.run.memory_limit);
+        let problem = Problem { surface: &loaded, contact, budget };
+        let solved = problem.solve(started, &Silent)?;
         let summary = solved.summary(self.threads);
         if let Some(folder) = folder {
             write_fields(&folder, &solved, &summary)?;
         }
-        let Value::Object(cells) = json!(summary) else { return Ok(Cells::new()) };
-        Ok(cells)
+        Ok(summary.cells())
     }
 }
 

@@ -7,9 +7,9 @@ use serde_json::json;
 
 use super::args::SweepArgs;
 use crate::error::CliError;
-use crate::resolve::{self, ContactProblem};
-use crate::scene::{ContactKeys, RunKeys, Scene};
-use crate::surface::{Source, SurfaceProblem};
+use crate::scene::keys::{ContactKeys, RunKeys, Scene};
+use crate::scene::resolve::{self, ContactSetup};
+use crate::scene::surface::{Source, SurfaceSetup};
 
 /// One surface with its loads.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ pub(super) struct SweptSurface {
     scene: String,
     /// `None` for a height map.
     seed: Option<u64>,
-    pub(super) problem: SurfaceProblem,
+    setup: SurfaceSetup,
     /// The keys as resolved, without a load.
     contact: ContactKeys,
     loads: Vec<f64>,
@@ -69,43 +69,45 @@ impl Surfaces {
     }
 
     /// The surface of `row`.
-    pub(super) fn surface(&self, row: &Row) -> &SurfaceProblem {
-        &self.surfaces[row.surface].problem
+    pub(super) fn surface(&self, row: &Row) -> &SurfaceSetup {
+        &self.surfaces[row.surface].setup
     }
 
     /// The contact of `row`, ready to be solved.
     ///
     /// # Errors
     /// [`CliError::Input`] for keys of the contact, the same for all rows of a surface.
-    pub(super) fn contact(&self, row: &Row) -> Result<ContactProblem, CliError> {
+    pub(super) fn contact(&self, row: &Row) -> Result<ContactSetup, CliError> {
         let surface = &self.surfaces[row.surface];
         let keys = with_load(self.control, &surface.contact, Some(row.load));
-        let contact = resolve::contact(keys, surface.problem.cell.side(), surface.problem.elements_per_wave())?;
+        let mut contact = resolve::contact(keys, surface.setup.cell)?;
         // The memory of a machine must not decide on the digits of a row.
-        Ok(ContactProblem { is_one_of_many: true, ..contact })
+        contact.params.method_follows_memory = false;
+        Ok(contact)
     }
 
     /// Elements of the largest surface.
     pub(super) fn max_elements(&self) -> f64 {
-        self.surfaces.iter().map(|surface| surface.problem.most_elements()).fold(0.0, f64::max)
+        self.surfaces.iter().map(|surface| surface.setup.max_elements()).fold(0.0, f64::max)
     }
 }
 
 impl SweptSurface {
     /// Checks the keys of `scene`, under the first load: everything but the load is the same for all of them.
     fn new(name: &str, scene: Scene, control: ControlKind, loads: &[f64]) -> Result<Self, CliError> {
-        let problem = resolve::surface(scene.surface)?;
-        let seed = problem.keys.seed.filter(|_| matches!(problem.source, Source::Random { .. }));
+        resolve::check_size_and_material(&scene.surface, &scene.contact)?;
+        let setup = resolve::surface(scene.surface)?;
+        let seed = setup.keys.seed.filter(|_| matches!(setup.source, Source::Random { .. }));
         let keys = with_load(control, &scene.contact, loads.first().copied());
-        let contact = resolve::contact(keys, problem.cell.side(), problem.elements_per_wave())?;
+        let contact = resolve::contact(keys, setup.cell)?;
         let contact = with_load(control, &contact.keys, None);
-        Ok(Self { scene: name.to_owned(), seed, problem, contact, loads: loads.to_vec() })
+        Ok(Self { scene: name.to_owned(), seed, setup, contact, loads: loads.to_vec() })
     }
 
     /// What determines its rows. Where a height map lies does not, so its name and its content count.
     fn planned(&self) -> Result<PlannedSurface, CliError> {
-        let mut surface = self.problem.keys.clone();
-        let map = match &self.problem.source {
+        let mut surface = self.setup.keys.clone();
+        let map = match &self.setup.source {
             Source::Random { .. } => None,
             Source::File { path, .. } => {
                 surface.heights = path.file_name().map(Into::into);

@@ -6,7 +6,7 @@ use rc_core::Field;
 use serde_json::Value;
 
 use crate::solve::assert_close;
-use crate::support::{Place, assert_refused, assert_solved, bumps, f8, npy, text};
+use crate::support::{MATERIAL, Place, assert_refused, assert_solved, bumps, f8, map, npy, text};
 
 /// Sixteen waves on 32 elements each; about a tenth of the cell in contact.
 const SCENE: [&str; 6] = ["solve", "--waves", "16", "--grid", "512", "--pressure"];
@@ -161,7 +161,7 @@ fn a_penetration_and_a_height_map_are_solved_adaptively() {
     let place = Place::new();
     place.write("map.npy", npy("<f8", false, "(256, 256)", &f8(&bumps(256))));
     let random = ["--waves", "16", "--grid", "256"];
-    let map = ["--heights", "map.npy", "--cell", "3e-3"];
+    let map = [&["--heights", "map.npy", "--cell", "3e-3"], &MATERIAL[..]].concat();
     let cases: [(&[&str], [&str; 2]); 3] =
         [(&random, ["--penetration", "1.5e-5"]), (&map, ["--penetration", "4e-6"]), (&map, ["--pressure", "5e5"])];
     for (surface, control) in cases {
@@ -284,6 +284,6 @@ fn border_levels_that_cannot_be_are_refused() {
     refused(&["--border-level", "11"], "10 is the deepest");
     refused(&["--border-level", "99999999999"], "10 is the deepest");
     place.write("map.npy", npy("<f8", false, "(128, 128)", &f8(&bumps(128))));
-    let output = place.run(&["solve", "--heights", "map.npy", "--pressure", PRESSURE, "--border-level", "1"]);
+    let output = place.run(&map("solve", "map.npy", &["--pressure", PRESSURE, "--border-level", "1"]));
     assert_refused(&output, "border_level: a border level needs heights between the points");
 }

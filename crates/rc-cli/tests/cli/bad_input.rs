@@ -1,6 +1,6 @@
 //! Bad input: exit code 2 and one line that says what, where, and what would be right.
 
-use crate::support::{Place, SMALL, assert_refused, bumps, f8, npy, small, text};
+use crate::support::{Place, SMALL, assert_refused, bumps, f8, map, npy, small, text};
 
 /// Runs the small problem at 1e5 Pa with `flags`, which replace its own of the same name.
 fn run_small_with(place: &Place, flags: &[&str]) -> std::process::Output {
@@ -173,12 +173,12 @@ fn write_bad_maps(place: &Place) -> Vec<(&'static str, &'static str)> {
 fn bad_height_maps_are_refused_with_their_place() {
     let place = Place::new();
     for (file, expected) in write_bad_maps(&place) {
-        let output = place.run(&["solve", "--heights", file, "--pressure", "1e5", "--out", "result"]);
+        let output = place.run(&map("solve", file, &["--pressure", "1e5", "--out", "result"]));
         assert_refused(&output, expected);
         assert!(text(&output.stderr).contains(file), "{}", text(&output.stderr));
         assert_refused(&place.run(&["inspect", file]), expected);
     }
-    assert_refused(&place.run(&["solve", "--heights", ".", "--pressure", "1e5"]), ".csv");
+    assert_refused(&place.run(&map("solve", ".", &["--pressure", "1e5"])), ".csv");
     assert!(!place.path("result").exists(), "a folder was made for nothing");
 }
 
@@ -186,7 +186,7 @@ fn bad_height_maps_are_refused_with_their_place() {
 fn a_grid_that_is_not_that_of_the_height_map_is_refused() {
     let place = Place::new();
     place.write("map.npy", npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
-    let args = ["solve", "--heights", "map.npy", "--pressure", "1e5", "--grid", "128", "--quiet"];
+    let args = map("solve", "map.npy", &["--pressure", "1e5", "--grid", "128", "--quiet"]);
     assert_refused(&place.run(&args), "64 x 64");
 }
 

@@ -41,7 +41,7 @@ fn bytes_of(field: &Field) -> Vec<u8> {
 }
 
 fn field(place: &Place, name: &str) -> Field {
-    rc_cli::npy::read(&place.path(name)).expect("a field")
+    rc_heights::npy::read(&place.path(name)).expect("a field")
 }
 
 #[test]
@@ -58,7 +58,7 @@ fn a_result_is_exported_for_paraview() {
         head.contains("WholeExtent=\"0 128 0 128 0 0\"") && head.contains("Spacing=\"7.8125e-5 7.8125e-5"),
         "{head}"
     );
-    let stored = rc_cli::npy::read(&place.path("r/pressure.npy")).expect("the pressure");
+    let stored = rc_heights::npy::read(&place.path("r/pressure.npy")).expect("the pressure");
     // Contact comes first: a length, and a byte for each element; then the length of the pressure.
     let first = start + 8 + stored.grid().len() + 8;
     for (i, p) in stored.values().iter().enumerate() {

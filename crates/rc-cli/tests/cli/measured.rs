@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::support::{Place, assert_refused, assert_solved, bumps, f8, npy, text};
+use crate::support::{MATERIAL, Place, assert_refused, assert_solved, bumps, f8, map, npy, text};
 
 /// A file of data/formats/.
 fn sample(name: &str) -> String {
@@ -14,7 +14,10 @@ fn a_measured_map_becomes_a_surface_that_is_solved() {
     let place = Place::new();
     let scan = sample("surfalize-missing.sdf");
     // 12 x 8 points on 24 µm x 24 µm: a square already, with a hole, and not periodic.
-    assert_refused(&place.run(&["solve", "--heights", &scan, "--pressure", "1e5"]), "--fill laplace");
+    assert_refused(
+        &place.run(&[&["solve", "--heights", &scan, "--pressure", "1e5"], &MATERIAL[..]].concat()),
+        "--fill laplace",
+    );
     let treat = [
         "surface",
         "--heights",
@@ -80,14 +83,14 @@ fn contradictions_and_what_is_missing_are_refused() {
         (&["surface", "--heights", &x3p, "--cell", "1e-3"], "24 µm wide, cell says 1 mm"),
         (&["surface", "--heights", &x3p, "--unit", "um"], "names its units"),
         (&["surface", "--heights", &x3p, "--height-scale", "1e-9"], "in metres already"),
-        (&["surface", "--heights", &png], "height_scale"),
-        (&["surface", "--heights", &png, "--unit", "um", "--height-scale", "1e-9"], "leave unit away"),
+        (&["surface", "--heights", &png, "--cell", "1"], "height_scale"),
+        (&["surface", "--heights", &png, "--cell", "1", "--unit", "um", "--height-scale", "1e-9"], "leave unit away"),
         (&["surface", "--heights", "map.xyz", "--cell-y", "1"], "2 m high, cell_y says 1 m"),
-        (&["surface", "--heights", "map.npy", "--unit", "V"], "'V' is no unit of length"),
-        (&["surface", "--heights", "map.npy", "--crop", "9"], "not inside the map of 8 x 8"),
-        (&["surface", "--heights", "map.npy", "--crop", "half"], "512x256+100+50"),
-        (&["surface", "--heights", "map.npy", "--low-pass", "1"], "low_pass"),
-        (&["surface", "--heights", "map.npy", "--resample", "0"], "resample"),
+        (&["surface", "--heights", "map.npy", "--cell", "1", "--unit", "V"], "'V' is no unit of length"),
+        (&["surface", "--heights", "map.npy", "--cell", "1", "--crop", "9"], "not inside the map of 8 x 8"),
+        (&["surface", "--heights", "map.npy", "--cell", "1", "--crop", "half"], "512x256+100+50"),
+        (&["surface", "--heights", "map.npy", "--cell", "0.01", "--low-pass", "1"], "low_pass"),
+        (&["surface", "--heights", "map.npy", "--cell", "1", "--resample", "0"], "resample"),
         (&["surface", "--waves", "8", "--level", "plane"], "--heights"),
         (&["surface", "--waves", "8", "--unit", "um"], "height_scale"),
     ];
@@ -96,6 +99,36 @@ fn contradictions_and_what_is_missing_are_refused() {
     }
     assert_eq!(place.names("."), ["map.npy", "map.xyz"], "something was written");
     assert_refused(&place.run(&["solve", "--waves", "8", "--crop", "4"]), "--crop");
+}
+
+#[test]
+fn a_height_map_never_gets_the_size_or_the_material_of_the_example() {
+    let place = Place::new();
+    place.write("map.npy", npy("<f8", false, "(16, 16)", &f8(&bumps(16))));
+    let x3p = sample("surfalize.x3p");
+    let all = "needs cell (m), and e_star (Pa) or young (Pa) with poisson too";
+    let material = "needs e_star (Pa) or young (Pa) with poisson too";
+    let cases: [(&[&str], &str); 9] = [
+        (&["solve", "--heights", "map.npy", "--pressure", "1e5"], all),
+        (&["solve", "--heights", "map.npy", "--pressure", "1e5", "--dry-run"], all),
+        (&["solve", "--heights", "map.npy", "--pressure", "1e5", "--cell", "1"], material),
+        (&["solve", "--heights", "map.npy", "--pressure", "1e5", "--cell", "1", "--young", "1e9"], "needs poisson too"),
+        (&["solve", "--heights", "map.npy", "--pressure", "1e5", "--e-star", "1e9"], "needs cell (m) too"),
+        (&["solve", "--heights", &x3p, "--pressure", "1e5"], material),
+        (&["sweep", "--heights", "map.npy", "--pressures", "1e5,2e5"], all),
+        (&["surface", "--heights", "map.npy"], "needs cell (m) too"),
+        (&["surface", "--heights", "map.npy", "--level", "plane"], "needs cell (m) too"),
+    ];
+    for (args, expected) in cases {
+        assert_refused(&place.run(&[args, &["--out", "r"]].concat()), expected);
+    }
+    place.write("map.toml", "heights = \"map.npy\"\npressure = 1e5\n");
+    assert_refused(&place.run(&["solve", "map.toml", "--out", "r"]), all);
+    assert_eq!(place.names("."), ["map.npy", "map.toml"], "something was written");
+    // A flag, a scene file or the map itself may say it; what is only looked at has a default.
+    assert_solved(&place.run(&["solve", "map.toml", "--cell", "1e-3", "--e-star", "1e9", "--quiet"]));
+    assert_solved(&place.run(&["surface", "--heights", &x3p, "--quiet"]));
+    assert_solved(&place.run(&["inspect", "map.npy"]));
 }
 
 #[test]
@@ -124,7 +157,7 @@ fn points_of_a_map_without_a_size_are_squares_when_it_is_treated() {
 fn a_treated_map_that_does_not_fit_is_refused_before_it_is_made() {
     let place = Place::new();
     place.write("map.npy", npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
-    let treat = ["surface", "--heights", "map.npy", "--out", "s"];
+    let treat = ["surface", "--heights", "map.npy", "--cell", "0.01", "--out", "s"];
     for (flags, expected) in [
         (&["--resample", "1048576"][..], "the map after resample 1048576 x 1048576 on"),
         (&["--periodic", "mirror", "--memory-limit", "1MB"], "the map after periodic mirror on 128 x 128"),
@@ -143,7 +176,7 @@ fn cut_off_and_damaged_files_are_refused_with_one_line() {
         place.write(name, &bytes[..bytes.len() / 2]);
         let refused = |args: &[&str]| assert_refused(&place.run(args), name);
         refused(&["inspect", name, "--height-scale", "1e-9"]);
-        refused(&["solve", "--heights", name, "--pressure", "1e5", "--out", "r"]);
+        refused(&map("solve", name, &["--pressure", "1e5", "--out", "r"]));
     }
 }
 

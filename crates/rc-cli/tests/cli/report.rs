@@ -6,7 +6,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 
-use crate::support::{Place, assert_refused, assert_solved, small, text};
+use crate::support::{Place, assert_refused, assert_solved, map, small, text};
 
 /// The data in a page.
 fn data(page: &str) -> Value {
@@ -45,7 +45,7 @@ fn the_page_of_a_result_has_its_fields_and_the_commands_that_repeat_it() {
     let field = &page["maps"]["pressure"];
     let bytes = STANDARD.decode(field["data"].as_str().expect("text")).expect("base64");
     let max = field["max"].as_f64().expect("a number");
-    let stored = rc_cli::npy::read(&place.path("r/pressure.npy")).expect("the pressure");
+    let stored = rc_heights::npy::read(&place.path("r/pressure.npy")).expect("the pressure");
     assert_eq!(bytes.len(), 2 * stored.grid().len());
     for (pair, p) in bytes.chunks(2).zip(stored.values()) {
         let shown = f64::from(u16::from_le_bytes([pair[0], pair[1]])) * max / 65535.0;
@@ -97,7 +97,7 @@ fn pages_of_full_contact_of_no_convergence_and_of_height_maps_are_made() {
     let place = Place::new();
     assert_solved(&place.run(&small("1e9", &["--out", "full"])));
     assert_solved(&place.run(&["surface", "--waves", "8", "--grid", "64", "--quiet", "--out", "map.npy"]));
-    assert_solved(&place.run(&["solve", "--heights", "map.npy", "--pressure", "1e5", "--quiet", "--out", "map"]));
+    assert_solved(&place.run(&map("solve", "map.npy", &["--pressure", "1e5", "--quiet", "--out", "map"])));
     for folder in ["full", "map"] {
         assert_solved(&place.run(&["report", folder]));
         self_contained(&place, &format!("{folder}/report.html"));

@@ -2,8 +2,9 @@
 
 use proptest::prelude::*;
 use proptest::sample::Index;
-use rc_cli::scene::EXAMPLE;
-use rc_cli::{resolve, scene_file};
+use rc_cli::scene::keys::EXAMPLE;
+use rc_cli::scene::{file, resolve};
+use rc_core::PeriodicCell;
 use rc_sweep::{SweepError, finished_rows};
 
 use crate::support::{Place, assert_solved};
@@ -43,12 +44,12 @@ fn assert_one_line(message: &str) {
 
 /// A scene is read and resolved, or refused.
 fn read_scene(text: &str) {
-    match scene_file::parse(text) {
+    match file::parse(text) {
         Ok(mut scene) => {
             // Files of the machine are none of this.
             scene.surface.heights = None;
             let surface = resolve::surface(scene.surface);
-            let contact = resolve::contact(scene.contact, 1.0, None);
+            let contact = resolve::contact(scene.contact, PeriodicCell::new(1.0).expect("a cell"));
             for error in [surface.err(), contact.err()].into_iter().flatten() {
                 assert_one_line(&error.to_string());
             }

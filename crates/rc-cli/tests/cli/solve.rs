@@ -4,7 +4,7 @@ use std::fs;
 use std::process::Command;
 use std::time::Duration;
 
-use crate::support::{Place, assert_refused, assert_solved, bumps, f8, npy, small, text};
+use crate::support::{MATERIAL, Place, assert_refused, assert_solved, bumps, f8, map, npy, small, text};
 
 /// Keys of `summary.json`, in their order.
 pub(crate) const KEYS: [&str; 40] = [
@@ -120,7 +120,7 @@ fn a_result_of_a_height_map_is_repeated_from_its_own_folder_alone() {
     let place = Place::new();
     place.write("map.npy", npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
     let args = ["solve", "--heights", "map.npy", "--cell", "3e-3", "--pressure", "2e5", "--quiet", "--out", "first"];
-    assert_solved(&place.run(&args));
+    assert_solved(&place.run(&[&args[..], &MATERIAL].concat()));
     fs::remove_file(place.path("map.npy")).expect("the map was there");
     fs::rename(place.path("first"), place.path("moved")).expect("the folder can be moved");
     assert_solved(&place.run(&["solve", "moved/scene.toml", "--quiet", "--out", "second"]));
@@ -144,7 +144,7 @@ fn every_kind_of_height_file_gives_the_same_result() {
     place.write("big.npy", npy(">f8", false, "(32, 32)", &big));
     place.write("map.csv", rows.join("\n"));
     let pressure = |file: &str| {
-        assert_solved(&place.run(&["solve", "--heights", file, "--pressure", "1e5", "--quiet", "--out", "r"]));
+        assert_solved(&place.run(&map("solve", file, &["--pressure", "1e5", "--quiet", "--out", "r"])));
         place.bytes("r/pressure.npy")
     };
     let reference = pressure("c.npy");

@@ -9,6 +9,15 @@ use tempfile::TempDir;
 /// A small problem that every test can afford: 8 waves on 128 x 128 elements.
 pub(crate) const SMALL: [&str; 6] = ["solve", "--waves", "8", "--grid", "128", "--quiet"];
 
+/// What a height map must be given: the size and the material of the example.
+pub(crate) const CELL: [&str; 2] = ["--cell", "0.01"];
+pub(crate) const MATERIAL: [&str; 4] = ["--young", "0.4e9", "--poisson", "0.45"];
+
+/// Arguments that press the height map in `file`, in the cell and of the material of the example, with more of them.
+pub(crate) fn map<'a>(command: &'a str, file: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    [&[command, "--heights", file], &CELL[..], &MATERIAL, more].concat()
+}
+
 /// Arguments of the small problem at `pressure` Pa, with more of them.
 pub(crate) fn small<'a>(pressure: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     [&SMALL[..], &["--pressure", pressure], more].concat()

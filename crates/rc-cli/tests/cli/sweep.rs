@@ -92,7 +92,7 @@ fn a_scene_has_its_own_load_and_seed_where_no_list_is_given() {
     let place = Place::new();
     place.write("a.toml", "waves = 4\ngrid = 128\nseed = 9\npressure = 3e5\nquiet = true\nout = \"s\"\n");
     place.write("map.npy", npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
-    place.write("b.toml", "heights = \"map.npy\"\npressure = 2e5\n");
+    place.write("b.toml", "heights = \"map.npy\"\ncell = 0.01\ne_star = 5e8\npressure = 2e5\n");
     assert_solved(&place.run(&["sweep", "a.toml", "b.toml"]));
     let table = table(&place.path("s"));
     assert_eq!(column(&table, "control_value"), ["300000.0", "200000.0"]);

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::support::{Place, assert_refused, assert_solved, text};
+use crate::support::{Place, assert_refused, assert_solved, map, text};
 use crate::sweep::{TINY, result, sweep, table};
 
 const ROWS: usize = 12;
@@ -115,7 +115,7 @@ fn a_torn_last_line_is_solved_again_and_the_others_are_not() {
 fn settings_that_differ_are_named() {
     let place = Place::new();
     place.write("map.csv", "1e-6,2e-6\n3e-6,1e-6\n");
-    let map = ["sweep", "--heights", "map.csv", "--pressures", "1e5,2e5", "--quiet", "--out", "m"];
+    let map = map("sweep", "map.csv", &["--pressures", "1e5,2e5", "--quiet", "--out", "m"]);
     assert_solved(&place.run(&map));
     place.write("map.csv", "1e-6,2e-6\n3e-6,2e-6\n");
     assert_refused(&place.run(&[&map[..], &["--resume"]].concat()), "surfaces[0].map.crc32 is ");

@@ -44,7 +44,7 @@ fn scenes_that_do_not_go_together_are_refused() {
         ("a.toml", "waves = 4\ngrid = 128\npressure = 1e5\n"),
         ("b/a.toml", "waves = 4\ngrid = 128\npressure = 1e5\n"),
         ("c.toml", "waves = 4\ngrid = 128\npenetration = 1e-6\n"),
-        ("map.toml", "heights = \"map.npy\"\n"),
+        ("map.toml", "heights = \"map.npy\"\ncell = 0.01\ne_star = 5e8\n"),
         ("typo.toml", "presures = 1\n"),
     ] {
         place.write(name, scene);

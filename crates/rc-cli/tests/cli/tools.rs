@@ -12,7 +12,7 @@ fn a_surface_is_converted_without_loss() {
     assert_eq!(place.names("s"), ["heights.npy", "scene.toml", "surface.json", "surface.png"]);
     assert_eq!(place.names("."), ["s", "s.csv", "s.npy"]);
     assert!(place.bytes("s/heights.npy") == place.bytes("s.npy"), "two ways to write heights differ");
-    assert_solved(&place.run(&["surface", "--heights", "s.csv", "--quiet", "--out", "again.npy"]));
+    assert_solved(&place.run(&["surface", "--heights", "s.csv", "--cell", "0.01", "--quiet", "--out", "again.npy"]));
     assert!(place.bytes("again.npy") == place.bytes("s.npy"), "CSV has lost digits");
     let rms = place.json("s/surface.json")["rms_height"].as_f64().expect("a number");
     assert!((rms / 13e-6 - 1.0).abs() < 1e-12, "rms height {rms:e}, 13e-6 was asked for");
@@ -153,6 +153,25 @@ fn the_memory_of_the_program_that_starts_it_does_not_count() {
     let peak = place.json("r/summary.json")["peak_memory_bytes"].as_u64().expect("Linux says");
     let ours = 8 * large.iter().sum::<f64>() as u64;
     assert!(peak < ours / 2, "{peak} bytes, {ours} of the program that started it");
+}
+
+#[test]
+fn json_is_printed_whatever_else_is_said() {
+    let place = Place::new();
+    let scene = ["--waves", "4", "--grid", "64", "--json", "--quiet"];
+    let json = |args: &[&str]| -> serde_json::Value {
+        let output = place.run(&[args, &scene[..]].concat());
+        assert_solved(&output);
+        assert!(output.stderr.is_empty(), "{}", text(&output.stderr));
+        serde_json::from_slice(&output.stdout).expect("valid JSON")
+    };
+    assert_eq!(json(&["solve", "--pressure", "1e5"])["status"], "converged");
+    assert_eq!(json(&["solve", "--pressure", "1e5", "--dry-run"])["status"], "dry_run");
+    assert_eq!(json(&["sweep", "--pressures", "1e5", "--out", "s"])[0]["status"], "converged");
+    assert_eq!(json(&["surface"])["grid"], serde_json::json!([64, 64]));
+    let quiet = place.run(&["solve", "--waves", "4", "--grid", "64", "--pressure", "1e5", "--quiet"]);
+    assert_solved(&quiet);
+    assert!(quiet.stdout.is_empty() && quiet.stderr.is_empty(), "{}", text(&quiet.stdout));
 }
 
 #[test]

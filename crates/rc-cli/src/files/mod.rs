@@ -1,0 +1,4 @@
+//! Files of results: fields averaged for them, and the folder read back.
+
+pub(crate) mod coarsen;
+pub mod result;

@@ -1,0 +1,94 @@
+//! A result folder, read back.
+
+use std::path::Path;
+
+use rc_core::{Field, Grid, PeriodicCell};
+
+use crate::error::CliError;
+use crate::scene::file;
+use crate::scene::heights::check_finite;
+use crate::scene::resolve;
+use rc_heights::npy;
+use rc_sweep::Summary;
+
+/// What `rc solve --out` wrote.
+#[derive(Clone, Debug)]
+pub struct ResultFolder {
+    /// The summary.
+    pub summary: Summary,
+    /// Side λ of the cell along x (m), from the scene as it was solved; the grid of the fields knows the other.
+    pub side: f64,
+    /// E* (Pa), from the same scene.
+    pub e_star: f64,
+    /// Pressure (Pa).
+    pub pressure: Field,
+    /// Gap (m).
+    pub gap: Field,
+}
+
+impl ResultFolder {
+    /// Reads a result folder.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] that names the file that is missing or wrong.
+    pub fn read(folder: &Path) -> Result<Self, CliError> {
+        if !folder.is_dir() {
+            return Err(CliError::in_file(folder, "no such folder; give the --out folder of a solve"));
+        }
+        let path = folder.join("summary.json");
+        let text = std::fs::read_to_string(&path)
+            .map_err(|cause| CliError::in_file(&path, format_args!("cannot read this summary: {cause}")))?;
+        let summary: Summary = serde_json::from_str(&text)
+            .map_err(|cause| CliError::in_file(&path, format_args!("not a summary of rc solve: {cause}")))?;
+        let scene_path = folder.join("scene.toml");
+        let scene = file::read(&scene_path)?;
+        let side = scene.surface.cell;
+        let side = side.filter(|side| *side > 0.0 && side.is_finite());
+        let side =
+            side.ok_or_else(|| CliError::in_file(&scene_path, "cell: must be given, positive and finite (m)"))?;
+        let cell = PeriodicCell::new(side).map_err(|cause| CliError::in_file(&scene_path, cause))?;
+        let e_star = resolve::contact(scene.contact, cell)?.units.elasticity().e_star();
+        let field = |name: &str| in_cell(&folder.join(name), scene.surface.cell_y.map_or(1.0, |side_y| side_y / side));
+        let (pressure, gap) = (field("pressure.npy")?, field("gap.npy")?);
+        if gap.grid() != pressure.grid() {
+            let message = format_args!("{} elements, but pressure.npy has {}", gap.grid(), pressure.grid());
+            return Err(CliError::in_file(&folder.join("gap.npy"), message));
+        }
+        Ok(Self { summary, side, e_star, pressure, gap })
+    }
+
+    /// Sides of the cell along x and y (m).
+    #[must_use]
+    pub fn sides(&self) -> [f64; 2] {
+        [self.side, self.side * self.pressure.grid().cell_ratio()]
+    }
+
+    /// Whether the fields are those of the elements that were solved, and not their means over blocks (`output_grid`).
+    #[must_use]
+    pub fn is_of_elements(&self) -> bool {
+        let grid = self.pressure.grid();
+        self.summary.grid == [grid.nx(), grid.ny()]
+    }
+
+    /// Reads a result folder whose fields are to be drawn, or handed on.
+    ///
+    /// # Errors
+    /// Those of [`ResultFolder::read`], and [`CliError::Input`] for a value that is not finite.
+    pub fn read_finite(folder: &Path) -> Result<Self, CliError> {
+        let result = Self::read(folder)?;
+        check_finite(&folder.join("pressure.npy"), &result.pressure)?;
+        check_finite(&folder.join("gap.npy"), &result.gap)?;
+        Ok(result)
+    }
+}
+
+/// Reads a field on a cell whose side along y is `cell_ratio` times that along x.
+///
+/// # Errors
+/// [`CliError::Input`].
+pub fn in_cell(path: &Path, cell_ratio: f64) -> Result<Field, CliError> {
+    let field = npy::read(path)?;
+    let grid = Grid::in_cell(field.grid().nx(), field.grid().ny(), cell_ratio);
+    let grid = grid.map_err(|cause| CliError::in_file(path, format_args!("cell_y of its scene.toml: {cause}")))?;
+    Field::new(grid, field.into_values()).map_err(|cause| CliError::in_file(path, cause))
+}

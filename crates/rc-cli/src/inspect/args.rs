@@ -1,0 +1,33 @@
+//! Arguments of `rc inspect`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use rc_heights::LengthUnit;
+
+/// Arguments of `rc inspect`.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct InspectArgs {
+    /// A height map of any format that rc surface reads, a result folder, or its summary.json or pressure.npy
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+    /// Side λ of the periodic cell of a height map (m) [default: that of its file if it says it, else 0.01; of a result, that of
+    /// its scene.toml]
+    #[arg(long, allow_hyphen_values = true)]
+    pub(crate) cell: Option<f64>,
+    /// Side of a rectangular cell along y (m) [default: that of its file if it says it, else that along x]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) cell_y: Option<f64>,
+    /// Unit of the lengths of a height map that names none: m, mm, um, nm [default: m]
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) unit: Option<LengthUnit>,
+    /// Height (m) of 1 in a height map that names no unit, as of one level of grey of an image; goes before --unit
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) height_scale: Option<f64>,
+    /// Folder for pictures of a height map: heights, spectrum with its power law, distribution
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print the statistics as JSON, with the whole spectrum
+    #[arg(long)]
+    pub(crate) json: bool,
+}

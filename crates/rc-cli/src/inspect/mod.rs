@@ -1,0 +1,119 @@
+//! `rc inspect`: statistics of a height map or of a result.
+
+pub(crate) mod args;
+pub(crate) mod record;
+pub(crate) mod text;
+
+mod pictures;
+
+use std::path::{Path, PathBuf};
+
+use rc_core::{Field, PeriodicCell};
+use rc_fractal::moments_of_grid;
+use rc_heights::{Scales, npy};
+use rc_solver::PressureStatistics;
+use rc_sweep::{Summary, files, to_json};
+use serde::Serialize;
+
+use self::args::InspectArgs;
+use self::record::SurfaceRecord;
+use crate::error::CliError;
+use crate::files::result::ResultFolder;
+use crate::scene::surface::HEIGHTS_FILE;
+use crate::scene::{file, heights};
+use crate::terminal;
+use crate::text::{solved, written};
+
+/// Names of files by which a result is recognised.
+const RESULT_FILES: [&str; 2] = ["summary.json", "pressure.npy"];
+
+/// Statistics of a result, with its summary.
+#[derive(Serialize)]
+struct ResultStatistics {
+    summary: Summary,
+    pressure: PressureStatistics,
+}
+
+/// Runs `rc inspect`.
+///
+/// # Errors
+/// [`CliError::Input`] when the file is neither a height map nor part of a result.
+pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
+    let text = match result_folder(&args.file) {
+        Some(_) if args.cell.is_some() || args.cell_y.is_some() => {
+            return Err(CliError::input(
+                "cell: a result has its own, in its scene.toml; leave --cell and --cell-y away",
+            ));
+        }
+        Some(_) if args.out.is_some() => {
+            return Err(CliError::input("out: the pictures of a result are made by rc plot; leave --out away"));
+        }
+        Some(folder) => inspect_result(&folder, args.json)?,
+        None if args.file.file_name().is_some_and(|name| name == "pressure.npy") => {
+            let statistics = PressureStatistics::of(&finite(&args.file, npy::read(&args.file)?)?);
+            if args.json { to_json(&statistics) } else { text::pressure(&statistics) }
+        }
+        None => inspect_heights(args)?,
+    };
+    terminal::print(&text)
+}
+
+/// The folder of the result that `file` is or belongs to.
+fn result_folder(file: &Path) -> Option<PathBuf> {
+    if file.is_dir() {
+        return Some(file.to_owned());
+    }
+    let name = file.file_name()?.to_str()?;
+    let folder = file.parent()?;
+    let complete = RESULT_FILES.iter().all(|other| folder.join(other).is_file());
+    (name == "summary.json" || RESULT_FILES.contains(&name) && complete).then(|| folder.to_owned())
+}
+
+fn inspect_result(folder: &Path, json: bool) -> Result<String, CliError> {
+    // A folder that `rc surface` wrote has heights and no pressure.
+    let heights = folder.join(HEIGHTS_FILE);
+    if !folder.join("summary.json").exists() && heights.is_file() {
+        return Err(CliError::in_file(folder, format_args!("not a result; inspect {} instead", heights.display())));
+    }
+    let result = ResultFolder::read(folder)?;
+    let sides = result.sides();
+    let pressure = PressureStatistics::of(&finite(&folder.join("pressure.npy"), result.pressure)?);
+    if json {
+        return Ok(to_json(&ResultStatistics { summary: result.summary, pressure }));
+    }
+    Ok(solved(&result.summary, sides, result.e_star) + "\nstored pressure\n" + &text::pressure(&pressure))
+}
+
+fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
+    let map = heights::read(&args.file, Scales { unit: args.unit, height_scale: args.height_scale })?;
+    heights::check_finite(&args.file, &map.heights)?;
+    if map.heights.max() <= map.heights.min() {
+        let message = format_args!("all heights are {:e}; a flat surface has no statistics", map.heights.max());
+        return Err(CliError::in_file(&args.file, message));
+    }
+    let [side, side_y] = heights::sides(&args.file, map.sides, [args.cell, args.cell_y])?;
+    let side = side.or(file::example().surface.cell).unwrap_or(1.0);
+    let cell = PeriodicCell::rectangle(side, side_y.unwrap_or(side)).map_err(CliError::input)?;
+    let heights = heights::in_cell(&args.file, &map.heights, cell)?;
+    let grid = heights.grid();
+    let note = if map.sides.is_none() && side_y.is_none() && grid.nx() != grid.ny() { TAKEN } else { "" };
+    let record = SurfaceRecord::of(&heights, side, moments_of_grid(&heights));
+    if let Some(folder) = &args.out {
+        files::check_folder(folder)?;
+        pictures::write(folder, &heights, &record)?;
+    }
+    Ok(if args.json {
+        to_json(&record)
+    } else {
+        note.to_owned() + &text::heights(&record) + &written(args.out.as_deref())
+    })
+}
+
+/// Said of a map that could mean two things.
+const TAKEN: &str = "a map without a size is taken for a square, as rc solve takes it, so its points here are rectangles; --cell-y says \
+                     how long its other side is\n\n";
+
+fn finite(path: &Path, field: Field) -> Result<Field, CliError> {
+    heights::check_finite(path, &field)?;
+    Ok(field)
+}

@@ -1,0 +1,183 @@
+//! What `rc surface` and `rc inspect` say of a height map, in SI.
+
+use rc_core::{Field, Histogram};
+use rc_fractal::{HurstFit, Moments, SpectrumBin, fit_hurst, radial_spectrum};
+use rc_heights::{AreaParameters, Effect, HeightStatistics};
+use serde::Serialize;
+
+/// What a height map is like.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct SurfaceRecord {
+    /// Elements along x and y.
+    pub(crate) grid: [usize; 2],
+    /// Side of the cell along x (m).
+    pub(crate) cell: f64,
+    /// Side of the cell along y (m).
+    pub(crate) cell_y: f64,
+    /// Mean height (m).
+    pub(crate) mean: f64,
+    /// Lowest height (m).
+    pub(crate) h_min: f64,
+    /// Greatest height (m).
+    pub(crate) h_max: f64,
+    /// Rms height about the mean (m).
+    pub(crate) rms_height: f64,
+    /// Rms slope √⟨|∇h|²⟩.
+    pub(crate) rms_slope: f64,
+    /// Rms of the mean curvature ½∇²h (1/m).
+    pub(crate) rms_curvature: f64,
+    /// Nayak's parameter α; 1.5 at least for a Gaussian isotropic surface.
+    pub(crate) nayak: f64,
+    /// Third central moment over the cube of the rms height; 0 for a Gaussian.
+    pub(crate) skewness: f64,
+    /// Fourth central moment over the fourth power of the rms height; 3 for a Gaussian.
+    pub(crate) kurtosis: f64,
+    /// Probability density of heights about the mean (1/m).
+    pub(crate) distribution: Histogram,
+    /// Parameters of ISO 25178-2 (m), from differences of neighbours, without a filter.
+    pub(crate) parameters: AreaParameters,
+    /// Rms step of heights across the border of the cell over that between neighbours inside; about 1 when periodic.
+    pub(crate) border_step: f64,
+    /// Whether the spectrum is that of the heights under Hann's window, because they are not periodic.
+    pub(crate) windowed: bool,
+    /// The power law in the spectrum, if there is one.
+    pub(crate) hurst_fit: Option<HurstRow>,
+    /// Radially averaged power spectral density.
+    pub(crate) spectrum: Vec<SpectrumRow>,
+    /// What was done to a measured map, state by state.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) treatments: Vec<TreatmentRow>,
+}
+
+/// A power law C = C0 q^(-2(1+H)) through a part of the spectrum.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct HurstRow {
+    /// Hurst exponent H.
+    pub(crate) hurst: f64,
+    /// C0, for C in m⁴ and q in rad/m.
+    pub c0: f64,
+    /// First wavenumber of the range, in waves per cell.
+    pub(crate) from_waves: f64,
+    /// Last wavenumber of the range, in waves per cell.
+    pub(crate) to_waves: f64,
+    /// Rms distance of the spectrum from the law, in ln C.
+    pub(crate) deviation: f64,
+}
+
+impl HurstRow {
+    fn new(fit: HurstFit, side: f64) -> Self {
+        let exponent = 2.0 * (1.0 + fit.hurst);
+        let c0 = fit.ln_c.exp() * side.powi(4) * (std::f64::consts::TAU / side).powf(exponent);
+        Self { hurst: fit.hurst, c0, from_waves: fit.from, to_waves: fit.to, deviation: fit.deviation }
+    }
+
+    /// C (m⁴) on the line at `wavenumber` (rad/m).
+    #[must_use]
+    pub(crate) fn psd(&self, wavenumber: f64) -> f64 {
+        self.c0 * wavenumber.powf(-2.0 * (1.0 + self.hurst))
+    }
+}
+
+/// A measured map after a treatment.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct TreatmentRow {
+    /// The treatment.
+    pub(crate) treatment: String,
+    /// Points along x and y.
+    pub(crate) grid: [usize; 2],
+    /// Points that are missing.
+    pub(crate) missing: usize,
+    /// Rms height about the mean (m).
+    pub(crate) rms_height: f64,
+    /// Rms slope from differences of neighbours.
+    pub(crate) rms_slope: f64,
+    /// As [`SurfaceRecord::border_step`]; `None` while points are missing.
+    pub(crate) border_step: Option<f64>,
+}
+
+impl From<&Effect> for TreatmentRow {
+    fn from(effect: &Effect) -> Self {
+        let Effect { missing, rms_height, rms_slope, border_step, .. } = *effect;
+        let grid = [effect.grid.nx(), effect.grid.ny()];
+        Self { treatment: effect.treatment.clone(), grid, missing, rms_height, rms_slope, border_step }
+    }
+}
+
+/// One ring of wave vectors.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct SpectrumRow {
+    /// Waves per cell.
+    pub(crate) waves: f64,
+    /// q = 2π·waves/λ (rad/m).
+    pub(crate) wavenumber: f64,
+    /// C(q) (m⁴).
+    pub(crate) psd: f64,
+    /// Wave vectors in the ring.
+    pub(crate) modes: usize,
+}
+
+impl SpectrumRow {
+    fn new(ring: &SpectrumBin, side: f64) -> Self {
+        Self {
+            waves: ring.wavenumber,
+            wavenumber: std::f64::consts::TAU * ring.wavenumber / side,
+            psd: ring.psd * side.powi(4),
+            modes: ring.n_modes,
+        }
+    }
+}
+
+impl SurfaceRecord {
+    /// The record of `heights` (in λ) in a cell of side `side` (m). `moments` are exact ones where they are known, else
+    /// [`rc_fractal::moments_of_grid`].
+    #[must_use]
+    pub(crate) fn of(heights: &Field, side: f64, moments: Moments) -> Self {
+        let grid = heights.grid();
+        let statistics = HeightStatistics::of(heights, side);
+        let windowed = !statistics.border.is_periodic();
+        let rings = if windowed { radial_spectrum(&rc_heights::hann(heights)) } else { radial_spectrum(heights) };
+        Self {
+            grid: [grid.nx(), grid.ny()],
+            cell: side,
+            cell_y: side * grid.cell_ratio(),
+            mean: statistics.mean,
+            h_min: statistics.min,
+            h_max: statistics.max,
+            rms_height: moments.rms_height * side,
+            rms_slope: moments.rms_slope,
+            rms_curvature: moments.rms_curvature / side,
+            nayak: moments.nayak,
+            skewness: statistics.parameters.ssk,
+            kurtosis: statistics.parameters.sku,
+            distribution: statistics.distribution,
+            parameters: statistics.parameters,
+            border_step: statistics.border.ratio(),
+            windowed,
+            hurst_fit: fit_hurst(&rings).map(|fit| HurstRow::new(fit, side)),
+            spectrum: rings.iter().map(|ring| SpectrumRow::new(ring, side)).collect(),
+            treatments: Vec::new(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rc_core::Grid;
+    use rc_fractal::moments_of_grid;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn a_wave_has_the_statistics_of_a_wave() {
+        let (amplitude, waves, side) = (1e-3, 4.0, 2.0);
+        let field = Field::from_fn(Grid::square(64).expect("a grid"), |x, _| amplitude * (TAU * waves * x).cos());
+        let statistics = SurfaceRecord::of(&field, side, moments_of_grid(&field));
+        let close = |name: &str, value: f64, reference: f64| {
+            assert!((value / reference - 1.0).abs() < 1e-9, "{name}: {value}, reference {reference}");
+        };
+        close("rms height", statistics.rms_height, amplitude * side / 2_f64.sqrt());
+        close("rms slope", statistics.rms_slope, TAU * waves * amplitude / 2_f64.sqrt());
+        close("kurtosis", statistics.kurtosis, 1.5);
+        assert!(statistics.skewness.abs() < 1e-12, "skewness {}", statistics.skewness);
+    }
+}

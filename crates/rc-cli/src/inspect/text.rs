@@ -1,0 +1,138 @@
+//! Statistics for people: aligned lines, small tables and bars.
+
+use rc_core::Histogram;
+use rc_core::quantity::{digits, engineering};
+use rc_heights::AreaParameters;
+use rc_solver::PressureStatistics;
+
+use super::record::{SpectrumRow, SurfaceRecord, TreatmentRow};
+use crate::text::{aligned, cell};
+
+/// Statistics of a height map, with a short table of its spectrum and its distribution.
+#[must_use]
+pub(crate) fn heights(record: &SurfaceRecord) -> String {
+    let s = record;
+    let lines = [
+        ("cell", format!("{} with {} x {} elements", cell([s.cell, s.cell_y]), s.grid[0], s.grid[1])),
+        (
+            "heights",
+            format!(
+                "from {} to {}, mean {}",
+                engineering(s.h_min, "m"),
+                engineering(s.h_max, "m"),
+                engineering(s.mean, "m")
+            ),
+        ),
+        ("rms height", engineering(s.rms_height, "m")),
+        ("rms slope", digits(s.rms_slope, 4)),
+        ("rms curvature", format!("{} 1/m", digits(s.rms_curvature, 4))),
+        ("Nayak parameter", digits(s.nayak, 4)),
+        ("skewness, kurtosis", format!("{}, {}", digits(s.skewness, 3), digits(s.kurtosis, 4))),
+    ];
+    let heading = "\n  height about mean   density\n";
+    treatments(&s.treatments)
+        + &aligned(&lines)
+        + &area_parameters(&s.parameters)
+        + &spectrum_lines(s)
+        + &spectrum_table(&s.spectrum)
+        + heading
+        + &bars(&s.distribution, "m")
+}
+
+/// A line for each state of a map that was treated.
+fn treatments(rows: &[TreatmentRow]) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let heading = "  treatment           points         missing   rms height   rms slope   border step\n".to_owned();
+    let text = rows.iter().fold(heading, |text, row| {
+        let points = format!("{} x {}", row.grid[0], row.grid[1]);
+        let (height, slope) = (engineering(row.rms_height, "m"), digits(row.rms_slope, 3));
+        let step = row.border_step.map_or_else(|| "-".to_owned(), |ratio| digits(ratio, 3));
+        text + &format!("  {:<20}{points:<15}{:<10}{height:<13}{slope:<12}{step}\n", row.treatment, row.missing)
+    });
+    text + "\n"
+}
+
+/// Parameters of ISO 25178-2.
+fn area_parameters(p: &AreaParameters) -> String {
+    let length = |value| engineering(value, "m");
+    let lines = [
+        ("Sa, Sq", format!("{}, {}", length(p.sa), length(p.sq))),
+        ("Ssk, Sku", format!("{}, {}", digits(p.ssk, 3), digits(p.sku, 4))),
+        ("Sp, Sv, Sz", format!("{}, {}, {}", length(p.sp), length(p.sv), length(p.sz))),
+        ("Sdq, Sdr", format!("{}, {} %", digits(p.sdq, 4), digits(100.0 * p.sdr, 4))),
+    ];
+    "\n  ISO 25178-2, from differences of neighbours, no filter\n".to_owned() + &aligned(&lines)
+}
+
+/// Whether the map is periodic, and the power law in its spectrum.
+fn spectrum_lines(s: &SurfaceRecord) -> String {
+    let state = if s.windowed {
+        "not periodic (rc surface --periodic), so the spectrum is under a Hann window"
+    } else {
+        "periodic"
+    };
+    let border = format!("{} times the step between neighbours: {state}", digits(s.border_step, 3));
+    let law = match &s.hurst_fit {
+        None => "no part of the spectrum is a power law over a factor 4".to_owned(),
+        Some(fit) => format!(
+            "H = {} from {} to {} waves per cell ({} to {}), C0 = {} m^{}, {} off in ln C",
+            digits(fit.hurst, 3),
+            digits(fit.from_waves, 3),
+            digits(fit.to_waves, 3),
+            engineering(s.cell / fit.from_waves, "m"),
+            engineering(s.cell / fit.to_waves, "m"),
+            digits(fit.c0, 3),
+            digits(2.0 - 2.0 * fit.hurst, 3),
+            digits(fit.deviation, 2)
+        ),
+    };
+    "\n".to_owned() + &aligned(&[("border step", border), ("Hurst exponent", law)])
+}
+
+/// Statistics of a pressure field, with its distribution.
+#[must_use]
+pub(crate) fn pressure(statistics: &PressureStatistics) -> String {
+    let s = statistics;
+    let lines = [
+        ("grid", format!("{} x {} elements", s.grid[0], s.grid[1])),
+        ("contact area", format!("{} % of the elements", digits(100.0 * s.area_fraction_cells, 4))),
+        ("mean pressure", engineering(s.mean_pressure, "Pa")),
+        ("mean in contact", engineering(s.mean_contact_pressure, "Pa")),
+        ("rms, max pressure", format!("{}, {}", engineering(s.rms_pressure, "Pa"), engineering(s.max_pressure, "Pa"))),
+    ];
+    aligned(&lines) + "\n  pressure in contact density\n" + &bars(&s.distribution, "Pa")
+}
+
+/// About a dozen rows of the spectrum, evenly spaced in the logarithm of the wavenumber.
+fn spectrum_table(spectrum: &[SpectrumRow]) -> String {
+    let mut text = "\n  waves per cell      C(q) (m^4)     modes\n".to_owned();
+    // Beyond the shortest wave of a surface there is only rounding.
+    let noise = spectrum.iter().fold(0.0_f64, |highest, row| highest.max(row.psd)) * 1e-20;
+    let mut next = 0.0;
+    for row in spectrum.iter().filter(|row| row.psd > noise) {
+        if row.waves >= next {
+            let line = format!("  {:<20}{:<15.4e}{}\n", digits(row.waves, 4), row.psd, row.modes);
+            text.push_str(&line);
+            next = (row.waves * 1.5).max(row.waves + 1.0) - 0.5;
+        }
+    }
+    text
+}
+
+/// The density as bars, two bins a line.
+fn bars(histogram: &Histogram, unit: &'static str) -> String {
+    let bins: Vec<(f64, f64)> = histogram.bins().collect();
+    let lines: Vec<(f64, f64)> = bins.chunks(2).map(mean_of).collect();
+    let highest = lines.iter().fold(0.0_f64, |highest, line| highest.max(line.1));
+    lines.iter().fold(String::new(), |text, (middle, density)| {
+        let length = if highest > 0.0 { (40.0 * density / highest).round() as usize } else { 0 };
+        text + format!("  {:<20}{}", engineering(*middle, unit), "#".repeat(length)).trim_end() + "\n"
+    })
+}
+
+fn mean_of(pairs: &[(f64, f64)]) -> (f64, f64) {
+    let n = pairs.len() as f64;
+    (pairs.iter().map(|pair| pair.0).sum::<f64>() / n, pairs.iter().map(|pair| pair.1).sum::<f64>() / n)
+}

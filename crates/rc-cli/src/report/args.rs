@@ -1,0 +1,26 @@
+//! Arguments of `rc report`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+/// Arguments of `rc report`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = REPORT_HELP)]
+pub(crate) struct ReportArgs {
+    /// Folder of a result (rc solve --out) or of a sweep (rc sweep --out)
+    #[arg(value_name = "DIR")]
+    pub(crate) folder: PathBuf,
+    /// The page [default: report.html in DIR]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Do not print the name of the page
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+const REPORT_HELP: &str = "\
+The page is one file of at most 2 MB, which loads nothing: it can be sent by mail and opened anywhere. Of a result: maps of \
+contact, pressure and gap, sections through the cursor, the stress distribution with a fit of Eq. 7, contact spots, certificate, \
+parameters, the command that repeats it. Of a sweep: area-load and load-penetration curves and the rows. Fields are averaged \
+to 512 x 512 pixels.";

@@ -1,0 +1,383 @@
+//! The page of one solved contact.
+
+use std::path::Path;
+
+use rc_core::{Field, Kernel};
+use rc_solver::{ContactSpot, StressDistribution};
+use rc_theory::persson::Persson;
+use serde::Serialize;
+
+use super::command::{flags, quoted};
+use super::embedded::{Bits, EmbeddedField, MOST_PIXELS, pixel_means};
+use super::page::{Command, Page, Text, Tile, made};
+use super::spot_sizes::SpotSizes;
+use crate::error::CliError;
+use crate::files::result::ResultFolder;
+use crate::scene::file;
+use crate::scene::keys::{KernelName, Scene};
+use crate::scene::resolve;
+use crate::text;
+use rc_core::quantity::{digits, engineering};
+use rc_plot::Palette;
+use rc_sweep::Summary;
+
+/// Bins of the stress distribution.
+const BINS: usize = 80;
+
+/// Gaps below this part of the highest point's height are none.
+const ROUNDING: f64 = 1e-9;
+
+/// What the load must be carried to, whatever the tolerance.
+const LOAD_LIMIT: f64 = 1e-10;
+
+/// The data of the page that are of this kind only.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Contact {
+    maps: Maps,
+    stress: Option<Stress>,
+    certificate: Certificate,
+    /// Names and values, as `rc solve` prints them.
+    lines: Vec<(&'static str, String)>,
+    spots: Option<SpotSizes>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct Maps {
+    /// Sides of the cell along x and y (m).
+    sides: [f64; 2],
+    /// Pa.
+    pressure: EmbeddedField,
+    /// m.
+    gap: EmbeddedField,
+    /// Part of each pixel in contact, or of the stored means that are above 0.
+    contact: EmbeddedField,
+    /// Whether the fields are those of the elements that were solved.
+    of_elements: bool,
+    /// Where the pressure is greatest, in parts of the cell.
+    peak: [f64; 2],
+    /// What a pixel is.
+    averaged: String,
+}
+
+/// P(σ) over the whole nominal area.
+#[derive(Clone, Debug, Serialize)]
+struct Stress {
+    /// Middles of bins (Pa).
+    values: Vec<f64>,
+    /// 1/Pa.
+    density: Vec<f64>,
+    fit: Vec<f64>,
+    notes: Vec<String>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct Certificate {
+    rows: Vec<CertificateRow>,
+    note: &'static str,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct CertificateRow {
+    name: &'static str,
+    value: String,
+    limit: String,
+    /// `None` where there is no limit to compare with.
+    holds: Option<bool>,
+}
+
+/// The page of the result in `folder`.
+///
+/// # Errors
+/// [`CliError::Input`] when it is no result folder.
+pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
+    let result = ResultFolder::read_finite(folder)?;
+    let scene_path = folder.join("scene.toml");
+    let scene_text = std::fs::read_to_string(&scene_path)
+        .map_err(|cause| CliError::in_file(&scene_path, format_args!("cannot read this scene file: {cause}")))?;
+    let scene = file::parse(&scene_text).map_err(|message| CliError::in_file(&scene_path, message))?;
+    let kernel = resolve::kernel(scene.contact.kernel.unwrap_or(KernelName::Love));
+    let summary = &result.summary;
+    let load = match summary.control.as_str() {
+        "penetration" => format!("at a penetration of {}", engineering(summary.penetration, "m")),
+        _ => format!("under {}", engineering(summary.mean_pressure, "Pa")),
+    };
+    Ok(Page {
+        title: format!("Contact {load}"),
+        subtitle: subtitle(&scene, &result),
+        status: summary.status.replace('_', " "),
+        good: summary.status != "not_converged",
+        tiles: tiles(summary),
+        commands: commands(folder, &scene),
+        files: vec![
+            Text { title: "scene.toml", text: scene_text },
+            Text { title: "summary.json", text: summary.to_json() },
+        ],
+        made: made(),
+        kind: "result",
+        body: Contact {
+            maps: maps(&result),
+            stress: stress(&result),
+            certificate: certificate(summary),
+            lines: text::solved_lines(summary, result.sides(), result.e_star),
+            // Last: it takes the fields.
+            spots: spots(result, kernel),
+        },
+    })
+}
+
+fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
+    let keys = &scene.surface;
+    let surface = match (&keys.heights, keys.waves, keys.hurst, keys.seed) {
+        (Some(_), ..) => "a height map".to_owned(),
+        (None, Some(waves), Some(hurst), Some(seed)) => format!("{waves} waves, H = {hurst}, seed {seed}"),
+        _ => "a random surface".to_owned(),
+    };
+    let s = &result.summary;
+    format!(
+        "{surface}: rms height {}, rms slope {}, in a cell of {}; E* = {}; {} x {} elements, kernel {}, method {}",
+        engineering(s.rms_height, "m"),
+        digits(s.rms_slope, 4),
+        text::cell(result.sides()),
+        engineering(result.e_star, "Pa"),
+        s.grid[0],
+        s.grid[1],
+        s.kernel,
+        s.method
+    )
+}
+
+fn tiles(s: &Summary) -> Vec<Tile> {
+    let area = format!("{} %", text::with_error(100.0 * s.area_fraction, 100.0 * s.area_fraction_error));
+    let tile = |name, value| Tile { name, value };
+    vec![
+        tile("contact area", area),
+        tile("mean pressure", engineering(s.mean_pressure, "Pa")),
+        tile("penetration", engineering(s.penetration, "m")),
+        tile("mean gap", engineering(s.mean_gap, "m")),
+        tile("greatest pressure", engineering(s.max_pressure, "Pa")),
+        tile("stiffness", text::stiffness(s)),
+    ]
+}
+
+fn commands(folder: &Path, scene: &Scene) -> Vec<Command> {
+    let path = quoted(&folder.join("scene.toml").display().to_string());
+    let mut commands = vec![Command {
+        note: "From its folder, digit by digit:".to_owned(),
+        text: format!("rc solve {path} --out again"),
+    }];
+    if scene.surface.heights.is_none() {
+        let text = format!("rc solve{}{} --out again", flags(&scene.surface), flags(&scene.contact));
+        commands.push(Command { note: "Without any file:".to_owned(), text });
+    }
+    commands
+}
+
+fn maps(result: &ResultFolder) -> Maps {
+    let ResultFolder { pressure, gap, summary, .. } = result;
+    let (grid, of_elements) = (pressure.grid(), result.is_of_elements());
+    let (p, g) = (pressure.values(), gap.values());
+    let pressures = pixel_means(grid, |i| p[i]);
+    // What a solver leaves of a gap in contact is none; a mean over elements may have both.
+    let gaps = pixel_means(grid, |i| if of_elements && p[i] > 0.0 { 0.0 } else { g[i] });
+    let contact = pixel_means(grid, |i| f64::from(u8::from(p[i] > 0.0)));
+    let pixels = pressures.grid();
+    let peak = (0..pixels.len()).max_by(|a, b| pressures.values()[*a].total_cmp(&pressures.values()[*b])).unwrap_or(0);
+    let peak_at = pixels.centre(peak % pixels.nx(), peak / pixels.nx());
+    // In full contact, gaps are rounding.
+    let widest = Some(gaps.max()).filter(|gap| *gap > ROUNDING * summary.penetration_full_contact).unwrap_or(0.0);
+    let what = if of_elements { "element" } else { "stored value" };
+    let pixel = if grid == pixels {
+        format!("Every {what} is a pixel.")
+    } else {
+        format!("At most {MOST_PIXELS} x {MOST_PIXELS} pixels: each is the mean over its {what}s, of {grid}.")
+    };
+    let [nx, ny] = summary.grid;
+    let averaged = if of_elements {
+        pixel
+    } else {
+        format!(
+            "Stored are means over blocks (output_grid): {grid} values of {nx} x {ny} elements. A block is touched where any of its \
+             elements is in contact. Stress distribution and contact spots need the elements, and are left out; the numbers are of \
+             the elements. {pixel}"
+        )
+    };
+    Maps {
+        sides: result.sides(),
+        pressure: EmbeddedField::of_contact(&pressures, pressures.max(), Bits::Sixteen, Palette::Heat),
+        gap: EmbeddedField::of_gap(&gaps, widest, Bits::Sixteen, Palette::Viridis),
+        contact: EmbeddedField::of_contact(&contact, 1.0, Bits::Eight, Palette::Ink),
+        of_elements,
+        peak: [peak_at.x, peak_at.y / grid.cell_ratio()],
+        averaged,
+    }
+}
+
+/// P(σ) and the Λ of Eq. 7 that fits it; `None` without contact, and without the elements.
+fn stress(result: &ResultFolder) -> Option<Stress> {
+    let ResultFolder { pressure, e_star, summary, .. } = result;
+    let max = pressure.max();
+    if max <= 0.0 || !result.is_of_elements() {
+        return None;
+    }
+    // In full contact P is a peak far from zero, which bins from zero would not resolve.
+    let least = pressure.min().max(0.0);
+    let edges: Vec<f64> = (0..=BINS).map(|k| least + (max - least) * k as f64 / BINS as f64).collect();
+    let distribution = StressDistribution::of(pressure, &edges);
+    let stress: Vec<f64> = edges.windows(2).map(|edge| 0.5 * (edge[0] + edge[1])).collect();
+    let points: Vec<(f64, f64)> = stress.iter().copied().zip(distribution.density.iter().copied()).collect();
+    let fit = Persson::fit(summary.mean_pressure, &points);
+    let theory = Persson::from_rms_slope(summary.mean_pressure / e_star, summary.rms_slope);
+    let over = if least > 0.0 {
+        "Over the whole nominal area: every element is in contact, and the first bin begins at the least pressure."
+    } else {
+        "Over the whole nominal area, resolved below the element at contact edges, where it begins at zero."
+    };
+    let notes = vec![
+        over.to_owned(),
+        format!(
+            "The fit of one constant: Λ = {} E*², {} of the theory's g²/8 with the rms slope g. Its area, erf(σ0/2√Λ) = {} %, is \
+             what the fit says; solved were {} %.",
+            digits(fit.lambda / (e_star * e_star), 4),
+            digits(fit.lambda / (e_star * e_star) / theory.lambda, 3),
+            digits(100.0 * fit.area_fraction(), 3),
+            digits(100.0 * summary.area_fraction, 3)
+        ),
+    ];
+    let fitted = stress.iter().map(|&s| fit.density(s)).collect();
+    Some(Stress { values: stress, density: distribution.density, fit: fitted, notes })
+}
+
+/// Spots of the stored fields, in the units in which their edges are located; `None` without contact, and without the elements.
+fn spots(result: ResultFolder, kernel: &dyn Kernel) -> Option<SpotSizes> {
+    if !result.is_of_elements() {
+        return None;
+    }
+    let ResultFolder { side, e_star, pressure, gap, .. } = result;
+    let over = |mut field: Field, unit: f64| {
+        field.values_mut().iter_mut().for_each(|value| *value /= unit);
+        field
+    };
+    let (pressure, gap) = (over(pressure, e_star), over(gap, side));
+    let spots = ContactSpot::all(&pressure, &gap, kernel.edge_bias());
+    SpotSizes::of(&spots, pressure.grid(), side)
+}
+
+fn certificate(s: &Summary) -> Certificate {
+    let row = |name, value: f64, limit: Option<f64>| CertificateRow {
+        name,
+        value: format!("{value:.1e}"),
+        limit: limit.map_or_else(|| "not known".to_owned(), |limit| format!("{limit:.1e}")),
+        holds: limit.map(|limit| value <= limit),
+    };
+    Certificate {
+        rows: vec![
+            row("pressure where there is a gap", s.complementarity_error, s.tolerance),
+            row("deepest overlap", s.penetration_error, s.tolerance),
+            row("load", s.load_error, Some(LOAD_LIMIT)),
+        ],
+        note: "From a fresh application of the elastic operator to the pressure that is shown, not from what the iteration \
+               believed; relative to the range of heights and to the load. It bounds how far the pressure is from solving the \
+               discrete problem; how far that is from the continuous one is the error bar of the area.",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rc_core::Grid;
+
+    use super::*;
+
+    /// A summary of numbers that are all the same but for those that a test is about.
+    fn summary(grid: Grid, mean_pressure: f64, rms_slope: f64, tolerance: Option<f64>) -> Summary {
+        let mut keys = serde_json::Map::new();
+        for text in ["status", "control", "kernel", "method", "version"] {
+            keys.insert(text.to_owned(), "love".into());
+        }
+        let numbers = [
+            "penetration",
+            "penetration_full_contact",
+            "area_fraction",
+            "area_fraction_cells",
+            "area_fraction_error",
+            "rms_pressure",
+            "max_pressure",
+            "mean_gap",
+            "elastic_energy",
+            "rms_height",
+            "h_max",
+            "complementarity_error",
+            "penetration_error",
+            "load_error",
+            "wall_seconds",
+        ];
+        for number in numbers {
+            keys.insert(number.to_owned(), 0.5.into());
+        }
+        for count in ["elements", "levels", "iterations", "operator_applications", "threads"] {
+            keys.insert(count.to_owned(), 1.into());
+        }
+        keys.insert("grid".to_owned(), vec![grid.nx(), grid.ny()].into());
+        keys.insert("mean_pressure".to_owned(), mean_pressure.into());
+        keys.insert("rms_slope".to_owned(), rms_slope.into());
+        keys.insert("tolerance".to_owned(), tolerance.into());
+        serde_json::from_value(keys.into()).expect("a summary")
+    }
+
+    /// In full contact the stress is normal about its mean, with twice Λ for a variance, however large the mean.
+    #[test]
+    fn the_fit_of_full_contact_finds_the_variance_of_the_pressure() {
+        let grid = Grid::new(512, 4).expect("a grid");
+        // The normal distribution at equal steps of probability, in a smooth order along x: sorted, up and down again.
+        let spread = 1e-3;
+        let quantile = |part: f64| {
+            // Found by halving: erf is all that there is.
+            let (mut low, mut high) = (-5.0_f64, 5.0);
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if 0.5 * (1.0 + libm::erf(middle / 2_f64.sqrt())) < part { low = middle } else { high = middle }
+            }
+            0.5 * (low + high)
+        };
+        for mean_pressure in [1e-2, 1e-1, 5.0] {
+            let pressure = Field::from_fn(grid, |at| mean_pressure + spread * quantile(1.0 - (2.0 * at.x - 1.0).abs()));
+            let gap = Field::zeros(grid);
+            // Of this slope, spread² is the variance of full contact.
+            let summary = summary(grid, mean_pressure, 2.0 * spread, None);
+            let result = ResultFolder { summary, side: 1.0, e_star: 1.0, pressure, gap };
+            let stress = stress(&result).expect("contact");
+            let note = &stress.notes[1];
+            let (_, part) = note.split_once("E*², ").expect("the part of the theory");
+            let part: f64 = part.split(' ').next().expect("a number").parse().expect("a number");
+            // The ends beyond 2.9 widths are missing, and what is there is 0.4 % higher for it; a bin is 7 % of a width.
+            assert!((part - 1.0).abs() < 0.02, "mean {mean_pressure}: {note}");
+            assert!(stress.values[0] > 0.5 * mean_pressure, "bins from {}", stress.values[0]);
+        }
+    }
+
+    #[test]
+    fn limits_have_two_digits_and_those_that_are_not_known_do_not_hold() {
+        let grid = Grid::square(2).expect("a grid");
+        let rows = |tolerance| certificate(&summary(grid, 1.0, 0.1, tolerance)).rows;
+        assert_eq!((rows(Some(2.5e-6))[0].limit.as_str(), rows(Some(2.5e-6))[0].holds), ("2.5e-6", Some(false)));
+        assert_eq!((rows(None)[0].limit.as_str(), rows(None)[0].holds), ("not known", None));
+    }
+
+    #[test]
+    fn a_gap_in_contact_is_none_on_the_map() {
+        let grid = Grid::square(2).expect("a grid");
+        let pressure = Field::new(grid, vec![1.0, 0.0, 0.0, 2.0]).expect("a field");
+        let gap = Field::new(grid, vec![1e-14, 1e-15, 1.0, 1e-2]).expect("a field");
+        let result = |n| {
+            let summary = summary(Grid::square(n).expect("a grid"), 1.0, 0.1, None);
+            ResultFolder { summary, side: 1.0, e_star: 1.0, pressure: pressure.clone(), gap: gap.clone() }
+        };
+        let numbers = |result: &ResultFolder| serde_json::to_value(&maps(result).gap).expect("JSON")["data"].clone();
+        let encoded = |numbers: [u16; 4]| {
+            use base64::Engine as _;
+            let bytes: Vec<u8> = numbers.into_iter().flat_map(u16::to_le_bytes).collect();
+            serde_json::Value::from(base64::engine::general_purpose::STANDARD.encode(bytes))
+        };
+        assert_eq!(numbers(&result(2)), encoded([0, 0, u16::MAX, 0]));
+        assert_eq!(numbers(&result(4)), encoded([0, 0, u16::MAX, 655]), "a mean over elements has pressure and gap");
+    }
+}

@@ -1,0 +1,265 @@
+//! The page of a sweep: area-load and load-penetration curves.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::command::{flags, quoted};
+use super::page::{Command, Page, Text, Tile, made};
+use crate::error::CliError;
+use rc_core::quantity::{Scale, digits, engineering};
+use rc_sweep::{TABLE_FILE, settings_in};
+
+/// The columns of `sweep.csv` that the page uses, in SI.
+#[derive(Clone, Debug, Deserialize)]
+struct Row {
+    #[serde(default)]
+    scene: String,
+    seed: Option<u64>,
+    control_value: f64,
+    control: String,
+    status: String,
+    mean_pressure: f64,
+    penetration: f64,
+    area_fraction: f64,
+    area_fraction_error: f64,
+    mean_gap: f64,
+    contact_stiffness: Option<f64>,
+    wall_seconds: f64,
+}
+
+/// The data of the page that are of this kind only.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Curves {
+    scenes: Vec<SceneCurves>,
+    heads: Vec<&'static str>,
+    rows: Vec<Vec<String>>,
+    note: &'static str,
+}
+
+/// The curves of one scene.
+#[derive(Clone, Debug, Serialize)]
+struct SceneCurves {
+    /// Empty when there is only one.
+    name: String,
+    /// A curve for each seed.
+    seeds: Vec<Vec<Point>>,
+    /// Means over the seeds, under the loads that all of them have.
+    mean: Vec<Point>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct Point {
+    pressure: f64,
+    area: f64,
+    penetration: f64,
+    gap: f64,
+    /// Not finite in full contact.
+    stiffness: Option<f64>,
+}
+
+/// The page of the sweep in `folder`.
+///
+/// # Errors
+/// [`CliError::Input`] when `sweep.csv` is not what a sweep writes, or has no rows.
+pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
+    let rows = read(&folder.join(TABLE_FILE))?;
+    let scenes: Vec<SceneCurves> = groups(&rows, |row| &row.scene).into_iter().map(SceneCurves::of).collect();
+    let surfaces: usize = scenes.iter().map(|scene| scene.seeds.len()).sum();
+    let settings = settings_in(folder);
+    let (status, good) = status(&rows, settings.as_ref());
+    let text = settings.as_ref().and_then(|settings| serde_json::to_string_pretty(settings).ok());
+    let files = text.map(|text| Text { title: "Settings of the sweep", text }).into_iter().collect();
+    Ok(Page {
+        title: format!("Sweep of {}", folder.file_name().unwrap_or(folder.as_os_str()).display()),
+        subtitle: format!("{} rows: {surfaces} surfaces, given {}", rows.len(), rows[0].control),
+        status,
+        good,
+        tiles: tiles(&rows),
+        commands: settings.as_ref().map_or_else(Vec::new, commands),
+        files,
+        made: made(),
+        kind: "sweep",
+        body: table(scenes, &rows),
+    })
+}
+
+fn read(path: &Path) -> Result<Vec<Row>, CliError> {
+    let fail = |cause: csv::Error| CliError::in_file(path, format_args!("not a table of rc sweep: {cause}"));
+    let rows: Vec<Row> =
+        csv::Reader::from_path(path).map_err(fail)?.deserialize().collect::<Result<_, _>>().map_err(fail)?;
+    if rows.is_empty() { Err(CliError::in_file(path, "has no rows")) } else { Ok(rows) }
+}
+
+/// Whether all rows that were planned are there and converged. Those of an interrupted sweep, of other shards, and under loads
+/// that a surface cannot take, are missing.
+fn status(rows: &[Row], settings: Option<&Value>) -> (String, bool) {
+    let surfaces = settings.and_then(|settings| settings["surfaces"].as_array());
+    let loads = |surface: &Value| surface["loads"].as_array().map_or(0, Vec::len);
+    let planned = surfaces.map_or(rows.len(), |surfaces| surfaces.iter().map(loads).sum());
+    let failed = rows.iter().filter(|row| row.status == "not_converged").count();
+    if failed > 0 {
+        (format!("{failed} not converged"), false)
+    } else if rows.len() < planned {
+        (format!("{} of {planned} rows", rows.len()), false)
+    } else {
+        ("all converged".to_owned(), true)
+    }
+}
+
+/// Runs of rows with the same key.
+fn groups<K: PartialEq>(rows: &[Row], key: impl Fn(&Row) -> &K) -> Vec<&[Row]> {
+    rows.chunk_by(|a, b| key(a) == key(b)).collect()
+}
+
+impl SceneCurves {
+    fn of(rows: &[Row]) -> Self {
+        let seeds: Vec<Vec<Point>> =
+            groups(rows, |row| &row.seed).into_iter().map(|rows| rows.iter().map(Point::of).collect()).collect();
+        let mut loads: Vec<f64> = rows.iter().map(|row| row.control_value).collect();
+        loads.sort_by(f64::total_cmp);
+        loads.dedup();
+        let at = |load: f64| -> Vec<Point> {
+            rows.iter().filter(|row| row.control_value.total_cmp(&load).is_eq()).map(Point::of).collect()
+        };
+        // Over some of the seeds it would jump where one of them ends.
+        let of_all = loads.into_iter().map(at).filter(|points| points.len() == seeds.len());
+        let mean = of_all.map(|points| Point::mean(&points)).collect();
+        Self { name: rows.first().map(|row| row.scene.clone()).unwrap_or_default(), seeds, mean }
+    }
+}
+
+impl Point {
+    fn of(row: &Row) -> Self {
+        Self {
+            pressure: row.mean_pressure,
+            area: row.area_fraction,
+            penetration: row.penetration,
+            gap: row.mean_gap,
+            stiffness: row.contact_stiffness,
+        }
+    }
+
+    fn mean(points: &[Self]) -> Self {
+        let mean = |of: &dyn Fn(&Self) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
+        let stiffness = mean(&|point| point.stiffness.unwrap_or(f64::INFINITY));
+        Self {
+            pressure: mean(&|point| point.pressure),
+            area: mean(&|point| point.area),
+            penetration: mean(&|point| point.penetration),
+            gap: mean(&|point| point.gap),
+            stiffness: Some(stiffness).filter(|value| value.is_finite()),
+        }
+    }
+}
+
+fn tiles(rows: &[Row]) -> Vec<Tile> {
+    let range = |of: fn(&Row) -> f64| {
+        rows.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+    };
+    let from_to = |of, unit| {
+        let (low, high) = range(of);
+        let scale = Scale::of(high, unit);
+        format!("{} – {} {}", digits(low / scale.factor, 3), digits(high / scale.factor, 3), scale.unit())
+    };
+    let (low, high) = range(|row| 100.0 * row.area_fraction);
+    let seconds: f64 = rows.iter().map(|row| row.wall_seconds).sum();
+    vec![
+        Tile { name: "rows", value: rows.len().to_string() },
+        Tile { name: "mean pressure", value: from_to(|row| row.mean_pressure, "Pa") },
+        Tile { name: "contact area", value: format!("{} – {} %", digits(low, 3), digits(high, 3)) },
+        Tile { name: "penetration", value: from_to(|row| row.penetration, "m") },
+        Tile { name: "time of all rows", value: format!("{} s", digits(seconds, 3)) },
+    ]
+}
+
+fn table(scenes: Vec<SceneCurves>, rows: &[Row]) -> Curves {
+    let several = scenes.len() > 1;
+    let cells = |row: &Row| {
+        let mut cells = if several { vec![row.scene.clone()] } else { Vec::new() };
+        cells.extend([
+            row.seed.map_or_else(|| "–".to_owned(), |seed| seed.to_string()),
+            engineering(row.mean_pressure, "Pa"),
+            engineering(row.penetration, "m"),
+            format!("{} ± {}", digits(100.0 * row.area_fraction, 4), digits(100.0 * row.area_fraction_error, 1)),
+            engineering(row.mean_gap, "m"),
+            row.contact_stiffness.map_or_else(|| "infinite".to_owned(), |value| engineering(value, "Pa/m")),
+            row.status.replace('_', " "),
+        ]);
+        cells
+    };
+    let mut heads = if several { vec!["scene"] } else { Vec::new() };
+    heads.extend(["seed", "mean pressure", "penetration", "contact area (%)", "mean gap", "stiffness", "status"]);
+    Curves {
+        scenes,
+        heads,
+        rows: rows.iter().map(cells).collect(),
+        note: "Thin lines are single surfaces, thick ones with dots their means under the loads that all of them have. Penetration is counted from \
+               first touch. Zero is on linear axes only.",
+    }
+}
+
+/// The sweep as command lines, one for each scene, from the first line of its journal.
+fn commands(settings: &Value) -> Vec<Command> {
+    let surfaces = settings["surfaces"].as_array().map_or(&[][..], Vec::as_slice);
+    let scenes = surfaces.chunk_by(|a, b| a["scene"] == b["scene"]);
+    let command = |scene: &[Value]| {
+        let list = |values: Vec<String>| values.join(",");
+        let mut surface = scene[0]["surface"].clone();
+        if let Some(keys) = surface.as_object_mut() {
+            keys.remove("seed");
+        }
+        let seeds = scene.iter().filter(|one| !one["surface"]["seed"].is_null());
+        let seeds = list(seeds.map(|one| one["surface"]["seed"].to_string()).collect());
+        let seeds = if seeds.is_empty() { String::new() } else { format!(" --seeds {seeds}") };
+        let loads = list(scene[0]["loads"].as_array().into_iter().flatten().map(Value::to_string).collect());
+        let control = settings["control"].as_str().unwrap_or("pressure");
+        let fields = if settings["fields"] == true { " --fields" } else { "" };
+        let name = scene[0]["scene"].as_str().unwrap_or_default();
+        let contact = flags(&scene[0]["contact"]);
+        let text = format!(
+            "rc sweep{}{contact} --{control}s {loads}{seeds}{fields} --out {}",
+            flags(&surface),
+            quoted(&format!("again{}{name}", if name.is_empty() { "" } else { "-" }))
+        );
+        let note = match surface["heights"].as_str() {
+            Some(map) => format!("In the folder of the height map {map}:"),
+            None => "Without any file, digit by digit:".to_owned(),
+        };
+        Command { note, text }
+    };
+    scenes.map(command).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn means_are_over_seeds_under_equal_loads() {
+        let row = |seed, load: f64, area| Row {
+            scene: String::new(),
+            seed: Some(seed),
+            control_value: load,
+            control: "pressure".to_owned(),
+            status: "converged".to_owned(),
+            mean_pressure: load,
+            penetration: 2.0 * load,
+            area_fraction: area,
+            area_fraction_error: 0.0,
+            mean_gap: 1.0,
+            contact_stiffness: (seed == 1).then_some(3.0),
+            wall_seconds: 0.0,
+        };
+        let rows = [row(1, 1.0, 0.1), row(1, 2.0, 0.2), row(2, 1.0, 0.3), row(2, 2.0, 0.6)];
+        let curves = SceneCurves::of(&rows);
+        assert_eq!(curves.seeds.len(), 2);
+        let areas: Vec<f64> = curves.mean.iter().map(|point| point.area).collect();
+        assert!((areas[0] - 0.2).abs() < 1e-15 && (areas[1] - 0.4).abs() < 1e-15, "{areas:?}");
+        assert_eq!((curves.mean[0].penetration, curves.mean[0].stiffness), (2.0, None));
+        // One seed without its second row: no mean there.
+        let curves = SceneCurves::of(&[row(1, 1.0, 0.1), row(1, 2.0, 0.2), row(2, 1.0, 0.3)]);
+        assert_eq!((curves.seeds[0].len(), curves.seeds[1].len(), curves.mean.len()), (2, 1, 1));
+    }
+}

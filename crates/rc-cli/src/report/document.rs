@@ -1,0 +1,60 @@
+//! The page as one HTML file: its frame with style, script and data put in.
+
+use serde::Serialize;
+
+use super::page::Page;
+
+const FRAME: &str = include_str!("../../assets/report/page.html");
+const STYLE: &str = include_str!("../../assets/report/page.css");
+
+/// The script, in the order in which its parts need each other.
+const SCRIPT: &str = concat!(
+    include_str!("../../assets/report/dom.js"),
+    include_str!("../../assets/report/chart.js"),
+    include_str!("../../assets/report/maps.js"),
+    include_str!("../../assets/report/result.js"),
+    include_str!("../../assets/report/sweep.js"),
+    include_str!("../../assets/report/page.js"),
+);
+
+/// The HTML of `page`.
+pub(super) fn html<B: Serialize>(page: &Page<B>) -> String {
+    let data = serde_json::to_string(page).expect("a record of numbers and text is valid JSON");
+    // In JSON, `<` occurs in text only, where it may be written so; then no text ends the element that holds it.
+    let data = data.replace('<', "\\u003c");
+    fill(FRAME, &[("title", &escaped(&page.title)), ("style", STYLE), ("data", &data), ("script", SCRIPT)])
+}
+
+/// `frame` with each `{{name}}` replaced; what replaces it is not searched again.
+fn fill(frame: &str, texts: &[(&str, &str)]) -> String {
+    let mut parts = frame.split("{{");
+    let mut filled = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (name, rest) = part.split_once("}}").unwrap_or(("", part));
+        let text = texts.iter().find(|(known, _)| *known == name).map_or("", |(_, text)| text);
+        filled.push_str(text);
+        filled.push_str(rest);
+    }
+    filled
+}
+
+/// `text` inside an element.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_place_is_filled_once() {
+        let filled = fill("a {{x}} b {{y}} c", &[("x", "{{y}}"), ("y", "<1>")]);
+        assert_eq!(filled, "a {{y}} b <1> c");
+        assert_eq!(escaped("a<b>&"), "a&lt;b&gt;&amp;");
+        for place in ["{{title}}", "{{style}}", "{{data}}", "{{script}}"] {
+            assert_eq!(FRAME.matches(place).count(), 1, "{place}");
+        }
+        assert!(!SCRIPT.contains("</script") && !STYLE.contains("</style"), "an element would end early");
+    }
+}

@@ -1,0 +1,6 @@
+//! A running solve: its threads, what is seen of it, and what ends it early.
+
+pub(crate) mod progress;
+pub(crate) mod stop;
+pub(crate) mod threads;
+pub(crate) mod watch;

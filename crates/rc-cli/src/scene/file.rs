@@ -1,0 +1,133 @@
+//! Reading a scene file: TOML, with errors that name the line and the nearest known key.
+
+use std::path::Path;
+
+use clap::Args as _;
+use serde::{Deserialize, Serialize};
+use toml::de::DeTable;
+
+use crate::error::CliError;
+use crate::scene::keys::{ContactKeys, EXAMPLE, RunKeys, Scene, SurfaceKeys};
+
+/// Reads a scene file. Relative paths in it start at its folder.
+///
+/// # Errors
+/// [`CliError::Input`] when the file cannot be read, is no TOML, has an unknown key or a value of the wrong type.
+pub fn read(path: &Path) -> Result<Scene, CliError> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|cause| CliError::in_file(path, format_args!("cannot read this scene file: {cause}")))?;
+    let scene = parse(&text).map_err(|message| CliError::in_file(path, message))?;
+    Ok(scene.relative_to(path.parent().unwrap_or(Path::new(""))))
+}
+
+/// The embedded example.
+///
+/// # Panics
+/// Never: a test reads it.
+#[must_use]
+pub fn example() -> Scene {
+    parse(EXAMPLE).expect("the embedded example is a valid scene")
+}
+
+/// Parses a scene.
+///
+/// # Errors
+/// One line, without the name of the file: where, what, and what would be right.
+pub fn parse(text: &str) -> Result<Scene, String> {
+    let table = DeTable::parse(text).map_err(|error| at_line(text, &error))?;
+    let known = known_keys();
+    for key in table.get_ref().keys() {
+        if !known.iter().any(|k| k == key.get_ref()) {
+            let line = line_of(text, key.span().start);
+            return Err(format!("line {line}: {}", unknown_key(key.get_ref(), &known)));
+        }
+    }
+    Ok(Scene {
+        surface: group::<SurfaceKeys>(text)?,
+        contact: group::<ContactKeys>(text)?,
+        run: group::<RunKeys>(text)?,
+    })
+}
+
+/// A group of keys as TOML; keys without a value are left out.
+///
+/// # Panics
+/// Never for checked keys: what TOML cannot hold, a seed above 2^63, is refused before.
+#[must_use]
+pub fn to_toml(group: &impl Serialize) -> String {
+    toml::to_string(group).expect("checked keys are numbers and text that TOML holds")
+}
+
+/// One group of keys; the keys of other groups are passed over. (Three passes instead of serde's `flatten`, which would
+/// lose the line of a wrong value.)
+fn group<T: for<'de> Deserialize<'de>>(text: &str) -> Result<T, String> {
+    toml::from_str(text).map_err(|error| at_line(text, &error))
+}
+
+/// The keys of a scene file: the flags of the command line.
+fn known_keys() -> Vec<String> {
+    let command = Scene::augment_args(clap::Command::new("scene"));
+    command.get_arguments().map(|argument| argument.get_id().to_string()).collect()
+}
+
+fn unknown_key(key: &str, known: &[String]) -> String {
+    let nearest = known.iter().max_by(|a, b| strsim::jaro_winkler(key, a).total_cmp(&strsim::jaro_winkler(key, b)));
+    match nearest {
+        Some(nearest) => format!("unknown key '{key}'; the nearest known key is '{nearest}'"),
+        None => format!("unknown key '{key}'"),
+    }
+}
+
+fn at_line(text: &str, error: &toml::de::Error) -> String {
+    let message = error.message();
+    match error.span() {
+        Some(span) => format!("line {}: {message}", line_of(text, span.start)),
+        None => message.to_owned(),
+    }
+}
+
+fn line_of(text: &str, offset: usize) -> usize {
+    1 + text.bytes().take(offset).filter(|byte| *byte == b'\n').count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::values::{GridSpec, ToleranceSpec};
+    use rc_solver::Tolerance;
+
+    #[test]
+    fn the_example_is_the_scene_of_the_paper() {
+        let scene = example();
+        let e_star = 0.4e9 / (1.0 - 0.45 * 0.45);
+        let pressure = scene.contact.pressure.expect("pressure control");
+        assert!((pressure / e_star - 8.9e-4).abs() < 1e-16, "σ0/E* = {}", pressure / e_star);
+        assert_eq!(scene.surface.waves, Some(64));
+        assert_eq!(scene.surface.grid, Some(GridSpec::square(2048)));
+        assert_eq!(scene.contact.tolerance, Some(ToleranceSpec(Tolerance::Relative(1e-6))));
+    }
+
+    #[test]
+    fn an_unknown_key_is_answered_with_the_nearest_and_its_line() {
+        for (key, nearest) in
+            [("presure", "pressure"), ("e-star", "e_star"), ("Hurst", "hurst"), ("rolloff", "roll_off")]
+        {
+            let message = parse(&format!("waves = 8\n{key} = 1\n")).expect_err("the key is unknown");
+            assert!(message.starts_with("line 2:") && message.contains(&format!("'{nearest}'")), "{message}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_type_names_its_line() {
+        for text in ["seed = 1\ncell = \"a\"\n", "\ngrid = -4", "\ngrid = 1.5", "\nkernel = \"lave\"", "\nquiet = 1"] {
+            let message = parse(text).expect_err("the type is wrong");
+            assert!(message.starts_with("line 2:"), "{message}");
+        }
+    }
+
+    #[test]
+    fn a_syntax_error_names_its_line() {
+        let message = parse("cell = 1\nwaves = = 2\n").expect_err("no TOML");
+        assert!(message.starts_with("line 2:"), "{message}");
+    }
+}

@@ -1,0 +1,99 @@
+//! Height maps from files, in metres and checked for what a solver needs.
+
+use std::path::Path;
+
+use rc_core::{Field, Grid, PeriodicCell};
+use rc_heights::{HeightMap, SAME_LENGTH, Scales};
+
+use crate::error::CliError;
+use rc_core::quantity::engineering;
+
+/// Reads a height map of any format of `rc-heights`, in metres; `NaN` where nothing was measured. Row `iy` of the file is row
+/// `iy` of the field.
+///
+/// # Errors
+/// [`CliError::Input`] when the file cannot be read or is damaged, or when `scales` does not fit its units.
+pub(crate) fn read(path: &Path, scales: Scales) -> Result<HeightMap, CliError> {
+    rc_heights::read(path)?.in_metres(scales).map_err(|cause| CliError::in_file(path, cause))
+}
+
+/// Refuses a field with `NaN` or an infinite value.
+///
+/// # Errors
+/// [`CliError::Input`] with row, column and value.
+pub(crate) fn check_finite(path: &Path, field: &Field) -> Result<(), CliError> {
+    let nx = field.grid().nx();
+    match field.values().iter().position(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(i) => {
+            let (row, column, value) = (i / nx, i % nx, field.values()[i]);
+            let missing = field.values().iter().filter(|value| value.is_nan()).count();
+            let cure = if missing > 0 {
+                format!("; {missing} of {} are missing, which rc surface --fill laplace fills", field.grid().len())
+            } else {
+                String::new()
+            };
+            let place = format_args!("row {row}, column {column} (from 0) is {value}; heights must be finite{cure}");
+            Err(CliError::in_file(path, place))
+        }
+    }
+}
+
+/// Sides of the cell along x and y (m): those of the map where its file says them, else what is `given`. If both are there they must
+/// be the same. The second is `None` for a square.
+///
+/// # Errors
+/// [`CliError::Input`].
+pub(crate) fn sides(
+    path: &Path,
+    of_file: Option<[f64; 2]>,
+    given: [Option<f64>; 2],
+) -> Result<[Option<f64>; 2], CliError> {
+    let Some(of_file) = of_file else { return Ok(given) };
+    let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SAME_LENGTH;
+    let length = |side: f64| engineering(side, "m");
+    for ((given, side), (key, extent)) in given.iter().zip(of_file).zip([("cell", "wide"), ("cell_y", "high")]) {
+        if let Some(given) = given.filter(|given| !same(*given, side)) {
+            let message = format_args!(
+                "the map is {} {extent}, {key} says {}; leave {key} away, or convert the map to .npy, which has no size",
+                length(side),
+                length(given)
+            );
+            return Err(CliError::in_file(path, message));
+        }
+    }
+    let [x, y] = of_file;
+    Ok([Some(given[0].unwrap_or(x)), (!same(x, y)).then(|| given[1].unwrap_or(y))])
+}
+
+/// The heights of a map (m) in λ, on the grid of its points in `cell`.
+///
+/// # Errors
+/// [`CliError::Input`] when the sides of the cell differ too much.
+pub(crate) fn in_cell(path: &Path, map: &Field, cell: PeriodicCell) -> Result<Field, CliError> {
+    let grid = Grid::in_cell(map.grid().nx(), map.grid().ny(), cell.ratio())
+        .map_err(|cause| CliError::in_file(path, format_args!("cell_y: {cause}")))?;
+    let heights = map.values().iter().map(|height| height / cell.side()).collect();
+    Field::new(grid, heights).map_err(|cause| CliError::in_file(path, cause))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sides_are_those_of_the_file_and_must_not_be_contradicted() {
+        let path = Path::new("map.sdf");
+        let none = [None, None];
+        assert_eq!(sides(path, None, [Some(2.0), None]), Ok([Some(2.0), None]));
+        assert_eq!(sides(path, Some([1e-3, 1e-3]), none), Ok([Some(1e-3), None]));
+        assert_eq!(sides(path, Some([1e-3, 1.0005e-3]), [Some(1e-3), None]), Ok([Some(1e-3), None]));
+        assert_eq!(sides(path, Some([1e-3, 2e-3]), none), Ok([Some(1e-3), Some(2e-3)]));
+        assert_eq!(sides(path, Some([1e-3, 2e-3]), [None, Some(2e-3)]), Ok([Some(1e-3), Some(2e-3)]));
+        let contradictions = [([Some(2e-3), None], "cell says 2 mm"), ([None, Some(3e-3)], "cell_y says 3 mm")];
+        for (given, expected) in contradictions {
+            let error = sides(path, Some([1e-3, 1e-3]), given).expect_err(expected).to_string();
+            assert!(error.contains(expected) && error.contains("map.sdf"), "{error}");
+        }
+    }
+}

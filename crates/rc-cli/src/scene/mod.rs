@@ -1,0 +1,11 @@
+//! The scene: its keys, which are flags as well, its file, and the checked problem that it becomes.
+
+pub mod file;
+pub mod keys;
+pub mod resolve;
+pub mod surface;
+pub mod time_limit;
+pub mod values;
+
+pub(crate) mod heights;
+mod names;

@@ -1,0 +1,170 @@
+//! From keys to a checked contact.
+
+use rc_core::{Elasticity, Kernel, PeriodicCell, UnitError, Units};
+use rc_kernel::{Love, Spectral};
+use rc_solver::{Control, Method, SolveParams, Tolerance};
+
+use super::checks::{missing, positive};
+use crate::error::CliError;
+use crate::scene::file;
+use crate::scene::keys::{ContactKeys, KernelName};
+use crate::scene::values::ToleranceSpec;
+
+/// What is pressed against the surface, how hard, and how the problem is solved.
+#[derive(Clone, Debug)]
+pub struct ContactSetup {
+    /// The cell and the half-space.
+    pub units: Units,
+    /// Mean pressure in E*, or penetration in λ.
+    pub control: Control,
+    /// Discretisation.
+    pub kernel: KernelName,
+    /// Method, tolerance and limits, but for the memory there is.
+    pub params: SolveParams,
+    /// The keys as resolved, for `scene.toml`.
+    pub keys: ContactKeys,
+}
+
+impl ContactSetup {
+    /// The kernel itself.
+    #[must_use]
+    pub fn kernel(&self) -> &'static dyn Kernel {
+        kernel(self.kernel)
+    }
+}
+
+/// The kernel of this name.
+#[must_use]
+pub fn kernel(name: KernelName) -> &'static dyn Kernel {
+    match name {
+        KernelName::Love => &Love,
+        KernelName::Spectral => &Spectral,
+    }
+}
+
+/// Checks the keys of half-space, load and method, with the embedded example for defaults; control and method have none.
+///
+/// # Errors
+/// [`CliError::Input`].
+pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, CliError> {
+    let defaults = ContactKeys { pressure: None, penetration: None, method: None, ..file::example().contact };
+    let keys = keys.over(defaults);
+    if keys.area_error.is_some() {
+        return Err(CliError::input(
+            "area_error: only rc solve, on a random surface, chooses its grid; give grid instead",
+        ));
+    }
+    let units = Units::new(cell, elasticity(&keys)?);
+    let control = control(&keys, units)?;
+    let kernel = keys.kernel.unwrap_or(KernelName::Love);
+    check_method(&keys, kernel)?;
+    let params = SolveParams {
+        tolerance: tolerance(keys.tolerance)?,
+        method: keys.method,
+        border_level: keys.border_level.unwrap_or(0),
+        ..SolveParams::certified()
+    };
+    Ok(ContactSetup { units, control, kernel, params, keys })
+}
+
+fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {
+    match (keys.pressure, keys.penetration) {
+        (Some(pressure), None) => Ok(Control::pascals(positive("pressure", "Pa", Some(pressure))?, units)),
+        (None, Some(depth)) => Ok(Control::metres(positive("penetration", "m", Some(depth))?, units)),
+        _ => Err(CliError::input("give exactly one of pressure (Pa) and penetration (m); neither is given")),
+    }
+}
+
+/// Refuses a method that cannot solve with this kernel or border level.
+fn check_method(keys: &ContactKeys, kernel: KernelName) -> Result<(), CliError> {
+    if let (Some(method @ (Method::Adaptive | Method::GaussSeidel)), KernelName::Spectral) = (keys.method, kernel) {
+        return Err(CliError::input(format_args!(
+            "method: '{method}' has the paper's elements, so kernel must be love; uniform has spectral too"
+        )));
+    }
+    match (keys.border_level, keys.method, kernel) {
+        (Some(1..), Some(Method::Uniform | Method::GaussSeidel), _) | (Some(1..), _, KernelName::Spectral) => {
+            Err(CliError::input(
+                "border_level: only the adaptive method, with kernel love, halves elements at the edges of contacts",
+            ))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn elasticity(keys: &ContactKeys) -> Result<Elasticity, CliError> {
+    if let Some(e_star) = keys.e_star {
+        return Elasticity::from_e_star(positive("e_star", "Pa", Some(e_star))?).map_err(CliError::input);
+    }
+    let young = positive("young", "Pa", keys.young)?;
+    let poisson = keys.poisson.ok_or_else(|| missing("poisson"))?;
+    Elasticity::from_young_poisson(young, poisson).map_err(|error| match error {
+        UnitError::Poisson { value } => {
+            CliError::input(format_args!("poisson: must be above -1 and at most 0.5, not {value}"))
+        }
+        other => CliError::input(other),
+    })
+}
+
+fn tolerance(given: Option<ToleranceSpec>) -> Result<Tolerance, CliError> {
+    match given {
+        Some(ToleranceSpec(Tolerance::Relative(value))) if !(value > 0.0 && value < 1.0) => {
+            Err(CliError::input(format_args!("tolerance: must be between 0 and 1, as 1e-6, not {value}")))
+        }
+        Some(ToleranceSpec(tolerance)) => Ok(tolerance),
+        None => Ok(SolveParams::certified().tolerance),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keys(text: &str) -> ContactKeys {
+        file::parse(text).expect("a scene").contact
+    }
+
+    fn resolved(keys: ContactKeys) -> Result<ContactSetup, CliError> {
+        contact(keys, PeriodicCell::new(1.0).expect("a cell"))
+    }
+
+    #[test]
+    fn the_control_is_never_assumed() {
+        let error = resolved(ContactKeys::default()).expect_err("no control").to_string();
+        assert!(error.contains("exactly one"), "{error}");
+    }
+
+    #[test]
+    fn each_bad_value_of_the_contact_is_named_with_its_key() {
+        let cases = [
+            ("young = 0.0", "young"),
+            ("e_star = -1.0", "e_star"),
+            ("poisson = 0.51", "poisson"),
+            ("poisson = -1.0", "poisson"),
+            ("poisson = nan", "poisson"),
+            ("method = \"adaptive\"\nkernel = \"spectral\"", "method"),
+            ("method = \"gauss-seidel\"\nkernel = \"spectral\"", "method"),
+            ("tolerance = 1.0", "tolerance"),
+            ("tolerance = 0.0", "tolerance"),
+        ];
+        for (text, key) in cases {
+            let keys = ContactKeys { pressure: Some(1.0), ..keys(text) };
+            let error = resolved(keys).expect_err(text).to_string();
+            assert!(error.starts_with(&format!("{key}:")), "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn the_tolerance_auto_becomes_a_number_and_stays_auto_in_the_keys() {
+        let setup = resolved(ContactKeys { pressure: Some(1.0), ..keys("tolerance = \"auto\"") }).expect("a contact");
+        let tolerance = setup.params.tolerance.relative(Some(8.0));
+        assert!((tolerance / 3e-5 - 1.0).abs() < 1e-12, "{tolerance}");
+        assert_eq!(setup.keys.tolerance, Some(ToleranceSpec(Tolerance::Auto)));
+    }
+
+    #[test]
+    fn loads_arrive_in_units_of_the_libraries() {
+        let setup = resolved(keys("e_star = 4.0\npressure = 1.0")).expect("a contact");
+        assert_eq!((setup.control, setup.keys.young), (Control::MeanPressure(0.25), None));
+    }
+}

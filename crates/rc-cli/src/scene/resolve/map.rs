@@ -1,0 +1,77 @@
+//! What a height map must be given: the example's size and material are those of another surface.
+
+use crate::error::CliError;
+use crate::scene::keys::{ContactKeys, SurfaceKeys};
+
+/// Refuses a height map without a size: neither the keys nor a file of its format say it.
+///
+/// # Errors
+/// [`CliError::Input`] that names what is missing.
+pub fn check_size(surface: &SurfaceKeys) -> Result<(), CliError> {
+    check(surface, size(surface)?)
+}
+
+/// Refuses a height map without a size or without a material.
+///
+/// # Errors
+/// [`CliError::Input`] that names what is missing.
+pub fn check_size_and_material(surface: &SurfaceKeys, contact: &ContactKeys) -> Result<(), CliError> {
+    check(surface, size(surface)?.into_iter().chain(material(contact)))
+}
+
+fn check(surface: &SurfaceKeys, missing: impl IntoIterator<Item = &'static str>) -> Result<(), CliError> {
+    let missing: Vec<&str> = missing.into_iter().collect();
+    match surface.heights {
+        Some(_) if !missing.is_empty() => Err(CliError::input(format_args!(
+            "heights: a height map needs {} too; the example's values are for generated surfaces only",
+            missing.join(", and ")
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// What is missing of the size. Whether a file of a format with sizes says it is known when it has been read.
+fn size(surface: &SurfaceKeys) -> Result<Option<&'static str>, CliError> {
+    let Some(path) = &surface.heights else { return Ok(None) };
+    let is_known = surface.cell.is_some() || rc_heights::format_of(path)?.has_sides();
+    Ok((!is_known).then_some("cell (m)"))
+}
+
+/// What is missing of the material.
+fn material(contact: &ContactKeys) -> Option<&'static str> {
+    match (contact.e_star, contact.young, contact.poisson) {
+        (Some(_), ..) | (None, Some(_), Some(_)) => None,
+        (None, None, None) => Some("e_star (Pa) or young (Pa) with poisson"),
+        (None, Some(_), None) => Some("poisson"),
+        (None, None, Some(_)) => Some("young (Pa)"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_missing_is_named() {
+        let map = |cell: Option<f64>| SurfaceKeys { heights: Some("map.npy".into()), cell, ..SurfaceKeys::default() };
+        let material = |e_star, young, poisson| ContactKeys { e_star, young, poisson, ..ContactKeys::default() };
+        let none = material(None, None, None);
+        let all = "needs cell (m), and e_star (Pa) or young (Pa) with poisson too";
+        let refused = [
+            (map(None), none.clone(), all),
+            (map(Some(1.0)), none.clone(), "needs e_star (Pa) or young (Pa) with poisson too"),
+            (map(Some(1.0)), material(None, Some(1.0), None), "needs poisson too"),
+            (map(Some(1.0)), material(None, None, Some(0.3)), "needs young (Pa) too"),
+            (map(None), material(Some(1.0), None, None), "needs cell (m) too"),
+        ];
+        for (surface, contact, expected) in refused {
+            let error = check_size_and_material(&surface, &contact).expect_err(expected).to_string();
+            assert!(error.contains(expected), "{error}");
+        }
+        for material in [material(Some(1.0), None, None), material(None, Some(1.0), Some(0.3))] {
+            check_size_and_material(&map(Some(1.0)), &material).expect("all that is needed");
+        }
+        check_size_and_material(&SurfaceKeys::default(), &none).expect("a generated surface");
+        check_size(&map(Some(1.0))).expect("a size");
+    }
+}

@@ -1,0 +1,13 @@
+//! From scene file and flags to a checked problem in the units of the libraries (λ = 1, E* = 1).
+
+mod checks;
+mod contact;
+mod layers;
+mod map;
+mod surface;
+
+pub use checks::checked_grid;
+pub use contact::{ContactSetup, contact, kernel};
+pub use layers::layers;
+pub use map::{check_size, check_size_and_material};
+pub use surface::{surface, surface_in_cell};

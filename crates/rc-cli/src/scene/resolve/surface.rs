@@ -1,0 +1,174 @@
+//! From keys to a checked surface.
+
+use std::path::Path;
+
+use rc_core::{Grid, PeriodicCell};
+use rc_fractal::{Amplitudes, MAX_WAVES, Normalisation, SpectrumParams, Truncation};
+use rc_heights::Scales;
+
+use super::checks::{checked_grid, missing, positive};
+use crate::error::CliError;
+use crate::scene::file;
+use crate::scene::heights;
+use crate::scene::keys::SurfaceKeys;
+use crate::scene::surface::{Source, SurfaceSetup};
+use crate::scene::values::GridSpec;
+
+/// Elements per shortest wave of a random surface, when no grid is given: element side `λ_min/32`.
+const ELEMENTS_PER_WAVE: usize = 32;
+
+/// Checks the keys of the surface, with the embedded example for defaults.
+///
+/// # Errors
+/// [`CliError::Input`].
+pub fn surface(mut keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
+    // Read for its size alone: such files are small against what a solve takes.
+    if let Some(path) = keys.heights.as_deref() {
+        [keys.cell, keys.cell_y] = sides_of_map(path, &keys)?;
+    }
+    surface_in_cell(keys)
+}
+
+/// The same where a height map has no other sides than the keys say. It has the size that these give, or none.
+///
+/// # Errors
+/// [`CliError::Input`].
+pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
+    let is_map = keys.heights.is_some();
+    let example = SurfaceKeys { grid: None, ..file::example().surface };
+    let keys = if is_map { keys } else { keys.over(example) };
+    let side = positive("cell", "m", keys.cell)?;
+    let side_y = keys.cell_y.map_or(Ok(side), |side_y| positive("cell_y", "m", Some(side_y)))?;
+    let cell = PeriodicCell::rectangle(side, side_y).map_err(CliError::input)?;
+    let grid = keys.grid.map(checked_grid).transpose()?;
+    match keys.heights.clone() {
+        Some(path) => {
+            let source = Source::File { path, expected: grid, scales: keys.scales() };
+            Ok(SurfaceSetup { cell, source, keys })
+        }
+        None => random(keys, cell, grid),
+    }
+}
+
+/// A random surface, on a grid that resolves its waves.
+fn random(mut keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Result<SurfaceSetup, CliError> {
+    if keys.scales() != Scales::default() {
+        return Err(CliError::input(
+            "unit and height_scale: are for height maps; give --heights FILE, or leave them away",
+        ));
+    }
+    if keys.cell_y.is_some() {
+        return Err(CliError::input(
+            "cell_y: is for height maps; a random surface has a square cell, so leave it away",
+        ));
+    }
+    let spectrum = spectrum(&keys, cell.side())?;
+    let default = GridSpec::square(spectrum.waves.saturating_mul(ELEMENTS_PER_WAVE));
+    let grid = grid.map_or_else(|| checked_grid(default), Ok)?;
+    let smallest = spectrum.waves.saturating_mul(2).saturating_add(1);
+    if grid.resolved_wavenumber() < spectrum.waves {
+        return Err(CliError::input(format_args!(
+            "grid: {grid} elements are too coarse for waves = {}; at least {smallest} per side are needed, and {} resolve \
+             the shortest wave well",
+            spectrum.waves, default.nx
+        )));
+    }
+    keys.grid = Some(GridSpec { nx: grid.nx(), ny: grid.ny() });
+    Ok(SurfaceSetup { cell, source: Source::Random { spectrum, grid }, keys })
+}
+
+/// Sides of the cell of a height map (m), where its file or the keys say them.
+fn sides_of_map(path: &Path, keys: &SurfaceKeys) -> Result<[Option<f64>; 2], CliError> {
+    let given = [keys.cell, keys.cell_y];
+    if !rc_heights::format_of(path)?.has_sides() {
+        return Ok(given);
+    }
+    heights::sides(path, heights::read(path, keys.scales())?.sides, given)
+}
+
+/// The parameters of a random surface on the unit cell; `side` is λ in m.
+fn spectrum(keys: &SurfaceKeys, side: f64) -> Result<SpectrumParams, CliError> {
+    let waves = keys.waves.ok_or_else(|| missing("waves"))?;
+    if !(1..=MAX_WAVES).contains(&waves) {
+        return Err(CliError::input(format_args!("waves: must be from 1 to {MAX_WAVES}, not {waves}")));
+    }
+    // The spectrum is per wave vector: C0 has the unit m⁴ (Eq. 9 with C(q) = (2π)⁻² ∫⟨h h⟩ e^{-iqx} dx).
+    let normalisation = match (keys.rms, keys.rms_slope, keys.c0) {
+        (Some(rms), None, None) => Normalisation::RmsHeight(positive("rms", "m", Some(rms))? / side),
+        (None, Some(slope), None) => Normalisation::RmsSlope(positive("rms_slope", "no unit", Some(slope))?),
+        (None, None, Some(c0)) => Normalisation::C0(positive("c0", "m^4", Some(c0))? / side.powi(4)),
+        _ => return Err(missing("exactly one of rms, rms_slope and c0")),
+    };
+    let hurst = keys.hurst.ok_or_else(|| missing("hurst"))?;
+    if !(hurst > 0.0 && hurst <= 1.0) {
+        return Err(CliError::input(format_args!("hurst: must be above 0 and at most 1, not {hurst}")));
+    }
+    let roll_off = keys.roll_off.ok_or_else(|| missing("roll_off"))?;
+    if !(roll_off >= 1.0 && roll_off <= waves as f64) {
+        let range = format_args!("roll_off: must be from 1 (none) to waves = {waves}, not {roll_off}");
+        return Err(CliError::input(range));
+    }
+    let seed = keys.seed.ok_or_else(|| missing("seed"))?;
+    if i64::try_from(seed).is_err() {
+        // Larger ones could not be written to the scene file that repeats the result.
+        return Err(CliError::input(format_args!("seed: must be at most {}, not {seed}", i64::MAX)));
+    }
+    Ok(SpectrumParams {
+        hurst,
+        roll_off,
+        normalisation,
+        truncation: keys.truncation.unwrap_or(Truncation::Disc),
+        amplitudes: keys.amplitudes.unwrap_or(Amplitudes::Fixed),
+        ..SpectrumParams::paper(waves, seed)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keys(text: &str) -> SurfaceKeys {
+        file::parse(text).expect("a scene").surface
+    }
+
+    #[test]
+    fn quantities_arrive_in_units_of_the_libraries() {
+        let surface = surface(keys("cell = 2e-2\nrms = 1e-5\nwaves = 8")).expect("a surface");
+        let Source::Random { spectrum, grid } = &surface.source else { panic!("not random: {:?}", surface.source) };
+        assert_eq!(spectrum.normalisation, Normalisation::RmsHeight(1e-5 / 2e-2));
+        assert_eq!((grid.nx(), grid.ny()), (256, 256));
+    }
+
+    #[test]
+    fn each_bad_value_is_named_with_its_key() {
+        let cases = [
+            ("cell = 0", "cell"),
+            ("cell = -1.0", "cell"),
+            ("cell = nan", "cell"),
+            ("rms = -1.0", "rms"),
+            ("rms_slope = 0.0", "rms_slope"),
+            ("c0 = inf", "c0"),
+            ("hurst = 0.0", "hurst"),
+            ("hurst = 1.5", "hurst"),
+            ("waves = 0", "waves"),
+            ("waves = 4000000000", "waves"),
+            ("roll_off = 0.5", "roll_off"),
+            ("roll_off = 65", "roll_off"),
+            ("grid = 0", "grid"),
+            ("grid = 128", "grid"),
+            ("grid = \"256x100\"", "grid"),
+            ("grid = 1048577", "grid"),
+        ];
+        for (text, key) in cases {
+            let error = surface(keys(text)).expect_err(text).to_string();
+            assert!(error.starts_with(&format!("{key}:")), "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn the_smallest_grid_that_resolves_the_waves_is_accepted() {
+        assert!(surface(keys("waves = 8\ngrid = 17")).is_ok());
+        let error = surface(keys("waves = 8\ngrid = 16")).expect_err("too coarse").to_string();
+        assert!(error.contains("at least 17"), "{error}");
+    }
+}

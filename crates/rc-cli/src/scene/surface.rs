@@ -1,0 +1,168 @@
+//! The rough surface of a scene: realised or read, and its heights on a grid only where a method needs them.
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+use rc_core::{Field, Grid, HeightField as _, HeightSource, PeriodicCell};
+use rc_fractal::{Moments, SpectrumParams, Surface, moments_of_grid};
+use rc_heights::{HeightMap, Scales};
+
+use super::heights;
+use super::keys::SurfaceKeys;
+use super::values::GridSpec;
+use crate::error::CliError;
+
+/// A checked surface, before it is realised or read.
+#[derive(Clone, Debug)]
+pub struct SurfaceSetup {
+    /// The cell (m).
+    pub cell: PeriodicCell,
+    /// Where the heights come from.
+    pub source: Source,
+    /// The keys as resolved, for `scene.toml`.
+    pub keys: SurfaceKeys,
+}
+
+/// Where heights come from.
+#[derive(Clone, Debug)]
+pub enum Source {
+    /// A height map.
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The grid that the user says it has.
+        expected: Option<Grid>,
+        /// What the user knows of its units.
+        scales: Scales,
+    },
+    /// A random surface.
+    Random {
+        /// Its parameters, in units of λ.
+        spectrum: SpectrumParams,
+        /// The finest grid.
+        grid: Grid,
+    },
+}
+
+/// A surface, ready to be evaluated.
+#[derive(Clone, Debug)]
+pub struct LoadedSurface {
+    /// What is known of it.
+    pub shape: Shape,
+    /// The finest grid.
+    pub grid: Grid,
+    /// The keys as resolved: the grid is known now, and a height map is called as in a result folder.
+    pub keys: SurfaceKeys,
+}
+
+/// A surface as a sum of waves, or as a map.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// A random surface; it has heights anywhere.
+    Random(Surface),
+    /// A height map.
+    Map {
+        /// Heights in λ.
+        heights: Field,
+        /// Heights as read from the file (m); a result is repeated bit for bit only from these.
+        as_read: Field,
+    },
+}
+
+/// The name of a height map in a result folder.
+pub const HEIGHTS_FILE: &str = "heights.npy";
+
+impl SurfaceSetup {
+    /// Elements of the finest grid; at most, for a height map, by the length of its file.
+    #[must_use]
+    pub fn max_elements(&self) -> f64 {
+        match &self.source {
+            Source::Random { grid, .. } => grid.len() as f64,
+            // Two bytes are the least that a useful map has for a height.
+            Source::File { path, .. } => path.metadata().map_or(0.0, |file| file.len() as f64 / 2.0),
+        }
+    }
+
+    /// Reads the map or realises the random surface, whose heights are not evaluated yet.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] when the file is not a height map, is on another grid than the scene says, or is flat.
+    pub fn load(&self) -> Result<LoadedSurface, CliError> {
+        match &self.source {
+            Source::File { path, expected, scales } => self.of_map(path, heights::read(path, *scales)?, *expected),
+            Source::Random { spectrum, grid } => {
+                let surface = Surface::new(spectrum).map_err(CliError::input)?;
+                Ok(LoadedSurface { shape: Shape::Random(surface), grid: *grid, keys: self.keys.clone() })
+            }
+        }
+    }
+
+    /// A map in metres, read from `path`, as a surface in this cell.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] when points are missing, when it is flat, or of another grid or size than the scene says.
+    pub fn of_map(&self, path: &Path, map: HeightMap, expected: Option<Grid>) -> Result<LoadedSurface, CliError> {
+        heights::sides(path, map.sides, [Some(self.cell.side()), self.keys.cell_y])?;
+        let as_read = map.heights;
+        heights::check_finite(path, &as_read)?;
+        let heights = heights::in_cell(path, &as_read, self.cell)?;
+        let grid = heights.grid();
+        let (nx, ny) = (grid.nx(), grid.ny());
+        if let Some(expected) = expected.filter(|expected| (expected.nx(), expected.ny()) != (nx, ny)) {
+            let message = format_args!("the map has {grid} elements, grid says {expected}; leave grid away");
+            return Err(CliError::in_file(path, message));
+        }
+        if as_read.max() <= as_read.min() {
+            let message = format_args!("all heights are {:e}; a flat surface has no contact problem", as_read.max());
+            return Err(CliError::in_file(path, message));
+        }
+        let spec = GridSpec { nx, ny };
+        // The map in a result folder is an array in metres.
+        let (heights_file, unit, height_scale) = (Some(HEIGHTS_FILE.into()), None, None);
+        let keys = SurfaceKeys { heights: heights_file, unit, height_scale, grid: Some(spec), ..self.keys.clone() };
+        Ok(LoadedSurface { shape: Shape::Map { heights, as_read }, grid, keys })
+    }
+}
+
+impl LoadedSurface {
+    /// Heights on the finest grid, in λ; those of a random surface are evaluated for it, 8 bytes each.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] when the grid is too coarse for the waves.
+    pub fn heights(&self) -> Result<Cow<'_, Field>, CliError> {
+        match &self.shape {
+            Shape::Random(surface) => {
+                let sampled = surface.sample_on(self.grid);
+                sampled.map(Cow::Owned).map_err(|cause| CliError::input(format_args!("grid: {cause}")))
+            }
+            Shape::Map { heights, .. } => Ok(Cow::Borrowed(heights)),
+        }
+    }
+
+    /// The heights of a contact problem on the finest grid; those of a random surface are not evaluated yet.
+    #[must_use]
+    pub fn source(&self) -> HeightSource<'_> {
+        match &self.shape {
+            Shape::Random(surface) => surface.on(self.grid),
+            Shape::Map { heights, .. } => heights.into(),
+        }
+    }
+
+    /// Moments, in λ: exact ones of a random surface, those of its grid for a height map.
+    #[must_use]
+    pub fn moments(&self) -> Moments {
+        match &self.shape {
+            Shape::Random(surface) => surface.moments(),
+            Shape::Map { heights, .. } => moments_of_grid(heights),
+        }
+    }
+
+    /// The heights as read from a file (m).
+    #[must_use]
+    pub fn as_read(&self) -> Option<&Field> {
+        match &self.shape {
+            Shape::Random(_) => None,
+            Shape::Map { as_read, .. } => Some(as_read),
+        }
+    }
+}

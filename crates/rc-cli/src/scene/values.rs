@@ -1,0 +1,163 @@
+//! Values of a scene that are more than a number: a grid, a tolerance.
+
+use std::fmt;
+use std::str::FromStr;
+
+use rc_solver::Tolerance;
+use rc_sweep::number_or_text;
+use serde::de::{self, Deserializer, Visitor};
+use serde::{Deserialize, Serialize, Serializer};
+
+/// Elements per side, as written: `512`, or `512x256` (along x, along y). Checked when the scene is resolved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GridSpec {
+    /// Elements along x.
+    pub nx: usize,
+    /// Elements along y.
+    pub ny: usize,
+}
+
+impl GridSpec {
+    /// `n` elements along both sides.
+    #[must_use]
+    pub fn square(n: usize) -> Self {
+        Self { nx: n, ny: n }
+    }
+}
+
+impl fmt::Display for GridSpec {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.nx == self.ny { write!(f, "{}", self.nx) } else { write!(f, "{}x{}", self.nx, self.ny) }
+    }
+}
+
+impl FromStr for GridSpec {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |text: &str| {
+            let expected = || format!("a grid is a number of elements per side, as 512, or 512x256, not '{text}'");
+            text.trim().parse::<usize>().map_err(|_| expected())
+        };
+        match text.split_once('x') {
+            Some((nx, ny)) => Ok(Self { nx: side(nx)?, ny: side(ny)? }),
+            None => Ok(Self::square(side(text)?)),
+        }
+    }
+}
+
+impl Serialize for GridSpec {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if self.nx == self.ny { serializer.serialize_u64(self.nx as u64) } else { serializer.collect_str(self) }
+    }
+}
+
+impl<'de> Deserialize<'de> for GridSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct GridVisitor;
+        impl Visitor<'_> for GridVisitor {
+            type Value = GridSpec;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number of elements per side, as 512, or \"512x256\"")
+            }
+
+            fn visit_i64<E: de::Error>(self, value: i64) -> Result<GridSpec, E> {
+                let n = usize::try_from(value).map_err(|_| E::invalid_value(de::Unexpected::Signed(value), &self))?;
+                Ok(GridSpec::square(n))
+            }
+
+            fn visit_str<E: de::Error>(self, value: &str) -> Result<GridSpec, E> {
+                value.parse().map_err(E::custom)
+            }
+        }
+        deserializer.deserialize_any(GridVisitor)
+    }
+}
+
+/// The tolerance, as written: a number, relative to the peak-to-valley height, or `auto`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToleranceSpec(pub Tolerance);
+
+impl FromStr for ToleranceSpec {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "auto" => Ok(Self(Tolerance::Auto)),
+            _ => text
+                .parse()
+                .map(|value| Self(Tolerance::Relative(value)))
+                .map_err(|_| format!("a tolerance is a number, as 1e-6, or auto, not '{text}'")),
+        }
+    }
+}
+
+impl Serialize for ToleranceSpec {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.0 {
+            Tolerance::Relative(value) => serializer.serialize_f64(value),
+            Tolerance::Auto => serializer.serialize_str("auto"),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for ToleranceSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        number_or_text(deserializer, "a number, as 1e-6, or \"auto\"")
+    }
+}
+
+/// A part of something, as written: `0.5%` or `0.005`; above 0 and below 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fraction(pub f64);
+
+impl FromStr for Fraction {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
+        let value = number.trim().parse().map_or(f64::NAN, |value: f64| value * unit);
+        let expected = || format!("a part is a number above 0 and below 1, as 0.005 or 0.5%, not '{text}'");
+        (value > 0.0 && value < 1.0).then_some(Self(value)).ok_or_else(expected)
+    }
+}
+
+impl Serialize for Fraction {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_f64(self.0)
+    }
+}
+
+impl<'de> Deserialize<'de> for Fraction {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        number_or_text(deserializer, "a number above 0 and below 1, as 0.005, or \"0.5%\"")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fraction_is_a_number_or_a_percentage() {
+        for (text, value) in [("0.005", 0.005), ("0.5%", 0.005), ("12 %", 0.12)] {
+            let Fraction(read) = text.parse().expect("a fraction");
+            assert!((read / value - 1.0).abs() < 1e-15, "{text} is {read}");
+        }
+        for text in ["", "%", "0", "1", "100%", "-1%", "nan", "inf%", "x"] {
+            assert!(text.parse::<Fraction>().is_err(), "'{text}' was read as a fraction");
+        }
+    }
+
+    #[test]
+    fn a_grid_reads_back_as_it_is_written() {
+        for text in ["512", "512x256"] {
+            let grid: GridSpec = text.parse().expect("a grid");
+            assert_eq!(grid.to_string(), text);
+        }
+        for text in ["", "x", "5.5", "-4", "4x", "4x4x4"] {
+            assert!(text.parse::<GridSpec>().is_err(), "'{text}' was read as a grid");
+        }
+    }
+}

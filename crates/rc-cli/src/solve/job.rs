@@ -1,0 +1,146 @@
+//! One run of `rc solve`, from the resolved scene to its files.
+
+use std::time::Instant;
+
+use rc_sweep::memory::Budget;
+use rc_sweep::{Summary, files};
+
+use super::solved::{Problem, Solved};
+use crate::error::CliError;
+use crate::run::progress::Progress;
+use crate::run::stop::{Reason, Stop};
+use crate::run::watch::Watch;
+use crate::scene::keys::{ContactKeys, RunKeys, Scene};
+use crate::scene::resolve::{self, ContactSetup};
+use crate::scene::surface::SurfaceSetup;
+use crate::scene::values::{Fraction, ToleranceSpec};
+use crate::{terminal, text};
+
+/// A resolved scene and how it is run.
+#[derive(Clone, Debug)]
+pub(super) struct Job {
+    pub(super) surface: SurfaceSetup,
+    pub(super) contact: ContactSetup,
+    pub(super) run: RunKeys,
+    /// The relative error of the contact area by which the grid is chosen.
+    area_error: Option<Fraction>,
+    /// Whether the solve is drawn while it runs.
+    watch: bool,
+    /// The moment from which `wall_seconds` counts.
+    started: Instant,
+}
+
+impl Job {
+    /// Checks `scene`. With an error of the area that is wanted, the tolerance is `auto` unless it is given.
+    ///
+    /// # Errors
+    /// [`CliError::Input`].
+    pub(super) fn new(scene: Scene, watch: bool) -> Result<Self, CliError> {
+        let Scene { surface, contact, run } = scene;
+        let started = Instant::now();
+        let area_error = contact.area_error;
+        resolve::check_size_and_material(&surface, &contact)?;
+        let contact = match area_error {
+            None => contact,
+            Some(_) if surface.heights.is_some() => {
+                return Err(CliError::input(
+                    "area_error: a height map has its own grid, which cannot be chosen; leave it away",
+                ));
+            }
+            Some(_) => {
+                let tolerance = contact.tolerance.or(Some(ToleranceSpec(rc_solver::Tolerance::Auto)));
+                ContactKeys { area_error: None, tolerance, ..contact }
+            }
+        };
+        let surface = resolve::surface(surface)?;
+        let contact = resolve::contact(contact, surface.cell)?;
+        Ok(Self { surface, contact, run, area_error, watch, started })
+    }
+
+    /// Memory that there is.
+    pub(super) fn budget(&self) -> Budget {
+        Budget::new(self.run.memory_limit)
+    }
+
+    /// Solves, writes and prints; `threads` is what the summary says of them.
+    ///
+    /// # Errors
+    /// [`CliError`] of every kind.
+    pub(super) fn execute(&self, threads: usize) -> Result<(), CliError> {
+        if let Some(folder) = &self.run.out {
+            files::check_folder(folder)?;
+        }
+        let progress = self.progress();
+        progress.say("heights");
+        let surface = self.surface.load()?;
+        let problem = Problem { surface: &surface, contact: &self.contact, budget: self.budget() };
+        let solved = match self.area_error {
+            None => problem.solve(self.started, &progress)?,
+            Some(wanted) => problem.solve_to_area_error(wanted, self.started, &progress)?,
+        };
+        self.finish(&solved, threads, progress)
+    }
+
+    /// What tells of the solve, draws it, and ends it early.
+    fn progress(&self) -> Progress {
+        let folder = self.run.out.as_deref().filter(|_| self.watch);
+        let units = self.contact.units;
+        let watch = folder.map(|folder| Watch::new(folder, units.elasticity().e_star(), units.cell().side()));
+        Progress::new(self.run.quiet).until(Stop::at(self.started, self.run.time_limit)).watched_by(watch)
+    }
+
+    /// Writes and prints.
+    fn finish(&self, solved: &Solved<'_>, threads: usize, progress: Progress) -> Result<(), CliError> {
+        let stopped = progress.stopped();
+        let summary = solved.summary(threads);
+        if let Some(folder) = &self.run.out {
+            solved.write(folder, &summary)?;
+        }
+        // The bar goes before anything is printed, the picture of --watch not before the result is there.
+        drop(progress);
+        self.print(&summary)?;
+        let Some(message) = solved.failure() else { return Ok(()) };
+        let written = if self.run.out.is_some() { "; the results are written and marked not_converged" } else { "" };
+        Err(match stopped {
+            Some(Reason::Interrupted) => CliError::Interrupted(format!("interrupted: {message}{written}")),
+            Some(Reason::TimeLimit(limit)) => {
+                CliError::NotConverged(format!("time_limit: {limit} were not enough: {message}{written}"))
+            }
+            None => CliError::NotConverged(format!("{message}{written}")),
+        })
+    }
+
+    fn print(&self, summary: &Summary) -> Result<(), CliError> {
+        match (self.run.json, self.run.quiet) {
+            (true, _) => terminal::print(&summary.to_json()),
+            (false, true) => Ok(()),
+            (false, false) => {
+                let units = self.contact.units;
+                let text = text::solved(summary, units.cell().sides(), units.elasticity().e_star());
+                terminal::print(&(text + &text::written(self.run.out.as_deref())))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::file;
+
+    #[test]
+    fn what_did_not_converge_is_written_and_marked() {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        let scene = file::parse("waves = 8\ngrid = 64\npressure = 1e5").expect("a scene");
+        let run = RunKeys { out: Some(dir.path().join("r")), quiet: true, ..RunKeys::default() };
+        let mut job = Job::new(Scene { run, ..scene }, false).expect("a job");
+        job.contact.params.max_iterations = 1;
+        let error = job.execute(1).expect_err("one iteration is too few");
+        assert_eq!(error.exit_code(), 3, "{error}");
+        assert!(error.to_string().contains("complementarity error"), "no residuals: {error}");
+        let text = std::fs::read_to_string(dir.path().join("r/summary.json")).expect("a summary");
+        let summary: Summary = serde_json::from_str(&text).expect("valid JSON");
+        assert_eq!(summary.status, "not_converged");
+        assert!(dir.path().join("r/pressure.npy").is_file(), "the best pressure is written");
+    }
+}

@@ -1,0 +1,89 @@
+//! What the solver says, in the user's units.
+
+use rc_core::quantity::digits;
+use rc_core::{Grid, Units};
+use rc_solver::{AdaptiveError, Certificate, IterationError, SolveError};
+use rc_sweep::memory::Budget;
+
+use crate::error::CliError;
+use crate::scene::resolve::ContactSetup;
+use crate::scene::surface::LoadedSurface;
+
+/// The solver's refusal of a contact on a surface, with this much memory.
+pub(super) fn in_si(error: &SolveError, surface: &LoadedSurface, contact: &ContactSetup, budget: Budget) -> CliError {
+    match error {
+        SolveError::Problem(error) => of_problem(error, contact.units),
+        SolveError::Adaptive(AdaptiveError::OperatorError { .. }) => CliError::input(format_args!(
+            "tolerance: {:e} is out of what the adaptive method can certify; give a larger one, or --method uniform",
+            contact.params.tolerance.relative(surface.source().elements_per_wave())
+        )),
+        SolveError::Adaptive(error) => of_adaptive(error, surface.grid, budget),
+        SolveError::GaussSeidel(error) => CliError::input(format_args!("method gauss-seidel: {error}")),
+        SolveError::Memory { method, grid, .. } => match budget.check_grid(&format!("the {method} method"), *grid) {
+            Err(refused) => refused.into(),
+            Ok(()) => CliError::input(format_args!("memory_limit: {error}")),
+        },
+        SolveError::AreaError { wanted, reached, side } => CliError::input(format_args!(
+            "area_error: {} % cannot be reached; with {side} elements per side the error is {} %",
+            digits(100.0 * wanted, 2),
+            digits(100.0 * reached, 2)
+        )),
+        SolveError::NoWaves => CliError::input(format_args!("area_error: {error}")),
+        other => CliError::input(other),
+    }
+}
+
+fn of_problem(error: &IterationError, units: Units) -> CliError {
+    match error {
+        IterationError::Penetration { value, full_contact } => CliError::input(format_args!(
+            "penetration: must be above 0 and below that of full contact, {:.6e} m, not {:.6e} m; beyond it the penetration \
+             no longer determines the pressure, so give --pressure",
+            units.metres(*full_contact),
+            units.metres(*value)
+        )),
+        IterationError::HeightRange { value, smallest, greatest } => CliError::input(format_args!(
+            "heights: their range must be 0 or from {:e} to {:e} m, not {:e} m",
+            units.metres(*smallest),
+            units.metres(*greatest),
+            units.metres(*value)
+        )),
+        IterationError::MeanPressure { value } => {
+            CliError::input(format_args!("pressure: must be positive and finite (Pa), not {}", units.pascals(*value)))
+        }
+        IterationError::Tolerance { value, smallest } => {
+            CliError::input(format_args!("tolerance: must be between {smallest:e} and 1, not {value:e}"))
+        }
+        other => CliError::input(other),
+    }
+}
+
+fn of_adaptive(error: &AdaptiveError, grid: Grid, budget: Budget) -> CliError {
+    match error {
+        AdaptiveError::Grid { .. } | AdaptiveError::Base { .. } => {
+            CliError::input(format_args!("grid: {error}; --method uniform takes any grid"))
+        }
+        AdaptiveError::RectangularCell => CliError::input(format_args!(
+            "cell_y: {error}; rc surface --repeat square makes one of copies, --method uniform takes any"
+        )),
+        AdaptiveError::Memory { needed, area_percent, .. } => {
+            let part = match area_percent {
+                Some(percent) => format!(", at an estimated contact area of {} %,", digits(*percent, 2)),
+                None => " for its base grid alone".into(),
+            };
+            let what = format!("the adaptive method on {grid} elements{part}");
+            match budget.check(&what, 1e6 * *needed as f64, |_| String::new()) {
+                Err(refused) => refused.into(),
+                Ok(()) => CliError::input(format_args!("memory_limit: {error}")),
+            }
+        }
+        AdaptiveError::BorderLevel { .. } | AdaptiveError::BorderOfMap => {
+            CliError::input(format_args!("border_level: {error}"))
+        }
+        other => CliError::input(format_args!("method: {other}")),
+    }
+}
+
+/// What is said of a solution that did not reach the tolerance.
+pub(super) fn not_converged(grid: Grid, iterations: usize, certificate: &Certificate, tolerance: f64) -> String {
+    format!("not converged to {tolerance:e} on {grid} elements after {iterations} iterations: {certificate}")
+}

@@ -1,0 +1,33 @@
+//! Arguments of `rc surface`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::treatment::TreatmentKeys;
+use crate::scene::keys::{RunKeys, SurfaceKeys};
+
+/// Arguments of `rc surface`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = SURFACE_HELP)]
+pub(crate) struct SurfaceArgs {
+    /// Scene file; its keys of the contact are passed over
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene_file: Option<PathBuf>,
+    /// What is given here holds against the scene file.
+    #[command(flatten)]
+    pub(crate) surface: SurfaceKeys,
+    /// Treatment of a height map.
+    #[command(flatten)]
+    pub(crate) treatment: TreatmentKeys,
+    /// Threads and output.
+    #[command(flatten)]
+    pub(crate) run: RunKeys,
+}
+
+const SURFACE_HELP: &str = "\
+--out DIR receives heights.npy (m), scene.toml, surface.png and surface.json; --out FILE.npy or --out FILE.csv the heights \
+alone; without --out nothing is written. Heights are written in m.
+
+A measured map mostly needs --crop square --fill laplace --level plane --periodic mirror. What each treatment changes is printed \
+and goes into surface.json.";

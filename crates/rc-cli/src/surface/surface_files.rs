@@ -1,0 +1,59 @@
+//! Files of a surface.
+
+use std::path::Path;
+
+use rc_core::Field;
+use rc_heights::{npy, text};
+use rc_plot::{Map, MapPicture, Palette, Shade, save_png};
+use rc_sweep::files::{self, FileError, Staged};
+use rc_sweep::to_json;
+
+use crate::inspect::record::SurfaceRecord;
+use crate::scene::file;
+use crate::scene::surface::{HEIGHTS_FILE, LoadedSurface};
+
+/// Whether the heights alone are to go into a file of this name.
+pub(super) fn is_map(target: &Path) -> bool {
+    target.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy") || e.eq_ignore_ascii_case("csv"))
+}
+
+/// Heights and the factor that makes them metres: as read, where they come from a file.
+fn in_metres<'a>(surface: &'a LoadedSurface, heights: &'a Field, side: f64) -> (&'a Field, f64) {
+    surface.as_read().map_or((heights, side), |field| (field, 1.0))
+}
+
+/// Writes the heights alone.
+///
+/// # Errors
+/// [`FileError::Write`].
+pub(super) fn write_map(target: &Path, surface: &LoadedSurface, heights: &Field, side: f64) -> Result<(), FileError> {
+    let (field, factor) = in_metres(surface, heights, side);
+    let csv = target.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+    let write = if csv { text::write } else { npy::write };
+    files::write_file(target, |path| write(path, field, factor))
+}
+
+/// Writes the folder of a surface, from which it can be solved.
+///
+/// # Errors
+/// [`FileError::Write`].
+pub(super) fn write_folder(
+    folder: &Path,
+    surface: &LoadedSurface,
+    heights: &Field,
+    record: &SurfaceRecord,
+    side: f64,
+) -> Result<(), FileError> {
+    let (field, factor) = in_metres(surface, heights, side);
+    let scene =
+        format!("# The surface; `rc solve scene.toml --pressure ...` presses it.\n\n{}", file::to_toml(&surface.keys));
+    let range = (heights.min(), heights.max());
+    let shade = Shade::Values { range, palette: Palette::Viridis, factor: side, unit: "m" };
+    let picture = MapPicture(Map { title: "Height", field: heights, shade, side });
+    let mut staged = Staged::new(folder)?;
+    staged.add(HEIGHTS_FILE, |path| npy::write(path, field, factor))?;
+    staged.add("surface.png", |path| save_png(&picture, path))?;
+    staged.add_text("scene.toml", &scene)?;
+    staged.add_text("surface.json", &to_json(record))?;
+    staged.commit()
+}

@@ -1,0 +1,82 @@
+//! What goes wrong with a sweep, in the words of the command line.
+
+use std::path::Path;
+
+use rc_sweep::{Rows, RunError, SweepError, TABLE_FILE};
+
+use crate::error::CliError;
+use crate::scene::time_limit::TimeLimit;
+
+impl From<SweepError> for CliError {
+    fn from(error: SweepError) -> Self {
+        match error {
+            SweepError::File(error) => error.into(),
+            SweepError::Append { path, cause, kept } => Self::write(&path, not_kept(&cause, kept)),
+            other => refused(&other),
+        }
+    }
+}
+
+/// Why a row could not be kept, and that the rows before are.
+fn not_kept(cause: &str, kept: usize) -> String {
+    match kept {
+        0 => cause.to_owned(),
+        1 => format!("{cause}; the row before is kept, and --resume goes on with it"),
+        _ => format!("{cause}; the {kept} rows before are kept, and --resume goes on with them"),
+    }
+}
+
+/// Bad input: the error itself, and what would be right.
+fn refused(error: &SweepError) -> CliError {
+    let remedy = match error {
+        SweepError::AnotherProcess { .. } => "; wait for it, or give another --out",
+        SweepError::HoldsSweep { .. } => "; --resume goes on with it, or give another --out",
+        SweepError::NothingToResume { .. } => "; give the folder of a sweep",
+        SweepError::InTheWay { .. } | SweepError::OtherShard { .. } => "; give another --out",
+        SweepError::OtherSettings { .. } => "; give its settings, or another --out",
+        SweepError::DamagedLine { .. } => "; remove it",
+        SweepError::NoShards => "; give those of all shards",
+        SweepError::MissingRows { .. } => "; finish it with --resume",
+        SweepError::MissingShard { .. } => "; give the folders of all shards",
+        SweepError::MissingFields { .. } => "; --resume in the folder of the shard makes them again",
+        SweepError::EmptyShard { shard, rows } => {
+            return CliError::input(format_args!(
+                "shard: {shard} of a sweep of {rows} rows is empty; use at most {rows} shards"
+            ));
+        }
+        SweepError::Threads { cause, .. } => return CliError::input(format_args!("threads: {cause}")),
+        _ => "",
+    };
+    CliError::input(format_args!("{error}{remedy}"))
+}
+
+/// Why a sweep ended before its last row.
+pub(super) fn of_run(error: RunError<CliError>) -> CliError {
+    match error {
+        RunError::Refused { error: CliError::Input(message), missing, kept } if kept > 0 => CliError::input(
+            format_args!("{message}; {missing} rows cannot be solved, the other {kept} are in {TABLE_FILE}"),
+        ),
+        RunError::Refused { error, .. } | RunError::Failed(error) => error,
+        RunError::Sweep(error) => error.into(),
+        _ => CliError::input("this sweep cannot be solved"),
+    }
+}
+
+/// That the time was not enough for all rows.
+pub(super) fn out_of_time(limit: TimeLimit, missing: usize, n_rows: usize) -> CliError {
+    CliError::NotConverged(format!(
+        "time_limit: after {limit} {missing} of {n_rows} rows are not solved; --resume goes on"
+    ))
+}
+
+/// An error when a row did not converge.
+pub(super) fn check_converged(rows: &Rows, table: &Path) -> Result<(), CliError> {
+    match rc_sweep::n_not_converged(rows) {
+        0 => Ok(()),
+        n => Err(CliError::NotConverged(format!(
+            "{n} of {} rows did not converge; they are marked not_converged in {}",
+            rows.len(),
+            table.display()
+        ))),
+    }
+}

@@ -1,0 +1,106 @@
+//! Results for people, as aligned lines.
+
+use std::path::Path;
+
+use rc_core::quantity::{digits, engineering};
+use rc_sweep::Summary;
+
+/// A few aligned lines about a solved problem; `side` is λ in m, `e_star` E* in Pa.
+#[must_use]
+pub(crate) fn solved(summary: &Summary, sides: [f64; 2], e_star: f64) -> String {
+    headline(summary) + &aligned(&solved_lines(summary, sides, e_star))
+}
+
+/// The stiffness of the contact.
+pub(crate) fn stiffness(s: &Summary) -> String {
+    s.contact_stiffness.map_or_else(|| "infinite".into(), |value| engineering(value, "Pa/m"))
+}
+
+/// The lines of [`solved`]: names and values.
+pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'static str, String)> {
+    let [nx, ny] = s.grid;
+    let pascals = |value| engineering(value, "Pa");
+    let metres = |value| engineering(value, "m");
+    let method = s.method_reason.as_ref().unwrap_or(&s.method).clone();
+    let cell = format!("{} with {nx} x {ny} elements, E* = {}", cell(sides), pascals(e_star));
+    let area = with_error(100.0 * s.area_fraction, 100.0 * s.area_fraction_error);
+    let counted = digits(100.0 * s.area_fraction_cells, 4);
+    let mean_pressure = format!("{} ({} E*)", pascals(s.mean_pressure), digits(s.mean_pressure / e_star, 4));
+    let penetration = format!("{} of {} at full contact", metres(s.penetration), metres(s.penetration_full_contact));
+    let mut lines = vec![
+        ("method", method),
+        ("cell", cell),
+        ("surface", surface_line(s)),
+        ("contact area", format!("({area}) % of the nominal area, {counted} % by counting")),
+        ("mean pressure", mean_pressure),
+        ("rms, max pressure", format!("{}, {}", pascals(s.rms_pressure), pascals(s.max_pressure))),
+        ("penetration", penetration),
+        ("mean gap", metres(s.mean_gap)),
+        ("stiffness", stiffness(s)),
+        ("elastic energy", engineering(s.elastic_energy, "J")),
+        ("certificate", certificate_line(s)),
+    ];
+    if let (Some(evaluated), Some(proven)) = (s.cells_evaluated, s.cells_proven) {
+        lines.push(("cells", format!("{evaluated} evaluated, {proven} proven out of contact")));
+    }
+    lines
+}
+
+fn surface_line(s: &Summary) -> String {
+    let (rms, max) = (engineering(s.rms_height, "m"), engineering(s.h_max, "m"));
+    format!("rms height {rms}, rms slope {}, highest point {max}", digits(s.rms_slope, 4))
+}
+
+fn certificate_line(s: &Summary) -> String {
+    format!(
+        "complementarity {:.1e}, penetration {:.1e}, load {:.1e}",
+        s.complementarity_error, s.penetration_error, s.load_error
+    )
+}
+
+fn levels(n: usize) -> &'static str {
+    if n == 1 { "level" } else { "levels" }
+}
+
+/// `7.183 ± 0.008`: both with the last digit that the error leaves certain.
+pub(crate) fn with_error(value: f64, error: f64) -> String {
+    if error > 0.0 && error.is_finite() {
+        let decimals = (-error.log10().floor()).clamp(0.0, 12.0) as usize;
+        format!("{value:.decimals$} ± {error:.decimals$}")
+    } else {
+        digits(value, 6)
+    }
+}
+
+/// Lines of a name and a value, aligned.
+pub(crate) fn aligned(lines: &[(&str, String)]) -> String {
+    lines.iter().fold(String::new(), |text, (name, value)| text + &format!("  {name:<19}{value}\n"))
+}
+
+/// Where results went, if anywhere.
+#[must_use]
+pub(crate) fn written(target: Option<&Path>) -> String {
+    target.map_or_else(String::new, |target| format!("\nwritten to {}\n", target.display()))
+}
+
+fn headline(s: &Summary) -> String {
+    let memory = s.peak_memory_bytes.map_or_else(String::new, |bytes| format!(", {} MB", bytes / 1_000_000));
+    let how = match s.status.as_str() {
+        "full_contact" if s.iterations == 0 => "full contact, solved exactly".to_owned(),
+        "full_contact" => format!("full contact, {}", converged(s)),
+        "not_converged" => format!("NOT CONVERGED after {} fine iterations", s.iterations),
+        _ => converged(s),
+    };
+    format!("{how}: {} s, {} threads{memory}\n", digits(s.wall_seconds, 3), s.threads)
+}
+
+fn converged(s: &Summary) -> String {
+    format!("converged in {} fine iterations, {} nested {}", s.iterations, s.levels, levels(s.levels))
+}
+
+/// The size of a cell: one side of a square, both of a rectangle (m).
+#[must_use]
+pub(crate) fn cell([x, y]: [f64; 2]) -> String {
+    let side = engineering(x, "m");
+    if (x - y).abs() <= 1e-12 * x { side } else { format!("{side} by {}", engineering(y, "m")) }
+}

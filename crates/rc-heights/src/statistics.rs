@@ -1,0 +1,68 @@
+//! Statistics of a map without missing points.
+
+use rc_core::{Field, Histogram};
+
+use crate::{AreaParameters, BorderStep};
+
+/// Bins of the distribution of heights.
+const BINS: usize = 40;
+
+/// A mean of less than this part of the rms height is that of a surface of mean zero, but for rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// What a height map is like. All lengths are in the unit of its sides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeightStatistics {
+    /// Mean height; 0 where it is no more than rounding.
+    pub mean: f64,
+    /// Minimum height.
+    pub min: f64,
+    /// Maximum height.
+    pub max: f64,
+    /// Probability density of heights about the mean.
+    pub distribution: Histogram,
+    /// Parameters of ISO 25178-2, from differences of neighbours; skewness and kurtosis are among them.
+    pub parameters: AreaParameters,
+    /// Whether opposite borders meet.
+    pub border: BorderStep,
+}
+
+impl HeightStatistics {
+    /// Statistics of `heights`, in units of the side of the cell along x, which is `side` long.
+    #[must_use]
+    pub fn of(heights: &Field, side: f64) -> Self {
+        let parameters = AreaParameters::of(heights, [1.0, heights.grid().cell_ratio()]);
+        let mean = Some(parameters.mean).filter(|mean| mean.abs() > ROUNDING * parameters.sq).unwrap_or(0.0);
+        let (min, max) = (heights.min(), heights.max());
+        let about_mean = heights.values().iter().map(|height| (height - mean) * side);
+        let distribution = Histogram::of(about_mean, (min - mean) * side, (max - mean) * side, BINS);
+        Self {
+            mean: mean * side,
+            min: min * side,
+            max: max * side,
+            distribution,
+            parameters: parameters.scaled(side),
+            border: BorderStep::of(heights),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use rc_core::Grid;
+
+    use super::*;
+
+    #[test]
+    fn a_wave_has_the_statistics_of_a_wave() {
+        let (amplitude, waves, side) = (1e-3, 4.0, 2.0);
+        let field = Field::from_fn(Grid::square(64).expect("a grid"), |at| amplitude * (TAU * waves * at.x).cos());
+        let statistics = HeightStatistics::of(&field, side);
+        assert!((statistics.parameters.sku / 1.5 - 1.0).abs() < 1e-9, "kurtosis {}", statistics.parameters.sku);
+        assert!(statistics.parameters.ssk.abs() < 1e-12, "skewness {}", statistics.parameters.ssk);
+        assert!((statistics.distribution.high / (amplitude * side) - 1.0).abs() < 1e-2, "{statistics:?}");
+        assert!(statistics.border.is_periodic() && statistics.mean.abs() < 1e-18, "{statistics:?}");
+    }
+}
