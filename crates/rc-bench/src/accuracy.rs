@@ -10,7 +10,7 @@ use rc_core::{EdgeBias, Kernel, Silent};
 use rc_figures::{Figure, Preset, Table};
 use rc_kernel::{Love, Spectral};
 use rc_plot::{Area, LinePlot, LineStyle, Picture, PictureError, Series, draw_lines};
-use rc_solver::{Control, IterationParams, Observables, StressDistribution, solve_uniform};
+use rc_solver::{ContactProblem, Control, Method, Observables, SolveParams, StressDistribution};
 
 use self::scenes::{Scene, Set};
 
@@ -182,9 +182,10 @@ fn cases_of(scene: Scene, params: &Params) -> Result<Vec<Case>> {
 fn solve(scene: Scene, kernel: &dyn Kernel, side: usize) -> Result<(Observables, StressDistribution)> {
     let heights = scene.heights(side)?;
     let control = Control::MeanPressure(scene.mean_pressure);
-    let solution = solve_uniform(&heights, kernel, control, &IterationParams::certified(), &Silent)?;
+    let params = SolveParams::default().by(Method::Uniform);
+    let solution = ContactProblem::new(&heights, control).with_kernel(kernel).solve(&params, &Silent)?;
     let edges: Vec<f64> = (0..=N_BINS).map(|bin| bin as f64 * BIN_OVER_RMS_SLOPE * scenes::RMS_SLOPE).collect();
-    Ok((Observables::of(&solution, kernel), StressDistribution::of(&solution.pressure, &edges)))
+    Ok((solution.observables().clone(), StressDistribution::of(solution.pressure(), &edges)))
 }
 
 /// Root mean square.

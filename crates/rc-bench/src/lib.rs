@@ -5,7 +5,6 @@ pub mod stress;
 
 mod accuracy;
 mod kernel_error;
-mod tolerance;
 
 pub use accuracy::Accuracy;
 pub use kernel_error::KernelErrors;

@@ -8,13 +8,12 @@ use std::f64::consts::TAU;
 use anyhow::Result;
 use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, PathElement, Polygon, RGBColor};
 use plotters::style::{BLACK, Color};
-use rc_core::{Field, Grid, HeightSource, Silent};
+use rc_core::{Field, Grid, HeightField as _};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_plot::{Area, Picture, PictureError};
-use rc_solver::{AdaptiveParams, AdaptiveSolution, Control, IterationParams, solve_adaptive};
+use rc_solver::{Control, Method, Solution, SolveParams, solve};
 
 use crate::chart::{Axes, BLUE, Chart, Drawn, GREY, RED, Side, dimension, write};
-use crate::solve::{displacement_field, pressure_field};
 use crate::{Figure, Preset, Table, number, paper};
 
 /// The two bodies.
@@ -90,17 +89,10 @@ impl Figure for Fig1 {
 
     fn compute(params: &Params) -> Result<Self> {
         let surface = Surface::new(&SpectrumParams::paper(params.waves, params.seed))?;
-        let heights = surface.sample_on(Grid::square(params.grid)?)?;
-        let solve = IterationParams { tolerance: params.tolerance, ..IterationParams::certified() };
-        let adaptive = AdaptiveParams { solve, ..AdaptiveParams::certified() };
-        let control = Control::MeanPressure(params.mean_pressure);
-        let solution = solve_adaptive(
-            HeightSource::Surface { surface: &surface, grid: Grid::square(params.grid)? },
-            control,
-            &adaptive,
-            &Silent,
-        )?;
-        Self::of(params, &heights, &solution)
+        let grid = Grid::square(params.grid)?;
+        let solving = SolveParams::to_tolerance(params.tolerance).by(Method::Adaptive);
+        let solution = solve(surface.on(grid), Control::MeanPressure(params.mean_pressure), &solving)?;
+        Ok(Self::of(params, &surface.sample_on(grid)?, &solution))
     }
 
     fn tables(&self) -> Vec<Table> {
@@ -140,9 +132,9 @@ impl Picture for Fig1 {
 
 impl Fig1 {
     /// The row through the highest peak, shifted around the cell so that the peak is in its middle.
-    fn of(params: &Params, heights: &Field, solution: &AdaptiveSolution) -> Result<Self> {
-        let (n, cell, penetration) = (params.grid, params.cell, solution.info.penetration);
-        let (pressure, displacement) = (pressure_field(solution)?, displacement_field(solution)?);
+    fn of(params: &Params, heights: &Field, solution: &Solution<'_>) -> Self {
+        let (n, cell, penetration) = (params.grid, params.cell, solution.info().penetration);
+        let (pressure, displacement) = (solution.pressure(), solution.displacement());
         let h_max = heights.max();
         let peak = heights.values().iter().position(|&h| h >= h_max).unwrap_or(0);
         let (peak_x, row) = (peak % n, peak / n);
@@ -155,16 +147,16 @@ impl Fig1 {
                 pressure: pressure.at(ix, row),
             }
         });
-        Ok(Self {
+        Self {
             cell,
             mean_pressure: params.mean_pressure,
             points: points.collect(),
             penetration: cell * penetration,
-            h_max: cell * solution.info.penetration_full_contact,
+            h_max: cell * solution.info().penetration_full_contact,
             mean_displacement: cell * displacement.mean(),
             max_displacement: cell * displacement.max(),
-            area: solution.contact_area().fraction,
-        })
+            area: solution.area().fraction,
+        }
     }
 
     fn summary(&self) -> Table {

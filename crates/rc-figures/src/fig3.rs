@@ -10,15 +10,13 @@ use std::f64::consts::TAU;
 use anyhow::{Context, Result, ensure};
 use plotters::prelude::{Circle, DrawingBackend, EmptyElement, LineSeries, Rectangle};
 use plotters::style::{BLACK, Color, RGBColor, WHITE};
-use rc_core::{Field, Grid, HeightField, Silent};
+use rc_core::{Field, Grid, HeightField as _};
 use rc_fractal::{SpectrumParams, Surface};
-use rc_kernel::Love;
 use rc_plot::{Area, Picture, PictureError};
 use rc_quadtree::paper::{Mask, MeshKind, MeshParams, count};
-use rc_solver::{Control, IterationParams, Status, solve_uniform};
+use rc_solver::{Control, Method, SolveParams, Status, solve};
 
 use crate::chart::{Axes, BLUE, Chart, Drawn, GREEN, RED, Side, write};
-use crate::solve::solve;
 use crate::{Figure, Preset, Table, number, paper};
 
 /// The meshes, their names in the paper and in tables, and their colours; most elements first.
@@ -142,19 +140,20 @@ impl Picture for Fig3 {
 }
 
 fn partial_contact(params: &Params, surface: &Surface, mean_pressure: f64) -> Result<State> {
-    let contact = solve(surface, params.grid, Control::MeanPressure(mean_pressure), params.tolerance)
+    let (heights, load) = (surface.on(Grid::square(params.grid)?), Control::MeanPressure(mean_pressure));
+    let solution = solve(heights, load, &SolveParams::to_tolerance(params.tolerance))
         .with_context(|| format!("at σ0/E* = {mean_pressure:.3e}"))?;
-    State::of(params, &contact.pressure, contact.info.penetration, mean_pressure)
+    State::of(params, solution.pressure(), solution.info().penetration, mean_pressure)
 }
 
 /// The least load of full contact. Beyond it pressure only shifts, so the load is that of any full contact less its
 /// least pressure.
 fn full_contact(params: &Params, heights: &Field) -> Result<State> {
     let control = Control::MeanPressure(CRUSHING);
-    let solution = solve_uniform(heights, &Love, control, &IterationParams::certified(), &Silent)?;
-    ensure!(solution.status == Status::FullContact, "σ0 = {CRUSHING} E* leaves gaps; the surface is too steep");
-    let least = solution.pressure.min();
-    State::of(params, &solution.pressure, solution.info.penetration, CRUSHING - least)
+    let solution = solve(heights, control, &SolveParams::default().by(Method::Uniform))?;
+    ensure!(solution.status() == Status::FullContact, "σ0 = {CRUSHING} E* leaves gaps; the surface is too steep");
+    let least = solution.pressure().min();
+    State::of(params, solution.pressure(), solution.info().penetration, CRUSHING - least)
 }
 
 impl State {

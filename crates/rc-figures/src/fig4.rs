@@ -10,13 +10,12 @@ use plotters::prelude::{
     BLACK, Cartesian2d, ChartBuilder, ChartContext, Circle, Color, DashedLineSeries, DrawingAreaErrorKind,
     DrawingBackend, IntoFont, LineSeries, RGBColor, Rectangle,
 };
-use rc_core::{DVec2, Elasticity, Field, Grid, HeightSource, PeriodicCell, Silent};
+use rc_core::{DVec2, Elasticity, Field, Grid, PeriodicCell};
 use rc_plot::{Area, FONT, Picture, PictureError};
-use rc_solver::{AdaptiveParams, Control, IterationParams, solve_adaptive};
+use rc_solver::{Control, Method, Solution, SolveParams, solve};
 use rc_theory::hertz::{Hertz, PeriodicHertz};
 
 use crate::contact_map::{ContactMap, Run};
-use crate::solve::{Contact as Solved, pressure_field};
 use crate::{Figure, Preset, Table, number, paper};
 
 /// Distances of the three sections from the centre, in contact radii, before they are moved to the nearest row.
@@ -105,17 +104,13 @@ impl Figure for Fig4 {
     fn compute(params: &Params) -> Result<Self> {
         let (heights, apex) = sphere(params)?;
         let control = Control::Penetration(params.penetration / params.cell);
-        let solve = IterationParams { tolerance: params.tolerance, ..IterationParams::certified() };
-        let adaptive = AdaptiveParams { solve, ..AdaptiveParams::certified() };
-        let solution = solve_adaptive(HeightSource::Map(&heights), control, &adaptive, &Silent)?;
-        let solution =
-            Solved { pressure: pressure_field(&solution)?, area: solution.contact_area(), info: solution.info };
+        let solution = solve(&heights, control, &SolveParams::to_tolerance(params.tolerance).by(Method::Adaptive))?;
         let (periodic, infinite) = theory(params)?;
         let side = params.cell / params.grid as f64;
         Ok(Self {
             numeric: measure(params, &solution)?,
             sections: SECTIONS.map(|y| section(params, &solution, &periodic, apex, y)).into(),
-            runs: ContactMap::of(&solution.pressure).runs(),
+            runs: ContactMap::of(solution.pressure()).runs(),
             periodic,
             infinite,
             side,
@@ -174,24 +169,24 @@ fn theory(params: &Params) -> Result<(Contact, Contact)> {
 }
 
 /// The contact that was found: its radius from the area, its load from the mean pressure.
-fn measure(params: &Params, solution: &Solved) -> Result<Contact> {
-    let area = solution.area;
+fn measure(params: &Params, solution: &Solution<'_>) -> Result<Contact> {
+    let area = solution.area();
     let nominal_area = PeriodicCell::new(params.cell)?.nominal_area();
     Ok(Contact {
         radius: (area.fraction * nominal_area / std::f64::consts::PI).sqrt(),
-        load: solution.info.mean_pressure * params.e_star * nominal_area,
-        peak: solution.pressure.max() * params.e_star,
-        penetration: solution.info.penetration * params.cell,
+        load: solution.info().mean_pressure * params.e_star * nominal_area,
+        peak: solution.pressure().max() * params.e_star,
+        penetration: solution.info().penetration * params.cell,
     })
 }
 
 /// The row nearest to `y_over_a` radii from the centre.
-fn section(params: &Params, solution: &Solved, theory: &Contact, apex: usize, y_over_a: f64) -> Section {
+fn section(params: &Params, solution: &Solution<'_>, theory: &Contact, apex: usize, y_over_a: f64) -> Section {
     let side = params.cell / params.grid as f64;
     let row = apex + (y_over_a * theory.radius / side).round() as usize;
     let distance = |i: usize| (i as f64 - apex as f64) * side;
     let y = distance(row);
-    let pressures = solution.pressure.row(row).iter().enumerate();
+    let pressures = solution.pressure().row(row).iter().enumerate();
     let points = pressures.map(|(ix, pressure)| {
         let x = distance(ix);
         [x, pressure * params.e_star, theory.pressure(x.hypot(y))]

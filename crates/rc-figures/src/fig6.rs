@@ -7,13 +7,12 @@ use std::f64::consts::TAU;
 
 use anyhow::Result;
 use plotters::prelude::DrawingBackend;
-use rc_core::Field;
+use rc_core::{Field, Grid, HeightField as _};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_plot::{Area, Map, Picture, PictureError, Shade, draw_map};
-use rc_solver::{Control, connected_elements};
+use rc_solver::{Control, SolveParams, connected_elements, solve};
 
 use crate::contact_map::ContactMap;
-use crate::solve::solve;
 use crate::{Figure, Preset, Table, number, paper};
 
 /// Side of a map, space around it, and text, in pixels.
@@ -123,20 +122,21 @@ impl Picture for Fig6 {
 
 fn contact(case: &Case, params: &Params) -> Result<Contact> {
     let surface = Surface::new(&SpectrumParams::paper(case.waves, params.seed))?;
-    let solved = solve(&surface, case.grid, Control::MeanPressure(params.mean_pressure), params.tolerance)?;
-    let area = solved.area;
+    let (heights, load) = (surface.on(Grid::square(case.grid)?), Control::MeanPressure(params.mean_pressure));
+    let solution = solve(heights, load, &SolveParams::to_tolerance(params.tolerance))?;
+    let area = solution.area();
     let rms_slope = surface.moments().rms_slope;
     Ok(Contact {
         case: case.clone(),
         area_cells: area.cells,
         area: area.fraction,
         perimeter: area.perimeter,
-        n_spots: connected_elements(&solved.pressure).len(),
+        n_spots: connected_elements(solution.pressure()).len(),
         rms_slope,
         kappa: area.fraction * rms_slope / params.mean_pressure,
-        penetration: solved.info.penetration / solved.info.penetration_full_contact,
-        rms_pressure: solved.pressure.rms(),
-        pressure: solved.pressure,
+        penetration: solution.info().penetration / solution.info().penetration_full_contact,
+        rms_pressure: solution.pressure().rms(),
+        pressure: solution.pressure().clone(),
     })
 }
 

@@ -4,17 +4,16 @@
 //! elements shows is drawn beside it. Realisations are averaged bin by bin.
 
 use anyhow::Result;
-use rc_core::Field;
+use rc_core::{Field, Grid, HeightField as _};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_plot::{Area, Picture, PictureError};
-use rc_solver::{Control, StressDistribution};
+use rc_solver::{Control, SolveParams, StressDistribution, solve};
 use rc_theory::persson::Persson;
 
 use plotters::prelude::DrawingBackend;
 
 use crate::fit::{Line, Sample};
 use crate::marks::{STYLES, Style};
-use crate::solve::{Contact, solve};
 use crate::sweep::ELEMENTS_PER_WAVE;
 use crate::{Figure, Preset, Table, number, paper};
 
@@ -198,20 +197,21 @@ fn points(distribution: &StressDistribution) -> Vec<(f64, f64)> {
 
 impl Realisation {
     fn solve(params: &Params, surface: &Surface, waves: usize) -> Result<Self> {
-        let control = Control::MeanPressure(params.load);
-        let Contact { pressure, area, .. } =
-            solve(surface, params.elements_per_wave * waves, control, params.tolerance)?;
+        let heights = surface.on(Grid::square(params.elements_per_wave * waves)?);
+        let solution =
+            solve(heights, Control::MeanPressure(params.load), &SolveParams::to_tolerance(params.tolerance))?;
+        let pressure = solution.pressure();
         let equal: Vec<f64> = (0..=params.n_bins).map(|k| k as f64 * params.bin_width).collect();
         let ratio = 10_f64.powf((params.per_decade as f64).recip());
         let small: Vec<f64> = (0..=params.n_small).map(|k| params.first_edge * ratio.powi(k as i32)).collect();
-        let distribution = StressDistribution::of(&pressure, &equal);
+        let distribution = StressDistribution::of(pressure, &equal);
         Ok(Self {
-            area: area.fraction,
+            area: solution.area().fraction,
             lambda: Persson::fit(params.load, &points(&distribution)).lambda,
             equal: distribution,
-            equal_elements: histogram(&pressure, &equal),
-            small: StressDistribution::of(&pressure, &small),
-            small_elements: histogram(&pressure, &small),
+            equal_elements: histogram(pressure, &equal),
+            small: StressDistribution::of(pressure, &small),
+            small_elements: histogram(pressure, &small),
         })
     }
 }

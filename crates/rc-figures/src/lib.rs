@@ -27,7 +27,6 @@ mod figure;
 mod fit;
 mod marks;
 mod paper;
-mod solve;
 mod sweep;
 mod table;
 
@@ -40,5 +39,4 @@ pub use fig6::Fig6;
 pub use fig7::Fig7;
 pub use fig8::Fig8;
 pub use figure::{Figure, Preset, run, write};
-pub use solve::pressure_field;
 pub use table::{Table, number};

@@ -4,11 +4,11 @@
 //! the short ones.
 
 use anyhow::{Context, Result};
+use rc_core::{Grid, HeightField as _};
 use rc_fractal::{SpectrumParams, Surface};
-use rc_solver::Control;
+use rc_solver::{Control, SolveParams, solve};
 
 use crate::fit::Sample;
-use crate::solve::solve;
 use crate::{Preset, Table, number, paper};
 
 /// Elements for the shortest wave: side λ_min/32, twice as fine as the paper's.
@@ -162,11 +162,11 @@ impl Sweep {
 }
 
 fn state(params: &Params, surface: &Surface, (waves, seed, load): (usize, u64, f64)) -> Result<State> {
-    let side = params.elements_per_wave * waves;
-    let contact = solve(surface, side, Control::MeanPressure(load), params.tolerance)
+    let heights = surface.on(Grid::square(params.elements_per_wave * waves)?);
+    let solution = solve(heights, Control::MeanPressure(load), &SolveParams::to_tolerance(params.tolerance))
         .with_context(|| format!("N = {waves}, seed {seed}, σ0/E* = {load:e}"))?;
-    let area = contact.area;
-    let (info, rms_height) = (&contact.info, surface.moments().rms_height);
+    let area = solution.area();
+    let (info, rms_height) = (solution.info(), surface.moments().rms_height);
     Ok(State {
         waves,
         seed,

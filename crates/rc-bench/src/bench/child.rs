@@ -7,20 +7,52 @@ use std::process::Command;
 use anyhow::{Context, Result, bail};
 use rc_core::Grid;
 use rc_heights::npy;
+use rc_solver::{Method, Tolerance};
 use serde::{Deserialize, Serialize};
 
 use super::measure::{Outcome, measure};
 use super::scenes::Scene;
-use super::setting::Setting;
+use super::setting::{KernelName, Setting};
 
 /// What a child process is asked to do; the argument of `--job`.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum Job {
     /// Solves once and prints the outcome.
-    Solve { scene: String, setting: Setting },
+    Solve { scene: String, setting: PlainSetting },
     /// Saves the heights on a grid, so that this process stays small.
     Heights { scene: String, side: usize, path: PathBuf },
+}
+
+/// A [`Setting`] that can be written.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct PlainSetting {
+    adaptive: bool,
+    kernel: KernelName,
+    border_level: usize,
+    elements_per_wave: usize,
+    /// None is `auto`.
+    tolerance: Option<f64>,
+}
+
+impl From<Setting> for PlainSetting {
+    fn from(setting: Setting) -> Self {
+        let Setting { method, kernel, border_level, elements_per_wave, tolerance } = setting;
+        let tolerance = match tolerance {
+            Tolerance::Relative(value) => Some(value),
+            Tolerance::Auto => None,
+        };
+        Self { adaptive: method == Method::Adaptive, kernel, border_level, elements_per_wave, tolerance }
+    }
+}
+
+impl From<PlainSetting> for Setting {
+    fn from(setting: PlainSetting) -> Self {
+        let PlainSetting { adaptive, kernel, border_level, elements_per_wave, tolerance } = setting;
+        let method = if adaptive { Method::Adaptive } else { Method::Uniform };
+        let tolerance = tolerance.map_or(Tolerance::Auto, Tolerance::Relative);
+        Self { method, kernel, border_level, elements_per_wave, tolerance }
+    }
 }
 
 /// Solves in a child process.
@@ -28,7 +60,7 @@ enum Job {
 /// # Errors
 /// When the process fails, with what it wrote.
 pub(super) fn solve(scene: &Scene, setting: &Setting) -> Result<Outcome> {
-    let job = Job::Solve { scene: scene.name.to_owned(), setting: *setting };
+    let job = Job::Solve { scene: scene.name.to_owned(), setting: (*setting).into() };
     let answer = start(&job)?;
     serde_json::from_str(&answer).with_context(|| format!("the process for {job:?} answered '{answer}'"))
 }
@@ -61,7 +93,7 @@ fn start(job: &Job) -> Result<String> {
 pub fn work(job: &str) -> Result<()> {
     match serde_json::from_str(job).context("--job is for processes that the benchmark starts itself")? {
         Job::Solve { scene, setting } => {
-            println!("{}", serde_json::to_string(&measure(&Scene::named(&scene)?, &setting)?)?);
+            println!("{}", serde_json::to_string(&measure(&Scene::named(&scene)?, &setting.into())?)?);
         }
         Job::Heights { scene, side, path } => {
             let heights = Scene::named(&scene)?.surface()?.sample_on(Grid::square(side)?)?;

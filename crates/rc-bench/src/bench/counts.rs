@@ -3,8 +3,8 @@
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 
-use crate::tolerance::Tolerance;
 use rc_figures::repository;
+use rc_solver::Tolerance;
 
 use super::measure::solve;
 use super::record::{from_csv, to_csv, write};
@@ -70,7 +70,7 @@ fn count((scene, setting): &(&str, Setting)) -> Result<CountRow> {
         preconditionings: levels.iter().map(|level| level.preconditioner_applications).sum(),
         fine_iterations: solved.info.fine_iterations(),
         fine_applications: solved.info.fine_operator_applications(),
-        elements: solved.n_elements,
+        elements: solved.n_in_contact,
     })
 }
 

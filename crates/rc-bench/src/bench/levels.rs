@@ -106,7 +106,7 @@ pub(super) fn families<'a>(rows: impl Iterator<Item = &'a Row>) -> BTreeMap<Fami
 
 #[cfg(test)]
 pub(super) mod tests {
-    use crate::tolerance::Tolerance;
+    use rc_solver::Tolerance;
 
     use super::*;
     use crate::bench::record::tests::outcome;

@@ -4,18 +4,15 @@
 //! converge fastest with `spectral` on uniform grids. All are found again with the other kernel on uniform grids.
 
 use anyhow::{Context, Result};
-use rc_core::{Grid, HeightSource};
-use rc_solver::{AdaptiveParams, AdaptiveProblem};
-
-use crate::tolerance::Tolerance;
 use rc_figures::repository;
+use rc_solver::{Method, Tolerance};
 
 use super::extrapolation::{Counted, Limit, area_limit, richardson};
 use super::measure::{Solved, solve};
 use super::record::{from_csv, rounded, to_csv, write};
 use super::reference::{Quantity, REFERENCE, ReferenceRow};
 use super::scenes::{SCENES, Scene};
-use super::setting::{KernelName, Method, Setting};
+use super::setting::{KernelName, Setting};
 
 /// Uniform grids.
 const SIDES: [usize; 3] = [1024, 2048, 4096];
@@ -61,13 +58,14 @@ fn rows(scene: &Scene) -> Result<Vec<ReferenceRow>> {
     let (side, levels) = BORDER;
     let deep = levels.iter().map(|&level| on(scene, side, |m| Setting::adaptive(level, m, AREA_TOLERANCE)));
     let deep = deep.collect::<Result<Vec<_>>>()?;
+    // The highest point of the surface, to far less than the uncertainty of a mean gap.
+    let h_max = deep.last().context("a border level")?.h_max;
     let deep: Vec<Counted> = deep.iter().zip(levels).map(|(solved, level)| counted(solved, side << level)).collect();
     let counts: Vec<Counted> = spectral.iter().zip(SIDES).map(|(solved, side)| counted(solved, side)).collect();
     let area = (area_limit(&deep, LOVE_PERIMETER), area_limit(&counts, SPECTRAL_PERIMETER));
     let both = |of: fn(&Solved) -> f64| -> Result<(Limit, Limit)> { Ok((limit(&spectral, of)?, limit(&love, of)?)) };
     let rms_pressure = both(|solved| solved.observables.rms_pressure)?;
     let mean_gap = both(|solved| solved.observables.mean_gap)?;
-    let h_max = greatest_height(scene)?;
     let penetration = |gap: Limit| Limit { value: h_max - gap.value, ..gap };
     let quantities = [
         (Quantity::Area, area),
@@ -114,17 +112,4 @@ fn counted(solved: &Solved, side: usize) -> Counted {
 fn limit(solved: &[Solved], of: fn(&Solved) -> f64) -> Result<Limit> {
     let [.., coarse, fine] = solved else { anyhow::bail!("a limit needs two grids") };
     Ok(richardson(of(coarse), of(fine)))
-}
-
-/// The highest point of the surface, to far less than the uncertainty of a mean gap.
-fn greatest_height(scene: &Scene) -> Result<f64> {
-    let surface = scene.surface()?;
-    let (side, [.., border_level]) = BORDER;
-    let params = AdaptiveParams { border_level, ..AdaptiveParams::certified() };
-    let problem = AdaptiveProblem::new(
-        HeightSource::Surface { surface: &surface, grid: Grid::square(side)? },
-        scene.control(),
-        &params,
-    );
-    Ok(problem.with_context(|| format!("scene {}", scene.name))?.h_max())
 }

@@ -3,20 +3,22 @@
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use rc_core::{Grid, HeightSource, Silent};
+use rc_core::{Grid, HeightField as _, HeightSource, Silent};
 use rc_figures::memory;
-use rc_solver::{AdaptiveParams, AdaptiveProblem, IterationParams, Observables, SolveInfo, solve_uniform};
+use rc_solver::{ContactProblem, Method, Observables, SolveInfo, SolveParams};
 use serde::{Deserialize, Serialize};
 
 use super::scenes::Scene;
-use super::setting::{Method, Setting};
+use super::setting::Setting;
 
 /// A solved scene, in units of λ and E*.
 pub(super) struct Solved {
     pub(super) info: SolveInfo,
     pub(super) observables: Observables,
     /// Elements in contact.
-    pub(super) n_elements: usize,
+    pub(super) n_in_contact: usize,
+    /// Maximum height on the smallest elements.
+    pub(super) h_max: f64,
     /// Of the solve alone; the adaptive method's heights are part of it, a uniform grid's are given.
     seconds: f64,
     /// Of the evaluation of all observables.
@@ -56,45 +58,29 @@ pub(super) struct Outcome {
 /// # Errors
 /// When a solve fails.
 pub(super) fn solve(scene: &Scene, setting: &Setting) -> Result<Solved> {
-    let params = IterationParams { tolerance: setting.relative_tolerance(), ..IterationParams::certified() };
-    let solved = match setting.method {
-        Method::Uniform => uniform(scene, setting, &params),
-        Method::Adaptive => adaptive(scene, setting, params),
+    try_solve(scene, setting).with_context(|| format!("scene {}, {setting}", scene.name))
+}
+
+fn try_solve(scene: &Scene, setting: &Setting) -> Result<Solved> {
+    let (surface, grid) = (scene.surface()?, Grid::square(scene.side(setting.elements_per_wave))?);
+    // A uniform grid's heights are given; those of the adaptive method are part of the solve.
+    let map = (setting.method == Method::Uniform).then(|| surface.sample_on(grid)).transpose()?;
+    let heights = map.as_ref().map_or_else(|| surface.on(grid), HeightSource::from);
+    let problem = ContactProblem::new(heights, scene.control()).with_kernel(setting.kernel.kernel());
+    let params = SolveParams {
+        border_level: setting.border_level,
+        ..SolveParams::to_tolerance(setting.relative_tolerance()).by(setting.method)
     };
-    solved.with_context(|| format!("scene {}, {setting}", scene.name))
-}
-
-fn uniform(scene: &Scene, setting: &Setting, params: &IterationParams) -> Result<Solved> {
-    let heights = scene.surface()?.sample_on(Grid::square(scene.side(setting.elements_per_wave))?)?;
-    let kernel = setting.kernel.kernel();
     let start = Instant::now();
-    let solution = solve_uniform(&heights, kernel, scene.control(), params, &Silent)?;
+    let solution = problem.solve(&params, &Silent)?;
     let seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let observables = Observables::of(&solution, kernel);
+    let observables = solution.observables().clone();
     Ok(Solved {
         observables,
-        n_elements: solution.pressure.values().iter().filter(|&&p| p > 0.0).count(),
-        info: solution.info,
-        seconds,
-        observables_seconds: start.elapsed().as_secs_f64(),
-    })
-}
-
-fn adaptive(scene: &Scene, setting: &Setting, solve: IterationParams) -> Result<Solved> {
-    let surface = scene.surface()?;
-    let params = AdaptiveParams { solve, border_level: setting.border_level, ..AdaptiveParams::certified() };
-    let start = Instant::now();
-    let source =
-        HeightSource::Surface { surface: &surface, grid: Grid::square(scene.side(setting.elements_per_wave))? };
-    let solution = AdaptiveProblem::new(source, scene.control(), &params)?.solve(&Silent)?;
-    let seconds = start.elapsed().as_secs_f64();
-    let start = Instant::now();
-    let observables = solution.observables();
-    Ok(Solved {
-        observables,
-        n_elements: solution.n_elements(),
-        info: solution.info,
+        n_in_contact: solution.n_in_contact(),
+        info: solution.info().clone(),
+        h_max: solution.h_max(),
         seconds,
         observables_seconds: start.elapsed().as_secs_f64(),
     })
@@ -108,12 +94,12 @@ pub(super) fn measure(scene: &Scene, setting: &Setting) -> Result<Outcome> {
     let before = memory::peak();
     let solved = solve(scene, setting)?;
     let memory = memory::peak().zip(before).map(|(after, before)| 1e-6 * after.saturating_sub(before) as f64);
-    let Solved { info, observables, n_elements, seconds, observables_seconds } = solved;
+    let Solved { info, observables, n_in_contact, seconds, observables_seconds, .. } = solved;
     Ok(Outcome {
         status: "converged".to_owned(),
         iterations: Some(info.fine_iterations() as u64),
         applications: Some(info.fine_operator_applications() as u64),
-        elements: Some(n_elements as u64),
+        elements: Some(n_in_contact as u64),
         seconds,
         observables_seconds,
         memory_mb: memory,

@@ -6,8 +6,8 @@ use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
-use crate::tolerance::Tolerance;
 use rc_figures::repository;
+use rc_solver::Tolerance;
 
 use super::measure::Outcome;
 use super::setting::CERTIFIED;

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::measure::Outcome;
 use super::scenes::Scene;
-use super::setting::{KernelName, Method, Setting, typed};
+use super::setting::{KernelName, Setting, typed};
 
 /// Correction of a counted area by its edges, in elements an edge: (π - 1 + ln 2)/24 (Yastrebov, Anciaux, Molinari, *Tribol.
 /// Int.* 114 (2017) 161). Peers leave it to their users.
@@ -71,7 +71,7 @@ impl Family {
     pub(super) fn peer(program: &str, tolerance: &str) -> Self {
         Self {
             program: program.to_owned(),
-            method: Method::Uniform.name().to_owned(),
+            method: rc_solver::Method::Uniform.name().to_owned(),
             kernel: KernelName::Spectral.kernel().name().to_owned(),
             border_level: 0,
             tolerance: tolerance.to_owned(),
@@ -168,7 +168,7 @@ pub(super) fn write(path: &Path, text: &str) -> Result<()> {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use crate::tolerance::Tolerance;
+    use rc_solver::Tolerance;
 
     use super::*;
     use crate::bench::scenes::SCENES;

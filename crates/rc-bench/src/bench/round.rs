@@ -4,8 +4,6 @@ use anyhow::{Context, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::tolerance::Tolerance;
-use crate::tolerance::auto_tolerance;
 use rc_figures::repository;
 
 use super::child;
@@ -116,7 +114,7 @@ fn cases(scene: &Scene, with_peers: bool) -> Vec<Case> {
             for (i, kind) in PEERS.iter().enumerate() {
                 cases.extend(kind.tolerances.iter().map(|tolerance| {
                     let text = tolerance.map_or_else(|| "default".to_owned(), typed);
-                    let number = tolerance.map(|tolerance| relative(tolerance, mesh));
+                    let number = tolerance.map(|tolerance| tolerance.relative(Some(mesh as f64)));
                     Case::new(Family::peer(kind.name, &text), mesh, Solver::Peer(i, number))
                 }));
             }
@@ -124,13 +122,6 @@ fn cases(scene: &Scene, with_peers: bool) -> Vec<Case> {
         mesh *= 2;
     }
     cases
-}
-
-fn relative(tolerance: Tolerance, elements_per_wave: usize) -> f64 {
-    match tolerance {
-        Tolerance::Relative(value) => value,
-        Tolerance::Auto => auto_tolerance(elements_per_wave as f64),
-    }
 }
 
 /// Seconds that a case will take, from the next coarser mesh of its family: 0 on the coarsest, infinite where that was

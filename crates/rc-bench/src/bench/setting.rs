@@ -5,8 +5,7 @@ use rc_kernel::{Love, Spectral};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-use crate::tolerance::Tolerance;
-use crate::tolerance::auto_tolerance;
+use rc_solver::{Method, Tolerance};
 
 use super::scenes::Scene;
 
@@ -27,25 +26,9 @@ pub(super) const CERTIFIED: Tolerance = Tolerance::Relative(1e-6);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum Method {
-    Uniform,
-    Adaptive,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
 pub(super) enum KernelName {
     Love,
     Spectral,
-}
-
-impl Method {
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Uniform => "uniform",
-            Self::Adaptive => "adaptive",
-        }
-    }
 }
 
 impl KernelName {
@@ -58,7 +41,7 @@ impl KernelName {
 }
 
 /// One way to solve a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Setting {
     pub(super) method: Method,
     pub(super) kernel: KernelName,
@@ -80,10 +63,7 @@ impl Setting {
 
     /// The tolerance as a number; `auto` follows the grid, as on the command line.
     pub(super) fn relative_tolerance(&self) -> f64 {
-        match self.tolerance {
-            Tolerance::Relative(value) => value,
-            Tolerance::Auto => auto_tolerance(self.elements_per_wave as f64),
-        }
+        self.tolerance.relative(Some(self.elements_per_wave as f64))
     }
 
     /// Every setting of one mesh of a scene that is small enough.
@@ -122,9 +102,9 @@ impl fmt::Display for Setting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { method, kernel, border_level, elements_per_wave, tolerance } = *self;
         let kernel = kernel.kernel().name();
-        match method {
-            Method::Uniform => write!(f, "uniform {kernel}")?,
-            Method::Adaptive => write!(f, "adaptive {kernel}, border level {border_level}")?,
+        write!(f, "{method} {kernel}")?;
+        if method == Method::Adaptive {
+            write!(f, ", border level {border_level}")?;
         }
         write!(f, ", λ_min/{elements_per_wave}, tolerance {}", typed(tolerance))
     }

@@ -7,7 +7,7 @@ use rc_core::testing::{check_kernel, check_operator, quasi_random};
 use rc_core::{EdgeBias, Field, Grid, Kernel, Operator, Silent, Symbol};
 use rc_figures::Preset;
 use rc_kernel::Love;
-use rc_solver::{Control, IterationParams, UniformOperator, solve_uniform};
+use rc_solver::{ContactProblem, Control, Method, Solution, SolveParams, UniformOperator};
 
 use super::audit::{Audit, direct};
 use super::heights::{mapped, rough};
@@ -25,6 +25,9 @@ enum Fault {
     Sign,
     Stale,
 }
+
+/// The tolerance that is certified by default.
+const CERTIFIED: f64 = 1e-6;
 
 /// An operator with a fault.
 struct Faulty {
@@ -192,8 +195,7 @@ fn kernels(rows: &mut Rows) -> Result<()> {
         if broken {
             // Nothing that such a kernel returns is a solution.
             for control in [control, Control::Penetration(0.3 * (heights.max() - heights.mean()))] {
-                let solved =
-                    guarded(|| Ok(solve_uniform(&heights, &kernel, control, &IterationParams::certified(), &Silent)?));
+                let solved = guarded(|| solve(&heights, &kernel, control, CERTIFIED));
                 let name =
                     format!("{scene} {}", if control_is_load(control) { "to a load" } else { "to a penetration" });
                 let reported = matches!(&solved, Err(error) if !error.to_string().starts_with("panic"));
@@ -223,12 +225,18 @@ fn control_is_load(control: Control) -> bool {
     matches!(control, Control::MeanPressure(_))
 }
 
+/// The solution on the uniform grid.
+fn solve<'a>(heights: &'a Field, kernel: &'a dyn Kernel, control: Control, tolerance: f64) -> Result<Solution<'a>> {
+    let params = SolveParams::to_tolerance(tolerance).by(Method::Uniform);
+    Ok(ContactProblem::new(heights, control).with_kernel(kernel).solve(&params, &Silent)?)
+}
+
 /// A solve with `kernel`, audited with Love's.
 fn outcome(heights: &Field, kernel: &dyn Kernel, control: Control) -> Result<()> {
     guarded(|| {
-        let params = IterationParams { tolerance: TOLERANCE, ..IterationParams::certified() };
-        let pressure = solve_uniform(heights, kernel, control, &params, &Silent)?.pressure;
-        let audit = Audit::of_pressure(heights, &pressure, &direct(&pressure), control);
+        let solution = solve(heights, kernel, control, TOLERANCE)?;
+        let pressure = solution.pressure();
+        let audit = Audit::of_pressure(heights, pressure, &direct(pressure), control);
         ensure!(audit.n_bad == 0, "audit: {} pressures that are not finite or negative", audit.n_bad);
         ensure!(audit.penetration <= 1.1 * TOLERANCE, "audit: penetration error {:.1e}", audit.penetration);
         Ok(())
@@ -268,8 +276,7 @@ fn inputs(rows: &mut Rows) -> Result<()> {
         ),
     ];
     for (name, heights, control, tolerance) in cases {
-        let params = IterationParams { tolerance, ..IterationParams::certified() };
-        let solved = guarded(|| Ok(solve_uniform(&heights, &Love, control, &params, &Silent)?));
+        let solved = guarded(|| solve(&heights, &Love, control, tolerance));
         let reported = matches!(&solved, Err(error) if !error.to_string().starts_with("panic"));
         let said = solved.map_or_else(|error| format!("{error:#}"), |_| "converged".to_owned());
         rows.holds(&name, "refused", "an error", said, reported);

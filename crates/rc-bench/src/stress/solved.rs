@@ -1,14 +1,11 @@
 //! One solve of a height map by any method, in one form.
 
 use anyhow::{Context, Result};
-use rc_core::{DVec2, Field, HeightSource, Kernel, Silent};
-use rc_kernel::{Love, PeriodicLove, Spectral};
+use rc_core::{Field, Kernel, Silent};
+use rc_kernel::{Love, Spectral};
 use rc_solver::{
-    AdaptiveParams, Coefficient, Control, GaussSeidelParams, IterationParams, Observables, SolveInfo, solve_adaptive,
-    solve_dense, solve_gauss_seidel, solve_uniform,
+    ContactProblem, Control, GaussSeidelParams, Observables, SolveInfo, SolveParams, Tolerance, solve_dense,
 };
-
-use rc_figures::pressure_field;
 
 /// How a contact is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +24,14 @@ impl Method {
             Self::Spectral => "spectral",
             Self::Adaptive => "adaptive",
             Self::GaussSeidel => "gauss-seidel",
+        }
+    }
+
+    fn of_solver(self) -> rc_solver::Method {
+        match self {
+            Self::Uniform | Self::Spectral => rc_solver::Method::Uniform,
+            Self::Adaptive => rc_solver::Method::Adaptive,
+            Self::GaussSeidel => rc_solver::Method::GaussSeidel,
         }
     }
 
@@ -55,35 +60,21 @@ impl Solved {
 
 /// Solves to `tolerance`.
 pub(crate) fn solve(heights: &Field, method: Method, control: Control, tolerance: f64) -> Result<Solved> {
-    let asked = || format!("{} {control:?} to {tolerance:e}", method.name());
-    try_solve(heights, method, control, tolerance).with_context(asked)
-}
-
-fn try_solve(heights: &Field, method: Method, control: Control, tolerance: f64) -> Result<Solved> {
-    let solve = IterationParams { tolerance, ..IterationParams::certified() };
-    match method {
-        Method::Uniform | Method::Spectral => {
-            let kernel = method.kernel();
-            let solution = solve_uniform(heights, kernel, control, &solve, &Silent)?;
-            let (observables, stiffness) = (Observables::of(&solution, kernel), solution.contact_stiffness(kernel));
-            Ok(Solved { pressure: solution.pressure, info: solution.info, observables, stiffness })
-        }
-        Method::Adaptive => {
-            let params = AdaptiveParams { solve, ..AdaptiveParams::certified() };
-            let solution = solve_adaptive(HeightSource::Map(heights), control, &params, &Silent)?;
-            let (observables, stiffness) = (solution.observables(), solution.contact_stiffness());
-            Ok(Solved { pressure: pressure_field(&solution)?, info: solution.info, observables, stiffness })
-        }
-        Method::GaussSeidel => {
-            let params = GaussSeidelParams { tolerance, uniform_elements: true, ..GaussSeidelParams::paper() };
-            let love = PeriodicLove::new();
-            let coefficient = |offset: DVec2, half_side: f64| love.coefficient(offset, half_side);
-            let coefficient: Coefficient<'_> = &coefficient;
-            let solution = solve_gauss_seidel(heights, &Love, coefficient, control, &params, &Silent)?;
-            let (observables, stiffness) = (Observables::of(&solution, &Love), solution.contact_stiffness(&Love));
-            Ok(Solved { pressure: solution.pressure, info: solution.info, observables, stiffness })
-        }
-    }
+    let params = SolveParams {
+        tolerance: Tolerance::Relative(tolerance),
+        method: Some(method.of_solver()),
+        gauss_seidel: GaussSeidelParams { uniform_elements: true, ..GaussSeidelParams::paper() },
+        ..SolveParams::default()
+    };
+    let problem = ContactProblem::new(heights, control).with_kernel(method.kernel());
+    let solution =
+        problem.solve(&params, &Silent).with_context(|| format!("{} {control:?} to {tolerance:e}", method.name()))?;
+    Ok(Solved {
+        pressure: solution.pressure().clone(),
+        info: solution.info().clone(),
+        observables: solution.observables().clone(),
+        stiffness: solution.stiffness(),
+    })
 }
 
 /// The pressure under a given penetration by elimination.

@@ -170,7 +170,7 @@ mod tests {
     #[test]
     fn a_wave_has_the_statistics_of_a_wave() {
         let (amplitude, waves, side) = (1e-3, 4.0, 2.0);
-        let field = Field::from_fn(Grid::square(64).expect("a grid"), |x, _| amplitude * (TAU * waves * x).cos());
+        let field = Field::from_fn(Grid::square(64).expect("a grid"), |at| amplitude * (TAU * waves * at.x).cos());
         let statistics = SurfaceRecord::of(&field, side, moments_of_grid(&field));
         let close = |name: &str, value: f64, reference: f64| {
             assert!((value / reference - 1.0).abs() < 1e-9, "{name}: {value}, reference {reference}");
