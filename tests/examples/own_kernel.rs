@@ -6,7 +6,7 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use rc_core::{EdgeBias, Grid, Kernel, Silent, Symbol};
+use rc_core::{Grid, Kernel, Silent, Symbol};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Spectral;
 use rc_solver::{ContactProblem, Control, SolveParams};
@@ -42,6 +42,7 @@ impl BondedLayer {
     }
 }
 
+/// Two methods; `edge_bias` has a default. At the edge of a contact short waves matter, and to these the layer is a half-space.
 impl Kernel for BondedLayer {
     fn name(&self) -> &'static str {
         "bonded-layer"
@@ -53,11 +54,6 @@ impl Kernel for BondedLayer {
             let q = TAU * grid.waves(kx, ky);
             half_space(kx, ky) * self.factor(q * self.thickness)
         })
-    }
-
-    /// At the edge of a contact only short waves matter, and for these the layer is a half-space.
-    fn edge_bias(&self) -> EdgeBias {
-        Spectral.edge_bias()
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a research fork does: its own half-space and its own surface, through the traits alone.
 
 use rc_core::testing::{check_height_field, check_kernel};
-use rc_core::{EdgeBias, Field, Grid, HeightField, Kernel, Silent, Symbol};
+use rc_core::{Field, Grid, HeightField, Kernel, Silent, Symbol};
 use rc_kernel::Love;
 use rc_solver::{ContactProblem, Control, MethodReason, SolveError, SolveParams, Status};
 
@@ -43,10 +43,6 @@ impl Kernel for Broken {
     fn symbol(&self, grid: Grid) -> Symbol<'_> {
         let love = Love.symbol(grid);
         Box::new(move |kx, ky| if (kx, ky) == (1, 2) { self.eigenvalue } else { love(kx, ky) })
-    }
-
-    fn edge_bias(&self) -> EdgeBias {
-        Love.edge_bias()
     }
 }
 

@@ -31,24 +31,45 @@ pub trait HeightField: Sync {
 /// Eigenvalues of an elastic operator on one grid: maps (|kx|, |ky|), up to half the grid, to the eigenvalue.
 pub type Symbol<'a> = Box<dyn Fn(usize, usize) -> f64 + Send + Sync + 'a>;
 
-/// What the discretisation does to the edges of contacts: what to take off an area whose edges were located between elements, in
-/// areas of an element, so that its first-order error vanishes; and the like for the square of the pressure.
+/// The first-order error of a discretisation at the edges of contacts, per edge: the first three terms are subtracted from a contact area
+/// whose edges are located between elements, in areas of an element; the last is added to Σ p².
+///
+/// The constants are fitted, kernel by kernel (`docs/accuracy.md`). The default is that of a kernel like Love's squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeBias {
     /// For each edge between an element in contact and one out of it.
     pub per_edge: f64,
-    /// For each contact, less the holes in contacts: edges that curve are shifted otherwise than straight ones.
+    /// For each contact, holes in contacts counted negative: the shift of an edge depends on its curvature.
     pub per_contact: f64,
-    /// For the sum over edges of how far the gap two elements out is from the law that holds near a straight edge: between
-    /// contacts that are close, and at edges that curve, it bends away from it.
-    pub per_bend: f64,
-    /// Not of the area, but of Σ p² over elements: what it misses for each edge, over the square of the pressure beside the edge.
+    /// For each element by which the gap two elements outside an edge deviates from the law of a straight edge, gap ∝ s^(3/2) at the
+    /// distance s: it does at edges that curve and between contacts that are close.
+    pub per_deviation: f64,
+    /// For each edge, the part of Σ p² over elements that is missing, relative to the square of the pressure beside the edge.
     pub per_square: f64,
+}
+
+impl Default for EdgeBias {
+    /// The constants of Love's squares, a uniform pressure on each element and the displacement of its centre.
+    fn default() -> Self {
+        Self { per_edge: 0.029, per_contact: -0.21, per_deviation: -0.0275, per_square: -0.06 }
+    }
 }
 
 /// The elastic response of a periodic half-space to pressure on a uniform grid.
 ///
-/// A layered or viscoelastic half-space is another `Kernel`. [`crate::testing::check_kernel`] checks the contract.
+/// A layered or a graded half-space is another `Kernel`: two methods, of which one is a name. [`crate::testing::check_kernel`] checks the
+/// contract.
+///
+/// # Not every linear solid is a `Kernel`
+/// The solvers minimise an elastic energy, so a symbol is one positive number for a wave and its mirror images.
+///
+/// - **Viscoelastic solids** have a complex symbol at each frequency: the displacement lags behind the pressure, and there is no energy to
+///   minimise. Instead, step in time. The response within a step is elastic, with a symbol that is real; the displacement that remains
+///   from earlier steps is known, and is subtracted from the heights.
+/// - **Shifts**, as of a moving load, are complex too: a factor exp(2πi k·d). Instead, move the heights.
+/// - **Anisotropic solids** respond differently along different directions. Symbols here are even in kx and in ky, and on a
+///   [square](Grid::is_square) grid symmetric in both, so the axes of the solid must be those of the cell, and the grid must have
+///   different numbers of elements along them. A solid with oblique axes needs an [`Operator`] of its own.
 pub trait Kernel: Sync {
     /// Short name, as in result files.
     fn name(&self) -> &'static str;
@@ -58,9 +79,12 @@ pub trait Kernel: Sync {
     /// [square](Grid::is_square) grid symmetric in kx and ky, so it may be asked for ky ≥ kx only. Zero at k = 0 (Eq. 3: the displacement has zero mean) and positive elsewhere.
     fn symbol(&self, grid: Grid) -> Symbol<'_>;
 
-    /// How far the discretisation shifts the edges of contacts: it is first order in the element size, and depends on the
-    /// kernel (`docs/accuracy.md` has the calibration of the ones here).
-    fn edge_bias(&self) -> EdgeBias;
+    /// The shift of the edges of contacts by the discretisation, first order in the element size. It only corrects observables; the
+    /// pressure does not depend on it. At an edge short waves matter, and to these most solids are half-spaces, so the default fits
+    /// kernels whose elements are like Love's squares.
+    fn edge_bias(&self) -> EdgeBias {
+        EdgeBias::default()
+    }
 
     /// Whether this is the half-space whose displacements `rc_kernel::ScaleSplit` splits by scale, under pressures that are constant on
     /// elements. The adaptive method is made of that split, so it serves only such a kernel.

@@ -58,7 +58,7 @@ pub use split::{CoarseElement, CoarseFilter, Filter, ScaleSplit, SplitParams, St
 pub use truncated::{LoadForm, MAX_SHELLS, shells_for, truncated_coefficient, truncation_error_bound};
 
 use love_symbol::LoveSymbol;
-use rc_core::{EdgeBias, Grid, Kernel, Symbol};
+use rc_core::{Grid, Kernel, Symbol};
 
 /// The paper's element: uniform pressure on each element, displacement at its centre, summed over all periodic images
 /// (Eq. 4-6) without truncation. Elements are squares or rectangles, and so is the cell.
@@ -81,11 +81,9 @@ impl Kernel for Love {
         Box::new(move |kx, ky| symbol.eigenvalue(kx, ky))
     }
 
-    fn edge_bias(&self) -> EdgeBias {
-        EdgeBias { per_edge: 0.029, per_contact: -0.21, per_bend: -0.0275, per_square: -0.06 }
-    }
-
     fn is_split_by_scale(&self) -> bool {
         true
     }
+
+    // `edge_bias` is the default, which is fitted to this kernel.
 }

@@ -24,6 +24,6 @@ impl Kernel for Spectral {
     }
 
     fn edge_bias(&self) -> EdgeBias {
-        EdgeBias { per_edge: 0.0417, per_contact: -0.32, per_bend: -0.043, per_square: 0.014 }
+        EdgeBias { per_edge: 0.0417, per_contact: -0.32, per_deviation: -0.043, per_square: 0.014 }
     }
 }

@@ -109,7 +109,7 @@ mod tests {
         let pressure = Field::from_fn(grid, |DVec2 { x, y }| depth(x, y).max(0.0).sqrt());
         let gap = Field::from_fn(grid, |DVec2 { x, y }| 4.0 / 3.0 * (-depth(x, y)).max(0.0).powf(1.5));
         // Heights as exact as these have no first-order error to be taken off.
-        let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_bend: 0.0, per_square: 0.0 };
+        let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_deviation: 0.0, per_square: 0.0 };
         let spots = ContactSpot::all(&pressure, &gap, none);
         assert_eq!(spots.len(), 2);
         for (spot, (_, a)) in spots.iter().zip(circles) {
@@ -129,7 +129,7 @@ mod tests {
     /// located with the side of the element across it.
     #[test]
     fn elements_that_are_no_squares_locate_edges_as_well() {
-        let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_bend: 0.0, per_square: 0.0 };
+        let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_deviation: 0.0, per_square: 0.0 };
         let depth = |x: f64, y: f64| 0.23 - (x - 0.501).hypot(y - 0.497);
         let found = |nx: usize, ny: usize| {
             let grid = Grid::new(nx, ny).expect("a grid");

@@ -127,12 +127,12 @@ pub(super) fn cases(accuracy: &Accuracy) -> Table {
 /// and in the median of the scenes for the squares.
 pub(super) fn calibration(accuracy: &Accuracy) -> Table {
     let rows = ["love", "spectral"].into_iter().map(|kernel| {
-        // Normal equations of (area - limit) n = a edges + b contacts + c bend, each scene weighed by its edges.
+        // Normal equations of (area - limit) n = a edges + b contacts + c deviation, each scene weighed by its edges.
         let mut equations = [[0.0; 4]; 3];
         for case in accuracy.of_set(Set::Calibration).filter(|case| case.kernel == kernel) {
             let area = &case.found.area;
             let error = (area.fraction - case.limit.area) * (case.side * case.side) as f64;
-            let terms = [area.perimeter_edges as f64, area.euler_number, area.edge_bend, error];
+            let terms = [area.perimeter_edges as f64, area.euler_number, area.gap_deviation, error];
             for (equation, term) in equations.iter_mut().zip(terms) {
                 for (sum, other) in equation.iter_mut().zip(terms) {
                     *sum += term * other / terms[0].max(1.0);
@@ -146,7 +146,7 @@ pub(super) fn calibration(accuracy: &Accuracy) -> Table {
     });
     Table::new(
         "calibration",
-        &["kernel", "more_per_edge", "more_per_contact", "more_per_bend", "more_per_square"],
+        &["kernel", "more_per_edge", "more_per_contact", "more_per_deviation", "more_per_square"],
         rows,
     )
 }

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Result, ensure};
 use rc_core::testing::{check_kernel, check_operator, quasi_random};
-use rc_core::{EdgeBias, Field, Grid, Kernel, Operator, Silent, Symbol};
+use rc_core::{Field, Grid, Kernel, Operator, Silent, Symbol};
 use rc_figures::Preset;
 use rc_kernel::Love;
 use rc_solver::{ContactProblem, Control, Method, Solution, SolveParams, UniformOperator};
@@ -121,10 +121,6 @@ impl Kernel for FaultyKernel {
                 _ => value,
             }
         })
-    }
-
-    fn edge_bias(&self) -> EdgeBias {
-        Love.edge_bias()
     }
 }
 

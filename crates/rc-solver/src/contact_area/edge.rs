@@ -37,16 +37,17 @@ impl Edge {
         self.u.powi(3)
     }
 
-    /// How far the gap one element further out, as g E*/(p h), is from the law: the distance from the edge that it stands for, less
-    /// the true one, in elements. -2 to about 0 in gaps between contacts, where it is less. `None` for a ratio that is not a number.
-    pub(super) fn bend(self, next_gap_ratio: f64) -> Option<f64> {
-        let bend = beta(next_gap_ratio) * self.u - (2.0 - self.position());
-        (!next_gap_ratio.is_nan()).then(|| bend.min(MOST_BEND))
+    /// The deviation of the gap one element further out, as g E*/(p h), from the law: the distance from the edge at which the law has
+    /// this gap, minus the true distance, in elements. It is -2 to about 0 in gaps between contacts, where the gap is smaller than the
+    /// law's. `None` for a ratio that is not a number.
+    pub(super) fn deviation(self, next_gap_ratio: f64) -> Option<f64> {
+        let deviation = beta(next_gap_ratio) * self.u - (2.0 - self.position());
+        (!next_gap_ratio.is_nan()).then(|| deviation.min(MAX_DEVIATION))
     }
 }
 
-/// More is no edge's doing: heights that jump.
-const MOST_BEND: f64 = 2.0;
+/// A larger deviation is that of heights that jump, not of an edge.
+const MAX_DEVIATION: f64 = 2.0;
 
 fn beta(gap_ratio: f64) -> f64 {
     (0.75 * gap_ratio).clamp(0.0, 1e100).cbrt().powi(2)
@@ -57,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_edge_with_the_square_root_law_is_found_and_does_not_bend() {
+    fn an_edge_with_the_square_root_law_is_found_and_does_not_deviate() {
         let (c, h) = (0.3, 0.01);
         for k in 1..=100 {
             let s = 0.01 * f64::from(k);
@@ -65,7 +66,7 @@ mod tests {
             let ratio = |distance: f64| 4.0 / 3.0 * c * (distance * h).powf(1.5) / (pressure * h);
             let edge = Edge::new(ratio(1.0 - s)).expect("a number");
             assert!((edge.position() - s).abs() < 1e-9, "{} for {s}", edge.position());
-            assert!(edge.bend(ratio(2.0 - s)).expect("a number").abs() < 1e-8, "{s}");
+            assert!(edge.deviation(ratio(2.0 - s)).expect("a number").abs() < 1e-8, "{s}");
         }
     }
 
@@ -74,9 +75,9 @@ mod tests {
         for gap_ratio in [0.0, 1e-300, 1e300, f64::INFINITY, -1.0] {
             let edge = Edge::new(gap_ratio).expect("a number");
             assert!((0.0..=1.0).contains(&edge.position()), "{edge:?} for {gap_ratio}");
-            assert!(edge.bend(gap_ratio).expect("a number").abs() <= 2.0, "{edge:?} for {gap_ratio}");
+            assert!(edge.deviation(gap_ratio).expect("a number").abs() <= 2.0, "{edge:?} for {gap_ratio}");
         }
         assert!(Edge::new(f64::NAN).is_none());
-        assert_eq!(Edge::new(1.0).expect("a number").bend(f64::NAN), None);
+        assert_eq!(Edge::new(1.0).expect("a number").deviation(f64::NAN), None);
     }
 }

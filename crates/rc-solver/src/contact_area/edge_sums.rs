@@ -1,4 +1,4 @@
-//! What the elements at the edges of contacts amount to.
+//! Sums over the elements at the edges of contacts.
 
 use std::ops::{Add, AddAssign};
 
@@ -22,8 +22,8 @@ pub(crate) struct EdgeSums {
     pub(crate) known: [usize; 2],
     /// Σ (s - ½) over the first of these, with s as in [`Edge::position`].
     pub(crate) shift: f64,
-    /// Σ of [`Edge::bend`] over the second of these.
-    pub(crate) bend: f64,
+    /// Σ of [`Edge::deviation`] over the second of these.
+    pub(crate) deviation: f64,
     /// Σ p² of the elements inside, over all edges.
     pub(crate) squares: f64,
     /// Corners where one of the four elements that meet is in contact, less those where three are: four times the number of
@@ -54,9 +54,9 @@ impl EdgeSums {
             if let Some(edge) = Edge::new(gap_ratio(1)) {
                 self.shift += edge.position() - 0.5;
                 self.known[0] += 1;
-                if let Some(bend) = edge.bend(gap_ratio(2)) {
+                if let Some(deviation) = edge.deviation(gap_ratio(2)) {
                     self.known[1] += 1;
-                    self.bend += bend;
+                    self.deviation += deviation;
                 }
             }
         }
@@ -76,10 +76,10 @@ impl EdgeSums {
 }
 
 impl EdgeSums {
-    /// Shift and bend of all edges: those that are not known have the mean of the others.
+    /// Shift and deviation summed over all edges: where they are not known, they are the mean of the others.
     pub(crate) fn of_all(&self) -> [f64; 2] {
         let all = |sum: f64, known: usize| if known == 0 { 0.0 } else { sum * (self.edges as f64 / known as f64) };
-        [all(self.shift, self.known[0]), all(self.bend, self.known[1])]
+        [all(self.shift, self.known[0]), all(self.deviation, self.known[1])]
     }
 }
 
@@ -94,7 +94,7 @@ impl Add for EdgeSums {
             diagonals: self.diagonals + other.diagonals,
             known: [self.known[0] + other.known[0], self.known[1] + other.known[1]],
             shift: self.shift + other.shift,
-            bend: self.bend + other.bend,
+            deviation: self.deviation + other.deviation,
             squares: self.squares + other.squares,
             turns: self.turns + other.turns,
         }

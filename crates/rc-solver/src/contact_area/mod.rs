@@ -1,8 +1,8 @@
 //! The contact area, with edges located between the centres of elements (see `docs/accuracy.md`).
 //!
 //! Counting the elements in contact is first-order accurate only: 1 to 4 % too much on usual meshes. Here the edge is
-//! located between every two neighbours of which one is in contact, from the pressure of the one and the gap of the other;
-//! what is left of the first-order error is the same for all contacts, and is taken off.
+//! located between every two neighbours of which one is in contact, from the pressure of the one and the gap of the other.
+//! The rest of the first-order error is the same for all contacts, and is subtracted.
 
 mod edge;
 mod edge_sums;
@@ -24,28 +24,28 @@ pub struct ContactArea {
     /// Length of the edges of all contacts, in λ: free of the steps of the elements (Crofton's formula for eight directions;
     /// within 5 % for a straight edge, exact in the mean over directions).
     pub perimeter: f64,
-    /// Number of contacts less that of holes in them (where elements touch across a corner only, half of them count as joined).
+    /// Number of contacts minus the number of holes in them (where elements touch across a corner only, half of them count as joined).
     pub euler_number: f64,
-    /// Sum over edges of the bend of the gap outside them, see [`EdgeBias::per_bend`].
-    pub edge_bend: f64,
-    /// What the elements' mean of p² over the cell misses, in E*²: see [`EdgeBias::per_square`].
+    /// Sum over edges of the deviation of the gap outside them from the law of an edge, see [`EdgeBias::per_deviation`].
+    pub gap_deviation: f64,
+    /// The part of ⟨p²⟩ that is missing from the mean over elements, in E*²: see [`EdgeBias::per_square`].
     pub missing_square: f64,
     /// Best estimate, from the edges between the centres of elements.
     pub fraction: f64,
-    /// Estimated error of `fraction`, which holds the true one in 93 of 100 scenes or more (`cargo xtask accuracy` measures it):
-    /// from the number of edges, and what was taken off the count.
+    /// Estimated error of `fraction`, above the true one in 93 of 100 scenes or more (`cargo xtask accuracy` measures it):
+    /// from the number of edges, and from the difference to the count.
     pub error: f64,
 }
 
-/// Error of the area, in elements, over the root of the number of edges: positions of edges scatter independently. 0.17 to 0.22
-/// hold it in 95 % of scenes, on every mesh (`cargo xtask accuracy`).
+/// Error of the area, in elements, relative to the root of the number of edges, whose positions scatter independently. 0.17 to 0.22
+/// bound it in 95 % of scenes, on every mesh (`cargo xtask accuracy`).
 const SCATTER: f64 = 0.22;
 
-/// Error over all that was taken off the count: what the bias of many edges may be off.
+/// Error relative to the difference between the count and `fraction`: the uncertainty of the bias of many edges.
 const ERROR_OF_TERM: f64 = 0.04;
 
-/// The same where elements are no squares, for which the bias is not calibrated: 0.1 % of the area is the mean error on elements of 1 : 2,
-/// 0.2 % on 1 : 4, where 4 and 6 % are taken off.
+/// The same where elements are not squares, for which the bias is not calibrated: 0.1 % of the area is the mean error on elements of
+/// 1 : 2, 0.2 % on 1 : 4, where the difference is 4 and 6 %.
 const ERROR_OF_RECTANGLES: f64 = 0.2;
 
 impl ContactArea {
@@ -83,7 +83,7 @@ impl ContactArea {
             perimeter_edges: 0,
             perimeter: 0.0,
             euler_number: 0.0,
-            edge_bend: 0.0,
+            gap_deviation: 0.0,
             missing_square: 0.0,
             fraction: 0.0,
             error: 0.0,
@@ -95,13 +95,14 @@ impl ContactArea {
             let size = smallest * f64::from(1_u32 << (2 * coarser));
             let (edges, contacts) = (sums.edges as f64, 0.25 * sums.turns as f64);
             let counted = sums.n_contact as f64;
-            let [shift, bend] = sums.of_all();
-            let shift = 0.5 * shift - bias.per_edge * edges - bias.per_contact * contacts - bias.per_bend * bend;
+            let [shift, deviation] = sums.of_all();
+            let shift =
+                0.5 * shift - bias.per_edge * edges - bias.per_contact * contacts - bias.per_deviation * deviation;
             area.cells += size * counted;
             area.fraction += size * (counted + shift);
             scatter += (SCATTER * size).powi(2) * edges;
             area.euler_number += contacts;
-            area.edge_bend += bend;
+            area.gap_deviation += deviation;
             area.missing_square += size * bias.per_square * sums.squares;
             area.perimeter_edges += sums.edges << coarser;
             area.perimeter += length(sums, sides.map(|side| side * f64::from(1_u32 << coarser)));
