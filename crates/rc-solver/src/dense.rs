@@ -4,7 +4,7 @@ use rc_core::{Field, Kernel, Operator};
 
 use crate::operator::DirectSum;
 use crate::problem::Problem;
-use crate::{Control, IterationError, IterationParams};
+use crate::{Control, IterationParams, ProblemError};
 
 /// Pressures (in E*) on the grid of `heights` under a given penetration (in λ), by elimination on the elements in contact:
 /// solve `Σ_j L_ij p_j = h_i - h_max + Δ` there, release elements under tension, take in elements that penetrate, until
@@ -14,8 +14,8 @@ use crate::{Control, IterationError, IterationParams};
 /// definite operators of this workspace.
 ///
 /// # Errors
-/// [`IterationError`] for heights or a penetration out of range.
-pub fn solve_dense(heights: &Field, kernel: &dyn Kernel, penetration: f64) -> Result<Option<Field>, IterationError> {
+/// [`ProblemError`] for heights or a penetration out of range.
+pub fn solve_dense(heights: &Field, kernel: &dyn Kernel, penetration: f64) -> Result<Option<Field>, ProblemError> {
     let problem = Problem::check(heights, Control::Penetration(penetration), &IterationParams::certified())?;
     let grid = heights.grid();
     let operator = DirectSum::new(grid, kernel);

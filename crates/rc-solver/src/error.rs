@@ -1,14 +1,11 @@
-//! Why a solve failed.
+//! What is wrong with a contact problem.
 
-use rc_core::Grid;
 use thiserror::Error;
 
-use crate::{Certificate, GridSolution};
-
-/// A contact problem that was not solved.
-#[derive(Clone, Debug, Error)]
+/// Heights, a load or a tolerance that cannot be.
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
-pub enum IterationError {
+pub enum ProblemError {
     /// A height is NaN or infinite.
     #[error("height at element ({ix}, {iy}) is {value}; heights must be finite")]
     Height {
@@ -55,17 +52,5 @@ pub enum IterationError {
         value: f64,
         /// The smallest that can be certified.
         smallest: f64,
-    },
-    /// The iteration limit was reached, or the error no longer falls. The best pressure found comes with it.
-    #[error("not converged on {grid} elements after {iterations} iterations: {certificate}")]
-    NotConverged {
-        /// Grid of the level.
-        grid: Grid,
-        /// Iterations on that level.
-        iterations: usize,
-        /// Residuals of the best pressure found.
-        certificate: Certificate,
-        /// The best pressure found, on the finest grid, with its gap.
-        solution: Box<GridSolution>,
     },
 }

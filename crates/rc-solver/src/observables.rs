@@ -2,7 +2,8 @@
 
 use rc_core::Kernel;
 
-use crate::{ContactArea, GridSolution, SolveInfo};
+use crate::solution::GridSolution;
+use crate::{ContactArea, SolveInfo};
 
 /// Observables of a solution, in units of λ and E*.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 /// How accurately, and within which limits, a contact problem is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct IterationParams {
+pub(crate) struct IterationParams {
     /// Bound on [`crate::Certificate::complementarity`] and [`crate::Certificate::penetration`]; both are relative to the
     /// peak-to-valley height h_max - h_min.
     pub tolerance: f64,
@@ -12,11 +12,11 @@ pub struct IterationParams {
 
 impl IterationParams {
     /// The smallest tolerance that can be certified: below it the rounding of L p in double precision decides.
-    pub const SMALLEST_TOLERANCE: f64 = 1e-13;
+    pub(crate) const SMALLEST_TOLERANCE: f64 = 1e-13;
 
     /// Certified to 1e-6 of the peak-to-valley height: area and rms pressure are then exact to about five digits.
     #[must_use]
-    pub fn certified() -> Self {
+    pub(crate) fn certified() -> Self {
         Self { tolerance: 1e-6, max_iterations: 2000 }
     }
 }

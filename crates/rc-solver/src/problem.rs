@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use rc_core::Field;
 
-use crate::{Control, IterationError, IterationParams};
+use crate::{Control, IterationParams, ProblemError};
 
 /// Height ranges, in λ, for which squares of pressures and their products with gaps neither underflow nor overflow.
 const HEIGHT_RANGE: [f64; 2] = [1e-130, 1e130];
@@ -18,7 +18,7 @@ pub(crate) struct HeightStatistics {
 
 impl HeightStatistics {
     /// In one pass, in parallel over rows.
-    pub(crate) fn of(heights: &Field) -> Result<Self, IterationError> {
+    pub(crate) fn of(heights: &Field) -> Result<Self, ProblemError> {
         let nx = heights.grid().nx();
         let rows: Vec<(f64, f64, f64)> = heights
             .values()
@@ -33,7 +33,7 @@ impl HeightStatistics {
         for (iy, (_, _, sum)) in rows.iter().enumerate() {
             if let Some(ix) = (!sum.is_finite()).then(|| heights.row(iy).iter().position(|h| !h.is_finite())).flatten()
             {
-                return Err(IterationError::Height { ix, iy, value: heights.at(ix, iy) });
+                return Err(ProblemError::Height { ix, iy, value: heights.at(ix, iy) });
             }
         }
         Ok(Self {
@@ -63,7 +63,7 @@ pub(crate) struct Problem {
 }
 
 impl Problem {
-    pub(crate) fn check(heights: &Field, control: Control, params: &IterationParams) -> Result<Self, IterationError> {
+    pub(crate) fn check(heights: &Field, control: Control, params: &IterationParams) -> Result<Self, ProblemError> {
         Self::of_statistics(HeightStatistics::of(heights)?, control, params)
     }
 
@@ -71,27 +71,27 @@ impl Problem {
         statistics: HeightStatistics,
         control: Control,
         params: &IterationParams,
-    ) -> Result<Self, IterationError> {
+    ) -> Result<Self, ProblemError> {
         let HeightStatistics { greatest: h_max, least: h_min, mean: h_mean } = statistics;
         let h_range = h_max - h_min;
         let full_contact = h_max - h_mean;
         let [smallest, greatest] = HEIGHT_RANGE;
         if h_range != 0.0 && !(smallest..=greatest).contains(&h_range) {
-            return Err(IterationError::HeightRange { value: h_range, smallest, greatest });
+            return Err(ProblemError::HeightRange { value: h_range, smallest, greatest });
         }
         match control {
             Control::MeanPressure(value) if !(value > 0.0 && value.is_finite()) => {
-                return Err(IterationError::MeanPressure { value });
+                return Err(ProblemError::MeanPressure { value });
             }
             // Also refuses every penetration into a flat surface, whose full contact is at zero.
             Control::Penetration(value) if !(value > 0.0 && value < full_contact) => {
-                return Err(IterationError::Penetration { value, full_contact });
+                return Err(ProblemError::Penetration { value, full_contact });
             }
             Control::MeanPressure(_) | Control::Penetration(_) => {}
         }
         let (value, smallest) = (params.tolerance, IterationParams::SMALLEST_TOLERANCE);
         if !(value >= smallest && value < 1.0) {
-            return Err(IterationError::Tolerance { value, smallest });
+            return Err(ProblemError::Tolerance { value, smallest });
         }
         Ok(Self { control, h_max, h_mean, h_range })
     }

@@ -2,7 +2,7 @@
 
 use rc_core::quantity::digits;
 use rc_core::{Grid, Units};
-use rc_solver::{AdaptiveError, Certificate, IterationError, SolveError};
+use rc_solver::{AdaptiveError, Certificate, ProblemError, SolveError};
 use rc_sweep::memory::Budget;
 
 use crate::error::CliError;
@@ -33,24 +33,24 @@ pub(super) fn in_si(error: &SolveError, surface: &LoadedSurface, contact: &Conta
     }
 }
 
-fn of_problem(error: &IterationError, units: Units) -> CliError {
+fn of_problem(error: &ProblemError, units: Units) -> CliError {
     match error {
-        IterationError::Penetration { value, full_contact } => CliError::input(format_args!(
+        ProblemError::Penetration { value, full_contact } => CliError::input(format_args!(
             "penetration: must be above 0 and below that of full contact, {:.6e} m, not {:.6e} m; beyond it the penetration \
              no longer determines the pressure, so give --pressure",
             units.metres(*full_contact),
             units.metres(*value)
         )),
-        IterationError::HeightRange { value, smallest, greatest } => CliError::input(format_args!(
+        ProblemError::HeightRange { value, smallest, greatest } => CliError::input(format_args!(
             "heights: their range must be 0 or from {:e} to {:e} m, not {:e} m",
             units.metres(*smallest),
             units.metres(*greatest),
             units.metres(*value)
         )),
-        IterationError::MeanPressure { value } => {
+        ProblemError::MeanPressure { value } => {
             CliError::input(format_args!("pressure: must be positive and finite (Pa), not {}", units.pascals(*value)))
         }
-        IterationError::Tolerance { value, smallest } => {
+        ProblemError::Tolerance { value, smallest } => {
             CliError::input(format_args!("tolerance: must be between {smallest:e} and 1, not {value:e}"))
         }
         other => CliError::input(other),

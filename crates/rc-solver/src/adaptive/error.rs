@@ -1,18 +1,11 @@
-//! Why the adaptive method did not solve a problem.
+//! Why the adaptive method does not fit a problem.
 
-use rc_core::Grid;
 use thiserror::Error;
 
-use super::AdaptiveSolution;
-use crate::{Certificate, IterationError};
-
-/// A contact problem that the adaptive method did not solve.
-#[derive(Debug, Error)]
+/// A contact problem that the adaptive method does not fit.
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum AdaptiveError {
-    /// The problem itself is not valid; never [`IterationError::NotConverged`].
-    #[error(transparent)]
-    Solve(#[from] IterationError),
     /// Squares of the mesh are halves of halves of the cell.
     #[error("the adaptive method needs a square cell")]
     RectangularCell,
@@ -79,18 +72,6 @@ pub enum AdaptiveError {
         value: f64,
         /// The smallest that can be had.
         smallest: f64,
-    },
-    /// The iteration limit was reached, or the error no longer falls.
-    #[error("not converged on {grid} elements after {iterations} iterations: {certificate}")]
-    NotConverged {
-        /// The finest grid.
-        grid: Grid,
-        /// Iterations on it.
-        iterations: usize,
-        /// Residuals of the pressure found.
-        certificate: Certificate,
-        /// The pressure found.
-        solution: Box<AdaptiveSolution>,
     },
 }
 

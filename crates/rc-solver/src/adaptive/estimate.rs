@@ -32,7 +32,7 @@ pub(super) fn base_bytes(base_side: usize) -> f64 {
 
 /// An estimate of area, time and memory, from the surface and the load alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
+pub(crate) struct Estimate {
     /// Contact area relative to the nominal area.
     pub area_fraction: f64,
     /// Part of the cell in tiles where contact is possible, on the grid.
@@ -46,7 +46,7 @@ pub struct Estimate {
 impl Estimate {
     /// Above this contact area the uniform grid is faster. Measured at 2048², N = 64: ratio of the times of the adaptive to the
     /// uniform method 0.19 at 1 %, 0.29 at 7 %, 0.9 at 29 %, 1.3 at 61 % and 1.9 at 89 %.
-    pub const GREATEST_ADAPTIVE_AREA: f64 = 0.35;
+    pub(crate) const GREATEST_ADAPTIVE_AREA: f64 = 0.35;
 
     pub(super) fn new(heights: &Heights<'_>, border_level: usize, control: Control) -> Self {
         let base = heights.base();

@@ -28,17 +28,17 @@ use rc_quadtree::{Elements, TILE};
 
 use self::contact_area::contact_area;
 pub use self::error::AdaptiveError;
-pub use self::estimate::Estimate;
+pub(crate) use self::estimate::Estimate;
 use self::heights::Heights;
 use self::level::SolvedLevel;
 pub use self::multilevel::MultilevelOperator;
 use self::nested_iteration::{NestedIteration, NestedSolution};
 use self::operator::Real;
 use self::roughness::{ERROR_OF_ROUGHNESS, roughness};
-pub use self::solution::{AdaptiveSolution, ContactElement};
+pub(crate) use self::solution::AdaptiveSolution;
+pub use self::solution::ContactElement;
 use crate::problem::Problem;
-use crate::solution::LevelInfo;
-use crate::{Certificate, Control, IterationParams};
+use crate::{Certificate, Control, IterationParams, SolveError};
 
 /// Operator errors from here on are reached in single precision.
 const SINGLE_PRECISION: f64 = 1e-6;
@@ -59,7 +59,7 @@ const SMALLEST_BASE: usize = 64;
 
 /// How accurately, and within which limits, the adaptive method solves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AdaptiveParams {
+pub(crate) struct AdaptiveParams {
     /// Tolerance of the certificate and limit of iterations.
     pub solve: IterationParams,
     /// Bound on the error of one application of L, relative to the rms displacement, on pressures of contacts
@@ -75,24 +75,10 @@ pub struct AdaptiveParams {
     pub memory_limit: Option<u64>,
 }
 
-impl AdaptiveParams {
-    /// As [`IterationParams::certified`], L to 1e-6, no limit of memory.
-    #[must_use]
-    pub fn certified() -> Self {
-        Self {
-            solve: IterationParams::certified(),
-            operator_error: 1e-6,
-            border_level: 0,
-            base_side: None,
-            memory_limit: None,
-        }
-    }
-}
-
 /// A checked contact problem, ready for the adaptive method: heights are sampled, nothing is solved.
 ///
 /// Displacements are those of Love's squares ([`rc_kernel::Love`]) of the finest side.
-pub struct AdaptiveProblem<'a> {
+pub(crate) struct AdaptiveProblem<'a> {
     heights: Heights<'a>,
     problem: Problem,
     params: AdaptiveParams,
@@ -103,8 +89,8 @@ impl<'a> AdaptiveProblem<'a> {
     /// Checks and prepares.
     ///
     /// # Errors
-    /// [`AdaptiveError`], but not [`AdaptiveError::NotConverged`].
-    pub fn new(source: HeightSource<'a>, control: Control, params: &AdaptiveParams) -> Result<Self, AdaptiveError> {
+    /// [`SolveError`], but not [`SolveError::NotConverged`].
+    pub(crate) fn new(source: HeightSource<'a>, control: Control, params: &AdaptiveParams) -> Result<Self, SolveError> {
         check_square(source.grid())?;
         let error = params.operator_error.min(OPERATOR_ERROR_PER_TOLERANCE * params.solve.tolerance);
         let split = SplitParams::for_error(error)
@@ -114,7 +100,7 @@ impl<'a> AdaptiveProblem<'a> {
         let heights = Heights::new(with_border_level(source, params.border_level)?, base_side)?;
         let problem = Problem::of_statistics(heights.extremes(), control, &params.solve)?;
         if problem.h_range == 0.0 {
-            return Err(AdaptiveError::Flat);
+            return Err(AdaptiveError::Flat.into());
         }
         let prepared = Self { heights, problem, params: *params, split };
         let Estimate { area_fraction, adaptive_bytes, .. } = prepared.estimate();
@@ -124,7 +110,7 @@ impl<'a> AdaptiveProblem<'a> {
 
     /// What solving it will cost, from the surface and the load alone.
     #[must_use]
-    pub fn estimate(&self) -> Estimate {
+    pub(crate) fn estimate(&self) -> Estimate {
         Estimate::new(&self.heights, self.params.border_level, self.problem.control)
     }
 
@@ -136,7 +122,7 @@ impl<'a> AdaptiveProblem<'a> {
 
     /// The greatest height over the finest grid, in λ.
     #[must_use]
-    pub fn h_max(&self) -> f64 {
+    pub(crate) fn h_max(&self) -> f64 {
         self.problem.h_max
     }
 
@@ -144,10 +130,7 @@ impl<'a> AdaptiveProblem<'a> {
     ///
     /// The certificate comes from a fresh application of L on the returned pressure; it covers every cell where a bound does
     /// not exclude contact. The result is bitwise the same for any number of threads.
-    ///
-    /// # Errors
-    /// [`AdaptiveError::NotConverged`].
-    pub fn solve(&self, observer: &dyn Observer) -> Result<AdaptiveSolution, AdaptiveError> {
+    pub(crate) fn solve(&self, observer: &dyn Observer) -> AdaptiveSolution {
         let solved = if self.operator_error() >= SINGLE_PRECISION {
             self.solve_in::<f32>(observer)
         } else {
@@ -193,10 +176,10 @@ impl<'a> AdaptiveProblem<'a> {
     }
 
     /// Wraps up what the levels found, under a pressure that needs an error of L of `needed`.
-    fn finish(&self, solved: NestedSolution, needed: f64) -> Result<AdaptiveSolution, AdaptiveError> {
+    fn finish(&self, solved: NestedSolution, needed: f64) -> AdaptiveSolution {
         let NestedSolution { grid, level, levels, coarser, .. } = solved;
         // Where even the best operator is not good enough for so rough a pressure, its error is part of the certificate.
-        let SolvedLevel { elements, pressure, gap, mut outcome, evaluated, info: LevelInfo { iterations, .. } } = level;
+        let SolvedLevel { elements, pressure, gap, mut outcome, evaluated, .. } = level;
         if needed < SplitParams::SMALLEST_ERROR {
             let error = PART_OF_ROUGHNESS * self.params.solve.tolerance * SplitParams::SMALLEST_ERROR / needed;
             outcome.certificate.penetration += error;
@@ -207,7 +190,7 @@ impl<'a> AdaptiveProblem<'a> {
         let certificate = outcome.certificate;
         let converged =
             certificate.penetration <= self.params.solve.tolerance && certificate.load <= Certificate::LOAD_TOLERANCE;
-        let solution = AdaptiveSolution {
+        AdaptiveSolution {
             converged,
             base: self.heights.base().grid(),
             grid: Grid::square(grid.nx() >> border_level).expect("a coarser grid than the finest"),
@@ -219,11 +202,6 @@ impl<'a> AdaptiveProblem<'a> {
             info: outcome.info(&self.problem, levels, coarser),
             evaluated,
             proven: grid.len() - evaluated,
-        };
-        if converged {
-            Ok(solution)
-        } else {
-            Err(AdaptiveError::NotConverged { grid, iterations, certificate, solution: Box::new(solution) })
         }
     }
 
@@ -235,7 +213,7 @@ impl<'a> AdaptiveProblem<'a> {
     ///
     /// # Panics
     /// When the solution is on another grid than this problem.
-    pub fn gap_rows<E>(
+    pub(crate) fn gap_rows<E>(
         &self,
         solution: &AdaptiveSolution,
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
@@ -250,19 +228,6 @@ impl<'a> AdaptiveProblem<'a> {
             take(first, &rows)
         })
     }
-}
-
-/// Solves a contact problem on an adaptive mesh: [`AdaptiveProblem::new`] and [`AdaptiveProblem::solve`].
-///
-/// # Errors
-/// [`AdaptiveError`].
-pub fn solve_adaptive(
-    source: HeightSource<'_>,
-    control: Control,
-    params: &AdaptiveParams,
-    observer: &dyn Observer,
-) -> Result<AdaptiveSolution, AdaptiveError> {
-    AdaptiveProblem::new(source, control, params)?.solve(observer)
 }
 
 /// Refuses a cell that is not a square, and one that has not as many elements along x as along y.
@@ -381,9 +346,17 @@ mod tests {
                 Some(1000)
             }
         }
-        let params = AdaptiveParams { memory_limit: Some(100_000_000), ..AdaptiveParams::certified() };
+        let params = AdaptiveParams {
+            solve: IterationParams::certified(),
+            operator_error: 1e-6,
+            border_level: 0,
+            base_side: None,
+            memory_limit: Some(100_000_000),
+        };
         let source = Unsampled.on(Grid::square(32768).expect("a grid"));
         let error = AdaptiveProblem::new(source, Control::MeanPressure(1e-3), &params).err();
-        assert!(matches!(error, Some(AdaptiveError::Memory { limit: 100, area_percent: None, .. })), "{error:?}");
+        let expected =
+            matches!(error, Some(SolveError::Adaptive(AdaptiveError::Memory { limit: 100, area_percent: None, .. })));
+        assert!(expected, "{error:?}");
     }
 }

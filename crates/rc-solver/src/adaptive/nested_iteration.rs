@@ -14,7 +14,7 @@ use super::setup::Setup;
 use super::solution;
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues};
-use crate::uniform::{self, Climb, Climbed};
+use crate::uniform::{self, FinestGrid, NestedGrids};
 
 /// The solved finest level, and the work on all levels.
 pub(super) struct NestedSolution {
@@ -96,8 +96,8 @@ impl<'a, T: Real + Into<f64>> NestedIteration<'a, T> {
     fn solve_base(&self, n_above: usize, observer: &dyn Observer) -> LevelStart {
         let Setup { heights, problem, params, .. } = &self.setup;
         let base = heights.base();
-        let climb = Climb { kernel: &Love, problem, params: *params, n_above, observer };
-        let Climbed { descent, outcome, levels, coarser } = climb.to(base);
+        let grids = NestedGrids { kernel: &Love, problem, params: *params, n_above, observer };
+        let FinestGrid { descent, outcome, levels, coarser } = grids.solve(base);
         let function = to_tiles(base.grid(), &uniform::edge_function(&descent));
         let tiles = TileSet::full(base.grid().nx() / TILE);
         LevelStart {

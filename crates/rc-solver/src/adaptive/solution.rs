@@ -33,7 +33,7 @@ pub struct ContactElement {
 /// Only what contact touches is stored; [`AdaptiveSolution::pressure_rows`] gives the rows of the finest grid one tile high at
 /// a time, for files and pictures.
 #[derive(Clone, Debug)]
-pub struct AdaptiveSolution {
+pub(crate) struct AdaptiveSolution {
     /// Whether the certificate meets the tolerance.
     pub(super) converged: bool,
     pub(super) base: Grid,
@@ -56,12 +56,12 @@ pub struct AdaptiveSolution {
 impl AdaptiveSolution {
     /// The grid: the smallest elements are 2^[`AdaptiveParams::border_level`](super::AdaptiveParams) times smaller than its own.
     #[must_use]
-    pub fn grid(&self) -> Grid {
+    pub(crate) fn grid(&self) -> Grid {
         self.grid
     }
 
     /// Elements in contact.
-    pub fn elements(&self) -> impl Iterator<Item = ContactElement> + '_ {
+    pub(crate) fn elements(&self) -> impl Iterator<Item = ContactElement> + '_ {
         self.elements.tiles().flat_map(move |(coarser, tile, start)| {
             let side = self.elements.side(coarser);
             let [column, row] = self.elements.levels()[coarser].places()[tile].map(|i| f64::from(i) * TILE as f64);
@@ -76,13 +76,13 @@ impl AdaptiveSolution {
 
     /// Number of elements in contact.
     #[must_use]
-    pub fn n_elements(&self) -> usize {
+    pub(crate) fn n_elements(&self) -> usize {
         self.pressure.par_iter().filter(|&&p| p > 0.0).count()
     }
 
     /// Whether every element is in contact, and elements are everywhere.
     #[must_use]
-    pub fn is_full_contact(&self) -> bool {
+    pub(crate) fn is_full_contact(&self) -> bool {
         self.elements.cover_cell() && self.n_elements() == self.elements.n_cells()
     }
 
@@ -110,7 +110,7 @@ impl AdaptiveSolution {
     ///
     /// # Errors
     /// What `take` returns.
-    pub fn pressure_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+    pub(crate) fn pressure_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         let (tiles, pressure) = self.on_grid();
         tiles.rows(&pressure, take)
     }
@@ -121,7 +121,7 @@ impl AdaptiveSolution {
     ///
     /// # Errors
     /// What `take` returns.
-    pub fn displacement_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+    pub(crate) fn displacement_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         let (own_tiles, pressure) = self.on_grid();
         let (n, per_side) = (own_tiles.side(), own_tiles.per_side());
         let own = Elements::uniform(own_tiles);
@@ -157,7 +157,7 @@ impl AdaptiveSolution {
 
     /// What the gap is more than v - h: the greatest height less the penetration.
     #[must_use]
-    pub fn gap_offset(&self, h_max: f64) -> f64 {
+    pub(crate) fn gap_offset(&self, h_max: f64) -> f64 {
         h_max - self.info.penetration
     }
 
@@ -171,15 +171,9 @@ impl AdaptiveSolution {
         (self.finest.nx() / self.base.nx()).ilog2() as usize
     }
 
-    /// The contact area, from pressure and gap where it was solved.
-    #[must_use]
-    pub fn contact_area(&self) -> ContactArea {
-        self.area
-    }
-
     /// Evaluates the observables, as [`Observables::of`] does for a solution on a uniform grid.
     #[must_use]
-    pub fn observables(&self) -> Observables {
+    pub(crate) fn observables(&self) -> Observables {
         let rms_pressure = rms_pressure(&self.elements, &self.pressure);
         Observables {
             area: self.area,
@@ -196,7 +190,7 @@ impl AdaptiveSolution {
     /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact. Takes a few
     /// applications of L.
     #[must_use]
-    pub fn contact_stiffness(&self) -> f64 {
+    pub(crate) fn contact_stiffness(&self) -> f64 {
         if self.is_full_contact() {
             return f64::INFINITY;
         }

@@ -1,9 +1,9 @@
 //! What a pressure amounts to: its certificate and its observables.
 
-use super::gap::{GapSums, positive_part};
+use super::gap::GapSums;
+use crate::Certificate;
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues, SolveInfo};
-use crate::{Certificate, Control};
 
 /// What a descent found.
 pub(crate) struct Outcome {
@@ -22,18 +22,11 @@ pub(crate) struct Outcome {
 impl Outcome {
     /// From the sums over all elements that may be in contact, in a cell of `n_cell` elements.
     pub(crate) fn new(problem: &Problem, sums: &GapSums, n_cell: f64, converged: bool) -> Self {
-        let h_range = problem.h_range;
         let mean_pressure = sums.pressure / n_cell;
         let mean_gap = sums.mean_gap();
-        let penetration = positive_part((mean_gap - sums.min_gap) / h_range);
-        let load = match problem.control {
-            Control::MeanPressure(wanted) => (mean_pressure - wanted).abs() / wanted,
-            Control::Penetration(_) => mean_gap.abs() / h_range,
-        };
         Self {
             converged,
-            // Σ p (g - min g) / Σ p with the weighted mean of g as zero is -min g: the two errors coincide.
-            certificate: Certificate { complementarity: penetration, penetration, load },
+            certificate: Certificate::new(problem, sums.min_gap - mean_gap, mean_pressure, mean_gap),
             mean_pressure,
             approach: mean_gap - problem.offset(),
             elastic_energy: 0.5 * sums.work() / n_cell,

@@ -8,7 +8,7 @@ use rc_core::DVec2;
 use rc_quadtree::paper::Mesh;
 
 /// `coefficient(offset, half_side)`: L_ij of Eq. 4-6 for a source of half-side d and the offset of the target, in λ/E*.
-pub type Coefficient<'a> = &'a (dyn Fn(DVec2, f64) -> f64 + Sync);
+pub(crate) type Coefficient<'a> = &'a (dyn Fn(DVec2, f64) -> f64 + Sync);
 
 /// One element as the sums see it: centre on the lattice, and size of the source.
 #[derive(Clone, Copy, Debug)]

@@ -1,18 +1,13 @@
-//! Why the paper's procedure failed.
+//! Why the paper's procedure does not fit a problem.
 
 use rc_core::Grid;
 use rc_quadtree::paper::MeshError;
 use thiserror::Error;
 
-use crate::IterationError;
-
-/// A contact problem that the paper's procedure did not solve.
+/// A contact problem that the paper's procedure does not fit.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum GaussSeidelError {
-    /// The problem itself is refused, or was not solved; as for the other methods.
-    #[error(transparent)]
-    Solve(#[from] IterationError),
     /// The elements of the mesh must be squares, in a square cell.
     #[error(
         "the mesh has square elements in a square cell, not {grid} in one of 1 by {ratio}",

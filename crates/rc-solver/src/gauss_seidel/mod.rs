@@ -20,11 +20,42 @@
 
 mod coefficients;
 mod error;
+mod estimate;
+mod finish;
+mod half_space;
 mod params;
 mod procedure;
 mod sweep;
 
-pub use coefficients::Coefficient;
-pub use error::GaussSeidelError;
-pub use params::GaussSeidelParams;
-pub use procedure::solve_gauss_seidel;
+use rc_core::{Field, Observer};
+
+pub use self::error::GaussSeidelError;
+pub(crate) use self::half_space::HalfSpace;
+pub use self::params::GaussSeidelParams;
+use self::procedure::Procedure;
+use crate::problem::Problem;
+use crate::solution::GridSolution;
+use crate::{Control, IterationParams, SolveError};
+
+/// Solves the contact problem by the paper's procedure (Sec. 2, steps (i)-(vi)) on an adaptive mesh whose finest elements are those of the
+/// grid of `heights`, to a tolerance.
+///
+/// A mean pressure is found by a secant search over the penetration, which is what the procedure controls. The result is bitwise the same
+/// for any number of threads.
+pub(crate) fn solve_gauss_seidel(
+    heights: &Field,
+    half_space: HalfSpace<'_>,
+    control: Control,
+    (tolerance, params): (f64, &GaussSeidelParams),
+    observer: &dyn Observer,
+) -> Result<GridSolution, SolveError> {
+    estimate::check(heights, params)?;
+    let problem = Problem::check(heights, control, &IterationParams { tolerance, ..IterationParams::certified() })?;
+    let expected = estimate::estimate(heights, half_space, control, params)?;
+    let mut procedure = Procedure::new(heights, half_space, &problem, (tolerance, params), observer)?;
+    match control {
+        Control::Penetration(penetration) => procedure.increase_to(penetration)?,
+        Control::MeanPressure(mean) => procedure.search(mean, expected)?,
+    }
+    procedure.finish()
+}

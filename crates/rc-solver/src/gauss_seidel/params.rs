@@ -1,12 +1,9 @@
 //! Parameters of the paper's procedure.
 
-/// Parameters of [`crate::solve_gauss_seidel`].
+/// Parameters of the paper's procedure alone. The tolerance is [`crate::SolveParams::tolerance`], evaluated at the points of collocation:
+/// centres of elements in contact, and all points of the finest grid out of contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaussSeidelParams {
-    /// Bound on complementarity and penetration errors, relative to the peak-to-valley height, as
-    /// [`crate::IterationParams::tolerance`]. Evaluated at the points of collocation: centres of elements in contact, and all
-    /// points of the finest grid out of contact.
-    pub tolerance: f64,
     /// Increments in which the penetration is reached.
     pub increments: usize,
     /// Relaxation factor ω in (0, 2). 1 is plain Gauss-Seidel, as in the paper, and also what needs the fewest sweeps: N = 8
@@ -27,11 +24,10 @@ pub struct GaussSeidelParams {
 }
 
 impl GaussSeidelParams {
-    /// The paper's mesh, certified to 1e-6, within 1 GiB and 4·10⁸ coefficients (20 000 elements) a sweep.
+    /// The paper's mesh, within 1 GiB and 4·10⁸ coefficients (20 000 elements) a sweep.
     #[must_use]
     pub fn paper() -> Self {
         Self {
-            tolerance: 1e-6,
             increments: 4,
             relaxation: 1.0,
             max_sweeps: 2000,

@@ -1,25 +1,17 @@
 //! Steps (i) to (vi) of the procedure of Sec. 2, which solves Eq. 4 on the elements in contact.
 
-use rc_core::{Event, Field, Kernel, Observer, Operator, Snapshot};
-use rc_quadtree::paper::{Key, Mask, Mesh, MeshKind, MeshParams, count, transfer};
+use rc_core::{Event, Field, Observer, Operator, Snapshot};
+use rc_quadtree::paper::{Key, Mask, Mesh, MeshKind, MeshParams, transfer};
 
-use super::coefficients::{Coefficient, Coefficients, Site};
+use super::coefficients::{Coefficients, Site};
+use super::estimate::{LARGEST_DOUBLINGS, mesh_kind, mesh_params};
 use super::sweep::{self, Limits};
-use super::{GaussSeidelError, GaussSeidelParams};
+use super::{GaussSeidelError, GaussSeidelParams, HalfSpace};
+use crate::Control;
 use crate::operator::UniformOperator;
 use crate::problem::Problem;
-use crate::solution::{GridSolution, LevelInfo, MeshPressure, SolveInfo, Status};
+use crate::solution::LevelInfo;
 use crate::uniform::coarsen;
-use crate::{Certificate, Control, IterationError, IterationParams, solve_uniform};
-
-/// Largest element, in finest elements: beyond it coarsening saves nothing and heights at centres would need more levels.
-const LARGEST_DOUBLINGS: u32 = 5;
-
-/// Side of the coarse grid that the cost is estimated on, at most.
-const ESTIMATE_SIDE: usize = 256;
-
-/// Rough time of one coefficient from a table, for the message about the budget.
-const SECONDS_PER_COEFFICIENT: f64 = 2e-9;
 
 /// Tolerance of all increments but the last, which only prepare its contact.
 const EARLY_TOLERANCE: f64 = 1e-4;
@@ -33,135 +25,37 @@ const FIRST_RESIDUAL: f64 = 1e-4;
 /// Steps of the search for the penetration of a given mean pressure.
 const MOST_SECANT_STEPS: usize = 30;
 
-/// Solves the contact problem by the paper's procedure (Sec. 2, steps (i)-(vi)) on an adaptive mesh whose finest elements
-/// are those of the grid of `heights`.
-///
-/// `kernel` and `coefficient` must be the same half-space: its symbol on uniform grids, and L_ij between squares, as
-/// [`rc_kernel::Love`] and `rc_kernel::PeriodicLove` are. A mean pressure is found by a secant search over the penetration,
-/// which is what the procedure controls.
-///
-/// The result is bitwise the same for any number of threads.
-///
-/// # Errors
-/// [`GaussSeidelError`].
-pub fn solve_gauss_seidel(
-    heights: &Field,
-    kernel: &dyn Kernel,
-    coefficient: Coefficient<'_>,
-    control: Control,
-    params: &GaussSeidelParams,
-    observer: &dyn Observer,
-) -> Result<GridSolution, GaussSeidelError> {
-    check(heights, params)?;
-    let solve_params = IterationParams { tolerance: params.tolerance, ..IterationParams::certified() };
-    let problem = Problem::check(heights, control, &solve_params)?;
-    let expected = estimate(heights, kernel, control, params)?;
-    let mut procedure = Procedure::new(heights, kernel, coefficient, &problem, params, observer)?;
-    match control {
-        Control::Penetration(penetration) => procedure.increase_to(penetration)?,
-        Control::MeanPressure(mean) => procedure.search(mean, expected)?,
-    }
-    procedure.finish(control)
-}
-
-fn check(heights: &Field, params: &GaussSeidelParams) -> Result<(), GaussSeidelError> {
-    let grid = heights.grid();
-    if !grid.is_square() {
-        return Err(GaussSeidelError::NotSquare { grid });
-    }
-    let bad = |what, wanted, value| Err(GaussSeidelError::Parameter { what, wanted, value });
-    if !(params.relaxation > 0.0 && params.relaxation < 2.0) {
-        return bad("the relaxation factor", "above 0 and below 2", params.relaxation);
-    }
-    if params.increments == 0 {
-        return bad("the number of increments", "at least 1", 0.0);
-    }
-    if params.max_checks == 0 || params.max_sweeps == 0 {
-        return bad("the number of sweeps and of double checks", "at least 1", 0.0);
-    }
-    Ok(())
-}
-
-/// The mesh of a grid of `side` elements.
-fn mesh_params(side: usize, ring: usize) -> MeshParams {
-    let doublings = side.trailing_zeros().min(LARGEST_DOUBLINGS);
-    MeshParams { base: side >> doublings, ring, halo: 0 }
-}
-
-fn mesh_kind(params: &GaussSeidelParams) -> MeshKind {
-    if params.uniform_elements { MeshKind::AdaptiveUniform } else { MeshKind::Adaptive }
-}
-
-/// Solves the scene on a coarse grid to foresee the cost, and the penetration. Refuses what would exceed the budget.
-fn estimate(
-    heights: &Field,
-    kernel: &dyn Kernel,
-    control: Control,
-    params: &GaussSeidelParams,
-) -> Result<f64, GaussSeidelError> {
-    let coarse = coarsen(heights, ESTIMATE_SIDE / 2);
-    let coarse = std::iter::once(heights).chain(&coarse).find(|field| field.grid().nx() <= ESTIMATE_SIDE);
-    // A grid that cannot be halved is its own coarse grid.
-    let coarse = coarse.unwrap_or(heights);
-    let at_most = |full_contact: f64| match control {
-        // The coarse grid misses the highest point: keep its penetration below its own full contact.
-        Control::Penetration(value) => Control::Penetration(value.min(0.999 * full_contact)),
-        Control::MeanPressure(_) => control,
-    };
-    let solve_params = IterationParams { tolerance: 1e-4, ..IterationParams::certified() };
-    let control = at_most(coarse.max() - coarse.mean());
-    let solution = match solve_uniform(coarse, kernel, control, &solve_params, &rc_core::Silent) {
-        Ok(solution) => solution,
-        Err(IterationError::NotConverged { solution, .. }) => *solution,
-        Err(error) => return Err(error.into()),
-    };
-    let side = heights.grid().nx();
-    let ratio = side / coarse.grid().nx();
-    let contact = |i: usize| {
-        let (ix, iy) = (i % side, i / side);
-        solution.pressure.at(ix / ratio, iy / ratio) > 0.0
-    };
-    let mask = Mask::new(side, (0..heights.grid().len()).map(contact).collect())?;
-    let elements: usize = count(&mask, mesh_kind(params), &mesh_params(side, params.ring))?.into_iter().sum();
-    let coefficients = (elements as f64).powi(2);
-    if coefficients > params.sweep_budget as f64 {
-        let (seconds_per_sweep, budget) = (coefficients * SECONDS_PER_COEFFICIENT, params.sweep_budget as f64);
-        return Err(GaussSeidelError::Budget { elements, coefficients, seconds_per_sweep, budget });
-    }
-    Ok(solution.info.penetration.max(f64::MIN_POSITIVE))
-}
-
 /// The state between increments.
-struct Procedure<'a> {
+pub(super) struct Procedure<'a> {
     /// Heights at the centres of elements of 1, 2, 4, … finest elements; the first are the heights themselves.
-    pyramid: Vec<Field>,
-    problem: &'a Problem,
+    pub(super) pyramid: Vec<Field>,
+    pub(super) problem: &'a Problem,
+    pub(super) tolerance: f64,
     params: &'a GaussSeidelParams,
     observer: &'a dyn Observer,
-    coefficients: Coefficients<'a>,
+    pub(super) coefficients: Coefficients<'a>,
     operator: UniformOperator,
     kind: MeshKind,
     mesh_params: MeshParams,
-    penetration: f64,
+    pub(super) penetration: f64,
     /// Cells of the finest grid in contact.
-    contact: Vec<bool>,
+    pub(super) contact: Vec<bool>,
     /// Displacement on the finest grid.
-    displacement: Field,
-    mesh: Mesh,
-    sites: Vec<Site>,
-    pressure: Vec<f64>,
-    info: LevelInfo,
+    pub(super) displacement: Field,
+    pub(super) mesh: Mesh,
+    pub(super) sites: Vec<Site>,
+    pub(super) pressure: Vec<f64>,
+    pub(super) info: LevelInfo,
     /// Whether the last double check left the contact as it was.
-    settled: bool,
+    pub(super) settled: bool,
 }
 
 impl<'a> Procedure<'a> {
-    fn new(
+    pub(super) fn new(
         heights: &Field,
-        kernel: &dyn Kernel,
-        coefficient: Coefficient<'a>,
+        half_space: HalfSpace<'a>,
         problem: &'a Problem,
-        params: &'a GaussSeidelParams,
+        (tolerance, params): (f64, &'a GaussSeidelParams),
         observer: &'a dyn Observer,
     ) -> Result<Self, GaussSeidelError> {
         let grid = heights.grid();
@@ -177,10 +71,11 @@ impl<'a> Procedure<'a> {
         Ok(Self {
             pyramid,
             problem,
+            tolerance,
             params,
             observer,
-            coefficients: Coefficients::new(coefficient, side as u32, params.memory_budget),
-            operator: UniformOperator::new(grid, kernel),
+            coefficients: Coefficients::new(half_space.coefficient, side as u32, params.memory_budget),
+            operator: UniformOperator::new(grid, half_space.kernel),
             kind,
             mesh_params,
             penetration: 0.0,
@@ -195,12 +90,12 @@ impl<'a> Procedure<'a> {
     }
 
     /// Step (i): Δ in increments, of which only the last is solved to the tolerance, and that only when Δ is what is prescribed.
-    fn increase_to(&mut self, penetration: f64) -> Result<(), GaussSeidelError> {
+    pub(super) fn increase_to(&mut self, penetration: f64) -> Result<(), GaussSeidelError> {
         let (grid, steps) = (self.info.grid, self.params.increments);
         for step in 1..=steps {
             self.observer.notify(&Event::Level { grid, level: step - 1, n_levels: steps });
             let early = step < steps || matches!(self.problem.control, Control::MeanPressure(_));
-            let tolerance = if early { self.params.tolerance.max(EARLY_TOLERANCE) } else { self.params.tolerance };
+            let tolerance = if early { self.tolerance.max(EARLY_TOLERANCE) } else { self.tolerance };
             self.settle(step as f64 / steps as f64 * penetration, tolerance)?;
             if self.observer.should_stop() {
                 break;
@@ -210,38 +105,29 @@ impl<'a> Procedure<'a> {
     }
 
     /// The penetration at which the mean pressure is `mean`, starting from the `expected` one.
-    fn search(&mut self, mean: f64, expected: f64) -> Result<(), GaussSeidelError> {
+    pub(super) fn search(&mut self, mean: f64, expected: f64) -> Result<(), GaussSeidelError> {
         let full = self.problem.h_max - self.problem.h_mean;
         self.increase_to(expected.min(0.999 * full))?;
-        let (mut low, mut high) = ((0.0, 0.0), (full, f64::INFINITY));
+        let mut bracket = Bracket { low: (0.0, 0.0), high: (full, f64::INFINITY) };
         for _ in 0..MOST_SECANT_STEPS {
             if self.observer.should_stop() {
                 break;
             }
             let here = (self.penetration, self.mean_pressure());
-            if (here.1 / mean - 1.0).abs() <= self.params.tolerance {
-                return self.settle(here.0, self.params.tolerance);
-            }
-            // A chord to the other end of the bracket, or to the origin while it has no upper end.
-            let other = if here.1 < mean && high.1.is_finite() { high } else { low };
-            if here.1 < mean {
-                low = here;
-            } else {
-                high = here;
-            }
-            let chord = here.0 + (mean - here.1) * (here.0 - other.0) / (here.1 - other.1);
-            let inside = chord > low.0 && chord < high.0;
-            let next = if inside { chord } else { f64::midpoint(low.0, high.0) };
-            // As accurately as the load is known to be off, until it is not.
             let off = (here.1 / mean - 1.0).abs();
-            let tolerance = if off < self.params.tolerance.sqrt() { 0.0 } else { 1e-2 * off };
-            self.settle(next, tolerance.clamp(self.params.tolerance, EARLY_TOLERANCE))?;
+            if off <= self.tolerance {
+                return self.settle(here.0, self.tolerance);
+            }
+            let next = bracket.next(here, mean);
+            // As accurately as the load is known to be off, until it is not.
+            let tolerance = if off < self.tolerance.sqrt() { 0.0 } else { 1e-2 * off };
+            self.settle(next, tolerance.clamp(self.tolerance, EARLY_TOLERANCE))?;
         }
         Ok(())
     }
 
     /// Mean pressure over the cell.
-    fn mean_pressure(&self) -> f64 {
+    pub(super) fn mean_pressure(&self) -> f64 {
         self.mesh.elements().zip(&self.pressure).map(|(element, p)| p * element.area()).sum()
     }
 
@@ -264,7 +150,7 @@ impl<'a> Procedure<'a> {
                 tolerance,
                 n_contact: self.mesh.len(),
             });
-            self.show();
+            self.report_pressure();
             let unchanged = removed + added == 0;
             self.settled = unchanged && residual <= wanted;
             // After the first sweeps, so that there is something to return.
@@ -284,7 +170,7 @@ impl<'a> Procedure<'a> {
     }
 
     /// Lets the observer look at the pressure.
-    fn show(&self) {
+    fn report_pressure(&self) {
         let rows = |take: &mut dyn FnMut(&[f64])| {
             let field = self.mesh.to_field(&self.pressure, self.info.grid);
             take(field.expect("a value for each element").values());
@@ -308,7 +194,7 @@ impl<'a> Procedure<'a> {
     }
 
     /// `v_i = h_i - h_max + Δ` at the centres of elements.
-    fn prescribed(&self) -> Vec<f64> {
+    pub(super) fn prescribed(&self) -> Vec<f64> {
         let depth = self.mesh_params.base;
         let lowering = self.penetration - self.problem.h_max;
         let finest = self.info.grid.nx();
@@ -321,7 +207,7 @@ impl<'a> Procedure<'a> {
     }
 
     /// Step (v): the displacement everywhere.
-    fn displace(&mut self) -> Result<(), GaussSeidelError> {
+    pub(super) fn displace(&mut self) -> Result<(), GaussSeidelError> {
         let pressure = self.mesh.to_field(&self.pressure, self.info.grid)?;
         self.operator.apply(pressure.values(), self.displacement.values_mut(), &mut []);
         self.info.operator_applications += 1;
@@ -356,59 +242,26 @@ impl<'a> Procedure<'a> {
         }
         added
     }
+}
 
-    /// The solution with its certificate, from fresh sums.
-    fn finish(mut self, control: Control) -> Result<GridSolution, GaussSeidelError> {
-        let area: Vec<f64> = self.mesh.elements().map(|element| element.area()).collect();
-        let weighted = |p: &[f64], values: &[f64]| -> f64 {
-            p.iter().zip(&area).zip(values).map(|((p, area), value)| p * area * value).sum()
-        };
-        let wanted = self.prescribed();
-        let v = sweep::displacement(&self.coefficients, &self.sites, &self.pressure);
-        // The last digits of the load, or of the penetration, by scaling the pressure.
-        let scale = match control {
-            Control::MeanPressure(mean) => mean / self.mean_pressure(),
-            Control::Penetration(_) => weighted(&self.pressure, &wanted) / weighted(&self.pressure, &v),
-        };
-        self.pressure.iter_mut().for_each(|p| *p *= scale);
-        self.displace()?;
-        let v = sweep::displacement(&self.coefficients, &self.sites, &self.pressure);
-        let gap: Vec<f64> = v.iter().zip(&wanted).map(|(v, wanted)| v - wanted).collect();
-        let mean_pressure = self.mean_pressure();
-        let mean_gap = weighted(&self.pressure, &gap) / mean_pressure;
+/// Penetrations with their mean pressures, one of too little load and one of too much.
+struct Bracket {
+    low: (f64, f64),
+    high: (f64, f64),
+}
 
-        let lowering = self.penetration - self.problem.h_max;
-        let mut field = self.displacement;
-        for (g, h) in field.values_mut().iter_mut().zip(self.pyramid[0].values()) {
-            *g -= h + lowering + mean_gap;
+impl Bracket {
+    /// Narrows the bracket to `here`. Returns the penetration to try next: on the chord to the other end, or to the origin while the
+    /// bracket has no upper end.
+    fn next(&mut self, here: (f64, f64), mean: f64) -> f64 {
+        let other = if here.1 < mean && self.high.1.is_finite() { self.high } else { self.low };
+        if here.1 < mean {
+            self.low = here;
+        } else {
+            self.high = here;
         }
-        let outside = field.values().iter().zip(&self.contact).filter(|&(_, &contact)| !contact).map(|(&g, _)| g);
-        let least = gap.iter().map(|g| g - mean_gap).chain(outside).fold(f64::INFINITY, f64::min);
-        let error = (-least / self.problem.h_range).max(0.0);
-        let load = match control {
-            Control::MeanPressure(wanted) => (mean_pressure - wanted).abs() / wanted,
-            Control::Penetration(_) => mean_gap.abs() / self.problem.h_range,
-        };
-        let certificate = Certificate { complementarity: error, penetration: error, load };
-        let info = SolveInfo {
-            certificate,
-            mean_pressure,
-            penetration: self.penetration + mean_gap,
-            penetration_full_contact: self.problem.h_max - self.problem.h_mean,
-            elastic_energy: 0.5 * weighted(&self.pressure, &v),
-            levels: vec![self.info],
-            coarser: None,
-        };
-        let pressure = self.mesh.to_field(&self.pressure, self.info.grid)?;
-        let elements = Some(MeshPressure { mesh: self.mesh, pressure: self.pressure });
-        let within = error <= self.params.tolerance && load <= Certificate::LOAD_TOLERANCE;
-        let converged = self.settled && within && pressure.min() >= 0.0;
-        let status = if converged { Status::Converged } else { Status::NotConverged };
-        let solution = GridSolution { pressure, gap: field, status, elements, info };
-        if converged {
-            return Ok(solution);
-        }
-        let (grid, iterations) = (self.info.grid, self.info.iterations);
-        Err(IterationError::NotConverged { grid, iterations, certificate, solution: Box::new(solution) }.into())
+        let chord = here.0 + (mean - here.1) * (here.0 - other.0) / (here.1 - other.1);
+        let inside = chord > self.low.0 && chord < self.high.0;
+        if inside { chord } else { f64::midpoint(self.low.0, self.high.0) }
     }
 }

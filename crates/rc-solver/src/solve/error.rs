@@ -4,7 +4,7 @@ use rc_core::Grid;
 use thiserror::Error;
 
 use super::Solution;
-use crate::{AdaptiveError, Certificate, GaussSeidelError, IterationError, Method};
+use crate::{AdaptiveError, Certificate, GaussSeidelError, Method, ProblemError};
 
 /// A contact problem that was not solved.
 #[derive(Debug, Error)]
@@ -12,7 +12,7 @@ use crate::{AdaptiveError, Certificate, GaussSeidelError, IterationError, Method
 pub enum SolveError {
     /// Heights, load or tolerance are out of range.
     #[error(transparent)]
-    Problem(IterationError),
+    Problem(ProblemError),
     /// The adaptive method does not fit the problem, and none other is allowed.
     #[error(transparent)]
     Adaptive(AdaptiveError),
@@ -72,26 +72,20 @@ pub enum SolveError {
     },
 }
 
-impl From<IterationError> for SolveError {
-    fn from(error: IterationError) -> Self {
+impl From<ProblemError> for SolveError {
+    fn from(error: ProblemError) -> Self {
         Self::Problem(error)
     }
 }
 
 impl From<AdaptiveError> for SolveError {
     fn from(error: AdaptiveError) -> Self {
-        match error {
-            AdaptiveError::Solve(error) => Self::Problem(error),
-            other => Self::Adaptive(other),
-        }
+        Self::Adaptive(error)
     }
 }
 
 impl From<GaussSeidelError> for SolveError {
     fn from(error: GaussSeidelError) -> Self {
-        match error {
-            GaussSeidelError::Solve(error) => Self::Problem(error),
-            other => Self::GaussSeidel(other),
-        }
+        Self::GaussSeidel(error)
     }
 }

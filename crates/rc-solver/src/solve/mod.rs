@@ -27,7 +27,7 @@ use crate::Control;
 /// use rc_solver::{ContactProblem, Control, Method, SolveParams};
 ///
 /// // Westergaard's wave at a quarter of the load of full contact, with another kernel than the default.
-/// let wave = Field::from_fn(Grid::square(64)?, |x, _| 1e-3 * (std::f64::consts::TAU * x).cos());
+/// let wave = Field::from_fn(Grid::square(64)?, |at| 1e-3 * (std::f64::consts::TAU * at.x).cos());
 /// let load = Control::MeanPressure(0.25 * std::f64::consts::PI * 1e-3);
 /// let plan = ContactProblem::new(&wave, load).with_kernel(&Spectral).plan(&SolveParams::default())?;
 /// assert_eq!(plan.method(), Method::Uniform);
@@ -110,7 +110,7 @@ impl std::fmt::Debug for ContactProblem<'_> {
 /// use rc_solver::{Control, SolveParams, solve};
 ///
 /// // Westergaard's wave at half the load of full contact, π E* a/λ: half of it touches.
-/// let wave = Field::from_fn(Grid::square(128)?, |x, _| 1e-3 * (std::f64::consts::TAU * x).cos());
+/// let wave = Field::from_fn(Grid::square(128)?, |at| 1e-3 * (std::f64::consts::TAU * at.x).cos());
 /// let solution = solve(&wave, Control::MeanPressure(0.5e-3 * std::f64::consts::PI), &SolveParams::default())?;
 /// let area = solution.area();
 /// assert!((area.fraction - 0.5).abs() < 5e-3, "A/A0 = {:.4} ± {:.4}", area.fraction, area.error);

@@ -1,16 +1,15 @@
 //! A problem with its method, ready to be solved.
 
-use rc_core::Observer;
+use rc_core::{Field, Observer};
 use rc_kernel::PeriodicLove;
 
 use super::solution::HowSolved;
 use super::{ContactProblem, Cost, Solution, SolveError, SolveParams};
 use crate::adaptive::AdaptiveProblem;
-use crate::solution::Status;
-use crate::{
-    AdaptiveError, GaussSeidelError, GaussSeidelParams, GridSolution, IterationError, Method, MethodReason,
-    solve_gauss_seidel, solve_uniform,
-};
+use crate::gauss_seidel::{HalfSpace, solve_gauss_seidel};
+use crate::solution::{GridSolution, Status};
+use crate::uniform::solve_uniform;
+use crate::{GaussSeidelParams, Method, MethodReason};
 
 /// A contact problem that has been checked and has its method. Nothing is solved yet.
 pub struct Plan<'a> {
@@ -67,58 +66,39 @@ impl<'a> Plan<'a> {
     /// [`SolveError::NotConverged`] with the best solution found; [`SolveError::Problem`] for heights that are not finite, and
     /// [`SolveError::GaussSeidel`] for what the paper's procedure refuses.
     pub fn solve(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
-        let solution = match self.prepared {
-            Prepared::Adaptive(_) => self.solve_adaptive(observer),
-            Prepared::Uniform => self.solve_uniform(observer),
-            Prepared::GaussSeidel => self.solve_gauss_seidel(observer),
-        }?;
+        let Self { problem, params, tolerance, prepared, reason } = self;
+        let how = |method| HowSolved::new(method, reason, tolerance, problem.kernel);
+        let solution = match prepared {
+            Prepared::Adaptive(adaptive) => {
+                let solution = adaptive.solve(observer);
+                Solution::on_tiles(how(Method::Adaptive), solution, adaptive)
+            }
+            Prepared::Uniform => {
+                let (heights, limits) = (problem.heights.heights(), params.iteration(tolerance));
+                let solution = solve_uniform(&heights, problem.kernel, problem.control, &limits, observer)?;
+                Solution::on_grid(how(Method::Uniform), problem.kernel, solution, heights.max())
+            }
+            Prepared::GaussSeidel => {
+                let (heights, params) = (problem.heights.heights(), params.gauss_seidel);
+                let solution = by_gauss_seidel(&problem, &heights, (tolerance, &params), observer)?;
+                Solution::on_grid(how(Method::GaussSeidel), problem.kernel, solution, heights.max())
+            }
+        };
         if solution.status() == Status::NotConverged { Err(solution.into_error()) } else { Ok(solution) }
-    }
-
-    fn solve_adaptive(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
-        let Prepared::Adaptive(problem) = self.prepared else { unreachable!("called for the adaptive method only") };
-        let solution = match problem.solve(observer) {
-            Ok(solution) => solution,
-            Err(AdaptiveError::NotConverged { solution, .. }) => *solution,
-            Err(error) => return Err(error.into()),
-        };
-        let how = HowSolved::new(Method::Adaptive, self.reason, self.tolerance, self.problem.kernel);
-        Ok(Solution::on_tiles(how, solution, problem))
-    }
-
-    fn solve_uniform(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
-        let ContactProblem { heights, kernel, control } = self.problem;
-        let heights = heights.heights();
-        let params = self.params.iteration(self.tolerance);
-        let solution = even_if_not_converged(solve_uniform(&heights, kernel, control, &params, observer))?;
-        let how = HowSolved::new(Method::Uniform, self.reason, self.tolerance, kernel);
-        Ok(Solution::on_grid(how, kernel, solution, heights.max()))
-    }
-
-    fn solve_gauss_seidel(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
-        let ContactProblem { heights, kernel, control } = self.problem;
-        let heights = heights.heights();
-        let periodic = PeriodicLove::new();
-        let coefficient = |offset, half_side| periodic.coefficient(offset, half_side);
-        let params = GaussSeidelParams { tolerance: self.tolerance, ..self.params.gauss_seidel };
-        let result = match solve_gauss_seidel(&heights, kernel, &coefficient, control, &params, observer) {
-            Err(GaussSeidelError::Solve(error)) => Err(error),
-            Err(error) => return Err(error.into()),
-            Ok(solution) => Ok(solution),
-        };
-        let solution = even_if_not_converged(result)?;
-        let how = HowSolved::new(Method::GaussSeidel, self.reason, self.tolerance, kernel);
-        Ok(Solution::on_grid(how, kernel, solution, heights.max()))
     }
 }
 
-/// The solution, converged or not.
-fn even_if_not_converged(result: Result<GridSolution, IterationError>) -> Result<GridSolution, SolveError> {
-    match result {
-        Ok(solution) => Ok(solution),
-        Err(IterationError::NotConverged { solution, .. }) => Ok(*solution),
-        Err(error) => Err(error.into()),
-    }
+/// The paper's procedure with Love's squares, whose coefficients it needs one by one.
+fn by_gauss_seidel(
+    problem: &ContactProblem<'_>,
+    heights: &Field,
+    (tolerance, params): (f64, &GaussSeidelParams),
+    observer: &dyn Observer,
+) -> Result<GridSolution, SolveError> {
+    let periodic = PeriodicLove::new();
+    let half_space =
+        HalfSpace { kernel: problem.kernel, coefficient: &|offset, half_side| periodic.coefficient(offset, half_side) };
+    solve_gauss_seidel(heights, half_space, problem.control, (tolerance, params), observer)
 }
 
 impl std::fmt::Debug for Plan<'_> {

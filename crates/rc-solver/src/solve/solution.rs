@@ -8,11 +8,8 @@ use rc_core::{Field, Grid, Kernel, Operator as _};
 use super::SolveError;
 use super::kernel_of_grid::KernelOfGrid;
 use crate::adaptive::{AdaptiveProblem, AdaptiveSolution};
-use crate::solution::Status;
-use crate::{
-    Certificate, ContactArea, ContactElement, GridSolution, Method, MethodReason, Observables, SolveInfo,
-    UniformOperator,
-};
+use crate::solution::{GridSolution, Status};
+use crate::{Certificate, ContactArea, ContactElement, Method, MethodReason, Observables, SolveInfo, UniformOperator};
 
 /// A solved contact problem.
 ///

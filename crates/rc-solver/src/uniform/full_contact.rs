@@ -4,10 +4,10 @@ use rayon::prelude::*;
 use rc_core::{Field, Kernel};
 use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable};
 
+use crate::Certificate;
 use crate::operator::UniformOperator;
 use crate::problem::Problem;
 use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
-use crate::{Certificate, Control};
 
 /// The solution when `mean_pressure` closes every gap: v = h - mean(h) and p = σ0 + L⁻¹ h, provided that is nowhere
 /// tensile. (For the spectral kernel p̂ = E*|q|ĥ/2.) `None` otherwise, and where rounding or a faulty kernel leave more than
@@ -48,7 +48,7 @@ pub(super) fn solve(
     if least.into_iter().fold(f64::INFINITY, f64::min) < 0.0 {
         return None;
     }
-    let solution = certified(heights, kernel, mean_pressure, problem, pressure);
+    let solution = certified(heights, kernel, problem, pressure);
     let Certificate { penetration, load, .. } = solution.info.certificate;
     (penetration <= tolerance && load <= Certificate::LOAD_TOLERANCE).then_some(solution)
 }
@@ -87,13 +87,7 @@ fn proves_partial_contact(heights: &Field, kernel: &dyn Kernel, mean_pressure: f
 }
 
 /// The solution with its certificate, from a fresh application of L.
-fn certified(
-    heights: &Field,
-    kernel: &dyn Kernel,
-    mean_pressure: f64,
-    problem: &Problem,
-    pressure: Field,
-) -> GridSolution {
+fn certified(heights: &Field, kernel: &dyn Kernel, problem: &Problem, pressure: Field) -> GridSolution {
     let grid = heights.grid();
     let operator = UniformOperator::new(grid, kernel);
     let mut gap = Field::zeros(grid);
@@ -107,16 +101,11 @@ fn certified(
     }
     let approach = weighted / total;
     gap.values_mut().par_iter_mut().for_each(|g| *g -= approach);
-    let worst = match problem.h_range {
-        // A sum that is not a number gives away a gap that is none, which the minimum passes over.
-        _ if !approach.is_finite() => f64::NAN,
-        range if range > 0.0 => (-gap.min() / range).max(0.0),
-        _ => 0.0,
-    };
+    // A sum that is not a number shows a gap that is not one, which the minimum passes over.
+    let least = if approach.is_finite() { gap.min() } else { f64::NAN };
     let mean = total / grid.len() as f64;
-    let load = (mean - mean_pressure).abs() / mean_pressure;
     let info = SolveInfo {
-        certificate: Certificate { complementarity: worst, penetration: worst, load },
+        certificate: Certificate::new(problem, least, mean, 0.0),
         mean_pressure: mean,
         penetration: problem.h_max + approach,
         penetration_full_contact: problem.h_max - problem.h_mean,
@@ -124,6 +113,5 @@ fn certified(
         levels: vec![LevelInfo { grid, iterations: 0, operator_applications: 1, preconditioner_applications: 0 }],
         coarser: None,
     };
-    debug_assert!(matches!(problem.control, Control::MeanPressure(_)));
     GridSolution { pressure, gap, status: Status::FullContact, elements: None, info }
 }

@@ -3,8 +3,8 @@
 use rc_core::{Field, Grid, Operator};
 use rc_kernel::{Love, PeriodicLove};
 use rc_solver::{
-    ContactElement, Control, GaussSeidelError, GaussSeidelParams, IterationError as ProblemError, Method, Solution,
-    SolveError, SolveParams, UniformOperator, solve, solve_dense,
+    ContactElement, Control, GaussSeidelError, GaussSeidelParams, Method, ProblemError, Solution, SolveError,
+    SolveParams, UniformOperator, solve, solve_dense,
 };
 
 use crate::bumps;

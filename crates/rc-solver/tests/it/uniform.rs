@@ -4,8 +4,7 @@ use rc_core::testing::quasi_random;
 use rc_core::{DVec2, Field, Grid, Kernel, Operator, Silent};
 use rc_kernel::{Love, Spectral};
 use rc_solver::{
-    Certificate, ContactProblem, Control, DirectSum, IterationError as ProblemError, Method, Solution, SolveError,
-    SolveParams, Status,
+    Certificate, ContactProblem, Control, DirectSum, Method, ProblemError, Solution, SolveError, SolveParams, Status,
 };
 
 use crate::bumps;

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use rc_core::{Field, Grid, HeightField, HeightSource};
 use rc_quadtree::{TILE, put_tile};
 
-use crate::IterationError;
+use crate::ProblemError;
 use crate::problem::HeightStatistics;
 use crate::uniform::coarsen;
 use bounds::Bounds;
@@ -45,11 +45,11 @@ impl<'a> Heights<'a> {
     /// Prepares the levels from `base_side` to the finest side.
     ///
     /// # Errors
-    /// [`IterationError::Height`] for a height that is not finite; of a surface, its element is one of the grid it is sampled on.
+    /// [`ProblemError::Height`] for a height that is not finite; of a surface, its element is one of the grid it is sampled on.
     ///
     /// # Panics
     /// When the finest side is not `base_side` · 2^K with K ≥ 0, above [`Grid::MAX_SIDE`], or a map not square.
-    pub(crate) fn new(source: HeightSource<'a>, base_side: usize) -> Result<Self, IterationError> {
+    pub(crate) fn new(source: HeightSource<'a>, base_side: usize) -> Result<Self, ProblemError> {
         match source {
             HeightSource::Map(map) => {
                 assert_eq!(map.grid().nx(), map.grid().ny(), "a map of heights must be square");
@@ -71,7 +71,7 @@ impl<'a> Heights<'a> {
         }
     }
 
-    fn of_map(map: Cow<'a, Field>, base_side: usize) -> Result<Self, IterationError> {
+    fn of_map(map: Cow<'a, Field>, base_side: usize) -> Result<Self, ProblemError> {
         let finest_side = map.grid().nx();
         let n_refinements = n_refinements(base_side, finest_side);
         let extremes = HeightStatistics::of(&map)?;
@@ -89,7 +89,7 @@ impl<'a> Heights<'a> {
         level: u32,
         base_side: usize,
         finest_side: usize,
-    ) -> Result<Self, IterationError> {
+    ) -> Result<Self, ProblemError> {
         let samples = surface.sample(square(base_side << level));
         let of_samples = HeightStatistics::of(&samples)?;
         let mut grids = Vec::new();

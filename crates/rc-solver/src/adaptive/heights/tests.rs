@@ -7,7 +7,7 @@ use rc_core::{DVec2, Field, Grid, HeightField, HeightSource};
 use rc_fft::Complex64;
 
 use super::{Heights, TILE};
-use crate::IterationError;
+use crate::ProblemError;
 use crate::uniform::coarsen;
 
 /// A self-affine surface with waves up to |k| ≤ N, rms height 1 but for rounding, on a mean height.
@@ -301,7 +301,7 @@ fn heights_that_are_not_finite_are_refused() {
         map.values_mut()[64 * 5 + 7] = bad;
         let error = Heights::new(HeightSource::Map(&map), 16).err();
         let found =
-            matches!(error, Some(IterationError::Height { ix: 7, iy: 5, value }) if value.to_bits() == bad.to_bits());
+            matches!(error, Some(ProblemError::Height { ix: 7, iy: 5, value }) if value.to_bits() == bad.to_bits());
         assert!(found, "{error:?}");
         let mut surface = SelfAffine::new(3, 0.8, 0.0);
         surface.mean = bad;

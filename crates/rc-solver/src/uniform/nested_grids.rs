@@ -24,8 +24,8 @@ const COARSEST_TOLERANCE: f64 = 1e-3;
 /// A descent on a uniform grid.
 pub(crate) type UniformDescent<'a> = Descent<'a, Convolution<f32>, Convolution<f64>>;
 
-/// What the levels of a climb share.
-pub(crate) struct Climb<'a> {
+/// Nested grids: what their levels share.
+pub(crate) struct NestedGrids<'a> {
     pub(crate) kernel: &'a dyn Kernel,
     pub(crate) problem: &'a Problem,
     pub(crate) params: IterationParams,
@@ -34,8 +34,8 @@ pub(crate) struct Climb<'a> {
     pub(crate) observer: &'a dyn Observer,
 }
 
-/// The last grid of a climb.
-pub(crate) struct Climbed<'a> {
+/// The solved finest of nested grids.
+pub(crate) struct FinestGrid<'a> {
     pub(crate) descent: UniformDescent<'a>,
     pub(crate) outcome: Outcome,
     /// The work on all grids, coarsest first.
@@ -44,20 +44,20 @@ pub(crate) struct Climbed<'a> {
     pub(crate) coarser: Option<LevelValues>,
 }
 
-impl<'a> Climb<'a> {
+impl<'a> NestedGrids<'a> {
     /// Solves on coarser grids and then on that of `heights`.
-    pub(crate) fn to(&self, heights: &'a Field) -> Climbed<'a> {
+    pub(crate) fn solve(&self, heights: &'a Field) -> FinestGrid<'a> {
         let coarser = coarsen(heights, SMALLEST_SIDE);
         let n_levels = coarser.len() + 1 + self.n_above;
         let (mut levels, mut start, mut values) = (Vec::with_capacity(n_levels), Start::Nothing, None);
         for heights in coarser.iter().rev() {
-            let (descent, outcome) = self.solve(heights, start, n_levels, &mut levels);
+            let (descent, outcome) = self.solve_level(heights, start, n_levels, &mut levels);
             values = self.values(&descent, &outcome, n_levels - levels.len());
             start = Start::Pressure(prolong(&descent));
         }
-        let (descent, outcome) = self.solve(heights, start, n_levels, &mut levels);
+        let (descent, outcome) = self.solve_level(heights, start, n_levels, &mut levels);
         let coarser = if self.n_above == 0 { values } else { self.values(&descent, &outcome, self.n_above) };
-        Climbed { descent, outcome, levels, coarser }
+        FinestGrid { descent, outcome, levels, coarser }
     }
 
     /// What a grid with `above` levels above it found; nobody asks when there is more than one.
@@ -69,7 +69,7 @@ impl<'a> Climb<'a> {
     }
 
     /// Solves the next of `n_levels` levels.
-    fn solve<'h>(
+    fn solve_level<'h>(
         &self,
         heights: &'h Field,
         start: Start,
