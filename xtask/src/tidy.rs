@@ -3,24 +3,25 @@
 //! Each check is a pure function from file texts to complaints. A complaint says what is wrong, where, and what fixes it.
 
 mod arrows;
+mod circles;
+mod complaint;
 mod culture;
 mod dependencies;
 mod guide;
 mod packages;
 mod paper_map;
+mod rust;
 mod snapshots;
 
 use anyhow::{Result, bail};
 
+use complaint::Complaint;
 use rc_figures::repository::{self, Sources};
 
-/// Checks dependency arrows, licences and versions of dependencies, paper map, guide, snapshots, house rules and the numbers of
+/// Checks dependency arrows, circles between modules, licences and versions of dependencies, paper map, guide, snapshots, house rules and the numbers of
 /// docs/reproduction.md, docs/benchmarks.md and README.md (also a test, so `cargo xtask test` runs it).
 #[derive(clap::Args)]
 pub(crate) struct Args {}
-
-/// A rule that a file breaks, with what fixes it.
-pub(crate) type Complaint = String;
 
 /// A check: a pure function of the sources.
 type Check = fn(&Sources) -> Vec<Complaint>;
@@ -28,6 +29,7 @@ type Check = fn(&Sources) -> Vec<Complaint>;
 /// The checks by name.
 const CHECKS: &[(&str, Check)] = &[
     ("arrows", arrows::check),
+    ("circles", circles::check),
     ("paper map", paper_map::check),
     ("snapshots", snapshots::check),
     ("culture", culture::check),

@@ -22,10 +22,8 @@ use plotters::prelude::DrawingBackend;
 use rc_figures::{Figure, Preset, Table, write};
 use rc_plot::{Area, Picture, PictureError};
 
+pub use commands::{Refusal, RunRc};
 use row::{Row, Rows, guarded};
-
-/// Runs the program `rc` with these words; the exit code of a failure with its text.
-pub type RunRc = fn(&[String]) -> Result<(), (u8, String)>;
 
 /// What is stressed.
 #[derive(Clone, Debug)]

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, Result};
+use rc_sweep::memory;
 use toml::{Table as Toml, Value};
 
 use crate::numeric::Numeric;
-use crate::{Figure, Preset, Table, memory, repository};
+use crate::{Figure, Preset, Table, repository};
 
 /// File with the parameters of a run.
 pub(crate) const RUN_FILE: &str = "run.toml";

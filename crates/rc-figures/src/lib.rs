@@ -7,7 +7,6 @@
 pub mod all;
 pub mod archive;
 pub mod blocks;
-pub mod memory;
 pub mod numeric;
 pub mod repository;
 pub mod reproduction;

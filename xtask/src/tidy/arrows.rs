@@ -3,7 +3,7 @@
 use rc_figures::repository::Sources;
 use toml::{Table, Value};
 
-use super::Complaint;
+use super::complaint::Complaint;
 
 /// What each crate may use; crates that are not listed here may use nothing until ARCHITECTURE.md gives them an arrow.
 const ARROWS: &[(&str, &[&str])] = &[

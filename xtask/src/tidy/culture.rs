@@ -2,11 +2,13 @@
 
 use rc_figures::repository::{Sources, has_extension};
 
-use super::Complaint;
+use super::complaint::Complaint;
+use super::rust::{item_end, tokens, without_tests};
 use crate::ci;
 
-/// Longest Rust file, in lines.
-const LONGEST_FILE: usize = 500;
+/// Longest Rust file, and longest function outside of tests, in lines.
+const LONGEST_FILE: usize = 400;
+const LONGEST_FUNCTION: usize = 60;
 
 /// Attributes that hide a failing test. A test that is not run, or that is content with any panic, claims nothing.
 const HIDING: &[(&str, &str)] = &[
@@ -23,7 +25,7 @@ const MACHINE_FOLDERS: &[&str] = &[
     concat!("C:", "\\Users"),
 ];
 
-/// Checks every Rust file for its first line, length and hidden tests, every text for machine paths, and `.ci/run`.
+/// Checks every Rust file for its first line, its length, long functions and hidden tests, every text for machine paths, and `.ci/run`.
 pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     let per_file = sources.iter().flat_map(|(path, text)| {
         let rust = if has_extension(path, "rs") { check_rust(path, text) } else { Vec::new() };
@@ -41,6 +43,7 @@ fn check_rust(path: &str, text: &str) -> Vec<Complaint> {
     if n_lines > LONGEST_FILE {
         complaints.push(format!("{path}: {n_lines} lines, more than {LONGEST_FILE}; split it by purpose"));
     }
+    complaints.extend(check_functions(path, text));
     for (number, line) in text.lines().enumerate() {
         for (attribute, cure) in HIDING {
             if line.contains(attribute) {
@@ -49,6 +52,23 @@ fn check_rust(path: &str, text: &str) -> Vec<Complaint> {
         }
     }
     complaints
+}
+
+fn check_functions(path: &str, text: &str) -> Vec<Complaint> {
+    let folders = ["tests/", "/tests/", "/tests.rs", "/benches/", "/examples/"];
+    if folders.iter().any(|folder| path.contains(folder)) {
+        return Vec::new();
+    }
+    let tokens = without_tests(&tokens(text));
+    let is_name = |at: usize| tokens.get(at).is_some_and(|token| token.text != "(");
+    let starts = (0..tokens.len()).filter(|&at| tokens[at].text == "fn" && is_name(at + 1));
+    let complaint = |at: usize| {
+        let (first, name) = (tokens[at].line, tokens[at + 1].text);
+        let n_lines = tokens[item_end(&tokens, at) - 1].line + 1 - first;
+        (n_lines > LONGEST_FUNCTION)
+            .then(|| format!("{path}:{first}: `{name}` has {n_lines} lines, more than {LONGEST_FUNCTION}; divide it"))
+    };
+    starts.filter_map(complaint).collect()
 }
 
 fn check_machine_paths(path: &str, text: &str) -> Vec<Complaint> {
@@ -91,7 +111,16 @@ mod tests {
     #[test]
     fn a_long_file_is_found() {
         let text = format!("//! Long.\n{}", "\n".repeat(LONGEST_FILE));
-        assert!(check_rust("a.rs", &text)[0].contains("501 lines"), "{:?}", check_rust("a.rs", &text));
+        assert!(check_rust("a.rs", &text)[0].contains("401 lines"), "{:?}", check_rust("a.rs", &text));
+    }
+
+    #[test]
+    fn a_long_function_is_found_and_a_long_test_is_not() {
+        let text = format!("//! Long.\nfn short() {{}}\nfn long(_: [u8; 2]) {{{}}}\n", "\n".repeat(LONGEST_FUNCTION));
+        let complaints = check_rust("src/a.rs", &text);
+        assert_eq!(complaints.len(), 1, "{complaints:?}");
+        assert!(complaints[0].starts_with("src/a.rs:3: `long` has 61 lines"), "{complaints:?}");
+        assert_eq!(check_rust("src/a.rs", &text.replace("fn long", "#[cfg(test)]\nfn long")), Vec::<String>::new());
     }
 
     #[test]

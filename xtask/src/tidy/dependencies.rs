@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use spdx::{Expression, LicenseReq};
 use toml::{Table, Value};
 
-use super::Complaint;
+use super::complaint::Complaint;
 
 /// Licences under which a dependency may be used, by their SPDX identifiers: they ask for no more than to be named.
 const LICENCES: &[&str] = &[

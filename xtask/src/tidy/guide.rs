@@ -2,7 +2,7 @@
 
 use rc_figures::repository::{Sources, has_extension};
 
-use super::Complaint;
+use super::complaint::Complaint;
 
 const SUMMARY: &str = "docs/SUMMARY.md";
 

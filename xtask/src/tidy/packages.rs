@@ -3,7 +3,7 @@
 use rc_figures::repository::{Sources, has_extension};
 use toml::{Table, Value};
 
-use super::Complaint;
+use super::complaint::Complaint;
 
 /// Fields of `[package]` that each crate takes from the workspace; its description is its own.
 const FIELDS: &[&str] = &["version", "edition", "rust-version", "license", "readme", "keywords", "categories"];

@@ -3,7 +3,7 @@
 use rc_figures::repository::{Sources, has_extension};
 use std::collections::BTreeSet;
 
-use super::Complaint;
+use super::complaint::Complaint;
 
 const MAP: &str = "docs/paper-map.md";
 /// Rows below this heading are promises, so they carry no links.

@@ -2,7 +2,7 @@
 
 use rc_figures::repository::{Sources, has_extension};
 
-use super::Complaint;
+use super::complaint::Complaint;
 
 /// Largest snapshot, in bytes: what a reviewer can still read.
 const LARGEST: usize = 20 * 1024;

@@ -3,11 +3,11 @@
 use rc_figures::numeric::median;
 use rc_figures::{Table, number};
 
+use super::case::{Case, of_mesh, of_set, rms};
 use super::scenes::Set;
-use super::{Accuracy, Case, rms};
 
 /// For each set, kernel and mesh: rms error of each estimator of the area, and the part of the scenes whose bars hold the error.
-pub(super) fn summary(accuracy: &Accuracy) -> Table {
+pub(super) fn summary(cases: &[Case], meshes: &[usize]) -> Table {
     let header = [
         "set",
         "kernel",
@@ -32,46 +32,47 @@ pub(super) fn summary(accuracy: &Accuracy) -> Table {
     let kernels =
         [Set::Test, Set::Calibration].into_iter().flat_map(|set| ["love", "spectral"].map(|kernel| (set, kernel)));
     let rows = kernels.flat_map(|(set, kernel)| {
-        accuracy.meshes.iter().map(move |&mesh| {
-            let cases: Vec<&Case> = accuracy.of(set, kernel, mesh).collect();
-            let n = cases.len() as f64;
-            let of = |estimator: usize| rms(cases.iter().map(|case| 100.0 * case.area_errors()[estimator]));
-            let mean = cases.iter().map(|case| 100.0 * case.area_errors()[3]).sum::<f64>() / n;
-            let worst = cases.iter().map(|case| 100.0 * case.area_errors()[3].abs()).fold(0.0, f64::max);
-            let bar =
-                cases.iter().map(|case| 100.0 * case.found.area.error / case.found.area.fraction).sum::<f64>() / n;
-            // Of the scenes that have a bar.
-            let covered = |quantity: usize| {
-                let ratios = cases.iter().map(|case| case.over_bars()[quantity]).filter(|ratio| !ratio.is_nan());
-                let ratios: Vec<f64> = ratios.collect();
-                100.0 * ratios.iter().filter(|ratio| ratio.abs() <= 1.0).count() as f64 / ratios.len() as f64
-            };
-            let mean_of = |value: fn(&Case) -> f64| 100.0 * cases.iter().map(|case| value(case)).sum::<f64>() / n;
-            let median_of =
-                |value: fn(&Case) -> f64| 100.0 * median(cases.iter().map(|case| value(case).abs()).collect());
-            let plain = median_of(|case| case.found.rms_pressure / case.limit.rms_pressure - 1.0);
-            let corrected = median_of(|case| case.found.rms_pressure_corrected / case.limit.rms_pressure - 1.0);
-            let stress = [
-                mean_of(|case| case.distribution.distance),
-                mean_of(|case| case.distribution.first_bin),
-                mean_of(|case| case.distribution.first_bin_of_limit),
-            ]
-            .map(number);
-            let numbers =
-                [of(0), of(1), of(2), of(3), mean, worst, bar, covered(0), plain, corrected, covered(1), covered(2)]
-                    .map(number);
-            [set.name().to_owned(), kernel.to_owned(), mesh.to_string(), cases.len().to_string()]
-                .into_iter()
-                .chain(numbers)
-                .chain(stress)
-                .collect()
+        meshes.iter().map(move |&mesh| {
+            let cases: Vec<&Case> = of_mesh(cases, set, kernel, mesh).collect();
+            let names = [set.name().to_owned(), kernel.to_owned(), mesh.to_string(), cases.len().to_string()];
+            names.into_iter().chain(statistics(&cases).into_iter().map(number)).collect()
         })
     });
     Table::new("summary", &header, rows)
 }
 
+/// The numbers of one line of [`summary`], in the order of its header.
+fn statistics(cases: &[&Case]) -> Vec<f64> {
+    let percent =
+        |values: &dyn Fn(&Case) -> f64| -> Vec<f64> { cases.iter().map(|case| 100.0 * values(case)).collect() };
+    let mean = |values: &dyn Fn(&Case) -> f64| percent(values).iter().sum::<f64>() / cases.len() as f64;
+    let median_size = |values: &dyn Fn(&Case) -> f64| median(percent(&|case| values(case).abs()));
+    let rms_error = |estimator: usize| rms(percent(&|case| case.area_errors()[estimator]).into_iter());
+    // Of the scenes that have a bar.
+    let covered = |quantity: usize| {
+        let ratios = cases.iter().map(|case| case.over_bars()[quantity]).filter(|ratio| !ratio.is_nan());
+        let ratios: Vec<f64> = ratios.collect();
+        100.0 * ratios.iter().filter(|ratio| ratio.abs() <= 1.0).count() as f64 / ratios.len() as f64
+    };
+    let mut numbers: Vec<f64> = (0..4).map(rms_error).collect();
+    numbers.extend([
+        mean(&|case| case.area_errors()[3]),
+        percent(&|case| case.area_errors()[3].abs()).into_iter().fold(0.0, f64::max),
+        mean(&|case| case.found.area.error / case.found.area.fraction),
+        covered(0),
+        median_size(&|case| case.found.rms_pressure / case.limit.rms_pressure - 1.0),
+        median_size(&|case| case.found.rms_pressure_corrected / case.limit.rms_pressure - 1.0),
+        covered(1),
+        covered(2),
+        mean(&|case| case.distribution.distance),
+        mean(&|case| case.distribution.first_bin),
+        mean(&|case| case.distribution.first_bin_of_limit),
+    ]);
+    numbers
+}
+
 /// Every scene on every mesh.
-pub(super) fn cases(accuracy: &Accuracy) -> Table {
+pub(super) fn cases(cases: &[Case]) -> Table {
     let header = [
         "set",
         "kernel",
@@ -99,37 +100,38 @@ pub(super) fn cases(accuracy: &Accuracy) -> Table {
         "stress_distance",
         "stress_first_bin",
     ];
-    let rows = accuracy.cases.iter().map(|case| {
-        let scene = case.scene;
-        let numbers = [scene.mean_pressure, case.limit.area].into_iter().chain(case.areas()).chain(case.over_bars());
-        let area = &case.found.area;
-        let stress = [case.distribution.distance, case.distribution.first_bin];
-        let (found, limit) = (&case.found, case.limit);
-        let rest = [
-            area.perimeter_edges as f64,
-            area.euler_number,
-            found.rms_pressure / limit.rms_pressure - 1.0,
-            found.rms_pressure_corrected / limit.rms_pressure - 1.0,
-            found.rms_pressure_error.map_or(f64::NAN, |bar| bar / limit.rms_pressure),
-            found.mean_gap / limit.mean_gap - 1.0,
-            found.mean_gap_error.map_or(f64::NAN, |bar| bar / limit.mean_gap),
-            area.error,
-        ];
-        let first =
-            [scene.set.name().to_owned(), case.kernel.to_owned(), case.mesh.to_string(), scene.waves.to_string()];
-        let first = first.into_iter().chain([number(scene.hurst), scene.seed.to_string()]);
-        first.chain(numbers.chain(rest).chain(stress).map(number)).collect()
-    });
-    Table::new("cases", &header, rows)
+    Table::new("cases", &header, cases.iter().map(line))
+}
+
+/// One line of [`cases`].
+fn line(case: &Case) -> Vec<String> {
+    let scene = case.scene;
+    let numbers = [scene.mean_pressure, case.limit.area].into_iter().chain(case.areas()).chain(case.over_bars());
+    let area = &case.found.area;
+    let stress = [case.distribution.distance, case.distribution.first_bin];
+    let (found, limit) = (&case.found, case.limit);
+    let rest = [
+        area.perimeter_edges as f64,
+        area.euler_number,
+        found.rms_pressure / limit.rms_pressure - 1.0,
+        found.rms_pressure_corrected / limit.rms_pressure - 1.0,
+        found.rms_pressure_error.map_or(f64::NAN, |bar| bar / limit.rms_pressure),
+        found.mean_gap / limit.mean_gap - 1.0,
+        found.mean_gap_error.map_or(f64::NAN, |bar| bar / limit.mean_gap),
+        area.error,
+    ];
+    let first = [scene.set.name().to_owned(), case.kernel.to_owned(), case.mesh.to_string(), scene.waves.to_string()];
+    let first = first.into_iter().chain([number(scene.hurst), scene.seed.to_string()]);
+    first.chain(numbers.chain(rest).chain(stress).map(number)).collect()
 }
 
 /// For each kernel, the change of [`rc_core::EdgeBias`] that would fit the scenes for calibration best: in the least-squares sense,
 /// and in the median of the scenes for the squares.
-pub(super) fn calibration(accuracy: &Accuracy) -> Table {
+pub(super) fn calibration(cases: &[Case]) -> Table {
     let rows = ["love", "spectral"].into_iter().map(|kernel| {
         // Normal equations of (area - limit) n = a edges + b contacts + c deviation, each scene weighed by its edges.
         let mut equations = [[0.0; 4]; 3];
-        for case in accuracy.of_set(Set::Calibration).filter(|case| case.kernel == kernel) {
+        for case in of_set(cases, Set::Calibration).filter(|case| case.kernel == kernel) {
             let area = &case.found.area;
             let error = (area.fraction - case.limit.area) * (case.side * case.side) as f64;
             let terms = [area.perimeter_edges as f64, area.euler_number, area.gap_deviation, error];
@@ -139,7 +141,7 @@ pub(super) fn calibration(accuracy: &Accuracy) -> Table {
                 }
             }
         }
-        let of_kernel = accuracy.of_set(Set::Calibration).filter(|case| case.kernel == kernel);
+        let of_kernel = of_set(cases, Set::Calibration).filter(|case| case.kernel == kernel);
         let per_square = of_kernel.map(Case::more_per_square).filter(|more| more.is_finite());
         let median = median(per_square.collect());
         [kernel.to_owned()].into_iter().chain(solve(equations).into_iter().chain([median]).map(number)).collect()

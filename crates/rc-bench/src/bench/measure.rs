@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use anyhow::{Context, Result};
 use rc_core::{Grid, HeightField as _, HeightSource, Silent};
-use rc_figures::memory;
 use rc_solver::{ContactProblem, Method, Observables, SolveInfo, SolveParams};
+use rc_sweep::memory;
 use serde::{Deserialize, Serialize};
 
 use super::scenes::Scene;
@@ -75,7 +75,7 @@ fn try_solve(scene: &Scene, setting: &Setting) -> Result<Solved> {
     let solution = problem.solve(&params, &Silent)?;
     let seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let observables = solution.observables().clone();
+    let observables = *solution.observables();
     Ok(Solved {
         observables,
         n_in_contact: solution.n_in_contact(),

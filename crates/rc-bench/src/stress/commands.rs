@@ -9,9 +9,11 @@ use rc_figures::Preset;
 use rc_heights::npy;
 use serde_json::Value;
 
-use super::RunRc;
 use super::heights::{mapped, rough};
 use super::row::{Row, Rows, guarded};
+
+/// Runs the program `rc` with these words; the exit code of a failure with its text.
+pub type RunRc = fn(&[String]) -> Result<(), Refusal>;
 
 /// Units change the rounding of the input, and with it the way of the iteration.
 const SAME: f64 = 1e-6;
@@ -59,8 +61,8 @@ pub(crate) fn rows(preset: Preset, rc: RunRc) -> Result<Vec<Row>> {
     Ok(rows.finish())
 }
 
-/// A refusal: exit code and text.
-type Refusal = (u8, String);
+/// A refusal of `rc`: exit code and text.
+pub type Refusal = (u8, String);
 
 /// Runs `rc` with these words; a panic has the exit code 101.
 fn run(rc: RunRc, words: &[String]) -> Result<(), Refusal> {

@@ -3,8 +3,9 @@
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
-use rc_figures::{Preset, memory};
+use rc_figures::Preset;
 use rc_solver::Control;
+use rc_sweep::memory;
 
 use super::heights::rough;
 use super::row::{Row, Rows};

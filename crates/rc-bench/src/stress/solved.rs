@@ -72,7 +72,7 @@ pub(crate) fn solve(heights: &Field, method: Method, control: Control, tolerance
     Ok(Solved {
         pressure: solution.pressure().clone(),
         info: solution.info().clone(),
-        observables: solution.observables().clone(),
+        observables: *solution.observables(),
         stiffness: solution.stiffness(),
     })
 }

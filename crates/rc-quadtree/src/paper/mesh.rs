@@ -1,6 +1,6 @@
 //! The mesh: sorted keys of the stored squares.
 
-use glam::DVec2;
+use rc_core::DVec2;
 
 use super::key::Key;
 
