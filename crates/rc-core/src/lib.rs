@@ -50,9 +50,9 @@
 
 mod field;
 mod grid;
+mod heights;
 mod histogram;
 mod progress;
-mod source;
 mod traits;
 mod units;
 
@@ -65,8 +65,8 @@ pub use glam::DVec2;
 
 pub use field::{Field, ShapeError};
 pub use grid::{Grid, GridError};
+pub use heights::{HeightField, HeightSource};
 pub use histogram::Histogram;
 pub use progress::{Event, Observer, Rows, Silent, Snapshot};
-pub use source::HeightSource;
-pub use traits::{EdgeBias, HeightField, Kernel, Operator, Symbol};
+pub use traits::{EdgeBias, Kernel, Operator, Symbol};
 pub use units::{Elasticity, PeriodicCell, UnitError, Units};

@@ -1,32 +1,6 @@
-//! The traits that a research fork implements to bring its own surface, half-space or operator.
+//! The traits that a research fork implements to bring its own half-space or operator.
 
-use crate::{DVec2, Field, Grid, HeightSource};
-
-/// A rough surface, periodic on the square cell of side 1.
-///
-/// Implementations: a realised spectrum, a measured map, a sphere. [`crate::testing::check_height_field`] (feature
-/// `testing`) checks the contract.
-pub trait HeightField: Sync {
-    /// Height at the point `at`, both in λ; periodic with period 1 along x and along y.
-    fn height(&self, at: DVec2) -> f64;
-
-    /// The largest wavenumber (waves per cell) in any direction, or `None` when the surface is not band-limited.
-    fn band_limit(&self) -> Option<usize>;
-
-    /// Heights at the element centres of `grid`. Equal to [`HeightField::height`] there up to rounding, so they are periodic on a square
-    /// cell only; implementations that have a fast transform override it.
-    fn sample(&self, grid: Grid) -> Field {
-        Field::from_fn(grid, |at| self.height(at))
-    }
-
-    /// The surface as the heights of a contact problem on `grid`. Nothing is evaluated yet.
-    fn on(&self, grid: Grid) -> HeightSource<'_>
-    where
-        Self: Sized,
-    {
-        HeightSource::Surface { surface: self, grid }
-    }
-}
+use crate::Grid;
 
 /// Eigenvalues of an elastic operator on one grid: maps (|kx|, |ky|), up to half the grid, to the eigenvalue.
 pub type Symbol<'a> = Box<dyn Fn(usize, usize) -> f64 + Send + Sync + 'a>;

@@ -2,10 +2,15 @@
 
 use thiserror::Error;
 
+use crate::ProblemError;
+
 /// A contact problem that the adaptive method does not fit.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum AdaptiveError {
+    /// Heights, load or tolerance are out of range. At the front door this is [`crate::SolveError::Problem`].
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
     /// Squares of the mesh are halves of halves of the cell.
     #[error("the adaptive method needs a square cell")]
     RectangularCell,

@@ -38,7 +38,7 @@ use self::roughness::{ERROR_OF_ROUGHNESS, roughness};
 pub(crate) use self::solution::AdaptiveSolution;
 pub use self::solution::ContactElement;
 use crate::problem::Problem;
-use crate::{Certificate, Control, IterationParams, SolveError};
+use crate::{Certificate, Control, IterationParams};
 
 /// Operator errors from here on are reached in single precision.
 const SINGLE_PRECISION: f64 = 1e-6;
@@ -89,8 +89,12 @@ impl<'a> AdaptiveProblem<'a> {
     /// Checks and prepares.
     ///
     /// # Errors
-    /// [`SolveError`], but not [`SolveError::NotConverged`].
-    pub(crate) fn new(source: HeightSource<'a>, control: Control, params: &AdaptiveParams) -> Result<Self, SolveError> {
+    /// [`AdaptiveError`].
+    pub(crate) fn new(
+        source: HeightSource<'a>,
+        control: Control,
+        params: &AdaptiveParams,
+    ) -> Result<Self, AdaptiveError> {
         check_square(source.grid())?;
         let error = params.operator_error.min(OPERATOR_ERROR_PER_TOLERANCE * params.solve.tolerance);
         let split = SplitParams::for_error(error)
@@ -100,7 +104,7 @@ impl<'a> AdaptiveProblem<'a> {
         let heights = Heights::new(with_border_level(source, params.border_level)?, base_side)?;
         let problem = Problem::of_statistics(heights.extremes(), control, &params.solve)?;
         if problem.h_range == 0.0 {
-            return Err(AdaptiveError::Flat.into());
+            return Err(AdaptiveError::Flat);
         }
         let prepared = Self { heights, problem, params: *params, split };
         let Estimate { area_fraction, adaptive_bytes, .. } = prepared.estimate();
@@ -355,8 +359,7 @@ mod tests {
         };
         let source = Unsampled.on(Grid::square(32768).expect("a grid"));
         let error = AdaptiveProblem::new(source, Control::MeanPressure(1e-3), &params).err();
-        let expected =
-            matches!(error, Some(SolveError::Adaptive(AdaptiveError::Memory { limit: 100, area_percent: None, .. })));
+        let expected = matches!(error, Some(AdaptiveError::Memory { limit: 100, area_percent: None, .. }));
         assert!(expected, "{error:?}");
     }
 }

@@ -4,10 +4,15 @@ use rc_core::Grid;
 use rc_quadtree::paper::MeshError;
 use thiserror::Error;
 
+use crate::ProblemError;
+
 /// A contact problem that the paper's procedure does not fit.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum GaussSeidelError {
+    /// Heights, load or tolerance are out of range. At the front door this is [`crate::SolveError::Problem`].
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
     /// The elements of the mesh must be squares, in a square cell.
     #[error(
         "the mesh has square elements in a square cell, not {grid} in one of 1 by {ratio}",

@@ -5,7 +5,7 @@ use rc_quadtree::paper::{Mask, MeshKind, MeshParams, count};
 
 use super::{GaussSeidelError, GaussSeidelParams, HalfSpace};
 use crate::uniform::{coarsen, solve_uniform};
-use crate::{Control, IterationParams, SolveError};
+use crate::{Control, IterationParams};
 
 /// Largest element, in finest elements: beyond it coarsening saves nothing and heights at centres would need more levels.
 pub(super) const LARGEST_DOUBLINGS: u32 = 5;
@@ -50,7 +50,7 @@ pub(super) fn estimate(
     half_space: HalfSpace<'_>,
     control: Control,
     params: &GaussSeidelParams,
-) -> Result<f64, SolveError> {
+) -> Result<f64, GaussSeidelError> {
     let coarse = coarsen(heights, ESTIMATE_SIDE / 2);
     let coarse = std::iter::once(heights).chain(&coarse).find(|field| field.grid().nx() <= ESTIMATE_SIDE);
     // A grid that cannot be halved is its own coarse grid.

@@ -3,13 +3,13 @@
 use super::GaussSeidelError;
 use super::procedure::Procedure;
 use super::sweep;
+use crate::Control;
 use crate::certificate::Certificate;
 use crate::solution::{GridSolution, MeshPressure, SolveInfo, Status};
-use crate::{Control, SolveError};
 
 impl Procedure<'_> {
     /// The solution with its certificate.
-    pub(super) fn finish(mut self) -> Result<GridSolution, SolveError> {
+    pub(super) fn finish(mut self) -> Result<GridSolution, GaussSeidelError> {
         let wanted = self.prescribed();
         self.scale_to_control(&wanted);
         self.displace()?;
@@ -27,7 +27,7 @@ impl Procedure<'_> {
         let inside = gap.iter().map(|g| g - mean_gap);
         let least = inside.chain(outside.map(|(&g, _)| g)).fold(f64::INFINITY, f64::min);
         let certificate = Certificate::new(self.problem, least, mean_pressure, mean_gap);
-        let pressure = self.mesh.to_field(&self.pressure, self.info.grid).map_err(GaussSeidelError::from)?;
+        let pressure = self.mesh.to_field(&self.pressure, self.info.grid)?;
         let within = certificate.penetration <= self.tolerance && certificate.load <= Certificate::LOAD_TOLERANCE;
         let converged = self.settled && within && pressure.min() >= 0.0;
         Ok(GridSolution {

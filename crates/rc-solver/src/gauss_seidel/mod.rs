@@ -35,7 +35,7 @@ pub use self::params::GaussSeidelParams;
 use self::procedure::Procedure;
 use crate::problem::Problem;
 use crate::solution::GridSolution;
-use crate::{Control, IterationParams, SolveError};
+use crate::{Control, IterationParams};
 
 /// Solves the contact problem by the paper's procedure (Sec. 2, steps (i)-(vi)) on an adaptive mesh whose finest elements are those of the
 /// grid of `heights`, to a tolerance.
@@ -48,7 +48,7 @@ pub(crate) fn solve_gauss_seidel(
     control: Control,
     (tolerance, params): (f64, &GaussSeidelParams),
     observer: &dyn Observer,
-) -> Result<GridSolution, SolveError> {
+) -> Result<GridSolution, GaussSeidelError> {
     estimate::check(heights, params)?;
     let problem = Problem::check(heights, control, &IterationParams { tolerance, ..IterationParams::certified() })?;
     let expected = estimate::estimate(heights, half_space, control, params)?;

@@ -2,7 +2,7 @@
 
 use rc_core::{Grid, HeightSource, Observer};
 
-use super::{ContactProblem, Solution, SolveError, SolveParams};
+use super::{ContactProblem, Solution, SolveError, SolveParams, choice};
 
 /// Elements per shortest wave of the first grid, and of the last that is tried.
 const COARSEST: usize = 4;
@@ -28,7 +28,7 @@ pub(super) fn solve<'a>(
         let side = side(waves, elements_per_wave);
         let grid = Grid::square(side).map_err(|_| SolveError::NoWaves)?;
         let heights = HeightSource::Surface { surface, grid };
-        let solution = ContactProblem { heights, ..problem }.solve(params, observer)?;
+        let solution = choice::plan(ContactProblem { heights, ..problem }, params)?.solve(observer)?;
         let reached = solution.area().relative_error();
         if reached <= wanted {
             return Ok(solution);

@@ -59,8 +59,8 @@ impl<'a> Choice<'a, '_> {
         }
         let adaptive = match self.prepare() {
             Ok(adaptive) => adaptive,
-            Err(SolveError::Adaptive(error)) if !has_border => return self.without_adaptive(error),
-            Err(error) => return Err(error),
+            Err(error) if has_border => return Err(error.into()),
+            Err(error) => return self.without_adaptive(error),
         };
         let percent = 100.0 * adaptive.estimate().area_fraction;
         let adaptive = Prepared::Adaptive(Box::new(adaptive));
@@ -79,7 +79,7 @@ impl<'a> Choice<'a, '_> {
     }
 
     /// Prepares the adaptive method, if it fits the problem and the memory.
-    fn prepare(&self) -> Result<AdaptiveProblem<'a>, SolveError> {
+    fn prepare(&self) -> Result<AdaptiveProblem<'a>, AdaptiveError> {
         AdaptiveProblem::new(self.problem.heights, self.problem.control, &self.params.adaptive(self.tolerance))
     }
 

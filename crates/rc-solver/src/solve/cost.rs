@@ -26,8 +26,16 @@ pub struct Cost {
     pub cpu_seconds: Option<f64>,
 }
 
+impl Plan<'_> {
+    /// What the solve is expected to take.
+    #[must_use]
+    pub fn cost(&self) -> Cost {
+        Cost::of(self)
+    }
+}
+
 impl Cost {
-    pub(super) fn of(plan: &Plan<'_>) -> Self {
+    fn of(plan: &Plan<'_>) -> Self {
         let decades = (-6.0 - plan.tolerance.log10()).max(0.0);
         let seconds = |work: f64| work * (1.0 + WORK_PER_DECADE * decades);
         match &plan.prepared {

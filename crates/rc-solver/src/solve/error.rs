@@ -80,12 +80,18 @@ impl From<ProblemError> for SolveError {
 
 impl From<AdaptiveError> for SolveError {
     fn from(error: AdaptiveError) -> Self {
-        Self::Adaptive(error)
+        match error {
+            AdaptiveError::Problem(error) => Self::Problem(error),
+            other => Self::Adaptive(other),
+        }
     }
 }
 
 impl From<GaussSeidelError> for SolveError {
     fn from(error: GaussSeidelError) -> Self {
-        Self::GaussSeidel(error)
+        match error {
+            GaussSeidelError::Problem(error) => Self::Problem(error),
+            other => Self::GaussSeidel(other),
+        }
     }
 }

@@ -4,12 +4,12 @@ use rc_core::{Field, Observer};
 use rc_kernel::PeriodicLove;
 
 use super::solution::HowSolved;
-use super::{ContactProblem, Cost, Solution, SolveError, SolveParams};
+use super::{ContactProblem, Solution, SolveError, SolveParams};
 use crate::adaptive::AdaptiveProblem;
 use crate::gauss_seidel::{HalfSpace, solve_gauss_seidel};
 use crate::solution::{GridSolution, Status};
 use crate::uniform::solve_uniform;
-use crate::{GaussSeidelParams, Method, MethodReason};
+use crate::{GaussSeidelError, GaussSeidelParams, Method, MethodReason};
 
 /// A contact problem that has been checked and has its method. Nothing is solved yet.
 pub struct Plan<'a> {
@@ -54,12 +54,6 @@ impl<'a> Plan<'a> {
         self.tolerance
     }
 
-    /// What the solve is expected to take.
-    #[must_use]
-    pub fn cost(&self) -> Cost {
-        Cost::of(self)
-    }
-
     /// Solves the problem.
     ///
     /// # Errors
@@ -84,7 +78,20 @@ impl<'a> Plan<'a> {
                 Solution::on_grid(how(Method::GaussSeidel), problem.kernel, solution, heights.max())
             }
         };
-        if solution.status() == Status::NotConverged { Err(solution.into_error()) } else { Ok(solution) }
+        match solution.status() {
+            Status::NotConverged => Err(not_converged(solution)),
+            Status::Converged | Status::FullContact => Ok(solution),
+        }
+    }
+}
+
+/// The error that carries a solution.
+fn not_converged(solution: Solution<'_>) -> SolveError {
+    SolveError::NotConverged {
+        grid: solution.finest_grid(),
+        iterations: solution.info().fine_iterations(),
+        certificate: solution.certificate(),
+        solution: Box::new(solution.into_owned()),
     }
 }
 
@@ -94,7 +101,7 @@ fn by_gauss_seidel(
     heights: &Field,
     (tolerance, params): (f64, &GaussSeidelParams),
     observer: &dyn Observer,
-) -> Result<GridSolution, SolveError> {
+) -> Result<GridSolution, GaussSeidelError> {
     let periodic = PeriodicLove::new();
     let half_space =
         HalfSpace { kernel: problem.kernel, coefficient: &|offset, half_side| periodic.coefficient(offset, half_side) };

@@ -5,7 +5,6 @@ use std::sync::OnceLock;
 
 use rc_core::{Field, Grid, Kernel, Operator as _};
 
-use super::SolveError;
 use super::kernel_of_grid::KernelOfGrid;
 use crate::adaptive::{AdaptiveProblem, AdaptiveSolution};
 use crate::solution::{GridSolution, Status};
@@ -97,12 +96,6 @@ impl<'a> Solution<'a> {
         Solution { how, status, h_max, pressures, pressure, gap, observables, stiffness }
     }
 
-    /// The error of a solution that did not converge.
-    pub(super) fn into_error(self) -> SolveError {
-        let (grid, iterations, certificate) = (self.finest_grid(), self.info().fine_iterations(), self.certificate());
-        SolveError::NotConverged { grid, iterations, certificate, solution: Box::new(self.into_owned()) }
-    }
-
     /// How the solve ended.
     #[must_use]
     pub fn status(&self) -> Status {
@@ -158,7 +151,7 @@ impl<'a> Solution<'a> {
     }
 
     /// The grid of the smallest elements: finer than [`Solution::grid`] where a border level was asked for.
-    fn finest_grid(&self) -> Grid {
+    pub(super) fn finest_grid(&self) -> Grid {
         match &self.pressures {
             Pressures::Grid { solution, .. } => solution.pressure.grid(),
             Pressures::Tiles { solution, .. } => solution.finest_grid(),

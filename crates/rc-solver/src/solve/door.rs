@@ -1,0 +1,70 @@
+//! The ways to a solution.
+
+use rc_core::{HeightSource, Observer, Silent};
+
+use super::{ContactProblem, Plan, Solution, SolveError, SolveParams, area_error, choice};
+use crate::Control;
+
+impl<'a> ContactProblem<'a> {
+    /// Checks the problem and chooses the method. Nothing is solved.
+    ///
+    /// # Errors
+    /// [`SolveError`], but not [`SolveError::NotConverged`].
+    pub fn plan(self, params: &SolveParams) -> Result<Plan<'a>, SolveError> {
+        choice::plan(self, params)
+    }
+
+    /// Solves the problem: [`ContactProblem::plan`] and [`Plan::solve`].
+    ///
+    /// # Errors
+    /// [`SolveError`].
+    pub fn solve(self, params: &SolveParams, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
+        self.plan(params)?.solve(observer)
+    }
+
+    /// Solves the problem on the coarsest grid whose error bar of the contact area is at most `wanted` of the area. The heights must be
+    /// a band-limited surface; the grid they are wanted on is not used.
+    ///
+    /// The bar on a first grid, with four elements for the shortest wave, says where to go next. Mostly two problems are solved, of which
+    /// the last takes longer than all others.
+    ///
+    /// # Errors
+    /// [`SolveError`]; [`SolveError::NoWaves`] for heights that no other grid can have, and [`SolveError::AreaError`] when 256 elements
+    /// for the shortest wave are not enough.
+    pub fn solve_to_area_error(
+        self,
+        wanted: f64,
+        params: &SolveParams,
+        observer: &dyn Observer,
+    ) -> Result<Solution<'a>, SolveError> {
+        area_error::solve(self, wanted, params, observer)
+    }
+}
+
+/// Solves the contact of `heights` (in λ) with the elastic half-space under a load.
+///
+/// The method is chosen by the estimated contact area unless `params` name one. The certificate comes from a fresh application of L on the
+/// returned pressure. The result is bitwise the same for any number of threads.
+///
+/// ```
+/// use rc_core::{Field, Grid};
+/// use rc_solver::{Control, SolveParams, solve};
+///
+/// // Westergaard's wave at half the load of full contact, π E* a/λ: half of it touches.
+/// let wave = Field::from_fn(Grid::square(128)?, |at| 1e-3 * (std::f64::consts::TAU * at.x).cos());
+/// let solution = solve(&wave, Control::MeanPressure(0.5e-3 * std::f64::consts::PI), &SolveParams::default())?;
+/// let area = solution.area();
+/// assert!((area.fraction - 0.5).abs() < 5e-3, "A/A0 = {:.4} ± {:.4}", area.fraction, area.error);
+/// assert!(solution.pressure().max() > 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`SolveError`]. Non-convergence is one, and carries the best solution found.
+pub fn solve<'a>(
+    heights: impl Into<HeightSource<'a>>,
+    control: Control,
+    params: &SolveParams,
+) -> Result<Solution<'a>, SolveError> {
+    ContactProblem::new(heights, control).solve(params, &Silent)
+}

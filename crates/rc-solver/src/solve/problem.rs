@@ -1,0 +1,53 @@
+//! A contact problem: heights, half-space and load.
+
+use rc_core::{HeightSource, Kernel};
+use rc_kernel::Love;
+
+use crate::Control;
+
+/// A contact problem: heights, half-space and load.
+///
+/// ```
+/// use rc_core::{Field, Grid};
+/// use rc_kernel::Spectral;
+/// use rc_solver::{ContactProblem, Control, Method, SolveParams};
+///
+/// // Westergaard's wave at a quarter of the load of full contact, with another kernel than the default.
+/// let wave = Field::from_fn(Grid::square(64)?, |at| 1e-3 * (std::f64::consts::TAU * at.x).cos());
+/// let load = Control::MeanPressure(0.25 * std::f64::consts::PI * 1e-3);
+/// let plan = ContactProblem::new(&wave, load).with_kernel(&Spectral).plan(&SolveParams::default())?;
+/// assert_eq!(plan.method(), Method::Uniform);
+/// let solution = plan.solve(&rc_core::Silent)?;
+/// assert!((solution.area().fraction - 1.0 / 3.0).abs() < 0.02);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy)]
+pub struct ContactProblem<'a> {
+    pub(super) heights: HeightSource<'a>,
+    pub(super) kernel: &'a dyn Kernel,
+    pub(super) control: Control,
+}
+
+impl<'a> ContactProblem<'a> {
+    /// The contact of `heights` (in λ) with the elastic half-space under a load. The kernel is [`Love`].
+    #[must_use]
+    pub fn new(heights: impl Into<HeightSource<'a>>, control: Control) -> Self {
+        Self { heights: heights.into(), kernel: &Love, control }
+    }
+
+    /// The same problem with another half-space, or another discretisation of it.
+    #[must_use]
+    pub fn with_kernel(self, kernel: &'a dyn Kernel) -> Self {
+        Self { kernel, ..self }
+    }
+}
+
+impl std::fmt::Debug for ContactProblem<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut out = f.debug_struct("ContactProblem");
+        out.field("heights", &self.heights)
+            .field("kernel", &self.kernel.name())
+            .field("control", &self.control)
+            .finish()
+    }
+}
