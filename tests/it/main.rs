@@ -8,6 +8,7 @@ mod front_door;
 mod full_contact;
 mod gauss_seidel;
 mod hertz;
+mod interchange;
 mod reference;
 mod rough;
 mod stress_distribution;

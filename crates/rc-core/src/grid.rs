@@ -7,10 +7,29 @@ use thiserror::Error;
 ///
 /// The cell is a square unless [`Grid::in_cell`] says otherwise, so elements are squares when `nx == ny`, rectangles otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "GridData"))]
 pub struct Grid {
     nx: usize,
     ny: usize,
     cell_ratio: f64,
+}
+
+/// A grid as it is read, before it is checked; `cell_ratio` may be omitted for a square cell.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct GridData {
+    nx: usize,
+    ny: usize,
+    cell_ratio: Option<f64>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<GridData> for Grid {
+    type Error = GridError;
+
+    fn try_from(data: GridData) -> Result<Self, GridError> {
+        Self::in_cell(data.nx, data.ny, data.cell_ratio.unwrap_or(1.0))
+    }
 }
 
 // The ratio is never NaN.
@@ -29,7 +48,7 @@ pub enum GridError {
         ny: usize,
     },
     /// A cell is too long and narrow.
-    #[error("the sides of a cell may differ by a factor of {} at most", Grid::GREATEST_CELL_RATIO)]
+    #[error("the sides of a cell may differ by a factor of {} at most", Grid::MAX_CELL_RATIO)]
     CellRatio,
 }
 
@@ -37,8 +56,8 @@ impl Grid {
     /// Largest number of elements per side: 2^20, far beyond memory, so that index arithmetic cannot overflow.
     pub const MAX_SIDE: usize = 1 << 20;
 
-    /// Largest ratio of the sides of a cell, the longer to the shorter.
-    pub const GREATEST_CELL_RATIO: f64 = 1e4;
+    /// Maximum ratio of the longer to the shorter side of a cell.
+    pub const MAX_CELL_RATIO: f64 = 1e4;
 
     /// A grid of `nx` × `ny` elements on the square cell.
     ///
@@ -58,8 +77,8 @@ impl Grid {
             return Err(GridError::Side { nx, ny });
         }
         // A quotient of lengths may be off by a rounding.
-        let greatest = Self::GREATEST_CELL_RATIO * (1.0 + 1e-12);
-        if !(greatest.recip()..=greatest).contains(&cell_ratio) {
+        let maximum = Self::MAX_CELL_RATIO * (1.0 + 1e-12);
+        if !(maximum.recip()..=maximum).contains(&cell_ratio) {
             return Err(GridError::CellRatio);
         }
         Ok(Self { nx, ny, cell_ratio })
@@ -85,8 +104,8 @@ impl Grid {
         self.ny
     }
 
-    /// Side of the cell along y over that along x: 1 for a square. The side along x is the unit of length, so this is the area of
-    /// the cell too.
+    /// Side of the cell along y relative to the side along x: 1 for a square. The side along x is the unit of length, so this is also
+    /// the area of the cell.
     #[must_use]
     pub fn cell_ratio(self) -> f64 {
         self.cell_ratio
@@ -94,7 +113,7 @@ impl Grid {
 
     /// Whether the cell is a square.
     #[must_use]
-    #[expect(clippy::float_cmp, reason = "1 is how a square is written, and nearly a square is none")]
+    #[expect(clippy::float_cmp, reason = "a square cell has exactly 1")]
     pub fn has_square_cell(self) -> bool {
         self.cell_ratio == 1.0
     }

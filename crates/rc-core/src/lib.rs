@@ -1,4 +1,4 @@
-//! What the crates of rc speak: grids, fields, elasticity and the small traits that a research fork implements.
+//! The common types of rc: grids, fields, elasticity, and the small traits that a research fork implements.
 //!
 //! # Conventions (of every crate of this workspace)
 //!
@@ -32,7 +32,7 @@
 //!     }
 //! }
 //!
-//! // What a solver takes: heights in λ at the centres of elements ...
+//! // A solver takes heights in λ at the centres of elements ...
 //! let heights = Sphere.sample(Grid::square(64)?);
 //! assert_eq!(heights.at(32, 31), -2.0 * (0.5_f64 / 64.0).powi(2) / 2.0);
 //!
@@ -43,11 +43,18 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Features
+//!
+//! `serde`: plain data (grids, cells, elasticity) serialises, and is checked when it is read. `ndarray`: a [`Field`] to and from
+//! `ndarray::Array2<f64>` without a copy.
+//!
 //! The feature `testing` has a check for each trait; `tests/examples/` of the repository goes on from here.
 //!
 //! The paper is Putignano, Afferrante, Carbone, Demelio, *A new efficient numerical method for contact mechanics of rough
 //! surfaces*, Int. J. Solids Struct. 49 (2012) 338-343; "Eq. (n)" without another source means its equations.
 
+#[cfg(feature = "ndarray")]
+mod array;
 mod field;
 mod grid;
 mod heights;

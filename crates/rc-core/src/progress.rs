@@ -59,6 +59,12 @@ impl<'a> Snapshot<'a> {
     }
 }
 
+impl std::fmt::Debug for Snapshot<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Snapshot").field("grid", &self.grid).finish_non_exhaustive()
+    }
+}
+
 /// Receives [`Event`]s. Called from the solving thread, between iterations; should return quickly.
 pub trait Observer: Sync {
     /// Takes note of an event.

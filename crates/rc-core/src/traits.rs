@@ -10,6 +10,7 @@ pub type Symbol<'a> = Box<dyn Fn(usize, usize) -> f64 + Send + Sync + 'a>;
 ///
 /// The constants are fitted, kernel by kernel (`docs/accuracy.md`). The default is that of a kernel like Love's squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EdgeBias {
     /// For each edge between an element in contact and one out of it.
     pub per_edge: f64,

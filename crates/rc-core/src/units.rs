@@ -30,9 +30,27 @@ fn positive(what: &'static str, value: f64) -> Result<f64, UnitError> {
 
 /// The periodic cell: a square of side λ, or a rectangle whose side along x is λ.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "CellData"))]
 pub struct PeriodicCell {
     side: f64,
     side_y: f64,
+}
+
+/// A cell as it is read, before it is checked; `side_y` may be omitted for a square.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct CellData {
+    side: f64,
+    side_y: Option<f64>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<CellData> for PeriodicCell {
+    type Error = UnitError;
+
+    fn try_from(data: CellData) -> Result<Self, UnitError> {
+        Self::rectangle(data.side, data.side_y.unwrap_or(data.side))
+    }
 }
 
 impl PeriodicCell {
@@ -79,8 +97,25 @@ impl PeriodicCell {
 
 /// The elastic half-space against a rigid surface: E* = E/(1-ν²) (below Eq. 5).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "ElasticityData"))]
 pub struct Elasticity {
     e_star: f64,
+}
+
+/// A half-space as it is read, before it is checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct ElasticityData {
+    e_star: f64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<ElasticityData> for Elasticity {
+    type Error = UnitError;
+
+    fn try_from(data: ElasticityData) -> Result<Self, UnitError> {
+        Self::from_e_star(data.e_star)
+    }
 }
 
 impl Elasticity {
@@ -124,6 +159,7 @@ impl Elasticity {
 /// # Ok::<(), rc_core::UnitError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Units {
     cell: PeriodicCell,
     elasticity: Elasticity,

@@ -5,11 +5,11 @@ use crate::radial::SpectrumBin;
 /// Rings are put together into bins that are this much wider than the ones before, so that every decade counts alike.
 const BIN_RATIO: f64 = 1.189_207_115_002_721; // 2^(1/4)
 
-/// Fewest bins, and least ratio of the last to the first, that make a range.
+/// Minimum number of bins in a range, and minimum ratio of the last to the first.
 const FEWEST_BINS: usize = 6;
 const LEAST_RATIO: f64 = 4.0;
 
-/// What may lie between a bin and the line, in ln C, besides the scatter of a bin of few waves.
+/// Maximum distance of a bin from the line, in ln C, besides the scatter of a bin of few waves.
 const STRAIGHT: f64 = 0.15;
 
 /// Deviations of that many standard deviations are scatter.
@@ -18,11 +18,12 @@ const SCATTER: f64 = 2.5;
 /// Exponents that make a range: those of self-affine surfaces, and a little more. A roll-off is straight too, with H = -1.
 const SELF_AFFINE: std::ops::RangeInclusive<f64> = 0.0..=1.2;
 
-/// Part of the greatest C below which there is only rounding.
+/// Part of the maximum C below which there is only rounding.
 const ROUNDING: f64 = 1e-20;
 
 /// A power law C ∝ q^(-2(1+H)) through a part of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct HurstFit {
     /// Hurst exponent H, from 0 to 1.2. Above 1 the surface is smoother than a self-affine one, though its spectrum is a power law.
     pub hurst: f64,

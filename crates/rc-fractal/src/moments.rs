@@ -9,6 +9,7 @@ use crate::power::PowerSpectrum;
 /// Statistics of a whole periodic surface. In terms of the amplitudes `a_k` with q = 2π|k| (Parseval):
 /// ⟨h²⟩ = Σ |a|², ⟨|∇h|²⟩ = Σ q² |a|², ⟨(∇²h)²⟩ = Σ q⁴ |a|².
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Moments {
     /// √⟨h²⟩ about the mean plane, in λ.
     pub rms_height: f64,

@@ -1,4 +1,4 @@
-//! What a spectrum is made of: the parameters, and which of them cannot be.
+//! The parameters of a spectrum, and their ranges.
 
 use thiserror::Error;
 
@@ -27,8 +27,9 @@ pub enum Amplitudes {
     Random,
 }
 
-/// What fixes the size of the heights. Every value must be positive and finite.
+/// The quantity that fixes the size of the heights. Every value must be positive and finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Normalisation {
     /// √⟨h²⟩ of this realisation, in λ.
     RmsHeight(f64),
@@ -41,6 +42,7 @@ pub enum Normalisation {
 
 /// The spectrum of a surface, and the seed that picks one realisation. All lengths in λ.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpectrumParams {
     /// N, the largest wavenumber in waves per cell: 1 to [`MAX_WAVES`].
     pub waves: usize,

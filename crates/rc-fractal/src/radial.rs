@@ -8,6 +8,7 @@ use crate::power::PowerSpectrum;
 
 /// One ring of wave vectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SpectrumBin {
     /// Mean |k| of the ring's wave vectors, in waves per λ.
     pub wavenumber: f64,

@@ -1,4 +1,4 @@
-//! What kernel values cost: Love's square at several distances, values of the symbols, and making a symbol.
+//! Time of kernel values: Love's square at several distances, values of the symbols, and making a symbol.
 //!
 //! `cargo bench -p rc-kernel`. Each sample of a benchmark of values is 1000 values.
 

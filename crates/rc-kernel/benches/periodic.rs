@@ -1,4 +1,4 @@
-//! What periodic coefficients cost: near, midway and far, for small and large sources, tables, and truncated sums.
+//! Time of periodic coefficients: near, midway and far, for small and large sources, tables, and truncated sums.
 //!
 //! `cargo bench -p rc-kernel --bench periodic`. Each sample of a benchmark of values is 1000 values.
 
@@ -45,7 +45,7 @@ fn mixed_sizes(bencher: Bencher<'_, '_>) {
     bencher.counter(VALUES).bench(|| requests.iter().map(|&(offset, d)| love.coefficient(offset, d)).sum::<f64>());
 }
 
-/// Sizes that are no power of two: with a table of their own, and without.
+/// Sizes that are not powers of two: with a table of their own, and without.
 #[divan::bench(args = [true, false])]
 fn other_sizes(bencher: Bencher<'_, '_>, table: bool) {
     let love = PeriodicLove::new();
@@ -77,6 +77,6 @@ fn truncated(shells: usize) -> f64 {
 }
 
 #[divan::bench]
-fn slow_truth() -> f64 {
+fn slow_reference() -> f64 {
     ewald_coefficient(DVec2::new(black_box(0.25), 0.1), 1.0 / 128.0)
 }

@@ -1,4 +1,4 @@
-//! The symbol of the paper's element as a sum over aliases: the slow truth of this crate.
+//! The symbol of the paper's element as a sum over aliases: the slow reference of this crate.
 //!
 //! On a grid of spacing (hx, hy) the wave k looks the same as its aliases k + (m nx, n ny). A pressure that is constant on
 //! each element contains all of them, each damped by the transform of the element, so the symbol is
@@ -27,7 +27,7 @@ pub(crate) const TERMS: usize = 24;
 
 /// The symbol of [`Love`](crate::Love) at wave (`kx`, `ky`) of `grid`, summed over all aliases; in λ/E*, zero at k = 0.
 ///
-/// The slow truth behind [`Love`](crate::Love), for tests and for single values: about 2500 terms, 10 µs.
+/// The slow reference of [`Love`](crate::Love), for tests and for single values: about 2500 terms, 10 µs.
 ///
 /// *Accuracy*: 2e-15 relative (test `alias_sum_is_converged`; against sums without acceleration, test
 /// `alias_sum_matches_brute_force`). Any kx and ky are allowed; the symbol is periodic in them.

@@ -1,4 +1,4 @@
-//! What all images but the nearest, and the background, add to the mean of φ over a square: smooth, and tabulated.
+//! The part of the mean of φ over a square that is due to the background and to all images but the nearest: smooth, and tabulated.
 //!
 //! `ψ = φ - 1/r` is smooth on the whole cell. It is fitted once to Ewald's sum, in the squares of the coordinates. The
 //! mean of the fit over a square is exact: along each axis it is the mean of Chebyshev polynomials over an interval.

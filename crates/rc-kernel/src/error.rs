@@ -1,4 +1,4 @@
-//! What can be wrong with a request for a periodic coefficient.
+//! Errors of requests for periodic coefficients.
 
 use rc_core::DVec2;
 use thiserror::Error;
@@ -18,7 +18,7 @@ pub enum KernelError {
         /// The half side that was given.
         half_side: f64,
     },
-    /// No shell of images: the sum over none has no meaning.
+    /// Zero shells of images: an empty sum has no meaning.
     #[error("0 shells of images; at least 1 is needed")]
     NoShells,
     /// More shells than [`MAX_SHELLS`](crate::MAX_SHELLS).

@@ -1,7 +1,7 @@
 //! The lattice function φ: potential of unit charges on all images with a uniform neutralising background, by Ewald's sum.
 //!
 //! A point load on the unit cell and all its images, with the uniform counter-load of Eq. 3, displaces the surface by
-//! φ(r)/(π E*), `φ(r) = Σ_{q≠0} (2π/|q|) exp(iq·r)`, which has zero mean. This is the slow truth that the fast
+//! φ(r)/(π E*), `φ(r) = Σ_{q≠0} (2π/|q|) exp(iq·r)`, which has zero mean. It is the slow reference that the fast
 //! coefficients are made from and tested against.
 
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
@@ -14,7 +14,7 @@ use crate::love_displacement;
 /// Images and waves per direction. Both sums end below 1e-17 of φ.
 const SHELLS: i32 = 3;
 
-/// φ(0) - 1/r: `-C = 4 ζ(1/2) β(1/2)`, β being Dirichlet's; the lattice sum of 1/R less its background (Ewald, two splitting
+/// φ(0) - 1/r: `-C = 4 ζ(1/2) β(1/2)`, β being Dirichlet's; the lattice sum of 1/R minus its background (Ewald, two splitting
 /// parameters, 27 digits).
 pub const LATTICE_CONSTANT: f64 = -3.900_264_920_001_956;
 
@@ -79,7 +79,7 @@ fn images_and_waves(DVec2 { x, y }: DVec2) -> f64 {
     images + waves - 2.0
 }
 
-/// `L_ij` by quadrature of Ewald's sum: the slow truth for [`PeriodicLove`](crate::PeriodicLove), a millisecond each.
+/// `L_ij` by quadrature of Ewald's sum: the slow reference of [`PeriodicLove`](crate::PeriodicLove), a millisecond each.
 ///
 /// Arguments as there. The nearest image is [`love_displacement`], the others and the background are averaged over the
 /// source by 24 × 24 Gauss-Legendre points; squares above λ/4 are cut into quarters first.

@@ -1,21 +1,21 @@
 //! Elastic half-space kernels on the periodic cell (Eq. 2-6), in units of λ and E*.
 //!
 //! The paper's operator is `v_i = Σ_j L_ij p_j` (Eq. 4): element j under uniform pressure and all its periodic images
-//! (Eq. 5), less the mean displacement (Eq. 6). Both sums diverge and their difference converges like 1/(number of images),
-//! so the paper's truncated sums are here to compare with. The rest has all images:
+//! (Eq. 5), minus the mean displacement (Eq. 6). Both sums diverge and their difference converges like 1/(number of images),
+//! so the paper's truncated sums are here to compare with. All other sums are over all images:
 //!
 //! | item | what | where |
 //! |---|---|---|
 //! | [`love_displacement`] | one term of Eq. 5: one square in free space, at any distance | `love.rs`, far away `multipoles.rs` |
 //! | [`Love`] | Eq. 4-6 on a uniform grid, all images: diagonal in Fourier space, and its symbol a sum over aliases. Eq. 3, the zero mean, is the zero at k = 0 | `love_symbol.rs` |
-//! | [`love_alias_sum`] | the same symbol one value at a time: the slow truth that [`Love`] is made from and tested against | `alias_sum.rs` |
+//! | [`love_alias_sum`] | the same symbol one value at a time: the slow reference that [`Love`] is made from and tested against | `alias_sum.rs` |
 //! | [`PeriodicLove`] | Eq. 4-6 between any two squares of the cell, all images, to 1e-12 in 31 to 54 ns | `periodic.rs`: `square.rs` and `averages.rs` |
-//! | [`ewald_phi`], [`ewald_coefficient`] | the point load and the square by Ewald's sum: the slow truth of [`PeriodicLove`] | `lattice.rs` |
+//! | [`ewald_phi`], [`ewald_coefficient`] | the point load and the square by Ewald's sum: the slow reference of [`PeriodicLove`] | `lattice.rs` |
 //! | [`truncated_coefficient`] | Eq. 4-6 as the paper sums them, K shells of images, with a proven bound | `truncated.rs` |
 //! | [`ScaleSplit`] | Eq. 4-6 split by scale, for meshes of many levels: short-range stencils, filters between levels, a smooth remainder | `split/` |
 //! | [`Spectral`] | Eq. 2-3 for waves instead of elements: the half-space without aliases | `spectral.rs` |
 //!
-//! Half side or side: d_j of Eq. 5 and 6 is the half side of an element, and so is `half_side` here.
+//! d_j of Eq. 5 and 6 is the half side of an element, `half_side` here.
 //!
 //! ```
 //! use rc_core::{Grid, Kernel};
@@ -61,7 +61,7 @@ use love_symbol::LoveSymbol;
 use rc_core::{Grid, Kernel, Symbol};
 
 /// The paper's element: uniform pressure on each element, displacement at its centre, summed over all periodic images
-/// (Eq. 4-6) without truncation. Elements are squares or rectangles, and so is the cell.
+/// (Eq. 4-6) without truncation. Elements and cell are squares or rectangles.
 ///
 /// Its symbol is `Σ 2/|q| sinc(q_x hx/2) sinc(q_y hy/2)` over the aliases q of the wave, for elements of hx × hy.
 ///

@@ -1,8 +1,8 @@
 //! The symbol of the paper's element on a uniform grid, fast: a few aliases and a smooth rest.
 //!
-//! The aliases nearest to the wave are summed as they are. What remains of the alias sum ([`crate::alias_sum`]) is a smooth
-//! and even function of θx and θy, singular only where the nearest alias left out is: a Chebyshev interpolant in θx², θy²,
-//! fitted to the slow truth when the symbol is made, is as good as the truth.
+//! The aliases nearest to the wave are summed as they are. The rest of the alias sum ([`crate::alias_sum`]) is a smooth and
+//! even function of θx and θy, singular only at the nearest alias that is left out. It is a Chebyshev interpolant in θx² and θy², fitted
+//! to the alias sum when the symbol is made, and as accurate as that sum.
 //!
 //! Which aliases are near depends on the shape of the elements. Let r ≥ 1 be long side over short side, m count aliases
 //! along the long side and n along the short one.
@@ -80,7 +80,7 @@ impl LoveSymbol {
     }
 }
 
-/// All that depends on one component of the wave, with `L` aliases side by side.
+/// Tables over one component of the wave, with `L` aliases side by side.
 struct Axis<const L: usize> {
     /// The near aliases of each wavenumber up to half the grid.
     near: Vec<Aliases<L>>,

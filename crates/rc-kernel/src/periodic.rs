@@ -18,8 +18,8 @@ use crate::truncated::{check_half_side, check_offset};
 const FIRST_LEVEL: usize = 2;
 const LEVELS: usize = 20;
 
-/// Below this half side d, what images add is the same as for a point: the difference, d²/6 times the Laplacian of ψ (below
-/// 20), is less than 2e-13.
+/// Below this half side d, the share of the images is that of a point: the difference, d²/6 times the Laplacian of ψ (below 20), is
+/// below 2e-13.
 const POINT: f64 = 2.4e-7;
 
 /// The smooth part, fitted once per process, and its tables, each made when first used.
@@ -38,7 +38,7 @@ static TABLES: LazyLock<Tables> = LazyLock::new(|| Tables {
 
 /// The coefficients `L_ij = l_ij - l_m` of Eq. 4-6, all images, to 1e-12.
 ///
-/// `L_ij` is the displacement at the centre of element i, less its mean over the cell, under unit pressure on the square
+/// `L_ij` is the displacement at the centre of element i, minus its mean over the cell, under unit pressure on the square
 /// element j, its images, and a uniform counter-load: `1/(π E*) ∫ φ ds` over the square, with φ of
 /// [`ewald_phi`](crate::ewald_phi). In units of λ p/E*. The sum over a row is 0 on any tiling of the cell.
 ///
@@ -175,8 +175,8 @@ impl Tables {
         if half_side <= MAX_HALF_SIDE {
             return MeanTable::new(&self.remainder, half_side);
         }
-        // A square of side λ/2 reaches too near its images for the fit of ψ, but what they add at its own offsets is
-        // smooth: the sum of its quarters less the nearest image.
+        // A square of side λ/2 reaches too near its images for the fit of ψ. The share of the images at its own offsets is smooth:
+        // it is the sum of the quarters minus the nearest image.
         let (half, side) = (0.5 * half_side, 2.0 * half_side);
         let quarter = self.make(half);
         MeanTable::of_means(|offset| {

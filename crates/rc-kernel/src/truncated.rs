@@ -1,4 +1,4 @@
-//! Eq. 4-6 as the paper sums them: the images of K shells, and a bound of what is left out.
+//! Eq. 4-6 as the paper sums them: the images of K shells, and a bound of the truncation error.
 
 use std::f64::consts::{FRAC_1_PI, SQRT_2};
 
@@ -7,7 +7,7 @@ use rc_core::DVec2;
 use crate::lattice::wrapped;
 use crate::{KernelError, love_displacement};
 
-/// Most shells of images that are ever summed: 4 million images, a second for one coefficient.
+/// Maximum number of shells of images: 4 million images, a second for one coefficient.
 pub const MAX_SHELLS: usize = 1024;
 
 /// How the uniform counter-load of the cell, l_m, is written as a sum of squares.
@@ -99,7 +99,7 @@ pub fn truncation_error_bound(half_side: f64, shells: usize, form: LoadForm) -> 
     4.0 * d2 * FRAC_1_PI * (second(0.0).max(second(0.5)) * cubes + (source + counter_load) * fifth_powers)
 }
 
-/// The least number of shells with [`truncation_error_bound`] ≤ `tolerance` (absolute, displacement in λ p/E*).
+/// The minimum number of shells with [`truncation_error_bound`] ≤ `tolerance` (absolute, displacement in λ p/E*).
 ///
 /// # Errors
 /// [`KernelError`]: `half_side` not in (0, 1/2], `tolerance` not positive, or not reached with [`MAX_SHELLS`].

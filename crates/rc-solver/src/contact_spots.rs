@@ -10,20 +10,20 @@ use crate::contact_area::{EdgeSums, around};
 pub struct ContactSpot {
     /// Elements of it.
     pub elements: usize,
-    /// Its area over that of the cell, from the edges between the centres of elements, as [`ContactArea::fraction`]: the spots add up to
+    /// Ratio of its area to that of the cell, from the edges between the centres of elements, as [`ContactArea::fraction`]: the spots add up to
     /// the contact area. A spot of one element may be off by half of it.
     pub area_fraction: f64,
     /// Length of its edge, in λ ([`ContactArea::perimeter`]).
     pub perimeter: f64,
-    /// 1 less its holes.
+    /// 1 minus the number of its holes.
     pub euler_number: f64,
     /// Its part of the mean pressure, in E*.
     pub mean_pressure: f64,
 }
 
 impl ContactSpot {
-    /// The spots of a contact, largest first; of equal ones, the one that begins in an earlier row. `pressure` and `gap` are those of
-    /// [`ContactArea::of`], and so is `bias`.
+    /// The spots of a contact, largest first; of equal ones, the one that begins in an earlier row. `pressure`, `gap` and `bias` are those of
+    /// [`ContactArea::of`].
     ///
     /// # Panics
     /// When the two are not on the same grid.
@@ -108,7 +108,7 @@ mod tests {
         };
         let pressure = Field::from_fn(grid, |DVec2 { x, y }| depth(x, y).max(0.0).sqrt());
         let gap = Field::from_fn(grid, |DVec2 { x, y }| 4.0 / 3.0 * (-depth(x, y)).max(0.0).powf(1.5));
-        // Heights as exact as these have no first-order error to be taken off.
+        // Values as exact as these have no first-order error to subtract.
         let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_deviation: 0.0, per_square: 0.0 };
         let spots = ContactSpot::all(&pressure, &gap, none);
         assert_eq!(spots.len(), 2);
@@ -125,10 +125,10 @@ mod tests {
         assert!((sum(|spot| spot.mean_pressure) / pressure.mean() - 1.0).abs() < 1e-12);
     }
 
-    /// A round contact on elements that are no squares has the area and the edge that it has on squares of the same size: each edge is
+    /// A round contact on elements that are not squares has the area and the edge that it has on squares of the same size: each edge is
     /// located with the side of the element across it.
     #[test]
-    fn elements_that_are_no_squares_locate_edges_as_well() {
+    fn elements_that_are_not_squares_locate_edges_as_well() {
         let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_deviation: 0.0, per_square: 0.0 };
         let depth = |x: f64, y: f64| 0.23 - (x - 0.501).hypot(y - 0.497);
         let found = |nx: usize, ny: usize| {

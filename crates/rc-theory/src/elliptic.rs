@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// An elliptic contact on an infinite half-space: its semi-axes and greatest pressure; the shape and load follow.
+/// An elliptic contact on an infinite half-space: its semi-axes and maximum pressure; the shape and load follow.
 ///
 /// Source: K. L. Johnson, *Contact Mechanics*, Cambridge University Press 1985, section 4.2 (Eq. 4.24 to 4.26).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -70,13 +70,13 @@ impl Westergaard {
         self.amplitude - self.penetration(mean_pressure)
     }
 
-    /// Δ = A P (1 - ln P), in λ: A less the mean gap; A in full contact.
+    /// Δ = A P (1 - ln P), in λ: A minus the mean gap; A in full contact.
     #[must_use]
     pub fn penetration(self, mean_pressure: f64) -> f64 {
         self.amplitude * relative_penetration(self.ratio(mean_pressure))
     }
 
-    /// Elastic energy per nominal area, A p^ P² (1/4 - ln(P)/2), in E*λ; A p^/4 in full contact, where more load adds none.
+    /// Elastic energy per nominal area, A p^ P² (1/4 - ln(P)/2), in E*λ; A p^/4 in full contact, where it does not grow with the load.
     #[must_use]
     pub fn energy(self, mean_pressure: f64) -> f64 {
         let ratio = self.ratio(mean_pressure);

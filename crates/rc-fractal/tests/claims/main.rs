@@ -1,4 +1,4 @@
-//! What `rc-fractal` claims, checked from outside.
+//! The claims of `rc-fractal`, checked from outside.
 
 mod moments;
 mod parameters;

@@ -38,12 +38,12 @@ impl CoarseFilter {
     }
 }
 
-/// What an element of a coarse level does, for elements of side 1.
+/// The response of an element of a coarse level, for elements of side 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoarseElement {
     /// Its blur.
     pub filter: CoarseFilter,
-    /// What the level's own stencil and all coarser levels leave of its displacement at others of its size.
+    /// The displacement of other elements of its size, without the shares of the level's own stencil and of all coarser levels.
     pub near: Stencil,
     /// The same, when the level's own stencil does not act either.
     pub whole: Stencil,
@@ -113,7 +113,7 @@ fn blur(q: f64, m: u32) -> f64 {
     halves.product::<f64>() * love_target(q / f64::from(1_u32 << m))
 }
 
-/// The taps whose response is nearest to b_m (least squares), weighted by the spectrum of what the level has to represent.
+/// The taps whose response is nearest to b_m (least squares), weighted by the spectrum that the level has to represent.
 fn design(window: &Window, params: SplitParams, m: u32) -> CoarseFilter {
     let n = params.taps / 2;
     let c = 0.5 * params.cutoff as f64;

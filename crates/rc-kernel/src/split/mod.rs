@@ -131,7 +131,7 @@ impl ScaleSplit {
     }
 
     /// Symbol of the remainder at the angular wavenumber `q` > 0, for a cutoff `c` in the unit of length of 1/q:
-    /// `2/q` less the transform of the short-range kernel.
+    /// `2/q` minus the transform of the short-range kernel.
     #[must_use]
     pub fn remainder_symbol(&self, q: f64, c: f64) -> f64 {
         2.0 / q - self.short_range_symbol(q, c)

@@ -1,4 +1,4 @@
-//! Short-range stencils: what one element does to the centres around it.
+//! Short-range stencils: the displacement of the centres around one element.
 
 use std::f64::consts::FRAC_1_PI;
 
@@ -60,7 +60,7 @@ impl Stencil {
     }
 }
 
-/// Love's square less the mean of the remainder over it.
+/// Love's square minus the mean of the remainder over it.
 pub(super) fn love(window: &Window, cutoff: usize) -> Stencil {
     let rule = gauss_legendre::<POINTS>();
     Stencil::new(cutoff, |dx, dy| {

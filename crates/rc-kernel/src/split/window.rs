@@ -8,8 +8,7 @@ use crate::bessel::bessel_series;
 use crate::chebyshev::Series;
 use crate::gauss_legendre::gauss_legendre;
 
-/// Terms of the expansions before those are dropped that do not matter: enough for rounding accuracy up to β = 24 and cutoffs
-/// of 24 elements.
+/// Terms of the expansions before negligible ones are dropped. They reach rounding accuracy up to β = 24 and cutoffs of 24 elements.
 const TERMS: usize = 64;
 
 /// χ, tabulated.

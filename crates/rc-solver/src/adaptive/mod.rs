@@ -85,6 +85,12 @@ pub(crate) struct AdaptiveProblem<'a> {
     split: SplitParams,
 }
 
+impl std::fmt::Debug for AdaptiveProblem<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("AdaptiveProblem").field("params", &self.params).finish_non_exhaustive()
+    }
+}
+
 impl<'a> AdaptiveProblem<'a> {
     /// Checks and prepares.
     ///

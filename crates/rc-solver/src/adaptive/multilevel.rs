@@ -22,6 +22,12 @@ pub struct MultilevelOperator {
     operator: Mutex<TileOperator<f64>>,
 }
 
+impl std::fmt::Debug for MultilevelOperator {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("MultilevelOperator").field("n_elements", &self.n_elements).finish_non_exhaustive()
+    }
+}
+
 impl MultilevelOperator {
     /// The operator on the tiles at `places` (column, row) of a grid of `side` elements per side, with `base_side` on its base
     /// grid and an error of at most `error` of the rms displacement (see [`SplitParams::for_error`]). Tiles are sorted, and

@@ -5,8 +5,8 @@ const MOST_STEPS: usize = 12;
 
 /// The edge of a contact between the centre of an element in contact and that of a neighbour out of it.
 ///
-/// At an edge the pressure is c √s inside and the gap (4c/3E*) s^{3/2} outside, with the same c. With s the distance of the edge from
-/// the first centre over that between the centres, h: p² = c² s h and (3g/4)² = c² (1 - s)³ h³, so u = s^{1/3} solves
+/// At an edge the pressure is c √s inside and the gap (4c/3E*) s^{3/2} outside, with the same c. With h the distance between the centres
+/// and s the distance of the edge from the first of them, divided by h: p² = c² s h and (3g/4)² = c² (1 - s)³ h³, so u = s^{1/3} solves
 /// u³ + β u = 1, β = (3g/4ph)^{2/3}: the pressure and the gap matter by their ratio only.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
@@ -14,7 +14,7 @@ pub(super) struct Edge {
 }
 
 impl Edge {
-    /// From g E*/(p h); a gap below 0 counts as none. `None` for a ratio that is not a number.
+    /// From g E*/(p h); a gap below 0 counts as 0. `None` for a ratio that is not a number.
     pub(super) fn new(gap_ratio: f64) -> Option<Self> {
         if gap_ratio.is_nan() {
             return None;

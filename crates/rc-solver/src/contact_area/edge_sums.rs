@@ -27,7 +27,7 @@ pub(crate) struct EdgeSums {
     /// Σ p² of the elements inside, over all edges.
     pub(crate) squares: f64,
     /// Corners where one of the four elements that meet is in contact, less those where three are: four times the number of
-    /// contacts less that of holes in them.
+    /// contacts minus the number of holes in them.
     pub(crate) turns: isize,
 }
 

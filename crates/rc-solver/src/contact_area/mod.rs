@@ -50,7 +50,7 @@ const ERROR_OF_RECTANGLES: f64 = 0.2;
 
 impl ContactArea {
     /// The contact area of `pressure` and `gap` (E* = 1, λ = 1; the gap zero in contact) on a uniform grid; `bias` is that of the
-    /// kernel they were found with. One pass; only elements in contact cost more than a look.
+    /// kernel they were found with. One pass; the time is that of the elements in contact.
     ///
     /// # Panics
     /// When the two are not on the same grid.
@@ -112,7 +112,7 @@ impl ContactArea {
         area
     }
 
-    /// `error` over `fraction`; 0 without contact.
+    /// Ratio of `error` to `fraction`; 0 without contact.
     #[must_use]
     pub fn relative_error(&self) -> f64 {
         if self.fraction > 0.0 { self.error / self.fraction } else { 0.0 }
@@ -135,7 +135,7 @@ fn are_squares([x, y]: [f64; 2]) -> bool {
     (x / y - 1.0).abs() < 1e-6
 }
 
-/// Pressure, and gap less that of contact, at places around an element of a periodic grid.
+/// Pressure, and gap minus that of contact, at places around an element of a periodic grid.
 pub(crate) fn around<'a>(
     (pressure, gap): (&'a [f64], &'a [f64]),
     [nx, ny]: [usize; 2],

@@ -10,6 +10,12 @@ pub struct DirectSum {
     coefficients: Vec<f64>,
 }
 
+impl std::fmt::Debug for DirectSum {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("DirectSum").field("grid", &self.grid).finish_non_exhaustive()
+    }
+}
+
 impl DirectSum {
     /// The operator of `kernel` on `grid`.
     #[must_use]

@@ -14,6 +14,12 @@ pub struct UniformOperator {
     convolution: Mutex<Convolution<f64>>,
 }
 
+impl std::fmt::Debug for UniformOperator {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("UniformOperator").field("grid", &self.grid).finish_non_exhaustive()
+    }
+}
+
 impl UniformOperator {
     /// The operator of `kernel` on `grid`.
     #[must_use]
