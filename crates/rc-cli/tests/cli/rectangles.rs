@@ -1,6 +1,6 @@
 //! Rectangular cells through the whole chain: against the square of their copies, by either method.
 
-use crate::support::{Place, assert_refused, assert_solved, npy, text};
+use crate::support::{MATERIAL, Place, assert_refused, assert_solved, npy, text};
 
 const TAU: f64 = std::f64::consts::TAU;
 
@@ -76,7 +76,7 @@ fn pictures_pages_and_exports_have_the_sides_of_the_cell() {
 fn what_does_not_go_with_a_rectangle_is_refused() {
     let place = Place::new();
     place.write("map.npy", map());
-    let solve = ["solve", "--pressure", "1e5", "--out", "r"];
+    let solve = [&["solve", "--pressure", "1e5", "--out", "r"], &MATERIAL[..]].concat();
     let refused = |args: &[&str], expected: &str| assert_refused(&place.run(&[&solve[..], args].concat()), expected);
     refused(&["--waves", "8", "--cell-y", "1e-3"], "cell_y: is for height maps");
     for method in ["adaptive", "gauss-seidel"] {

@@ -53,7 +53,10 @@ mod tests {
 
     #[test]
     fn what_is_missing_is_named() {
-        let map = |cell: Option<f64>| SurfaceKeys { heights: Some("map.npy".into()), cell, ..SurfaceKeys::default() };
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        let path = dir.path().join("map.csv");
+        std::fs::write(&path, "1,2\n3,4\n").expect("a map without a size");
+        let map = |cell| SurfaceKeys { heights: Some(path.clone()), cell, ..SurfaceKeys::default() };
         let material = |e_star, young, poisson| ContactKeys { e_star, young, poisson, ..ContactKeys::default() };
         let none = material(None, None, None);
         let all = "needs cell (m), and e_star (Pa) or young (Pa) with poisson too";
