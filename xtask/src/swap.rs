@@ -1,81 +1,179 @@
-//! `cargo xtask swap`: a crate replaced whole by a fork, for real.
+//! `cargo xtask swap`: crates replaced whole by forks, for real.
 //!
-//! A copy of the libraries gets one line of its root manifest changed, as the README tells forks to, and the solver's tests
-//! run against the tiny fork of `rc-kernel` in `swap/my_rc_kernel.rs`.
+//! A copy of the libraries has forks of three crates in place of the originals, as the guide tells how to. Each fork is its
+//! original with one place that can go wrong on demand. A contact that is solved with sound forks must have the numbers of the
+//! originals, and with each wrong one must not: so the solver really uses each of them.
+
+mod scene;
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow, ensure};
 use rc_figures::repository;
 use toml::{Table, Value};
 
 use crate::process::Step;
 
-/// Builds the solver with a tiny fork of rc-kernel in place of the original, in a workspace in target/swap, and runs its tests
-/// there.
+/// Replaces rc-fractal, rc-kernel and rc-quadtree by forks, in a workspace in target/swap, and shows for each that the solver uses
+/// the fork: wrong ones change the result, sound ones do not.
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
-const FORK: &str = include_str!("swap/my_rc_kernel.rs");
-const SWAPPED: &str = include_str!("swap/swapped.rs");
+/// A crate with a place that can go wrong.
+struct Fork {
+    name: &'static str,
+    file: &'static str,
+    original: &'static str,
+    forked: &'static str,
+}
 
-/// What the solver needs of the workspace.
-const CRATES: &[&str] = &["rc-core", "rc-fft", "rc-kernel", "rc-quadtree", "rc-solver"];
+const FORKS: [Fork; 3] = [
+    Fork {
+        name: "rc-fractal",
+        file: "src/surface.rs",
+        original: "*amplitude *= factor)",
+        forked: "*amplitude *= if crate::is_wrong() { 1.01 } else { 1.0 } * factor)",
+    },
+    Fork {
+        name: "rc-kernel",
+        file: "src/split/stencil.rs",
+        original: "love_displacement(offset, 0.5) -",
+        forked: "(if crate::is_wrong() { 1.01 } else { 1.0 }) * love_displacement(offset, 0.5) -",
+    },
+    Fork {
+        name: "rc-quadtree",
+        file: "src/patch.rs",
+        original: "tiles.find(column + block_column as i64, row +",
+        forked: "tiles.find(column + block_column as i64, row + i64::from(crate::is_wrong()) +",
+    },
+];
 
-/// The fork has another name, and the crate that it forks as `upstream`.
-const FORK_MANIFEST: &str = r#"
-[package]
-name = "my-rc-kernel"
-version = "0.1.0"
-edition = "2024"
-
-[dependencies]
-rc-core.workspace = true
-upstream = { path = "../rc-kernel", package = "rc-kernel" }
+/// The end of each fork's `lib.rs`.
+const IS_WRONG: &str = r#"
+/// Whether this fork is to be wrong.
+pub(crate) fn is_wrong() -> bool {
+    static WRONG: std::sync::LazyLock<bool> =
+        std::sync::LazyLock::new(|| std::env::var("RC_SWAP_WRONG").is_ok_and(|name| name == env!("CARGO_PKG_NAME")));
+    *WRONG
+}
 "#;
 
-const TEST: Step = Step { environment: &[], words: &["test", "-p", "rc-solver"] };
+/// The other libraries that the solver needs.
+const CRATES: &[&str] = &["rc-core", "rc-fft", "rc-solver"];
 
+/// The program that solves with the forks.
+const SCENE: &str = include_str!("swap/scene.rs");
+const MAIN: &str = "//! Prints the numbers of a contact.\n\nmod scene;\n\nfn main() -> Result<(), Box<dyn std::error::Error>> {\n    \
+                    println!(\"{}\", scene::numbers()?);\n    Ok(())\n}\n";
+
+const BUILD: Step = Step { environment: &[], words: &["build", "--release", "--package", "swapped"] };
+
+#[expect(clippy::print_stdout, reason = "the result of the command")]
 pub(crate) fn run(_args: &Args) -> Result<()> {
-    let folder = repository::target().join("swap");
-    let copy = folder.join("workspace");
+    let copy = repository::target().join("swap");
     if copy.exists() {
         fs::remove_dir_all(&copy).with_context(|| format!("could not remove {}", copy.display()))?;
     }
     prepare(&repository::root(), &copy)?;
-    // Crates of others are built once for all runs.
-    TEST.run_in(&copy, &["--target-dir".to_owned(), folder.join("target").to_string_lossy().into_owned()])
+    // The folder of the repository, so that nothing but the forks and the solver is built.
+    BUILD.run_in(&copy, &["--target-dir".to_owned(), repository::target().to_string_lossy().into_owned()])?;
+    let program = repository::target().join("release/swapped").with_extension(std::env::consts::EXE_EXTENSION);
+    let originals = scene::numbers().map_err(|error| anyhow!("with the originals: {error}"))?;
+    let forks = solved(&program, "")?;
+    ensure!(forks == originals, "sound forks change the result: {forks} instead of {originals}");
+    println!("sound forks: {forks}, as with the originals");
+    for Fork { name, .. } in FORKS {
+        let wrong = solved(&program, &fork_name(name)).unwrap_or_else(|error| format!("{error:#}"));
+        ensure!(wrong != originals, "the solver does not use {name}: a wrong fork of it changes nothing");
+        println!("{name} wrong: {wrong}");
+    }
+    Ok(())
 }
 
-/// Makes the workspace with the fork.
+/// What the program prints when the fork called `wrong` is wrong.
+fn solved(program: &Path, wrong: &str) -> Result<String> {
+    let output = Command::new(program).env("RC_SWAP_WRONG", wrong).output();
+    let output = output.with_context(|| format!("could not start {}", program.display()))?;
+    ensure!(output.status.success(), "not solved: {}", String::from_utf8_lossy(&output.stderr).trim());
+    Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
+
+fn fork_name(name: &str) -> String {
+    format!("my-{name}")
+}
+
+/// Makes the workspace with the forks in `copy`.
 fn prepare(root: &Path, copy: &Path) -> Result<()> {
+    let folder = |name: &str| copy.join("crates").join(name);
     for name in CRATES {
-        copy_folder(&root.join("crates").join(name), &copy.join("crates").join(name))?;
+        copy_folder(&root.join("crates").join(name), &folder(name))?;
     }
-    let fork = copy.join("crates/my-rc-kernel");
-    write(&fork.join("Cargo.toml"), FORK_MANIFEST)?;
-    write(&fork.join("src/lib.rs"), FORK)?;
-    write(&copy.join("crates/rc-solver/tests/swapped.rs"), SWAPPED)?;
-    fs::copy(root.join("Cargo.lock"), copy.join("Cargo.lock")).context("could not copy Cargo.lock")?;
-    for name in ["README.md", "clippy.toml"] {
+    for fork in FORKS {
+        let folder = folder(&fork_name(fork.name));
+        copy_folder(&root.join("crates").join(fork.name), &folder)?;
+        change(
+            &folder.join("Cargo.toml"),
+            &format!("name = \"{}\"", fork.name),
+            &format!("name = \"my-{}\"", fork.name),
+        )?;
+        change(&folder.join(fork.file), fork.original, fork.forked)?;
+        let library = folder.join("src/lib.rs");
+        write(&library, &(read(&library)? + IS_WRONG))?;
+    }
+    for name in ["Cargo.lock", "README.md", "clippy.toml"] {
         fs::copy(root.join(name), copy.join(name)).with_context(|| format!("could not copy {name}"))?;
     }
-    let manifest = fs::read_to_string(root.join("Cargo.toml")).context("could not read Cargo.toml")?;
-    write(&copy.join("Cargo.toml"), &swapped_manifest(&manifest)?)
+    let manifest: Table = read(&root.join("Cargo.toml"))?.parse().context("Cargo.toml is not TOML")?;
+    write(&folder("swapped").join("Cargo.toml"), &program_manifest(&manifest)?)?;
+    write(&folder("swapped").join("src/main.rs"), MAIN)?;
+    write(&folder("swapped").join("src/scene.rs"), SCENE)?;
+    write(&copy.join("Cargo.toml"), &workspace_manifest(manifest)?)
 }
 
-/// The root manifest with `rc-kernel` replaced, and without the members that are not copied.
-fn swapped_manifest(manifest: &str) -> Result<String> {
-    let mut manifest: Table = manifest.parse().context("Cargo.toml is no TOML")?;
+/// The root manifest with the forks, and without the members that are not copied.
+fn workspace_manifest(mut manifest: Table) -> Result<String> {
     let workspace = manifest.get_mut("workspace").and_then(Value::as_table_mut).context("no [workspace]")?;
     workspace.insert("members".into(), Value::Array(vec!["crates/*".into()]));
     workspace.remove("exclude");
     workspace.remove("default-members");
     let dependencies = workspace.get_mut("dependencies").and_then(Value::as_table_mut).context("no dependencies")?;
-    let fork: Table = "path = 'crates/my-rc-kernel'\npackage = 'my-rc-kernel'\nversion = '0.1.0'".parse()?;
-    dependencies.insert("rc-kernel".into(), Value::Table(fork));
+    for Fork { name, .. } in FORKS {
+        let fork = format!("path = 'crates/my-{name}'\npackage = 'my-{name}'\nversion = '0.1.0'");
+        dependencies.insert(name.into(), Value::Table(fork.parse()?));
+    }
+    // Quick to compile rather than to run.
+    let mut quick: Table = "opt-level = 1\ndebug = false".parse()?;
+    let names = FORKS.map(|fork| fork_name(fork.name)).into_iter().chain(["rc-solver", "swapped"].map(str::to_owned));
+    let packages = names.map(|name| (name, Value::Table(quick.clone()))).collect();
+    quick.insert("package".into(), Value::Table(packages));
+    let release = manifest.get_mut("profile").and_then(|profile| profile.get_mut("release")?.as_table_mut());
+    release.context("no [profile.release]")?.extend(quick.into_iter().filter(|(key, _)| key == "package"));
     Ok(toml::to_string(&manifest)?)
+}
+
+/// The manifest of the program. It names every library of others, so that their features, and with these their builds, are those of the
+/// repository.
+fn program_manifest(manifest: &Table) -> Result<String> {
+    let dependencies = manifest.get("workspace").and_then(|workspace| workspace.get("dependencies")?.as_table());
+    let others = dependencies.context("no dependencies")?.keys().filter(|name| !name.starts_with("rc-"));
+    let ours = ["rc-core", "rc-fractal", "rc-solver"];
+    let lines = ours.into_iter().chain(others.map(String::as_str)).map(|name| format!("{name}.workspace = true\n"));
+    let head = "[package]\nname = \"swapped\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[dependencies]\n";
+    Ok(head.to_owned() + &lines.collect::<String>())
+}
+
+fn read(path: &Path) -> Result<String> {
+    fs::read_to_string(path).with_context(|| format!("could not read {}", path.display()))
+}
+
+/// Replaces the one place of a file that has this text.
+fn change(path: &PathBuf, original: &str, changed: &str) -> Result<()> {
+    let text = read(path)?;
+    let count = text.matches(original).count();
+    ensure!(count == 1, "`{original}` occurs {count} times in {}, not once: mend FORKS", path.display());
+    write(path, &text.replace(original, changed))
 }
 
 fn write(path: &Path, text: &str) -> Result<()> {
@@ -85,14 +183,18 @@ fn write(path: &Path, text: &str) -> Result<()> {
         .with_context(|| format!("could not write {}", path.display()))
 }
 
+/// Copies a folder with the times of its files, by which cargo knows that a crate is unchanged.
 fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     fs::create_dir_all(to).with_context(|| format!("could not make {}", to.display()))?;
     for entry in fs::read_dir(from).with_context(|| format!("could not list {}", from.display()))? {
-        let (path, name) = entry.map(|entry| (entry.path(), entry.file_name()))?;
+        let (path, copy) = entry.map(|entry| (entry.path(), to.join(entry.file_name())))?;
         if path.is_dir() {
-            copy_folder(&path, &to.join(name))?;
+            copy_folder(&path, &copy)?;
         } else {
-            fs::copy(&path, to.join(name)).with_context(|| format!("could not copy {}", path.display()))?;
+            let changed = fs::metadata(&path).and_then(|data| data.modified());
+            let copied = fs::copy(&path, &copy)
+                .and_then(|_| fs::File::options().write(true).open(&copy)?.set_modified(changed?));
+            copied.with_context(|| format!("could not copy {}", path.display()))?;
         }
     }
     Ok(())
@@ -103,21 +205,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_workspace_with_the_fork_names_it_and_has_its_files() {
+    fn the_workspace_has_the_forks_in_place_of_the_originals() {
         let copy = tempfile::tempdir().expect("a temporary folder");
         prepare(&repository::root(), copy.path()).expect("a workspace");
-        let read = |name: &str| fs::read_to_string(copy.path().join(name)).expect("a file");
-        let manifest: Table = read("Cargo.toml").parse().expect("TOML");
-        let kernel = &manifest["workspace"]["dependencies"]["rc-kernel"];
-        assert_eq!(kernel["package"].as_str(), Some("my-rc-kernel"));
-        assert_eq!(kernel["path"].as_str(), Some("crates/my-rc-kernel"));
-        assert_eq!(read("crates/my-rc-kernel/src/lib.rs"), FORK);
-        assert!(
-            manifest["profile"]["dev"]["package"].get("rc-solver").is_some(),
-            "profiles stay, so builds are shared"
-        );
-        for name in CRATES {
-            assert!(copy.path().join("crates").join(name).join("src/lib.rs").is_file(), "{name}");
+        let manifest: Table = read(&copy.path().join("Cargo.toml")).and_then(|text| Ok(text.parse()?)).expect("TOML");
+        for Fork { name, .. } in FORKS {
+            let fork = &manifest["workspace"]["dependencies"][name];
+            assert_eq!(fork["path"].as_str(), Some(format!("crates/my-{name}").as_str()));
+            assert!(!copy.path().join("crates").join(name).exists(), "{name} itself is not there");
         }
     }
 }

@@ -51,3 +51,33 @@ impl TryFrom<Array2<f64>> for Field {
         Self::from_array(array, 1.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use ndarray::s;
+
+    use super::*;
+
+    #[test]
+    fn a_field_becomes_an_array_and_a_field_again_without_a_copy() {
+        let grid = Grid::in_cell(5, 3, 0.5).expect("a grid");
+        let field = Field::from_fn(grid, |at| at.x + 10.0 * at.y);
+        let place = field.values().as_ptr();
+        assert_eq!(field.as_array()[[2, 4]], field.at(4, 2), "row, then column");
+        let array = Array2::from(field.clone());
+        assert_eq!(array.dim(), (3, 5));
+        assert_eq!(Field::from_array(array, 0.5).as_ref(), Ok(&field));
+        let moved = Field::from_array(field.into_array(), 0.5).expect("a grid");
+        assert_eq!(moved.values().as_ptr(), place, "nothing is copied");
+    }
+
+    #[test]
+    fn arrays_of_any_layout_become_fields() {
+        let array = Array2::from_shape_fn((4, 6), |(iy, ix)| (10 * iy + ix) as f64);
+        let transposed = Field::try_from(array.clone().reversed_axes()).expect("a grid");
+        assert_eq!((transposed.grid().nx(), transposed.at(3, 5)), (4, 35.0));
+        let part = Field::try_from(array.slice_move(s![1..3, ..])).expect("a grid");
+        assert_eq!((part.grid().ny(), part.values()[0], part.values().len()), (2, 10.0, 12));
+        assert!(Field::try_from(Array2::zeros((0, 4))).is_err());
+    }
+}

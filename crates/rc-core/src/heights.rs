@@ -6,8 +6,8 @@ use crate::{DVec2, Field, Grid};
 
 /// A rough surface, periodic on the square cell of side 1.
 ///
-/// Implementations: a realised spectrum, a measured map, a sphere. [`crate::testing::check_height_field`] (feature
-/// `testing`) checks the contract.
+/// Implementations: a realised spectrum, a measured map, a sphere. [`crate::testing::check_height_field`]
+/// checks the contract.
 pub trait HeightField: Sync {
     /// Height at the point `at`, both in λ; periodic with period 1 along x and along y.
     fn height(&self, at: DVec2) -> f64;

@@ -48,7 +48,7 @@
 //! `serde`: plain data (grids, cells, elasticity) serialises, and is checked when it is read. `ndarray`: a [`Field`] to and from
 //! `ndarray::Array2<f64>` without a copy.
 //!
-//! The feature `testing` has a check for each trait; `tests/examples/` of the repository goes on from here.
+//! Module [`testing`] has a check for each trait; `tests/examples/` of the repository goes on from here.
 //!
 //! The paper is Putignano, Afferrante, Carbone, Demelio, *A new efficient numerical method for contact mechanics of rough
 //! surfaces*, Int. J. Solids Struct. 49 (2012) 338-343; "Eq. (n)" without another source means its equations.
@@ -65,7 +65,6 @@ mod units;
 
 pub mod quantity;
 
-#[cfg(feature = "testing")]
 pub mod testing;
 
 pub use glam::DVec2;

@@ -58,12 +58,10 @@ fn check_manifest(path: &str, text: &str) -> Vec<Complaint> {
     }
     let used = ["dependencies", "dev-dependencies", "build-dependencies"].into_iter().flat_map(|section| {
         let dependencies = manifest.get(section).and_then(Value::as_table);
-        dependencies.into_iter().flatten().map(move |(dependency, how)| (section, dependency, how))
+        dependencies.into_iter().flat_map(Table::keys).map(move |dependency| (section, dependency))
     });
-    let forbidden = used.filter(|(section, dependency, how)| {
-        is_member(dependency) && allows(name, dependency) != Some(true) && !own_checks(name, section, dependency, how)
-    });
-    let complaint = |(section, dependency, _): (&str, &String, &Value)| {
+    let forbidden = used.filter(|(_, dependency)| is_member(dependency) && allows(name, dependency) != Some(true));
+    let complaint = |(section, dependency)| {
         format!(
             "{path} [{section}]: {name} -> {dependency} is not an arrow of ARCHITECTURE.md; move what needs it to tests/ or \
              xtask/, or redraw the arrow there and in xtask/src/tidy/arrows.rs"
@@ -74,15 +72,6 @@ fn check_manifest(path: &str, text: &str) -> Vec<Complaint> {
 
 fn is_member(dependency: &str) -> bool {
     dependency == "xtask" || dependency.starts_with("rc-")
-}
-
-/// rc-core runs its own conformance checks in its own tests.
-fn own_checks(name: &str, section: &str, dependency: &str, how: &Value) -> bool {
-    let testing = how.get("features").and_then(Value::as_array);
-    name == "rc-core"
-        && dependency == "rc-core"
-        && section == "dev-dependencies"
-        && testing.is_some_and(|features| features.iter().any(|feature| feature.as_str() == Some("testing")))
 }
 
 #[cfg(test)]
