@@ -38,7 +38,7 @@ pub use error::{FormatError, ReadError};
 pub use formats::{Format, format_of, npy, parse, read, text};
 pub use map::{BorderStep, HeightMap};
 pub use parameters::AreaParameters;
-pub use statistics::HeightStatistics;
+pub use statistics::MapStatistics;
 pub use treat::{
     Crop, Edges, Effect, Fill, Flip, Level, MOST_COPIES, Periodic, Repeat, SAME_LENGTH, TreatError, Treatment, apply,
     grids_after, hann,

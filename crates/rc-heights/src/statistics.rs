@@ -12,7 +12,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// What a height map is like. All lengths are in the unit of its sides.
 #[derive(Clone, Debug, PartialEq)]
-pub struct HeightStatistics {
+pub struct MapStatistics {
     /// Mean height; 0 where it is no more than rounding.
     pub mean: f64,
     /// Minimum height.
@@ -27,7 +27,7 @@ pub struct HeightStatistics {
     pub border: BorderStep,
 }
 
-impl HeightStatistics {
+impl MapStatistics {
     /// Statistics of `heights`, in units of the side of the cell along x, which is `side` long.
     #[must_use]
     pub fn of(heights: &Field, side: f64) -> Self {
@@ -59,7 +59,7 @@ mod tests {
     fn a_wave_has_the_statistics_of_a_wave() {
         let (amplitude, waves, side) = (1e-3, 4.0, 2.0);
         let field = Field::from_fn(Grid::square(64).expect("a grid"), |at| amplitude * (TAU * waves * at.x).cos());
-        let statistics = HeightStatistics::of(&field, side);
+        let statistics = MapStatistics::of(&field, side);
         assert!((statistics.parameters.sku / 1.5 - 1.0).abs() < 1e-9, "kurtosis {}", statistics.parameters.sku);
         assert!(statistics.parameters.ssk.abs() < 1e-12, "skewness {}", statistics.parameters.ssk);
         assert!((statistics.distribution.high / (amplitude * side) - 1.0).abs() < 1e-2, "{statistics:?}");

@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 use crate::error::SweepError;
 use crate::folder::JOURNAL_FILE;
 use crate::settings;
-use crate::shard::{MAX_ROWS, Shape, Shard};
+use crate::shard::{MAX_ROWS, Shard, SweepShape};
 
 /// First key of the first line, by which a journal is recognised.
 const FORMAT: u32 = 2;
@@ -18,13 +18,13 @@ const FORMAT: u32 = 2;
 pub type Cells = Map<String, Value>;
 
 /// Finished rows by their index.
-pub type Rows = BTreeMap<usize, Cells>;
+pub type SweepRows = BTreeMap<usize, Cells>;
 
 /// The first line of a journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Header {
     rc_sweep: u32,
-    pub(crate) shape: Shape,
+    pub(crate) shape: SweepShape,
     pub(crate) shard: Shard,
     pub(crate) settings: Value,
 }
@@ -45,7 +45,7 @@ impl Line {
 }
 
 impl Header {
-    pub(crate) fn new(shape: Shape, shard: Shard, settings: Value) -> Self {
+    pub(crate) fn new(shape: SweepShape, shard: Shard, settings: Value) -> Self {
         Self { rc_sweep: FORMAT, shape, shard, settings }
     }
 
@@ -107,7 +107,7 @@ pub fn settings_in(folder: &Path) -> Option<Value> {
 #[derive(Debug)]
 pub(crate) struct Content {
     pub(crate) header: Header,
-    pub(crate) rows: Rows,
+    pub(crate) rows: SweepRows,
     /// Bytes up to the end of the last whole line.
     pub(crate) whole: u64,
 }
@@ -134,7 +134,7 @@ impl Content {
         let header: Option<Header> = first.and_then(|line| serde_json::from_slice(line).ok());
         let header = header.filter(|header| header.rc_sweep == FORMAT && header.shape.rows() <= MAX_ROWS);
         let header = header.ok_or_else(|| SweepError::NotAJournal { path: path.to_owned() })?;
-        let mut content = Self { header, rows: Rows::new(), whole: first.map_or(0, <[u8]>::len) as u64 };
+        let mut content = Self { header, rows: SweepRows::new(), whole: first.map_or(0, <[u8]>::len) as u64 };
         let mut number = 1;
         while let Some(line) = lines.next() {
             number += 1;

@@ -7,7 +7,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use crate::content::{Cells, Content, Header, Rows, row_line};
+use crate::content::{Cells, Content, Header, SweepRows, row_line};
 use crate::error::SweepError;
 use crate::files::{self, FileError};
 use crate::folder::{FILES, JOURNAL_FILE, ROWS_FOLDER, TABLE_FILE};
@@ -20,7 +20,7 @@ pub(crate) struct Journal {
     file: File,
     /// Bytes of whole lines.
     length: u64,
-    pub(crate) rows: Rows,
+    pub(crate) rows: SweepRows,
     /// Whether the folder was not there before.
     made_folder: bool,
     /// Why a row could not be kept; after that none is.
@@ -65,7 +65,15 @@ impl Journal {
         })?;
         let lock = Lock::take(&file, folder)?;
         let file = OpenOptions::new().append(true).open(&path).map_err(fail)?;
-        Ok(Self { path, file, length: line.len() as u64, rows: Rows::new(), made_folder, failure: None, _lock: lock })
+        Ok(Self {
+            path,
+            file,
+            length: line.len() as u64,
+            rows: SweepRows::new(),
+            made_folder,
+            failure: None,
+            _lock: lock,
+        })
     }
 
     fn reopen(folder: &Path, header: &Header) -> Result<Self, SweepError> {
@@ -142,10 +150,10 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::shard::{Shape, Shard};
+    use crate::shard::{Shard, SweepShape};
 
     fn header(waves: usize) -> Header {
-        Header::new(Shape { surfaces: 2, loads: 3 }, Shard::WHOLE, json!({ "waves": waves }))
+        Header::new(SweepShape { surfaces: 2, loads: 3 }, Shard::WHOLE, json!({ "waves": waves }))
     }
 
     fn cells(value: f64) -> Cells {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::content::{Content, Header, Rows, row_line};
+use crate::content::{Content, Header, SweepRows, row_line};
 use crate::error::SweepError;
 use crate::files::{self, Staged};
 use crate::folder::{FILES, JOURNAL_FILE, ROWS_FOLDER, TABLE_FILE, fields_folder, has_fields, row_name};
@@ -13,7 +13,7 @@ use crate::{settings, table};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Merged {
     /// All rows.
-    pub rows: Rows,
+    pub rows: SweepRows,
     /// The table.
     pub table: PathBuf,
 }
@@ -77,8 +77,8 @@ fn check_same_sweep(first: &Path, there: &Header, folder: &Path, here: &Header) 
 }
 
 /// Writes the sweep in one go: nothing of it appears unless all of it can be copied.
-fn write(out: &Path, header: &Header, shards: &[(&Path, Content)]) -> Result<Rows, SweepError> {
-    let rows: Rows = shards.iter().flat_map(|(_, content)| content.rows.clone()).collect();
+fn write(out: &Path, header: &Header, shards: &[(&Path, Content)]) -> Result<SweepRows, SweepError> {
+    let rows: SweepRows = shards.iter().flat_map(|(_, content)| content.rows.clone()).collect();
     let lines = rows.iter().map(|(&row, cells)| row_line(row, cells));
     let journal: String = std::iter::once(header.to_line()).chain(lines).collect();
     let csv = table::to_csv(&rows).map_err(|cause| SweepError::table(out, cause))?;

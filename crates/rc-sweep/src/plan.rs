@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 
 use crate::content::Cells;
 use crate::error::SweepError;
-use crate::shard::Shape;
+use crate::shard::SweepShape;
 
 pub use crate::shard::MAX_ROWS;
 
@@ -99,7 +99,7 @@ impl io::Write for Checksum {
 
 /// A sweep. Rows are ordered by surface, then load, each as given.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
+pub struct SweepPlan {
     /// What the loads are.
     pub control: ControlKind,
     /// The surfaces.
@@ -112,7 +112,7 @@ pub struct Plan {
 
 /// One row of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct SweepRow {
     /// From 0.
     pub index: usize,
     /// Which of the surfaces of the plan, from 0.
@@ -121,7 +121,7 @@ pub struct Row {
     pub load: f64,
 }
 
-impl Plan {
+impl SweepPlan {
     /// These surfaces under their loads; rows neither say which scene they are of nor keep fields.
     #[must_use]
     pub fn new(control: ControlKind, surfaces: Vec<PlannedSurface>) -> Self {
@@ -130,8 +130,11 @@ impl Plan {
 
     /// Number of surfaces and loads.
     #[must_use]
-    pub fn shape(&self) -> Shape {
-        Shape { surfaces: self.surfaces.len(), loads: self.surfaces.first().map_or(0, |surface| surface.loads.len()) }
+    pub fn shape(&self) -> SweepShape {
+        SweepShape {
+            surfaces: self.surfaces.len(),
+            loads: self.surfaces.first().map_or(0, |surface| surface.loads.len()),
+        }
     }
 
     /// Row `index`.
@@ -139,10 +142,10 @@ impl Plan {
     /// # Panics
     /// When there is no such row.
     #[must_use]
-    pub fn row(&self, index: usize) -> Row {
+    pub fn row(&self, index: usize) -> SweepRow {
         let loads = self.shape().loads;
         let surface = index / loads;
-        Row { index, surface, load: self.surfaces[surface].loads[index % loads] }
+        SweepRow { index, surface, load: self.surfaces[surface].loads[index % loads] }
     }
 
     /// Row `index` as a message names it, counted from 1 as in the table: `row 3 (seed 1, pressure 1e5)`.
@@ -150,13 +153,13 @@ impl Plan {
     /// # Panics
     /// When there is no such row.
     #[must_use]
-    pub fn describe(&self, row: &Row) -> String {
+    pub fn describe(&self, row: &SweepRow) -> String {
         let seed = self.surfaces[row.surface].seed.map_or_else(String::new, |seed| format!("seed {seed}, "));
         format!("row {} ({seed}{} {:e})", row.index + 1, self.control.key(), row.load)
     }
 
     /// The first columns of a row: scene, if there are several, seed, load.
-    pub(crate) fn leading_cells(&self, row: &Row) -> Cells {
+    pub(crate) fn leading_cells(&self, row: &SweepRow) -> Cells {
         let surface = &self.surfaces[row.surface];
         let mut cells = Map::new();
         if self.names_scenes {

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::content::Cells;
 use crate::error::SweepError;
-use crate::plan::Row;
+use crate::plan::SweepRow;
 
 /// What solves the rows of a sweep. Workers call it side by side.
 pub trait RowSolver: Sync {
@@ -16,7 +16,7 @@ pub trait RowSolver: Sync {
     ///
     /// # Errors
     /// [`RowError`].
-    fn solve(&self, row: &Row) -> Result<Cells, RowError<Self::Error>>;
+    fn solve(&self, row: &SweepRow) -> Result<Cells, RowError<Self::Error>>;
 
     /// Called after each row that was solved and kept.
     fn row_kept(&self) {}

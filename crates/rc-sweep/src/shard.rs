@@ -10,14 +10,14 @@ pub const MAX_ROWS: usize = 1_000_000;
 
 /// How many rows a sweep has: row s·L + l is surface s under load l, of S surfaces and L loads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Shape {
+pub struct SweepShape {
     /// S: scenes times seeds.
     pub surfaces: usize,
     /// L: loads of each.
     pub loads: usize,
 }
 
-impl Shape {
+impl SweepShape {
     /// Number of rows.
     #[must_use]
     pub fn rows(self) -> usize {
@@ -39,7 +39,7 @@ impl Shard {
     pub const WHOLE: Self = Self { index: 1, count: 1 };
 
     /// The rows of this shard, in order. Rows are dealt load by load, so that each shard gets its part of the heavy ones.
-    pub fn rows(self, shape: Shape) -> impl Iterator<Item = usize> {
+    pub fn rows(self, shape: SweepShape) -> impl Iterator<Item = usize> {
         (0..shape.rows()).filter(move |row| {
             let (surface, load) = (row / shape.loads, row % shape.loads);
             (load * shape.surfaces + surface) % self.count == self.index - 1
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn shards_share_the_rows_and_the_loads() {
         for (surfaces, loads, count) in [(7, 8, 8), (1, 24, 4), (8, 8, 8), (3, 5, 15), (4, 1, 3), (2, 3, 1)] {
-            let shape = Shape { surfaces, loads };
+            let shape = SweepShape { surfaces, loads };
             let shards: Vec<Vec<usize>> =
                 (1..=count).map(|index| Shard { index, count }.rows(shape).collect()).collect();
             let mut all: Vec<usize> = shards.concat();

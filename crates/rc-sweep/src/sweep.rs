@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use crate::content::{Cells, Header, Rows};
+use crate::content::{Cells, Header, SweepRows};
 use crate::error::SweepError;
 use crate::folder::{fields_folder, has_fields};
 use crate::journal::Journal;
-use crate::plan::{Plan, Row};
+use crate::plan::{SweepPlan, SweepRow};
 use crate::row_solver::{RowSolver, RunError, Workers};
 use crate::shard::Shard;
 use crate::{table, workers};
@@ -15,7 +15,7 @@ use crate::{table, workers};
 /// A sweep in its folder, which no other process may write to as long as this lives.
 #[derive(Debug)]
 pub struct Sweep {
-    plan: Plan,
+    plan: SweepPlan,
     shard: Shard,
     folder: PathBuf,
     journal: Mutex<Journal>,
@@ -33,7 +33,7 @@ impl Sweep {
     ///
     /// # Errors
     /// [`SweepError`] when the shard has no rows, when the folder holds something else, or when it cannot be written to.
-    pub fn start(plan: Plan, shard: Shard, folder: &Path, resume: bool) -> Result<Self, SweepError> {
+    pub fn start(plan: SweepPlan, shard: Shard, folder: &Path, resume: bool) -> Result<Self, SweepError> {
         let shape = plan.shape();
         if shard.count > shape.rows() {
             return Err(SweepError::EmptyShard { shard, rows: shape.rows() });
@@ -44,7 +44,7 @@ impl Sweep {
 
     /// What is to be solved.
     #[must_use]
-    pub fn plan(&self) -> &Plan {
+    pub fn plan(&self) -> &SweepPlan {
         &self.plan
     }
 
@@ -74,7 +74,7 @@ impl Sweep {
     ///
     /// # Errors
     /// [`SweepError::Append`].
-    pub fn keep(&self, row: &Row, cells: Cells) -> Result<(), SweepError> {
+    pub fn keep(&self, row: &SweepRow, cells: Cells) -> Result<(), SweepError> {
         let mut all = self.plan.leading_cells(row);
         all.extend(cells);
         self.locked().append(row.index, all)
@@ -96,7 +96,7 @@ impl Sweep {
         if !todo.is_empty() {
             self.kept().write_table()?;
         }
-        let keep = |row: &Row, cells| self.keep(row, cells);
+        let keep = |row: &SweepRow, cells| self.keep(row, cells);
         let solved = workers::run(&self.plan, &todo, solver, workers, &keep);
         let kept = self.kept();
         let written = kept.write_table();
@@ -122,7 +122,7 @@ impl Sweep {
 impl Kept<'_> {
     /// The rows.
     #[must_use]
-    pub fn rows(&self) -> &Rows {
+    pub fn rows(&self) -> &SweepRows {
         &self.journal.rows
     }
 
@@ -155,7 +155,7 @@ mod tests {
     impl RowSolver for Toy {
         type Error = String;
 
-        fn solve(&self, row: &Row) -> Result<Cells, RowError<String>> {
+        fn solve(&self, row: &SweepRow) -> Result<Cells, RowError<String>> {
             let is = |load: f64| row.load.total_cmp(&load).is_eq();
             match row.load {
                 load if is(self.refused) => Err(RowError::Refused(format!("no {load}"))),
@@ -174,7 +174,7 @@ mod tests {
     fn sweep(folder: &Path, resume: bool) -> Sweep {
         let surface =
             |seed| PlannedSurface { seed: Some(seed), loads: vec![1.0, 2.0, 3.0], ..PlannedSurface::default() };
-        let plan = Plan::new(ControlKind::Pressure, vec![surface(7), surface(8)]);
+        let plan = SweepPlan::new(ControlKind::Pressure, vec![surface(7), surface(8)]);
         Sweep::start(plan, Shard::WHOLE, folder, resume).expect("a sweep")
     }
 

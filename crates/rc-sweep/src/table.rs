@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::content::{Cells, Rows};
+use crate::content::{Cells, SweepRows};
 use crate::error::SweepError;
 use crate::files;
 use crate::folder::TABLE_FILE;
@@ -13,7 +13,7 @@ use crate::folder::TABLE_FILE;
 ///
 /// # Errors
 /// [`SweepError::File`]; an earlier table is left as it was.
-pub(crate) fn write(folder: &Path, rows: &Rows) -> Result<PathBuf, SweepError> {
+pub(crate) fn write(folder: &Path, rows: &SweepRows) -> Result<PathBuf, SweepError> {
     let path = folder.join(TABLE_FILE);
     if !rows.is_empty() {
         let text = to_csv(rows).map_err(|cause| SweepError::table(folder, cause))?;
@@ -23,7 +23,7 @@ pub(crate) fn write(folder: &Path, rows: &Rows) -> Result<PathBuf, SweepError> {
 }
 
 /// The rows as CSV with a line of column names. Numbers have the digits of the journal.
-pub(crate) fn to_csv(rows: &Rows) -> Result<Vec<u8>, String> {
+pub(crate) fn to_csv(rows: &SweepRows) -> Result<Vec<u8>, String> {
     let mut out = csv::Writer::from_writer(Vec::new());
     if let Some(first) = rows.values().next() {
         out.write_record(first.keys()).map_err(|cause| cause.to_string())?;
@@ -36,7 +36,7 @@ pub(crate) fn to_csv(rows: &Rows) -> Result<Vec<u8>, String> {
 
 /// Rows that are marked `not_converged`.
 #[must_use]
-pub fn n_not_converged(rows: &Rows) -> usize {
+pub fn n_not_converged(rows: &SweepRows) -> usize {
     let failed = |cells: &&Cells| cells.get("status").is_some_and(|status| status == "not_converged");
     rows.values().filter(failed).count()
 }
@@ -61,7 +61,7 @@ mod tests {
     fn cells_are_numbers_text_lists_or_empty() {
         let value = json!({ "seed": 3, "reason": "a, b", "grid": [4, 8], "stiffness": null, "area": 1.25e-7 });
         let cells: Cells = value.as_object().expect("an object").clone();
-        let csv = to_csv(&Rows::from([(0, cells)])).expect("a table");
+        let csv = to_csv(&SweepRows::from([(0, cells)])).expect("a table");
         let text = String::from_utf8(csv).expect("text");
         assert_eq!(text, "seed,reason,grid,stiffness,area\n3,\"a, b\",4 8,,1.25e-7\n");
     }

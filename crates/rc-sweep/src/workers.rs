@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use crate::content::Cells;
 use crate::error::SweepError;
-use crate::plan::{Plan, Row};
+use crate::plan::{SweepPlan, SweepRow};
 use crate::row_solver::{RowError, RowSolver, RunError, Workers};
 
 /// Solves the rows `todo` of `plan` and hands each to `keep` as it is done. After a failure no row is begun; a row that is
@@ -17,11 +17,11 @@ use crate::row_solver::{RowError, RowSolver, RunError, Workers};
 /// # Errors
 /// The first one of a row, failures first; the counts of [`RunError::Refused`] are those of the caller.
 pub(crate) fn run<S: RowSolver>(
-    plan: &Plan,
+    plan: &SweepPlan,
     todo: &[usize],
     solver: &S,
     workers: Workers,
-    keep: &(dyn Fn(&Row, Cells) -> Result<(), SweepError> + Sync),
+    keep: &(dyn Fn(&SweepRow, Cells) -> Result<(), SweepError> + Sync),
 ) -> Result<(), RunError<S::Error>> {
     let n_workers = workers.at_once.min(workers.threads).min(todo.len()).max(1);
     let pools = share(workers.threads, n_workers).map(|n| pool(n.get()));
@@ -55,10 +55,10 @@ fn pool(threads: usize) -> Result<rayon::ThreadPool, SweepError> {
 
 /// What the workers share.
 struct Work<'a, S> {
-    plan: &'a Plan,
+    plan: &'a SweepPlan,
     todo: &'a [usize],
     solver: &'a S,
-    keep: &'a (dyn Fn(&Row, Cells) -> Result<(), SweepError> + Sync),
+    keep: &'a (dyn Fn(&SweepRow, Cells) -> Result<(), SweepError> + Sync),
     next: AtomicUsize,
     stop: AtomicBool,
 }

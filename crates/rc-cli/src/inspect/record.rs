@@ -2,7 +2,7 @@
 
 use rc_core::{Field, Histogram};
 use rc_fractal::{HurstFit, Moments, SpectrumBin, fit_hurst, radial_spectrum};
-use rc_heights::{AreaParameters, Effect, HeightStatistics};
+use rc_heights::{AreaParameters, Effect, MapStatistics};
 use serde::Serialize;
 
 /// What a height map is like.
@@ -133,7 +133,7 @@ impl SurfaceRecord {
     #[must_use]
     pub(crate) fn of(heights: &Field, side: f64, moments: Moments) -> Self {
         let grid = heights.grid();
-        let statistics = HeightStatistics::of(heights, side);
+        let statistics = MapStatistics::of(heights, side);
         let windowed = !statistics.border.is_periodic();
         let rings = if windowed { radial_spectrum(&rc_heights::hann(heights)) } else { radial_spectrum(heights) };
         Self {

@@ -6,7 +6,7 @@ use rc_sweep::memory::ByteSize;
 use rc_sweep::to_json;
 use serde::Serialize;
 
-use super::solved::Problem;
+use super::solved::ProblemSetup;
 use crate::error::CliError;
 use crate::scene::keys::RunKeys;
 use crate::{terminal, text};
@@ -34,7 +34,7 @@ struct Expected {
 ///
 /// # Errors
 /// [`CliError::Input`] for whatever a solve would refuse before its first iteration.
-pub(super) fn run(problem: &Problem<'_>, threads: usize, run: &RunKeys) -> Result<(), CliError> {
+pub(super) fn run(problem: &ProblemSetup<'_>, threads: usize, run: &RunKeys) -> Result<(), CliError> {
     let grid = problem.surface.grid;
     let expected = Expected::of(&problem.plan()?, [grid.nx(), grid.ny()], threads);
     match (run.json, run.quiet) {

@@ -5,7 +5,7 @@ use std::time::Instant;
 use rc_sweep::memory::Budget;
 use rc_sweep::{Summary, files};
 
-use super::solved::{Problem, Solved};
+use super::solved::{ProblemSetup, Solved};
 use crate::error::CliError;
 use crate::run::progress::Progress;
 use crate::run::stop::{Reason, Stop};
@@ -73,7 +73,7 @@ impl Job {
         let progress = self.progress();
         progress.say("heights");
         let surface = self.surface.load()?;
-        let problem = Problem { surface: &surface, contact: &self.contact, budget: self.budget() };
+        let problem = ProblemSetup { surface: &surface, contact: &self.contact, budget: self.budget() };
         let solved = match self.area_error {
             None => problem.solve(self.started, &progress)?,
             Some(wanted) => problem.solve_to_area_error(wanted, self.started, &progress)?,

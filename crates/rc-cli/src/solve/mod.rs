@@ -12,7 +12,7 @@ use std::path::PathBuf;
 
 use self::args::SolveArgs;
 use self::job::Job;
-use self::solved::Problem;
+use self::solved::ProblemSetup;
 use crate::error::CliError;
 use crate::run::{stop, threads};
 use crate::scene::keys::{RunKeys, Scene};
@@ -43,7 +43,7 @@ pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
     stop::listen();
     if dry_run {
         let (surface, budget) = (job.surface.load()?, job.budget());
-        let problem = Problem { surface: &surface, contact: &job.contact, budget };
+        let problem = ProblemSetup { surface: &surface, contact: &job.contact, budget };
         return dry_run::run(&problem, threads, &job.run);
     }
     job.execute(threads)

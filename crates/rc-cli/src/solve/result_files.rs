@@ -3,8 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use rc_core::DVec2;
-use rc_core::{Grid, Units};
+use rc_core::{DVec2, Grid, Units};
 use rc_heights::npy::{self, RowWriter};
 use rc_plot::{ContactRows, save_png};
 use rc_solver::{ContactElement, Solution};

@@ -17,7 +17,7 @@ use crate::scene::values::Fraction;
 
 /// What is solved: a surface, a contact, and the memory that there is.
 #[derive(Clone, Copy)]
-pub(crate) struct Problem<'a> {
+pub(crate) struct ProblemSetup<'a> {
     pub(crate) surface: &'a LoadedSurface,
     pub(crate) contact: &'a ContactSetup,
     pub(crate) budget: Budget,
@@ -25,14 +25,14 @@ pub(crate) struct Problem<'a> {
 
 /// A solved problem.
 pub(crate) struct Solved<'a> {
-    problem: Problem<'a>,
+    problem: ProblemSetup<'a>,
     solution: Solution<'a>,
     /// What is said of a solution that did not reach the tolerance.
     failure: Option<String>,
     wall: Duration,
 }
 
-impl<'a> Problem<'a> {
+impl<'a> ProblemSetup<'a> {
     /// Checks the problem and chooses the method.
     ///
     /// # Errors
@@ -104,7 +104,7 @@ impl Solved<'_> {
 
     /// The summary in SI; `threads` is what it says of them.
     pub(crate) fn summary(&self, threads: usize) -> Summary {
-        let Problem { surface, contact, .. } = self.problem;
+        let ProblemSetup { surface, contact, .. } = self.problem;
         // Not before: the time to the certified solution does not include what the solution does not need.
         let moments = surface.moments();
         let context = SolveContext {
@@ -123,7 +123,7 @@ impl Solved<'_> {
     /// # Errors
     /// [`CliError::Write`].
     pub(crate) fn write(&self, folder: &Path, summary: &Summary) -> Result<(), CliError> {
-        let Problem { surface, contact, .. } = self.problem;
+        let ProblemSetup { surface, contact, .. } = self.problem;
         Ok(result_files::write(folder, surface, contact, &self.solution, summary)?)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rc_sweep::{Rows, RunError, SweepError, TABLE_FILE};
+use rc_sweep::{RunError, SweepError, SweepRows, TABLE_FILE};
 
 use crate::error::CliError;
 use crate::scene::time_limit::TimeLimit;
@@ -70,7 +70,7 @@ pub(super) fn out_of_time(limit: TimeLimit, missing: usize, n_rows: usize) -> Cl
 }
 
 /// An error when a row did not converge.
-pub(super) fn check_converged(rows: &Rows, table: &Path) -> Result<(), CliError> {
+pub(super) fn check_converged(rows: &SweepRows, table: &Path) -> Result<(), CliError> {
     match rc_sweep::n_not_converged(rows) {
         0 => Ok(()),
         n => Err(CliError::NotConverged(format!(

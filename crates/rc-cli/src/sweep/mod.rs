@@ -17,7 +17,7 @@ use rc_sweep::{Shard, Sweep, Workers, to_json};
 
 use self::args::{SweepArgs, SweepCommand};
 use self::bar::RowBar;
-use self::rows::Rows;
+use self::rows::SceneRows;
 use self::surfaces::Surfaces;
 use crate::error::CliError;
 use crate::run::threads;
@@ -37,17 +37,17 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     let plan = surfaces.plan()?;
     let threads = threads::start(surfaces.run.threads)?;
     let sweep = Sweep::start(plan, args.shard.unwrap_or(Shard::WHOLE), &folder, args.resume)?;
-    execute(&surfaces, Arc::new(sweep), threads)
+    execute(&surfaces, &Arc::new(sweep), threads)
 }
 
 /// Solves what is missing and says what happened.
-fn execute(surfaces: &Surfaces, sweep: Arc<Sweep>, threads: usize) -> Result<(), CliError> {
+fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>, threads: usize) -> Result<(), CliError> {
     let started = Instant::now();
     let n_rows = sweep.n_rows();
     let n_before = n_rows - sweep.todo().len();
     let bar = RowBar::new(n_before, n_rows, surfaces.run.quiet);
-    interrupt::install(Arc::clone(&sweep), bar.clone());
-    let rows = Rows::new(&sweep, surfaces, threads, bar.clone());
+    interrupt::install(Arc::clone(sweep), bar.clone());
+    let rows = SceneRows::new(sweep, surfaces, threads, bar.clone());
     let at_once = Budget::new(surfaces.run.memory_limit).solves_at_once(surfaces.max_elements());
     let finished = sweep.run(&rows, Workers { threads, at_once });
     bar.clear();
@@ -97,11 +97,11 @@ mod tests {
         let row = sweep.plan().row(0);
         let mut contact = surfaces.contact(&row).expect("a contact");
         contact.params.max_iterations = 1;
-        let rows = Rows::new(&sweep, &surfaces, 1, RowBar::new(0, 2, true));
+        let rows = SceneRows::new(&sweep, &surfaces, 1, RowBar::new(0, 2, true));
         let cells = rows.solve_contact(&row, &contact).expect("cells, not an error");
         assert_eq!(cells["status"], json!("not_converged"));
         sweep.keep(&row, cells).expect("a row");
-        let error = execute(&surfaces, Arc::new(sweep), 1).expect_err("a row did not converge");
+        let error = execute(&surfaces, &Arc::new(sweep), 1).expect_err("a row did not converge");
         assert_eq!(error.exit_code(), 3, "{error}");
         assert!(error.to_string().starts_with("1 of 2 rows did not converge"), "{error}");
         let table = std::fs::read_to_string(out.join(TABLE_FILE)).expect("a table");

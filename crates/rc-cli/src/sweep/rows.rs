@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use rc_core::Silent;
 use rc_sweep::memory::Budget;
-use rc_sweep::{Cells, Latest, Row, RowError, RowSolver, Summary, Sweep, replace_fields};
+use rc_sweep::{Cells, Latest, RowError, RowSolver, Summary, Sweep, SweepRow, replace_fields};
 
 use super::bar::RowBar;
 use super::surfaces::Surfaces;
@@ -14,10 +14,10 @@ use crate::error::CliError;
 use crate::run::stop::Stop;
 use crate::scene::resolve::ContactSetup;
 use crate::scene::surface::LoadedSurface;
-use crate::solve::solved::{Problem, Solved};
+use crate::solve::solved::{ProblemSetup, Solved};
 
 /// Solves the rows of a sweep.
-pub(super) struct Rows<'a> {
+pub(super) struct SceneRows<'a> {
     sweep: &'a Sweep,
     surfaces: &'a Surfaces,
     /// The surface that was loaded last: its loads follow one another.
@@ -28,7 +28,7 @@ pub(super) struct Rows<'a> {
     bar: RowBar,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> SceneRows<'a> {
     /// The rows of `sweep`, whose limit of time begins now.
     pub(super) fn new(sweep: &'a Sweep, surfaces: &'a Surfaces, threads: usize, bar: RowBar) -> Self {
         let limit = Stop::at(Instant::now(), surfaces.run.time_limit);
@@ -37,13 +37,13 @@ impl<'a> Rows<'a> {
 
     /// Solves `contact` on the surface of `row`. With fields, the folder of the row is complete when this returns.
     /// `wall_seconds` includes the time that loading the surface took once.
-    pub(super) fn solve_contact(&self, row: &Row, contact: &ContactSetup) -> Result<Cells, CliError> {
+    pub(super) fn solve_contact(&self, row: &SweepRow, contact: &ContactSetup) -> Result<Cells, CliError> {
         let surface = self.surfaces.surface(row);
         let (loaded, time): (Arc<LoadedSurface>, Duration) = self.loaded.get(row.surface, || surface.load())?;
         let started = Instant::now().checked_sub(time).unwrap_or_else(Instant::now);
         let folder = self.sweep.fields_folder(row.index);
         let budget = Budget::new(self.surfaces.run.memory_limit);
-        let problem = Problem { surface: &loaded, contact, budget };
+        let problem = ProblemSetup { surface: &loaded, contact, budget };
         let solved = problem.solve(started, &Silent)?;
         let summary = solved.summary(self.threads);
         if let Some(folder) = folder {
@@ -57,10 +57,10 @@ fn write_fields(folder: &Path, solved: &Solved<'_>, summary: &Summary) -> Result
     replace_fields(folder, || solved.write(folder, summary))
 }
 
-impl RowSolver for Rows<'_> {
+impl RowSolver for SceneRows<'_> {
     type Error = CliError;
 
-    fn solve(&self, row: &Row) -> Result<Cells, RowError<CliError>> {
+    fn solve(&self, row: &SweepRow) -> Result<Cells, RowError<CliError>> {
         let cells = self.surfaces.contact(row).and_then(|contact| self.solve_contact(row, &contact));
         cells.map_err(|error| match error {
             CliError::Input(message) => {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use rc_sweep::{ControlKind, FileMark, Loads, MAX_ROWS, Plan, PlannedSurface, Row, Seeds};
+use rc_sweep::{ControlKind, FileMark, Loads, MAX_ROWS, PlannedSurface, Seeds, SweepPlan, SweepRow};
 use serde_json::json;
 
 use super::args::SweepArgs;
@@ -28,7 +28,7 @@ pub(super) struct SweptSurface {
 #[derive(Clone, Debug)]
 pub(super) struct Surfaces {
     control: ControlKind,
-    surfaces: Vec<SweptSurface>,
+    all: Vec<SweptSurface>,
     n_scenes: usize,
     keeps_fields: bool,
     pub(super) run: RunKeys,
@@ -52,33 +52,33 @@ impl Surfaces {
             }
         }
         let run = scenes.first().map(|(_, scene)| scene.run.clone()).unwrap_or_default();
-        Ok(Self { control, surfaces, n_scenes: scenes.len(), keeps_fields: args.fields, run })
+        Ok(Self { control, all: surfaces, n_scenes: scenes.len(), keeps_fields: args.fields, run })
     }
 
     /// The plan of the sweep, for which height maps are read once to recognise them later.
     ///
     /// # Errors
     /// [`CliError::Input`] when a map cannot be read.
-    pub(super) fn plan(&self) -> Result<Plan, CliError> {
-        let surfaces = self.surfaces.iter().map(SweptSurface::planned).collect::<Result<_, _>>()?;
-        Ok(Plan {
+    pub(super) fn plan(&self) -> Result<SweepPlan, CliError> {
+        let surfaces = self.all.iter().map(SweptSurface::planned).collect::<Result<_, _>>()?;
+        Ok(SweepPlan {
             names_scenes: self.n_scenes > 1,
             keeps_fields: self.keeps_fields,
-            ..Plan::new(self.control, surfaces)
+            ..SweepPlan::new(self.control, surfaces)
         })
     }
 
     /// The surface of `row`.
-    pub(super) fn surface(&self, row: &Row) -> &SurfaceSetup {
-        &self.surfaces[row.surface].setup
+    pub(super) fn surface(&self, row: &SweepRow) -> &SurfaceSetup {
+        &self.all[row.surface].setup
     }
 
     /// The contact of `row`, ready to be solved.
     ///
     /// # Errors
     /// [`CliError::Input`] for keys of the contact, the same for all rows of a surface.
-    pub(super) fn contact(&self, row: &Row) -> Result<ContactSetup, CliError> {
-        let surface = &self.surfaces[row.surface];
+    pub(super) fn contact(&self, row: &SweepRow) -> Result<ContactSetup, CliError> {
+        let surface = &self.all[row.surface];
         let keys = with_load(self.control, &surface.contact, Some(row.load));
         let mut contact = resolve::contact(keys, surface.setup.cell)?;
         // The memory of a machine must not decide on the digits of a row.
@@ -88,7 +88,7 @@ impl Surfaces {
 
     /// Elements of the largest surface.
     pub(super) fn max_elements(&self) -> f64 {
-        self.surfaces.iter().map(|surface| surface.setup.max_elements()).fold(0.0, f64::max)
+        self.all.iter().map(|surface| surface.setup.max_elements()).fold(0.0, f64::max)
     }
 }
 

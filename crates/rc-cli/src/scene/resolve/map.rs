@@ -57,7 +57,7 @@ mod tests {
         let path = dir.path().join("map.csv");
         std::fs::write(&path, "1,2\n3,4\n").expect("a map without a size");
         let map = |cell| SurfaceKeys { heights: Some(path.clone()), cell, ..SurfaceKeys::default() };
-        let material = |e_star, young, poisson| ContactKeys { e_star, young, poisson, ..ContactKeys::default() };
+        let material = |e_star, young, poisson| ContactKeys { young, poisson, e_star, ..ContactKeys::default() };
         let none = material(None, None, None);
         let all = "needs cell (m), and e_star (Pa) or young (Pa) with poisson too";
         let refused = [
