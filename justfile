@@ -26,4 +26,4 @@ bench:
 
 # The documentation of all crates.
 doc:
-    cargo doc --workspace --no-deps --open
+    cargo doc --release --workspace --no-deps --all-features --open

@@ -4,7 +4,7 @@ use anyhow::Result;
 
 use crate::process::Step;
 
-/// Checks format, lints and documentation, then runs every test, and the solver's with a fork of a crate; stops at the first failure.
+/// Checks format, lints and documentation, then runs every test, and swaps crates for forks; stops at the first failure.
 ///
 /// The same steps as the script `.ci/run`.
 #[derive(clap::Args)]
@@ -13,8 +13,14 @@ pub(crate) struct Args {}
 /// Cheapest first. The script `.ci/run` must hold the same lines, which `cargo xtask tidy` checks.
 pub(crate) const STEPS: &[Step] = &[
     Step { environment: &[], words: &["fmt", "--all", "--check"] },
-    Step { environment: &[], words: &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"] },
-    Step { environment: &[("RUSTDOCFLAGS", "-D warnings")], words: &["doc", "--workspace", "--no-deps"] },
+    Step {
+        environment: &[],
+        words: &["clippy", "--release", "--workspace", "--all-targets", "--all-features", "--", "-D", "warnings"],
+    },
+    Step {
+        environment: &[("RUSTDOCFLAGS", "-D warnings")],
+        words: &["doc", "--release", "--workspace", "--no-deps", "--all-features"],
+    },
     Step { environment: &[], words: &["xtask", "test"] },
     Step { environment: &[], words: &["xtask", "swap"] },
 ];

@@ -13,8 +13,10 @@ use crate::process::Step;
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
-const CRATES: Step =
-    Step { environment: &[("RUSTDOCFLAGS", "-D warnings")], words: &["doc", "--workspace", "--no-deps"] };
+const CRATES: Step = Step {
+    environment: &[("RUSTDOCFLAGS", "-D warnings")],
+    words: &["doc", "--release", "--workspace", "--no-deps", "--all-features"],
+};
 
 /// Without the server of `mdbook serve`, and with the search.
 const INSTALL: Step = Step {

@@ -6,22 +6,28 @@ use crate::process::Step;
 
 /// Runs every test: unit, cross-crate, figure and documentation tests.
 ///
-/// One build, cargo's `dev` profile, in which the numeric crates are optimised and overflow checks stay on. Prints the
-/// cargo lines it runs.
+/// The release profile, so that everything that the binary `rc` needs is built once. Prints the cargo lines it runs.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Test the optimised build instead (no overflow checks; shares its libraries with the `rc` binary).
+    /// Another build, with overflow checks and debug assertions: cargo's `dev` profile
     #[arg(long)]
-    release: bool,
+    dev: bool,
     /// Words for cargo, for instance part of a test's name, to run only tests that contain it.
     #[arg(last = true)]
     cargo: Vec<String>,
 }
 
-/// `cargo test` runs unit, integration and documentation tests of all members.
-const TEST: Step = Step { environment: &[], words: &["test", "--workspace"] };
+/// Unit and integration tests of all members. Examples are modules of a test, so that they need no binaries here.
+const TESTS: Step = Step { environment: &[], words: &["test", "--workspace", "--lib", "--bins", "--tests"] };
+
+const DOCUMENTATION: Step = Step { environment: &[], words: &["test", "--workspace", "--doc"] };
+
+/// Features that no program of the workspace turns on.
+const FEATURES: Step =
+    Step { environment: &[], words: &["test", "--package", "rc-core", "--lib", "--features", "ndarray"] };
 
 pub(crate) fn run(args: &Args) -> Result<()> {
-    let release = args.release.then(|| "--release".to_owned());
-    TEST.run(&release.into_iter().chain(args.cargo.iter().cloned()).collect::<Vec<_>>())
+    let release = (!args.dev).then(|| "--release".to_owned());
+    let words: Vec<String> = release.into_iter().chain(args.cargo.iter().cloned()).collect();
+    [TESTS, DOCUMENTATION, FEATURES].iter().try_for_each(|step| step.run(&words))
 }

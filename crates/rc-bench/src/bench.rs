@@ -34,7 +34,7 @@ pub use scenes::Scene;
 use levels::Results;
 use picture::ErrorAgainstTime;
 use reference::{Quantity, Reading, References};
-use round::{Found, Plan};
+use round::{Measurements, Plan};
 
 /// What is measured, and where the results go.
 #[derive(Clone, Debug)]
@@ -156,7 +156,7 @@ fn report(results: &Results<'_>) {
 }
 
 /// Writes the lines, the machine and the picture.
-fn save(params: &Params, found: &Found, references: &References, seconds: f64) -> Result<()> {
+fn save(params: &Params, found: &Measurements, references: &References, seconds: f64) -> Result<()> {
     fs::create_dir_all(&params.out)
         .with_context(|| format!("could not make {}; give another --out", params.out.display()))?;
     let (csv, machine) =

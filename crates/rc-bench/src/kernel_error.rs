@@ -22,8 +22,8 @@ const LINES: [(&str, &str, &str, RGBColor); 6] = [
     ("printed, mid", "printed", "mid", RGBColor(230, 130, 60)),
     ("printed, far", "printed", "far", RGBColor(245, 195, 140)),
 ];
-/// The size that the picture shows: elements of λ/64.
-const SHOWN: f64 = 1.0 / 128.0;
+/// The half side that is drawn: elements of λ/64.
+const DRAWN: f64 = 1.0 / 128.0;
 /// Accuracy that is documented for the exact coefficients, relative to the area of the source.
 const EXACT: f64 = 1e-12;
 /// Text, in pixels.
@@ -67,7 +67,7 @@ impl Offset {
     }
 }
 
-/// Time of one coefficient; `shells` is none for the exact one.
+/// Time of one coefficient; `shells` is `None` for the exact one.
 #[derive(Clone, Copy, Debug)]
 struct Timing {
     half_side: f64,
@@ -92,7 +92,7 @@ impl Figure for KernelErrors {
             Preset::Full => vec![1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128],
             Preset::Quick => vec![1, 2, 4, 8],
         };
-        Ok(Params { half_sides: vec![0.125, SHOWN, 1.0 / 2048.0], shells })
+        Ok(Params { half_sides: vec![0.125, DRAWN, 1.0 / 2048.0], shells })
     }
 
     fn compute(params: &Params) -> Result<Self> {
@@ -143,11 +143,11 @@ fn exact_time(love: PeriodicLove, half_side: f64, offset: Offset) -> Timing {
 }
 
 fn truncated_time(shells: usize) -> Result<Timing> {
-    let [_, offset, _] = Offset::all(SHOWN);
-    let of = |at: DVec2| truncated_coefficient(at, SHOWN, shells, LoadForm::Plain);
+    let [_, offset, _] = Offset::all(DRAWN);
+    let of = |at: DVec2| truncated_coefficient(at, DRAWN, shells, LoadForm::Plain);
     of(offset.at)?;
     let nanoseconds = nanoseconds(|| of(black_box(offset.at)));
-    Ok(Timing { half_side: SHOWN, offset: offset.name, shells: Some(shells), nanoseconds })
+    Ok(Timing { half_side: DRAWN, offset: offset.name, shells: Some(shells), nanoseconds })
 }
 
 /// Time of one call: the fastest of many.
@@ -182,13 +182,13 @@ impl KernelErrors {
         Table::new("times", &header, rows)
     }
 
-    /// The shown size, one form and one offset: shells, error, bound.
+    /// The drawn size, one form and one offset: shells, error, bound.
     fn line(&self, form: &str, offset: &str) -> Vec<(f64, f64, f64)> {
-        let shown = |case: &&Case| case.form == form && case.offset.name == offset && case.half_side == SHOWN;
-        self.cases.iter().filter(shown).map(|case| (case.shells as f64, case.error, case.bound)).collect()
+        let is_drawn = |case: &&Case| case.form == form && case.offset.name == offset && case.half_side == DRAWN;
+        self.cases.iter().filter(is_drawn).map(|case| (case.shells as f64, case.error, case.bound)).collect()
     }
 
-    /// The shown size in the middle of the cell, truncated: time, error.
+    /// The drawn size in the middle of the cell, truncated: time, error.
     fn timed_line(&self, form: &str) -> Vec<(f64, f64)> {
         let times = self.timings.iter().filter(|timing| timing.shells.is_some()).map(|timing| timing.nanoseconds);
         times.zip(self.line(form, "mid")).map(|(time, (_, error, _))| (time, error)).collect()

@@ -66,7 +66,7 @@ pub struct Fig1 {
     penetration: f64,
     /// Height of the highest peak above the mean plane of the roughness.
     h_max: f64,
-    /// Mean and greatest displacement over the whole cell.
+    /// Mean and maximum displacement over the whole cell.
     mean_displacement: f64,
     max_displacement: f64,
     /// A/A0 of the whole cell.

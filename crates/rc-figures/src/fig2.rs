@@ -14,7 +14,7 @@ use crate::chart::{Axes, BLUE, Drawn, GREY, RED, Side, write};
 use crate::{Figure, Preset, Table, number};
 
 const COLOURS: [RGBColor; 2] = [BLUE, RED];
-/// Part of the response per load that is shown: the peaks, which grow as 1/d, are cut off.
+/// Range of the response per load that is drawn: the peaks, which grow as 1/d, are cut off.
 const SHOWN: (f64, f64) = (-0.75, 6.25);
 
 /// What Fig. 2 is computed from.
@@ -132,7 +132,7 @@ impl Case {
 ///
 /// The targets seen from one square are those of the whole tiling of the cell by such squares, seen from one target, so
 /// the mean is the average over one tile of (2d)² Σ_j L_ij: loading every square alike is a uniform load, which
-/// displaces nothing. The greatest such sum on a few points of a tile bounds the mean without any error of quadrature.
+/// displaces nothing. The largest such sum on a few points of a tile bounds the mean without any error of quadrature.
 fn mean_response(kernel: PeriodicLove, inverse_half_side: usize) -> f64 {
     let half_side = (inverse_half_side as f64).recip();
     let (side, n_tiles) = (2.0 * half_side, inverse_half_side / 2);
@@ -142,7 +142,7 @@ fn mean_response(kernel: PeriodicLove, inverse_half_side: usize) -> f64 {
     };
     let points = (0..4).flat_map(|i| (0..4).map(move |j| DVec2::new(f64::from(i), f64::from(j)) * side / 4.0));
     let sums = points.map(|at| side * side * sum_at(at));
-    sums.fold(0.0, |greatest: f64, sum| if sum.abs() > greatest.abs() { sum } else { greatest })
+    sums.fold(0.0, |largest: f64, sum| if sum.abs() > largest.abs() { sum } else { largest })
 }
 
 /// The displacement of a point load of 1 in E* λ²: 𝓛 of Eq. (3).
@@ -256,7 +256,7 @@ mod tests {
         for case in quick().cases {
             let rounding = f64::EPSILON * case.load();
             assert!(case.mean_stress.abs() <= rounding, "{}: mean load {:e}", case.name(), case.mean_stress);
-            // A coefficient is exact to 1e-12 of the greatest, which is about d; the mean averages them.
+            // A coefficient is exact to 1e-12 of the largest one, which is about d; the mean averages them.
             let bound = 1e-12 * case.half_side();
             assert!(case.mean_response.abs() < bound, "{}: mean {:e} above {bound:e}", case.name(), case.mean_response);
         }

@@ -146,14 +146,13 @@ fn partial_contact(params: &Params, surface: &Surface, mean_pressure: f64) -> Re
     State::of(params, solution.pressure(), solution.info().penetration, mean_pressure)
 }
 
-/// The least load of full contact. Beyond it pressure only shifts, so the load is that of any full contact less its
-/// least pressure.
+/// The smallest load of full contact. A larger load only shifts the pressure, so the smallest one is that of any full contact
+/// minus the minimum of its pressure.
 fn full_contact(params: &Params, heights: &Field) -> Result<State> {
     let control = Control::MeanPressure(CRUSHING);
     let solution = solve(heights, control, &SolveParams::default().by(Method::Uniform))?;
     ensure!(solution.status() == Status::FullContact, "σ0 = {CRUSHING} E* leaves gaps; the surface is too steep");
-    let least = solution.pressure().min();
-    State::of(params, solution.pressure(), solution.info().penetration, CRUSHING - least)
+    State::of(params, solution.pressure(), solution.info().penetration, CRUSHING - solution.pressure().min())
 }
 
 impl State {

@@ -139,7 +139,7 @@ impl Picture for Fig4 {
 }
 
 /// The sphere as Hertz takes it, h = -r²/2R in units of λ, and the element (the same in x and y) whose centre is its apex: then the
-/// greatest sampled height is the apex, and Δ is counted from there. r is the distance to the nearest image.
+/// maximum of the sampled heights is the apex, and Δ is counted from there. r is the distance to the nearest image.
 fn sphere(params: &Params) -> Result<(Field, usize)> {
     let grid = Grid::square(params.grid)?;
     let apex = params.grid / 2;

@@ -236,10 +236,9 @@ impl Fig5 {
     }
 
     fn draw_areas<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
-        let greatest = self.curves.iter().map(|curve| curve.line.at(1.15 * FITTED.1)).fold(0.0, f64::max);
+        let top = self.curves.iter().map(|curve| curve.line.at(1.15 * FITTED.1)).fold(0.0, f64::max);
         let x = (0.0, 1.1 * MILLI * FITTED.1);
-        let axes =
-            Axes { x, y: (0.0, 1.05 * greatest), x_label: "σ0 / E* (10⁻³)", y_label: "A / A0", n_labels: (9, 7) };
+        let axes = Axes { x, y: (0.0, 1.05 * top), x_label: "σ0 / E* (10⁻³)", y_label: "A / A0", n_labels: (9, 7) };
         let mut chart = axes.on(area)?;
         let ends = [0.0, 1.1 * FITTED.1];
         for curve in &self.curves {
@@ -258,8 +257,8 @@ impl Fig5 {
                 square(&mut chart, (MILLI * self.printed.load, printed), 0, BLACK)?;
             }
         }
-        write(&mut chart, (0.0, 1.0 * greatest), Side::Right, "(a)", BLACK)?;
-        self.draw_legend(&mut chart, (0.12 * x.1, 0.99 * greatest), 0.07 * greatest)
+        write(&mut chart, (0.0, 1.0 * top), Side::Right, "(a)", BLACK)?;
+        self.draw_legend(&mut chart, (0.12 * x.1, 0.99 * top), 0.07 * top)
     }
 
     fn draw_legend<B: DrawingBackend>(&self, chart: &mut Chart<'_, B>, corner: (f64, f64), step: f64) -> Drawn<(), B> {

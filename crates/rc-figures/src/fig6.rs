@@ -58,7 +58,7 @@ struct Contact {
     rms_slope: f64,
     /// κ = (A/A0) √⟨|∇h|²⟩ / (σ0/E*).
     kappa: f64,
-    /// Δ over the greatest height above the mean plane.
+    /// Ratio of Δ to the maximum height above the mean plane.
     penetration: f64,
     rms_pressure: f64,
 }

@@ -193,7 +193,7 @@ impl Fig7 {
         Self { curves: sweep.surfaces.iter().zip(STYLES).map(curve).collect(), sweep }
     }
 
-    /// The greatest difference of the mean Δ/h_max between the surfaces at one load.
+    /// The largest difference of the mean Δ/h_max between the surfaces at one load.
     fn difference(&self) -> f64 {
         let [first, second] = &self.curves[..] else { return 0.0 };
         let pairs = first.points.iter().zip(&second.points);

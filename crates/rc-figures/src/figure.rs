@@ -111,13 +111,13 @@ pub(crate) mod tests {
         assert_eq!(files.len(), figure.tables().len() + n_captions + 2, "{files:?}");
         for file in files {
             let bytes = fs::read(&file).expect("a written file");
-            let (start, least): (&[u8], usize) = match file.extension().and_then(|extension| extension.to_str()) {
+            let (start, min_bytes): (&[u8], usize) = match file.extension().and_then(|extension| extension.to_str()) {
                 Some("png") => (b"\x89PNG\r\n\x1a\n", 4096),
                 Some("svg") => (b"<svg", 4096),
                 _ => (b"", 32),
             };
             assert!(bytes.starts_with(start), "{} starts with {:?}", file.display(), &bytes[..bytes.len().min(16)]);
-            assert!(bytes.len() >= least, "{} has only {} bytes", file.display(), bytes.len());
+            assert!(bytes.len() >= min_bytes, "{} has only {} bytes", file.display(), bytes.len());
         }
     }
 }

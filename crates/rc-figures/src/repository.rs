@@ -6,7 +6,7 @@ use std::{fs, io};
 
 use anyhow::{Context, Result};
 
-/// What the root holds that is no source: history and results.
+/// Entries of the root that are not sources: history and results.
 const RESULTS: &[&str] = &[".git", "figures", "rc-result", "target"];
 
 /// The root of the repository.

@@ -64,7 +64,7 @@ pub(super) fn licences(root: &Path) -> Result<String> {
     if !output.status.success() {
         bail!("`cargo metadata --locked` failed: {}", String::from_utf8_lossy(&output.stderr).trim());
     }
-    let metadata: Metadata = serde_json::from_slice(&output.stdout).context("cargo metadata is no JSON")?;
+    let metadata: Metadata = serde_json::from_slice(&output.stdout).context("cargo metadata is not JSON")?;
     Ok(serde_json::to_string(&metadata)?)
 }
 
@@ -92,7 +92,7 @@ fn check_licence(Package { name, version, license }: &Package) -> Option<Complai
     match Expression::parse_mode(license, spdx::ParseMode::LAX) {
         Ok(expression) if expression.evaluate(is_allowed) => None,
         Ok(_) => Some(format!("{name} {version} is under {license}; {cure}")),
-        Err(error) => Some(format!("{name} {version}: {license} is no SPDX expression ({}); {cure}", error.reason)),
+        Err(error) => Some(format!("{name} {version}: {license} is not an SPDX expression ({}); {cure}", error.reason)),
     }
 }
 

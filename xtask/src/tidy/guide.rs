@@ -12,7 +12,7 @@ pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     let documents =
         sources.keys().filter_map(|path| path.strip_prefix("docs/")).filter(|name| has_extension(name, "md"));
     let missing = documents.filter(|name| *name != "SUMMARY.md" && !summary.contains(&format!("({name})")));
-    let missing = missing.map(|name| format!("docs/{name} is no chapter; add it to {SUMMARY}"));
+    let missing = missing.map(|name| format!("docs/{name} is not a chapter; add it to {SUMMARY}"));
     let texts = sources.iter().filter(|(path, _)| has_extension(path, "md"));
     missing.chain(texts.flat_map(|(path, text)| check_links(path, text, sources))).collect()
 }
@@ -20,7 +20,7 @@ pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
 fn check_links(path: &str, text: &str, sources: &Sources) -> Vec<Complaint> {
     let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
     let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
-    // Folders and pictures are no texts, other addresses are not ours.
+    // Folders and pictures are not texts, other addresses are not ours.
     let files = links.map(|link| link.split('#').next().unwrap_or_default());
     let ours = files.filter(|link| !link.contains("://"));
     let complaint = |link: &str| {
@@ -61,7 +61,7 @@ mod tests {
         assert_eq!(check(&sources), Vec::<String>::new());
         sources.insert("docs/b.md".to_owned(), "[nowhere](c.md) [out](../data)".to_owned());
         let complaints = check(&sources);
-        let expected = ["b.md is no chapter", "c.md; correct", "../data leads out"];
+        let expected = ["b.md is not a chapter", "c.md; correct", "../data leads out"];
         assert_eq!(complaints.len(), expected.len(), "{complaints:?}");
         for (complaint, expected) in complaints.iter().zip(expected) {
             assert!(complaint.contains(expected), "{complaints:?}");

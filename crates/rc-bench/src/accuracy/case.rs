@@ -21,7 +21,7 @@ pub(super) struct Limit {
 /// How far a stress distribution is from the limit's.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Distribution {
-    /// Its first bin over its greatest.
+    /// Ratio of its first bin to its highest one.
     pub(super) first_bin: f64,
     /// The same of the limit.
     pub(super) first_bin_of_limit: f64,

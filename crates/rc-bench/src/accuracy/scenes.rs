@@ -52,7 +52,7 @@ pub(super) struct Scene {
 impl Set {
     /// The first `n` scenes of the set whose shortest waves are one of `waves` to the cell.
     pub(super) fn scenes(self, n: usize, waves: &[usize]) -> Vec<Scene> {
-        let (least, most) = LOADS;
+        let (lightest, heaviest) = LOADS;
         let scene = |i: usize| {
             // Loads in an order that does not follow the other cycles: steps of the golden ratio.
             let place = (i as f64 * 0.618_033_988_749_895).fract();
@@ -61,7 +61,7 @@ impl Set {
                 waves: waves[i % waves.len()],
                 hurst: HURST[i % HURST.len()],
                 seed: self.first_seed() + i as u64,
-                mean_pressure: RMS_SLOPE * least * (most / least).powf(place),
+                mean_pressure: RMS_SLOPE * lightest * (heaviest / lightest).powf(place),
             }
         };
         (0..n).map(scene).collect()

@@ -82,7 +82,7 @@ fn start(job: &Job) -> Result<String> {
     if !output.status.success() {
         bail!("{job:?}: {}", String::from_utf8_lossy(&output.stderr).trim());
     }
-    String::from_utf8(output.stdout).with_context(|| format!("the answer to {job:?} is no text"))
+    String::from_utf8(output.stdout).with_context(|| format!("the answer to {job:?} is not text"))
 }
 
 /// What the child process does with its job.

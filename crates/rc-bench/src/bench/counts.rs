@@ -14,7 +14,7 @@ use super::setting::{CERTIFIED, KernelName, Setting};
 /// Where the counts are.
 const COUNTS: &str = "data/bench/counts.csv";
 
-/// Relative change of the number of elements that is none: where processors differ, an element at a border may flip.
+/// Relative change of the number of elements that is allowed: on another processor an element at a border may flip.
 const SAME_ELEMENTS: f64 = 1e-3;
 
 /// What one solve did, all levels together.

@@ -85,10 +85,10 @@ impl<'a> Results<'a> {
     pub(super) fn ratios(&self, quantity: Quantity, peers: Reading, level: f64) -> Option<[Ratio; 2]> {
         let ratios = self.scenes().into_iter().filter_map(|scene| self.ratio(scene, quantity, peers, level));
         let ratios: Vec<Ratio> = ratios.collect();
-        let least = ratios.iter().copied().min_by(|a, b| a.value.total_cmp(&b.value))?;
+        let smallest = ratios.iter().copied().min_by(|a, b| a.value.total_cmp(&b.value))?;
         let value = median(ratios.iter().map(|ratio| ratio.value).collect());
         let at_least = ratios.iter().any(|ratio| ratio.at_least && ratio.value <= value);
-        Some([least, Ratio { value, at_least }])
+        Some([smallest, Ratio { value, at_least }])
     }
 }
 
@@ -151,6 +151,6 @@ pub(super) mod tests {
         assert_eq!(ratio(1e-2), Some(Ratio { value: 90.0 / 4.25, at_least: true }));
         assert_eq!(ratio(1e-3), None);
         assert_eq!(results.our_time(Quantity::Area, 3e-2), (0.75, 1));
-        assert_eq!(results.ratios(Quantity::Area, Reading::Counted, 1e-2).map(|[least, _]| least), ratio(1e-2));
+        assert_eq!(results.ratios(Quantity::Area, Reading::Counted, 1e-2).map(|[smallest, _]| smallest), ratio(1e-2));
     }
 }

@@ -110,7 +110,7 @@ mod tests {
     fn a_peer_that_is_not_installed_is_named() {
         let error = Peer::start(Path::new("no-such-python-anywhere"), &PEERS[1]).err().map(|error| error.to_string());
         assert!(error.as_ref().is_some_and(|text| text.contains("no-such-python-anywhere")), "{error:?}");
-        // A program that says nothing is no peer.
+        // A program that says nothing is not a peer.
         let error = Peer::start(Path::new("true"), &PEERS[1]).err().map(|error| error.to_string());
         assert!(error.is_none_or(|text| text.contains("tamaas") || text.contains("true")));
     }

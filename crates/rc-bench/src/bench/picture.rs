@@ -18,57 +18,57 @@ pub(super) struct ErrorAgainstTime<'a> {
 
 /// What is drawn of a program: the family, its colour (after Okabe and Ito, apart for colour-blind readers), and how the
 /// area is read. Solid lines are best estimates or corrected areas, dashed ones counted areas.
-struct Shown {
+struct DrawnFamily {
     name: &'static str,
     of: fn(&Family) -> bool,
     colour: RGBColor,
     reading: Reading,
 }
 
-const SHOWN: [Shown; 8] = [
-    Shown {
+const DRAWN: [DrawnFamily; 8] = [
+    DrawnFamily {
         name: "rc, adaptive",
         of: |f| f.program == OURS && f.method == "adaptive" && f.border_level == 0 && f.tolerance == "auto",
         colour: RGBColor(0, 114, 178),
         reading: Reading::Best,
     },
-    Shown {
+    DrawnFamily {
         name: "rc, border level 2",
         of: |f| f.program == OURS && f.border_level == 2,
         colour: RGBColor(0, 0, 0),
         reading: Reading::Best,
     },
-    Shown {
+    DrawnFamily {
         name: "rc, uniform, spectral",
         of: |f| f.program == OURS && f.kernel == "spectral" && f.tolerance == "auto",
         colour: RGBColor(86, 180, 233),
         reading: Reading::Best,
     },
-    Shown {
+    DrawnFamily {
         name: "ASPHER, corrected",
         of: |f| f.program == "aspher" && f.tolerance == "auto",
         colour: RGBColor(213, 94, 0),
         reading: Reading::Best,
     },
-    Shown {
+    DrawnFamily {
         name: "ASPHER, counted",
         of: |f| f.program == "aspher" && f.tolerance == "auto",
         colour: RGBColor(213, 94, 0),
         reading: Reading::Counted,
     },
-    Shown {
+    DrawnFamily {
         name: "Tamaas, corrected",
         of: |f| f.program == "tamaas",
         colour: RGBColor(0, 158, 115),
         reading: Reading::Best,
     },
-    Shown {
+    DrawnFamily {
         name: "Tamaas, counted",
         of: |f| f.program == "tamaas",
         colour: RGBColor(0, 158, 115),
         reading: Reading::Counted,
     },
-    Shown {
+    DrawnFamily {
         name: "ContactMechanics, counted",
         of: |f| f.program == "contactmechanics",
         colour: RGBColor(204, 121, 167),
@@ -78,11 +78,11 @@ const SHOWN: [Shown; 8] = [
 
 impl ErrorAgainstTime<'_> {
     /// Times and absolute relative errors, as decades.
-    fn points(&self, shown: &Shown, quantity: Quantity) -> Vec<(f64, f64)> {
+    fn points(&self, family: &DrawnFamily, quantity: Quantity) -> Vec<(f64, f64)> {
         let rows = self.results.of(self.scene, true).chain(self.results.of(self.scene, false));
-        let rows = families(rows).into_iter().filter(|(family, _)| (shown.of)(family)).flat_map(|(_, rows)| rows);
+        let rows = families(rows).into_iter().filter(|(other, _)| (family.of)(other)).flat_map(|(_, rows)| rows);
         let point = |row: &Row| {
-            let error = self.results.error(row, quantity, shown.reading)?.abs();
+            let error = self.results.error(row, quantity, family.reading)?.abs();
             // An error of zero, where the last digits agree, has no logarithm.
             Some((row.total_seconds().log10(), error.max(1e-9).log10()))
         };
@@ -91,24 +91,24 @@ impl ErrorAgainstTime<'_> {
 
     fn panel(&self, quantity: Quantity, title: &'static str) -> LinePlot<'static> {
         let mut series = Vec::new();
-        for shown in &SHOWN {
+        for family in &DRAWN {
             // Counted areas alone differ from other readings.
             if quantity != Quantity::Area
-                && shown.reading == Reading::Counted
-                && shown.name != "ContactMechanics, counted"
+                && family.reading == Reading::Counted
+                && family.name != "ContactMechanics, counted"
             {
                 continue;
             }
-            let points = self.points(shown, quantity);
+            let points = self.points(family, quantity);
             if points.is_empty() {
                 continue;
             }
-            let counted = shown.reading == Reading::Counted && quantity == Quantity::Area;
+            let counted = family.reading == Reading::Counted && quantity == Quantity::Area;
             let style = if counted { LineStyle::Dashed } else { LineStyle::Solid };
             // The area's panel has the legend; all use the same colours.
-            let name = if quantity == Quantity::Area { shown.name } else { "" };
-            series.push(Series { name: "", points: points.clone(), colour: shown.colour, style: LineStyle::Dots });
-            series.push(Series { name, points, colour: shown.colour, style });
+            let name = if quantity == Quantity::Area { family.name } else { "" };
+            series.push(Series { name: "", points: points.clone(), colour: family.colour, style: LineStyle::Dots });
+            series.push(Series { name, points, colour: family.colour, style });
         }
         let (x, y) = (range(&series, |at| at.0, 0.1), range(&series, |at| at.1, 0.2));
         // Room for the legend above the lines.

@@ -29,9 +29,9 @@ pub(super) struct Plan {
     pub(super) peer_seconds: f64,
 }
 
-/// What a run found.
+/// What a run measured.
 #[derive(Debug, Default)]
-pub(super) struct Found {
+pub(super) struct Measurements {
     pub(super) rows: Vec<Row>,
     /// Name and version of each peer that ran.
     pub(super) peers: Vec<(String, String)>,
@@ -69,8 +69,8 @@ impl Case {
 ///
 /// # Errors
 /// When a solve of ours fails; a peer that fails is reported and left out.
-pub(super) fn run(plan: &Plan, python: Option<&Path>) -> Result<Found> {
-    let mut found = Found::default();
+pub(super) fn run(plan: &Plan, python: Option<&Path>) -> Result<Measurements> {
+    let mut found = Measurements::default();
     for scene in &plan.scenes {
         let mut peers: Vec<Option<Peer>> = Vec::new();
         if let Some(python) = python {

@@ -47,7 +47,7 @@ impl Audit {
         let total: f64 = p.iter().sum();
         // Weights first: products of tiny pressures and gaps underflow.
         let approach: f64 = p.iter().zip(&gaps).map(|(p, g)| p / total * g).sum();
-        let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+        let min_gap = gaps.iter().copied().fold(f64::INFINITY, f64::min);
         let load = match control {
             Control::MeanPressure(wanted) => (total / p.len() as f64 / wanted - 1.0).abs(),
             Control::Penetration(wanted) => (approach - wanted).abs() / range,
@@ -55,7 +55,7 @@ impl Audit {
         Self {
             n_bad: p.iter().filter(|p| !(p.is_finite() && **p >= 0.0)).count(),
             load,
-            penetration: (approach - least) / range,
+            penetration: (approach - min_gap) / range,
             complementarity: p.iter().zip(&gaps).map(|(p, g)| p / total * (g - approach).abs()).sum::<f64>() / range,
         }
     }

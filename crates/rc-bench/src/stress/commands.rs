@@ -143,9 +143,9 @@ fn units(rows: &mut Rows, preset: Preset, place: &Path, rc: RunRc) -> Result<()>
     Ok(())
 }
 
-/// Values that are not finite, or below `least`.
-fn bad_values(field: &Field, least: f64) -> usize {
-    field.values().iter().filter(|value| !(value.is_finite() && **value >= least)).count()
+/// Number of values that are not finite, or below `min`.
+fn bad_values(field: &Field, min: f64) -> usize {
+    field.values().iter().filter(|value| !(value.is_finite() && **value >= min)).count()
 }
 
 /// Height maps that are hard to solve, or none at all.

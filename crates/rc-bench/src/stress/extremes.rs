@@ -62,7 +62,7 @@ fn thinned<T: Copy>(values: &[T], full: bool) -> Vec<T> {
     values.iter().copied().step_by(if full { 1 } else { 2 }).collect()
 }
 
-/// The mean pressure from which contact is full: what lifts the least of L⁻¹h to zero.
+/// The mean pressure above which contact is full: it lifts the minimum of L⁻¹h to zero.
 pub(crate) fn full_contact_pressure(heights: &Field, method: Method) -> Result<f64> {
     let method = if method == Method::Spectral { Method::Spectral } else { Method::Uniform };
     // Far beyond it the pressure is σ0 + L⁻¹h, and one of about its own size costs no digits.

@@ -239,7 +239,7 @@ fn outcome(heights: &Field, kernel: &dyn Kernel, control: Control) -> Result<()>
     })
 }
 
-/// Heights, loads and tolerances that are no problem at all are refused.
+/// Heights, loads and tolerances that do not make a problem are refused.
 fn inputs(rows: &mut Rows) -> Result<()> {
     let heights = rough(4, 0.8, 8, 32)?;
     let with = |value: f64| {

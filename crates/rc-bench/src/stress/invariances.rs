@@ -19,12 +19,12 @@ const SAME_NUMBER: f64 = 1e-8;
 const LOAD: Control = Control::MeanPressure(1e-3);
 
 /// Compares what one group of invariances says.
-type Part = fn(&mut Rows, Preset) -> Result<()>;
+type Check = fn(&mut Rows, Preset) -> Result<()>;
 
 #[expect(clippy::unnecessary_wraps, reason = "as the other groups")]
 pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     let mut rows = Rows::of("invariances");
-    let parts: [(&str, Part); 8] = [
+    let checks: [(&str, Check); 8] = [
         ("scaling", scaling),
         ("motions", motions),
         ("copies", copies),
@@ -34,8 +34,8 @@ pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
         ("slopes", slopes),
         ("monotony", monotony),
     ];
-    for (name, part) in parts {
-        if let Err(error) = guarded(|| part(&mut rows, preset)) {
+    for (name, check) in checks {
+        if let Err(error) = guarded(|| check(&mut rows, preset)) {
             rows.holds(name, "can be compared", "solutions", format!("{error:#}"), false);
         }
     }

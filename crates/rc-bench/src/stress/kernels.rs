@@ -119,7 +119,7 @@ fn waves(nx: usize, ny: usize) -> Vec<(usize, usize)> {
     along(nx).flat_map(|kx| along(ny).map(move |ky| (kx, ky))).filter(|&k| k != (0, 0)).collect()
 }
 
-/// Greatest over least eigenvalue of L, which the preconditioner takes away.
+/// Ratio of the maximum to the minimum eigenvalue of L. The preconditioner removes it.
 fn conditions(rows: &mut Rows, preset: Preset) -> Result<()> {
     let sides: &[usize] = if preset == Preset::Full { &[16, 64, 256, 1024, 4096] } else { &[16, 256] };
     for &side in sides {

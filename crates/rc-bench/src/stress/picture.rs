@@ -17,7 +17,7 @@ const MARGIN: u32 = 20;
 /// Properties in a line at most; longer lines go on below.
 const PER_LINE: usize = 90;
 
-/// Failures, and properties that are no bounds.
+/// Failures, and properties without a bound.
 const FAILED: RGBColor = RGBColor(220, 40, 30);
 const HOLDS: RGBColor = RGBColor(185, 205, 190);
 
@@ -78,7 +78,7 @@ fn colour(row: &Row) -> RGBColor {
     match row.use_of_bound {
         _ if !row.passed => FAILED,
         None => HOLDS,
-        // From a third of the palette on, so that the least used is not white.
+        // From a third of the palette on, so that the smallest value is not white.
         Some(part) => Palette::Viridis.colour(0.9 - 0.6 * (1.0 + part.max(1e-30).log10() / DECADES).clamp(0.0, 1.0)),
     }
 }

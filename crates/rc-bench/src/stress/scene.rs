@@ -75,7 +75,7 @@ impl Scene {
         rows.at_most(&self.name, "load by audit", audit.load, self.load_bound());
         let bound = (1.0 + self.slack) * self.tolerance;
         rows.at_most(&self.name, "penetration by audit", audit.penetration, bound);
-        // The pressure-weighted mean of the gap is zero, so its mean size is at most twice its greatest negative value.
+        // The pressure-weighted mean of the gap is zero, so its mean size is at most twice the size of its minimum.
         rows.at_most(&self.name, "complementarity by audit", audit.complementarity, 2.0 * bound);
         let claimed = info.certificate.penetration.max(info.certificate.complementarity);
         let backed = claimed + self.slack * self.tolerance;

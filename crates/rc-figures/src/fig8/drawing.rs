@@ -31,7 +31,7 @@ impl Fig8 {
         self.draw_start(&right)
     }
 
-    /// The greatest density.
+    /// The maximum density.
     fn peak(&self) -> f64 {
         self.curves.iter().map(|curve| curve.peak().1).fold(0.0, f64::max)
     }
