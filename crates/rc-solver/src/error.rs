@@ -1,11 +1,20 @@
 //! What is wrong with a contact problem.
 
+use rc_core::Grid;
 use thiserror::Error;
 
 /// Heights, a load or a tolerance that cannot be.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ProblemError {
+    /// The operator is not for the grid of the heights.
+    #[error("the operator has {n_elements} elements and the heights are on {grid}")]
+    Operator {
+        /// Grid of the heights.
+        grid: Grid,
+        /// Elements of the operator.
+        n_elements: usize,
+    },
     /// A height is NaN or infinite.
     #[error("height at element ({ix}, {iy}) is {value}; heights must be finite")]
     Height {

@@ -38,6 +38,7 @@ mod gauss_seidel;
 mod method;
 mod observables;
 mod operator;
+mod parallel;
 mod params;
 mod pressure_statistics;
 mod problem;

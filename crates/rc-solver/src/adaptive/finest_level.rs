@@ -3,18 +3,20 @@
 //! Rounds of two steps. A descent improves the pressure on the elements that press, or nearly do. An evaluation then computes the gap
 //! afresh wherever contact is possible, which gives the certificate, and adds elements until bounds exclude contact everywhere else.
 
-use rayon::prelude::*;
 use rc_core::{Grid, Observer};
 use rc_quadtree::{BLOCK_CELLS, ContactFields, Elements};
 
 use super::element_blocks::blocks_of;
 use super::element_heights::element_heights;
 use super::level::{SolvedLevel, add_work};
-use super::operator::{Real, Tables, TileOperator};
+use super::operator::{Real, Tables, TileCorrections};
 use super::prolongation::MeshStart;
 use super::scaled_operator::ScaledOperator;
 use super::setup::Setup;
-use crate::descent::{Descent, Engine, Machinery, Outcome, Start, fresh_gap, rescale, scale_to_load};
+use crate::descent::{
+    BlockOperator, Descent, DescentObserver, ElementValues, Goal, LevelOperators, Outcome, Start, fresh_gap, rescale,
+    scale_to_load, write_blocks,
+};
 use crate::solution::LevelInfo;
 
 /// The finest level is first solved to the tolerance times this, then the gap is computed afresh: corrections are applied with
@@ -42,7 +44,7 @@ pub(super) fn solve_finest_level<T: Real + Into<f64>>(
     observer: &dyn Observer,
 ) -> SolvedLevel {
     let mut level = FinestLevel::new(setup, grid, start, contact_gap);
-    let (mut evaluation, _) = level.evaluate();
+    let mut evaluation = level.evaluate_candidates();
     for _ in 0..MAX_ROUNDS {
         let reached;
         (level, reached) = level.improve(evaluation, observer);
@@ -99,62 +101,70 @@ impl<'s, 'a, T: Real + Into<f64>> FinestLevel<'s, 'a, T> {
 
     /// Improves the pressure on the elements near contact. Returns whether the tolerance was reached there.
     fn improve(self, evaluation: Evaluation, observer: &dyn Observer) -> (Self, bool) {
-        let Self { setup, tables, candidates, current, mut info } = self;
+        let Self { setup, mut tables, candidates, current, mut info } = self;
         let near = NearContact::choose(&candidates, &current.elements, &evaluation, setup.problem.h_range);
         // The descent needs the memory.
         drop(evaluation);
-        let machinery = Machinery {
-            corrections: TileOperator::new(setup.hierarchy(&near.elements, setup.quick.reach())),
-            response: tables.quick,
-            preconditioner: tables.preconditioner,
-            fresh: setup.operator(setup.hierarchy(&near.elements, setup.certified.reach()), &current),
-            fresh_response: tables.certified,
+        let hierarchy = setup.hierarchy(&near.elements, setup.quick.reach());
+        let fresh_hierarchy = setup.hierarchy(&near.elements, setup.certified.reach());
+        let operators = LevelOperators {
+            corrections: Box::new(TileCorrections::new(hierarchy, &tables.quick, &mut tables.preconditioner)),
+            fresh: Box::new(setup.operator(fresh_hierarchy, &tables.certified, &current)),
         };
         drop(current);
         let start = Start::Known { pressure: near.pressure, gap: near.gap };
-        let mut descent = Descent::new(&near.heights, info.grid, machinery, &setup.problem, start);
+        let mut descent = Descent::new(&near.heights, info.grid, operators, &setup.problem, start);
         let (tolerance, max_iterations) = (setup.params.tolerance, setup.params.max_iterations);
-        descent.run(FIRST_TOLERANCE * tolerance, max_iterations, false, observer, &near.elements);
-        descent.renew();
-        let last = descent.run(LAST_TOLERANCE * tolerance, max_iterations, false, observer, &near.elements);
+        let goal = |factor: f64| Goal { tolerance: factor * tolerance, max_iterations, certify: false };
+        let observer = DescentObserver { observer, mesh: &near.elements };
+        descent.run(goal(FIRST_TOLERANCE), &observer);
+        descent.refresh();
+        let last = descent.run(goal(LAST_TOLERANCE), &observer);
         add_work(&mut info, &descent.info());
-        let (machinery, pressure) = descent.into_machinery();
-        let Machinery { response: quick, preconditioner, fresh_response: certified, .. } = machinery;
-        let tables = OperatorTables { quick, preconditioner, certified };
+        let pressure = descent.into_pressure();
         let current = MeshStart { elements: near.elements, pressure };
         (Self { setup, tables, candidates, current, info }, last.converged)
     }
 
     /// The gap on all candidates, and the operator that it was computed with.
-    fn evaluate(&mut self) -> (Evaluation, ScaledOperator<T>) {
+    fn evaluate(&self) -> (Evaluation, ScaledOperator<'_, T>) {
         let Self { setup, tables, candidates: Candidates { elements, heights }, current, info } = self;
         let mut pressure = current.elements.moved(elements, &current.pressure, 0.0);
         let mut gap = vec![0.0; pressure.len()];
-        let mut operator = setup.operator::<T>(setup.hierarchy(elements, setup.certified.reach()), current);
-        info.operator_applications += 1;
-        let vectors = (heights.as_slice(), pressure.as_slice(), gap.as_mut_slice());
-        let mut sums = fresh_gap(&mut operator, &tables.certified, &setup.problem, vectors);
+        let hierarchy = setup.hierarchy(elements, setup.certified.reach());
+        let mut operator = setup.operator(hierarchy, &tables.certified, current);
+        let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
+        let mut sums = fresh_gap(&mut operator, &setup.problem, values);
         if let Some(scale) = sums.scale_to_penetration(&setup.problem) {
-            sums = rescale(scale, &blocks_of(elements), &setup.problem, (heights, &mut pressure, &mut gap));
+            let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
+            sums = rescale(scale, &blocks_of(elements), &setup.problem, values);
         }
         let outcome = Outcome::new(&setup.problem, &sums, info.grid.len() as f64, true);
         (Evaluation { pressure, gap, outcome }, operator)
     }
 
+    /// The gap on all candidates.
+    fn evaluate_candidates(&mut self) -> Evaluation {
+        self.info.operator_applications += 1;
+        self.evaluate().0
+    }
+
     /// Evaluates the gap, and adds candidates until no contact is possible elsewhere.
     fn evaluate_whole_cell(&mut self) -> Evaluation {
         loop {
+            self.info.operator_applications += 1;
             let (evaluation, operator) = self.evaluate();
             let more = self.with_more_candidates(&evaluation, &operator);
             if more.n_cells() <= self.candidates.elements.n_cells() {
                 return evaluation;
             }
+            drop(operator);
             self.candidates = Candidates::new(self.setup, more);
         }
     }
 
     /// The elements of the candidates, divided where they are too coarse, and tiles of the coarsest level wherever contact is possible.
-    fn with_more_candidates(&self, evaluation: &Evaluation, operator: &ScaledOperator<T>) -> Elements {
+    fn with_more_candidates(&self, evaluation: &Evaluation, operator: &ScaledOperator<'_, T>) -> Elements {
         let (setup, elements) = (self.setup, &self.candidates.elements);
         let Evaluation { pressure, gap, outcome } = evaluation;
         let (curvature, per_side) = (setup.certified.remainder_curvature(), elements.coarsest().per_side());
@@ -187,9 +197,9 @@ fn first_candidates<T: Real + Into<f64>>(
     contact_gap: f64,
 ) -> Candidates {
     let MeshStart { elements, pressure } = start;
-    let mut quick = setup.operator::<f32>(setup.hierarchy(elements, setup.quick.reach()), start);
-    quick.fill(pressure.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
-    quick.multiply(tables);
+    let mut quick = setup.operator(setup.hierarchy(elements, setup.quick.reach()), tables, start);
+    write_blocks(&mut quick, pressure.chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
+    quick.apply();
     // No contact is nearer than first touch, though coarser heights may reach beyond the highest point.
     let first_touch = setup.problem.offset() - setup.problem.h_max;
     // This is not a proof yet: the margin stands for the quick operator's error too.

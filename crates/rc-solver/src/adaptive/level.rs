@@ -6,10 +6,10 @@ use rc_core::{Grid, Observer};
 use rc_quadtree::{ContactFields, Elements};
 
 use super::element_heights::element_heights;
-use super::operator::{Real, TileOperator};
+use super::operator::{Real, TileCorrections};
 use super::prolongation::MeshStart;
 use super::setup::Setup;
-use crate::descent::{Descent, Machinery, Outcome, Start};
+use crate::descent::{Descent, DescentObserver, Goal, LevelOperators, Outcome, Start};
 use crate::solution::LevelInfo;
 
 /// A solved level.
@@ -53,17 +53,16 @@ pub(super) fn solve_coarse_level<T: Real + Into<f64>>(
     let n_levels = setup.n_levels(grid);
     let hierarchy = setup.hierarchy(&start.elements, setup.quick.reach());
     let response = setup.quick.tables(n_levels);
-    let machinery = Machinery {
-        corrections: TileOperator::new(Arc::clone(&hierarchy)),
-        preconditioner: setup.preconditioner.tables(n_levels),
-        fresh: setup.operator::<f32>(hierarchy, &start),
-        fresh_response: response.clone(),
-        response,
+    let mut preconditioner = setup.preconditioner.tables(n_levels);
+    let operators = LevelOperators {
+        corrections: Box::new(TileCorrections::new(Arc::clone(&hierarchy), &response, &mut preconditioner)),
+        fresh: Box::new(setup.operator(hierarchy, &response, &start)),
     };
     let MeshStart { elements, pressure } = start;
     let heights = element_heights(setup.heights, &elements);
-    let mut descent = Descent::new(&heights, grid, machinery, &setup.problem, Start::Pressure(pressure));
-    let outcome = descent.run(tolerance, setup.params.max_iterations, false, observer, &elements);
+    let mut descent = Descent::new(&heights, grid, operators, &setup.problem, Start::Pressure(pressure));
+    let goal = Goal { tolerance, max_iterations: setup.params.max_iterations, certify: false };
+    let outcome = descent.run(goal, &DescentObserver { observer, mesh: &elements });
     let info = descent.info();
     let (pressure, gap) = descent.into_vectors(0.0);
     SolvedLevel { evaluated: gap.len(), elements, pressure, gap, outcome, info }

@@ -2,14 +2,13 @@
 
 use std::sync::{Arc, Mutex};
 
-use rayon::prelude::*;
 use rc_core::{Grid, Operator};
 use rc_kernel::{ScaleSplit, SplitParams};
 use rc_quadtree::{BLOCK_CELLS, Elements, TILE, TileSet};
 
 use super::AdaptiveError;
 use super::operator::{Hierarchy, Prepared, Tables, TileOperator};
-use crate::descent::Engine;
+use crate::parallel::Tasks;
 
 /// `v = L p` (Eq. 4) for Love's squares of one size on tiles of 8 × 8 of them, with any tiles left out.
 ///
@@ -76,10 +75,10 @@ impl Operator for MultilevelOperator {
         assert_eq!(pressure.len(), self.n_elements, "one pressure for each element");
         assert_eq!(displacement.len(), self.n_elements, "one displacement for each element");
         let mut operator = self.operator.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        operator.fill(pressure.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
-        operator.multiply(&self.tables);
-        let sinks = displacement.par_chunks_mut(BLOCK_CELLS);
-        operator.take(&self.tables, sinks, |v, cells| v.copy_from_slice(cells));
+        operator.write(&|i, cells| cells.copy_from_slice(&pressure[i * BLOCK_CELLS..][..cells.len()]));
+        operator.apply(&self.tables);
+        let blocks = Tasks::new(displacement.chunks_mut(BLOCK_CELLS));
+        operator.read(&self.tables, &|i, cells| blocks.run(i, |block| block.copy_from_slice(cells)));
     }
 }
 

@@ -6,30 +6,30 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
 use rc_quadtree::BLOCK_CELLS;
 
 use super::operator::{Hierarchy, Real, Tables, TileOperator};
-use crate::descent::{Blocks, Engine};
+use crate::descent::{BlockLayout, BlockOperator};
 use crate::problem::power_of_two_near;
 
 /// An operator of precision `T` on vectors of double precision.
-pub(super) struct ScaledOperator<T> {
+pub(super) struct ScaledOperator<'a, T> {
     operator: TileOperator<T>,
+    tables: &'a Tables<T>,
     /// Subtracted from every pressure before it is rounded.
     reference: f64,
     /// The unit of pressures and displacements, a power of two, so that no scene underflows or overflows.
     unit: f64,
 }
 
-impl<T: Real + Into<f64>> ScaledOperator<T> {
-    /// An operator on `hierarchy` for pressures about `mean` and displacements of about `size`.
+impl<'a, T: Real + Into<f64>> ScaledOperator<'a, T> {
+    /// The operator of `tables` on `hierarchy`, for pressures about `mean` and displacements of about `size`.
     ///
     /// A uniform pressure displaces nothing, so where elements cover the cell the mean is subtracted. Far beyond full contact its
     /// rounding, and its part of the split kernel's error, would be larger than the pressure that the heights add to it.
-    pub(super) fn new(hierarchy: Arc<Hierarchy>, mean: f64, size: f64) -> Self {
+    pub(super) fn new(hierarchy: Arc<Hierarchy>, tables: &'a Tables<T>, mean: f64, size: f64) -> Self {
         let reference = if hierarchy.elements().cover_cell() { mean } else { 0.0 };
-        Self { operator: TileOperator::new(hierarchy), reference, unit: power_of_two_near(size) }
+        Self { operator: TileOperator::new(hierarchy), tables, reference, unit: power_of_two_near(size) }
     }
 
     /// Unit of [`ScaledOperator::base_displacement`], in λ.
@@ -43,49 +43,34 @@ impl<T: Real + Into<f64>> ScaledOperator<T> {
     }
 }
 
-impl<T: Real + Into<f64>> Engine<f64> for ScaledOperator<T> {
-    type Table = Tables<T>;
-
-    fn blocks(&self) -> Blocks {
-        self.operator.blocks()
+impl<T: Real + Into<f64>> BlockOperator<f64> for ScaledOperator<'_, T> {
+    fn layout(&self) -> BlockLayout {
+        self.operator.layout()
     }
 
-    fn fill<S, R>(&mut self, sources: S, fill: impl Fn(S::Item, &mut [f64]) -> R + Sync) -> Vec<R>
-    where
-        S: IndexedParallelIterator,
-        R: Send,
-    {
+    fn write(&mut self, write: &(dyn Fn(usize, &mut [f64]) + Sync)) {
         let (reference, unit) = (self.reference, self.unit);
-        self.operator.fill(sources, |source, cells| {
+        self.operator.write(&|i, cells| {
             let mut values = [0.0; BLOCK_CELLS];
             let values = &mut values[..cells.len()];
-            let filled = fill(source, values);
+            write(i, values);
             for (cell, &value) in cells.iter_mut().zip(&*values) {
                 *cell = T::rounded((value - reference) / unit);
             }
-            filled
-        })
+        });
     }
 
-    fn multiply(&mut self, table: &Tables<T>) {
-        self.operator.multiply(table);
+    fn apply(&mut self) {
+        self.operator.apply(self.tables);
     }
 
-    fn take<K, R>(&self, table: &Tables<T>, sinks: K, take: impl Fn(K::Item, &[f64]) -> R + Sync) -> Vec<R>
-    where
-        K: IndexedParallelIterator,
-        R: Send,
-    {
-        self.operator.take(table, sinks, |sink, cells| {
+    fn read(&self, read: &(dyn Fn(usize, &[f64]) + Sync)) {
+        self.operator.read(self.tables, &|i, cells| {
             let mut values = [0.0; BLOCK_CELLS];
             for (value, &cell) in values.iter_mut().zip(cells) {
                 *value = self.unit * cell.into();
             }
-            take(sink, &values[..cells.len()])
-        })
-    }
-
-    fn set_mean(&self, table: &mut Tables<T>, eigenvalue: f64) {
-        self.operator.set_mean(table, eigenvalue);
+            read(i, &values[..cells.len()]);
+        });
     }
 }

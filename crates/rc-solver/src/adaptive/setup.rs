@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
 use rc_core::Grid;
 use rc_kernel::{ScaleSplit, SplitParams};
 use rc_quadtree::{ContactFields, Elements, RING, divide};
@@ -11,10 +10,11 @@ use super::AdaptiveParams;
 use super::element_blocks::blocks_of;
 use super::exclusion::{SmoothDisplacement, possible_contact};
 use super::heights::Heights;
-use super::operator::{Hierarchy, Prepared, Reach, Real};
+use super::operator::{Hierarchy, Prepared, Reach, Real, Tables};
 use super::prolongation::MeshStart;
 use super::scaled_operator::ScaledOperator;
 use crate::descent::mean_pressure;
+use crate::parallel;
 use crate::problem::Problem;
 use crate::{Control, IterationParams};
 
@@ -66,17 +66,18 @@ impl<'a, T: Real + Into<f64>> Setup<'a, T> {
     }
 
     /// An operator for fresh gaps under pressures like that of `start`.
-    pub(super) fn operator<U: Real + Into<f64>>(
+    pub(super) fn operator<'t, U: Real + Into<f64>>(
         &self,
         hierarchy: Arc<Hierarchy>,
+        tables: &'t Tables<U>,
         start: &MeshStart,
-    ) -> ScaledOperator<U> {
+    ) -> ScaledOperator<'t, U> {
         let n_cell = (start.elements.finest().side() as f64).powi(2);
         let mean = match self.problem.control {
             Control::MeanPressure(mean) => mean,
             Control::Penetration(_) => mean_pressure(n_cell, &blocks_of(&start.elements), &start.pressure),
         };
-        ScaledOperator::new(hierarchy, mean, self.problem.h_range)
+        ScaledOperator::new(hierarchy, tables, mean, self.problem.h_range)
     }
 
     /// Tiles, of `per_side` per side of the cell, where the gap under `pressure`, which `operator` was applied to last, may be less
@@ -84,7 +85,7 @@ impl<'a, T: Real + Into<f64>> Setup<'a, T> {
     /// ([`Prepared::remainder_curvature`]).
     pub(super) fn possible_contact<U: Real + Into<f64>>(
         &self,
-        operator: &ScaledOperator<U>,
+        operator: &ScaledOperator<'_, U>,
         unit_curvature: f64,
         pressure: &[f64],
         per_side: usize,
@@ -112,5 +113,5 @@ impl<'a, T: Real + Into<f64>> Setup<'a, T> {
 
 /// Largest of the values; zero at least.
 fn maximum(values: &[f64]) -> f64 {
-    values.par_iter().copied().reduce(|| 0.0, f64::max)
+    parallel::maximum(values, 0.0)
 }

@@ -9,9 +9,9 @@ use rc_kernel::{ScaleSplit, SplitParams};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, put_tile};
 
 use super::element_blocks::blocks_of;
-use super::operator::{Hierarchy, Prepared, TileOperator};
+use super::operator::{Hierarchy, Prepared, TileCorrections};
 use super::scaled_operator::ScaledOperator;
-use crate::descent::Engine;
+use crate::descent::{BlockOperator, read_blocks, write_blocks};
 use crate::observables::{corrected, mean_gap_error, rms_pressure_error};
 use crate::solution::Status;
 use crate::stiffness::stiffness_of;
@@ -138,11 +138,11 @@ impl AdaptiveSolution {
             let tiles = hierarchy.elements().finest();
             // Where the pressure is on part of the cell, the mean over all of it says nothing of its size.
             let mean = if own.cover_cell() { self.info.mean_pressure } else { 0.0 };
-            let mut fresh =
-                ScaledOperator::<f32>::new(Arc::clone(&hierarchy), mean, self.info.penetration_full_contact);
-            fresh.fill(values.par_chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
-            fresh.multiply(&tables);
-            fresh.take(&tables, values.par_chunks_mut(BLOCK_CELLS), |v, cells| v.copy_from_slice(cells));
+            let size = self.info.penetration_full_contact;
+            let mut fresh = ScaledOperator::new(Arc::clone(&hierarchy), &tables, mean, size);
+            write_blocks(&mut fresh, values.chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
+            fresh.apply();
+            read_blocks(&fresh, values.chunks_mut(BLOCK_CELLS), |v, cells| v.copy_from_slice(cells));
             let mut rows = vec![0.0; TILE * n];
             for row in band {
                 for column in 0..per_side {
@@ -199,8 +199,8 @@ impl AdaptiveSolution {
         let response = prepared.tables(self.n_levels());
         let mut preconditioner = Prepared::<f32>::inverse(&split, self.base).tables(self.n_levels());
         let hierarchy = Hierarchy::new(self.base.nx(), self.elements.clone(), prepared.reach());
-        let mut engine = TileOperator::new(Arc::new(hierarchy));
-        stiffness_of(&self.pressure, self.finest.len() as f64, &mut engine, &response, &mut preconditioner)
+        let mut operator = TileCorrections::new(Arc::new(hierarchy), &response, &mut preconditioner);
+        stiffness_of(&self.pressure, self.finest.len() as f64, &mut operator)
     }
 }
 

@@ -1,26 +1,27 @@
 //! The mean pressure under penetration control, which is free like any other wave of the pressure.
 
-use rayon::prelude::*;
-
-use super::{Descent, Engine, GapSums, Machinery};
+use super::operators::{read_blocks, write_blocks};
+use super::state::Descent;
+use super::sums::GapSums;
 use crate::Control;
+use crate::parallel;
 
 /// The part of the cell in contact from which a uniform pressure is looked at: below it the present one is the stiffer, or as
 /// good as, and the application of L would gain nothing.
 const LARGE_CONTACT: f64 = 0.7;
 
-impl<C: Engine<f32>, F: Engine<f64>> Descent<'_, C, F> {
+impl Descent<'_> {
     /// Brings the pressure to the prescribed penetration, if one is: scales it, so that its weighted mean gap is zero, or nearer to it.
     ///
     /// Where all elements press although the penetration is less than that of full contact, the mean pressure is too large by the
-    /// least one, at least. Taken off all of them it displaces nothing and lowers the energy, while scaling would undo what already
+    /// minimum, at least. Taken off all of them it displaces nothing and lowers the energy, while scaling would undo what already
     /// fits the heights.
     pub(super) fn meet_penetration(&mut self, sums: GapSums) -> GapSums {
         match sums.scale_to_penetration(self.problem) {
             None => self.settle(sums),
             Some(_) if sums.n_contact >= self.n_cell() => {
-                let least = self.p.par_iter().copied().reduce(|| f64::INFINITY, f64::min);
-                self.p.par_iter_mut().for_each(|p| *p -= least);
+                let minimum = parallel::minimum(&self.pressure);
+                parallel::update(&mut self.pressure, |p| *p -= minimum);
                 self.rescale(1.0)
             }
             Some(scale) => self.rescale(scale),
@@ -37,26 +38,25 @@ impl<C: Engine<f32>, F: Engine<f64>> Descent<'_, C, F> {
         let large = sums.n_contact > LARGE_CONTACT * n_cell;
         let stiffness = if large { self.stiffness_of_uniform(sums.n_contact).max(secant) } else { secant };
         if stiffness.is_finite() && stiffness > 0.0 {
-            let Machinery { corrections, preconditioner, .. } = &mut self.machinery;
-            corrections.set_mean(preconditioner, stiffness);
+            self.operators.corrections.set_mean(stiffness);
         }
     }
 
     /// ⟨x⟩²/⟨x L x⟩ for x = 1 on the `n_contact` elements in contact.
     fn stiffness_of_uniform(&mut self, n_contact: f64) -> f64 {
-        let block = self.block();
+        let len = self.layout.len();
         self.info.operator_applications += 1;
-        let Machinery { corrections, response, .. } = &mut self.machinery;
-        corrections.fill(self.p.par_chunks(block), |p, rows| {
-            for (&p, row) in p.iter().zip(rows) {
-                *row = if p > 0.0 { 1.0 } else { 0.0 };
+        let corrections = &mut *self.operators.corrections;
+        write_blocks(corrections, self.pressure.chunks(len), |pressure, values| {
+            for (&p, value) in pressure.iter().zip(values) {
+                *value = if p > 0.0 { 1.0 } else { 0.0 };
             }
         });
-        corrections.multiply(response);
-        let sums = corrections.take(response, self.p.par_chunks(block), |p, rows| {
-            [p.iter().zip(rows).filter(|&(&p, _)| p > 0.0).map(|(_, &v)| f64::from(v)).sum()]
+        corrections.apply();
+        let sums = read_blocks(corrections, self.pressure.chunks(len), |pressure, displacement| {
+            [pressure.iter().zip(displacement).filter(|&(&p, _)| p > 0.0).map(|(_, &v)| f64::from(v)).sum()]
         });
-        let [displaced] = self.blocks.total(sums);
+        let [displaced] = self.layout.total(sums);
         n_contact * n_contact / (self.n_cell() * displaced)
     }
 }

@@ -1,11 +1,11 @@
-//! What a pressure amounts to: its certificate and its observables.
+//! The result of a descent: its certificate and its observables.
 
-use super::gap::GapSums;
+use super::sums::GapSums;
 use crate::Certificate;
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues, SolveInfo};
 
-/// What a descent found.
+/// The result of a descent.
 pub(crate) struct Outcome {
     pub(crate) converged: bool,
     pub(crate) certificate: Certificate,
@@ -34,8 +34,8 @@ impl Outcome {
         }
     }
 
-    /// As it is told to the user, with the work done on the levels, coarsest first, and what the
-    /// last but one found.
+    /// In the form given to the user, with the work done on the levels, coarsest first, and the values of
+    /// the last but one.
     pub(crate) fn info(&self, problem: &Problem, levels: Vec<LevelInfo>, coarser: Option<LevelValues>) -> SolveInfo {
         SolveInfo {
             certificate: self.certificate,

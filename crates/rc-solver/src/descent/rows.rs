@@ -1,77 +1,156 @@
-//! The vector work of the iteration, on a block of rows at a time, with the sums that decide the next step.
+//! The vector work of the iteration, on one block at a time, with the sums that decide the next step.
 //!
-//! Each function fills the rows of a convolution or takes them, so the vectors pass through the cache once. Sums are in
-//! double precision and in a fixed order: element by element in a block, then block by block. What the heights overlap the rigid
-//! plane, h - c, is taken first: a constant in the heights, however large, then cancels before anything is added to it.
+//! Each function writes the block of an operator or reads it, so the vectors pass through the cache once. Sums are in double precision
+//! and in a fixed order: element by element in a block, then block by block. The overlap of the heights with the rigid plane, h - c, is
+//! computed first: a constant in the heights, however large, then cancels before anything is added to it.
 
-use super::gap::GapSums;
+use super::sums::GapSums;
 
-/// `g = L p - h + c` from a fresh `displacement = L p`.
-pub(super) fn fresh_gap(displacement: &[f64], offset: f64, h: &[f64], p: &[f64], g: &mut [f64]) -> GapSums {
-    let mut sums = GapSums::EMPTY;
-    for (((&v, &h), &p), g) in displacement.iter().zip(h).zip(p).zip(g) {
-        let overlap = h - offset;
-        *g = v - overlap;
-        sums.add_element(p, *g, overlap);
-    }
-    sums
+/// Heights, pressure and gap of the same elements: of a block, or of all.
+pub(crate) struct ElementValues<'a> {
+    pub(crate) heights: &'a [f64],
+    pub(crate) pressure: &'a mut [f64],
+    pub(crate) gap: &'a mut [f64],
 }
 
-/// Multiplies the pressure by `scale`; the gap follows, since v is linear in p.
-pub(super) fn rescale(scale: f64, offset: f64, h: &[f64], p: &mut [f64], g: &mut [f64]) -> GapSums {
-    let mut sums = GapSums::EMPTY;
-    for ((&h, p), g) in h.iter().zip(p).zip(g) {
-        let overlap = h - offset;
-        *p *= scale;
-        *g = scale * (*g + overlap) - overlap;
-        sums.add_element(*p, *g, overlap);
+impl ElementValues<'_> {
+    /// Blocks of `len` elements.
+    pub(super) fn blocks(self, len: usize) -> impl Iterator<Item = Self> {
+        let pressure_and_gap = self.pressure.chunks_mut(len).zip(self.gap.chunks_mut(len));
+        self.heights.chunks(len).zip(pressure_and_gap).map(|(heights, (pressure, gap))| Self { heights, pressure, gap })
     }
-    sums
-}
 
-/// Chooses the elements to iterate on, those that press or penetrate, and fills their residual. Returns their number and
-/// Σ t over them.
-pub(super) fn first_residual(
-    (p, g): (&[f64], &[f64]),
-    (zero_gap, unit): (f64, f64),
-    t: &[f32],
-    active: &mut [bool],
-    residual: &mut [f32],
-) -> [f64; 2] {
-    let (mut count, mut sum) = (0_u32, 0.0);
-    for ((((&p, &g), &t), active), residual) in p.iter().zip(g).zip(t).zip(active).zip(residual) {
-        let gap = g - zero_gap;
-        *active = p > 0.0 || gap < 0.0;
-        *residual = if *active { (gap * unit) as f32 } else { 0.0 };
-        if *active {
-            count += 1;
-            sum += f64::from(t);
+    /// `g = L p - h + c` from a fresh `displacement = L p`; c is `offset`.
+    pub(super) fn fresh_gap(self, displacement: &[f64], offset: f64) -> GapSums {
+        let mut sums = GapSums::EMPTY;
+        for (((&v, &h), &mut p), g) in displacement.iter().zip(self.heights).zip(self.pressure).zip(self.gap) {
+            let overlap = h - offset;
+            *g = v - overlap;
+            sums.add_element(p, *g, overlap);
+        }
+        sums
+    }
+
+    /// Multiplies the pressure by `scale`; the gap follows, since v is linear in p.
+    pub(super) fn rescale(self, scale: f64, offset: f64) -> GapSums {
+        let mut sums = GapSums::EMPTY;
+        for ((&h, p), g) in self.heights.iter().zip(self.pressure).zip(self.gap) {
+            let overlap = h - offset;
+            *p *= scale;
+            *g = scale * (*g + overlap) - overlap;
+            sums.add_element(*p, *g, overlap);
+        }
+        sums
+    }
+
+    /// Adds the displacement of the pressures that clipping has added, in units of `range`, then multiplies the pressure by `scale`.
+    pub(super) fn add_clipped(self, displacement: &[f32], range: f64, scale: f64, offset: f64) -> GapSums {
+        let mut sums = GapSums::EMPTY;
+        for (((&v, &h), p), g) in displacement.iter().zip(self.heights).zip(self.pressure).zip(self.gap) {
+            let overlap = h - offset;
+            *p *= scale;
+            *g = scale * (*g + range * f64::from(v) + overlap) - overlap;
+            sums.add_element(*p, *g, overlap);
+        }
+        sums
+    }
+
+    /// Chooses the elements to iterate on, those that press or penetrate, and writes their residual. Returns their number and the sum of
+    /// the last `direction` over them.
+    pub(super) fn first_residual(
+        self,
+        gradient: &Gradient,
+        direction: &[f32],
+        active: &mut [bool],
+        residual: &mut [f32],
+    ) -> [f64; 2] {
+        let (mut count, mut sum) = (0_u32, 0.0);
+        let elements = self.pressure.iter().zip(self.gap.iter()).zip(direction);
+        for (((&p, &g), &t), (active, residual)) in elements.zip(active.iter_mut().zip(residual)) {
+            *active = p > 0.0 || gradient.of_gap(g) < 0.0;
+            *residual = if *active { gradient.residual(g) } else { 0.0 };
+            if *active {
+                count += 1;
+                sum += f64::from(t);
+            }
+        }
+        [f64::from(count), sum]
+    }
+
+    /// Takes the step `length` along a direction and writes the residual on the same elements.
+    pub(super) fn next_residual(
+        self,
+        length: f64,
+        step: &ConjugateStep<'_>,
+        gradient: &Gradient,
+        residual: &mut [f32],
+    ) {
+        let along = step.direction.iter().zip(step.displacement).zip(step.active);
+        for ((p, g), (((&t, &u), &active), residual)) in self.pressure.iter_mut().zip(self.gap).zip(along.zip(residual))
+        {
+            *p += length * f64::from(t);
+            *g += length * f64::from(u);
+            *residual = if active { gradient.residual(*g) } else { 0.0 };
         }
     }
-    [f64::from(count), sum]
-}
 
-/// Takes the step `p += α t`, `g += α u` and fills the residual on the same elements.
-pub(super) fn next_residual(
-    step: f64,
-    (zero_gap, unit): (f64, f64),
-    (p, g): (&mut [f64], &mut [f64]),
-    (t, u): (&[f32], &[f32]),
-    active: &[bool],
-    residual: &mut [f32],
-) {
-    for (((((p, g), &t), &u), &active), residual) in p.iter_mut().zip(g).zip(t).zip(u).zip(active).zip(residual) {
-        *p += step * f64::from(t);
-        *g += step * f64::from(u);
-        *residual = if active { ((*g - zero_gap) * unit) as f32 } else { 0.0 };
+    /// Takes the step `length` along a direction, clips tensile pressures, and writes what the clipping has added, in units of
+    /// `1 / unit`. Returns Σ p and the number clipped.
+    pub(super) fn clip(self, length: f64, step: &ConjugateStep<'_>, unit: f64, added: &mut [f32]) -> [f64; 2] {
+        let (mut sum, mut clipped) = (0.0, 0_u32);
+        let along = step.direction.iter().zip(step.displacement);
+        for ((p, g), ((&t, &u), added)) in self.pressure.iter_mut().zip(self.gap).zip(along.zip(added)) {
+            let stepped = *p + length * f64::from(t);
+            *g += length * f64::from(u);
+            *p = stepped.max(0.0);
+            *added = ((*p - stepped) * unit) as f32;
+            sum += *p;
+            clipped += u32::from(stepped < 0.0);
+        }
+        [sum, f64::from(clipped)]
     }
 }
 
-/// Takes the preconditioned residual z. Returns Σ z, Σ z u, Σ u over the active elements.
-pub(super) fn take_preconditioned(rows: &[f32], u: &[f32], active: &[bool], z: &mut [f32]) -> [f64; 3] {
+/// A direction, its displacement, and the elements it changes.
+pub(crate) struct ConjugateStep<'a> {
+    pub(super) direction: &'a [f32],
+    pub(super) displacement: &'a [f32],
+    pub(super) active: &'a [bool],
+}
+
+impl ConjugateStep<'_> {
+    /// Takes the step `length`: updates the residual on the elements it changes, and writes it.
+    pub(crate) fn update_residual(&self, length: f32, residual: &mut [f32], written: &mut [f32]) {
+        for (((r, &u), &active), written) in residual.iter_mut().zip(self.displacement).zip(self.active).zip(written) {
+            *r = if active { *r + length * u } else { 0.0 };
+            *written = *r;
+        }
+    }
+}
+
+/// The gradient of the energy: the gap above that of elements in contact.
+#[derive(Clone, Copy)]
+pub(super) struct Gradient {
+    pub(super) zero_gap: f64,
+    /// Residuals are multiples of its inverse: 1/H.
+    pub(super) unit: f64,
+}
+
+impl Gradient {
+    pub(super) fn of_gap(&self, gap: f64) -> f64 {
+        gap - self.zero_gap
+    }
+
+    fn residual(&self, gap: f64) -> f32 {
+        (self.of_gap(gap) * self.unit) as f32
+    }
+}
+
+/// Keeps the preconditioned residual z. Returns Σ z, Σ z u, Σ u over the active elements, with the displacement u of the last direction.
+pub(super) fn keep_preconditioned(read: &[f32], displacement: &[f32], active: &[bool], kept: &mut [f32]) -> [f64; 3] {
     let mut sums = [0.0; 3];
-    z.copy_from_slice(rows);
-    for ((&z, &u), &active) in rows.iter().zip(u).zip(active) {
+    kept.copy_from_slice(read);
+    for ((&z, &u), &active) in read.iter().zip(displacement).zip(active) {
         if active {
             let (z, u) = (f64::from(z), f64::from(u));
             sums[0] += z;
@@ -82,71 +161,37 @@ pub(super) fn take_preconditioned(rows: &[f32], u: &[f32], active: &[bool], z: &
     sums
 }
 
-/// The next direction, `t = -z + β t + shift` on the active elements, zero elsewhere.
-pub(super) fn next_direction(z: &[f32], beta: f32, shift: f32, active: &[bool], t: &mut [f32], rows: &mut [f32]) {
-    for (((&z, &active), t), row) in z.iter().zip(active).zip(t).zip(rows) {
-        *t = if active { beta * *t - z + shift } else { 0.0 };
-        *row = *t;
-    }
-}
-
-/// Takes `u = L t`. Returns Σ t u, Σ (g - zero gap) t and Σ u over the active elements.
-pub(super) fn take_response(
-    rows: &[f32],
-    t: &[f32],
-    g: &[f64],
-    zero_gap: f64,
+/// Keeps the displacement u of the direction t. Returns Σ t u, Σ t (gradient) and Σ u over the active elements.
+pub(super) fn keep_displacement(
+    read: &[f32],
+    direction: &[f32],
+    gradient: impl Iterator<Item = f64>,
     active: &[bool],
-    u: &mut [f32],
+    kept: &mut [f32],
 ) -> [f64; 3] {
     let mut sums = [0.0; 3];
-    u.copy_from_slice(rows);
-    for (((&u, &t), &g), &active) in rows.iter().zip(t).zip(g).zip(active) {
+    kept.copy_from_slice(read);
+    for (((&u, &t), gradient), &active) in read.iter().zip(direction).zip(gradient).zip(active) {
         if active {
             let (u, t) = (f64::from(u), f64::from(t));
             sums[0] += t * u;
-            sums[1] += (g - zero_gap) * t;
+            sums[1] += gradient * t;
             sums[2] += u;
         }
     }
     sums
 }
 
-/// Takes the step, clips tensile pressures, and fills what the clipping added. Returns Σ p and the number clipped.
-pub(super) fn clip(
-    step: f64,
-    unit: f64,
-    (p, g): (&mut [f64], &mut [f64]),
-    (t, u): (&[f32], &[f32]),
-    added: &mut [f32],
-) -> [f64; 2] {
-    let (mut sum, mut clipped) = (0.0, 0_u32);
-    for ((((p, g), &t), &u), added) in p.iter_mut().zip(g).zip(t).zip(u).zip(added) {
-        let stepped = *p + step * f64::from(t);
-        *g += step * f64::from(u);
-        *p = stepped.max(0.0);
-        *added = ((*p - stepped) * unit) as f32;
-        sum += *p;
-        clipped += u32::from(stepped < 0.0);
+/// The next direction, `t = -z + β t + shift` on the active elements, zero elsewhere.
+pub(super) fn next_direction(
+    preconditioned: &[f32],
+    [beta, shift]: [f32; 2],
+    active: &[bool],
+    direction: &mut [f32],
+    written: &mut [f32],
+) {
+    for (((&z, &active), t), written) in preconditioned.iter().zip(active).zip(direction).zip(written) {
+        *t = if active { beta * *t - z + shift } else { 0.0 };
+        *written = *t;
     }
-    [sum, f64::from(clipped)]
-}
-
-/// Takes the displacement of what clipping added, then multiplies the pressure by `scale`.
-pub(super) fn take_clipped(
-    rows: &[f32],
-    range: f64,
-    scale: f64,
-    offset: f64,
-    h: &[f64],
-    (p, g): (&mut [f64], &mut [f64]),
-) -> GapSums {
-    let mut sums = GapSums::EMPTY;
-    for (((&v, &h), p), g) in rows.iter().zip(h).zip(p.iter_mut()).zip(g) {
-        let overlap = h - offset;
-        *p *= scale;
-        *g = scale * (*g + range * f64::from(v) + overlap) - overlap;
-        sums.add_element(*p, *g, overlap);
-    }
-    sums
 }

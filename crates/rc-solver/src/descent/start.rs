@@ -1,35 +1,53 @@
-//! Where a descent starts.
+//! The first pressure and gap of a descent.
 
-use rayon::prelude::*;
-
-use super::{Descent, Engine, GapSums, mean_pressure, scale_to_load};
+use super::gap::{mean_pressure, scale_to_load};
+use super::state::Descent;
+use super::sums::GapSums;
 use crate::Control;
+use crate::parallel;
 
 /// The pressure of a rigid overlap may miss the prescribed load by this factor before it is scaled to it, and is computed this
 /// often at most. Over 57 cold starts on 64² to 512², 448 iterations and 830 applications of L, the start's included, where a
 /// uniform pressure needs 976 and 1519; 444 to 456 with a factor from 1.1 to 2 and three to eight tries.
 const LOAD_FACTOR: f64 = 1.3;
-const MOST_OVERLAPS: usize = 3;
+const MAX_OVERLAPS: usize = 3;
 
 /// The first overlap, as a part of the height range, and the exponent of the load over the overlap until two are known.
 const FIRST_OVERLAP: f64 = 0.25;
 const FIRST_EXPONENT: f64 = 1.5;
 
-/// Where a descent starts.
-pub(crate) enum Start {
-    /// From the overlap with the rigid surface.
-    Nothing,
-    /// From this pressure, up to a factor.
-    Pressure(Vec<f64>),
-    /// From this pressure, of which the gap is known.
-    Known { pressure: Vec<f64>, gap: Vec<f64> },
+/// The exponent of the load over the overlap is kept between these.
+const EXPONENTS: [f64; 2] = [0.5, 4.0];
+
+/// The depth of a rigid overlap that carries a load, found by trial.
+struct DepthSearch {
+    depth: f64,
+    exponent: f64,
+    /// The last depth and its load.
+    last: Option<(f64, f64)>,
 }
 
-impl<C: Engine<f32>, F: Engine<f64>> Descent<'_, C, F> {
+impl DepthSearch {
+    fn new(h_range: f64) -> Self {
+        Self { depth: FIRST_OVERLAP * h_range, exponent: FIRST_EXPONENT, last: None }
+    }
+
+    /// The next depth, when the present one carries `load`, which is too small by the factor `missing`. NaN when two loads are the same.
+    fn improve(&mut self, load: f64, missing: f64) {
+        if let Some((last_depth, last_load)) = self.last {
+            let [least, most] = EXPONENTS;
+            self.exponent = ((load / last_load).ln() / (self.depth / last_depth).ln()).clamp(least, most);
+        }
+        self.last = Some((self.depth, load));
+        self.depth *= missing.powf(self.exponent.recip());
+    }
+}
+
+impl Descent<'_> {
     /// First pressure and gap.
     pub(super) fn start(&mut self) -> GapSums {
         let n_cell = self.n_cell();
-        let present = mean_pressure(n_cell, &self.blocks, &self.p);
+        let present = mean_pressure(n_cell, &self.layout, &self.pressure);
         let usable = self.has_start && present > 0.0;
         if self.has_gap && usable {
             return match self.problem.control {
@@ -42,7 +60,7 @@ impl<C: Engine<f32>, F: Engine<f64>> Descent<'_, C, F> {
         }
         match self.problem.control {
             Control::MeanPressure(mean) if !usable => return self.overlap_of_load(mean),
-            Control::MeanPressure(_) => scale_to_load(self.problem, n_cell, &self.blocks, &mut self.p),
+            Control::MeanPressure(_) => scale_to_load(self.problem, n_cell, &self.layout, &mut self.pressure),
             Control::Penetration(_) if usable => {}
             // The right places; how hard they press is found at once.
             Control::Penetration(_) => {
@@ -54,9 +72,14 @@ impl<C: Engine<f32>, F: Engine<f64>> Descent<'_, C, F> {
         self.refresh()
     }
 
-    /// Sets the pressure to what the heights overlap with a rigid plane at `floor`, in units of length.
+    /// Sets the pressure to the overlap of the heights with a rigid plane at `floor`, in units of length.
     fn overlap(&mut self, floor: f64) {
-        self.p.par_iter_mut().zip(self.heights).for_each(|(p, h)| *p = (h - floor).max(0.0));
+        let len = self.layout.len();
+        parallel::for_each(self.elements().blocks(len), |block| {
+            for (p, h) in block.pressure.iter_mut().zip(block.heights) {
+                *p = (h - floor).max(0.0);
+            }
+        });
     }
 
     /// The overlap with a rigid plane that carries the mean pressure `wanted`, nearly, when it is scaled so that its weighted mean gap
@@ -64,11 +87,10 @@ impl<C: Engine<f32>, F: Engine<f64>> Descent<'_, C, F> {
     fn overlap_of_load(&mut self, wanted: f64) -> GapSums {
         let n_cell = self.n_cell();
         // A coarse level may not reach as high as the finest.
-        let highest = self.heights.par_iter().copied().reduce(|| f64::NEG_INFINITY, f64::max);
-        let (mut depth, mut exponent) = (FIRST_OVERLAP * self.problem.h_range, FIRST_EXPONENT);
-        let mut last: Option<(f64, f64)> = None;
-        for attempt in 1..=MOST_OVERLAPS {
-            let floor = highest - depth;
+        let highest = parallel::maximum(self.heights, f64::NEG_INFINITY);
+        let mut search = DepthSearch::new(self.problem.h_range);
+        for attempt in 1..=MAX_OVERLAPS {
+            let floor = highest - search.depth;
             self.overlap(floor);
             let sums = self.fresh_gap();
             let carried = sums.pressure / n_cell;
@@ -78,21 +100,16 @@ impl<C: Engine<f32>, F: Engine<f64>> Descent<'_, C, F> {
             if !(missing > 0.0 && missing.is_finite()) {
                 break;
             }
-            if attempt == MOST_OVERLAPS || missing.max(missing.recip()) < LOAD_FACTOR {
+            if attempt == MAX_OVERLAPS || missing.max(missing.recip()) < LOAD_FACTOR {
                 return self.rescale(wanted / carried);
             }
-            if let Some((shallower, less)) = last {
-                exponent = ((load / less).ln() / (depth / shallower).ln()).clamp(0.5, 4.0);
-            }
-            last = Some((depth, load));
-            depth *= missing.powf(exponent.recip());
-            // Not a number, when two loads are the same.
-            if depth.is_nan() || depth > self.problem.h_range {
+            search.improve(load, missing);
+            if search.depth.is_nan() || search.depth > self.problem.h_range {
                 break;
             }
         }
-        self.p.fill(wanted);
-        scale_to_load(self.problem, n_cell, &self.blocks, &mut self.p);
+        self.pressure.fill(wanted);
+        scale_to_load(self.problem, n_cell, &self.layout, &mut self.pressure);
         self.refresh()
     }
 }

@@ -1,9 +1,13 @@
-//! Ways to apply L.
+//! Ways to apply L, and the contact problem with any of them.
 
+mod any_operator;
 mod direct_sum;
+mod solve;
 mod uniform_fft;
 
 pub use direct_sum::DirectSum;
+#[allow(unused_imports, reason = "the front door is to take operators")]
+pub(crate) use solve::solve_with_operator;
 pub use uniform_fft::UniformOperator;
 
 #[cfg(test)]

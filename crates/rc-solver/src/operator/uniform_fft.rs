@@ -2,16 +2,16 @@
 
 use std::sync::Mutex;
 
-use rayon::prelude::*;
 use rc_core::{Grid, Kernel, Operator};
-use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable};
+use rc_fft::SymbolTable;
+
+use crate::descent::{BlockOperator, SymbolOperator, read_blocks, write_blocks};
 
 /// `v = L p` (Eq. 4) on a uniform grid: diagonal in Fourier space, in double precision.
 pub struct UniformOperator {
     grid: Grid,
-    symbol: SymbolTable<f64>,
-    /// Holds plans and the buffer of spectra, so `apply` needs no scratch of the caller; one application at a time.
-    convolution: Mutex<Convolution<f64>>,
+    /// Has plans and the buffer of spectra, so `apply` needs no scratch of the caller; one application at a time.
+    operator: Mutex<SymbolOperator>,
 }
 
 impl std::fmt::Debug for UniformOperator {
@@ -24,9 +24,8 @@ impl UniformOperator {
     /// The operator of `kernel` on `grid`.
     #[must_use]
     pub fn new(grid: Grid, kernel: &dyn Kernel) -> Self {
-        let eigenvalue = kernel.symbol(grid);
-        let symbol = SymbolTable::new(grid, eigenvalue);
-        Self { grid, symbol, convolution: Mutex::new(Convolution::new(grid)) }
+        let symbol = SymbolTable::new(grid, kernel.symbol(grid));
+        Self { grid, operator: Mutex::new(SymbolOperator::new(grid, symbol)) }
     }
 }
 
@@ -42,14 +41,10 @@ impl Operator for UniformOperator {
     fn apply(&self, pressure: &[f64], displacement: &mut [f64], _scratch: &mut [f64]) {
         assert_eq!(pressure.len(), self.grid.len(), "length of the pressure");
         assert_eq!(displacement.len(), self.grid.len(), "length of the displacement");
-        let block = BLOCK_ROWS * self.grid.nx();
-        let mut convolution = self.convolution.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        convolution.apply(
-            &self.symbol,
-            pressure.par_chunks(block),
-            |source, rows| rows.copy_from_slice(source),
-            displacement.par_chunks_mut(block),
-            |sink, rows| sink.copy_from_slice(rows),
-        );
+        let mut operator = self.operator.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let block = operator.layout().len();
+        write_blocks(&mut *operator, pressure.chunks(block), |source, rows| rows.copy_from_slice(source));
+        operator.apply();
+        read_blocks(&*operator, displacement.chunks_mut(block), |target, rows| target.copy_from_slice(rows));
     }
 }

@@ -2,9 +2,10 @@
 
 use rayon::prelude::*;
 use rc_core::{Field, Kernel};
-use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable};
+use rc_fft::SymbolTable;
 
 use crate::Certificate;
+use crate::descent::{BlockOperator, SymbolOperator, read_blocks, write_blocks};
 use crate::operator::UniformOperator;
 use crate::problem::Problem;
 use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
@@ -23,28 +24,25 @@ pub(super) fn solve(
         return None;
     }
     let grid = heights.grid();
-    let block = BLOCK_ROWS * grid.nx();
     let inverse = SymbolTable::<f64>::new(grid, kernel.symbol(grid)).inverse(grid);
+    let mut inverse = SymbolOperator::new(grid, inverse);
+    let block = inverse.layout().len();
+    write_blocks(&mut inverse, heights.values().chunks(block), |h, rows| {
+        // The mean would only add rounding.
+        for (row, h) in rows.iter_mut().zip(h) {
+            *row = h - problem.h_mean;
+        }
+    });
+    inverse.apply();
     let mut pressure = Field::zeros(grid);
-    let least = Convolution::<f64>::new(grid).apply(
-        &inverse,
-        heights.values().par_chunks(block),
-        |h, rows| {
-            // The mean would only add rounding.
-            for (row, h) in rows.iter_mut().zip(h) {
-                *row = h - problem.h_mean;
-            }
-        },
-        pressure.values_mut().par_chunks_mut(block),
-        |p, rows| {
-            let mut least = f64::INFINITY;
-            for (p, row) in p.iter_mut().zip(rows) {
-                *p = mean_pressure + row;
-                least = least.min(*p);
-            }
-            least
-        },
-    );
+    let least = read_blocks(&inverse, pressure.values_mut().chunks_mut(block), |p, rows| {
+        let mut least = f64::INFINITY;
+        for (p, row) in p.iter_mut().zip(rows) {
+            *p = mean_pressure + row;
+            least = least.min(*p);
+        }
+        least
+    });
     if least.into_iter().fold(f64::INFINITY, f64::min) < 0.0 {
         return None;
     }

@@ -8,10 +8,10 @@ mod prolongation;
 use rc_core::{Field, Kernel, Observer};
 
 pub(crate) use self::levels::coarsen;
-pub(crate) use self::nested_grids::{FinestGrid, NestedGrids, UniformDescent, coarse_tolerance};
+pub(crate) use self::nested_grids::{FinestGrid, NestedGrids, coarse_tolerance};
 pub(crate) use self::prolongation::{edge_function, edge_function_outside};
 use crate::problem::Problem;
-use crate::solution::{GridSolution, Status};
+use crate::solution::GridSolution;
 use crate::{Control, IterationParams, ProblemError};
 
 /// Bytes for each element that the uniform method is assumed to need at its peak, heights included; 64 to 67 were measured at
@@ -43,16 +43,6 @@ pub(crate) fn solve_uniform(
         return Ok(solution);
     }
     let levels = NestedGrids { kernel, problem: &problem, params: *params, n_above: 0, observer };
-    Ok(finish(levels.solve(heights), &problem))
-}
-
-/// Wraps up what the finest level found.
-fn finish(FinestGrid { descent, outcome, levels, coarser }: FinestGrid<'_>, problem: &Problem) -> GridSolution {
-    let grid = descent.grid();
-    let info = outcome.info(problem, levels, coarser);
-    let (pressure, gap) = descent.into_vectors(outcome.approach + problem.offset());
-    let field = |values| Field::new(grid, values).expect("a value for each element");
-    let (pressure, gap) = (field(pressure), field(gap));
-    let status = if outcome.converged { Status::Converged } else { Status::NotConverged };
-    GridSolution { pressure, gap, status, elements: None, info }
+    let FinestGrid { descent, outcome, levels, coarser } = levels.solve(heights);
+    Ok(descent.into_solution(&outcome, levels, coarser))
 }

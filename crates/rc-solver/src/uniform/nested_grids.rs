@@ -2,12 +2,11 @@
 
 use rayon::prelude::*;
 use rc_core::{Event, Field, Kernel, Observer};
-use rc_fft::{Convolution, SymbolTable};
 
 use super::levels::coarsen;
 use super::prolongation::prolong;
 use crate::IterationParams;
-use crate::descent::{Descent, Machinery, Outcome, Start};
+use crate::descent::{Descent, DescentObserver, Goal, Outcome, Start, uniform_operators};
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues};
 
@@ -21,9 +20,6 @@ const COARSE_TOLERANCE: f64 = 1e-4;
 const COARSENING: f64 = 3.0;
 const COARSEST_TOLERANCE: f64 = 1e-3;
 
-/// A descent on a uniform grid.
-pub(crate) type UniformDescent<'a> = Descent<'a, Convolution<f32>, Convolution<f64>>;
-
 /// Nested grids: what their levels share.
 pub(crate) struct NestedGrids<'a> {
     pub(crate) kernel: &'a dyn Kernel,
@@ -36,7 +32,7 @@ pub(crate) struct NestedGrids<'a> {
 
 /// The solved finest of nested grids.
 pub(crate) struct FinestGrid<'a> {
-    pub(crate) descent: UniformDescent<'a>,
+    pub(crate) descent: Descent<'a>,
     pub(crate) outcome: Outcome,
     /// The work on all grids, coarsest first.
     pub(crate) levels: Vec<LevelInfo>,
@@ -61,7 +57,7 @@ impl<'a> NestedGrids<'a> {
     }
 
     /// What a grid with `above` levels above it found; nobody asks when there is more than one.
-    fn values(&self, descent: &UniformDescent<'_>, outcome: &Outcome, above: usize) -> Option<LevelValues> {
+    fn values(&self, descent: &Descent<'_>, outcome: &Outcome, above: usize) -> Option<LevelValues> {
         (above == 1).then(|| LevelValues {
             rms_pressure: rms(descent.pressure()),
             penetration: self.problem.h_max + outcome.approach,
@@ -75,7 +71,7 @@ impl<'a> NestedGrids<'a> {
         start: Start,
         n_levels: usize,
         levels: &mut Vec<LevelInfo>,
-    ) -> (UniformDescent<'h>, Outcome)
+    ) -> (Descent<'h>, Outcome)
     where
         'a: 'h,
     {
@@ -84,23 +80,12 @@ impl<'a> NestedGrids<'a> {
         let wanted = self.params.tolerance;
         let above = n_levels - 1 - level;
         let tolerance = if above == 0 { wanted } else { coarse_tolerance(above - 1).max(wanted) };
-        let machinery = machinery(heights, self.kernel);
-        let mut descent = Descent::new(heights.values(), grid, machinery, self.problem, start);
-        let outcome = descent.run(tolerance, self.params.max_iterations, above == 0, self.observer, &grid);
+        let operators = uniform_operators(grid, self.kernel);
+        let mut descent = Descent::new(heights.values(), grid, operators, self.problem, start);
+        let goal = Goal { tolerance, max_iterations: self.params.max_iterations, certify: above == 0 };
+        let outcome = descent.run(goal, &DescentObserver { observer: self.observer, mesh: &grid });
         levels.push(descent.info());
         (descent, outcome)
-    }
-}
-
-fn machinery(heights: &Field, kernel: &dyn Kernel) -> Machinery<Convolution<f32>, Convolution<f64>> {
-    let grid = heights.grid();
-    let fresh_response = SymbolTable::new(grid, kernel.symbol(grid));
-    Machinery {
-        corrections: Convolution::new(grid),
-        response: fresh_response.map(|value| value as f32),
-        preconditioner: fresh_response.inverse(grid).map(|value| value as f32),
-        fresh: Convolution::new(grid),
-        fresh_response,
     }
 }
 

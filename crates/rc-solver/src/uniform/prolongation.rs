@@ -7,10 +7,10 @@
 
 use rayon::prelude::*;
 
-use super::UniformDescent;
+use crate::descent::Descent;
 
 /// The start on the grid with twice as many elements per side.
-pub(crate) fn prolong(coarse: &UniformDescent<'_>) -> Vec<f64> {
+pub(crate) fn prolong(coarse: &Descent<'_>) -> Vec<f64> {
     let function = edge_function(coarse);
     let (nx, ny) = (coarse.grid().nx(), coarse.grid().ny());
     let mut fine = vec![0.0; 4 * nx * ny];
@@ -30,7 +30,7 @@ pub(crate) fn prolong(coarse: &UniformDescent<'_>) -> Vec<f64> {
 }
 
 /// φ at the coarse centres.
-pub(crate) fn edge_function(coarse: &UniformDescent<'_>) -> Vec<f64> {
+pub(crate) fn edge_function(coarse: &Descent<'_>) -> Vec<f64> {
     let (nx, ny) = (coarse.grid().nx(), coarse.grid().ny());
     let (pressure, gap) = (coarse.pressure(), coarse.gap());
     let zero_gap = coarse.contact_gap();

@@ -1,9 +1,10 @@
 //! The arithmetic of the inner loops, in single or double precision, with or without fused multiply-add.
 
+use pulp::Simd;
 use rc_fft::Plan;
 
 /// `f32` or `f64`.
-pub(crate) trait Real: Plan + Default + From<f32> {
+pub(crate) trait Arithmetic: Plan + Default + From<f32> {
     /// Rounded from double precision.
     fn rounded(value: f64) -> Self;
 
@@ -14,7 +15,7 @@ pub(crate) trait Real: Plan + Default + From<f32> {
     const ROWS: usize;
 }
 
-impl Real for f32 {
+impl Arithmetic for f32 {
     fn rounded(value: f64) -> Self {
         value as Self
     }
@@ -27,7 +28,7 @@ impl Real for f32 {
     const ROWS: usize = 8;
 }
 
-impl Real for f64 {
+impl Arithmetic for f64 {
     fn rounded(value: f64) -> Self {
         value
     }
@@ -40,28 +41,8 @@ impl Real for f64 {
     const ROWS: usize = 4;
 }
 
-/// How products are added: chosen once for the machine, since a fused multiply-add without hardware is a function call.
-pub(crate) trait MultiplyAdd: Send + Sync {
-    /// `sum + a b`
-    fn add<T: Real>(sum: T, a: T, b: T) -> T;
-}
-
-/// Machines that have the instruction.
-pub(crate) struct Fused;
-
-/// Machines that have not.
-pub(crate) struct Separate;
-
-impl MultiplyAdd for Fused {
-    #[inline(always)]
-    fn add<T: Real>(sum: T, a: T, b: T) -> T {
-        a.fused(b, sum)
-    }
-}
-
-impl MultiplyAdd for Separate {
-    #[inline(always)]
-    fn add<T: Real>(sum: T, a: T, b: T) -> T {
-        sum + a * b
-    }
+/// `sum + a b`, fused where the machine has the instruction: without it, that is a function call.
+#[inline(always)]
+pub(super) fn add_product<S: Simd, T: Arithmetic>(sum: T, a: T, b: T) -> T {
+    if S::IS_SCALAR { sum + a * b } else { a.fused(b, sum) }
 }

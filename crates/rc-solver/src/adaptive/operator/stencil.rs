@@ -1,9 +1,11 @@
 //! A stencil applied to one tile.
 
+use pulp::Simd;
 use rc_kernel::Stencil;
-use rc_quadtree::{CELLS, Patch, TILE};
+use rc_quadtree::{CELLS, Patch, TILE, gather};
 
-use super::real::{MultiplyAdd, Real};
+use super::real::{Arithmetic, add_product};
+use super::tile_values::TileValues;
 
 /// The weights of a stencil with their places in a patch of given side.
 #[derive(Clone, Debug)]
@@ -13,8 +15,8 @@ pub(crate) struct Taps<T> {
     radius: usize,
 }
 
-impl<T: Real> Taps<T> {
-    /// `stencil`, times `factor`, for patches of `side`. Weights that cannot matter are left out.
+impl<T: Arithmetic> Taps<T> {
+    /// `stencil`, times `factor`, for patches of `side`. Weights that cannot matter are omitted.
     pub(crate) fn new(stencil: &Stencil, factor: f64, side: usize) -> Self {
         let (radius, margin) = (stencil.radius() as i32, (side - TILE) as i32 / 2);
         let negligible = 1e-15 * stencil.weight(0, 0).abs();
@@ -39,25 +41,25 @@ impl<T: Real> Taps<T> {
 
     /// Adds the stencil's sum over the patch around a tile to `out`.
     #[inline(always)]
-    pub(crate) fn add<A: MultiplyAdd, const SIDE: usize>(&self, patch: &Patch<T, SIDE>, out: &mut [T; CELLS]) {
+    pub(crate) fn add<S: Simd, const SIDE: usize>(&self, patch: &Patch<T, SIDE>, out: &mut [T; CELLS]) {
         let cells = patch.as_flattened();
         if T::ROWS == TILE {
-            self.add_rows::<A, SIDE, 8>(cells, out);
+            self.add_rows::<S, SIDE, 8>(cells, out);
         } else {
             let (low, high) = out.split_at_mut(CELLS / 2);
-            self.add_rows::<A, SIDE, 4>(cells, low);
-            self.add_rows::<A, SIDE, 4>(&cells[4 * SIDE..], high);
+            self.add_rows::<S, SIDE, 4>(cells, low);
+            self.add_rows::<S, SIDE, 4>(&cells[4 * SIDE..], high);
         }
     }
 
     #[inline(always)]
-    fn add_rows<A: MultiplyAdd, const SIDE: usize, const ROWS: usize>(&self, cells: &[T], out: &mut [T]) {
+    fn add_rows<S: Simd, const SIDE: usize, const ROWS: usize>(&self, cells: &[T], out: &mut [T]) {
         let mut sums = [[T::default(); TILE]; ROWS];
         for &(offset, weight) in &self.taps {
             let window = &cells[offset..][..(ROWS - 1) * SIDE + TILE];
             for (y, sums) in sums.iter_mut().enumerate() {
                 for (x, sum) in sums.iter_mut().enumerate() {
-                    *sum = A::add(*sum, weight, window[y * SIDE + x]);
+                    *sum = add_product::<S, T>(*sum, weight, window[y * SIDE + x]);
                 }
             }
         }
@@ -65,4 +67,22 @@ impl<T: Real> Taps<T> {
             *out = *out + *sum;
         }
     }
+}
+
+/// Adds the sum of a stencil over the values around the tile at a place to `out`; false when there are no values.
+#[inline(always)]
+pub(super) fn add_short_range<S: Simd, T: Arithmetic, const SIDE: usize>(
+    taps: &Taps<T>,
+    around: TileValues<'_, T>,
+    [column, row]: [u32; 2],
+    patch: &mut Patch<T, SIDE>,
+    out: &mut [T; CELLS],
+) -> bool {
+    let margin = ((SIDE - TILE) / 2 / TILE) as i64;
+    let corner = (i64::from(column) - margin, i64::from(row) - margin);
+    let any = gather(around.values, around.tiles, corner, taps.rows(SIDE), patch);
+    if any {
+        taps.add::<S, SIDE>(patch, out);
+    }
+    any
 }

@@ -6,63 +6,29 @@ use rc_core::Grid;
 use rc_fft::SymbolTable;
 use rc_kernel::{CoarseElement, Filter, ScaleSplit, Stencil};
 
-use super::Reach;
 use super::coarse::CoarseTable;
-use super::real::Real;
+use super::hierarchy::Reach;
+use super::sizes::{Real, Sizes};
 use super::stencil::Taps;
 use super::transfer::Transfer;
-
-/// Filters are filled up to one of these numbers of taps, for which the inner loops are compiled, and patches are as large as
-/// that needs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sizes {
-    /// 4 taps; stencils reach at most 8 cells.
-    Small,
-    /// 16 taps; stencils reach at most 8 cells.
-    Medium,
-    /// 32 taps; stencils reach at most 16 cells.
-    Large,
-}
-
-impl Sizes {
-    fn of(split: &ScaleSplit) -> Self {
-        let params = split.params();
-        match (params.cutoff, params.taps) {
-            (..=8, ..=4) => Self::Small,
-            (..=8, ..=16) => Self::Medium,
-            _ => Self::Large,
-        }
-    }
-
-    fn taps(self) -> usize {
-        match self {
-            Self::Small => 4,
-            Self::Medium => 16,
-            Self::Large => 32,
-        }
-    }
-
-    /// Side of the patch around one tile.
-    fn around(self) -> usize {
-        match self {
-            Self::Small | Self::Medium => 24,
-            Self::Large => 40,
-        }
-    }
-}
 
 /// Tables of one operator on levels 0 (the base grid, with its Fourier transform) to K.
 #[derive(Clone)]
 pub(crate) struct Tables<T> {
-    pub(crate) sizes: Sizes,
-    pub(crate) base: SymbolTable<T>,
+    pub(super) sizes: Sizes<T>,
+    pub(super) base: SymbolTable<T>,
     /// Of levels 1 to K: the stencil on the level, and the transfer between it and the next coarser one.
-    pub(crate) levels: Vec<(Taps<T>, Transfer<T>)>,
+    pub(super) levels: Vec<(Taps<T>, Transfer<T>)>,
     /// Of elements 2, 4, … times as large as the finest; empty when they are like any value of their level.
     coarse: Vec<CoarseTable<T>>,
 }
 
-impl<T> Tables<T> {
+impl<T: Real> Tables<T> {
+    /// Changes the eigenvalue for constant vectors.
+    pub(super) fn set_mean(&mut self, eigenvalue: f64, base: Grid) {
+        self.base.set_mean(T::rounded(eigenvalue / base.len() as f64));
+    }
+
     /// The table of elements 2^`coarser` times as large as the finest.
     pub(super) fn coarse_table(&self, coarser: usize) -> Option<&CoarseTable<T>> {
         self.coarse.get(coarser - 1)
@@ -71,7 +37,7 @@ impl<T> Tables<T> {
 
 /// The split kernel of one base grid, from which the tables of any number of levels are made.
 pub(crate) struct Prepared<T> {
-    sizes: Sizes,
+    sizes: Sizes<T>,
     base: Grid,
     symbol: SymbolTable<T>,
     /// Stencil and transfer of the finest level, and of those between it and the base grid; sum of the stencil.
@@ -102,8 +68,8 @@ impl<T: Real> Prepared<T> {
             let q = 2.0 * PI * (kx as f64).hypot(ky as f64);
             if q == 0.0 { 0.0 } else { split.remainder_symbol(q, cutoff) }
         });
-        let sizes = Sizes::of(split);
-        let transfer = |filter: &Filter| Transfer::new(filter, sizes.taps());
+        let sizes = T::sizes(split.params());
+        let transfer = |filter: &Filter| Transfer::new(filter, sizes.taps);
         Self {
             sizes,
             base,
@@ -118,8 +84,8 @@ impl<T: Real> Prepared<T> {
 
     /// |q|/2, nearly: the inverse of L but for the mean, as a preconditioner.
     pub(crate) fn inverse(split: &ScaleSplit, base: Grid) -> Self {
-        let sizes = Sizes::of(split);
-        let part = (split.inverse_stencil(INVERSE_RADIUS), Transfer::new(&split.level_filter(), sizes.taps()));
+        let sizes = T::sizes(split.params());
+        let part = (split.inverse_stencil(INVERSE_RADIUS), Transfer::new(&split.level_filter(), sizes.taps));
         let symbol = SymbolTable::new(base, |kx: usize, ky: usize| PI * (kx as f64).hypot(ky as f64));
         Self {
             sizes,
@@ -151,7 +117,7 @@ impl<T: Real> Prepared<T> {
             let (stencil, transfer) = if level == n_levels { &self.finest } else { &self.between };
             let factor = self.factor(level);
             sum += factor * stencil.sum();
-            levels.push((Taps::new(stencil, factor, self.sizes.around()), transfer.clone()));
+            levels.push((Taps::new(stencil, factor, self.sizes.around), transfer.clone()));
         }
         let mut base = self.symbol.clone();
         // A constant gives zero (Eq. 3): the base grid takes off what the stencils add to it.
@@ -169,7 +135,7 @@ impl<T: Real> Prepared<T> {
     }
 
     fn coarse_tables(&self, n_levels: usize) -> Vec<CoarseTable<T>> {
-        let side = self.sizes.around();
+        let side = self.sizes.around;
         // Elements of one size act on each other across a border with larger ones as they do anywhere.
         let whole = [&self.finest.0].into_iter().chain(self.coarse.iter().map(|element| &element.whole));
         let levels = (1..n_levels).rev();

@@ -1,14 +1,17 @@
 //! The multilevel operator against exact sums of the periodic coefficients.
 
+use std::sync::Arc;
+
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rc_core::DVec2;
+use rc_core::{DVec2, Grid};
 use rc_kernel::{PeriodicLove, ScaleSplit, SplitParams};
-use rc_quadtree::quarters;
+use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, quarters};
 
 use super::*;
 use crate::adaptive::SINGLE_PRECISION;
 use crate::adaptive::roughness::{ERROR_OF_ROUGHNESS, roughness};
+use crate::parallel::Tasks;
 
 /// Radii of spots a few elements of a base grid wide.
 const SMALL: [f64; 2] = [0.01, 0.06];
@@ -55,18 +58,22 @@ fn apply<T: Real + Into<f64>>(split: &ScaleSplit, base: usize, elements: Element
     let hierarchy = Arc::new(Hierarchy::new(base, elements, prepared.reach()));
     let tables = prepared.tables(hierarchy.n_levels());
     let mut operator = TileOperator::<T>::new(Arc::clone(&hierarchy));
-    operator.fill(p.par_chunks(BLOCK_CELLS), |p, cells| {
-        for (cell, &p) in cells.iter_mut().zip(p) {
+    operator.write(&|i, cells| {
+        for (cell, &p) in cells.iter_mut().zip(&p[i * BLOCK_CELLS..]) {
             *cell = T::rounded(p);
         }
     });
-    operator.multiply(&tables);
+    operator.apply(&tables);
     let mut v = vec![0.0; p.len()];
-    operator.take(&tables, v.par_chunks_mut(BLOCK_CELLS), |v, cells| {
-        for (v, cell) in v.iter_mut().zip(cells) {
-            *v = (*cell).into();
-        }
+    let blocks = Tasks::new(v.chunks_mut(BLOCK_CELLS));
+    operator.read(&tables, &|i, cells| {
+        blocks.run(i, |v| {
+            for (v, cell) in v.iter_mut().zip(cells) {
+                *v = (*cell).into();
+            }
+        });
     });
+    drop(blocks);
     v
 }
 

@@ -1,9 +1,12 @@
-//! Between two levels: pressures go up by the filter, displacements come down by its transpose.
+//! Between two levels: pressures are restricted to the coarser one by a filter, displacements are prolonged by its transpose.
 
+use std::ops::Range;
+
+use pulp::Simd;
 use rc_kernel::Filter;
 use rc_quadtree::{CELLS, Patch, TILE};
 
-use super::real::{MultiplyAdd, Real};
+use super::real::{Arithmetic, add_product};
 
 /// Half a tile: what a fine tile covers of a coarse one.
 const HALF: usize = TILE / 2;
@@ -14,7 +17,7 @@ pub(crate) struct Transfer<T> {
     taps: Vec<T>,
 }
 
-impl<T: Real> Transfer<T> {
+impl<T: Arithmetic> Transfer<T> {
     /// `n` taps, an even number not below the filter's.
     pub(crate) fn new(filter: &Filter, n: usize) -> Self {
         let more = vec![T::default(); (n - filter.taps().len()) / 2];
@@ -27,14 +30,14 @@ impl<T: Real> Transfer<T> {
         self.taps.len() / 2
     }
 
-    /// Rows of the coarse patch that [`Transfer::down`] reads, for a fine tile in the half `half_y` (0 or 1) of its parent.
-    pub(crate) fn rows_down(&self, side: usize, half_y: usize) -> std::ops::Range<usize> {
+    /// Rows of the coarse patch that [`Transfer::prolong`] reads, for a fine tile in the half `half_y` (0 or 1) of its parent.
+    pub(crate) fn rows_to_prolong(&self, side: usize, half_y: usize) -> Range<usize> {
         let start = (side - TILE) / 2 + half_y * HALF;
         start - self.reach()..start + HALF + self.reach()
     }
 
-    /// Rows of the fine patch that [`Transfer::up`] reads.
-    pub(crate) fn rows_up(&self, side: usize) -> std::ops::Range<usize> {
+    /// Rows of the fine patch that [`Transfer::restrict`] reads.
+    pub(crate) fn rows_to_restrict(&self, side: usize) -> Range<usize> {
         let start = (side - 2 * TILE) / 2;
         start - 2 * self.reach()..start + 2 * TILE + 2 * self.reach()
     }
@@ -44,12 +47,13 @@ impl<T: Real> Transfer<T> {
         std::array::from_fn(|j| self.taps[j])
     }
 
-    /// Interpolates to a fine tile in the quarter (`half_x`, `half_y`) of the tile in the middle of the coarse patch.
+    /// Interpolates to a fine tile in the quarter (`half_x`, `half_y`) of the tile in the middle of the coarse patch: along y, then
+    /// along x.
     ///
     /// The value at the fine centre beyond coarse centre c is `Σ_j tap_j · value(c + 1 - N/2 + j)`; the one before it has the
     /// taps in reverse, `Σ_j tap_j · value(c - 1 + N/2 - j)`.
     #[inline(always)]
-    pub(crate) fn down<A: MultiplyAdd, const N: usize, const SIDE: usize>(
+    pub(crate) fn prolong<S: Simd, const N: usize, const SIDE: usize>(
         &self,
         patch: &Patch<T, SIDE>,
         (half_x, half_y): (usize, usize),
@@ -59,49 +63,18 @@ impl<T: Real> Transfer<T> {
         let margin = (SIDE - TILE) / 2;
         // The first coarse cell that matters, along either axis.
         let (left, below) = (margin + half_x * HALF - N / 2, margin + half_y * HALF - N / 2);
-        let rows = &patch[below..][..HALF + N];
-        let mut columns = [[T::default(); SIDE]; TILE];
-        let mut chunk = 0;
-        while chunk < HALF + N {
-            let from = (left + chunk).min(SIDE - TILE);
-            for c in 0..HALF {
-                let (mut before, mut beyond) = ([T::default(); TILE], [T::default(); TILE]);
-                for j in 0..N {
-                    let low = &rows[c + N - 1 - j][from..][..TILE];
-                    let high = &rows[c + 1 + j][from..][..TILE];
-                    for x in 0..TILE {
-                        before[x] = A::add(before[x], taps[j], low[x]);
-                        beyond[x] = A::add(beyond[x], taps[j], high[x]);
-                    }
-                }
-                columns[2 * c][from..][..TILE].copy_from_slice(&before);
-                columns[2 * c + 1][from..][..TILE].copy_from_slice(&beyond);
-            }
-            chunk += TILE;
-        }
+        let mut lines = [[T::default(); SIDE]; TILE];
+        prolong_columns::<S, T, N, SIDE>(&taps, &patch[below..][..HALF + N], left, &mut lines);
         let (rows, _) = out.as_chunks_mut::<TILE>();
-        for (row, line) in rows.iter_mut().zip(&columns) {
-            let line = &line[left..][..HALF + N];
-            let (mut before, mut beyond) = ([T::default(); HALF], [T::default(); HALF]);
-            for j in 0..N {
-                let low = &line[N - 1 - j..][..HALF];
-                let high = &line[1 + j..][..HALF];
-                for x in 0..HALF {
-                    before[x] = A::add(before[x], taps[j], low[x]);
-                    beyond[x] = A::add(beyond[x], taps[j], high[x]);
-                }
-            }
-            for x in 0..HALF {
-                row[2 * x] = before[x];
-                row[2 * x + 1] = beyond[x];
-            }
+        for (row, line) in rows.iter_mut().zip(&lines) {
+            prolong_row::<S, T, N>(&taps, &line[left..][..HALF + N], row);
         }
     }
 
     /// The coarse tile under the 16 × 16 cells in the middle of the fine patch: a quarter of the transpose of
-    /// [`Transfer::down`], so that a constant stays what it is.
+    /// [`Transfer::prolong`], so that a constant stays what it is.
     #[inline(always)]
-    pub(crate) fn up<A: MultiplyAdd, const N: usize, const SIDE: usize>(
+    pub(crate) fn restrict<S: Simd, const N: usize, const SIDE: usize>(
         &self,
         patch: &Patch<T, SIDE>,
         out: &mut [T; CELLS],
@@ -110,41 +83,109 @@ impl<T: Real> Transfer<T> {
         // The first fine cell that matters, along either axis; an even number.
         let start = (SIDE - 2 * TILE) / 2 - N;
         let rows = &patch[start..][..2 * TILE + 2 * N];
-        let quarter = T::rounded(0.25);
         for (c, row) in out.as_chunks_mut::<TILE>().0.iter_mut().enumerate() {
-            let mut line = [T::default(); SIDE];
-            let mut chunk = 0;
-            while chunk < 2 * (TILE + N) {
-                let from = (start + chunk).min(SIDE - TILE);
-                let mut sums = [T::default(); TILE];
-                for j in 0..N {
-                    // Fine cell 2c of coarse cell c is the one before its centre.
-                    let even = &rows[2 * c + 2 + 2 * j][from..][..TILE];
-                    let odd = &rows[2 * c + 2 * N - 1 - 2 * j][from..][..TILE];
-                    for x in 0..TILE {
-                        sums[x] = A::add(sums[x], taps[j], even[x] + odd[x]);
-                    }
-                }
-                line[from..][..TILE].copy_from_slice(&sums);
-                chunk += TILE;
-            }
-            let (mut even, mut odd) = ([T::default(); SIDE], [T::default(); SIDE]);
-            for x in 0..SIDE / 2 {
-                even[x] = line[2 * x];
-                odd[x] = line[2 * x + 1];
-            }
-            let (even, odd) = (&even[start / 2..][..TILE + N], &odd[start / 2..][..TILE + N]);
-            let mut sums = [T::default(); TILE];
+            let line = restrict_columns::<S, T, N, SIDE>(&taps, &rows[2 * c..], start);
+            restrict_row::<S, T, N, SIDE>(&taps, &line, start, row);
+        }
+    }
+}
+
+/// Interpolates to the eight rows of a fine tile along y, in the columns from `left` on.
+#[inline(always)]
+fn prolong_columns<S: Simd, T: Arithmetic, const N: usize, const SIDE: usize>(
+    taps: &[T; N],
+    rows: &[[T; SIDE]],
+    left: usize,
+    lines: &mut [[T; SIDE]; TILE],
+) {
+    let mut chunk = 0;
+    while chunk < HALF + N {
+        let from = (left + chunk).min(SIDE - TILE);
+        for c in 0..HALF {
+            let (mut before, mut beyond) = ([T::default(); TILE], [T::default(); TILE]);
             for j in 0..N {
-                let even = &even[1 + j..][..TILE];
-                let odd = &odd[N - 1 - j..][..TILE];
+                let low = &rows[c + N - 1 - j][from..][..TILE];
+                let high = &rows[c + 1 + j][from..][..TILE];
                 for x in 0..TILE {
-                    sums[x] = A::add(sums[x], taps[j], even[x] + odd[x]);
+                    before[x] = add_product::<S, T>(before[x], taps[j], low[x]);
+                    beyond[x] = add_product::<S, T>(beyond[x], taps[j], high[x]);
                 }
             }
-            for (value, sum) in row.iter_mut().zip(sums) {
-                *value = quarter * sum;
+            lines[2 * c][from..][..TILE].copy_from_slice(&before);
+            lines[2 * c + 1][from..][..TILE].copy_from_slice(&beyond);
+        }
+        chunk += TILE;
+    }
+}
+
+/// Interpolates to the eight cells of a row along x, from the coarse cells of `line`.
+#[inline(always)]
+fn prolong_row<S: Simd, T: Arithmetic, const N: usize>(taps: &[T; N], line: &[T], row: &mut [T; TILE]) {
+    let (mut before, mut beyond) = ([T::default(); HALF], [T::default(); HALF]);
+    for j in 0..N {
+        let low = &line[N - 1 - j..][..HALF];
+        let high = &line[1 + j..][..HALF];
+        for x in 0..HALF {
+            before[x] = add_product::<S, T>(before[x], taps[j], low[x]);
+            beyond[x] = add_product::<S, T>(beyond[x], taps[j], high[x]);
+        }
+    }
+    for x in 0..HALF {
+        row[2 * x] = before[x];
+        row[2 * x + 1] = beyond[x];
+    }
+}
+
+/// Sums fine rows along y for one row of coarse cells, in the columns from `start` on.
+#[inline(always)]
+fn restrict_columns<S: Simd, T: Arithmetic, const N: usize, const SIDE: usize>(
+    taps: &[T; N],
+    rows: &[[T; SIDE]],
+    start: usize,
+) -> [T; SIDE] {
+    let mut line = [T::default(); SIDE];
+    let mut chunk = 0;
+    while chunk < 2 * (TILE + N) {
+        let from = (start + chunk).min(SIDE - TILE);
+        let mut sums = [T::default(); TILE];
+        for j in 0..N {
+            // The even one of two fine cells is the one before the coarse centre.
+            let even = &rows[2 + 2 * j][from..][..TILE];
+            let odd = &rows[2 * N - 1 - 2 * j][from..][..TILE];
+            for x in 0..TILE {
+                sums[x] = add_product::<S, T>(sums[x], taps[j], even[x] + odd[x]);
             }
         }
+        line[from..][..TILE].copy_from_slice(&sums);
+        chunk += TILE;
+    }
+    line
+}
+
+/// Sums fine cells along x for the eight coarse cells of a row.
+#[inline(always)]
+fn restrict_row<S: Simd, T: Arithmetic, const N: usize, const SIDE: usize>(
+    taps: &[T; N],
+    line: &[T; SIDE],
+    start: usize,
+    row: &mut [T; TILE],
+) {
+    let quarter = T::rounded(0.25);
+    let (mut even, mut odd) = ([T::default(); SIDE], [T::default(); SIDE]);
+    for x in 0..SIDE / 2 {
+        even[x] = line[2 * x];
+        odd[x] = line[2 * x + 1];
+    }
+    let (even, odd) = (&even[start / 2..][..TILE + N], &odd[start / 2..][..TILE + N]);
+    let mut sums = [T::default(); TILE];
+    for j in 0..N {
+        let even = &even[1 + j..][..TILE];
+        let odd = &odd[N - 1 - j..][..TILE];
+        for x in 0..TILE {
+            sums[x] = add_product::<S, T>(sums[x], taps[j], even[x] + odd[x]);
+        }
+    }
+    for (value, sum) in row.iter_mut().zip(sums) {
+        *value = quarter * sum;
     }
 }

@@ -2,14 +2,14 @@
 
 use rc_core::{Grid, Observer, Snapshot};
 
-/// A mesh whose pressures can be shown on a uniform grid.
-pub(crate) trait Shown {
+/// A mesh whose pressures an observer can see on a uniform grid.
+pub(crate) trait ObservedMesh {
     /// Lets the observer look at the pressure on the elements; nothing is computed unless it does.
-    fn show(&self, pressure: &[f64], observer: &dyn Observer);
+    fn show_pressure(&self, pressure: &[f64], observer: &dyn Observer);
 }
 
-impl Shown for Grid {
-    fn show(&self, pressure: &[f64], observer: &dyn Observer) {
+impl ObservedMesh for Grid {
+    fn show_pressure(&self, pressure: &[f64], observer: &dyn Observer) {
         observer.look(&Snapshot::new(*self, &|take| take(pressure)));
     }
 }

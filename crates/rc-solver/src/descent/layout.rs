@@ -1,16 +1,16 @@
-//! How the vectors of a mesh are divided, and sums over them.
+//! How the vectors of a mesh are divided into blocks, and sums over them.
 
 use std::sync::Arc;
 
 /// Blocks of so many values; the last may be shorter. All elements of a block are of one size.
 #[derive(Clone, Debug)]
-pub(crate) struct Blocks {
+pub(crate) struct BlockLayout {
     len: usize,
     /// Area of an element of each block, in units of the smallest; empty when all are of that size.
     areas: Arc<[f64]>,
 }
 
-impl Blocks {
+impl BlockLayout {
     /// Of elements of one size.
     pub(crate) fn of(len: usize) -> Self {
         Self { len, areas: Arc::default() }

@@ -1,0 +1,207 @@
+//! The passes over the tiles of a level: what each of them reads, and their loops in the machine's vector instructions.
+//!
+//! Loops are compiled for a few numbers of taps and sides of patches ([`TilePasses::new`]), which are numbers the compiler knows; everything
+//! else calls them through [`TilePasses`] and does not depend on these numbers.
+
+use pulp::{Arch, Simd, WithSimd};
+use rc_quadtree::{CELLS, TILE, TileSet, gather, means_of_quarter, quarters};
+
+use super::coarse::{CoarseTable, add_blur};
+use super::real::Arithmetic;
+use super::stencil::{Taps, add_short_range};
+use super::tile_values::TileValues;
+use super::transfer::Transfer;
+
+/// Tiles to be computed: their places, and their cells one tile after the other.
+pub(super) struct Targets<'a, T> {
+    pub(super) places: &'a [[u32; 2]],
+    pub(super) cells: &'a mut [T],
+}
+
+impl<'a, T> Targets<'a, T> {
+    #[inline(always)]
+    fn tiles(self) -> impl Iterator<Item = ([u32; 2], &'a mut [T; CELLS])> {
+        self.places.iter().copied().zip(self.cells.as_chunks_mut::<CELLS>().0)
+    }
+}
+
+/// The densities of tiles from those of the next finer level.
+pub(super) struct Restriction<'a, T> {
+    pub(super) transfer: &'a Transfer<T>,
+    pub(super) finer: TileValues<'a, T>,
+}
+
+/// The displacements of tiles: the level's stencil on its density, and the prolonged displacement of the coarser level.
+pub(super) struct Displacement<'a, T> {
+    pub(super) table: &'a (Taps<T>, Transfer<T>),
+    pub(super) density: TileValues<'a, T>,
+    pub(super) coarser: TileValues<'a, T>,
+}
+
+/// The density of coarse elements on their own level.
+pub(super) struct CoarseDensity<'a, T> {
+    pub(super) table: Option<&'a CoarseTable<T>>,
+    pub(super) elements: TileValues<'a, T>,
+}
+
+/// The displacements of tiles of coarse elements.
+pub(super) struct CoarseDisplacement<'a, T> {
+    pub(super) table: Option<&'a CoarseTable<T>>,
+    /// The elements of this level, and those half as large.
+    pub(super) elements: TileValues<'a, T>,
+    pub(super) finer: TileValues<'a, T>,
+    pub(super) ghosts: &'a TileSet,
+    /// The level's smooth displacement.
+    pub(super) level: TileValues<'a, T>,
+}
+
+/// The displacements that ghosts add to the elements around them.
+pub(super) struct GhostDisplacement<'a, T> {
+    pub(super) taps: &'a Taps<T>,
+    pub(super) ghosts: TileValues<'a, T>,
+}
+
+/// The loops for one number of taps, and for patches of one size.
+#[derive(Clone, Copy)]
+pub(super) struct TilePasses<T> {
+    /// Sets the targets.
+    pub(super) restrict: fn(Arch, &Restriction<'_, T>, Targets<'_, T>),
+    pub(super) displace: fn(Arch, &Displacement<'_, T>, Targets<'_, T>),
+    pub(super) displace_coarse: fn(Arch, &CoarseDisplacement<'_, T>, Targets<'_, T>),
+    /// Adds to the targets.
+    pub(super) add_coarse: fn(Arch, &CoarseDensity<'_, T>, Targets<'_, T>),
+    pub(super) add_ghosts: fn(Arch, &GhostDisplacement<'_, T>, Targets<'_, T>),
+}
+
+impl<T: Arithmetic> TilePasses<T> {
+    /// For filters of `TAPS` taps; patches have `AROUND` cells per side around one tile, and `UNDER` cells around the tiles under a coarse
+    /// one.
+    pub(super) const fn new<const TAPS: usize, const AROUND: usize, const UNDER: usize>() -> Self {
+        Self {
+            restrict: restrict::<T, TAPS, UNDER>,
+            displace: displace::<T, TAPS, AROUND>,
+            displace_coarse: displace_coarse::<T, 0, AROUND>,
+            add_coarse: add_coarse::<T, 0, AROUND>,
+            add_ghosts: add_ghosts::<T, 0, AROUND>,
+        }
+    }
+}
+
+/// A function for a pass, with the vector instructions of the machine at hand. (Closures would be compiled twice.)
+macro_rules! dispatched {
+    ($($name:ident: $Pass:ident),*) => {$(
+        fn $name<T: Arithmetic, const TAPS: usize, const SIDE: usize>(
+            arch: Arch,
+            pass: &$Pass<'_, T>,
+            targets: Targets<'_, T>,
+        ) {
+            arch.dispatch(Loop::<_, T, TAPS, SIDE> { pass, targets });
+        }
+    )*};
+}
+
+dispatched!(
+    restrict: Restriction,
+    displace: Displacement,
+    displace_coarse: CoarseDisplacement,
+    add_coarse: CoarseDensity,
+    add_ghosts: GhostDisplacement
+);
+
+/// A pass for filters of `TAPS` taps, if it has any, and patches of `SIDE` cells per side.
+struct Loop<'a, P, T, const TAPS: usize, const SIDE: usize> {
+    pass: &'a P,
+    targets: Targets<'a, T>,
+}
+
+impl<T: Arithmetic, const TAPS: usize, const SIDE: usize> WithSimd for Loop<'_, Restriction<'_, T>, T, TAPS, SIDE> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Restriction { transfer, finer } = self.pass;
+        let margin = ((SIDE - 2 * TILE) / 2 / TILE) as i64;
+        let mut patch = [[T::default(); SIDE]; SIDE];
+        for ([column, row], out) in self.targets.tiles() {
+            let corner = (2 * i64::from(column) - margin, 2 * i64::from(row) - margin);
+            if gather(finer.values, finer.tiles, corner, transfer.rows_to_restrict(SIDE), &mut patch) {
+                transfer.restrict::<S, TAPS, SIDE>(&patch, out);
+            } else {
+                *out = [T::default(); CELLS];
+            }
+        }
+    }
+}
+
+impl<T: Arithmetic, const TAPS: usize, const SIDE: usize> WithSimd for Loop<'_, Displacement<'_, T>, T, TAPS, SIDE> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Displacement { table: (taps, transfer), density, coarser } = self.pass;
+        let margin = ((SIDE - TILE) / 2 / TILE) as i64;
+        let mut patch = [[T::default(); SIDE]; SIDE];
+        for ([column, row], out) in self.targets.tiles() {
+            let half = (column as usize % 2, row as usize % 2);
+            let corner = (i64::from(column / 2) - margin, i64::from(row / 2) - margin);
+            gather(coarser.values, coarser.tiles, corner, transfer.rows_to_prolong(SIDE, half.1), &mut patch);
+            transfer.prolong::<S, TAPS, SIDE>(&patch, half, out);
+            add_short_range::<S, T, SIDE>(taps, *density, [column, row], &mut patch, out);
+        }
+    }
+}
+
+impl<T: Arithmetic, const TAPS: usize, const SIDE: usize> WithSimd for Loop<'_, CoarseDensity<'_, T>, T, TAPS, SIDE> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let CoarseDensity { table, elements } = self.pass;
+        let mut patch = [[T::default(); SIDE]; SIDE];
+        for (place, out) in self.targets.tiles() {
+            add_blur::<S, T, SIDE>(*table, *elements, place, &mut patch, out);
+        }
+    }
+}
+
+impl<T: Arithmetic, const TAPS: usize, const SIDE: usize> WithSimd
+    for Loop<'_, CoarseDisplacement<'_, T>, T, TAPS, SIDE>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let CoarseDisplacement { table, elements, finer, ghosts, level } = self.pass;
+        let mut patch = [[T::default(); SIDE]; SIDE];
+        for (place, out) in self.targets.tiles() {
+            *out = [T::default(); CELLS];
+            add_blur::<S, T, SIDE>(*table, *level, place, &mut patch, out);
+            let Some(table) = table else { continue };
+            add_short_range::<S, T, SIDE>(&table.near, *elements, place, &mut patch, out);
+            for quarter in quarters(place) {
+                if ghosts.find(i64::from(quarter[0]), i64::from(quarter[1])).is_none() {
+                    continue;
+                }
+                let mut ghost = [T::default(); CELLS];
+                if add_short_range::<S, T, SIDE>(&table.across, *finer, quarter, &mut patch, &mut ghost) {
+                    means_of_quarter(quarter, &ghost, |cell, mean| out[cell] = out[cell] + mean);
+                }
+            }
+        }
+    }
+}
+
+impl<T: Arithmetic, const TAPS: usize, const SIDE: usize> WithSimd
+    for Loop<'_, GhostDisplacement<'_, T>, T, TAPS, SIDE>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let GhostDisplacement { taps, ghosts } = self.pass;
+        let mut patch = [[T::default(); SIDE]; SIDE];
+        for (place, out) in self.targets.tiles() {
+            add_short_range::<S, T, SIDE>(taps, *ghosts, place, &mut patch, out);
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Numbers of taps and sides of patches that the inner loops are compiled for.
+
+use rc_kernel::SplitParams;
+
+use super::passes::TilePasses;
+use super::real::Arithmetic;
+
+/// Filters are filled up to a number of taps for which the inner loops are compiled, and patches are as large as that needs.
+#[derive(Clone, Copy)]
+pub(crate) struct Sizes<T> {
+    /// Taps of filters.
+    pub(super) taps: usize,
+    /// Cells that stencils reach, at most.
+    cutoff: usize,
+    /// Side of the patch around one tile.
+    pub(super) around: usize,
+    pub(super) passes: TilePasses<T>,
+}
+
+impl<T: Arithmetic> Sizes<T> {
+    /// `UNDER` is the side of the patch around the four tiles under a coarse one.
+    const fn new<const TAPS: usize, const AROUND: usize, const UNDER: usize>(cutoff: usize) -> Self {
+        Self { taps: TAPS, cutoff, around: AROUND, passes: TilePasses::new::<TAPS, AROUND, UNDER>() }
+    }
+}
+
+/// Numbers that the operator works with: `f32` for errors from 1e-6 on, `f64` for any.
+pub(crate) trait Real: Arithmetic {
+    /// The compiled sizes, smallest first.
+    const SIZES: &'static [Sizes<Self>];
+
+    /// The smallest compiled sizes that hold the split kernel's filters and stencils.
+    ///
+    /// # Panics
+    /// When they are of an error that this precision does not reach.
+    fn sizes(split: SplitParams) -> Sizes<Self> {
+        let fits = |sizes: &&Sizes<Self>| split.cutoff <= sizes.cutoff && split.taps <= sizes.taps;
+        *Self::SIZES.iter().find(fits).expect("single precision is for errors from 1e-6 on")
+    }
+}
+
+impl Real for f32 {
+    const SIZES: &'static [Sizes<Self>] = &[Sizes::new::<4, 24, 32>(8), Sizes::new::<16, 24, 48>(8)];
+}
+
+impl Real for f64 {
+    const SIZES: &'static [Sizes<Self>] = &[Sizes::new::<16, 24, 48>(8), Sizes::new::<32, 40, 80>(16)];
+}

@@ -1,0 +1,226 @@
+//! One application of the multilevel operator: up to the base grid, its convolution, and down again.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use pulp::Arch;
+use rc_core::Grid;
+use rc_fft::{BLOCK_ROWS, Convolution};
+use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE};
+
+use super::coarse::Leaves;
+use super::hierarchy::Hierarchy;
+use super::passes::{CoarseDensity, CoarseDisplacement, Displacement, GhostDisplacement, Restriction, Targets};
+use super::sizes::Real;
+use super::tables::Tables;
+use super::tile_values::TileValues;
+use crate::adaptive::element_blocks::blocks_of;
+use crate::descent::{BlockLayout, read_rows, write_rows};
+use crate::parallel::{self, Tasks};
+
+/// Buffers for operators on one hierarchy. Blocks of vectors are of [`BLOCK_CELLS`] cells.
+pub(crate) struct TileOperator<T> {
+    hierarchy: Arc<Hierarchy>,
+    arch: Arch,
+    convolution: Convolution<T>,
+    source: Vec<T>,
+    /// Densities and displacements of each level below the finest.
+    densities: Vec<Vec<T>>,
+    displacements: Vec<Vec<T>>,
+    /// Values of the ghosts of each level of coarse elements.
+    ghosts: Vec<Vec<T>>,
+}
+
+impl<T: Real> TileOperator<T> {
+    pub(crate) fn new(hierarchy: Arc<Hierarchy>) -> Self {
+        let n_levels = hierarchy.n_levels();
+        let zeros = || hierarchy.levels[..n_levels].iter().map(|tiles| vec![T::default(); tiles.n_cells()]).collect();
+        Self {
+            arch: Arch::new(),
+            convolution: Convolution::new(hierarchy.base()),
+            source: vec![T::default(); hierarchy.elements().len()],
+            densities: zeros(),
+            displacements: zeros(),
+            ghosts: hierarchy.leaves.iter().map(|leaves| vec![T::default(); leaves.ghosts.n_cells()]).collect(),
+            hierarchy,
+        }
+    }
+
+    /// How vectors are divided.
+    pub(crate) fn layout(&self) -> BlockLayout {
+        blocks_of(self.hierarchy.elements())
+    }
+
+    /// The base grid.
+    pub(crate) fn base(&self) -> Grid {
+        self.hierarchy.base()
+    }
+
+    /// The displacement of the cells of the base grid in the last [`TileOperator::apply`], tile by tile, row-major: the smooth remainder.
+    pub(crate) fn base_displacement(&self) -> &[T] {
+        &self.displacements[0]
+    }
+
+    /// Calls `write` once for each block, with its index and the values to be filled in.
+    pub(crate) fn write(&mut self, write: &(dyn Fn(usize, &mut [T]) + Sync)) {
+        parallel::for_each(self.source.chunks_mut(BLOCK_CELLS).enumerate(), |(i, cells)| write(i, cells));
+    }
+
+    /// Applies a table, except for the part of the elements' own level, which [`TileOperator::read`] adds.
+    pub(crate) fn apply(&mut self, tables: &Tables<T>) {
+        self.set_ghosts();
+        self.restrict(tables);
+        self.convolve_base(tables);
+        self.prolong(tables);
+    }
+
+    /// Calls `read` once for each block, with its index and the result of the last [`TileOperator::apply`], which was of the same table.
+    pub(crate) fn read(&self, tables: &Tables<T>, read: &(dyn Fn(usize, &[T]) + Sync)) {
+        let blocks = &self.hierarchy.blocks;
+        parallel::for_each_index(blocks.len(), &|i| {
+            let mut block = [T::default(); BLOCK_CELLS];
+            let (coarser, tiles) = &blocks[i];
+            let cells = &mut block[..tiles.len() * CELLS];
+            if *coarser == 0 {
+                self.displace_finest(tables, tiles.clone(), cells);
+            } else {
+                self.displace_coarse(tables, *coarser, tiles.clone(), cells);
+            }
+            self.add_ghosts(tables, *coarser, tiles.clone(), cells);
+            // What fills up the last block of a level has no displacement.
+            read(i, &block[..(self.source.len() - i * BLOCK_CELLS).min(BLOCK_CELLS)]);
+        });
+    }
+
+    fn set_ghosts(&mut self) {
+        let elements = self.hierarchy.elements();
+        for (i, (leaves, ghosts)) in self.hierarchy.leaves.iter().zip(&mut self.ghosts).enumerate() {
+            let values = &self.source[elements.cells(i + 1)];
+            parallel::for_each(blocks(leaves.ghosts.places(), ghosts), |Targets { places, cells }| {
+                leaves.set_ghosts(values, places, cells);
+            });
+        }
+    }
+
+    /// The densities of the levels between the finest and the base grid.
+    fn restrict(&mut self, tables: &Tables<T>) {
+        let (n_levels, arch) = (self.hierarchy.n_levels(), self.arch);
+        let levels = &self.hierarchy.levels;
+        for level in (1..n_levels).rev() {
+            let (coarser, finer) = self.densities.split_at_mut(level + 1);
+            let finer = TileValues::new(finer.first().unwrap_or(&self.source), &levels[level + 1]);
+            let pass = Restriction { transfer: &tables.levels[level].1, finer };
+            let density = &mut coarser[level];
+            parallel::for_each(blocks(levels[level].places(), density), |targets| {
+                (tables.sizes.passes.restrict)(arch, &pass, targets);
+            });
+            let Some((cells, tiles)) = self.hierarchy.elements_of(level) else { continue };
+            let elements = TileValues::new(&self.source[cells], tiles);
+            let pass = CoarseDensity { table: tables.coarse_table(n_levels - level), elements };
+            parallel::for_each(blocks(levels[level].places(), density), |targets| {
+                (tables.sizes.passes.add_coarse)(arch, &pass, targets);
+            });
+        }
+    }
+
+    /// The base grid: its density from level 1, its convolution, its displacement as tiles.
+    fn convolve_base(&mut self, tables: &Tables<T>) {
+        let (side, arch, levels) = (self.hierarchy.base().nx(), self.arch, &self.hierarchy.levels);
+        let finer = TileValues::new(self.densities.get(1).unwrap_or(&self.source), &levels[1]);
+        let pass = Restriction { transfer: &tables.levels[0].1, finer };
+        let tiles_per_block = BLOCK_ROWS / TILE * (side / TILE);
+        write_rows(&mut self.convolution, &|i, rows| {
+            let mut cells = vec![T::default(); rows.len()];
+            let places = &levels[0].places()[i * tiles_per_block..][..rows.len() / CELLS];
+            (tables.sizes.passes.restrict)(arch, &pass, Targets { places, cells: &mut cells });
+            tiles_to_rows(&cells, rows, side);
+        });
+        self.convolution.multiply(&tables.base);
+        let blocks = Tasks::new(self.displacements[0].chunks_mut(BLOCK_ROWS * side));
+        read_rows(&self.convolution, &|i, rows| blocks.run(i, |cells| rows_to_tiles(rows, cells, side)));
+    }
+
+    /// The displacements of the levels between the base grid and the finest.
+    fn prolong(&mut self, tables: &Tables<T>) {
+        let (arch, levels) = (self.arch, &self.hierarchy.levels);
+        for level in 1..self.hierarchy.n_levels() {
+            let (coarser, finer) = self.displacements.split_at_mut(level);
+            let pass = Displacement {
+                table: &tables.levels[level - 1],
+                density: TileValues::new(&self.densities[level], &levels[level]),
+                coarser: TileValues::new(&coarser[level - 1], &levels[level - 1]),
+            };
+            parallel::for_each(blocks(levels[level].places(), &mut finer[0]), |targets| {
+                (tables.sizes.passes.displace)(arch, &pass, targets);
+            });
+        }
+    }
+
+    /// The displacement of some tiles of the finest elements.
+    fn displace_finest(&self, tables: &Tables<T>, tiles: Range<usize>, cells: &mut [T]) {
+        let (levels, level) = (&self.hierarchy.levels, self.hierarchy.n_levels());
+        let finest = self.hierarchy.elements().cells(0);
+        let pass = Displacement {
+            table: &tables.levels[level - 1],
+            density: TileValues::new(&self.source[finest], &levels[level]),
+            coarser: TileValues::new(&self.displacements[level - 1], &levels[level - 1]),
+        };
+        let places = &levels[level].places()[tiles];
+        (tables.sizes.passes.displace)(self.arch, &pass, Targets { places, cells });
+    }
+
+    /// The displacement of some tiles of elements 2^`coarser` times as large as the finest.
+    fn displace_coarse(&self, tables: &Tables<T>, coarser: usize, tiles: Range<usize>, cells: &mut [T]) {
+        let Hierarchy { levels, leaves, .. } = self.hierarchy.as_ref();
+        let (elements, level) = (self.hierarchy.elements(), self.hierarchy.n_levels() - coarser);
+        let Leaves { tiles: here, ghosts } = &leaves[coarser - 1];
+        let finer = &self.source[elements.cells(coarser - 1)];
+        let pass = CoarseDisplacement {
+            table: tables.coarse_table(coarser),
+            elements: TileValues::new(&self.source[elements.cells(coarser)], here),
+            finer: TileValues::new(finer, &elements.levels()[coarser - 1]),
+            ghosts,
+            level: TileValues::new(&self.displacements[level], &levels[level]),
+        };
+        (tables.sizes.passes.displace_coarse)(self.arch, &pass, Targets { places: &here.places()[tiles], cells });
+    }
+
+    /// Adds what larger elements nearby add to the displacement of some tiles of elements 2^`coarser` times as large as the
+    /// finest.
+    fn add_ghosts(&self, tables: &Tables<T>, coarser: usize, tiles: Range<usize>, cells: &mut [T]) {
+        let Some(larger) = self.hierarchy.leaves.get(coarser) else { return };
+        let Some(table) = tables.coarse_table(coarser + 1) else { return };
+        let ghosts = TileValues::new(&self.ghosts[coarser], &larger.ghosts);
+        let places = &self.hierarchy.elements().levels()[coarser].places()[tiles];
+        let pass = GhostDisplacement { taps: &table.across, ghosts };
+        (tables.sizes.passes.add_ghosts)(self.arch, &pass, Targets { places, cells });
+    }
+}
+
+/// The tiles of a level, block by block.
+fn blocks<'a, T>(places: &'a [[u32; 2]], cells: &'a mut [T]) -> impl Iterator<Item = Targets<'a, T>> {
+    let blocks = cells.chunks_mut(BLOCK_CELLS).zip(places.chunks(BLOCK_TILES));
+    blocks.map(|(cells, places)| Targets { places, cells })
+}
+
+/// Whole rows of tiles as rows of `side` cells.
+fn tiles_to_rows<T: Copy>(cells: &[T], rows: &mut [T], side: usize) {
+    for (lines, tiles) in rows.chunks_exact_mut(TILE * side).zip(cells.chunks_exact(TILE * side)) {
+        for (row, line) in lines.chunks_exact_mut(side).enumerate() {
+            for (values, tile) in line.as_chunks_mut::<TILE>().0.iter_mut().zip(tiles.as_chunks::<CELLS>().0) {
+                values.copy_from_slice(&tile[row * TILE..][..TILE]);
+            }
+        }
+    }
+}
+
+/// The reverse of [`tiles_to_rows`].
+fn rows_to_tiles<T: Copy>(rows: &[T], cells: &mut [T], side: usize) {
+    for (tiles, lines) in cells.chunks_exact_mut(TILE * side).zip(rows.chunks_exact(TILE * side)) {
+        for (row, line) in lines.chunks_exact(side).enumerate() {
+            for (tile, values) in tiles.as_chunks_mut::<CELLS>().0.iter_mut().zip(line.as_chunks::<TILE>().0) {
+                tile[row * TILE..][..TILE].copy_from_slice(values);
+            }
+        }
+    }
+}

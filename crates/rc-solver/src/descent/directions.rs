@@ -1,0 +1,118 @@
+//! Conjugate directions: what the descent and the contact stiffness iterate with.
+
+use super::layout::BlockLayout;
+use super::operators::{PreconditionedOperator, read_blocks, write_blocks};
+use super::rows::{self, ConjugateStep};
+
+/// Directions of preconditioned conjugate gradients on the elements of one mesh, in single precision.
+pub(crate) struct ConjugateDirections {
+    /// Elements that the iteration changes.
+    pub(super) active: Vec<bool>,
+    /// The present direction t, zero elsewhere.
+    pub(super) direction: Vec<f32>,
+    /// Its displacement u = L t.
+    pub(super) displacement: Vec<f32>,
+    /// The preconditioned residual z.
+    preconditioned: Vec<f32>,
+}
+
+/// Sums over the active elements.
+pub(crate) struct PreconditionedSums {
+    /// Σ z
+    pub(crate) preconditioned: f64,
+    /// Σ z u, with the displacement of the last direction.
+    pub(crate) with_displacement: f64,
+    /// Σ u
+    pub(crate) displacement: f64,
+}
+
+/// Sums over the active elements.
+pub(crate) struct DirectionSums {
+    /// Σ t u
+    pub(crate) curvature: f64,
+    /// Σ t (gradient of the energy)
+    pub(crate) slope: f64,
+    /// Σ u
+    pub(crate) displacement: f64,
+}
+
+/// The gradient of the energy, from which slopes follow.
+pub(crate) enum Slope<'a> {
+    /// Gap above that of elements in contact.
+    Gap { gap: &'a [f64], zero_gap: f64 },
+    /// The residual itself.
+    Residual(&'a [f32]),
+}
+
+impl ConjugateDirections {
+    /// On `n` elements, none active.
+    pub(crate) fn new(n: usize) -> Self {
+        let zeros = || vec![0.0; n];
+        Self { active: vec![false; n], direction: zeros(), displacement: zeros(), preconditioned: zeros() }
+    }
+
+    /// On the elements of `active`. [`ConjugateDirections::advance`] starts along `-preconditioned`.
+    pub(crate) fn along(active: Vec<bool>, preconditioned: Vec<f32>) -> Self {
+        let zeros = || vec![0.0; active.len()];
+        Self { direction: zeros(), displacement: zeros(), active, preconditioned }
+    }
+
+    /// The present direction, its displacement and its elements, block by block.
+    pub(crate) fn steps(&self, len: usize) -> impl Iterator<Item = ConjugateStep<'_>> {
+        let direction = self.direction.chunks(len).zip(self.displacement.chunks(len));
+        direction.zip(self.active.chunks(len)).map(|((direction, displacement), active)| ConjugateStep {
+            direction,
+            displacement,
+            active,
+        })
+    }
+
+    /// Applies the preconditioner to the residual that was written.
+    pub(crate) fn precondition(
+        &mut self,
+        operator: &mut dyn PreconditionedOperator,
+        layout: &BlockLayout,
+    ) -> PreconditionedSums {
+        operator.precondition();
+        let len = layout.len();
+        let blocks =
+            self.displacement.chunks(len).zip(self.active.chunks(len)).zip(self.preconditioned.chunks_mut(len));
+        let sums = read_blocks(operator, blocks, |((displacement, active), kept), read| {
+            rows::keep_preconditioned(read, displacement, active, kept)
+        });
+        let [preconditioned, with_displacement, displacement] = layout.total(sums);
+        PreconditionedSums { preconditioned, with_displacement, displacement }
+    }
+
+    /// The next direction, `t = -z + β t + shift`, and its displacement.
+    pub(crate) fn advance(
+        &mut self,
+        operator: &mut dyn PreconditionedOperator,
+        layout: &BlockLayout,
+        [beta, shift]: [f64; 2],
+        slope: &Slope<'_>,
+    ) -> DirectionSums {
+        let (len, factors) = (layout.len(), [beta as f32, shift as f32]);
+        let blocks = self.preconditioned.chunks(len).zip(self.active.chunks(len)).zip(self.direction.chunks_mut(len));
+        write_blocks(operator, blocks, |((preconditioned, active), direction), written| {
+            rows::next_direction(preconditioned, factors, active, direction, written);
+        });
+        operator.apply();
+        let blocks = self.direction.chunks(len).zip(self.active.chunks(len)).zip(self.displacement.chunks_mut(len));
+        let sums = read_blocks(operator, blocks.enumerate(), |(i, ((direction, active), kept)), read| {
+            let here = i * len..i * len + direction.len();
+            match slope {
+                Slope::Gap { gap, zero_gap } => {
+                    let gradient = gap[here].iter().map(|g| g - zero_gap);
+                    rows::keep_displacement(read, direction, gradient, active, kept)
+                }
+                Slope::Residual(residual) => {
+                    let gradient = residual[here].iter().map(|&r| f64::from(r));
+                    rows::keep_displacement(read, direction, gradient, active, kept)
+                }
+            }
+        });
+        let [curvature, slope, displacement] = layout.total(sums);
+        DirectionSums { curvature, slope, displacement }
+    }
+}

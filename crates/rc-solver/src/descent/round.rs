@@ -1,0 +1,116 @@
+//! One round: conjugate-gradient steps on the active elements, then the projection.
+
+use super::directions::Slope;
+use super::operators::{read_blocks, write_blocks};
+use super::rows::{ElementValues, Gradient};
+use super::state::Descent;
+use super::sums::GapSums;
+use crate::Control;
+
+/// The active elements of a round.
+struct ActiveSet {
+    /// Their number, in units of the smallest.
+    n: f64,
+    /// Whether the mean over them stays as it is.
+    fixed_mean: bool,
+    /// Mean of the last direction over them.
+    direction_mean: f64,
+}
+
+impl Descent<'_> {
+    /// Takes so many steps, clips tensile pressures and restores the load.
+    pub(super) fn round(&mut self, steps: usize, sums: &GapSums) -> GapSums {
+        self.precondition_mean(sums);
+        let mut set = self.choose_active();
+        if set.n == 0.0 {
+            return *sums;
+        }
+        for step in 1..=steps {
+            let length = self.step_length(&set);
+            set.direction_mean = 0.0;
+            if step == steps {
+                return self.project(length);
+            }
+            self.take_step(length);
+        }
+        *sums
+    }
+
+    /// Chooses the active elements and writes their residual.
+    fn choose_active(&mut self) -> ActiveSet {
+        let (len, gradient) = (self.layout.len(), self.gradient());
+        let directions = &mut self.directions;
+        let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
+        let blocks = elements.blocks(len).zip(directions.direction.chunks(len).zip(directions.active.chunks_mut(len)));
+        let sums = write_blocks(&mut *self.operators.corrections, blocks, |(block, (direction, active)), residual| {
+            block.first_residual(&gradient, direction, active, residual)
+        });
+        let [n, direction] = self.layout.total(sums);
+        let fixed_load = matches!(self.problem.control, Control::MeanPressure(_));
+        // A uniform pressure on the whole cell displaces nothing: no step along it is long enough, and others would be scaled with it.
+        ActiveSet { n, fixed_mean: fixed_load || n >= self.n_cell(), direction_mean: direction / n }
+    }
+
+    /// The next direction, and the length of the step along it.
+    fn step_length(&mut self, set: &ActiveSet) -> f64 {
+        let corrections = &mut *self.operators.corrections;
+        self.info.preconditioner_applications += 1;
+        let sums = self.directions.precondition(corrections, &self.layout);
+        let mean = if set.fixed_mean { sums.preconditioned / set.n } else { 0.0 };
+        let beta = ((sums.with_displacement - mean * sums.displacement) / self.curvature).max(0.0);
+        let shift = if set.fixed_mean { mean - beta * set.direction_mean } else { 0.0 };
+        self.info.operator_applications += 1;
+        let slope = Slope::Gap { gap: &self.gap, zero_gap: self.zero_gap };
+        let sums = self.directions.advance(corrections, &self.layout, [beta, shift], &slope);
+        // A direction that does not lead down would undo progress; it is dropped, and the next one starts afresh.
+        let leads_down = sums.curvature > 0.0 && sums.slope < 0.0;
+        let length = if leads_down { -sums.slope / sums.curvature } else { 0.0 };
+        self.curvature = if leads_down { sums.curvature } else { f64::INFINITY };
+        self.info.iterations += 1;
+        if let Control::MeanPressure(_) = self.problem.control {
+            self.zero_gap += length * sums.displacement / set.n;
+        }
+        length
+    }
+
+    /// Takes a step and writes the residual on the same elements.
+    fn take_step(&mut self, length: f64) {
+        let (len, gradient) = (self.layout.len(), self.gradient());
+        let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
+        let blocks = elements.blocks(len).zip(self.directions.steps(len));
+        write_blocks(&mut *self.operators.corrections, blocks, |(block, step), residual| {
+            block.next_residual(length, &step, &gradient, residual);
+        });
+    }
+
+    /// Takes a step, clips tensile pressures and restores the load or the penetration.
+    fn project(&mut self, length: f64) -> GapSums {
+        let (len, offset, range) = (self.layout.len(), self.problem.offset(), self.problem.h_range);
+        let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
+        let blocks = elements.blocks(len).zip(self.directions.steps(len));
+        let sums = write_blocks(&mut *self.operators.corrections, blocks, |(block, step), added| {
+            block.clip(length, &step, range.recip(), added)
+        });
+        let [pressure, clipped] = self.layout.total(sums);
+        let scale = match self.problem.control {
+            Control::MeanPressure(mean) if pressure > 0.0 => mean * self.n_cell() / pressure,
+            _ => 1.0,
+        };
+        if clipped == 0.0 {
+            let sums = self.rescale(scale);
+            return self.meet_penetration(sums);
+        }
+        self.info.operator_applications += 1;
+        self.operators.corrections.apply();
+        let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
+        let sums = read_blocks(&*self.operators.corrections, elements.blocks(len), |block, displacement| {
+            block.add_clipped(displacement, range, scale, offset)
+        });
+        let sums = GapSums::total(&self.layout, sums);
+        self.meet_penetration(sums)
+    }
+
+    fn gradient(&self) -> Gradient {
+        Gradient { zero_gap: self.zero_gap, unit: self.problem.h_range.recip() }
+    }
+}

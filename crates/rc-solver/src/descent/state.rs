@@ -1,0 +1,159 @@
+//! Pressure and gap on one level, and what improves them.
+
+use rc_core::{Field, Grid};
+
+use super::directions::ConjugateDirections;
+use super::gap::{fresh_gap, rescale};
+use super::layout::BlockLayout;
+use super::operators::LevelOperators;
+use super::outcome::Outcome;
+use super::rows::ElementValues;
+use super::sums::GapSums;
+use crate::parallel;
+use crate::problem::Problem;
+use crate::solution::{GridSolution, LevelInfo, LevelValues, Status};
+
+/// Where a descent starts.
+pub(crate) enum Start {
+    /// From the overlap with the rigid surface.
+    Nothing,
+    /// From this pressure, up to a factor.
+    Pressure(Vec<f64>),
+    /// From this pressure, of which the gap is known.
+    Known { pressure: Vec<f64>, gap: Vec<f64> },
+}
+
+/// Pressure, gap and everything that one level needs to improve them.
+pub(crate) struct Descent<'a> {
+    pub(super) problem: &'a Problem,
+    pub(super) layout: BlockLayout,
+    pub(super) operators: LevelOperators<'a>,
+    pub(super) heights: &'a [f64],
+    pub(super) pressure: Vec<f64>,
+    pub(super) gap: Vec<f64>,
+    pub(super) directions: ConjugateDirections,
+    /// <t, L t> of the last step; infinite when there is no direction to be conjugate to.
+    pub(super) curvature: f64,
+    /// The gap of elements in contact.
+    pub(super) zero_gap: f64,
+    /// The pressure is a start, and so is the gap.
+    pub(super) has_start: bool,
+    pub(super) has_gap: bool,
+    pub(super) info: LevelInfo,
+}
+
+impl<'a> Descent<'a> {
+    /// A descent on the level whose elements are those of `grid`, or some of them: `heights` has one value for each.
+    pub(crate) fn new(
+        heights: &'a [f64],
+        grid: Grid,
+        operators: LevelOperators<'a>,
+        problem: &'a Problem,
+        start: Start,
+    ) -> Self {
+        let n = heights.len();
+        let layout = operators.corrections.layout();
+        debug_assert_eq!(layout.len(), operators.fresh.layout().len());
+        let (has_start, has_gap) = (!matches!(start, Start::Nothing), matches!(start, Start::Known { .. }));
+        let (pressure, gap) = match start {
+            Start::Nothing => (vec![0.0; n], vec![0.0; n]),
+            Start::Pressure(pressure) => (pressure, vec![0.0; n]),
+            Start::Known { pressure, gap } => (pressure, gap),
+        };
+        Self {
+            problem,
+            layout,
+            operators,
+            heights,
+            pressure,
+            gap,
+            directions: ConjugateDirections::new(n),
+            curvature: f64::INFINITY,
+            zero_gap: 0.0,
+            has_start,
+            has_gap,
+            info: LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 },
+        }
+    }
+
+    pub(crate) fn grid(&self) -> Grid {
+        self.info.grid
+    }
+
+    pub(crate) fn info(&self) -> LevelInfo {
+        self.info
+    }
+
+    pub(crate) fn pressure(&self) -> &[f64] {
+        &self.pressure
+    }
+
+    pub(crate) fn gap(&self) -> &[f64] {
+        &self.gap
+    }
+
+    /// The gap of elements in contact, which a converged solution makes the same for all.
+    pub(crate) fn contact_gap(&self) -> f64 {
+        self.zero_gap
+    }
+
+    /// The smallest elements that the whole cell has room for.
+    pub(super) fn n_cell(&self) -> f64 {
+        self.info.grid.len() as f64
+    }
+
+    /// Heights, pressure and gap.
+    pub(super) fn elements(&mut self) -> ElementValues<'_> {
+        ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap }
+    }
+
+    /// Computes the gap from a fresh application of L, in double precision.
+    pub(super) fn fresh_gap(&mut self) -> GapSums {
+        self.info.operator_applications += 1;
+        let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
+        fresh_gap(&mut *self.operators.fresh, self.problem, elements)
+    }
+
+    /// Multiplies the pressure.
+    pub(super) fn rescale(&mut self, scale: f64) -> GapSums {
+        let (layout, problem) = (self.layout.clone(), self.problem);
+        let sums = rescale(scale, &layout, problem, self.elements());
+        self.settle(sums)
+    }
+
+    /// Notes the gap of elements in contact.
+    pub(super) fn settle(&mut self, sums: GapSums) -> GapSums {
+        self.zero_gap = sums.zero_gap(self.problem);
+        sums
+    }
+
+    pub(super) fn outcome(&self, sums: &GapSums, converged: bool) -> Outcome {
+        Outcome::new(self.problem, sums, self.n_cell(), converged)
+    }
+
+    /// The solution on a uniform grid, with the work on all levels, coarsest first, and the values of the last level but one.
+    pub(crate) fn into_solution(
+        self,
+        outcome: &Outcome,
+        levels: Vec<LevelInfo>,
+        coarser: Option<LevelValues>,
+    ) -> GridSolution {
+        let (grid, problem) = (self.grid(), self.problem);
+        let info = outcome.info(problem, levels, coarser);
+        let (pressure, gap) = self.into_vectors(outcome.approach + problem.offset());
+        let field = |values| Field::new(grid, values).expect("a value for each element");
+        let status = if outcome.converged { Status::Converged } else { Status::NotConverged };
+        GridSolution { pressure: field(pressure), gap: field(gap), status, elements: None, info }
+    }
+
+    /// The pressure.
+    pub(crate) fn into_pressure(self) -> Vec<f64> {
+        self.pressure
+    }
+
+    /// Pressure, and gap with its pressure-weighted mean at zero.
+    pub(crate) fn into_vectors(mut self, mean_gap: f64) -> (Vec<f64>, Vec<f64>) {
+        parallel::update(&mut self.gap, |g| *g -= mean_gap);
+        (self.pressure, self.gap)
+    }
+}

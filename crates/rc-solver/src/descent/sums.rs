@@ -1,0 +1,115 @@
+//! Sums over pressure and gap, which scale the pressure and measure its error.
+
+use super::layout::BlockLayout;
+use crate::Control;
+use crate::problem::Problem;
+
+/// Scaling of the pressure under penetration control is bounded by this factor per round.
+const MAXIMUM_SCALING: f64 = 4.0;
+
+/// Sums over elements in contact or at risk, which the iteration needs after a change of the pressure.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GapSums {
+    /// Σ p
+    pub(super) pressure: f64,
+    /// Σ p g
+    pub(super) pressure_gap: f64,
+    /// Σ p (h - c), with the constant c of `g = L p - h + c`
+    pub(super) pressure_overlap: f64,
+    /// min g
+    pub(super) min_gap: f64,
+    /// Σ g over p > 0
+    pub(super) contact_gap: f64,
+    /// Σ 1 over p > 0
+    pub(super) n_contact: f64,
+}
+
+impl GapSums {
+    pub(super) const EMPTY: Self = Self {
+        pressure: 0.0,
+        pressure_gap: 0.0,
+        pressure_overlap: 0.0,
+        min_gap: f64::INFINITY,
+        contact_gap: 0.0,
+        n_contact: 0.0,
+    };
+
+    pub(super) fn add_element(&mut self, p: f64, g: f64, overlap: f64) {
+        self.min_gap = smaller(self.min_gap, g);
+        if p > 0.0 {
+            self.pressure += p;
+            self.pressure_gap += p * g;
+            self.pressure_overlap += p * overlap;
+            self.contact_gap += g;
+            self.n_contact += 1.0;
+        }
+    }
+
+    /// Adds blocks in their order, weighted by the area of their elements.
+    pub(super) fn total(layout: &BlockLayout, sums: Vec<Self>) -> Self {
+        sums.into_iter().enumerate().fold(Self::EMPTY, |sum, (i, block)| {
+            let area = layout.area(i);
+            Self {
+                pressure: sum.pressure + area * block.pressure,
+                pressure_gap: sum.pressure_gap + area * block.pressure_gap,
+                pressure_overlap: sum.pressure_overlap + area * block.pressure_overlap,
+                min_gap: smaller(sum.min_gap, block.min_gap),
+                contact_gap: sum.contact_gap + area * block.contact_gap,
+                n_contact: sum.n_contact + area * block.n_contact,
+            }
+        })
+    }
+
+    /// Pressure-weighted mean of the gap.
+    pub(super) fn mean_gap(&self) -> f64 {
+        if self.pressure > 0.0 { self.pressure_gap / self.pressure } else { 0.0 }
+    }
+
+    /// Σ p v
+    pub(super) fn work(&self) -> f64 {
+        self.pressure_gap + self.pressure_overlap
+    }
+
+    /// The gap of elements in contact: its mean, or zero where the penetration is prescribed.
+    pub(super) fn zero_gap(&self, problem: &Problem) -> f64 {
+        match problem.control {
+            Control::MeanPressure(_) if self.n_contact > 0.0 => self.contact_gap / self.n_contact,
+            Control::MeanPressure(_) => self.min_gap,
+            Control::Penetration(_) => 0.0,
+        }
+    }
+
+    /// The factor on the pressure that makes its weighted mean gap zero, under penetration control; within [`MAXIMUM_SCALING`].
+    pub(crate) fn scale_to_penetration(&self, problem: &Problem) -> Option<f64> {
+        let Control::Penetration(_) = problem.control else { return None };
+        self.scale_to_no_gap().map(|scale| scale.clamp(MAXIMUM_SCALING.recip(), MAXIMUM_SCALING))
+    }
+
+    /// The factor on the pressure that makes its weighted mean gap zero.
+    pub(super) fn scale_to_no_gap(&self) -> Option<f64> {
+        let scale = self.pressure_overlap / self.work();
+        (scale.is_finite() && self.work() > 0.0).then_some(scale)
+    }
+
+    /// The error as the certificate defines it.
+    pub(super) fn error(&self, problem: &Problem) -> f64 {
+        let mean_gap = self.mean_gap();
+        let penetration = (mean_gap - self.min_gap) / problem.h_range;
+        positive_part(match problem.control {
+            Control::MeanPressure(_) => penetration,
+            // NaN in the mean is in both.
+            Control::Penetration(_) if penetration.is_nan() => penetration,
+            Control::Penetration(_) => penetration.max(mean_gap.abs() / problem.h_range),
+        })
+    }
+}
+
+/// The smaller of two gaps; NaN when one is, which `f64::min` would pass over: NaN must not pass for contact.
+fn smaller(a: f64, b: f64) -> f64 {
+    if b < a || b.is_nan() { b } else { a }
+}
+
+/// The positive part of an error; NaN stays, since it is not a small error.
+pub(super) fn positive_part(error: f64) -> f64 {
+    if error < 0.0 { 0.0 } else { error }
+}

@@ -1,0 +1,116 @@
+//! L on a uniform grid, by Fourier transforms.
+
+use rayon::prelude::*;
+use rc_core::{Grid, Kernel};
+use rc_fft::{BLOCK_ROWS, Convolution, Plan, SymbolTable};
+
+use super::layout::BlockLayout;
+use super::operators::{BlockOperator, LevelOperators, PreconditionedOperator};
+
+/// L of `kernel` on `grid`.
+pub(crate) fn uniform_operators(grid: Grid, kernel: &dyn Kernel) -> LevelOperators<'static> {
+    let displacement = SymbolTable::new(grid, kernel.symbol(grid));
+    LevelOperators {
+        corrections: Box::new(UniformCorrections::new(grid, &displacement)),
+        fresh: Box::new(SymbolOperator::new(grid, displacement)),
+    }
+}
+
+/// For corrections.
+pub(crate) struct UniformCorrections {
+    convolution: Convolution<f32>,
+    displacement: SymbolTable<f32>,
+    preconditioner: SymbolTable<f32>,
+}
+
+impl UniformCorrections {
+    /// From the symbol of L.
+    pub(crate) fn new(grid: Grid, displacement: &SymbolTable<f64>) -> Self {
+        Self {
+            convolution: Convolution::new(grid),
+            preconditioner: displacement.inverse(grid).map(|value| value as f32),
+            displacement: displacement.map(|value| value as f32),
+        }
+    }
+}
+
+impl BlockOperator<f32> for UniformCorrections {
+    fn layout(&self) -> BlockLayout {
+        layout(self.convolution.grid())
+    }
+
+    fn write(&mut self, write: &(dyn Fn(usize, &mut [f32]) + Sync)) {
+        write_rows(&mut self.convolution, write);
+    }
+
+    fn apply(&mut self) {
+        self.convolution.multiply(&self.displacement);
+    }
+
+    fn read(&self, read: &(dyn Fn(usize, &[f32]) + Sync)) {
+        read_rows(&self.convolution, read);
+    }
+}
+
+impl PreconditionedOperator for UniformCorrections {
+    fn precondition(&mut self) {
+        self.convolution.multiply(&self.preconditioner);
+    }
+
+    fn set_mean(&mut self, eigenvalue: f64) {
+        self.preconditioner.set_mean((eigenvalue / self.convolution.grid().len() as f64) as f32);
+    }
+}
+
+/// An operator of this symbol, in double precision.
+pub(crate) struct SymbolOperator {
+    convolution: Convolution<f64>,
+    symbol: SymbolTable<f64>,
+}
+
+impl SymbolOperator {
+    /// On `grid`, which `symbol` is the table of.
+    pub(crate) fn new(grid: Grid, symbol: SymbolTable<f64>) -> Self {
+        Self { convolution: Convolution::new(grid), symbol }
+    }
+}
+
+impl BlockOperator<f64> for SymbolOperator {
+    fn layout(&self) -> BlockLayout {
+        layout(self.convolution.grid())
+    }
+
+    fn write(&mut self, write: &(dyn Fn(usize, &mut [f64]) + Sync)) {
+        write_rows(&mut self.convolution, write);
+    }
+
+    fn apply(&mut self) {
+        self.convolution.multiply(&self.symbol);
+    }
+
+    fn read(&self, read: &(dyn Fn(usize, &[f64]) + Sync)) {
+        read_rows(&self.convolution, read);
+    }
+}
+
+/// Blocks of rows, as they are transformed.
+fn layout(grid: Grid) -> BlockLayout {
+    BlockLayout::of(BLOCK_ROWS * grid.nx())
+}
+
+fn n_blocks(grid: Grid) -> usize {
+    grid.ny().div_ceil(BLOCK_ROWS)
+}
+
+/// Calls `write` once for each block of rows, with its index and the rows to be filled in. (All callers pass closures in this form, for
+/// which the transforms are compiled once.)
+pub(crate) fn write_rows<T: Plan>(convolution: &mut Convolution<T>, write: &(dyn Fn(usize, &mut [T]) + Sync)) {
+    let blocks = (0..n_blocks(convolution.grid())).into_par_iter();
+    convolution.transform_rows(blocks, write);
+}
+
+/// Calls `read` once for each block of rows, with its index and the rows.
+pub(crate) fn read_rows<T: Plan>(convolution: &Convolution<T>, read: &(dyn Fn(usize, &[T]) + Sync)) {
+    let blocks = (0..n_blocks(convolution.grid())).into_par_iter();
+    convolution.take_rows(blocks, read);
+}

@@ -1,0 +1,111 @@
+//! Any operator of the caller, as the iteration wants it.
+
+use std::f64::consts::PI;
+
+use rc_core::Operator;
+
+use crate::descent::{BlockLayout, BlockOperator, LevelOperators, PreconditionedOperator};
+use crate::parallel;
+
+/// Values in a block.
+const BLOCK: usize = 4096;
+
+/// Eigenvalue of the approximate inverse: that of the longest wave on a half-space of E* = 1. Only its ratio to that of the mean matters.
+const INVERSE: f64 = PI;
+
+/// L for corrections and for fresh gaps, both in double precision: nothing is known of the rounding of an operator in single precision.
+pub(super) fn operators_of(operator: &dyn Operator) -> LevelOperators<'_> {
+    LevelOperators {
+        corrections: Box::new(AnyCorrections { vectors: AnyOperator::new(operator), mean: INVERSE }),
+        fresh: Box::new(AnyOperator::new(operator)),
+    }
+}
+
+/// An operator with its vectors.
+struct AnyOperator<'a> {
+    operator: &'a dyn Operator,
+    source: Vec<f64>,
+    result: Vec<f64>,
+    scratch: Vec<f64>,
+}
+
+impl<'a> AnyOperator<'a> {
+    fn new(operator: &'a dyn Operator) -> Self {
+        let zeros = || vec![0.0; operator.n_elements()];
+        Self { operator, source: zeros(), result: zeros(), scratch: vec![0.0; operator.scratch_len()] }
+    }
+}
+
+impl BlockOperator<f64> for AnyOperator<'_> {
+    fn layout(&self) -> BlockLayout {
+        BlockLayout::of(BLOCK)
+    }
+
+    fn write(&mut self, write: &(dyn Fn(usize, &mut [f64]) + Sync)) {
+        parallel::for_each(self.source.chunks_mut(BLOCK).enumerate(), |(i, values)| write(i, values));
+    }
+
+    fn apply(&mut self) {
+        self.operator.apply(&self.source, &mut self.result, &mut self.scratch);
+    }
+
+    fn read(&self, read: &(dyn Fn(usize, &[f64]) + Sync)) {
+        parallel::for_each(self.result.chunks(BLOCK).enumerate(), |(i, values)| read(i, values));
+    }
+}
+
+/// An operator for corrections, with a multiple of the identity for its inverse, except for the mean.
+struct AnyCorrections<'a> {
+    vectors: AnyOperator<'a>,
+    /// Eigenvalue of the approximate inverse for constant vectors.
+    mean: f64,
+}
+
+impl BlockOperator<f32> for AnyCorrections<'_> {
+    fn layout(&self) -> BlockLayout {
+        self.vectors.layout()
+    }
+
+    fn write(&mut self, write: &(dyn Fn(usize, &mut [f32]) + Sync)) {
+        self.vectors.write(&|i, values| {
+            let mut rounded = [0.0_f32; BLOCK];
+            let rounded = &mut rounded[..values.len()];
+            write(i, rounded);
+            for (value, &rounded) in values.iter_mut().zip(&*rounded) {
+                *value = f64::from(rounded);
+            }
+        });
+    }
+
+    fn apply(&mut self) {
+        self.vectors.apply();
+    }
+
+    fn read(&self, read: &(dyn Fn(usize, &[f32]) + Sync)) {
+        self.vectors.read(&|i, values| {
+            let mut rounded = [0.0_f32; BLOCK];
+            for (rounded, &value) in rounded.iter_mut().zip(values) {
+                *rounded = value as f32;
+            }
+            read(i, &rounded[..values.len()]);
+        });
+    }
+}
+
+impl PreconditionedOperator for AnyCorrections<'_> {
+    fn precondition(&mut self) {
+        let AnyOperator { source, result, .. } = &mut self.vectors;
+        let sums = parallel::map(source.chunks(BLOCK), |block| [block.iter().sum()]);
+        let [sum] = BlockLayout::of(BLOCK).total(sums);
+        let shift = (self.mean - INVERSE) * sum / source.len() as f64;
+        parallel::for_each(result.chunks_mut(BLOCK).zip(source.chunks(BLOCK)), |(result, source)| {
+            for (result, &value) in result.iter_mut().zip(source) {
+                *result = INVERSE * value + shift;
+            }
+        });
+    }
+
+    fn set_mean(&mut self, eigenvalue: f64) {
+        self.mean = eigenvalue;
+    }
+}

@@ -1,0 +1,114 @@
+//! Work on the blocks of vectors, in parallel.
+//!
+//! Iterators of rayon are generic over everything they pass on, and are compiled anew for each combination: four hundred combinations took
+//! most of the time that this crate needed to compile. Here rayon is compiled once. Each block costs a dynamic call and a lock without
+//! contention.
+
+use std::mem;
+use std::sync::{Mutex, PoisonError};
+
+use rayon::prelude::*;
+
+/// Values in a block where nothing else decides.
+const BLOCK: usize = 4096;
+
+/// Calls `work` once for each index below `n`, in any order.
+pub(crate) fn for_each_index(n: usize, work: &(dyn Fn(usize) + Sync)) {
+    (0..n).into_par_iter().for_each(work);
+}
+
+/// Calls `work` once for each of `items`, in any order.
+pub(crate) fn for_each<S: Send>(items: impl Iterator<Item = S>, work: impl Fn(S) + Sync) {
+    map(items, work);
+}
+
+/// What `work` makes of each of `items`, in their order.
+pub(crate) fn map<S: Send, R: Send>(items: impl Iterator<Item = S>, work: impl Fn(S) -> R + Sync) -> Vec<R> {
+    let tasks = Tasks::new(items);
+    for_each_index(tasks.slots.len(), &|i| tasks.run(i, &work));
+    tasks.into_results()
+}
+
+/// Largest of `values`, but not less than `at_least`; NaN is passed over.
+pub(crate) fn maximum(values: &[f64], at_least: f64) -> f64 {
+    let blocks = map(values.chunks(BLOCK), |block| block.iter().copied().fold(at_least, f64::max));
+    blocks.into_iter().fold(at_least, f64::max)
+}
+
+/// Smallest of `values`; NaN is passed over.
+pub(crate) fn minimum(values: &[f64]) -> f64 {
+    let blocks = map(values.chunks(BLOCK), |block| block.iter().copied().fold(f64::INFINITY, f64::min));
+    blocks.into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// Changes each of `values`.
+pub(crate) fn update(values: &mut [f64], change: impl Fn(&mut f64) + Sync) {
+    for_each(values.chunks_mut(BLOCK), |block| block.iter_mut().for_each(&change));
+}
+
+/// One item for each block, and what was made of it.
+pub(crate) struct Tasks<S, R> {
+    slots: Vec<Mutex<Slot<S, R>>>,
+}
+
+enum Slot<S, R> {
+    Waiting(S),
+    Running,
+    Done(R),
+}
+
+impl<S: Send, R: Send> Tasks<S, R> {
+    pub(crate) fn new(items: impl Iterator<Item = S>) -> Self {
+        Self { slots: items.map(|item| Mutex::new(Slot::Waiting(item))).collect() }
+    }
+
+    /// Works on item `i`.
+    ///
+    /// # Panics
+    /// When it was worked on before.
+    pub(crate) fn run(&self, i: usize, work: impl FnOnce(S) -> R) {
+        let mut slot = self.slots[i].lock().unwrap_or_else(PoisonError::into_inner);
+        let Slot::Waiting(item) = mem::replace(&mut *slot, Slot::Running) else {
+            panic!("block {i} is worked on twice");
+        };
+        *slot = Slot::Done(work(item));
+    }
+
+    /// The results in the order of items.
+    ///
+    /// # Panics
+    /// When one is missing.
+    pub(crate) fn into_results(self) -> Vec<R> {
+        let results = self.slots.into_iter().enumerate().map(|(i, slot)| {
+            match slot.into_inner().unwrap_or_else(PoisonError::into_inner) {
+                Slot::Done(result) => result,
+                Slot::Waiting(_) | Slot::Running => panic!("nothing has worked on block {i}"),
+            }
+        });
+        results.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_are_in_the_order_of_items() {
+        let mut values = vec![0_usize; 1000];
+        let sums = map(values.chunks_mut(7).enumerate(), |(i, block)| {
+            block.fill(i);
+            block.iter().sum::<usize>()
+        });
+        assert_eq!(sums.len(), 143);
+        assert!(values.iter().enumerate().all(|(i, &value)| value == i / 7));
+        assert!(sums[..142].iter().enumerate().all(|(i, &sum)| sum == 7 * i));
+    }
+
+    #[test]
+    fn extremes_are_over_all_blocks() {
+        let values: Vec<f64> = (0..10_000).map(|i| f64::from((i * 7919) % 10_007)).collect();
+        assert_eq!(maximum(&values, 0.0).to_bits(), values.iter().copied().fold(0.0, f64::max).to_bits());
+        assert_eq!(minimum(&values).to_bits(), values.iter().copied().fold(f64::INFINITY, f64::min).to_bits());
+    }
+}
