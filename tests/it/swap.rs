@@ -1,9 +1,12 @@
 //! What a research fork does: its own half-space and its own surface, through the traits alone.
 
 use rc_core::testing::{check_height_field, check_kernel};
-use rc_core::{Field, Grid, HeightField, Kernel, Silent, Symbol};
+use rc_core::{Field, Grid, HeightField, Kernel, Operator, Silent, Symbol};
 use rc_kernel::Love;
-use rc_solver::{ContactProblem, Control, MethodReason, SolveError, SolveParams, Status};
+use rc_solver::{
+    ContactProblem, Control, Method, MethodReason, SolveError, SolveParams, Status, UniformOperator, solve,
+    solve_with_operator,
+};
 
 use crate::examples::own_kernel::BondedLayer;
 use crate::examples::own_surface::Weierstrass;
@@ -59,4 +62,44 @@ fn a_half_space_that_answers_nan_is_an_error_and_no_contact() {
             assert_eq!(error, Some(true), "{eigenvalue}, {control:?}");
         }
     }
+}
+
+/// A half-space twice as soft as that of another operator.
+struct TwiceAsSoft(UniformOperator);
+
+impl Operator for TwiceAsSoft {
+    fn n_elements(&self) -> usize {
+        self.0.n_elements()
+    }
+
+    fn scratch_len(&self) -> usize {
+        self.0.scratch_len()
+    }
+
+    fn apply(&self, pressure: &[f64], displacement: &mut [f64], scratch: &mut [f64]) {
+        self.0.apply(pressure, displacement, scratch);
+        displacement.iter_mut().for_each(|v| *v *= 2.0);
+    }
+}
+
+/// The problem is linear in the compliance: half the load on twice the compliance is the same contact.
+#[test]
+fn an_own_operator_drives_the_solver() {
+    let heights = heights(64);
+    let soft = TwiceAsSoft(UniformOperator::new(heights.grid(), &Love));
+    rc_core::testing::check_operator(&soft);
+    let params = SolveParams::to_tolerance(1e-8);
+    let own = solve_with_operator(&heights, &soft, Control::MeanPressure(5e-4), &params, &Silent).expect("solvable");
+    let hard = solve(&heights, Control::MeanPressure(1e-3), &params.by(Method::Uniform)).expect("solvable");
+    assert_eq!((own.status(), own.reason()), (Status::Converged, &MethodReason::OwnOperator));
+    let range = heights.max() - heights.min();
+    assert!((own.info().penetration - hard.info().penetration).abs() < 1e-7 * range);
+    let worst = own.pressure().values().iter().zip(hard.pressure().values()).map(|(a, b)| (2.0 * a - b).abs());
+    assert!(worst.fold(0.0, f64::max) < 1e-4 * hard.pressure().max());
+    assert!((2.0 * own.stiffness() / hard.stiffness() - 1.0).abs() < 5e-3);
+    let (v, owned) = (own.displacement().clone(), own.into_owned());
+    assert_eq!(owned.displacement(), &v, "an owned solution keeps its displacement");
+    let small = Field::zeros(Grid::square(8).expect("grid"));
+    let refused = solve_with_operator(&small, &soft, Control::MeanPressure(1e-3), &params, &Silent);
+    assert!(matches!(refused, Err(SolveError::Problem(rc_solver::ProblemError::Operator { .. }))));
 }

@@ -60,6 +60,8 @@ pub enum MethodReason {
     },
     /// The base grid of the adaptive method exceeds the memory limit.
     AdaptiveDoesNotFit,
+    /// An operator of the caller is known on its grid only.
+    OwnOperator,
     /// The kernel has no split by scale.
     NoSplitOfKernel {
         /// Name of the kernel.
@@ -104,6 +106,7 @@ impl fmt::Display for MethodReason {
                 round(percent)
             ),
             Self::AdaptiveDoesNotFit => write!(f, "uniform: the adaptive method does not fit into memory"),
+            Self::OwnOperator => write!(f, "uniform: an operator of the caller"),
             Self::NoSplitOfKernel { kernel } => write!(f, "uniform: the kernel {kernel} has no adaptive form"),
             Self::CellNotSquare => write!(f, "uniform: the cell is not a square"),
             Self::GridNotSquare { grid } => write!(f, "uniform: {grid} elements are not square"),

@@ -1,6 +1,6 @@
 //! What users compute from a solution: area, pressure, gap, energy.
 
-use rc_core::Kernel;
+use rc_core::EdgeBias;
 
 use crate::solution::GridSolution;
 use crate::{ContactArea, SolveInfo};
@@ -27,13 +27,11 @@ pub struct Observables {
 }
 
 impl Observables {
-    /// Evaluates the observables of `solution`, which was found with `kernel`: one pass over the fields. The stiffness, which takes
-    /// more, is [`GridSolution::contact_stiffness`].
-    #[must_use]
-    pub fn of(solution: &GridSolution, kernel: &dyn Kernel) -> Self {
+    /// Evaluates the observables of a solution whose contact edges are shifted by `bias`: one pass over the fields.
+    pub(crate) fn of(solution: &GridSolution, bias: EdgeBias) -> Self {
         let info = &solution.info;
         let rms_pressure = solution.pressure.rms();
-        let area = ContactArea::of(&solution.pressure, &solution.gap, kernel.edge_bias());
+        let area = ContactArea::of(&solution.pressure, &solution.gap, bias);
         Self {
             area,
             rms_pressure,

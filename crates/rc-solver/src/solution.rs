@@ -1,9 +1,8 @@
 //! What a solve returns.
 
-use rc_core::{Field, Grid, Kernel};
+use rc_core::{Field, Grid};
 use rc_quadtree::paper::{Mesh, Square};
 
-use crate::stiffness::contact_stiffness;
 use crate::{Certificate, ContactElement};
 
 /// How a solve ended.
@@ -86,7 +85,7 @@ impl SolveInfo {
 
 /// Pressures on an adaptive mesh.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MeshPressure {
+pub(crate) struct MeshPressure {
     /// The elements in contact.
     pub mesh: Mesh,
     /// Pressure of each, in E*, in the order of the mesh.
@@ -106,7 +105,7 @@ impl MeshPressure {
 
 /// A solved contact problem.
 #[derive(Clone, Debug, PartialEq)]
-pub struct GridSolution {
+pub(crate) struct GridSolution {
     /// Pressure, in E*, ≥ 0.
     pub pressure: Field,
     /// Gap, in λ, with the pressure-weighted mean 0; at points in contact it is zero within the tolerance.
@@ -120,16 +119,6 @@ pub struct GridSolution {
 }
 
 impl GridSolution {
-    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact. `kernel` is the one
-    /// that the solution was found with, a few applications of which it takes.
-    #[must_use]
-    pub fn contact_stiffness(&self, kernel: &dyn Kernel) -> f64 {
-        match self.status {
-            Status::FullContact => f64::INFINITY,
-            Status::Converged | Status::NotConverged => contact_stiffness(&self.pressure, kernel),
-        }
-    }
-
     /// Elements that carry unknowns.
     pub(crate) fn n_elements(&self) -> usize {
         self.elements.as_ref().map_or(self.pressure.grid().len(), |elements| elements.mesh.len())

@@ -6,8 +6,7 @@ mod solve;
 mod uniform_fft;
 
 pub use direct_sum::DirectSum;
-#[allow(unused_imports, reason = "the front door is to take operators")]
-pub(crate) use solve::solve_with_operator;
+pub(crate) use solve::{solve_with_operator, stiffness_with_operator};
 pub use uniform_fft::UniformOperator;
 
 #[cfg(test)]

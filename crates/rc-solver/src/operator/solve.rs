@@ -6,6 +6,7 @@ use super::any_operator::operators_of;
 use crate::descent::{Descent, DescentObserver, Goal, Start};
 use crate::problem::Problem;
 use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
+use crate::stiffness::stiffness_of;
 use crate::{Certificate, Control, IterationParams, ProblemError};
 
 /// Solves the contact problem on the grid of `heights` (in λ, any mean) with `operator` for v = L p, whatever it is: symmetric,
@@ -18,7 +19,6 @@ use crate::{Certificate, Control, IterationParams, ProblemError};
 ///
 /// # Errors
 /// [`ProblemError`]: an operator for another number of elements, heights that are not finite, a control or tolerance out of range.
-#[allow(dead_code, reason = "the front door is to take operators")]
 pub(crate) fn solve_with_operator(
     heights: &Field,
     operator: &dyn Operator,
@@ -41,6 +41,15 @@ pub(crate) fn solve_with_operator(
     let outcome = descent.run(goal, &DescentObserver { observer, mesh: &grid });
     let level = descent.info();
     Ok(descent.into_solution(&outcome, vec![level], None))
+}
+
+/// dσ0/dΔ, in E*/λ, under the contact of `pressure`.
+pub(crate) fn stiffness_with_operator(pressure: &Field, operator: &dyn Operator) -> f64 {
+    if pressure.values().iter().all(|&p| p > 0.0) {
+        return f64::INFINITY;
+    }
+    let mut operators = operators_of(operator);
+    stiffness_of(pressure.values(), pressure.grid().len() as f64, &mut *operators.corrections)
 }
 
 /// On a flat surface the pressure is uniform, and displaces nothing.

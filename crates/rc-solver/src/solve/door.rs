@@ -1,9 +1,12 @@
 //! The ways to a solution.
 
-use rc_core::{HeightSource, Observer, Silent};
+use rc_core::{HeightSource, Observer, Operator, Silent};
 
-use super::{ContactProblem, Plan, Solution, SolveError, SolveParams, area_error, choice};
-use crate::Control;
+use super::solution::HowSolved;
+use super::{ContactProblem, Plan, Solution, SolveError, SolveParams, area_error, choice, plan};
+use crate::operator;
+use crate::solution::Status;
+use crate::{Control, Method, MethodReason};
 
 impl<'a> ContactProblem<'a> {
     /// Checks the problem and chooses the method. Nothing is solved.
@@ -67,4 +70,31 @@ pub fn solve<'a>(
     params: &SolveParams,
 ) -> Result<Solution<'a>, SolveError> {
     ContactProblem::new(heights, control).solve(params, &Silent)
+}
+
+/// Solves the contact of `heights` (in λ) with the half-space of an operator of the caller: v = L p, symmetric, of zero mean, and positive for
+/// pressures that are not uniform. Element i of the operator is element i of the heights.
+///
+/// The pressure is found by projected conjugate gradients on the grid alone. Nothing is known of the operator that would precondition them, so
+/// they need several times the iterations of the uniform method. A half-space that a [`rc_core::Kernel`] describes is solved faster by
+/// [`ContactProblem::with_kernel`]. Of `params`, tolerance and number of iterations count. The certificate comes from a fresh application of the
+/// operator.
+///
+/// # Errors
+/// [`SolveError`]; [`crate::ProblemError::Operator`] for an operator with another number of elements.
+pub fn solve_with_operator<'a>(
+    heights: impl Into<HeightSource<'a>>,
+    operator: &'a dyn Operator,
+    control: Control,
+    params: &SolveParams,
+    observer: &dyn Observer,
+) -> Result<Solution<'a>, SolveError> {
+    let source = heights.into();
+    let tolerance = params.tolerance.relative(source.elements_per_wave());
+    let heights = source.heights();
+    let limits = params.iteration(tolerance);
+    let solution = operator::solve_with_operator(&heights, operator, control, &limits, observer)?;
+    let how = HowSolved::new(Method::Uniform, MethodReason::OwnOperator, tolerance, "operator");
+    let solution = Solution::with_operator(how, operator, solution, heights.max());
+    if solution.status() == Status::NotConverged { Err(plan::not_converged(solution)) } else { Ok(solution) }
 }

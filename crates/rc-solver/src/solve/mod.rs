@@ -5,14 +5,14 @@ mod choice;
 mod cost;
 mod door;
 mod error;
-mod kernel_of_grid;
 mod params;
 mod plan;
 mod problem;
+mod response;
 mod solution;
 
 pub use self::cost::Cost;
-pub use self::door::solve;
+pub use self::door::{solve, solve_with_operator};
 pub use self::error::SolveError;
 pub use self::params::SolveParams;
 pub use self::plan::Plan;

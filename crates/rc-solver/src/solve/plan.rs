@@ -61,7 +61,7 @@ impl<'a> Plan<'a> {
     /// [`SolveError::GaussSeidel`] for what the paper's procedure refuses.
     pub fn solve(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
         let Self { problem, params, tolerance, prepared, reason } = self;
-        let how = |method| HowSolved::new(method, reason, tolerance, problem.kernel);
+        let how = |method| HowSolved::new(method, reason, tolerance, problem.kernel.name());
         let solution = match prepared {
             Prepared::Adaptive(adaptive) => {
                 let solution = adaptive.solve(observer);
@@ -78,15 +78,12 @@ impl<'a> Plan<'a> {
                 Solution::on_grid(how(Method::GaussSeidel), problem.kernel, solution, heights.max())
             }
         };
-        match solution.status() {
-            Status::NotConverged => Err(not_converged(solution)),
-            Status::Converged | Status::FullContact => Ok(solution),
-        }
+        if solution.status() == Status::NotConverged { Err(not_converged(solution)) } else { Ok(solution) }
     }
 }
 
 /// The error that carries a solution.
-fn not_converged(solution: Solution<'_>) -> SolveError {
+pub(super) fn not_converged(solution: Solution<'_>) -> SolveError {
     SolveError::NotConverged {
         grid: solution.finest_grid(),
         iterations: solution.info().fine_iterations(),

@@ -3,12 +3,12 @@
 use std::convert::Infallible;
 use std::sync::OnceLock;
 
-use rc_core::{Field, Grid, Kernel, Operator as _};
+use rc_core::{Field, Grid, Kernel, Operator};
 
-use super::kernel_of_grid::KernelOfGrid;
+use super::response::{KernelOfGrid, Response};
 use crate::adaptive::{AdaptiveProblem, AdaptiveSolution};
 use crate::solution::{GridSolution, Status};
-use crate::{Certificate, ContactArea, ContactElement, Method, MethodReason, Observables, SolveInfo, UniformOperator};
+use crate::{Certificate, ContactArea, ContactElement, Method, MethodReason, Observables, SolveInfo};
 
 /// A solved contact problem.
 ///
@@ -21,6 +21,7 @@ pub struct Solution<'a> {
     pressures: Pressures<'a>,
     pressure: OnceLock<Field>,
     gap: OnceLock<Field>,
+    displacement: OnceLock<Field>,
     observables: OnceLock<Observables>,
     stiffness: OnceLock<f64>,
 }
@@ -35,8 +36,8 @@ pub(super) struct HowSolved {
 }
 
 impl HowSolved {
-    pub(super) fn new(method: Method, reason: MethodReason, tolerance: f64, kernel: &dyn Kernel) -> Self {
-        Self { method, reason, tolerance, kernel: kernel.name() }
+    pub(super) fn new(method: Method, reason: MethodReason, tolerance: f64, kernel: &'static str) -> Self {
+        Self { method, reason, tolerance, kernel }
     }
 }
 
@@ -44,7 +45,7 @@ impl HowSolved {
 enum Pressures<'a> {
     Grid {
         solution: GridSolution,
-        kernel: KernelOfGrid<'a>,
+        response: Response<'a>,
     },
     Tiles {
         solution: AdaptiveSolution,
@@ -56,9 +57,22 @@ enum Pressures<'a> {
 impl<'a> Solution<'a> {
     /// Of a method that stores every element of the grid.
     pub(super) fn on_grid(how: HowSolved, kernel: &'a dyn Kernel, solution: GridSolution, h_max: f64) -> Self {
+        Self::of_grid(how, Response::Kernel(KernelOfGrid::Borrowed(kernel)), solution, h_max)
+    }
+
+    /// Of an operator of the caller.
+    pub(super) fn with_operator(
+        how: HowSolved,
+        operator: &'a dyn Operator,
+        solution: GridSolution,
+        h_max: f64,
+    ) -> Self {
+        Self::of_grid(how, Response::Operator(operator), solution, h_max)
+    }
+
+    fn of_grid(how: HowSolved, response: Response<'a>, solution: GridSolution, h_max: f64) -> Self {
         let status = solution.status;
-        let kernel = KernelOfGrid::Borrowed(kernel);
-        Self::new(how, status, h_max, Pressures::Grid { solution, kernel })
+        Self::new(how, status, h_max, Pressures::Grid { solution, response })
     }
 
     /// Of the adaptive method.
@@ -75,25 +89,31 @@ impl<'a> Solution<'a> {
             pressures,
             pressure: OnceLock::new(),
             gap: OnceLock::new(),
+            displacement: OnceLock::new(),
             observables: OnceLock::new(),
             stiffness: OnceLock::new(),
         }
     }
 
-    /// The same solution without borrows. The adaptive method's keeps a copy of a map, and that of a grid the symbol of its kernel.
+    /// The same solution without borrows. The adaptive method's keeps a copy of a map, and that of a grid the symbol of its kernel. With an
+    /// operator, displacement and stiffness are computed now.
     #[must_use]
     pub fn into_owned(self) -> Solution<'static> {
+        if let Pressures::Grid { response: Response::Operator(_), .. } = &self.pressures {
+            // Both are kept once they are asked for.
+            let _ = (self.displacement(), self.stiffness());
+        }
         let pressures = match self.pressures {
-            Pressures::Grid { solution, kernel } => {
-                let kernel = kernel.into_owned(solution.pressure.grid());
-                Pressures::Grid { solution, kernel }
+            Pressures::Grid { solution, response } => {
+                let response = response.into_owned(solution.pressure.grid());
+                Pressures::Grid { solution, response }
             }
             Pressures::Tiles { solution, problem } => {
                 Pressures::Tiles { solution, problem: Box::new(problem.into_owned()) }
             }
         };
-        let Self { how, status, h_max, pressure, gap, observables, stiffness, .. } = self;
-        Solution { how, status, h_max, pressures, pressure, gap, observables, stiffness }
+        let Self { how, status, h_max, pressure, gap, displacement, observables, stiffness, .. } = self;
+        Solution { how, status, h_max, pressures, pressure, gap, displacement, observables, stiffness }
     }
 
     /// How the solve ended.
@@ -120,7 +140,7 @@ impl<'a> Solution<'a> {
         self.how.tolerance
     }
 
-    /// Name of the kernel.
+    /// Name of the kernel; `operator` for an operator of the caller.
     #[must_use]
     pub fn kernel(&self) -> &'static str {
         self.how.kernel
@@ -174,7 +194,7 @@ impl<'a> Solution<'a> {
     #[must_use]
     pub fn observables(&self) -> &Observables {
         self.observables.get_or_init(|| match &self.pressures {
-            Pressures::Grid { solution, kernel } => Observables::of(solution, kernel),
+            Pressures::Grid { solution, response } => Observables::of(solution, response.edge_bias()),
             Pressures::Tiles { solution, .. } => solution.observables(),
         })
     }
@@ -184,7 +204,8 @@ impl<'a> Solution<'a> {
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         *self.stiffness.get_or_init(|| match &self.pressures {
-            Pressures::Grid { solution, kernel } => solution.contact_stiffness(kernel),
+            Pressures::Grid { .. } if self.status == Status::FullContact => f64::INFINITY,
+            Pressures::Grid { solution, response } => response.stiffness(solution),
             Pressures::Tiles { solution, .. } => solution.contact_stiffness(),
         })
     }
@@ -252,18 +273,13 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// The displacement v on the grid, in λ, of mean zero. Takes one application of L.
+    /// The displacement v on the grid, in λ, of mean zero. Takes one application of L the first time.
     #[must_use]
-    pub fn displacement(&self) -> Field {
-        match &self.pressures {
-            Pressures::Grid { solution, kernel } => {
-                let mut displacement = Field::zeros(self.grid());
-                let operator = UniformOperator::new(self.grid(), kernel);
-                operator.apply(solution.pressure.values(), displacement.values_mut(), &mut []);
-                displacement
-            }
+    pub fn displacement(&self) -> &Field {
+        self.displacement.get_or_init(|| match &self.pressures {
+            Pressures::Grid { solution, response } => response.displacement(&solution.pressure),
             Pressures::Tiles { solution, .. } => self.collect(|take| solution.displacement_rows(take)),
-        }
+        })
     }
 
     /// Hands out [`Solution::pressure`] in order, some rows at a time: the index of the first row, and the rows one after the other. Stops
