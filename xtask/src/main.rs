@@ -5,7 +5,6 @@ mod ci;
 mod dist;
 mod docs;
 mod figures;
-mod mutate;
 mod process;
 mod stress;
 mod swap;

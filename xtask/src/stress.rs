@@ -4,7 +4,7 @@ use anyhow::Result;
 use clap::Parser as _;
 use rc_bench::stress::{self, Params};
 
-use crate::{figures, mutate};
+use crate::figures;
 
 /// Stresses the solvers, kernels and operators on purpose: one line for each scene and property, a picture of all, and an
 /// error when a line fails.
@@ -31,7 +31,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         return stress::print_fingerprint(scene);
     }
     if args.mutate {
-        return mutate::run(args.only.as_deref(), &args.figure.out);
+        return stress::mutate(args.only.as_deref(), &args.figure.out);
     }
     let params = Params { preset: args.figure.preset(), only: args.only.clone(), rc: Some(rc) };
     stress::run(&params, &args.figure.out)

@@ -126,7 +126,7 @@ fn prepare(root: &Path, copy: &Path) -> Result<()> {
         fs::copy(root.join(name), copy.join(name)).with_context(|| format!("could not copy {name}"))?;
     }
     let manifest: Table = read(&root.join("Cargo.toml"))?.parse().context("Cargo.toml is not TOML")?;
-    write(&folder("swapped").join("Cargo.toml"), &program_manifest(&manifest)?)?;
+    write(&folder("swapped").join("Cargo.toml"), &program_manifest(root)?)?;
     write(&folder("swapped").join("src/main.rs"), MAIN)?;
     write(&folder("swapped").join("src/scene.rs"), SCENE)?;
     write(&copy.join("Cargo.toml"), &workspace_manifest(manifest)?)
@@ -144,24 +144,33 @@ fn workspace_manifest(mut manifest: Table) -> Result<String> {
         dependencies.insert(name.into(), Value::Table(fork.parse()?));
     }
     // Quick to compile rather than to run.
-    let mut quick: Table = "opt-level = 1\ndebug = false".parse()?;
-    let names = FORKS.map(|fork| fork_name(fork.name)).into_iter().chain(["rc-solver", "swapped"].map(str::to_owned));
-    let packages = names.map(|name| (name, Value::Table(quick.clone()))).collect();
-    quick.insert("package".into(), Value::Table(packages));
     let release = manifest.get_mut("profile").and_then(|profile| profile.get_mut("release")?.as_table_mut());
-    release.context("no [profile.release]")?.extend(quick.into_iter().filter(|(key, _)| key == "package"));
+    let release = release.context("no [profile.release]")?;
+    let packages = release.entry("package").or_insert_with(|| Value::Table(Table::new()));
+    let packages = packages.as_table_mut().context("[profile.release.package] is not a table")?;
+    for name in FORKS.map(|fork| fork_name(fork.name)).into_iter().chain(["rc-solver", "swapped"].map(str::to_owned)) {
+        packages.insert(name, Value::Table("opt-level = 1".parse()?));
+    }
     Ok(toml::to_string(&manifest)?)
 }
 
-/// The manifest of the program. It names every library of others, so that their features, and with these their builds, are those of the
-/// repository.
-fn program_manifest(manifest: &Table) -> Result<String> {
-    let dependencies = manifest.get("workspace").and_then(|workspace| workspace.get("dependencies")?.as_table());
-    let others = dependencies.context("no dependencies")?.keys().filter(|name| !name.starts_with("rc-"));
-    let ours = ["rc-core", "rc-fractal", "rc-solver"];
-    let lines = ours.into_iter().chain(others.map(String::as_str)).map(|name| format!("{name}.workspace = true\n"));
-    let head = "[package]\nname = \"swapped\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[dependencies]\n";
-    Ok(head.to_owned() + &lines.collect::<String>())
+/// The manifest of the program. It names the libraries of others that the crates of the repository use, so that their features, and with
+/// these their builds, are those of the repository.
+fn program_manifest(root: &Path) -> Result<String> {
+    let mut dependencies = Table::new();
+    for name in ["rc-cli", "rc-heights", "rc-plot", "rc-solver", "rc-sweep"] {
+        let manifest: Table = read(&root.join("crates").join(name).join("Cargo.toml"))?.parse()?;
+        let used = manifest.get("dependencies").and_then(Value::as_table).cloned().unwrap_or_default();
+        dependencies
+            .extend(used.into_iter().filter(|(name, how)| !name.starts_with("rc-") && how.get("optional").is_none()));
+    }
+    for (name, features) in [("rc-core", "'serde'"), ("rc-fractal", ""), ("rc-solver", "'serde'")] {
+        let how: Table = format!("workspace = true\nfeatures = [{features}]").parse()?;
+        dependencies.insert(name.to_owned(), Value::Table(how));
+    }
+    let head = "[package]\nname = \"swapped\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n";
+    let dependencies: Table = [("dependencies".to_owned(), Value::Table(dependencies))].into_iter().collect();
+    Ok(head.to_owned() + &toml::to_string(&dependencies)?)
 }
 
 fn read(path: &Path) -> Result<String> {

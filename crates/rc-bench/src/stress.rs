@@ -9,6 +9,7 @@ mod heights;
 mod invariances;
 mod kernels;
 mod long_runs;
+mod mutate;
 mod picture;
 mod row;
 mod scene;
@@ -23,6 +24,7 @@ use rc_figures::{Figure, Preset, Table, write};
 use rc_plot::{Area, Picture, PictureError};
 
 pub use commands::{Refusal, RunRc};
+pub use mutate::run as mutate;
 use row::{Row, Rows, guarded};
 
 /// What is stressed.

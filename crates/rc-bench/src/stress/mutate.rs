@@ -18,7 +18,7 @@ const LONGEST: Duration = Duration::from_secs(900);
 
 /// A change of one place in the sources.
 #[derive(Clone, Debug)]
-pub(crate) struct Mutation {
+struct Mutation {
     name: String,
     file: String,
     original: String,
@@ -54,8 +54,11 @@ impl Outcome {
 }
 
 /// Builds and stresses each mutation whose name contains one of `only` (separated by commas), in a copy of the workspace; writes `mutations.csv` into `out`.
+///
+/// # Errors
+/// When the sources as they are do not pass, or a mutation does not compile.
 #[expect(clippy::print_stdout, reason = "the result of the command")]
-pub(crate) fn run(only: Option<&str>, out: &Path) -> Result<()> {
+pub fn run(only: Option<&str>, out: &Path) -> Result<()> {
     let copy = tempfile::tempdir().context("a temporary folder")?;
     copy_workspace(copy.path())?;
     fs::create_dir_all(out).with_context(|| format!("could not make {}; give another --out", out.display()))?;
@@ -81,7 +84,7 @@ pub(crate) fn run(only: Option<&str>, out: &Path) -> Result<()> {
 
 /// The list.
 fn mutations() -> Result<Vec<Mutation>> {
-    let table: toml::Table = include_str!("mutate/mutations.toml").parse().context("mutations.toml")?;
+    let table: toml::Table = include_str!("mutations.toml").parse().context("mutations.toml")?;
     let list = table.get("mutation").and_then(toml::Value::as_array).context("no [[mutation]]")?;
     let mutation = |value: &toml::Value| {
         let text = |key: &str| {
@@ -187,7 +190,7 @@ mod tests {
     fn a_copy_has_every_source_and_no_results() {
         let copy = tempfile::tempdir().expect("a temporary folder");
         copy_workspace(copy.path()).expect("a copy");
-        for module in ["crates/rc-figures/src/all.rs", "xtask/src/mutate.rs", "crates/rc-cli/src/main.rs", "Cargo.lock"]
+        for module in ["crates/rc-figures/src/all.rs", "xtask/src/stress.rs", "crates/rc-cli/src/main.rs", "Cargo.lock"]
         {
             assert!(copy.path().join(module).is_file(), "no {module}");
         }
