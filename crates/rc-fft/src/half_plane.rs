@@ -11,7 +11,7 @@ use crate::Plan;
 /// Columns, or rows, that a second pass gathers at once, so that every cache line of the first pass's result is read once.
 const PANEL: usize = 8;
 
-/// `value(w)` of every wave w = Σ f exp(-2πi k·x) of a real field less `offset`, for the half plane 0 ≤ kx ≤ nx/2, column by column:
+/// `value(w)` of every wave w = Σ f exp(-2πi k·x) of a real field minus `offset`, for the half plane 0 ≤ kx ≤ nx/2, column by column:
 /// `values[kx * ny + (ky mod ny)]`.
 ///
 /// Phases are those of a field whose first value is at x = 0, not at the centre of an element.
@@ -39,7 +39,7 @@ pub fn half_plane_values(field: &Field, offset: f64, value: impl Fn(Complex64) -
     values
 }
 
-/// The transform of every row less `offset`: ny rows of nx/2 + 1 complex numbers.
+/// The transform of every row minus `offset`: ny rows of nx/2 + 1 complex numbers.
 fn transformed_rows(field: &Field, offset: f64) -> Vec<Complex64> {
     let (nx, ny) = (field.grid().nx(), field.grid().ny());
     let width = nx / 2 + 1;
@@ -148,4 +148,58 @@ fn reach(column: &[Complex64]) -> usize {
 /// exp(2πi k s) for half an element s = 1/(2n).
 fn half_element(k: usize, n: usize) -> Complex64 {
     Complex64::cis(PI * k as f64 / n as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    #[test]
+    fn half_plane_values_are_those_of_direct_sums() {
+        for (nx, ny) in [(6, 5), (7, 20), (1, 3), (19, 1)] {
+            let grid = Grid::new(nx, ny).expect("a grid");
+            let field = Field::from_fn(grid, |at| (9.0 * at.x).sin() + (at.y - 0.3).exp());
+            let values = half_plane_values(&field, 0.5, |wave| wave.re - 2.0 * wave.im);
+            assert_eq!(values.len(), (nx / 2 + 1) * ny);
+            for (place, value) in values.iter().enumerate() {
+                let (kx, ky) = (place / ny, place % ny);
+                let term = |i: usize| {
+                    let turns = (kx * (i % nx)) as f64 / nx as f64 + (ky * (i / nx)) as f64 / ny as f64;
+                    Complex64::cis(-TAU * turns) * (field.values()[i] - 0.5)
+                };
+                let wave: Complex64 = (0..grid.len()).map(term).sum();
+                let error = (value - (wave.re - 2.0 * wave.im)).abs();
+                assert!(error <= 1e-12, "({kx}, {ky}) on {grid}: off by {error:.1e}");
+            }
+        }
+    }
+
+    /// On grids that resolve all waves, and on coarser ones, where waves are folded.
+    #[test]
+    fn a_field_of_columns_is_the_direct_sum() {
+        let wave = |kx: usize, ky: i32| Complex64::new(1.0 / (1.0 + kx as f64), 0.3 * f64::from(ky));
+        // The column kx = 0 is its own conjugate; columns have different numbers of waves.
+        let columns: Vec<Vec<Complex64>> = vec![
+            (-2..=2).map(|ky| wave(0, ky)).collect(),
+            (-4..=4).map(|ky| wave(1, ky)).collect(),
+            (-1..=1).map(|ky| wave(2, ky)).collect(),
+        ];
+        for (nx, ny) in [(16, 16), (5, 9), (2, 3), (3, 1)] {
+            let grid = Grid::new(nx, ny).expect("a grid");
+            let field = field_of_columns(&columns, grid);
+            let direct = Field::from_fn(grid, |at| {
+                let term = |(kx, column): (usize, &Vec<Complex64>)| {
+                    let waves = column.iter().zip(-(reach(column) as i32)..);
+                    let sum: Complex64 =
+                        waves.map(|(a, ky)| a * Complex64::cis(TAU * (kx as f64 * at.x + f64::from(ky) * at.y))).sum();
+                    if kx == 0 { sum.re } else { 2.0 * sum.re }
+                };
+                columns.iter().enumerate().map(term).sum()
+            });
+            let error = field.values().iter().zip(direct.values()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(error <= 1e-13, "{grid}: off by {error:.1e}");
+        }
+    }
 }
