@@ -13,7 +13,7 @@ use realfft::{ComplexToReal, RealToComplex};
 use rustfft::Fft;
 use rustfft::num_complex::Complex;
 
-use crate::{Plan, SymbolTable};
+use crate::{SymbolTable, TransformReal};
 
 /// Rows per block of a [`Convolution`]: what it asks for and hands out at a time. The last block of a grid may have fewer.
 pub const BLOCK_ROWS: usize = 16;
@@ -72,7 +72,7 @@ struct Workspace<T> {
     scratch: Vec<Complex<T>>,
 }
 
-impl<T: Plan> Convolution<T> {
+impl<T: TransformReal> Convolution<T> {
     /// Plans for `grid`, and a workspace for each thread of the present rayon pool. *Memory*: nx·ny complex numbers of `T`.
     #[must_use]
     pub fn new(grid: Grid) -> Self {
@@ -127,8 +127,8 @@ impl<T: Plan> Convolution<T> {
         R: Send,
     {
         self.transform_rows(sources, |source, rows| write(source, rows));
-        self.multiply(symbol);
-        self.take_rows(sinks, read)
+        self.apply_symbol(symbol);
+        self.read_rows(sinks, read)
     }
 
     /// First pass: the rows that `write` writes are transformed. Returns what `write` returns, in the order of blocks.
@@ -162,7 +162,7 @@ impl<T: Plan> Convolution<T> {
     }
 
     /// Second pass: columns are transformed, multiplied by the symbol, the table of the same grid, and transformed back.
-    pub fn multiply(&mut self, symbol: &SymbolTable<T>) {
+    pub fn apply_symbol(&mut self, symbol: &SymbolTable<T>) {
         let (ny, n_columns) = (self.grid.ny(), self.grid.nx() / 2 + 1);
         let (forward, inverse, workspaces) = (&self.column_forward, &self.column_inverse, &self.workspaces);
         let mut panels: Vec<Vec<&mut [Complex<T>]>> = Vec::new();
@@ -194,7 +194,7 @@ impl<T: Plan> Convolution<T> {
     ///
     /// # Panics
     /// As [`Convolution::apply`].
-    pub fn take_rows<K, R>(&self, sinks: K, read: impl Fn(K::Item, &[T]) -> R + Sync) -> Vec<R>
+    pub fn read_rows<K, R>(&self, sinks: K, read: impl Fn(K::Item, &[T]) -> R + Sync) -> Vec<R>
     where
         K: IndexedParallelIterator,
         R: Send,
@@ -237,7 +237,7 @@ fn lock<T>(workspaces: &[Mutex<Workspace<T>>]) -> std::sync::MutexGuard<'_, Work
 }
 
 /// Writes row `iy` of a block to the block's tiles, one for each panel of columns.
-fn to_tiles<T: Plan>(row: &[Complex<T>], block: &mut [Complex<T>], iy: usize) {
+fn to_tiles<T: TransformReal>(row: &[Complex<T>], block: &mut [Complex<T>], iy: usize) {
     let n_rows = block.len() / row.len();
     let (panels, rest) = row.as_chunks::<PANEL_COLUMNS>();
     let (tiles, rest_tile) = block.split_at_mut(panels.len() * PANEL_COLUMNS * n_rows);
@@ -249,7 +249,7 @@ fn to_tiles<T: Plan>(row: &[Complex<T>], block: &mut [Complex<T>], iy: usize) {
 }
 
 /// Reads row `iy` of a block from the block's tiles.
-fn from_tiles<T: Plan>(block: &[Complex<T>], iy: usize, row: &mut [Complex<T>]) {
+fn from_tiles<T: TransformReal>(block: &[Complex<T>], iy: usize, row: &mut [Complex<T>]) {
     let n_rows = block.len() / row.len();
     let (panels, rest) = row.as_chunks_mut::<PANEL_COLUMNS>();
     let (tiles, rest_tile) = block.split_at(panels.len() * PANEL_COLUMNS * n_rows);
@@ -261,7 +261,7 @@ fn from_tiles<T: Plan>(block: &[Complex<T>], iy: usize, row: &mut [Complex<T>]) 
 }
 
 /// Tiles (rows of a few columns) to padded columns.
-fn gather<T: Plan>(tiles: &[&mut [Complex<T>]], panel: &mut [Complex<T>], width: usize) {
+fn gather<T: TransformReal>(tiles: &[&mut [Complex<T>]], panel: &mut [Complex<T>], width: usize) {
     let stride = panel.len() / width;
     for (tile_idx, tile) in tiles.iter().enumerate() {
         for (column_idx, column) in panel.chunks_exact_mut(stride).enumerate() {
@@ -274,7 +274,7 @@ fn gather<T: Plan>(tiles: &[&mut [Complex<T>]], panel: &mut [Complex<T>], width:
 }
 
 /// Padded columns back to tiles.
-fn scatter<T: Plan>(panel: &[Complex<T>], tiles: &mut [&mut [Complex<T>]], width: usize) {
+fn scatter<T: TransformReal>(panel: &[Complex<T>], tiles: &mut [&mut [Complex<T>]], width: usize) {
     let stride = panel.len() / width;
     for (tile_idx, tile) in tiles.iter_mut().enumerate() {
         for (column_idx, column) in panel.chunks_exact(stride).enumerate() {
@@ -287,7 +287,7 @@ fn scatter<T: Plan>(panel: &[Complex<T>], tiles: &mut [&mut [Complex<T>]], width
 }
 
 /// Multiplies a column by the symbol, which is even in ky.
-fn scale_column<T: Plan>(column: &mut [Complex<T>], symbol: &[T]) {
+fn scale_column<T: TransformReal>(column: &mut [Complex<T>], symbol: &[T]) {
     let ny = column.len();
     let (low, high) = column.split_at_mut(symbol.len());
     for (value, &factor) in low.iter_mut().zip(symbol) {

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use rc_core::{Field, Grid};
 use rustfft::num_complex::Complex64;
 
-use crate::Plan;
+use crate::TransformReal;
 
 /// Columns, or rows, that a second pass gathers at once, so that every cache line of the first pass's result is read once.
 const PANEL: usize = 8;

@@ -9,7 +9,7 @@
 //! | [`SymbolTable`] | the symbol of a convolution, tabulated |
 //! | [`half_plane_values`] | one forward transform of a real field, every wave of the half plane kx ≥ 0 mapped to a number |
 //! | [`field_of_columns`] | one inverse transform of columns kx = 0, 1, … of waves, as many as there are, to a real field |
-//! | [`Plan`] | transforms of one dimension |
+//! | [`TransformReal`] | transforms of one dimension |
 //!
 //! Results are bitwise the same for any number of threads: work is divided over rows and columns, never inside one transform.
 //!
@@ -17,7 +17,7 @@
 //! and precision: a million lines of LLVM code. Here they are compiled once; other crates get a plan as a trait object.
 //!
 //! ```
-//! use rc_fft::{Complex, Plan};
+//! use rc_fft::{Complex, TransformReal};
 //!
 //! let plan = f64::complex_forward(4);
 //! let mut values = [1.0, 0.0, -1.0, 0.0].map(|re| Complex::new(re, 0.0));
@@ -32,7 +32,7 @@ mod symbol_table;
 
 pub use convolution::{BLOCK_ROWS, Convolution};
 pub use half_plane::{field_of_columns, half_plane_values};
-pub use plan::Plan;
+pub use plan::TransformReal;
 pub use realfft::{ComplexToReal, RealToComplex};
 pub use rustfft::Fft;
 pub use rustfft::num_complex::{Complex, Complex64};

@@ -6,7 +6,7 @@ use realfft::{ComplexToReal, FftNum, RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftPlanner};
 
 /// `f32` or `f64`. Transforms are not normalised: there and back multiplies by the length.
-pub trait Plan: FftNum {
+pub trait TransformReal: FftNum {
     /// `Σ x_j exp(-2πi jk/n)` of `n` complex values, in place.
     fn complex_forward(n: usize) -> Arc<dyn Fft<Self>>;
 
@@ -22,7 +22,7 @@ pub trait Plan: FftNum {
 
 macro_rules! plan {
     ($real:ty) => {
-        impl Plan for $real {
+        impl TransformReal for $real {
             fn complex_forward(n: usize) -> Arc<dyn Fft<Self>> {
                 FftPlanner::new().plan_fft_forward(n)
             }

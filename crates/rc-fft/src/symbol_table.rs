@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use rc_core::Grid;
 
-use crate::Plan;
+use crate::TransformReal;
 
 /// Eigenvalues of a [`Convolution`](crate::Convolution) for 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2, even in kx and in ky; columns of constant
 /// kx are contiguous, and the 1/(nx·ny) of the inverse transform is a factor of the entries.
@@ -13,7 +13,7 @@ pub struct SymbolTable<T> {
     values: Vec<T>,
 }
 
-impl<T: Plan> SymbolTable<T> {
+impl<T: TransformReal> SymbolTable<T> {
     /// Tabulates `eigenvalue(kx, ky)`. On a square grid of a square cell, where it is symmetric, it is asked for ky ≥ kx only.
     ///
     /// # Panics

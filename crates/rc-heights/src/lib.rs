@@ -43,4 +43,4 @@ pub use treat::{
     Crop, Edges, Effect, Fill, Flip, Level, MOST_COPIES, Periodic, Repeat, SAME_LENGTH, TreatError, Treatment, apply,
     grids_after, hann,
 };
-pub use units::{LengthUnit, Scales, Unit, UnitError};
+pub use units::{LengthUnit, LengthUnitError, Scales, Unit};

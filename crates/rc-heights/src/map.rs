@@ -2,7 +2,7 @@
 
 use rc_core::Field;
 
-use crate::{Scales, Unit, UnitError};
+use crate::{LengthUnitError, Scales, Unit};
 
 /// Heights of a measured rectangle, positive out of the material.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,21 +29,23 @@ impl HeightMap {
     /// where these say nothing. Values that are not scaled keep their bits.
     ///
     /// # Errors
-    /// [`UnitError`] when levels of grey have no scale, or when the file names what `scales` gives.
-    pub fn in_metres(mut self, scales: Scales) -> Result<Self, UnitError> {
+    /// [`LengthUnitError`] when levels of grey have no scale, or when the file names what `scales` gives.
+    pub fn in_metres(mut self, scales: Scales) -> Result<Self, LengthUnitError> {
         let unit = scales.unit.map_or(1.0, crate::LengthUnit::metres);
         let unnamed = |is: Unit| is == Unit::Unnamed;
         let unit_has_use = unnamed(self.height_unit) || self.sides.is_some() && unnamed(self.side_unit);
         match (self.height_unit, scales) {
-            (Unit::GreyLevel, Scales { height_scale: None, .. }) => return Err(UnitError::GreyLevels),
-            (Unit::GreyLevel, Scales { unit: Some(_), .. }) if !unit_has_use => return Err(UnitError::UnitOfLevels),
-            (_, Scales { unit: Some(_), .. }) if !unit_has_use => return Err(UnitError::UnitsNamed),
+            (Unit::GreyLevel, Scales { height_scale: None, .. }) => return Err(LengthUnitError::GreyLevels),
+            (Unit::GreyLevel, Scales { unit: Some(_), .. }) if !unit_has_use => {
+                return Err(LengthUnitError::UnitOfLevels);
+            }
+            (_, Scales { unit: Some(_), .. }) if !unit_has_use => return Err(LengthUnitError::UnitsNamed),
             _ => {}
         }
         let factor = match (self.height_unit, scales.height_scale) {
-            (_, Some(value)) if value == 0.0 || !value.is_finite() => return Err(UnitError::Scale { value }),
-            (Unit::Metre, Some(_)) => return Err(UnitError::HeightsInMetres),
-            (Unit::GreyLevel, None) => return Err(UnitError::GreyLevels),
+            (_, Some(value)) if value == 0.0 || !value.is_finite() => return Err(LengthUnitError::Scale { value }),
+            (Unit::Metre, Some(_)) => return Err(LengthUnitError::HeightsInMetres),
+            (Unit::GreyLevel, None) => return Err(LengthUnitError::GreyLevels),
             (Unit::Unnamed | Unit::GreyLevel, Some(value)) => value,
             (Unit::Unnamed, None) => unit,
             (Unit::Metre, None) => 1.0,
@@ -155,11 +157,11 @@ mod tests {
             (Unnamed, Unnamed, um, Ok((1e-6, 3e-6))),
             (Unnamed, Unnamed, nm, Ok((1e-9, 3e-6))),
             (Metre, Unnamed, um, Ok((1.0, 3e-6))),
-            (Metre, Metre, um, Err(UnitError::UnitsNamed)),
-            (Metre, Metre, Scales { unit: None, ..nm }, Err(UnitError::HeightsInMetres)),
-            (GreyLevel, Metre, none, Err(UnitError::GreyLevels)),
-            (GreyLevel, Unnamed, um, Err(UnitError::GreyLevels)),
-            (GreyLevel, Metre, nm, Err(UnitError::UnitOfLevels)),
+            (Metre, Metre, um, Err(LengthUnitError::UnitsNamed)),
+            (Metre, Metre, Scales { unit: None, ..nm }, Err(LengthUnitError::HeightsInMetres)),
+            (GreyLevel, Metre, none, Err(LengthUnitError::GreyLevels)),
+            (GreyLevel, Unnamed, um, Err(LengthUnitError::GreyLevels)),
+            (GreyLevel, Metre, nm, Err(LengthUnitError::UnitOfLevels)),
             (GreyLevel, Unnamed, nm, Ok((1e-9, 3e-6))),
             (GreyLevel, Metre, Scales { unit: None, ..nm }, Ok((1e-9, 3.0))),
         ];

@@ -63,11 +63,11 @@ impl<'de> Deserialize<'de> for LengthUnit {
 }
 
 impl FromStr for LengthUnit {
-    type Err = UnitError;
+    type Err = LengthUnitError;
 
-    fn from_str(text: &str) -> Result<Self, UnitError> {
+    fn from_str(text: &str) -> Result<Self, LengthUnitError> {
         let unit = Self::ALL.iter().find(|(_, names, _)| names.contains(&text.trim()));
-        unit.map(|(unit, ..)| *unit).ok_or_else(|| UnitError::Unknown { name: text.trim().to_owned() })
+        unit.map(|(unit, ..)| *unit).ok_or_else(|| LengthUnitError::Unknown { name: text.trim().to_owned() })
     }
 }
 
@@ -94,7 +94,7 @@ pub struct Scales {
 /// A unit that is not known, or that a file has already.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
-pub enum UnitError {
+pub enum LengthUnitError {
     /// No such unit of length.
     #[error("'{name}' is no unit of length; m, cm, mm, um, nm, angstrom and pm are")]
     Unknown {

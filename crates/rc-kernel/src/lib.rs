@@ -48,14 +48,14 @@ mod truncated;
 
 pub use alias_sum::love_alias_sum;
 pub use bessel::bessel_series;
-pub use error::KernelError;
+pub use error::{KernelError, MAX_SHELLS};
 pub use lattice::{LATTICE_CONSTANT, ewald_coefficient, ewald_phi};
 
 pub use love::love_displacement;
 pub use periodic::{PeriodicLove, PeriodicSource};
 pub use spectral::Spectral;
 pub use split::{CoarseElement, CoarseFilter, Filter, ScaleSplit, SplitParams, Stencil};
-pub use truncated::{LoadForm, MAX_SHELLS, shells_for, truncated_coefficient, truncation_error_bound};
+pub use truncated::{LoadForm, shells_for, truncated_coefficient, truncation_error_bound};
 
 use love_symbol::LoveSymbol;
 use rc_core::{Grid, Kernel, Symbol};

@@ -28,6 +28,7 @@
 mod adaptive;
 mod certificate;
 mod contact_area;
+mod contact_element;
 mod contact_spots;
 mod control;
 mod dense;
@@ -50,9 +51,10 @@ mod tolerance;
 mod uniform;
 
 use adaptive::Estimate;
-pub use adaptive::{AdaptiveError, ContactElement, MultilevelOperator};
+pub use adaptive::{AdaptiveError, MultilevelOperator};
 pub use certificate::Certificate;
 pub use contact_area::ContactArea;
+pub use contact_element::ContactElement;
 pub use contact_spots::{ContactSpot, connected_elements};
 pub use control::Control;
 pub use dense::solve_dense;

@@ -79,19 +79,13 @@ impl Problem {
         if h_range != 0.0 && !(smallest..=greatest).contains(&h_range) {
             return Err(ProblemError::HeightRange { value: h_range, smallest, greatest });
         }
+        check_load(control, params.tolerance)?;
         match control {
-            Control::MeanPressure(value) if !(value > 0.0 && value.is_finite()) => {
-                return Err(ProblemError::MeanPressure { value });
-            }
             // Also refuses every penetration into a flat surface, whose full contact is at zero.
             Control::Penetration(value) if !(value > 0.0 && value < full_contact) => {
                 return Err(ProblemError::Penetration { value, full_contact });
             }
             Control::MeanPressure(_) | Control::Penetration(_) => {}
-        }
-        let (value, smallest) = (params.tolerance, IterationParams::SMALLEST_TOLERANCE);
-        if !(value >= smallest && value < 1.0) {
-            return Err(ProblemError::Tolerance { value, smallest });
         }
         Ok(Self { control, h_max, h_mean, h_range })
     }
@@ -103,5 +97,20 @@ impl Problem {
             Control::MeanPressure(_) => self.h_max,
             Control::Penetration(penetration) => self.h_max - penetration,
         }
+    }
+}
+
+/// Refuses a mean pressure or a tolerance that is out of range whatever the heights are.
+pub(crate) fn check_load(control: Control, tolerance: f64) -> Result<(), ProblemError> {
+    if let Control::MeanPressure(value) = control
+        && !(value > 0.0 && value.is_finite())
+    {
+        return Err(ProblemError::MeanPressure { value });
+    }
+    let smallest = IterationParams::SMALLEST_TOLERANCE;
+    if tolerance >= smallest && tolerance < 1.0 {
+        Ok(())
+    } else {
+        Err(ProblemError::Tolerance { value: tolerance, smallest })
     }
 }

@@ -17,7 +17,7 @@ pub(super) fn in_si(error: &SolveError, surface: &LoadedSurface, contact: &Conta
             "tolerance: {:e} is out of what the adaptive method can certify; give a larger one, or --method uniform",
             contact.params.tolerance.relative(surface.source().elements_per_wave())
         )),
-        SolveError::Adaptive(error) => of_adaptive(error, surface.grid, budget),
+        SolveError::Adaptive(error) => of_adaptive(error, budget),
         SolveError::GaussSeidel(error) => CliError::input(format_args!("method gauss-seidel: {error}")),
         SolveError::Memory { method, grid, .. } => match budget.check_grid(&format!("the {method} method"), *grid) {
             Err(refused) => refused.into(),
@@ -29,6 +29,7 @@ pub(super) fn in_si(error: &SolveError, surface: &LoadedSurface, contact: &Conta
             digits(100.0 * reached, 2)
         )),
         SolveError::NoWaves => CliError::input(format_args!("area_error: {error}")),
+        SolveError::Grid(_) | SolveError::TooCoarse { .. } => CliError::input(format_args!("grid: {error}")),
         other => CliError::input(other),
     }
 }
@@ -57,7 +58,7 @@ fn of_problem(error: &ProblemError, units: Units) -> CliError {
     }
 }
 
-fn of_adaptive(error: &AdaptiveError, grid: Grid, budget: Budget) -> CliError {
+fn of_adaptive(error: &AdaptiveError, budget: Budget) -> CliError {
     match error {
         AdaptiveError::Grid { .. } | AdaptiveError::Base { .. } => {
             CliError::input(format_args!("grid: {error}; --method uniform takes any grid"))
@@ -65,7 +66,7 @@ fn of_adaptive(error: &AdaptiveError, grid: Grid, budget: Budget) -> CliError {
         AdaptiveError::RectangularCell => CliError::input(format_args!(
             "cell_y: {error}; rc surface --repeat square makes one of copies, --method uniform takes any"
         )),
-        AdaptiveError::Memory { needed, area_percent, .. } => {
+        AdaptiveError::Memory { grid, needed, area_percent, .. } => {
             let part = match area_percent {
                 Some(percent) => format!(", at an estimated contact area of {} %,", digits(*percent, 2)),
                 None => " for its base grid alone".into(),

@@ -63,12 +63,13 @@ impl<'a> ProblemSetup<'a> {
         started: Instant,
         observer: &dyn Observer,
     ) -> Result<Solved<'a>, CliError> {
-        let result = self.contact_problem().solve_to_area_error(wanted, &self.params(), observer);
-        let solved = self.solved(result, started)?;
+        let problem = self.contact_problem();
         if let Some(spec) = self.contact.keys.output_grid {
-            check_factor(solved.solution.grid(), spec)?;
+            // All grids are multiples of the first.
+            check_factor(problem.coarsest_grid().map_err(|error| self.refuse(&error))?, spec)?;
         }
-        Ok(solved)
+        let result = problem.solve_to_area_error(wanted, &self.params(), observer);
+        self.solved(result, started)
     }
 
     fn contact_problem(&self) -> ContactProblem<'a> {

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use rc_core::{Field, Grid};
 
-use super::TreatError;
+use super::error::TreatError;
 use crate::HeightMap;
 
 /// The part that is kept.

@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 use std::fmt;
 use std::str::FromStr;
 
-use super::TreatError;
+use super::error::TreatError;
 use crate::HeightMap;
 
 /// How missing points get heights.

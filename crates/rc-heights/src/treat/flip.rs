@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::TreatError;
+use super::error::TreatError;
 use crate::HeightMap;
 
 /// The axis that is reversed.

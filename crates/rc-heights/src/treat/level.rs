@@ -5,7 +5,8 @@ use std::str::FromStr;
 
 use rc_core::DVec2;
 
-use super::{TreatError, mean};
+use super::error::TreatError;
+use super::mean::mean;
 use crate::HeightMap;
 
 /// The form that is taken away; each holds the ones before it.

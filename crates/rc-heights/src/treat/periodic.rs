@@ -4,7 +4,8 @@ use std::fmt;
 
 use rc_core::{Field, Grid};
 
-use super::{TreatError, mean};
+use super::error::TreatError;
+use super::mean::mean;
 use crate::HeightMap;
 
 /// How opposite borders are made to meet.

@@ -5,7 +5,8 @@ use std::str::FromStr;
 
 use rc_core::{Field, Grid};
 
-use super::{SAME_LENGTH, TreatError};
+use super::crop::SAME_LENGTH;
+use super::error::TreatError;
 use crate::HeightMap;
 
 /// How often a map is repeated.

@@ -1,5 +1,6 @@
 //! Why the adaptive method does not fit a problem.
 
+use rc_core::Grid;
 use thiserror::Error;
 
 use crate::ProblemError;
@@ -29,7 +30,7 @@ pub enum AdaptiveError {
     },
     /// The base grid cannot hold the surface's spectrum, or does not divide the finest grid.
     #[error(
-        "a base grid of {base} elements per side does not do for {waves} waves and {finest} elements per side: it must be a multiple of 8, more than twice the waves, and the finest grid 2^k times it"
+        "a base grid of {base} elements per side does not fit {waves} waves and {finest} elements per side: it must be a multiple of 8, more than twice the waves, and the finest grid 2^k times it"
     )]
     Base {
         /// Elements per side of the base grid.
@@ -62,6 +63,8 @@ pub enum AdaptiveError {
     /// The estimated memory is above the limit.
     #[error("the adaptive method needs about {needed} MB {}, more than the limit of {limit} MB", needed_for(*area_percent))]
     Memory {
+        /// The grid.
+        grid: Grid,
         /// Estimate, in 10^6 bytes.
         needed: u64,
         /// Limit, in 10^6 bytes.

@@ -1,8 +1,8 @@
 //! The contact problem on an adaptive mesh: work and memory follow the contact, not the cell.
 //!
-//! Uniform grids up to a base grid, as in [`crate::solve_uniform`]; from there on, level by level, only the tiles of 8 × 8
+//! Uniform grids up to a base grid, as the uniform method; from there on, level by level, only the tiles of 8 × 8
 //! cells that contact touches or nearly does, with the multilevel operator. What is not stored is out of contact, and the
-//! survey proves it.
+//! exclusion proves it.
 
 mod contact_area;
 mod element_blocks;
@@ -16,6 +16,7 @@ mod level;
 mod multilevel;
 mod nested_iteration;
 pub(crate) mod operator;
+mod params;
 mod prolongation;
 mod roughness;
 mod scaled_operator;
@@ -34,11 +35,11 @@ use self::level::SolvedLevel;
 pub use self::multilevel::MultilevelOperator;
 use self::nested_iteration::{NestedIteration, NestedSolution};
 use self::operator::Real;
+pub(crate) use self::params::AdaptiveParams;
 use self::roughness::{ERROR_OF_ROUGHNESS, roughness};
 pub(crate) use self::solution::AdaptiveSolution;
-pub use self::solution::ContactElement;
 use crate::problem::Problem;
-use crate::{Certificate, Control, IterationParams};
+use crate::{Certificate, Control};
 
 /// Operator errors from here on are reached in single precision.
 const SINGLE_PRECISION: f64 = 1e-6;
@@ -56,24 +57,6 @@ const BASE_ELEMENTS_PER_WAVE: usize = 4;
 
 /// Fewest elements per side of the base grid.
 const SMALLEST_BASE: usize = 64;
-
-/// How accurately, and within which limits, the adaptive method solves.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct AdaptiveParams {
-    /// Tolerance of the certificate and limit of iterations.
-    pub solve: IterationParams,
-    /// Bound on the error of one application of L, relative to the rms displacement, on pressures of contacts
-    /// ([`SplitParams`] has the measurements). A tolerance below a third of it lowers it, and so does a pressure so rough that the
-    /// tolerance would not hold.
-    pub operator_error: f64,
-    /// How often elements at the edges of contacts are halved beyond the finest grid. Inside contacts they stay as they are.
-    pub border_level: usize,
-    /// Elements per side of the base grid; `None` chooses.
-    pub base_side: Option<usize>,
-    /// Most memory, in bytes; a larger estimate is an error, before any work. That of the base grid is checked before heights
-    /// are sampled.
-    pub memory_limit: Option<u64>,
-}
 
 /// A checked contact problem, ready for the adaptive method: heights are sampled, nothing is solved.
 ///
@@ -101,12 +84,13 @@ impl<'a> AdaptiveProblem<'a> {
         control: Control,
         params: &AdaptiveParams,
     ) -> Result<Self, AdaptiveError> {
-        check_square(source.grid())?;
+        let grid = source.grid();
+        check_square(grid)?;
         let error = params.operator_error.min(OPERATOR_ERROR_PER_TOLERANCE * params.solve.tolerance);
         let split = SplitParams::for_error(error)
             .ok_or(AdaptiveError::OperatorError { value: error, smallest: SplitParams::SMALLEST_ERROR })?;
         let base_side = base_side(&source, params.base_side)?;
-        check_memory(params.memory_limit, estimate::base_bytes(base_side), None)?;
+        check_memory(grid, params.memory_limit, estimate::base_bytes(base_side), None)?;
         let heights = Heights::new(with_border_level(source, params.border_level)?, base_side)?;
         let problem = Problem::of_statistics(heights.extremes(), control, &params.solve)?;
         if problem.h_range == 0.0 {
@@ -114,7 +98,7 @@ impl<'a> AdaptiveProblem<'a> {
         }
         let prepared = Self { heights, problem, params: *params, split };
         let Estimate { area_fraction, adaptive_bytes, .. } = prepared.estimate();
-        check_memory(params.memory_limit, adaptive_bytes, Some(100.0 * area_fraction))?;
+        check_memory(grid, params.memory_limit, adaptive_bytes, Some(100.0 * area_fraction))?;
         Ok(prepared)
     }
 
@@ -273,11 +257,11 @@ fn with_border_level(source: HeightSource<'_>, border_level: usize) -> Result<He
 }
 
 /// Refuses what needs more bytes than the limit.
-fn check_memory(limit: Option<u64>, bytes: f64, area_percent: Option<f64>) -> Result<(), AdaptiveError> {
+fn check_memory(grid: Grid, limit: Option<u64>, bytes: f64, area_percent: Option<f64>) -> Result<(), AdaptiveError> {
     match limit {
         Some(limit) if bytes > limit as f64 => {
             let needed = (bytes / 1e6).ceil() as u64;
-            Err(AdaptiveError::Memory { needed, limit: limit / 1_000_000, area_percent })
+            Err(AdaptiveError::Memory { grid, needed, limit: limit / 1_000_000, area_percent })
         }
         _ => Ok(()),
     }
@@ -321,6 +305,7 @@ mod tests {
     use rc_core::{DVec2, HeightField};
 
     use super::*;
+    use crate::params::IterationParams;
 
     /// Any surface with this many waves.
     struct Waves(usize);

@@ -15,18 +15,7 @@ use crate::descent::{BlockOperator, read_blocks, write_blocks};
 use crate::observables::{corrected, mean_gap_error, rms_pressure_error};
 use crate::solution::Status;
 use crate::stiffness::stiffness_of;
-use crate::{ContactArea, Observables, SolveInfo};
-
-/// One element in contact, in units of λ and E*.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactElement {
-    /// Centre.
-    pub centre: DVec2,
-    /// Side of the square.
-    pub side: f64,
-    /// Pressure, > 0.
-    pub pressure: f64,
-}
+use crate::{ContactArea, ContactElement, Observables, SolveInfo};
 
 /// A contact problem solved on an adaptive mesh.
 ///
@@ -117,7 +106,7 @@ impl AdaptiveSolution {
 
     /// Hands out the displacement v of the grid's pressure, rows of tiles at a time as [`AdaptiveSolution::pressure_rows`]
     /// does, at about the cost of one application of L on the whole grid. The gap is `v - h + offset`: see
-    /// [`AdaptiveSolution::gap_offset`], and [`crate::AdaptiveProblem::gap_rows`].
+    /// [`AdaptiveSolution::gap_offset`], and [`super::AdaptiveProblem::gap_rows`].
     ///
     /// # Errors
     /// What `take` returns.

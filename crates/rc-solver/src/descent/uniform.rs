@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use rc_core::{Grid, Kernel};
-use rc_fft::{BLOCK_ROWS, Convolution, Plan, SymbolTable};
+use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable, TransformReal};
 
 use super::layout::BlockLayout;
 use super::operators::{BlockOperator, LevelOperators, PreconditionedOperator};
@@ -44,7 +44,7 @@ impl BlockOperator<f32> for UniformCorrections {
     }
 
     fn apply(&mut self) {
-        self.convolution.multiply(&self.displacement);
+        self.convolution.apply_symbol(&self.displacement);
     }
 
     fn read(&self, read: &(dyn Fn(usize, &[f32]) + Sync)) {
@@ -54,7 +54,7 @@ impl BlockOperator<f32> for UniformCorrections {
 
 impl PreconditionedOperator for UniformCorrections {
     fn precondition(&mut self) {
-        self.convolution.multiply(&self.preconditioner);
+        self.convolution.apply_symbol(&self.preconditioner);
     }
 
     fn set_mean(&mut self, eigenvalue: f64) {
@@ -85,7 +85,7 @@ impl BlockOperator<f64> for SymbolOperator {
     }
 
     fn apply(&mut self) {
-        self.convolution.multiply(&self.symbol);
+        self.convolution.apply_symbol(&self.symbol);
     }
 
     fn read(&self, read: &(dyn Fn(usize, &[f64]) + Sync)) {
@@ -104,13 +104,13 @@ fn n_blocks(grid: Grid) -> usize {
 
 /// Calls `write` once for each block of rows, with its index and the rows to be filled in. (All callers pass closures in this form, for
 /// which the transforms are compiled once.)
-pub(crate) fn write_rows<T: Plan>(convolution: &mut Convolution<T>, write: &(dyn Fn(usize, &mut [T]) + Sync)) {
+pub(crate) fn write_rows<T: TransformReal>(convolution: &mut Convolution<T>, write: &(dyn Fn(usize, &mut [T]) + Sync)) {
     let blocks = (0..n_blocks(convolution.grid())).into_par_iter();
     convolution.transform_rows(blocks, write);
 }
 
 /// Calls `read` once for each block of rows, with its index and the rows.
-pub(crate) fn read_rows<T: Plan>(convolution: &Convolution<T>, read: &(dyn Fn(usize, &[T]) + Sync)) {
+pub(crate) fn read_rows<T: TransformReal>(convolution: &Convolution<T>, read: &(dyn Fn(usize, &[T]) + Sync)) {
     let blocks = (0..n_blocks(convolution.grid())).into_par_iter();
-    convolution.take_rows(blocks, read);
+    convolution.read_rows(blocks, read);
 }

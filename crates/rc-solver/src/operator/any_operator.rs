@@ -1,6 +1,6 @@
 //! Any operator of the caller, as the iteration wants it.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use rc_core::Operator;
 
@@ -10,13 +10,23 @@ use crate::parallel;
 /// Values in a block.
 const BLOCK: usize = 4096;
 
-/// Eigenvalue of the approximate inverse: that of the longest wave on a half-space of E* = 1. Only its ratio to that of the mean matters.
-const INVERSE: f64 = PI;
+/// Eigenvalue of the approximate inverse for one wave along the second axis, which is about the longest: π on a half-space of E* = 1. Only its
+/// ratio to the eigenvalue of the mean matters, so an operator that says nothing usable gets that of the half-space.
+fn inverse_of_longest_wave(operator: &dyn Operator) -> f64 {
+    let n = operator.n_elements();
+    let wave: Vec<f64> = (0..n).map(|i| (TAU * i as f64 / n as f64).cos()).collect();
+    let (mut displacement, mut scratch) = (vec![0.0; n], vec![0.0; operator.scratch_len()]);
+    operator.apply(&wave, &mut displacement, &mut scratch);
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let inverse = product(&wave, &wave) / product(&wave, &displacement);
+    if inverse > 0.0 && inverse.is_finite() { inverse } else { PI }
+}
 
 /// L for corrections and for fresh gaps, both in double precision: nothing is known of the rounding of an operator in single precision.
 pub(super) fn operators_of(operator: &dyn Operator) -> LevelOperators<'_> {
+    let inverse = inverse_of_longest_wave(operator);
     LevelOperators {
-        corrections: Box::new(AnyCorrections { vectors: AnyOperator::new(operator), mean: INVERSE }),
+        corrections: Box::new(AnyCorrections { vectors: AnyOperator::new(operator), inverse, mean: inverse }),
         fresh: Box::new(AnyOperator::new(operator)),
     }
 }
@@ -57,6 +67,8 @@ impl BlockOperator<f64> for AnyOperator<'_> {
 /// An operator for corrections, with a multiple of the identity for its inverse, except for the mean.
 struct AnyCorrections<'a> {
     vectors: AnyOperator<'a>,
+    /// Eigenvalue of the approximate inverse for all vectors of zero mean.
+    inverse: f64,
     /// Eigenvalue of the approximate inverse for constant vectors.
     mean: f64,
 }
@@ -97,10 +109,10 @@ impl PreconditionedOperator for AnyCorrections<'_> {
         let AnyOperator { source, result, .. } = &mut self.vectors;
         let sums = parallel::map(source.chunks(BLOCK), |block| [block.iter().sum()]);
         let [sum] = BlockLayout::of(BLOCK).total(sums);
-        let shift = (self.mean - INVERSE) * sum / source.len() as f64;
+        let shift = (self.mean - self.inverse) * sum / source.len() as f64;
         parallel::for_each(result.chunks_mut(BLOCK).zip(source.chunks(BLOCK)), |(result, source)| {
             for (result, &value) in result.iter_mut().zip(source) {
-                *result = INVERSE * value + shift;
+                *result = self.inverse * value + shift;
             }
         });
     }

@@ -6,7 +6,7 @@ mod solve;
 mod uniform_fft;
 
 pub use direct_sum::DirectSum;
-pub(crate) use solve::{solve_with_operator, stiffness_with_operator};
+pub(crate) use solve::{solve_on_grid, stiffness_with_operator};
 pub use uniform_fft::UniformOperator;
 
 #[cfg(test)]

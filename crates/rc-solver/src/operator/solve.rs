@@ -19,7 +19,7 @@ use crate::{Certificate, Control, IterationParams, ProblemError};
 ///
 /// # Errors
 /// [`ProblemError`]: an operator for another number of elements, heights that are not finite, a control or tolerance out of range.
-pub(crate) fn solve_with_operator(
+pub(crate) fn solve_on_grid(
     heights: &Field,
     operator: &dyn Operator,
     control: Control,
@@ -40,7 +40,11 @@ pub(crate) fn solve_with_operator(
     let goal = Goal { tolerance: params.tolerance, max_iterations: params.max_iterations, certify: true };
     let outcome = descent.run(goal, &DescentObserver { observer, mesh: &grid });
     let level = descent.info();
-    Ok(descent.into_solution(&outcome, vec![level], None))
+    let mut solution = descent.into_solution(&outcome, vec![level], None);
+    if solution.status == Status::Converged && solution.pressure.min() > 0.0 {
+        solution.status = Status::FullContact;
+    }
+    Ok(solution)
 }
 
 /// dσ0/dΔ, in E*/λ, under the contact of `pressure`.
@@ -52,7 +56,7 @@ pub(crate) fn stiffness_with_operator(pressure: &Field, operator: &dyn Operator)
     stiffness_of(pressure.values(), pressure.grid().len() as f64, &mut *operators.corrections)
 }
 
-/// On a flat surface the pressure is uniform, and displaces nothing.
+/// On a flat surface the pressure is uniform, and displaces nothing: no application of the operator is needed.
 fn flat(grid: Grid, mean_pressure: f64) -> GridSolution {
     let level = LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 };
     let info = SolveInfo {
@@ -131,7 +135,7 @@ mod tests {
             let operator = DirectSum::new(heights.grid(), &Love);
             for control in CONTROLS {
                 let expected = solve_uniform(&heights, &Love, control, &params, &Silent).expect("a solution");
-                let found = solve_with_operator(&heights, &operator, control, &params, &Silent).expect("a solution");
+                let found = solve_on_grid(&heights, &operator, control, &params, &Silent).expect("a solution");
                 assert!(found.info.certificate.penetration <= params.tolerance);
                 let error = difference(&found.pressure, &expected.pressure);
                 assert!(error < 1e-6, "{nx} x {ny}, {control:?}: the pressure differs by {error:e}");
@@ -153,7 +157,7 @@ mod tests {
                 Control::Penetration(_) => control,
             };
             let expected = solve_uniform(&heights, &Love, soft, &params, &Silent).expect("a solution");
-            let found = solve_with_operator(&heights, &stiffer, control, &params, &Silent).expect("a solution");
+            let found = solve_on_grid(&heights, &stiffer, control, &params, &Silent).expect("a solution");
             let twice = Field::new(heights.grid(), expected.pressure.values().iter().map(|p| 2.0 * p).collect());
             let error = difference(&found.pressure, &twice.expect("a value for each element"));
             assert!(error < 1e-6, "{control:?}: the pressure differs by {error:e}");
@@ -165,7 +169,7 @@ mod tests {
         let heights = Field::from_fn(Grid::square(8).expect("a grid"), |_| 0.1);
         let operator = DirectSum::new(heights.grid(), &Love);
         let load = Control::MeanPressure(1e-3);
-        let solution = solve_with_operator(&heights, &operator, load, &IterationParams::certified(), &Silent);
+        let solution = solve_on_grid(&heights, &operator, load, &IterationParams::certified(), &Silent);
         let solution = solution.expect("a solution");
         assert_eq!(solution.status, Status::FullContact);
         assert!(solution.pressure.values().iter().all(|&p| (p - 1e-3).abs() < 1e-15));
@@ -176,7 +180,7 @@ mod tests {
         let operator = DirectSum::new(Grid::square(8).expect("a grid"), &Love);
         let heights = heights(8, 9);
         let load = Control::MeanPressure(1e-3);
-        let error = solve_with_operator(&heights, &operator, load, &IterationParams::certified(), &Silent).err();
+        let error = solve_on_grid(&heights, &operator, load, &IterationParams::certified(), &Silent).err();
         assert!(matches!(error, Some(ProblemError::Operator { n_elements: 64, .. })), "{error:?}");
     }
 }

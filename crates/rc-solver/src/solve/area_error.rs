@@ -1,6 +1,6 @@
 //! The coarsest grid that gives the contact area as accurately as wanted.
 
-use rc_core::{Grid, HeightSource, Observer};
+use rc_core::{Grid, HeightField, HeightSource, Observer};
 
 use super::{ContactProblem, Solution, SolveError, SolveParams, choice};
 
@@ -21,12 +21,11 @@ pub(super) fn solve<'a>(
     params: &SolveParams,
     observer: &dyn Observer,
 ) -> Result<Solution<'a>, SolveError> {
-    let HeightSource::Surface { surface, .. } = problem.heights else { return Err(SolveError::NoWaves) };
-    let waves = surface.band_limit().filter(|&waves| waves > 0).ok_or(SolveError::NoWaves)?;
+    let (surface, waves) = band_limited(problem.heights)?;
     let mut elements_per_wave = COARSEST;
     loop {
         let side = side(waves, elements_per_wave);
-        let grid = Grid::square(side).map_err(|_| SolveError::NoWaves)?;
+        let grid = Grid::square(side)?;
         let heights = HeightSource::Surface { surface, grid };
         let solution = choice::plan(ContactProblem { heights, ..problem }, params)?.solve(observer)?;
         let reached = solution.area().relative_error();
@@ -37,6 +36,23 @@ pub(super) fn solve<'a>(
             return Err(SolveError::AreaError { wanted, reached, side });
         }
         elements_per_wave = next(elements_per_wave, reached / wanted);
+    }
+}
+
+/// The coarsest grid that is solved on. The sides of all others are multiples of its own.
+pub(super) fn coarsest_grid(heights: HeightSource<'_>) -> Result<Grid, SolveError> {
+    let (_, waves) = band_limited(heights)?;
+    Ok(Grid::square(side(waves, COARSEST))?)
+}
+
+/// A surface whose grid can be chosen, and its largest wavenumber.
+fn band_limited(heights: HeightSource<'_>) -> Result<(&dyn HeightField, usize), SolveError> {
+    match heights {
+        HeightSource::Surface { surface, grid } if grid.has_square_cell() => {
+            let waves = surface.band_limit().filter(|&waves| waves > 0).ok_or(SolveError::NoWaves)?;
+            Ok((surface, waves))
+        }
+        HeightSource::Surface { .. } | HeightSource::Map(_) => Err(SolveError::NoWaves),
     }
 }
 

@@ -1,28 +1,31 @@
 //! The choice of the method: the one that is asked for, else the adaptive one where it fits and is the cheaper one.
 
-use rc_core::Grid;
+use rc_core::{Grid, HeightSource};
 
-use super::plan::Prepared;
+use super::plan::ChosenMethod;
 use super::{ContactProblem, Plan, SolveError, SolveParams};
 use crate::adaptive::AdaptiveProblem;
+use crate::problem::check_load;
 use crate::{AdaptiveError, Estimate, Method, MethodReason, UNIFORM_BYTES_PER_ELEMENT};
 
 /// Checks the problem and chooses its method.
 pub(super) fn plan<'a>(problem: ContactProblem<'a>, params: &SolveParams) -> Result<Plan<'a>, SolveError> {
     let tolerance = params.tolerance.relative(problem.heights.elements_per_wave());
+    check_load(problem.control, tolerance)?;
+    check_grid(problem.heights)?;
     let choice = Choice { problem, params, tolerance };
-    let (prepared, reason) = match params.method {
+    let (chosen, reason) = match params.method {
         None => choice.automatic(),
         Some(method) => {
             choice.check_asked_for(method)?;
-            let prepared = match method {
-                Method::Adaptive => Prepared::Adaptive(Box::new(choice.prepare()?)),
+            let chosen = match method {
+                Method::Adaptive => ChosenMethod::Adaptive(Box::new(choice.prepare()?)),
                 Method::Uniform | Method::GaussSeidel => choice.on_grid(method)?,
             };
-            Ok((prepared, MethodReason::AskedFor(method)))
+            Ok((chosen, MethodReason::AskedFor(method)))
         }
     }?;
-    Ok(Plan { problem, params: *params, tolerance, prepared, reason })
+    Ok(Plan { problem, params: *params, tolerance, chosen, reason })
 }
 
 struct Choice<'a, 'b> {
@@ -31,7 +34,7 @@ struct Choice<'a, 'b> {
     tolerance: f64,
 }
 
-type Chosen<'a> = Result<(Prepared<'a>, MethodReason), SolveError>;
+type Chosen<'a> = Result<(ChosenMethod<'a>, MethodReason), SolveError>;
 
 impl<'a> Choice<'a, '_> {
     /// Refuses a method that cannot solve with this kernel or border level.
@@ -63,7 +66,7 @@ impl<'a> Choice<'a, '_> {
             Err(error) => return self.without_adaptive(error),
         };
         let percent = 100.0 * adaptive.estimate().area_fraction;
-        let adaptive = Prepared::Adaptive(Box::new(adaptive));
+        let adaptive = ChosenMethod::Adaptive(Box::new(adaptive));
         if has_border {
             return Ok((adaptive, MethodReason::BorderLevel));
         }
@@ -72,7 +75,7 @@ impl<'a> Choice<'a, '_> {
         }
         match self.on_grid(Method::Uniform) {
             Ok(uniform) => Ok((uniform, MethodReason::LargeContact { percent })),
-            // The adaptive method fits, or it would not be prepared.
+            // The adaptive method fits, or it would not be chosen.
             Err(_) if self.params.method_follows_memory => Ok((adaptive, MethodReason::UniformDoesNotFit { percent })),
             Err(error) => Err(error),
         }
@@ -113,15 +116,15 @@ impl<'a> Choice<'a, '_> {
     }
 
     /// A method that stores every element of the grid, if it fits into memory.
-    fn on_grid(&self, method: Method) -> Result<Prepared<'a>, SolveError> {
+    fn on_grid(&self, method: Method) -> Result<ChosenMethod<'a>, SolveError> {
         let grid = self.problem.heights.grid();
         let needed = uniform_bytes(grid);
         match self.params.memory_limit {
             Some(limit) if needed > limit as f64 => {
                 Err(SolveError::Memory { method, grid, needed: needed as u64, limit })
             }
-            _ if method == Method::GaussSeidel => Ok(Prepared::GaussSeidel),
-            _ => Ok(Prepared::Uniform),
+            _ if method == Method::GaussSeidel => Ok(ChosenMethod::GaussSeidel),
+            _ => Ok(ChosenMethod::Uniform),
         }
     }
 }
@@ -129,4 +132,13 @@ impl<'a> Choice<'a, '_> {
 /// Bytes that a method that stores every element needs.
 pub(super) fn uniform_bytes(grid: Grid) -> f64 {
     grid.len() as f64 * UNIFORM_BYTES_PER_ELEMENT as f64
+}
+
+/// Refuses a grid that does not resolve the waves of its surface.
+fn check_grid(heights: HeightSource<'_>) -> Result<(), SolveError> {
+    let HeightSource::Surface { surface, grid } = heights else { return Ok(()) };
+    match surface.band_limit() {
+        Some(waves) if grid.resolved_wavenumber() < waves => Err(SolveError::TooCoarse { grid, waves }),
+        _ => Ok(()),
+    }
 }

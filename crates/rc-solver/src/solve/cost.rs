@@ -1,7 +1,7 @@
 //! What a plan will cost.
 
 use super::choice::uniform_bytes;
-use super::plan::{Plan, Prepared};
+use super::plan::{ChosenMethod, Plan};
 
 /// Processor seconds for each cell of the adaptive method at a tolerance of 1e-6 or more: measured 1.1e-6 to 1.5e-6 for cells that are
 /// evaluated, of which the estimate counts 0.55 to 0.9 (512² to 4096², 0.9 % to 20 % contact, H = 0.3 and 0.8).
@@ -38,8 +38,8 @@ impl Cost {
     fn of(plan: &Plan<'_>) -> Self {
         let decades = (-6.0 - plan.tolerance.log10()).max(0.0);
         let seconds = |work: f64| work * (1.0 + WORK_PER_DECADE * decades);
-        match &plan.prepared {
-            Prepared::Adaptive(problem) => {
+        match &plan.chosen {
+            ChosenMethod::Adaptive(problem) => {
                 let estimate = problem.estimate();
                 Self {
                     area_fraction: Some(estimate.area_fraction),
@@ -48,7 +48,7 @@ impl Cost {
                     cpu_seconds: Some(seconds(SECONDS_PER_ADAPTIVE_CELL * estimate.cells)),
                 }
             }
-            Prepared::Uniform => {
+            ChosenMethod::Uniform => {
                 let grid = plan.problem.heights.grid();
                 let elements = grid.len() as f64;
                 Self {
@@ -58,7 +58,7 @@ impl Cost {
                     cpu_seconds: Some(seconds(SECONDS_PER_UNIFORM_ELEMENT * elements)),
                 }
             }
-            Prepared::GaussSeidel => Self { area_fraction: None, elements: None, bytes: None, cpu_seconds: None },
+            ChosenMethod::GaussSeidel => Self { area_fraction: None, elements: None, bytes: None, cpu_seconds: None },
         }
     }
 }

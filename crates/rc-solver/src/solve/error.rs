@@ -1,6 +1,6 @@
 //! Why a contact problem was not solved.
 
-use rc_core::Grid;
+use rc_core::{Grid, GridError};
 use thiserror::Error;
 
 use super::Solution;
@@ -45,8 +45,21 @@ pub enum SolveError {
         /// Limit, in bytes.
         limit: u64,
     },
-    /// A grid cannot be chosen for heights whose shortest wave is not known.
-    #[error("the grid follows an error of the area only for a band-limited surface; a height map has its own grid")]
+    /// A grid cannot be made.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// The grid does not resolve the waves of the surface.
+    #[error("{grid} elements do not resolve {waves} waves; more than {} per side are needed", 2 * waves)]
+    TooCoarse {
+        /// The grid.
+        grid: Grid,
+        /// Largest wavenumber of the surface.
+        waves: usize,
+    },
+    /// A grid can be chosen only for a band-limited surface in a square cell.
+    #[error(
+        "the grid follows an error of the area only for a band-limited surface in a square cell; a height map has its own grid"
+    )]
     NoWaves,
     /// The finest grid that is tried is not accurate enough.
     #[error("an error of the area of {wanted} of it cannot be reached; with {side} elements per side it is {reached}")]

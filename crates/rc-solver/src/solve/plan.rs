@@ -17,12 +17,12 @@ pub struct Plan<'a> {
     pub(super) params: SolveParams,
     /// The tolerance as a number.
     pub(super) tolerance: f64,
-    pub(super) prepared: Prepared<'a>,
+    pub(super) chosen: ChosenMethod<'a>,
     pub(super) reason: MethodReason,
 }
 
 /// A method with what it needs to start.
-pub(super) enum Prepared<'a> {
+pub(super) enum ChosenMethod<'a> {
     /// Heights are evaluated as they are needed.
     Adaptive(Box<AdaptiveProblem<'a>>),
     /// All heights will be evaluated.
@@ -35,10 +35,10 @@ impl<'a> Plan<'a> {
     /// The method.
     #[must_use]
     pub fn method(&self) -> Method {
-        match self.prepared {
-            Prepared::Adaptive(_) => Method::Adaptive,
-            Prepared::Uniform => Method::Uniform,
-            Prepared::GaussSeidel => Method::GaussSeidel,
+        match self.chosen {
+            ChosenMethod::Adaptive(_) => Method::Adaptive,
+            ChosenMethod::Uniform => Method::Uniform,
+            ChosenMethod::GaussSeidel => Method::GaussSeidel,
         }
     }
 
@@ -60,19 +60,19 @@ impl<'a> Plan<'a> {
     /// [`SolveError::NotConverged`] with the best solution found; [`SolveError::Problem`] for heights that are not finite, and
     /// [`SolveError::GaussSeidel`] for what the paper's procedure refuses.
     pub fn solve(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
-        let Self { problem, params, tolerance, prepared, reason } = self;
+        let Self { problem, params, tolerance, chosen, reason } = self;
         let how = |method| HowSolved::new(method, reason, tolerance, problem.kernel.name());
-        let solution = match prepared {
-            Prepared::Adaptive(adaptive) => {
+        let solution = match chosen {
+            ChosenMethod::Adaptive(adaptive) => {
                 let solution = adaptive.solve(observer);
                 Solution::on_tiles(how(Method::Adaptive), solution, adaptive)
             }
-            Prepared::Uniform => {
+            ChosenMethod::Uniform => {
                 let (heights, limits) = (problem.heights.heights(), params.iteration(tolerance));
                 let solution = solve_uniform(&heights, problem.kernel, problem.control, &limits, observer)?;
                 Solution::on_grid(how(Method::Uniform), problem.kernel, solution, heights.max())
             }
-            Prepared::GaussSeidel => {
+            ChosenMethod::GaussSeidel => {
                 let (heights, params) = (problem.heights.heights(), params.gauss_seidel);
                 let solution = by_gauss_seidel(&problem, &heights, (tolerance, &params), observer)?;
                 Solution::on_grid(how(Method::GaussSeidel), problem.kernel, solution, heights.max())

@@ -12,16 +12,25 @@ pub(super) enum Response<'a> {
     Kernel(KernelOfGrid<'a>),
     /// The caller's operator.
     Operator(&'a dyn Operator),
-    /// An operator that the solution has outlived; what it was needed for is known.
-    Outlived,
+    /// An operator that the solution has outlived, and what it was needed for.
+    Outlived {
+        /// dσ0/dΔ, in E*/λ.
+        stiffness: f64,
+        /// v = L p, in λ.
+        displacement: Field,
+    },
 }
 
 impl Response<'_> {
-    /// The half-space without a borrow, for the grid of a solution.
-    pub(super) fn into_owned(self, grid: Grid) -> Response<'static> {
+    /// The half-space without a borrow, for one solution. What an operator is needed for is computed now.
+    pub(super) fn into_owned(self, solution: &GridSolution) -> Response<'static> {
         match self {
-            Self::Kernel(kernel) => Response::Kernel(kernel.into_owned(grid)),
-            Self::Operator(_) | Self::Outlived => Response::Outlived,
+            Self::Kernel(kernel) => Response::Kernel(kernel.into_owned(solution.pressure.grid())),
+            Self::Operator(_) => Response::Outlived {
+                stiffness: self.stiffness(solution),
+                displacement: self.displacement(&solution.pressure),
+            },
+            Self::Outlived { stiffness, displacement } => Response::Outlived { stiffness, displacement },
         }
     }
 
@@ -29,7 +38,7 @@ impl Response<'_> {
     pub(super) fn edge_bias(&self) -> EdgeBias {
         match self {
             Self::Kernel(kernel) => kernel.edge_bias(),
-            Self::Operator(_) | Self::Outlived => EdgeBias::default(),
+            Self::Operator(_) | Self::Outlived { .. } => EdgeBias::default(),
         }
     }
 
@@ -38,23 +47,22 @@ impl Response<'_> {
         match self {
             Self::Kernel(kernel) => contact_stiffness(&solution.pressure, kernel),
             Self::Operator(operator) => stiffness_with_operator(&solution.pressure, *operator),
-            Self::Outlived => f64::NAN,
+            Self::Outlived { stiffness, .. } => *stiffness,
         }
     }
 
     /// v = L p, in λ.
     pub(super) fn displacement(&self, pressure: &Field) -> Field {
-        let mut displacement = Field::zeros(pressure.grid());
-        let mut apply = |operator: &dyn Operator| {
-            let mut scratch = vec![0.0; operator.scratch_len()];
+        let apply = |operator: &dyn Operator| {
+            let (mut displacement, mut scratch) = (Field::zeros(pressure.grid()), vec![0.0; operator.scratch_len()]);
             operator.apply(pressure.values(), displacement.values_mut(), &mut scratch);
+            displacement
         };
         match self {
             Self::Kernel(kernel) => apply(&UniformOperator::new(pressure.grid(), kernel)),
             Self::Operator(operator) => apply(*operator),
-            Self::Outlived => {}
+            Self::Outlived { displacement, .. } => displacement.clone(),
         }
-        displacement
     }
 }
 

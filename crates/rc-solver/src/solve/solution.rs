@@ -99,13 +99,9 @@ impl<'a> Solution<'a> {
     /// operator, displacement and stiffness are computed now.
     #[must_use]
     pub fn into_owned(self) -> Solution<'static> {
-        if let Pressures::Grid { response: Response::Operator(_), .. } = &self.pressures {
-            // Both are kept once they are asked for.
-            let _ = (self.displacement(), self.stiffness());
-        }
         let pressures = match self.pressures {
             Pressures::Grid { solution, response } => {
-                let response = response.into_owned(solution.pressure.grid());
+                let response = response.into_owned(&solution);
                 Pressures::Grid { solution, response }
             }
             Pressures::Tiles { solution, problem } => {

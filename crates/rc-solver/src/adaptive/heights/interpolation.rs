@@ -148,10 +148,10 @@ fn coefficients(samples: Field, band_limit: usize) -> Vec<f64> {
         .transform_rows(samples.values().par_chunks(BLOCK_ROWS * side), |source, rows| rows.copy_from_slice(source));
     // Two grids in memory at a time, not three.
     drop(samples);
-    convolution.multiply(&symbol);
+    convolution.apply_symbol(&symbol);
     let mut padded = vec![0.0; stride * stride];
     let interior = &mut padded[HALO_BEFORE * stride..][..side * stride];
-    convolution.take_rows(interior.par_chunks_mut(BLOCK_ROWS * stride), |target, rows| {
+    convolution.read_rows(interior.par_chunks_mut(BLOCK_ROWS * stride), |target, rows| {
         for (target, row) in target.chunks_exact_mut(stride).zip(rows.chunks_exact(side)) {
             target[HALO_BEFORE..HALO_BEFORE + side].copy_from_slice(row);
             for column in halo(side) {

@@ -1,10 +1,10 @@
 //! The arithmetic of the inner loops, in single or double precision, with or without fused multiply-add.
 
 use pulp::Simd;
-use rc_fft::Plan;
+use rc_fft::TransformReal;
 
 /// `f32` or `f64`.
-pub(crate) trait Arithmetic: Plan + Default + From<f32> {
+pub(crate) trait Arithmetic: TransformReal + Default + From<f32> {
     /// Rounded from double precision.
     fn rounded(value: f64) -> Self;
 

@@ -135,7 +135,7 @@ impl<T: Real> TileOperator<T> {
             (tables.sizes.passes.restrict)(arch, &pass, Targets { places, cells: &mut cells });
             tiles_to_rows(&cells, rows, side);
         });
-        self.convolution.multiply(&tables.base);
+        self.convolution.apply_symbol(&tables.base);
         let blocks = Tasks::new(self.displacements[0].chunks_mut(BLOCK_ROWS * side));
         read_rows(&self.convolution, &|i, rows| blocks.run(i, |cells| rows_to_tiles(rows, cells, side)));
     }
