@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context, Result, anyhow, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use rc_figures::repository;
 use toml::{Table, Value};
 
@@ -85,7 +85,7 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
     ensure!(forks == originals, "sound forks change the result: {forks} instead of {originals}");
     println!("sound forks: {forks}, as with the originals");
     for Fork { name, .. } in FORKS {
-        let wrong = solved(&program, &fork_name(name)).unwrap_or_else(|error| format!("{error:#}"));
+        let wrong = solved(&program, &fork_name(name)).with_context(|| format!("{name} wrong"))?;
         ensure!(wrong != originals, "the solver does not use {name}: a wrong fork of it changes nothing");
         println!("{name} wrong: {wrong}");
     }
@@ -96,8 +96,13 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
 fn solved(program: &Path, wrong: &str) -> Result<String> {
     let output = Command::new(program).env("RC_SWAP_WRONG", wrong).output();
     let output = output.with_context(|| format!("could not start {}", program.display()))?;
-    ensure!(output.status.success(), "not solved: {}", String::from_utf8_lossy(&output.stderr).trim());
-    Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim().to_owned();
+    match output.status.code() {
+        Some(0) => Ok(text(&output.stdout)),
+        // An error of the solver, which is a result too; anything else is a program that broke.
+        Some(1) => Ok(format!("not solved: {}", text(&output.stderr))),
+        _ => bail!("{} broke: {}", program.display(), text(&output.stderr)),
+    }
 }
 
 fn fork_name(name: &str) -> String {

@@ -9,7 +9,7 @@
 //! applies them once. Row `iy` of a file is row `iy` of the field; a missing point is `NaN`.
 //!
 //! No input makes a reader panic or take more memory than the file accounts for: what a header promises is compared with
-//! the bytes that are there before memory is taken. `tests/robustness.rs` shows it on arbitrary and on mutated files.
+//! the bytes that are there before memory is taken. `tests/it/robustness.rs` shows it on arbitrary and on mutated files.
 //!
 //! ```
 //! use rc_heights::{AreaParameters, Format, Level, Scales, Treatment, apply, parse};

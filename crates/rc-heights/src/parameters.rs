@@ -10,7 +10,7 @@ use crate::treat::rms_slope;
 ///
 /// Heights are counted from their mean. Gradients are differences of neighbours inside the map, never across its border, so
 /// Sdq and Sdr depend on the distance of points, as they do in the standard. Test `parameters_of_a_wave_are_those_of_a_wave`;
-/// an independent program agrees, `tests/formats.rs`.
+/// an independent program agrees, `tests/it/`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AreaParameters {
     /// Mean height, from which the others count.

@@ -111,13 +111,13 @@ pub enum LengthUnitError {
         value: f64,
     },
     /// A scale for heights that are in metres already.
-    #[error("height_scale: the file has its heights in metres already; leave it away")]
+    #[error("height_scale: the file has its heights in metres already; omit it")]
     HeightsInMetres,
     /// A unit for levels of grey on a map without a size.
-    #[error("unit: levels of grey have none, and height_scale (m) is theirs; leave unit away")]
+    #[error("unit: levels of grey have none, and height_scale (m) is theirs; omit unit")]
     UnitOfLevels,
     /// A unit for a file that names its own.
-    #[error("unit: the file names its units already; leave it away")]
+    #[error("unit: the file names its units already; omit it")]
     UnitsNamed,
 }
 

@@ -41,12 +41,10 @@ struct ResultStatistics {
 pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
     let text = match result_folder(&args.file) {
         Some(_) if args.cell.is_some() || args.cell_y.is_some() => {
-            return Err(CliError::input(
-                "cell: a result has its own, in its scene.toml; leave --cell and --cell-y away",
-            ));
+            return Err(CliError::input("cell: a result has its own, in its scene.toml; omit --cell and --cell-y"));
         }
         Some(_) if args.out.is_some() => {
-            return Err(CliError::input("out: the pictures of a result are made by rc plot; leave --out away"));
+            return Err(CliError::input("out: the pictures of a result are made by rc plot; omit --out"));
         }
         Some(folder) => inspect_result(&folder, args.json)?,
         None if args.file.file_name().is_some_and(|name| name == "pressure.npy") => {

@@ -55,7 +55,7 @@ pub(crate) fn sides(
     for ((given, side), (key, extent)) in given.iter().zip(of_file).zip([("cell", "wide"), ("cell_y", "high")]) {
         if let Some(given) = given.filter(|given| !same(*given, side)) {
             let message = format_args!(
-                "the map is {} {extent}, {key} says {}; leave {key} away, or convert the map to .npy, which has no size",
+                "the map is {} {extent}, {key} says {}; omit {key}, or convert the map to .npy, which has no size",
                 length(side),
                 length(given)
             );

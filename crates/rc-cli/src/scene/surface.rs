@@ -109,7 +109,7 @@ impl SurfaceSetup {
         let grid = heights.grid();
         let (nx, ny) = (grid.nx(), grid.ny());
         if let Some(expected) = expected.filter(|expected| (expected.nx(), expected.ny()) != (nx, ny)) {
-            let message = format_args!("the map has {grid} elements, grid says {expected}; leave grid away");
+            let message = format_args!("the map has {grid} elements, grid says {expected}; omit grid");
             return Err(CliError::in_file(path, message));
         }
         if as_read.max() <= as_read.min() {

@@ -44,7 +44,7 @@ impl Job {
             None => contact,
             Some(_) if surface.heights.is_some() => {
                 return Err(CliError::input(
-                    "area_error: a height map has its own grid, which cannot be chosen; leave it away",
+                    "area_error: a height map has its own grid, which cannot be chosen; omit it",
                 ));
             }
             Some(_) => {

@@ -29,7 +29,7 @@ const EXAMPLE_FOLDER: &str = "rc-result";
 pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
     let (dry_run, watch) = (args.dry_run, args.watch);
     if dry_run && watch {
-        return Err(CliError::input("watch: a dry run has nothing to be seen; leave one of the two away"));
+        return Err(CliError::input("watch: a dry run has nothing to be seen; omit one of the two"));
     }
     let scene = scene_of(args)?;
     if watch && scene.run.out.is_none() {

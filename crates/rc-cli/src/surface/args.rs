@@ -14,7 +14,7 @@ pub(crate) struct SurfaceArgs {
     /// Scene file; its keys of the contact are passed over
     #[arg(value_name = "SCENE.toml")]
     pub(crate) scene_file: Option<PathBuf>,
-    /// What is given here holds against the scene file.
+    /// What is given here overrides the scene file.
     #[command(flatten)]
     pub(crate) surface: SurfaceKeys,
     /// Treatment of a height map.

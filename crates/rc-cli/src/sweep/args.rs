@@ -35,7 +35,7 @@ pub(crate) struct SweepArgs {
     /// Solve part i of n, for job arrays; `rc sweep merge` puts the parts together
     #[arg(long, value_name = "I/N", help_heading = "Sweep", allow_hyphen_values = true)]
     pub(crate) shard: Option<Shard>,
-    /// What is given here holds against the scene files.
+    /// What is given here overrides the scene files.
     #[command(flatten)]
     pub(crate) scene: Scene,
 }

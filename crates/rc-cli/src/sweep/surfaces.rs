@@ -232,7 +232,7 @@ fn seeded(seeds: Option<&Seeds>, name: &str, scene: &Scene) -> Result<Vec<Scene>
     let Some(Seeds(seeds)) = seeds else { return Ok(vec![scene.clone()]) };
     if scene.surface.heights.is_some() {
         let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
-        return Err(CliError::input(format_args!("seeds: the height map{of} has none; leave --seeds away")));
+        return Err(CliError::input(format_args!("seeds: the height map{of} has none; omit --seeds")));
     }
     let with = |seed: &u64| {
         let mut scene = scene.clone();

@@ -53,14 +53,10 @@ pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
 /// A random surface, on a grid that resolves its waves.
 fn random(mut keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Result<SurfaceSetup, CliError> {
     if keys.scales() != Scales::default() {
-        return Err(CliError::input(
-            "unit and height_scale: are for height maps; give --heights FILE, or leave them away",
-        ));
+        return Err(CliError::input("unit and height_scale: are for height maps; give --heights FILE, or omit them"));
     }
     if keys.cell_y.is_some() {
-        return Err(CliError::input(
-            "cell_y: is for height maps; a random surface has a square cell, so leave it away",
-        ));
+        return Err(CliError::input("cell_y: is for height maps; a random surface has a square cell, so omit it"));
     }
     let spectrum = spectrum(&keys, cell.side())?;
     let default = GridSpec::square(spectrum.waves.saturating_mul(ELEMENTS_PER_WAVE));
