@@ -22,7 +22,7 @@ pub enum KernelError {
     #[error("0 shells of images; at least 1 is needed")]
     NoShells,
     /// More shells than [`MAX_SHELLS`](crate::MAX_SHELLS).
-    #[error("{shells} shells of images are more than the {max} that are ever summed; use the exact coefficients", max = crate::MAX_SHELLS)]
+    #[error("{shells} shells of images are more than the {max} that are ever summed; use the exact coefficients", max = crate::shells::MAX_SHELLS)]
     TooManyShells {
         /// The number of shells that was given.
         shells: usize,
@@ -34,7 +34,7 @@ pub enum KernelError {
         tolerance: f64,
     },
     /// The truncation error at [`MAX_SHELLS`](crate::MAX_SHELLS) shells may still be larger than the tolerance.
-    #[error("tolerance {tolerance:e} is out of reach: {max} shells of images guarantee {reached:e}; use the exact coefficients", max = crate::MAX_SHELLS)]
+    #[error("tolerance {tolerance:e} is out of reach: {max} shells of images guarantee {reached:e}; use the exact coefficients", max = crate::shells::MAX_SHELLS)]
     Unreachable {
         /// The tolerance that was given.
         tolerance: f64,

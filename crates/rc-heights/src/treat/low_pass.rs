@@ -1,6 +1,6 @@
 //! The Gaussian filter of ISO 16610-61.
 
-use super::TreatError;
+use super::error::TreatError;
 use super::stencil::{Edges, Taps, along_x, along_y};
 use crate::HeightMap;
 

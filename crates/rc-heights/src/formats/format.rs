@@ -1,0 +1,40 @@
+//! The formats of height maps, by name.
+
+/// A format of height maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// NumPy array, 2-D.
+    Npy,
+    /// Numbers as text, a row of the map a line.
+    Csv,
+    /// Lines of `x y z`.
+    Xyz,
+    /// Surfer grid: 6 text (DSAA), 6 binary (DSBB) and 7 (DSRB).
+    Surfer,
+    /// Gwyddion simple field 1.0.
+    Gsf,
+    /// ISO 25178-71, text and binary.
+    Sdf,
+    /// ISO 5436-2, now ISO 25178-72.
+    X3p,
+    /// PNG, 16-bit grayscale.
+    Png,
+    /// TIFF, grayscale of 16 bits, or of 32-bit floats.
+    Tiff,
+}
+
+impl std::fmt::Display for Format {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Npy => "npy",
+            Self::Csv => "csv",
+            Self::Xyz => "xyz",
+            Self::Surfer => "Surfer grid",
+            Self::Gsf => "Gwyddion simple field",
+            Self::Sdf => "sdf",
+            Self::X3p => "x3p",
+            Self::Png => "PNG",
+            Self::Tiff => "TIFF",
+        })
+    }
+}
