@@ -65,8 +65,20 @@ const CRATES: &[&str] = &["rc-core", "rc-fft", "rc-solver"];
 
 /// The program that solves with the forks.
 const SCENE: &str = include_str!("swap/scene.rs");
-const MAIN: &str = "//! Prints the numbers of a contact.\n\nmod scene;\n\nfn main() -> Result<(), Box<dyn std::error::Error>> {\n    \
-                    println!(\"{}\", scene::numbers()?);\n    Ok(())\n}\n";
+const MAIN: &str = r#"//! Prints the numbers of a contact.
+
+mod scene;
+
+fn main() {
+    match scene::numbers() {
+        Ok(numbers) => println!("{numbers}"),
+        Err(error) => {
+            eprintln!("{error}");
+            std::process::exit(1);
+        }
+    }
+}
+"#;
 
 const BUILD: Step = Step { environment: &[], words: &["build", "--release", "--package", "swapped"] };
 

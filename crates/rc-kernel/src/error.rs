@@ -3,9 +3,6 @@
 use rc_core::DVec2;
 use thiserror::Error;
 
-/// Maximum number of shells of images: 4 million images, a second for one coefficient.
-pub const MAX_SHELLS: usize = 1024;
-
 /// Why a periodic coefficient, or its number of image shells, cannot be given. Lengths are in units of λ.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum KernelError {
@@ -24,8 +21,8 @@ pub enum KernelError {
     /// Zero shells of images: an empty sum has no meaning.
     #[error("0 shells of images; at least 1 is needed")]
     NoShells,
-    /// More shells than [`MAX_SHELLS`].
-    #[error("{shells} shells of images are more than the {max} that are ever summed; use the exact coefficients", max = MAX_SHELLS)]
+    /// More shells than [`MAX_SHELLS`](crate::MAX_SHELLS).
+    #[error("{shells} shells of images are more than the {max} that are ever summed; use the exact coefficients", max = crate::shells::MAX_SHELLS)]
     TooManyShells {
         /// The number of shells that was given.
         shells: usize,
@@ -36,8 +33,8 @@ pub enum KernelError {
         /// The tolerance that was given.
         tolerance: f64,
     },
-    /// The truncation error at [`MAX_SHELLS`] shells may still be larger than the tolerance.
-    #[error("tolerance {tolerance:e} is out of reach: {max} shells of images guarantee {reached:e}; use the exact coefficients", max = MAX_SHELLS)]
+    /// The truncation error at [`MAX_SHELLS`](crate::MAX_SHELLS) shells may still be larger than the tolerance.
+    #[error("tolerance {tolerance:e} is out of reach: {max} shells of images guarantee {reached:e}; use the exact coefficients", max = crate::shells::MAX_SHELLS)]
     Unreachable {
         /// The tolerance that was given.
         tolerance: f64,

@@ -41,6 +41,7 @@ mod love;
 mod love_symbol;
 mod multipoles;
 mod periodic;
+mod shells;
 mod spectral;
 mod split;
 mod square;
@@ -48,11 +49,12 @@ mod truncated;
 
 pub use alias_sum::love_alias_sum;
 pub use bessel::bessel_series;
-pub use error::{KernelError, MAX_SHELLS};
+pub use error::KernelError;
 pub use lattice::{LATTICE_CONSTANT, ewald_coefficient, ewald_phi};
 
 pub use love::love_displacement;
 pub use periodic::{PeriodicLove, PeriodicSource};
+pub use shells::MAX_SHELLS;
 pub use spectral::Spectral;
 pub use split::{CoarseElement, CoarseFilter, Filter, ScaleSplit, SplitParams, Stencil};
 pub use truncated::{LoadForm, shells_for, truncated_coefficient, truncation_error_bound};

@@ -5,7 +5,8 @@ use std::f64::consts::{FRAC_1_PI, SQRT_2};
 use rc_core::DVec2;
 
 use crate::lattice::wrapped;
-use crate::{KernelError, MAX_SHELLS, love_displacement};
+use crate::shells::MAX_SHELLS;
+use crate::{KernelError, love_displacement};
 
 /// How the uniform counter-load of the cell, l_m, is written as a sum of squares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

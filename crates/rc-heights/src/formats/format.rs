@@ -1,4 +1,4 @@
-//! The formats by name.
+//! The formats of height maps, by name.
 
 /// A format of height maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -2,6 +2,7 @@
 //! (<http://gwyddion.net/documentation/user-guide-en/gsf.html>).
 
 use super::binary::Number;
+use super::field::field;
 use super::fields::{Fields, positive, refused};
 use crate::{Format, FormatError, HeightMap, LengthUnit, Unit};
 
@@ -32,7 +33,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     // One to four zero bytes fill the header up to a multiple of four.
     let mut values = Number::F32.values_alone(bytes.get(end + 4 - end % 4..).unwrap_or_default(), grid)?;
     crate::map::scale(&mut values, height_factor);
-    Ok(HeightMap { heights: super::field(grid, values), height_unit, sides, side_unit })
+    Ok(HeightMap { heights: field(grid, values), height_unit, sides, side_unit })
 }
 
 /// A unit of length and what it is in metres.

@@ -1,6 +1,7 @@
 //! The formats, and how a file is known.
 
 mod binary;
+mod field;
 mod fields;
 mod format;
 mod gsf;
@@ -16,8 +17,6 @@ mod xyz;
 use std::fs::File;
 use std::io::{Cursor, Read as _};
 use std::path::Path;
-
-use rc_core::{Field, Grid};
 
 pub use format::Format;
 
@@ -150,9 +149,4 @@ fn checked(map: HeightMap) -> Result<HeightMap, FormatError> {
         return Err(FormatError::Empty(values.len()));
     }
     Ok(map)
-}
-
-/// The field of values that were counted.
-fn field(grid: Grid, values: Vec<f64>) -> Field {
-    Field::new(grid, values).expect("as many values as points")
 }

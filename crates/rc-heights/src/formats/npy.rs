@@ -7,6 +7,7 @@ use std::path::Path;
 use npyz::{DType, Deserialize, NpyFile, NpyHeader, Order, TypeChar, WriterBuilder as _};
 use rc_core::{Field, Grid};
 
+use super::field::field;
 use crate::{Format, FormatError, ReadError};
 
 /// Longest header that is read; that of a 2-D array has about 120 bytes. The parser of headers goes one call deeper for each
@@ -57,7 +58,7 @@ pub fn read_from(mut file: impl Read, bytes: u64) -> Result<Field, FormatError> 
         _ => unreadable(cause),
     };
     let stored = to_f64(npy).map_err(cut_short)?;
-    Ok(super::field(grid, if order == Order::C { stored } else { transposed(&stored, grid) }))
+    Ok(field(grid, if order == Order::C { stored } else { transposed(&stored, grid) }))
 }
 
 #[expect(clippy::needless_pass_by_value, reason = "the shape that map_err wants")]

@@ -5,6 +5,7 @@ use std::io::Cursor;
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 use rc_core::Grid;
 
+use super::field::field;
 use crate::{Format, FormatError, HeightMap, Unit};
 
 /// Deflate makes at most 1032 bytes of one: what is promised beyond that is not there.
@@ -43,6 +44,6 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     if values.len() != grid.len() {
         return Err(FormatError::CutShort { grid, needed, found: 2 * alpha * values.len() as u64 });
     }
-    let heights = super::field(grid, values);
+    let heights = field(grid, values);
     Ok(HeightMap { heights, height_unit: Unit::GreyLevel, sides: None, side_unit: Unit::Unnamed })
 }

@@ -3,6 +3,7 @@
 //! where the standard takes the lowest.
 
 use super::binary::{Bytes, Number};
+use super::field::field;
 use super::fields::{Fields, factor, positive, refused, shown};
 use crate::{Format, FormatError, HeightMap, Unit};
 
@@ -33,7 +34,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     let z = factor(Format::Sdf, "Zscale", z)?;
     crate::map::scale(&mut values, z);
     let sides = Some([x * header.grid.nx() as f64, y * header.grid.ny() as f64]);
-    let heights = super::field(header.grid, values);
+    let heights = field(header.grid, values);
     Ok(HeightMap { heights, height_unit: Unit::Metre, sides, side_unit: Unit::Metre })
 }
 

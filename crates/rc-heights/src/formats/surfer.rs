@@ -5,6 +5,7 @@
 use rc_core::Grid;
 
 use super::binary::{Bytes, Number};
+use super::field::field;
 use super::fields::{positive, refused, shown};
 use crate::{Format, FormatError, HeightMap, Unit};
 
@@ -34,7 +35,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
 fn map(grid: Grid, spacing: [f64; 2], mut values: Vec<f64>, missing: impl Fn(f64) -> bool) -> HeightMap {
     values.iter_mut().filter(|value| missing(**value)).for_each(|value| *value = f64::NAN);
     let sides = Some([spacing[0] * grid.nx() as f64, spacing[1] * grid.ny() as f64]);
-    HeightMap { heights: super::field(grid, values), height_unit: Unit::Unnamed, sides, side_unit: Unit::Unnamed }
+    HeightMap { heights: field(grid, values), height_unit: Unit::Unnamed, sides, side_unit: Unit::Unnamed }
 }
 
 /// Distance of `n` lines from `low` to `high`.

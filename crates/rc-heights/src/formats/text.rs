@@ -6,6 +6,7 @@ use std::path::Path;
 
 use rc_core::{Field, Grid};
 
+use super::field::field;
 use super::fields::shown;
 use crate::FormatError;
 
@@ -33,7 +34,7 @@ pub fn parse(bytes: &[u8]) -> Result<Field, FormatError> {
         }
         rows += 1;
     }
-    Ok(super::field(Grid::new(columns, rows)?, values))
+    Ok(field(Grid::new(columns, rows)?, values))
 }
 
 /// Lines with data and their numbers, from 1.

@@ -6,6 +6,7 @@ use rc_core::Grid;
 use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 
+use super::field::field;
 use crate::{Format, FormatError, HeightMap, Unit};
 
 /// What LZW makes of one byte at most: 12 bits stand for 4096 bytes. Deflate makes less.
@@ -51,6 +52,6 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     if values.len() != grid.len() {
         return Err(FormatError::CutShort { grid, needed, found: size * values.len() as u64 });
     }
-    let heights = super::field(grid, values);
+    let heights = field(grid, values);
     Ok(HeightMap { heights, height_unit: Unit::GreyLevel, sides: None, side_unit: Unit::Unnamed })
 }

@@ -9,6 +9,7 @@ use roxmltree::{Document, Node};
 use zip::ZipArchive;
 
 use super::binary::Number;
+use super::field::field;
 use super::fields::{factor, positive, refused};
 use crate::{Format, FormatError, HeightMap, Unit};
 
@@ -45,7 +46,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
         *value = if value.is_infinite() { f64::NAN } else { *value * increments[2] + offset };
     }
     let sides = Some([increments[0] * grid.nx() as f64, increments[1] * grid.ny() as f64]);
-    Ok(HeightMap { heights: super::field(grid, values), height_unit: Unit::Metre, sides, side_unit: Unit::Metre })
+    Ok(HeightMap { heights: field(grid, values), height_unit: Unit::Metre, sides, side_unit: Unit::Metre })
 }
 
 /// A bit for each point, lowest first; those that are not set were not measured.

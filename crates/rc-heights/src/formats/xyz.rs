@@ -1,5 +1,6 @@
 //! Lists of points, `x y z` a line, in any order, on a regular grid; points may be missing.
 
+use super::field::field;
 use super::fields::shown;
 use super::text::{data_lines, number, words};
 use crate::{FormatError, HeightMap, Unit};
@@ -42,7 +43,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
         values[i] = z;
     }
     let sides = Some([axes[0].step * grid.nx() as f64, axes[1].step * grid.ny() as f64]);
-    Ok(HeightMap { heights: super::field(grid, values), height_unit: Unit::Unnamed, sides, side_unit: Unit::Unnamed })
+    Ok(HeightMap { heights: field(grid, values), height_unit: Unit::Unnamed, sides, side_unit: Unit::Unnamed })
 }
 
 fn points(text: &str) -> Result<Vec<[f64; 3]>, FormatError> {

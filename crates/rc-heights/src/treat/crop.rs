@@ -1,38 +1,12 @@
 //! A part of a map.
 
-use std::fmt;
 use std::str::FromStr;
 
 use rc_core::{Field, Grid};
 
 use super::error::TreatError;
+use super::treatment::Crop;
 use crate::HeightMap;
-
-/// The part that is kept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Crop {
-    /// The largest square in the middle, by its lengths: what every method takes.
-    Square,
-    /// So many points, in the middle or from a first point on.
-    Points {
-        /// Points along x.
-        nx: usize,
-        /// Points along y.
-        ny: usize,
-        /// The first point along x and y; `None` for the middle.
-        from: Option<[usize; 2]>,
-    },
-}
-
-impl fmt::Display for Crop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Square => f.write_str("square"),
-            Self::Points { nx, ny, from: None } => write!(f, "{nx}x{ny}"),
-            Self::Points { nx, ny, from: Some([x, y]) } => write!(f, "{nx}x{ny}+{x}+{y}"),
-        }
-    }
-}
 
 impl FromStr for Crop {
     type Err = TreatError;

@@ -1,11 +1,9 @@
-//! Treatments that are not possible.
+//! Why a treatment is not possible.
 
 use rc_core::Grid;
 use thiserror::Error;
 
-use super::crop::Crop;
-use super::level::Level;
-use super::treatment::Treatment;
+use super::treatment::{Crop, Level, Treatment};
 
 /// A treatment that is not possible.
 #[derive(Clone, Debug, PartialEq, Error)]

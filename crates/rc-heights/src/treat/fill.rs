@@ -2,32 +2,11 @@
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
-use std::fmt;
 use std::str::FromStr;
 
 use super::error::TreatError;
+use super::treatment::Fill;
 use crate::HeightMap;
-
-/// How missing points get heights.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fill {
-    /// The smoothest membrane through the points around (∇²h = 0): no new peaks, no new valleys.
-    Laplace,
-    /// The height of the nearest measured point, by length.
-    Nearest,
-    /// The lowest measured height: what was too deep or too steep to be measured does not touch.
-    Lowest,
-}
-
-impl fmt::Display for Fill {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Laplace => "laplace",
-            Self::Nearest => "nearest",
-            Self::Lowest => "lowest",
-        })
-    }
-}
 
 impl FromStr for Fill {
     type Err = TreatError;

@@ -1,31 +1,10 @@
 //! Mirrored maps.
 
-use std::fmt;
 use std::str::FromStr;
 
 use super::error::TreatError;
+use super::treatment::Flip;
 use crate::HeightMap;
-
-/// The axis that is reversed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Flip {
-    /// Left and right.
-    X,
-    /// Top and bottom.
-    Y,
-    /// Peaks and valleys, as of a replica.
-    Z,
-}
-
-impl fmt::Display for Flip {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::X => "x",
-            Self::Y => "y",
-            Self::Z => "z",
-        })
-    }
-}
 
 impl FromStr for Flip {
     type Err = TreatError;

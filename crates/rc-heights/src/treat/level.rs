@@ -1,24 +1,13 @@
 //! Forms that are taken away: mean, plane, quadratic, by least squares over the measured points.
 
-use std::fmt;
 use std::str::FromStr;
 
 use rc_core::DVec2;
 
 use super::error::TreatError;
-use super::mean::mean;
+use super::moments::mean;
+use super::treatment::Level;
 use crate::HeightMap;
-
-/// The form that is taken away; each holds the ones before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
-    /// The mean height.
-    Mean,
-    /// A plane: the tilt of the sample.
-    Plane,
-    /// A polynomial of degree two: tilt and curvature.
-    Quadratic,
-}
 
 impl Level {
     /// Terms of the polynomial.
@@ -28,16 +17,6 @@ impl Level {
             Self::Plane => 3,
             Self::Quadratic => 6,
         }
-    }
-}
-
-impl fmt::Display for Level {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Mean => "mean",
-            Self::Plane => "plane",
-            Self::Quadratic => "quadratic",
-        })
     }
 }
 

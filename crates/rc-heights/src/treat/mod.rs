@@ -6,27 +6,24 @@ mod fill;
 mod flip;
 mod level;
 mod low_pass;
-mod mean;
+mod moments;
 mod periodic;
 mod repeat;
 mod resample;
 mod stencil;
 mod treatment;
 
-use rc_core::{Field, Grid};
+use rc_core::Grid;
 
 use crate::{BorderStep, HeightMap};
-use mean::{mean, sum_rows};
 
-pub use crop::{Crop, SAME_LENGTH};
+pub use crop::SAME_LENGTH;
 pub use error::TreatError;
-pub use fill::Fill;
-pub use flip::Flip;
-pub use level::Level;
-pub use periodic::{Periodic, hann};
-pub use repeat::{MOST_COPIES, Repeat};
+use moments::rms_height;
+pub(crate) use moments::rms_slope;
+pub use periodic::hann;
 pub use stencil::Edges;
-pub use treatment::Treatment;
+pub use treatment::{Crop, Fill, Flip, Level, MOST_COPIES, Periodic, Repeat, Treatment};
 
 /// What a map is like after a treatment.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,26 +127,4 @@ fn one(map: HeightMap, treatment: Treatment, edges: Edges) -> Result<(HeightMap,
         Treatment::Repeat(times) => repeat::repeat(&map, times),
     };
     treated.map(|map| (map, String::new()))
-}
-
-/// Root mean square about the mean of the values that are there; `NaN` without any.
-fn rms_height(heights: &Field) -> f64 {
-    let (mean, n) = mean(heights);
-    let squares = sum_rows(heights, |height| (height - mean) * (height - mean));
-    (squares / n as f64).sqrt()
-}
-
-/// √(⟨(∂h/∂x)²⟩ + ⟨(∂h/∂y)²⟩) from differences of neighbours that are there.
-pub(crate) fn rms_slope(heights: &Field, [dx, dy]: [f64; 2]) -> f64 {
-    let (nx, ny) = (heights.grid().nx(), heights.grid().ny());
-    let mean_square = |differences: &mut dyn Iterator<Item = f64>| {
-        let there = differences.filter(|difference| !difference.is_nan());
-        let (sum, n) = there.fold((0.0, 0_usize), |(sum, n), difference| (sum + difference * difference, n + 1));
-        if n > 0 { sum / n as f64 } else { 0.0 }
-    };
-    let along_x = (0..ny).flat_map(|iy| heights.row(iy).windows(2).map(move |pair| (pair[1] - pair[0]) / dx));
-    let along_y = (1..ny)
-        .flat_map(|iy| (0..nx).map(move |ix| (iy, ix)))
-        .map(|(iy, ix)| (heights.at(ix, iy) - heights.at(ix, iy - 1)) / dy);
-    (mean_square(&mut { along_x }) + mean_square(&mut { along_y })).sqrt()
 }

@@ -1,38 +1,11 @@
 //! Maps whose opposite borders meet.
 
-use std::fmt;
-
 use rc_core::{Field, Grid};
 
 use super::error::TreatError;
-use super::mean::mean;
+use super::moments::mean;
+use super::treatment::Periodic;
 use crate::HeightMap;
-
-/// How opposite borders are made to meet.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Periodic {
-    /// They meet already.
-    AsIs,
-    /// The map and its mirror images: twice the sides, four times the points. Every height stays, and their distribution;
-    /// slopes change sign at the old borders, and what touches there touches twice as wide.
-    Mirror,
-    /// Heights fade to their mean towards the borders (Tukey's window). Sides stay; the outer part of the map is flatter than
-    /// the surface was.
-    Window {
-        /// The part of each side that fades, at each of its ends: above 0, at most 0.5.
-        taper: f64,
-    },
-}
-
-impl fmt::Display for Periodic {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::AsIs => f.write_str("as-is"),
-            Self::Mirror => f.write_str("mirror"),
-            Self::Window { taper } => write!(f, "window, taper {taper}"),
-        }
-    }
-}
 
 pub(super) fn periodic(map: HeightMap, how: Periodic) -> Result<HeightMap, TreatError> {
     match how {

@@ -1,35 +1,13 @@
 //! Copies of a periodic map beside each other.
 
-use std::fmt;
 use std::str::FromStr;
 
 use rc_core::{Field, Grid};
 
 use super::crop::SAME_LENGTH;
 use super::error::TreatError;
+use super::treatment::{MOST_COPIES, Repeat};
 use crate::HeightMap;
-
-/// How often a map is repeated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Repeat {
-    /// As often as makes the cell a square, at most [`MOST_COPIES`] times along a side: the same contact, in a cell that every method
-    /// takes.
-    Square,
-    /// So often along x and along y.
-    Times([usize; 2]),
-}
-
-/// Most copies along a side.
-pub const MOST_COPIES: usize = 16;
-
-impl fmt::Display for Repeat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Square => f.write_str("square"),
-            Self::Times([x, y]) => write!(f, "{x}x{y}"),
-        }
-    }
-}
 
 impl FromStr for Repeat {
     type Err = TreatError;

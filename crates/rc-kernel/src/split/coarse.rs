@@ -11,8 +11,8 @@
 //!
 //! along each axis ([`CoarseFilter`]); its short-range part follows level by level from that of Love's squares.
 
+use super::SplitParams;
 use super::filter::{EXACT, SAMPLES, least_squares, love_target, weight};
-use super::params::SplitParams;
 use super::stencil::Stencil;
 use super::window::Window;
 

@@ -4,7 +4,7 @@
 //! so that one set of taps, and its mirror image, is the whole table. It is the set that interpolates waves best (least
 //! squares), weighted by the spectrum of the remainder.
 
-use super::params::SplitParams;
+use super::SplitParams;
 use super::window::Window;
 
 /// Wavenumbers at which the fit is made.
