@@ -78,7 +78,9 @@ impl Operator for TwiceAsSoft {
 
     fn apply(&self, pressure: &[f64], displacement: &mut [f64], scratch: &mut [f64]) {
         self.0.apply(pressure, displacement, scratch);
-        displacement.iter_mut().for_each(|v| *v *= 2.0);
+        for v in displacement {
+            *v *= 2.0;
+        }
     }
 }
 

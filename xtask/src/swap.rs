@@ -7,7 +7,7 @@
 mod scene;
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
@@ -195,7 +195,7 @@ fn read(path: &Path) -> Result<String> {
 }
 
 /// Replaces the one place of a file that has this text.
-fn change(path: &PathBuf, original: &str, changed: &str) -> Result<()> {
+fn change(path: &Path, original: &str, changed: &str) -> Result<()> {
     let text = read(path)?;
     let count = text.matches(original).count();
     ensure!(count == 1, "`{original}` occurs {count} times in {}, not once: mend FORKS", path.display());

@@ -11,6 +11,7 @@ impl Field {
     ///
     /// # Errors
     /// As [`Grid::in_cell`].
+    #[expect(clippy::missing_panics_doc, reason = "an array has as many values as its grid")]
     pub fn from_array(array: Array2<f64>, cell_ratio: f64) -> Result<Self, GridError> {
         let (ny, nx) = array.dim();
         let grid = Grid::in_cell(nx, ny, cell_ratio)?;
@@ -24,6 +25,7 @@ impl Field {
 
     /// The values as an array of shape (ny, nx), without a copy.
     #[must_use]
+    #[expect(clippy::missing_panics_doc, reason = "a field has as many values as its grid")]
     pub fn into_array(self) -> Array2<f64> {
         let shape = (self.grid().ny(), self.grid().nx());
         Array2::from_shape_vec(shape, self.into_values()).expect("a field has as many values as its grid")
@@ -31,6 +33,7 @@ impl Field {
 
     /// The values as a view of shape (ny, nx).
     #[must_use]
+    #[expect(clippy::missing_panics_doc, reason = "a field has as many values as its grid")]
     pub fn as_array(&self) -> ArrayView2<'_, f64> {
         let shape = (self.grid().ny(), self.grid().nx());
         ArrayView2::from_shape(shape, self.values()).expect("a field has as many values as its grid")
@@ -63,7 +66,7 @@ mod tests {
         let grid = Grid::in_cell(5, 3, 0.5).expect("a grid");
         let field = Field::from_fn(grid, |at| at.x + 10.0 * at.y);
         let place = field.values().as_ptr();
-        assert_eq!(field.as_array()[[2, 4]], field.at(4, 2), "row, then column");
+        assert_eq!(field.as_array()[[2, 4]].to_bits(), field.at(4, 2).to_bits(), "row, then column");
         let array = Array2::from(field.clone());
         assert_eq!(array.dim(), (3, 5));
         assert_eq!(Field::from_array(array, 0.5).as_ref(), Ok(&field));

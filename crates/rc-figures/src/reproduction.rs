@@ -32,6 +32,7 @@ pub fn update() -> Result<()> {
 }
 
 /// Complains when the document has other numbers than the archived run.
+#[must_use]
 pub fn check(sources: &Sources) -> Vec<String> {
     match render(sources) {
         Ok(text) if sources.get(DOCUMENT).is_some_and(|document| *document == text) => Vec::new(),

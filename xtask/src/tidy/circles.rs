@@ -210,8 +210,9 @@ impl<'a> Module<'a> {
                 self.items.insert(if name == "!" { text(at + 2) } else { name });
             } else if at == 0 || text(at - 1) != "::" {
                 let is_name = |at: usize| text(at).starts_with(|c: char| c.is_alphabetic() || c == '_');
-                let n_names =
-                    (0..).take_while(|i| *i == 0 || text(at + 2 * i - 1) == "::" && is_name(at + 2 * i)).count();
+                let n_names = (0..tokens.len())
+                    .take_while(|i| *i == 0 || text(at + 2 * i - 1) == "::" && is_name(at + 2 * i))
+                    .count();
                 let path: Vec<&str> = (0..n_names).map(|i| text(at + 2 * i)).collect();
                 // In a module within the file, the first `super` is the file.
                 let inner = inline.len().min(path.iter().take_while(|name| **name == "super").count());

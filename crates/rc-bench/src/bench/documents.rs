@@ -35,6 +35,7 @@ pub fn update() -> Result<()> {
 }
 
 /// Complains when a document has other numbers than the archived run.
+#[must_use]
 pub fn check(sources: &Sources) -> Vec<String> {
     let complaint = |document: &str| match render(document, sources) {
         Ok(text) if sources.get(document) == Some(&text) => None,

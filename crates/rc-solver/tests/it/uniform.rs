@@ -170,7 +170,7 @@ fn a_rectangular_cell_is_a_part_of_the_square_of_its_copies() {
                 close("rms pressure", of_a.rms_pressure_corrected, of_b.rms_pressure_corrected);
                 close("mean gap", of_a.mean_gap, of_b.mean_gap);
                 close("energy of a unit of area", of_a.elastic_energy, of_b.elastic_energy);
-                let [of_a, of_b] = [&a, &b].map(|solution| solution.stiffness());
+                let [of_a, of_b] = [&a, &b].map(Solution::stiffness);
                 assert!((of_a / of_b - 1.0).abs() < 1e-3, "stiffness {of_a}, of {copies} copies {of_b}");
             }
         }
