@@ -73,7 +73,7 @@ impl Figure for Fig5 {
     const NAME: &'static str = "fig5";
     type Params = Params;
 
-    /// The sweep of [`sweep::Params::of`].
+    /// The sweep of `sweep::Params::of`.
     fn params(preset: Preset) -> Result<Params> {
         let printed = Printed {
             load: paper::value("load")?,

@@ -83,7 +83,7 @@ impl Figure for Fig7 {
     const NAME: &'static str = "fig7";
     type Params = Params;
 
-    /// The sweep of [`sweep::Params::of`].
+    /// The sweep of `sweep::Params::of`.
     fn params(preset: Preset) -> Result<Params> {
         let rms_height = paper::value("q0")? * paper::value("rms_height")?;
         Ok(Params { sweep: sweep::Params::of(preset)?, hurst: paper::value("hurst")?, rms_height })
