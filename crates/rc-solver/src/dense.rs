@@ -16,7 +16,7 @@ use crate::{Control, IterationParams, ProblemError};
 /// # Errors
 /// [`ProblemError`] for heights or a penetration out of range.
 pub fn solve_dense(heights: &Field, kernel: &dyn Kernel, penetration: f64) -> Result<Option<Field>, ProblemError> {
-    let problem = Problem::check(heights, Control::Penetration(penetration), &IterationParams::certified())?;
+    let problem = Problem::check(heights, Control::Penetration(penetration), &IterationParams::relative(1e-6))?;
     let grid = heights.grid();
     let operator = DirectSum::new(grid, kernel);
     let prescribed: Vec<f64> = heights.values().iter().map(|h| h - problem.offset()).collect();

@@ -69,5 +69,5 @@ pub use pressure_statistics::PressureStatistics;
 pub use solution::{LevelInfo, LevelValues, SolveInfo, Status};
 pub use solve::{ContactProblem, Cost, Plan, Solution, SolveError, SolveParams, solve, solve_with_operator};
 pub use stress_distribution::StressDistribution;
-pub use tolerance::Tolerance;
+pub use tolerance::{ErrorBound, Tolerance};
 pub use uniform::UNIFORM_BYTES_PER_ELEMENT;

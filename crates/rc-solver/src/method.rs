@@ -83,7 +83,7 @@ pub enum MethodReason {
     Flat,
     /// The adaptive operator is not accurate enough for the tolerance.
     ToleranceTooSmall {
-        /// The tolerance.
+        /// The tolerance, as it was given.
         tolerance: f64,
     },
 }

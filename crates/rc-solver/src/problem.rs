@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use rc_core::Field;
 
+use crate::tolerance::{ErrorBound, Measure};
 use crate::{Control, IterationParams, ProblemError};
 
 /// Height ranges, in λ, for which squares of pressures and their products with gaps neither underflow nor overflow.
@@ -58,8 +59,10 @@ pub(crate) struct Problem {
     pub(crate) h_max: f64,
     /// Mean height, on the finest grid.
     pub(crate) h_mean: f64,
-    /// H = h_max - h_min, which tolerances multiply.
+    /// H = h_max - h_min.
     pub(crate) h_range: f64,
+    /// What an overlap is measured by.
+    pub(crate) measure: Measure,
 }
 
 impl Problem {
@@ -79,7 +82,7 @@ impl Problem {
         if h_range != 0.0 && !(smallest..=greatest).contains(&h_range) {
             return Err(ProblemError::HeightRange { value: h_range, smallest, greatest });
         }
-        check_load(control, params.tolerance)?;
+        check_load(control)?;
         match control {
             // Also refuses every penetration into a flat surface, whose full contact is at zero.
             Control::Penetration(value) if !(value > 0.0 && value < full_contact) => {
@@ -87,7 +90,21 @@ impl Problem {
             }
             Control::MeanPressure(_) | Control::Penetration(_) => {}
         }
-        Ok(Self { control, h_max, h_mean, h_range })
+        Ok(Self { control, h_max, h_mean, h_range, measure: params.bound.measure() })
+    }
+
+    /// The length that overlaps are compared with, where the pressure does the `work` Σ p v and sums up to `pressure`: H, or
+    /// U/σ0 = Σ p v / 2 Σ p.
+    pub(crate) fn reference_length(&self, work: f64, pressure: f64) -> f64 {
+        match self.measure {
+            Measure::HeightRange => self.h_range,
+            Measure::Energy => 0.5 * work / pressure,
+        }
+    }
+
+    /// How deep a rigid plane may have to go into the surface: the height range, unless that is the depth of a pit.
+    pub(crate) fn depth_range(&self) -> f64 {
+        self.h_range.min(4.0 * (self.h_max - self.h_mean))
     }
 
     /// The constant c in `g = L p - h + c`: h_max - Δ under penetration control. Under pressure control Δ is a multiplier, and
@@ -100,17 +117,18 @@ impl Problem {
     }
 }
 
-/// Refuses a mean pressure or a tolerance that is out of range whatever the heights are.
-pub(crate) fn check_load(control: Control, tolerance: f64) -> Result<(), ProblemError> {
-    if let Control::MeanPressure(value) = control
-        && !(value > 0.0 && value.is_finite())
-    {
-        return Err(ProblemError::MeanPressure { value });
+/// Refuses a mean pressure that is out of range whatever the heights are.
+pub(crate) fn check_load(control: Control) -> Result<(), ProblemError> {
+    match control {
+        Control::MeanPressure(value) if !(value > 0.0 && value.is_finite()) => {
+            Err(ProblemError::MeanPressure { value })
+        }
+        _ => Ok(()),
     }
-    let smallest = IterationParams::SMALLEST_TOLERANCE;
-    if tolerance >= smallest && tolerance < 1.0 {
-        Ok(())
-    } else {
-        Err(ProblemError::Tolerance { value: tolerance, smallest })
-    }
+}
+
+/// Refuses a tolerance that is out of range.
+pub(crate) fn check_tolerance(bound: ErrorBound) -> Result<(), ProblemError> {
+    let (value, smallest) = (bound.value(), bound.smallest());
+    if value >= smallest && value < 1.0 { Ok(()) } else { Err(ProblemError::Tolerance { value, smallest }) }
 }

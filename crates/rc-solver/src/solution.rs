@@ -55,6 +55,9 @@ pub struct LevelValues {
 pub struct SolveInfo {
     /// Residuals from a fresh application of L on the returned pressure.
     pub certificate: Certificate,
+    /// [`Certificate::energy`] of the gap as the operator computed it, without the bound on the error of the operator: what the iteration has
+    /// left. Area and pressure are off by at most its square.
+    pub iteration_error: f64,
     /// Mean pressure σ0, in E*.
     pub mean_pressure: f64,
     /// Penetration Δ, in λ: pressure-weighted mean of v - h, plus h_max.

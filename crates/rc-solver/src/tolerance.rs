@@ -1,53 +1,175 @@
-//! The tolerance of a solve, and `auto`: as accurate as the discretisation deserves.
+//! When a solve is good enough: the tolerance that users give, and the bound on the certificate that follows from it.
 
-/// Bound on the certificate's complementarity and penetration errors, both relative to the peak-to-valley height.
+use crate::certificate::Certificate;
+
+/// How accurately a contact problem is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tolerance {
-    /// A number between [`Tolerance::SMALLEST`] and 1.
+    /// Bound on [`Certificate::energy`], a number between [`Tolerance::SMALLEST_ENERGY`] and 1. It does not depend on the height range: a
+    /// pit, a raised surface and a light load are solved as accurately as any other scene.
+    Energy(f64),
+    /// Bound on [`Certificate::complementarity`] and [`Certificate::penetration`], relative to the peak-to-valley height, a number between
+    /// [`Tolerance::SMALLEST`] and 1. Other programs mean this by a tolerance. One deep point in the heights loosens it.
     Relative(f64),
-    /// Well below the error of the discretisation: 3e-5 (m/8)^(-3/2) for m elements per shortest wave, 1e-5 for a height map.
+    /// Well below the error of the discretisation: an energy error of 0.06 (m/8)^(-3/4) for m elements per shortest wave, 0.03 for a height
+    /// map.
     Auto,
 }
 
 impl Tolerance {
-    /// The smallest tolerance that can be certified: below it the rounding of L p in double precision decides.
+    /// The smallest relative tolerance that can be certified: below it the rounding of L p in double precision decides.
     pub const SMALLEST: f64 = 1e-13;
 
-    /// The tolerance as a number, for a grid with this many elements per shortest wave (`None` for a height map, whose waves are not
+    /// The smallest energy error that can be certified; its square is what rounding bounds.
+    pub const SMALLEST_ENERGY: f64 = 1e-5;
+
+    /// Area, rms pressure and penetration are then those of the discrete problem to about 1e-5 ([`ErrorBound::aim`]).
+    pub const DEFAULT: Self = Self::Energy(1e-2);
+
+    /// The bound on the certificate, for a grid with this many elements per shortest wave (`None` for a height map, whose waves are not
     /// known).
     #[must_use]
-    pub fn relative(self, elements_per_wave: Option<f64>) -> f64 {
+    pub fn bound(self, elements_per_wave: Option<f64>) -> ErrorBound {
         match self {
-            Self::Relative(value) => value,
-            Self::Auto => auto_tolerance(elements_per_wave),
+            Self::Energy(value) => ErrorBound::Energy(value),
+            Self::Relative(value) => ErrorBound::Relative(value),
+            Self::Auto => ErrorBound::Energy(auto_tolerance(elements_per_wave)),
         }
     }
 }
 
-/// Tolerance at [`REFERENCE`] elements per shortest wave.
-const AT_REFERENCE: f64 = 3e-5;
+/// What a certificate has to meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ErrorBound {
+    /// On [`Certificate::energy`].
+    Energy(f64),
+    /// On [`Certificate::complementarity`] and [`Certificate::penetration`].
+    Relative(f64),
+}
+
+impl ErrorBound {
+    /// Whether the certificate meets the bound, and the load [`Certificate::LOAD_TOLERANCE`].
+    #[must_use]
+    pub fn is_met_by(self, certificate: &Certificate) -> bool {
+        let error = match self {
+            Self::Energy(_) => certificate.energy,
+            Self::Relative(_) => certificate.penetration.max(certificate.complementarity),
+        };
+        // NaN meets nothing.
+        error <= self.value() && certificate.load <= Certificate::LOAD_TOLERANCE
+    }
+
+    /// The bound as a number.
+    #[must_use]
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Energy(value) | Self::Relative(value) => value,
+        }
+    }
+
+    /// The smallest bound of this kind that can be certified.
+    #[must_use]
+    pub fn smallest(self) -> f64 {
+        match self {
+            Self::Energy(_) => Tolerance::SMALLEST_ENERGY,
+            Self::Relative(_) => Tolerance::SMALLEST,
+        }
+    }
+
+    /// What the deepest overlap is measured by.
+    pub(crate) fn measure(self) -> Measure {
+        match self {
+            Self::Energy(_) => Measure::Energy,
+            Self::Relative(_) => Measure::HeightRange,
+        }
+    }
+
+    /// The bound on the deepest overlap δ, in units of the [`Measure`]'s length: G/U = σ0 δ/U is the square of the energy error.
+    pub(crate) fn overlap(self) -> f64 {
+        match self {
+            Self::Energy(value) => value * value,
+            Self::Relative(value) => value,
+        }
+    }
+
+    /// The overlap of the computed gap that an iteration ends with. An energy error is brought to [`AIM`] of its bound: area, pressure and
+    /// penetration are off by its square, which two or three iterations make a tenth, and the rest is left to the error of the operator.
+    pub(crate) fn aim(self) -> f64 {
+        match self {
+            Self::Energy(value) => (AIM * value).powi(2),
+            Self::Relative(value) => value,
+        }
+    }
+}
+
+impl std::fmt::Display for ErrorBound {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Energy(value) => write!(f, "an energy error of {value:e}"),
+            Self::Relative(value) => write!(f, "{value:e} of the height range"),
+        }
+    }
+}
+
+/// See [`ErrorBound::aim`].
+const AIM: f64 = 0.3;
+
+/// The length that the deepest overlap is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Measure {
+    /// H = h_max - h_min.
+    HeightRange,
+    /// U/σ0, the elastic energy over the mean pressure.
+    Energy,
+}
+
+impl Measure {
+    /// Tolerance of the level below the finest: its discretisation error is far above this. Levels further down may be solved less
+    /// accurately by [`COARSENING`] each, up to a limit: they only prepare the next.
+    pub(crate) fn coarse_tolerance(self, below: usize) -> f64 {
+        let (tolerance, coarsest) = match self {
+            Self::HeightRange => (1e-4, 1e-3),
+            // U/σ0 is 0.02 to 0.08 H on rough surfaces.
+            Self::Energy => (2e-3, 2e-2),
+        };
+        (tolerance * COARSENING.powi(below as i32)).min(coarsest)
+    }
+
+    /// An overlap in units of the measure's length, as users know it.
+    pub(crate) fn shown(self, overlap: f64) -> f64 {
+        match self {
+            Self::HeightRange => overlap,
+            Self::Energy => overlap.sqrt(),
+        }
+    }
+}
+
+/// See [`Measure::coarse_tolerance`].
+const COARSENING: f64 = 3.0;
+
+/// Energy error at [`REFERENCE`] elements per shortest wave.
+const AT_REFERENCE: f64 = 6e-2;
 
 /// Elements per shortest wave to which [`AT_REFERENCE`] belongs.
 const REFERENCE: f64 = 8.0;
 
-/// Order in the element side at which the error of the discretisation falls.
-const ORDER: f64 = 1.5;
+/// Order in the element side of the energy error: area and pressure change by its square, and the error of the discretisation falls with
+/// the power 1.5.
+const ORDER: f64 = 0.75;
 
 /// Bounds: what any picture needs, and what a grid that fits into memory is never as accurate as.
-const LARGEST: f64 = 1e-3;
-const SMALLEST: f64 = 1e-8;
+const LARGEST: f64 = 0.15;
+const SMALLEST: f64 = 3e-3;
 
 /// For a height map, whose shortest wave is not known.
-const OF_MAP: f64 = 1e-5;
+const OF_MAP: f64 = 3e-2;
 
-/// The tolerance, relative to the peak-to-valley height, at which the error of the iteration is well below that of the
-/// discretisation: 3e-5 (m/8)^(-3/2) with m elements per shortest wave, from 1e-8 to 1e-3; 1e-5 for a height map
-/// (`None`).
+/// The energy error at which the error of the iteration is well below that of the discretisation: 0.06 (m/8)^(-3/4) with m elements per
+/// shortest wave, from 3e-3 to 0.15; 0.03 for a height map (`None`).
 ///
-/// Errors of rms pressure and area fall about as the power 1.5 of the element side, which the model follows. Measured for
-/// N = 16, 4 to 32 elements per wave and 1 % and 7 % contact, summed over four surfaces: the iteration changes area, rms
-/// pressure and penetration by at most 0.15 of what halving the elements changes. (With 1e-4 for 3e-5 it is 0.30, and about one
-/// iteration less.) Test `auto_stops_well_below_the_error_of_the_grid` of the command line repeats part of it.
+/// Area and rms pressure are off by at most the square of the energy error that is aimed at, and errors of the discretisation fall
+/// about as the power 1.5 of the element side, which the model follows. Test `auto_stops_well_below_the_error_of_the_grid` of the command
+/// line compares the two.
 fn auto_tolerance(elements_per_wave: Option<f64>) -> f64 {
     match elements_per_wave {
         Some(elements) => (AT_REFERENCE * (elements / REFERENCE).powf(-ORDER)).clamp(SMALLEST, LARGEST),
@@ -61,10 +183,20 @@ mod tests {
 
     #[test]
     fn the_tolerance_falls_with_the_elements_within_its_bounds() {
-        let cases = [(Some(32.0), 3.75e-6), (Some(0.1), LARGEST), (Some(1e6), SMALLEST), (None, OF_MAP)];
-        for (elements, expected) in cases {
-            let relative = Tolerance::Auto.relative(elements) / expected - 1.0;
-            assert!(relative.abs() < 1e-12, "{elements:?} elements: off by {relative:e}");
+        let at_128 = AT_REFERENCE / 8.0;
+        for (elements, expected) in [(Some(128.0), at_128), (Some(0.1), LARGEST), (Some(1e6), SMALLEST), (None, OF_MAP)]
+        {
+            let bound = Tolerance::Auto.bound(elements);
+            assert_eq!(bound.measure(), Measure::Energy, "{elements:?} elements");
+            assert!((bound.value() / expected - 1.0).abs() < 1e-12, "{elements:?} elements: {bound}");
         }
+    }
+
+    #[test]
+    fn what_is_not_a_number_meets_no_bound() {
+        let certificate = Certificate { complementarity: 0.0, penetration: f64::NAN, energy: f64::NAN, load: 0.0 };
+        assert!(!ErrorBound::Energy(0.9).is_met_by(&certificate));
+        let unloaded = Certificate { complementarity: 0.0, penetration: 0.0, energy: 0.0, load: 1e-9 };
+        assert!(!ErrorBound::Relative(0.9).is_met_by(&unloaded));
     }
 }

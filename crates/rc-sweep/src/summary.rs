@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use rc_core::Units;
-use rc_solver::Solution;
+use rc_solver::{ErrorBound, Solution};
 use serde::{Deserialize, Serialize};
 
 use crate::content::Cells;
@@ -73,10 +73,14 @@ pub struct Summary {
     pub complementarity_error: f64,
     /// max(-g) / H.
     pub penetration_error: f64,
+    /// √(G/U), a bound on the relative error of the pressure in the energy norm, with G = mean p (g - min g) and U = mean p v / 2.
+    pub energy_error: Option<f64>,
     /// |mean p - σ0| / σ0, or the deviation of Δ over H under penetration control.
     pub load_error: f64,
-    /// The tolerance that the first two errors were to reach, as a number.
+    /// What `complementarity_error` and `penetration_error` were to reach; null where `energy_error` was.
     pub tolerance: Option<f64>,
+    /// What `energy_error` was to reach.
+    pub energy_tolerance: Option<f64>,
     /// Elements of the grid whose gap was computed for the certificate.
     pub cells_evaluated: Option<usize>,
     /// Elements that were proven to be out of contact without computing their gap: all others.
@@ -120,6 +124,10 @@ impl Summary {
     pub fn of(solution: &Solution<'_>, units: Units, context: &SolveContext) -> Self {
         let (info, observables, grid) = (solution.info(), solution.observables(), solution.grid());
         let stiffness = units.pascals_per_metre(solution.stiffness());
+        let (tolerance, energy_tolerance) = match solution.bound() {
+            ErrorBound::Relative(value) => (Some(value), None),
+            ErrorBound::Energy(value) => (None, Some(value)),
+        };
         Self {
             status: solution.status().name().to_owned(),
             control: context.control.key().to_owned(),
@@ -150,8 +158,10 @@ impl Summary {
             h_max: units.metres(solution.h_max()),
             complementarity_error: info.certificate.complementarity,
             penetration_error: info.certificate.penetration,
+            energy_error: Some(info.certificate.energy),
             load_error: info.certificate.load,
-            tolerance: Some(solution.tolerance()),
+            tolerance,
+            energy_tolerance,
             cells_evaluated: Some(solution.n_evaluated()),
             cells_proven: Some(solution.n_proven()),
             level_iterations: Some(info.levels.iter().map(|level| level.iterations).collect()),

@@ -7,12 +7,12 @@ use std::process::Command;
 use anyhow::{Context, Result, bail};
 use rc_core::Grid;
 use rc_heights::npy;
-use rc_solver::{Method, Tolerance};
+use rc_solver::Method;
 use serde::{Deserialize, Serialize};
 
 use super::measure::{Outcome, measure};
 use super::scenes::Scene;
-use super::setting::{KernelName, Setting};
+use super::setting::{KernelName, Setting, parse_tolerance, typed};
 
 /// What a child process is asked to do; the argument of `--job`.
 #[derive(Debug, Serialize, Deserialize)]
@@ -25,33 +25,31 @@ enum Job {
 }
 
 /// A [`Setting`] that can be written.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct PlainSetting {
     adaptive: bool,
     kernel: KernelName,
     border_level: usize,
     elements_per_wave: usize,
-    /// None is `auto`.
-    tolerance: Option<f64>,
+    /// As it is typed.
+    tolerance: String,
 }
 
 impl From<Setting> for PlainSetting {
     fn from(setting: Setting) -> Self {
         let Setting { method, kernel, border_level, elements_per_wave, tolerance } = setting;
-        let tolerance = match tolerance {
-            Tolerance::Relative(value) => Some(value),
-            Tolerance::Auto => None,
-        };
-        Self { adaptive: method == Method::Adaptive, kernel, border_level, elements_per_wave, tolerance }
+        let adaptive = method == Method::Adaptive;
+        Self { adaptive, kernel, border_level, elements_per_wave, tolerance: typed(tolerance) }
     }
 }
 
-impl From<PlainSetting> for Setting {
-    fn from(setting: PlainSetting) -> Self {
+impl TryFrom<PlainSetting> for Setting {
+    type Error = anyhow::Error;
+
+    fn try_from(setting: PlainSetting) -> Result<Self> {
         let PlainSetting { adaptive, kernel, border_level, elements_per_wave, tolerance } = setting;
         let method = if adaptive { Method::Adaptive } else { Method::Uniform };
-        let tolerance = tolerance.map_or(Tolerance::Auto, Tolerance::Relative);
-        Self { method, kernel, border_level, elements_per_wave, tolerance }
+        Ok(Self { method, kernel, border_level, elements_per_wave, tolerance: parse_tolerance(&tolerance)? })
     }
 }
 
@@ -93,7 +91,7 @@ fn start(job: &Job) -> Result<String> {
 pub fn work(job: &str) -> Result<()> {
     match serde_json::from_str(job).context("--job is for processes that the benchmark starts itself")? {
         Job::Solve { scene, setting } => {
-            println!("{}", serde_json::to_string(&measure(&Scene::named(&scene)?, &setting.into())?)?);
+            println!("{}", serde_json::to_string(&measure(&Scene::named(&scene)?, &setting.try_into()?)?)?);
         }
         Job::Heights { scene, side, path } => {
             let heights = Scene::named(&scene)?.surface()?.sample_on(Grid::square(side)?)?;

@@ -69,7 +69,8 @@ fn try_solve(scene: &Scene, setting: &Setting) -> Result<Solved> {
     let problem = ContactProblem::new(heights, scene.control()).with_kernel(setting.kernel.kernel());
     let params = SolveParams {
         border_level: setting.border_level,
-        ..SolveParams::to_tolerance(setting.relative_tolerance()).by(setting.method)
+        tolerance: setting.tolerance,
+        ..SolveParams::default().by(setting.method)
     };
     let start = Instant::now();
     let solution = problem.solve(&params, &Silent)?;

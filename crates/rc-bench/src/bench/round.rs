@@ -11,7 +11,7 @@ use super::measure::Outcome;
 use super::peers::{PEERS, Peer};
 use super::record::{Family, Row};
 use super::scenes::Scene;
-use super::setting::{LARGEST_UNIFORM, MESHES, Setting, typed};
+use super::setting::{LARGEST_UNIFORM, MESHES, Setting, of_peer, typed};
 
 /// Seconds after which a case is not repeated again.
 const ENOUGH: f64 = 10.0;
@@ -114,7 +114,7 @@ fn cases(scene: &Scene, with_peers: bool) -> Vec<Case> {
             for (i, kind) in PEERS.iter().enumerate() {
                 cases.extend(kind.tolerances.iter().map(|tolerance| {
                     let text = tolerance.map_or_else(|| "default".to_owned(), typed);
-                    let number = tolerance.map(|tolerance| tolerance.relative(Some(mesh as f64)));
+                    let number = tolerance.map(|tolerance| of_peer(tolerance, mesh));
                     Case::new(Family::peer(kind.name, &text), mesh, Solver::Peer(i, number))
                 }));
             }

@@ -1,5 +1,6 @@
 //! How a scene is solved: method, kernel, mesh, tolerance.
 
+use anyhow::Result;
 use rc_core::Kernel;
 use rc_kernel::{Love, Spectral};
 use serde::{Deserialize, Serialize};
@@ -61,11 +62,6 @@ impl Setting {
         Self { method: Method::Adaptive, kernel: KernelName::Love, border_level, elements_per_wave, tolerance }
     }
 
-    /// The tolerance as a number; `auto` follows the grid, as on the command line.
-    pub(super) fn relative_tolerance(&self) -> f64 {
-        self.tolerance.relative(Some(self.elements_per_wave as f64))
-    }
-
     /// Every setting of one mesh of a scene that is small enough.
     pub(super) fn of_mesh(scene: &Scene, elements_per_wave: usize) -> Vec<Self> {
         let mut settings = Vec::new();
@@ -94,7 +90,32 @@ impl Setting {
 pub(super) fn typed(tolerance: Tolerance) -> String {
     match tolerance {
         Tolerance::Relative(value) => format!("{value:e}"),
+        Tolerance::Energy(value) => format!("{ENERGY}{value:e}"),
         Tolerance::Auto => "auto".to_owned(),
+    }
+}
+
+/// What a tolerance for the energy error begins with.
+const ENERGY: &str = "energy ";
+
+/// The reverse of [`typed`].
+///
+/// # Errors
+/// For any other text.
+pub(super) fn parse_tolerance(text: &str) -> Result<Tolerance> {
+    Ok(match text.strip_prefix(ENERGY) {
+        Some(number) => Tolerance::Energy(number.parse()?),
+        None if text == "auto" => Tolerance::Auto,
+        None => Tolerance::Relative(text.parse()?),
+    })
+}
+
+/// The tolerance of a peer as a number, relative to the peak-to-valley height. Its `auto` is 3e-5 (m/8)^(-3/2) for m elements per shortest
+/// wave, well below the error of its grid.
+pub(super) fn of_peer(tolerance: Tolerance, elements_per_wave: usize) -> f64 {
+    match tolerance {
+        Tolerance::Relative(value) | Tolerance::Energy(value) => value,
+        Tolerance::Auto => 3e-5 * (elements_per_wave as f64 / 8.0).powf(-1.5),
     }
 }
 

@@ -93,7 +93,7 @@ fn line_of(text: &str, offset: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::values::{GridSpec, ToleranceSpec};
+    use crate::scene::values::GridSpec;
     use rc_solver::Tolerance;
 
     #[test]
@@ -104,7 +104,7 @@ mod tests {
         assert!((pressure / e_star - 8.9e-4).abs() < 1e-16, "σ0/E* = {}", pressure / e_star);
         assert_eq!(scene.surface.waves, Some(64));
         assert_eq!(scene.surface.grid, Some(GridSpec::square(2048)));
-        assert_eq!(scene.contact.tolerance, Some(ToleranceSpec(Tolerance::Relative(1e-6))));
+        assert_eq!(scene.contact.energy_tolerance.map(Tolerance::Energy), Some(Tolerance::DEFAULT));
     }
 
     #[test]

@@ -98,7 +98,11 @@ pub struct ContactKeys {
     /// Halve elements at the edges of contacts this many times beyond --grid (adaptive method, generated surfaces)
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub border_level: Option<usize>,
-    /// Certified tolerance, relative to the peak-to-valley height; auto stops well below the error of the grid
+    /// Certified relative error of the pressure in the energy norm, which pits, offsets and light loads do not loosen [default: 0.01]
+    #[arg(long, value_name = "ERROR", allow_hyphen_values = true)]
+    pub energy_tolerance: Option<f64>,
+    /// Instead: certified tolerance relative to the peak-to-valley height, as other programs have it; or auto, an energy error well below
+    /// the error of the grid
     #[arg(long, allow_hyphen_values = true)]
     pub tolerance: Option<ToleranceSpec>,
     /// Choose the grid so that the relative error of the contact area is at most this, as 0.5% or 0.005, and no finer than needed;
@@ -205,7 +209,7 @@ impl SurfaceKeys {
 
 impl ContactKeys {
     /// These keys laid over `lower`. A key given here also removes its alternatives below: `pressure` and `penetration`
-    /// each other, `e_star` the pair `young`, `poisson` and the reverse.
+    /// each other, `tolerance` and `energy_tolerance` too, `e_star` the pair `young`, `poisson` and the reverse.
     #[must_use]
     pub fn over(mut self, mut lower: Self) -> Self {
         if self.pressure.is_some() || self.penetration.is_some() {
@@ -216,8 +220,11 @@ impl ContactKeys {
         } else if self.young.is_some() || self.poisson.is_some() {
             lower.e_star = None;
         }
+        if self.tolerance.is_some() || self.energy_tolerance.is_some() {
+            (lower.tolerance, lower.energy_tolerance) = (None, None);
+        }
         or_lower!(self, lower, {
-            young, poisson, e_star, pressure, penetration, kernel, method, border_level, tolerance, area_error, output_grid
+            young, poisson, e_star, pressure, penetration, kernel, method, border_level, energy_tolerance, tolerance, area_error, output_grid
         });
         self
     }

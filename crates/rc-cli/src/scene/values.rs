@@ -77,17 +77,31 @@ impl<'de> Deserialize<'de> for GridSpec {
 
 /// The tolerance, as written: a number, relative to the peak-to-valley height, or `auto`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ToleranceSpec(pub Tolerance);
+pub enum ToleranceSpec {
+    /// Relative to the peak-to-valley height.
+    Relative(f64),
+    /// An energy error well below the error of the grid.
+    Auto,
+}
+
+impl From<ToleranceSpec> for Tolerance {
+    fn from(spec: ToleranceSpec) -> Self {
+        match spec {
+            ToleranceSpec::Relative(value) => Self::Relative(value),
+            ToleranceSpec::Auto => Self::Auto,
+        }
+    }
+}
 
 impl FromStr for ToleranceSpec {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
         match text {
-            "auto" => Ok(Self(Tolerance::Auto)),
+            "auto" => Ok(Self::Auto),
             _ => text
                 .parse()
-                .map(|value| Self(Tolerance::Relative(value)))
+                .map(Self::Relative)
                 .map_err(|_| format!("a tolerance is a number, as 1e-6, or auto, not '{text}'")),
         }
     }
@@ -95,9 +109,9 @@ impl FromStr for ToleranceSpec {
 
 impl Serialize for ToleranceSpec {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self.0 {
-            Tolerance::Relative(value) => serializer.serialize_f64(value),
-            Tolerance::Auto => serializer.serialize_str("auto"),
+        match self {
+            Self::Relative(value) => serializer.serialize_f64(*value),
+            Self::Auto => serializer.serialize_str("auto"),
         }
     }
 }

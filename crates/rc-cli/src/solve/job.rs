@@ -48,7 +48,8 @@ impl Job {
                 ));
             }
             Some(_) => {
-                let tolerance = contact.tolerance.or(Some(ToleranceSpec(rc_solver::Tolerance::Auto)));
+                let auto = contact.energy_tolerance.is_none().then_some(ToleranceSpec::Auto);
+                let tolerance = contact.tolerance.or(auto);
                 ContactKeys { area_error: None, tolerance, ..contact }
             }
         };

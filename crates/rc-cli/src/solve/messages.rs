@@ -1,8 +1,8 @@
 //! What the solver says, in the user's units.
 
+use rc_core::Grid;
 use rc_core::quantity::digits;
-use rc_core::{Grid, Units};
-use rc_solver::{AdaptiveError, Certificate, ProblemError, SolveError};
+use rc_solver::{AdaptiveError, Certificate, ErrorBound, ProblemError, SolveError};
 use rc_sweep::memory::Budget;
 
 use crate::error::CliError;
@@ -12,10 +12,11 @@ use crate::scene::surface::LoadedSurface;
 /// The solver's refusal of a contact on a surface, with this much memory.
 pub(super) fn in_si(error: &SolveError, surface: &LoadedSurface, contact: &ContactSetup, budget: Budget) -> CliError {
     match error {
-        SolveError::Problem(error) => of_problem(error, contact.units),
+        SolveError::Problem(error) => of_problem(error, contact),
         SolveError::Adaptive(AdaptiveError::OperatorError { .. }) => CliError::input(format_args!(
-            "tolerance: {:e} is out of what the adaptive method can certify; give a larger one, or --method uniform",
-            contact.params.tolerance.relative(surface.source().elements_per_wave())
+            "{}: {:e} is out of what the adaptive method can certify; give a larger one, or --method uniform",
+            tolerance_key(contact),
+            contact.params.tolerance.bound(surface.source().elements_per_wave()).value()
         )),
         SolveError::Adaptive(error) => of_adaptive(error, budget),
         SolveError::GaussSeidel(error) => CliError::input(format_args!("method gauss-seidel: {error}")),
@@ -34,7 +35,13 @@ pub(super) fn in_si(error: &SolveError, surface: &LoadedSurface, contact: &Conta
     }
 }
 
-fn of_problem(error: &ProblemError, units: Units) -> CliError {
+/// The key that the tolerance was given by.
+fn tolerance_key(contact: &ContactSetup) -> &'static str {
+    if contact.keys.tolerance.is_some() { "tolerance" } else { "energy_tolerance" }
+}
+
+fn of_problem(error: &ProblemError, contact: &ContactSetup) -> CliError {
+    let units = contact.units;
     match error {
         ProblemError::Penetration { value, full_contact } => CliError::input(format_args!(
             "penetration: must be above 0 and below that of full contact, {:.6e} m, not {:.6e} m; beyond it the penetration \
@@ -52,7 +59,8 @@ fn of_problem(error: &ProblemError, units: Units) -> CliError {
             CliError::input(format_args!("pressure: must be positive and finite (Pa), not {}", units.pascals(*value)))
         }
         ProblemError::Tolerance { value, smallest } => {
-            CliError::input(format_args!("tolerance: must be between {smallest:e} and 1, not {value:e}"))
+            let key = tolerance_key(contact);
+            CliError::input(format_args!("{key}: must be between {smallest:e} and 1, not {value:e}"))
         }
         other => CliError::input(other),
     }
@@ -85,6 +93,6 @@ fn of_adaptive(error: &AdaptiveError, budget: Budget) -> CliError {
 }
 
 /// What is said of a solution that did not reach the tolerance.
-pub(super) fn not_converged(grid: Grid, iterations: usize, certificate: &Certificate, tolerance: f64) -> String {
-    format!("not converged to {tolerance:e} on {grid} elements after {iterations} iterations: {certificate}")
+pub(super) fn not_converged(grid: Grid, iterations: usize, certificate: &Certificate, bound: ErrorBound) -> String {
+    format!("not converged to {bound} on {grid} elements after {iterations} iterations: {certificate}")
 }

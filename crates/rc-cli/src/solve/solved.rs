@@ -84,7 +84,7 @@ impl<'a> ProblemSetup<'a> {
         let (solution, failure) = match result {
             Ok(solution) => (solution, None),
             Err(SolveError::NotConverged { grid, iterations, certificate, solution }) => {
-                let failure = messages::not_converged(grid, iterations, &certificate, solution.tolerance());
+                let failure = messages::not_converged(grid, iterations, &certificate, solution.bound());
                 (*solution, Some(failure))
             }
             Err(error) => return Err(self.refuse(&error)),

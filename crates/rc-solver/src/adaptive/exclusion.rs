@@ -8,17 +8,23 @@ use rayon::prelude::*;
 use rc_quadtree::{CELLS, Patch, TILE, TileSet, gather};
 
 use super::heights::Heights;
-use super::operator::Real;
 
 /// Side of a patch that holds a tile and its neighbours.
 const SIDE: usize = 3 * TILE;
 
+/// Between points of a grid a function is above their minimum less an eighth of its second derivative along either axis, times the square
+/// of the spacing.
+const SAGITTA: f64 = 0.25;
+
+/// The values on the base grid are the smooth displacement less 1/48 of its Laplacian, times the square of the finest elements' side, to leading
+/// order: the filter to the finest level holds the square root of the mean over an element. Those elements are at most half as large as
+/// the spacing.
+const DECONVOLUTION: f64 = 1.0 / 96.0;
+
 /// The smooth part of the displacement.
-pub(super) struct SmoothDisplacement<'a, T> {
-    /// Values at the centres of the base grid, tile by tile, tiles row by row.
-    pub(super) values: &'a [T],
-    /// Unit of the values, in λ.
-    pub(super) unit: f64,
+pub(super) struct SmoothDisplacement<'a> {
+    /// Values at the centres of the base grid, tile by tile, tiles row by row, in λ.
+    pub(super) values: &'a [f64],
     /// Bound of its second derivatives along the axes.
     pub(super) curvature: f64,
     /// Bound of the error of the values, in λ.
@@ -26,24 +32,23 @@ pub(super) struct SmoothDisplacement<'a, T> {
 }
 
 /// The tiles of the level of `per_side` tiles per side where the gap `v - h` may be less than `contact_gap`.
-pub(super) fn possible_contact<T: Real + Into<f64>>(
-    smooth: &SmoothDisplacement<'_, T>,
+pub(super) fn possible_contact(
+    smooth: &SmoothDisplacement<'_>,
     heights: &Heights<'_>,
     contact_gap: f64,
     per_side: usize,
 ) -> Vec<[u32; 2]> {
     let base = TileSet::full(heights.base().grid().nx() / TILE);
     let spacing = 1.0 / base.side() as f64;
-    // Between points of a grid a function is above their minimum minus the sagitta, along either axis.
-    let slack = 0.25 * smooth.curvature * spacing * spacing + smooth.error;
+    let slack = (SAGITTA + DECONVOLUTION) * smooth.curvature * spacing * spacing + smooth.error;
     let of_tile = |&[column, row]: &[u32; 2]| {
-        let mut patch: Patch<T, SIDE> = [[T::default(); SIDE]; SIDE];
+        let mut patch: Patch<f64, SIDE> = [[0.0; SIDE]; SIDE];
         let corner = (i64::from(column) - 1, i64::from(row) - 1);
         gather(smooth.values, &base, corner, TILE - 1..2 * TILE + 1, &mut patch);
         let mut tiles = Vec::new();
         for cell in 0..CELLS {
             let (x, y) = (cell % TILE, cell / TILE);
-            let minimum = smooth.unit * minimum_around(&patch, TILE + x, TILE + y) - slack;
+            let minimum = minimum_around(&patch, TILE + x, TILE + y) - slack;
             let (bx, by) = (column as usize * TILE + x, row as usize * TILE + y);
             let may_touch =
                 |blocks: usize, ix: usize, iy: usize| minimum - heights.upper_bound(blocks, ix, iy) < contact_gap;
@@ -83,6 +88,6 @@ fn append_tiles_of_cell(
 }
 
 /// Minimum over a cell and its eight neighbours.
-fn minimum_around<T: Real + Into<f64>>(patch: &Patch<T, SIDE>, x: usize, y: usize) -> f64 {
-    patch[y - 1..=y + 1].iter().flat_map(|row| &row[x - 1..=x + 1]).map(|&v| v.into()).fold(f64::INFINITY, f64::min)
+fn minimum_around(patch: &Patch<f64, SIDE>, x: usize, y: usize) -> f64 {
+    patch[y - 1..=y + 1].iter().flat_map(|row| &row[x - 1..=x + 1]).copied().fold(f64::INFINITY, f64::min)
 }

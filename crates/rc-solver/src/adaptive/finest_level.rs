@@ -8,11 +8,13 @@ use rc_quadtree::{BLOCK_CELLS, ContactFields, Elements};
 
 use super::element_blocks::blocks_of;
 use super::element_heights::element_heights;
+use super::exclusion::SmoothDisplacement;
+use super::gap_operator::{GapOperator, GapTables};
 use super::level::{SolvedLevel, add_work};
-use super::operator::{Real, Tables, TileCorrections};
+use super::operator::{Tables, TileCorrections};
+use super::operator_error::{OperatorError, PressureScale};
 use super::prolongation::MeshStart;
-use super::scaled_operator::ScaledOperator;
-use super::setup::Setup;
+use super::setup::{Setup, maximum};
 use crate::descent::{
     BlockOperator, Descent, DescentObserver, ElementValues, Goal, LevelOperators, Outcome, Start, fresh_gap, rescale,
     scale_to_load, write_blocks,
@@ -31,13 +33,17 @@ const LAST_TOLERANCE: f64 = 0.7;
 /// two are the exception.
 const MAX_ROUNDS: usize = 20;
 
-/// Candidates for contact are chosen with this margin, in units of the height range, so that small changes of the pressure do
+/// Candidates for contact are chosen with this margin, in units of the penetration, so that small changes of the pressure do
 /// not add others.
-const CANDIDATE_MARGIN: f64 = 2e-3;
+const CANDIDATE_MARGIN: f64 = 7e-3;
+
+/// The error of the smooth displacement on the base grid that the exclusion of contact allows for, in units of the bound on the error
+/// of displacements ([`OperatorError`]), within which it was measured (test `the_smooth_displacement_is_as_exact_as_the_others`).
+const EXCLUSION_MARGIN: f64 = 2.0;
 
 /// Solves to the tolerance from `start`, whose gap in contact is `contact_gap`, and proves it for the whole cell.
-pub(super) fn solve_finest_level<T: Real + Into<f64>>(
-    setup: &Setup<'_, T>,
+pub(super) fn solve_finest_level(
+    setup: &Setup<'_>,
     grid: Grid,
     start: MeshStart,
     contact_gap: f64,
@@ -49,7 +55,7 @@ pub(super) fn solve_finest_level<T: Real + Into<f64>>(
         let reached;
         (level, reached) = level.improve(evaluation, observer);
         evaluation = level.evaluate_whole_cell();
-        if !reached || evaluation.outcome.certificate.penetration <= setup.params.tolerance {
+        if !reached || setup.params.bound.is_met_by(&evaluation.outcome.certificate) {
             break;
         }
     }
@@ -66,33 +72,38 @@ struct Candidates {
 struct Evaluation {
     pressure: Vec<f64>,
     gap: Vec<f64>,
+    /// Its certificate has the error of the operator that certifies added.
     outcome: Outcome,
+    error: OperatorError,
 }
 
-/// Tables of the three operators.
-struct OperatorTables<T> {
+/// Tables of the operators.
+struct OperatorTables {
     quick: Tables<f32>,
     preconditioner: Tables<f32>,
-    certified: Tables<T>,
+    fresh: GapTables,
+    /// Where they are others.
+    certified: Option<GapTables>,
 }
 
-struct FinestLevel<'s, 'a, T> {
-    setup: &'s Setup<'a, T>,
-    tables: OperatorTables<T>,
+struct FinestLevel<'s, 'a> {
+    setup: &'s Setup<'a>,
+    tables: OperatorTables,
     candidates: Candidates,
     /// The pressure that the last descent has found; the start before the first one.
     current: MeshStart,
     info: LevelInfo,
 }
 
-impl<'s, 'a, T: Real + Into<f64>> FinestLevel<'s, 'a, T> {
-    fn new(setup: &'s Setup<'a, T>, grid: Grid, mut start: MeshStart, contact_gap: f64) -> Self {
+impl<'s, 'a> FinestLevel<'s, 'a> {
+    fn new(setup: &'s Setup<'a>, grid: Grid, mut start: MeshStart, contact_gap: f64) -> Self {
         scale_to_load(&setup.problem, grid.len() as f64, &blocks_of(&start.elements), &mut start.pressure);
         let n_levels = setup.n_levels(grid);
         let tables = OperatorTables {
             quick: setup.quick.tables(n_levels),
             preconditioner: setup.preconditioner.tables(n_levels),
-            certified: setup.certified.tables(n_levels),
+            fresh: setup.fresh.tables(n_levels),
+            certified: setup.better.as_ref().map(|better| better.tables(n_levels)),
         };
         let candidates = first_candidates(setup, &start, &tables.quick, contact_gap);
         let info = LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 };
@@ -102,23 +113,27 @@ impl<'s, 'a, T: Real + Into<f64>> FinestLevel<'s, 'a, T> {
     /// Improves the pressure on the elements near contact. Returns whether the tolerance was reached there.
     fn improve(self, evaluation: Evaluation, observer: &dyn Observer) -> (Self, bool) {
         let Self { setup, mut tables, candidates, current, mut info } = self;
-        let near = NearContact::choose(&candidates, &current.elements, &evaluation, setup.problem.h_range);
+        let near = NearContact::choose(&candidates, &current.elements, &evaluation, setup);
+        let tolerance = evaluation.error.goal(setup.params.bound, &setup.problem);
         // The descent needs the memory.
         drop(evaluation);
         let hierarchy = setup.hierarchy(&near.elements, setup.quick.reach());
-        let fresh_hierarchy = setup.hierarchy(&near.elements, setup.certified.reach());
+        let fresh_hierarchy = setup.hierarchy(&near.elements, setup.fresh.reach());
         let operators = LevelOperators {
             corrections: Box::new(TileCorrections::new(hierarchy, &tables.quick, &mut tables.preconditioner)),
-            fresh: Box::new(setup.operator(fresh_hierarchy, &tables.certified, &current)),
+            fresh: setup.operator(fresh_hierarchy, &tables.fresh, &current),
         };
         drop(current);
         let start = Start::Known { pressure: near.pressure, gap: near.gap };
         let mut descent = Descent::new(&near.heights, info.grid, operators, &setup.problem, start);
-        let (tolerance, max_iterations) = (setup.params.tolerance, setup.params.max_iterations);
-        let goal = |factor: f64| Goal { tolerance: factor * tolerance, max_iterations, certify: false };
+        let max_iterations = setup.params.max_iterations;
+        let goal = |factor: f64| Goal { tolerance: factor * tolerance, max_iterations, certify: None };
         let observer = DescentObserver { observer, mesh: &near.elements };
         descent.run(goal(FIRST_TOLERANCE), &observer);
-        descent.refresh();
+        // Without a step the gap is as fresh as it was, and that of a better operator.
+        if descent.info().iterations > 0 || setup.better.is_none() {
+            descent.refresh();
+        }
         let last = descent.run(goal(LAST_TOLERANCE), &observer);
         add_work(&mut info, &descent.info());
         let pressure = descent.into_pressure();
@@ -126,35 +141,46 @@ impl<'s, 'a, T: Real + Into<f64>> FinestLevel<'s, 'a, T> {
         (Self { setup, tables, candidates, current, info }, last.converged)
     }
 
-    /// The gap on all candidates, and the operator that it was computed with.
-    fn evaluate(&self) -> (Evaluation, ScaledOperator<'_, T>) {
+    /// The gap on all candidates, and the operator that it was computed with: the one for certificates, or that of descents.
+    fn evaluate(&self, certify: bool) -> (Evaluation, Box<dyn GapOperator + '_>) {
         let Self { setup, tables, candidates: Candidates { elements, heights }, current, info } = self;
+        let (prepared, tables) = match &tables.certified {
+            Some(certified) if certify => (setup.certified(), certified),
+            _ => (&setup.fresh, &tables.fresh),
+        };
         let mut pressure = current.elements.moved(elements, &current.pressure, 0.0);
         let mut gap = vec![0.0; pressure.len()];
-        let hierarchy = setup.hierarchy(elements, setup.certified.reach());
-        let mut operator = setup.operator(hierarchy, &tables.certified, current);
+        let hierarchy = setup.hierarchy(elements, prepared.reach());
+        let mut operator = setup.operator(hierarchy, tables, current);
         let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
-        let mut sums = fresh_gap(&mut operator, &setup.problem, values);
+        let mut sums = fresh_gap(&mut *operator, &setup.problem, values);
         if let Some(scale) = sums.scale_to_penetration(&setup.problem) {
             let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
             sums = rescale(scale, &blocks_of(elements), &setup.problem, values);
         }
-        let outcome = Outcome::new(&setup.problem, &sums, info.grid.len() as f64, true);
-        (Evaluation { pressure, gap, outcome }, operator)
+        let mut outcome = Outcome::new(&setup.problem, &sums, info.grid.len() as f64, true);
+        let size = setup.penetration(outcome.contact_gap).abs();
+        let n_levels = setup.n_levels(info.grid);
+        let scale = PressureScale::new((elements, &pressure), n_levels, size, outcome.energy_length());
+        // Descents leave room for the error of the operator that certifies.
+        let error = OperatorError::of(setup.certified().split(), &scale);
+        outcome.iteration_error = outcome.certificate.energy;
+        outcome.certificate = error.added_to(outcome.certificate, setup.problem.h_range);
+        (Evaluation { pressure, gap, outcome, error }, operator)
     }
 
     /// The gap on all candidates.
     fn evaluate_candidates(&mut self) -> Evaluation {
         self.info.operator_applications += 1;
-        self.evaluate().0
+        self.evaluate(false).0
     }
 
     /// Evaluates the gap, and adds candidates until no contact is possible elsewhere.
     fn evaluate_whole_cell(&mut self) -> Evaluation {
         loop {
             self.info.operator_applications += 1;
-            let (evaluation, operator) = self.evaluate();
-            let more = self.with_more_candidates(&evaluation, &operator);
+            let (evaluation, operator) = self.evaluate(true);
+            let more = self.with_more_candidates(&evaluation, &*operator);
             if more.n_cells() <= self.candidates.elements.n_cells() {
                 return evaluation;
             }
@@ -164,11 +190,15 @@ impl<'s, 'a, T: Real + Into<f64>> FinestLevel<'s, 'a, T> {
     }
 
     /// The elements of the candidates, divided where they are too coarse, and tiles of the coarsest level wherever contact is possible.
-    fn with_more_candidates(&self, evaluation: &Evaluation, operator: &ScaledOperator<'_, T>) -> Elements {
+    fn with_more_candidates(&self, evaluation: &Evaluation, operator: &dyn GapOperator) -> Elements {
         let (setup, elements) = (self.setup, &self.candidates.elements);
-        let Evaluation { pressure, gap, outcome } = evaluation;
-        let (curvature, per_side) = (setup.certified.remainder_curvature(), elements.coarsest().per_side());
-        let places = setup.possible_contact(operator, curvature, pressure, per_side, outcome.contact_gap);
+        let Evaluation { pressure, gap, outcome, error } = evaluation;
+        let smooth = SmoothDisplacement {
+            values: &operator.base_displacement(),
+            curvature: setup.certified().remainder_curvature() * maximum(pressure),
+            error: EXCLUSION_MARGIN * error.displacement,
+        };
+        let places = setup.possible_contact(&smooth, elements.coarsest().per_side(), outcome.contact_gap);
         if elements.levels().len() == 1 {
             return elements.with(&places);
         }
@@ -178,34 +208,30 @@ impl<'s, 'a, T: Real + Into<f64>> FinestLevel<'s, 'a, T> {
 
     fn into_solved(self, evaluation: Evaluation) -> SolvedLevel {
         let Self { candidates: Candidates { elements, .. }, info, .. } = self;
-        let Evaluation { pressure, gap, outcome } = evaluation;
+        let Evaluation { pressure, gap, outcome, .. } = evaluation;
         SolvedLevel { evaluated: elements.n_cells(), elements, pressure, gap, outcome, info }
     }
 }
 
 impl Candidates {
-    fn new<T>(setup: &Setup<'_, T>, elements: Elements) -> Self {
+    fn new(setup: &Setup<'_>, elements: Elements) -> Self {
         Self { heights: element_heights(setup.heights, &elements), elements }
     }
 }
 
 /// Elements where the start may touch, judged by the quick operator.
-fn first_candidates<T: Real + Into<f64>>(
-    setup: &Setup<'_, T>,
-    start: &MeshStart,
-    tables: &Tables<f32>,
-    contact_gap: f64,
-) -> Candidates {
+fn first_candidates(setup: &Setup<'_>, start: &MeshStart, tables: &Tables<f32>, contact_gap: f64) -> Candidates {
     let MeshStart { elements, pressure } = start;
-    let mut quick = setup.operator(setup.hierarchy(elements, setup.quick.reach()), tables, start);
+    let mut quick = setup.quick_operator(setup.hierarchy(elements, setup.quick.reach()), tables, start);
     write_blocks(&mut quick, pressure.chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
     quick.apply();
     // No contact is nearer than first touch, though coarser heights may reach beyond the highest point.
     let first_touch = setup.problem.offset() - setup.problem.h_max;
     // This is not a proof yet: the margin stands for the quick operator's error too.
-    let gap = contact_gap.max(first_touch) + CANDIDATE_MARGIN * setup.problem.h_range;
-    let (curvature, per_side) = (setup.quick.remainder_curvature(), elements.coarsest().per_side());
-    let places = setup.possible_contact(&quick, curvature, pressure, per_side, gap);
+    let gap = contact_gap.max(first_touch) + CANDIDATE_MARGIN * setup.penetration(contact_gap).abs();
+    let curvature = setup.quick.remainder_curvature() * maximum(pressure);
+    let smooth = SmoothDisplacement { values: &quick.base_displacement(), curvature, error: 0.0 };
+    let places = setup.possible_contact(&smooth, elements.coarsest().per_side(), gap);
     Candidates::new(setup, elements.with(&places))
 }
 
@@ -219,15 +245,15 @@ struct NearContact {
 
 impl NearContact {
     /// `before` are the elements of the last descent.
-    fn choose(candidates: &Candidates, before: &Elements, evaluation: &Evaluation, h_range: f64) -> Self {
-        let Evaluation { pressure, gap, outcome } = evaluation;
+    fn choose(candidates: &Candidates, before: &Elements, evaluation: &Evaluation, setup: &Setup<'_>) -> Self {
+        let Evaluation { pressure, gap, outcome, .. } = evaluation;
         // Elements that are nearer to contact than the error may come into it yet.
         let error = match outcome.mean_pressure {
             // Nothing presses when coarser levels have lost a contact that they hardly resolve: it begins anew.
-            0.0 => CANDIDATE_MARGIN,
-            _ => outcome.certificate.penetration,
+            0.0 => CANDIDATE_MARGIN * (setup.problem.h_max - setup.problem.h_mean),
+            _ => outcome.certificate.penetration * setup.problem.h_range,
         };
-        let near = outcome.contact_gap + error * h_range;
+        let near = outcome.contact_gap + error;
         let elements = candidates.elements.filtered(|side, place, cells| {
             before.has(side, place) || cells.into_iter().any(|i| pressure[i] > 0.0 || gap[i] < near)
         });

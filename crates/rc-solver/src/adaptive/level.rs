@@ -6,7 +6,7 @@ use rc_core::{Grid, Observer};
 use rc_quadtree::{ContactFields, Elements};
 
 use super::element_heights::element_heights;
-use super::operator::{Real, TileCorrections};
+use super::operator::TileCorrections;
 use super::prolongation::MeshStart;
 use super::setup::Setup;
 use crate::descent::{Descent, DescentObserver, Goal, LevelOperators, Outcome, Start};
@@ -43,8 +43,8 @@ pub(super) fn add_work(info: &mut LevelInfo, more: &LevelInfo) {
 }
 
 /// Solves on the elements of the prolonged pressure only.
-pub(super) fn solve_coarse_level<T: Real + Into<f64>>(
-    setup: &Setup<'_, T>,
+pub(super) fn solve_coarse_level(
+    setup: &Setup<'_>,
     grid: Grid,
     start: MeshStart,
     tolerance: f64,
@@ -56,12 +56,12 @@ pub(super) fn solve_coarse_level<T: Real + Into<f64>>(
     let mut preconditioner = setup.preconditioner.tables(n_levels);
     let operators = LevelOperators {
         corrections: Box::new(TileCorrections::new(Arc::clone(&hierarchy), &response, &mut preconditioner)),
-        fresh: Box::new(setup.operator(hierarchy, &response, &start)),
+        fresh: Box::new(setup.quick_operator(hierarchy, &response, &start)),
     };
     let MeshStart { elements, pressure } = start;
     let heights = element_heights(setup.heights, &elements);
     let mut descent = Descent::new(&heights, grid, operators, &setup.problem, Start::Pressure(pressure));
-    let goal = Goal { tolerance, max_iterations: setup.params.max_iterations, certify: false };
+    let goal = Goal { tolerance, max_iterations: setup.params.max_iterations, certify: None };
     let outcome = descent.run(goal, &DescentObserver { observer, mesh: &elements });
     let info = descent.info();
     let (pressure, gap) = descent.into_vectors(0.0);

@@ -11,21 +11,24 @@ mod error;
 mod estimate;
 mod exclusion;
 mod finest_level;
+mod gap_operator;
 pub(crate) mod heights;
 mod level;
 mod multilevel;
 mod nested_iteration;
 pub(crate) mod operator;
+mod operator_error;
 mod params;
 mod prolongation;
 mod roughness;
 mod scaled_operator;
 mod setup;
 mod solution;
+mod split;
 
 use rc_core::{Grid, HeightSource, Observer};
 use rc_kernel::SplitParams;
-use rc_quadtree::{Elements, TILE};
+use rc_quadtree::TILE;
 
 use self::contact_area::contact_area;
 pub use self::error::AdaptiveError;
@@ -34,23 +37,21 @@ use self::heights::Heights;
 use self::level::SolvedLevel;
 pub use self::multilevel::MultilevelOperator;
 use self::nested_iteration::{NestedIteration, NestedSolution};
-use self::operator::Real;
+use self::operator_error::{PressureScale, certifying_split};
 pub(crate) use self::params::AdaptiveParams;
-use self::roughness::{ERROR_OF_ROUGHNESS, roughness};
+use self::setup::Splits;
 pub(crate) use self::solution::AdaptiveSolution;
+use self::split::GapSplit;
 use crate::problem::Problem;
-use crate::{Certificate, Control};
+use crate::{Control, ErrorBound};
 
-/// Operator errors from here on are reached in single precision.
-const SINGLE_PRECISION: f64 = 1e-6;
-
-/// Error of L relative to the rms displacement, over the tolerance, that a certificate may have: tolerances are relative to
+/// Error of L relative to the rms displacement, over a relative tolerance, that descents may have: tolerances are relative to
 /// the height range, which is at least ten times the error's measure on any surface, and the greatest error of an element is up to five times
 /// the rms one. With 10, a third of a cell in contact at λ_min/128 did not converge to 3e-7.
 const OPERATOR_ERROR_PER_TOLERANCE: f64 = 3.0;
 
-/// What the operator's error on rough pressures may be estimated at, over the tolerance. The estimate is three times what was measured.
-const PART_OF_ROUGHNESS: f64 = 0.3;
+/// The same over the overlap that an energy error aims at, in units of U/σ0, which is 0.02 to 0.08 of the height range.
+const OPERATOR_ERROR_PER_ENERGY: f64 = 0.5;
 
 /// Elements of the base grid for the shortest wave: what interpolates heights to other levels needs no more.
 const BASE_ELEMENTS_PER_WAVE: usize = 4;
@@ -65,7 +66,8 @@ pub(crate) struct AdaptiveProblem<'a> {
     heights: Heights<'a>,
     problem: Problem,
     params: AdaptiveParams,
-    split: SplitParams,
+    /// For fresh gaps in descents.
+    split: GapSplit,
 }
 
 impl std::fmt::Debug for AdaptiveProblem<'_> {
@@ -86,9 +88,7 @@ impl<'a> AdaptiveProblem<'a> {
     ) -> Result<Self, AdaptiveError> {
         let grid = source.grid();
         check_square(grid)?;
-        let error = params.operator_error.min(OPERATOR_ERROR_PER_TOLERANCE * params.solve.tolerance);
-        let split = SplitParams::for_error(error)
-            .ok_or(AdaptiveError::OperatorError { value: error, smallest: SplitParams::SMALLEST_ERROR })?;
+        let split = first_split(params)?;
         let base_side = base_side(&source, params.base_side)?;
         check_memory(grid, params.memory_limit, estimate::base_bytes(base_side), None)?;
         let heights = Heights::new(with_border_level(source, params.border_level)?, base_side)?;
@@ -122,70 +122,51 @@ impl<'a> AdaptiveProblem<'a> {
 
     /// Solves it.
     ///
-    /// The certificate comes from a fresh application of L on the returned pressure; it covers every cell where a bound does
-    /// not exclude contact. The result is bitwise the same for any number of threads.
+    /// The certificate comes from a fresh application of L on the returned pressure, with bounds on the error of that operator added; it
+    /// covers every cell where a bound does not exclude contact. The result is bitwise the same for any number of threads.
     pub(crate) fn solve(&self, observer: &dyn Observer) -> AdaptiveSolution {
-        let solved = if self.operator_error() >= SINGLE_PRECISION {
-            self.solve_in::<f32>(observer)
-        } else {
-            self.solve_in::<f64>(observer)
-        };
-        let needed = self.error_for(&solved.level.elements, &solved.level.pressure);
-        let is_solved = solved.level.outcome.certificate.penetration <= self.params.solve.tolerance;
-        match finer_split(solved.split, needed).filter(|_| is_solved) {
-            Some(finer) => {
-                let solved = self.solver::<f64>(finer).improve(solved, observer);
-                let needed = self.error_for(&solved.level.elements, &solved.level.pressure);
-                self.finish(solved, needed)
-            }
-            None => self.finish(solved, needed),
-        }
+        self.finish(self.solve_levels(observer))
     }
 
-    /// Solves with fresh gaps in precision `T`, unless the pressure turns out to be too rough for its operator.
-    fn solve_in<T: Real + Into<f64>>(&self, observer: &dyn Observer) -> NestedSolution {
-        let solver = self.solver::<T>(self.split);
+    /// Solves all levels, with operators as good as the bound needs.
+    fn solve_levels(&self, observer: &dyn Observer) -> NestedSolution {
+        let first = Splits { fresh: self.split, certified: self.split };
+        let solver = self.solver(first);
         let start = solver.prepare(observer);
-        let needed = self.error_for(&start.mesh.elements, &start.mesh.pressure);
-        match finer_split(self.split, needed) {
-            Some(finer) => self.solver::<f64>(finer).take_over(start, observer),
-            None => solver.finish(start, observer),
+        let certified = self.certifying_split(first.certified, &solver.scale(&start));
+        let solved = if certified == first.certified {
+            solver.finish(start, observer)
+        } else {
+            self.solver(Splits { certified, ..first }).take_over(start, observer)
+        };
+        let certificate = solved.level.outcome.certificate;
+        let better =
+            self.certifying_split(solved.splits.certified, &solved.scale(self.heights.base().grid(), &self.problem));
+        // A pressure may be rougher than its start.
+        if better == solved.splits.certified || self.params.solve.bound.is_met_by(&certificate) {
+            return solved;
         }
+        let splits = Splits { certified: better, ..solved.splits };
+        self.solver(splits).improve(solved, observer)
     }
 
-    fn solver<T: Real + Into<f64>>(&self, split: SplitParams) -> NestedIteration<'_, T> {
-        NestedIteration::new(&self.heights, self.problem, &self.params, split)
+    fn solver(&self, splits: Splits) -> NestedIteration<'_> {
+        NestedIteration::new(&self.heights, self.problem, &self.params, splits)
     }
 
-    /// Error of L that is asked for.
-    fn operator_error(&self) -> f64 {
-        self.params.operator_error.min(OPERATOR_ERROR_PER_TOLERANCE * self.params.solve.tolerance)
+    /// The split, from `split` on, that can certify a pressure like this one.
+    fn certifying_split(&self, split: GapSplit, scale: &PressureScale) -> GapSplit {
+        certifying_split(split, scale, self.params.solve.bound, &self.problem)
     }
 
-    /// Error of L that the tolerance needs under a pressure, which may be rougher than those of contacts.
-    fn error_for(&self, elements: &Elements, pressure: &[f64]) -> f64 {
-        let per_error = ERROR_OF_ROUGHNESS * roughness(elements, pressure) / self.problem.h_range;
-        let needed = PART_OF_ROUGHNESS * self.params.solve.tolerance / per_error;
-        if needed < self.operator_error() { needed } else { self.operator_error() }
-    }
-
-    /// Wraps up what the levels found, under a pressure that needs an error of L of `needed`.
-    fn finish(&self, solved: NestedSolution, needed: f64) -> AdaptiveSolution {
+    /// Wraps up what the levels found.
+    fn finish(&self, solved: NestedSolution) -> AdaptiveSolution {
         let NestedSolution { grid, level, levels, coarser, .. } = solved;
-        // Where even the best operator is not good enough for so rough a pressure, its error is part of the certificate.
-        let SolvedLevel { elements, pressure, gap, mut outcome, evaluated, .. } = level;
-        if needed < SplitParams::SMALLEST_ERROR {
-            let error = PART_OF_ROUGHNESS * self.params.solve.tolerance * SplitParams::SMALLEST_ERROR / needed;
-            outcome.certificate.penetration += error;
-            outcome.certificate.complementarity += error;
-        }
+        let SolvedLevel { elements, pressure, gap, outcome, evaluated, .. } = level;
         let area = contact_area(&elements, &pressure, (&gap, outcome.contact_gap), grid);
         let border_level = self.params.border_level;
-        let certificate = outcome.certificate;
-        let converged =
-            certificate.penetration <= self.params.solve.tolerance && certificate.load <= Certificate::LOAD_TOLERANCE;
         AdaptiveSolution {
-            converged,
+            converged: self.params.solve.bound.is_met_by(&outcome.certificate),
             base: self.heights.base().grid(),
             grid: Grid::square(grid.nx() >> border_level).expect("a coarser grid than the finest"),
             finest: grid,
@@ -234,9 +215,15 @@ fn check_square(grid: Grid) -> Result<(), AdaptiveError> {
     }
 }
 
-/// A better operator than `split`, if an error of `needed` asks for one: the best that there is at most.
-fn finer_split(split: SplitParams, needed: f64) -> Option<SplitParams> {
-    SplitParams::for_error(needed.max(SplitParams::SMALLEST_ERROR)).filter(|finer| finer.cutoff > split.cutoff)
+/// The operator of descents, by the tolerance alone.
+fn first_split(params: &AdaptiveParams) -> Result<GapSplit, AdaptiveError> {
+    let of_bound = match params.solve.bound {
+        ErrorBound::Relative(value) => OPERATOR_ERROR_PER_TOLERANCE * value,
+        ErrorBound::Energy(_) => OPERATOR_ERROR_PER_ENERGY * params.solve.bound.aim(),
+    };
+    let error = params.operator_error.min(of_bound);
+    GapSplit::for_error(error)
+        .ok_or(AdaptiveError::OperatorError { value: error, smallest: SplitParams::SMALLEST_ERROR })
 }
 
 /// The source on the grid of the smallest elements.
@@ -342,7 +329,7 @@ mod tests {
             }
         }
         let params = AdaptiveParams {
-            solve: IterationParams::certified(),
+            solve: IterationParams::relative(1e-6),
             operator_error: 1e-6,
             border_level: 0,
             base_side: None,

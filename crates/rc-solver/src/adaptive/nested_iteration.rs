@@ -1,16 +1,16 @@
 //! Nested iteration from the base grid to the finest level: each level prepares the start on the next.
 
 use rc_core::{Event, Grid, Observer};
-use rc_kernel::{Love, SplitParams};
+use rc_kernel::Love;
 use rc_quadtree::{TILE, TileSet};
 
 use super::AdaptiveParams;
 use super::finest_level::solve_finest_level;
 use super::heights::Heights;
 use super::level::{SolvedLevel, add_work, solve_coarse_level};
-use super::operator::Real;
+use super::operator_error::PressureScale;
 use super::prolongation::{self, MeshStart};
-use super::setup::Setup;
+use super::setup::{Setup, Splits};
 use super::solution;
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues};
@@ -18,8 +18,8 @@ use crate::uniform::{self, FinestGrid, NestedGrids};
 
 /// The solved finest level, and the work on all levels.
 pub(super) struct NestedSolution {
-    /// The operator that it was solved with.
-    pub(super) split: SplitParams,
+    /// The operators that it was solved with.
+    pub(super) splits: Splits,
     /// The whole grid of the smallest elements.
     pub(super) grid: Grid,
     pub(super) level: SolvedLevel,
@@ -35,20 +35,23 @@ pub(super) struct LevelStart {
     grid: Grid,
     pub(super) mesh: MeshStart,
     contact_gap: f64,
+    /// U/σ0 of the level before, in λ.
+    energy_length: f64,
     /// The work on coarser levels, coarsest first.
     levels: Vec<LevelInfo>,
     /// Values of the level before, when this is the finest one.
     coarser: Option<LevelValues>,
 }
 
-/// All levels of one problem, with one operator; `T` is the precision of fresh gaps.
-pub(super) struct NestedIteration<'a, T> {
-    setup: Setup<'a, T>,
+/// All levels of one problem, with one set of operators.
+pub(super) struct NestedIteration<'a> {
+    setup: Setup<'a>,
+    splits: Splits,
 }
 
-impl<'a, T: Real + Into<f64>> NestedIteration<'a, T> {
-    pub(super) fn new(heights: &'a Heights<'a>, problem: Problem, params: &AdaptiveParams, split: SplitParams) -> Self {
-        Self { setup: Setup::new(heights, problem, params, split) }
+impl<'a> NestedIteration<'a> {
+    pub(super) fn new(heights: &'a Heights<'a>, problem: Problem, params: &AdaptiveParams, splits: Splits) -> Self {
+        Self { setup: Setup::new(heights, problem, params, splits), splits }
     }
 
     /// Solves all levels but the finest, which starts from them.
@@ -65,10 +68,10 @@ impl<'a, T: Real + Into<f64>> NestedIteration<'a, T> {
 
     /// Solves the finest level.
     pub(super) fn finish(&self, start: LevelStart, observer: &dyn Observer) -> NestedSolution {
-        let LevelStart { grid, mesh, contact_gap, mut levels, coarser } = start;
+        let LevelStart { grid, mesh, contact_gap, mut levels, coarser, .. } = start;
         let level = solve_finest_level(&self.setup, grid, mesh, contact_gap, observer);
         levels.push(level.info);
-        NestedSolution { split: self.setup.split, grid, level, levels, coarser }
+        NestedSolution { splits: self.splits, grid, level, levels, coarser }
     }
 
     /// Solves the finest level where another operator has prepared it. Where sizes of elements differ they suit the other operator;
@@ -84,7 +87,8 @@ impl<'a, T: Real + Into<f64>> NestedIteration<'a, T> {
         let SolvedLevel { elements, pressure, outcome, info: before, .. } = level;
         levels.pop();
         let mesh = MeshStart { elements, pressure };
-        let start = LevelStart { grid, mesh, contact_gap: outcome.contact_gap, levels, coarser };
+        let energy_length = outcome.energy_length();
+        let start = LevelStart { grid, mesh, contact_gap: outcome.contact_gap, energy_length, levels, coarser };
         let mut solved = self.take_over(start, observer);
         if let Some(finest) = solved.levels.last_mut() {
             add_work(finest, &before);
@@ -104,6 +108,7 @@ impl<'a, T: Real + Into<f64>> NestedIteration<'a, T> {
             grid: next_finer(base.grid()),
             mesh: prolongation::refine_all(&tiles, &function),
             contact_gap: outcome.contact_gap,
+            energy_length: outcome.energy_length(),
             levels,
             coarser,
         }
@@ -112,13 +117,14 @@ impl<'a, T: Real + Into<f64>> NestedIteration<'a, T> {
     /// Solves a level with `finer` levels above it.
     fn solve_level(&self, start: LevelStart, finer: usize, observer: &dyn Observer) -> LevelStart {
         let LevelStart { grid, mesh, mut levels, coarser, .. } = start;
-        let tolerance = uniform::coarse_tolerance(finer - 1).max(self.setup.params.tolerance);
+        let tolerance = self.setup.problem.measure.coarse_tolerance(finer - 1).max(self.setup.params.bound.aim());
         let level = solve_coarse_level(&self.setup, grid, mesh, tolerance, observer);
         levels.push(level.info);
         LevelStart {
             grid: next_finer(grid),
             mesh: self.refined(&level, finer <= self.setup.border_level),
             contact_gap: level.outcome.contact_gap,
+            energy_length: level.outcome.energy_length(),
             levels,
             coarser: if finer == 1 { Some(self.values(&level)) } else { coarser },
         }
@@ -136,11 +142,28 @@ impl<'a, T: Real + Into<f64>> NestedIteration<'a, T> {
         }
     }
 
+    /// What the error of an operator depends on, as far as a start tells.
+    pub(super) fn scale(&self, start: &LevelStart) -> PressureScale {
+        let LevelStart { grid, mesh, contact_gap, energy_length, .. } = start;
+        let size = self.setup.penetration(*contact_gap).abs();
+        PressureScale::new((&mesh.elements, &mesh.pressure), self.setup.n_levels(*grid), size, *energy_length)
+    }
+
     fn values(&self, level: &SolvedLevel) -> LevelValues {
         LevelValues {
             rms_pressure: solution::rms_pressure(&level.elements, &level.pressure),
             penetration: self.setup.problem.h_max + level.outcome.approach,
         }
+    }
+}
+
+impl NestedSolution {
+    /// What the error of an operator depends on, above the grid `base`.
+    pub(super) fn scale(&self, base: Grid, problem: &Problem) -> PressureScale {
+        let SolvedLevel { elements, pressure, outcome, .. } = &self.level;
+        let n_levels = (self.grid.nx() / base.nx()).ilog2() as usize;
+        let size = (outcome.approach + problem.h_max).abs();
+        PressureScale::new((elements, pressure), n_levels, size, outcome.energy_length())
     }
 }
 

@@ -3,11 +3,6 @@
 use rayon::prelude::*;
 use rc_quadtree::{CELLS, Elements, TILE};
 
-/// Ratio of the maximum error of a displacement to [`roughness`], in units of the split's error (`SplitParams::for_error`). On
-/// pressures that alternate from element to element the ratio is 20 for splits of 1e-6 and 57 for splits of 2e-9. On smooth pressures
-/// the rule of the split itself holds.
-pub(super) const ERROR_OF_ROUGHNESS: f64 = 60.0;
-
 /// Maximum, over all elements, of the difference between `pressure` and the mean of its four neighbours, times the element's side
 /// (λ = 1).
 pub(super) fn roughness(elements: &Elements, pressure: &[f64]) -> f64 {

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use rc_quadtree::BLOCK_CELLS;
 
+use super::gap_operator::GapOperator;
 use super::operator::{Hierarchy, Real, Tables, TileOperator};
 use crate::descent::{BlockLayout, BlockOperator};
 use crate::problem::power_of_two_near;
@@ -31,15 +32,11 @@ impl<'a, T: Real + Into<f64>> ScaledOperator<'a, T> {
         let reference = if hierarchy.elements().cover_cell() { mean } else { 0.0 };
         Self { operator: TileOperator::new(hierarchy), tables, reference, unit: power_of_two_near(size) }
     }
+}
 
-    /// Unit of [`ScaledOperator::base_displacement`], in λ.
-    pub(super) fn unit(&self) -> f64 {
-        self.unit
-    }
-
-    /// See [`TileOperator::base_displacement`].
-    pub(super) fn base_displacement(&self) -> &[T] {
-        self.operator.base_displacement()
+impl<T: Real + Into<f64>> GapOperator for ScaledOperator<'_, T> {
+    fn base_displacement(&self) -> Vec<f64> {
+        self.operator.base_displacement().iter().map(|&v| self.unit * v.into()).collect()
     }
 }
 

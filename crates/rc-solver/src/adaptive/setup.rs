@@ -9,46 +9,61 @@ use rc_quadtree::{ContactFields, Elements, RING, divide};
 use super::AdaptiveParams;
 use super::element_blocks::blocks_of;
 use super::exclusion::{SmoothDisplacement, possible_contact};
+use super::gap_operator::{GapOperator, GapTables, PreparedGap};
 use super::heights::Heights;
-use super::operator::{Hierarchy, Prepared, Reach, Real, Tables};
+use super::operator::{Hierarchy, Prepared, Reach, Tables};
 use super::prolongation::MeshStart;
 use super::scaled_operator::ScaledOperator;
+use super::split::GapSplit;
 use crate::descent::mean_pressure;
 use crate::parallel;
 use crate::problem::Problem;
 use crate::{Control, IterationParams};
 
-/// Bound of the error of a displacement on the base grid, in units of the height range.
-const BASE_DISPLACEMENT_ERROR: f64 = 1e-5;
+/// The splits of the kernel that gaps are computed with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Splits {
+    /// In descents.
+    pub(super) fresh: GapSplit,
+    /// For certificates: the same or a better one.
+    pub(super) certified: GapSplit,
+}
 
-/// Heights, load and operators of a problem; `T` is the precision of fresh gaps.
-pub(super) struct Setup<'a, T> {
+/// Heights, load and operators of a problem.
+pub(super) struct Setup<'a> {
     pub(super) heights: &'a Heights<'a>,
     pub(super) problem: Problem,
     pub(super) params: IterationParams,
     pub(super) border_level: usize,
-    pub(super) split: SplitParams,
     /// L, a few percent off on rough pressures, and its approximate inverse, for corrections.
     pub(super) quick: Prepared<f32>,
     pub(super) preconditioner: Prepared<f32>,
-    /// L to the error of `split`, for fresh gaps.
-    pub(super) certified: Prepared<T>,
+    /// L for fresh gaps of descents.
+    pub(super) fresh: PreparedGap,
+    /// L for certificates, where that is another one.
+    pub(super) better: Option<PreparedGap>,
 }
 
-impl<'a, T: Real + Into<f64>> Setup<'a, T> {
-    pub(super) fn new(heights: &'a Heights<'a>, problem: Problem, params: &AdaptiveParams, split: SplitParams) -> Self {
-        let (quick, certified) = (ScaleSplit::new(SplitParams::quick()), ScaleSplit::new(split));
+impl<'a> Setup<'a> {
+    pub(super) fn new(heights: &'a Heights<'a>, problem: Problem, params: &AdaptiveParams, splits: Splits) -> Self {
+        let quick = ScaleSplit::new(SplitParams::quick());
         let (base, border_level) = (heights.base().grid(), params.border_level);
+        let Splits { fresh, certified } = splits;
         Self {
             quick: Prepared::displacement(&quick, base, border_level),
             preconditioner: Prepared::inverse(&quick, base),
-            certified: Prepared::displacement(&certified, base, border_level),
+            fresh: PreparedGap::new(fresh, base, border_level),
+            better: (certified != fresh).then(|| PreparedGap::new(certified, base, border_level)),
             heights,
             problem,
             params: params.solve,
             border_level,
-            split,
         }
+    }
+
+    /// L for certificates.
+    pub(super) fn certified(&self) -> &PreparedGap {
+        self.better.as_ref().unwrap_or(&self.fresh)
     }
 
     /// The base grid.
@@ -65,39 +80,43 @@ impl<'a, T: Real + Into<f64>> Setup<'a, T> {
         Arc::new(Hierarchy::new(self.base().nx(), elements.clone(), reach))
     }
 
-    /// An operator for fresh gaps under pressures like that of `start`.
-    pub(super) fn operator<'t, U: Real + Into<f64>>(
-        &self,
-        hierarchy: Arc<Hierarchy>,
-        tables: &'t Tables<U>,
-        start: &MeshStart,
-    ) -> ScaledOperator<'t, U> {
+    /// About what pressures like that of `start` have for a mean.
+    pub(super) fn mean_pressure(&self, start: &MeshStart) -> f64 {
         let n_cell = (start.elements.finest().side() as f64).powi(2);
-        let mean = match self.problem.control {
+        match self.problem.control {
             Control::MeanPressure(mean) => mean,
             Control::Penetration(_) => mean_pressure(n_cell, &blocks_of(&start.elements), &start.pressure),
-        };
-        ScaledOperator::new(hierarchy, tables, mean, self.problem.h_range)
+        }
     }
 
-    /// Tiles, of `per_side` per side of the cell, where the gap under `pressure`, which `operator` was applied to last, may be less
-    /// than `gap`. `unit_curvature` bounds the second derivatives of the operator's smooth displacement for pressures up to 1
-    /// ([`Prepared::remainder_curvature`]).
-    pub(super) fn possible_contact<U: Real + Into<f64>>(
+    /// An operator for fresh gaps under pressures like that of `start`.
+    pub(super) fn operator<'t>(
         &self,
-        operator: &ScaledOperator<'_, U>,
-        unit_curvature: f64,
-        pressure: &[f64],
-        per_side: usize,
-        gap: f64,
-    ) -> Vec<[u32; 2]> {
-        let smooth = SmoothDisplacement {
-            values: operator.base_displacement(),
-            unit: operator.unit(),
-            curvature: maximum(pressure) * unit_curvature,
-            error: BASE_DISPLACEMENT_ERROR * self.problem.h_range,
-        };
-        possible_contact(&smooth, self.heights, gap - self.problem.offset(), per_side)
+        hierarchy: Arc<Hierarchy>,
+        tables: &'t GapTables,
+        start: &MeshStart,
+    ) -> Box<dyn GapOperator + 't> {
+        tables.operator(hierarchy, self.mean_pressure(start), self.problem.h_range)
+    }
+
+    /// The same of the quick operator.
+    pub(super) fn quick_operator<'t>(
+        &self,
+        hierarchy: Arc<Hierarchy>,
+        tables: &'t Tables<f32>,
+        start: &MeshStart,
+    ) -> ScaledOperator<'t, f32> {
+        ScaledOperator::new(hierarchy, tables, self.mean_pressure(start), self.problem.h_range)
+    }
+
+    /// The penetration at which the gap in contact is `contact_gap`: no displacement of a partial contact is greater.
+    pub(super) fn penetration(&self, contact_gap: f64) -> f64 {
+        contact_gap - self.problem.offset() + self.problem.h_max
+    }
+
+    /// Tiles, of `per_side` per side of the cell, where the gap may be less than `gap` under a displacement whose smooth part is `smooth`.
+    pub(super) fn possible_contact(&self, smooth: &SmoothDisplacement<'_>, per_side: usize, gap: f64) -> Vec<[u32; 2]> {
+        possible_contact(smooth, self.heights, gap - self.problem.offset(), per_side)
     }
 
     /// The mesh with elements divided wherever they are too coarse for the pressure and the gap on them; with `deepen` the smallest
@@ -107,11 +126,11 @@ impl<'a, T: Real + Into<f64>> Setup<'a, T> {
         // No pressure is nearer than the ring: ∫ p |∂²(1/πr)/∂x²| dA ≤ max p ∫ 2/(π r³) dA.
         let of_displacement = |side: f64| 4.0 * pressure / ((RING - 1) as f64 * side);
         let chosen = fields.too_coarse(|coarser| heights + of_displacement(fields.elements.side(coarser)));
-        divide(fields.elements, chosen, deepen, self.certified.reach().stencil)
+        divide(fields.elements, chosen, deepen, self.certified().reach().stencil)
     }
 }
 
 /// Largest of the values; zero at least.
-fn maximum(values: &[f64]) -> f64 {
+pub(super) fn maximum(values: &[f64]) -> f64 {
     parallel::maximum(values, 0.0)
 }

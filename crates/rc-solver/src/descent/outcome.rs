@@ -2,6 +2,7 @@
 
 use super::sums::GapSums;
 use crate::Certificate;
+use crate::certificate::Residuals;
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues, SolveInfo};
 
@@ -9,6 +10,8 @@ use crate::solution::{LevelInfo, LevelValues, SolveInfo};
 pub(crate) struct Outcome {
     pub(crate) converged: bool,
     pub(crate) certificate: Certificate,
+    /// [`Certificate::energy`] of the computed gap alone.
+    pub(crate) iteration_error: f64,
     /// Mean pressure.
     pub(crate) mean_pressure: f64,
     /// Pressure-weighted mean of v - h: penetration minus h_max.
@@ -24,14 +27,23 @@ impl Outcome {
     pub(crate) fn new(problem: &Problem, sums: &GapSums, n_cell: f64, converged: bool) -> Self {
         let mean_pressure = sums.pressure / n_cell;
         let mean_gap = sums.mean_gap();
+        let elastic_energy = 0.5 * sums.work() / n_cell;
+        let residuals = Residuals { least_gap: sums.min_gap - mean_gap, mean_gap, mean_pressure, elastic_energy };
+        let certificate = Certificate::new(problem, &residuals);
         Self {
             converged,
-            certificate: Certificate::new(problem, sums.min_gap - mean_gap, mean_pressure, mean_gap),
+            certificate,
+            iteration_error: certificate.energy,
             mean_pressure,
             approach: mean_gap - problem.offset(),
-            elastic_energy: 0.5 * sums.work() / n_cell,
+            elastic_energy,
             contact_gap: sums.zero_gap(problem),
         }
+    }
+
+    /// U/σ0, the elastic energy over the mean pressure.
+    pub(crate) fn energy_length(&self) -> f64 {
+        self.elastic_energy / self.mean_pressure
     }
 
     /// In the form given to the user, with the work done on the levels, coarsest first, and the values of
@@ -39,6 +51,7 @@ impl Outcome {
     pub(crate) fn info(&self, problem: &Problem, levels: Vec<LevelInfo>, coarser: Option<LevelValues>) -> SolveInfo {
         SolveInfo {
             certificate: self.certificate,
+            iteration_error: self.iteration_error,
             mean_pressure: self.mean_pressure,
             penetration: problem.h_max + self.approach,
             penetration_full_contact: problem.h_max - problem.h_mean,

@@ -5,6 +5,8 @@ use super::state::Descent;
 use super::sums::GapSums;
 use crate::Control;
 use crate::parallel;
+#[cfg(doc)]
+use crate::problem::Problem;
 
 /// The pressure of a rigid overlap may miss the prescribed load by this factor before it is scaled to it, and is computed this
 /// often at most. Over 57 cold starts on 64² to 512², 448 iterations and 830 applications of L, the start's included, where a
@@ -12,7 +14,7 @@ use crate::parallel;
 const LOAD_FACTOR: f64 = 1.3;
 const MAX_OVERLAPS: usize = 3;
 
-/// The first overlap, as a part of the height range, and the exponent of the load over the overlap until two are known.
+/// The first overlap, as a part of the range of depths ([`Problem::depth_range`]), and the exponent of the load over the overlap until two are known.
 const FIRST_OVERLAP: f64 = 0.25;
 const FIRST_EXPONENT: f64 = 1.5;
 
@@ -28,8 +30,8 @@ struct DepthSearch {
 }
 
 impl DepthSearch {
-    fn new(h_range: f64) -> Self {
-        Self { depth: FIRST_OVERLAP * h_range, exponent: FIRST_EXPONENT, last: None }
+    fn new(range: f64) -> Self {
+        Self { depth: FIRST_OVERLAP * range, exponent: FIRST_EXPONENT, last: None }
     }
 
     /// The next depth, when the present one carries `load`, which is too small by the factor `missing`. NaN when two loads are the same.
@@ -83,12 +85,13 @@ impl Descent<'_> {
     }
 
     /// The overlap with a rigid plane that carries the mean pressure `wanted`, nearly, when it is scaled so that its weighted mean gap
-    /// is zero; a uniform pressure where only an overlap of more than the height range would.
+    /// is zero; a uniform pressure where only an overlap of more than the range of depths would.
     fn overlap_of_load(&mut self, wanted: f64) -> GapSums {
         let n_cell = self.n_cell();
         // A coarse level may not reach as high as the finest.
         let highest = parallel::maximum(self.heights, f64::NEG_INFINITY);
-        let mut search = DepthSearch::new(self.problem.h_range);
+        let range = self.problem.depth_range();
+        let mut search = DepthSearch::new(range);
         for attempt in 1..=MAX_OVERLAPS {
             let floor = highest - search.depth;
             self.overlap(floor);
@@ -104,7 +107,7 @@ impl Descent<'_> {
                 return self.rescale(wanted / carried);
             }
             search.improve(load, missing);
-            if search.depth.is_nan() || search.depth > self.problem.h_range {
+            if search.depth.is_nan() || search.depth > range {
                 break;
             }
         }

@@ -91,15 +91,18 @@ impl GapSums {
         (scale.is_finite() && self.work() > 0.0).then_some(scale)
     }
 
-    /// The error as the certificate defines it.
+    /// The deepest overlap, or the mean gap where there should be none, in units of the problem's length.
     pub(super) fn error(&self, problem: &Problem) -> f64 {
         let mean_gap = self.mean_gap();
-        let penetration = (mean_gap - self.min_gap) / problem.h_range;
+        let length = problem.reference_length(self.work(), self.pressure);
+        // What is exact is so in any unit, even where the pressure is uniform and U is zero.
+        let ratio = |overlap: f64| if overlap == 0.0 { 0.0 } else { overlap / length };
+        let penetration = ratio(mean_gap - self.min_gap);
         positive_part(match problem.control {
             Control::MeanPressure(_) => penetration,
             // NaN in the mean is in both.
             Control::Penetration(_) if penetration.is_nan() => penetration,
-            Control::Penetration(_) => penetration.max(mean_gap.abs() / problem.h_range),
+            Control::Penetration(_) => penetration.max(ratio(mean_gap.abs())),
         })
     }
 }

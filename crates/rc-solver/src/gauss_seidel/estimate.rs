@@ -5,7 +5,7 @@ use rc_quadtree::paper::{Mask, MeshKind, MeshParams, count};
 
 use super::{GaussSeidelError, GaussSeidelParams, HalfSpace};
 use crate::uniform::{coarsen, solve_uniform};
-use crate::{Control, IterationParams};
+use crate::{Control, IterationParams, SolveInfo};
 
 /// Largest element, in finest elements: beyond it coarsening saves nothing and heights at centres would need more levels.
 pub(super) const LARGEST_DOUBLINGS: u32 = 5;
@@ -44,13 +44,21 @@ pub(super) fn mesh_kind(params: &GaussSeidelParams) -> MeshKind {
     if params.uniform_elements { MeshKind::AdaptiveUniform } else { MeshKind::Adaptive }
 }
 
-/// Solves the scene on a coarse grid. Returns its penetration, or refuses a scene whose cost would exceed the budget.
+/// What a coarse grid says of a scene, in λ.
+pub(super) struct Estimate {
+    /// Penetration Δ.
+    pub(super) penetration: f64,
+    /// U/σ0, the elastic energy over the mean pressure.
+    pub(super) length: f64,
+}
+
+/// Solves the scene on a coarse grid, or refuses one whose cost would exceed the budget.
 pub(super) fn estimate(
     heights: &Field,
     half_space: HalfSpace<'_>,
     control: Control,
     params: &GaussSeidelParams,
-) -> Result<f64, GaussSeidelError> {
+) -> Result<Estimate, GaussSeidelError> {
     let coarse = coarsen(heights, ESTIMATE_SIDE / 2);
     let coarse = std::iter::once(heights).chain(&coarse).find(|field| field.grid().nx() <= ESTIMATE_SIDE);
     // A grid that cannot be halved is its own coarse grid.
@@ -61,10 +69,11 @@ pub(super) fn estimate(
         Control::Penetration(value) => Control::Penetration(value.min(0.999 * full_contact)),
         Control::MeanPressure(_) => control,
     };
-    let limits = IterationParams { tolerance: 1e-4, ..IterationParams::certified() };
+    let limits = IterationParams::relative(1e-4);
     let solution = solve_uniform(coarse, half_space.kernel, control, &limits, &Silent)?;
     check_budget(heights, &solution.pressure, params)?;
-    Ok(solution.info.penetration.max(f64::MIN_POSITIVE))
+    let SolveInfo { penetration, elastic_energy, mean_pressure, .. } = solution.info;
+    Ok(Estimate { penetration: penetration.max(f64::MIN_POSITIVE), length: elastic_energy / mean_pressure })
 }
 
 /// Refuses a scene that needs more coefficients than the budget allows, by the contact of a coarse solution.

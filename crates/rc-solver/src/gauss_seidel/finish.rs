@@ -3,13 +3,13 @@
 use super::GaussSeidelError;
 use super::procedure::Procedure;
 use super::sweep;
-use crate::Control;
-use crate::certificate::Certificate;
+use crate::certificate::{Certificate, Residuals};
 use crate::solution::{GridSolution, MeshPressure, SolveInfo, Status};
+use crate::{Control, ErrorBound};
 
 impl Procedure<'_> {
     /// The solution with its certificate.
-    pub(super) fn finish(mut self) -> Result<GridSolution, GaussSeidelError> {
+    pub(super) fn finish(mut self, bound: ErrorBound) -> Result<GridSolution, GaussSeidelError> {
         let wanted = self.prescribed();
         self.scale_to_control(&wanted);
         self.displace()?;
@@ -25,11 +25,11 @@ impl Procedure<'_> {
         }
         let outside = self.displacement.values().iter().zip(&self.contact).filter(|&(_, &contact)| !contact);
         let inside = gap.iter().map(|g| g - mean_gap);
-        let least = inside.chain(outside.map(|(&g, _)| g)).fold(f64::INFINITY, f64::min);
-        let certificate = Certificate::new(self.problem, least, mean_pressure, mean_gap);
+        let least_gap = inside.chain(outside.map(|(&g, _)| g)).fold(f64::INFINITY, f64::min);
+        let residuals = Residuals { least_gap, mean_gap, mean_pressure, elastic_energy };
+        let certificate = Certificate::new(self.problem, &residuals);
         let pressure = self.mesh.to_field(&self.pressure, self.info.grid)?;
-        let within = certificate.penetration <= self.tolerance && certificate.load <= Certificate::LOAD_TOLERANCE;
-        let converged = self.settled && within && pressure.min() >= 0.0;
+        let converged = self.settled && bound.is_met_by(&certificate) && pressure.min() >= 0.0;
         Ok(GridSolution {
             pressure,
             gap: self.displacement,
@@ -37,6 +37,7 @@ impl Procedure<'_> {
             elements: Some(MeshPressure { mesh: self.mesh, pressure: self.pressure }),
             info: SolveInfo {
                 certificate,
+                iteration_error: certificate.energy,
                 mean_pressure,
                 penetration: self.penetration + mean_gap,
                 penetration_full_contact: self.problem.h_max - self.problem.h_mean,

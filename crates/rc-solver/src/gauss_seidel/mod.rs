@@ -30,12 +30,13 @@ mod sweep;
 use rc_core::{Field, Observer};
 
 pub use self::error::GaussSeidelError;
+use self::estimate::Estimate;
 pub(crate) use self::half_space::HalfSpace;
 pub use self::params::GaussSeidelParams;
 use self::procedure::Procedure;
 use crate::problem::Problem;
 use crate::solution::GridSolution;
-use crate::{Control, IterationParams};
+use crate::{Control, ErrorBound, IterationParams, Tolerance};
 
 /// Solves the contact problem by the paper's procedure (Sec. 2, steps (i)-(vi)) on an adaptive mesh whose finest elements are those of the
 /// grid of `heights`, to a tolerance.
@@ -46,16 +47,21 @@ pub(crate) fn solve_gauss_seidel(
     heights: &Field,
     half_space: HalfSpace<'_>,
     control: Control,
-    (tolerance, params): (f64, &GaussSeidelParams),
+    (bound, params): (ErrorBound, &GaussSeidelParams),
     observer: &dyn Observer,
 ) -> Result<GridSolution, GaussSeidelError> {
     estimate::check(heights, params)?;
-    let problem = Problem::check(heights, control, &IterationParams { tolerance, ..IterationParams::certified() })?;
-    let expected = estimate::estimate(heights, half_space, control, params)?;
+    let problem = Problem::check(heights, control, &IterationParams { bound, max_iterations: params.max_checks })?;
+    let Estimate { penetration: expected, length } = estimate::estimate(heights, half_space, control, params)?;
+    let tolerance = match bound {
+        ErrorBound::Relative(tolerance) => tolerance,
+        // Half of it, since the length is that of a coarse grid.
+        ErrorBound::Energy(_) => (0.5 * bound.aim() * length / problem.h_range).max(Tolerance::SMALLEST),
+    };
     let mut procedure = Procedure::new(heights, half_space, &problem, (tolerance, params), observer)?;
     match control {
         Control::Penetration(penetration) => procedure.increase_to(penetration)?,
         Control::MeanPressure(mean) => procedure.search(mean, expected)?,
     }
-    procedure.finish()
+    procedure.finish(bound)
 }

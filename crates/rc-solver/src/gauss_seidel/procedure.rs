@@ -30,7 +30,8 @@ pub(super) struct Procedure<'a> {
     /// Heights at the centres of elements of 1, 2, 4, … finest elements; the first are the heights themselves.
     pub(super) pyramid: Vec<Field>,
     pub(super) problem: &'a Problem,
-    pub(super) tolerance: f64,
+    /// Relative to the height range.
+    tolerance: f64,
     params: &'a GaussSeidelParams,
     observer: &'a dyn Observer,
     pub(super) coefficients: Coefficients<'a>,

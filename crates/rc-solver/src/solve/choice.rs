@@ -5,15 +5,16 @@ use rc_core::{Grid, HeightSource};
 use super::plan::ChosenMethod;
 use super::{ContactProblem, Plan, SolveError, SolveParams};
 use crate::adaptive::AdaptiveProblem;
-use crate::problem::check_load;
-use crate::{AdaptiveError, Estimate, Method, MethodReason, UNIFORM_BYTES_PER_ELEMENT};
+use crate::problem::{check_load, check_tolerance};
+use crate::{AdaptiveError, ErrorBound, Estimate, Method, MethodReason, UNIFORM_BYTES_PER_ELEMENT};
 
 /// Checks the problem and chooses its method.
 pub(super) fn plan<'a>(problem: ContactProblem<'a>, params: &SolveParams) -> Result<Plan<'a>, SolveError> {
-    let tolerance = params.tolerance.relative(problem.heights.elements_per_wave());
-    check_load(problem.control, tolerance)?;
+    let bound = params.tolerance.bound(problem.heights.elements_per_wave());
+    check_load(problem.control)?;
+    check_tolerance(bound)?;
     check_grid(problem.heights)?;
-    let choice = Choice { problem, params, tolerance };
+    let choice = Choice { problem, params, bound };
     let (chosen, reason) = match params.method {
         None => choice.automatic(),
         Some(method) => {
@@ -25,13 +26,13 @@ pub(super) fn plan<'a>(problem: ContactProblem<'a>, params: &SolveParams) -> Res
             Ok((chosen, MethodReason::AskedFor(method)))
         }
     }?;
-    Ok(Plan { problem, params: *params, tolerance, chosen, reason })
+    Ok(Plan { problem, params: *params, bound, chosen, reason })
 }
 
 struct Choice<'a, 'b> {
     problem: ContactProblem<'a>,
     params: &'b SolveParams,
-    tolerance: f64,
+    bound: ErrorBound,
 }
 
 type Chosen<'a> = Result<(ChosenMethod<'a>, MethodReason), SolveError>;
@@ -83,7 +84,7 @@ impl<'a> Choice<'a, '_> {
 
     /// Prepares the adaptive method, if it fits the problem and the memory.
     fn prepare(&self) -> Result<AdaptiveProblem<'a>, AdaptiveError> {
-        AdaptiveProblem::new(self.problem.heights, self.problem.control, &self.params.adaptive(self.tolerance))
+        AdaptiveProblem::new(self.problem.heights, self.problem.control, &self.params.adaptive(self.bound))
     }
 
     /// The uniform grid where the adaptive method does not fit, if that helps.
@@ -110,7 +111,9 @@ impl<'a> Choice<'a, '_> {
             AdaptiveError::Grid { nx, ny, .. } if nx != ny => Some(MethodReason::GridNotSquare { grid }),
             AdaptiveError::Grid { .. } | AdaptiveError::Base { .. } => Some(MethodReason::NoLevels { grid }),
             AdaptiveError::Flat => Some(MethodReason::Flat),
-            AdaptiveError::OperatorError { .. } => Some(MethodReason::ToleranceTooSmall { tolerance: self.tolerance }),
+            AdaptiveError::OperatorError { .. } => {
+                Some(MethodReason::ToleranceTooSmall { tolerance: self.bound.value() })
+            }
             _ => None,
         }
     }

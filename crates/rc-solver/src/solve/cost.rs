@@ -2,6 +2,7 @@
 
 use super::choice::uniform_bytes;
 use super::plan::{ChosenMethod, Plan};
+use crate::ErrorBound;
 
 /// Processor seconds for each cell of the adaptive method at a tolerance of 1e-6 or more: measured 1.1e-6 to 1.5e-6 for cells that are
 /// evaluated, of which the estimate counts 0.55 to 0.9 (512² to 4096², 0.9 % to 20 % contact, H = 0.3 and 0.8).
@@ -36,7 +37,12 @@ impl Plan<'_> {
 
 impl Cost {
     fn of(plan: &Plan<'_>) -> Self {
-        let decades = (-6.0 - plan.tolerance.log10()).max(0.0);
+        let digits = match plan.bound {
+            ErrorBound::Relative(value) => value.log10(),
+            // 1e-2 takes as many iterations as 1e-6 of the height range.
+            ErrorBound::Energy(value) => 2.0 * (value / 1e-2).log10() - 6.0,
+        };
+        let decades = (-6.0 - digits).max(0.0);
         let seconds = |work: f64| work * (1.0 + WORK_PER_DECADE * decades);
         match &plan.chosen {
             ChosenMethod::Adaptive(problem) => {

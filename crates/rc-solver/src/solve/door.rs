@@ -5,6 +5,7 @@ use rc_core::{Grid, HeightSource, Observer, Operator, Silent};
 use super::solution::HowSolved;
 use super::{ContactProblem, Plan, Solution, SolveError, SolveParams, area_error, choice, plan};
 use crate::operator;
+use crate::problem::check_tolerance;
 use crate::solution::Status;
 use crate::{Control, Method, MethodReason};
 
@@ -105,11 +106,12 @@ pub fn solve_with_operator<'a>(
         Some(method) => return Err(SolveError::Kernel { method, kernel: "operator" }),
     }
     let source = heights.into();
-    let tolerance = params.tolerance.relative(source.elements_per_wave());
+    let bound = params.tolerance.bound(source.elements_per_wave());
+    check_tolerance(bound)?;
     let heights = source.heights();
-    let limits = params.iteration(tolerance);
+    let limits = params.iteration(bound);
     let solution = operator::solve_on_grid(&heights, operator, control, &limits, observer)?;
-    let how = HowSolved::new(Method::Uniform, MethodReason::OwnOperator, tolerance, "operator");
+    let how = HowSolved::new(Method::Uniform, MethodReason::OwnOperator, bound, "operator");
     let solution = Solution::with_operator(how, operator, solution, heights.max());
     if solution.status() == Status::NotConverged { Err(plan::not_converged(solution)) } else { Ok(solution) }
 }

@@ -1,12 +1,12 @@
 //! Parameters of a solve.
 
 use crate::adaptive::AdaptiveParams;
-use crate::{GaussSeidelParams, IterationParams, Method, Tolerance};
+use crate::{ErrorBound, GaussSeidelParams, IterationParams, Method, Tolerance};
 
 /// How accurately, by which method and within which limits a contact problem is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolveParams {
-    /// Bound on the certificate ([`crate::Certificate`]), relative to the peak-to-valley height h_max - h_min.
+    /// What the certificate ([`crate::Certificate`]) has to meet.
     pub tolerance: Tolerance,
     /// Largest number of iterations on any one level.
     pub max_iterations: usize,
@@ -28,11 +28,11 @@ pub struct SolveParams {
 }
 
 impl SolveParams {
-    /// Certified to 1e-6 of the peak-to-valley height: area and rms pressure are then exact to about five digits.
+    /// Certified to [`Tolerance::DEFAULT`]: area and rms pressure are then those of the discrete problem to about five digits.
     #[must_use]
     pub fn certified() -> Self {
         Self {
-            tolerance: Tolerance::Relative(1e-6),
+            tolerance: Tolerance::DEFAULT,
             max_iterations: 2000,
             method: None,
             border_level: 0,
@@ -44,7 +44,7 @@ impl SolveParams {
         }
     }
 
-    /// [`SolveParams::certified`] with this tolerance.
+    /// [`SolveParams::certified`] with this tolerance, relative to the peak-to-valley height ([`Tolerance::Relative`]).
     #[must_use]
     pub fn to_tolerance(tolerance: f64) -> Self {
         Self { tolerance: Tolerance::Relative(tolerance), ..Self::certified() }
@@ -56,15 +56,15 @@ impl SolveParams {
         Self { method: Some(method), ..self }
     }
 
-    /// What the iteration needs of them, with the tolerance as a number.
-    pub(super) fn iteration(&self, tolerance: f64) -> IterationParams {
-        IterationParams { tolerance, max_iterations: self.max_iterations }
+    /// What the iteration needs of them.
+    pub(super) fn iteration(&self, bound: ErrorBound) -> IterationParams {
+        IterationParams { bound, max_iterations: self.max_iterations }
     }
 
     /// What the adaptive method needs of them.
-    pub(super) fn adaptive(&self, tolerance: f64) -> AdaptiveParams {
+    pub(super) fn adaptive(&self, bound: ErrorBound) -> AdaptiveParams {
         AdaptiveParams {
-            solve: self.iteration(tolerance),
+            solve: self.iteration(bound),
             operator_error: self.operator_error,
             border_level: self.border_level,
             base_side: self.base_side,

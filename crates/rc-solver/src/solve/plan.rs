@@ -9,14 +9,14 @@ use crate::adaptive::AdaptiveProblem;
 use crate::gauss_seidel::{HalfSpace, solve_gauss_seidel};
 use crate::solution::{GridSolution, Status};
 use crate::uniform::solve_uniform;
-use crate::{GaussSeidelError, GaussSeidelParams, Method, MethodReason};
+use crate::{ErrorBound, GaussSeidelError, GaussSeidelParams, Method, MethodReason};
 
 /// A contact problem that has been checked and has its method. Nothing is solved yet.
 pub struct Plan<'a> {
     pub(super) problem: ContactProblem<'a>,
     pub(super) params: SolveParams,
-    /// The tolerance as a number.
-    pub(super) tolerance: f64,
+    /// What the certificate has to meet.
+    pub(super) bound: ErrorBound,
     pub(super) chosen: ChosenMethod<'a>,
     pub(super) reason: MethodReason,
 }
@@ -48,10 +48,10 @@ impl<'a> Plan<'a> {
         &self.reason
     }
 
-    /// The tolerance as a number, relative to the peak-to-valley height.
+    /// What the certificate has to meet.
     #[must_use]
-    pub fn tolerance(&self) -> f64 {
-        self.tolerance
+    pub fn bound(&self) -> ErrorBound {
+        self.bound
     }
 
     /// Solves the problem.
@@ -60,21 +60,21 @@ impl<'a> Plan<'a> {
     /// [`SolveError::NotConverged`] with the best solution found; [`SolveError::Problem`] for heights that are not finite, and
     /// [`SolveError::GaussSeidel`] for what the paper's procedure refuses.
     pub fn solve(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
-        let Self { problem, params, tolerance, chosen, reason } = self;
-        let how = |method| HowSolved::new(method, reason, tolerance, problem.kernel.name());
+        let Self { problem, params, bound, chosen, reason } = self;
+        let how = |method| HowSolved::new(method, reason, bound, problem.kernel.name());
         let solution = match chosen {
             ChosenMethod::Adaptive(adaptive) => {
                 let solution = adaptive.solve(observer);
                 Solution::on_tiles(how(Method::Adaptive), solution, adaptive)
             }
             ChosenMethod::Uniform => {
-                let (heights, limits) = (problem.heights.heights(), params.iteration(tolerance));
+                let (heights, limits) = (problem.heights.heights(), params.iteration(bound));
                 let solution = solve_uniform(&heights, problem.kernel, problem.control, &limits, observer)?;
                 Solution::on_grid(how(Method::Uniform), problem.kernel, solution, heights.max())
             }
             ChosenMethod::GaussSeidel => {
                 let (heights, params) = (problem.heights.heights(), params.gauss_seidel);
-                let solution = by_gauss_seidel(&problem, &heights, (tolerance, &params), observer)?;
+                let solution = by_gauss_seidel(&problem, &heights, (bound, &params), observer)?;
                 Solution::on_grid(how(Method::GaussSeidel), problem.kernel, solution, heights.max())
             }
         };
@@ -96,13 +96,13 @@ pub(super) fn not_converged(solution: Solution<'_>) -> SolveError {
 fn by_gauss_seidel(
     problem: &ContactProblem<'_>,
     heights: &Field,
-    (tolerance, params): (f64, &GaussSeidelParams),
+    (bound, params): (ErrorBound, &GaussSeidelParams),
     observer: &dyn Observer,
 ) -> Result<GridSolution, GaussSeidelError> {
     let periodic = PeriodicLove::new();
     let half_space =
         HalfSpace { kernel: problem.kernel, coefficient: &|offset, half_side| periodic.coefficient(offset, half_side) };
-    solve_gauss_seidel(heights, half_space, problem.control, (tolerance, params), observer)
+    solve_gauss_seidel(heights, half_space, problem.control, (bound, params), observer)
 }
 
 impl std::fmt::Debug for Plan<'_> {

@@ -8,7 +8,7 @@ use rc_core::{Field, Grid, Kernel, Operator};
 use super::response::{KernelOfGrid, Response};
 use crate::adaptive::{AdaptiveProblem, AdaptiveSolution};
 use crate::solution::{GridSolution, Status};
-use crate::{Certificate, ContactArea, ContactElement, Method, MethodReason, Observables, SolveInfo};
+use crate::{Certificate, ContactArea, ContactElement, ErrorBound, Method, MethodReason, Observables, SolveInfo};
 
 /// A solved contact problem.
 ///
@@ -31,13 +31,13 @@ pub struct Solution<'a> {
 pub(super) struct HowSolved {
     pub(super) method: Method,
     pub(super) reason: MethodReason,
-    pub(super) tolerance: f64,
+    pub(super) bound: ErrorBound,
     pub(super) kernel: &'static str,
 }
 
 impl HowSolved {
-    pub(super) fn new(method: Method, reason: MethodReason, tolerance: f64, kernel: &'static str) -> Self {
-        Self { method, reason, tolerance, kernel }
+    pub(super) fn new(method: Method, reason: MethodReason, bound: ErrorBound, kernel: &'static str) -> Self {
+        Self { method, reason, bound, kernel }
     }
 }
 
@@ -130,10 +130,10 @@ impl<'a> Solution<'a> {
         &self.how.reason
     }
 
-    /// The tolerance as a number, relative to the peak-to-valley height.
+    /// What the certificate had to meet.
     #[must_use]
-    pub fn tolerance(&self) -> f64 {
-        self.how.tolerance
+    pub fn bound(&self) -> ErrorBound {
+        self.how.bound
     }
 
     /// Name of the kernel; `operator` for an operator of the caller.

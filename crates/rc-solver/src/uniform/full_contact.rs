@@ -4,21 +4,22 @@ use rayon::prelude::*;
 use rc_core::{Field, Kernel};
 use rc_fft::SymbolTable;
 
-use crate::Certificate;
+use crate::ErrorBound;
+use crate::certificate::{Certificate, Residuals};
 use crate::descent::{BlockOperator, SymbolOperator, read_blocks, write_blocks};
 use crate::operator::UniformOperator;
 use crate::problem::Problem;
 use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
 
 /// The solution when `mean_pressure` closes every gap: v = h - mean(h) and p = σ0 + L⁻¹ h, provided that is nowhere
-/// tensile. (For the spectral kernel p̂ = E*|q|ĥ/2.) `None` otherwise, and where rounding or a faulty kernel leave more than
-/// `tolerance` of an error.
+/// tensile. (For the spectral kernel p̂ = E*|q|ĥ/2.) `None` otherwise, and where rounding or a faulty kernel leave a larger error than
+/// `bound`.
 pub(super) fn solve(
     heights: &Field,
     kernel: &dyn Kernel,
     mean_pressure: f64,
     problem: &Problem,
-    tolerance: f64,
+    bound: ErrorBound,
 ) -> Option<GridSolution> {
     if proves_partial_contact(heights, kernel, mean_pressure) {
         return None;
@@ -46,9 +47,8 @@ pub(super) fn solve(
     if least.into_iter().fold(f64::INFINITY, f64::min) < 0.0 {
         return None;
     }
-    let solution = certified(heights, kernel, problem, pressure);
-    let Certificate { penetration, load, .. } = solution.info.certificate;
-    (penetration <= tolerance && load <= Certificate::LOAD_TOLERANCE).then_some(solution)
+    let solution = certified(heights, kernel, problem, pressure, &mut inverse);
+    bound.is_met_by(&solution.info.certificate).then_some(solution)
 }
 
 /// A pressure p ≥ 0 has no Fourier coefficient above its mean. Full contact prescribes them, and the longest waves are the
@@ -85,7 +85,13 @@ fn proves_partial_contact(heights: &Field, kernel: &dyn Kernel, mean_pressure: f
 }
 
 /// The solution with its certificate, from a fresh application of L.
-fn certified(heights: &Field, kernel: &dyn Kernel, problem: &Problem, pressure: Field) -> GridSolution {
+fn certified(
+    heights: &Field,
+    kernel: &dyn Kernel,
+    problem: &Problem,
+    pressure: Field,
+    inverse: &mut SymbolOperator,
+) -> GridSolution {
     let grid = heights.grid();
     let operator = UniformOperator::new(grid, kernel);
     let mut gap = Field::zeros(grid);
@@ -102,14 +108,40 @@ fn certified(heights: &Field, kernel: &dyn Kernel, problem: &Problem, pressure: 
     // A sum that is not a number shows a gap that is not one, which the minimum passes over.
     let least = if approach.is_finite() { gap.min() } else { f64::NAN };
     let mean = total / grid.len() as f64;
+    let elastic_energy = 0.5 * work / grid.len() as f64;
+    let residuals = Residuals { least_gap: least, mean_gap: 0.0, mean_pressure: mean, elastic_energy };
+    let mut certificate = Certificate::new(problem, &residuals);
+    let of_residual = error_of_residual(&gap, elastic_energy, inverse);
+    if of_residual < certificate.energy {
+        certificate.energy = of_residual;
+    }
     let info = SolveInfo {
-        certificate: Certificate::new(problem, least, mean, 0.0),
+        certificate,
+        iteration_error: certificate.energy,
         mean_pressure: mean,
         penetration: problem.h_max + approach,
         penetration_full_contact: problem.h_max - problem.h_mean,
-        elastic_energy: 0.5 * work / grid.len() as f64,
+        elastic_energy,
         levels: vec![LevelInfo { grid, iterations: 0, operator_applications: 1, preconditioner_applications: 0 }],
         coarser: None,
     };
     GridSolution { pressure, gap, status: Status::FullContact, elements: None, info }
+}
+
+/// Another bound on the energy error, √(⟨r, L⁻¹ r⟩/U), r the gap less its mean: ⟨p - p*, L (p - p*)⟩ ≤ ⟨r, p - p*⟩, since the means of p and
+/// p* are the same. It stays small where the mean pressure is far beyond that of full contact and multiplies every rounding of the gap.
+fn error_of_residual(gap: &Field, elastic_energy: f64, inverse: &mut SymbolOperator) -> f64 {
+    let (block, mean) = (inverse.layout().len(), gap.mean());
+    write_blocks(inverse, gap.values().chunks(block), |g, rows| {
+        for (row, g) in rows.iter_mut().zip(g) {
+            *row = g - mean;
+        }
+    });
+    inverse.apply();
+    let products = read_blocks(inverse, gap.values().chunks(block), |g, rows| -> f64 {
+        rows.iter().zip(g).map(|(row, g)| row * (g - mean)).sum()
+    });
+    let product = products.into_iter().sum::<f64>() / gap.grid().len() as f64;
+    // Rounding may leave less than nothing of an exact solution.
+    if product <= 0.0 { 0.0 } else { (product / elastic_energy).sqrt() }
 }

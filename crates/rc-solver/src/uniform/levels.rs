@@ -12,7 +12,10 @@ const SMALLEST_WIDTH: usize = 8;
 
 /// The heights on coarser and coarser grids, finest of them first, each with half the elements per side, as long as that
 /// leaves whole elements, at least `smallest_side` of them along the side with more; a long cell is in need of coarser grids too.
+///
+/// Heights below the [`floor`] count as that.
 pub(crate) fn coarsen(heights: &Field, smallest_side: usize) -> Vec<Field> {
+    let floor = floor(heights);
     let mut levels: Vec<Field> = Vec::new();
     loop {
         let finer = levels.last().unwrap_or(heights);
@@ -22,12 +25,31 @@ pub(crate) fn coarsen(heights: &Field, smallest_side: usize) -> Vec<Field> {
             return levels;
         }
         let Ok(grid) = finer.grid().with_elements(nx / 2, ny / 2) else { return levels };
-        let next = halve(finer, grid);
+        let next = halve(finer, grid, floor);
         levels.push(next);
     }
 }
 
-fn halve(finer: &Field, grid: Grid) -> Field {
+/// Heights that are looked at for the quartile, at most.
+const SAMPLES: usize = 1 << 14;
+
+/// How many times farther below the highest point than the lower quartile the floor is.
+const FLOOR_DEPTH: f64 = 5.0;
+
+/// What only pits are below: interpolation next to a deep pit overshoots, and a summit that is not there would carry the whole load of a
+/// coarse grid.
+fn floor(heights: &Field) -> f64 {
+    let values = heights.values();
+    // An odd step, which does not stay in one column of a grid whose sides are even.
+    let step = (values.len() / SAMPLES) | 1;
+    let mut samples: Vec<f64> = values.iter().copied().step_by(step).collect();
+    let highest = samples.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let quarter = samples.len() / 4;
+    let (_, quartile, _) = samples.select_nth_unstable_by(quarter, f64::total_cmp);
+    highest - FLOOR_DEPTH * (highest - *quartile)
+}
+
+fn halve(finer: &Field, grid: Grid, floor: f64) -> Field {
     let (nx, ny) = (finer.grid().nx(), finer.grid().ny());
     let mut coarse = Field::zeros(grid);
     coarse.values_mut().par_chunks_mut(grid.nx()).enumerate().for_each_init(
@@ -37,7 +59,7 @@ fn halve(finer: &Field, grid: Grid) -> Field {
             for (tap, weight) in MIDPOINT.iter().enumerate() {
                 let source = finer.row((2 * iy + tap + ny - 2) % ny);
                 for (sum, value) in blended.iter_mut().zip(source) {
-                    *sum += weight * value;
+                    *sum += weight * value.max(floor);
                 }
             }
             for (ix, value) in row.iter_mut().enumerate() {
@@ -68,6 +90,18 @@ mod tests {
         let worst = exact.values().iter().zip(coarse[0].values()).map(|(e, c)| (e - c).abs()).fold(0.0, f64::max);
         // The interpolation error of a wave of 32 elements, (20/4096)·(2π/32)^6 to leading order, twice.
         assert!(worst < 1e-6, "off by {worst:e}");
+    }
+
+    #[test]
+    fn a_pit_raises_no_summit_beside_it() {
+        let grid = Grid::square(128).expect("a grid");
+        let wave = |at: DVec2| (2.0 * PI * at.x).cos() * (2.0 * PI * at.y).cos();
+        let mut heights = Field::from_fn(grid, wave);
+        heights.values_mut()[7 * 128 + 40] -= 1e6;
+        let coarse = coarsen(&heights, 32);
+        for level in &coarse {
+            assert!(level.max() < 1.6, "a summit of {} on {}", level.max(), level.grid());
+        }
     }
 
     #[test]

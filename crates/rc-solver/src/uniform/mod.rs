@@ -8,7 +8,7 @@ mod prolongation;
 use rc_core::{Field, Kernel, Observer};
 
 pub(crate) use self::levels::coarsen;
-pub(crate) use self::nested_grids::{FinestGrid, NestedGrids, coarse_tolerance};
+pub(crate) use self::nested_grids::{FinestGrid, NestedGrids};
 pub(crate) use self::prolongation::{edge_function, edge_function_outside};
 use crate::problem::Problem;
 use crate::solution::GridSolution;
@@ -38,7 +38,7 @@ pub(crate) fn solve_uniform(
 ) -> Result<GridSolution, ProblemError> {
     let problem = Problem::check(heights, control, params)?;
     if let Control::MeanPressure(mean_pressure) = control
-        && let Some(solution) = full_contact::solve(heights, kernel, mean_pressure, &problem, params.tolerance)
+        && let Some(solution) = full_contact::solve(heights, kernel, mean_pressure, &problem, params.bound)
     {
         return Ok(solution);
     }

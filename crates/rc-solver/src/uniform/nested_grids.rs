@@ -13,13 +13,6 @@ use crate::solution::{LevelInfo, LevelValues};
 /// Grids with fewer elements per side cost nothing, so no coarser ones prepare them.
 const SMALLEST_SIDE: usize = 64;
 
-/// Tolerance of the level below the finest: its discretisation error is far above this.
-const COARSE_TOLERANCE: f64 = 1e-4;
-
-/// Levels further down may be solved less accurately by this factor each, up to a limit: they only prepare the next.
-const COARSENING: f64 = 3.0;
-const COARSEST_TOLERANCE: f64 = 1e-3;
-
 /// Nested grids: what their levels share.
 pub(crate) struct NestedGrids<'a> {
     pub(crate) kernel: &'a dyn Kernel,
@@ -77,21 +70,23 @@ impl<'a> NestedGrids<'a> {
     {
         let (level, grid) = (levels.len(), heights.grid());
         self.observer.notify(&Event::Level { grid, level, n_levels });
-        let wanted = self.params.tolerance;
+        let wanted = self.params.bound.aim();
         let above = n_levels - 1 - level;
-        let tolerance = if above == 0 { wanted } else { coarse_tolerance(above - 1).max(wanted) };
+        let tolerance = match above {
+            0 => wanted,
+            _ => self.problem.measure.coarse_tolerance(above - 1).max(wanted),
+        };
         let operators = uniform_operators(grid, self.kernel);
         let mut descent = Descent::new(heights.values(), grid, operators, self.problem, start);
-        let goal = Goal { tolerance, max_iterations: self.params.max_iterations, certify: above == 0 };
+        let goal = Goal {
+            tolerance,
+            max_iterations: self.params.max_iterations,
+            certify: (above == 0).then_some(self.params.bound),
+        };
         let outcome = descent.run(goal, &DescentObserver { observer: self.observer, mesh: &grid });
         levels.push(descent.info());
         (descent, outcome)
     }
-}
-
-/// Tolerance of the level that has `below` levels between it and the finest.
-pub(crate) fn coarse_tolerance(below: usize) -> f64 {
-    (COARSE_TOLERANCE * COARSENING.powi(below as i32)).min(COARSEST_TOLERANCE)
 }
 
 /// Root mean square, summed in pieces so that it is the same for any number of threads.

@@ -33,7 +33,9 @@ fn recomputed(heights: &Field, kernel: &dyn Kernel, pressure: &Field, mean_press
     let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
     let range = heights.max() - heights.min();
     let slack = pressure.values().iter().zip(&gaps).map(|(p, g)| p * (g - least)).sum::<f64>();
+    let work = pressure.values().iter().zip(&v).map(|(p, v)| p * v).sum::<f64>();
     Certificate {
+        energy: (slack / (0.5 * work)).sqrt(),
         complementarity: slack / (range * total),
         penetration: (weighted - least) / range,
         load: (total / n as f64 - mean_pressure).abs() / mean_pressure,

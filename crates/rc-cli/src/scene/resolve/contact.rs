@@ -59,7 +59,7 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
     let kernel = keys.kernel.unwrap_or(KernelName::Love);
     check_method(&keys, kernel)?;
     let params = SolveParams {
-        tolerance: tolerance(keys.tolerance)?,
+        tolerance: tolerance(&keys)?,
         method: keys.method,
         border_level: keys.border_level.unwrap_or(0),
         ..SolveParams::certified()
@@ -106,18 +106,28 @@ fn elasticity(keys: &ContactKeys) -> Result<Elasticity, CliError> {
     })
 }
 
-fn tolerance(given: Option<ToleranceSpec>) -> Result<Tolerance, CliError> {
-    match given {
-        Some(ToleranceSpec(Tolerance::Relative(value))) if !(value > 0.0 && value < 1.0) => {
+fn tolerance(keys: &ContactKeys) -> Result<Tolerance, CliError> {
+    let is_part = |value: f64| value > 0.0 && value < 1.0;
+    match (keys.tolerance, keys.energy_tolerance) {
+        (Some(_), Some(_)) => {
+            Err(CliError::input("energy_tolerance: give it or tolerance, not both; omit one of them"))
+        }
+        (Some(ToleranceSpec::Relative(value)), None) if !is_part(value) => {
             Err(CliError::input(format_args!("tolerance: must be between 0 and 1, as 1e-6, not {value}")))
         }
-        Some(ToleranceSpec(tolerance)) => Ok(tolerance),
-        None => Ok(SolveParams::certified().tolerance),
+        (None, Some(value)) if !is_part(value) => {
+            Err(CliError::input(format_args!("energy_tolerance: must be between 0 and 1, as 1e-3, not {value}")))
+        }
+        (Some(tolerance), None) => Ok(tolerance.into()),
+        (None, Some(value)) => Ok(Tolerance::Energy(value)),
+        (None, None) => Ok(Tolerance::DEFAULT),
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use rc_solver::ErrorBound;
+
     use super::*;
 
     fn keys(text: &str) -> ContactKeys {
@@ -146,6 +156,9 @@ mod tests {
             ("method = \"gauss-seidel\"\nkernel = \"spectral\"", "method"),
             ("tolerance = 1.0", "tolerance"),
             ("tolerance = 0.0", "tolerance"),
+            ("energy_tolerance = 1.0", "energy_tolerance"),
+            ("energy_tolerance = nan", "energy_tolerance"),
+            ("tolerance = 1e-6\nenergy_tolerance = 1e-3", "energy_tolerance"),
         ];
         for (text, key) in cases {
             let keys = ContactKeys { pressure: Some(1.0), ..keys(text) };
@@ -157,9 +170,9 @@ mod tests {
     #[test]
     fn the_tolerance_auto_becomes_a_number_and_stays_auto_in_the_keys() {
         let setup = resolved(ContactKeys { pressure: Some(1.0), ..keys("tolerance = \"auto\"") }).expect("a contact");
-        let tolerance = setup.params.tolerance.relative(Some(8.0));
-        assert!((tolerance / 3e-5 - 1.0).abs() < 1e-12, "{tolerance}");
-        assert_eq!(setup.keys.tolerance, Some(ToleranceSpec(Tolerance::Auto)));
+        let bound = setup.params.tolerance.bound(Some(8.0));
+        assert_eq!(bound, ErrorBound::Energy(6e-2));
+        assert_eq!(setup.keys.tolerance, Some(ToleranceSpec::Auto));
     }
 
     #[test]

@@ -9,8 +9,8 @@ use rc_kernel::{PeriodicLove, ScaleSplit, SplitParams};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, quarters};
 
 use super::*;
-use crate::adaptive::SINGLE_PRECISION;
-use crate::adaptive::roughness::{ERROR_OF_ROUGHNESS, roughness};
+use crate::adaptive::roughness::roughness;
+use crate::adaptive::split::GapSplit;
 use crate::parallel::Tasks;
 
 /// Radii of spots a few elements of a base grid wide.
@@ -233,19 +233,17 @@ fn on_rough_pressures_the_error_is_in_proportion_to_the_roughness() {
                 *p -= mean;
             }
             let better = apply::<f64>(&finest, base, elements.clone(), &p);
-            let allowed = ERROR_OF_ROUGHNESS * roughness(&elements, &p);
             for bound in [1e-6, 2e-9] {
-                let split = ScaleSplit::new(SplitParams::for_error(bound).expect("a bound in range"));
-                let v = match bound {
-                    SINGLE_PRECISION.. => apply::<f32>(&split, base, elements.clone(), &p),
-                    _ => apply::<f64>(&split, base, elements.clone(), &p),
+                let gap_split = GapSplit::for_error(bound).expect("a bound in range");
+                let split = ScaleSplit::new(gap_split.params);
+                let v = if gap_split.is_single_precision() {
+                    apply::<f32>(&split, base, elements.clone(), &p)
+                } else {
+                    apply::<f64>(&split, base, elements.clone(), &p)
                 };
                 let greatest = v.iter().zip(&better).fold(0.0_f64, |greatest, (a, b)| greatest.max((a - b).abs()));
-                assert!(
-                    greatest < allowed * bound,
-                    "{bound:e}, {base} to {side}: {greatest:e} for {:e}",
-                    allowed * bound
-                );
+                let allowed = gap_split.error_of_roughness * roughness(&elements, &p);
+                assert!(greatest < allowed, "{bound:e}, {base} to {side}: {greatest:e} for {allowed:e}");
             }
         }
     }

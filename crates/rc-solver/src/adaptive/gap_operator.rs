@@ -1,0 +1,80 @@
+//! L for fresh gaps: a split kernel in the precision that its error needs.
+
+use std::sync::Arc;
+
+use rc_core::Grid;
+use rc_kernel::ScaleSplit;
+
+use super::operator::{Hierarchy, Prepared, Reach, Tables};
+use super::scaled_operator::ScaledOperator;
+use super::split::GapSplit;
+use crate::descent::BlockOperator;
+
+/// L on the elements of one mesh, with the part of its displacement that is smooth on the base grid.
+pub(super) trait GapOperator: BlockOperator<f64> {
+    /// What the last pressure displaces the centres of the base grid by, short-range parts excepted: tile by tile, tiles row by row, in λ.
+    fn base_displacement(&self) -> Vec<f64>;
+}
+
+/// A split kernel, ready for meshes of any number of levels. Single precision takes half the time and memory.
+pub(super) enum PreparedGap {
+    Single(GapSplit, Prepared<f32>),
+    Double(GapSplit, Prepared<f64>),
+}
+
+/// Its tables for one number of levels.
+pub(super) enum GapTables {
+    Single(Tables<f32>),
+    Double(Tables<f64>),
+}
+
+impl PreparedGap {
+    /// For elements up to 2^`n_coarse` times as large as the smallest.
+    pub(super) fn new(split: GapSplit, base: Grid, n_coarse: usize) -> Self {
+        let kernel = ScaleSplit::new(split.params);
+        if split.is_single_precision() {
+            Self::Single(split, Prepared::displacement(&kernel, base, n_coarse))
+        } else {
+            Self::Double(split, Prepared::displacement(&kernel, base, n_coarse))
+        }
+    }
+
+    pub(super) fn split(&self) -> GapSplit {
+        match self {
+            Self::Single(split, _) | Self::Double(split, _) => *split,
+        }
+    }
+
+    /// How far values go on a level.
+    pub(super) fn reach(&self) -> Reach {
+        match self {
+            Self::Single(_, prepared) => prepared.reach(),
+            Self::Double(_, prepared) => prepared.reach(),
+        }
+    }
+
+    /// See [`Prepared::remainder_curvature`].
+    pub(super) fn remainder_curvature(&self) -> f64 {
+        match self {
+            Self::Single(_, prepared) => prepared.remainder_curvature(),
+            Self::Double(_, prepared) => prepared.remainder_curvature(),
+        }
+    }
+
+    pub(super) fn tables(&self, n_levels: usize) -> GapTables {
+        match self {
+            Self::Single(_, prepared) => GapTables::Single(prepared.tables(n_levels)),
+            Self::Double(_, prepared) => GapTables::Double(prepared.tables(n_levels)),
+        }
+    }
+}
+
+impl GapTables {
+    /// The operator on `hierarchy`, for pressures about `mean` and displacements of about `size`.
+    pub(super) fn operator(&self, hierarchy: Arc<Hierarchy>, mean: f64, size: f64) -> Box<dyn GapOperator + '_> {
+        match self {
+            Self::Single(tables) => Box::new(ScaledOperator::new(hierarchy, tables, mean, size)),
+            Self::Double(tables) => Box::new(ScaledOperator::new(hierarchy, tables, mean, size)),
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! What the error of the split kernel does to a certificate.
+
+use rc_quadtree::Elements;
+
+use super::roughness::roughness;
+use super::split::GapSplit;
+use crate::problem::Problem;
+use crate::tolerance::Measure;
+use crate::{Certificate, ErrorBound};
+
+/// The part of a relative bound that the error of an operator may take; with more, the next better operator certifies.
+const LARGEST_PART: f64 = 0.5;
+
+/// A pressure, as far as the error of its displacement depends on it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PressureScale {
+    /// Levels above the base grid.
+    pub(super) n_levels: usize,
+    /// Greatest displacement, in λ.
+    pub(super) displacement: f64,
+    /// See [`roughness`], in λ.
+    pub(super) roughness: f64,
+    /// U/σ0, the elastic energy over the mean pressure, in λ.
+    pub(super) energy_length: f64,
+}
+
+impl PressureScale {
+    pub(super) fn new(
+        (elements, pressure): (&Elements, &[f64]),
+        n_levels: usize,
+        displacement: f64,
+        energy_length: f64,
+    ) -> Self {
+        Self { n_levels, displacement, roughness: roughness(elements, pressure), energy_length }
+    }
+}
+
+/// A bound on the error of an operator under one pressure.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OperatorError {
+    /// Of the displacement of any element, in λ.
+    pub(super) displacement: f64,
+    /// Of an overlap, a difference of two gaps, in units of U/σ0: the length of [`Measure::Energy`].
+    overlap: f64,
+}
+
+impl OperatorError {
+    /// Under pressures of this scale.
+    pub(super) fn of(split: GapSplit, scale: &PressureScale) -> Self {
+        let PressureScale { n_levels, displacement, roughness, energy_length } = *scale;
+        let displacement = split.error * n_levels as f64 * displacement + split.error_of_roughness * roughness;
+        // The mean of the gap and its minimum may be off to opposite sides.
+        Self { displacement, overlap: 2.0 * displacement / energy_length }
+    }
+
+    /// The certificate for the exact operator, from that of a gap that was computed with this error.
+    pub(super) fn added_to(self, certificate: Certificate, h_range: f64) -> Certificate {
+        let relative = 2.0 * self.displacement / h_range;
+        Certificate {
+            complementarity: certificate.complementarity + relative,
+            penetration: certificate.penetration + relative,
+            energy: (certificate.energy.powi(2) + self.overlap).sqrt(),
+            load: certificate.load,
+        }
+    }
+
+    /// What the bound leaves to the computed gap, in units of the measure's length; 0 when the error takes all of it.
+    pub(super) fn remaining(self, bound: ErrorBound, problem: &Problem) -> f64 {
+        let error = match bound.measure() {
+            Measure::HeightRange => 2.0 * self.displacement / problem.h_range,
+            Measure::Energy => self.overlap,
+        };
+        (bound.overlap() - error).max(0.0)
+    }
+
+    /// What an iteration has to reach for the bound to be met.
+    pub(super) fn goal(self, bound: ErrorBound, problem: &Problem) -> f64 {
+        self.remaining(bound, problem).min(bound.aim())
+    }
+
+    /// Whether the computed gap has enough of the bound to itself.
+    fn is_small(self, bound: ErrorBound, problem: &Problem) -> bool {
+        self.remaining(bound, problem) >= bound.aim().min((1.0 - LARGEST_PART) * bound.overlap())
+    }
+}
+
+/// The fastest split, from `split` on, whose error is a small part of the bound; the most accurate one where no error is.
+pub(super) fn certifying_split(
+    split: GapSplit,
+    scale: &PressureScale,
+    bound: ErrorBound,
+    problem: &Problem,
+) -> GapSplit {
+    let is_small = |split: &GapSplit| OperatorError::of(*split, scale).is_small(bound, problem);
+    let mut candidates = std::iter::successors(Some(split), |split| split.finer());
+    candidates.find(is_small).unwrap_or_else(GapSplit::most_accurate)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,272 @@
+//! The bounds on the operator's error against Fourier transforms and exact sums.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use rand::{Rng, RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rc_core::{DVec2, Field, Grid, HeightSource, Kernel, Operator, Silent};
+use rc_fft::SymbolTable;
+use rc_kernel::{Love, PeriodicLove};
+use rc_quadtree::{BLOCK_CELLS, CELLS, TILE, TileSet};
+
+use super::*;
+use crate::Control;
+use crate::adaptive::gap_operator::{GapOperator, PreparedGap};
+use crate::adaptive::nested_iteration::NestedSolution;
+use crate::adaptive::operator::Hierarchy;
+use crate::adaptive::{AdaptiveParams, AdaptiveProblem};
+use crate::descent::{BlockOperator, SymbolOperator, read_blocks, write_blocks};
+use crate::operator::UniformOperator;
+use crate::params::IterationParams;
+
+/// Places of the elements of a mesh of one size on its whole grid, row by row.
+fn places(elements: &Elements) -> Vec<usize> {
+    let (side, tiles) = (elements.finest().side(), elements.finest().places());
+    let place = |i: usize| {
+        let ([column, row], cell) = (tiles[i / CELLS], i % CELLS);
+        (row as usize * TILE + cell / TILE) * side + column as usize * TILE + cell % TILE
+    };
+    (0..elements.n_cells()).map(place).collect()
+}
+
+/// `operator` applied to `values`.
+fn applied(operator: &mut (impl BlockOperator<f64> + ?Sized), values: &[f64]) -> Vec<f64> {
+    let block = operator.layout().len();
+    write_blocks(operator, values.chunks(block), |values, block| block.copy_from_slice(values));
+    operator.apply();
+    let mut result = vec![0.0; values.len()];
+    read_blocks(operator, result.chunks_mut(block), |result, block| result.copy_from_slice(block));
+    result
+}
+
+/// ‖L^(-1/2) (L~ - L) L^(-1/2)‖ for the split operator L~ above `base` on every tile of a grid of `side`, from below, by power iteration.
+fn energy_error(split: GapSplit, base: usize, side: usize, rng: &mut impl Rng) -> f64 {
+    let [base_grid, grid] = [base, side].map(|side| Grid::square(side).expect("a grid"));
+    let elements = Elements::uniform(TileSet::full(side / TILE));
+    let places = places(&elements);
+    let prepared = PreparedGap::new(split, base_grid, 0);
+    let hierarchy = Arc::new(Hierarchy::new(base, elements, prepared.reach()));
+    let tables = prepared.tables((side / base).ilog2() as usize);
+    let mut split_operator = tables.operator(hierarchy, 0.0, 1.0);
+    let symbol = Love.symbol(grid);
+    let of_symbol = |power: f64| {
+        let value = |kx: usize, ky: usize| if kx + ky == 0 { 0.0 } else { symbol(kx, ky).powf(power) };
+        SymbolOperator::new(grid, SymbolTable::new(grid, value))
+    };
+    let (mut exact, mut root) = (of_symbol(1.0), of_symbol(-0.5));
+    let mut vector: Vec<f64> = (0..grid.len()).map(|_| rng.random::<f64>() - 0.5).collect();
+    let mut norm = 0.0;
+    for _ in 0..30 {
+        let pressure = applied(&mut root, &vector);
+        let mut difference = applied(&mut exact, &pressure);
+        let on_tiles: Vec<f64> = places.iter().map(|&place| pressure[place]).collect();
+        for (v, &place) in applied(&mut *split_operator, &on_tiles).into_iter().zip(&places) {
+            difference[place] -= v;
+        }
+        vector = applied(&mut root, &difference);
+        norm = vector.iter().map(|v| v * v).sum::<f64>().sqrt();
+        vector.iter_mut().for_each(|v| *v /= norm);
+    }
+    norm
+}
+
+#[test]
+fn in_the_energy_norm_the_operator_is_off_by_less_than_any_tolerance() {
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    for (error, bound) in [(2e-3, 8e-2), (1e-6, 4.5e-5), (2e-9, 4e-7), (1e-10, 4e-9)] {
+        let split = GapSplit::for_error(error).expect("a split");
+        for (base, side) in [(64, 128), (32, 128), (32, 256)] {
+            let found = energy_error(split, base, side, &mut rng);
+            assert!(found < bound, "{error:e}, {base} to {side}: {found:e}");
+            assert!(found > 0.3 * bound, "{error:e}, {base} to {side}: {found:e} is far below the bound");
+        }
+    }
+}
+
+/// Waves of random phases up to `waves`, rms 1e-3.
+fn rough(side: usize, waves: i32, hurst: f64, rng: &mut impl Rng) -> Field {
+    let mut heights = Field::zeros(Grid::square(side).expect("a grid"));
+    let along = |k: i32, phase: f64| -> Vec<(f64, f64)> {
+        (0..side).map(|i| (TAU * f64::from(k) * (i as f64 + 0.5) / side as f64 + phase).sin_cos()).collect()
+    };
+    for (kx, ky) in (0..=waves).flat_map(|kx| (-waves..=waves).map(move |ky| (kx, ky))) {
+        let squares = kx * kx + ky * ky;
+        if kx == 0 && ky <= 0 || squares > waves * waves {
+            continue;
+        }
+        let amplitude = f64::from(squares).powf(-0.5 * (1.0 + hurst));
+        let (x, y) = (along(kx, TAU * rng.random::<f64>()), along(ky, 0.0));
+        for (row, (sin_y, cos_y)) in heights.values_mut().chunks_exact_mut(side).zip(y) {
+            for (h, (sin_x, cos_x)) in row.iter_mut().zip(&x) {
+                *h += amplitude * (cos_x * cos_y - sin_x * sin_y);
+            }
+        }
+    }
+    let factor = 1e-3 / heights.rms();
+    heights.values_mut().iter_mut().for_each(|h| *h *= factor);
+    heights
+}
+
+/// A map with its base grid, mean pressure and tolerance, and the solution.
+struct Scene<'a> {
+    map: &'a Field,
+    base: usize,
+    mean_pressure: f64,
+    bound: ErrorBound,
+}
+
+/// A solution with the exact displacement of its pressure on the whole grid.
+struct Audited {
+    problem: Problem,
+    solved: NestedSolution,
+    pressure: Vec<f64>,
+    displacement: Vec<f64>,
+}
+
+impl Scene<'_> {
+    fn audited(&self) -> Audited {
+        let params = AdaptiveParams {
+            solve: IterationParams { bound: self.bound, max_iterations: 500 },
+            operator_error: 1e-6,
+            border_level: 0,
+            base_side: Some(self.base),
+            memory_limit: None,
+        };
+        let source = HeightSource::Map(self.map);
+        let problem =
+            AdaptiveProblem::new(source, Control::MeanPressure(self.mean_pressure), &params).expect("a problem");
+        let solved = problem.solve_levels(&Silent);
+        let grid = self.map.grid();
+        let mut pressure = vec![0.0; grid.len()];
+        for (p, place) in solved.level.pressure.iter().zip(places(&solved.level.elements)) {
+            pressure[place] = *p;
+        }
+        let mut displacement = vec![0.0; grid.len()];
+        UniformOperator::new(grid, &Love).apply(&pressure, &mut displacement, &mut []);
+        Audited { problem: problem.problem, solved, pressure, displacement }
+    }
+}
+
+impl Audited {
+    fn error(&self, base: Grid) -> OperatorError {
+        OperatorError::of(self.solved.splits.certified, &self.solved.scale(base, &self.problem))
+    }
+
+    /// The operator that certified, after the pressure was applied to it, and its displacement.
+    fn certified<R>(&self, base: Grid, look: impl FnOnce(&dyn GapOperator, &[f64]) -> R) -> R {
+        let level = &self.solved.level;
+        let prepared = PreparedGap::new(self.solved.splits.certified, base, 0);
+        let hierarchy = Arc::new(Hierarchy::new(base.nx(), level.elements.clone(), prepared.reach()));
+        let tables = prepared.tables((self.solved.grid.nx() / base.nx()).ilog2() as usize);
+        let mut operator = tables.operator(hierarchy, level.outcome.mean_pressure, self.problem.h_range);
+        debug_assert_eq!(operator.layout().len(), BLOCK_CELLS);
+        let displacement = applied(&mut *operator, &level.pressure);
+        look(&*operator, &displacement)
+    }
+
+    /// The certificate by the exact displacement, over the whole cell.
+    fn certificate(&self, map: &Field) -> Certificate {
+        let gap: Vec<f64> =
+            self.displacement.iter().zip(map.values()).map(|(v, h)| v - h + self.problem.h_max).collect();
+        let total: f64 = self.pressure.iter().sum();
+        let mean = |values: &[f64]| self.pressure.iter().zip(values).map(|(p, value)| p / total * value).sum::<f64>();
+        let overlap = mean(&gap) - gap.iter().copied().fold(f64::INFINITY, f64::min);
+        let penetration = overlap / self.problem.h_range;
+        let energy = (overlap / (0.5 * mean(&self.displacement))).sqrt();
+        Certificate { complementarity: penetration, penetration, energy, load: 0.0 }
+    }
+}
+
+/// Rough and noise-like maps, light and heavy loads, both kinds of tolerance: each is given to `check` with its solution.
+fn for_each_scene(bounds: &[ErrorBound], mut check: impl FnMut(&str, &Scene<'_>, &Audited)) {
+    let mut rng = ChaCha8Rng::seed_from_u64(2);
+    let mut maps = Vec::new();
+    for (waves, side, hurst) in [(16, 128, 0.3), (16, 256, 0.8), (16, 512, 0.5), (8, 256, 1.0), (30, 128, 0.2)] {
+        maps.push((
+            format!("{waves} waves on {side}, H = {hurst}"),
+            rough(side, waves, hurst, &mut rng),
+            1e-3 * f64::from(waves),
+        ));
+    }
+    let noise = Field::from_fn(Grid::square(256).expect("a grid"), |_| 1e-3 * rng.random::<f64>());
+    maps.push(("noise".to_owned(), noise, 1e-2));
+    for (name, map, slope) in &maps {
+        for load in [0.003, 0.03, 0.3] {
+            for &bound in bounds {
+                let base = (map.grid().nx() / 4).clamp(32, 64);
+                let scene = Scene { map, base, mean_pressure: load * slope, bound };
+                check(&format!("{name}, load {load}, {bound}"), &scene, &scene.audited());
+            }
+        }
+    }
+}
+
+const ENERGY: [ErrorBound; 2] = [ErrorBound::Energy(1e-2), ErrorBound::Energy(2e-3)];
+const RELATIVE: [ErrorBound; 2] = [ErrorBound::Relative(1e-6), ErrorBound::Relative(1e-8)];
+
+#[test]
+fn an_audit_by_fourier_transform_finds_no_more_than_is_claimed() {
+    for_each_scene(&[ENERGY, RELATIVE].concat(), |name, scene, audited| {
+        let claimed = audited.solved.level.outcome.certificate;
+        let found = audited.certificate(scene.map);
+        assert!(scene.bound.is_met_by(&claimed), "{name}: not converged: {claimed}");
+        assert!(found.penetration <= claimed.penetration, "{name}: {found}, claimed {claimed}");
+        assert!(found.energy <= claimed.energy, "{name}: {found}, claimed {claimed}");
+        let base = Grid::square(scene.base).expect("a grid");
+        let bound = audited.error(base).displacement;
+        let worst = audited.certified(base, |_, displacement| {
+            let exact = places(&audited.solved.level.elements).into_iter().map(|place| audited.displacement[place]);
+            displacement.iter().zip(exact).map(|(v, exact)| (v - exact).abs()).fold(0.0, f64::max)
+        });
+        assert!(worst < bound, "{name}: {worst:e} for {bound:e}");
+    });
+}
+
+#[test]
+fn the_smooth_displacement_is_as_exact_as_the_others() {
+    let exact = PeriodicLove::new();
+    let mut places = 0;
+    for_each_scene(&ENERGY, |name, scene, audited| {
+        let side = scene.map.grid().nx();
+        let base = Grid::square(scene.base).expect("a grid");
+        let pressed: Vec<(DVec2, f64)> = (0..side * side)
+            .filter(|&i| audited.pressure[i] > 0.0)
+            .map(|i| (DVec2::new((i % side) as f64 + 0.5, (i / side) as f64 + 0.5) / side as f64, audited.pressure[i]))
+            .collect();
+        let reach = 0.5 * audited.solved.splits.certified.params.cutoff as f64 / scene.base as f64;
+        let bound = audited.error(base).displacement;
+        let smooth = audited.certified(base, |operator, _| operator.base_displacement());
+        let mut far = 0;
+        for (cell, v) in smooth.iter().enumerate().step_by(37) {
+            let per_side = scene.base / TILE;
+            let (tile, cell) = (cell / CELLS, cell % CELLS);
+            let centre = DVec2::new(
+                (tile % per_side * TILE + cell % TILE) as f64 + 0.5,
+                (tile / per_side * TILE + cell / TILE) as f64 + 0.5,
+            ) / scene.base as f64;
+            let distance = |at: &DVec2| (centre - *at - (centre - *at).round()).length();
+            // Nearer to a pressure the short-range parts are missing, which are not negative.
+            if pressed.iter().all(|(at, _)| distance(at) > reach) {
+                let sum: f64 =
+                    pressed.iter().map(|(at, p)| p * exact.coefficient(centre - *at, 0.5 / side as f64)).sum();
+                let spacing = 1.0 / scene.base as f64;
+                let value = |dx: i64, dy: i64| {
+                    let n = scene.base as i64;
+                    let place = |i: usize, d: i64| (i as i64 + d).rem_euclid(n) as usize;
+                    let (x, y) = (tile % per_side * TILE + cell % TILE, tile / per_side * TILE + cell / TILE);
+                    let (x, y) = (place(x, dx), place(y, dy));
+                    smooth[(y / TILE * per_side + x / TILE) * CELLS + y % TILE * TILE + x % TILE]
+                };
+                let ring = |d: i64| value(d, 0) + value(-d, 0) + value(0, d) + value(0, -d);
+                let laplacian = (4.0 / 3.0 * ring(1) - ring(2) / 12.0 - 5.0 * v) / (spacing * spacing);
+                // The filter to the finest level holds the square root of the mean over an element.
+                let v = v + laplacian / (48.0 * (side * side) as f64);
+                assert!((v - sum).abs() < bound, "{name}: {v:e} for {sum:e}, bound {bound:e}");
+                far += 1;
+            }
+        }
+        places += far;
+    });
+    assert!(places > 100, "{places} places are far enough from contact");
+}
