@@ -5,6 +5,7 @@ use rc_core::{Grid, HeightSource};
 use super::plan::ChosenMethod;
 use super::{ContactProblem, Plan, SolveError, SolveParams};
 use crate::adaptive::AdaptiveProblem;
+use crate::contract::check_kernel;
 use crate::problem::check_load;
 use crate::{AdaptiveError, Estimate, Method, MethodReason, UNIFORM_BYTES_PER_ELEMENT};
 
@@ -13,6 +14,7 @@ pub(super) fn plan<'a>(problem: ContactProblem<'a>, params: &SolveParams) -> Res
     let tolerance = params.tolerance.relative(problem.heights.elements_per_wave());
     check_load(problem.control, tolerance)?;
     check_grid(problem.heights)?;
+    check_kernel(problem.kernel, problem.heights.grid())?;
     let choice = Choice { problem, params, tolerance };
     let (chosen, reason) = match params.method {
         None => choice.automatic(),
