@@ -9,6 +9,7 @@ mod heights;
 mod invariances;
 mod kernels;
 mod long_runs;
+mod meshes;
 mod mutate;
 mod picture;
 mod row;
@@ -49,6 +50,7 @@ type MakeRows = fn(&Params) -> Result<Vec<Row>>;
 
 const GROUPS: &[(&str, MakeRows)] = &[
     ("extremes", |params| extremes::rows(params.preset)),
+    ("meshes", |params| meshes::rows(params.preset)),
     ("invariances", |params| invariances::rows(params.preset)),
     ("agreement", |params| agreement::rows(params.preset)),
     ("kernels", |params| kernels::rows(params.preset)),
