@@ -3,7 +3,7 @@
 use anyhow::Result;
 use rc_core::{Field, Grid, Operator};
 use rc_kernel::Love;
-use rc_solver::{Control, DirectSum, MultilevelOperator, UniformOperator};
+use rc_solver::{Certificate, Control, DirectSum, MultilevelOperator, UniformOperator};
 
 use super::solved::{Method, Solved};
 
@@ -32,6 +32,8 @@ pub(crate) struct Audit {
     pub(crate) open: f64,
     /// √(G/U), with G = mean of p (g - min g), and U = mean of p v / 2: a bound of the pressure's error in the energy norm.
     pub(crate) energy: f64,
+    /// H times the mean pressure over U.
+    range_per_work: f64,
 }
 
 impl Audit {
@@ -43,6 +45,11 @@ impl Audit {
     /// Of a pressure and the displacement that it causes.
     pub(crate) fn of_pressure(heights: &Field, pressure: &Field, displacement: &[f64], control: Control) -> Self {
         Self::of_gaps(heights, pressure, &gaps(heights, displacement), control)
+    }
+
+    /// The energy error that gaps of this size, over H, can make.
+    pub(crate) fn energy_of(&self, gap: f64) -> f64 {
+        (gap * self.range_per_work).sqrt()
     }
 
     /// Of a pressure and its gap v - h + max h.
@@ -62,16 +69,25 @@ impl Audit {
             Control::Penetration(wanted) => (approach / wanted - 1.0).abs(),
         };
         let pressed = p.iter().zip(gaps).filter(|(p, _)| **p > PRESSED * greatest);
-        let energy = ((approach - min_gap) / (0.5 * displacement)).sqrt();
+        // Both per pressure.
+        let (gap, work) = ((approach - min_gap).max(0.0), 0.5 * displacement);
         Self {
             n_bad: p.iter().filter(|p| !(p.is_finite() && **p >= 0.0)).count(),
             load,
             penetration: (approach - min_gap) / range,
             open: pressed.map(|(_, g)| (g - approach).abs()).fold(0.0, f64::max) / range,
-            // Nothing is displaced in full contact with a flat surface.
-            energy: if approach - min_gap > 0.0 { energy } else { 0.0 },
+            // Nothing is displaced under a flat surface.
+            energy: if gap > 0.0 { (gap / work).sqrt() } else { 0.0 },
+            range_per_work: if range > 0.0 && work > 0.0 { range / work } else { 0.0 },
         }
     }
+}
+
+/// The energy error that a certificate claims.
+///
+/// MERGE: `certificate.energy` (or what the field is called) instead of the constant, which no certificate of today states.
+pub(crate) fn claimed_energy(_certificate: Certificate) -> f64 {
+    0.05
 }
 
 /// v - h + max h: a large constant in the heights would drown the displacement.

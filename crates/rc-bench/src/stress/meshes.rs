@@ -1,5 +1,7 @@
 //! The adaptive method on many levels and on elements of several sizes, audited on the whole grid of its smallest elements.
 
+use std::ops::Range;
+
 use anyhow::Result;
 use rc_core::{Field, Grid, HeightSource, Operator, Silent};
 use rc_figures::Preset;
@@ -7,7 +9,7 @@ use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Love;
 use rc_solver::{ContactElement, ContactProblem, Control, Method, Solution, SolveParams, UniformOperator};
 
-use super::audit::{Audit, gaps};
+use super::audit::{Audit, claimed_energy, gaps};
 use super::heights::shapes;
 use super::row::{Row, Rows, guarded};
 use super::scene::TOLERANCE;
@@ -17,6 +19,9 @@ const HEIGHT_ERROR: f64 = 1e-9;
 
 /// Rounding of the audit's transform and sums, relative to the peak-to-valley height. Measured: below 1e-14.
 const ROUNDING: f64 = 1e-13;
+
+/// What is left out of the height of a larger element, over the peak-to-valley height: fourth derivatives.
+const SAME_HEIGHT: f64 = 1e-5;
 
 /// Part of σ0 or Δ by which an audit may find another one.
 const SAME_CONTROL: f64 = 1e-6;
@@ -151,43 +156,109 @@ fn check_solution(
     let solution = ContactProblem::new(source, control).solve(&params, &Silent)?;
     let n_levels = (heights.grid().nx() / scene.base).ilog2();
     rows.holds(name, "levels above the base grid", ">= 1", n_levels.to_string(), n_levels >= 1);
-    let audit = of_elements(&solution, heights, control)?;
+    let MeshAudit { audit, outside, means } = of_elements(&solution, (source, heights), control)?;
     rows.at_most(name, "pressures not finite or negative", audit.n_bad as f64, 0.0);
     rows.at_most(name, "load by audit", audit.load, SAME_CONTROL);
     let rounding = HEIGHT_ERROR * heights.rms() / (heights.max() - heights.min()) + ROUNDING;
     let claimed = solution.certificate().penetration;
     rows.at_most(name, "penetration by audit", audit.penetration, scene.tolerance + rounding);
     rows.at_most(name, "audit within the certificate", audit.penetration, claimed + rounding);
+    rows.at_most(name, "audit outside contact within the certificate", outside, claimed + rounding);
+    let claimed = claimed_energy(solution.certificate()) + audit.energy_of(rounding);
+    rows.at_most(name, "energy error within the certificate", audit.energy, claimed);
+    if scene.border_level > 0 {
+        rows.at_most(name, "heights of larger elements against means", means, SAME_HEIGHT);
+    }
     Ok(())
+}
+
+/// The audit of all elements.
+struct MeshAudit {
+    audit: Audit,
+    /// max(-g) / H over elements out of contact alone.
+    outside: f64,
+    /// Maximum difference between the height of a larger element in contact and the mean over the centres of its parts, over H.
+    means: f64,
 }
 
 /// The audit of a mesh: every element's pressure on its parts, their displacement by a transform of the whole grid, gaps in contact as means
 /// over elements, and gaps elsewhere at the centres of the smallest elements.
-fn of_elements(solution: &Solution<'_>, heights: &Field, control: Control) -> Result<Audit> {
+fn of_elements(
+    solution: &Solution<'_>,
+    (source, heights): (HeightSource<'_>, &Field),
+    control: Control,
+) -> Result<MeshAudit> {
     let (grid, n) = (heights.grid(), heights.grid().nx());
-    let parts = |element: &ContactElement| {
-        let ratio = (element.side * n as f64).round() as usize;
-        let corner = |centre: f64| (centre * n as f64 - 0.5 * ratio as f64).round() as usize;
-        let (x, y) = (corner(element.centre.x), corner(element.centre.y));
-        (y..y + ratio).map(move |row| row * n + x..row * n + x + ratio)
-    };
-    let elements: Vec<ContactElement> = solution.elements().map(Iterator::collect).unwrap_or_default();
+    let elements: Vec<Square> =
+        solution.elements().into_iter().flatten().map(|element| Square::new(&element, n)).collect();
     let mut pressure = Field::zeros(grid);
     for element in &elements {
-        for row in parts(element) {
-            pressure.values_mut()[row].fill(element.pressure);
-        }
+        element.rows(n).for_each(|row| pressure.values_mut()[row].fill(element.pressure));
     }
     let mut v = vec![0.0; grid.len()];
     UniformOperator::new(grid, &Love).apply(pressure.values(), &mut v, &mut []);
-    let mut gaps = gaps(heights, &v);
+    let (mut gaps, range) = (gaps(heights, &v), heights.max() - heights.min());
     drop(v);
-    for element in &elements {
-        let cells: f64 = parts(element).map(|row| row.len() as f64).sum();
-        let mean = parts(element).map(|row| gaps[row].iter().sum::<f64>()).sum::<f64>() / cells;
-        for row in parts(element) {
-            gaps[row].fill(mean);
-        }
+    let (levels, mut means) = (LevelHeights::new(source, n)?, 0.0_f64);
+    for element in elements.iter().filter(|element| element.side > 1) {
+        let mean = |values: &[f64]| {
+            element.rows(n).map(|row| values[row].iter().sum::<f64>()).sum::<f64>() / element.side.pow(2) as f64
+        };
+        let excess = levels.height(element) - mean(heights.values());
+        means = means.max(excess.abs() / range);
+        let gap = mean(&gaps) - excess;
+        element.rows(n).for_each(|row| gaps[row].fill(gap));
     }
-    Ok(Audit::of_gaps(heights, &pressure, &gaps, control))
+    let audit = Audit::of_gaps(heights, &pressure, &gaps, control);
+    // As if elements in contact had no gap.
+    let approach = solution.info().penetration;
+    gaps.iter_mut().zip(pressure.values()).filter(|(_, p)| **p > 0.0).for_each(|(g, _)| *g = approach);
+    let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+    Ok(MeshAudit { audit, outside: (approach - least) / range, means })
+}
+
+/// An element in contact, in units of the smallest elements.
+struct Square {
+    corner: [usize; 2],
+    side: usize,
+    pressure: f64,
+}
+
+impl Square {
+    fn new(element: &ContactElement, n: usize) -> Self {
+        let n = n as f64;
+        let corner = |centre: f64| (n * (centre - 0.5 * element.side)).round() as usize;
+        let corner = [corner(element.centre.x), corner(element.centre.y)];
+        Self { corner, side: (element.side * n).round() as usize, pressure: element.pressure }
+    }
+
+    /// Its parts in each row of the grid of `n` elements per side.
+    fn rows(&self, n: usize) -> impl Iterator<Item = Range<usize>> {
+        let ([x, y], side) = (self.corner, self.side);
+        (y..y + side).map(move |row| row * n + x..row * n + x + side)
+    }
+}
+
+/// Heights that the adaptive method gives larger elements: the mean over the centres of the smallest, to fourth order, from the centre and the
+/// centres of the four quarters.
+struct LevelHeights {
+    /// At the centres of elements of 1, 2, 4, … smallest elements per side.
+    levels: Vec<Field>,
+}
+
+impl LevelHeights {
+    fn new(source: HeightSource<'_>, n: usize) -> Result<Self> {
+        let n_larger = (n / source.grid().nx()).ilog2();
+        let HeightSource::Surface { surface, .. } = source else { return Ok(Self { levels: Vec::new() }) };
+        let sampled = (0..=n_larger).map(|level| Ok(surface.sample(Grid::square(n >> level)?)));
+        Ok(Self { levels: sampled.collect::<Result<_>>()? })
+    }
+
+    fn height(&self, element: &Square) -> f64 {
+        let (level, [x, y]) = (element.side.ilog2() as usize, element.corner.map(|i| i / element.side));
+        let (centre, quarters) = (self.levels[level].at(x, y), &self.levels[level - 1]);
+        let quarters = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[dx, dy]| quarters.at(2 * x + dx, 2 * y + dy));
+        let ratio = (1.0 - 1.0 / (element.side as f64).powi(2)) / (1.0 - 0.25);
+        centre + ratio * (0.25 * quarters.iter().sum::<f64>() - centre)
+    }
 }

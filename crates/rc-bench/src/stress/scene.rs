@@ -4,7 +4,7 @@ use anyhow::Result;
 use rc_core::Field;
 use rc_solver::{Control, LevelInfo, SolveInfo};
 
-use super::audit::{Audit, load_of_one_element};
+use super::audit::{Audit, claimed_energy, load_of_one_element};
 use super::row::{Row, Rows, guarded};
 use super::solved::{Method, Solved, solve};
 
@@ -84,6 +84,8 @@ impl Scene {
         rows.at_most(&self.name, "open contacts by audit", audit.open, OPEN_PER_TOLERANCE * self.tolerance);
         let backed = info.certificate.penetration + self.slack * self.tolerance;
         rows.at_most(&self.name, "audit within the certificate", audit.penetration, backed);
+        let claimed = claimed_energy(info.certificate) + audit.energy_of(self.slack * self.tolerance);
+        rows.at_most(&self.name, "energy error within the certificate", audit.energy, claimed);
         Some(Work::of(info))
     }
 
