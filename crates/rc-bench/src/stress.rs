@@ -8,6 +8,7 @@ mod faults;
 mod heights;
 mod invariances;
 mod kernels;
+mod light;
 mod long_runs;
 mod meshes;
 mod mutate;
@@ -50,6 +51,7 @@ type MakeRows = fn(&Params) -> Result<Vec<Row>>;
 
 const GROUPS: &[(&str, MakeRows)] = &[
     ("extremes", |params| extremes::rows(params.preset)),
+    ("light contacts", |params| light::rows(params.preset)),
     ("meshes", |params| meshes::rows(params.preset)),
     ("invariances", |params| invariances::rows(params.preset)),
     ("agreement", |params| agreement::rows(params.preset)),
