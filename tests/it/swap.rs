@@ -1,11 +1,13 @@
 //! What a research fork does: its own half-space and its own surface, through the traits alone.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use rc_core::testing::{check_height_field, check_kernel};
 use rc_core::{Field, Grid, HeightField, Kernel, Operator, Silent, Symbol};
 use rc_kernel::Love;
 use rc_solver::{
-    ContactProblem, Control, Method, MethodReason, SolveError, SolveParams, Status, UniformOperator, solve,
-    solve_with_operator,
+    ContactProblem, Control, Method, MethodReason, OperatorFault, ProblemError, SolveError, SolveParams, Status,
+    UniformOperator, solve, solve_with_operator,
 };
 
 use crate::examples::own_kernel::BondedLayer;
@@ -33,9 +35,17 @@ fn own_surface_and_own_half_space_drive_the_solver() {
     assert!(a < 0.9 * b, "layer {a:e}, half-space {b:e}");
 }
 
-/// Love's squares, but for one wave.
+/// Love's squares, but for one wave, and from the time on that it has been asked this often.
 struct Broken {
     eigenvalue: f64,
+    sound: usize,
+    asked: AtomicUsize,
+}
+
+impl Broken {
+    fn new(eigenvalue: f64, sound: usize) -> Self {
+        Self { eigenvalue, sound, asked: AtomicUsize::new(0) }
+    }
 }
 
 impl Kernel for Broken {
@@ -44,22 +54,39 @@ impl Kernel for Broken {
     }
 
     fn symbol(&self, grid: Grid) -> Symbol<'_> {
+        let is_broken = self.asked.fetch_add(1, Ordering::Relaxed) >= self.sound;
         let love = Love.symbol(grid);
-        Box::new(move |kx, ky| if (kx, ky) == (1, 2) { self.eigenvalue } else { love(kx, ky) })
+        Box::new(move |kx, ky| if is_broken && (kx, ky) == (1, 2) { self.eigenvalue } else { love(kx, ky) })
     }
 }
 
+/// Why a solve with this kernel fails.
+fn error_with(kernel: &Broken, control: Control) -> Option<SolveError> {
+    let heights = heights(32);
+    ContactProblem::new(&heights, control).with_kernel(kernel).solve(&SolveParams::default(), &Silent).err()
+}
+
 #[test]
-fn a_half_space_that_answers_nan_is_an_error_and_no_contact() {
+fn a_faulty_half_space_is_refused_before_the_solve() {
+    for eigenvalue in [f64::NAN, f64::INFINITY, 0.0, -0.1, 0.1] {
+        let error = error_with(&Broken::new(eigenvalue, 0), Control::MeanPressure(1e-4));
+        let is_named = matches!(&error, Some(SolveError::Problem(ProblemError::Symbol { kernel: "broken", .. })));
+        assert!(is_named, "{eigenvalue}: {error:?}");
+    }
+    let error = error_with(&Broken::new(0.1, 1), Control::MeanPressure(1e-4)).expect("not the same when asked again");
+    let text = "the symbol of the kernel broken at the wave (1, 2) of 32 x 32 elements is 0.1; it must be the same each time it is asked";
+    assert_eq!(error.to_string(), text);
+}
+
+#[test]
+fn a_half_space_that_answers_nan_later_is_an_error_and_no_contact() {
     let heights = heights(32);
     let depth = heights.max() - heights.mean();
     for eigenvalue in [f64::NAN, f64::INFINITY] {
-        let kernel = Broken { eigenvalue };
         for control in [Control::MeanPressure(1e-4), Control::MeanPressure(10.0), Control::Penetration(0.3 * depth)] {
-            let problem = ContactProblem::new(&heights, control).with_kernel(&kernel);
-            let solved = problem.solve(&SolveParams::default(), &Silent);
-            let error = solved.err().map(|error| matches!(error, SolveError::NotConverged { .. }));
-            assert_eq!(error, Some(true), "{eigenvalue}, {control:?}");
+            // The check at the start asks twice.
+            let error = error_with(&Broken::new(eigenvalue, 2), control);
+            assert!(matches!(error, Some(SolveError::NotConverged { .. })), "{eigenvalue}, {control:?}: {error:?}");
         }
     }
 }
@@ -103,5 +130,43 @@ fn an_own_operator_drives_the_solver() {
     assert_eq!(owned.displacement(), &v, "an owned solution keeps its displacement");
     let small = Field::zeros(Grid::square(8).expect("grid"));
     let refused = solve_with_operator(&small, &soft, Control::MeanPressure(1e-3), &params, &Silent);
-    assert!(matches!(refused, Err(SolveError::Problem(rc_solver::ProblemError::Operator { .. }))));
+    assert!(matches!(refused, Err(SolveError::Problem(ProblemError::Operator { .. }))));
+}
+
+/// An operator that answers a part more for the elements of the first half.
+struct Lopsided(UniformOperator, f64);
+
+impl Operator for Lopsided {
+    fn n_elements(&self) -> usize {
+        self.0.n_elements()
+    }
+
+    fn scratch_len(&self) -> usize {
+        self.0.scratch_len()
+    }
+
+    fn apply(&self, pressure: &[f64], displacement: &mut [f64], scratch: &mut [f64]) {
+        self.0.apply(pressure, displacement, scratch);
+        let half = displacement.len() / 2;
+        displacement[..half].iter_mut().for_each(|v| *v *= 1.0 + self.1);
+        let mean = displacement.iter().sum::<f64>() / displacement.len() as f64;
+        displacement.iter_mut().for_each(|v| *v -= mean);
+    }
+}
+
+#[test]
+fn an_operator_of_no_half_space_is_refused_before_the_solve() {
+    let heights = heights(64);
+    let refused = |part: f64| {
+        let operator = Lopsided(UniformOperator::new(heights.grid(), &Love), part);
+        let load = Control::MeanPressure(1e-3);
+        solve_with_operator(&heights, &operator, load, &SolveParams::default(), &Silent).err()
+    };
+    for part in [1e-3, 0.1, 10.0] {
+        let fault = refused(part);
+        let is_named =
+            matches!(&fault, Some(SolveError::Problem(ProblemError::NotElastic(OperatorFault::Symmetry { .. }))));
+        assert!(is_named, "{part}: {fault:?}");
+    }
+    assert!(refused(1e-9).is_none(), "far below the tolerance");
 }

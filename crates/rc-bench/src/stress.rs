@@ -8,7 +8,9 @@ mod faults;
 mod heights;
 mod invariances;
 mod kernels;
+mod light;
 mod long_runs;
+mod meshes;
 mod mutate;
 mod picture;
 mod row;
@@ -49,6 +51,8 @@ type MakeRows = fn(&Params) -> Result<Vec<Row>>;
 
 const GROUPS: &[(&str, MakeRows)] = &[
     ("extremes", |params| extremes::rows(params.preset)),
+    ("light contacts", |params| light::rows(params.preset)),
+    ("meshes", |params| meshes::rows(params.preset)),
     ("invariances", |params| invariances::rows(params.preset)),
     ("agreement", |params| agreement::rows(params.preset)),
     ("kernels", |params| kernels::rows(params.preset)),

@@ -45,6 +45,13 @@ impl Default for EdgeBias {
 /// - **Anisotropic solids** respond differently along different directions. Symbols here are even in kx and in ky, and on a
 ///   [square](Grid::is_square) grid symmetric in both, so the axes of the solid must be those of the cell, and the grid must have
 ///   different numbers of elements along them. A solid with oblique axes needs an [`Operator`] of its own.
+///
+/// # What a solve checks
+/// Before it starts, a solve looks at the symbol on its grid: at every wave of a small grid, and at the longest, the shortest and one in 64
+/// others of a large one. It refuses a symbol that is NaN, infinite, zero or negative at a wave, not zero at the zero wave, not symmetric on a
+/// square grid, or different when it is asked again. What cannot be seen is a sound symbol of another solid: a factor, a wrong
+/// thickness, smooth noise. Compare with a known displacement. A fault at single waves that were not looked at shows only if it is NaN or
+/// infinite, as a solve that does not converge. Kernels with [`Kernel::is_split_by_scale`] are not looked at.
 pub trait Kernel: Sync {
     /// Short name, as in result files.
     fn name(&self) -> &'static str;
@@ -71,6 +78,13 @@ pub trait Kernel: Sync {
 /// A linear map from pressure to zero-mean displacement: `v = L p` (Eq. 4), symmetric for uniform grids.
 ///
 /// [`crate::testing::check_operator`] checks the contract.
+///
+/// # What a solve checks
+/// Before it starts, a solve applies the operator to two pressures without a pattern, and to their sum with a uniform pressure. It refuses an
+/// operator whose displacement is not finite, has a mean, is another one each time, depends on what output and scratch held, is not linear, not
+/// symmetric or not positive, or whose uniform pressure displaces. All are judged by the tolerance of the solve, relative to the maximum
+/// displacement. What cannot be seen is a sound operator of another solid, as by a factor or by elements in another order than those of the
+/// heights, and a fault that comes later: the certificate of a solution is computed by the operator itself.
 pub trait Operator: Sync {
     /// Number of elements: the length of pressure and displacement.
     fn n_elements(&self) -> usize;

@@ -15,6 +15,27 @@ pub enum ProblemError {
         /// Elements of the operator.
         n_elements: usize,
     },
+    /// The operator is not that of an elastic half-space.
+    #[error("the operator is not that of a half-space: {0}")]
+    NotElastic(OperatorFault),
+    /// The kernel is not that of an elastic half-space.
+    #[error(
+        "the symbol of the kernel {kernel} at the wave ({kx}, {ky}) of {grid} elements is {value}; it must be {wanted}"
+    )]
+    Symbol {
+        /// Name of the kernel.
+        kernel: &'static str,
+        /// The grid that it was asked for.
+        grid: Grid,
+        /// Wavenumber along x.
+        kx: usize,
+        /// Wavenumber along y.
+        ky: usize,
+        /// The eigenvalue, in λ/E*.
+        value: f64,
+        /// What an eigenvalue must be.
+        wanted: &'static str,
+    },
     /// A height is NaN or infinite.
     #[error("height at element ({ix}, {iy}) is {value}; heights must be finite")]
     Height {
@@ -61,5 +82,65 @@ pub enum ProblemError {
         value: f64,
         /// The smallest that can be certified.
         smallest: f64,
+    },
+}
+
+/// What is wrong with an operator; `a` and `b` are pressures without a pattern, between -1/2 and 1/2, in E*.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum OperatorFault {
+    /// A displacement is NaN or infinite, or the operator adds to what its output held.
+    #[error("the displacement of element {element} is {value}; it must be finite, whatever the output held before")]
+    NotFinite {
+        /// Index of the element.
+        element: usize,
+        /// Its displacement, in λ.
+        value: f64,
+    },
+    /// The mean of a displacement is not zero.
+    #[error(
+        "it displaces the mean by {mean:.1e} where it displaces elements by up to {largest:.1e}; the mean must be 0"
+    )]
+    Mean {
+        /// Mean displacement, in λ.
+        mean: f64,
+        /// Maximum displacement, in λ.
+        largest: f64,
+    },
+    /// One pressure has two displacements.
+    #[error("a second application differs by {change:.1e} of up to {largest:.1e}; it must be the same each time")]
+    Changes {
+        /// Maximum difference, in λ.
+        change: f64,
+        /// Maximum displacement, in λ.
+        largest: f64,
+    },
+    /// A uniform pressure displaces.
+    #[error("a uniform pressure of E* displaces by up to {displacement:.1e}; it must displace nothing")]
+    Uniform {
+        /// Maximum displacement, in λ.
+        displacement: f64,
+    },
+    /// The displacement of a sum is not the sum of displacements.
+    #[error("L(a + b) differs from L a + L b by {difference:.1e} of up to {largest:.1e}; it must be linear")]
+    Linearity {
+        /// Maximum difference, in λ.
+        difference: f64,
+        /// Maximum displacement, in λ.
+        largest: f64,
+    },
+    /// Element i acts on j otherwise than j on i.
+    #[error("<a, L b> = {ab:.6e} and <b, L a> = {ba:.6e}; it must be symmetric")]
+    Symmetry {
+        /// Σ a (L b), in E* λ.
+        ab: f64,
+        /// Σ b (L a), in E* λ.
+        ba: f64,
+    },
+    /// A pressure does no work.
+    #[error("<a, L a> = {energy:.1e}; it must be positive, since displacement follows pressure")]
+    Energy {
+        /// Σ a (L a), in E* λ.
+        energy: f64,
     },
 }

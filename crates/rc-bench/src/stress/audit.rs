@@ -3,7 +3,7 @@
 use anyhow::Result;
 use rc_core::{Field, Grid, Operator};
 use rc_kernel::Love;
-use rc_solver::{Control, DirectSum, MultilevelOperator, UniformOperator};
+use rc_solver::{Certificate, Control, DirectSum, MultilevelOperator, UniformOperator};
 
 use super::solved::{Method, Solved};
 
@@ -16,17 +16,24 @@ const OPERATOR_ERROR: f64 = 1e-9;
 /// Cells per side of a tile of the multilevel operator.
 const TILE: usize = 8;
 
+/// Elements with this part of the maximum pressure are well inside contact: their gap has closed.
+const PRESSED: f64 = 0.1;
+
 /// How far a pressure is from solving a contact problem.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Audit {
     /// Pressures that are NaN, infinite or negative.
     pub(crate) n_bad: usize,
-    /// |mean p - σ0| / σ0, or |Δ found - Δ| / H.
+    /// |mean p - σ0| / σ0, or |Δ found - Δ| / Δ.
     pub(crate) load: f64,
     /// max(-g) / H, with the pressure-weighted mean of g at zero.
     pub(crate) penetration: f64,
-    /// Σ p |g| / (H Σ p).
-    pub(crate) complementarity: f64,
+    /// max |g| / H over elements with at least [`PRESSED`] of the maximum pressure.
+    pub(crate) open: f64,
+    /// √(G/U), with G = mean of p (g - min g), and U = mean of p v / 2: a bound of the pressure's error in the energy norm.
+    pub(crate) energy: f64,
+    /// H times the mean pressure over U.
+    range_per_work: f64,
 }
 
 impl Audit {
@@ -37,28 +44,70 @@ impl Audit {
 
     /// Of a pressure and the displacement that it causes.
     pub(crate) fn of_pressure(heights: &Field, pressure: &Field, displacement: &[f64], control: Control) -> Self {
+        Self::of_gaps(heights, pressure, &gaps(heights, displacement), control)
+    }
+
+    /// The energy error that gaps of this size, over H, can make.
+    pub(crate) fn energy_of(&self, gap: f64) -> f64 {
+        (gap * self.range_per_work).sqrt()
+    }
+
+    /// Of a pressure and its gap v - h + max h.
+    pub(crate) fn of_gaps(heights: &Field, pressure: &Field, gaps: &[f64], control: Control) -> Self {
         let p = pressure.values();
         // A flat surface has no range to refer to but the cell's side.
-        let range = Some(heights.max() - heights.min()).filter(|range| *range > 0.0).unwrap_or(1.0);
-        // Heights from the highest point: a large constant in them would drown the displacement.
-        let top = heights.max();
-        let gaps = displacement.iter().zip(heights.values()).map(|(v, h)| v + (top - h));
-        let gaps: Vec<f64> = gaps.collect();
+        let (top, greatest) = (heights.max(), pressure.max());
+        let range = Some(top - heights.min()).filter(|range| *range > 0.0).unwrap_or(1.0);
         let total: f64 = p.iter().sum();
         // Weights first: products of tiny pressures and gaps underflow.
-        let approach: f64 = p.iter().zip(&gaps).map(|(p, g)| p / total * g).sum();
+        let mean_of = |values: &mut dyn Iterator<Item = f64>| p.iter().zip(values).map(|(p, v)| p / total * v).sum();
+        let approach: f64 = mean_of(&mut gaps.iter().copied());
+        let displacement: f64 = mean_of(&mut gaps.iter().zip(heights.values()).map(|(g, h)| g - (top - h)));
         let min_gap = gaps.iter().copied().fold(f64::INFINITY, f64::min);
         let load = match control {
             Control::MeanPressure(wanted) => (total / p.len() as f64 / wanted - 1.0).abs(),
-            Control::Penetration(wanted) => (approach - wanted).abs() / range,
+            Control::Penetration(wanted) => (approach / wanted - 1.0).abs(),
         };
+        let pressed = p.iter().zip(gaps).filter(|(p, _)| **p > PRESSED * greatest);
+        // Both per pressure.
+        let (gap, work) = ((approach - min_gap).max(0.0), 0.5 * displacement);
         Self {
             n_bad: p.iter().filter(|p| !(p.is_finite() && **p >= 0.0)).count(),
             load,
             penetration: (approach - min_gap) / range,
-            complementarity: p.iter().zip(&gaps).map(|(p, g)| p / total * (g - approach).abs()).sum::<f64>() / range,
+            open: pressed.map(|(_, g)| (g - approach).abs()).fold(0.0, f64::max) / range,
+            // Nothing is displaced under a flat surface.
+            energy: if gap > 0.0 { (gap / work).sqrt() } else { 0.0 },
+            range_per_work: if range > 0.0 && work > 0.0 { range / work } else { 0.0 },
         }
     }
+}
+
+/// The energy error that a certificate claims.
+///
+/// MERGE: `certificate.energy` (or what the field is called) instead of the constant, which no certificate of today states.
+pub(crate) fn claimed_energy(_certificate: Certificate) -> f64 {
+    0.05
+}
+
+/// v - h + max h: a large constant in the heights would drown the displacement.
+pub(crate) fn gaps(heights: &Field, displacement: &[f64]) -> Vec<f64> {
+    let top = heights.max();
+    displacement.iter().zip(heights.values()).map(|(v, h)| v + (top - h)).collect()
+}
+
+/// The mean pressure under a penetration so small that one element alone is in contact, Δ/(n L_ii); `None` where others would touch too.
+pub(crate) fn load_of_one_element(heights: &Field, method: Method, penetration: f64) -> Option<f64> {
+    let (grid, top) = (heights.grid(), heights.max());
+    let highest = heights.values().iter().position(|&h| h >= top)?;
+    let mut unit = vec![0.0; grid.len()];
+    unit[highest] = 1.0;
+    let mut v = vec![0.0; grid.len()];
+    UniformOperator::new(grid, method.kernel()).apply(&unit, &mut v, &mut []);
+    let pressure = penetration / v[highest];
+    let gap = |(i, h): (usize, &f64)| pressure * v[i] + (top - h) - penetration;
+    let touched = heights.values().iter().enumerate().any(|(i, h)| i != highest && gap((i, h)) < 0.0);
+    (!touched).then(|| pressure / grid.len() as f64)
 }
 
 /// L p by another way than the method's own: the multilevel operator for the uniform grid where it can be, a direct sum for

@@ -1,7 +1,8 @@
-//! Faults in the sources on purpose: which of them the reduced set finds.
+//! Faults in the sources on purpose: which of them the reduced set finds, and which of the others the tests of their crate.
 
+use std::collections::HashSet;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -28,10 +29,12 @@ struct Mutation {
 /// What came of a mutation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Outcome {
-    /// The reduced set passed: nothing noticed.
+    /// The reduced set passed, and so did the tests: nothing noticed.
     Missed,
-    /// This many rows failed.
-    Failed(usize),
+    /// These rows failed.
+    Failed(HashSet<String>),
+    /// The reduced set passed, and this test of the crate failed.
+    Tested(String),
     /// It ended without a table, or not at all.
     Broken(&'static str),
     /// There is nothing to run: the list has to be mended.
@@ -42,37 +45,41 @@ impl Outcome {
     fn text(&self) -> String {
         match self {
             Self::Missed => "missed".into(),
-            Self::Failed(n_rows) => format!("{n_rows} rows fail"),
+            Self::Failed(rows) if rows.len() == 1 => "1 row fails".into(),
+            Self::Failed(rows) => format!("{} rows fail", rows.len()),
+            Self::Tested(test) => format!("test {test} fails"),
             Self::Broken(how) => (*how).into(),
             Self::NotCompiled => "does not compile".into(),
         }
     }
 
     fn is_found(&self) -> bool {
-        matches!(self, Self::Failed(_) | Self::Broken(_))
+        matches!(self, Self::Failed(_) | Self::Tested(_) | Self::Broken(_))
     }
 }
 
-/// Builds and stresses each mutation whose name contains one of `only` (separated by commas), in a copy of the workspace; writes `mutations.csv` into `out`.
+/// Builds and stresses each mutation whose name contains one of `only` (separated by commas), in a copy of the workspace; where no row fails
+/// that passes without it, runs the tests of its crate. Writes `mutations.csv` into `out`.
+///
+/// What is built is kept in `target/mutations`, so that each mutation is one incremental build.
 ///
 /// # Errors
-/// When the sources as they are do not pass, or a mutation does not compile.
+/// When the sources as they are do not compile, or a mutation does not.
 #[expect(clippy::print_stdout, reason = "the result of the command")]
 pub fn run(only: Option<&str>, out: &Path) -> Result<()> {
-    let copy = tempfile::tempdir().context("a temporary folder")?;
-    copy_workspace(copy.path())?;
+    let copy = Copy::new()?;
     fs::create_dir_all(out).with_context(|| format!("could not make {}; give another --out", out.display()))?;
-    let sound = stress(copy.path())?;
-    ensure!(sound == Outcome::Missed, "the sources as they are do not pass: {}", sound.text());
+    let known = match copy.stress()? {
+        Outcome::Missed => HashSet::new(),
+        Outcome::Failed(rows) => rows,
+        other => bail!("the sources as they are cannot be stressed: {}", other.text()),
+    };
+    println!("without a mutation {} rows fail; they are not counted", known.len());
     let (mut lines, mut outcomes) = (Vec::new(), Vec::new());
     for mutation in mutations()?.iter().filter(|mutation| mutation.is_asked_for(only)) {
-        let file = copy.path().join(&mutation.file);
-        let text = fs::read_to_string(&file).with_context(|| format!("could not read {}", file.display()))?;
-        fs::write(&file, mutation.applied(&text)?).with_context(|| format!("could not write {}", file.display()))?;
-        let outcome = stress(copy.path())?;
-        fs::write(&file, text).with_context(|| format!("could not write {}", file.display()))?;
+        let outcome = copy.with(mutation, || copy.outcome(mutation, &known))?;
         println!("{}: {}", mutation.name, outcome.text());
-        lines.push(vec![mutation.name.clone(), mutation.file.clone(), outcome.text()]);
+        lines.push(vec![mutation.name.clone(), mutation.file.clone(), outcome.text().replace(',', ";")]);
         let table = Table::new("mutations", &["mutation", "file", "outcome"], lines.iter().cloned());
         fs::write(out.join("mutations.csv"), table.csv).context("could not write mutations.csv")?;
         outcomes.push(outcome);
@@ -102,6 +109,12 @@ impl Mutation {
         only.is_none_or(|only| only.split(',').any(|part| self.name.contains(part.trim())))
     }
 
+    /// The crate that the file is in.
+    fn package(&self) -> Result<&str> {
+        let folder = self.file.strip_prefix("crates/").and_then(|rest| rest.split('/').next());
+        folder.with_context(|| format!("{} is not in a crate: mend mutations.toml", self.file))
+    }
+
     /// The text of the file with the fault in it.
     fn applied(&self, text: &str) -> Result<String> {
         let count = text.matches(&self.original).count();
@@ -112,51 +125,109 @@ impl Mutation {
     }
 }
 
-/// Builds the copy and runs its reduced set.
-#[expect(clippy::print_stderr, reason = "why a mutation does not compile")]
-fn stress(copy: &Path) -> Result<Outcome> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let out = copy.join("target/stress");
-    if out.exists() {
-        fs::remove_dir_all(&out).context("results of the mutation before")?;
+/// A copy of the workspace.
+struct Copy {
+    folder: tempfile::TempDir,
+    /// Where it is built.
+    target: PathBuf,
+}
+
+impl Copy {
+    fn new() -> Result<Self> {
+        let folder = tempfile::tempdir().context("a temporary folder")?;
+        copy_workspace(folder.path())?;
+        Ok(Self { folder, target: repository::root().join("target/mutations") })
     }
-    // Built quickly rather than to be quick: each mutation is one run of two minutes at most.
-    let build = Command::new(cargo)
-        .args(["build", "--quiet", "--release", "--package", "xtask"])
-        .current_dir(copy)
-        .env("CARGO_TARGET_DIR", copy.join("target"))
-        .envs([("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1"), ("CARGO_PROFILE_RELEASE_DEBUG", "false")])
-        .env("CARGO_PROFILE_RELEASE_INCREMENTAL", "true")
-        .output()
-        .context("could not start cargo")?;
-    if !build.status.success() {
-        eprintln!("{}", String::from_utf8_lossy(&build.stderr));
-        return Ok(Outcome::NotCompiled);
+
+    /// Does `work` while the mutation is in the sources.
+    fn with<T>(&self, mutation: &Mutation, work: impl FnOnce() -> Result<T>) -> Result<T> {
+        let file = self.folder.path().join(&mutation.file);
+        let text = fs::read_to_string(&file).with_context(|| format!("could not read {}", file.display()))?;
+        let written = || format!("could not write {}", file.display());
+        fs::write(&file, mutation.applied(&text)?).with_context(written)?;
+        let result = work();
+        fs::write(&file, text).with_context(written)?;
+        result
     }
-    let mut run = Command::new(copy.join("target/release/xtask"))
-        .args(["stress", "--quick", "--out"])
-        .arg(&out)
-        .current_dir(copy)
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .context("could not start the mutation")?;
-    let started = Instant::now();
-    while run.try_wait()?.is_none() {
-        if started.elapsed() > LONGEST {
-            run.kill()?;
-            run.wait()?;
-            return Ok(Outcome::Broken("does not end"));
+
+    /// What the reduced set finds beyond the `known` rows, or else the tests of the crate.
+    fn outcome(&self, mutation: &Mutation, known: &HashSet<String>) -> Result<Outcome> {
+        match self.stress()? {
+            Outcome::Failed(rows) if rows.is_subset(known) => self.test(mutation.package()?),
+            Outcome::Failed(rows) => Ok(Outcome::Failed(&rows - known)),
+            Outcome::Missed => self.test(mutation.package()?),
+            other => Ok(other),
         }
-        sleep(Duration::from_millis(100));
     }
-    let Ok(table) = fs::read_to_string(out.join("stress-rows.csv")) else {
-        return Ok(Outcome::Broken("ends without a table"));
-    };
-    Ok(match table.lines().filter(|line| line.ends_with(",fail")).count() {
-        0 => Outcome::Missed,
-        n_failed => Outcome::Failed(n_failed),
-    })
+
+    /// Cargo in the copy. Built quickly rather than to be quick: each mutation is one run of two minutes at most.
+    fn cargo(&self) -> Command {
+        let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        cargo
+            .current_dir(self.folder.path())
+            .env("CARGO_TARGET_DIR", &self.target)
+            .envs([("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1"), ("CARGO_PROFILE_RELEASE_DEBUG", "false")])
+            .env("CARGO_PROFILE_RELEASE_INCREMENTAL", "true");
+        cargo
+    }
+
+    /// Builds the copy and runs its reduced set.
+    #[expect(clippy::print_stderr, reason = "why a mutation does not compile")]
+    fn stress(&self) -> Result<Outcome> {
+        let out = self.folder.path().join("stress");
+        if out.exists() {
+            fs::remove_dir_all(&out).context("results of the mutation before")?;
+        }
+        let build = self.cargo().args(["build", "--quiet", "--release", "--package", "xtask"]).output();
+        let build = build.context("could not start cargo")?;
+        if !build.status.success() {
+            eprintln!("{}", String::from_utf8_lossy(&build.stderr));
+            return Ok(Outcome::NotCompiled);
+        }
+        let mut run = Command::new(self.target.join("release/xtask"))
+            .args(["stress", "--quick", "--out"])
+            .arg(&out)
+            .current_dir(self.folder.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .context("could not start the mutation")?;
+        let started = Instant::now();
+        while run.try_wait()?.is_none() {
+            if started.elapsed() > LONGEST {
+                run.kill()?;
+                run.wait()?;
+                return Ok(Outcome::Broken("does not end"));
+            }
+            sleep(Duration::from_millis(100));
+        }
+        let Ok(table) = fs::read_to_string(out.join("stress-rows.csv")) else {
+            return Ok(Outcome::Broken("ends without a table"));
+        };
+        let failed: HashSet<String> = table.lines().filter(|line| line.ends_with(",fail")).map(scene_of).collect();
+        Ok(if failed.is_empty() { Outcome::Missed } else { Outcome::Failed(failed) })
+    }
+
+    /// Runs the tests of a crate.
+    #[expect(clippy::print_stderr, reason = "why a mutation does not compile")]
+    fn test(&self, package: &str) -> Result<Outcome> {
+        let run = self.cargo().args(["test", "--release", "--package", package]).output();
+        let run = run.context("could not start cargo")?;
+        if run.status.success() {
+            return Ok(Outcome::Missed);
+        }
+        let text = String::from_utf8_lossy(&run.stdout);
+        let failed = text.lines().find_map(|line| line.strip_prefix("test ")?.strip_suffix(" ... FAILED"));
+        if failed.is_none() {
+            eprintln!("{}", String::from_utf8_lossy(&run.stderr));
+        }
+        Ok(failed.map_or(Outcome::NotCompiled, |test| Outcome::Tested(format!("{package} {test}"))))
+    }
+}
+
+/// Group, scene and property of a line of the table: what a row is called whatever came out.
+fn scene_of(line: &str) -> String {
+    line.split(',').take(3).collect::<Vec<_>>().join(", ")
 }
 
 /// Copies the workspace, but not what is history or result.

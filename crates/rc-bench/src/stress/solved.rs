@@ -60,15 +60,24 @@ impl Solved {
 
 /// Solves to `tolerance`.
 pub(crate) fn solve(heights: &Field, method: Method, control: Control, tolerance: f64) -> Result<Solved> {
+    solve_to(heights, method, control, Tolerance::Relative(tolerance))
+}
+
+/// Solves to the tolerance that nobody has asked for.
+pub(crate) fn solve_by_default(heights: &Field, method: Method, control: Control) -> Result<Solved> {
+    solve_to(heights, method, control, SolveParams::default().tolerance)
+}
+
+fn solve_to(heights: &Field, method: Method, control: Control, tolerance: Tolerance) -> Result<Solved> {
     let params = SolveParams {
-        tolerance: Tolerance::Relative(tolerance),
+        tolerance,
         method: Some(method.of_solver()),
         gauss_seidel: GaussSeidelParams { uniform_elements: true, ..GaussSeidelParams::paper() },
         ..SolveParams::default()
     };
     let problem = ContactProblem::new(heights, control).with_kernel(method.kernel());
     let solution =
-        problem.solve(&params, &Silent).with_context(|| format!("{} {control:?} to {tolerance:e}", method.name()))?;
+        problem.solve(&params, &Silent).with_context(|| format!("{} {control:?} to {tolerance:?}", method.name()))?;
     Ok(Solved {
         pressure: solution.pressure().clone(),
         info: solution.info().clone(),

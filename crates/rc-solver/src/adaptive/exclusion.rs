@@ -91,3 +91,37 @@ fn append_tiles_of_cell(
 fn minimum_around(patch: &Patch<f64, SIDE>, x: usize, y: usize) -> f64 {
     patch[y - 1..=y + 1].iter().flat_map(|row| &row[x - 1..=x + 1]).copied().fold(f64::INFINITY, f64::min)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{PI, TAU};
+
+    use rc_core::{Field, Grid, HeightSource};
+
+    use super::*;
+
+    /// A displacement whose minimum, at the corner between four points of the base grid, touches a flat surface. At the points it does not.
+    #[test]
+    fn a_displacement_that_dips_between_points_is_not_excluded() {
+        let (side, per_side) = (32_usize, 8);
+        let flat = Field::zeros(Grid::square(64).expect("a grid"));
+        let heights = Heights::new(HeightSource::Map(&flat), side).expect("heights");
+        let sagitta = 2.0 * (1.0 - (PI / side as f64).cos());
+        let error = 0.5 * sagitta;
+        let wave = |i: usize| (TAU * (i as f64 + 0.5 - 0.5 * side as f64) / side as f64).cos();
+        let base = TileSet::full(side / TILE);
+        let of_tile = |&[column, row]: &[u32; 2]| {
+            let at = move |place: u32, i: usize| wave(place as usize * TILE + i);
+            (0..CELLS).map(move |cell| error - at(column, cell % TILE) - at(row, cell / TILE))
+        };
+        let values: Vec<f64> = base.places().iter().flat_map(of_tile).collect();
+        let smooth = SmoothDisplacement { values: &values, unit: 1.0, curvature: TAU * TAU, error };
+        let minimum = -2.0;
+        let touched = possible_contact(&smooth, &heights, minimum + 0.01 * sagitta, per_side);
+        for place in [[3, 3], [4, 3], [3, 4], [4, 4]] {
+            assert!(touched.contains(&place), "{place:?} is not among {touched:?}");
+        }
+        assert!(!touched.contains(&[0, 0]), "{touched:?}");
+        assert!(possible_contact(&smooth, &heights, minimum - 0.01 * sagitta - 2.0 * error, per_side).is_empty());
+    }
+}

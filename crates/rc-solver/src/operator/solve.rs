@@ -3,6 +3,7 @@
 use rc_core::{Field, Grid, Observer, Operator};
 
 use super::any_operator::operators_of;
+use crate::contract::check_operator;
 use crate::descent::{Descent, DescentObserver, Goal, Start};
 use crate::problem::Problem;
 use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
@@ -18,7 +19,8 @@ use crate::{Certificate, Control, IterationParams, ProblemError};
 /// returned.
 ///
 /// # Errors
-/// [`ProblemError`]: an operator for another number of elements, heights that are not finite, a control or tolerance out of range.
+/// [`ProblemError`]: an operator for another number of elements or not of a half-space, heights that are not finite, a control or tolerance out
+/// of range.
 pub(crate) fn solve_on_grid(
     heights: &Field,
     operator: &dyn Operator,
@@ -36,6 +38,7 @@ pub(crate) fn solve_on_grid(
     {
         return Ok(flat(grid, mean_pressure));
     }
+    check_operator(operator, params.tolerance)?;
     let mut descent = Descent::new(heights.values(), grid, operators_of(operator), &problem, Start::Nothing);
     let goal =
         Goal { tolerance: params.bound.aim(), max_iterations: params.max_iterations, certify: Some(params.bound) };

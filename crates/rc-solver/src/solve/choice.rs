@@ -5,6 +5,7 @@ use rc_core::{Grid, HeightSource};
 use super::plan::ChosenMethod;
 use super::{ContactProblem, Plan, SolveError, SolveParams};
 use crate::adaptive::AdaptiveProblem;
+use crate::contract::check_kernel;
 use crate::problem::{check_load, check_tolerance};
 use crate::{AdaptiveError, ErrorBound, Estimate, Method, MethodReason, UNIFORM_BYTES_PER_ELEMENT};
 
@@ -14,6 +15,7 @@ pub(super) fn plan<'a>(problem: ContactProblem<'a>, params: &SolveParams) -> Res
     check_load(problem.control)?;
     check_tolerance(bound)?;
     check_grid(problem.heights)?;
+    check_kernel(problem.kernel, problem.heights.grid())?;
     let choice = Choice { problem, params, bound };
     let (chosen, reason) = match params.method {
         None => choice.automatic(),

@@ -90,7 +90,9 @@ pub fn solve<'a>(
 /// operator. [`Solution::stiffness`] is a lower bound here, mostly within a percent, since its iteration is not preconditioned either.
 ///
 /// # Errors
-/// [`SolveError`]; [`crate::ProblemError::Operator`] for an operator with another number of elements.
+/// [`SolveError`]; [`crate::ProblemError::Operator`] for an operator with another number of elements, and
+/// [`crate::ProblemError::NotElastic`] for one that three applications at the start show not to be that of a half-space ([`Operator`] says what
+/// they see).
 pub fn solve_with_operator<'a>(
     heights: impl Into<HeightSource<'a>>,
     operator: &'a dyn Operator,

@@ -1,0 +1,264 @@
+//! The adaptive method on many levels and on elements of several sizes, audited on the whole grid of its smallest elements.
+
+use std::ops::Range;
+
+use anyhow::Result;
+use rc_core::{Field, Grid, HeightSource, Operator, Silent};
+use rc_figures::Preset;
+use rc_fractal::{SpectrumParams, Surface};
+use rc_kernel::Love;
+use rc_solver::{ContactElement, ContactProblem, Control, Method, Solution, SolveParams, UniformOperator};
+
+use super::audit::{Audit, claimed_energy, gaps};
+use super::heights::shapes;
+use super::row::{Row, Rows, guarded};
+use super::scene::TOLERANCE;
+
+/// Error of the heights that the adaptive method interpolates, relative to the rms height: its tests state it.
+const HEIGHT_ERROR: f64 = 1e-9;
+
+/// Rounding of the audit's transform and sums, relative to the peak-to-valley height. Measured: below 1e-14.
+const ROUNDING: f64 = 1e-13;
+
+/// What is left out of the height of a larger element, over the peak-to-valley height: fourth derivatives.
+const SAME_HEIGHT: f64 = 1e-5;
+
+/// Part of σ0 or Δ by which an audit may find another one.
+const SAME_CONTROL: f64 = 1e-6;
+
+/// Heights that a mesh is made on.
+enum Relief {
+    /// The paper's surface with this many waves and Hurst exponent.
+    Waves(usize, f64),
+    /// Independent values on all elements.
+    Noise,
+    /// Elements high and low by turns.
+    Chequered,
+}
+
+/// A contact problem for the adaptive method.
+struct MeshScene {
+    relief: Relief,
+    base: usize,
+    side: usize,
+    border_level: usize,
+    /// Of the slope or of H, whichever makes a scene of it.
+    load: f64,
+    tolerance: f64,
+}
+
+impl MeshScene {
+    /// The paper's surface, about 5 % in contact.
+    const fn waves(waves: usize, base: usize, side: usize, border_level: usize) -> Self {
+        Self { relief: Relief::Waves(waves, 0.8), base, side, border_level, load: 1e-3, tolerance: TOLERANCE }
+    }
+
+    fn name(&self) -> String {
+        let Self { base, side, border_level, load, tolerance, .. } = self;
+        let relief = match self.relief {
+            Relief::Waves(waves, hurst) => format!("N = {waves} H = {hurst}"),
+            Relief::Noise => "white noise".to_owned(),
+            Relief::Chequered => "chequered".to_owned(),
+        };
+        format!("{relief} base {base} side {side} border level {border_level} load {load:.0e} to {tolerance:.0e}")
+    }
+}
+
+/// The reduced set: three and four levels above the base grid, border levels 1 to 3, maps like noise.
+fn reduced() -> Vec<MeshScene> {
+    let waves = MeshScene::waves;
+    vec![
+        waves(16, 64, 512, 0),
+        waves(8, 64, 1024, 0),
+        waves(16, 64, 128, 1),
+        waves(16, 64, 128, 2),
+        MeshScene { load: 1e-2, ..waves(16, 64, 128, 3) },
+        MeshScene { load: 1e-5, ..waves(16, 64, 256, 2) },
+        MeshScene { relief: Relief::Waves(16, 0.2), load: 1e-2, ..waves(16, 64, 256, 2) },
+        MeshScene { relief: Relief::Noise, ..waves(0, 32, 256, 0) },
+        MeshScene { relief: Relief::Chequered, load: 1e-2, ..waves(0, 32, 256, 0) },
+        MeshScene { tolerance: 1e-8, ..waves(16, 64, 256, 0) },
+    ]
+}
+
+/// What the full set has besides: N = 128 and 512, five levels, border level 4, other tolerances.
+fn further() -> Vec<MeshScene> {
+    let waves = MeshScene::waves;
+    let mut scenes = vec![
+        waves(512, 1152, 9216, 0),
+        waves(128, 512, 4096, 0),
+        waves(64, 256, 2048, 1),
+        waves(64, 256, 1024, 2),
+        waves(64, 256, 512, 3),
+        waves(64, 256, 512, 4),
+        waves(16, 64, 2048, 0),
+        waves(16, 64, 256, 4),
+    ];
+    for load in [1e-6, 1e-4, 1e-2] {
+        scenes.extend([0, 2, 4].map(|border| MeshScene { load, ..waves(16, 64, 256, border) }));
+        scenes.extend([0.1, 0.4].map(|hurst| MeshScene {
+            relief: Relief::Waves(32, hurst),
+            load,
+            ..waves(32, 128, 1024, 0)
+        }));
+        scenes.push(MeshScene { relief: Relief::Noise, load, ..waves(0, 64, 1024, 0) });
+        scenes.push(MeshScene { relief: Relief::Chequered, load, ..waves(0, 64, 1024, 0) });
+    }
+    for tolerance in [1e-5, 1e-7] {
+        scenes.extend([0, 2].map(|border| MeshScene { tolerance, ..waves(16, 64, 256, border) }));
+    }
+    scenes
+}
+
+pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
+    let mut rows = Rows::of("meshes");
+    let further = if preset == Preset::Full { further() } else { Vec::new() };
+    for scene in reduced().into_iter().chain(further) {
+        let name = scene.name();
+        if let Err(error) = guarded(|| check(&scene, &name, &mut rows)) {
+            rows.holds(&name, "solved and audited", "converged", format!("{error:#}"), false);
+        }
+    }
+    Ok(rows.finish())
+}
+
+fn check(scene: &MeshScene, name: &str, rows: &mut Rows) -> Result<()> {
+    let finest = Grid::square(scene.side << scene.border_level)?;
+    match scene.relief {
+        Relief::Waves(waves, hurst) => {
+            let surface = Surface::new(&SpectrumParams { hurst, ..SpectrumParams::paper(waves, 31) })?;
+            let source = HeightSource::Surface { surface: &surface, grid: Grid::square(scene.side)? };
+            let heights = surface.sample_on(finest)?;
+            check_solution(scene, (name, source), &heights, rows)
+        }
+        Relief::Noise | Relief::Chequered => {
+            let wanted = if matches!(scene.relief, Relief::Noise) { "white noise" } else { "chequered" };
+            let heights = shapes(scene.side)?.into_iter().find(|shape| shape.name == wanted).map(|shape| shape.heights);
+            let heights = heights.unwrap_or_else(|| Field::zeros(finest));
+            check_solution(scene, (name, HeightSource::Map(&heights)), &heights, rows)
+        }
+    }
+}
+
+/// Solves, and audits on the whole grid of the smallest elements.
+fn check_solution(
+    scene: &MeshScene,
+    (name, source): (&str, HeightSource<'_>),
+    heights: &Field,
+    rows: &mut Rows,
+) -> Result<()> {
+    let params = SolveParams {
+        base_side: Some(scene.base),
+        border_level: scene.border_level,
+        ..SolveParams::to_tolerance(scene.tolerance).by(Method::Adaptive)
+    };
+    let control = Control::MeanPressure(scene.load);
+    let solution = ContactProblem::new(source, control).solve(&params, &Silent)?;
+    let n_levels = (heights.grid().nx() / scene.base).ilog2();
+    rows.holds(name, "levels above the base grid", ">= 1", n_levels.to_string(), n_levels >= 1);
+    let MeshAudit { audit, outside, means } = of_elements(&solution, (source, heights), control)?;
+    rows.at_most(name, "pressures not finite or negative", audit.n_bad as f64, 0.0);
+    rows.at_most(name, "load by audit", audit.load, SAME_CONTROL);
+    let rounding = HEIGHT_ERROR * heights.rms() / (heights.max() - heights.min()) + ROUNDING;
+    let claimed = solution.certificate().penetration;
+    rows.at_most(name, "penetration by audit", audit.penetration, scene.tolerance + rounding);
+    rows.at_most(name, "audit within the certificate", audit.penetration, claimed + rounding);
+    rows.at_most(name, "audit outside contact within the certificate", outside, claimed + rounding);
+    let claimed = claimed_energy(solution.certificate()) + audit.energy_of(rounding);
+    rows.at_most(name, "energy error within the certificate", audit.energy, claimed);
+    if scene.border_level > 0 {
+        rows.at_most(name, "heights of larger elements against means", means, SAME_HEIGHT);
+    }
+    Ok(())
+}
+
+/// The audit of all elements.
+struct MeshAudit {
+    audit: Audit,
+    /// max(-g) / H over elements out of contact alone.
+    outside: f64,
+    /// Maximum difference between the height of a larger element in contact and the mean over the centres of its parts, over H.
+    means: f64,
+}
+
+/// The audit of a mesh: every element's pressure on its parts, their displacement by a transform of the whole grid, gaps in contact as means
+/// over elements, and gaps elsewhere at the centres of the smallest elements.
+fn of_elements(
+    solution: &Solution<'_>,
+    (source, heights): (HeightSource<'_>, &Field),
+    control: Control,
+) -> Result<MeshAudit> {
+    let (grid, n) = (heights.grid(), heights.grid().nx());
+    let elements: Vec<Square> =
+        solution.elements().into_iter().flatten().map(|element| Square::new(&element, n)).collect();
+    let mut pressure = Field::zeros(grid);
+    for element in &elements {
+        element.rows(n).for_each(|row| pressure.values_mut()[row].fill(element.pressure));
+    }
+    let mut v = vec![0.0; grid.len()];
+    UniformOperator::new(grid, &Love).apply(pressure.values(), &mut v, &mut []);
+    let (mut gaps, range) = (gaps(heights, &v), heights.max() - heights.min());
+    drop(v);
+    let (levels, mut means) = (LevelHeights::new(source, n)?, 0.0_f64);
+    for element in elements.iter().filter(|element| element.side > 1) {
+        let mean = |values: &[f64]| {
+            element.rows(n).map(|row| values[row].iter().sum::<f64>()).sum::<f64>() / element.side.pow(2) as f64
+        };
+        let excess = levels.height(element) - mean(heights.values());
+        means = means.max(excess.abs() / range);
+        let gap = mean(&gaps) - excess;
+        element.rows(n).for_each(|row| gaps[row].fill(gap));
+    }
+    let audit = Audit::of_gaps(heights, &pressure, &gaps, control);
+    // As if elements in contact had no gap.
+    let approach = solution.info().penetration;
+    gaps.iter_mut().zip(pressure.values()).filter(|(_, p)| **p > 0.0).for_each(|(g, _)| *g = approach);
+    let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+    Ok(MeshAudit { audit, outside: (approach - least) / range, means })
+}
+
+/// An element in contact, in units of the smallest elements.
+struct Square {
+    corner: [usize; 2],
+    side: usize,
+    pressure: f64,
+}
+
+impl Square {
+    fn new(element: &ContactElement, n: usize) -> Self {
+        let n = n as f64;
+        let corner = |centre: f64| (n * (centre - 0.5 * element.side)).round() as usize;
+        let corner = [corner(element.centre.x), corner(element.centre.y)];
+        Self { corner, side: (element.side * n).round() as usize, pressure: element.pressure }
+    }
+
+    /// Its parts in each row of the grid of `n` elements per side.
+    fn rows(&self, n: usize) -> impl Iterator<Item = Range<usize>> {
+        let ([x, y], side) = (self.corner, self.side);
+        (y..y + side).map(move |row| row * n + x..row * n + x + side)
+    }
+}
+
+/// Heights that the adaptive method gives larger elements: the mean over the centres of the smallest, to fourth order, from the centre and the
+/// centres of the four quarters.
+struct LevelHeights {
+    /// At the centres of elements of 1, 2, 4, … smallest elements per side.
+    levels: Vec<Field>,
+}
+
+impl LevelHeights {
+    fn new(source: HeightSource<'_>, n: usize) -> Result<Self> {
+        let n_larger = (n / source.grid().nx()).ilog2();
+        let HeightSource::Surface { surface, .. } = source else { return Ok(Self { levels: Vec::new() }) };
+        let sampled = (0..=n_larger).map(|level| Ok(surface.sample(Grid::square(n >> level)?)));
+        Ok(Self { levels: sampled.collect::<Result<_>>()? })
+    }
+
+    fn height(&self, element: &Square) -> f64 {
+        let (level, [x, y]) = (element.side.ilog2() as usize, element.corner.map(|i| i / element.side));
+        let (centre, quarters) = (self.levels[level].at(x, y), &self.levels[level - 1]);
+        let quarters = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[dx, dy]| quarters.at(2 * x + dx, 2 * y + dy));
+        let ratio = (1.0 - 1.0 / (element.side as f64).powi(2)) / (1.0 - 0.25);
+        centre + ratio * (0.25 * quarters.iter().sum::<f64>() - centre)
+    }
+}
