@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 /// The environment variable that lowers [`Instructions::of_process`].
-pub const VARIABLE: &str = "RC_SIMD";
+const VARIABLE: &str = "RC_SIMD";
 
 /// The widest vector instructions that loops chosen at run time may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -35,7 +35,7 @@ mod symbol_table;
 
 pub use convolution::{BLOCK_ROWS, Convolution};
 pub use half_plane::{field_of_columns, half_plane_values};
-pub use instructions::{Instructions, VARIABLE as INSTRUCTIONS_VARIABLE};
+pub use instructions::Instructions;
 pub use plan::TransformReal;
 pub use realfft::{ComplexToReal, RealToComplex};
 pub use rustfft::Fft;

@@ -94,13 +94,17 @@ pub fn write<F: Figure>(figure: &F, folder: &Path) -> Result<Vec<PathBuf>> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::numeric::Numeric;
+    use crate::comparison::tests::assert_notices;
     use crate::snapshot;
 
-    /// Asserts that `table` is as in the snapshot `name` of this crate.
-    pub(crate) fn assert_table(name: &str, table: &Table, tolerance: Numeric, parameters: &str) {
+    /// Asserts that every table of `figure` is as in its snapshot, and that its rules would notice if it were not.
+    pub(crate) fn assert_reviewed<F: Figure>(figure: &F, params: &F::Params) {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/snapshots");
-        snapshot::assert_table(&folder, name, table, tolerance, parameters);
+        for table in figure.tables() {
+            let name = format!("{}-{}", F::NAME, table.name);
+            snapshot::assert_table(&folder, &name, &table, &format!("{params:?}"));
+            assert_notices(&table);
+        }
     }
 
     /// Writes `figure` into a temporary folder and checks that every file is what its name says.
