@@ -327,7 +327,7 @@ mod tests {
     #[test]
     fn quick_figure_1_is_as_reviewed_and_can_be_drawn() {
         let (params, figure) = quick();
-        assert_reviewed(&figure, &params);
+        assert_reviewed(&figure, &params, &["fig1-summary", "fig1-section"]);
         assert_written(&figure);
     }
 }

@@ -279,7 +279,7 @@ mod tests {
     #[test]
     fn quick_figure_2_is_as_reviewed_and_can_be_drawn() {
         let (figure, params) = (quick(), Fig2::params(Preset::Quick).expect("no paper values are needed"));
-        assert_reviewed(&figure, &params);
+        assert_reviewed(&figure, &params, &["fig2-summary", "fig2-lines"]);
         assert_written(&figure);
     }
 }

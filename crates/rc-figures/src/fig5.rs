@@ -371,7 +371,7 @@ mod tests {
             assert!(pair.difference().abs() < 2e-2, "{pair:?}");
             assert!(pair.difference_of_penetration().abs() < 5e-3, "{pair:?}");
         }
-        assert_reviewed(&figure, &params);
+        assert_reviewed(&figure, &params, &["fig5-summary", "fig5-curves", "fig5-realisations", "fig5-procedure"]);
         assert_written(&figure);
     }
 }

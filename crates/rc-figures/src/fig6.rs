@@ -197,7 +197,7 @@ mod tests {
     fn quick_figure_6_is_as_reviewed_and_can_be_drawn() {
         let params = Fig6::params(Preset::Quick).expect("paper values");
         let figure = Fig6::compute(&params).expect("the quick figure is solved");
-        assert_reviewed(&figure, &params);
+        assert_reviewed(&figure, &params, &["fig6-summary", "fig6-blocks"]);
         assert_written(&figure);
     }
 }

@@ -335,7 +335,7 @@ mod tests {
                 assert!((0.25..0.75).contains(&fit.decay_length()), "u0 far from h_rms/2: {fit:?}");
             }
         }
-        assert_reviewed(&figure, &params);
+        assert_reviewed(&figure, &params, &["fig7-summary", "fig7-curves", "fig7-fits"]);
         assert_written(&figure);
     }
 }

@@ -94,16 +94,18 @@ pub fn write<F: Figure>(figure: &F, folder: &Path) -> Result<Vec<PathBuf>> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::comparison::tests::assert_notices;
+    use crate::comparison::tests::unnoticed;
     use crate::snapshot;
 
-    /// Asserts that every table of `figure` is as in its snapshot, and that its rules would notice if it were not.
-    pub(crate) fn assert_reviewed<F: Figure>(figure: &F, params: &F::Params) {
+    /// Asserts that the tables of `figure` have these names, that each is as in the snapshot of its name, and that its rules would notice
+    /// if it were not.
+    pub(crate) fn assert_reviewed<F: Figure>(figure: &F, params: &F::Params, names: &[&str]) {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/snapshots");
-        for table in figure.tables() {
-            let name = format!("{}-{}", F::NAME, table.name);
-            snapshot::assert_table(&folder, &name, &table, &format!("{params:?}"));
-            assert_notices(&table);
+        let tables = figure.tables();
+        assert_eq!(tables.iter().map(|table| format!("{}-{}", F::NAME, table.name)).collect::<Vec<_>>(), names);
+        for (table, name) in tables.iter().zip(names) {
+            snapshot::assert_table(&folder, name, table, &format!("{params:?}"));
+            assert_eq!(unnoticed(table), None, "goes unnoticed in {name}");
         }
     }
 

@@ -12,28 +12,12 @@ use crate::{Figure, Preset, Table, number, paper};
 mod convergence;
 mod cutoff;
 mod heights;
+mod params;
 
 use convergence::Mesh;
 use cutoff::Cutoff;
 use heights::{Heights, gaussian};
-
-/// What the statements are computed from.
-#[derive(Clone, Debug)]
-pub struct Params {
-    /// Mean pressure σ0/E*.
-    load: f64,
-    /// Relative tolerance of the solves.
-    tolerance: f64,
-    /// Numbers of waves N, elements per shortest wave, and realisations of the area and energy.
-    waves: Vec<usize>,
-    elements_per_wave: usize,
-    seeds: Vec<u64>,
-    /// N, and the elements per shortest wave of each mesh, of the convergence.
-    converged_waves: usize,
-    meshes: Vec<usize>,
-    /// Number of realisations of the heights.
-    height_seeds: u64,
-}
+pub use params::Params;
 
 /// What was found.
 #[derive(Clone, Debug)]
@@ -227,7 +211,11 @@ mod tests {
         let heights = &figure.heights;
         let bound = 4.0 * heights.one_kurtosis.error();
         assert!((heights.kurtosis - heights.exact_kurtosis).abs() < bound, "{heights:?}");
-        assert_reviewed(&figure, &params);
+        assert_reviewed(
+            &figure,
+            &params,
+            &["statements-cutoff", "statements-convergence", "statements-moments", "statements-heights"],
+        );
         assert_written(&figure);
     }
 }

@@ -30,6 +30,6 @@ fn a_tolerance_of_1e_4_is_enough_for_counts() {
 fn quick_figure_3_is_as_reviewed_and_can_be_drawn() {
     let params = Fig3::params(Preset::Quick).expect("paper values");
     let figure = Fig3::compute(&params).expect("the quick figure is solved");
-    assert_reviewed(&figure, &params);
+    assert_reviewed(&figure, &params, &["fig3-summary", "fig3-counts"]);
     assert_written(&figure);
 }

@@ -27,6 +27,6 @@ fn quick_figure_8_is_as_reviewed_and_can_be_drawn() {
         let slope = curve.small_slope(DECADES[1], |bin| bin.density.mean);
         assert!((slope - 1.0).abs() < 0.1, "N = {waves}: P grows as σ^{slope}");
     }
-    assert_reviewed(&figure, &params);
+    assert_reviewed(&figure, &params, &["fig8-summary", "fig8-bins", "fig8-small", "fig8-refined"]);
     assert_written(&figure);
 }
