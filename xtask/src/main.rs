@@ -13,7 +13,7 @@ mod tidy;
 
 use clap::{Parser, Subcommand};
 use rc_bench::{Accuracy, KernelErrors};
-use rc_figures::{Fig1, Fig2, Fig3, Fig4, Fig5, Fig6, Fig7, Fig8};
+use rc_figures::{Fig1, Fig2, Fig3, Fig4, Fig5, Fig6, Fig7, Fig8, Statements};
 
 /// Tests, checks, figures and benchmarks of rc. Needs nothing but cargo.
 #[derive(Parser)]
@@ -44,6 +44,8 @@ enum Command {
     Fig7(figures::Args),
     /// Draws Fig. 8: the stress distribution, the fit of Eq. (7), and the approach to zero
     Fig8(figures::Args),
+    /// Computes what the paper says without a figure: energy and area against N, convergence, Gaussian heights
+    Statements(figures::Args),
     /// Draws every figure of the paper; compares with the archived run, or archives the run
     Figures(figures::AllArgs),
     Reproduction(figures::ReproductionArgs),
@@ -71,6 +73,7 @@ fn main() -> anyhow::Result<()> {
         Command::Fig6(args) => figures::run::<Fig6>(&args),
         Command::Fig7(args) => figures::run::<Fig7>(&args),
         Command::Fig8(args) => figures::run::<Fig8>(&args),
+        Command::Statements(args) => figures::run::<Statements>(&args),
         Command::Figures(args) => figures::run_all(&args),
         Command::Reproduction(args) => figures::run_reproduction(&args),
         Command::KernelError(args) => figures::run::<KernelErrors>(&args),

@@ -10,6 +10,7 @@
 //! | [`half_plane_values`] | one forward transform of a real field, every wave of the half plane kx ≥ 0 mapped to a number |
 //! | [`field_of_columns`] | one inverse transform of columns kx = 0, 1, … of waves, as many as there are, to a real field |
 //! | [`TransformReal`] | transforms of one dimension |
+//! | [`Instructions`] | the vector instructions that are used, which `RC_SIMD` in the environment can lower |
 //!
 //! Results are bitwise the same for any number of threads: work is divided over rows and columns, never inside one transform.
 //!
@@ -27,11 +28,14 @@
 
 mod convolution;
 mod half_plane;
+mod instructions;
 mod plan;
+mod real_by_complex;
 mod symbol_table;
 
 pub use convolution::{BLOCK_ROWS, Convolution};
 pub use half_plane::{field_of_columns, half_plane_values};
+pub use instructions::Instructions;
 pub use plan::TransformReal;
 pub use realfft::{ComplexToReal, RealToComplex};
 pub use rustfft::Fft;

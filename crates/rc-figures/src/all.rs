@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 
 use crate::archive::{self, Run};
 use crate::figure::{Figure, Preset, report, write};
-use crate::{fig1, fig2, fig3, fig4, fig5, fig6, fig7, fig8, reproduction};
+use crate::{fig1, fig2, fig3, fig4, fig5, fig6, fig7, fig8, reproduction, statements};
 
 /// What becomes of the archived run in `data/runs/paper/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +35,7 @@ pub fn run(preset: Preset, folder: &Path, archive: Archive) -> Result<()> {
     all.compute::<fig6::Fig6>()?;
     all.add(|params| Ok(fig7::Fig7::of(params, fig5.into_sweep())))?;
     all.compute::<fig8::Fig8>()?;
+    all.compute::<statements::Statements>()?;
     let run = all.run;
     run.save(folder)?;
     match archive {
@@ -55,7 +56,7 @@ fn compare(run: &Run) -> Result<()> {
 fn replace(run: &Run, folder: &Path) -> Result<()> {
     run.save(&archive::folder())?;
     run.save_tables(&archive::folder())?;
-    archive::copy_pictures(folder)?;
+    run.copy_pictures(folder)?;
     reproduction::update()
 }
 
@@ -80,5 +81,34 @@ impl All<'_> {
         report(&figure, &write(&figure, self.folder)?);
         self.run.add(&figure, &params, seconds);
         Ok(figure)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::process::{Command, Output};
+
+    /// The tests of the reduced figures again, in a process with these vector instructions.
+    fn reviewed_with(instructions: &str) -> Output {
+        let tests = std::env::current_exe().expect("this program");
+        let mut command = Command::new(tests);
+        command.args(["as_reviewed", "--test-threads=1"]).env("RC_SIMD", instructions).env("INSTA_UPDATE", "no");
+        command.output().expect("the tests are run")
+    }
+
+    /// Stands in for other processors: every reduced figure is solved, compared and drawn with fewer vector instructions. The tests of the
+    /// figures themselves use the widest of this one.
+    #[test]
+    fn figures_are_the_same_with_fewer_vector_instructions() {
+        for instructions in ["scalar", "sse"] {
+            let Output { status, stdout, .. } = reviewed_with(instructions);
+            let report = String::from_utf8_lossy(&stdout);
+            assert!(status.success(), "RC_SIMD={instructions}:\n{report}");
+            assert_eq!(report.matches("... ok").count(), 9, "RC_SIMD={instructions}:\n{report}");
+        }
+        // And the variable is what decides.
+        let Output { status, stdout, .. } = reviewed_with("mmx");
+        let report = String::from_utf8_lossy(&stdout);
+        assert!(!status.success() && report.contains("RC_SIMD is mmx"), "{report}");
     }
 }

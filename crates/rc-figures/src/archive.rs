@@ -8,15 +8,10 @@ use anyhow::{Context, Result};
 use rc_sweep::memory;
 use toml::{Table as Toml, Value};
 
-use crate::numeric::Numeric;
 use crate::{Figure, Preset, Table, repository};
 
 /// File with the parameters of a run.
 pub(crate) const RUN_FILE: &str = "run.toml";
-
-/// How far numbers of two runs of the same version may differ: solutions are exact to 1e-6 of the surface's height, and
-/// where processors differ an element at a border may flip.
-const SAME: Numeric = Numeric { absolute: 1e-6, relative: 5e-3 };
 
 /// Where the archived run is.
 pub(crate) fn folder() -> PathBuf {
@@ -73,6 +68,17 @@ impl Run {
         Ok(())
     }
 
+    /// Copies the pictures of the figures in `from` to `docs/images/`.
+    pub(crate) fn copy_pictures(&self, from: &Path) -> Result<()> {
+        let to = repository::root().join("docs/images");
+        for record in &self.figures {
+            let name = format!("{}.png", record.name);
+            fs::copy(from.join(&name), to.join(&name))
+                .with_context(|| format!("could not copy {name} to docs/images/"))?;
+        }
+        Ok(())
+    }
+
     /// What differs from the tables in `folder`, a sentence a table.
     pub(crate) fn differences(&self, folder: &Path) -> Result<Vec<String>> {
         let mut differences = Vec::new();
@@ -81,8 +87,8 @@ impl Run {
             let archived = fs::read_to_string(&path).with_context(|| {
                 format!("no archived table {}; `cargo xtask figures --archive` writes it", path.display())
             })?;
-            differences
-                .extend(SAME.difference(&archived, &table.csv).map(|difference| format!("{name}: {difference}")));
+            let difference = table.comparison.difference(&archived, &table.csv);
+            differences.extend(difference.map(|difference| format!("{name}: {difference}")));
         }
         Ok(differences)
     }
@@ -138,16 +144,6 @@ pub fn version() -> Result<String> {
     let manifest: Toml = include_str!("../../../Cargo.toml").parse()?;
     let version = manifest.get("workspace").and_then(|workspace| workspace.get("package")?.get("version")?.as_str());
     Ok(version.context("Cargo.toml has no workspace.package.version; add it")?.to_owned())
-}
-
-/// Copies the pictures of the figures in `from` to `docs/images/`.
-pub(crate) fn copy_pictures(from: &Path) -> Result<()> {
-    let to = repository::root().join("docs/images");
-    for n in 1..=8 {
-        let name = format!("fig{n}.png");
-        fs::copy(from.join(&name), to.join(&name)).with_context(|| format!("could not copy {name} to docs/images/"))?;
-    }
-    Ok(())
 }
 
 #[cfg(test)]

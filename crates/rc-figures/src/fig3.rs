@@ -1,9 +1,9 @@
 //! Fig. 3: elements against penetration for the three meshes, from touch to full contact.
 //!
 //! The meshes are counted on contact sets of elements that are the smallest of all three meshes. A
-//! tolerance of 1e-4 of the height of the surface is enough: only elements at borders of contact can still change.
-//! Against 1e-6, no count on 2048² elements moves by more than 1e-3 of the uniform grid, and the adaptive mesh at
-//! two-thirds contact by 2e-5 of itself; `a_tolerance_of_1e_4_is_enough_for_counts` asserts this on the quick figure.
+//! tolerance of 1e-4 of the height of the surface is enough for the picture: only elements at borders of contact can still change, and
+//! `a_tolerance_of_1e_4_is_enough_for_counts` asserts on the quick figure that nobody would see it. A tenth of that makes counts on another
+//! processor the same within [`NOISE`].
 
 use std::f64::consts::TAU;
 
@@ -17,7 +17,7 @@ use rc_quadtree::paper::{Mask, MeshKind, MeshParams, count};
 use rc_solver::{Control, Method, SolveParams, Status, solve};
 
 use crate::chart::{Axes, BLUE, Chart, Drawn, GREEN, RED, Side, write};
-use crate::{Figure, Preset, Table, number, paper};
+use crate::{Figure, Preset, Rule, Table, number, paper};
 
 /// The meshes, their names in the paper and in tables, and their colours; most elements first.
 const MESHES: [(MeshKind, &str, &str, RGBColor); 3] = [
@@ -34,6 +34,8 @@ const CRUSHING: f64 = 1.0;
 const PAPER_GRID: usize = 2048;
 /// The contact fraction at which the meshes are compared.
 const TWO_THIRDS: f64 = 2.0 / 3.0;
+/// How far counts may be from those of another processor: the tolerance lets some elements at borders turn either way.
+const NOISE: f64 = 5e-4;
 const MICRO: f64 = 1e6;
 const MILLION: f64 = 1e6;
 
@@ -63,6 +65,8 @@ struct State {
     fraction: f64,
     /// Elements of the meshes, in their order.
     elements: [f64; 3],
+    /// Elements of the adaptive mesh when a coarse element needs two rings of its size around it in contact.
+    two_rings: f64,
 }
 
 /// The three printed numbers of elements.
@@ -90,7 +94,7 @@ impl Figure for Fig3 {
     /// The paper's surface on 2048² elements, 16 for a shortest wave; 16 waves on as many in the quick one.
     fn params(preset: Preset) -> Result<Params> {
         let (waves, grid, tolerance) = match preset {
-            Preset::Full => (paper::value("waves_b")? as usize, 2048, 1e-4),
+            Preset::Full => (paper::value("waves_b")? as usize, 2048, 1e-5),
             Preset::Quick => (16, 256, 1e-8),
         };
         Ok(Params { waves, grid, seed: 1, tolerance, cell: TAU / paper::value("q0")? })
@@ -159,21 +163,23 @@ impl State {
     /// The rough surface just touches with its highest peak.
     fn touch(params: &Params) -> Self {
         let elements = [(params.grid * params.grid) as f64, 0.0, 0.0];
-        Self { mean_pressure: 0.0, penetration: 0.0, fraction: 0.0, elements }
+        Self { mean_pressure: 0.0, penetration: 0.0, fraction: 0.0, elements, two_rings: 0.0 }
     }
 
     fn of(params: &Params, pressure: &Field, penetration: f64, mean_pressure: f64) -> Result<Self> {
         let mask = Mask::positive(pressure)?;
-        let mesh = MeshParams::default();
+        let of =
+            |kind, mesh: &MeshParams| -> Result<f64> { Ok(count(&mask, kind, mesh)?.iter().sum::<usize>() as f64) };
         let mut elements = [0.0; 3];
         for (elements, (kind, ..)) in elements.iter_mut().zip(MESHES) {
-            *elements = count(&mask, kind, &mesh)?.iter().sum::<usize>() as f64;
+            *elements = of(kind, &MeshParams::default())?;
         }
         Ok(Self {
             mean_pressure,
             penetration: params.cell * penetration,
             fraction: mask.count() as f64 / mask.cells().len() as f64,
             elements,
+            two_rings: of(MeshKind::Adaptive, &MeshParams { ring: 2, ..MeshParams::default() })?,
         })
     }
 
@@ -185,6 +191,7 @@ impl State {
             penetration: mix(self.penetration, other.penetration),
             fraction: mix(self.fraction, other.fraction),
             elements: std::array::from_fn(|mesh| mix(self.elements[mesh], other.elements[mesh])),
+            two_rings: mix(self.two_rings, other.two_rings),
         }
     }
 }
@@ -222,12 +229,13 @@ impl Fig3 {
             row("elements uniform", "1", Some(uniform), &|state| state.elements[0]),
             row("elements adaptive uniform", "1", Some(adaptive_uniform), &|state| state.elements[1]),
             row("elements adaptive", "1", Some(adaptive), &|state| state.elements[2]),
+            row("elements adaptive with two rings", "1", Some(adaptive), &|state| state.two_rings),
             row("uniform to adaptive", "1", Some(uniform / adaptive), &|state| state.elements[0] / state.elements[2]),
             row("adaptive uniform to adaptive", "1", Some(adaptive_uniform / adaptive), &|state| {
                 state.elements[1] / state.elements[2]
             }),
         ];
-        Table::new("summary", &header, rows)
+        Table::new("summary", &header, rows).rest(Rule::relative(NOISE))
     }
 
     fn counts(&self) -> Table {
@@ -240,13 +248,14 @@ impl Fig3 {
             uniform,
             adaptive_uniform,
             adaptive,
+            "adaptive_two_rings",
         ];
         let rows = self.states.iter().map(|state| {
             let lengths = [MICRO * state.penetration, state.penetration / self.h_max];
             let numbers = [state.mean_pressure].into_iter().chain(lengths).chain([state.fraction]);
-            numbers.chain(state.elements).map(number).collect()
+            numbers.chain(state.elements).chain([state.two_rings]).map(number).collect()
         });
-        Table::new("counts", &header, rows)
+        Table::new("counts", &header, rows).rest(Rule::of_scale(NOISE))
     }
 
     fn caption_of(&self, state: &State) -> String {
@@ -346,42 +355,4 @@ impl Fig3 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::figure::tests::{assert_table, assert_written};
-    use crate::numeric::Numeric;
-
-    fn quick(tolerance: f64) -> Fig3 {
-        let params = Fig3::params(Preset::Quick).expect("paper values");
-        Fig3::compute(&Params { tolerance, ..params }).expect("the quick figure is solved")
-    }
-
-    #[test]
-    fn a_tolerance_of_1e_4_is_enough_for_counts() {
-        let (coarse, fine) = (quick(1e-4), quick(1e-8));
-        // The axis goes up to the uniform grid; a thousandth of it is below the size of a dot.
-        let visible = 1e-3 * fine.states[0].elements[0];
-        for (a, b) in coarse.states.iter().zip(&fine.states) {
-            for ((a, b), (_, name, ..)) in a.elements.iter().zip(b.elements).zip(MESHES) {
-                assert!((a - b).abs() < visible, "{name}: {a} against {b}, {visible} would be visible");
-            }
-        }
-        let [a, b] = [coarse, fine].map(|figure| figure.at_fraction(TWO_THIRDS).expect("a range with two thirds"));
-        for ((a, b), (_, name, ..)) in a.elements.iter().zip(b.elements).zip(MESHES) {
-            let difference = a / b - 1.0;
-            // Ratios of counts are given with three digits.
-            assert!(difference.abs() < 1e-3, "{name} at two thirds: {a} against {b}, relative {difference:e}");
-        }
-    }
-
-    #[test]
-    fn quick_figure_3_is_as_reviewed_and_can_be_drawn() {
-        let params = Fig3::params(Preset::Quick).expect("paper values");
-        let figure = Fig3::compute(&params).expect("the quick figure is solved");
-        // At tolerance 1e-8 the contact sets do not change, nor do the counts; lengths are exact to about seven digits.
-        let tolerance = Numeric { absolute: 0.0, relative: 1e-5 };
-        assert_table("fig3-summary", &figure.summary(), tolerance, &format!("{params:?}"));
-        assert_table("fig3-counts", &figure.counts(), tolerance, &format!("{params:?}"));
-        assert_written(&figure);
-    }
-}
+mod tests;

@@ -13,7 +13,7 @@ use rc_plot::{Area, Map, Picture, PictureError, Shade, draw_map};
 use rc_solver::{Control, SolveParams, connected_elements, solve};
 
 use crate::contact_map::ContactMap;
-use crate::{Figure, Preset, Table, number, paper};
+use crate::{Figure, Preset, Rule, Table, number, paper};
 
 /// Side of a map, space around it, and text, in pixels.
 const PANEL: u32 = 1024;
@@ -165,7 +165,10 @@ impl Fig6 {
                 row("rms pressure", "E*", contact.rms_pressure, ""),
             ]
         });
+        // A spot of one element may come or go.
         Table::new("summary", &header, rows)
+            .column("value", Rule::relative(1e-4))
+            .row("contact spots", Rule::count(0.0))
     }
 
     /// Fractions in contact of `N_BLOCKS` × `N_BLOCKS` blocks, one row of blocks a line, first surface above second.
@@ -180,25 +183,21 @@ impl Fig6 {
             };
             fractions.chunks_exact(N_BLOCKS).map(row).collect::<Vec<_>>()
         });
-        Table::new("blocks", &header, rows)
+        // One or two elements of a block of 64² may turn either way.
+        Table::new("blocks", &header, rows).rest(Rule::absolute(5e-4))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::tests::{assert_table, assert_written};
-    use crate::numeric::Numeric;
+    use crate::figure::tests::{assert_reviewed, assert_written};
 
     #[test]
     fn quick_figure_6_is_as_reviewed_and_can_be_drawn() {
         let params = Fig6::params(Preset::Quick).expect("paper values");
         let figure = Fig6::compute(&params).expect("the quick figure is solved");
-        let description = format!("{params:?}");
-        // Tolerance 1e-8 of the solve leaves area and pressure exact to about seven digits; an element at the border may
-        // still flip, which moves an area by 1.2e-4 of itself and a block by 1/64.
-        assert_table("fig6-summary", &figure.summary(), Numeric { absolute: 0.0, relative: 2e-4 }, &description);
-        assert_table("fig6-blocks", &figure.blocks(), Numeric { absolute: 0.016, relative: 0.0 }, &description);
+        assert_reviewed(&figure, &params, &["fig6-summary", "fig6-blocks"]);
         assert_written(&figure);
     }
 }

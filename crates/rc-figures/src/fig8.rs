@@ -15,9 +15,10 @@ use plotters::prelude::DrawingBackend;
 use crate::fit::{Line, Sample};
 use crate::marks::{STYLES, Style};
 use crate::sweep::ELEMENTS_PER_WAVE;
-use crate::{Figure, Preset, Table, number, paper};
+use crate::{Figure, Preset, Table, paper};
 
 mod drawing;
+mod tables;
 
 /// The decades of stress, over the stress of the peak, in which the slope of log P against log σ is measured.
 const DECADES: [(f64, f64); 2] = [(0.01, 0.1), (0.004, 0.04)];
@@ -42,12 +43,17 @@ pub struct Params {
     first_edge: f64,
     per_decade: usize,
     n_small: usize,
+    /// N and elements per shortest wave of one realisation on finer and finer elements.
+    refined_waves: usize,
+    refined: Vec<usize>,
 }
 
 /// The distributions with their fits.
 #[derive(Clone, Debug)]
 pub struct Fig8 {
     curves: Vec<Curve>,
+    /// Elements per shortest wave, and one realisation on them.
+    refined: Vec<(usize, Curve)>,
     load: f64,
     /// Areas that the paper prints, for its own surfaces.
     printed: Option<[f64; 2]>,
@@ -77,7 +83,8 @@ struct Curve {
 struct Bin {
     stress: f64,
     density: Sample,
-    /// From a histogram of elements.
+    /// Number of elements of all realisations, and P from them.
+    elements: usize,
     of_elements: f64,
 }
 
@@ -86,9 +93,10 @@ struct Realisation {
     area: f64,
     equal: StressDistribution,
     small: StressDistribution,
-    /// Histograms of elements on the same bins.
-    equal_elements: Vec<f64>,
-    small_elements: Vec<f64>,
+    /// Elements in the same bins, and in all.
+    equal_elements: Vec<usize>,
+    small_elements: Vec<usize>,
+    n_elements: usize,
     lambda: f64,
 }
 
@@ -109,15 +117,19 @@ impl Figure for Fig8 {
             first_edge: 1e-5,
             per_decade: 10,
             n_small: 30,
+            refined_waves: 32,
+            refined: vec![32, 64, 128],
         };
         Ok(match preset {
             Preset::Full => full,
             Preset::Quick => Params {
                 waves: vec![8, 16],
+                // With the tolerance of the full figure, so that other vector instructions make differences like its.
                 seeds: vec![1, 2, 3],
-                tolerance: 1e-8,
                 bin_width: 1e-3,
                 n_bins: 80,
+                refined_waves: 8,
+                refined: vec![32, 64],
                 ..full
             },
         })
@@ -128,13 +140,14 @@ impl Figure for Fig8 {
         let printed = [paper::value("area_fraction_a")?, paper::value("area_fraction_b")?];
         Ok(Self {
             curves: curves.collect::<Result<_>>()?,
+            refined: params.refined.iter().map(|&side| Ok((side, refined(params, side)?))).collect::<Result<_>>()?,
             load: params.load,
             printed: (params.waves == paper::both_waves()?).then_some(printed),
         })
     }
 
     fn tables(&self) -> Vec<Table> {
-        vec![self.summary(), self.bins_table(), self.small_table()]
+        vec![self.summary(), self.bins_table(), self.small_table(), self.refined_table()]
     }
 
     fn caption(&self) -> Option<String> {
@@ -176,8 +189,8 @@ impl Picture for Fig8 {
     }
 }
 
-/// P from counting elements: each puts its area into the bin of its pressure.
-fn histogram(pressure: &Field, edges: &[f64]) -> Vec<f64> {
+/// Elements of which the pressure is in each bin.
+fn histogram(pressure: &Field, edges: &[f64]) -> Vec<usize> {
     let mut counts = vec![0_usize; edges.len().saturating_sub(1)];
     for &p in pressure.values().iter().filter(|&&p| p > 0.0) {
         let above = edges.partition_point(|&edge| edge <= p);
@@ -185,8 +198,7 @@ fn histogram(pressure: &Field, edges: &[f64]) -> Vec<f64> {
             *count += 1;
         }
     }
-    let n = pressure.grid().len() as f64;
-    counts.iter().zip(edges.windows(2)).map(|(&count, edge)| count as f64 / (n * (edge[1] - edge[0]))).collect()
+    counts
 }
 
 /// Middle stress and density of each bin.
@@ -212,21 +224,33 @@ impl Realisation {
             equal_elements: histogram(pressure, &equal),
             small: StressDistribution::of(pressure, &small),
             small_elements: histogram(pressure, &small),
+            n_elements: pressure.grid().len(),
         })
     }
+}
+
+/// One realisation on elements of another size.
+fn refined(params: &Params, elements_per_wave: usize) -> Result<Curve> {
+    let params = Params { elements_per_wave, seeds: vec![1], ..params.clone() };
+    Curve::solve(&params, params.refined_waves, STYLES[0])
 }
 
 /// Averages of a distribution over realisations.
 fn average(
     all: &[Realisation],
     of: impl Fn(&Realisation) -> &StressDistribution,
-    elements: impl Fn(&Realisation) -> &Vec<f64>,
+    elements: impl Fn(&Realisation) -> &Vec<usize>,
 ) -> Vec<Bin> {
     let Some(first) = all.first() else { return Vec::new() };
-    let bin = |(i, edge): (usize, &[f64])| Bin {
-        stress: 0.5 * (edge[0] + edge[1]),
-        density: Sample::of(&all.iter().map(|one| of(one).density[i]).collect::<Vec<_>>()),
-        of_elements: Sample::of(&all.iter().map(|one| elements(one)[i]).collect::<Vec<_>>()).mean,
+    let n_all: usize = all.iter().map(|one| one.n_elements).sum();
+    let bin = |(i, edge): (usize, &[f64])| {
+        let n = all.iter().map(|one| elements(one)[i]).sum();
+        Bin {
+            stress: 0.5 * (edge[0] + edge[1]),
+            density: Sample::of(&all.iter().map(|one| of(one).density[i]).collect::<Vec<_>>()),
+            elements: n,
+            of_elements: n as f64 / (n_all as f64 * (edge[1] - edge[0])),
+        }
     };
     of(first).edges.windows(2).enumerate().map(bin).collect()
 }
@@ -282,74 +306,6 @@ impl Curve {
         let peak = self.peak().0;
         let inside = self.small.iter().filter(|bin| (decade.0..=decade.1).contains(&(bin.stress / peak)));
         Line::fit(&inside.map(|bin| (bin.stress.ln(), density(bin).ln())).collect::<Vec<_>>()).slope
-    }
-}
-
-impl Fig8 {
-    fn summary(&self) -> Table {
-        let header = ["quantity", "unit", "waves", "value", "standard_error", "paper"];
-        let rows = self.curves.iter().enumerate().flat_map(|(i, curve)| {
-            let row = |quantity: &str, unit: &str, value: f64, error: Option<f64>, paper: Option<f64>| {
-                let [error, paper] = [error, paper].map(|value| value.map_or_else(String::new, number));
-                vec![quantity.to_owned(), unit.to_owned(), curve.waves.to_string(), number(value), error, paper]
-            };
-            let sample = |quantity: &str, unit: &str, sample: Sample, paper: Option<f64>| {
-                row(quantity, unit, sample.mean, Some(sample.error()), paper)
-            };
-            let printed = self.printed.map(|printed| printed[i]);
-            let implied = printed.and_then(|area| Persson::from_area_fraction(self.load, area).ok());
-            let needed = Persson::from_area_fraction(self.load, curve.area.mean).map_or(f64::NAN, |fit| fit.lambda);
-            let (peak_stress, peak) = curve.peak();
-            let first = curve.bins.first().map_or((f64::NAN, f64::NAN), |bin| (bin.density.mean, bin.of_elements));
-            let slope = |decade, density: fn(&Bin) -> f64| curve.small_slope(decade, density);
-            let [tenth, twenty_fifth] = DECADES;
-            vec![
-                sample("area fraction", "A0", curve.area, printed),
-                sample("integral of P", "A0", curve.integral, printed),
-                sample("mean stress from P", "E*", curve.mean_stress, None),
-                row(
-                    "fitted Lambda",
-                    "E*^2",
-                    curve.fit.lambda,
-                    Some(curve.lambda.error()),
-                    implied.map(|fit| fit.lambda),
-                ),
-                row("Lambda from the area fraction", "E*^2", needed, None, implied.map(|fit| fit.lambda)),
-                row("fitted Lambda over slope^2/8", "1", curve.lambda_over_theory(), None, None),
-                row("erf(load/2 sqrt(Lambda)) of the fit", "A0", curve.fit.area_fraction(), None, printed),
-                row("stress of the peak", "E*", peak_stress, None, None),
-                row("peak of P", "1/E*", peak, None, None),
-                row("first bin over peak", "1", first.0 / peak, None, None),
-                row("first bin over peak by elements", "1", first.1 / peak, None, None),
-                row("slope from 0.01 to 0.1 of the peak stress", "1", slope(tenth, |bin| bin.density.mean), None, None),
-                row("slope from 0.004 to 0.04", "1", slope(twenty_fifth, |bin| bin.density.mean), None, None),
-                row("slope by elements from 0.01 to 0.1", "1", slope(tenth, |bin| bin.of_elements), None, None),
-            ]
-        });
-        Table::new("summary", &header, rows)
-    }
-
-    fn bins_table(&self) -> Table {
-        let header = ["waves", "stress_over_e_star", "density", "standard_deviation", "by_elements", "fit"];
-        let rows = self.curves.iter().flat_map(|curve| {
-            curve.bins.iter().map(|bin| {
-                let fit = curve.fit.density(bin.stress);
-                let numbers = [bin.stress, bin.density.mean, bin.density.deviation, bin.of_elements, fit].map(number);
-                [curve.waves.to_string()].into_iter().chain(numbers).collect()
-            })
-        });
-        Table::new("bins", &header, rows)
-    }
-
-    fn small_table(&self) -> Table {
-        let header = ["waves", "stress_over_e_star", "density", "standard_deviation", "by_elements"];
-        let rows = self.curves.iter().flat_map(|curve| {
-            curve.small.iter().map(|bin| {
-                let numbers = [bin.stress, bin.density.mean, bin.density.deviation, bin.of_elements].map(number);
-                [curve.waves.to_string()].into_iter().chain(numbers).collect()
-            })
-        });
-        Table::new("small", &header, rows)
     }
 }
 

@@ -94,13 +94,19 @@ pub fn write<F: Figure>(figure: &F, folder: &Path) -> Result<Vec<PathBuf>> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::numeric::Numeric;
+    use crate::comparison::tests::unnoticed;
     use crate::snapshot;
 
-    /// Asserts that `table` is as in the snapshot `name` of this crate.
-    pub(crate) fn assert_table(name: &str, table: &Table, tolerance: Numeric, parameters: &str) {
+    /// Asserts that the tables of `figure` have these names, that each is as in the snapshot of its name, and that its rules would notice
+    /// if it were not.
+    pub(crate) fn assert_reviewed<F: Figure>(figure: &F, params: &F::Params, names: &[&str]) {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/snapshots");
-        snapshot::assert_table(&folder, name, table, tolerance, parameters);
+        let tables = figure.tables();
+        assert_eq!(tables.iter().map(|table| format!("{}-{}", F::NAME, table.name)).collect::<Vec<_>>(), names);
+        for (table, name) in tables.iter().zip(names) {
+            snapshot::assert_table(&folder, name, table, &format!("{params:?}"));
+            assert_eq!(unnoticed(table), None, "goes unnoticed in {name}");
+        }
     }
 
     /// Writes `figure` into a temporary folder and checks that every file is what its name says.

@@ -2,11 +2,12 @@
 //!
 //! A [`Figure`] computes itself from its parameters, and knows its tables and how to draw itself. [`run`] writes one,
 //! [`all::run`] every figure of the paper, and [`reproduction`] puts their numbers into docs/reproduction.md. `rc-bench` uses
-//! [`Table`], [`numeric`], [`snapshot`], [`blocks`] and [`repository`] too.
+//! [`Table`], [`comparison`], [`numeric`], [`snapshot`], [`blocks`] and [`repository`] too.
 
 pub mod all;
 pub mod archive;
 pub mod blocks;
+pub mod comparison;
 pub mod numeric;
 pub mod repository;
 pub mod reproduction;
@@ -26,9 +27,11 @@ mod figure;
 mod fit;
 mod marks;
 mod paper;
+mod statements;
 mod sweep;
 mod table;
 
+pub use comparison::Rule;
 pub use fig1::Fig1;
 pub use fig2::Fig2;
 pub use fig3::Fig3;
@@ -38,4 +41,5 @@ pub use fig6::Fig6;
 pub use fig7::Fig7;
 pub use fig8::Fig8;
 pub use figure::{Figure, Preset, run, write};
+pub use statements::Statements;
 pub use table::{Table, number};

@@ -38,6 +38,12 @@ mod tests {
     }
 
     #[test]
+    fn the_ratio_of_areas_is_that_of_the_printed_ones() {
+        let of = |name| value(name).expect("a printed value");
+        assert!((of("area_ratio") - of("area_fraction_b") / of("area_fraction_a")).abs() < 5e-5);
+    }
+
+    #[test]
     fn an_unknown_name_is_an_error_that_names_it() {
         assert!(format!("{:#}", value("colour").expect_err("no such value")).contains("`colour`"));
     }

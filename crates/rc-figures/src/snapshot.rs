@@ -1,13 +1,13 @@
-//! Snapshots of numeric tables, compared as numbers.
+//! Snapshots of numeric tables, compared by the tables' own rules.
 
 use std::path::Path;
 
 use insta::{Comparator, Settings, Snapshot};
 
 use crate::Table;
-use crate::numeric::Numeric;
+use crate::comparison::Comparison;
 
-impl Comparator for Numeric {
+impl Comparator for Comparison {
     fn matches(&self, reference: &Snapshot, test: &Snapshot) -> bool {
         match (reference.as_text(), test.as_text()) {
             (Some(reference), Some(test)) => self.difference(&reference.to_string(), &test.to_string()).is_none(),
@@ -16,7 +16,7 @@ impl Comparator for Numeric {
     }
 
     fn dyn_clone(&self) -> Box<dyn Comparator> {
-        Box::new(*self)
+        Box::new(self.clone())
     }
 }
 
@@ -24,9 +24,9 @@ impl Comparator for Numeric {
 ///
 /// # Panics
 /// When the table differs, as assertions do.
-pub fn assert_table(folder: &Path, name: &str, table: &Table, tolerance: Numeric, parameters: &str) {
+pub fn assert_table(folder: &Path, name: &str, table: &Table, parameters: &str) {
     let mut settings = Settings::clone_current();
-    settings.set_comparator(Box::new(tolerance));
+    settings.set_comparator(Box::new(table.comparison.clone()));
     settings.set_description(parameters);
     settings.set_omit_expression(true);
     settings.set_snapshot_path(folder);

@@ -9,7 +9,7 @@ use rc_fractal::{SpectrumParams, Surface};
 use rc_solver::{Control, SolveParams, solve};
 
 use crate::fit::Sample;
-use crate::{Preset, Table, number, paper};
+use crate::{Preset, Rule, Table, number, paper};
 
 /// Elements for the shortest wave: side λ_min/32, twice as fine as the paper's.
 pub(crate) const ELEMENTS_PER_WAVE: usize = 32;
@@ -125,6 +125,17 @@ impl Sweep {
         Sample::of(&self.at(waves, load).chain(more).map(of).collect::<Vec<_>>())
     }
 
+    /// The area of one N over that of another, realisation by realisation: pairs share their long waves.
+    pub(crate) fn area_ratio(&self, waves: usize, over: usize, load: f64) -> Sample {
+        let all = |waves: usize| {
+            let more =
+                self.more.iter().filter(move |state| state.waves == waves && state.load.total_cmp(&load).is_eq());
+            self.at(waves, load).chain(more)
+        };
+        let pairs = all(waves).zip(all(over)).filter(|(a, b)| a.seed == b.seed);
+        Sample::of(&pairs.map(|(a, b)| a.area / b.area).collect::<Vec<_>>())
+    }
+
     /// The contacts of one N and load, by realisation.
     pub(crate) fn at(&self, waves: usize, load: f64) -> impl Iterator<Item = &State> {
         self.states.iter().filter(move |state| state.waves == waves && state.load.total_cmp(&load).is_eq())
@@ -158,6 +169,11 @@ impl Sweep {
             [state.waves.to_string(), state.seed.to_string()].into_iter().chain(numbers).collect()
         });
         Table::new("realisations", &header, rows)
+            .column("area_fraction", Rule::relative(5e-4))
+            .column("area_fraction_by_counting", Rule::relative(5e-4))
+            .column("penetration_over_h_max", Rule::of_scale(1e-5))
+            .column("mean_gap_over_rms_height", Rule::of_scale(1e-5))
+            .column("h_max_over_rms_height", Rule::relative(1e-5))
     }
 }
 

@@ -1,12 +1,16 @@
 //! Tables as CSV text: the numbers of a figure, for people, for snapshots and for other programs.
 
-/// A table with a name, which is also the end of its file's name.
-#[derive(Clone, Debug, PartialEq, Eq)]
+use crate::comparison::{Comparison, Rule};
+
+/// A table with a name, which is also the end of its file's name, and how it is compared with an earlier one.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     /// The end of its file's name.
     pub name: &'static str,
     /// Header and rows.
     pub csv: String,
+    /// What may differ from an earlier table.
+    pub comparison: Comparison,
 }
 
 impl Table {
@@ -15,7 +19,33 @@ impl Table {
     pub fn new(name: &'static str, header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Self {
         let rows = rows.into_iter().map(|row| row.join(","));
         let lines = [header.join(",")].into_iter().chain(rows);
-        Self { name, csv: lines.map(|line| line + "\n").collect() }
+        Self { name, csv: lines.map(|line| line + "\n").collect(), comparison: Comparison::default() }
+    }
+
+    /// The same table, the numbers of a column compared by `rule`.
+    ///
+    /// # Panics
+    /// When no column has this name.
+    #[must_use]
+    pub fn column(mut self, name: &'static str, rule: Rule) -> Self {
+        let header = self.csv.lines().next().unwrap_or_default();
+        assert!(header.split(',').any(|cell| cell == name), "table {} has no column {name}: {header}", self.name);
+        self.comparison.column(name, rule);
+        self
+    }
+
+    /// The same table, the numbers of the rows that begin with `first` compared by `rule`, in every column.
+    #[must_use]
+    pub fn row(mut self, first: &str, rule: Rule) -> Self {
+        self.comparison.row(first, rule);
+        self
+    }
+
+    /// The same table, everything else compared by `rule`.
+    #[must_use]
+    pub fn rest(mut self, rule: Rule) -> Self {
+        self.comparison.rest(rule);
+        self
     }
 
     /// The table with its columns aligned, for the terminal.

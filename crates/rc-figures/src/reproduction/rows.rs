@@ -14,6 +14,8 @@ pub(super) struct Row {
     pub(super) first: &'static str,
     pub(super) waves: &'static str,
     pub(super) in_unit: &'static str,
+    /// The row of fig5-summary with the standard deviation of one realisation, for what the paper gives of one map.
+    pub(super) one: Option<&'static str>,
     /// Column of the value.
     pub(super) column: &'static str,
     /// What both numbers are multiplied by to be shown, and their unit then.
@@ -33,6 +35,7 @@ const fn row(figure: &'static str, what: &'static str, table: &'static str, firs
         first,
         waves: "",
         in_unit: "",
+        one: None,
         column: "value",
         factor: 1.0,
         unit: "",
@@ -47,6 +50,11 @@ impl Row {
 
     const fn paper(self, name: &'static str) -> Self {
         Self { paper: Some(name), ..self }
+    }
+
+    /// The paper's number is that of one realisation: it is compared with their scatter.
+    const fn of_one(self, name: &'static str, scatter: &'static str) -> Self {
+        Self { paper: Some(name), one: Some(scatter), ..self }
     }
 
     const fn column(self, column: &'static str) -> Self {
@@ -66,9 +74,12 @@ impl Row {
     }
 }
 
-const FIG5: &str = "fig5-summary";
+pub(super) const FIG5: &str = "fig5-summary";
 const FIG7: &str = "fig7-summary";
 const FIG8: &str = "fig8-summary";
+const CUTOFF: &str = "statements-cutoff";
+const CONVERGENCE: &str = "statements-convergence";
+const MOMENTS: &str = "statements-moments";
 
 /// Every line, in the order of the document.
 pub(super) const ROWS: &[Row] = &[
@@ -86,6 +97,9 @@ pub(super) const ROWS: &[Row] = &[
     row("fig3", "elements, adaptive", "fig3-summary", "elements adaptive")
         .column("at_printed_fraction")
         .paper("fig3_elements_adaptive"),
+    row("fig3", "elements, adaptive with two rings", "fig3-summary", "elements adaptive with two rings")
+        .column("at_printed_fraction")
+        .paper("fig3_elements_adaptive"),
     row("fig3", "Δ there", "fig3-summary", "penetration").in_unit("um").column("at_printed_fraction").shown(1.0, " µm"),
     row("fig4", "contact radius", "fig4-summary", "contact radius").column("numeric").shown(1e3, " mm"),
     row("fig4", "contact radius, less Hertz in the cell, relative", "fig4-summary", "contact radius")
@@ -95,16 +109,20 @@ pub(super) const ROWS: &[Row] = &[
     row("fig4", "peak pressure", "fig4-summary", "peak pressure").column("numeric").shown(1e-6, " MPa"),
     row("fig4", "peak pressure, less Hertz in the cell, relative", "fig4-summary", "peak pressure")
         .column("relative_difference"),
-    row("fig5", "A/A0 at σ0/E* = 8.9e-4, N = 64", FIG5, "area fraction").waves("64").paper("area_fraction_a"),
-    row("fig5", "A/A0 at σ0/E* = 8.9e-4, N = 128", FIG5, "area fraction").waves("128").paper("area_fraction_b"),
-    row("fig5", "the same, mean of 28 realisations, N = 64", FIG5, MORE).waves("64").paper("area_fraction_a"),
-    row("fig5", "the same, mean of 28 realisations, N = 128", FIG5, MORE).waves("128").paper("area_fraction_b"),
+    row("fig5", "A/A0 at σ0/E* = 8.9e-4, N = 64", FIG5, "area fraction").waves("64").of_one("area_fraction_a", SCATTER),
+    row("fig5", "A/A0 at σ0/E* = 8.9e-4, N = 128", FIG5, "area fraction")
+        .waves("128")
+        .of_one("area_fraction_b", SCATTER),
+    row("fig5", "the same, mean of 28 realisations, N = 64", FIG5, MORE).waves("64").of_one("area_fraction_a", SCATTER),
+    row("fig5", "the same, mean of 28 realisations, N = 128", FIG5, MORE)
+        .waves("128")
+        .of_one("area_fraction_b", SCATTER),
     row("fig5", "seven realisations, by counting elements, N = 64", FIG5, "area fraction by counting")
         .waves("64")
-        .paper("area_fraction_a"),
+        .of_one("area_fraction_a", SCATTER),
     row("fig5", "seven realisations, by counting elements, N = 128", FIG5, "area fraction by counting")
         .waves("128")
-        .paper("area_fraction_b"),
+        .of_one("area_fraction_b", SCATTER),
     row("fig5", "scatter of one realisation, N = 64", FIG5, "scatter of the area fraction").waves("64"),
     row("fig5", "scatter of one realisation, N = 128", FIG5, "scatter of the area fraction").waves("128"),
     row("fig5", "Persson's A/A0 there, N = 64", FIG5, "Persson's area fraction").waves("64"),
@@ -121,8 +139,17 @@ pub(super) const ROWS: &[Row] = &[
     row("fig5", "R² (the paper: above), N = 128", FIG5, "R squared").waves("128").paper("fig5_r_squared").digits(5),
     row("fig5", "R² up to σ0/E* = 4e-3, N = 64", FIG5, "R squared up to 4e-3").waves("64").digits(5),
     row("fig5", "R² up to σ0/E* = 4e-3, N = 128", FIG5, "R squared up to 4e-3").waves("128").digits(5),
-    row("fig6", "A/A0, N = 64", "fig6-summary", "area fraction").waves("64").paper("area_fraction_a"),
-    row("fig6", "A/A0, N = 128", "fig6-summary", "area fraction").waves("128").paper("area_fraction_b"),
+    row("fig5", "A/A0 of N = 128 over that of N = 64, mean of 28 pairs", FIG5, "ratio of areas")
+        .of_one("area_ratio", "scatter of the ratio of areas"),
+    row("fig5", "scatter of one pair", FIG5, "scatter of the ratio of areas"),
+    row(
+        "fig5",
+        "greatest difference of areas by the paper's procedure (reduced)",
+        FIG5,
+        "greatest relative difference of areas by the paper's procedure",
+    ),
+    row("fig6", "A/A0, N = 64", "fig6-summary", "area fraction").waves("64").of_one("area_fraction_a", SCATTER),
+    row("fig6", "A/A0, N = 128", "fig6-summary", "area fraction").waves("128").of_one("area_fraction_b", SCATTER),
     row("fig6", "contact spots, N = 64", "fig6-summary", "contact spots").waves("64"),
     row("fig6", "contact spots, N = 128", "fig6-summary", "contact spots").waves("128"),
     row("fig7", "h_max over rms height, N = 64", FIG7, "h_max").waves("64"),
@@ -156,16 +183,16 @@ pub(super) const ROWS: &[Row] = &[
         .shown(1e5, "·10⁻⁵ E*²"),
     row("fig8", "Λ of the fit over the theory's g²/8, N = 64", FIG8, "fitted Lambda over slope^2/8").waves("64"),
     row("fig8", "Λ of the fit over the theory's g²/8, N = 128", FIG8, "fitted Lambda over slope^2/8").waves("128"),
-    row("fig8", "A/A0, N = 64", FIG8, "area fraction").waves("64").paper("area_fraction_a"),
-    row("fig8", "∫P dσ, N = 64", FIG8, "integral of P").waves("64").paper("area_fraction_a"),
+    row("fig8", "A/A0, N = 64", FIG8, "area fraction").waves("64").of_one("area_fraction_a", SCATTER),
+    row("fig8", "∫P dσ, N = 64", FIG8, "integral of P").waves("64").of_one("area_fraction_a", SCATTER),
     row("fig8", "erf(σ0/2√Λ) of the fit, N = 64", FIG8, "erf(load/2 sqrt(Lambda)) of the fit")
         .waves("64")
-        .paper("area_fraction_a"),
-    row("fig8", "A/A0, N = 128", FIG8, "area fraction").waves("128").paper("area_fraction_b"),
-    row("fig8", "∫P dσ, N = 128", FIG8, "integral of P").waves("128").paper("area_fraction_b"),
+        .of_one("area_fraction_a", SCATTER),
+    row("fig8", "A/A0, N = 128", FIG8, "area fraction").waves("128").of_one("area_fraction_b", SCATTER),
+    row("fig8", "∫P dσ, N = 128", FIG8, "integral of P").waves("128").of_one("area_fraction_b", SCATTER),
     row("fig8", "erf(σ0/2√Λ) of the fit, N = 128", FIG8, "erf(load/2 sqrt(Lambda)) of the fit")
         .waves("128")
-        .paper("area_fraction_b"),
+        .of_one("area_fraction_b", SCATTER),
     row("fig8", "first bin (2e-4 E*) over the peak, N = 64", FIG8, "first bin over peak").waves("64"),
     row("fig8", "first bin (2e-4 E*) over the peak, N = 128", FIG8, "first bin over peak").waves("128"),
     row("fig8", "the same from counting elements, N = 64", FIG8, "first bin over peak by elements").waves("64"),
@@ -174,8 +201,119 @@ pub(super) const ROWS: &[Row] = &[
     row("fig8", "d log P/d log σ from 0.01 to 0.1 of the peak stress, N = 128", FIG8, SLOPE).waves("128"),
     row("fig8", "the same from 0.004 to 0.04, N = 64", FIG8, "slope from 0.004 to 0.04").waves("64"),
     row("fig8", "the same from 0.004 to 0.04, N = 128", FIG8, "slope from 0.004 to 0.04").waves("128"),
+    row(
+        "fig8",
+        "slope from 0.01 to 0.1 with 32 elements for λ_min, N = 32",
+        FIG8,
+        "slope from 0.01 to 0.1 with 32 elements per wave",
+    ),
+    row(
+        "fig8",
+        "the same from counting elements",
+        FIG8,
+        "slope by elements from 0.01 to 0.1 with 32 elements per wave",
+    ),
+    row(
+        "fig8",
+        "first bin over the peak from counting elements",
+        FIG8,
+        "first bin over peak by elements with 32 elements per wave",
+    ),
+    row(
+        "fig8",
+        "slope from 0.01 to 0.1 with 64 elements for λ_min, N = 32",
+        FIG8,
+        "slope from 0.01 to 0.1 with 64 elements per wave",
+    ),
+    row(
+        "fig8",
+        "the same from counting elements",
+        FIG8,
+        "slope by elements from 0.01 to 0.1 with 64 elements per wave",
+    ),
+    row(
+        "fig8",
+        "first bin over the peak from counting elements",
+        FIG8,
+        "first bin over peak by elements with 64 elements per wave",
+    ),
+    row(
+        "fig8",
+        "slope from 0.01 to 0.1 with 128 elements for λ_min, N = 32",
+        FIG8,
+        "slope from 0.01 to 0.1 with 128 elements per wave",
+    ),
+    row(
+        "fig8",
+        "the same from counting elements",
+        FIG8,
+        "slope by elements from 0.01 to 0.1 with 128 elements per wave",
+    ),
+    row(
+        "fig8",
+        "first bin over the peak from counting elements",
+        FIG8,
+        "first bin over peak by elements with 128 elements per wave",
+    ),
+    row("statements", "area over that of N = 8, N = 16", CUTOFF, "16").column("area_over_first"),
+    row("statements", "area over that of N = 8, N = 64", CUTOFF, "64").column("area_over_first"),
+    row("statements", "area over that of N = 8, N = 128", CUTOFF, "128").column("area_over_first"),
+    row("statements", "area over that of N = 8, N = 256", CUTOFF, "256").column("area_over_first"),
+    row("statements", "κ, N = 8", CUTOFF, "8").column("kappa"),
+    row("statements", "κ, N = 64", CUTOFF, "64").column("kappa"),
+    row("statements", "κ, N = 128", CUTOFF, "128").column("kappa"),
+    row("statements", "κ, N = 256", CUTOFF, "256").column("kappa"),
+    row("statements", "elastic energy over that of N = 8, N = 16", CUTOFF, "16").column("energy_over_first"),
+    row("statements", "elastic energy over that of N = 8, N = 64", CUTOFF, "64").column("energy_over_first"),
+    row("statements", "elastic energy over that of N = 8, N = 128", CUTOFF, "128").column("energy_over_first"),
+    row("statements", "elastic energy over that of N = 8, N = 256", CUTOFF, "256").column("energy_over_first"),
+    row("statements", "Δ/h_max, N = 8", CUTOFF, "8").column("penetration_over_h_max"),
+    row("statements", "Δ/h_max, N = 64", CUTOFF, "64").column("penetration_over_h_max"),
+    row("statements", "Δ/h_max, N = 128", CUTOFF, "128").column("penetration_over_h_max"),
+    row("statements", "Δ/h_max, N = 256", CUTOFF, "256").column("penetration_over_h_max"),
+    row("statements", "area by counting, relative error, 8 elements for λ_min", CONVERGENCE, "8")
+        .column("counting_error")
+        .digits(2),
+    row("statements", "area by counting, relative error, 16 elements for λ_min", CONVERGENCE, "16")
+        .column("counting_error")
+        .digits(2),
+    row("statements", "area by counting, relative error, 32 elements for λ_min", CONVERGENCE, "32")
+        .column("counting_error")
+        .digits(2),
+    row("statements", "area with edges located, relative error, 8 elements for λ_min", CONVERGENCE, "8")
+        .column("area_error")
+        .digits(2),
+    row("statements", "area with edges located, relative error, 16 elements for λ_min", CONVERGENCE, "16")
+        .column("area_error")
+        .digits(2),
+    row("statements", "area with edges located, relative error, 32 elements for λ_min", CONVERGENCE, "32")
+        .column("area_error")
+        .digits(2),
+    row("statements", "rms pressure, relative error, 8 elements for λ_min", CONVERGENCE, "8")
+        .column("rms_pressure_error")
+        .digits(2),
+    row("statements", "rms pressure, relative error, 16 elements for λ_min", CONVERGENCE, "16")
+        .column("rms_pressure_error")
+        .digits(2),
+    row("statements", "rms pressure, relative error, 32 elements for λ_min", CONVERGENCE, "32")
+        .column("rms_pressure_error")
+        .digits(2),
+    row("statements", "Δ, relative error, 8 elements for λ_min", CONVERGENCE, "8")
+        .column("penetration_error")
+        .digits(2),
+    row("statements", "Δ, relative error, 16 elements for λ_min", CONVERGENCE, "16")
+        .column("penetration_error")
+        .digits(2),
+    row("statements", "Δ, relative error, 32 elements for λ_min", CONVERGENCE, "32")
+        .column("penetration_error")
+        .digits(2),
+    row("statements", "excess kurtosis of heights, 100 realisations", MOMENTS, "excess kurtosis"),
+    row("statements", "the same over all phases, exactly", MOMENTS, "excess kurtosis of all phases"),
+    row("statements", "part beyond 2 rms heights (Gaussian: 0.0455)", MOMENTS, "part beyond 2 rms heights"),
+    row("statements", "part beyond 3 rms heights (Gaussian: 0.0027)", MOMENTS, "part beyond 3 rms heights"),
 ];
 
+const SCATTER: &str = "scatter of the area fraction";
 const MORE: &str = "area fraction of all realisations";
 const KAPPA: &str = "kappa at the load of the printed areas";
 const DRAWN: &str = "d log10(load) / d(penetration/h_max) of averages";

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use pulp::Arch;
 use rc_core::Grid;
-use rc_fft::{BLOCK_ROWS, Convolution};
+use rc_fft::{BLOCK_ROWS, Convolution, Instructions};
 use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE};
 
 use super::coarse::Leaves;
@@ -36,7 +36,10 @@ impl<T: Real> TileOperator<T> {
         let n_levels = hierarchy.n_levels();
         let zeros = || hierarchy.levels[..n_levels].iter().map(|tiles| vec![T::default(); tiles.n_cells()]).collect();
         Self {
-            arch: Arch::new(),
+            arch: match Instructions::of_process() {
+                Instructions::Best => Arch::new(),
+                Instructions::Scalar | Instructions::Sse => Arch::Scalar,
+            },
             convolution: Convolution::new(hierarchy.base()),
             source: vec![T::default(); hierarchy.elements().len()],
             densities: zeros(),

@@ -1,0 +1,84 @@
+//! Convergence with smaller elements: what the paper's smallest step leaves of the error.
+
+use anyhow::Result;
+use rc_core::{Grid, HeightField as _};
+use rc_fractal::{SpectrumParams, Surface};
+use rc_solver::{Control, SolveParams, solve};
+
+use super::params::Params;
+use crate::{Rule, Table, number};
+
+/// One mesh.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mesh {
+    pub(super) elements_per_wave: usize,
+    /// A/A0 by counting elements, and with edges located between their centres.
+    area_cells: f64,
+    area: f64,
+    /// Over E*.
+    rms_pressure: f64,
+    penetration: f64,
+}
+
+/// Errors of a mesh, relative to the finest.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Errors {
+    pub(super) counting: f64,
+    pub(super) located: f64,
+    pub(super) rms_pressure: f64,
+    pub(super) penetration: f64,
+}
+
+pub(super) fn solve_all(params: &Params) -> Result<Vec<Mesh>> {
+    let surface = Surface::new(&SpectrumParams::paper(params.converged_waves, 1))?;
+    let mesh = |&elements_per_wave: &usize| {
+        let heights = surface.on(Grid::square(elements_per_wave * params.converged_waves)?);
+        let solution =
+            solve(heights, Control::MeanPressure(params.load), &SolveParams::to_tolerance(params.tolerance))?;
+        Ok(Mesh {
+            elements_per_wave,
+            area_cells: solution.area().cells,
+            area: solution.area().fraction,
+            rms_pressure: solution.observables().rms_pressure,
+            penetration: solution.info().penetration,
+        })
+    };
+    params.meshes.iter().map(mesh).collect()
+}
+
+impl Mesh {
+    pub(super) fn errors(&self, finest: &Self) -> Errors {
+        let relative = |of: fn(&Self) -> f64| of(self) / of(finest) - 1.0;
+        Errors {
+            counting: self.area_cells / finest.area - 1.0,
+            located: relative(|mesh| mesh.area),
+            rms_pressure: relative(|mesh| mesh.rms_pressure),
+            penetration: relative(|mesh| mesh.penetration),
+        }
+    }
+}
+
+/// Values, and errors relative to the finest mesh.
+pub(super) fn table(meshes: &[Mesh]) -> Table {
+    let header = [
+        "elements_per_wave",
+        "area_fraction_by_counting",
+        "area_fraction",
+        "rms_pressure_over_e_star",
+        "penetration_over_side",
+        "counting_error",
+        "area_error",
+        "rms_pressure_error",
+        "penetration_error",
+    ];
+    let errors = ["counting_error", "area_error", "rms_pressure_error", "penetration_error"];
+    let rows = meshes.iter().zip(meshes.last().into_iter().cycle()).map(|(mesh, finest)| {
+        let Errors { counting, located, rms_pressure, penetration } = mesh.errors(finest);
+        let values = [mesh.area_cells, mesh.area, mesh.rms_pressure, mesh.penetration];
+        let numbers = values.into_iter().chain([counting, located, rms_pressure, penetration]).map(number);
+        [mesh.elements_per_wave.to_string()].into_iter().chain(numbers).collect()
+    });
+    let table = Table::new("convergence", &header, rows).rest(Rule::relative(1e-4));
+    // Errors are relative already.
+    errors.into_iter().fold(table, |table, name| table.column(name, Rule::absolute(2e-5)))
+}
