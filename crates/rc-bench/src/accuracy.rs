@@ -2,7 +2,9 @@
 //! ones, and how often the error bars hold that.
 
 mod case;
+mod coverage;
 mod scenes;
+mod surfaces;
 mod tables;
 
 use anyhow::{Context, Result};
@@ -11,6 +13,7 @@ use rc_figures::{Figure, Preset, Table};
 use rc_plot::{Area, LinePlot, LineStyle, Picture, PictureError, Series, draw_lines};
 
 use self::case::{Case, cases_of, of_mesh, rms};
+use self::coverage::Bars;
 use self::scenes::Set;
 
 /// Text, in pixels.
@@ -25,6 +28,8 @@ pub struct Params {
     meshes: Vec<usize>,
     /// Elements per side of the reference.
     reference: usize,
+    /// Scenes of each stratum of the error bars, and whether only those with few elements are solved.
+    coverage: (usize, bool),
 }
 
 /// Estimators of the contact area, in the order of [`Case::areas`].
@@ -40,6 +45,7 @@ const ESTIMATORS: [(&str, RGBColor); 4] = [
 pub struct Accuracy {
     meshes: Vec<usize>,
     cases: Vec<Case>,
+    bars: Vec<Bars>,
 }
 
 impl Figure for Accuracy {
@@ -48,10 +54,16 @@ impl Figure for Accuracy {
 
     fn params(preset: Preset) -> Result<Params> {
         Ok(match preset {
-            Preset::Full => {
-                Params { n_scenes: 100, waves: vec![8, 16, 32], meshes: vec![4, 8, 16, 32], reference: 1024 }
+            Preset::Full => Params {
+                n_scenes: 100,
+                waves: vec![8, 16, 32],
+                meshes: vec![4, 8, 16, 32],
+                reference: 1024,
+                coverage: (60, false),
+            },
+            Preset::Quick => {
+                Params { n_scenes: 4, waves: vec![8], meshes: vec![4, 8], reference: 256, coverage: (6, true) }
             }
-            Preset::Quick => Params { n_scenes: 4, waves: vec![8], meshes: vec![4, 8], reference: 256 },
         })
     }
 
@@ -62,11 +74,18 @@ impl Figure for Accuracy {
                 cases.extend(cases_of(scene, &params.meshes, params.reference).with_context(|| format!("{scene:?}"))?);
             }
         }
-        Ok(Self { meshes: params.meshes.clone(), cases })
+        let (n_scenes, is_quick) = params.coverage;
+        let bars = coverage::measure(n_scenes, is_quick)?;
+        Ok(Self { meshes: params.meshes.clone(), cases, bars })
     }
 
     fn tables(&self) -> Vec<Table> {
-        vec![tables::summary(&self.cases, &self.meshes), tables::cases(&self.cases), tables::calibration(&self.cases)]
+        vec![
+            tables::summary(&self.cases, &self.meshes),
+            coverage::table(&self.bars),
+            tables::cases(&self.cases),
+            tables::calibration(&self.cases),
+        ]
     }
 }
 
@@ -120,9 +139,15 @@ mod tests {
             };
             assert!(error(3) < 0.2 * error(0), "{kernel}: {:e} by edges, {:e} counted", error(3), error(0));
         }
-        let held = accuracy.cases.iter().filter(|case| case.over_bars()[0].abs() <= 1.0).count();
-        assert!(10 * held >= 8 * accuracy.cases.len(), "{held} of {} bars hold", accuracy.cases.len());
+        let bars: Vec<_> = accuracy.bars.iter().filter(|bars| bars.is_covered()).collect();
+        // A little more or less than 95 %: four standard errors of as many scenes, of which some share a surface.
+        let four_errors = 4.0 * (0.05 * 0.95 * bars.len() as f64).sqrt();
+        for quantity in 0..3 {
+            let held = bars.iter().filter(|bars| bars.hold()[quantity]).count() as f64;
+            let expected = 0.95 * bars.len() as f64;
+            assert!((held - expected).abs() < four_errors, "{quantity}: {held} of {} bars hold", bars.len());
+        }
         let folder = tempfile::tempdir().expect("a temporary folder");
-        assert_eq!(write(&accuracy, folder.path()).expect("the figure is written").len(), 5);
+        assert_eq!(write(&accuracy, folder.path()).expect("the figure is written").len(), 6);
     }
 }

@@ -14,13 +14,13 @@ pub struct Observables {
     pub rms_pressure: f64,
     /// The same with what the elements at edges of contacts miss ([`ContactArea::missing_square`]): the best estimate.
     pub rms_pressure_corrected: f64,
-    /// Estimated discretisation error of `rms_pressure_corrected`; none without a coarser level to compare with.
+    /// Estimated discretisation error of `rms_pressure_corrected`; none in full contact without a coarser level to compare with.
     pub rms_pressure_error: Option<f64>,
     /// Greatest pressure.
     pub max_pressure: f64,
     /// Mean gap, h_max - mean(h) - Δ.
     pub mean_gap: f64,
-    /// Estimated discretisation error of `mean_gap`, and of the penetration; none without a coarser level to compare with.
+    /// Estimated discretisation error of `mean_gap`, and of the penetration.
     pub mean_gap_error: Option<f64>,
     /// Elastic energy per nominal area, ½ mean(p v).
     pub elastic_energy: f64,
@@ -39,8 +39,21 @@ impl Observables {
             rms_pressure_error: rms_pressure_error(info, &area, rms_pressure),
             max_pressure: solution.pressure.max(),
             mean_gap: info.penetration_full_contact - info.penetration,
-            mean_gap_error: mean_gap_error(info, &area),
+            mean_gap_error: Some(mean_gap_error(info, &area, rms_pressure)),
             elastic_energy: info.elastic_energy,
+        }
+    }
+
+    /// With the errors that the tolerance of the solve leaves in the error bars; `energy_error` is √(G/U), the relative error of the
+    /// pressure in the energy norm. Those of the observables are of its square.
+    #[must_use]
+    pub fn with_energy_error(self, energy_error: f64) -> Self {
+        let with = |bar: Option<f64>, value: f64| bar.map(|bar| bar.hypot(energy_error.powi(2) * value));
+        Self {
+            area: self.area.with_energy_error(energy_error),
+            rms_pressure_error: with(self.rms_pressure_error, PRESSURE_OF_SOLVE * self.rms_pressure_corrected),
+            mean_gap_error: with(self.mean_gap_error, GAP_OF_SOLVE * self.mean_gap),
+            ..self
         }
     }
 }
@@ -50,23 +63,55 @@ pub(crate) fn corrected(rms_pressure: f64, area: &ContactArea) -> f64 {
     rms_pressure.mul_add(rms_pressure, area.missing_square).max(0.0).sqrt()
 }
 
-/// The relative error of the rms pressure over that of the contact area: both come from the edges. 1.1 holds it in 94 % of
-/// scenes or more together with [`PRESSURE_OVER_CHANGE`] of what the last halving of the elements changed (`cargo xtask accuracy`).
-const PRESSURE_OVER_AREA: f64 = 1.1;
+/// Errors of rms pressure and mean gap from the tolerance of the solve, relative to their values and to the square of the energy error.
+const PRESSURE_OF_SOLVE: f64 = 1.0;
+const GAP_OF_SOLVE: f64 = 0.5;
 
-/// See [`PRESSURE_OVER_AREA`].
-const PRESSURE_OVER_CHANGE: f64 = 0.5;
+/// 95 % error of the squared pressure at an edge, in the mean over few edges, where they scatter.
+const SQUARE_SCATTER: f64 = 0.5;
 
-/// The relative error of the mean gap over that of the contact area; it has all of what the last halving changed.
-const GAP_OVER_AREA: f64 = 0.7;
+/// 95 % error of [`ContactArea::missing_square`], relative to it.
+const ERROR_OF_SQUARES: f64 = 2.5;
 
+/// 95 % error of ⟨p²⟩ inside of contacts from the kernel's elements: relative to ⟨p²⟩, to the kernel's constant, and to the ratio of
+/// elements at edges to those in contact.
+const SQUARE_INSIDE: f64 = 0.2;
+
+/// In full contact, where there are no edges: error of the rms pressure relative to what the last halving of the elements changed. It is
+/// of second order, so a third is expected.
+const OF_CHANGE: f64 = 0.4;
+
+/// Estimated error of the rms pressure; none in full contact without a coarser level to compare with.
 pub(crate) fn rms_pressure_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> Option<f64> {
-    let of_edges = PRESSURE_OVER_AREA * area.relative_error() * rms_pressure;
-    info.coarser.map(|coarser| of_edges.hypot(PRESSURE_OVER_CHANGE * (rms_pressure - coarser.rms_pressure)))
+    if area.perimeter_edges == 0 {
+        return info.coarser.map(|coarser| OF_CHANGE * (rms_pressure - coarser.rms_pressure).abs());
+    }
+    let (rim, squares) = (area.rim, rms_pressure * rms_pressure);
+    let scatter = SQUARE_SCATTER * rim.squares / (area.perimeter_edges as f64).sqrt();
+    let inside = SQUARE_INSIDE * rim.kernel * squares * per_contact_area(rim.area, area);
+    let of_squares = scatter.hypot(ERROR_OF_SQUARES * area.missing_square).hypot(inside);
+    Some(0.5 * of_squares / rms_pressure)
 }
 
-pub(crate) fn mean_gap_error(info: &SolveInfo, area: &ContactArea) -> Option<f64> {
-    let mean_gap = info.penetration_full_contact - info.penetration;
-    let of_edges = GAP_OVER_AREA * area.relative_error() * mean_gap;
-    info.coarser.map(|coarser| of_edges.hypot(info.penetration - coarser.penetration))
+/// 95 % error of the mean gap, in ⟨p²⟩ over mean pressure and element side for each element at an edge per element in contact: its
+/// scatter over few edges, and what is the kernel's, relative to its constant.
+const GAP_SCATTER: f64 = 0.1;
+const GAP_OF_KERNEL: f64 = 0.48;
+
+/// 95 % error of the mean gap relative to that of the area: it matters for contacts that are few and light.
+const GAP_OVER_AREA: f64 = 0.025;
+
+/// Estimated error of the mean gap; 0 in full contact, and without contact.
+pub(crate) fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f64 {
+    let (rim, mean_gap) = (area.rim, info.penetration_full_contact - info.penetration);
+    let of_element = rim.side * rms_pressure * rms_pressure / info.mean_pressure.max(f64::MIN_POSITIVE);
+    let at_edges = of_element * per_contact_area(rim.area, area);
+    let scatter = GAP_SCATTER / (area.perimeter_edges.max(1) as f64).sqrt();
+    let of_edges = at_edges * scatter.hypot(GAP_OF_KERNEL * rim.kernel);
+    of_edges.hypot(GAP_OVER_AREA * area.relative_error() * mean_gap)
+}
+
+/// Relative to the contact area; 0 without contact.
+fn per_contact_area(value: f64, area: &ContactArea) -> f64 {
+    if area.fraction > 0.0 { value / area.fraction } else { 0.0 }
 }

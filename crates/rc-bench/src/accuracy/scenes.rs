@@ -11,7 +11,18 @@ pub(super) const RMS_SLOPE: f64 = 0.03;
 const LOADS: (f64, f64) = (3e-3, 0.6);
 
 /// Hurst exponents that scenes go through.
-const HURST: [f64; 5] = [0.8, 0.3, 0.5, 1.0, 0.65];
+pub(super) const HURST: [f64; 5] = [0.8, 0.3, 0.5, 1.0, 0.65];
+
+/// σ0/E* of scene number `i`, in an order that does not follow the other cycles: steps of the golden ratio.
+pub(super) fn mean_pressure(i: usize) -> f64 {
+    let (lightest, heaviest) = LOADS;
+    RMS_SLOPE * lightest * (heaviest / lightest).powf(golden(i))
+}
+
+/// In [0, 1), spread evenly.
+pub(super) fn golden(i: usize) -> f64 {
+    (i as f64 * 0.618_033_988_749_895).fract()
+}
 
 /// What scenes are for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,17 +63,12 @@ pub(super) struct Scene {
 impl Set {
     /// The first `n` scenes of the set whose shortest waves are one of `waves` to the cell.
     pub(super) fn scenes(self, n: usize, waves: &[usize]) -> Vec<Scene> {
-        let (lightest, heaviest) = LOADS;
-        let scene = |i: usize| {
-            // Loads in an order that does not follow the other cycles: steps of the golden ratio.
-            let place = (i as f64 * 0.618_033_988_749_895).fract();
-            Scene {
-                set: self,
-                waves: waves[i % waves.len()],
-                hurst: HURST[i % HURST.len()],
-                seed: self.first_seed() + i as u64,
-                mean_pressure: RMS_SLOPE * lightest * (heaviest / lightest).powf(place),
-            }
+        let scene = |i: usize| Scene {
+            set: self,
+            waves: waves[i % waves.len()],
+            hurst: HURST[i % HURST.len()],
+            seed: self.first_seed() + i as u64,
+            mean_pressure: mean_pressure(i),
         };
         (0..n).map(scene).collect()
     }

@@ -171,7 +171,7 @@ impl AdaptiveSolution {
             rms_pressure_error: rms_pressure_error(&self.info, &self.area, rms_pressure),
             max_pressure: self.pressure.par_iter().copied().reduce(|| 0.0, f64::max),
             mean_gap: self.info.penetration_full_contact - self.info.penetration,
-            mean_gap_error: mean_gap_error(&self.info, &self.area),
+            mean_gap_error: Some(mean_gap_error(&self.info, &self.area, rms_pressure)),
             elastic_energy: self.info.elastic_energy,
         }
     }

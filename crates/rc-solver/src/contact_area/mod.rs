@@ -7,7 +7,7 @@
 mod edge;
 mod edge_sums;
 
-use std::f64::consts::{FRAC_1_SQRT_2, PI};
+use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2};
 
 use rayon::prelude::*;
 use rc_core::{EdgeBias, Field, Grid};
@@ -32,21 +32,42 @@ pub struct ContactArea {
     pub missing_square: f64,
     /// Best estimate, from the edges between the centres of elements.
     pub fraction: f64,
-    /// Estimated error of `fraction`, above the true one in 93 of 100 scenes or more (`cargo xtask accuracy` measures it):
-    /// from the number of edges, and from the difference to the count.
+    /// Estimated error of `fraction`, above the true one in 95 of 100 scenes (`cargo xtask accuracy` measures it): from the number of
+    /// edges, their directions, and the difference to the count. Slopes that jump are not covered, see `docs/accuracy.md`.
     pub error: f64,
+    /// What the error bars of pressure and gap need.
+    pub(crate) rim: Rim,
 }
 
-/// Error of the area, in elements, relative to the root of the number of edges, whose positions scatter independently. 0.17 to 0.22
-/// bound it in 95 % of scenes, on every mesh (`cargo xtask accuracy`).
-const SCATTER: f64 = 0.22;
+/// The elements at the edges of contacts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rim {
+    /// Σ over edges of the area of an element, relative to the nominal area.
+    pub(crate) area: f64,
+    /// The same with the squared pressure inside each edge, in E*².
+    pub(crate) squares: f64,
+    /// Side of the smallest elements, in λ.
+    pub(crate) side: f64,
+    /// Size of [`EdgeBias::per_square`]: how far the kernel's elements are from the half-space at the edges.
+    pub(crate) kernel: f64,
+}
 
-/// Error relative to the difference between the count and `fraction`: the uncertainty of the bias of many edges.
-const ERROR_OF_TERM: f64 = 0.04;
+/// 95 % error of the area, in elements, relative to the root of the number of independent edges: the same on every mesh.
+const SCATTER: f64 = 0.17;
 
-/// The same where elements are not squares, for which the bias is not calibrated: 0.1 % of the area is the mean error on elements of
-/// 1 : 2, 0.2 % on 1 : 4, where the difference is 4 and 6 %.
-const ERROR_OF_RECTANGLES: f64 = 0.2;
+/// 95 % error of the bias, relative to the square of (count - `fraction`) over `fraction`: it is of second order, and the error of
+/// scenes with very many edges.
+const ERROR_OF_TERM: f64 = 0.4;
+
+/// 95 % error for each diagonal that there is more (or less) than [`DIAGONALS`]: the bias is that of edges in all directions.
+const ERROR_OF_DIRECTIONS: f64 = 0.15;
+
+/// Neighbours across a corner for each edge, in the mean over the directions of a contact's edge. There are two where it is along the
+/// elements, one at 45 degrees to them.
+const DIAGONALS: f64 = SQRT_2;
+
+/// 95 % error of the area from the tolerance of the solve, relative to the area and to the square of the energy error.
+const ERROR_OF_SOLVE: f64 = 1.0;
 
 impl ContactArea {
     /// The contact area of `pressure` and `gap` (E* = 1, λ = 1; the gap zero in contact) on a uniform grid; `bias` is that of the
@@ -78,6 +99,9 @@ impl ContactArea {
     /// From the sums over elements of one size each: the smallest ones, those of the grid `finest`, then those twice as large, and so
     /// on.
     pub(crate) fn from_sums(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> Self {
+        let (smallest, sides) = (1.0 / finest.len() as f64, finest.spacing().into());
+        let [width, height]: [f64; 2] = sides;
+        let rim = Rim { area: 0.0, squares: 0.0, side: (width * height).sqrt(), kernel: bias.per_square.abs() };
         let mut area = Self {
             cells: 0.0,
             perimeter_edges: 0,
@@ -87,10 +111,9 @@ impl ContactArea {
             missing_square: 0.0,
             fraction: 0.0,
             error: 0.0,
+            rim,
         };
-        let (smallest, sides) = (1.0 / finest.len() as f64, finest.spacing().into());
-        let error_of_term = if are_squares(sides) { ERROR_OF_TERM } else { ERROR_OF_RECTANGLES };
-        let mut scatter = 0.0;
+        let (mut scatter, mut excess_diagonals) = (0.0, 0.0);
         for (coarser, sums) in sums.iter().enumerate() {
             let size = smallest * f64::from(1_u32 << (2 * coarser));
             let (edges, contacts) = (sums.edges as f64, 0.25 * sums.turns as f64);
@@ -100,16 +123,27 @@ impl ContactArea {
                 0.5 * shift - bias.per_edge * edges - bias.per_contact * contacts - bias.per_deviation * deviation;
             area.cells += size * counted;
             area.fraction += size * (counted + shift);
-            scatter += (SCATTER * size).powi(2) * edges;
+            scatter += (SCATTER * size).powi(2) * edges * edges_that_scatter_together(sums);
+            excess_diagonals += size * (sums.diagonals as f64 - DIAGONALS * edges);
             area.euler_number += contacts;
             area.gap_deviation += deviation;
             area.missing_square += size * bias.per_square * sums.squares;
+            area.rim.area += size * edges;
+            area.rim.squares += size * sums.squares;
             area.perimeter_edges += sums.edges << coarser;
             area.perimeter += length(sums, sides.map(|side| side * f64::from(1_u32 << coarser)));
         }
         area.fraction = area.fraction.clamp(0.0, 1.0);
-        area.error = scatter.sqrt().hypot(error_of_term * (area.cells - area.fraction));
+        let of_term = ERROR_OF_TERM * (area.cells - area.fraction).powi(2) / area.fraction.max(f64::MIN_POSITIVE);
+        area.error = scatter.sqrt().hypot(of_term).hypot(ERROR_OF_DIRECTIONS * excess_diagonals);
         area
+    }
+
+    /// With the error that the tolerance of the solve leaves; `energy_error` is √(G/U), the relative error of the pressure in the
+    /// energy norm. The area's is of its square.
+    #[must_use]
+    pub fn with_energy_error(self, energy_error: f64) -> Self {
+        Self { error: self.error.hypot(ERROR_OF_SOLVE * energy_error.powi(2) * self.fraction), ..self }
     }
 
     /// Ratio of `error` to `fraction`; 0 without contact.
@@ -117,6 +151,14 @@ impl ContactArea {
     pub fn relative_error(&self) -> f64 {
         if self.fraction > 0.0 { self.error / self.fraction } else { 0.0 }
     }
+}
+
+/// How many edges in a row have about the same place between elements: 1 for edges in all directions, all of them when they are along
+/// the elements. An edge whose neighbour along the contact is in the same row or column has two diagonals, at a step there is one.
+fn edges_that_scatter_together(sums: &EdgeSums) -> f64 {
+    let edges = sums.edges.max(1) as f64;
+    let steps = (2.0 - sums.diagonals as f64 / edges).max(f64::MIN_POSITIVE);
+    ((2.0 - DIAGONALS) / steps).min(edges).max(1.0)
 }
 
 /// Length of all edges of elements with these sides: Crofton's formula for eight directions on squares, for four on rectangles.
