@@ -28,9 +28,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "PATH", requires = "peers")]
     python: Option<PathBuf>,
     /// Solves of each case, of which the median counts.
-    #[arg(long, default_value_t = 3)]
+    #[arg(long, default_value_t = 5)]
     repeats: usize,
-    /// A peer's solves that are expected to take longer are left out.
+    /// A peer's solves that are expected to take longer are left out; half of it for peers that use one thread.
     #[arg(long, value_name = "SECONDS", default_value_t = 12.0, requires = "peers")]
     peer_seconds: f64,
     /// Folder for the table and the picture.
@@ -39,6 +39,12 @@ pub(crate) struct Args {
     /// Makes this run the archived one: `data/bench/`, `docs/images/`, and the tables in the documents.
     #[arg(long, conflicts_with_all = ["quick", "scenes"])]
     archive: bool,
+    /// Goes on where a run into the same folder was interrupted: its finished scenes are not measured again.
+    #[arg(long, conflicts_with = "scale")]
+    resume: bool,
+    /// Instead of errors: time, memory and iterations on grids up to 32768² (6 GB), by threads, and by contact area; with --peers beside ASPHER.
+    #[arg(long, conflicts_with = "scenes", group = "instead")]
+    scale: bool,
     /// Instead of measuring: rewrites the tables in the documents from the archived run.
     #[arg(long, group = "instead")]
     tables: bool,
@@ -62,6 +68,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<()> {
     match args {
         Args { job: Some(job), .. } => bench::work(job),
+        Args { scale: true, .. } => bench::measure_scale(&params(args)?, args.quick),
         Args { check: true, .. } => bench::check(),
         Args { accept: true, .. } => bench::accept(),
         Args { tables: true, .. } => bench::update_documents(),
@@ -84,5 +91,6 @@ fn params(args: &Args) -> Result<Params> {
         peers: args.peers.then(|| PeerParams { python: args.python.clone(), seconds }),
         out: args.out.clone(),
         archive: args.archive,
+        resume: args.resume,
     })
 }

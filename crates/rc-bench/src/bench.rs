@@ -1,5 +1,6 @@
 //! `cargo xtask bench`: run time against error, ours and that of other programs.
 
+mod behind;
 mod child;
 mod counts;
 mod documents;
@@ -11,17 +12,19 @@ mod measure;
 mod peers;
 mod picture;
 mod python;
+mod readings;
 mod record;
 mod reference;
 mod round;
+mod scale;
 mod scenes;
 mod setting;
+mod tables;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use rc_figures::{Table, repository};
 use rc_plot::{save_png, save_svg};
 
@@ -31,10 +34,12 @@ pub use documents::{check as check_documents, update as update_documents};
 pub use make_reference::run as make_reference;
 pub use scenes::Scene;
 
-use levels::Results;
+use levels::{Choice, Results};
 use picture::ErrorAgainstTime;
-use reference::{Quantity, Reading, References};
+use record::Row;
+use reference::{Quantity, References};
 use round::{Measurements, Plan};
+use scale::tables as scale_tables;
 
 /// What is measured, and where the results go.
 #[derive(Clone, Debug)]
@@ -49,6 +54,8 @@ pub struct Params {
     pub out: PathBuf,
     /// Whether this run becomes the archived one.
     pub archive: bool,
+    /// Whether scenes that `out` has from a run before are not measured again.
+    pub resume: bool,
 }
 
 /// How the other programs take part.
@@ -86,7 +93,7 @@ pub fn save_heights(folder: &Path, scenes: &[Scene]) -> Result<()> {
     Ok(())
 }
 
-/// Measures, prints and saves.
+/// Measures, prints and saves, scene by scene.
 ///
 /// # Errors
 /// When a solve of ours fails, or a file cannot be written.
@@ -94,12 +101,49 @@ pub fn measure(params: &Params) -> Result<()> {
     let references = References::read()?;
     let python = params.peers.as_ref().and_then(interpreter);
     let peer_seconds = params.peers.as_ref().map_or(0.0, |peers| peers.seconds);
-    let plan = Plan { scenes: params.scenes.clone(), repeats: params.repeats.max(1), peer_seconds };
-    let start = Instant::now();
-    let found = round::run(&plan, python.as_deref())?;
-    let seconds = start.elapsed().as_secs_f64();
-    report(&Results { rows: &found.rows, references: &references });
-    save(params, &found, &references, seconds)
+    let plan = Plan { repeats: params.repeats.max(1), peer_seconds };
+    let mut found = if params.resume { measured_before(&params.out)? } else { Measurements::default() };
+    for scene in &params.scenes {
+        if found.rows.iter().all(|row| row.scene != scene.name) {
+            round::run(plan, scene, python.as_deref(), &mut found)?;
+            save(&params.out, &found)?;
+        }
+    }
+    // A run that went on may have had its scenes in another order.
+    found.rows.sort_by_key(|row| params.scenes.iter().position(|scene| scene.name == row.scene));
+    found.rows.retain(|row| params.scenes.iter().any(|scene| scene.name == row.scene));
+    let results = Results { rows: &found.rows, references: &references };
+    report(&results);
+    draw(&params.out, results)?;
+    save(&params.out, &found)?;
+    if params.archive { archive(&params.out) } else { Ok(()) }
+}
+
+/// Measures time and memory on large grids, by threads and by contact area, prints and saves. `quick` has small scenes only.
+///
+/// # Errors
+/// When a solve fails, after the others are saved, or a file cannot be written.
+#[expect(clippy::print_stdout, reason = "the result of the command")]
+pub fn measure_scale(params: &Params, quick: bool) -> Result<()> {
+    let python = params.peers.as_ref().and_then(interpreter);
+    let run = scale::run(params.repeats.max(1), quick, python.as_deref());
+    let rows = &run.rows;
+    println!("{}\n{}\n{}", scale_tables::grids(rows), scale_tables::threads(rows), scale_tables::contact(rows));
+    let peers = run.peer.into_iter().map(|version| (peers::ASPHER.name.to_owned(), version)).collect();
+    let machine = toml::to_string(&machine::description(&peers, run.seconds)?)?;
+    let csv = record::to_csv(rows)?;
+    make_folder(&params.out)?;
+    record::write(&params.out.join("scale.csv"), &csv)?;
+    record::write(&params.out.join("scale.toml"), &machine)?;
+    if run.n_failed > 0 {
+        bail!("{} solves failed, see above; the others are in {}", run.n_failed, params.out.display());
+    }
+    if params.archive {
+        record::write(&repository::root().join(documents::SCALE), &csv)?;
+        record::write(&repository::root().join(documents::SCALE_MACHINE), &machine)?;
+        documents::update()?;
+    }
+    Ok(())
 }
 
 /// The interpreter with the peers; when there is none, the run goes on without them.
@@ -122,6 +166,8 @@ fn report(results: &Results<'_>) {
         "tolerance",
         "iterations",
         "seconds",
+        "fastest",
+        "slowest",
         "observables",
         "MB",
         "area_counted",
@@ -130,8 +176,9 @@ fn report(results: &Results<'_>) {
         "penetration",
     ];
     let rows = results.rows.iter().map(|row| {
-        let error = |quantity, reading| {
-            results.error(row, quantity, reading).map_or_else(|| "-".to_owned(), |error| format!("{error:+.1e}"))
+        let error = |quantity, value| {
+            let error = results.references.error(&row.scene, quantity, value);
+            error.map_or_else(|| "-".to_owned(), |error| format!("{error:+.1e}"))
         };
         vec![
             row.scene.clone(),
@@ -143,41 +190,88 @@ fn report(results: &Results<'_>) {
             row.tolerance.clone(),
             row.iterations.map_or_else(|| "-".to_owned(), |n| n.to_string()),
             format!("{:.4}", row.seconds),
+            format!("{:.4}", row.seconds_min),
+            format!("{:.4}", row.seconds_max),
             format!("{:.4}", row.observables_seconds),
             row.memory_mb.map_or_else(|| "-".to_owned(), |memory| format!("{memory:.0}")),
-            error(Quantity::Area, Reading::Counted),
-            error(Quantity::Area, Reading::Best),
-            error(Quantity::RmsPressure, Reading::Best),
-            error(Quantity::Penetration, Reading::Best),
+            error(Quantity::Area, row.area_counted),
+            row.area.map_or_else(|| "-".to_owned(), |area| error(Quantity::Area, area)),
+            error(Quantity::RmsPressure, row.rms_pressure),
+            error(Quantity::Penetration, row.mean_gap),
         ]
     });
     println!("{}", Table::new("bench", &header, rows).aligned());
-    println!("{}", documents::times(results));
+    println!("stated:\n{}\n", tables::times(results, Choice::Stated));
+    println!("by hindsight:\n{}\n", tables::times(results, Choice::Hindsight));
+    println!("{}\n{}\n{}", tables::statements(results), behind::list(results), tables::spreads(results));
 }
 
-/// Writes the lines, the machine and the picture.
-fn save(params: &Params, found: &Measurements, references: &References, seconds: f64) -> Result<()> {
-    fs::create_dir_all(&params.out)
-        .with_context(|| format!("could not make {}; give another --out", params.out.display()))?;
-    let (csv, machine) =
-        (record::to_csv(&found.rows)?, toml::to_string(&machine::description(&found.peers, seconds)?)?);
-    record::write(&params.out.join("bench.csv"), &csv)?;
-    record::write(&params.out.join("bench.toml"), &machine)?;
-    let results = Results { rows: &found.rows, references };
+fn make_folder(out: &Path) -> Result<()> {
+    fs::create_dir_all(out).with_context(|| format!("could not make {}; give another --out", out.display()))
+}
+
+/// Files of a run.
+const LINES: &str = "bench.csv";
+const RUN: &str = "bench.toml";
+
+/// Writes the lines and the machine.
+fn save(out: &Path, found: &Measurements) -> Result<()> {
+    make_folder(out)?;
+    let machine = toml::to_string(&machine::description(&found.peers, found.seconds)?)?;
+    record::write(&out.join(LINES), &record::to_csv(&found.rows)?)?;
+    record::write(&out.join(RUN), &machine)
+}
+
+/// What a run that was interrupted has saved; nothing when there is none.
+///
+/// # Errors
+/// When a file is not as this version writes it.
+fn measured_before(out: &Path) -> Result<Measurements> {
+    let [lines, run] = [LINES, RUN].map(|name| fs::read_to_string(out.join(name)).unwrap_or_default());
+    let rows: Vec<Row> = record::from_csv(&lines, LINES)?;
+    let run: toml::Table = run.parse().with_context(|| format!("{RUN} is not as `cargo xtask bench` writes it"))?;
+    let peers = run.get("peers").and_then(toml::Value::as_table).into_iter().flatten();
+    let peers = peers.map(|(name, version)| (name.clone(), version.as_str().unwrap_or("?").to_owned())).collect();
+    let seconds = run.get("seconds").and_then(toml::Value::as_integer).unwrap_or(0) as f64;
+    Ok(Measurements { rows, peers, seconds })
+}
+
+/// Draws the first scene.
+fn draw(out: &Path, results: Results<'_>) -> Result<()> {
     let Some(&scene) = results.scenes().first() else { return Ok(()) };
+    make_folder(out)?;
     let picture = ErrorAgainstTime { results, scene };
-    let (svg, png) = (params.out.join("bench.svg"), params.out.join("bench.png"));
+    let (svg, png) = (out.join("bench.svg"), out.join("bench.png"));
     save_svg(&picture, &svg).with_context(|| format!("could not draw {}", svg.display()))?;
-    save_png(&picture, &png).with_context(|| format!("could not draw {}", png.display()))?;
-    if params.archive {
-        let root = repository::root();
-        record::write(&root.join(documents::BENCH), &csv)?;
-        record::write(&root.join(documents::MACHINE), &machine)?;
-        for name in ["bench.svg", "bench.png"] {
-            let to = root.join("docs/images").join(name);
-            fs::copy(params.out.join(name), &to).with_context(|| format!("could not write {}", to.display()))?;
-        }
-        documents::update()?;
+    save_png(&picture, &png).with_context(|| format!("could not draw {}", png.display()))
+}
+
+/// Makes the run in `out` the archived one.
+fn archive(out: &Path) -> Result<()> {
+    let pictures = ["bench.svg", "bench.png"].map(|name| (name, format!("docs/images/{name}")));
+    let lines = [(LINES, documents::BENCH.to_owned()), (RUN, documents::MACHINE.to_owned())];
+    for (name, to) in lines.into_iter().chain(pictures) {
+        let to = repository::root().join(to);
+        fs::copy(out.join(name), &to).with_context(|| format!("could not write {}", to.display()))?;
     }
-    Ok(())
+    documents::update()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_interrupted_run_is_read_back() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        assert!(measured_before(folder.path()).expect("nothing yet").rows.is_empty());
+        let peers = [("tamaas".to_owned(), "2.9.0".to_owned())].into();
+        let found = Measurements { rows: levels::tests::rows(), peers, seconds: 12.0 };
+        save(folder.path(), &found).expect("a saved run");
+        let read = measured_before(folder.path()).expect("its own output");
+        assert_eq!((read.rows, read.peers), (found.rows, found.peers));
+        assert!((read.seconds - found.seconds).abs() < 1e-12);
+        fs::write(folder.path().join(LINES), "scene,program\npaper,rc\n").expect("a written file");
+        assert!(measured_before(folder.path()).is_err());
+    }
 }

@@ -53,13 +53,13 @@ impl TryFrom<PlainSetting> for Setting {
     }
 }
 
-/// Solves in a child process.
+/// Solves in a child process with so many threads; with all of the machine's without a number.
 ///
 /// # Errors
 /// When the process fails, with what it wrote.
-pub(super) fn solve(scene: &Scene, setting: &Setting) -> Result<Outcome> {
+pub(super) fn solve(scene: &Scene, setting: &Setting, threads: Option<usize>) -> Result<Outcome> {
     let job = Job::Solve { scene: scene.name.to_owned(), setting: (*setting).into() };
-    let answer = start(&job)?;
+    let answer = start(&job, threads)?;
     serde_json::from_str(&answer).with_context(|| format!("the process for {job:?} answered '{answer}'"))
 }
 
@@ -68,13 +68,14 @@ pub(super) fn solve(scene: &Scene, setting: &Setting) -> Result<Outcome> {
 /// # Errors
 /// When the process fails, with what it wrote.
 pub(super) fn save_heights(scene: &Scene, side: usize, path: &Path) -> Result<()> {
-    start(&Job::Heights { scene: scene.name.to_owned(), side, path: path.to_path_buf() }).map(drop)
+    start(&Job::Heights { scene: scene.name.to_owned(), side, path: path.to_path_buf() }, None).map(drop)
 }
 
-fn start(job: &Job) -> Result<String> {
+fn start(job: &Job, threads: Option<usize>) -> Result<String> {
     let this = env::current_exe().context("the path of this program is unknown")?;
     let output = Command::new(this)
         .args(["bench", "--job", &serde_json::to_string(job)?])
+        .envs(threads.map(|threads| ("RAYON_NUM_THREADS", threads.to_string())))
         .output()
         .with_context(|| format!("could not start a process for {job:?}"))?;
     if !output.status.success() {

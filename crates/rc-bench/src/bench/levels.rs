@@ -3,12 +3,48 @@
 use rc_figures::numeric::median;
 use std::collections::BTreeMap;
 
+use super::readings::{Answer, Reading, answers};
 use super::record::{Family, OURS, Row};
-use super::reference::{Quantity, Reading, References};
+use super::reference::{Quantity, References};
 
 /// The errors that are asked for, by quantity.
-pub(super) const LEVELS: [(Quantity, &[f64]); 2] =
-    [(Quantity::Area, &[3e-2, 1e-2, 3e-3, 1e-3]), (Quantity::RmsPressure, &[1e-2, 1e-3, 1e-4])];
+const LEVELS: [(Quantity, &[f64]); 3] = [
+    (Quantity::Area, &[3e-2, 1e-2, 3e-3, 1e-3]),
+    (Quantity::RmsPressure, &[1e-2, 1e-3, 1e-4]),
+    (Quantity::MeanGap, &[1e-3, 1e-4]),
+];
+
+/// Every error that is asked for.
+pub(super) fn levels() -> impl Iterator<Item = (Quantity, f64)> {
+    LEVELS.into_iter().flat_map(|(quantity, levels)| levels.iter().map(move |&level| (quantity, level)))
+}
+
+/// Which setting counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Choice {
+    /// The fastest of those that state an error below the one asked for: a user can choose so.
+    Stated,
+    /// The fastest of those whose true error is below it on this mesh and all finer ones: only the reference value tells.
+    Hindsight,
+}
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked {
+    pub(super) quantity: Quantity,
+    /// Relative error.
+    pub(super) level: f64,
+    pub(super) choice: Choice,
+}
+
+/// The fastest answer to what is asked.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found<'a> {
+    pub(super) row: &'a Row,
+    pub(super) seconds: f64,
+    /// Whether the true error is below the one asked for.
+    pub(super) holds: bool,
+}
 
 /// The results of a run with their references.
 #[derive(Clone, Copy)]
@@ -25,41 +61,78 @@ pub(super) struct Ratio {
     pub(super) at_least: bool,
 }
 
+/// How we and the fastest peer do in one scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Comparison {
+    /// Both get there, or we alone.
+    Ratio(Ratio),
+    /// Both state to get there, but the peer's true error is above the one asked for.
+    Wrong(Ratio),
+    /// A peer alone gets there; whether its true error is below the one asked for.
+    PeerAlone { holds: bool },
+    /// Nobody does, or no peer ran.
+    Nothing,
+}
+
 impl<'a> Results<'a> {
     /// The lines of one scene by whether they are ours.
-    pub(super) fn of(&self, scene: &'a str, ours: bool) -> impl Iterator<Item = &'a Row> + use<'a> {
+    pub(super) fn of<'s>(&self, scene: &'s str, ours: bool) -> impl Iterator<Item = &'a Row> + use<'a, 's> {
         self.rows.iter().filter(move |row| row.scene == scene && (row.program == OURS) == ours)
     }
 
-    /// The fastest of `rows` (one scene) whose error is at most `level`, and stays so on all finer meshes of its family: a
-    /// coarse mesh that is right by accident does not count.
-    pub(super) fn fastest(
-        &self,
-        rows: impl Iterator<Item = &'a Row>,
-        (quantity, reading): (Quantity, Reading),
-        level: f64,
-    ) -> Option<&'a Row> {
-        let good = |row: &&Row| self.error(row, quantity, reading).is_some_and(|error| error.abs() <= level);
-        let reached = families(rows).into_values().flat_map(|family| family.into_iter().rev().take_while(good));
-        reached.min_by(|a, b| a.total_seconds().total_cmp(&b.total_seconds()))
+    /// Our fastest answer to what is asked in one scene.
+    pub(super) fn ours(&self, scene: &str, asked: Asked) -> Option<Found<'a>> {
+        self.fastest(self.of(scene, true), asked, Reading::Reported)
     }
 
-    pub(super) fn error(&self, row: &Row, quantity: Quantity, reading: Reading) -> Option<f64> {
-        self.references.error(row, quantity, reading)
+    /// The fastest answer of any peer.
+    pub(super) fn peers(&self, scene: &str, asked: Asked, reading: Reading) -> Option<Found<'a>> {
+        self.fastest(self.of(scene, false), asked, reading)
     }
 
-    /// The fastest peer's time to an error over ours, both in the best of their settings; ours by our best estimate. `None`
-    /// when we do not reach it, or no peer ran.
-    pub(super) fn ratio(&self, scene: &'a str, quantity: Quantity, peers: Reading, level: f64) -> Option<Ratio> {
-        let ours = self.fastest(self.of(scene, true), (quantity, Reading::Best), level)?.total_seconds();
-        let peer = self.fastest(self.of(scene, false), (quantity, peers), level);
+    fn fastest(&self, rows: impl Iterator<Item = &'a Row>, asked: Asked, reading: Reading) -> Option<Found<'a>> {
+        let families = families(rows).into_values();
+        let found = families.flat_map(|rows| self.found(&answers(&rows, asked.quantity, reading), asked));
+        found.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    }
+
+    /// The answers of one family that count.
+    fn found(&self, answers: &[Answer<'a>], asked: Asked) -> Vec<Found<'a>> {
+        let Asked { quantity, level, choice } = asked;
+        let holds = |answer: &Answer<'_>| {
+            let error = self.references.error(&answer.row.scene, quantity, answer.value);
+            error.is_some_and(|error| error.abs() <= level)
+        };
+        let finest_first = answers.iter().rev();
+        match choice {
+            Choice::Hindsight => {
+                // A coarse mesh that is right by accident does not count.
+                let good = finest_first.take_while(|answer| holds(answer));
+                good.map(|answer| Found { row: answer.row, seconds: answer.seconds, holds: true }).collect()
+            }
+            Choice::Stated => {
+                let stated = finest_first.filter_map(|answer| Some((answer, answer.stated?)));
+                let below = stated.filter(|(_, stated)| stated.error <= level);
+                below
+                    .map(|(answer, stated)| Found { row: answer.row, seconds: stated.seconds, holds: holds(answer) })
+                    .collect()
+            }
+        }
+    }
+
+    /// The fastest peer's time to an error over ours, both in the best of their settings.
+    pub(super) fn compare(&self, scene: &str, asked: Asked, reading: Reading) -> Comparison {
+        let (ours, peer) = (self.ours(scene, asked), self.peers(scene, asked, reading));
         // A finer mesh than the finest that ran would have taken longer than that.
         let finest = families(self.of(scene, false)).into_values().filter_map(|rows| Some(rows.last()?.seconds));
-        let (seconds, at_least) = match peer {
-            Some(row) => (row.seconds, false),
-            None => (finest.min_by(f64::total_cmp)?, true),
-        };
-        Some(Ratio { value: seconds / ours, at_least })
+        let ratio = |seconds: f64, ours: Found<'_>, at_least| Ratio { value: seconds / ours.seconds, at_least };
+        match (ours, peer, finest.min_by(f64::total_cmp)) {
+            (None, Some(found), _) => Comparison::PeerAlone { holds: found.holds },
+            (Some(ours), Some(found), _) if !found.holds => Comparison::Wrong(ratio(found.seconds, ours, false)),
+            (Some(ours), Some(found), _) => Comparison::Ratio(ratio(found.seconds, ours, false)),
+            (Some(ours), None, Some(finest)) => Comparison::Ratio(ratio(finest, ours, true)),
+            _ => Comparison::Nothing,
+        }
     }
 
     /// The scenes of the run, in order.
@@ -73,22 +146,35 @@ impl<'a> Results<'a> {
         scenes
     }
 
-    /// Our median time over the scenes to an error, and the number of scenes where it is reached.
-    pub(super) fn our_time(&self, quantity: Quantity, level: f64) -> (f64, usize) {
-        let reached = |scene| self.fastest(self.of(scene, true), (quantity, Reading::Best), level);
-        let times: Vec<f64> = self.scenes().into_iter().filter_map(reached).map(Row::total_seconds).collect();
-        let n = times.len();
-        (median(times), n)
+    /// Our answers over the scenes where there is one.
+    pub(super) fn our_answers(&self, asked: Asked) -> Vec<Found<'a>> {
+        self.scenes().into_iter().filter_map(|scene| self.ours(scene, asked)).collect()
     }
 
-    /// Least and median ratio over the scenes. The median is a bound when any ratio below or at it is.
-    pub(super) fn ratios(&self, quantity: Quantity, peers: Reading, level: f64) -> Option<[Ratio; 2]> {
-        let ratios = self.scenes().into_iter().filter_map(|scene| self.ratio(scene, quantity, peers, level));
-        let ratios: Vec<Ratio> = ratios.collect();
+    /// Smallest and median ratio over the scenes. The median is a bound when any ratio below or at it is.
+    pub(super) fn ratios(&self, asked: Asked, reading: Reading) -> Option<[Ratio; 2]> {
+        let ratio = |scene| match self.compare(scene, asked, reading) {
+            Comparison::Ratio(ratio) | Comparison::Wrong(ratio) => Some(ratio),
+            Comparison::PeerAlone { .. } | Comparison::Nothing => None,
+        };
+        let ratios: Vec<Ratio> = self.scenes().into_iter().filter_map(ratio).collect();
         let smallest = ratios.iter().copied().min_by(|a, b| a.value.total_cmp(&b.value))?;
         let value = median(ratios.iter().map(|ratio| ratio.value).collect());
         let at_least = ratios.iter().any(|ratio| ratio.at_least && ratio.value <= value);
         Some([smallest, Ratio { value, at_least }])
+    }
+
+    /// Of all answers with a stated error, ours or the peers', how many, and how many whose true error is below it.
+    pub(super) fn statements(&self, ours: bool, quantity: Quantity, reading: Reading) -> (usize, usize) {
+        let holds = |answer: &Answer<'_>| {
+            let error = self.references.error(&answer.row.scene, quantity, answer.value)?;
+            Some(error.abs() <= answer.stated?.error)
+        };
+        let all = self.scenes().into_iter().flat_map(|scene| families(self.of(scene, ours)).into_values());
+        let held: Vec<bool> = all
+            .flat_map(|rows| answers(&rows, quantity, reading).iter().filter_map(holds).collect::<Vec<_>>())
+            .collect();
+        (held.len(), held.iter().filter(|&&held| held).count())
     }
 }
 
@@ -130,27 +216,57 @@ pub(super) mod tests {
         ours.into_iter().chain(peer).collect()
     }
 
+    fn area(level: f64, choice: Choice) -> Asked {
+        Asked { quantity: Quantity::Area, level, choice }
+    }
+
     #[test]
     fn a_coarse_mesh_that_is_right_by_accident_does_not_count() {
         let (rows, references) = (rows(), references("paper", [0.07, 4e-3, 1.0]));
         let results = Results { rows: &rows, references: &references };
-        let fastest = |level| {
-            let row = results.fastest(results.of("paper", true), (Quantity::Area, Reading::Best), level);
-            row.map(|row| row.elements_per_wave)
-        };
+        let fastest =
+            |level| results.ours("paper", area(level, Choice::Hindsight)).map(|found| found.row.elements_per_wave);
         assert_eq!([3e-2, 1e-2, 1e-3].map(fastest), [Some(4), Some(16), None]);
     }
 
     #[test]
-    fn ratios_are_bounds_where_no_peer_arrives() {
-        let (rows, references) = (rows(), references("paper", [0.07, 4e-3, 1.0]));
+    fn what_is_stated_decides_and_may_be_wrong() {
+        let (mut rows, references) = (rows(), references("paper", [0.07, 4e-3, 1.0]));
+        // The bar of the mesh in the middle is too small: the area is 2 % off.
+        rows[1].area_bar = Some(1e-4);
         let results = Results { rows: &rows, references: &references };
-        let ratio = |level| results.ratio("paper", Quantity::Area, Reading::Counted, level);
+        let fastest = |level| {
+            let found = results.ours("paper", area(level, Choice::Stated));
+            found.map(|found| (found.row.elements_per_wave, found.holds))
+        };
+        assert_eq!([3e-2, 3e-3, 1e-3].map(fastest), [Some((4, true)), Some((8, false)), None]);
+        assert_eq!(results.statements(true, Quantity::Area, Reading::Reported), (3, 2));
+        // The peer's two counts are 0.0179 apart, the finer one 0.0021 off, and it took both.
+        let peer = |level| results.peers("paper", area(level, Choice::Stated), Reading::Reported);
+        let compare = |level| results.compare("paper", area(level, Choice::Stated), Reading::Reported);
+        assert_eq!(compare(0.25), Comparison::Ratio(Ratio { value: 120.0 / 0.75, at_least: false }));
+        let found = peer(0.25).expect("a quarter");
+        assert!((found.seconds - 120.0).abs() < 1e-9 && found.holds && peer(0.24).is_none(), "{found:?}");
+        assert_eq!(results.statements(false, Quantity::Area, Reading::Reported), (1, 1));
+    }
+
+    #[test]
+    fn ratios_are_bounds_where_no_peer_arrives() {
+        let (mut rows, references) = (rows(), references("paper", [0.07, 4e-3, 1.0]));
+        let compare = |rows: &[Row], level| {
+            let results = Results { rows, references: &references };
+            results.compare("paper", area(level, Choice::Hindsight), Reading::Reported)
+        };
         // 90 s against 0.5 s and the evaluation; then nothing finer ran.
-        assert_eq!(ratio(3e-2), Some(Ratio { value: 90.0 / 0.75, at_least: false }));
-        assert_eq!(ratio(1e-2), Some(Ratio { value: 90.0 / 4.25, at_least: true }));
-        assert_eq!(ratio(1e-3), None);
-        assert_eq!(results.our_time(Quantity::Area, 3e-2), (0.75, 1));
-        assert_eq!(results.ratios(Quantity::Area, Reading::Counted, 1e-2).map(|[smallest, _]| smallest), ratio(1e-2));
+        let ratio = |value, at_least| Comparison::Ratio(Ratio { value, at_least });
+        assert_eq!(compare(&rows, 3e-2), ratio(90.0 / 0.75, false));
+        assert_eq!(compare(&rows, 1e-2), ratio(90.0 / 4.25, true));
+        assert_eq!(compare(&rows, 1e-3), Comparison::Nothing);
+        let results = Results { rows: &rows, references: &references };
+        let asked = area(1e-2, Choice::Hindsight);
+        let smallest = results.ratios(asked, Reading::Reported).map(|[smallest, _]| smallest);
+        assert_eq!(smallest, Some(Ratio { value: 90.0 / 4.25, at_least: true }));
+        rows[4].area_counted = 0.07001;
+        assert_eq!(compare(&rows, 1e-3), Comparison::PeerAlone { holds: true });
     }
 }

@@ -1,5 +1,6 @@
 //! Where and with what a benchmark was run, `data/bench/bench.toml`.
 
+use std::collections::BTreeMap;
 use std::process::Command;
 
 use anyhow::Result;
@@ -11,7 +12,7 @@ use rc_figures::archive::version;
 ///
 /// # Errors
 /// When the root manifest has no version.
-pub(super) fn description(peers: &[(String, String)], seconds: f64) -> Result<Toml> {
+pub(super) fn description(peers: &BTreeMap<String, String>, seconds: f64) -> Result<Toml> {
     let mut run = Toml::new();
     run.insert("version".into(), version()?.into());
     run.insert("processor".into(), processor().into());
@@ -44,7 +45,7 @@ mod tests {
 
     #[test]
     fn a_run_says_where_it_was() {
-        let run = description(&[("tamaas".to_owned(), "2.9.0".to_owned())], 12.4).expect("a version");
+        let run = description(&[("tamaas".to_owned(), "2.9.0".to_owned())].into(), 12.4).expect("a version");
         assert_eq!(run["peers"]["tamaas"].as_str(), Some("2.9.0"));
         assert_eq!(run["seconds"].as_integer(), Some(12));
         assert!(run["threads"].as_integer().is_some_and(|n| n > 0) && run.contains_key("processor"), "{run:?}");

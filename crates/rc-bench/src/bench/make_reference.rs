@@ -9,6 +9,7 @@ use rc_solver::{Method, Tolerance};
 
 use super::extrapolation::{Counted, Limit, area_limit, richardson};
 use super::measure::{Solved, solve};
+use super::readings::CALIBRATED;
 use super::record::{from_csv, rounded, to_csv, write};
 use super::reference::{Quantity, REFERENCE, ReferenceRow};
 use super::scenes::{SCENES, Scene};
@@ -44,10 +45,8 @@ pub fn run(scenes: &[Scene]) -> Result<()> {
     Ok(())
 }
 
-/// What a count is above the area, over edges times element area: calibrated on Hertz contacts of 51 elements per radius at random
-/// offsets, to 0.003.
+/// As [`CALIBRATED`], for `love`.
 const LOVE_PERIMETER: f64 = 0.0872;
-const SPECTRAL_PERIMETER: f64 = 0.1013;
 
 fn rows(scene: &Scene) -> Result<Vec<ReferenceRow>> {
     let uniform = |kernel| {
@@ -62,7 +61,7 @@ fn rows(scene: &Scene) -> Result<Vec<ReferenceRow>> {
     let h_max = deep.last().context("a border level")?.h_max;
     let deep: Vec<Counted> = deep.iter().zip(levels).map(|(solved, level)| counted(solved, side << level)).collect();
     let counts: Vec<Counted> = spectral.iter().zip(SIDES).map(|(solved, side)| counted(solved, side)).collect();
-    let area = (area_limit(&deep, LOVE_PERIMETER), area_limit(&counts, SPECTRAL_PERIMETER));
+    let area = (area_limit(&deep, LOVE_PERIMETER), area_limit(&counts, CALIBRATED));
     let both = |of: fn(&Solved) -> f64| -> Result<(Limit, Limit)> { Ok((limit(&spectral, of)?, limit(&love, of)?)) };
     let rms_pressure = both(|solved| solved.observables.rms_pressure)?;
     let mean_gap = both(|solved| solved.observables.mean_gap)?;

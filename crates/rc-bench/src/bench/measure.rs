@@ -17,6 +17,8 @@ pub(super) struct Solved {
     pub(super) observables: Observables,
     /// Elements in contact.
     pub(super) n_in_contact: usize,
+    /// Part of the cells whose gap was computed.
+    cells_evaluated: f64,
     /// Maximum height on the smallest elements.
     pub(super) h_max: f64,
     /// Of the solve alone; the adaptive method's heights are part of it, a uniform grid's are given.
@@ -45,12 +47,16 @@ pub(super) struct Outcome {
     pub(super) area_counted: f64,
     /// Best estimate; a peer has none.
     pub(super) area: Option<f64>,
-    /// Its error as stated by the program.
+    /// Its error as stated by the program, and so below.
     pub(super) area_bar: Option<f64>,
     /// Edges between elements in and out of contact.
     pub(super) edges: u64,
     pub(super) rms_pressure: f64,
+    pub(super) rms_pressure_bar: Option<f64>,
     pub(super) mean_gap: f64,
+    pub(super) mean_gap_bar: Option<f64>,
+    /// Part of the cells of the finest grid whose gap was computed; the others are proven to be free.
+    pub(super) cells_evaluated: Option<f64>,
 }
 
 /// Solves `scene` once.
@@ -80,6 +86,7 @@ fn try_solve(scene: &Scene, setting: &Setting) -> Result<Solved> {
     Ok(Solved {
         observables,
         n_in_contact: solution.n_in_contact(),
+        cells_evaluated: solution.n_evaluated() as f64 / (solution.n_evaluated() + solution.n_proven()) as f64,
         info: solution.info().clone(),
         h_max: solution.h_max(),
         seconds,
@@ -95,7 +102,7 @@ pub(super) fn measure(scene: &Scene, setting: &Setting) -> Result<Outcome> {
     let before = memory::peak();
     let solved = solve(scene, setting)?;
     let memory = memory::peak().zip(before).map(|(after, before)| 1e-6 * after.saturating_sub(before) as f64);
-    let Solved { info, observables, n_in_contact, seconds, observables_seconds, .. } = solved;
+    let Solved { info, observables, n_in_contact, cells_evaluated, seconds, observables_seconds, .. } = solved;
     Ok(Outcome {
         status: "converged".to_owned(),
         iterations: Some(info.fine_iterations() as u64),
@@ -109,6 +116,9 @@ pub(super) fn measure(scene: &Scene, setting: &Setting) -> Result<Outcome> {
         area_bar: Some(observables.area.error),
         edges: observables.area.perimeter_edges as u64,
         rms_pressure: observables.rms_pressure_corrected,
+        rms_pressure_bar: observables.rms_pressure_error,
         mean_gap: observables.mean_gap,
+        mean_gap_bar: observables.mean_gap_error,
+        cells_evaluated: Some(cells_evaluated),
     })
 }

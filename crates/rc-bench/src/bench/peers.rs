@@ -17,15 +17,21 @@ use super::setting::CERTIFIED;
 pub(super) struct PeerKind {
     pub(super) name: &'static str,
     pub(super) tolerances: &'static [Option<Tolerance>],
+    /// Whether its packages on PyPI use one thread.
+    pub(super) is_serial: bool,
 }
 
 /// ASPHER's tolerance means what ours does, so it also gets `auto`; that of Tamaas is relative as well; ContactMechanics
 /// derives one from the heights.
 pub(super) const PEERS: [PeerKind; 3] = [
-    PeerKind { name: "aspher", tolerances: &[Some(CERTIFIED), Some(Tolerance::Auto)] },
-    PeerKind { name: "tamaas", tolerances: &[Some(CERTIFIED)] },
-    PeerKind { name: "contactmechanics", tolerances: &[None] },
+    ASPHER,
+    PeerKind { name: "tamaas", tolerances: &[Some(CERTIFIED)], is_serial: true },
+    PeerKind { name: "contactmechanics", tolerances: &[None], is_serial: true },
 ];
+
+/// The fastest of them.
+pub(super) const ASPHER: PeerKind =
+    PeerKind { name: "aspher", tolerances: &[Some(CERTIFIED), Some(Tolerance::Auto)], is_serial: false };
 
 /// A running peer.
 pub(super) struct Peer {
@@ -45,10 +51,12 @@ struct Greeting {
 
 /// One problem.
 #[derive(Serialize)]
-struct Question<'a> {
-    heights: &'a Path,
-    load: f64,
-    tolerance: Option<f64>,
+pub(super) struct Question<'a> {
+    pub(super) heights: &'a Path,
+    /// One of so many points along either side is taken.
+    pub(super) stride: usize,
+    pub(super) load: f64,
+    pub(super) tolerance: Option<f64>,
 }
 
 impl Peer {
@@ -77,12 +85,12 @@ impl Peer {
         Ok(peer)
     }
 
-    /// Solves for the heights in a file.
+    /// Solves one problem.
     ///
     /// # Errors
     /// When the peer fails.
-    pub(super) fn solve(&mut self, heights: &Path, load: f64, tolerance: Option<f64>) -> Result<Outcome> {
-        let question = serde_json::to_string(&Question { heights, load, tolerance })?;
+    pub(super) fn solve(&mut self, question: &Question<'_>) -> Result<Outcome> {
+        let question = serde_json::to_string(question)?;
         writeln!(self.questions, "{question}").context("the peer is gone")?;
         self.answer()
     }

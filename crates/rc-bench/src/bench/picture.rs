@@ -5,8 +5,9 @@ use plotters::style::RGBColor;
 use rc_plot::{Area, LinePlot, LineStyle, Picture, PictureError, Series, draw_lines};
 
 use super::levels::{Results, families};
-use super::record::{Family, OURS, Row};
-use super::reference::{Quantity, Reading};
+use super::readings::{Reading, answers};
+use super::record::{Family, OURS};
+use super::reference::Quantity;
 
 const TEXT: f64 = 24.0;
 
@@ -17,7 +18,7 @@ pub(super) struct ErrorAgainstTime<'a> {
 }
 
 /// What is drawn of a program: the family, its colour (after Okabe and Ito, apart for colour-blind readers), and how the
-/// area is read. Solid lines are best estimates or corrected areas, dashed ones counted areas.
+/// quantities are read. Solid lines are best estimates, or what users make of a peer's results; dashed ones counted areas.
 struct DrawnFamily {
     name: &'static str,
     of: fn(&Family) -> bool,
@@ -25,54 +26,60 @@ struct DrawnFamily {
     reading: Reading,
 }
 
-const DRAWN: [DrawnFamily; 8] = [
+const DRAWN: [DrawnFamily; 9] = [
     DrawnFamily {
         name: "rc, adaptive",
         of: |f| f.program == OURS && f.method == "adaptive" && f.border_level == 0 && f.tolerance == "auto",
         colour: RGBColor(0, 114, 178),
-        reading: Reading::Best,
+        reading: Reading::Reported,
     },
     DrawnFamily {
         name: "rc, border level 2",
         of: |f| f.program == OURS && f.border_level == 2,
         colour: RGBColor(0, 0, 0),
-        reading: Reading::Best,
+        reading: Reading::Reported,
     },
     DrawnFamily {
         name: "rc, uniform, spectral",
         of: |f| f.program == OURS && f.kernel == "spectral" && f.tolerance == "auto",
         colour: RGBColor(86, 180, 233),
-        reading: Reading::Best,
-    },
-    DrawnFamily {
-        name: "ASPHER, corrected",
-        of: |f| f.program == "aspher" && f.tolerance == "auto",
-        colour: RGBColor(213, 94, 0),
-        reading: Reading::Best,
+        reading: Reading::Reported,
     },
     DrawnFamily {
         name: "ASPHER, counted",
         of: |f| f.program == "aspher" && f.tolerance == "auto",
         colour: RGBColor(213, 94, 0),
-        reading: Reading::Counted,
+        reading: Reading::Reported,
     },
     DrawnFamily {
-        name: "Tamaas, corrected",
-        of: |f| f.program == "tamaas",
-        colour: RGBColor(0, 158, 115),
-        reading: Reading::Best,
+        name: "ASPHER, corrected, 0.1013",
+        of: |f| f.program == "aspher" && f.tolerance == "auto",
+        colour: RGBColor(213, 94, 0),
+        reading: Reading::Calibrated,
+    },
+    DrawnFamily {
+        name: "ASPHER, extrapolated",
+        of: |f| f.program == "aspher" && f.tolerance == "auto",
+        colour: RGBColor(230, 159, 0),
+        reading: Reading::Extrapolated,
     },
     DrawnFamily {
         name: "Tamaas, counted",
         of: |f| f.program == "tamaas",
         colour: RGBColor(0, 158, 115),
-        reading: Reading::Counted,
+        reading: Reading::Reported,
+    },
+    DrawnFamily {
+        name: "Tamaas, corrected, 0.1013",
+        of: |f| f.program == "tamaas",
+        colour: RGBColor(0, 158, 115),
+        reading: Reading::Calibrated,
     },
     DrawnFamily {
         name: "ContactMechanics, counted",
         of: |f| f.program == "contactmechanics",
         colour: RGBColor(204, 121, 167),
-        reading: Reading::Counted,
+        reading: Reading::Reported,
     },
 ];
 
@@ -80,30 +87,27 @@ impl ErrorAgainstTime<'_> {
     /// Times and absolute relative errors, as decades.
     fn points(&self, family: &DrawnFamily, quantity: Quantity) -> Vec<(f64, f64)> {
         let rows = self.results.of(self.scene, true).chain(self.results.of(self.scene, false));
-        let rows = families(rows).into_iter().filter(|(other, _)| (family.of)(other)).flat_map(|(_, rows)| rows);
-        let point = |row: &Row| {
-            let error = self.results.error(row, quantity, family.reading)?.abs();
+        let of_family = families(rows).into_iter().filter(|(other, _)| (family.of)(other));
+        let point = |seconds: f64, value: f64| {
+            let error = self.results.references.error(self.scene, quantity, value)?.abs();
             // An error of zero, where the last digits agree, has no logarithm.
-            Some((row.total_seconds().log10(), error.max(1e-9).log10()))
+            Some((seconds.log10(), error.max(1e-9).log10()))
         };
-        rows.filter_map(point).collect()
+        let answers = of_family.flat_map(|(_, rows)| answers(&rows, quantity, family.reading));
+        answers.filter_map(|answer| point(answer.seconds, answer.value)).collect()
     }
 
     fn panel(&self, quantity: Quantity, title: &'static str) -> LinePlot<'static> {
         let mut series = Vec::new();
         for family in &DRAWN {
-            // Counted areas alone differ from other readings.
-            if quantity != Quantity::Area
-                && family.reading == Reading::Counted
-                && family.name != "ContactMechanics, counted"
-            {
+            if !family.reading.applies_to(quantity) {
                 continue;
             }
             let points = self.points(family, quantity);
             if points.is_empty() {
                 continue;
             }
-            let counted = family.reading == Reading::Counted && quantity == Quantity::Area;
+            let counted = family.name.ends_with("counted") && quantity == Quantity::Area;
             let style = if counted { LineStyle::Dashed } else { LineStyle::Solid };
             // The area's panel has the legend; all use the same colours.
             let name = if quantity == Quantity::Area { family.name } else { "" };
@@ -152,7 +156,7 @@ mod tests {
         let (rows, references) = (rows(), references("paper", [0.07, 4e-3, 1.0]));
         let picture = ErrorAgainstTime { results: Results { rows: &rows, references: &references }, scene: "paper" };
         let names: Vec<&str> = picture.panel(Quantity::Area, "area").series.iter().map(|series| series.name).collect();
-        assert_eq!(names, ["", "rc, adaptive", "", "Tamaas, corrected", "", "Tamaas, counted"]);
+        assert_eq!(names, ["", "rc, adaptive", "", "Tamaas, counted", "", "Tamaas, corrected, 0.1013"]);
         let folder = tempfile::tempdir().expect("a temporary folder");
         for name in ["bench.png", "bench.svg"] {
             let path = folder.path().join(name);

@@ -10,10 +10,6 @@ use super::measure::Outcome;
 use super::scenes::Scene;
 use super::setting::{KernelName, Setting, typed};
 
-/// Correction of a counted area by its edges, in elements an edge: (π - 1 + ln 2)/24 (Yastrebov, Anciaux, Molinari, *Tribol.
-/// Int.* 114 (2017) 161). Peers leave it to their users.
-pub(super) const PUBLISHED_CORRECTION: f64 = 0.1181141597562;
-
 /// One line; columns that a program has nothing for are empty.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Row {
@@ -30,19 +26,25 @@ pub(super) struct Row {
     pub(super) applications: Option<u64>,
     pub(super) elements: Option<u64>,
     pub(super) repeats: usize,
-    /// Median, of the solve alone.
+    /// Of the solve alone: median, fastest, slowest.
     pub(super) seconds: f64,
+    pub(super) seconds_min: f64,
+    pub(super) seconds_max: f64,
     /// Median, of the evaluation of the observables.
     pub(super) observables_seconds: f64,
     /// Peak memory beyond that of the program without a problem.
     pub(super) memory_mb: Option<f64>,
     pub(super) area_counted: f64,
-    /// Best estimate; for peers the counted area with the published correction.
-    pub(super) area: f64,
-    /// Error of `area` as stated by the program.
+    /// Edges between elements in and out of contact, times the area of the smallest element.
+    pub(super) perimeter: f64,
+    /// Best estimate; a peer has only its count.
+    pub(super) area: Option<f64>,
+    /// Error of `area` as stated by the program, and so below.
     pub(super) area_bar: Option<f64>,
     pub(super) rms_pressure: f64,
+    pub(super) rms_pressure_bar: Option<f64>,
     pub(super) mean_gap: f64,
+    pub(super) mean_gap_bar: Option<f64>,
 }
 
 /// What tells the lines of one program apart, other than scene and mesh.
@@ -86,8 +88,10 @@ impl Row {
     /// The line of repeated solves; the results are those of the first, since they are all the same. `None` without any.
     pub(super) fn of(scene: &Scene, family: &Family, elements_per_wave: usize, repeats: &[Outcome]) -> Option<Self> {
         let first = repeats.first()?;
-        let n_cells = (scene.side(elements_per_wave) as f64).powi(2);
         let Family { program, method, kernel, border_level, tolerance } = family.clone();
+        let n_smallest = (scene.side(elements_per_wave << border_level) as f64).powi(2);
+        let Spread { median: seconds, min, max } = Spread::of(repeats.iter().map(|one| one.seconds));
+        let bar = |bar: Option<f64>| bar.map(|bar| rounded(bar, 3));
         Some(Self {
             scene: scene.name.to_owned(),
             program,
@@ -101,17 +105,19 @@ impl Row {
             applications: first.applications,
             elements: first.elements,
             repeats: repeats.len(),
-            seconds: rounded(median(repeats.iter().map(|one| one.seconds).collect()), 4),
+            seconds: rounded(seconds, 4),
+            seconds_min: rounded(min, 4),
+            seconds_max: rounded(max, 4),
             observables_seconds: rounded(median(repeats.iter().map(|one| one.observables_seconds).collect()), 4),
             memory_mb: first.memory_mb.map(|memory| rounded(memory, 3)),
             area_counted: rounded(first.area_counted, 9),
-            area: rounded(
-                first.area.unwrap_or(first.area_counted - PUBLISHED_CORRECTION * first.edges as f64 / n_cells),
-                9,
-            ),
-            area_bar: first.area_bar.map(|bar| rounded(bar, 3)),
+            perimeter: rounded(first.edges as f64 / n_smallest, 9),
+            area: first.area.map(|area| rounded(area, 9)),
+            area_bar: bar(first.area_bar),
             rms_pressure: rounded(first.rms_pressure, 9),
+            rms_pressure_bar: bar(first.rms_pressure_bar),
             mean_gap: rounded(first.mean_gap, 9),
+            mean_gap_bar: bar(first.mean_gap_bar),
         })
     }
 
@@ -128,6 +134,23 @@ impl Row {
     /// What an answer takes: the solve, and what has to be computed from the pressure.
     pub(super) fn total_seconds(&self) -> f64 {
         self.seconds + self.observables_seconds
+    }
+}
+
+/// Times of repeated solves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spread {
+    pub(super) median: f64,
+    pub(super) min: f64,
+    pub(super) max: f64,
+}
+
+impl Spread {
+    /// NaN and an empty range without any.
+    pub(super) fn of(seconds: impl Iterator<Item = f64>) -> Self {
+        let all: Vec<f64> = seconds.collect();
+        let (min, max) = all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &s| (l.min(s), h.max(s)));
+        Self { median: median(all), min, max }
     }
 }
 
@@ -185,10 +208,13 @@ pub(super) mod tests {
             memory_mb: Some(12.3456),
             area_counted: 0.07,
             area,
-            area_bar: None,
+            area_bar: area.map(|area| 0.01 * area),
             edges: 1000,
             rms_pressure: 4e-3,
+            rms_pressure_bar: area.map(|_| 4e-6),
             mean_gap: 2.5,
+            mean_gap_bar: None,
+            cells_evaluated: None,
         }
     }
 
@@ -197,7 +223,9 @@ pub(super) mod tests {
         let family = Family::ours(&Setting::adaptive(2, 8, Tolerance::Auto));
         let repeats = [3.0, 1.0, 2.0].map(|seconds| outcome(seconds, Some(0.068)));
         let row = Row::of(&SCENES[0], &family, 8, &repeats).expect("three repeats");
-        assert_eq!((row.seconds, row.total_seconds(), row.area, row.memory_mb), (2.0, 2.25, 0.068, Some(12.3)));
+        assert_eq!((row.seconds, row.total_seconds(), row.area, row.memory_mb), (2.0, 2.25, Some(0.068), Some(12.3)));
+        assert_eq!((row.seconds_min, row.seconds_max, row.repeats), (1.0, 3.0, 3));
+        assert_eq!((row.area_bar, row.rms_pressure_bar, row.mean_gap_bar), (Some(6.8e-4), Some(4e-6), None));
         assert_eq!(row.family(), family);
         let text = to_csv(std::slice::from_ref(&row)).expect("plain values");
         assert_eq!(from_csv::<Row>(&text, "bench.csv").expect("its own output"), [row]);
@@ -206,9 +234,17 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_peers_area_is_corrected_as_published() {
-        let row = Row::of(&SCENES[0], &Family::peer("tamaas", "1e-6"), 4, &[outcome(1.0, None)]).expect("one repeat");
-        let expected = 0.07 - PUBLISHED_CORRECTION * 1000.0 / 65536.0;
-        assert!((row.area - expected).abs() < 1e-10, "{} against {expected}", row.area);
+    fn the_perimeter_is_that_of_the_smallest_elements() {
+        let perimeter =
+            |family: &Family| Row::of(&SCENES[0], family, 4, &[outcome(1.0, None)]).map(|row| row.perimeter);
+        assert_eq!(perimeter(&Family::peer("tamaas", "1e-6")), Some(rounded(1000.0 / 65536.0, 9)));
+        let halved = Family::ours(&Setting::adaptive(1, 4, Tolerance::Auto));
+        assert_eq!(perimeter(&halved), Some(rounded(1000.0 / 4.0 / 65536.0, 9)));
+    }
+
+    #[test]
+    fn a_spread_is_median_fastest_and_slowest() {
+        assert_eq!(Spread::of([3.0, 1.0, 2.0, 9.0].into_iter()), Spread { median: 2.5, min: 1.0, max: 9.0 });
+        assert!(Spread::of(std::iter::empty()).median.is_nan());
     }
 }

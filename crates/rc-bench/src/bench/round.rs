@@ -1,31 +1,35 @@
 //! A run of the benchmark: scene by scene, repeat by repeat, mesh by mesh, ours and the peers in turns.
 
 use anyhow::{Context, Result};
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use rc_figures::repository;
 
 use super::child;
 use super::measure::Outcome;
-use super::peers::{PEERS, Peer};
+use super::peers::{PEERS, Peer, Question};
 use super::record::{Family, Row};
 use super::scenes::Scene;
 use super::setting::{LARGEST_UNIFORM, MESHES, Setting, of_peer, typed};
 
 /// Seconds after which a case is not repeated again.
-const ENOUGH: f64 = 10.0;
+const ENOUGH: f64 = 40.0;
+
+/// The coarsest mesh of the peers, from which their users state the errors of the next: every second point of that one.
+const COARSEST_OF_PEERS: usize = MESHES[0] / 2;
 
 /// How much longer the next mesh takes, at least.
 const GROWTH: f64 = 5.0;
 
 /// How much is run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
-    pub(super) scenes: Vec<Scene>,
     /// Most repeats of a case; those above [`ENOUGH`] seconds have fewer.
     pub(super) repeats: usize,
-    /// Longest solve of a peer that is expected to be worth its time.
+    /// Longest solve of a peer that is expected to be worth its time; half of it where a peer uses one thread.
     pub(super) peer_seconds: f64,
 }
 
@@ -34,7 +38,9 @@ pub(super) struct Plan {
 pub(super) struct Measurements {
     pub(super) rows: Vec<Row>,
     /// Name and version of each peer that ran.
-    pub(super) peers: Vec<(String, String)>,
+    pub(super) peers: BTreeMap<String, String>,
+    /// Of the whole run.
+    pub(super) seconds: f64,
 }
 
 /// Who solves a case.
@@ -65,46 +71,46 @@ impl Case {
     }
 }
 
-/// Runs the plan; peers only with an interpreter that has them.
+/// Measures one scene; peers only with an interpreter that has them.
 ///
 /// # Errors
 /// When a solve of ours fails; a peer that fails is reported and left out.
-pub(super) fn run(plan: &Plan, python: Option<&Path>) -> Result<Measurements> {
-    let mut found = Measurements::default();
-    for scene in &plan.scenes {
-        let mut peers: Vec<Option<Peer>> = Vec::new();
-        if let Some(python) = python {
-            peers.extend(PEERS.iter().map(|kind| tell(Peer::start(python, kind))));
-        }
-        for (kind, peer) in PEERS.iter().zip(&peers) {
-            let known = found.peers.iter().any(|(name, _)| name == kind.name);
-            found.peers.extend(peer.iter().filter(|_| !known).map(|peer| (kind.name.to_owned(), peer.version.clone())));
-        }
-        let heights = Heights::of(scene)?;
-        let mut cases = cases(scene, !peers.is_empty());
-        for _ in 0..plan.repeats {
-            for i in 0..cases.len() {
-                if let Solver::Peer(..) = cases[i].solver
-                    && cases[i].outcomes.is_empty()
-                    && expected(&cases, i) > plan.peer_seconds
-                {
-                    cases[i].dropped = true;
-                }
-                if !cases[i].is_done() {
-                    solve(scene, &mut cases[i], &mut peers, &heights)?;
-                }
+pub(super) fn run(plan: Plan, scene: &Scene, python: Option<&Path>, found: &mut Measurements) -> Result<()> {
+    let start = Instant::now();
+    let mut peers: Vec<Option<Peer>> = Vec::new();
+    if let Some(python) = python {
+        peers.extend(PEERS.iter().map(|kind| tell(Peer::start(python, kind))));
+    }
+    for (kind, peer) in PEERS.iter().zip(&peers) {
+        found.peers.extend(peer.iter().map(|peer| (kind.name.to_owned(), peer.version.clone())));
+    }
+    let heights = Heights::of(scene)?;
+    let mut cases = cases(scene, !peers.is_empty());
+    for _ in 0..plan.repeats {
+        for i in 0..cases.len() {
+            cases[i].dropped |= is_too_long(&cases, i, plan.peer_seconds);
+            if !cases[i].is_done() {
+                solve(scene, &mut cases[i], &mut peers, &heights)?;
             }
         }
-        let rows = cases.iter().filter_map(|case| Row::of(scene, &case.family, case.elements_per_wave, &case.outcomes));
-        found.rows.extend(rows);
     }
-    Ok(found)
+    let rows = cases.iter().filter_map(|case| Row::of(scene, &case.family, case.elements_per_wave, &case.outcomes));
+    found.rows.extend(rows);
+    found.seconds += start.elapsed().as_secs_f64();
+    Ok(())
+}
+
+/// Whether a peer's case that has not begun is expected to take longer than is worth it.
+fn is_too_long(cases: &[Case], i: usize, peer_seconds: f64) -> bool {
+    let Solver::Peer(peer, _) = cases[i].solver else { return false };
+    let patience = if PEERS[peer].is_serial { 0.5 * peer_seconds } else { peer_seconds };
+    cases[i].outcomes.is_empty() && expected(cases, i) > patience
 }
 
 /// The cases of a scene by mesh, so that what is compared runs at about the same time.
 fn cases(scene: &Scene, with_peers: bool) -> Vec<Case> {
     let mut cases = Vec::new();
-    let mut mesh = MESHES[0];
+    let mut mesh = if with_peers { COARSEST_OF_PEERS } else { MESHES[0] };
     while MESHES.contains(&mesh) || (with_peers && scene.side(mesh) <= LARGEST_UNIFORM) {
         if MESHES.contains(&mesh) {
             let settings = Setting::of_mesh(scene, mesh).into_iter();
@@ -124,23 +130,27 @@ fn cases(scene: &Scene, with_peers: bool) -> Vec<Case> {
     cases
 }
 
-/// Seconds that a case will take, from the next coarser mesh of its family: 0 on the coarsest, infinite where that was
-/// left out.
+/// Seconds that a case will take, from the next coarser mesh of its family: 0 on the two coarsest, since the very first solve of a
+/// process takes longer than others; infinite where that was left out.
 fn expected(cases: &[Case], i: usize) -> f64 {
-    let coarser = cases[..i].iter().rfind(|case| case.family == cases[i].family);
+    let is_coarser = |case: &&Case| case.family == cases[i].family && case.elements_per_wave > COARSEST_OF_PEERS;
+    let coarser = cases[..i].iter().rfind(is_coarser);
     coarser.map_or(0.0, |case| case.outcomes.first().map_or(f64::INFINITY, |first| GROWTH * first.seconds))
 }
 
 fn solve(scene: &Scene, case: &mut Case, peers: &mut [Option<Peer>], heights: &Heights) -> Result<()> {
     match case.solver {
-        Solver::Ours(setting) => case.outcomes.push(child::solve(scene, &setting)?),
+        Solver::Ours(setting) => case.outcomes.push(child::solve(scene, &setting, None)?),
         Solver::Peer(i, tolerance) => {
             let Some(peer) = &mut peers[i] else {
                 case.dropped = true;
                 return Ok(());
             };
-            let path = heights.on(scene, case.elements_per_wave)?;
-            match tell(peer.solve(&path, scene.load, tolerance).context(PEERS[i].name)) {
+            // A surface is not sampled where its shortest waves would be lost.
+            let stride = MESHES[0].div_ceil(case.elements_per_wave);
+            let path = heights.on(scene, stride * case.elements_per_wave)?;
+            let question = Question { heights: &path, stride, load: scene.load, tolerance };
+            match tell(peer.solve(&question).context(PEERS[i].name)) {
                 Some(outcome) => case.outcomes.push(outcome),
                 // What it was doing is unknown, so it is not asked again.
                 None => peers[i] = None,
@@ -152,21 +162,27 @@ fn solve(scene: &Scene, case: &mut Case, peers: &mut [Option<Peer>], heights: &H
 
 /// Says what went wrong with a peer; the run goes on without it.
 #[expect(clippy::print_stderr, reason = "a peer is left out")]
-fn tell<T>(result: Result<T>) -> Option<T> {
+pub(super) fn tell<T>(result: Result<T>) -> Option<T> {
     result.inspect_err(|error| eprintln!("left out: {error:#}")).ok()
 }
 
 /// Files of heights for the peers, as long as this lives.
-struct Heights(PathBuf);
+pub(super) struct Heights(PathBuf);
 
 impl Heights {
-    fn of(scene: &Scene) -> Result<Self> {
+    /// # Errors
+    /// When the folder cannot be made.
+    pub(super) fn of(scene: &Scene) -> Result<Self> {
         let folder = repository::root().join("target/bench-heights").join(scene.name);
         fs::create_dir_all(&folder).with_context(|| format!("could not make {}", folder.display()))?;
         Ok(Self(folder))
     }
 
-    fn on(&self, scene: &Scene, elements_per_wave: usize) -> Result<PathBuf> {
+    /// The file of one mesh, which is made when needed.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub(super) fn on(&self, scene: &Scene, elements_per_wave: usize) -> Result<PathBuf> {
         let path = self.0.join(format!("{elements_per_wave}.npy"));
         if !path.exists() {
             child::save_heights(scene, scene.side(elements_per_wave), &path)?;
@@ -195,6 +211,8 @@ mod tests {
         assert!(without.iter().all(|case| matches!(case.solver, Solver::Ours(_))));
         let finest = with.iter().map(|case| case.elements_per_wave).max();
         assert_eq!(finest, Some(LARGEST_UNIFORM / small.waves));
+        assert_eq!(with.iter().map(|case| case.elements_per_wave).min(), Some(COARSEST_OF_PEERS));
+        assert_eq!(without.iter().map(|case| case.elements_per_wave).min(), Some(MESHES[0]));
         assert_eq!(cases(&SCENES[3], true).iter().map(|case| case.elements_per_wave).max(), Some(32));
     }
 
@@ -203,11 +221,13 @@ mod tests {
         let mut cases = cases(&SCENES[0], true);
         let family = Family::peer("tamaas", "1e-6");
         let at: Vec<usize> = (0..cases.len()).filter(|&i| cases[i].family == family).collect();
-        assert!(expected(&cases, at[0]).abs() < 1e-15);
-        cases[at[0]].outcomes.push(outcome(2.0, None));
-        assert!((expected(&cases, at[1]) - 2.0 * GROWTH).abs() < 1e-12);
-        assert!(expected(&cases, at[2]).is_infinite());
-        cases[at[0]].outcomes.push(outcome(9.0, None));
-        assert!(cases[at[0]].is_done() && !cases[at[1]].is_done());
+        assert!(expected(&cases, at[0]).abs() < 1e-15 && expected(&cases, at[1]).abs() < 1e-15);
+        cases[at[1]].outcomes.push(outcome(2.0, None));
+        assert!((expected(&cases, at[2]) - 2.0 * GROWTH).abs() < 1e-12);
+        assert!(expected(&cases, at[3]).is_infinite());
+        // Tamaas uses one thread, so its 10 s are worth as much as 20 s of others.
+        assert!(is_too_long(&cases, at[2], 4.0 * GROWTH - 0.1) && !is_too_long(&cases, at[2], 4.0 * GROWTH + 0.1));
+        cases[at[1]].outcomes.push(outcome(ENOUGH, None));
+        assert!(cases[at[1]].is_done() && !cases[at[2]].is_done());
     }
 }

@@ -35,6 +35,18 @@ pub(super) const SCENES: [Scene; 10] = [
     scene("hurst-0.3-light", 16, 0.3, 9, 3.4e-4),
 ];
 
+/// Scenes of large grids, and of loads from a thousandth in contact to nearly all, all of the paper's spectrum.
+pub(super) const SCALE_SCENES: [Scene; 8] = [
+    scene("waves-512", 512, 0.8, 1, 8.9e-4),
+    scene("waves-1024", 1024, 0.8, 1, 8.9e-4),
+    scene("load-1.25e-5", 64, 0.8, 1, 1.25e-5),
+    scene("load-1.25e-4", 64, 0.8, 1, 1.25e-4),
+    scene("load-4e-3", 64, 0.8, 1, 4e-3),
+    scene("load-1e-2", 64, 0.8, 1, 1e-2),
+    scene("load-2e-2", 64, 0.8, 1, 2e-2),
+    scene("load-3.5e-2", 64, 0.8, 1, 3.5e-2),
+];
+
 impl Scene {
     /// The scene of a name.
     ///
@@ -42,7 +54,7 @@ impl Scene {
     /// When there is none, with those that there are.
     pub(super) fn named(name: &str) -> Result<Self> {
         let names = || SCENES.map(|scene| scene.name).join(", ");
-        let found = SCENES.into_iter().find(|scene| scene.name == name);
+        let found = SCENES.into_iter().chain(SCALE_SCENES).find(|scene| scene.name == name);
         found.with_context(|| format!("no scene is called '{name}'; there are {}", names()))
     }
 
@@ -67,9 +79,10 @@ mod tests {
 
     #[test]
     fn scenes_are_found_by_name_and_names_are_not_used_twice() {
-        for scene in SCENES {
+        for scene in SCENES.into_iter().chain(SCALE_SCENES) {
             let found = Scene::named(scene.name).expect("a scene of the table");
-            assert_eq!((found.waves, found.seed), (scene.waves, scene.seed), "{}", scene.name);
+            let load = |scene: Scene| (scene.waves, scene.seed, scene.load.to_bits());
+            assert_eq!(load(found), load(scene), "{}", scene.name);
         }
         let error = Scene::named("papers").err().map(|error| error.to_string()).unwrap_or_default();
         assert!(error.contains("'papers'") && error.contains("paper, seed-2"), "{error}");
