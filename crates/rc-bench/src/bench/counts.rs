@@ -9,7 +9,7 @@ use rc_solver::Tolerance;
 use super::measure::solve;
 use super::record::{from_csv, to_csv, write};
 use super::scenes::Scene;
-use super::setting::{CERTIFIED, KernelName, Setting};
+use super::setting::{KernelName, Setting};
 
 /// Where the counts are.
 const COUNTS: &str = "data/bench/counts.csv";
@@ -37,22 +37,22 @@ struct CountRow {
 
 /// What is counted: small scenes, each method and kernel, border levels, both kinds of tolerance.
 fn cases() -> Vec<(&'static str, Setting)> {
-    let auto = Tolerance::Auto;
+    let (auto, default) = (Tolerance::Auto, Tolerance::DEFAULT);
     vec![
         ("waves-16", Setting::uniform(KernelName::Spectral, 16, auto)),
-        ("waves-16", Setting::uniform(KernelName::Love, 16, CERTIFIED)),
-        ("waves-16", Setting::adaptive(0, 32, CERTIFIED)),
+        ("waves-16", Setting::uniform(KernelName::Love, 16, default)),
+        ("waves-16", Setting::adaptive(0, 32, default)),
         ("waves-16", Setting::adaptive(1, 8, Tolerance::Relative(1e-8))),
         ("waves-16", Setting::adaptive(3, 8, auto)),
-        ("hurst-0.3-light", Setting::adaptive(0, 16, CERTIFIED)),
+        ("hurst-0.3-light", Setting::adaptive(0, 16, default)),
         ("hurst-0.3-light", Setting::adaptive(2, 8, auto)),
         ("waves-32", Setting::uniform(KernelName::Spectral, 8, auto)),
         ("waves-32", Setting::adaptive(0, 16, auto)),
         ("hurst-0.5", Setting::adaptive(2, 8, auto)),
-        ("hurst-0.3", Setting::adaptive(0, 16, CERTIFIED)),
-        ("heavy", Setting::uniform(KernelName::Love, 8, CERTIFIED)),
+        ("hurst-0.3", Setting::adaptive(0, 16, default)),
+        ("heavy", Setting::uniform(KernelName::Love, 8, default)),
         ("heavy", Setting::adaptive(1, 8, auto)),
-        ("paper", Setting::adaptive(0, 8, CERTIFIED)),
+        ("paper", Setting::adaptive(0, 8, default)),
         ("paper", Setting::adaptive(1, 8, auto)),
     ]
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use rc_solver::Method;
+use rc_solver::{Method, Tolerance};
 
 use self::row::{Part, ScaleRow};
 use super::child;
@@ -16,7 +16,7 @@ use super::peers::{ASPHER, Peer, Question};
 use super::record::{OURS, Spread, rounded};
 use super::round::{Heights, tell};
 use super::scenes::{SCALE_SCENES, SCENES, Scene};
-use super::setting::{CERTIFIED, KernelName, Setting, typed};
+use super::setting::{CERTIFIED, KernelName, Setting, of_peer, typed};
 
 /// Seconds after which a case is not repeated again.
 const ENOUGH: f64 = 60.0;
@@ -88,8 +88,8 @@ fn cases(quick: bool, with_peer: bool) -> Vec<Case> {
         cases.push(Case { part, scene, setting, threads, by_peer, outcomes: Vec::new() });
     };
     for scene in named(grids) {
-        let setting = Setting::adaptive(0, FINE, CERTIFIED);
         let is_compared = scene.side(FINE) <= LARGEST_COMPARED;
+        let setting = Setting::adaptive(0, FINE, if is_compared { CERTIFIED } else { Tolerance::DEFAULT });
         for threads in thread_counts(all).into_iter().filter(|&threads| is_compared || threads == all) {
             add(Part::Grids, scene, setting, threads, false);
         }
@@ -101,8 +101,8 @@ fn cases(quick: bool, with_peer: bool) -> Vec<Case> {
     let mut loads: Vec<Scene> = if quick { named(&["waves-16"]) } else { pressed.collect() };
     loads.sort_by(|a, b| a.load.total_cmp(&b.load));
     for scene in loads {
-        add(Part::Contact, scene, Setting::adaptive(0, COARSE, CERTIFIED), all, false);
-        add(Part::Contact, scene, Setting::uniform(KernelName::Love, COARSE, CERTIFIED), all, false);
+        add(Part::Contact, scene, Setting::adaptive(0, COARSE, Tolerance::DEFAULT), all, false);
+        add(Part::Contact, scene, Setting::uniform(KernelName::Love, COARSE, Tolerance::DEFAULT), all, false);
     }
     cases
 }
@@ -155,7 +155,7 @@ fn solve(case: &Case, peer: Option<&mut Peer>) -> Result<Outcome> {
     let heights = Heights::of(scene)?;
     let path = heights.on(scene, setting.elements_per_wave)?;
     let peer = peer.context("a case of a peer that did not start")?;
-    let tolerance = Some(setting.relative_tolerance());
+    let tolerance = Some(of_peer(setting.tolerance, setting.elements_per_wave));
     peer.solve(&Question { heights: &path, stride: 1, load: scene.load, tolerance })
 }
 

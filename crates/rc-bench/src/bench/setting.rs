@@ -22,7 +22,7 @@ const SMALLEST_ELEMENTS: (usize, usize) = (64, 4096);
 /// Deepest border level.
 const DEEPEST_BORDER: usize = 3;
 
-/// The tolerance that is certified by default.
+/// The tolerance that other programs certify too.
 pub(super) const CERTIFIED: Tolerance = Tolerance::Relative(1e-6);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

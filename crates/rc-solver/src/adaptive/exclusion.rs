@@ -115,7 +115,7 @@ mod tests {
             (0..CELLS).map(move |cell| error - at(column, cell % TILE) - at(row, cell / TILE))
         };
         let values: Vec<f64> = base.places().iter().flat_map(of_tile).collect();
-        let smooth = SmoothDisplacement { values: &values, unit: 1.0, curvature: TAU * TAU, error };
+        let smooth = SmoothDisplacement { values: &values, curvature: TAU * TAU, error };
         let minimum = -2.0;
         let touched = possible_contact(&smooth, &heights, minimum + 0.01 * sagitta, per_side);
         for place in [[3, 3], [4, 3], [3, 4], [4, 4]] {

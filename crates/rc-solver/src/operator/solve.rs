@@ -10,6 +10,10 @@ use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
 use crate::stiffness::stiffness_of;
 use crate::{Certificate, Control, IterationParams, ProblemError};
 
+/// How far an operator may be from that of a half-space, relative to its displacements, over the overlap that a solve aims at: U/σ0, which
+/// overlaps are measured by, may be a tenth of the displacements.
+const FAULT_PER_AIM: f64 = 0.1;
+
 /// Solves the contact problem on the grid of `heights` (in λ, any mean) with `operator` for v = L p, whatever it is: symmetric,
 /// of zero mean, positive for pressures that are not uniform, and its element i is that of `heights`.
 ///
@@ -38,7 +42,7 @@ pub(crate) fn solve_on_grid(
     {
         return Ok(flat(grid, mean_pressure));
     }
-    check_operator(operator, params.tolerance)?;
+    check_operator(operator, FAULT_PER_AIM * params.bound.aim())?;
     let mut descent = Descent::new(heights.values(), grid, operators_of(operator), &problem, Start::Nothing);
     let goal =
         Goal { tolerance: params.bound.aim(), max_iterations: params.max_iterations, certify: Some(params.bound) };
