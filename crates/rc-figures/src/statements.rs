@@ -17,7 +17,7 @@ mod params;
 use convergence::Mesh;
 use cutoff::Cutoff;
 use heights::{Heights, gaussian};
-pub(crate) use params::Params;
+use params::Params;
 
 /// What was found.
 #[derive(Clone, Debug)]
