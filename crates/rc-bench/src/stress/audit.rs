@@ -83,13 +83,6 @@ impl Audit {
     }
 }
 
-/// The energy error that a certificate claims.
-///
-/// MERGE: `certificate.energy` (or what the field is called) instead of the constant, which no certificate of today states.
-pub(crate) fn claimed_energy(_certificate: Certificate) -> f64 {
-    0.05
-}
-
 /// v - h + max h: a large constant in the heights would drown the displacement.
 pub(crate) fn gaps(heights: &Field, displacement: &[f64]) -> Vec<f64> {
     let top = heights.max();

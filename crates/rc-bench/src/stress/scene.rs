@@ -84,7 +84,7 @@ impl Scene {
         rows.at_most(&self.name, "open contacts by audit", audit.open, OPEN_PER_TOLERANCE * self.tolerance);
         let backed = info.certificate.penetration + self.slack * self.tolerance;
         rows.at_most(&self.name, "audit within the certificate", audit.penetration, backed);
-        let claimed = claimed_energy(info.certificate) + audit.energy_of(self.slack * self.tolerance);
+        let claimed = info.certificate.energy + audit.energy_of(self.slack * self.tolerance);
         rows.at_most(&self.name, "energy error within the certificate", audit.energy, claimed);
         Some(Work::of(info))
     }

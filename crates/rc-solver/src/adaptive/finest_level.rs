@@ -3,13 +3,14 @@
 //! Rounds of two steps. A descent improves the pressure on the elements that press, or nearly do. An evaluation then computes the gap
 //! afresh wherever contact is possible, which gives the certificate, and adds elements until bounds exclude contact everywhere else.
 
+use rayon::prelude::*;
 use rc_core::{Grid, Observer};
 use rc_quadtree::{BLOCK_CELLS, ContactFields, Elements};
 
 use super::element_blocks::blocks_of;
 use super::element_heights::element_heights;
 use super::exclusion::SmoothDisplacement;
-use super::gap_operator::{GapOperator, GapTables};
+use super::gap_operator::{GapOperator, GapTables, PreparedGap};
 use super::level::{SolvedLevel, add_work};
 use super::operator::{Tables, TileCorrections};
 use super::operator_error::{OperatorError, PressureScale};
@@ -41,21 +42,25 @@ const CANDIDATE_MARGIN: f64 = 7e-3;
 /// of displacements ([`OperatorError`]), within which it was measured (test `the_smooth_displacement_is_as_exact_as_the_others`).
 const EXCLUSION_MARGIN: f64 = 2.0;
 
-/// Solves to the tolerance from `start`, whose gap in contact is `contact_gap`, and proves it for the whole cell.
+/// Solves to the tolerance from `start`, whose gap in contact is `contact_gap`, and proves it for the whole cell. Also returns what the error
+/// of an operator depends on.
 pub(super) fn solve_finest_level(
     setup: &Setup<'_>,
     grid: Grid,
     start: MeshStart,
     contact_gap: f64,
     observer: &dyn Observer,
-) -> SolvedLevel {
+) -> (SolvedLevel, PressureScale) {
     let mut level = FinestLevel::new(setup, grid, start, contact_gap);
     let mut evaluation = level.evaluate_candidates();
-    for _ in 0..MAX_ROUNDS {
+    for round in 0..MAX_ROUNDS {
+        let before = level.info.iterations;
         let reached;
-        (level, reached) = level.improve(evaluation, observer);
+        (level, reached) = level.improve(evaluation, round > 0, observer);
         evaluation = level.evaluate_whole_cell();
-        if !reached || setup.params.bound.is_met_by(&evaluation.outcome.certificate) {
+        // Without a step it is the error of the operator that is too large.
+        let is_stuck = !reached || round > 0 && level.info.iterations == before;
+        if is_stuck || setup.params.bound.is_met_by(&evaluation.outcome.certificate) {
             break;
         }
     }
@@ -74,6 +79,7 @@ struct Evaluation {
     gap: Vec<f64>,
     /// Its certificate has the error of the operator that certifies added.
     outcome: Outcome,
+    scale: PressureScale,
     error: OperatorError,
 }
 
@@ -81,9 +87,30 @@ struct Evaluation {
 struct OperatorTables {
     quick: Tables<f32>,
     preconditioner: Tables<f32>,
-    fresh: GapTables,
-    /// Where they are others.
-    certified: Option<GapTables>,
+    gaps: TablesForGaps,
+}
+
+/// Tables of the operators for fresh gaps.
+struct TablesForGaps {
+    descents: GapTables,
+    /// For certificates, where they are others.
+    certificates: Option<GapTables>,
+}
+
+impl TablesForGaps {
+    /// The operator for certificates or, if not `certify`, that for descents.
+    fn choose<'t>(&'t self, setup: &'t Setup<'_>, certify: bool) -> (&'t PreparedGap, &'t GapTables) {
+        match &self.certificates {
+            Some(certified) if certify => (setup.certified(), certified),
+            _ => (&setup.fresh, &self.descents),
+        }
+    }
+}
+
+/// The greatest |v| of elements with these heights and gaps, c in `g = v - h + c` being `offset`.
+fn greatest_displacement(heights: &[f64], gap: &[f64], offset: f64) -> f64 {
+    let pairs = heights.par_iter().zip(gap);
+    pairs.map(|(h, g)| (g + (h - offset)).abs()).reduce(|| 0.0, f64::max)
 }
 
 struct FinestLevel<'s, 'a> {
@@ -102,26 +129,30 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let tables = OperatorTables {
             quick: setup.quick.tables(n_levels),
             preconditioner: setup.preconditioner.tables(n_levels),
-            fresh: setup.fresh.tables(n_levels),
-            certified: setup.better.as_ref().map(|better| better.tables(n_levels)),
+            gaps: TablesForGaps {
+                descents: setup.fresh.tables(n_levels),
+                certificates: setup.better.as_ref().map(|better| better.tables(n_levels)),
+            },
         };
         let candidates = first_candidates(setup, &start, &tables.quick, contact_gap);
         let info = LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 };
         Self { setup, tables, candidates, current: start, info }
     }
 
-    /// Improves the pressure on the elements near contact. Returns whether the tolerance was reached there.
-    fn improve(self, evaluation: Evaluation, observer: &dyn Observer) -> (Self, bool) {
+    /// Improves the pressure on the elements near contact, with fresh gaps of the operator for certificates if `certify`: what that of
+    /// descents could do, one round has done. Returns whether the tolerance was reached there.
+    fn improve(self, evaluation: Evaluation, certify: bool, observer: &dyn Observer) -> (Self, bool) {
         let Self { setup, mut tables, candidates, current, mut info } = self;
         let near = NearContact::choose(&candidates, &current.elements, &evaluation, setup);
         let tolerance = evaluation.error.goal(setup.params.bound, &setup.problem);
         // The descent needs the memory.
         drop(evaluation);
         let hierarchy = setup.hierarchy(&near.elements, setup.quick.reach());
-        let fresh_hierarchy = setup.hierarchy(&near.elements, setup.fresh.reach());
+        let (prepared, fresh) = tables.gaps.choose(setup, certify);
+        let fresh_hierarchy = setup.hierarchy(&near.elements, prepared.reach());
         let operators = LevelOperators {
             corrections: Box::new(TileCorrections::new(hierarchy, &tables.quick, &mut tables.preconditioner)),
-            fresh: setup.operator(fresh_hierarchy, &tables.fresh, &current),
+            fresh: setup.operator(fresh_hierarchy, fresh, &current),
         };
         drop(current);
         let start = Start::Known { pressure: near.pressure, gap: near.gap };
@@ -144,10 +175,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
     /// The gap on all candidates, and the operator that it was computed with: the one for certificates, or that of descents.
     fn evaluate(&self, certify: bool) -> (Evaluation, Box<dyn GapOperator + '_>) {
         let Self { setup, tables, candidates: Candidates { elements, heights }, current, info } = self;
-        let (prepared, tables) = match &tables.certified {
-            Some(certified) if certify => (setup.certified(), certified),
-            _ => (&setup.fresh, &tables.fresh),
-        };
+        let (prepared, tables) = tables.gaps.choose(setup, certify);
         let mut pressure = current.elements.moved(elements, &current.pressure, 0.0);
         let mut gap = vec![0.0; pressure.len()];
         let hierarchy = setup.hierarchy(elements, prepared.reach());
@@ -159,14 +187,14 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
             sums = rescale(scale, &blocks_of(elements), &setup.problem, values);
         }
         let mut outcome = Outcome::new(&setup.problem, &sums, info.grid.len() as f64, true);
-        let size = setup.penetration(outcome.contact_gap).abs();
+        let size = greatest_displacement(heights, &gap, setup.problem.offset());
         let n_levels = setup.n_levels(info.grid);
         let scale = PressureScale::new((elements, &pressure), n_levels, size, outcome.energy_length());
         // Descents leave room for the error of the operator that certifies.
         let error = OperatorError::of(setup.certified().split(), &scale);
         outcome.iteration_error = outcome.certificate.energy;
         outcome.certificate = error.added_to(outcome.certificate, setup.problem.h_range);
-        (Evaluation { pressure, gap, outcome, error }, operator)
+        (Evaluation { pressure, gap, outcome, scale, error }, operator)
     }
 
     /// The gap on all candidates.
@@ -192,7 +220,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
     /// The elements of the candidates, divided where they are too coarse, and tiles of the coarsest level wherever contact is possible.
     fn with_more_candidates(&self, evaluation: &Evaluation, operator: &dyn GapOperator) -> Elements {
         let (setup, elements) = (self.setup, &self.candidates.elements);
-        let Evaluation { pressure, gap, outcome, error } = evaluation;
+        let Evaluation { pressure, gap, outcome, error, .. } = evaluation;
         let smooth = SmoothDisplacement {
             values: &operator.base_displacement(),
             curvature: setup.certified().remainder_curvature() * maximum(pressure),
@@ -206,10 +234,10 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         setup.refined(&fields, false).with(&places)
     }
 
-    fn into_solved(self, evaluation: Evaluation) -> SolvedLevel {
+    fn into_solved(self, evaluation: Evaluation) -> (SolvedLevel, PressureScale) {
         let Self { candidates: Candidates { elements, .. }, info, .. } = self;
-        let Evaluation { pressure, gap, outcome, .. } = evaluation;
-        SolvedLevel { evaluated: elements.n_cells(), elements, pressure, gap, outcome, info }
+        let Evaluation { pressure, gap, outcome, scale, .. } = evaluation;
+        (SolvedLevel { evaluated: elements.n_cells(), elements, pressure, gap, outcome, info }, scale)
     }
 }
 

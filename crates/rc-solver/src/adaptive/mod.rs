@@ -140,8 +140,7 @@ impl<'a> AdaptiveProblem<'a> {
             self.solver(Splits { certified, ..first }).take_over(start, observer)
         };
         let certificate = solved.level.outcome.certificate;
-        let better =
-            self.certifying_split(solved.splits.certified, &solved.scale(self.heights.base().grid(), &self.problem));
+        let better = self.certifying_split(solved.splits.certified, &solved.scale);
         // A pressure may be rougher than its start.
         if better == solved.splits.certified || self.params.solve.bound.is_met_by(&certificate) {
             return solved;

@@ -23,6 +23,8 @@ pub(super) struct NestedSolution {
     /// The whole grid of the smallest elements.
     pub(super) grid: Grid,
     pub(super) level: SolvedLevel,
+    /// What the error of an operator depends on.
+    pub(super) scale: PressureScale,
     /// Coarsest first.
     pub(super) levels: Vec<LevelInfo>,
     /// Values of the last level but one.
@@ -69,9 +71,9 @@ impl<'a> NestedIteration<'a> {
     /// Solves the finest level.
     pub(super) fn finish(&self, start: LevelStart, observer: &dyn Observer) -> NestedSolution {
         let LevelStart { grid, mesh, contact_gap, mut levels, coarser, .. } = start;
-        let level = solve_finest_level(&self.setup, grid, mesh, contact_gap, observer);
+        let (level, scale) = solve_finest_level(&self.setup, grid, mesh, contact_gap, observer);
         levels.push(level.info);
-        NestedSolution { splits: self.splits, grid, level, levels, coarser }
+        NestedSolution { splits: self.splits, grid, level, scale, levels, coarser }
     }
 
     /// Solves the finest level where another operator has prepared it. Where sizes of elements differ they suit the other operator;
@@ -154,16 +156,6 @@ impl<'a> NestedIteration<'a> {
             rms_pressure: solution::rms_pressure(&level.elements, &level.pressure),
             penetration: self.setup.problem.h_max + level.outcome.approach,
         }
-    }
-}
-
-impl NestedSolution {
-    /// What the error of an operator depends on, above the grid `base`.
-    pub(super) fn scale(&self, base: Grid, problem: &Problem) -> PressureScale {
-        let SolvedLevel { elements, pressure, outcome, .. } = &self.level;
-        let n_levels = (self.grid.nx() / base.nx()).ilog2() as usize;
-        let size = (outcome.approach + problem.h_max).abs();
-        PressureScale::new((elements, pressure), n_levels, size, outcome.energy_length())
     }
 }
 

@@ -73,15 +73,20 @@ impl OperatorError {
         (bound.overlap() - error).max(0.0)
     }
 
-    /// What an iteration has to reach for the bound to be met.
+    /// What an iteration has to reach for the bound to be met. Where the error leaves less than that, a better operator will certify.
     pub(super) fn goal(self, bound: ErrorBound, problem: &Problem) -> f64 {
-        self.remaining(bound, problem).min(bound.aim())
+        self.remaining(bound, problem).max(least_remaining(bound)).min(bound.aim())
     }
 
     /// Whether the computed gap has enough of the bound to itself.
     fn is_small(self, bound: ErrorBound, problem: &Problem) -> bool {
-        self.remaining(bound, problem) >= bound.aim().min((1.0 - LARGEST_PART) * bound.overlap())
+        self.remaining(bound, problem) >= least_remaining(bound)
     }
+}
+
+/// What an operator has to leave to the computed gap.
+fn least_remaining(bound: ErrorBound) -> f64 {
+    bound.aim().min((1.0 - LARGEST_PART) * bound.overlap())
 }
 
 /// The fastest split, from `split` on, whose error is a small part of the bound; the most accurate one where no error is.

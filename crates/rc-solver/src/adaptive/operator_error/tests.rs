@@ -149,8 +149,8 @@ impl Scene<'_> {
 }
 
 impl Audited {
-    fn error(&self, base: Grid) -> OperatorError {
-        OperatorError::of(self.solved.splits.certified, &self.solved.scale(base, &self.problem))
+    fn error(&self) -> OperatorError {
+        OperatorError::of(self.solved.splits.certified, &self.solved.scale)
     }
 
     /// The operator that certified, after the pressure was applied to it, and its displacement.
@@ -214,7 +214,7 @@ fn an_audit_by_fourier_transform_finds_no_more_than_is_claimed() {
         assert!(found.penetration <= claimed.penetration, "{name}: {found}, claimed {claimed}");
         assert!(found.energy <= claimed.energy, "{name}: {found}, claimed {claimed}");
         let base = Grid::square(scene.base).expect("a grid");
-        let bound = audited.error(base).displacement;
+        let bound = audited.error().displacement;
         let worst = audited.certified(base, |_, displacement| {
             let exact = places(&audited.solved.level.elements).into_iter().map(|place| audited.displacement[place]);
             displacement.iter().zip(exact).map(|(v, exact)| (v - exact).abs()).fold(0.0, f64::max)
@@ -235,7 +235,7 @@ fn the_smooth_displacement_is_as_exact_as_the_others() {
             .map(|i| (DVec2::new((i % side) as f64 + 0.5, (i / side) as f64 + 0.5) / side as f64, audited.pressure[i]))
             .collect();
         let reach = 0.5 * audited.solved.splits.certified.params.cutoff as f64 / scene.base as f64;
-        let bound = audited.error(base).displacement;
+        let bound = audited.error().displacement;
         let smooth = audited.certified(base, |operator, _| operator.base_displacement());
         let mut far = 0;
         for (cell, v) in smooth.iter().enumerate().step_by(37) {
