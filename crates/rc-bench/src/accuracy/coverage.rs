@@ -168,19 +168,28 @@ pub(super) fn table(bars: &[Bars]) -> Table {
             strata.push(bars.stratum);
         }
     }
-    let rows = strata.into_iter().map(|stratum| {
-        let scenes: Vec<&Bars> = bars.iter().filter(|bars| bars.stratum == stratum).collect();
-        let n = scenes.len() as f64;
-        let numbers = [stratum.border_level, stratum.waves, stratum.elements_per_wave, stratum.ratio, scenes.len()];
-        let covered = |i: usize| 100.0 * scenes.iter().filter(|bars| bars.hold()[i]).count() as f64 / n;
-        let of_errors = |i: usize| 100.0 * median(scenes.iter().map(|bars| bars.errors[i].abs()).collect());
-        let of_bars = |i: usize| 100.0 * median(scenes.iter().map(|bars| bars.bars[i]).collect());
-        let mut values = vec![100.0 * (0.95 * 0.05 / n).sqrt()];
-        values.extend((0..3).map(covered));
-        values.extend((0..3).flat_map(|i| [of_errors(i), of_bars(i)]));
+    let of_stratum = |stratum: Stratum| {
         let names = [stratum.kind.name(), stratum.method.name(), stratum.kernel].map(str::to_owned);
-        let numbers = numbers.map(|number| number.to_string());
-        names.into_iter().chain(numbers).chain(values.into_iter().map(number)).collect()
-    });
+        let numbers = [stratum.border_level, stratum.waves, stratum.elements_per_wave, stratum.ratio];
+        let first = names.into_iter().chain(numbers.map(|number| number.to_string()));
+        let scenes: Vec<&Bars> = bars.iter().filter(|bars| bars.stratum == stratum).collect();
+        first.chain(statistics(&scenes)).collect::<Vec<String>>()
+    };
+    let pooled: Vec<&Bars> = bars.iter().filter(|bars| bars.is_covered()).collect();
+    let first = ["all but strips and creases", "", "", "", "", "", ""].map(str::to_owned);
+    let pooled: Vec<String> = first.into_iter().chain(statistics(&pooled)).collect();
+    let rows: Vec<Vec<String>> = strata.into_iter().map(of_stratum).chain([pooled]).collect();
     Table::new("coverage", &header, rows)
+}
+
+/// The numbers of one line of [`table`], from the number of scenes on.
+fn statistics(scenes: &[&Bars]) -> Vec<String> {
+    let n = scenes.len() as f64;
+    let covered = |i: usize| 100.0 * scenes.iter().filter(|bars| bars.hold()[i]).count() as f64 / n;
+    let of_errors = |i: usize| 100.0 * median(scenes.iter().map(|bars| bars.errors[i].abs()).collect());
+    let of_bars = |i: usize| 100.0 * median(scenes.iter().map(|bars| bars.bars[i]).collect());
+    let mut values = vec![100.0 * (0.95 * 0.05 / n).sqrt()];
+    values.extend((0..3).map(covered));
+    values.extend((0..3).flat_map(|i| [of_errors(i), of_bars(i)]));
+    [scenes.len().to_string()].into_iter().chain(values.into_iter().map(number)).collect()
 }
