@@ -26,7 +26,8 @@ fn errors(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64, exact: f64) 
     [area.fraction / exact - 1.0, area.cells / exact - 1.0, area.relative_error()]
 }
 
-/// Of a single contact the bar may be passed now and then: it is for 95 of 100.
+/// Of a single contact the bar may be passed now and then: it is for 95 of 100. The first place is a corner of elements, about which the
+/// eight octants of the circle are alike: only an eighth of the edges is independent, and the scatter √8 times larger.
 #[test]
 fn circles_are_found_within_their_bars_and_better_than_by_counting() {
     let theory = PeriodicHertz { radius: 1.0 };
@@ -40,7 +41,8 @@ fn circles_are_found_within_their_bars_and_better_than_by_counting() {
                 let at = |step: f64| (step * f64::from(place)).fract() / 256.0;
                 let heights = paraboloid(256, [0.5; 2], (at(0.618), at(0.414)), 0.0);
                 let [found, counted, bar] = errors(&heights, kernel, contact.load, exact);
-                assert!(found.abs() < 1.5 * bar, "{} of {radius}: {found:e}, bar {bar:e}", kernel.name());
+                let bars = if place == 0 { 8.0_f64.sqrt() } else { 1.5 };
+                assert!(found.abs() < bars * bar, "{} of {radius}: {found:e}, bar {bar:e}", kernel.name());
                 squares[0] += found * found;
                 squares[1] += counted * counted;
             }
@@ -66,22 +68,27 @@ fn ellipses_are_found_at_every_angle() {
 }
 
 /// Strips whose edges are straight and all along the elements: there are edges across the rows only, so that the mean of rows and
-/// columns takes half of what the count is off; the bias is for edges in all directions, up to a hundredth of these strips.
+/// columns takes half of what the count is off; the bias is for edges in all directions, up to a hundredth of these strips. All edges
+/// of a strip are off alike: the bar is of their number then, not of its root, and mostly holds.
 #[test]
 fn of_strips_along_the_elements_half_the_count_s_error_is_left() {
     let n = 256;
     let grid = Grid::square(n).expect("grid");
     let wave = Westergaard { amplitude: 0.01 };
+    let (mut held, mut all) = (0, 0);
     for fraction in [0.05, 0.2, 0.7, 0.95] {
         for shift in [0.0, 0.3, 0.5] {
             let pressure = wave.full_contact_pressure() * f64::sin(0.5 * std::f64::consts::PI * fraction).powi(2);
             let heights =
                 Field::from_fn(grid, |at| 0.01 * (std::f64::consts::TAU * (at.x - 0.5 - shift / n as f64)).cos());
             for kernel in [&Love as &dyn Kernel, &Spectral] {
-                let [found, counted, _] = errors(&heights, kernel, pressure, fraction);
+                let [found, counted, bar] = errors(&heights, kernel, pressure, fraction);
                 let bound = 0.5 * counted.abs() + 0.01;
                 assert!(found.abs() < bound, "{}, {fraction}: {found:e}, counted {counted:e}", kernel.name());
+                assert!(found.abs() <= 2.0 * bar, "{}, {fraction}, {shift}: {found:e}, bar {bar:e}", kernel.name());
+                (held, all) = (held + usize::from(found.abs() <= bar), all + 1);
             }
         }
     }
+    assert!(4 * held >= 3 * all, "{held} of {all} bars hold");
 }

@@ -62,7 +62,7 @@ impl Figure for Accuracy {
                 coverage: (60, false),
             },
             Preset::Quick => {
-                Params { n_scenes: 4, waves: vec![8], meshes: vec![4, 8], reference: 256, coverage: (6, true) }
+                Params { n_scenes: 4, waves: vec![8], meshes: vec![4, 8], reference: 256, coverage: (4, true) }
             }
         })
     }

@@ -115,3 +115,44 @@ pub(crate) fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure:
 fn per_contact_area(value: f64, area: &ContactArea) -> f64 {
     if area.fraction > 0.0 { value / area.fraction } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use rc_core::{DVec2, Field, Grid, Silent};
+
+    use crate::{ContactProblem, Control, Method, SolveParams};
+
+    /// A sphere at loose tolerances, with energy errors up to a fifth: the bars of these alone hold the change to the exact solution.
+    #[test]
+    fn the_energy_error_holds_what_a_loose_tolerance_changes() {
+        let n = 128;
+        let place = DVec2::new(0.503, 0.497);
+        let heights = Field::from_fn(Grid::square(n).expect("grid"), |at| -(at - place).length_squared());
+        let range = heights.max() - heights.min();
+        let mean_pressure = 2e-3;
+        let solve = |tolerance: f64| {
+            let params = SolveParams::to_tolerance(tolerance).by(Method::Uniform);
+            let problem = ContactProblem::new(&heights, Control::MeanPressure(mean_pressure));
+            problem.solve(&params, &Silent).expect("solvable")
+        };
+        let exact = *solve(1e-11).observables();
+        for tolerance in [1e-3, 1e-4, 1e-5] {
+            let solution = solve(tolerance);
+            let found = *solution.observables();
+            let gap = solution.info().certificate.complementarity * range;
+            let energy_error = (gap * mean_pressure / found.elastic_energy).sqrt();
+            let none = |bar: Option<f64>| bar.map(|_| 0.0);
+            let mut bare = found;
+            bare.area.error = 0.0;
+            (bare.rms_pressure_error, bare.mean_gap_error) =
+                (none(found.rms_pressure_error), none(found.mean_gap_error));
+            let bars = bare.with_energy_error(energy_error);
+            assert!((found.area.fraction - exact.area.fraction).abs() <= bars.area.error, "{tolerance:e}: {bars:?}");
+            let change = (found.rms_pressure_corrected - exact.rms_pressure_corrected).abs();
+            assert!(change <= bars.rms_pressure_error.expect("a bar"), "{tolerance:e}: {change:e}, {bars:?}");
+            let change = (found.mean_gap - exact.mean_gap).abs();
+            assert!(change <= bars.mean_gap_error.expect("a bar"), "{tolerance:e}: {change:e}, {bars:?}");
+            assert_eq!(found.with_energy_error(0.0), found);
+        }
+    }
+}

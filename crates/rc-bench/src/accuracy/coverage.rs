@@ -34,13 +34,13 @@ struct Stratum {
 pub(super) struct Bars {
     stratum: Stratum,
     errors: [f64; 3],
-    bars: [f64; 3],
+    limits_of_errors: [f64; 3],
 }
 
 impl Bars {
     /// Which of the three hold.
     pub(super) fn hold(&self) -> [bool; 3] {
-        std::array::from_fn(|i| self.errors[i].abs() <= self.bars[i])
+        std::array::from_fn(|i| self.errors[i].abs() <= self.limits_of_errors[i])
     }
 
     /// Whether the bars are made for such a surface.
@@ -77,7 +77,7 @@ fn strata() -> Vec<Stratum> {
 
 /// `n` scenes of each stratum, or of those with few elements only.
 pub(super) fn measure(n: usize, is_quick: bool) -> Result<Vec<Bars>> {
-    let strata = strata().into_iter().filter(|stratum| !is_quick || stratum.reference_side() <= 512);
+    let strata = strata().into_iter().filter(|stratum| !is_quick || stratum.reference_side() < 512);
     let scenes: Vec<(Stratum, usize)> = strata.flat_map(|stratum| (0..n).map(move |i| (stratum, i))).collect();
     let bars = scenes.into_par_iter().map(|(stratum, i)| stratum.bars(i).with_context(|| format!("{stratum:?}, {i}")));
     bars.collect()
@@ -89,7 +89,7 @@ impl Stratum {
     }
 
     fn reference_side(&self) -> usize {
-        FINER * self.side() << self.border_level
+        (FINER * self.side()) << self.border_level
     }
 
     fn mean_pressure(&self, i: usize) -> f64 {
@@ -134,7 +134,7 @@ impl Stratum {
         Ok(Bars {
             stratum: *self,
             errors: std::array::from_fn(|i| values[i] / limits[i] - 1.0),
-            bars: std::array::from_fn(|i| bars[i].map_or(f64::NAN, |bar| bar / limits[i])),
+            limits_of_errors: std::array::from_fn(|i| bars[i].map_or(f64::NAN, |bar| bar / limits[i])),
         })
     }
 }
@@ -168,19 +168,28 @@ pub(super) fn table(bars: &[Bars]) -> Table {
             strata.push(bars.stratum);
         }
     }
-    let rows = strata.into_iter().map(|stratum| {
-        let scenes: Vec<&Bars> = bars.iter().filter(|bars| bars.stratum == stratum).collect();
-        let n = scenes.len() as f64;
-        let numbers = [stratum.border_level, stratum.waves, stratum.elements_per_wave, stratum.ratio, scenes.len()];
-        let covered = |i: usize| 100.0 * scenes.iter().filter(|bars| bars.hold()[i]).count() as f64 / n;
-        let of_errors = |i: usize| 100.0 * median(scenes.iter().map(|bars| bars.errors[i].abs()).collect());
-        let of_bars = |i: usize| 100.0 * median(scenes.iter().map(|bars| bars.bars[i]).collect());
-        let mut values = vec![100.0 * (0.95 * 0.05 / n).sqrt()];
-        values.extend((0..3).map(covered));
-        values.extend((0..3).flat_map(|i| [of_errors(i), of_bars(i)]));
+    let of_stratum = |stratum: Stratum| {
         let names = [stratum.kind.name(), stratum.method.name(), stratum.kernel].map(str::to_owned);
-        let numbers = numbers.map(|number| number.to_string());
-        names.into_iter().chain(numbers).chain(values.into_iter().map(number)).collect()
-    });
+        let numbers = [stratum.border_level, stratum.waves, stratum.elements_per_wave, stratum.ratio];
+        let first = names.into_iter().chain(numbers.map(|number| number.to_string()));
+        let scenes: Vec<&Bars> = bars.iter().filter(|bars| bars.stratum == stratum).collect();
+        first.chain(statistics(&scenes)).collect::<Vec<String>>()
+    };
+    let pooled: Vec<&Bars> = bars.iter().filter(|bars| bars.is_covered()).collect();
+    let first = ["all but strips and creases", "", "", "", "", "", ""].map(str::to_owned);
+    let pooled: Vec<String> = first.into_iter().chain(statistics(&pooled)).collect();
+    let rows: Vec<Vec<String>> = strata.into_iter().map(of_stratum).chain([pooled]).collect();
     Table::new("coverage", &header, rows)
+}
+
+/// The numbers of one line of [`table`], from the number of scenes on.
+fn statistics(scenes: &[&Bars]) -> Vec<String> {
+    let n = scenes.len() as f64;
+    let covered = |i: usize| 100.0 * scenes.iter().filter(|bars| bars.hold()[i]).count() as f64 / n;
+    let of_errors = |i: usize| 100.0 * median(scenes.iter().map(|bars| bars.errors[i].abs()).collect());
+    let of_bars = |i: usize| 100.0 * median(scenes.iter().map(|bars| bars.limits_of_errors[i]).collect());
+    let mut values = vec![100.0 * (0.95 * 0.05 / n).sqrt()];
+    values.extend((0..3).map(covered));
+    values.extend((0..3).flat_map(|i| [of_errors(i), of_bars(i)]));
+    [scenes.len().to_string()].into_iter().chain(values.into_iter().map(number)).collect()
 }

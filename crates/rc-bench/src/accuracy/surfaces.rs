@@ -53,12 +53,12 @@ impl Kind {
             Self::SelfAffine => Box::new(Surface::new(&spectrum)?),
             Self::RandomAmplitudes => Box::new(Surface::new(&SpectrumParams {
                 amplitudes: Amplitudes::Random,
-                roll_off: if i % 2 == 0 { 2.0 } else { 1.0 },
-                truncation: if i % 3 == 0 { Truncation::Square } else { Truncation::Disc },
+                roll_off: if i.is_multiple_of(2) { 2.0 } else { 1.0 },
+                truncation: if i.is_multiple_of(3) { Truncation::Square } else { Truncation::Disc },
                 ..spectrum
             })?),
             Self::OneDirection => {
-                let ratio = if i % 2 == 0 { 2.0 } else { 4.0 };
+                let ratio = if i.is_multiple_of(2) { 2.0 } else { 4.0 };
                 Box::new(Waves::new(waves, &mut random, |k| {
                     let k = (k * DVec2::new(1.0, ratio)).length();
                     if k <= waves as f64 { k.powf(-1.0 - spectrum.hurst) } else { 0.0 }
@@ -68,9 +68,11 @@ impl Kind {
                 Box::new(Waves::new(waves, &mut random, |k| (-0.5 * (2.5 * k.length() / waves as f64).powi(2)).exp()))
             }
             Self::Ball => Box::new(Ball { centre: DVec2::new(random.uniform(), random.uniform()) }),
-            Self::Strips => {
-                Box::new(Strips { waves: (1 + i % 3) as f64, phase: TAU * random.uniform(), along_y: i % 2 == 0 })
-            }
+            Self::Strips => Box::new(Strips {
+                waves: (1 + i % 3) as f64,
+                phase: TAU * random.uniform(),
+                along_y: i.is_multiple_of(2),
+            }),
             Self::Creases => {
                 let map = Waves::new(waves, &mut random, |k| k.length().powf(-1.5));
                 Box::new(Creases { map: map.sample(Grid::square(2 * waves)?) })
@@ -116,7 +118,9 @@ impl Waves {
             .collect();
         let slope =
             waves.iter().map(|(k, amplitude, _)| 0.5 * (TAU * amplitude * k.length()).powi(2)).sum::<f64>().sqrt();
-        waves.iter_mut().for_each(|wave| wave.1 *= RMS_SLOPE / slope);
+        for wave in &mut waves {
+            wave.1 *= RMS_SLOPE / slope;
+        }
         Self { waves, limit }
     }
 }

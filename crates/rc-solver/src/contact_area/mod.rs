@@ -140,7 +140,7 @@ impl ContactArea {
     }
 
     /// With the error that the tolerance of the solve leaves; `energy_error` is √(G/U), the relative error of the pressure in the
-    /// energy norm. The area's is of its square.
+    /// energy norm, below a third. The area's is of its square.
     #[must_use]
     pub fn with_energy_error(self, energy_error: f64) -> Self {
         Self { error: self.error.hypot(ERROR_OF_SOLVE * energy_error.powi(2) * self.fraction), ..self }
@@ -188,5 +188,36 @@ pub(crate) fn around<'a>(
     move |dx, dy| {
         let place = wrap(iy, dy, ny) * nx + wrap(ix, dx, nx);
         [pressure[place], gap[place] - contact_gap]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A half plane whose edge has this slope against the rows, in a cell of 64 elements, with the sums of its edge.
+    fn sums_of_edge(slope: f64) -> EdgeSums {
+        let mut sums = EdgeSums::default();
+        let at = |x: isize, y: isize| if (y as f64) < slope * x as f64 + 0.5 { [1.0, 0.0] } else { [0.0, 1.0] };
+        for x in 0..64 {
+            for y in -2..66 {
+                if at(x, y)[0] > 0.0 {
+                    sums.add([1.0 / 64.0; 2], &|dx, dy| at(x + dx, y + dy));
+                }
+            }
+        }
+        sums
+    }
+
+    #[test]
+    fn edges_along_the_elements_scatter_together_and_oblique_ones_do_not() {
+        let along = sums_of_edge(0.0);
+        assert_eq!((along.edges, along.diagonals), (64, 128));
+        assert!((edges_that_scatter_together(&along) - 64.0).abs() < 1e-9);
+        let oblique = sums_of_edge(1.0);
+        assert!((edges_that_scatter_together(&oblique) - 1.0).abs() < 1e-9, "{oblique:?}");
+        let gentle = edges_that_scatter_together(&sums_of_edge(0.1));
+        assert!((2.0..20.0).contains(&gentle), "{gentle}");
+        assert!((edges_that_scatter_together(&EdgeSums::default()) - 1.0).abs() < 1e-9);
     }
 }
