@@ -31,3 +31,44 @@ fn to_means(heights: &Heights<'_>, tiles: &TileSet, place: [u32; 2], coarser: us
         means_of_quarter(quarter, &fine, |cell, mean| cells[cell] += ratio * (mean - cells[cell]));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rc_core::{DVec2, Grid, HeightField, HeightSource};
+
+    use super::*;
+
+    /// Two waves, of which the shorter has 16 of the largest elements.
+    struct TwoWaves;
+
+    impl HeightField for TwoWaves {
+        fn height(&self, DVec2 { x, y }: DVec2) -> f64 {
+            let wave = |t: f64| (std::f64::consts::TAU * t).cos();
+            wave(3.0 * x + y + 0.1) + wave(2.0 * x - 3.0 * y + 0.4)
+        }
+
+        fn band_limit(&self) -> Option<usize> {
+            Some(4)
+        }
+    }
+
+    #[test]
+    fn a_larger_element_is_as_high_as_the_smallest_in_it_on_average() {
+        let finest = Grid::square(256).expect("a grid");
+        let heights = Heights::new(HeightSource::Surface { surface: &TwoWaves, grid: finest }, 64).expect("heights");
+        let sampled = TwoWaves.sample(finest);
+        let tiles = [(32, [16, 16]), (16, [4, 4]), (8, [0, 0])];
+        let elements = Elements::new(tiles.map(|(per_side, place)| TileSet::new(per_side, vec![place])).to_vec());
+        let values = element_heights(&heights, &elements);
+        for (coarser, (_, [column, row])) in tiles.into_iter().enumerate() {
+            let (n, start) = (1 << coarser, elements.cells(coarser).start);
+            for cell in 0..CELLS {
+                let (x, y) = (n * (8 * column as usize + cell % 8), n * (8 * row as usize + cell / 8));
+                let sum: f64 = (0..n * n).map(|i| sampled.at(x + i % n, y + i / n)).sum();
+                let error = values[start + cell] - sum / (n * n) as f64;
+                // Fourth order: (2π/16)⁴ / 1920 of a wave, and the interpolation.
+                assert!(error.abs() < 3e-5, "{n} x {n} elements, cell {cell}: off by {error:e}");
+            }
+        }
+    }
+}

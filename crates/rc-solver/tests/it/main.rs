@@ -1,5 +1,6 @@
 //! The methods against slow truth and against themselves, in one binary.
 
+mod error_bars;
 mod gauss_seidel;
 mod observers;
 mod uniform;

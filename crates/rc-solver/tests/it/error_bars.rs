@@ -1,0 +1,43 @@
+//! The error bar of the contact area against what moving the grid by parts of an element does to it.
+
+use std::f64::consts::TAU;
+
+use rc_core::testing::quasi_random;
+use rc_core::{DVec2, Field, Grid};
+use rc_solver::{Control, Method, SolveParams, solve};
+
+/// Waves up to four per cell with the amplitudes of a self-affine surface, moved by `shift` (λ).
+fn rough(seed: usize, side: usize, shift: DVec2) -> Field {
+    let waves: Vec<(f64, f64, f64, f64)> = (-4..=4_i32)
+        .flat_map(|ky| (0..=4_i32).map(move |kx| (kx, ky)))
+        .filter(|&(kx, ky)| (kx, ky) != (0, 0) && kx * kx + ky * ky <= 16)
+        .enumerate()
+        .map(|(i, (kx, ky))| {
+            let k = f64::from(kx).hypot(f64::from(ky));
+            (2e-3 * k.powf(-1.8), f64::from(kx), f64::from(ky), quasi_random(101 * seed + 37 * i * i))
+        })
+        .collect();
+    let height =
+        |at: DVec2| waves.iter().map(|(a, kx, ky, phase)| a * (TAU * (kx * at.x + ky * at.y + phase)).cos()).sum();
+    Field::from_fn(Grid::square(side).expect("a grid"), |at| height(at + shift))
+}
+
+/// A bar that holds in 95 % of scenes is two standard deviations: errors are half of it in the rms.
+#[test]
+fn errors_of_the_contact_area_are_about_half_of_their_bars() {
+    let params = SolveParams::default().by(Method::Uniform);
+    let load = Control::MeanPressure(3e-3);
+    let area = |heights: &Field| solve(heights, load, &params).expect("solvable").area();
+    let (side, n_shifts) = (64, 4);
+    let mut squares = Vec::new();
+    for seed in 0..8 {
+        let exact = area(&rough(seed, 8 * side, DVec2::ZERO)).fraction;
+        for i in 0..n_shifts {
+            let shift = DVec2::new(quasi_random(2 * i), quasi_random(2 * i + 1)) / side as f64;
+            let area = area(&rough(seed, side, shift));
+            squares.push(((area.fraction - exact) / area.error).powi(2));
+        }
+    }
+    let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    assert!((0.2..0.75).contains(&rms), "the rms error is {rms} of the bar");
+}
