@@ -36,17 +36,21 @@ fn on_uniform_grid(heights: &Field, control: Control, tolerance: f64) -> Solutio
     solve(heights, control, &SolveParams::to_tolerance(tolerance).by(Method::Uniform)).expect("a solvable scene")
 }
 
-/// Area by counting and rms pressure within 0.2 %, penetration within 0.05 % of the uniform solution, at equal elements.
+/// Area and pressure to the squares of the energy errors of both iterations, which is what they may be off by: both methods solve the same
+/// discrete problem. Counts may differ by the elements at edges that press by less than that, and stiffnesses are exact to 1e-3.
 fn assert_agrees_with_uniform(heights: &Field, solution: &Solution<'_>, control: Control) {
     let uniform = on_uniform_grid(heights, control, 1e-6);
     let (of_uniform, of_adaptive) = (uniform.observables(), solution.observables());
-    assert_close("area by counting", of_adaptive.area.cells, of_uniform.area.cells, 2e-3);
-    assert_close("area", of_adaptive.area.fraction, of_uniform.area.fraction, 2e-3);
-    assert_close("rms pressure", of_adaptive.rms_pressure, of_uniform.rms_pressure, 2e-3);
-    assert_close("mean pressure", solution.info().mean_pressure, uniform.info().mean_pressure, 1e-3);
-    assert_close("penetration", solution.info().penetration, uniform.info().penetration, 5e-4);
-    assert_close("stiffness", solution.stiffness(), uniform.stiffness(), 1e-2);
-    assert_close("energy", of_adaptive.elastic_energy, of_uniform.elastic_energy, 1e-3);
+    let [allowed, of_other] = [solution, &uniform].map(|solution| solution.info().iteration_error.powi(2));
+    let allowed = allowed + of_other;
+    assert!(allowed < 1e-4, "the iterations leave {allowed:e}");
+    assert_close("area by counting", of_adaptive.area.cells, of_uniform.area.cells, 2e-4);
+    assert_close("area", of_adaptive.area.fraction, of_uniform.area.fraction, allowed);
+    assert_close("rms pressure", of_adaptive.rms_pressure, of_uniform.rms_pressure, allowed);
+    assert_close("mean pressure", solution.info().mean_pressure, uniform.info().mean_pressure, allowed);
+    assert_close("penetration", solution.info().penetration, uniform.info().penetration, allowed);
+    assert_close("energy", of_adaptive.elastic_energy, of_uniform.elastic_energy, allowed);
+    assert_close("stiffness", solution.stiffness(), uniform.stiffness(), 2e-3);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use rc_core::{Field, Grid, Operator};
 use rc_kernel::Love;
-use rc_solver::{Certificate, Control, DirectSum, MultilevelOperator, UniformOperator};
+use rc_solver::{Control, DirectSum, MultilevelOperator, UniformOperator};
 
 use super::solved::{Method, Solved};
 

@@ -4,7 +4,7 @@ use anyhow::Result;
 use rc_core::Field;
 use rc_solver::{Control, LevelInfo, SolveInfo};
 
-use super::audit::{Audit, claimed_energy, load_of_one_element};
+use super::audit::{Audit, load_of_one_element};
 use super::row::{Row, Rows, guarded};
 use super::solved::{Method, Solved, solve};
 

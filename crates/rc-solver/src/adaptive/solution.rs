@@ -183,10 +183,11 @@ impl AdaptiveSolution {
         if self.is_full_contact() {
             return f64::INFINITY;
         }
-        let split = ScaleSplit::new(SplitParams::quick());
-        let prepared = Prepared::<f32>::displacement(&split, self.base, self.border_level);
+        let [quick, certified] = [SplitParams::quick(), SplitParams::certified()].map(ScaleSplit::new);
+        // The quick operator would be up to a percent off.
+        let prepared = Prepared::<f32>::displacement(&certified, self.base, self.border_level);
         let response = prepared.tables(self.n_levels());
-        let mut preconditioner = Prepared::<f32>::inverse(&split, self.base).tables(self.n_levels());
+        let mut preconditioner = Prepared::<f32>::inverse(&quick, self.base).tables(self.n_levels());
         let hierarchy = Hierarchy::new(self.base.nx(), self.elements.clone(), prepared.reach());
         let mut operator = TileCorrections::new(Arc::new(hierarchy), &response, &mut preconditioner);
         stiffness_of(&self.pressure, self.finest.len() as f64, &mut operator)
