@@ -233,3 +233,20 @@ impl Units {
         Ok(heights)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A spring of pressures and lengths is the same in SI: its stiffness is their ratio, its energy half their product times the area.
+    #[test]
+    fn stiffness_and_energy_follow_from_pressure_and_length() {
+        let cell = PeriodicCell::rectangle(2e-3, 5e-3).expect("a cell");
+        let units = Units::new(cell, Elasticity::from_e_star(7e10).expect("a solid"));
+        let (pressure, length) = (3e-4, 2e-5);
+        let stiffness = units.pascals(pressure) / units.metres(length);
+        assert!((units.pascals_per_metre(pressure / length) / stiffness - 1.0).abs() < 1e-14);
+        let energy = 0.5 * units.pascals(pressure) * units.metres(length) * cell.nominal_area();
+        assert!((units.joules(0.5 * pressure * length) / energy - 1.0).abs() < 1e-14);
+    }
+}

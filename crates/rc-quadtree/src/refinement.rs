@@ -137,4 +137,25 @@ mod tests {
             assert_eq!(chosen, [0, 3, 4, 7].contains(&column), "column {column}");
         }
     }
+
+    /// Tiles beside an edge are divided too, where it is within [`RING`] cells of them.
+    #[test]
+    fn edges_keep_two_cells_from_larger_elements() {
+        let elements = Elements::uniform(TileSet::full(8));
+        // Cells of the tiles of column 4 that press; those of columns 0 to 3 all do. The other edge is on the seam.
+        for (n_pressed, third_column) in [(0, true), (1, true), (2, false), (3, false)] {
+            let column_of = |cell: usize, column: u32| column as usize * TILE + cell % TILE;
+            let places = elements.levels()[0].places().iter();
+            let columns = places.flat_map(|&[column, _]| (0..CELLS).map(move |cell| column_of(cell, column)));
+            let pressure: Vec<f64> = columns.map(|x| if x < 4 * TILE + n_pressed { 1.0 } else { 0.0 }).collect();
+            let gap: Vec<f64> = pressure.iter().map(|&p| if p > 0.0 { 0.0 } else { 1.0 }).collect();
+            let fields = ContactFields { elements: &elements, pressure: &pressure, gap: &gap, contact_gap: 0.0 };
+            let chosen = fields.too_coarse(|_| 0.0);
+            for (&[column, _], &chosen) in elements.levels()[0].places().iter().zip(&chosen[0]) {
+                if column == 3 {
+                    assert_eq!(chosen, third_column, "{n_pressed} cells from the edge");
+                }
+            }
+        }
+    }
 }

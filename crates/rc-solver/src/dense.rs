@@ -48,7 +48,7 @@ pub fn solve_dense(heights: &Field, kernel: &dyn Kernel, penetration: f64) -> Re
 }
 
 /// Solves a dense system by Gaussian elimination with row pivoting.
-fn eliminate(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
+pub(crate) fn eliminate(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
     let n = right.len();
     for column in 0..n {
         let pivot = (column..n).max_by(|&a, &b| matrix[a][column].abs().total_cmp(&matrix[b][column].abs()));

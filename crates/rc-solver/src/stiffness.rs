@@ -77,3 +77,36 @@ fn take_step(
     let blocks = residual.chunks_mut(layout.len()).zip(directions.steps(layout.len()));
     write_blocks(operator, blocks, |(residual, step), written| step.update_residual(length, residual, written));
 }
+
+#[cfg(test)]
+mod tests {
+    use rc_core::Grid;
+    use rc_kernel::Love;
+
+    use super::*;
+    use crate::DirectSum;
+    use crate::dense::eliminate;
+
+    /// Mean of the x that displaces every element in contact by 1, by elimination.
+    fn eliminated(pressure: &Field) -> f64 {
+        let operator = DirectSum::new(pressure.grid(), &Love);
+        let contact: Vec<usize> = (0..pressure.grid().len()).filter(|&i| pressure.values()[i] > 0.0).collect();
+        let row = |&i: &usize| contact.iter().map(|&j| operator.coefficient(i, j)).collect();
+        let x = eliminate(contact.iter().map(row).collect(), vec![1.0; contact.len()]);
+        x.iter().sum::<f64>() / pressure.grid().len() as f64
+    }
+
+    #[test]
+    fn the_stiffness_of_many_contacts_is_that_of_elimination_to_a_thousandth() {
+        let grid = Grid::square(24).expect("a grid");
+        // Contacts of several sizes, with pressures that are no multiple of those of a rigid punch.
+        for (threshold, waves) in [(0.9, 1.0), (0.3, 2.0), (1.2, 3.0)] {
+            let wave = |t: f64| (std::f64::consts::TAU * t).cos();
+            let pressure = Field::from_fn(grid, |at| {
+                (wave(waves * at.x + 0.1) + wave(waves * at.y - at.x) + 0.5 * wave(5.0 * at.x) - threshold).max(0.0)
+            });
+            let (found, exact) = (contact_stiffness(&pressure, &Love), eliminated(&pressure));
+            assert!((found / exact - 1.0).abs() < 1.5e-3, "{waves} waves above {threshold}: {found} for {exact}");
+        }
+    }
+}

@@ -143,12 +143,15 @@ fn numbers_of(solved: &Solved) -> [f64; 11] {
 /// Scenes of a group.
 pub(crate) type Group = (&'static str, Vec<Scene>);
 
-/// What is counted of [`Work`], as it is called in the table: ordinary scenes, slow scenes.
-type Count = ([&'static str; 2], fn(&Work) -> f64);
+/// What is counted of [`Work`], as it is called in the table: ordinary scenes, slow scenes, the median.
+type Count = ([&'static str; 3], fn(&Work) -> f64);
 
 const COUNTS: [Count; 2] = [
-    (["iterations", "iterations of slow scenes"], |work| work.finest),
-    (["iterations of all levels", "iterations of all levels of slow scenes"], |work| work.all),
+    (["iterations", "iterations of slow scenes", "median iterations"], |work| work.finest),
+    (
+        ["iterations of all levels", "iterations of all levels of slow scenes", "median iterations of all levels"],
+        |work| work.all,
+    ),
 ];
 
 /// Checks all scenes; iterations are compared with the median over all scenes of the method.
@@ -162,14 +165,15 @@ pub(crate) fn check(groups: &[Group]) -> Vec<Row> {
         }
         rows.extend(of_group.finish());
     }
-    for ([ordinary, slow], count) in COUNTS {
-        let mut medians: Vec<(Method, f64)> = Vec::new();
+    for ([ordinary, slow, ordinary_median], count) in COUNTS {
+        let (mut medians, mut of_all) = (Vec::<(Method, f64)>::new(), Rows::of("iterations"));
         for (group, scene, work) in &counted {
             let known = medians.iter().find(|(method, _)| *method == scene.method).map(|(_, median)| *median);
             let median = known.unwrap_or_else(|| {
                 let of_method = counted.iter().filter(|(_, other, _)| other.method == scene.method);
                 let median = median(of_method.map(|(_, _, work)| count(work)).collect());
                 medians.push((scene.method, median));
+                of_all.at_most(scene.method.name(), ordinary_median, median, scene.method.most_iterations());
                 median
             });
             let mut row = Rows::of(group);
@@ -177,6 +181,7 @@ pub(crate) fn check(groups: &[Group]) -> Vec<Row> {
             row.at_most(&scene.name, property, count(work), scene.iteration_factor * median);
             rows.extend(row.finish());
         }
+        rows.extend(of_all.finish());
     }
     rows
 }

@@ -114,3 +114,31 @@ impl ScaleSplit {
         inverse::stencil(&self.level_filter(), radius)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The displacement of the pressure that bends the remainder most, 1 where it is bent up, is between the bound's part for that sign and
+    /// the bound, which is for both.
+    #[test]
+    fn no_pressure_bends_the_remainder_more_than_its_bound() {
+        let (step, reach) = (0.02, 300_i32);
+        for params in [SplitParams::quick(), SplitParams::certified()] {
+            let split = ScaleSplit::new(params);
+            let remainder = |x: f64, y: f64| split.window.rise_over(x.hypot(y)) / std::f64::consts::PI;
+            let mut bent = [0.0; 2];
+            for (ix, iy) in (0..reach * reach).map(|i| (i % reach, i / reach)) {
+                let (x, y) = (step * (f64::from(ix) + 0.5), step * (f64::from(iy) + 0.5));
+                let difference = remainder(x + step, y) - 2.0 * remainder(x, y) + remainder(x - step, y);
+                // Four quadrants; the second derivative is the difference over the area of the square.
+                bent[usize::from(difference < 0.0)] += 4.0 * difference.abs();
+            }
+            let bound = split.remainder_curvature(1.0);
+            let [up, down] = bent;
+            assert!(up.max(down) < bound, "{params:?}: bent by {up} and {down}, more than {bound}");
+            // What is beyond the square, and the rule, are a tenth or so.
+            assert!(up + down > 0.8 * bound, "{params:?}: bent by {up} and {down}, far less than {bound}");
+        }
+    }
+}

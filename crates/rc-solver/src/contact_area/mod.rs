@@ -220,4 +220,19 @@ mod tests {
         assert!((2.0..20.0).contains(&gentle), "{gentle}");
         assert!((edges_that_scatter_together(&EdgeSums::default()) - 1.0).abs() < 1e-9);
     }
+
+    #[test]
+    fn holes_are_counted_against_contacts() {
+        let grid = Grid::square(32).expect("a grid");
+        let contacts = |inside: fn(f64, f64) -> bool| {
+            let pressure = Field::from_fn(grid, |at| if inside(at.x, at.y) { 1.0 } else { 0.0 });
+            ContactArea::of(&pressure, &Field::zeros(grid), EdgeBias::default()).euler_number
+        };
+        let disc = contacts(|x, y| (x - 0.5).hypot(y - 0.5) < 0.3);
+        let ring = contacts(|x, y| (0.15..0.3).contains(&(x - 0.5).hypot(y - 0.5)));
+        let pair = contacts(|x, y| ((x - 0.5).abs() - 0.25).hypot(y - 0.5) < 0.15);
+        for (name, found, expected) in [("disc", disc, 1.0), ("ring", ring, 0.0), ("pair of discs", pair, 2.0)] {
+            assert!((found - expected).abs() < 1e-12, "{name}: {found}");
+        }
+    }
 }

@@ -11,8 +11,12 @@ use crate::descent::Descent;
 
 /// The start on the grid with twice as many elements per side.
 pub(crate) fn prolong(coarse: &Descent<'_>) -> Vec<f64> {
-    let function = edge_function(coarse);
     let (nx, ny) = (coarse.grid().nx(), coarse.grid().ny());
+    interpolate(&edge_function(coarse), [nx, ny])
+}
+
+/// The pressure on elements half as large from φ.
+fn interpolate(function: &[f64], [nx, ny]: [usize; 2]) -> Vec<f64> {
     let mut fine = vec![0.0; 4 * nx * ny];
     fine.par_chunks_mut(2 * nx).enumerate().for_each(|(iy, row)| {
         // The centre of a fine element lies a quarter of a coarse element from the centre of the coarse one it is in.
@@ -77,3 +81,30 @@ pub(crate) fn edge_function_outside<'a>(near: impl Iterator<Item = &'a f64>, gap
 
 /// Typical distance to the edge of an element in contact beside one that is not, in elements.
 const EDGE_DISTANCE: f64 = 0.7;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// φ is linear across the straight edges of a strip, so p² on the fine elements is too, and the edges stay where they are.
+    #[test]
+    fn edges_of_a_strip_stay_where_they_are() {
+        let (nx, ny) = (16, 8);
+        // A strip of width 6.6 along y, then one along x; in coarse elements from the middle.
+        let inside = |at: f64, n: usize| 3.3 - (at - 0.5 * n as f64).abs();
+        for along_x in [false, true] {
+            let linear = |x: f64, y: f64| if along_x { inside(y, ny) } else { inside(x, nx) };
+            let centre = |i: usize| i as f64 + 0.5;
+            let coarse: Vec<f64> = (0..nx * ny).map(|i| linear(centre(i % nx), centre(i / nx))).collect();
+            for (i, p) in interpolate(&coarse, [nx, ny]).into_iter().enumerate() {
+                let (x, y) = (0.5 * centre(i % (2 * nx)), 0.5 * centre(i / (2 * nx)));
+                let (squared, from_ridge) = (linear(x, y).max(0.0), 3.3 - linear(x, y));
+                // The ridge in the middle, and the valley across the seam, are blunted.
+                let valley = if along_x { 0.5 * ny as f64 } else { 0.5 * nx as f64 };
+                if (1.0..valley - 1.0).contains(&from_ridge) {
+                    assert!((p * p - squared).abs() < 1e-12, "({x}, {y}): p² = {} for {squared}", p * p);
+                }
+            }
+        }
+    }
+}
