@@ -33,7 +33,7 @@ fn the_first_example_solves_a_surface_like_the_papers() {
     let solution = generate_and_solve::solve().expect("solvable");
     let area = solution.observables().area;
     assert!((0.07..0.09).contains(&area.fraction), "A/A0 = {}", area.fraction);
-    assert!(solution.info().certificate.complementarity <= 1e-6 && solution.info().certificate.load <= 1e-10);
+    assert!(solution.info().certificate.energy <= 1e-2 && solution.info().certificate.load <= 1e-10);
 }
 
 /// The same numbers in pascals: p = 1e6 Pa at E* = 1e9 Pa is σ0/E* = 1e-3.

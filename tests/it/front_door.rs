@@ -46,7 +46,7 @@ fn every_method_gives_one_kind_of_solution() {
         assert!(solution.certificate().energy <= 1e-2, "{method}");
         // Between the points of collocation of its larger elements the paper's procedure leaves more.
         let claimed = solution.certificate().penetration;
-        let allowed = if method == Method::GaussSeidel { 1e-2 } else { claimed };
+        let allowed = if method == Method::GaussSeidel { 1e-2 } else { 1.001 * claimed };
         let range = surface.sample(square(128)).max() - surface.sample(square(128)).min();
         assert!(solution.gap().min() > -allowed * range, "{method}: a gap of {:e}", solution.gap().min() / range);
         assert_eq!(solution.n_evaluated() + solution.n_proven(), 16384);

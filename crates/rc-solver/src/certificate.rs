@@ -1,7 +1,7 @@
 //! The certificate: how far a pressure is from solving the contact problem.
 
-use crate::Control;
 use crate::problem::Problem;
+use crate::{Control, ErrorBound};
 
 /// Bounds on how far a pressure is from solving the discrete contact problem, from a fresh application of L on the returned pressure.
 ///
@@ -40,6 +40,18 @@ impl Certificate {
     /// Bound on [`Certificate::load`] in a solution that counts as converged.
     pub const LOAD_TOLERANCE: f64 = 1e-10;
 
+    /// Whether the bound is met, and the load to [`Certificate::LOAD_TOLERANCE`].
+    #[must_use]
+    pub fn meets(&self, bound: ErrorBound) -> bool {
+        let error = match bound {
+            ErrorBound::Energy(_) => self.energy,
+            ErrorBound::Relative(_) => self.penetration.max(self.complementarity),
+        };
+        // NaN meets nothing, nor does a number beside it.
+        let is_number = !self.penetration.is_nan();
+        is_number && error <= bound.value() && self.load <= Self::LOAD_TOLERANCE
+    }
+
     /// The certificate of an exact solution.
     pub(crate) const EXACT: Self = Self { complementarity: 0.0, penetration: 0.0, energy: 0.0, load: 0.0 };
 
@@ -68,5 +80,19 @@ impl std::fmt::Display for Certificate {
             "energy error {energy:.2e}, complementarity error {complementarity:.2e}, penetration error {penetration:.2e}, \
              load error {load:.2e}"
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_a_number_meets_no_bound() {
+        let certificate = Certificate { penetration: f64::NAN, ..Certificate::EXACT };
+        assert!(!certificate.meets(ErrorBound::Energy(0.9)) && !certificate.meets(ErrorBound::Relative(0.9)));
+        let unloaded = Certificate { load: 1e-9, ..Certificate::EXACT };
+        assert!(!unloaded.meets(ErrorBound::Relative(0.9)));
+        assert!(Certificate::EXACT.meets(ErrorBound::Energy(1e-5)));
     }
 }

@@ -1,6 +1,7 @@
 //! When a solve is good enough: the tolerance that users give, and the bound on the certificate that follows from it.
 
-use crate::certificate::Certificate;
+#[cfg(doc)]
+use crate::Certificate;
 
 /// How accurately a contact problem is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,17 +49,6 @@ pub enum ErrorBound {
 }
 
 impl ErrorBound {
-    /// Whether the certificate meets the bound, and the load [`Certificate::LOAD_TOLERANCE`].
-    #[must_use]
-    pub fn is_met_by(self, certificate: &Certificate) -> bool {
-        let error = match self {
-            Self::Energy(_) => certificate.energy,
-            Self::Relative(_) => certificate.penetration.max(certificate.complementarity),
-        };
-        // NaN meets nothing.
-        error <= self.value() && certificate.load <= Certificate::LOAD_TOLERANCE
-    }
-
     /// The bound as a number.
     #[must_use]
     pub fn value(self) -> f64 {
@@ -190,13 +180,5 @@ mod tests {
             assert_eq!(bound.measure(), Measure::Energy, "{elements:?} elements");
             assert!((bound.value() / expected - 1.0).abs() < 1e-12, "{elements:?} elements: {bound}");
         }
-    }
-
-    #[test]
-    fn what_is_not_a_number_meets_no_bound() {
-        let certificate = Certificate { complementarity: 0.0, penetration: f64::NAN, energy: f64::NAN, load: 0.0 };
-        assert!(!ErrorBound::Energy(0.9).is_met_by(&certificate));
-        let unloaded = Certificate { complementarity: 0.0, penetration: 0.0, energy: 0.0, load: 1e-9 };
-        assert!(!ErrorBound::Relative(0.9).is_met_by(&unloaded));
     }
 }

@@ -244,7 +244,8 @@ fn a_scene_keeps_auto_and_the_method_that_ran() {
     let scene = text(&place.bytes("r/scene.toml"));
     assert!(scene.contains("tolerance = \"auto\"") && scene.contains("method = \"adaptive\""), "{scene}");
     // Sixteen elements per wave.
-    assert_close("tolerance", number(&place.json("r/summary.json"), "tolerance"), 3e-5 * 2_f64.powf(-1.5), 1e-12);
+    let energy = number(&place.json("r/summary.json"), "energy_tolerance");
+    assert_close("energy_tolerance", energy, 6e-2 * 2_f64.powf(-0.75), 1e-12);
 }
 
 #[test]

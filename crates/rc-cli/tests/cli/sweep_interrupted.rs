@@ -130,7 +130,11 @@ fn settings_that_differ_are_named() {
         ("1e5,3e5", &[], "surfaces[0].loads[1] is 200000.0 there and 300000.0 here"),
         ("1e5,2e5", &["--seeds", "1..2"], "surfaces are 1 there and 2 here"),
         ("1e5,2e5", &["--seed", "2"], "surfaces[0].surface.seed is 1 there and 2 here"),
-        ("1e5,2e5", &["--tolerance", "1e-7"], "surfaces[0].contact.tolerance is 1e-6 there and 1e-7 here"),
+        (
+            "1e5,2e5",
+            &["--energy-tolerance", "0.02"],
+            "surfaces[0].contact.energy_tolerance is 0.01 there and 0.02 here",
+        ),
         ("1e5,2e5", &["--fields"], "fields is false there and true here"),
         ("1e5,2e5", &["--shard", "1/2"], "holds shard 1/1, not 1/2"),
     ];

@@ -60,7 +60,7 @@ pub(super) fn solve_finest_level(
         evaluation = level.evaluate_whole_cell();
         // Without a step it is the error of the operator that is too large.
         let is_stuck = !reached || round > 0 && level.info.iterations == before;
-        if is_stuck || setup.params.bound.is_met_by(&evaluation.outcome.certificate) {
+        if is_stuck || evaluation.outcome.certificate.meets(setup.params.bound) {
             break;
         }
     }

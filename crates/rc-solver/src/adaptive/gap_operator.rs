@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rc_core::Grid;
 use rc_kernel::ScaleSplit;
 
-use super::operator::{Hierarchy, Prepared, Reach, Tables};
+use super::operator::{Hierarchy, Prepared, Reach, Real, Tables};
 use super::scaled_operator::ScaledOperator;
 use super::split::GapSplit;
 use crate::descent::BlockOperator;
@@ -14,6 +14,12 @@ use crate::descent::BlockOperator;
 pub(super) trait GapOperator: BlockOperator<f64> {
     /// What the last pressure displaces the centres of the base grid by, short-range parts excepted: tile by tile, tiles row by row, in λ.
     fn base_displacement(&self) -> Vec<f64>;
+}
+
+impl<T: Real + Into<f64>> GapOperator for ScaledOperator<'_, T> {
+    fn base_displacement(&self) -> Vec<f64> {
+        Self::base_displacement(self)
+    }
 }
 
 /// A split kernel, ready for meshes of any number of levels. Single precision takes half the time and memory.

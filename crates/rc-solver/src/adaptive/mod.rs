@@ -142,7 +142,7 @@ impl<'a> AdaptiveProblem<'a> {
         let certificate = solved.level.outcome.certificate;
         let better = self.certifying_split(solved.splits.certified, &solved.scale);
         // A pressure may be rougher than its start.
-        if better == solved.splits.certified || self.params.solve.bound.is_met_by(&certificate) {
+        if better == solved.splits.certified || certificate.meets(self.params.solve.bound) {
             return solved;
         }
         let splits = Splits { certified: better, ..solved.splits };
@@ -165,7 +165,7 @@ impl<'a> AdaptiveProblem<'a> {
         let area = contact_area(&elements, &pressure, (&gap, outcome.contact_gap), grid);
         let border_level = self.params.border_level;
         AdaptiveSolution {
-            converged: self.params.solve.bound.is_met_by(&outcome.certificate),
+            converged: outcome.certificate.meets(self.params.solve.bound),
             base: self.heights.base().grid(),
             grid: Grid::square(grid.nx() >> border_level).expect("a coarser grid than the finest"),
             finest: grid,

@@ -8,7 +8,6 @@ use std::sync::Arc;
 
 use rc_quadtree::BLOCK_CELLS;
 
-use super::gap_operator::GapOperator;
 use super::operator::{Hierarchy, Real, Tables, TileOperator};
 use crate::descent::{BlockLayout, BlockOperator};
 use crate::problem::power_of_two_near;
@@ -32,10 +31,9 @@ impl<'a, T: Real + Into<f64>> ScaledOperator<'a, T> {
         let reference = if hierarchy.elements().cover_cell() { mean } else { 0.0 };
         Self { operator: TileOperator::new(hierarchy), tables, reference, unit: power_of_two_near(size) }
     }
-}
 
-impl<T: Real + Into<f64>> GapOperator for ScaledOperator<'_, T> {
-    fn base_displacement(&self) -> Vec<f64> {
+    /// See [`TileOperator::base_displacement`]; in λ.
+    pub(super) fn base_displacement(&self) -> Vec<f64> {
         self.operator.base_displacement().iter().map(|&v| self.unit * v.into()).collect()
     }
 }

@@ -90,7 +90,7 @@ impl Descent<'_> {
                 let sums = self.refresh();
                 let mut outcome = self.outcome(&sums, false);
                 // The goal may be below what has to be certified.
-                outcome.converged = goal.certify.is_some_and(|bound| bound.is_met_by(&outcome.certificate));
+                outcome.converged = goal.certify.is_some_and(|bound| outcome.certificate.meets(bound));
                 return outcome;
             }
             sums = self.round(history.steps, &sums);

@@ -29,7 +29,7 @@ impl Procedure<'_> {
         let residuals = Residuals { least_gap, mean_gap, mean_pressure, elastic_energy };
         let certificate = Certificate::new(self.problem, &residuals);
         let pressure = self.mesh.to_field(&self.pressure, self.info.grid)?;
-        let converged = self.settled && bound.is_met_by(&certificate) && pressure.min() >= 0.0;
+        let converged = self.settled && certificate.meets(bound) && pressure.min() >= 0.0;
         Ok(GridSolution {
             pressure,
             gap: self.displacement,

@@ -145,7 +145,7 @@ mod tests {
             for control in CONTROLS {
                 let expected = solve_uniform(&heights, &Love, control, &params, &Silent).expect("a solution");
                 let found = solve_on_grid(&heights, &operator, control, &params, &Silent).expect("a solution");
-                assert!(params.bound.is_met_by(&found.info.certificate));
+                assert!(found.info.certificate.meets(params.bound));
                 let error = difference(&found.pressure, &expected.pressure);
                 assert!(error < 1e-6, "{nx} x {ny}, {control:?}: the pressure differs by {error:e}");
                 let penetration = found.info.penetration / expected.info.penetration - 1.0;

@@ -48,7 +48,7 @@ pub(super) fn solve(
         return None;
     }
     let solution = certified(heights, kernel, problem, pressure, &mut inverse);
-    bound.is_met_by(&solution.info.certificate).then_some(solution)
+    solution.info.certificate.meets(bound).then_some(solution)
 }
 
 /// A pressure p ≥ 0 has no Fourier coefficient above its mean. Full contact prescribes them, and the longest waves are the

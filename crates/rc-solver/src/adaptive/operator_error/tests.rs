@@ -210,7 +210,7 @@ fn an_audit_by_fourier_transform_finds_no_more_than_is_claimed() {
     for_each_scene(&[ENERGY, RELATIVE].concat(), |name, scene, audited| {
         let claimed = audited.solved.level.outcome.certificate;
         let found = audited.certificate(scene.map);
-        assert!(scene.bound.is_met_by(&claimed), "{name}: not converged: {claimed}");
+        assert!(claimed.meets(scene.bound), "{name}: not converged: {claimed}");
         assert!(found.penetration <= claimed.penetration, "{name}: {found}, claimed {claimed}");
         assert!(found.energy <= claimed.energy, "{name}: {found}, claimed {claimed}");
         let base = Grid::square(scene.base).expect("a grid");
