@@ -18,9 +18,6 @@ const MIRROR_ERROR: f64 = 1e-8;
 /// Rounding of an operator in double precision, relative to its maximum displacement.
 const ROUNDING: f64 = 1e-12;
 
-/// Two works that should be the same may differ by this part of the tolerance: most of what an operator does to one element cancels in them.
-const SYMMETRY: f64 = 0.1;
-
 /// Refuses a kernel whose symbol on `grid` is not that of an elastic half-space: finite, zero at the zero wave and positive elsewhere,
 /// symmetric in kx and ky on a square grid, and the same each time it is asked.
 ///
@@ -112,7 +109,8 @@ impl Probes {
             return Err(self.why_sums_differ(operator, tolerance, difference));
         }
         let (ab, ba) = (product(a, of_b), product(b, of_a));
-        if (ab - ba).abs() > SYMMETRY * tolerance * (product(a, a) * product(of_b, of_b)).sqrt() {
+        // The product of vectors without a pattern is smaller than that of their sizes, by √n; so is what noise adds to it.
+        if (ab - ba).abs() > tolerance * (product(a, a) * product(of_b, of_b) / n).sqrt() {
             return Err(OperatorFault::Symmetry { ab, ba });
         }
         // A displacement of zero mean does no work on the mean of a pressure.
@@ -215,16 +213,22 @@ mod tests {
         assert!(matches!(found(noisy), Some(OperatorFault::Changes { .. })));
         let unsymmetric: Fault = |v, _, _| {
             let (first, rest) = v.split_at_mut(60);
-            first.iter_mut().for_each(|v| *v *= 1.01);
+            for v in first.iter_mut() {
+                *v *= 1.01;
+            }
             let mean = (first.iter().sum::<f64>() + rest.iter().sum::<f64>()) / 120.0;
             first.iter_mut().chain(rest).for_each(|v| *v -= mean);
         };
         assert!(matches!(found(unsymmetric), Some(OperatorFault::Symmetry { .. })));
         assert!(matches!(found(|v, _, _| v.iter_mut().for_each(|v| *v = -*v)), Some(OperatorFault::Energy { .. })));
         let cubed: Fault = |v, _, size| {
-            v.iter_mut().for_each(|v| *v += 1e-3 * *v * *v * *v / (size * size));
+            for v in v.iter_mut() {
+                *v += 1e-3 * v.powi(3) / (size * size);
+            }
             let mean = v.iter().sum::<f64>() / v.len() as f64;
-            v.iter_mut().for_each(|v| *v -= mean);
+            for v in v.iter_mut() {
+                *v -= mean;
+            }
         };
         assert!(matches!(found(cubed), Some(OperatorFault::Linearity { .. })));
         assert!(matches!(found(|v, _, _| v.fill(0.0)), Some(OperatorFault::Energy { .. })));
@@ -288,7 +292,8 @@ mod tests {
         check_kernel(&Spectral, small).expect("sound");
         for wave in (0..17 * 17).map(|i| (i % 17, i / 17)) {
             for value in [f64::NAN, f64::INFINITY, -1.0, 0.0, 7.0] {
-                let is_sound = (wave == (0, 0) && value == 0.0) || (wave.0 == wave.1 && wave.0 > 0 && value == 7.0);
+                let is_sound = (wave == (0, 0) && value == 0.0)
+                    || (wave.0 == wave.1 && wave.0 > 0 && value > 6.0 && value.is_finite());
                 let error = check_kernel(&OneWave(wave, value), small).err();
                 assert_eq!(error.is_none(), is_sound, "{wave:?}: {value}");
             }

@@ -110,6 +110,7 @@ fn further() -> Vec<MeshScene> {
     scenes
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "as the other groups")]
 pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     let mut rows = Rows::of("meshes");
     let further = if preset == Preset::Full { further() } else { Vec::new() };
