@@ -143,14 +143,16 @@ fn numbers_of(solved: &Solved) -> [f64; 11] {
 /// Scenes of a group.
 pub(crate) type Group = (&'static str, Vec<Scene>);
 
-/// What is counted of [`Work`], as it is called in the table: ordinary scenes, slow scenes, the median.
-type Count = ([&'static str; 3], fn(&Work) -> f64);
+/// What is counted of [`Work`], as it is called in the table: ordinary scenes, slow scenes, the median; and what the bound of a scene is
+/// multiplied by. Coarser grids of a slow scene are slow too: 1.06 was measured.
+type Count = ([&'static str; 3], fn(&Work) -> f64, f64);
 
 const COUNTS: [Count; 2] = [
-    (["iterations", "iterations of slow scenes", "median iterations"], |work| work.finest),
+    (["iterations", "iterations of slow scenes", "median iterations"], |work| work.finest, 1.0),
     (
         ["iterations of all levels", "iterations of all levels of slow scenes", "median iterations of all levels"],
         |work| work.all,
+        1.1,
     ),
 ];
 
@@ -165,7 +167,7 @@ pub(crate) fn check(groups: &[Group]) -> Vec<Row> {
         }
         rows.extend(of_group.finish());
     }
-    for ([ordinary, slow, ordinary_median], count) in COUNTS {
+    for ([ordinary, slow, ordinary_median], count, allowance) in COUNTS {
         let (mut medians, mut of_all) = (Vec::<(Method, f64)>::new(), Rows::of("iterations"));
         for (group, scene, work) in &counted {
             let known = medians.iter().find(|(method, _)| *method == scene.method).map(|(_, median)| *median);
@@ -178,7 +180,7 @@ pub(crate) fn check(groups: &[Group]) -> Vec<Row> {
             });
             let mut row = Rows::of(group);
             let property = if scene.iteration_factor > ITERATION_FACTOR { slow } else { ordinary };
-            row.at_most(&scene.name, property, count(work), scene.iteration_factor * median);
+            row.at_most(&scene.name, property, count(work), allowance * scene.iteration_factor * median);
             rows.extend(row.finish());
         }
         rows.extend(of_all.finish());

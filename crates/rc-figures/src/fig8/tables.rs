@@ -55,7 +55,8 @@ impl Fig8 {
             .row("first bin over peak by elements", Rule::absolute(5e-3))
             .row("slope from 0.01 to 0.1 of the peak stress", Rule::absolute(2e-3))
             .row("slope from 0.004 to 0.04", Rule::absolute(2e-3))
-            .row("slope by elements from 0.01 to 0.1", Rule::absolute(5e-3));
+            // Elements at edges that flip, in the lowest bins: 5e-3 were measured between sets of vector instructions.
+            .row("slope by elements from 0.01 to 0.1", Rule::absolute(1e-2));
         self.refined.iter().fold(table, |table, (side, _)| {
             let rule = [Rule::absolute(4e-3), Rule::absolute(2e-2), Rule::absolute(1e-2)];
             refined_names(*side).iter().zip(rule).fold(table, |table, (name, rule)| table.row(name, rule))
