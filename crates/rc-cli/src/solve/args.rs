@@ -26,7 +26,7 @@ pub(crate) struct SolveArgs {
 
 const SOLVE_HELP: &str = "\
 What neither scene file nor flags give has the value of the embedded example: cell 0.01 m, E = 0.4 GPa, ν = 0.45, N = 64, \
-H = 0.8, rms 13 µm, seed 1, kernel love, tolerance 1e-6. A height map never gets its cell or material: with --heights, give --cell, \
+H = 0.8, rms 13 µm, seed 1, kernel love, energy tolerance 0.01. A height map never gets its cell or material: with --heights, give --cell, \
 unless the file has a size, and --e-star, or --young and --poisson. The control is never assumed: give --pressure or \
 --penetration, exactly one. A flag replaces its alternatives in the scene file: --penetration its pressure, --heights its random surface. \
 Relative paths in a scene file start at its folder.
