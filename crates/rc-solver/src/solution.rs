@@ -56,7 +56,7 @@ pub struct SolveInfo {
     /// Residuals from a fresh application of L on the returned pressure.
     pub certificate: Certificate,
     /// [`Certificate::energy`] of the gap as the operator computed it, without the bound on the error of the operator: what the iteration has
-    /// left. Area and pressure are off by at most its square.
+    /// left. Area and rms pressure were measured to be off by less than its square.
     pub iteration_error: f64,
     /// Mean pressure σ0, in E*.
     pub mean_pressure: f64,

@@ -157,7 +157,7 @@ const OF_MAP: f64 = 3e-2;
 /// The energy error at which the error of the iteration is well below that of the discretisation: 0.06 (m/8)^(-3/4) with m elements per
 /// shortest wave, from 3e-3 to 0.15; 0.03 for a height map (`None`).
 ///
-/// Area and rms pressure are off by at most the square of the energy error that is aimed at, and errors of the discretisation fall
+/// Area and rms pressure were measured to be off by less than the square of the energy error that is aimed at, and errors of the discretisation fall
 /// about as the power 1.5 of the element side, which the model follows. Test `auto_stops_well_below_the_error_of_the_grid` of the command
 /// line compares the two.
 fn auto_tolerance(elements_per_wave: Option<f64>) -> f64 {

@@ -58,7 +58,7 @@ pub(super) fn solve_finest_level(
         let reached;
         (level, reached) = level.improve(evaluation, round > 0, observer);
         evaluation = level.evaluate_whole_cell();
-        // Without a step it is the error of the operator that is too large.
+        // A later round without a step: the iteration has reached its goal, so the rest is the error of the operator.
         let is_stuck = !reached || round > 0 && level.info.iterations == before;
         if is_stuck || evaluation.outcome.certificate.meets(setup.params.bound) {
             break;
@@ -81,6 +81,8 @@ struct Evaluation {
     outcome: Outcome,
     scale: PressureScale,
     error: OperatorError,
+    /// What pressure and gap were multiplied by after the operator was applied.
+    scaling: f64,
 }
 
 /// Tables of the operators.
@@ -107,8 +109,8 @@ impl TablesForGaps {
     }
 }
 
-/// The greatest |v| of elements with these heights and gaps, c in `g = v - h + c` being `offset`.
-fn greatest_displacement(heights: &[f64], gap: &[f64], offset: f64) -> f64 {
+/// The maximum |v| of elements with these heights and gaps, c in `g = v - h + c` being `offset`.
+fn maximum_displacement(heights: &[f64], gap: &[f64], offset: f64) -> f64 {
     let pairs = heights.par_iter().zip(gap);
     pairs.map(|(h, g)| (g + (h - offset)).abs()).reduce(|| 0.0, f64::max)
 }
@@ -139,8 +141,8 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         Self { setup, tables, candidates, current: start, info }
     }
 
-    /// Improves the pressure on the elements near contact, with fresh gaps of the operator for certificates if `certify`: what that of
-    /// descents could do, one round has done. Returns whether the tolerance was reached there.
+    /// Improves the pressure on the elements near contact, with fresh gaps of the operator for certificates if `certify`: the first round
+    /// has used that of descents. Returns whether the tolerance was reached there.
     fn improve(self, evaluation: Evaluation, certify: bool, observer: &dyn Observer) -> (Self, bool) {
         let Self { setup, mut tables, candidates, current, mut info } = self;
         let near = NearContact::choose(&candidates, &current.elements, &evaluation, setup);
@@ -182,19 +184,20 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let mut operator = setup.operator(hierarchy, tables, current);
         let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
         let mut sums = fresh_gap(&mut *operator, &setup.problem, values);
-        if let Some(scale) = sums.scale_to_penetration(&setup.problem) {
+        let scaling = sums.scale_to_penetration(&setup.problem);
+        if let Some(scale) = scaling {
             let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
             sums = rescale(scale, &blocks_of(elements), &setup.problem, values);
         }
         let mut outcome = Outcome::new(&setup.problem, &sums, info.grid.len() as f64, true);
-        let size = greatest_displacement(heights, &gap, setup.problem.offset());
+        let size = maximum_displacement(heights, &gap, setup.problem.offset());
         let n_levels = setup.n_levels(info.grid);
         let scale = PressureScale::new((elements, &pressure), n_levels, size, outcome.energy_length());
         // Descents leave room for the error of the operator that certifies.
         let error = OperatorError::of(setup.certified().split(), &scale);
         outcome.iteration_error = outcome.certificate.energy;
         outcome.certificate = error.added_to(outcome.certificate, setup.problem.h_range);
-        (Evaluation { pressure, gap, outcome, scale, error }, operator)
+        (Evaluation { pressure, gap, outcome, scale, error, scaling: scaling.unwrap_or(1.0) }, operator)
     }
 
     /// The gap on all candidates.
@@ -220,9 +223,11 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
     /// The elements of the candidates, divided where they are too coarse, and tiles of the coarsest level wherever contact is possible.
     fn with_more_candidates(&self, evaluation: &Evaluation, operator: &dyn GapOperator) -> Elements {
         let (setup, elements) = (self.setup, &self.candidates.elements);
-        let Evaluation { pressure, gap, outcome, error, .. } = evaluation;
+        let Evaluation { pressure, gap, outcome, error, scaling, .. } = evaluation;
+        let mut values = operator.base_displacement();
+        values.iter_mut().for_each(|v| *v *= scaling);
         let smooth = SmoothDisplacement {
-            values: &operator.base_displacement(),
+            values: &values,
             curvature: setup.certified().remainder_curvature() * maximum(pressure),
             error: EXCLUSION_MARGIN * error.displacement,
         };

@@ -142,7 +142,8 @@ impl<'a> AdaptiveProblem<'a> {
         let certificate = solved.level.outcome.certificate;
         let better = self.certifying_split(solved.splits.certified, &solved.scale);
         // A pressure may be rougher than its start.
-        if better == solved.splits.certified || certificate.meets(self.params.solve.bound) {
+        let is_done = certificate.meets(self.params.solve.bound) || observer.should_stop();
+        if better == solved.splits.certified || is_done {
             return solved;
         }
         let splits = Splits { certified: better, ..solved.splits };

@@ -35,7 +35,7 @@ impl PressureScale {
     }
 }
 
-/// A bound on the error of an operator under one pressure.
+/// The error of an operator under one pressure at most, as measured with a margin ([`GapSplit`]).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OperatorError {
     /// Of the displacement of any element, in λ.
@@ -59,9 +59,15 @@ impl OperatorError {
         Certificate {
             complementarity: certificate.complementarity + relative,
             penetration: certificate.penetration + relative,
-            energy: (certificate.energy.powi(2) + self.overlap).sqrt(),
+            energy: self.added_to_energy(certificate.energy),
             load: certificate.load,
         }
+    }
+
+    /// G grows by the overlap times σ0, and U, half the mean of p v, may be off by half the displacement's error times σ0.
+    fn added_to_energy(self, energy: f64) -> f64 {
+        let part_of_u = 0.25 * self.overlap;
+        if part_of_u < 1.0 { ((energy.powi(2) + self.overlap) / (1.0 - part_of_u)).sqrt() } else { f64::INFINITY }
     }
 
     /// What the bound leaves to the computed gap, in units of the measure's length; 0 when the error takes all of it.
@@ -75,17 +81,17 @@ impl OperatorError {
 
     /// What an iteration has to reach for the bound to be met. Where the error leaves less than that, a better operator will certify.
     pub(super) fn goal(self, bound: ErrorBound, problem: &Problem) -> f64 {
-        self.remaining(bound, problem).max(least_remaining(bound)).min(bound.aim())
+        self.remaining(bound, problem).max(minimum_remaining(bound)).min(bound.aim())
     }
 
     /// Whether the computed gap has enough of the bound to itself.
     fn is_small(self, bound: ErrorBound, problem: &Problem) -> bool {
-        self.remaining(bound, problem) >= least_remaining(bound)
+        self.remaining(bound, problem) >= minimum_remaining(bound)
     }
 }
 
 /// What an operator has to leave to the computed gap.
-fn least_remaining(bound: ErrorBound) -> f64 {
+fn minimum_remaining(bound: ErrorBound) -> f64 {
     bound.aim().min((1.0 - LARGEST_PART) * bound.overlap())
 }
 
@@ -96,6 +102,10 @@ pub(super) fn certifying_split(
     bound: ErrorBound,
     problem: &Problem,
 ) -> GapSplit {
+    // A coarser level that has lost its contact tells nothing; there is a second look after the solve.
+    if scale.energy_length.is_nan() || scale.energy_length <= 0.0 {
+        return split;
+    }
     let is_small = |split: &GapSplit| OperatorError::of(*split, scale).is_small(bound, problem);
     let mut candidates = std::iter::successors(Some(split), |split| split.finer());
     candidates.find(is_small).unwrap_or_else(GapSplit::most_accurate)

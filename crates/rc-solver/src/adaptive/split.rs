@@ -14,9 +14,8 @@ pub(super) struct GapSplit {
 }
 
 /// Errors that splits are chosen by ([`SplitParams::for_error`]), and bounds on their errors of displacements, smooth and rough: fastest
-/// first. On solved contacts the sum of both was 0.1 to 0.8 of what the bounds allow.
-const SPLITS: [(f64, [f64; 2]); 4] =
-    [(2e-3, [4e-3, 5e-2]), (1e-6, [1e-6, 4e-5]), (2e-9, [1e-8, 1.2e-7]), (1e-10, [2e-10, 6e-9])];
+/// first. On solved contacts the error was 0.1 to 0.8 of the sum of both bounds.
+const SPLITS: [(f64, [f64; 2]); 3] = [(1e-6, [1e-6, 4e-5]), (2e-9, [1e-8, 1.2e-7]), (1e-10, [2e-10, 6e-9])];
 
 /// Cutoffs up to this one are accurate enough for single precision only.
 const SINGLE_PRECISION_CUTOFF: usize = 8;

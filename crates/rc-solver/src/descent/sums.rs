@@ -96,7 +96,12 @@ impl GapSums {
         let mean_gap = self.mean_gap();
         let length = problem.reference_length(self.work(), self.pressure);
         // What is exact is so in any unit, even where the pressure is uniform and U is zero.
-        let ratio = |overlap: f64| if overlap == 0.0 { 0.0 } else { overlap / length };
+        let ratio = |overlap: f64| match overlap {
+            ..=0.0 => 0.0,
+            _ if length > 0.0 => overlap / length,
+            // U of a pressure that is all rounding says nothing.
+            _ => f64::NAN,
+        };
         let penetration = ratio(mean_gap - self.min_gap);
         positive_part(match problem.control {
             Control::MeanPressure(_) => penetration,

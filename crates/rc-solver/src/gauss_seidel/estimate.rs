@@ -4,7 +4,7 @@ use rc_core::{Field, Silent};
 use rc_quadtree::paper::{Mask, MeshKind, MeshParams, count};
 
 use super::{GaussSeidelError, GaussSeidelParams, HalfSpace};
-use crate::uniform::{coarsen, solve_uniform};
+use crate::uniform::{coarsen_without_pits, solve_uniform};
 use crate::{Control, IterationParams, SolveInfo};
 
 /// Largest element, in finest elements: beyond it coarsening saves nothing and heights at centres would need more levels.
@@ -59,7 +59,7 @@ pub(super) fn estimate(
     control: Control,
     params: &GaussSeidelParams,
 ) -> Result<Estimate, GaussSeidelError> {
-    let coarse = coarsen(heights, ESTIMATE_SIDE / 2);
+    let coarse = coarsen_without_pits(heights, ESTIMATE_SIDE / 2);
     let coarse = std::iter::once(heights).chain(&coarse).find(|field| field.grid().nx() <= ESTIMATE_SIDE);
     // A grid that cannot be halved is its own coarse grid.
     let coarse = coarse.unwrap_or(heights);

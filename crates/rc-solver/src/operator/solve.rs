@@ -10,8 +10,8 @@ use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
 use crate::stiffness::stiffness_of;
 use crate::{Certificate, Control, IterationParams, ProblemError};
 
-/// How far an operator may be from that of a half-space, relative to its displacements, over the overlap that a solve aims at: U/σ0, which
-/// overlaps are measured by, may be a tenth of the displacements.
+/// Largest fault of an operator, relative to its displacements, over the overlap that a solve aims at. A tenth, because U/σ0 may be a tenth of the
+/// displacements.
 const FAULT_PER_AIM: f64 = 0.1;
 
 /// Solves the contact problem on the grid of `heights` (in λ, any mean) with `operator` for v = L p, whatever it is: symmetric,

@@ -47,7 +47,7 @@ pub(super) fn solve(
     if least.into_iter().fold(f64::INFINITY, f64::min) < 0.0 {
         return None;
     }
-    let solution = certified(heights, kernel, problem, pressure, &mut inverse);
+    let solution = certified(heights, kernel, problem, (pressure, mean_pressure), &mut inverse);
     solution.info.certificate.meets(bound).then_some(solution)
 }
 
@@ -89,7 +89,7 @@ fn certified(
     heights: &Field,
     kernel: &dyn Kernel,
     problem: &Problem,
-    pressure: Field,
+    (pressure, mean_pressure): (Field, f64),
     inverse: &mut SymbolOperator,
 ) -> GridSolution {
     let grid = heights.grid();
@@ -98,7 +98,8 @@ fn certified(
     rc_core::Operator::apply(&operator, pressure.values(), gap.values_mut(), &mut []);
     let (mut weighted, mut total, mut work) = (0.0, 0.0, 0.0);
     for ((g, &p), &h) in gap.values_mut().iter_mut().zip(pressure.values()).zip(heights.values()) {
-        work += p * *g;
+        // The mean pressure does no work on a displacement of zero mean but that of its rounding.
+        work += (p - mean_pressure) * *g;
         *g -= h;
         weighted += p * *g;
         total += p;

@@ -12,10 +12,16 @@ const SMALLEST_WIDTH: usize = 8;
 
 /// The heights on coarser and coarser grids, finest of them first, each with half the elements per side, as long as that
 /// leaves whole elements, at least `smallest_side` of them along the side with more; a long cell is in need of coarser grids too.
-///
-/// Heights below the [`floor`] count as that.
 pub(crate) fn coarsen(heights: &Field, smallest_side: usize) -> Vec<Field> {
-    let floor = floor(heights);
+    coarsen_above(heights, smallest_side, f64::NEG_INFINITY)
+}
+
+/// The same for starts on finer grids: heights below the [`floor`] count as that.
+pub(crate) fn coarsen_without_pits(heights: &Field, smallest_side: usize) -> Vec<Field> {
+    coarsen_above(heights, smallest_side, floor(heights))
+}
+
+fn coarsen_above(heights: &Field, smallest_side: usize, floor: f64) -> Vec<Field> {
     let mut levels: Vec<Field> = Vec::new();
     loop {
         let finer = levels.last().unwrap_or(heights);
@@ -37,16 +43,17 @@ const SAMPLES: usize = 1 << 14;
 const FLOOR_DEPTH: f64 = 5.0;
 
 /// What only pits are below: interpolation next to a deep pit overshoots, and a summit that is not there would carry the whole load of a
-/// coarse grid.
+/// coarse grid. On a plateau, whose quartile is its top, nothing is.
 fn floor(heights: &Field) -> f64 {
     let values = heights.values();
     // An odd step, which does not stay in one column of a grid whose sides are even.
     let step = (values.len() / SAMPLES) | 1;
     let mut samples: Vec<f64> = values.iter().copied().step_by(step).collect();
-    let highest = samples.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let highest = heights.max();
     let quarter = samples.len() / 4;
     let (_, quartile, _) = samples.select_nth_unstable_by(quarter, f64::total_cmp);
-    highest - FLOOR_DEPTH * (highest - *quartile)
+    let depth = highest - *quartile;
+    if depth > 0.0 { highest - FLOOR_DEPTH * depth } else { f64::NEG_INFINITY }
 }
 
 fn halve(finer: &Field, grid: Grid, floor: f64) -> Field {
@@ -98,10 +105,18 @@ mod tests {
         let wave = |at: DVec2| (2.0 * PI * at.x).cos() * (2.0 * PI * at.y).cos();
         let mut heights = Field::from_fn(grid, wave);
         heights.values_mut()[7 * 128 + 40] -= 1e6;
-        let coarse = coarsen(&heights, 32);
+        let coarse = coarsen_without_pits(&heights, 32);
         for level in &coarse {
             assert!(level.max() < 1.6, "a summit of {} on {}", level.max(), level.grid());
         }
+    }
+
+    #[test]
+    fn a_grooved_plateau_keeps_its_grooves() {
+        let grooved = |at: DVec2| if (8.0 * at.x).fract() < 0.2 { -1.0 } else { 0.0 };
+        let heights = Field::from_fn(Grid::square(128).expect("a grid"), grooved);
+        let coarse = coarsen_without_pits(&heights, 32);
+        assert!(coarse[0].min() < -0.5, "grooves of {}", coarse[0].min());
     }
 
     #[test]

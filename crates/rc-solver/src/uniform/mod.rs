@@ -7,7 +7,7 @@ mod prolongation;
 
 use rc_core::{Field, Kernel, Observer};
 
-pub(crate) use self::levels::coarsen;
+pub(crate) use self::levels::{coarsen, coarsen_without_pits};
 pub(crate) use self::nested_grids::{FinestGrid, NestedGrids};
 pub(crate) use self::prolongation::{edge_function, edge_function_outside};
 use crate::problem::Problem;

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use rc_core::{Event, Field, Kernel, Observer};
 
-use super::levels::coarsen;
+use super::levels::coarsen_without_pits;
 use super::prolongation::prolong;
 use crate::IterationParams;
 use crate::descent::{Descent, DescentObserver, Goal, Outcome, Start, uniform_operators};
@@ -36,7 +36,7 @@ pub(crate) struct FinestGrid<'a> {
 impl<'a> NestedGrids<'a> {
     /// Solves on coarser grids and then on that of `heights`.
     pub(crate) fn solve(&self, heights: &'a Field) -> FinestGrid<'a> {
-        let coarser = coarsen(heights, SMALLEST_SIDE);
+        let coarser = coarsen_without_pits(heights, SMALLEST_SIDE);
         let n_levels = coarser.len() + 1 + self.n_above;
         let (mut levels, mut start, mut values) = (Vec::with_capacity(n_levels), Start::Nothing, None);
         for heights in coarser.iter().rev() {

@@ -21,7 +21,7 @@ use rc_quadtree::{TILE, put_tile};
 
 use crate::ProblemError;
 use crate::problem::HeightStatistics;
-use crate::uniform::coarsen;
+use crate::uniform::coarsen_without_pits;
 use bounds::Bounds;
 use interpolation::{Interpolation, smallest_side};
 
@@ -76,7 +76,8 @@ impl<'a> Heights<'a> {
         let n_refinements = n_refinements(base_side, finest_side);
         let extremes = HeightStatistics::of(&map)?;
         let bounds = Bounds::of_map(&map, &extremes);
-        let mut grids: Vec<Cow<'a, Field>> = coarsen(&map, base_side).into_iter().map(Cow::Owned).collect();
+        let mut grids: Vec<Cow<'a, Field>> =
+            coarsen_without_pits(&map, base_side).into_iter().map(Cow::Owned).collect();
         grids.reverse();
         grids.push(map);
         debug_assert_eq!(grids.len(), n_refinements as usize + 1);

@@ -72,9 +72,9 @@ fn energy_error(split: GapSplit, base: usize, side: usize, rng: &mut impl Rng) -
 }
 
 #[test]
-fn in_the_energy_norm_the_operator_is_off_by_less_than_any_tolerance() {
+fn the_error_in_the_energy_norm_does_not_grow_with_the_levels() {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
-    for (error, bound) in [(2e-3, 8e-2), (1e-6, 4.5e-5), (2e-9, 4e-7), (1e-10, 4e-9)] {
+    for (error, bound) in [(1e-6, 4.5e-5), (2e-9, 4e-7), (1e-10, 4e-9)] {
         let split = GapSplit::for_error(error).expect("a split");
         for (base, side) in [(64, 128), (32, 128), (32, 256)] {
             let found = energy_error(split, base, side, &mut rng);
