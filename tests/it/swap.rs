@@ -150,7 +150,9 @@ impl Operator for Lopsided {
         let half = displacement.len() / 2;
         displacement[..half].iter_mut().for_each(|v| *v *= 1.0 + self.1);
         let mean = displacement.iter().sum::<f64>() / displacement.len() as f64;
-        displacement.iter_mut().for_each(|v| *v -= mean);
+        for v in displacement {
+            *v -= mean;
+        }
     }
 }
 

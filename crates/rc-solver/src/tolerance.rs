@@ -1,15 +1,12 @@
 //! When a solve is good enough: the tolerance that users give, and the bound on the certificate that follows from it.
 
-#[cfg(doc)]
-use crate::Certificate;
-
 /// How accurately a contact problem is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tolerance {
-    /// Bound on [`Certificate::energy`], a number between [`Tolerance::SMALLEST_ENERGY`] and 1. It does not depend on the height range: a
+    /// Bound on [`crate::Certificate::energy`], a number between [`Tolerance::SMALLEST_ENERGY`] and 1. It does not depend on the height range: a
     /// pit, a raised surface and a light load are solved as accurately as any other scene.
     Energy(f64),
-    /// Bound on [`Certificate::complementarity`] and [`Certificate::penetration`], relative to the peak-to-valley height, a number between
+    /// Bound on [`crate::Certificate::complementarity`] and [`crate::Certificate::penetration`], relative to the peak-to-valley height, a number between
     /// [`Tolerance::SMALLEST`] and 1. Other programs mean this by a tolerance. One deep point in the heights loosens it.
     Relative(f64),
     /// Well below the error of the discretisation: an energy error of 0.06 (m/8)^(-3/4) for m elements per shortest wave, 0.03 for a height
@@ -42,9 +39,9 @@ impl Tolerance {
 /// What a certificate has to meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ErrorBound {
-    /// On [`Certificate::energy`].
+    /// On [`crate::Certificate::energy`].
     Energy(f64),
-    /// On [`Certificate::complementarity`] and [`Certificate::penetration`].
+    /// On [`crate::Certificate::complementarity`] and [`crate::Certificate::penetration`].
     Relative(f64),
 }
 

@@ -225,7 +225,9 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let (setup, elements) = (self.setup, &self.candidates.elements);
         let Evaluation { pressure, gap, outcome, error, scaling, .. } = evaluation;
         let mut values = operator.base_displacement();
-        values.iter_mut().for_each(|v| *v *= scaling);
+        for v in &mut values {
+            *v *= scaling;
+        }
         let smooth = SmoothDisplacement {
             values: &values,
             curvature: setup.certified().remainder_curvature() * maximum(pressure),

@@ -34,8 +34,8 @@ impl GapSplit {
 
     /// The next more accurate one.
     pub(super) fn finer(self) -> Option<Self> {
-        let splits = SPLITS.into_iter().filter_map(|(error, _)| Self::for_error(error));
-        splits.skip_while(|split| split.params.cutoff <= self.params.cutoff).next()
+        let mut splits = SPLITS.into_iter().filter_map(|(error, _)| Self::for_error(error));
+        splits.find(|split| split.params.cutoff > self.params.cutoff)
     }
 
     /// Whether single precision is enough for it.

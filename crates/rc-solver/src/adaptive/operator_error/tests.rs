@@ -66,7 +66,9 @@ fn energy_error(split: GapSplit, base: usize, side: usize, rng: &mut impl Rng) -
         }
         vector = applied(&mut root, &difference);
         norm = vector.iter().map(|v| v * v).sum::<f64>().sqrt();
-        vector.iter_mut().for_each(|v| *v /= norm);
+        for v in &mut vector {
+            *v /= norm;
+        }
     }
     norm
 }
@@ -104,7 +106,9 @@ fn rough(side: usize, waves: i32, hurst: f64, rng: &mut impl Rng) -> Field {
         }
     }
     let factor = 1e-3 / heights.rms();
-    heights.values_mut().iter_mut().for_each(|h| *h *= factor);
+    for h in heights.values_mut() {
+        *h *= factor;
+    }
     heights
 }
 
