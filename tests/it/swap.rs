@@ -91,10 +91,10 @@ fn a_half_space_that_answers_nan_later_is_an_error_and_no_contact() {
     }
 }
 
-/// A half-space twice as soft as that of another operator.
-struct TwiceAsSoft(UniformOperator);
+/// An operator whose displacements are changed.
+struct Changed<F>(UniformOperator, F);
 
-impl Operator for TwiceAsSoft {
+impl<F: Fn(&mut [f64]) + Sync> Operator for Changed<F> {
     fn n_elements(&self) -> usize {
         self.0.n_elements()
     }
@@ -105,9 +105,14 @@ impl Operator for TwiceAsSoft {
 
     fn apply(&self, pressure: &[f64], displacement: &mut [f64], scratch: &mut [f64]) {
         self.0.apply(pressure, displacement, scratch);
-        for v in displacement {
-            *v *= 2.0;
-        }
+        (self.1)(displacement);
+    }
+}
+
+/// Multiplies every value.
+fn scale(values: &mut [f64], factor: f64) {
+    for value in values {
+        *value *= factor;
     }
 }
 
@@ -115,7 +120,8 @@ impl Operator for TwiceAsSoft {
 #[test]
 fn an_own_operator_drives_the_solver() {
     let heights = heights(64);
-    let soft = TwiceAsSoft(UniformOperator::new(heights.grid(), &Love));
+    // A half-space twice as soft.
+    let soft = Changed(UniformOperator::new(heights.grid(), &Love), |v: &mut [f64]| scale(v, 2.0));
     rc_core::testing::check_operator(&soft);
     let params = SolveParams::to_tolerance(1e-8);
     let own = solve_with_operator(&heights, &soft, Control::MeanPressure(5e-4), &params, &Silent).expect("solvable");
@@ -133,34 +139,20 @@ fn an_own_operator_drives_the_solver() {
     assert!(matches!(refused, Err(SolveError::Problem(ProblemError::Operator { .. }))));
 }
 
-/// An operator that answers a part more for the elements of the first half.
-struct Lopsided(UniformOperator, f64);
-
-impl Operator for Lopsided {
-    fn n_elements(&self) -> usize {
-        self.0.n_elements()
-    }
-
-    fn scratch_len(&self) -> usize {
-        self.0.scratch_len()
-    }
-
-    fn apply(&self, pressure: &[f64], displacement: &mut [f64], scratch: &mut [f64]) {
-        self.0.apply(pressure, displacement, scratch);
-        let half = displacement.len() / 2;
-        displacement[..half].iter_mut().for_each(|v| *v *= 1.0 + self.1);
-        let mean = displacement.iter().sum::<f64>() / displacement.len() as f64;
-        for v in displacement {
-            *v -= mean;
-        }
-    }
-}
-
 #[test]
 fn an_operator_of_no_half_space_is_refused_before_the_solve() {
     let heights = heights(64);
     let refused = |part: f64| {
-        let operator = Lopsided(UniformOperator::new(heights.grid(), &Love), part);
+        // A part more for the elements of the first half.
+        let lopsided = |v: &mut [f64]| {
+            let (half, n) = (v.len() / 2, v.len() as f64);
+            scale(&mut v[..half], 1.0 + part);
+            let mean = v.iter().sum::<f64>() / n;
+            for value in v {
+                *value -= mean;
+            }
+        };
+        let operator = Changed(UniformOperator::new(heights.grid(), &Love), lopsided);
         let load = Control::MeanPressure(1e-3);
         solve_with_operator(&heights, &operator, load, &SolveParams::default(), &Silent).err()
     };
