@@ -30,7 +30,8 @@ pub(crate) struct Audit {
     pub(crate) penetration: f64,
     /// max |g| / H over elements with at least [`PRESSED`] of the maximum pressure.
     pub(crate) open: f64,
-    /// √(G/U), with G = mean of p (g - min g), and U = mean of p v / 2: a bound of the pressure's error in the energy norm.
+    /// √(G/U), with G = mean of p (g - min g), and the mean of p times the error of Δ where that is prescribed, and U = mean of p v / 2: a bound
+    /// of the pressure's error in the energy norm.
     pub(crate) energy: f64,
     /// H times the mean pressure over U.
     range_per_work: f64,
@@ -64,13 +65,13 @@ impl Audit {
         let approach: f64 = mean_of(&mut gaps.iter().copied());
         let displacement: f64 = mean_of(&mut gaps.iter().zip(heights.values()).map(|(g, h)| g - (top - h)));
         let min_gap = gaps.iter().copied().fold(f64::INFINITY, f64::min);
-        let load = match control {
-            Control::MeanPressure(wanted) => (total / p.len() as f64 / wanted - 1.0).abs(),
-            Control::Penetration(wanted) => (approach / wanted - 1.0).abs(),
+        let (load, off) = match control {
+            Control::MeanPressure(wanted) => ((total / p.len() as f64 / wanted - 1.0).abs(), 0.0),
+            Control::Penetration(wanted) => ((approach / wanted - 1.0).abs(), (approach - wanted).abs()),
         };
         let pressed = p.iter().zip(gaps).filter(|(p, _)| **p > PRESSED * greatest);
         // Both per pressure.
-        let (gap, work) = ((approach - min_gap).max(0.0), 0.5 * displacement);
+        let (gap, work) = ((approach - min_gap).max(0.0) + off, 0.5 * displacement);
         Self {
             n_bad: p.iter().filter(|p| !(p.is_finite() && **p >= 0.0)).count(),
             load,

@@ -194,7 +194,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let n_levels = setup.n_levels(info.grid);
         let scale = PressureScale::new((elements, &pressure), n_levels, size, outcome.energy_length());
         // Descents leave room for the error of the operator that certifies.
-        let error = OperatorError::of(setup.certified().split(), &scale);
+        let error = OperatorError::of(setup.certified().split(), &scale, setup.problem.control);
         outcome.iteration_error = outcome.certificate.energy;
         outcome.certificate = error.added_to(outcome.certificate, setup.problem.h_range);
         (Evaluation { pressure, gap, outcome, scale, error, scaling: scaling.unwrap_or(1.0) }, operator)

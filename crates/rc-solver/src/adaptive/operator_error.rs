@@ -6,7 +6,7 @@ use super::roughness::roughness;
 use super::split::GapSplit;
 use crate::problem::Problem;
 use crate::tolerance::Measure;
-use crate::{Certificate, ErrorBound};
+use crate::{Certificate, Control, ErrorBound};
 
 /// The part of a relative bound that the error of an operator may take; with more, the next better operator certifies.
 const LARGEST_PART: f64 = 0.5;
@@ -40,17 +40,24 @@ impl PressureScale {
 pub(super) struct OperatorError {
     /// Of the displacement of any element, in λ.
     pub(super) displacement: f64,
-    /// Of an overlap, a difference of two gaps, in units of U/σ0: the length of [`Measure::Energy`].
-    overlap: f64,
+    /// Of an energy: G/σ0 of [`Certificate::energy`], in units of U/σ0, the length of [`Measure::Energy`].
+    energy: f64,
+    /// Of the elastic energy, relative.
+    elastic_energy: f64,
 }
 
 impl OperatorError {
     /// Under pressures of this scale.
-    pub(super) fn of(split: GapSplit, scale: &PressureScale) -> Self {
+    pub(super) fn of(split: GapSplit, scale: &PressureScale, control: Control) -> Self {
         let PressureScale { n_levels, displacement, roughness, energy_length } = *scale;
         let displacement = split.error * n_levels as f64 * displacement + split.error_of_roughness * roughness;
-        // The mean of the gap and its minimum may be off to opposite sides.
-        Self { displacement, overlap: 2.0 * displacement / energy_length }
+        let relative = displacement / energy_length;
+        // The mean of the gap and its minimum may be off to opposite sides; under penetration control G has the mean once more.
+        let of_gap = match control {
+            Control::MeanPressure(_) => 2.0,
+            Control::Penetration(_) => 3.0,
+        };
+        Self { displacement, energy: of_gap * relative, elastic_energy: 0.5 * relative }
     }
 
     /// The certificate for the exact operator, from that of a gap that was computed with this error.
@@ -64,17 +71,17 @@ impl OperatorError {
         }
     }
 
-    /// G grows by the overlap times σ0, and U, half the mean of p v, may be off by half the displacement's error times σ0.
+    /// √(G/U), both as far off as they may be.
     fn added_to_energy(self, energy: f64) -> f64 {
-        let part_of_u = 0.25 * self.overlap;
-        if part_of_u < 1.0 { ((energy.powi(2) + self.overlap) / (1.0 - part_of_u)).sqrt() } else { f64::INFINITY }
+        let least = 1.0 - self.elastic_energy;
+        if least > 0.0 { ((energy.powi(2) + self.energy) / least).sqrt() } else { f64::INFINITY }
     }
 
     /// What the bound leaves to the computed gap, in units of the measure's length; 0 when the error takes all of it.
     pub(super) fn remaining(self, bound: ErrorBound, problem: &Problem) -> f64 {
         let error = match bound.measure() {
             Measure::HeightRange => 2.0 * self.displacement / problem.h_range,
-            Measure::Energy => self.overlap,
+            Measure::Energy => self.energy,
         };
         (bound.overlap() - error).max(0.0)
     }
@@ -106,7 +113,7 @@ pub(super) fn certifying_split(
     if scale.energy_length.is_nan() || scale.energy_length <= 0.0 {
         return split;
     }
-    let is_small = |split: &GapSplit| OperatorError::of(*split, scale).is_small(bound, problem);
+    let is_small = |split: &GapSplit| OperatorError::of(*split, scale, problem.control).is_small(bound, problem);
     let mut candidates = std::iter::successors(Some(split), |split| split.finer());
     candidates.find(is_small).unwrap_or_else(GapSplit::most_accurate)
 }
