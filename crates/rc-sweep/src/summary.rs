@@ -150,7 +150,7 @@ impl Summary {
             rms_pressure_error: observables.rms_pressure_error.map(|error| units.pascals(error)),
             max_pressure: units.pascals(observables.max_pressure),
             mean_gap: units.metres(observables.mean_gap),
-            mean_gap_error: observables.mean_gap_error.map(|error| units.metres(error)),
+            mean_gap_error: Some(units.metres(observables.mean_gap_error)),
             contact_stiffness: Some(stiffness).filter(|value| value.is_finite()),
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),

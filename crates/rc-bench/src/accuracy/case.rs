@@ -90,7 +90,7 @@ impl Case {
         [
             over(area.fraction, self.limit.area, Some(area.error)),
             over(rms_pressure_corrected, self.limit.rms_pressure, rms_pressure_error),
-            over(mean_gap, self.limit.mean_gap, mean_gap_error),
+            over(mean_gap, self.limit.mean_gap, Some(mean_gap_error)),
         ]
     }
 }

@@ -130,7 +130,7 @@ impl Stratum {
         let found = solve(kernel, Grid::new(self.side() / self.ratio, self.side())?, &params)?;
         let limits = [limit.area.fraction, smooth.rms_pressure_corrected, smooth.mean_gap];
         let values = [found.area.fraction, found.rms_pressure_corrected, found.mean_gap];
-        let bars = [Some(found.area.error), found.rms_pressure_error, found.mean_gap_error];
+        let bars = [Some(found.area.error), found.rms_pressure_error, Some(found.mean_gap_error)];
         Ok(Bars {
             stratum: *self,
             errors: std::array::from_fn(|i| values[i] / limits[i] - 1.0),

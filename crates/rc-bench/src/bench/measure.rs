@@ -118,7 +118,7 @@ pub(super) fn measure(scene: &Scene, setting: &Setting) -> Result<Outcome> {
         rms_pressure: observables.rms_pressure_corrected,
         rms_pressure_bar: observables.rms_pressure_error,
         mean_gap: observables.mean_gap,
-        mean_gap_bar: observables.mean_gap_error,
+        mean_gap_bar: Some(observables.mean_gap_error),
         cells_evaluated: Some(cells_evaluated),
     })
 }

@@ -35,10 +35,9 @@ fn field(place: &Place, name: &str) -> Field {
 
 /// Counted area, rms pressure and penetration of two solutions of one problem.
 fn assert_agree(adaptive: &Value, uniform: &Value) {
-    // Both are certified to 1e-6 of the height range; areas differ by the few elements on the edge that this leaves open.
-    for (key, tolerance) in
-        [("area_fraction_cells", 2e-3), ("area_fraction", 2e-3), ("rms_pressure", 2e-3), ("penetration", 5e-4)]
-    {
+    // Both are solved to an energy error below 1e-2, and the observables are off by less than its square each.
+    for key in ["area_fraction_cells", "area_fraction", "rms_pressure", "penetration"] {
+        let tolerance = 2e-4;
         assert_close(key, number(adaptive, key), number(uniform, key), tolerance);
     }
 }

@@ -12,7 +12,6 @@ use super::element_blocks::blocks_of;
 use super::operator::{Hierarchy, Prepared, TileCorrections};
 use super::scaled_operator::ScaledOperator;
 use crate::descent::{BlockOperator, read_blocks, write_blocks};
-use crate::observables::{corrected, mean_gap_error, rms_pressure_error};
 use crate::solution::Status;
 use crate::stiffness::stiffness_of;
 use crate::{ContactArea, ContactElement, Observables, SolveInfo};
@@ -163,17 +162,8 @@ impl AdaptiveSolution {
     /// Evaluates the observables, as [`Observables::of`] does for a solution on a uniform grid.
     #[must_use]
     pub(crate) fn observables(&self) -> Observables {
-        let rms_pressure = rms_pressure(&self.elements, &self.pressure);
-        Observables {
-            area: self.area,
-            rms_pressure,
-            rms_pressure_corrected: corrected(rms_pressure, &self.area),
-            rms_pressure_error: rms_pressure_error(&self.info, &self.area, rms_pressure),
-            max_pressure: self.pressure.par_iter().copied().reduce(|| 0.0, f64::max),
-            mean_gap: self.info.penetration_full_contact - self.info.penetration,
-            mean_gap_error: Some(mean_gap_error(&self.info, &self.area, rms_pressure)),
-            elastic_energy: self.info.elastic_energy,
-        }
+        let max_pressure = self.pressure.par_iter().copied().reduce(|| 0.0, f64::max);
+        Observables::new(&self.info, self.area, rms_pressure(&self.elements, &self.pressure), max_pressure)
     }
 
     /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact. Takes a few

@@ -46,6 +46,10 @@ pub(crate) struct Rim {
     pub(crate) area: f64,
     /// The same with the squared pressure inside each edge, in E*².
     pub(crate) squares: f64,
+    /// Edges that scatter on their own: those in a row that have the same place between elements are one.
+    pub(crate) independent_edges: f64,
+    /// Σ of (side over smallest side)² over the sizes of larger elements in contact.
+    pub(crate) larger: f64,
     /// Side of the smallest elements, in λ.
     pub(crate) side: f64,
     /// Size of [`EdgeBias::per_square`]: how far the kernel's elements are from the half-space at the edges.
@@ -101,7 +105,14 @@ impl ContactArea {
     pub(crate) fn from_sums(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> Self {
         let (smallest, sides) = (1.0 / finest.len() as f64, finest.spacing().into());
         let [width, height]: [f64; 2] = sides;
-        let rim = Rim { area: 0.0, squares: 0.0, side: (width * height).sqrt(), kernel: bias.per_square.abs() };
+        let rim = Rim {
+            area: 0.0,
+            squares: 0.0,
+            independent_edges: 0.0,
+            larger: 0.0,
+            side: (width * height).sqrt(),
+            kernel: bias.per_square.abs(),
+        };
         let mut area = Self {
             cells: 0.0,
             perimeter_edges: 0,
@@ -123,13 +134,18 @@ impl ContactArea {
                 0.5 * shift - bias.per_edge * edges - bias.per_contact * contacts - bias.per_deviation * deviation;
             area.cells += size * counted;
             area.fraction += size * (counted + shift);
-            scatter += (SCATTER * size).powi(2) * edges * edges_that_scatter_together(sums);
+            let together = edges_that_scatter_together(sums);
+            scatter += (SCATTER * size).powi(2) * edges * together;
+            area.rim.independent_edges += edges / together;
             excess_diagonals += size * (sums.diagonals as f64 - DIAGONALS * edges);
             area.euler_number += contacts;
             area.gap_deviation += deviation;
             area.missing_square += size * bias.per_square * sums.squares;
             area.rim.area += size * edges;
             area.rim.squares += size * sums.squares;
+            if coarser > 0 && sums.n_contact > 0 {
+                area.rim.larger += f64::from(1_u32 << (2 * coarser));
+            }
             area.perimeter_edges += sums.edges << coarser;
             area.perimeter += length(sums, sides.map(|side| side * f64::from(1_u32 << coarser)));
         }
@@ -141,8 +157,7 @@ impl ContactArea {
 
     /// With the error that the tolerance of the solve leaves; `energy_error` is √(G/U), the relative error of the pressure in the
     /// energy norm, below a third. The area's is of its square.
-    #[must_use]
-    pub fn with_energy_error(self, energy_error: f64) -> Self {
+    pub(crate) fn with_energy_error(self, energy_error: f64) -> Self {
         Self { error: self.error.hypot(ERROR_OF_SOLVE * energy_error.powi(2) * self.fraction), ..self }
     }
 

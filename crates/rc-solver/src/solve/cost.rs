@@ -4,14 +4,14 @@ use super::choice::uniform_bytes;
 use super::plan::{ChosenMethod, Plan};
 use crate::ErrorBound;
 
-/// Processor seconds for each cell of the adaptive method at a tolerance of 1e-6 or more: measured 1.1e-6 to 1.5e-6 for cells that are
+/// Processor seconds for each cell of the adaptive method at the default tolerance: measured 1.1e-6 to 1.5e-6 for cells that are
 /// evaluated, of which the estimate counts 0.55 to 0.9 (512² to 4096², 0.9 % to 20 % contact, H = 0.3 and 0.8).
 const SECONDS_PER_ADAPTIVE_CELL: f64 = 1.7e-6;
 
 /// The same for each element of the uniform grid: measured 0.6e-6 to 1.0e-6 (512² and 2048², 7 % to 71 % contact).
 const SECONDS_PER_UNIFORM_ELEMENT: f64 = 0.85e-6;
 
-/// Work added by each factor of ten in the tolerance below 1e-6: measured a factor 2.9 for 1e-9.
+/// Work added by each factor of ten in a relative tolerance below 1e-6: measured a factor 2.9 for 1e-9.
 const WORK_PER_DECADE: f64 = 0.63;
 
 /// An estimate of what a solve takes, within a factor of about two. `None` is what is not known before the solve.

@@ -189,12 +189,9 @@ impl<'a> Solution<'a> {
     /// Area, pressure, gap, energy.
     #[must_use]
     pub fn observables(&self) -> &Observables {
-        self.observables.get_or_init(|| {
-            let observables = match &self.pressures {
-                Pressures::Grid { solution, response } => Observables::of(solution, response.edge_bias()),
-                Pressures::Tiles { solution, .. } => solution.observables(),
-            };
-            observables.with_energy_error(self.info().iteration_error)
+        self.observables.get_or_init(|| match &self.pressures {
+            Pressures::Grid { solution, response } => Observables::of(solution, response.edge_bias()),
+            Pressures::Tiles { solution, .. } => solution.observables(),
         })
     }
 
