@@ -3,9 +3,7 @@
 use rc_core::{Field, Kernel};
 use rc_fft::SymbolTable;
 
-use crate::descent::{
-    BlockLayout, ConjugateDirections, PreconditionedOperator, Slope, UniformCorrections, write_blocks,
-};
+use crate::descent::{BlockLayout, ConjugateDirections, PreconditionedOperator, Slope, UniformCorrections};
 use crate::parallel;
 use crate::problem::power_of_two_near;
 
@@ -52,7 +50,7 @@ pub(crate) fn stiffness_of(pressure: &[f64], n: f64, operator: &mut dyn Precondi
             operator.set_mean(stiffness);
         }
         let length = (-sums.slope / sums.curvature) as f32;
-        take_step(length, &directions, &mut residual, operator, &layout);
+        take_step(length, &mut directions, &mut residual, &layout);
         beta = directions.precondition(operator, &layout).with_displacement / sums.curvature;
     }
     stiffness
@@ -67,15 +65,10 @@ fn against(pressure: &[f64]) -> Vec<f32> {
 }
 
 /// Adds a multiple of the direction to x: writes the residual and keeps it.
-fn take_step(
-    length: f32,
-    directions: &ConjugateDirections,
-    residual: &mut [f32],
-    operator: &mut dyn PreconditionedOperator,
-    layout: &BlockLayout,
-) {
-    let blocks = residual.chunks_mut(layout.len()).zip(directions.steps(layout.len()));
-    write_blocks(operator, blocks, |(residual, step), written| step.update_residual(length, residual, written));
+fn take_step(length: f32, directions: &mut ConjugateDirections, residual: &mut [f32], layout: &BlockLayout) {
+    let (steps, written) = directions.steps_and_residuals(layout.len());
+    let blocks = residual.chunks_mut(layout.len()).zip(steps.zip(written));
+    parallel::for_each(blocks, |(residual, (step, written))| step.update_residual(length, residual, written));
 }
 
 #[cfg(test)]

@@ -17,8 +17,8 @@ use super::operator_error::{OperatorError, PressureScale};
 use super::prolongation::MeshStart;
 use super::setup::{Setup, maximum};
 use crate::descent::{
-    BlockOperator, Descent, DescentObserver, ElementValues, Goal, LevelOperators, Outcome, Start, fresh_gap, rescale,
-    scale_to_load, write_blocks,
+    BlockOperator, Descent, DescentObserver, ElementValues, GapSums, Goal, LevelOperators, Outcome, Start, fresh_gap,
+    rescale, scale_to_load, write_blocks,
 };
 use crate::solution::LevelInfo;
 
@@ -183,11 +183,11 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let hierarchy = setup.hierarchy(elements, prepared.reach());
         let mut operator = setup.operator(hierarchy, tables, current);
         let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
-        let mut sums = fresh_gap(&mut *operator, &setup.problem, values);
+        let mut sums = fresh_gap(&mut *operator, &setup.problem, values, GapSums::empty(f64::INFINITY));
         let scaling = sums.scale_to_penetration(&setup.problem);
         if let Some(scale) = scaling {
             let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
-            sums = rescale(scale, &blocks_of(elements), &setup.problem, values);
+            sums = rescale(scale, &blocks_of(elements), &setup.problem, values, GapSums::empty(f64::INFINITY));
         }
         let mut outcome = Outcome::new(&setup.problem, &sums, info.grid.len() as f64, true);
         let size = maximum_displacement(heights, &gap, setup.problem.offset());

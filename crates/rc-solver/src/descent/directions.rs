@@ -3,6 +3,7 @@
 use super::layout::BlockLayout;
 use super::operators::{PreconditionedOperator, read_blocks, write_blocks};
 use super::rows::{self, ConjugateStep};
+use crate::parallel;
 
 /// Directions of preconditioned conjugate gradients on the elements of one mesh, in single precision.
 pub(crate) struct ConjugateDirections {
@@ -13,7 +14,7 @@ pub(crate) struct ConjugateDirections {
     /// Its displacement u = L t.
     pub(super) displacement: Vec<f32>,
     /// The preconditioned residual z.
-    preconditioned: Vec<f32>,
+    pub(super) preconditioned: Vec<f32>,
 }
 
 /// Sums over the active elements.
@@ -57,14 +58,21 @@ impl ConjugateDirections {
         Self { direction: zeros(), displacement: zeros(), active, preconditioned }
     }
 
-    /// The present direction, its displacement and its elements, block by block.
-    pub(crate) fn steps(&self, len: usize) -> impl Iterator<Item = ConjugateStep<'_>> {
-        let direction = self.direction.chunks(len).zip(self.displacement.chunks(len));
-        direction.zip(self.active.chunks(len)).map(|((direction, displacement), active)| ConjugateStep {
-            direction,
-            displacement,
-            active,
-        })
+    /// The present direction with its displacement, and the elements that it changes, for the next ones to be chosen.
+    pub(super) fn steps_and_active(&mut self, len: usize) -> impl Iterator<Item = ((&[f32], &[f32]), &mut [bool])> {
+        let steps = self.direction.chunks(len).zip(self.displacement.chunks(len));
+        steps.zip(self.active.chunks_mut(len))
+    }
+
+    /// The present direction, its displacement and its elements, with the place of the residual that is preconditioned next.
+    pub(crate) fn steps_and_residuals(
+        &mut self,
+        len: usize,
+    ) -> (impl Iterator<Item = ConjugateStep<'_>>, impl Iterator<Item = &mut [f32]>) {
+        let Self { active, direction, displacement, preconditioned } = self;
+        let along = direction.chunks(len).zip(displacement.chunks(len)).zip(active.chunks(len));
+        let steps = along.map(|((direction, displacement), active)| ConjugateStep { direction, displacement, active });
+        (steps, preconditioned.chunks_mut(len))
     }
 
     /// Applies the preconditioner to the residual that was written.
@@ -73,12 +81,11 @@ impl ConjugateDirections {
         operator: &mut dyn PreconditionedOperator,
         layout: &BlockLayout,
     ) -> PreconditionedSums {
-        operator.precondition();
+        operator.precondition(&self.active, &mut self.preconditioned);
         let len = layout.len();
-        let blocks =
-            self.displacement.chunks(len).zip(self.active.chunks(len)).zip(self.preconditioned.chunks_mut(len));
-        let sums = read_blocks(operator, blocks, |((displacement, active), kept), read| {
-            rows::keep_preconditioned(read, displacement, active, kept)
+        let blocks = self.displacement.chunks(len).zip(self.active.chunks(len)).zip(self.preconditioned.chunks(len));
+        let sums = parallel::map(blocks, |((displacement, active), preconditioned)| {
+            rows::sums_of_preconditioned(preconditioned, displacement, active)
         });
         let [preconditioned, with_displacement, displacement] = layout.total(sums);
         PreconditionedSums { preconditioned, with_displacement, displacement }

@@ -13,20 +13,27 @@ pub(crate) fn fresh_gap(
     operator: &mut (impl BlockOperator<f64> + ?Sized),
     problem: &Problem,
     elements: ElementValues<'_>,
+    empty: GapSums,
 ) -> GapSums {
     let (layout, offset) = (operator.layout(), problem.offset());
     write_blocks(operator, elements.pressure.chunks(layout.len()), |p, values| values.copy_from_slice(p));
     operator.apply();
     let sums = read_blocks(operator, elements.blocks(layout.len()), |block, displacement| {
-        block.fresh_gap(displacement, offset)
+        block.fresh_gap(displacement, offset, empty)
     });
     GapSums::total(&layout, sums)
 }
 
 /// Multiplies the pressure by `scale`; the gap follows, since v is linear in p.
-pub(crate) fn rescale(scale: f64, layout: &BlockLayout, problem: &Problem, elements: ElementValues<'_>) -> GapSums {
+pub(crate) fn rescale(
+    scale: f64,
+    layout: &BlockLayout,
+    problem: &Problem,
+    elements: ElementValues<'_>,
+    empty: GapSums,
+) -> GapSums {
     let offset = problem.offset();
-    GapSums::total(layout, parallel::map(elements.blocks(layout.len()), |block| block.rescale(scale, offset)))
+    GapSums::total(layout, parallel::map(elements.blocks(layout.len()), |block| block.rescale(scale, offset, empty)))
 }
 
 /// Mean of the pressure over a cell of `n_cell` of the smallest elements.

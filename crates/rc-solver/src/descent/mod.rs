@@ -10,6 +10,7 @@
 //! corrections are relative to the height range H, so no scene underflows.
 
 mod directions;
+mod extension;
 mod gap;
 mod layout;
 mod mean;
@@ -33,4 +34,5 @@ pub(crate) use outcome::Outcome;
 pub(crate) use rows::ElementValues;
 pub(crate) use run::{DescentObserver, Goal};
 pub(crate) use state::{Descent, Start};
+pub(crate) use sums::GapSums;
 pub(crate) use uniform::{SymbolOperator, UniformCorrections, read_rows, uniform_operators, write_rows};

@@ -22,8 +22,9 @@ pub(crate) trait BlockOperator<T> {
 
 /// L for corrections of a pressure, with an approximate inverse of it.
 pub(crate) trait PreconditionedOperator: BlockOperator<f32> {
-    /// Applies the approximate inverse of L: what is written is a displacement, and what is read a pressure.
-    fn precondition(&mut self);
+    /// Applies the approximate inverse of L among the `active` elements to their displacements, which are zero elsewhere: what is left in
+    /// their places is a pressure.
+    fn precondition(&mut self, active: &[bool], values: &mut [f32]);
 
     /// Sets the eigenvalue of the approximate inverse for constant vectors.
     fn set_mean(&mut self, eigenvalue: f64);

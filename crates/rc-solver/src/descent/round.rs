@@ -1,4 +1,4 @@
-//! One round: conjugate-gradient steps on the active elements, then the projection.
+//! One round: conjugate-gradient steps on the active elements, then the projection, which chooses the next ones.
 
 use super::directions::Slope;
 use super::operators::{read_blocks, write_blocks};
@@ -6,6 +6,7 @@ use super::rows::{ElementValues, Gradient};
 use super::state::Descent;
 use super::sums::GapSums;
 use crate::Control;
+use crate::parallel;
 
 /// The active elements of a round.
 struct ActiveSet {
@@ -36,14 +37,16 @@ impl Descent<'_> {
         *sums
     }
 
-    /// Chooses the active elements and writes their residual.
+    /// Writes the residual of the active elements.
     fn choose_active(&mut self) -> ActiveSet {
         let (len, gradient) = (self.layout.len(), self.gradient());
+        let chosen = std::mem::replace(&mut self.has_active, true);
         let directions = &mut self.directions;
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
-        let blocks = elements.blocks(len).zip(directions.direction.chunks(len).zip(directions.active.chunks_mut(len)));
-        let sums = write_blocks(&mut *self.operators.corrections, blocks, |(block, (direction, active)), residual| {
-            block.first_residual(&gradient, direction, active, residual)
+        let residuals = directions.active.chunks_mut(len).zip(directions.preconditioned.chunks_mut(len));
+        let blocks = elements.blocks(len).zip(directions.direction.chunks(len).zip(residuals));
+        let sums = parallel::map(blocks, |(block, (direction, (active, residual)))| {
+            block.first_residual(&gradient, direction, (active, chosen), residual)
         });
         let [n, direction] = self.layout.total(sums);
         let fixed_load = matches!(self.problem.control, Control::MeanPressure(_));
@@ -77,19 +80,20 @@ impl Descent<'_> {
     fn take_step(&mut self, length: f64) {
         let (len, gradient) = (self.layout.len(), self.gradient());
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
-        let blocks = elements.blocks(len).zip(self.directions.steps(len));
-        write_blocks(&mut *self.operators.corrections, blocks, |(block, step), residual| {
+        let (steps, residuals) = self.directions.steps_and_residuals(len);
+        parallel::for_each(elements.blocks(len).zip(steps.zip(residuals)), |(block, (step, residual))| {
             block.next_residual(length, &step, &gradient, residual);
         });
     }
 
     /// Takes a step, clips tensile pressures and restores the load or the penetration.
     fn project(&mut self, length: f64) -> GapSums {
-        let (len, offset, range) = (self.layout.len(), self.problem.offset(), self.problem.h_range);
+        let (len, gradient) = (self.layout.len(), self.gradient());
+        let (offset, range) = (self.problem.offset(), self.problem.h_range);
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
-        let blocks = elements.blocks(len).zip(self.directions.steps(len));
-        let sums = write_blocks(&mut *self.operators.corrections, blocks, |(block, step), added| {
-            block.clip(length, &step, range.recip(), added)
+        let blocks = elements.blocks(len).zip(self.directions.steps_and_active(len));
+        let sums = write_blocks(&mut *self.operators.corrections, blocks, |(block, (step, active)), added| {
+            block.clip(length, step, active, &gradient, added)
         });
         let [pressure, clipped] = self.layout.total(sums);
         let scale = match self.problem.control {
@@ -102,11 +106,13 @@ impl Descent<'_> {
         }
         self.info.operator_applications += 1;
         self.operators.corrections.apply();
+        let empty = GapSums::empty(self.pressed);
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         let sums = read_blocks(&*self.operators.corrections, elements.blocks(len), |block, displacement| {
-            block.add_clipped(displacement, range, scale, offset)
+            block.add_clipped(displacement, range, scale, offset, empty)
         });
         let sums = GapSums::total(&self.layout, sums);
+        self.pressed = sums.pressed();
         self.meet_penetration(sums)
     }
 

@@ -21,8 +21,7 @@ impl ElementValues<'_> {
     }
 
     /// `g = L p - h + c` from a fresh `displacement = L p`; c is `offset`.
-    pub(super) fn fresh_gap(self, displacement: &[f64], offset: f64) -> GapSums {
-        let mut sums = GapSums::EMPTY;
+    pub(super) fn fresh_gap(self, displacement: &[f64], offset: f64, mut sums: GapSums) -> GapSums {
         for (((&v, &h), &mut p), g) in displacement.iter().zip(self.heights).zip(self.pressure).zip(self.gap) {
             let overlap = h - offset;
             *g = v - overlap;
@@ -32,8 +31,7 @@ impl ElementValues<'_> {
     }
 
     /// Multiplies the pressure by `scale`; the gap follows, since v is linear in p.
-    pub(super) fn rescale(self, scale: f64, offset: f64) -> GapSums {
-        let mut sums = GapSums::EMPTY;
+    pub(super) fn rescale(self, scale: f64, offset: f64, mut sums: GapSums) -> GapSums {
         for ((&h, p), g) in self.heights.iter().zip(self.pressure).zip(self.gap) {
             let overlap = h - offset;
             *p *= scale;
@@ -44,8 +42,14 @@ impl ElementValues<'_> {
     }
 
     /// Adds the displacement of the pressures that clipping has added, in units of `range`, then multiplies the pressure by `scale`.
-    pub(super) fn add_clipped(self, displacement: &[f32], range: f64, scale: f64, offset: f64) -> GapSums {
-        let mut sums = GapSums::EMPTY;
+    pub(super) fn add_clipped(
+        self,
+        displacement: &[f32],
+        range: f64,
+        scale: f64,
+        offset: f64,
+        mut sums: GapSums,
+    ) -> GapSums {
         for (((&v, &h), p), g) in displacement.iter().zip(self.heights).zip(self.pressure).zip(self.gap) {
             let overlap = h - offset;
             *p *= scale;
@@ -55,19 +59,19 @@ impl ElementValues<'_> {
         sums
     }
 
-    /// Chooses the elements to iterate on, those that press or penetrate, and writes their residual. Returns their number and the sum of
-    /// the last `direction` over them.
+    /// Writes the residual of the active elements: of those that `active` has, or, where nothing has been `chosen` yet, those that press or
+    /// penetrate. Returns their number and the sum of the last `direction` over them.
     pub(super) fn first_residual(
         self,
         gradient: &Gradient,
         direction: &[f32],
-        active: &mut [bool],
+        (active, chosen): (&mut [bool], bool),
         residual: &mut [f32],
     ) -> [f64; 2] {
         let (mut count, mut sum) = (0_u32, 0.0);
         let elements = self.pressure.iter().zip(self.gap.iter()).zip(direction);
         for (((&p, &g), &t), (active, residual)) in elements.zip(active.iter_mut().zip(residual)) {
-            *active = p > 0.0 || gradient.of_gap(g) < 0.0;
+            *active = p > 0.0 || if chosen { *active } else { gradient.of_gap(g) < 0.0 };
             *residual = if *active { gradient.residual(g) } else { 0.0 };
             if *active {
                 count += 1;
@@ -95,15 +99,24 @@ impl ElementValues<'_> {
     }
 
     /// Takes the step `length` along a direction, clips tensile pressures, and writes what the clipping has added, in units of
-    /// `1 / unit`. Returns Σ p and the number clipped.
-    pub(super) fn clip(self, length: f64, step: &ConjugateStep<'_>, unit: f64, added: &mut [f32]) -> [f64; 2] {
+    /// `1 / unit`. Chooses the next active elements before clipping: those that press, and those outside that penetrate. Returns Σ p and the
+    /// number clipped.
+    pub(super) fn clip(
+        self,
+        length: f64,
+        (direction, displacement): (&[f32], &[f32]),
+        active: &mut [bool],
+        gradient: &Gradient,
+        added: &mut [f32],
+    ) -> [f64; 2] {
         let (mut sum, mut clipped) = (0.0, 0_u32);
-        let along = step.direction.iter().zip(step.displacement);
-        for ((p, g), ((&t, &u), added)) in self.pressure.iter_mut().zip(self.gap).zip(along.zip(added)) {
+        let along = direction.iter().zip(displacement).zip(active);
+        for ((p, g), (((&t, &u), active), added)) in self.pressure.iter_mut().zip(self.gap).zip(along.zip(added)) {
             let stepped = *p + length * f64::from(t);
             *g += length * f64::from(u);
             *p = stepped.max(0.0);
-            *added = ((*p - stepped) * unit) as f32;
+            *active = if *active { stepped > 0.0 } else { gradient.of_gap(*g) < 0.0 };
+            *added = ((*p - stepped) * gradient.unit) as f32;
             sum += *p;
             clipped += u32::from(stepped < 0.0);
         }
@@ -146,11 +159,10 @@ impl Gradient {
     }
 }
 
-/// Keeps the preconditioned residual z. Returns Σ z, Σ z u, Σ u over the active elements, with the displacement u of the last direction.
-pub(super) fn keep_preconditioned(read: &[f32], displacement: &[f32], active: &[bool], kept: &mut [f32]) -> [f64; 3] {
+/// Of the preconditioned residual z: Σ z, Σ z u, Σ u over the active elements, with the displacement u of the last direction.
+pub(super) fn sums_of_preconditioned(preconditioned: &[f32], displacement: &[f32], active: &[bool]) -> [f64; 3] {
     let mut sums = [0.0; 3];
-    kept.copy_from_slice(read);
-    for ((&z, &u), &active) in read.iter().zip(displacement).zip(active) {
+    for ((&z, &u), &active) in preconditioned.iter().zip(displacement).zip(active) {
         if active {
             let (z, u) = (f64::from(z), f64::from(u));
             sums[0] += z;

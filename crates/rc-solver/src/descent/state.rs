@@ -34,8 +34,12 @@ pub(crate) struct Descent<'a> {
     pub(super) directions: ConjugateDirections,
     /// <t, L t> of the last step; infinite when there is no direction to be conjugate to.
     pub(super) curvature: f64,
+    /// The last projection has chosen the active elements.
+    pub(super) has_active: bool,
     /// The gap of elements in contact.
     pub(super) zero_gap: f64,
+    /// Elements of more pressure are well inside contact.
+    pub(super) pressed: f64,
     /// The pressure is a start, and so is the gap.
     pub(super) has_start: bool,
     pub(super) has_gap: bool,
@@ -69,7 +73,9 @@ impl<'a> Descent<'a> {
             gap,
             directions: ConjugateDirections::new(n),
             curvature: f64::INFINITY,
+            has_active: false,
             zero_gap: 0.0,
+            pressed: f64::INFINITY,
             has_start,
             has_gap,
             info: LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 },
@@ -111,13 +117,17 @@ impl<'a> Descent<'a> {
     pub(super) fn fresh_gap(&mut self) -> GapSums {
         self.info.operator_applications += 1;
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
-        fresh_gap(&mut *self.operators.fresh, self.problem, elements)
+        let sums = fresh_gap(&mut *self.operators.fresh, self.problem, elements, GapSums::empty(self.pressed));
+        self.pressed = sums.pressed();
+        sums
     }
 
     /// Multiplies the pressure.
     pub(super) fn rescale(&mut self, scale: f64) -> GapSums {
         let (layout, problem) = (self.layout.clone(), self.problem);
-        let sums = rescale(scale, &layout, problem, self.elements());
+        let empty = GapSums::empty(self.pressed);
+        let sums = rescale(scale, &layout, problem, self.elements(), empty);
+        self.pressed = sums.pressed();
         self.settle(sums)
     }
 

@@ -22,17 +22,38 @@ pub(crate) struct GapSums {
     pub(super) contact_gap: f64,
     /// Σ 1 over p > 0
     pub(super) n_contact: f64,
+    /// max p
+    pub(super) max_pressure: f64,
+    /// max g over p > `pressed`
+    pub(super) max_gap: f64,
+    /// Elements of more pressure are well inside contact.
+    pub(super) pressed: f64,
 }
 
+/// Part of the maximum pressure from which elements are well inside contact, and part of their greatest gap that counts as an overlap.
+const PRESSED: f64 = 0.1;
+const OPEN: f64 = 0.1;
+
 impl GapSums {
-    pub(super) const EMPTY: Self = Self {
-        pressure: 0.0,
-        pressure_gap: 0.0,
-        pressure_overlap: 0.0,
-        min_gap: f64::INFINITY,
-        contact_gap: 0.0,
-        n_contact: 0.0,
-    };
+    /// Of no element. What is `pressed` follows from other sums ([`GapSums::pressed`]); nothing is where it is infinite.
+    pub(crate) fn empty(pressed: f64) -> Self {
+        Self {
+            pressure: 0.0,
+            pressure_gap: 0.0,
+            pressure_overlap: 0.0,
+            min_gap: f64::INFINITY,
+            contact_gap: 0.0,
+            n_contact: 0.0,
+            max_pressure: 0.0,
+            max_gap: f64::NEG_INFINITY,
+            pressed,
+        }
+    }
+
+    /// The pressure from which elements of the next sums are well inside contact.
+    pub(super) fn pressed(&self) -> f64 {
+        PRESSED * self.max_pressure
+    }
 
     pub(super) fn add_element(&mut self, p: f64, g: f64, overlap: f64) {
         self.min_gap = smaller(self.min_gap, g);
@@ -42,12 +63,17 @@ impl GapSums {
             self.pressure_overlap += p * overlap;
             self.contact_gap += g;
             self.n_contact += 1.0;
+            self.max_pressure = self.max_pressure.max(p);
+            if p > self.pressed {
+                self.max_gap = self.max_gap.max(g);
+            }
         }
     }
 
     /// Adds blocks in their order, weighted by the area of their elements.
     pub(super) fn total(layout: &BlockLayout, sums: Vec<Self>) -> Self {
-        sums.into_iter().enumerate().fold(Self::EMPTY, |sum, (i, block)| {
+        let pressed = sums.first().map_or(f64::INFINITY, |block| block.pressed);
+        sums.into_iter().enumerate().fold(Self::empty(pressed), |sum, (i, block)| {
             let area = layout.area(i);
             Self {
                 pressure: sum.pressure + area * block.pressure,
@@ -56,6 +82,9 @@ impl GapSums {
                 min_gap: smaller(sum.min_gap, block.min_gap),
                 contact_gap: sum.contact_gap + area * block.contact_gap,
                 n_contact: sum.n_contact + area * block.n_contact,
+                max_pressure: sum.max_pressure.max(block.max_pressure),
+                max_gap: sum.max_gap.max(block.max_gap),
+                pressed,
             }
         })
     }
@@ -91,7 +120,8 @@ impl GapSums {
         (scale.is_finite() && self.work() > 0.0).then_some(scale)
     }
 
-    /// The deepest overlap, or the mean gap where there should be none, in units of the problem's length.
+    /// The deepest overlap, a tenth of the greatest gap well inside contact, or the mean gap where there should be none, in units of the problem's
+    /// length.
     pub(super) fn error(&self, problem: &Problem) -> f64 {
         let mean_gap = self.mean_gap();
         let length = problem.reference_length(self.work(), self.pressure);
@@ -103,6 +133,9 @@ impl GapSums {
             _ => f64::NAN,
         };
         let penetration = ratio(mean_gap - self.min_gap);
+        // NaN is in the penetration.
+        let penetration =
+            if penetration.is_nan() { penetration } else { penetration.max(ratio(OPEN * (self.max_gap - mean_gap))) };
         positive_part(match problem.control {
             Control::MeanPressure(_) => penetration,
             // NaN in the mean is in both.

@@ -4,8 +4,10 @@ use rayon::prelude::*;
 use rc_core::{Grid, Kernel};
 use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable, TransformReal};
 
+use super::extension::GridExtension;
 use super::layout::BlockLayout;
 use super::operators::{BlockOperator, LevelOperators, PreconditionedOperator};
+use crate::parallel::Tasks;
 
 /// L of `kernel` on `grid`.
 pub(crate) fn uniform_operators(grid: Grid, kernel: &dyn Kernel) -> LevelOperators<'static> {
@@ -21,6 +23,7 @@ pub(crate) struct UniformCorrections {
     convolution: Convolution<f32>,
     displacement: SymbolTable<f32>,
     preconditioner: SymbolTable<f32>,
+    extension: GridExtension,
 }
 
 impl UniformCorrections {
@@ -28,6 +31,7 @@ impl UniformCorrections {
     pub(crate) fn new(grid: Grid, displacement: &SymbolTable<f64>) -> Self {
         Self {
             convolution: Convolution::new(grid),
+            extension: GridExtension::new(grid),
             preconditioner: displacement.inverse(grid).map(|value| value as f32),
             displacement: displacement.map(|value| value as f32),
         }
@@ -53,8 +57,22 @@ impl BlockOperator<f32> for UniformCorrections {
 }
 
 impl PreconditionedOperator for UniformCorrections {
-    fn precondition(&mut self) {
-        self.convolution.apply_symbol(&self.preconditioner);
+    fn precondition(&mut self, active: &[bool], values: &mut [f32]) {
+        let Self { convolution, preconditioner, extension, .. } = self;
+        let nx = convolution.grid().nx();
+        extension.set_active(active);
+        extension.extend(values);
+        let len = BLOCK_ROWS * nx;
+        let filled = &*extension;
+        write_rows(convolution, &|i, rows| {
+            let here = i * len..i * len + rows.len();
+            rows.copy_from_slice(&values[here.clone()]);
+            filled.fill(i * BLOCK_ROWS, &active[here], rows);
+        });
+        convolution.apply_symbol(preconditioner);
+        let tasks = Tasks::new(values.chunks_mut(len));
+        read_rows(convolution, &|i, rows| tasks.run(i, |to: &mut [f32]| to.copy_from_slice(rows)));
+        extension.gather(active, values);
     }
 
     fn set_mean(&mut self, eigenvalue: f64) {

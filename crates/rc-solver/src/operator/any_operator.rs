@@ -105,14 +105,13 @@ impl BlockOperator<f32> for AnyCorrections<'_> {
 }
 
 impl PreconditionedOperator for AnyCorrections<'_> {
-    fn precondition(&mut self) {
-        let AnyOperator { source, result, .. } = &mut self.vectors;
-        let sums = parallel::map(source.chunks(BLOCK), |block| [block.iter().sum()]);
+    fn precondition(&mut self, _active: &[bool], values: &mut [f32]) {
+        let sums = parallel::map(values.chunks(BLOCK), |block| [block.iter().copied().map(f64::from).sum()]);
         let [sum] = BlockLayout::of(BLOCK).total(sums);
-        let shift = (self.mean - self.inverse) * sum / source.len() as f64;
-        parallel::for_each(result.chunks_mut(BLOCK).zip(source.chunks(BLOCK)), |(result, source)| {
-            for (result, &value) in result.iter_mut().zip(source) {
-                *result = self.inverse * value + shift;
+        let shift = (self.mean - self.inverse) * sum / values.len() as f64;
+        parallel::for_each(values.chunks_mut(BLOCK), |block| {
+            for value in block {
+                *value = (self.inverse * f64::from(*value) + shift) as f32;
             }
         });
     }

@@ -6,6 +6,7 @@ use super::hierarchy::Hierarchy;
 use super::tables::Tables;
 use super::tile_operator::TileOperator;
 use crate::descent::{BlockLayout, BlockOperator, PreconditionedOperator};
+use crate::parallel::Tasks;
 
 /// L and its approximate inverse on the tiles of a mesh, in single precision.
 pub(crate) struct TileCorrections<'a> {
@@ -47,9 +48,14 @@ impl BlockOperator<f32> for TileCorrections<'_> {
 }
 
 impl PreconditionedOperator for TileCorrections<'_> {
-    fn precondition(&mut self) {
+    fn precondition(&mut self, _active: &[bool], values: &mut [f32]) {
         self.is_preconditioned = true;
+        let len = self.layout().len();
+        self.operator.write(&|i, block| block.copy_from_slice(&values[i * len..][..block.len()]));
         self.operator.apply(self.preconditioner);
+        let preconditioner = &*self.preconditioner;
+        let tasks = Tasks::new(values.chunks_mut(len));
+        self.operator.read(preconditioner, &|i, block| tasks.run(i, |to: &mut [f32]| to.copy_from_slice(block)));
     }
 
     fn set_mean(&mut self, eigenvalue: f64) {

@@ -1,0 +1,92 @@
+//! The extension on a grid whose elements are active or not.
+
+use rc_core::Grid;
+
+use super::pyramid::{Pyramid, add_squares, rows_per_task};
+use super::rows::{gather, interpolate, means};
+use crate::parallel;
+
+/// F and its transpose on a grid.
+pub(crate) struct GridExtension {
+    grid: Grid,
+    /// Over squares of 2 × 2 elements.
+    pyramid: Pyramid,
+}
+
+impl GridExtension {
+    pub(crate) fn new(grid: Grid) -> Self {
+        let pyramid = Pyramid::new(grid.nx().div_ceil(2), grid.ny().div_ceil(2));
+        Self { grid, pyramid }
+    }
+
+    /// Prepares for these active elements.
+    pub(crate) fn set_active(&mut self, active: &[bool]) {
+        self.for_each_row_of_squares(|[nx, ny], iy, row| {
+            let parts = |y: usize| -> Option<Vec<f32>> {
+                (y < ny).then(|| active[y * nx..][..nx].iter().map(|&active| f32::from(u8::from(active))).collect())
+            };
+            let [first, second] = [parts(2 * iy), parts(2 * iy + 1)];
+            means([first.as_deref(), second.as_deref()], row);
+        });
+        self.pyramid.set_active();
+    }
+
+    /// Prepares [`GridExtension::fill`] for values that are zero where elements are not active.
+    pub(crate) fn extend(&mut self, values: &[f32]) {
+        self.for_each_row_of_squares(|[nx, ny], iy, row| {
+            let part = |y: usize| (y < ny).then(|| &values[y * nx..][..nx]);
+            means([part(2 * iy), part(2 * iy + 1)], row);
+        });
+        self.pyramid.extend();
+    }
+
+    /// F in whole rows of the grid, the first of them `first`: from the values of active elements to u.
+    pub(crate) fn fill(&self, first: usize, active: &[bool], rows: &mut [f32]) {
+        let nx = self.grid.nx();
+        let (mut line, mut around) = (Vec::new(), vec![0.0; nx]);
+        for (iy, (row, active)) in rows.chunks_mut(nx).zip(active.chunks(nx)).enumerate() {
+            interpolate(self.pyramid.values(), nx.div_ceil(2), first + iy, &mut line, &mut around);
+            for ((value, &around), &active) in row.iter_mut().zip(&around).zip(active) {
+                *value = if active { *value } else { around };
+            }
+        }
+    }
+
+    /// Fᵀ: adds to the values of active elements what the others have, and leaves zeros there.
+    pub(crate) fn gather(&mut self, active: &[bool], values: &mut [f32]) {
+        let height = self.grid.ny().div_ceil(2);
+        self.for_each_row_of_squares(|[nx, ny], iy, row| {
+            let add = |weight: f32, y: usize, line: &mut [f32]| {
+                let here = y * nx..(y + 1) * nx;
+                for (sum, (&value, &active)) in line.iter_mut().zip(values[here.clone()].iter().zip(&active[here])) {
+                    *sum += if active { 0.0 } else { weight * value };
+                }
+            };
+            gather([nx, ny], [iy, height], &mut Vec::new(), add, row);
+        });
+        self.pyramid.gather();
+        let (nx, squares) = (self.grid.nx(), self.pyramid.values());
+        let n_rows = rows_per_task(nx);
+        let blocks = values.chunks_mut(nx * n_rows).zip(active.chunks(nx * n_rows)).enumerate();
+        parallel::for_each(blocks, |(i, (rows, active))| {
+            for (iy, (row, active)) in rows.chunks_mut(nx).zip(active.chunks(nx)).enumerate() {
+                add_squares(&squares[(i * n_rows + iy) / 2 * nx.div_ceil(2)..], row);
+                for (value, &active) in row.iter_mut().zip(active) {
+                    *value = if active { *value } else { 0.0 };
+                }
+            }
+        });
+    }
+
+    /// Sets the values of the squares: `work` gets elements along both axes and a row, with its index.
+    fn for_each_row_of_squares(&mut self, work: impl Fn([usize; 2], usize, &mut [f32]) + Sync) {
+        let grid = [self.grid.nx(), self.grid.ny()];
+        let nx = grid[0].div_ceil(2);
+        let n_rows = rows_per_task(nx);
+        parallel::for_each(self.pyramid.values_mut().chunks_mut(nx * n_rows).enumerate(), |(i, rows)| {
+            for (iy, row) in rows.chunks_mut(nx).enumerate() {
+                work(grid, i * n_rows + iy, row);
+            }
+        });
+    }
+}

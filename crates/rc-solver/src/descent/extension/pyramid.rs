@@ -1,0 +1,172 @@
+//! Values on a grid of squares that are active in part, and on coarser and coarser ones.
+
+use super::rows::{gather, interpolate, means};
+use crate::parallel;
+
+/// Values that one task works on, at least.
+const TASK: usize = 4096;
+
+/// What a square takes from its own active elements, with x the part of its elements that are active; it has the rest from larger squares. On the surfaces
+/// named above, x^1, x^(3/4) and x^(1/2) take 5, 4 and 4 iterations, min(4 x, 1) takes 5, and 1 wherever x > 0 takes 20.
+pub(crate) fn own_part(x: f32) -> f32 {
+    x.sqrt() * x.sqrt().sqrt()
+}
+
+/// A square's share of its mean and of what is around it.
+pub(crate) fn shares(x: f32) -> [f32; 2] {
+    let own = own_part(x);
+    // The mean over all elements is x times the mean over the active ones.
+    if x > 0.0 { [own / x, 1.0 - own] } else { [0.0, 1.0] }
+}
+
+/// One grid.
+struct Level {
+    nx: usize,
+    /// What the mean over all elements of a square, active or not, is multiplied by.
+    own: Vec<f32>,
+    /// What the value that larger squares have at its place is multiplied by.
+    rest: Vec<f32>,
+    values: Vec<f32>,
+}
+
+/// F and its transpose between a grid of squares and all coarser ones.
+pub(crate) struct Pyramid {
+    /// Finest first; the last is a single square.
+    levels: Vec<Level>,
+}
+
+impl Pyramid {
+    /// Over a grid of `nx` × `ny` squares.
+    pub(crate) fn new(nx: usize, ny: usize) -> Self {
+        let (mut levels, mut sides) = (Vec::new(), [nx, ny]);
+        loop {
+            let [nx, ny] = sides;
+            let zeros = || vec![0.0; nx * ny];
+            levels.push(Level { nx, own: zeros(), rest: zeros(), values: zeros() });
+            if nx * ny <= 1 {
+                return Self { levels };
+            }
+            sides = sides.map(|n| n.div_ceil(2));
+        }
+    }
+
+    /// The values on the grid, row by row.
+    pub(crate) fn values(&self) -> &[f32] {
+        &self.levels[0].values
+    }
+
+    /// The values on the grid, to be set before the other functions are called.
+    pub(crate) fn values_mut(&mut self) -> &mut [f32] {
+        &mut self.levels[0].values
+    }
+
+    /// Takes the values for the parts of squares that are active.
+    pub(crate) fn set_active(&mut self) {
+        self.take_means();
+        for level in &mut self.levels {
+            let Level { nx, own, rest, values } = level;
+            let len = *nx * rows_per_task(*nx);
+            let blocks = own.chunks_mut(len).zip(rest.chunks_mut(len)).zip(values.chunks(len));
+            parallel::for_each(blocks, |((own, rest), parts)| {
+                for ((own, rest), &part) in own.iter_mut().zip(rest).zip(parts) {
+                    [*own, *rest] = shares(part);
+                }
+            });
+        }
+        if let Some(Level { own, rest, values, .. }) = self.levels.last_mut() {
+            (own[0], rest[0]) = (if values[0] > 0.0 { values[0].recip() } else { 0.0 }, 0.0);
+        }
+    }
+
+    /// F: from the means over all elements of squares, which are zero where they are not active, to u.
+    pub(crate) fn extend(&mut self) {
+        self.take_means();
+        for k in (0..self.levels.len()).rev() {
+            let (finer, coarser) = self.levels.split_at_mut(k + 1);
+            let (Level { nx, own, rest, values }, coarser) = (&mut finer[k], coarser.first());
+            let (nx, n_rows) = (*nx, rows_per_task(*nx));
+            let shares = own.chunks(nx * n_rows).zip(rest.chunks(nx * n_rows));
+            parallel::for_each(values.chunks_mut(nx * n_rows).zip(shares).enumerate(), |(i, (rows, (own, rest)))| {
+                let (mut line, mut around) = (Vec::new(), vec![0.0; nx]);
+                let shares = own.chunks(nx).zip(rest.chunks(nx));
+                for (iy, (row, (own, rest))) in rows.chunks_mut(nx).zip(shares).enumerate() {
+                    if let Some(coarser) = coarser {
+                        interpolate(&coarser.values, coarser.nx, i * n_rows + iy, &mut line, &mut around);
+                    }
+                    for ((value, around), (own, rest)) in row.iter_mut().zip(&around).zip(own.iter().zip(rest)) {
+                        *value = own * *value + rest * around;
+                    }
+                }
+            });
+        }
+    }
+
+    /// Fᵀ, times the number of elements in a square: from values of u to what each active element of a square gets.
+    pub(crate) fn gather(&mut self) {
+        for k in 1..self.levels.len() {
+            let (finer, coarser) = self.levels.split_at_mut(k);
+            let (finer, Level { nx, values, .. }) = (&finer[k - 1], &mut coarser[0]);
+            let (nx, n_rows, height) = (*nx, rows_per_task(*nx), values.len() / *nx);
+            let n_finer = finer.values.len() / finer.nx;
+            parallel::for_each(values.chunks_mut(nx * n_rows).enumerate(), |(i, rows)| {
+                let mut line = Vec::new();
+                for (iy, row) in rows.chunks_mut(nx).enumerate() {
+                    let add = |weight: f32, y: usize, line: &mut [f32]| {
+                        let here = y * finer.nx..(y + 1) * finer.nx;
+                        let parts = finer.values[here.clone()].iter().zip(&finer.rest[here]);
+                        for (sum, (value, rest)) in line.iter_mut().zip(parts) {
+                            *sum += weight * rest * value;
+                        }
+                    };
+                    gather([finer.nx, n_finer], [i * n_rows + iy, height], &mut line, add, row);
+                }
+            });
+        }
+        for k in (0..self.levels.len()).rev() {
+            let (finer, coarser) = self.levels.split_at_mut(k + 1);
+            let (Level { nx, own, values, .. }, coarser) = (&mut finer[k], coarser.first());
+            let (nx, n_rows) = (*nx, rows_per_task(*nx));
+            let blocks = values.chunks_mut(nx * n_rows).zip(own.chunks(nx * n_rows)).enumerate();
+            parallel::for_each(blocks, |(i, (rows, own))| {
+                for (iy, (row, own)) in rows.chunks_mut(nx).zip(own.chunks(nx)).enumerate() {
+                    for (value, own) in row.iter_mut().zip(own) {
+                        *value *= own;
+                    }
+                    if let Some(coarser) = coarser {
+                        add_squares(&coarser.values[(i * n_rows + iy) / 2 * coarser.nx..], row);
+                    }
+                }
+            });
+        }
+    }
+
+    /// Means on all coarser grids.
+    fn take_means(&mut self) {
+        for k in 1..self.levels.len() {
+            let (finer, coarser) = self.levels.split_at_mut(k);
+            let (finer, Level { nx, values, .. }) = (&finer[k - 1], &mut coarser[0]);
+            let n_rows = rows_per_task(*nx);
+            parallel::for_each(values.chunks_mut(*nx * n_rows).enumerate(), |(i, rows)| {
+                for (iy, row) in rows.chunks_mut(*nx).enumerate() {
+                    let first = 2 * (i * n_rows + iy);
+                    let part = |y: usize| finer.values.get(y * finer.nx..(y + 1) * finer.nx);
+                    means([part(first), part(first + 1)], row);
+                }
+            });
+        }
+    }
+}
+
+/// Adds the values of a row of squares to those of their parts.
+pub(super) fn add_squares(squares: &[f32], parts: &mut [f32]) {
+    for (parts, square) in parts.chunks_mut(2).zip(squares) {
+        for part in parts {
+            *part += square;
+        }
+    }
+}
+
+/// Rows of `nx` values that one task works on.
+pub(super) fn rows_per_task(nx: usize) -> usize {
+    TASK.div_ceil(nx)
+}
