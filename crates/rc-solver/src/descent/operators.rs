@@ -22,8 +22,11 @@ pub(crate) trait BlockOperator<T> {
 
 /// L for corrections of a pressure, with an approximate inverse of it.
 pub(crate) trait PreconditionedOperator: BlockOperator<f32> {
-    /// Applies the approximate inverse of L among the `active` elements to their displacements, which are zero elsewhere: what is left in
-    /// their places is a pressure.
+    /// The elements that the approximate inverse is for from now on.
+    fn set_active(&mut self, active: &[bool]);
+
+    /// Applies the approximate inverse of L among the `active` elements, which were set before, to displacements that are zero elsewhere: what is
+    /// left in their places is a pressure.
     fn precondition(&mut self, active: &[bool], values: &mut [f32]);
 
     /// Sets the eigenvalue of the approximate inverse for constant vectors.

@@ -49,6 +49,7 @@ impl Descent<'_> {
             block.first_residual(&gradient, direction, (active, chosen), residual)
         });
         let [n, direction] = self.layout.total(sums);
+        self.operators.corrections.set_active(&self.directions.active);
         let fixed_load = matches!(self.problem.control, Control::MeanPressure(_));
         // A uniform pressure on the whole cell displaces nothing: no step along it is long enough, and others would be scaled with it.
         ActiveSet { n, fixed_mean: fixed_load || n >= self.n_cell(), direction_mean: direction / n }

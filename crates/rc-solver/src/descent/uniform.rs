@@ -57,10 +57,13 @@ impl BlockOperator<f32> for UniformCorrections {
 }
 
 impl PreconditionedOperator for UniformCorrections {
+    fn set_active(&mut self, active: &[bool]) {
+        self.extension.set_active(active);
+    }
+
     fn precondition(&mut self, active: &[bool], values: &mut [f32]) {
         let Self { convolution, preconditioner, extension, .. } = self;
         let nx = convolution.grid().nx();
-        extension.set_active(active);
         extension.extend(values);
         let len = BLOCK_ROWS * nx;
         let filled = &*extension;

@@ -105,6 +105,8 @@ impl BlockOperator<f32> for AnyCorrections<'_> {
 }
 
 impl PreconditionedOperator for AnyCorrections<'_> {
+    fn set_active(&mut self, _active: &[bool]) {}
+
     fn precondition(&mut self, _active: &[bool], values: &mut [f32]) {
         let sums = parallel::map(values.chunks(BLOCK), |block| [block.iter().copied().map(f64::from).sum()]);
         let [sum] = BlockLayout::of(BLOCK).total(sums);

@@ -2,19 +2,18 @@
 
 use std::sync::Arc;
 
+use super::extension::TileExtension;
 use super::hierarchy::Hierarchy;
 use super::tables::Tables;
 use super::tile_operator::TileOperator;
 use crate::descent::{BlockLayout, BlockOperator, PreconditionedOperator};
-use crate::parallel::Tasks;
 
 /// L and its approximate inverse on the tiles of a mesh, in single precision.
 pub(crate) struct TileCorrections<'a> {
     operator: TileOperator<f32>,
+    extension: TileExtension,
     displacement: &'a Tables<f32>,
     preconditioner: &'a mut Tables<f32>,
-    /// Whether the preconditioner was applied last, or L.
-    is_preconditioned: bool,
 }
 
 impl<'a> TileCorrections<'a> {
@@ -24,7 +23,8 @@ impl<'a> TileCorrections<'a> {
         displacement: &'a Tables<f32>,
         preconditioner: &'a mut Tables<f32>,
     ) -> Self {
-        Self { operator: TileOperator::new(hierarchy), displacement, preconditioner, is_preconditioned: false }
+        let extension = TileExtension::new(Arc::clone(&hierarchy));
+        Self { operator: TileOperator::new(hierarchy), extension, displacement, preconditioner }
     }
 }
 
@@ -38,24 +38,22 @@ impl BlockOperator<f32> for TileCorrections<'_> {
     }
 
     fn apply(&mut self) {
-        self.is_preconditioned = false;
         self.operator.apply(self.displacement);
     }
 
     fn read(&self, read: &(dyn Fn(usize, &[f32]) + Sync)) {
-        self.operator.read(if self.is_preconditioned { self.preconditioner } else { self.displacement }, read);
+        self.operator.read(self.displacement, read);
     }
 }
 
 impl PreconditionedOperator for TileCorrections<'_> {
-    fn precondition(&mut self, _active: &[bool], values: &mut [f32]) {
-        self.is_preconditioned = true;
-        let len = self.layout().len();
-        self.operator.write(&|i, block| block.copy_from_slice(&values[i * len..][..block.len()]));
-        self.operator.apply(self.preconditioner);
-        let preconditioner = &*self.preconditioner;
-        let tasks = Tasks::new(values.chunks_mut(len));
-        self.operator.read(preconditioner, &|i, block| tasks.run(i, |to: &mut [f32]| to.copy_from_slice(block)));
+    fn set_active(&mut self, active: &[bool]) {
+        self.extension.set_active(active);
+    }
+
+    fn precondition(&mut self, active: &[bool], values: &mut [f32]) {
+        let (arch, convolution, room) = self.operator.buffers();
+        self.extension.precondition(arch, (convolution, room), self.preconditioner, active, values);
     }
 
     fn set_mean(&mut self, eigenvalue: f64) {

@@ -12,6 +12,7 @@
 
 mod coarse;
 mod corrections;
+mod extension;
 mod hierarchy;
 mod passes;
 mod real;

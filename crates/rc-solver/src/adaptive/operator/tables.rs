@@ -121,7 +121,12 @@ impl<T: Real> Prepared<T> {
         }
         let mut base = self.symbol.clone();
         // A constant gives zero (Eq. 3): the base grid takes off what the stencils add to it.
-        base.set_mean(T::rounded(-sum / self.base.len() as f64));
+        let of_mean = match self.scale {
+            Scale::Side => -sum,
+            // Its stencils are of differences between levels, which a constant has none of.
+            Scale::Inverse => 0.0,
+        };
+        base.set_mean(T::rounded(of_mean / self.base.len() as f64));
         Tables { sizes: self.sizes, base, levels, coarse: self.coarse_tables(n_levels) }
     }
 

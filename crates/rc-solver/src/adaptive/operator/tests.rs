@@ -11,6 +11,7 @@ use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, quarters};
 use super::*;
 use crate::adaptive::roughness::roughness;
 use crate::adaptive::split::GapSplit;
+use crate::descent::PreconditionedOperator;
 use crate::parallel::Tasks;
 
 /// Radii of spots a few elements of a base grid wide.
@@ -210,6 +211,53 @@ fn the_operator_is_symmetric_in_the_areas() {
 }
 
 /// Pressures as rough as can be: noise on every element, on half, on a tenth of them, elements by turns, and one alone.
+/// The preconditioner of `active` elements applied to `values`.
+fn preconditioned(elements: &Elements, base: usize, active: &[bool], values: &[f32]) -> Vec<f32> {
+    let split = ScaleSplit::new(SplitParams::quick());
+    let grid = Grid::square(base).expect("a grid");
+    let quick = Prepared::<f32>::displacement(&split, grid, elements.levels().len() - 1);
+    let hierarchy = Arc::new(Hierarchy::new(base, elements.clone(), quick.reach()));
+    let displacement = quick.tables(hierarchy.n_levels());
+    let mut inverse = Prepared::inverse(&split, grid).tables(hierarchy.n_levels());
+    let mut corrections = TileCorrections::new(hierarchy, &displacement, &mut inverse);
+    let mut values = values.to_vec();
+    corrections.set_active(active);
+    corrections.precondition(active, &mut values);
+    values
+}
+
+#[test]
+fn the_preconditioner_is_symmetric_and_positive_among_active_elements() {
+    let (base, side) = (64, 512);
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let cutoff = SplitParams::quick().cutoff;
+    for elements in
+        [Elements::uniform(tiles_of_spots(side, SMALL, 1)), graded(side, cutoff, 7), graded(side, cutoff, 8)]
+    {
+        let mut area = vec![0.0; elements.len()];
+        for (coarser, _, first) in elements.tiles() {
+            area[first..first + CELLS].fill(Elements::area(coarser));
+        }
+        let active: Vec<bool> = area.iter().map(|&area| area > 0.0 && rng.random::<f64>() < 0.4).collect();
+        // A residual that is the same everywhere is a change of the penetration, which no pressure of zero mean is for.
+        let ones: Vec<f32> = active.iter().map(|&active| if active { 1.0 } else { 0.0 }).collect();
+        let of_ones = preconditioned(&elements, base, &active, &ones);
+        assert!(of_ones.iter().all(|z| z.abs() < 1e-3), "{of_ones:?}");
+        let mut random = || -> Vec<f32> {
+            active.iter().map(|&active| if active { rng.random::<f32>() - 0.5 } else { 0.0 }).collect()
+        };
+        let (a, b) = (random(), random());
+        let product = |a: &[f32], b: &[f32]| -> f64 {
+            a.iter().zip(b).zip(&area).map(|((a, b), area)| area * f64::from(*a) * f64::from(*b)).sum()
+        };
+        let [of_a, of_b] = [&a, &b].map(|values| preconditioned(&elements, base, &active, values));
+        let (one, other) = (product(&a, &of_b), product(&b, &of_a));
+        let size = (product(&a, &of_a) * product(&b, &of_b)).sqrt();
+        assert!(product(&a, &of_a) > 0.0, "{} levels", elements.levels().len());
+        assert!((one - other).abs() < 1e-4 * size, "{} levels: {one:e}, {other:e}, {size:e}", elements.levels().len());
+    }
+}
+
 fn rough_pressures(n_elements: usize) -> Vec<Vec<f64>> {
     let mut rng = ChaCha8Rng::seed_from_u64(9);
     let mut pressures: Vec<Vec<f64>> = [0.0, 0.5, 0.9]

@@ -49,6 +49,11 @@ impl<T: Real> TileOperator<T> {
         }
     }
 
+    /// What another operator on the base grid and the elements may use, and be changed by: vector instructions, the convolution, room for a vector.
+    pub(super) fn buffers(&mut self) -> (Arch, &mut Convolution<T>, &mut [T]) {
+        (self.arch, &mut self.convolution, &mut self.source)
+    }
+
     /// How vectors are divided.
     pub(crate) fn layout(&self) -> BlockLayout {
         blocks_of(self.hierarchy.elements())
@@ -207,7 +212,7 @@ fn blocks<'a, T>(places: &'a [[u32; 2]], cells: &'a mut [T]) -> impl Iterator<It
 }
 
 /// Whole rows of tiles as rows of `side` cells.
-fn tiles_to_rows<T: Copy>(cells: &[T], rows: &mut [T], side: usize) {
+pub(super) fn tiles_to_rows<T: Copy>(cells: &[T], rows: &mut [T], side: usize) {
     for (lines, tiles) in rows.chunks_exact_mut(TILE * side).zip(cells.chunks_exact(TILE * side)) {
         for (row, line) in lines.chunks_exact_mut(side).enumerate() {
             for (values, tile) in line.as_chunks_mut::<TILE>().0.iter_mut().zip(tiles.as_chunks::<CELLS>().0) {
@@ -218,7 +223,7 @@ fn tiles_to_rows<T: Copy>(cells: &[T], rows: &mut [T], side: usize) {
 }
 
 /// The reverse of [`tiles_to_rows`].
-fn rows_to_tiles<T: Copy>(rows: &[T], cells: &mut [T], side: usize) {
+pub(super) fn rows_to_tiles<T: Copy>(rows: &[T], cells: &mut [T], side: usize) {
     for (tiles, lines) in cells.chunks_exact_mut(TILE * side).zip(rows.chunks_exact(TILE * side)) {
         for (row, line) in lines.chunks_exact(side).enumerate() {
             for (tile, values) in tiles.as_chunks_mut::<CELLS>().0.iter_mut().zip(line.as_chunks::<TILE>().0) {

@@ -70,7 +70,8 @@ impl GridExtension {
         let blocks = values.chunks_mut(nx * n_rows).zip(active.chunks(nx * n_rows)).enumerate();
         parallel::for_each(blocks, |(i, (rows, active))| {
             for (iy, (row, active)) in rows.chunks_mut(nx).zip(active.chunks(nx)).enumerate() {
-                add_squares(&squares[(i * n_rows + iy) / 2 * nx.div_ceil(2)..], row);
+                let above = (i * n_rows + iy) >> 1;
+                add_squares(&squares[above * nx.div_ceil(2)..], row);
                 for (value, &active) in row.iter_mut().zip(active) {
                     *value = if active { *value } else { 0.0 };
                 }

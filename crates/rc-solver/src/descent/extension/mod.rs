@@ -15,3 +15,4 @@ mod pyramid;
 mod rows;
 
 pub(crate) use self::finest::GridExtension;
+pub(crate) use self::pyramid::{Pyramid, shares};

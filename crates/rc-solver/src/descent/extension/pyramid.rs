@@ -133,7 +133,8 @@ impl Pyramid {
                         *value *= own;
                     }
                     if let Some(coarser) = coarser {
-                        add_squares(&coarser.values[(i * n_rows + iy) / 2 * coarser.nx..], row);
+                        let above = (i * n_rows + iy) >> 1;
+                        add_squares(&coarser.values[above * coarser.nx..], row);
                     }
                 }
             });

@@ -1,0 +1,375 @@
+//! The approximate inverse of L among the active elements of a mesh ([`crate::descent`] has the extension F of a residual to the whole cell).
+//!
+//! On tiles u = F r is kept level by level, as far as there are tiles: u of a level is its own share of the means over active elements,
+//! and for the rest P u of the next coarser level, with P the interpolation. The base grid has u on the whole cell and |q|/2 by its Fourier transform. Each level above
+//! adds its stencil of the difference w = u - P u, which is zero where nothing is active. The inverse is the sum of all with the transposes
+//! around them, so that it is symmetric. (The filters that L goes through between levels would see the ends of tiles as edges of u.) With
+//! the extension and one grid, residuals fall by ten in an iteration; with two or three levels as here, in one and a half.
+
+use std::sync::Arc;
+
+use pulp::{Arch, Simd, WithSimd};
+use rc_fft::Convolution;
+use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE, TileSet, cell_over, gather, means_of_quarter, quarters};
+
+use super::hierarchy::Hierarchy;
+use super::stencil::{Taps, add_short_range};
+use super::tables::Tables;
+use super::tile_operator::{rows_to_tiles, tiles_to_rows};
+use super::tile_values::TileValues;
+use crate::descent::{Pyramid, read_rows, shares, write_rows};
+use crate::parallel::{self, Tasks};
+
+/// Sides of the patches around one tile, and around the four tiles under one.
+const AROUND: usize = 3 * TILE;
+const UNDER: usize = 4 * TILE;
+
+/// Cells of a level between the base grid and the finest.
+struct Level {
+    /// What the mean over the finest elements of a cell, active or not, is multiplied by.
+    own: Vec<f32>,
+    /// What P u is multiplied by in w: the own share.
+    share: Vec<f32>,
+    /// Means and u on the way up; on the way down what belongs to u.
+    values: Vec<f32>,
+    /// w, and on the way down what the coarser level gets.
+    detail: Vec<f32>,
+    /// The stencil of w.
+    pressure: Vec<f32>,
+}
+
+/// Values of the extension on one hierarchy.
+pub(super) struct TileExtension {
+    hierarchy: Arc<Hierarchy>,
+    /// Levels 1 to K - 1.
+    levels: Vec<Level>,
+    /// The base grid, row by row and tile by tile.
+    pyramid: Pyramid,
+    base: Vec<f32>,
+}
+
+impl TileExtension {
+    pub(super) fn new(hierarchy: Arc<Hierarchy>) -> Self {
+        let side = hierarchy.base().nx();
+        let level = |tiles: &TileSet| {
+            let zeros = || vec![0.0; tiles.n_cells()];
+            Level { own: zeros(), share: zeros(), values: zeros(), detail: zeros(), pressure: zeros() }
+        };
+        let levels = hierarchy.levels[1..hierarchy.n_levels()].iter().map(level).collect();
+        Self { levels, pyramid: Pyramid::new(side, side), base: vec![0.0; side * side], hierarchy }
+    }
+
+    /// Prepares for these active elements.
+    pub(super) fn set_active(&mut self, active: &[bool]) {
+        self.take_means(&|cell| if active[cell] { 1.0 } else { 0.0 });
+        for level in &mut self.levels {
+            let Level { own, share, values, .. } = level;
+            let blocks = own.chunks_mut(BLOCK_CELLS).zip(share.chunks_mut(BLOCK_CELLS)).zip(values.chunks(BLOCK_CELLS));
+            parallel::for_each(blocks, |((own, share), parts)| {
+                for ((own, share), &part) in own.iter_mut().zip(share).zip(parts) {
+                    let [of_mean, rest] = shares(part);
+                    (*own, *share) = (of_mean, 1.0 - rest);
+                }
+            });
+        }
+        self.pyramid.set_active();
+    }
+
+    /// z = Fᵀ |q|/2 F r: `values` has r on the active elements and zeros elsewhere, and is left with z. `finest` has room for the finest
+    /// elements.
+    pub(super) fn precondition(
+        &mut self,
+        arch: Arch,
+        (convolution, finest): (&mut Convolution<f32>, &mut [f32]),
+        tables: &Tables<f32>,
+        active: &[bool],
+        values: &mut [f32],
+    ) {
+        self.extend(active, values, finest);
+        self.apply_stencils(arch, tables, finest, values);
+        self.convolve_base(convolution, tables);
+        self.gather(active, values, finest);
+    }
+
+    /// Means over the cells of all levels, from the values of elements; those of the base grid are left to the pyramid.
+    fn take_means(&mut self, of_element: &(dyn Fn(usize) -> f32 + Sync)) {
+        let (n_levels, hierarchy) = (self.hierarchy.n_levels(), &self.hierarchy);
+        for level in (0..n_levels).rev() {
+            let (coarser, finer) = self.levels.split_at_mut(level);
+            let (values, finer) = match coarser.last_mut() {
+                Some(here) => (&mut here.values, finer.first()),
+                None => (&mut self.base, finer.first()),
+            };
+            let elements = hierarchy.elements_of(level);
+            let tiles = &hierarchy.levels[level + 1];
+            let child = |tile: usize, cell: usize| match finer {
+                Some(finer) => finer.values[tile * CELLS + cell],
+                None => of_element(tile * CELLS + cell),
+            };
+            parallel::for_each(blocks(&hierarchy.levels[level], values), |(places, cells)| {
+                for (&place, cells) in places.iter().zip(cells.as_chunks_mut::<CELLS>().0) {
+                    // Finer levels reach beyond their elements, over larger ones.
+                    if let Some((range, leaves)) = &elements
+                        && let Some(tile) = leaves.find(place[0].into(), place[1].into())
+                    {
+                        *cells = std::array::from_fn(|i| of_element(range.start + tile * CELLS + i));
+                        continue;
+                    }
+                    *cells = [0.0; CELLS];
+                    for quarter in quarters(place) {
+                        let Some(tile) = tiles.find(quarter[0].into(), quarter[1].into()) else { continue };
+                        let fine: [f32; CELLS] = std::array::from_fn(|cell| child(tile, cell));
+                        means_of_quarter(quarter, &fine, |cell, mean| cells[cell] = mean);
+                    }
+                }
+            });
+        }
+        let side = self.hierarchy.base().nx();
+        let rows = self.pyramid.values_mut().chunks_mut(TILE * side).zip(self.base.chunks(TILE * side));
+        parallel::for_each(rows, |(rows, cells)| tiles_to_rows(cells, rows, side));
+    }
+
+    /// u and w on all levels; `finest` gets w.
+    fn extend(&mut self, active: &[bool], values: &[f32], finest: &mut [f32]) {
+        self.take_means(&|cell| values[cell]);
+        self.pyramid.extend();
+        self.base_to_tiles();
+        let tiles = &self.hierarchy.levels;
+        for level in 0..self.levels.len() {
+            let (coarser, here) = self.levels.split_at_mut(level);
+            let coarser = coarser.last().map_or(&self.base, |coarser| &coarser.values);
+            let coarser = TileValues::new(coarser, &tiles[level]);
+            let Level { own, share, values, detail, .. } = &mut here[0];
+            let shares = own.chunks(BLOCK_CELLS).zip(share.chunks(BLOCK_CELLS));
+            let blocks = blocks(&tiles[level + 1], values).zip(detail.chunks_mut(BLOCK_CELLS)).zip(shares);
+            parallel::for_each(blocks, |(((places, values), detail), (own, share))| {
+                let mut around = [0.0; CELLS];
+                for (tile, &place) in places.iter().enumerate() {
+                    interpolate(coarser, place, &mut around);
+                    for (cell, around) in (tile * CELLS..).zip(around) {
+                        let mean = own[cell] * values[cell];
+                        values[cell] = mean + (1.0 - share[cell]) * around;
+                        detail[cell] = mean - share[cell] * around;
+                    }
+                }
+            });
+        }
+        let coarser = self.levels.last().map_or(&self.base, |coarser| &coarser.values);
+        let coarser = TileValues::new(coarser, &tiles[self.levels.len()]);
+        let elements = active.chunks(BLOCK_CELLS).zip(values.chunks(BLOCK_CELLS));
+        parallel::for_each(blocks(self.finest(), finest).zip(elements), |((places, finest), (active, values))| {
+            let mut around = [0.0; CELLS];
+            for (tile, &place) in places.iter().enumerate() {
+                let here = tile * CELLS..(tile + 1) * CELLS;
+                if active[here.clone()].iter().any(|&active| active) {
+                    interpolate(coarser, place, &mut around);
+                }
+                for (cell, around) in here.zip(around) {
+                    finest[cell] = if active[cell] { values[cell] - around } else { 0.0 };
+                }
+            }
+        });
+    }
+
+    /// The stencils of w; `values` gets that of the finest elements.
+    fn apply_stencils(&mut self, arch: Arch, tables: &Tables<f32>, finest: &[f32], values: &mut [f32]) {
+        let tiles = &self.hierarchy.levels;
+        for (level, here) in self.levels.iter_mut().enumerate() {
+            let taps = &tables.levels[level].0;
+            let around = TileValues::new(&here.detail, &tiles[level + 1]);
+            parallel::for_each(blocks(&tiles[level + 1], &mut here.pressure), |(places, cells)| {
+                arch.dispatch(StencilPass { taps, around, places, cells });
+            });
+        }
+        let taps = &tables.levels[self.levels.len()].0;
+        let around = TileValues::new(finest, self.finest());
+        parallel::for_each(blocks(self.finest(), values), |(places, cells)| {
+            arch.dispatch(StencilPass { taps, around, places, cells });
+        });
+    }
+
+    /// |q|/2 of u on the base grid.
+    fn convolve_base(&mut self, convolution: &mut Convolution<f32>, tables: &Tables<f32>) {
+        let len = rc_fft::BLOCK_ROWS * self.hierarchy.base().nx();
+        let values = self.pyramid.values();
+        write_rows(convolution, &|i, rows| rows.copy_from_slice(&values[i * len..][..rows.len()]));
+        convolution.apply_symbol(&tables.base);
+        let tasks = Tasks::new(self.pyramid.values_mut().chunks_mut(len));
+        read_rows(convolution, &|i, rows| tasks.run(i, |to: &mut [f32]| to.copy_from_slice(rows)));
+    }
+
+    /// Fᵀ and the transpose of u - P u; `values` has the stencils of the finest elements, and gets z.
+    fn gather(&mut self, active: &[bool], values: &mut [f32], finest: &mut [f32]) {
+        let elements = active.chunks(BLOCK_CELLS).zip(values.chunks(BLOCK_CELLS));
+        parallel::for_each(finest.chunks_mut(BLOCK_CELLS).zip(elements), |(given, (active, pressure))| {
+            for ((given, &active), pressure) in given.iter_mut().zip(active).zip(pressure) {
+                *given = if active { -pressure } else { 0.0 };
+            }
+        });
+        let tiles = &self.hierarchy.levels;
+        for level in (0..self.levels.len()).rev() {
+            let (here, finer) = self.levels.split_at_mut(level + 1);
+            let finer = finer.first().map_or(&*finest, |finer| &finer.detail);
+            let finer = TileValues::new(finer, &tiles[level + 2]);
+            let Level { share, values, detail, pressure, .. } = &mut here[level];
+            let others = share.chunks(BLOCK_CELLS).zip(pressure.chunks(BLOCK_CELLS));
+            let blocks = blocks(&tiles[level + 1], values).zip(detail.chunks_mut(BLOCK_CELLS)).zip(others);
+            parallel::for_each(blocks, |(((places, values), given), (share, pressure))| {
+                collect(finer, places, values);
+                for (cell, given) in given.iter_mut().enumerate() {
+                    *given = values[cell] - share[cell] * (values[cell] + pressure[cell]);
+                }
+            });
+        }
+        let finer = self.levels.first().map_or(&*finest, |finer| &finer.detail);
+        let finer = TileValues::new(finer, &tiles[1]);
+        parallel::for_each(blocks(&tiles[0], &mut self.base), |(places, cells)| collect(finer, places, cells));
+        let side = self.hierarchy.base().nx();
+        let rows = self.pyramid.values_mut().chunks_mut(TILE * side).zip(self.base.chunks(TILE * side));
+        parallel::for_each(rows, |(rows, cells)| {
+            let mut collected = vec![0.0; rows.len()];
+            tiles_to_rows(cells, &mut collected, side);
+            for (value, collected) in rows.iter_mut().zip(collected) {
+                *value += collected;
+            }
+        });
+        self.pyramid.gather();
+        self.base_to_tiles();
+        self.hand_down(active, values);
+    }
+
+    /// From what each active element of a cell of the base grid gets to z.
+    fn hand_down(&mut self, active: &[bool], values: &mut [f32]) {
+        let tiles = &self.hierarchy.levels;
+        for level in 0..self.levels.len() {
+            let (coarser, here) = self.levels.split_at_mut(level);
+            let coarser = coarser.last().map_or(&self.base, |coarser| &coarser.values);
+            let coarser = TileValues::new(coarser, &tiles[level]);
+            let Level { own, values, pressure, .. } = &mut here[0];
+            let others = own.chunks(BLOCK_CELLS).zip(pressure.chunks(BLOCK_CELLS));
+            parallel::for_each(blocks(&tiles[level + 1], values).zip(others), |((places, values), (own, pressure))| {
+                for (tile, &place) in places.iter().enumerate() {
+                    let over = cells_over(coarser, place);
+                    for (cell, over) in (tile * CELLS..).zip(over) {
+                        values[cell] = own[cell] * (values[cell] + pressure[cell]) + over;
+                    }
+                }
+            });
+        }
+        let coarser = self.levels.last().map_or(&self.base, |coarser| &coarser.values);
+        let coarser = TileValues::new(coarser, &tiles[self.levels.len()]);
+        let elements = blocks(self.finest(), values).zip(active.chunks(BLOCK_CELLS));
+        parallel::for_each(elements, |((places, values), active)| {
+            for (tile, &place) in places.iter().enumerate() {
+                let over = cells_over(coarser, place);
+                for (cell, over) in (tile * CELLS..).zip(over) {
+                    values[cell] = if active[cell] { values[cell] + over } else { 0.0 };
+                }
+            }
+        });
+        for (level, here) in self.levels.iter().enumerate() {
+            let Some((range, leaves)) = self.hierarchy.elements_of(level + 1) else { continue };
+            let blocks = blocks(leaves, &mut values[range.clone()]).zip(active[range].chunks(BLOCK_CELLS));
+            parallel::for_each(blocks, |((places, values), active)| {
+                for (tile, place) in places.iter().enumerate() {
+                    let found = tiles[level + 1].find(place[0].into(), place[1].into());
+                    let first = found.expect("levels have the tiles of their elements") * CELLS;
+                    for (i, cell) in (tile * CELLS..(tile + 1) * CELLS).enumerate() {
+                        values[cell] = if active[cell] { here.values[first + i] } else { 0.0 };
+                    }
+                }
+            });
+        }
+    }
+
+    fn finest(&self) -> &TileSet {
+        &self.hierarchy.levels[self.hierarchy.n_levels()]
+    }
+
+    fn base_to_tiles(&mut self) {
+        let side = self.hierarchy.base().nx();
+        let rows = self.base.chunks_mut(TILE * side).zip(self.pyramid.values().chunks(TILE * side));
+        parallel::for_each(rows, |(cells, rows)| rows_to_tiles(rows, cells, side));
+    }
+}
+
+/// The tiles of a level, block by block. There may be more values than tiles.
+fn blocks<'a>(tiles: &'a TileSet, cells: &'a mut [f32]) -> impl Iterator<Item = (&'a [[u32; 2]], &'a mut [f32])> {
+    tiles.places().chunks(BLOCK_TILES).zip(cells.chunks_mut(BLOCK_CELLS))
+}
+
+/// P: values at the centres of the cells of a tile.
+fn interpolate(coarser: TileValues<'_, f32>, [column, row]: [u32; 2], out: &mut [f32; CELLS]) {
+    let [half_x, half_y] = [column, row].map(|i| i as usize % 2 * (TILE / 2));
+    let corner = (i64::from(column / 2) - 1, i64::from(row / 2) - 1);
+    let mut patch = [[0.0; AROUND]; AROUND];
+    let first = TILE + half_y - 1;
+    if !gather(coarser.values, coarser.tiles, corner, first..first + TILE / 2 + 2, &mut patch) {
+        *out = [0.0; CELLS];
+        return;
+    }
+    for (iy, out) in out.as_chunks_mut::<TILE>().0.iter_mut().enumerate() {
+        let near = TILE + half_y + iy / 2;
+        let far = if iy % 2 == 0 { near - 1 } else { near + 1 };
+        let line: [f32; TILE / 2 + 2] = std::array::from_fn(|i| {
+            let x = TILE + half_x - 1 + i;
+            0.75 * patch[near][x] + 0.25 * patch[far][x]
+        });
+        for (x, pair) in out.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+            let [before, here, after] = [line[x], line[x + 1], line[x + 2]];
+            *pair = [0.75 * here + 0.25 * before, 0.75 * here + 0.25 * after];
+        }
+    }
+}
+
+/// A quarter of the transpose of P: values of tiles from those of the finer level.
+fn collect(finer: TileValues<'_, f32>, places: &[[u32; 2]], cells: &mut [f32]) {
+    let mut patch = [[0.0; UNDER]; UNDER];
+    for (&[column, row], out) in places.iter().zip(cells.as_chunks_mut::<CELLS>().0) {
+        let corner = (2 * i64::from(column) - 1, 2 * i64::from(row) - 1);
+        if !gather(finer.values, finer.tiles, corner, TILE - 1..3 * TILE + 1, &mut patch) {
+            *out = [0.0; CELLS];
+            continue;
+        }
+        for (iy, out) in out.as_chunks_mut::<TILE>().0.iter_mut().enumerate() {
+            let rows = &patch[TILE + 2 * iy - 1..][..4];
+            let line: [f32; 2 * TILE + 2] = std::array::from_fn(|i| {
+                let x = TILE - 1 + i;
+                0.75 * (rows[1][x] + rows[2][x]) + 0.25 * (rows[0][x] + rows[3][x])
+            });
+            for (x, value) in out.iter_mut().enumerate() {
+                let parts = &line[2 * x..][..4];
+                *value = 0.0625 * (3.0 * (parts[1] + parts[2]) + parts[0] + parts[3]);
+            }
+        }
+    }
+}
+
+/// The values of the coarser cells that the cells of a tile are in; zeros where there is none.
+fn cells_over(coarser: TileValues<'_, f32>, place: [u32; 2]) -> [f32; CELLS] {
+    let [column, row] = place.map(|i| i64::from(i / 2));
+    let Some(tile) = coarser.tiles.find(column, row) else { return [0.0; CELLS] };
+    let values = &coarser.values[tile * CELLS..][..CELLS];
+    std::array::from_fn(|cell| values[cell_over(place, cell % TILE, cell / TILE)])
+}
+
+/// The stencil of a level on some of its tiles.
+struct StencilPass<'a> {
+    taps: &'a Taps<f32>,
+    around: TileValues<'a, f32>,
+    places: &'a [[u32; 2]],
+    cells: &'a mut [f32],
+}
+
+impl WithSimd for StencilPass<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let mut patch = [[0.0; AROUND]; AROUND];
+        for (&place, out) in self.places.iter().zip(self.cells.as_chunks_mut::<CELLS>().0) {
+            *out = [0.0; CELLS];
+            add_short_range::<S, f32, AROUND>(self.taps, self.around, place, &mut patch, out);
+        }
+    }
+}
