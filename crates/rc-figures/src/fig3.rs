@@ -1,9 +1,9 @@
 //! Fig. 3: elements against penetration for the three meshes, from touch to full contact.
 //!
 //! The meshes are counted on contact sets of elements that are the smallest of all three meshes. A
-//! tolerance of 1e-4 of the height of the surface is enough for the picture: only elements at borders of contact can still change, and
-//! `a_tolerance_of_1e_4_is_enough_for_counts` asserts on the quick figure that nobody would see it. A tenth of that makes counts on another
-//! processor the same within [`NOISE`].
+//! tolerance of 1e-5 of the height of the surface is enough for the picture: only elements at borders of contact can still change, and
+//! `a_tolerance_of_1e_5_is_enough_for_counts` asserts on the quick figure that nobody would see it. Counts on another processor are the same
+//! within [`NOISE`].
 
 use std::f64::consts::TAU;
 

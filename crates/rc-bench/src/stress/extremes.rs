@@ -18,7 +18,7 @@ const UNIFORM_SIDE: usize = 64;
 /// prepares, and hardly changes the penetration; and by the adaptive method, whose approximate inverse is the rougher one, where one element
 /// stands out of a plane or is missing in it, where every element is a peak of its own, and where all pressure is at the edge of a flat punch.
 /// Each is a tenth above what was measured, over the lower median of both sets.
-const NEAR_FULL_CONTACT: f64 = 2.5;
+const NEAR_FULL_CONTACT: f64 = 3.0;
 const SINGLE_ELEMENT: f64 = 2.75;
 const WHITE_NOISE: f64 = 3.3;
 const PUNCH: f64 = 2.5;

@@ -9,8 +9,8 @@ fn quick(tolerance: f64) -> Fig3 {
 }
 
 #[test]
-fn a_tolerance_of_1e_4_is_enough_for_counts() {
-    let (coarse, fine) = (quick(1e-4), quick(1e-8));
+fn a_tolerance_of_1e_5_is_enough_for_counts() {
+    let (coarse, fine) = (quick(1e-5), quick(1e-8));
     // The axis goes up to the uniform grid; a thousandth of it is below the size of a dot.
     let visible = 1e-3 * fine.states[0].elements[0];
     for (a, b) in coarse.states.iter().zip(&fine.states) {
