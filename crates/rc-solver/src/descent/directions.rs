@@ -58,6 +58,16 @@ impl ConjugateDirections {
         Self { direction: zeros(), displacement: zeros(), active, preconditioned }
     }
 
+    /// Adds a multiple of the present direction.
+    pub(crate) fn add_to(&self, values: &mut [f32], length: f32) {
+        const BLOCK: usize = 4096;
+        parallel::for_each(values.chunks_mut(BLOCK).zip(self.direction.chunks(BLOCK)), |(values, direction)| {
+            for (value, t) in values.iter_mut().zip(direction) {
+                *value += length * t;
+            }
+        });
+    }
+
     /// The present direction with its displacement, and the elements that it changes, for the next ones to be chosen.
     pub(super) fn steps_and_active(&mut self, len: usize) -> impl Iterator<Item = ((&[f32], &[f32]), &mut [bool])> {
         let steps = self.direction.chunks(len).zip(self.displacement.chunks(len));

@@ -8,27 +8,20 @@ use super::tables::Tables;
 use super::tile_operator::TileOperator;
 use crate::descent::{BlockLayout, BlockOperator, PreconditionedOperator};
 
-/// L and its approximate inverse on the tiles of a mesh, in single precision.
-pub(crate) struct TileCorrections<'a> {
+/// L alone.
+pub(crate) struct TileResponse<'a> {
     operator: TileOperator<f32>,
-    extension: TileExtension,
     displacement: &'a Tables<f32>,
-    preconditioner: &'a mut Tables<f32>,
 }
 
-impl<'a> TileCorrections<'a> {
-    /// With tables of the levels of `hierarchy`.
-    pub(crate) fn new(
-        hierarchy: Arc<Hierarchy>,
-        displacement: &'a Tables<f32>,
-        preconditioner: &'a mut Tables<f32>,
-    ) -> Self {
-        let extension = TileExtension::new(Arc::clone(&hierarchy));
-        Self { operator: TileOperator::new(hierarchy), extension, displacement, preconditioner }
+impl<'a> TileResponse<'a> {
+    /// With the tables of the levels of `hierarchy`.
+    pub(crate) fn new(hierarchy: Arc<Hierarchy>, displacement: &'a Tables<f32>) -> Self {
+        Self { operator: TileOperator::new(hierarchy), displacement }
     }
 }
 
-impl BlockOperator<f32> for TileCorrections<'_> {
+impl BlockOperator<f32> for TileResponse<'_> {
     fn layout(&self) -> BlockLayout {
         self.operator.layout()
     }
@@ -46,17 +39,54 @@ impl BlockOperator<f32> for TileCorrections<'_> {
     }
 }
 
+/// L and its approximate inverse on the tiles of a mesh, in single precision.
+pub(crate) struct TileCorrections<'a> {
+    response: TileResponse<'a>,
+    extension: TileExtension,
+    preconditioner: &'a mut Tables<f32>,
+}
+
+impl<'a> TileCorrections<'a> {
+    /// With tables of the levels of `hierarchy`.
+    pub(crate) fn new(
+        hierarchy: Arc<Hierarchy>,
+        displacement: &'a Tables<f32>,
+        preconditioner: &'a mut Tables<f32>,
+    ) -> Self {
+        let extension = TileExtension::new(Arc::clone(&hierarchy));
+        Self { response: TileResponse::new(hierarchy, displacement), extension, preconditioner }
+    }
+}
+
+impl BlockOperator<f32> for TileCorrections<'_> {
+    fn layout(&self) -> BlockLayout {
+        self.response.layout()
+    }
+
+    fn write(&mut self, write: &(dyn Fn(usize, &mut [f32]) + Sync)) {
+        self.response.write(write);
+    }
+
+    fn apply(&mut self) {
+        self.response.apply();
+    }
+
+    fn read(&self, read: &(dyn Fn(usize, &[f32]) + Sync)) {
+        self.response.read(read);
+    }
+}
+
 impl PreconditionedOperator for TileCorrections<'_> {
     fn set_active(&mut self, active: &[bool]) {
         self.extension.set_active(active);
     }
 
     fn precondition(&mut self, active: &[bool], values: &mut [f32]) {
-        let (arch, convolution, room) = self.operator.buffers();
+        let (arch, convolution, room) = self.response.operator.buffers();
         self.extension.precondition(arch, (convolution, room), self.preconditioner, active, values);
     }
 
     fn set_mean(&mut self, eigenvalue: f64) {
-        self.preconditioner.set_mean(eigenvalue, self.operator.base());
+        self.preconditioner.set_mean(eigenvalue, self.response.operator.base());
     }
 }

@@ -23,7 +23,7 @@ mod tile_operator;
 mod tile_values;
 mod transfer;
 
-pub(crate) use self::corrections::TileCorrections;
+pub(crate) use self::corrections::{TileCorrections, TileResponse};
 pub(crate) use self::hierarchy::{Hierarchy, Reach};
 pub(crate) use self::sizes::Real;
 pub(crate) use self::tables::{Prepared, Tables};
