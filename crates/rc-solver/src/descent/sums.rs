@@ -154,3 +154,22 @@ fn smaller(a: f64, b: f64) -> f64 {
 pub(super) fn positive_part(error: f64) -> f64 {
     if error < 0.0 { 0.0 } else { error }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gap_that_is_not_a_number_stays_one_in_every_order() {
+        let block = |gaps: [f64; 2]| {
+            let mut sums = GapSums::empty(0.0);
+            gaps.into_iter().for_each(|gap| sums.add_element(0.0, gap, 0.0));
+            sums
+        };
+        let blocks = [[f64::NAN, 1.0], [1.0, f64::NAN], [1.0, 2.0]].map(block);
+        assert!(blocks[0].min_gap.is_nan() && blocks[1].min_gap.is_nan() && !blocks[2].min_gap.is_nan());
+        for blocks in [[blocks[0], blocks[2]], [blocks[2], blocks[1]]] {
+            assert!(GapSums::total(&BlockLayout::of(2), blocks.to_vec()).min_gap.is_nan());
+        }
+    }
+}

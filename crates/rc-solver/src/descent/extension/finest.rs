@@ -91,3 +91,48 @@ impl GridExtension {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rc_core::testing::quasi_random;
+
+    use super::*;
+
+    /// F of values on the active elements.
+    fn extended(extension: &mut GridExtension, active: &[bool], values: &[f32]) -> Vec<f32> {
+        let mut values = values.to_vec();
+        extension.extend(&values);
+        extension.fill(0, active, &mut values);
+        values
+    }
+
+    fn product(a: &[f32], b: &[f32]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b)).sum()
+    }
+
+    #[test]
+    fn it_keeps_constants_and_has_its_transpose_on_any_grid() {
+        for (nx, ny) in [(64, 64), (61, 7), (1, 64), (33, 90), (2, 2), (1, 1)] {
+            let grid = Grid::new(nx, ny).expect("a grid");
+            for threshold in [0.0, 0.3, 0.9] {
+                let active: Vec<bool> = (0..grid.len()).map(|i| i == 0 || quasi_random(i) > threshold).collect();
+                let mut extension = GridExtension::new(grid);
+                extension.set_active(&active);
+                let of_active = |value: &dyn Fn(usize) -> f64| -> Vec<f32> {
+                    (0..grid.len()).map(|i| if active[i] { value(i) as f32 } else { 0.0 }).collect()
+                };
+                let ones = extended(&mut extension, &active, &of_active(&|_| 1.0));
+                assert!(ones.iter().all(|u| (u - 1.0).abs() < 1e-5), "{grid}, {threshold}: {ones:?}");
+                let r = of_active(&|i| quasi_random(3 * i + 1) - 0.5);
+                let y: Vec<f32> = (0..grid.len()).map(|i| quasi_random(5 * i + 2) as f32 - 0.5).collect();
+                let u = extended(&mut extension, &active, &r);
+                assert!(u.iter().zip(&r).zip(&active).all(|((u, r), &active)| !active || u == r), "{grid}");
+                let mut gathered = y.clone();
+                extension.gather(&active, &mut gathered);
+                let (there, back) = (product(&u, &y), product(&r, &gathered));
+                let size = product(&u, &u).sqrt() * product(&y, &y).sqrt();
+                assert!((there - back).abs() < 1e-5 * size, "{grid}, {threshold}: {there} and {back}");
+            }
+        }
+    }
+}
