@@ -40,7 +40,8 @@ impl Descent<'_> {
     /// Writes the residual of the active elements.
     fn choose_active(&mut self) -> ActiveSet {
         let (len, gradient) = (self.layout.len(), self.gradient());
-        let chosen = std::mem::replace(&mut self.has_active, true);
+        // The choice before clipping goes with the extension.
+        let chosen = std::mem::replace(&mut self.has_active, self.is_extended) && self.is_extended;
         let directions = &mut self.directions;
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         let residuals = directions.active.chunks_mut(len).zip(directions.preconditioned.chunks_mut(len));
@@ -49,7 +50,7 @@ impl Descent<'_> {
             block.first_residual(&gradient, direction, (active, chosen), residual)
         });
         let [n, direction] = self.layout.total(sums);
-        self.operators.corrections.set_active(&self.directions.active);
+        self.operators.corrections.set_active(&self.directions.active, self.is_extended);
         let fixed_load = matches!(self.problem.control, Control::MeanPressure(_));
         // A uniform pressure on the whole cell displaces nothing: no step along it is long enough, and others would be scaled with it.
         ActiveSet { n, fixed_mean: fixed_load || n >= self.n_cell(), direction_mean: direction / n }

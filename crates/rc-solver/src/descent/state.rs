@@ -34,6 +34,8 @@ pub(crate) struct Descent<'a> {
     pub(super) directions: ConjugateDirections,
     /// <t, L t> of the last step; infinite when there is no direction to be conjugate to.
     pub(super) curvature: f64,
+    /// Residuals are extended between contacts.
+    pub(super) is_extended: bool,
     /// The last projection has chosen the active elements.
     pub(super) has_active: bool,
     /// The gap of elements in contact.
@@ -73,6 +75,7 @@ impl<'a> Descent<'a> {
             gap,
             directions: ConjugateDirections::new(n),
             curvature: f64::INFINITY,
+            is_extended: true,
             has_active: false,
             zero_gap: 0.0,
             pressed: f64::INFINITY,

@@ -105,7 +105,7 @@ impl BlockOperator<f32> for AnyCorrections<'_> {
 }
 
 impl PreconditionedOperator for AnyCorrections<'_> {
-    fn set_active(&mut self, _active: &[bool]) {}
+    fn set_active(&mut self, _active: &[bool], _is_extended: bool) {}
 
     fn precondition(&mut self, _active: &[bool], values: &mut [f32]) {
         let sums = parallel::map(values.chunks(BLOCK), |block| [block.iter().copied().map(f64::from).sum()]);
