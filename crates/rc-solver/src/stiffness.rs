@@ -57,7 +57,7 @@ pub(crate) fn stiffness_by_two(
         [x.iter().zip(displacement).map(|(&x, &v)| f64::from(x) * f64::from(v)).sum::<f64>()]
     });
     let ([mean], [work]) = (layout.total(means), layout.total(works));
-    mean * mean / (work * n)
+    if work > 0.0 { mean * mean / (work * n) } else { 0.0 }
 }
 
 /// Iterates for x, and gives its mean; `take` gets each step along a direction.

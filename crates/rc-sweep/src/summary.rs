@@ -57,7 +57,7 @@ pub struct Summary {
     pub max_pressure: f64,
     /// Mean gap (m).
     pub mean_gap: f64,
-    /// Estimated discretisation error of `mean_gap` and of `penetration` (m); null when no coarser grid was solved.
+    /// Estimated discretisation error of `mean_gap` and of `penetration` (m).
     pub mean_gap_error: Option<f64>,
     /// dσ0/dΔ (Pa/m); null where it is infinite, in full contact.
     pub contact_stiffness: Option<f64>,

@@ -1,7 +1,7 @@
 //! Preconditioned projected conjugate gradients on one level, whatever its mesh ([`LevelOperators`]).
 //!
-//! One round chooses the active elements (pressing or penetrating), takes a few conjugate-gradient steps on them, clips tensile pressures
-//! and restores the load. Directions survive a change of the active set: β makes the new direction L-orthogonal to the old one as it was
+//! One round takes a few conjugate-gradient steps on the active elements, chooses the next ones (those that press, and those outside that
+//! penetrate), clips tensile pressures and restores the load. Directions survive a change of the active set: β makes the new direction L-orthogonal to the old one as it was
 //! (Hestenes and Stiefel), and is kept non-negative. Clipping in every second step only saves its convolution; clipping rarer costs more
 //! steps than it saves.
 //!

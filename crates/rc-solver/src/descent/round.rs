@@ -3,7 +3,7 @@
 use super::directions::Slope;
 use super::operators::{read_blocks, write_blocks};
 use super::rows::{ElementValues, Gradient};
-use super::state::Descent;
+use super::state::{Descent, Rounds};
 use super::sums::GapSums;
 use crate::Control;
 use crate::parallel;
@@ -41,7 +41,11 @@ impl Descent<'_> {
     fn choose_active(&mut self) -> ActiveSet {
         let (len, gradient) = (self.layout.len(), self.gradient());
         // The choice before clipping goes with the extension.
-        let chosen = std::mem::replace(&mut self.has_active, self.is_extended) && self.is_extended;
+        let chosen = self.rounds == Rounds::Chosen;
+        let is_extended = self.rounds != Rounds::Masked;
+        if is_extended {
+            self.rounds = Rounds::Chosen;
+        }
         let directions = &mut self.directions;
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         let residuals = directions.active.chunks_mut(len).zip(directions.preconditioned.chunks_mut(len));
@@ -50,7 +54,7 @@ impl Descent<'_> {
             block.first_residual(&gradient, direction, (active, chosen), residual)
         });
         let [n, direction] = self.layout.total(sums);
-        self.operators.corrections.set_active(&self.directions.active, self.is_extended);
+        self.operators.corrections.set_active(&self.directions.active, is_extended);
         let fixed_load = matches!(self.problem.control, Control::MeanPressure(_));
         // A uniform pressure on the whole cell displaces nothing: no step along it is long enough, and others would be scaled with it.
         ActiveSet { n, fixed_mean: fixed_load || n >= self.n_cell(), direction_mean: direction / n }

@@ -1,6 +1,6 @@
 //! The vector work of the iteration, on one block at a time, with the sums that decide the next step.
 //!
-//! Each function writes the block of an operator or reads it, so the vectors pass through the cache once. Sums are in double precision
+//! Functions that write the block of an operator or read it pass the vectors through the cache once. Sums are in double precision
 //! and in a fixed order: element by element in a block, then block by block. The overlap of the heights with the rigid plane, h - c, is
 //! computed first: a constant in the heights, however large, then cancels before anything is added to it.
 
@@ -115,7 +115,8 @@ impl ElementValues<'_> {
             let stepped = *p + length * f64::from(t);
             *g += length * f64::from(u);
             *p = stepped.max(0.0);
-            *active = if *active { stepped > 0.0 } else { gradient.of_gap(*g) < 0.0 };
+            // Without a step, what has just come stays.
+            *active = stepped > 0.0 || (!*active || stepped == 0.0) && gradient.of_gap(*g) < 0.0;
             *added = ((*p - stepped) * gradient.unit) as f32;
             sum += *p;
             clipped += u32::from(stepped < 0.0);

@@ -163,7 +163,9 @@ mod tests {
     fn a_gap_that_is_not_a_number_stays_one_in_every_order() {
         let block = |gaps: [f64; 2]| {
             let mut sums = GapSums::empty(0.0);
-            gaps.into_iter().for_each(|gap| sums.add_element(0.0, gap, 0.0));
+            for gap in gaps {
+                sums.add_element(0.0, gap, 0.0);
+            }
             sums
         };
         let blocks = [[f64::NAN, 1.0], [1.0, f64::NAN], [1.0, 2.0]].map(block);

@@ -105,6 +105,10 @@ impl BlockOperator<f32> for AnyCorrections<'_> {
 }
 
 impl PreconditionedOperator for AnyCorrections<'_> {
+    fn extends(&self) -> bool {
+        false
+    }
+
     fn set_active(&mut self, _active: &[bool], _is_extended: bool) {}
 
     fn precondition(&mut self, _active: &[bool], values: &mut [f32]) {

@@ -14,7 +14,7 @@ use crate::problem::Problem;
 use crate::solution::GridSolution;
 use crate::{Control, IterationParams, ProblemError};
 
-/// Bytes for each element that the uniform method is assumed to need at its peak, heights included; 64 to 67 were measured at
+/// Bytes for each element that the uniform method is assumed to need at its peak, heights included; 68 to 71 were measured at
 /// 2048² and 4096².
 pub const UNIFORM_BYTES_PER_ELEMENT: u64 = 80;
 
@@ -22,7 +22,7 @@ pub const UNIFORM_BYTES_PER_ELEMENT: u64 = 80;
 ///
 /// Full contact is returned exactly and without iteration. Otherwise coarser grids, each with half the elements per side,
 /// prepare the start on the next; on each the pressure is found by conjugate gradients preconditioned by the inverse
-/// symbol masked to the contact (see `docs/uniform-solver.md` for the method and its measurements). The certificate is
+/// symbol between two extensions of residuals (see `docs/uniform-solver.md` for the method and its measurements). The certificate is
 /// computed from a fresh application of L, in double precision, on the pressure that is returned.
 ///
 /// The result is bitwise the same for any number of threads.

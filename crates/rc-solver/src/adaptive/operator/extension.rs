@@ -85,6 +85,7 @@ impl TileExtension {
         active: &[bool],
         values: &mut [f32],
     ) {
+        debug_assert_eq!(tables.sizes.around, AROUND, "taps are for patches of this side");
         self.extend(active, values, finest);
         self.apply_stencils(arch, tables, finest, values);
         self.convolve_base(convolution, tables);

@@ -7,8 +7,7 @@
 //! iterations grow with the number of scales. Here u between contacts is interpolated from means over squares of 2, 4, 8, … elements,
 //! each as far as its elements are active.
 //!
-//! Iterations for the contact as found, from the pressure of half the grid to 1e-6 of the height range, on surfaces with waves of 8 to n/5
-//! per cell at 18 % contact, n = 512, 1024, 2048: 17, 21, 24 with zeros, 5, 5, 5 with the extension.
+//! `docs/uniform-solver.md` has what it gives.
 
 mod finest;
 mod pyramid;
