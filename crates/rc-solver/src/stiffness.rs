@@ -36,24 +36,24 @@ pub(crate) fn stiffness_of(pressure: &[f64], n: f64, operator: &mut dyn Precondi
     search(pressure, n, operator, |_, _| {})
 }
 
-/// The same with x from an operator that is a few percent off, and ⟨x⟩²/⟨x L x⟩ from one application of an accurate one: a maximum over all
-/// x, so that the error of x enters squared.
-pub(crate) fn stiffness_by_two(
-    pressure: &[f64],
-    n: f64,
-    quick: &mut dyn PreconditionedOperator,
-    accurate: &mut dyn BlockOperator<f32>,
-) -> f64 {
+/// x of [`stiffness_of`], as exact as the operator.
+pub(crate) fn stiffness_pressure(pressure: &[f64], n: f64, operator: &mut dyn PreconditionedOperator) -> Vec<f32> {
     let mut x = vec![0.0_f32; pressure.len()];
-    search(pressure, n, quick, |length, directions| directions.add_to(&mut x, length));
-    let layout = accurate.layout();
+    search(pressure, n, operator, |length, directions| directions.add_to(&mut x, length));
+    x
+}
+
+/// [`stiffness_of`] from an x that is a few percent off, as ⟨x⟩²/⟨x L x⟩ by one application of a better operator: this is a maximum over all
+/// x, so that the error of x enters squared.
+pub(crate) fn stiffness_under(x: &[f32], n: f64, operator: &mut dyn BlockOperator<f32>) -> f64 {
+    let layout = operator.layout();
     let len = layout.len();
-    let means = write_blocks(accurate, x.chunks(len), |x, written| {
+    let means = write_blocks(operator, x.chunks(len), |x, written| {
         written.copy_from_slice(x);
         [x.iter().copied().map(f64::from).sum::<f64>()]
     });
-    accurate.apply();
-    let works = read_blocks(accurate, x.chunks(len), |x, displacement| {
+    operator.apply();
+    let works = read_blocks(operator, x.chunks(len), |x, displacement| {
         [x.iter().zip(displacement).map(|(&x, &v)| f64::from(x) * f64::from(v)).sum::<f64>()]
     });
     let ([mean], [work]) = (layout.total(means), layout.total(works));

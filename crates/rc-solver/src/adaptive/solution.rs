@@ -9,11 +9,11 @@ use rc_kernel::{ScaleSplit, SplitParams};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, put_tile};
 
 use super::element_blocks::blocks_of;
-use super::operator::{Hierarchy, Prepared, TileCorrections, TileResponse};
+use super::operator::{Hierarchy, Prepared, Tables, TileCorrections, TileResponse};
 use super::scaled_operator::ScaledOperator;
 use crate::descent::{BlockOperator, read_blocks, write_blocks};
 use crate::solution::Status;
-use crate::stiffness::stiffness_by_two;
+use crate::stiffness::{stiffness_pressure, stiffness_under};
 use crate::{ContactArea, ContactElement, Observables, SolveInfo};
 
 /// A contact problem solved on an adaptive mesh.
@@ -173,18 +173,24 @@ impl AdaptiveSolution {
         if self.is_full_contact() {
             return f64::INFINITY;
         }
-        let [quick, certified] = [SplitParams::quick(), SplitParams::certified()].map(ScaleSplit::new);
-        let mut preconditioner = Prepared::<f32>::inverse(&quick, self.base).tables(self.n_levels());
+        let n = self.finest.len() as f64;
         // The quick operator alone would be up to a percent off.
-        let [quick, certified] =
-            [quick, certified].map(|split| Prepared::<f32>::displacement(&split, self.base, self.border_level));
-        let [of_quick, of_certified] = [&quick, &certified].map(|prepared| prepared.tables(self.n_levels()));
-        let hierarchy = |prepared: &Prepared<f32>| {
-            Arc::new(Hierarchy::new(self.base.nx(), self.elements.clone(), prepared.reach()))
+        let x = {
+            let split = ScaleSplit::new(SplitParams::quick());
+            let mut preconditioner = Prepared::<f32>::inverse(&split, self.base).tables(self.n_levels());
+            let (hierarchy, tables) = self.operator_of(&split);
+            let mut corrections = TileCorrections::new(hierarchy, &tables, &mut preconditioner);
+            stiffness_pressure(&self.pressure, n, &mut corrections)
         };
-        let mut corrections = TileCorrections::new(hierarchy(&quick), &of_quick, &mut preconditioner);
-        let mut accurate = TileResponse::new(hierarchy(&certified), &of_certified);
-        stiffness_by_two(&self.pressure, self.finest.len() as f64, &mut corrections, &mut accurate)
+        let (hierarchy, tables) = self.operator_of(&ScaleSplit::new(SplitParams::certified()));
+        stiffness_under(&x, n, &mut TileResponse::new(hierarchy, &tables))
+    }
+
+    /// What L by this split needs on the mesh.
+    fn operator_of(&self, split: &ScaleSplit) -> (Arc<Hierarchy>, Tables<f32>) {
+        let prepared = Prepared::<f32>::displacement(split, self.base, self.border_level);
+        let hierarchy = Hierarchy::new(self.base.nx(), self.elements.clone(), prepared.reach());
+        (Arc::new(hierarchy), prepared.tables(self.n_levels()))
     }
 }
 

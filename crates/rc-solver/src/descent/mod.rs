@@ -26,7 +26,7 @@ mod sums;
 mod uniform;
 
 pub(crate) use directions::{ConjugateDirections, Slope};
-pub(crate) use extension::{Pyramid, shares};
+pub(crate) use extension::{Pyramid, set_shares};
 pub(crate) use gap::{fresh_gap, mean_pressure, rescale, scale_to_load};
 pub(crate) use layout::BlockLayout;
 pub(crate) use observed::ObservedMesh;

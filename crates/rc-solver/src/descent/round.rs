@@ -22,7 +22,7 @@ impl Descent<'_> {
     /// Takes so many steps, clips tensile pressures and restores the load.
     pub(super) fn round(&mut self, steps: usize, sums: &GapSums) -> GapSums {
         self.precondition_mean(sums);
-        let mut set = self.choose_active();
+        let mut set = self.begin_round();
         if set.n == 0.0 {
             return *sums;
         }
@@ -38,7 +38,7 @@ impl Descent<'_> {
     }
 
     /// Writes the residual of the active elements.
-    fn choose_active(&mut self) -> ActiveSet {
+    fn begin_round(&mut self) -> ActiveSet {
         let (len, gradient) = (self.layout.len(), self.gradient());
         // The choice before clipping goes with the extension.
         let chosen = self.rounds == Rounds::Chosen;
@@ -118,7 +118,7 @@ impl Descent<'_> {
             block.add_clipped(displacement, range, scale, offset, empty)
         });
         let sums = GapSums::total(&self.layout, sums);
-        self.pressed = sums.pressed();
+        self.pressed = sums.next_pressed();
         self.meet_penetration(sums)
     }
 

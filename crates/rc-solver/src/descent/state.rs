@@ -129,7 +129,7 @@ impl<'a> Descent<'a> {
         self.info.operator_applications += 1;
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         let sums = fresh_gap(&mut *self.operators.fresh, self.problem, elements, GapSums::empty(self.pressed));
-        self.pressed = sums.pressed();
+        self.pressed = sums.next_pressed();
         sums
     }
 
@@ -138,7 +138,7 @@ impl<'a> Descent<'a> {
         let (layout, problem) = (self.layout.clone(), self.problem);
         let empty = GapSums::empty(self.pressed);
         let sums = rescale(scale, &layout, problem, self.elements(), empty);
-        self.pressed = sums.pressed();
+        self.pressed = sums.next_pressed();
         self.settle(sums)
     }
 

@@ -25,7 +25,7 @@ pub(crate) struct GapSums {
     /// max p
     pub(super) max_pressure: f64,
     /// max g over p > `pressed`
-    pub(super) max_gap: f64,
+    pub(super) max_pressed_gap: f64,
     /// Elements of more pressure are well inside contact.
     pub(super) pressed: f64,
 }
@@ -35,7 +35,7 @@ const PRESSED: f64 = 0.1;
 const OPEN: f64 = 0.1;
 
 impl GapSums {
-    /// Of no element. What is `pressed` follows from other sums ([`GapSums::pressed`]); nothing is where it is infinite.
+    /// Of no element. What is `pressed` follows from other sums ([`GapSums::next_pressed`]); nothing is where it is infinite.
     pub(crate) fn empty(pressed: f64) -> Self {
         Self {
             pressure: 0.0,
@@ -45,13 +45,13 @@ impl GapSums {
             contact_gap: 0.0,
             n_contact: 0.0,
             max_pressure: 0.0,
-            max_gap: f64::NEG_INFINITY,
+            max_pressed_gap: f64::NEG_INFINITY,
             pressed,
         }
     }
 
     /// The pressure from which elements of the next sums are well inside contact.
-    pub(super) fn pressed(&self) -> f64 {
+    pub(super) fn next_pressed(&self) -> f64 {
         PRESSED * self.max_pressure
     }
 
@@ -65,7 +65,7 @@ impl GapSums {
             self.n_contact += 1.0;
             self.max_pressure = self.max_pressure.max(p);
             if p > self.pressed {
-                self.max_gap = self.max_gap.max(g);
+                self.max_pressed_gap = self.max_pressed_gap.max(g);
             }
         }
     }
@@ -83,7 +83,7 @@ impl GapSums {
                 contact_gap: sum.contact_gap + area * block.contact_gap,
                 n_contact: sum.n_contact + area * block.n_contact,
                 max_pressure: sum.max_pressure.max(block.max_pressure),
-                max_gap: sum.max_gap.max(block.max_gap),
+                max_pressed_gap: sum.max_pressed_gap.max(block.max_pressed_gap),
                 pressed,
             }
         })
@@ -134,8 +134,11 @@ impl GapSums {
         };
         let penetration = ratio(mean_gap - self.min_gap);
         // NaN is in the penetration.
-        let penetration =
-            if penetration.is_nan() { penetration } else { penetration.max(ratio(OPEN * (self.max_gap - mean_gap))) };
+        let penetration = if penetration.is_nan() {
+            penetration
+        } else {
+            penetration.max(ratio(OPEN * (self.max_pressed_gap - mean_gap)))
+        };
         positive_part(match problem.control {
             Control::MeanPressure(_) => penetration,
             // NaN in the mean is in both.

@@ -51,7 +51,7 @@ impl Cost {
                     area_fraction: Some(estimate.area_fraction),
                     elements: Some(estimate.cells),
                     bytes: Some(estimate.adaptive_bytes),
-                    cpu_seconds: Some(seconds(SECONDS_PER_ADAPTIVE_CELL * estimate.cells)),
+                    cpu_seconds: Some(seconds(SECONDS_PER_ADAPTIVE_CELL * estimate.work)),
                 }
             }
             ChosenMethod::Uniform => {

@@ -17,7 +17,7 @@ use super::stencil::{Taps, add_short_range};
 use super::tables::Tables;
 use super::tile_operator::{rows_to_tiles, tiles_to_rows};
 use super::tile_values::TileValues;
-use crate::descent::{Pyramid, read_rows, shares, write_rows};
+use crate::descent::{Pyramid, read_rows, set_shares, write_rows};
 use crate::parallel::{self, Tasks};
 
 /// Sides of the patches around one tile, and around the four tiles under one.
@@ -28,8 +28,8 @@ const UNDER: usize = 4 * TILE;
 struct Level {
     /// What the mean over the finest elements of a cell, active or not, is multiplied by.
     own: Vec<f32>,
-    /// What P u is multiplied by in w: the own share.
-    share: Vec<f32>,
+    /// What P u is multiplied by in u; in w it is this less one.
+    rest: Vec<f32>,
     /// Means and u on the way up; on the way down what belongs to u.
     values: Vec<f32>,
     /// w, and on the way down what the coarser level gets.
@@ -53,7 +53,7 @@ impl TileExtension {
         let side = hierarchy.base().nx();
         let level = |tiles: &TileSet| {
             let zeros = || vec![0.0; tiles.n_cells()];
-            Level { own: zeros(), share: zeros(), values: zeros(), detail: zeros(), pressure: zeros() }
+            Level { own: zeros(), rest: zeros(), values: zeros(), detail: zeros(), pressure: zeros() }
         };
         let levels = hierarchy.levels[1..hierarchy.n_levels()].iter().map(level).collect();
         Self { levels, pyramid: Pyramid::new(side, side), base: vec![0.0; side * side], hierarchy }
@@ -63,14 +63,7 @@ impl TileExtension {
     pub(super) fn set_active(&mut self, active: &[bool]) {
         self.take_means(&|cell| if active[cell] { 1.0 } else { 0.0 });
         for level in &mut self.levels {
-            let Level { own, share, values, .. } = level;
-            let blocks = own.chunks_mut(BLOCK_CELLS).zip(share.chunks_mut(BLOCK_CELLS)).zip(values.chunks(BLOCK_CELLS));
-            parallel::for_each(blocks, |((own, share), parts)| {
-                for ((own, share), &part) in own.iter_mut().zip(share).zip(parts) {
-                    let [of_mean, rest] = shares(part);
-                    (*own, *share) = (of_mean, 1.0 - rest);
-                }
-            });
+            set_shares(&mut level.own, &mut level.rest, &level.values);
         }
         self.pyramid.set_active();
     }
@@ -140,17 +133,17 @@ impl TileExtension {
             let (coarser, here) = self.levels.split_at_mut(level);
             let coarser = coarser.last().map_or(&self.base, |coarser| &coarser.values);
             let coarser = TileValues::new(coarser, &tiles[level]);
-            let Level { own, share, values, detail, .. } = &mut here[0];
-            let shares = own.chunks(BLOCK_CELLS).zip(share.chunks(BLOCK_CELLS));
+            let Level { own, rest, values, detail, .. } = &mut here[0];
+            let shares = own.chunks(BLOCK_CELLS).zip(rest.chunks(BLOCK_CELLS));
             let blocks = blocks(&tiles[level + 1], values).zip(detail.chunks_mut(BLOCK_CELLS)).zip(shares);
-            parallel::for_each(blocks, |(((places, values), detail), (own, share))| {
+            parallel::for_each(blocks, |(((places, values), detail), (own, rest))| {
                 let mut around = [0.0; CELLS];
                 for (tile, &place) in places.iter().enumerate() {
                     interpolate(coarser, place, &mut around);
                     for (cell, around) in (tile * CELLS..).zip(around) {
                         let mean = own[cell] * values[cell];
-                        values[cell] = mean + (1.0 - share[cell]) * around;
-                        detail[cell] = mean - share[cell] * around;
+                        values[cell] = mean + rest[cell] * around;
+                        detail[cell] = values[cell] - around;
                     }
                 }
             });
@@ -212,13 +205,13 @@ impl TileExtension {
             let (here, finer) = self.levels.split_at_mut(level + 1);
             let finer = finer.first().map_or(&*finest, |finer| &finer.detail);
             let finer = TileValues::new(finer, &tiles[level + 2]);
-            let Level { share, values, detail, pressure, .. } = &mut here[level];
-            let others = share.chunks(BLOCK_CELLS).zip(pressure.chunks(BLOCK_CELLS));
+            let Level { rest, values, detail, pressure, .. } = &mut here[level];
+            let others = rest.chunks(BLOCK_CELLS).zip(pressure.chunks(BLOCK_CELLS));
             let blocks = blocks(&tiles[level + 1], values).zip(detail.chunks_mut(BLOCK_CELLS)).zip(others);
-            parallel::for_each(blocks, |(((places, values), given), (share, pressure))| {
+            parallel::for_each(blocks, |(((places, values), given), (rest, pressure))| {
                 collect(finer, places, values);
                 for (cell, given) in given.iter_mut().enumerate() {
-                    *given = values[cell] - share[cell] * (values[cell] + pressure[cell]);
+                    *given = rest[cell] * (values[cell] + pressure[cell]) - pressure[cell];
                 }
             });
         }

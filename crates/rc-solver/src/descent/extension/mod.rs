@@ -14,4 +14,4 @@ mod pyramid;
 mod rows;
 
 pub(crate) use self::finest::GridExtension;
-pub(crate) use self::pyramid::{Pyramid, shares};
+pub(crate) use self::pyramid::{Pyramid, set_shares};

@@ -12,11 +12,21 @@ pub(crate) fn own_part(x: f32) -> f32 {
     x.sqrt() * x.sqrt().sqrt()
 }
 
-/// A square's share of its mean and of what is around it.
-pub(crate) fn shares(x: f32) -> [f32; 2] {
+/// A square's shares: what the mean over all its elements is multiplied by, and what the value around it is.
+fn shares(x: f32) -> [f32; 2] {
     let own = own_part(x);
     // The mean over all elements is x times the mean over the active ones.
     if x > 0.0 { [own / x, 1.0 - own] } else { [0.0, 1.0] }
+}
+
+/// The shares of squares of which these `parts` are active.
+pub(crate) fn set_shares(own: &mut [f32], rest: &mut [f32], parts: &[f32]) {
+    let blocks = own.chunks_mut(TASK).zip(rest.chunks_mut(TASK)).zip(parts.chunks(TASK));
+    parallel::for_each(blocks, |((own, rest), parts)| {
+        for ((own, rest), &part) in own.iter_mut().zip(rest).zip(parts) {
+            [*own, *rest] = shares(part);
+        }
+    });
 }
 
 /// One grid.
@@ -64,14 +74,7 @@ impl Pyramid {
     pub(crate) fn set_active(&mut self) {
         self.take_means();
         for level in &mut self.levels {
-            let Level { nx, own, rest, values } = level;
-            let len = *nx * rows_per_task(*nx);
-            let blocks = own.chunks_mut(len).zip(rest.chunks_mut(len)).zip(values.chunks(len));
-            parallel::for_each(blocks, |((own, rest), parts)| {
-                for ((own, rest), &part) in own.iter_mut().zip(rest).zip(parts) {
-                    [*own, *rest] = shares(part);
-                }
-            });
+            set_shares(&mut level.own, &mut level.rest, &level.values);
         }
         if let Some(Level { own, rest, values, .. }) = self.levels.last_mut() {
             (own[0], rest[0]) = (if values[0] > 0.0 { values[0].recip() } else { 0.0 }, 0.0);
