@@ -112,12 +112,24 @@ impl Field {
     /// Smallest value; NaN values are passed over.
     #[must_use]
     pub fn min(&self) -> f64 {
-        self.values.iter().copied().fold(f64::INFINITY, f64::min)
+        extreme(&self.values, f64::INFINITY, |value, least| value < least)
     }
 
     /// Largest value; NaN values are passed over.
     #[must_use]
     pub fn max(&self) -> f64 {
-        self.values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+        extreme(&self.values, f64::NEG_INFINITY, |value, greatest| value > greatest)
     }
+}
+/// The value that `is_beyond` all others, and `start`, in several lanes, which a vector register holds.
+fn extreme(values: &[f64], start: f64, is_beyond: impl Fn(f64, f64) -> bool) -> f64 {
+    let farther = |value: f64, so_far: f64| if is_beyond(value, so_far) { value } else { so_far };
+    let (chunks, rest) = values.as_chunks::<16>();
+    let mut lanes = [start; 16];
+    for chunk in chunks {
+        for (lane, &value) in lanes.iter_mut().zip(chunk) {
+            *lane = farther(value, *lane);
+        }
+    }
+    lanes.iter().chain(rest).fold(start, |so_far, &value| farther(value, so_far))
 }

@@ -9,6 +9,7 @@
 //! | [`SymbolTable`] | the symbol of a convolution, tabulated |
 //! | [`half_plane_values`] | one forward transform of a real field, every wave of the half plane kx ≥ 0 mapped to a number |
 //! | [`field_of_columns`] | one inverse transform of columns kx = 0, 1, … of waves, as many as there are, to a real field |
+//! | [`powers_of_lines`] | transforms of rows and of columns, one axis at a time, and weighted sums of their powers |
 //! | [`TransformReal`] | transforms of one dimension |
 //! | [`Instructions`] | the vector instructions that are used, which `RC_SIMD` in the environment can lower |
 //!
@@ -29,6 +30,7 @@
 mod convolution;
 mod half_plane;
 mod instructions;
+mod lines;
 mod plan;
 mod real_by_complex;
 mod symbol_table;
@@ -36,6 +38,7 @@ mod symbol_table;
 pub use convolution::{BLOCK_ROWS, Convolution};
 pub use half_plane::{field_of_columns, half_plane_values};
 pub use instructions::Instructions;
+pub use lines::powers_of_lines;
 pub use plan::TransformReal;
 pub use realfft::{ComplexToReal, RealToComplex};
 pub use rustfft::Fft;

@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
+use rayon::prelude::*;
 use rc_core::Field;
+use rc_fft::powers_of_lines;
 
 use crate::power::PowerSpectrum;
 
@@ -78,4 +80,27 @@ pub fn moments_of_grid(heights: &Field) -> Moments {
         total = total.plus(sums, column.multiplicity as f64);
     }
     total.moments()
+}
+
+/// rms height (λ) and rms slope of a height map, the same as those of [`moments_of_grid`] to rounding.
+///
+/// ⟨|∂h/∂x|²⟩ is the mean over rows of Σ q² |a|² of their own waves (Parseval along one axis), and in the same way for columns; so no
+/// memory is needed, unlike for the curvature.
+#[must_use]
+pub fn height_and_slope_of_grid(heights: &Field) -> [f64; 2] {
+    let (grid, n) = (heights.grid(), heights.grid().len() as f64);
+    let sum = |of_height: &(dyn Fn(f64) -> f64 + Sync)| -> f64 {
+        let rows = heights.values().par_chunks(grid.nx()).map(|row| row.iter().map(|&h| of_height(h)).sum::<f64>());
+        rows.collect::<Vec<f64>>().into_iter().sum()
+    };
+    let mean = sum(&|h| h) / n;
+    let squares = sum(&|h| (h - mean).powi(2));
+    let weights = |n: usize, squared_waves: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        let multiplicity = |k: usize| if k == 0 || 2 * k == n { 1.0 } else { 2.0 };
+        (0..=n / 2).map(|k| multiplicity(k) * TAU * TAU * squared_waves(k) / n as f64).collect()
+    };
+    let of_rows = weights(grid.nx(), &|kx| grid.squared_waves(kx, 0));
+    let of_columns = weights(grid.ny(), &|ky| grid.squared_waves(0, ky));
+    let [along_x, along_y] = powers_of_lines(heights, mean, [&of_rows, &of_columns]);
+    [squares / n, (along_x + along_y) / n].map(f64::sqrt)
 }

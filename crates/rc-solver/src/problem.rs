@@ -26,7 +26,8 @@ impl HeightStatistics {
             .par_chunks(nx)
             .map(|row| {
                 row.iter().fold((f64::NEG_INFINITY, f64::INFINITY, 0.0), |(max, min, sum), &h| {
-                    (f64::max(max, h), f64::min(min, h), sum + h)
+                    // Faster than f64::max; NaN shows in the sum.
+                    (if h > max { h } else { max }, if h < min { h } else { min }, sum + h)
                 })
             })
             .collect();

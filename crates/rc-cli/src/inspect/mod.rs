@@ -92,7 +92,7 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
     let [side, side_y] = heights::sides(&args.file, map.sides, [args.cell, args.cell_y])?;
     let side = side.or(file::example().surface.cell).unwrap_or(1.0);
     let cell = PeriodicCell::rectangle(side, side_y.unwrap_or(side)).map_err(CliError::input)?;
-    let heights = heights::in_cell(&args.file, &map.heights, cell)?;
+    let (heights, _) = heights::in_cell(&args.file, map.heights, cell)?;
     let grid = heights.grid();
     let note = if map.sides.is_none() && side_y.is_none() && grid.nx() != grid.ny() { TAKEN } else { "" };
     let record = SurfaceRecord::of(&heights, side, moments_of_grid(&heights));

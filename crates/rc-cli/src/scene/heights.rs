@@ -5,6 +5,7 @@ use std::path::Path;
 use rc_core::{Field, Grid, PeriodicCell};
 use rc_heights::{HeightMap, SAME_LENGTH, Scales};
 
+use super::as_read::AsRead;
 use crate::error::CliError;
 use rc_core::quantity::engineering;
 
@@ -70,11 +71,13 @@ pub(crate) fn sides(
 ///
 /// # Errors
 /// [`CliError::Input`] when the sides of the cell differ too much.
-pub(crate) fn in_cell(path: &Path, map: &Field, cell: PeriodicCell) -> Result<Field, CliError> {
+pub(crate) fn in_cell(path: &Path, map: Field, cell: PeriodicCell) -> Result<(Field, AsRead), CliError> {
     let grid = Grid::in_cell(map.grid().nx(), map.grid().ny(), cell.ratio())
         .map_err(|cause| CliError::in_file(path, format_args!("cell_y: {cause}")))?;
-    let heights = map.values().iter().map(|height| height / cell.side()).collect();
-    Field::new(grid, heights).map_err(|cause| CliError::in_file(path, cause))
+    let mut heights = map.into_values();
+    let as_read = AsRead::divide(&mut heights, cell.side());
+    let heights = Field::new(grid, heights).map_err(|cause| CliError::in_file(path, cause))?;
+    Ok((heights, as_read))
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The scene: its keys, which are flags as well, its file, and the checked problem that it becomes.
 
+pub mod as_read;
 pub mod file;
 pub mod keys;
 pub mod resolve;

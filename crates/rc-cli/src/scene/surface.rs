@@ -4,9 +4,10 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use rc_core::{Field, Grid, HeightField as _, HeightSource, PeriodicCell};
-use rc_fractal::{Moments, SpectrumParams, Surface, moments_of_grid};
+use rc_fractal::{Moments, SpectrumParams, Surface, height_and_slope_of_grid, moments_of_grid};
 use rc_heights::{HeightMap, Scales};
 
+use super::as_read::AsRead;
 use super::heights;
 use super::keys::SurfaceKeys;
 use super::values::GridSpec;
@@ -64,8 +65,8 @@ pub enum Shape {
     Map {
         /// Heights in λ.
         heights: Field,
-        /// Heights as read from the file (m); a result is repeated bit for bit only from these.
-        as_read: Field,
+        /// What makes them the heights in the file.
+        as_read: AsRead,
     },
 }
 
@@ -103,17 +104,17 @@ impl SurfaceSetup {
     /// [`CliError::Input`] when points are missing, when it is flat, or of another grid or size than the scene says.
     pub fn of_map(&self, path: &Path, map: HeightMap, expected: Option<Grid>) -> Result<LoadedSurface, CliError> {
         heights::sides(path, map.sides, [Some(self.cell.side()), self.keys.cell_y])?;
-        let as_read = map.heights;
-        heights::check_finite(path, &as_read)?;
-        let heights = heights::in_cell(path, &as_read, self.cell)?;
+        heights::check_finite(path, &map.heights)?;
+        let range = [map.heights.min(), map.heights.max()];
+        let (heights, as_read) = heights::in_cell(path, map.heights, self.cell)?;
         let grid = heights.grid();
         let (nx, ny) = (grid.nx(), grid.ny());
         if let Some(expected) = expected.filter(|expected| (expected.nx(), expected.ny()) != (nx, ny)) {
             let message = format_args!("the map has {grid} elements, grid says {expected}; omit grid");
             return Err(CliError::in_file(path, message));
         }
-        if as_read.max() <= as_read.min() {
-            let message = format_args!("all heights are {:e}; a flat surface has no contact problem", as_read.max());
+        if range[1] <= range[0] {
+            let message = format_args!("all heights are {:e}; a flat surface has no contact problem", range[1]);
             return Err(CliError::in_file(path, message));
         }
         let spec = GridSpec { nx, ny };
@@ -148,6 +149,18 @@ impl LoadedSurface {
         }
     }
 
+    /// rms height (λ) and rms slope: exact ones of a random surface, those of its grid for a height map.
+    #[must_use]
+    pub fn height_and_slope(&self) -> [f64; 2] {
+        match &self.shape {
+            Shape::Random(surface) => {
+                let Moments { rms_height, rms_slope, .. } = surface.moments();
+                [rms_height, rms_slope]
+            }
+            Shape::Map { heights, .. } => height_and_slope_of_grid(heights),
+        }
+    }
+
     /// Moments, in λ: exact ones of a random surface, those of its grid for a height map.
     #[must_use]
     pub fn moments(&self) -> Moments {
@@ -157,12 +170,12 @@ impl LoadedSurface {
         }
     }
 
-    /// The heights as read from a file (m).
+    /// The map that the heights are read from, if they are: in λ, and what makes them metres as in the file.
     #[must_use]
-    pub fn as_read(&self) -> Option<&Field> {
+    pub fn map(&self) -> Option<(&Field, &AsRead)> {
         match &self.shape {
             Shape::Random(_) => None,
-            Shape::Map { as_read, .. } => Some(as_read),
+            Shape::Map { heights, as_read } => Some((heights, as_read)),
         }
     }
 }

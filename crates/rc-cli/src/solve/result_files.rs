@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use rc_core::{DVec2, Grid, Units};
+use rc_core::{DVec2, Field, Grid, Units};
 use rc_heights::npy::{self, RowWriter};
 use rc_plot::{ContactRows, save_png};
 use rc_solver::{ContactElement, Solution};
@@ -11,6 +11,7 @@ use rc_sweep::Summary;
 use rc_sweep::files::{FileError, Staged};
 
 use crate::files::coarsen::BlockMean;
+use crate::scene::as_read::AsRead;
 use crate::scene::file;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
 use crate::scene::resolve::ContactSetup;
@@ -28,12 +29,24 @@ pub(super) fn write(
 ) -> Result<(), FileError> {
     let mut staged = Staged::new(folder)?;
     add_fields(&mut staged, contact, solution)?;
-    if let Some(heights) = surface.as_read() {
-        staged.add(HEIGHTS_FILE, |path| npy::write(path, heights, 1.0))?;
+    if let Some((heights, as_read)) = surface.map() {
+        staged.add(HEIGHTS_FILE, |path| write_as_read(path, heights, as_read))?;
     }
     staged.add_text("scene.toml", &scene_text(&surface.keys, &contact.keys, solution))?;
     staged.add_text("summary.json", &summary.to_json())?;
     staged.commit()
+}
+
+/// Writes heights (λ) as they are in the file that they come from, row by row.
+fn write_as_read(path: &Path, heights: &Field, as_read: &AsRead) -> io::Result<()> {
+    let mut file = npy::RowWriter::create(path, heights.grid(), 1.0)?;
+    let mut row = vec![0.0; heights.grid().nx()];
+    for iy in 0..heights.grid().ny() {
+        row.copy_from_slice(heights.row(iy));
+        as_read.restore(iy * row.len(), &mut row);
+        file.write(&row)?;
+    }
+    file.finish()
 }
 
 /// Pressure, gap, elements and the picture of the contact.

@@ -107,12 +107,12 @@ impl Solved<'_> {
     pub(crate) fn summary(&self, threads: usize) -> Summary {
         let ProblemSetup { surface, contact, .. } = self.problem;
         // Not before: the time to the certified solution does not include what the solution does not need.
-        let moments = surface.moments();
+        let [rms_height, rms_slope] = surface.height_and_slope();
         let context = SolveContext {
             control: contact.control.into(),
             border_level: contact.params.border_level,
-            rms_height: moments.rms_height,
-            rms_slope: moments.rms_slope,
+            rms_height,
+            rms_slope,
             wall: self.wall,
             threads,
         };

@@ -1,5 +1,6 @@
 //! Files of a surface.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use rc_core::Field;
@@ -18,8 +19,15 @@ pub(super) fn is_map(target: &Path) -> bool {
 }
 
 /// Heights and the factor that makes them metres: as read, where they come from a file.
-fn in_metres<'a>(surface: &'a LoadedSurface, heights: &'a Field, side: f64) -> (&'a Field, f64) {
-    surface.as_read().map_or((heights, side), |field| (field, 1.0))
+fn in_metres<'a>(surface: &LoadedSurface, heights: &'a Field, side: f64) -> (Cow<'a, Field>, f64) {
+    match surface.map() {
+        None => (Cow::Borrowed(heights), side),
+        Some((heights, as_read)) => {
+            let mut heights = heights.clone();
+            as_read.restore(0, heights.values_mut());
+            (Cow::Owned(heights), 1.0)
+        }
+    }
 }
 
 /// Writes the heights alone.
@@ -30,7 +38,7 @@ pub(super) fn write_map(target: &Path, surface: &LoadedSurface, heights: &Field,
     let (field, factor) = in_metres(surface, heights, side);
     let csv = target.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
     let write = if csv { text::write } else { npy::write };
-    files::write_file(target, |path| write(path, field, factor))
+    files::write_file(target, |path| write(path, &field, factor))
 }
 
 /// Writes the folder of a surface, from which it can be solved.
@@ -51,7 +59,7 @@ pub(super) fn write_folder(
     let shade = Shade::Values { range, palette: Palette::Viridis, factor: side, unit: "m" };
     let picture = MapPicture(Map { title: "Height", field: heights, shade, side });
     let mut staged = Staged::new(folder)?;
-    staged.add(HEIGHTS_FILE, |path| npy::write(path, field, factor))?;
+    staged.add(HEIGHTS_FILE, |path| npy::write(path, &field, factor))?;
     staged.add("surface.png", |path| save_png(&picture, path))?;
     staged.add_text("scene.toml", &scene)?;
     staged.add_text("surface.json", &to_json(record))?;

@@ -1,7 +1,9 @@
 //! Exact moments, and moments of grids.
 
 use rc_core::{DVec2, Field, Grid, HeightField};
-use rc_fractal::{Amplitudes, Moments, Normalisation, SpectrumParams, Truncation, moments_of_grid};
+use rc_fractal::{
+    Amplitudes, Moments, Normalisation, SpectrumParams, Truncation, height_and_slope_of_grid, moments_of_grid,
+};
 
 use crate::{assert_close, surface};
 
@@ -45,6 +47,17 @@ fn moments_of_a_resolved_grid_equal_the_exact_sums() {
     for (nx, ny) in [(61, 61), (64, 64), (96, 75), (81, 128)] {
         let sampled = moments_of_grid(&surface.sample_on(Grid::new(nx, ny).expect("small")).expect("resolved"));
         assert_same(&format!("{nx} x {ny}"), sampled, exact);
+    }
+}
+
+#[test]
+fn height_and_slope_need_one_axis_at_a_time() {
+    let noise = |DVec2 { x, y }: DVec2| (1e3 * (13.0 * x + 57.0 * y)).sin() + 1e4;
+    for (nx, ny) in [(64, 48), (35, 81), (128, 1), (2, 90)] {
+        let heights = Field::from_fn(Grid::new(nx, ny).expect("small"), noise);
+        let (moments, [height, slope]) = (moments_of_grid(&heights), height_and_slope_of_grid(&heights));
+        assert_close("rms height", height, moments.rms_height, 1e-11);
+        assert_close("rms slope", slope, moments.rms_slope, 1e-11);
     }
 }
 

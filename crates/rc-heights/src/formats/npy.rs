@@ -44,10 +44,11 @@ pub fn read_from(mut file: impl Read, bytes: u64) -> Result<Field, FormatError> 
         }
     }
     let invalid = |cause: io::Error| FormatError::Container { format: Format::Npy, reason: cause.to_string() };
-    let npy = NpyFile::new(io::Cursor::new(start).chain(file)).map_err(invalid)?;
-    let grid = grid_of(npy.header())?;
-    let (_, size) = real_type(&npy.dtype())?;
-    let order = npy.order();
+    let mut file = io::Cursor::new(start).chain(file);
+    let header = NpyHeader::from_reader(&mut file).map_err(invalid)?;
+    let grid = grid_of(&header)?;
+    let (_, size) = real_type(&header.dtype())?;
+    let order = header.order();
     // Said before memory is taken for what a damaged header promises. A grid has at most 2^40 points.
     let needed = size * grid.len() as u64;
     if bytes < needed {
@@ -57,7 +58,11 @@ pub fn read_from(mut file: impl Read, bytes: u64) -> Result<Field, FormatError> 
         io::ErrorKind::UnexpectedEof => FormatError::CutShort { grid, needed, found: bytes },
         _ => unreadable(cause),
     };
-    let stored = to_f64(npy).map_err(cut_short)?;
+    let stored = match header.dtype() {
+        DType::Plain(plain) if plain.to_string() == "<f8" => doubles(file, grid.len()),
+        _ => to_f64(NpyFile::with_header(header, file), grid.len()),
+    };
+    let stored = stored.map_err(cut_short)?;
     Ok(field(grid, if order == Order::C { stored } else { transposed(&stored, grid) }))
 }
 
@@ -155,25 +160,42 @@ fn real_type(dtype: &DType) -> Result<(TypeChar, u64), FormatError> {
     }
 }
 
-fn to_f64(npy: NpyFile<impl Read>) -> io::Result<Vec<f64>> {
+fn to_f64(npy: NpyFile<impl Read>, n: usize) -> io::Result<Vec<f64>> {
     match real_type(&npy.dtype()).map_err(io::Error::other)? {
-        (TypeChar::Float, 2) => collect(npy, npyz::half::f16::to_f64),
-        (TypeChar::Float, 4) => collect(npy, |v: f32| f64::from(v)),
-        (TypeChar::Int, 1) => collect(npy, |v: i8| f64::from(v)),
-        (TypeChar::Int, 2) => collect(npy, |v: i16| f64::from(v)),
-        (TypeChar::Int, 4) => collect(npy, |v: i32| f64::from(v)),
-        (TypeChar::Int, _) => collect(npy, |v: i64| v as f64),
-        (TypeChar::Uint, 1) => collect(npy, |v: u8| f64::from(v)),
-        (TypeChar::Uint, 2) => collect(npy, |v: u16| f64::from(v)),
-        (TypeChar::Uint, 4) => collect(npy, |v: u32| f64::from(v)),
-        (TypeChar::Uint, _) => collect(npy, |v: u64| v as f64),
-        _ => collect(npy, |v: f64| v),
+        (TypeChar::Float, 2) => collect(npy, n, npyz::half::f16::to_f64),
+        (TypeChar::Float, 4) => collect(npy, n, |v: f32| f64::from(v)),
+        (TypeChar::Int, 1) => collect(npy, n, |v: i8| f64::from(v)),
+        (TypeChar::Int, 2) => collect(npy, n, |v: i16| f64::from(v)),
+        (TypeChar::Int, 4) => collect(npy, n, |v: i32| f64::from(v)),
+        (TypeChar::Int, _) => collect(npy, n, |v: i64| v as f64),
+        (TypeChar::Uint, 1) => collect(npy, n, |v: u8| f64::from(v)),
+        (TypeChar::Uint, 2) => collect(npy, n, |v: u16| f64::from(v)),
+        (TypeChar::Uint, 4) => collect(npy, n, |v: u32| f64::from(v)),
+        (TypeChar::Uint, _) => collect(npy, n, |v: u64| v as f64),
+        _ => collect(npy, n, |v: f64| v),
     }
 }
 
-fn collect<T: Deserialize>(npy: NpyFile<impl Read>, to_f64: impl Fn(T) -> f64) -> io::Result<Vec<f64>> {
-    let data = npy.data::<T>().map_err(io::Error::other)?;
-    data.map(|value| value.map(&to_f64)).collect()
+/// The next `n` values of the usual type, of which a large map has so many that reading them one by one takes as long as a solve.
+fn doubles(mut file: impl Read, n: usize) -> io::Result<Vec<f64>> {
+    let (mut values, mut bytes) = (vec![0.0; n], [[0; 8]; 1 << 11]);
+    for values in values.chunks_mut(bytes.len()) {
+        let bytes = &mut bytes[..values.len()];
+        file.read_exact(bytes.as_flattened_mut())?;
+        for (value, bytes) in values.iter_mut().zip(bytes) {
+            *value = f64::from_le_bytes(*bytes);
+        }
+    }
+    Ok(values)
+}
+
+/// The next `n` values; memory for all of them is taken once.
+fn collect<T: Deserialize>(npy: NpyFile<impl Read>, n: usize, to_f64: impl Fn(T) -> f64) -> io::Result<Vec<f64>> {
+    let mut values = Vec::with_capacity(n);
+    for value in npy.data::<T>().map_err(io::Error::other)?.take(n) {
+        values.push(to_f64(value?));
+    }
+    Ok(values)
 }
 
 /// Row-major values of an array that is stored column by column.

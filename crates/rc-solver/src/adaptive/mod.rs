@@ -4,6 +4,7 @@
 //! cells that contact touches or nearly does, with the multilevel operator. What is not stored is out of contact, and the
 //! exclusion proves it.
 
+mod base_side;
 mod contact_area;
 mod element_blocks;
 mod element_heights;
@@ -30,6 +31,7 @@ use rc_core::{Grid, HeightSource, Observer};
 use rc_kernel::SplitParams;
 use rc_quadtree::TILE;
 
+use self::base_side::{SMALLEST_BASE, base_side};
 use self::contact_area::contact_area;
 pub use self::error::AdaptiveError;
 pub(crate) use self::estimate::Estimate;
@@ -52,12 +54,6 @@ const OPERATOR_ERROR_PER_TOLERANCE: f64 = 3.0;
 
 /// The same over the overlap that an energy error aims at, in units of U/σ0, which is 0.02 to 0.08 of the height range.
 const OPERATOR_ERROR_PER_ENERGY: f64 = 0.5;
-
-/// Elements of the base grid for the shortest wave: what interpolates heights to other levels needs no more.
-const BASE_ELEMENTS_PER_WAVE: usize = 4;
-
-/// Fewest elements per side of the base grid.
-const SMALLEST_BASE: usize = 64;
 
 /// A checked contact problem, ready for the adaptive method: heights are sampled, nothing is solved.
 ///
@@ -254,35 +250,6 @@ fn check_memory(grid: Grid, limit: Option<u64>, bytes: f64, area_percent: Option
     }
 }
 
-/// Checks or chooses the elements per side of the base grid.
-fn base_side(source: &HeightSource<'_>, wanted: Option<usize>) -> Result<usize, AdaptiveError> {
-    let finest = source.grid().nx();
-    let waves = match source {
-        HeightSource::Surface { surface, .. } => surface.band_limit(),
-        HeightSource::Map(_) => None,
-    };
-    if let Some(base) = wanted {
-        let fits = base >= TILE && base.is_multiple_of(TILE) && base > 2 * waves.unwrap_or(0) && 2 * base <= finest;
-        let divides = fits && finest.is_multiple_of(base) && (finest / base).is_power_of_two();
-        let error = AdaptiveError::Base { base, waves: waves.unwrap_or(0), finest };
-        return if divides { Ok(base) } else { Err(error) };
-    }
-    // A map may hold waves as short as a few elements: two levels above the base grid are safe, and three on large maps.
-    let least = match waves {
-        Some(waves) => (BASE_ELEMENTS_PER_WAVE * waves).max(SMALLEST_BASE),
-        None => (finest / if finest >= 4096 { 8 } else { 4 }).max(SMALLEST_BASE),
-    };
-    let halves = |side: usize| side.is_multiple_of(2 * TILE) && side / 2 >= least;
-    let mut base = finest;
-    while halves(base) {
-        base /= 2;
-    }
-    if base == finest && finest.is_multiple_of(2 * TILE) && finest / 2 > 2 * waves.unwrap_or(0) {
-        base /= 2;
-    }
-    if base < finest { Ok(base) } else { Err(AdaptiveError::Grid { nx: finest, ny: finest, smallest: 2 * least }) }
-}
-
 /// Most elements per side of the grid of the smallest elements: where tiles are is looked up in tables of 4 bytes for 64 of
 /// them.
 const DEEPEST_SIDE: usize = 1 << 17;
@@ -293,28 +260,6 @@ mod tests {
 
     use super::*;
     use crate::params::IterationParams;
-
-    /// Any surface with this many waves.
-    struct Waves(usize);
-
-    impl HeightField for Waves {
-        fn height(&self, _at: DVec2) -> f64 {
-            0.0
-        }
-
-        fn band_limit(&self) -> Option<usize> {
-            Some(self.0)
-        }
-    }
-
-    #[test]
-    fn the_base_grid_follows_the_waves_and_the_divisors() {
-        let base = |side, waves| base_side(&Waves(waves).on(Grid::square(side).expect("a grid")), None);
-        for (side, waves, expected) in [(2048, 64, 256), (32768, 1024, 4096), (128, 8, 64), (1_000_000, 8, 125_000)] {
-            assert_eq!(base(side, waves).ok(), Some(expected), "{side}, {waves} waves");
-        }
-        assert!(matches!(base(1001, 8), Err(AdaptiveError::Grid { .. })));
-    }
 
     #[test]
     fn a_base_grid_above_the_limit_is_refused_before_heights_are_sampled() {

@@ -3,37 +3,74 @@
 use rayon::prelude::*;
 use rc_core::{Field, Grid};
 
-/// Six-point interpolation to the midpoint of two centres (Lagrange), which is where the centre of a coarse element lies:
-/// keeps 99.9 % of a wave of eight fine elements, where averaging would keep 92 %.
-const MIDPOINT: [f64; 6] = [3.0 / 256.0, -25.0 / 256.0, 150.0 / 256.0, 150.0 / 256.0, -25.0 / 256.0, 3.0 / 256.0];
-
 /// Elements across a long cell on its coarsest grid, at least.
 const SMALLEST_WIDTH: usize = 8;
+
+/// Elements along a side of a grid above which an odd side is followed by are 2^k times one of these: FFTs of such lengths are fast, and
+/// k halvings follow.
+const MULTIPLES: [usize; 6] = [8, 9, 10, 12, 14, 15];
+
+/// Greatest prime factor of a side that is halved as it is, when the half is odd.
+const GREATEST_FACTOR: usize = 13;
 
 /// The heights on coarser and coarser grids, finest of them first, each with half the elements per side, as long as that
 /// leaves whole elements, at least `smallest_side` of them along the side with more; a long cell is in need of coarser grids too.
 pub(crate) fn coarsen(heights: &Field, smallest_side: usize) -> Vec<Field> {
-    coarsen_above(heights, smallest_side, f64::NEG_INFINITY)
+    coarsen_above(heights, smallest_side, f64::NEG_INFINITY, half)
 }
 
 /// The same for starts on finer grids: heights below the [`floor`] count as that.
 pub(crate) fn coarsen_without_pits(heights: &Field, smallest_side: usize) -> Vec<Field> {
-    coarsen_above(heights, smallest_side, floor(heights))
+    coarsen_above(heights, smallest_side, floor(heights), half)
 }
 
-fn coarsen_above(heights: &Field, smallest_side: usize, floor: f64) -> Vec<Field> {
+/// The same for grids of any size: the next one has half the elements of an even side, and about half those of an odd one.
+pub(super) fn nest_without_pits(heights: &Field, smallest_side: usize) -> Vec<Field> {
+    coarsen_above(heights, smallest_side, floor(heights), |n| Some(about_half(n)))
+}
+
+fn coarsen_above(
+    heights: &Field,
+    smallest_side: usize,
+    floor: f64,
+    next_side: impl Fn(usize) -> Option<usize>,
+) -> Vec<Field> {
     let mut levels: Vec<Field> = Vec::new();
     loop {
         let finer = levels.last().unwrap_or(heights);
         let (nx, ny) = (finer.grid().nx(), finer.grid().ny());
-        let large = nx.max(ny) >= 2 * smallest_side && nx.min(ny) >= 2 * SMALLEST_WIDTH.min(smallest_side);
-        if !(large && nx.is_multiple_of(2) && ny.is_multiple_of(2)) {
-            return levels;
-        }
-        let Ok(grid) = finer.grid().with_elements(nx / 2, ny / 2) else { return levels };
-        let next = halve(finer, grid, floor);
+        let is_large = nx.max(ny) >= 2 * smallest_side && nx.min(ny) >= 2 * SMALLEST_WIDTH.min(smallest_side);
+        let (true, Some(nx), Some(ny)) = (is_large, next_side(nx), next_side(ny)) else { return levels };
+        let Ok(grid) = finer.grid().with_elements(nx, ny) else { return levels };
+        let next = sample(finer, grid, floor);
         levels.push(next);
     }
+}
+
+fn half(side: usize) -> Option<usize> {
+    side.is_multiple_of(2).then_some(side / 2)
+}
+
+/// Half the side where that is a side to go on with, else a little more.
+fn about_half(side: usize) -> usize {
+    match half(side) {
+        Some(half) if half.is_multiple_of(2) || has_small_factors(half) => half,
+        _ => {
+            let least = side.div_ceil(2);
+            let k = (least / MULTIPLES[0]).max(1).ilog2();
+            let sides = (k..=k + 1).flat_map(|k| MULTIPLES.map(|multiple| multiple << k));
+            sides.filter(|&side| side >= least).min().unwrap_or(least)
+        }
+    }
+}
+
+fn has_small_factors(mut side: usize) -> bool {
+    for factor in 2..=GREATEST_FACTOR {
+        while side.is_multiple_of(factor) {
+            side /= factor;
+        }
+    }
+    side == 1
 }
 
 /// Heights that are looked at for the quartile, at most.
@@ -56,26 +93,63 @@ fn floor(heights: &Field) -> f64 {
     if depth > 0.0 { highest - FLOOR_DEPTH * depth } else { f64::NEG_INFINITY }
 }
 
-fn halve(finer: &Field, grid: Grid, floor: f64) -> Field {
+/// The heights at the centres of a coarser grid of the same cell.
+fn sample(finer: &Field, grid: Grid, floor: f64) -> Field {
     let (nx, ny) = (finer.grid().nx(), finer.grid().ny());
+    let (along_x, along_y) = (Taps::of_centres(nx, grid.nx()), Taps::of_centres(ny, grid.ny()));
     let mut coarse = Field::zeros(grid);
-    coarse.values_mut().par_chunks_mut(grid.nx()).enumerate().for_each_init(
+    coarse.values_mut().par_chunks_mut(grid.nx()).zip(&along_y).for_each_init(
         || vec![0.0; nx],
-        |blended, (iy, row)| {
+        |blended, (row, taps)| {
             blended.fill(0.0);
-            for (tap, weight) in MIDPOINT.iter().enumerate() {
-                let source = finer.row((2 * iy + tap + ny - 2) % ny);
-                for (sum, value) in blended.iter_mut().zip(source) {
+            for (iy, weight) in taps.iter() {
+                for (sum, value) in blended.iter_mut().zip(finer.row(iy)) {
                     *sum += weight * value.max(floor);
                 }
             }
-            for (ix, value) in row.iter_mut().enumerate() {
-                let taps = MIDPOINT.iter().enumerate();
-                *value = taps.map(|(tap, weight)| weight * blended[(2 * ix + tap + nx - 2) % nx]).sum();
+            for (value, taps) in row.iter_mut().zip(&along_x) {
+                *value = taps.iter().map(|(ix, weight)| weight * blended[ix]).sum();
             }
         },
     );
     coarse
+}
+
+/// Interpolation between six neighbours (Lagrange) along one axis. At the midpoint of two centres, which is where the centre of an element
+/// twice as large lies, it keeps 99.9 % of a wave of eight elements, where averaging would keep 92 %.
+struct Taps {
+    neighbours: [usize; N_TAPS],
+    weights: [f64; N_TAPS],
+}
+
+const N_TAPS: usize = 6;
+
+impl Taps {
+    /// For the centres of `coarse` elements on a side with `fine` ones.
+    fn of_centres(fine: usize, coarse: usize) -> Vec<Self> {
+        let ratio = fine as f64 / coarse as f64;
+        let of_centre = |i: usize| {
+            let place = (i as f64 + 0.5) * ratio - 0.5;
+            let before = place.floor();
+            let at = place - before;
+            let weights = std::array::from_fn(|tap| {
+                let others = (0..N_TAPS).filter(|&other| other != tap).map(|other| other as f64 - 2.0);
+                let (mut product, mut divisor) = (1.0, 1.0);
+                for other in others {
+                    product *= at - other;
+                    divisor *= tap as f64 - 2.0 - other;
+                }
+                product / divisor
+            });
+            // A side has at least two elements.
+            Self { neighbours: std::array::from_fn(|tap| (before as usize + tap + 2 * fine - 2) % fine), weights }
+        };
+        (0..coarse).map(of_centre).collect()
+    }
+
+    fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.neighbours.iter().copied().zip(self.weights)
+    }
 }
 
 #[cfg(test)]
@@ -120,7 +194,40 @@ mod tests {
     }
 
     #[test]
-    fn odd_sides_are_not_coarsened() {
+    fn odd_sides_are_not_halved() {
         assert!(coarsen(&Field::zeros(Grid::new(256, 255).expect("grid")), 2).is_empty());
+    }
+
+    #[test]
+    fn grids_of_any_size_have_coarser_ones_with_the_same_wave() {
+        let wave = |DVec2 { x, y }: DVec2| (2.0 * PI * (3.0 * x + 2.0 * y)).cos();
+        for (nx, ny) in [(1001, 1001), (997, 640), (334, 130), (255, 64), (640, 480), (2001, 17)] {
+            let fine = Field::from_fn(Grid::new(nx, ny).expect("grid"), wave);
+            let coarser = nest_without_pits(&fine, 64);
+            let coarsest = coarser.last().expect("coarser grids").grid();
+            assert!((64..128).contains(&coarsest.nx().max(coarsest.ny())) || coarsest.ny() < 16, "{coarsest}");
+            let mut finer = fine.grid();
+            for level in &coarser {
+                let grid = level.grid();
+                for (coarse, fine) in [(grid.nx(), finer.nx()), (grid.ny(), finer.ny())] {
+                    assert!((0.5..0.63).contains(&(coarse as f64 / fine as f64)), "{grid} under {finer}");
+                }
+                let exact = Field::from_fn(grid, wave);
+                let errors = exact.values().iter().zip(level.values()).map(|(e, c)| (e - c).abs());
+                // A short side has few elements for a wave.
+                let allowed = 1e-4 + (2.5 * PI / grid.ny() as f64).powi(6);
+                assert!(errors.fold(0.0, f64::max) < allowed, "{grid} under {}", fine.grid());
+                finer = grid;
+            }
+        }
+    }
+
+    #[test]
+    fn sides_that_divide_well_are_halved() {
+        for (side, next) in
+            [(1024, 512), (1000, 500), (250, 125), (1001, 512), (1002, 512), (997, 512), (257, 144), (17, 9)]
+        {
+            assert_eq!(about_half(side), next, "{side}");
+        }
     }
 }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use rc_core::{Event, Field, Kernel, Observer};
 
-use super::levels::coarsen_without_pits;
+use super::levels::nest_without_pits;
 use super::prolongation::prolong;
 use crate::IterationParams;
 use crate::descent::{Descent, DescentObserver, Goal, Outcome, Start, uniform_operators};
@@ -36,13 +36,15 @@ pub(crate) struct FinestGrid<'a> {
 impl<'a> NestedGrids<'a> {
     /// Solves on coarser grids and then on that of `heights`.
     pub(crate) fn solve(&self, heights: &'a Field) -> FinestGrid<'a> {
-        let coarser = coarsen_without_pits(heights, SMALLEST_SIDE);
+        let coarser = nest_without_pits(heights, SMALLEST_SIDE);
         let n_levels = coarser.len() + 1 + self.n_above;
+        let finer = coarser.iter().rev().skip(1).chain([heights]).map(Field::grid);
         let (mut levels, mut start, mut values) = (Vec::with_capacity(n_levels), Start::Nothing, None);
-        for heights in coarser.iter().rev() {
+        for (heights, finer) in coarser.iter().rev().zip(finer) {
             let (descent, outcome) = self.solve_level(heights, start, n_levels, &mut levels);
-            values = self.values(&descent, &outcome, n_levels - levels.len());
-            start = Start::Pressure(prolong(&descent));
+            let is_half = [heights.grid().nx() * 2, heights.grid().ny() * 2] == [finer.nx(), finer.ny()];
+            values = self.values(&descent, &outcome, n_levels - levels.len()).filter(|_| is_half);
+            start = Start::Pressure(prolong(&descent, finer));
         }
         let (descent, outcome) = self.solve_level(heights, start, n_levels, &mut levels);
         let coarser = if self.n_above == 0 { values } else { self.values(&descent, &outcome, self.n_above) };

@@ -6,31 +6,61 @@
 //! interpolation puts the edge where it belongs.
 
 use rayon::prelude::*;
+use rc_core::Grid;
 
 use crate::descent::Descent;
 
-/// The start on the grid with twice as many elements per side.
-pub(crate) fn prolong(coarse: &Descent<'_>) -> Vec<f64> {
-    let (nx, ny) = (coarse.grid().nx(), coarse.grid().ny());
-    interpolate(&edge_function(coarse), [nx, ny])
+/// The start on a `finer` grid of the same cell.
+pub(crate) fn prolong(coarse: &Descent<'_>, finer: Grid) -> Vec<f64> {
+    interpolate(&edge_function(coarse), coarse.grid(), finer)
 }
 
-/// The pressure on elements half as large from φ.
-fn interpolate(function: &[f64], [nx, ny]: [usize; 2]) -> Vec<f64> {
-    let mut fine = vec![0.0; 4 * nx * ny];
-    fine.par_chunks_mut(2 * nx).enumerate().for_each(|(iy, row)| {
-        // The centre of a fine element lies a quarter of a coarse element from the centre of the coarse one it is in.
-        let near = &function[(iy / 2) * nx..][..nx];
-        let far_iy = if iy.is_multiple_of(2) { (iy / 2 + ny - 1) % ny } else { (iy / 2 + 1) % ny };
-        let far = &function[far_iy * nx..][..nx];
-        let blend = |ix: usize| 0.75 * near[ix] + 0.25 * far[ix];
-        for (ix, pair) in row.chunks_exact_mut(2).enumerate() {
-            let (left, here, right) = (blend((ix + nx - 1) % nx), blend(ix), blend((ix + 1) % nx));
-            pair[0] = (0.75 * here + 0.25 * left).max(0.0).sqrt();
-            pair[1] = (0.75 * here + 0.25 * right).max(0.0).sqrt();
-        }
-    });
+/// The pressure on a finer grid from φ.
+fn interpolate(function: &[f64], coarse: Grid, finer: Grid) -> Vec<f64> {
+    let nx = coarse.nx();
+    let (along_x, along_y) =
+        (Between::of_centres(coarse.nx(), finer.nx()), Between::of_centres(coarse.ny(), finer.ny()));
+    let mut fine = vec![0.0; finer.len()];
+    fine.par_chunks_mut(finer.nx()).zip(&along_y).for_each_init(
+        || vec![0.0; nx],
+        |blended, (row, of_row)| {
+            let [before, after] = of_row.neighbours.map(|iy| &function[iy * nx..][..nx]);
+            for ((value, &before), &after) in blended.iter_mut().zip(before).zip(after) {
+                *value = of_row.blend(before, after);
+            }
+            for (value, of_centre) in row.iter_mut().zip(&along_x) {
+                let [before, after] = of_centre.neighbours.map(|ix| blended[ix]);
+                *value = of_centre.blend(before, after).max(0.0).sqrt();
+            }
+        },
+    );
     fine
+}
+
+/// A fine centre between two coarse ones along one axis.
+struct Between {
+    neighbours: [usize; 2],
+    weights: [f64; 2],
+}
+
+impl Between {
+    /// For the centres of `fine` elements on a side with `coarse` ones.
+    fn of_centres(coarse: usize, fine: usize) -> Vec<Self> {
+        let ratio = coarse as f64 / fine as f64;
+        let of_centre = |i: usize| {
+            let place = (i as f64 + 0.5) * ratio - 0.5;
+            let before = place.floor();
+            let at = place - before;
+            // The centre before the first is the last.
+            let first = if before < 0.0 { coarse - 1 } else { before as usize };
+            Self { neighbours: [first, (first + 1) % coarse], weights: [1.0 - at, at] }
+        };
+        (0..fine).map(of_centre).collect()
+    }
+
+    fn blend(&self, before: f64, after: f64) -> f64 {
+        self.weights[0] * before + self.weights[1] * after
+    }
 }
 
 /// φ at the coarse centres.
@@ -96,7 +126,8 @@ mod tests {
             let linear = |x: f64, y: f64| if along_x { inside(y, ny) } else { inside(x, nx) };
             let centre = |i: usize| i as f64 + 0.5;
             let coarse: Vec<f64> = (0..nx * ny).map(|i| linear(centre(i % nx), centre(i / nx))).collect();
-            for (i, p) in interpolate(&coarse, [nx, ny]).into_iter().enumerate() {
+            let grids = [1, 2].map(|n| Grid::new(n * nx, n * ny).expect("a grid"));
+            for (i, p) in interpolate(&coarse, grids[0], grids[1]).into_iter().enumerate() {
                 let (x, y) = (0.5 * centre(i % (2 * nx)), 0.5 * centre(i / (2 * nx)));
                 let (squared, from_ridge) = (linear(x, y).max(0.0), 3.3 - linear(x, y));
                 // The ridge in the middle, and the valley across the seam, are blunted.
