@@ -3,17 +3,25 @@
 use std::convert::Infallible;
 
 use rc_core::{Grid, Observer, Snapshot};
-use rc_quadtree::{BLOCK_CELLS, Elements};
+use rc_quadtree::{BLOCK_CELLS, CELLS, Elements};
 
 use crate::descent::{BlockLayout, ObservedMesh};
 
 /// How vectors on `elements` are divided.
 pub(crate) fn blocks_of(elements: &Elements) -> BlockLayout {
+    let mut centres = Vec::with_capacity(elements.len().div_ceil(CELLS));
+    for (coarser, tiles) in elements.levels().iter().enumerate() {
+        // Levels begin at whole blocks.
+        centres.resize(elements.cells(coarser).start / CELLS, [0.0; 2]);
+        let per_side = tiles.per_side() as f32;
+        centres.extend(tiles.places().iter().map(|place| place.map(|i| (i as f32 + 0.5) / per_side)));
+    }
+    let layout = BlockLayout::of(BLOCK_CELLS).with_runs(CELLS, centres, elements.coarsest().side());
     if elements.levels().len() == 1 {
-        return BlockLayout::of(BLOCK_CELLS);
+        return layout;
     }
     let areas = elements.blocks().into_iter().map(|(coarser, _)| Elements::area(coarser));
-    BlockLayout::with_areas(BLOCK_CELLS, areas.collect())
+    layout.with_areas(areas.collect())
 }
 
 impl ObservedMesh for Elements {

@@ -2,7 +2,7 @@
 
 use super::layout::BlockLayout;
 use super::operators::{PreconditionedOperator, read_blocks, write_blocks};
-use super::rows::{self, ConjugateStep};
+use super::rows::{self, ClippedStep, ConjugateStep};
 use crate::parallel;
 
 /// Directions of preconditioned conjugate gradients on the elements of one mesh, in single precision.
@@ -68,10 +68,22 @@ impl ConjugateDirections {
         });
     }
 
-    /// The present direction with its displacement, and the elements that it changes, for the next ones to be chosen.
-    pub(super) fn steps_and_active(&mut self, len: usize) -> impl Iterator<Item = ((&[f32], &[f32]), &mut [bool])> {
-        let steps = self.direction.chunks(len).zip(self.displacement.chunks(len));
-        steps.zip(self.active.chunks_mut(len))
+    /// The present direction for a step that is clipped, with room for what clipping adds, where no residual is needed any more.
+    pub(super) fn clipped_steps(&mut self, len: usize) -> impl Iterator<Item = ClippedStep<'_>> {
+        let Self { active, direction, displacement, preconditioned } = self;
+        let along = direction.chunks(len).zip(displacement.chunks(len));
+        let changed = active.chunks_mut(len).zip(preconditioned.chunks_mut(len));
+        along.zip(changed).map(|((direction, displacement), (active, added))| ClippedStep {
+            direction,
+            displacement,
+            active,
+            added,
+        })
+    }
+
+    /// What clipping has added.
+    pub(super) fn added(&self) -> &[f32] {
+        &self.preconditioned
     }
 
     /// The present direction, its displacement and its elements, with the place of the residual that is preconditioned next.

@@ -1,5 +1,6 @@
-//! How the vectors of a mesh are divided into blocks, and sums over them.
+//! How the vectors of a mesh are divided into blocks, where their elements are, and sums over them.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Blocks of so many values; the last may be shorter. All elements of a block are of one size.
@@ -8,17 +9,75 @@ pub(crate) struct BlockLayout {
     len: usize,
     /// Area of an element of each block, in units of the smallest; empty when all are of that size.
     areas: Arc<[f64]>,
+    places: Places,
 }
 
+/// Where elements are.
+#[derive(Clone, Debug)]
+enum Places {
+    /// Nobody knows.
+    Anywhere,
+    /// Rows of a grid of so many elements along both axes.
+    Rows([usize; 2]),
+    /// Runs of so many elements, each around its own centre, in a cell of so many of the largest elements along both axes.
+    Runs { run: usize, centres: Arc<[[f32; 2]]>, side: usize },
+}
+
+/// Elements of a row that count as one place.
+const RUN: usize = 8;
+
 impl BlockLayout {
-    /// Of elements of one size.
+    /// Of elements of one size that may be anywhere.
     pub(crate) fn of(len: usize) -> Self {
-        Self { len, areas: Arc::default() }
+        Self { len, areas: Arc::default(), places: Places::Anywhere }
     }
 
-    /// With the area of an element of each block.
-    pub(crate) fn with_areas(len: usize, areas: Vec<f64>) -> Self {
-        Self { len, areas: areas.into() }
+    /// Whole rows of a grid of `nx` × `ny` elements.
+    pub(crate) fn of_rows(n_rows: usize, [nx, ny]: [usize; 2]) -> Self {
+        Self { places: Places::Rows([nx, ny]), ..Self::of(n_rows * nx) }
+    }
+
+    /// With the area of an element of each block; all are of one size where there is none.
+    pub(crate) fn with_areas(self, areas: Vec<f64>) -> Self {
+        Self { areas: areas.into(), ..self }
+    }
+
+    /// With the centres of runs of `run` elements, in parts of a cell of `side` of the largest elements along both axes. What is behind the
+    /// last of a level has no element, but a centre.
+    pub(crate) fn with_runs(self, run: usize, centres: Vec<[f32; 2]>, side: usize) -> Self {
+        debug_assert!(self.len.is_multiple_of(run), "blocks of whole runs");
+        Self { places: Places::Runs { run, centres: centres.into(), side }, ..self }
+    }
+
+    /// The largest elements along both axes of the cell, as far as anybody knows.
+    pub(super) fn sides(&self) -> [usize; 2] {
+        match self.places {
+            Places::Anywhere => [1, 1],
+            Places::Rows(sides) => sides,
+            Places::Runs { side, .. } => [side, side],
+        }
+    }
+
+    /// Calls `take` with runs of neighbours among the first `n` elements of block `i`, and with the centre of each in parts of the cell.
+    pub(super) fn for_each_run(&self, i: usize, n: usize, mut take: impl FnMut(Range<usize>, [f64; 2])) {
+        match &self.places {
+            Places::Anywhere => take(0..n, [0.5, 0.5]),
+            &Places::Rows([nx, ny]) => {
+                for row in 0..n / nx {
+                    let y = ((i * self.len / nx + row) as f64 + 0.5) / ny as f64;
+                    for first in (0..nx).step_by(RUN) {
+                        let last = (first + RUN).min(nx);
+                        take(row * nx + first..row * nx + last, [0.5 * (first + last) as f64 / nx as f64, y]);
+                    }
+                }
+            }
+            Places::Runs { run, centres, .. } => {
+                let centres = &centres[i * (self.len / run)..];
+                for (first, centre) in (0..n).step_by(*run).zip(centres) {
+                    take(first..(first + run).min(n), centre.map(f64::from));
+                }
+            }
+        }
     }
 
     /// Values in a block.

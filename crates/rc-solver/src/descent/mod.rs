@@ -20,6 +20,7 @@ mod outcome;
 mod round;
 mod rows;
 mod run;
+mod shares;
 mod start;
 mod state;
 mod sums;

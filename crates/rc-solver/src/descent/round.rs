@@ -3,6 +3,7 @@
 use super::directions::Slope;
 use super::operators::{read_blocks, write_blocks};
 use super::rows::{ElementValues, Gradient};
+use super::shares::{Load, Shares, Squares};
 use super::state::{Descent, Rounds};
 use super::sums::GapSums;
 use crate::Control;
@@ -92,27 +93,38 @@ impl Descent<'_> {
         });
     }
 
-    /// Takes a step, clips tensile pressures and restores the load or the penetration.
+    /// Takes a step, clips tensile pressures and restores the load, each part of it where it was, or the penetration.
     fn project(&mut self, length: f64) -> GapSums {
-        let (len, gradient) = (self.layout.len(), self.gradient());
-        let (offset, range) = (self.problem.offset(), self.problem.h_range);
-        let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
-        let blocks = elements.blocks(len).zip(self.directions.steps_and_active(len));
-        let sums = write_blocks(&mut *self.operators.corrections, blocks, |(block, (step, active)), added| {
-            block.clip(length, step, active, &gradient, added)
-        });
-        let [pressure, clipped] = self.layout.total(sums);
-        let scale = match self.problem.control {
-            Control::MeanPressure(mean) if pressure > 0.0 => mean * self.n_cell() / pressure,
+        let gradient = self.gradient();
+        let (n_clipped, loads) = self.clip(length, &gradient);
+        let wanted = match self.problem.control {
+            Control::MeanPressure(mean) => Some(mean * self.n_cell()),
+            Control::Penetration(_) => None,
+        };
+        let scale = |pressure: f64| match wanted {
+            Some(wanted) if pressure > 0.0 => wanted / pressure,
             _ => 1.0,
         };
-        if clipped == 0.0 {
-            let sums = self.rescale(scale);
+        if n_clipped == 0 {
+            let sums = self.rescale(scale(loads.iter().map(|load| load.clipped).sum()));
             return self.meet_penetration(sums);
         }
+        let (len, offset, range) = (self.layout.len(), self.problem.offset(), self.problem.h_range);
+        let shares = Shares::new(self.squares(), &loads, wanted);
+        let blocks = self.pressure.chunks_mut(len).zip(self.directions.added().chunks(len)).enumerate();
+        let layout = &self.layout;
+        let sums = write_blocks(&mut *self.operators.corrections, blocks, |(i, (pressure, added)), written| {
+            let mut sum = 0.0;
+            layout.for_each_run(i, pressure.len(), |run, place| {
+                let (pressure, added, written) = (&mut pressure[run.clone()], &added[run.clone()], &mut written[run]);
+                sum += ElementValues::share(pressure, shares.at(place), gradient.unit, added, written);
+            });
+            [sum]
+        });
+        let [pressure] = self.layout.total(sums);
         self.info.operator_applications += 1;
         self.operators.corrections.apply();
-        let empty = GapSums::empty(self.pressed);
+        let (empty, scale) = (GapSums::empty(self.pressed), scale(pressure));
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         let sums = read_blocks(&*self.operators.corrections, elements.blocks(len), |block, displacement| {
             block.add_clipped(displacement, range, scale, offset, empty)
@@ -120,6 +132,40 @@ impl Descent<'_> {
         let sums = GapSums::total(&self.layout, sums);
         self.pressed = sums.next_pressed();
         self.meet_penetration(sums)
+    }
+
+    /// Takes a step and clips tensile pressures. Returns the number clipped, and the load of each square.
+    fn clip(&mut self, length: f64, gradient: &Gradient) -> (u64, Vec<Load>) {
+        let (len, squares, layout) = (self.layout.len(), self.squares(), &self.layout);
+        let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
+        let blocks = elements.blocks(len).zip(self.directions.clipped_steps(len)).enumerate();
+        let of_blocks = parallel::map(blocks, |(i, (mut block, mut step))| {
+            let n_clipped = block.clip(length, &mut step, gradient);
+            let mut loads: Vec<(usize, Load)> = Vec::new();
+            layout.for_each_run(i, block.heights.len(), |run, place| {
+                let (square, pressure) = (squares.at(place), &block.pressure[run.clone()]);
+                let added: f64 = step.added[run].iter().copied().map(f64::from).sum();
+                let load = Load { clipped: pressure.iter().sum(), added: added / gradient.unit };
+                match loads.last_mut() {
+                    Some((last, sum)) if *last == square => *sum = sum.plus(load, 1.0),
+                    _ => loads.push((square, load)),
+                }
+            });
+            (n_clipped, loads)
+        });
+        let mut loads = vec![Load::default(); squares.len()];
+        let mut n_clipped = 0;
+        for (i, (n, of_block)) in of_blocks.into_iter().enumerate() {
+            n_clipped += u64::from(n);
+            for (square, load) in of_block {
+                loads[square] = loads[square].plus(load, self.layout.area(i));
+            }
+        }
+        (n_clipped, loads)
+    }
+
+    fn squares(&self) -> Squares {
+        Squares::new(self.layout.sides())
     }
 
     fn gradient(&self) -> Gradient {

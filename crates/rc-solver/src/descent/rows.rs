@@ -99,30 +99,46 @@ impl ElementValues<'_> {
     }
 
     /// Takes the step `length` along a direction, clips tensile pressures, and writes what the clipping has added, in units of
-    /// `1 / unit`. Chooses the next active elements before clipping: those that press, and those outside that penetrate. Returns Σ p and the
+    /// `1 / unit`. Chooses the next active elements before clipping: those that press, and those outside that penetrate. Returns the
     /// number clipped.
-    pub(super) fn clip(
-        self,
-        length: f64,
-        (direction, displacement): (&[f32], &[f32]),
-        active: &mut [bool],
-        gradient: &Gradient,
-        added: &mut [f32],
-    ) -> [f64; 2] {
-        let (mut sum, mut clipped) = (0.0, 0_u32);
-        let along = direction.iter().zip(displacement).zip(active);
-        for ((p, g), (((&t, &u), active), added)) in self.pressure.iter_mut().zip(self.gap).zip(along.zip(added)) {
+    pub(super) fn clip(&mut self, length: f64, step: &mut ClippedStep<'_>, gradient: &Gradient) -> u32 {
+        let ClippedStep { direction, displacement, active, added } = step;
+        let mut clipped = 0;
+        let along = direction.iter().zip(*displacement).zip(active.iter_mut());
+        for ((p, g), (((&t, &u), active), added)) in
+            self.pressure.iter_mut().zip(self.gap.iter_mut()).zip(along.zip(added.iter_mut()))
+        {
             let stepped = *p + length * f64::from(t);
             *g += length * f64::from(u);
             *p = stepped.max(0.0);
             // Without a step, what has just come stays.
             *active = stepped > 0.0 || (!*active || stepped == 0.0) && gradient.of_gap(*g) < 0.0;
             *added = ((*p - stepped) * gradient.unit) as f32;
-            sum += *p;
             clipped += u32::from(stepped < 0.0);
         }
-        [sum, f64::from(clipped)]
+        clipped
     }
+
+    /// Multiplies some pressures by `share`, and adds what that adds, in units of `1 / unit`, to what clipping has `added`. Returns Σ p.
+    pub(super) fn share(pressure: &mut [f64], share: f64, unit: f64, added: &[f32], written: &mut [f32]) -> f64 {
+        let mut sum = 0.0;
+        for ((p, added), written) in pressure.iter_mut().zip(added).zip(written) {
+            *written = ((share - 1.0) * *p * unit) as f32 + added;
+            *p *= share;
+            sum += *p;
+        }
+        sum
+    }
+}
+
+/// A direction and its displacement for a step that is clipped.
+pub(super) struct ClippedStep<'a> {
+    pub(super) direction: &'a [f32],
+    pub(super) displacement: &'a [f32],
+    /// The elements it changes, then the next ones.
+    pub(super) active: &'a mut [bool],
+    /// Gets what clipping adds.
+    pub(super) added: &'a mut [f32],
 }
 
 /// A direction, its displacement, and the elements it changes.

@@ -4,7 +4,7 @@ use rc_core::{Event, Observer};
 
 use super::observed::ObservedMesh;
 use super::outcome::Outcome;
-use super::state::{Descent, Rounds};
+use super::state::Descent;
 use super::sums::GapSums;
 use crate::ErrorBound;
 
@@ -17,12 +17,6 @@ const STEPS_PER_ROUND: usize = 2;
 /// them, and two steps between clippings lead astray. Before residuals were extended, in cells 50 and 100 times as long as wide, 15 of 144 loads did not converge without
 /// this rule, and 1 with it, in half the iterations; N = 1024 on 2304² needs 29 instead of 36, and other scenes are as before.
 const PATIENCE: usize = 20;
-
-/// Rounds without progress before residuals are no longer extended between contacts. Extended, steps carry load over many contacts, and where these are
-/// far from their final sizes and small against the cell, clipping takes it back to other places: N = 1024 on 8192² did not converge. Steps of the masked residual are
-/// shorter and slower. They go on until the error is at [`SETTLED`] of its smallest before.
-const ASTRAY: usize = 3;
-const SETTLED: f64 = 0.3;
 
 /// An error below this part of the smallest one so far is progress.
 const PROGRESS: f64 = 0.9;
@@ -51,13 +45,11 @@ struct ErrorHistory {
     rounds: usize,
     /// Conjugate-gradient steps in the next round.
     steps: usize,
-    /// The error at which residuals are extended again, when they are not.
-    settled: Option<f64>,
 }
 
 impl ErrorHistory {
     fn new() -> Self {
-        Self { smallest_error: f64::INFINITY, rounds: 0, steps: STEPS_PER_ROUND, settled: None }
+        Self { smallest_error: f64::INFINITY, rounds: 0, steps: STEPS_PER_ROUND }
     }
 
     fn note(&mut self, error: f64) {
@@ -66,13 +58,6 @@ impl ErrorHistory {
         } else {
             self.rounds += 1;
             self.steps = 1;
-        }
-        if self.settled.is_some_and(|settled| error < settled) {
-            self.settled = None;
-        } else if self.rounds >= ASTRAY && self.settled.is_none() {
-            self.settled = Some(SETTLED * self.smallest_error);
-            // The slower steps are measured by themselves.
-            (self.smallest_error, self.rounds) = (error, 0);
         }
     }
 }
@@ -98,11 +83,6 @@ impl Descent<'_> {
                 }
             }
             history.note(error);
-            let is_extended = history.settled.is_none() && self.operators.corrections.extends();
-            if is_extended != (self.rounds != Rounds::Masked) {
-                self.rounds = if is_extended { Rounds::Extended } else { Rounds::Masked };
-                self.curvature = f64::INFINITY;
-            }
             if history.rounds == PATIENCE {
                 self.curvature = f64::INFINITY;
             }

@@ -127,7 +127,7 @@ impl BlockOperator<f64> for SymbolOperator {
 
 /// Blocks of rows, as they are transformed.
 fn layout(grid: Grid) -> BlockLayout {
-    BlockLayout::of(BLOCK_ROWS * grid.nx())
+    BlockLayout::of_rows(BLOCK_ROWS, [grid.nx(), grid.ny()])
 }
 
 fn n_blocks(grid: Grid) -> usize {

@@ -1,0 +1,176 @@
+//! Load that stays where it is when tensile pressures are clipped.
+//!
+//! Clipping adds load, which has to go again. Taken from the whole cell it moves load over long distances, and every step that is long enough for
+//! contacts to change would undo what it has gained for long waves. So the load of a step is kept in squares of the cell, as far as pressures there
+//! have one: what is to be shared out in a square is divided among its quarters by the load they have, down to the smallest squares. Between the
+//! centres of these both loads are interpolated, before and after, whose ratio is the factor on pressures.
+
+/// Elements along a side of the smallest squares; `docs/uniform-solver.md` compares 8 to 128.
+const SMALLEST_SQUARE: usize = 64;
+
+/// A square keeps at least this part of its load after clipping: where contacts vanish there may be none before.
+const LEAST_PART: f64 = 0.5;
+
+/// The load of a square.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Load {
+    /// Σ p after clipping.
+    pub(super) clipped: f64,
+    /// Σ of what clipping has added.
+    pub(super) added: f64,
+}
+
+impl Load {
+    /// What it is to have.
+    fn part(self) -> f64 {
+        (self.clipped - self.added).max(LEAST_PART * self.clipped)
+    }
+
+    pub(super) fn plus(self, other: Self, area: f64) -> Self {
+        Self { clipped: self.clipped + area * other.clipped, added: self.added + area * other.added }
+    }
+}
+
+/// Squares of the cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Squares {
+    /// Along both axes, powers of two.
+    n: [usize; 2],
+}
+
+impl Squares {
+    /// In a cell of so many elements along both axes.
+    pub(super) fn new(sides: [usize; 2]) -> Self {
+        Self { n: sides.map(|side| 1 << (side / SMALLEST_SQUARE).max(1).ilog2()) }
+    }
+
+    pub(super) fn len(self) -> usize {
+        self.n[0] * self.n[1]
+    }
+
+    /// The square that a place, in parts of the cell, is in.
+    pub(super) fn at(self, place: [f64; 2]) -> usize {
+        let [x, y] = [0, 1].map(|axis| ((place[axis] * self.n[axis] as f64) as usize).min(self.n[axis] - 1));
+        y * self.n[0] + x
+    }
+}
+
+/// Factors on the pressures of a cell.
+pub(super) struct Shares {
+    squares: Squares,
+    /// What each square is to have, and what it has.
+    loads: Vec<[f64; 2]>,
+}
+
+impl Shares {
+    /// For `loads` of squares, the sum of which is to be `total`, or, without one, what it was before clipping.
+    pub(super) fn new(squares: Squares, loads: &[Load], total: Option<f64>) -> Self {
+        let mut levels = vec![(squares.n, loads.to_vec())];
+        while let Some((n, finer)) = levels.last().filter(|(n, _)| *n != [1, 1]) {
+            let half = n.map(|n| n.div_ceil(2));
+            let mut coarser = vec![Load::default(); half[0] * half[1]];
+            for (i, load) in finer.iter().enumerate() {
+                let over = parent(i, *n, half);
+                coarser[over] = coarser[over].plus(*load, 1.0);
+            }
+            levels.push((half, coarser));
+        }
+        let mut wanted = vec![total.unwrap_or_else(|| levels.last().map_or(0.0, |(_, whole)| whole[0].part()))];
+        for pair in levels.windows(2).rev() {
+            let [(n, finer), (half, _)] = pair else { unreachable!("windows of two") };
+            let mut parts = vec![0.0; half[0] * half[1]];
+            for (i, load) in finer.iter().enumerate() {
+                parts[parent(i, *n, *half)] += load.part();
+            }
+            let of_square = |(i, load): (usize, &Load)| {
+                let over = parent(i, *n, *half);
+                if parts[over] > 0.0 { wanted[over] * (load.part() / parts[over]) } else { 0.0 }
+            };
+            wanted = finer.iter().enumerate().map(of_square).collect();
+        }
+        Self { squares, loads: wanted.into_iter().zip(loads).map(|(wanted, load)| [wanted, load.clipped]).collect() }
+    }
+
+    /// The factor at a place, in parts of the cell.
+    pub(super) fn at(&self, place: [f64; 2]) -> f64 {
+        let n = self.squares.n;
+        let [(x, ax), (y, ay)] = [0, 1].map(|axis| {
+            let from_centre = place[axis] * n[axis] as f64 - 0.5;
+            let before = from_centre.floor();
+            (
+                [
+                    (before as isize).rem_euclid(n[axis] as isize) as usize,
+                    (before as isize + 1).rem_euclid(n[axis] as isize) as usize,
+                ],
+                from_centre - before,
+            )
+        });
+        let mut sum = [0.0; 2];
+        for (y, weight_y) in y.into_iter().zip([1.0 - ay, ay]) {
+            for (x, weight_x) in x.into_iter().zip([1.0 - ax, ax]) {
+                let [wanted, clipped] = self.loads[y * n[0] + x];
+                sum = [sum[0] + weight_x * weight_y * wanted, sum[1] + weight_x * weight_y * clipped];
+            }
+        }
+        if sum[1] > 0.0 { sum[0] / sum[1] } else { 1.0 }
+    }
+}
+
+/// The square over square `i` of a level of `n`.
+fn parent(i: usize, n: [usize; 2], half: [usize; 2]) -> usize {
+    let [x, y] = [i % n[0], i / n[0]];
+    // Along an axis with a single square nothing is halved.
+    let [x, y] = [if n[0] > 1 { x / 2 } else { x }, if n[1] > 1 { y / 2 } else { y }];
+    y * half[0] + x
+}
+
+#[cfg(test)]
+mod tests {
+    use rc_core::testing::quasi_random;
+
+    use super::*;
+
+    #[test]
+    fn squares_keep_their_loads_and_the_cell_its_total() {
+        for sides in [[256, 256], [1024, 64], [70, 300], [30, 8]] {
+            let squares = Squares::new(sides);
+            let load = |i: usize| Load { clipped: 1.0 + quasi_random(i), added: 0.3 * quasi_random(7 * i + 1) };
+            let loads: Vec<Load> = (0..squares.len()).map(load).collect();
+            let before: f64 = loads.iter().map(|load| load.clipped - load.added).sum();
+            for total in [None, Some(before), Some(3.0 * before)] {
+                let shares = Shares::new(squares, &loads, total);
+                let after: Vec<f64> = shares.loads.iter().map(|[wanted, _]| *wanted).collect();
+                let sum: f64 = after.iter().sum();
+                let scale = total.unwrap_or(before) / before;
+                assert!((sum / (scale * before) - 1.0).abs() < 1e-12, "{sides:?}: {sum}");
+                for (after, load) in after.iter().zip(&loads) {
+                    assert!((after / (scale * (load.clipped - load.added)) - 1.0).abs() < 1e-12, "{sides:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_square_without_load_takes_from_its_neighbours_first() {
+        let squares = Squares::new([256, 256]);
+        let mut loads = vec![Load { clipped: 1.0, added: 0.0 }; 16];
+        // All of its pressure is what clipping has added.
+        loads[0] = Load { clipped: 1.0, added: 1.0 };
+        let shares = Shares::new(squares, &loads, None);
+        for (square, factor) in [(0, 3.0 / 7.0), (1, 6.0 / 7.0), (5, 6.0 / 7.0), (15, 1.0)] {
+            let [wanted, clipped] = shares.loads[square];
+            assert!((wanted / clipped - factor).abs() < 1e-12, "{square}: {wanted}");
+        }
+    }
+
+    #[test]
+    fn factors_are_interpolated_around_the_cell() {
+        let squares = Squares::new([128, 128]);
+        let shares = Shares { squares, loads: vec![[1.0, 1.0], [6.0, 3.0], [9.0, 3.0], [4.0, 1.0]] };
+        for (place, factor) in
+            [([0.25, 0.25], 1.0), ([0.75, 0.75], 4.0), ([0.0, 0.25], 7.0 / 4.0), ([0.5, 0.5], 20.0 / 8.0)]
+        {
+            assert!((shares.at(place) - factor).abs() < 1e-12, "{place:?}: {}", shares.at(place));
+        }
+    }
+}
