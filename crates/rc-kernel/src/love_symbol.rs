@@ -2,7 +2,8 @@
 //!
 //! The aliases nearest to the wave are summed as they are. The rest of the alias sum ([`crate::alias_sum`]) is a smooth and
 //! even function of θx and θy, singular only at the nearest alias that is left out. It is a Chebyshev interpolant in θx² and θy², fitted
-//! to the alias sum when the symbol is made, and as accurate as that sum.
+//! to the alias sum, and as accurate as that sum. But for the unit of length it depends on the shape of elements alone, so all grids of a
+//! process whose elements are alike have one fit: fitted for each grid, it took a quarter of a solve on 256² elements.
 //!
 //! Which aliases are near depends on the shape of the elements. Let r ≥ 1 be long side over short side, m count aliases
 //! along the long side and n along the short one.
@@ -12,6 +13,7 @@
 //!   with the weights of the alternating sum, and all other rows are smooth.
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use rc_core::Grid;
 
@@ -39,24 +41,22 @@ pub(crate) struct LoveSymbol {
 }
 
 impl LoveSymbol {
-    /// Fits the rest and tabulates what depends on one component of the wave: 1.6 ms, and 0.3 µs for each element of a side.
+    /// Fits the rest, if no grid has had elements of this shape, in 1.6 ms, and tabulates what depends on one component of the wave: 0.3 µs
+    /// for each element of a side.
     pub(crate) fn new(grid: Grid) -> Self {
         // Number of elements, and how many of them are as long as the unit.
         let [x, y] = [(grid.nx(), grid.nx() as f64), (grid.ny(), grid.ny() as f64 / grid.cell_ratio())];
         let swapped = x.1 > y.1;
         let ((n_long, per_long), (n_short, per_short)) = if swapped { (y, x) } else { (x, y) };
         let aspect = per_short / per_long;
-        let sum = AliasSum::<TERMS>::new((1.0 / per_long, 1.0 / per_short));
-        let (long, short, table) = if aspect <= LARGEST_BLOCK_ASPECT {
-            // With this reach, the singularities of the rest are nowhere closer than for squares and 3 x 3 aliases.
-            let reach = ((1.5 * aspect - 0.5).ceil() as usize, 1);
-            let table = interpolate(|theta| sum.outside_block(theta, reach));
-            (Axis::new(n_long, per_long, &block(reach.0)), Axis::new(n_short, per_short, &block(reach.1)), table)
-        } else {
-            let table = interpolate(|theta| sum.outside_row(theta));
-            (Axis::new(n_long, per_long, &weighted_row()), Axis::new(n_short, per_short, &block(0)), table)
+        let (long, short) = match reach(aspect) {
+            Some((along, across)) => {
+                (Axis::new(n_long, per_long, &block(along)), Axis::new(n_short, per_short, &block(across)))
+            }
+            None => (Axis::new(n_long, per_long, &weighted_row()), Axis::new(n_short, per_short, &block(0))),
         };
-        let collapse = |&mapped: &f64| std::array::from_fn(|j| chebyshev::sum(&table[j], mapped));
+        let table = rest_of_shape(aspect);
+        let collapse = |&mapped: &f64| std::array::from_fn(|j| chebyshev::sum(&table[j], mapped) / per_long);
         let rest = long.mapped.iter().map(collapse).collect();
         Self { swapped, long, short, rest }
     }
@@ -77,6 +77,45 @@ impl LoveSymbol {
             }
         }
         sums[0] + sums[1]
+    }
+}
+
+/// Aliases of the block along and across elements of this aspect ratio; none where the row n = 0 is summed whole.
+fn reach(aspect: f64) -> Option<(usize, usize)> {
+    // With this reach, the singularities of the rest are nowhere closer than for squares and 3 x 3 aliases.
+    (aspect <= LARGEST_BLOCK_ASPECT).then(|| ((1.5 * aspect - 0.5).ceil() as usize, 1))
+}
+
+/// Chebyshev coefficients of the rest, as [`interpolate`] gives them.
+type Table = [[f64; NODES]; NODES];
+
+/// Fits that are kept. A process that uses more shapes makes the first ones again.
+const KEPT: usize = 16;
+
+/// Fits by aspect ratio, the last one used at the end.
+static FITS: Mutex<Vec<(f64, Arc<Table>)>> = Mutex::new(Vec::new());
+
+/// The rest for elements of this aspect ratio, whose long side is the unit of length.
+fn rest_of_shape(aspect: f64) -> Arc<Table> {
+    let fits = || FITS.lock().unwrap_or_else(PoisonError::into_inner);
+    let is_this = |(other, _): &(f64, Arc<Table>)| other.to_bits() == aspect.to_bits();
+    let found = fits().iter().find(|fit| is_this(fit)).map(|(_, table)| Arc::clone(table));
+    // Without the lock: others need not wait, and who fits the same finds the same.
+    let table = found.unwrap_or_else(|| Arc::new(fit(aspect)));
+    let mut fits = fits();
+    fits.retain(|fit| !is_this(fit));
+    if fits.len() == KEPT {
+        fits.remove(0);
+    }
+    fits.push((aspect, Arc::clone(&table)));
+    table
+}
+
+fn fit(aspect: f64) -> Table {
+    let sum = AliasSum::<TERMS>::new((1.0, 1.0 / aspect));
+    match reach(aspect) {
+        Some(reach) => interpolate(|theta| sum.outside_block(theta, reach)),
+        None => interpolate(|theta| sum.outside_row(theta)),
     }
 }
 
@@ -139,10 +178,9 @@ fn weighted_row() -> Vec<(f64, f64)> {
 
 /// Chebyshev coefficients in (θ² of the short side, θ² of the long side) of the interpolant of `value((θ long, θ short))`
 /// on [0, π/2]².
-fn interpolate(value: impl Fn((f64, f64)) -> f64) -> [[f64; NODES]; NODES] {
+fn interpolate(value: impl Fn((f64, f64)) -> f64) -> Table {
     let theta = |node: usize| FRAC_PI_2 * f64::midpoint(1.0, chebyshev::node(node, NODES)).sqrt();
-    let over_short: [[f64; NODES]; NODES] =
-        std::array::from_fn(|i| coefficients(std::array::from_fn(|j| value((theta(i), theta(j))))));
+    let over_short: Table = std::array::from_fn(|i| coefficients(std::array::from_fn(|j| value((theta(i), theta(j))))));
     std::array::from_fn(|j| coefficients(std::array::from_fn(|i| over_short[i][j])))
 }
 
@@ -165,6 +203,18 @@ mod tests {
         waves.sort_unstable();
         waves.dedup();
         waves
+    }
+
+    #[test]
+    fn more_shapes_than_are_kept_have_their_own_fits() {
+        let grid = |i: usize| Grid::new(32, 32 + 2 * (i % (KEPT + 5))).expect("grid");
+        let values: Vec<u64> =
+            (0..2 * (KEPT + 5)).map(|i| LoveSymbol::new(grid(i)).eigenvalue(3, 5).to_bits()).collect();
+        assert_eq!(values[..KEPT + 5], values[KEPT + 5..]);
+        for (i, value) in values.iter().enumerate().take(KEPT + 5) {
+            let reference = love_alias_sum(grid(i), 3, 5);
+            assert!((f64::from_bits(*value) / reference - 1.0).abs() < 4e-15, "{}", grid(i));
+        }
     }
 
     #[test]
