@@ -38,12 +38,13 @@ pub fn powers_of_lines(field: &Field, offset: f64, [of_rows, of_columns]: [&[f64
 /// The sum over `n_lines` lines of `length` values; `read(first, lines)` fills in some of them.
 fn sum(n_lines: usize, length: usize, weights: &[f64], read: impl Fn(usize, &mut [f64]) + Sync) -> f64 {
     let fft = f64::real_forward(length);
-    let buffers = || (vec![0.0; PANEL * length], fft.make_output_vec(), fft.make_scratch_vec());
-    let sums: Vec<f64> = (0..n_lines.div_ceil(PANEL))
+    let panel = PANEL.min(n_lines);
+    let buffers = || (vec![0.0; panel * length], fft.make_output_vec(), fft.make_scratch_vec());
+    let sums: Vec<f64> = (0..n_lines.div_ceil(panel))
         .into_par_iter()
-        .map_init(buffers, |(lines, waves, scratch), panel| {
-            let first = panel * PANEL;
-            let lines = &mut lines[..PANEL.min(n_lines - first) * length];
+        .map_init(buffers, |(lines, waves, scratch), i| {
+            let first = i * panel;
+            let lines = &mut lines[..panel.min(n_lines - first) * length];
             read(first, lines);
             let of_line = |line: &mut [f64]| -> f64 {
                 fft.process_with_scratch(line, waves, scratch).expect("every length is the plan's own");

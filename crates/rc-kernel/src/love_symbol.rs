@@ -41,7 +41,7 @@ pub(crate) struct LoveSymbol {
 }
 
 impl LoveSymbol {
-    /// Fits the rest, if no grid has had elements of this shape, in 1.6 ms, and tabulates what depends on one component of the wave: 0.3 µs
+    /// Fits the rest, if no fit for elements of this shape is kept, in 1.6 ms, and tabulates what depends on one component of the wave: 0.3 µs
     /// for each element of a side.
     pub(crate) fn new(grid: Grid) -> Self {
         // Number of elements, and how many of them are as long as the unit.

@@ -68,7 +68,7 @@ pub struct SolveInfo {
     pub elastic_energy: f64,
     /// The work, coarsest level first; empty in full contact.
     pub levels: Vec<LevelInfo>,
-    /// What the level below the finest one found; none when there was none.
+    /// What the level below the finest one found; none when there was none, or not one with half the elements along both axes.
     pub coarser: Option<LevelValues>,
 }
 

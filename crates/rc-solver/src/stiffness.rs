@@ -71,7 +71,7 @@ fn search(
     let active: Vec<bool> = pressure.iter().map(|&p| p > 0.0).collect();
     // L x - 1 in contact, for x = 0.
     let mut residual: Vec<f32> = active.iter().map(|&active| if active { -1.0 } else { 0.0 }).collect();
-    operator.set_active(&active, true);
+    operator.set_active(&active);
     let mut directions = ConjugateDirections::along(active, against(pressure));
     let (mut stiffness, mut beta) = (0.0, 0.0);
     for step in 0..MAX_STEPS {

@@ -39,7 +39,7 @@ pub(super) fn write(
 
 /// Writes heights (λ) as they are in the file that they come from, row by row.
 fn write_as_read(path: &Path, heights: &Field, as_read: &AsRead) -> io::Result<()> {
-    let mut file = npy::RowWriter::create(path, heights.grid(), 1.0)?;
+    let mut file = RowWriter::create(path, heights.grid(), 1.0)?;
     let mut row = vec![0.0; heights.grid().nx()];
     for iy in 0..heights.grid().ny() {
         row.copy_from_slice(heights.row(iy));

@@ -4,6 +4,8 @@ use rc_core::{Field, HeightSource};
 use rc_quadtree::TILE;
 
 use super::AdaptiveError;
+use crate::descent::BlockLayout;
+use crate::parallel;
 
 /// Elements of the base grid for the shortest wave: what interpolates heights to other levels needs no more.
 const BASE_ELEMENTS_PER_WAVE: usize = 4;
@@ -14,9 +16,6 @@ pub(super) const SMALLEST_BASE: usize = 64;
 /// Part of the mean square slope of a map that differences over the base grid's spacing must keep: four elements for a wave keep 0.81 of its slope,
 /// two keep 0.41.
 const SLOPE_KEPT: f64 = 0.8;
-
-/// Rows of a map that are looked at, at most.
-const SAMPLED_ROWS: usize = 64;
 
 /// Checks or chooses the elements per side of the base grid.
 pub(super) fn base_side(source: &HeightSource<'_>, wanted: Option<usize>) -> Result<usize, AdaptiveError> {
@@ -31,11 +30,12 @@ pub(super) fn base_side(source: &HeightSource<'_>, wanted: Option<usize>) -> Res
         let error = AdaptiveError::Base { base, waves: waves.unwrap_or(0), finest };
         return if divides { Ok(base) } else { Err(error) };
     }
+    // Heights may have waves as short as a few elements: two levels above the base grid are safe, and three on large grids.
+    let safe = finest / if finest >= 4096 { 8 } else { 4 };
     let least = match (waves, source) {
         (Some(waves), _) => BASE_ELEMENTS_PER_WAVE * waves,
-        // Heights may have waves as short as a few elements: two levels above the base grid are safe, and three on large grids.
-        (None, HeightSource::Map(map)) => (finest / if finest >= 4096 { 8 } else { 4 }).min(smooth_side(map)),
-        (None, HeightSource::Surface { .. }) => finest / if finest >= 4096 { 8 } else { 4 },
+        (None, HeightSource::Map(map)) => safe.min(smooth_side(map)),
+        (None, HeightSource::Surface { .. }) => safe,
     };
     let least = least.max(SMALLEST_BASE);
     let halves = |side: usize| side.is_multiple_of(2 * TILE) && side / 2 >= least;
@@ -60,18 +60,18 @@ fn smooth_side(map: &Field) -> usize {
     nx / spacing
 }
 
-/// Of differences over so many elements along both axes, in some of the rows; in units of the height over the side of an element.
+/// Of differences over so many elements along both axes, in units of the height over the side of an element. All rows are looked at: on
+/// some of them a surface that repeats may look smooth.
 fn mean_square_slope(map: &Field, spacing: usize) -> f64 {
     let (nx, ny) = (map.grid().nx(), map.grid().ny());
-    let squares = (0..ny).step_by(ny.div_ceil(SAMPLED_ROWS)).map(|iy| {
+    let of_row = |iy: usize| {
         let (row, below) = (map.row(iy), map.row((iy + spacing) % ny));
-        let along_x = row.iter().zip(row.iter().cycle().skip(spacing % nx));
-        let differences =
-            along_x.zip(below).map(|((here, right), below)| (right - here).powi(2) + (below - here).powi(2));
-        differences.sum::<f64>()
-    });
-    let (sum, rows) = squares.fold((0.0, 0.0), |(sum, rows), of_row| (sum + of_row, rows + 1.0));
-    sum / (rows * (nx * spacing * spacing) as f64)
+        let squares = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (b - a).powi(2)).sum::<f64>();
+        let (near, far) = row.split_at(nx - spacing);
+        [squares(near, &row[spacing..]) + squares(far, &row[..spacing]) + squares(row, below)]
+    };
+    let [sum] = BlockLayout::of(nx).total(parallel::map(0..ny, of_row));
+    sum / (map.grid().len() * spacing * spacing) as f64
 }
 
 #[cfg(test)]
@@ -109,7 +109,14 @@ mod tests {
         let wave = |n: f64| Field::from_fn(grid, move |at| (std::f64::consts::TAU * n * (at.x + at.y)).cos());
         let noise = Field::new(grid, (0..grid.len()).map(quasi_random).collect()).expect("a value for each element");
         let mut with_pit = wave(8.0);
-        with_pit.values_mut()[32 * 1024 + 512] = -1e3;
+        with_pit.values_mut()[39 * 1024 + 512] = -1e3;
+        let grooves = |along_x: bool| {
+            let is_groove = |i: usize| (6..10).contains(&(if along_x { i / 1024 } else { i % 1024 } % 16));
+            let heights = (0..grid.len()).map(|i| if is_groove(i) { -1.0 } else { 0.0 }).collect();
+            Field::new(grid, heights).expect("a value for each element")
+        };
+        assert_eq!(base_side(&HeightSource::Map(&grooves(true)), None).ok(), Some(256));
+        assert_eq!(base_side(&HeightSource::Map(&grooves(false)), None).ok(), Some(256));
         for (map, expected) in [(wave(8.0), 64), (wave(30.0), 128), (wave(100.0), 256), (noise, 256), (with_pit, 256)] {
             assert_eq!(base_side(&HeightSource::Map(&map), None).ok(), Some(expected));
         }

@@ -37,3 +37,32 @@ impl ObservedMesh for Elements {
         observer.look(&Snapshot::new(grid, &rows));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rc_quadtree::TileSet;
+
+    use super::*;
+
+    #[test]
+    fn tiles_of_all_levels_are_around_their_centres() {
+        let fine: Vec<[u32; 2]> = (0..40).map(|i| [i % 8 + 4, i / 8 + 1]).collect();
+        let coarse: Vec<[u32; 2]> = vec![[0, 5], [7, 7], [1, 6]];
+        let elements = Elements::new(vec![TileSet::new(16, fine), TileSet::new(8, coarse)]);
+        let layout = blocks_of(&elements);
+        for (coarser, tiles) in elements.levels().iter().enumerate() {
+            for (tile, place) in tiles.places().iter().enumerate() {
+                let cell = elements.cells(coarser).start + tile * CELLS;
+                let (block, first) = (cell / BLOCK_CELLS, cell % BLOCK_CELLS);
+                let mut found = None;
+                layout.for_each_run(block, BLOCK_CELLS.min(elements.len() - block * BLOCK_CELLS), |run, centre| {
+                    if run == (first..first + CELLS) {
+                        found = Some(centre);
+                    }
+                });
+                let expected = place.map(|i| (f64::from(i) + 0.5) / tiles.per_side() as f64);
+                assert_eq!(found, Some(expected), "level {coarser}, {place:?}");
+            }
+        }
+    }
+}

@@ -13,7 +13,7 @@ pub(crate) struct ConjugateDirections {
     pub(super) direction: Vec<f32>,
     /// Its displacement u = L t.
     pub(super) displacement: Vec<f32>,
-    /// The preconditioned residual z.
+    /// The residual, then the preconditioned residual z; between a clipped step and the next round what clipping has added.
     pub(super) preconditioned: Vec<f32>,
 }
 

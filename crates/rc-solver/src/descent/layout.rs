@@ -59,7 +59,7 @@ impl BlockLayout {
     }
 
     /// Calls `take` with runs of neighbours among the first `n` elements of block `i`, and with the centre of each in parts of the cell.
-    pub(super) fn for_each_run(&self, i: usize, n: usize, mut take: impl FnMut(Range<usize>, [f64; 2])) {
+    pub(crate) fn for_each_run(&self, i: usize, n: usize, mut take: impl FnMut(Range<usize>, [f64; 2])) {
         match &self.places {
             Places::Anywhere => take(0..n, [0.5, 0.5]),
             &Places::Rows([nx, ny]) => {
@@ -100,5 +100,33 @@ impl BlockLayout {
             }
         }
         sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_of_rows_are_around_their_centres() {
+        for [nx, ny] in [[1001, 37], [64, 64], [5, 3], [1, 40]] {
+            let layout = BlockLayout::of_rows(16, [nx, ny]);
+            let mut next = 0;
+            for (block, first) in (0..nx * ny).step_by(layout.len()).enumerate() {
+                let n = layout.len().min(nx * ny - first);
+                layout.for_each_run(block, n, |run, place| {
+                    assert_eq!(first + run.start, next, "{nx} x {ny}");
+                    let mean = |of: &dyn Fn(usize) -> usize| {
+                        run.clone().map(|i| of(first + i) as f64 + 0.5).sum::<f64>() / run.len() as f64
+                    };
+                    let centre = [mean(&|i| i % nx) / nx as f64, mean(&|i| i / nx) / ny as f64];
+                    for (place, centre) in place.into_iter().zip(centre) {
+                        assert!((place - centre).abs() < 1e-12, "{nx} x {ny}, {run:?}: {place} for {centre}");
+                    }
+                    next = first + run.end;
+                });
+            }
+            assert_eq!(next, nx * ny);
+        }
     }
 }

@@ -22,13 +22,13 @@ pub(crate) trait BlockOperator<T> {
 
 /// L for corrections of a pressure, with an approximate inverse of it.
 pub(crate) trait PreconditionedOperator: BlockOperator<f32> {
-    /// Whether it knows how to extend residuals between contacts.
+    /// Whether it extends residuals between contacts.
     fn extends(&self) -> bool {
         true
     }
 
-    /// The elements that the approximate inverse is for from now on, and whether their residual is extended between contacts.
-    fn set_active(&mut self, active: &[bool], is_extended: bool);
+    /// The elements that the approximate inverse is for from now on.
+    fn set_active(&mut self, active: &[bool]);
 
     /// Applies the approximate inverse of L among the `active` elements, which were set before, to displacements that are zero elsewhere: what is
     /// left in their places is a pressure. Elsewhere it leaves anything.

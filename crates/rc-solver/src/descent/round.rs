@@ -4,7 +4,7 @@ use super::directions::Slope;
 use super::operators::{read_blocks, write_blocks};
 use super::rows::{ElementValues, Gradient};
 use super::shares::{Load, Shares, Squares};
-use super::state::{Descent, Rounds};
+use super::state::Descent;
 use super::sums::GapSums;
 use crate::Control;
 use crate::parallel;
@@ -42,20 +42,16 @@ impl Descent<'_> {
     fn begin_round(&mut self) -> ActiveSet {
         let (len, gradient) = (self.layout.len(), self.gradient());
         // The choice before clipping goes with the extension.
-        let chosen = self.rounds == Rounds::Chosen;
-        let is_extended = self.rounds != Rounds::Masked;
-        if is_extended {
-            self.rounds = Rounds::Chosen;
-        }
+        let is_chosen = std::mem::replace(&mut self.is_chosen, self.operators.corrections.extends());
         let directions = &mut self.directions;
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         let residuals = directions.active.chunks_mut(len).zip(directions.preconditioned.chunks_mut(len));
         let blocks = elements.blocks(len).zip(directions.direction.chunks(len).zip(residuals));
         let sums = parallel::map(blocks, |(block, (direction, (active, residual)))| {
-            block.first_residual(&gradient, direction, (active, chosen), residual)
+            block.first_residual(&gradient, direction, (active, is_chosen), residual)
         });
         let [n, direction] = self.layout.total(sums);
-        self.operators.corrections.set_active(&self.directions.active, is_extended);
+        self.operators.corrections.set_active(&self.directions.active);
         let fixed_load = matches!(self.problem.control, Control::MeanPressure(_));
         // A uniform pressure on the whole cell displaces nothing: no step along it is long enough, and others would be scaled with it.
         ActiveSet { n, fixed_mean: fixed_load || n >= self.n_cell(), direction_mean: direction / n }
@@ -109,8 +105,9 @@ impl Descent<'_> {
             let sums = self.rescale(scale(loads.iter().map(|load| load.clipped).sum()));
             return self.meet_penetration(sums);
         }
+        // Loads are only moved between squares; that of the cell follows by scaling, which is exact.
         let (len, offset, range) = (self.layout.len(), self.problem.offset(), self.problem.h_range);
-        let shares = Shares::new(self.squares(), &loads, wanted);
+        let shares = Shares::new(self.squares(), &loads);
         let blocks = self.pressure.chunks_mut(len).zip(self.directions.added().chunks(len)).enumerate();
         let layout = &self.layout;
         let sums = write_blocks(&mut *self.operators.corrections, blocks, |(i, (pressure, added)), written| {
@@ -141,15 +138,19 @@ impl Descent<'_> {
         let blocks = elements.blocks(len).zip(self.directions.clipped_steps(len)).enumerate();
         let of_blocks = parallel::map(blocks, |(i, (mut block, mut step))| {
             let n_clipped = block.clip(length, &mut step, gradient);
-            let mut loads: Vec<(usize, Load)> = Vec::new();
+            let (mut loads, mut last): (Vec<(usize, Load)>, _) = (Vec::new(), 0);
             layout.for_each_run(i, block.heights.len(), |run, place| {
                 let (square, pressure) = (squares.at(place), &block.pressure[run.clone()]);
                 let added: f64 = step.added[run].iter().copied().map(f64::from).sum();
                 let load = Load { clipped: pressure.iter().sum(), added: added / gradient.unit };
-                match loads.last_mut() {
-                    Some((last, sum)) if *last == square => *sum = sum.plus(load, 1.0),
-                    _ => loads.push((square, load)),
-                }
+                // Runs go on in their square or the next one, and rows of a block begin in the first again.
+                let is_this = |&i: &usize| loads.get(i).is_some_and(|(other, _)| *other == square);
+                let known = [last, last + 1, 0].into_iter().find(is_this).or_else(|| (0..loads.len()).find(is_this));
+                last = known.unwrap_or_else(|| {
+                    loads.push((square, Load::default()));
+                    loads.len() - 1
+                });
+                loads[last].1 = loads[last].1.plus(load, 1.0);
             });
             (n_clipped, loads)
         });

@@ -5,7 +5,7 @@
 //! have one: what is to be shared out in a square is divided among its quarters by the load they have, down to the smallest squares. Between the
 //! centres of these both loads are interpolated, before and after, whose ratio is the factor on pressures.
 
-/// Elements along a side of the smallest squares; `docs/uniform-solver.md` compares 8 to 128.
+/// Elements along a side of the smallest squares, at least: their number is a power of two. `docs/uniform-solver.md` compares 8 to 128.
 const SMALLEST_SQUARE: usize = 64;
 
 /// A square keeps at least this part of its load after clipping: where contacts vanish there may be none before.
@@ -63,8 +63,8 @@ pub(super) struct Shares {
 }
 
 impl Shares {
-    /// For `loads` of squares, the sum of which is to be `total`, or, without one, what it was before clipping.
-    pub(super) fn new(squares: Squares, loads: &[Load], total: Option<f64>) -> Self {
+    /// For the `loads` of squares, whose sum stays as it is.
+    pub(super) fn new(squares: Squares, loads: &[Load]) -> Self {
         let mut levels = vec![(squares.n, loads.to_vec())];
         while let Some((n, finer)) = levels.last().filter(|(n, _)| *n != [1, 1]) {
             let half = n.map(|n| n.div_ceil(2));
@@ -75,7 +75,7 @@ impl Shares {
             }
             levels.push((half, coarser));
         }
-        let mut wanted = vec![total.unwrap_or_else(|| levels.last().map_or(0.0, |(_, whole)| whole[0].part()))];
+        let mut wanted = vec![levels.last().map_or(0.0, |(_, whole)| whole[0].clipped)];
         for pair in levels.windows(2).rev() {
             let [(n, finer), (half, _)] = pair else { unreachable!("windows of two") };
             let mut parts = vec![0.0; half[0] * half[1]];
@@ -131,33 +131,34 @@ mod tests {
     use super::*;
 
     #[test]
-    fn squares_keep_their_loads_and_the_cell_its_total() {
+    fn squares_keep_their_parts_of_the_load() {
         for sides in [[256, 256], [1024, 64], [70, 300], [30, 8]] {
             let squares = Squares::new(sides);
             let load = |i: usize| Load { clipped: 1.0 + quasi_random(i), added: 0.3 * quasi_random(7 * i + 1) };
             let loads: Vec<Load> = (0..squares.len()).map(load).collect();
             let before: f64 = loads.iter().map(|load| load.clipped - load.added).sum();
-            for total in [None, Some(before), Some(3.0 * before)] {
-                let shares = Shares::new(squares, &loads, total);
-                let after: Vec<f64> = shares.loads.iter().map(|[wanted, _]| *wanted).collect();
-                let sum: f64 = after.iter().sum();
-                let scale = total.unwrap_or(before) / before;
-                assert!((sum / (scale * before) - 1.0).abs() < 1e-12, "{sides:?}: {sum}");
-                for (after, load) in after.iter().zip(&loads) {
-                    assert!((after / (scale * (load.clipped - load.added)) - 1.0).abs() < 1e-12, "{sides:?}");
-                }
+            let clipped: f64 = loads.iter().map(|load| load.clipped).sum();
+            let shares = Shares::new(squares, &loads);
+            let sum: f64 = shares.loads.iter().map(|[wanted, _]| wanted).sum();
+            assert!((sum / clipped - 1.0).abs() < 1e-12, "{sides:?}: {sum}");
+            for ([wanted, _], load) in shares.loads.iter().zip(&loads) {
+                let expected = clipped / before * (load.clipped - load.added);
+                assert!((wanted / expected - 1.0).abs() < 1e-12, "{sides:?}: {wanted}");
             }
         }
     }
 
     #[test]
-    fn a_square_without_load_takes_from_its_neighbours_first() {
+    fn a_square_without_load_takes_from_the_others_of_its_quarter_first() {
         let squares = Squares::new([256, 256]);
         let mut loads = vec![Load { clipped: 1.0, added: 0.0 }; 16];
         // All of its pressure is what clipping has added.
         loads[0] = Load { clipped: 1.0, added: 1.0 };
-        let shares = Shares::new(squares, &loads, None);
-        for (square, factor) in [(0, 3.0 / 7.0), (1, 6.0 / 7.0), (5, 6.0 / 7.0), (15, 1.0)] {
+        let shares = Shares::new(squares, &loads);
+        // The cell keeps 16 where it had 15 before.
+        for (square, factor) in
+            [(0, 3.0 / 7.0), (1, 6.0 / 7.0), (5, 6.0 / 7.0), (15, 1.0)].map(|(i, f)| (i, f * 16.0 / 15.0))
+        {
             let [wanted, clipped] = shares.loads[square];
             assert!((wanted / clipped - factor).abs() < 1e-12, "{square}: {wanted}");
         }

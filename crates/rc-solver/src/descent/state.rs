@@ -23,17 +23,6 @@ pub(crate) enum Start {
     Known { pressure: Vec<f64>, gap: Vec<f64> },
 }
 
-/// How rounds precondition, and where they have their active elements from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Rounds {
-    /// Residuals are masked to the active elements: those that press or penetrate when a round begins.
-    Masked,
-    /// Residuals are extended between contacts; the active elements are to be found in the same way, this once.
-    Extended,
-    /// The same with the active elements that the last projection has chosen.
-    Chosen,
-}
-
 /// Pressure, gap and everything that one level needs to improve them.
 pub(crate) struct Descent<'a> {
     pub(super) problem: &'a Problem,
@@ -45,7 +34,8 @@ pub(crate) struct Descent<'a> {
     pub(super) directions: ConjugateDirections,
     /// <t, L t> of the last step; infinite when there is no direction to be conjugate to.
     pub(super) curvature: f64,
-    pub(super) rounds: Rounds,
+    /// Whether the last projection has chosen the active elements.
+    pub(super) is_chosen: bool,
     /// The gap of elements in contact.
     pub(super) zero_gap: f64,
     /// Elements of more pressure are well inside contact.
@@ -74,7 +64,6 @@ impl<'a> Descent<'a> {
             Start::Pressure(pressure) => (pressure, vec![0.0; n]),
             Start::Known { pressure, gap } => (pressure, gap),
         };
-        let rounds = if operators.corrections.extends() { Rounds::Extended } else { Rounds::Masked };
         Self {
             problem,
             layout,
@@ -84,7 +73,7 @@ impl<'a> Descent<'a> {
             gap,
             directions: ConjugateDirections::new(n),
             curvature: f64::INFINITY,
-            rounds,
+            is_chosen: false,
             zero_gap: 0.0,
             pressed: f64::INFINITY,
             has_start,

@@ -24,7 +24,6 @@ pub(crate) struct UniformCorrections {
     displacement: SymbolTable<f32>,
     preconditioner: SymbolTable<f32>,
     extension: GridExtension,
-    is_extended: bool,
 }
 
 impl UniformCorrections {
@@ -33,7 +32,6 @@ impl UniformCorrections {
         Self {
             convolution: Convolution::new(grid),
             extension: GridExtension::new(grid),
-            is_extended: true,
             preconditioner: displacement.inverse(grid).map(|value| value as f32),
             displacement: displacement.map(|value| value as f32),
         }
@@ -59,34 +57,24 @@ impl BlockOperator<f32> for UniformCorrections {
 }
 
 impl PreconditionedOperator for UniformCorrections {
-    fn set_active(&mut self, active: &[bool], is_extended: bool) {
-        self.is_extended = is_extended;
-        if is_extended {
-            self.extension.set_active(active);
-        }
+    fn set_active(&mut self, active: &[bool]) {
+        self.extension.set_active(active);
     }
 
     fn precondition(&mut self, active: &[bool], values: &mut [f32]) {
-        let Self { convolution, preconditioner, extension, is_extended, .. } = self;
-        let nx = convolution.grid().nx();
-        if *is_extended {
-            extension.extend(values);
-        }
-        let len = BLOCK_ROWS * nx;
+        let Self { convolution, preconditioner, extension, .. } = self;
+        extension.extend(values);
+        let len = BLOCK_ROWS * convolution.grid().nx();
         let filled = &*extension;
         write_rows(convolution, &|i, rows| {
             let here = i * len..i * len + rows.len();
             rows.copy_from_slice(&values[here.clone()]);
-            if *is_extended {
-                filled.fill(i * BLOCK_ROWS, &active[here], rows);
-            }
+            filled.fill(i * BLOCK_ROWS, &active[here], rows);
         });
         convolution.apply_symbol(preconditioner);
         let tasks = Tasks::new(values.chunks_mut(len));
         read_rows(convolution, &|i, rows| tasks.run(i, |to: &mut [f32]| to.copy_from_slice(rows)));
-        if *is_extended {
-            extension.gather(active, values);
-        }
+        extension.gather(active, values);
     }
 
     fn set_mean(&mut self, eigenvalue: f64) {

@@ -109,7 +109,7 @@ impl PreconditionedOperator for AnyCorrections<'_> {
         false
     }
 
-    fn set_active(&mut self, _active: &[bool], _is_extended: bool) {}
+    fn set_active(&mut self, _active: &[bool]) {}
 
     fn precondition(&mut self, _active: &[bool], values: &mut [f32]) {
         let sums = parallel::map(values.chunks(BLOCK), |block| [block.iter().copied().map(f64::from).sum()]);

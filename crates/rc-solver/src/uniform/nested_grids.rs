@@ -29,7 +29,7 @@ pub(crate) struct FinestGrid<'a> {
     pub(crate) outcome: Outcome,
     /// The work on all grids, coarsest first.
     pub(crate) levels: Vec<LevelInfo>,
-    /// What the level below the finest found; the last grid when there are others above it.
+    /// What the level below the finest found, if that halves it; the last grid when there are others above it.
     pub(crate) coarser: Option<LevelValues>,
 }
 

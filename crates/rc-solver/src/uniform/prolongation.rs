@@ -126,9 +126,15 @@ mod tests {
             let linear = |x: f64, y: f64| if along_x { inside(y, ny) } else { inside(x, nx) };
             let centre = |i: usize| i as f64 + 0.5;
             let coarse: Vec<f64> = (0..nx * ny).map(|i| linear(centre(i % nx), centre(i / nx))).collect();
-            let grids = [1, 2].map(|n| Grid::new(n * nx, n * ny).expect("a grid"));
-            for (i, p) in interpolate(&coarse, grids[0], grids[1]).into_iter().enumerate() {
-                let (x, y) = (0.5 * centre(i % (2 * nx)), 0.5 * centre(i / (2 * nx)));
+            let grid = |nx, ny| Grid::new(nx, ny).expect("a grid");
+            let finer = [[2 * nx, 2 * ny], [27, 15], [31, 17]];
+            let all = finer.into_iter().flat_map(|[fx, fy]| {
+                let fine = interpolate(&coarse, grid(nx, ny), grid(fx, fy));
+                let at =
+                    move |i: usize| [centre(i % fx) * nx as f64 / fx as f64, centre(i / fx) * ny as f64 / fy as f64];
+                fine.into_iter().enumerate().map(move |(i, p)| (at(i), p))
+            });
+            for ([x, y], p) in all {
                 let (squared, from_ridge) = (linear(x, y).max(0.0), 3.3 - linear(x, y));
                 // The ridge in the middle, and the valley across the seam, are blunted.
                 let valley = if along_x { 0.5 * ny as f64 } else { 0.5 * nx as f64 };

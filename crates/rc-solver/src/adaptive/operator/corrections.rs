@@ -7,7 +7,6 @@ use super::hierarchy::Hierarchy;
 use super::tables::Tables;
 use super::tile_operator::TileOperator;
 use crate::descent::{BlockLayout, BlockOperator, PreconditionedOperator};
-use crate::parallel::Tasks;
 
 /// L alone.
 pub(crate) struct TileResponse<'a> {
@@ -44,7 +43,6 @@ impl BlockOperator<f32> for TileResponse<'_> {
 pub(crate) struct TileCorrections<'a> {
     response: TileResponse<'a>,
     extension: TileExtension,
-    is_extended: bool,
     preconditioner: &'a mut Tables<f32>,
 }
 
@@ -56,7 +54,7 @@ impl<'a> TileCorrections<'a> {
         preconditioner: &'a mut Tables<f32>,
     ) -> Self {
         let extension = TileExtension::new(Arc::clone(&hierarchy));
-        Self { response: TileResponse::new(hierarchy, displacement), extension, is_extended: true, preconditioner }
+        Self { response: TileResponse::new(hierarchy, displacement), extension, preconditioner }
     }
 }
 
@@ -79,24 +77,12 @@ impl BlockOperator<f32> for TileCorrections<'_> {
 }
 
 impl PreconditionedOperator for TileCorrections<'_> {
-    fn set_active(&mut self, active: &[bool], is_extended: bool) {
-        self.is_extended = is_extended;
-        if is_extended {
-            self.extension.set_active(active);
-        }
+    fn set_active(&mut self, active: &[bool]) {
+        self.extension.set_active(active);
     }
 
     fn precondition(&mut self, active: &[bool], values: &mut [f32]) {
-        let operator = &mut self.response.operator;
-        if !self.is_extended {
-            let len = operator.layout().len();
-            operator.write(&|i, block| block.copy_from_slice(&values[i * len..][..block.len()]));
-            operator.apply(self.preconditioner);
-            let (preconditioner, tasks) = (&*self.preconditioner, Tasks::new(values.chunks_mut(len)));
-            operator.read(preconditioner, &|i, block| tasks.run(i, |to: &mut [f32]| to.copy_from_slice(block)));
-            return;
-        }
-        let (arch, convolution, room) = operator.buffers();
+        let (arch, convolution, room) = self.response.operator.buffers();
         self.extension.precondition(arch, (convolution, room), self.preconditioner, active, values);
     }
 
