@@ -2,7 +2,7 @@
 
 use super::directions::Slope;
 use super::operators::{read_blocks, write_blocks};
-use super::rows::{ElementValues, Gradient};
+use super::rows::{self, ElementValues, Gradient};
 use super::shares::{Load, Shares, Squares};
 use super::state::Descent;
 use super::sums::GapSums;
@@ -114,7 +114,7 @@ impl Descent<'_> {
             let mut sum = 0.0;
             layout.for_each_run(i, pressure.len(), |run, place| {
                 let (pressure, added, written) = (&mut pressure[run.clone()], &added[run.clone()], &mut written[run]);
-                sum += ElementValues::share(pressure, shares.at(place), gradient.unit, added, written);
+                sum += rows::share(pressure, shares.at(place), gradient.unit, added, written);
             });
             [sum]
         });

@@ -118,17 +118,17 @@ impl ElementValues<'_> {
         }
         clipped
     }
+}
 
-    /// Multiplies some pressures by `share`, and adds what that adds, in units of `1 / unit`, to what clipping has `added`. Returns Σ p.
-    pub(super) fn share(pressure: &mut [f64], share: f64, unit: f64, added: &[f32], written: &mut [f32]) -> f64 {
-        let mut sum = 0.0;
-        for ((p, added), written) in pressure.iter_mut().zip(added).zip(written) {
-            *written = ((share - 1.0) * *p * unit) as f32 + added;
-            *p *= share;
-            sum += *p;
-        }
-        sum
+/// Multiplies some pressures by `share`, and adds what that adds, in units of `1 / unit`, to what clipping has `added`. Returns Σ p.
+pub(super) fn share(pressure: &mut [f64], share: f64, unit: f64, added: &[f32], written: &mut [f32]) -> f64 {
+    let mut sum = 0.0;
+    for ((p, added), written) in pressure.iter_mut().zip(added).zip(written) {
+        *written = ((share - 1.0) * *p * unit) as f32 + added;
+        *p *= share;
+        sum += *p;
     }
+    sum
 }
 
 /// A direction and its displacement for a step that is clipped.

@@ -1,6 +1,7 @@
 //! The contact problem on uniform grids: nested grids, each solved by preconditioned projected conjugate gradients.
 
 mod full_contact;
+mod interpolation;
 mod levels;
 mod nested_grids;
 mod prolongation;

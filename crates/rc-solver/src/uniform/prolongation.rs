@@ -8,59 +8,17 @@
 use rayon::prelude::*;
 use rc_core::Grid;
 
+use super::interpolation::interpolate;
 use crate::descent::Descent;
 
 /// The start on a `finer` grid of the same cell.
 pub(crate) fn prolong(coarse: &Descent<'_>, finer: Grid) -> Vec<f64> {
-    interpolate(&edge_function(coarse), coarse.grid(), finer)
+    pressure_from(&edge_function(coarse), coarse.grid(), finer)
 }
 
-/// The pressure on a finer grid from φ.
-fn interpolate(function: &[f64], coarse: Grid, finer: Grid) -> Vec<f64> {
-    let nx = coarse.nx();
-    let (along_x, along_y) =
-        (Between::of_centres(coarse.nx(), finer.nx()), Between::of_centres(coarse.ny(), finer.ny()));
-    let mut fine = vec![0.0; finer.len()];
-    fine.par_chunks_mut(finer.nx()).zip(&along_y).for_each_init(
-        || vec![0.0; nx],
-        |blended, (row, of_row)| {
-            let [before, after] = of_row.neighbours.map(|iy| &function[iy * nx..][..nx]);
-            for ((value, &before), &after) in blended.iter_mut().zip(before).zip(after) {
-                *value = of_row.blend(before, after);
-            }
-            for (value, of_centre) in row.iter_mut().zip(&along_x) {
-                let [before, after] = of_centre.neighbours.map(|ix| blended[ix]);
-                *value = of_centre.blend(before, after).max(0.0).sqrt();
-            }
-        },
-    );
-    fine
-}
-
-/// A fine centre between two coarse ones along one axis.
-struct Between {
-    neighbours: [usize; 2],
-    weights: [f64; 2],
-}
-
-impl Between {
-    /// For the centres of `fine` elements on a side with `coarse` ones.
-    fn of_centres(coarse: usize, fine: usize) -> Vec<Self> {
-        let ratio = coarse as f64 / fine as f64;
-        let of_centre = |i: usize| {
-            let place = (i as f64 + 0.5) * ratio - 0.5;
-            let before = place.floor();
-            let at = place - before;
-            // The centre before the first is the last.
-            let first = if before < 0.0 { coarse - 1 } else { before as usize };
-            Self { neighbours: [first, (first + 1) % coarse], weights: [1.0 - at, at] }
-        };
-        (0..fine).map(of_centre).collect()
-    }
-
-    fn blend(&self, before: f64, after: f64) -> f64 {
-        self.weights[0] * before + self.weights[1] * after
-    }
+/// The pressure on a finer grid from φ, which is interpolated linearly.
+fn pressure_from(function: &[f64], coarse: Grid, finer: Grid) -> Vec<f64> {
+    interpolate::<2>(function, [coarse, finer], |value| value, |value| value.max(0.0).sqrt())
 }
 
 /// φ at the coarse centres.
@@ -129,7 +87,7 @@ mod tests {
             let grid = |nx, ny| Grid::new(nx, ny).expect("a grid");
             let finer = [[2 * nx, 2 * ny], [27, 15], [31, 17]];
             let all = finer.into_iter().flat_map(|[fx, fy]| {
-                let fine = interpolate(&coarse, grid(nx, ny), grid(fx, fy));
+                let fine = pressure_from(&coarse, grid(nx, ny), grid(fx, fy));
                 let at =
                     move |i: usize| [centre(i % fx) * nx as f64 / fx as f64, centre(i / fx) * ny as f64 / fy as f64];
                 fine.into_iter().enumerate().map(move |(i, p)| (at(i), p))

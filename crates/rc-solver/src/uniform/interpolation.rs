@@ -1,0 +1,67 @@
+//! Values on one grid of a cell from those on another, which is finer or coarser by any ratio.
+
+use rayon::prelude::*;
+use rc_core::Grid;
+
+/// Interpolates between `N` neighbours along each axis (Lagrange): each value is `read` before and `written` after.
+pub(super) fn interpolate<const N: usize>(
+    values: &[f64],
+    [from, to]: [Grid; 2],
+    read: impl Fn(f64) -> f64 + Sync,
+    written: impl Fn(f64) -> f64 + Sync,
+) -> Vec<f64> {
+    let nx = from.nx();
+    let (along_x, along_y) = (Taps::<N>::of_centres(nx, to.nx()), Taps::<N>::of_centres(from.ny(), to.ny()));
+    let mut result = vec![0.0; to.len()];
+    result.par_chunks_mut(to.nx()).zip(&along_y).for_each_init(
+        || vec![0.0; nx],
+        |blended, (row, taps)| {
+            blended.fill(0.0);
+            for (iy, weight) in taps.iter() {
+                for (sum, value) in blended.iter_mut().zip(&values[iy * nx..][..nx]) {
+                    *sum += weight * read(*value);
+                }
+            }
+            for (value, taps) in row.iter_mut().zip(&along_x) {
+                *value = written(taps.iter().map(|(ix, weight)| weight * blended[ix]).sum());
+            }
+        },
+    );
+    result
+}
+
+/// The neighbours of one centre along one axis, and their weights.
+struct Taps<const N: usize> {
+    neighbours: [usize; N],
+    weights: [f64; N],
+}
+
+impl<const N: usize> Taps<N> {
+    /// For each centre of `to` elements on a side that has `from` elements.
+    fn of_centres(from: usize, to: usize) -> Vec<Self> {
+        let ratio = from as f64 / to as f64;
+        // Places of neighbours, in elements from the last one before the centre.
+        let place_of = |tap: usize| tap as f64 - (N / 2 - 1) as f64;
+        let of_centre = |i: usize| {
+            let place = (i as f64 + 0.5) * ratio - 0.5;
+            let before = place.floor();
+            let at = place - before;
+            let weights = std::array::from_fn(|tap| {
+                let others = (0..N).filter(|&other| other != tap).map(place_of);
+                let (mut product, mut divisor) = (1.0, 1.0);
+                for other in others {
+                    product *= at - other;
+                    divisor *= place_of(tap) - other;
+                }
+                product / divisor
+            });
+            let neighbour = |tap: usize| (before + place_of(tap)).rem_euclid(from as f64) as usize;
+            Self { neighbours: std::array::from_fn(neighbour), weights }
+        };
+        (0..to).map(of_centre).collect()
+    }
+
+    fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.neighbours.iter().copied().zip(self.weights)
+    }
+}
