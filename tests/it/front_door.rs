@@ -1,8 +1,9 @@
 //! `rc_solver::solve` and what comes out of it, whatever the method.
 
 use std::convert::Infallible;
+use std::sync::Arc;
 
-use rc_core::{Elasticity, Field, Grid, HeightField as _, PeriodicCell, Silent, Units};
+use rc_core::{Elasticity, Field, Grid, HeightField as _, HeightSource, PeriodicCell, Silent, Units};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Spectral;
 use rc_solver::{
@@ -135,7 +136,10 @@ fn what_a_method_cannot_do_is_refused_by_name() {
     let problem = ContactProblem::new(surface.on(square(128)), LOAD);
     let refused = |problem: ContactProblem<'_>, params: SolveParams| problem.plan(&params).expect_err("refused");
     let adaptive = SolveParams::default().by(Method::Adaptive);
-    assert!(matches!(refused(problem.with_kernel(&Spectral), adaptive), SolveError::Kernel { kernel: "spectral", .. }));
+    assert!(matches!(
+        refused(problem.clone().with_kernel(&Spectral), adaptive),
+        SolveError::Kernel { kernel: "spectral", .. }
+    ));
     let border = SolveParams { border_level: 2, ..SolveParams::default().by(Method::Uniform) };
     assert!(matches!(refused(problem, border), SolveError::BorderLevel { method: Method::Uniform }));
     let error = refused(ContactProblem::new(surface.on(square(128)), Control::MeanPressure(-1.0)), adaptive);
@@ -147,7 +151,7 @@ fn the_grid_follows_the_wanted_error_of_the_area() {
     let surface = surface(16);
     let params = SolveParams { tolerance: Tolerance::Auto, ..SolveParams::default() };
     let problem = ContactProblem::new(surface.on(square(1)), LOAD);
-    let coarse = problem.solve_to_area_error(0.03, &params, &Silent).expect("solvable");
+    let coarse = problem.clone().solve_to_area_error(0.03, &params, &Silent).expect("solvable");
     let fine = problem.solve_to_area_error(0.005, &params, &Silent).expect("solvable");
     assert!(coarse.area().relative_error() <= 0.03 && fine.area().relative_error() <= 0.005);
     assert!(fine.grid().nx() > coarse.grid().nx());
@@ -174,4 +178,31 @@ fn metres_and_pascals_go_in_through_one_conversion() {
     let depth = Control::metres(units.metres(solution.info().penetration), units);
     let again = solve(&heights, depth, &SolveParams::default()).expect("solvable");
     assert!((again.info().mean_pressure / solution.info().mean_pressure - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn loads_that_share_a_surface_have_the_digits_of_their_own_plans() {
+    let surface = Arc::new(surface(8));
+    let map = surface.sample(square(128));
+    let sources: [HeightSource<'_>; 2] =
+        [HeightSource::shared(Arc::<Surface>::clone(&surface), square(256)), (&map).into()];
+    // The last load touches most of the cell, so that the method changes.
+    let loads = [LOAD, Control::MeanPressure(1e-4), Control::Penetration(1.5e-3), Control::MeanPressure(8e-3)];
+    for source in sources {
+        let own = |load| ContactProblem::new(source.clone(), load).plan(&SolveParams::default()).expect("a plan");
+        let first = own(LOAD);
+        let mut methods = Vec::new();
+        for load in loads {
+            let [shared, own] = [first.under(load).expect("a plan"), own(load)].map(|plan| plan.solve(&Silent));
+            let (shared, own) = (shared.expect("solvable"), own.expect("solvable"));
+            assert_eq!(shared.method(), own.method(), "{load:?}");
+            assert_eq!(shared.pressure().values(), own.pressure().values(), "{load:?}");
+            assert_eq!(shared.gap().values(), own.gap().values(), "{load:?}");
+            assert_eq!(shared.stiffness().to_bits(), own.stiffness().to_bits(), "{load:?}");
+            methods.push(own.method());
+        }
+        assert!(methods.contains(&Method::Uniform) && methods.contains(&Method::Adaptive), "{methods:?}");
+    }
+    let error = ContactProblem::new(&map, LOAD).plan(&SolveParams::default()).expect("a plan");
+    assert!(error.under(Control::MeanPressure(-1.0)).is_err(), "a load is checked");
 }

@@ -27,7 +27,7 @@ fn own_surface_and_own_half_space_drive_the_solver() {
     let problem = ContactProblem::new(&heights, Control::MeanPressure(5e-4));
     let solve =
         |problem: ContactProblem<'_>| problem.solve(&SolveParams::default(), &Silent).expect("solvable").into_owned();
-    let (thin, thick) = (solve(problem.with_kernel(&layer)), solve(problem.with_kernel(&rc_kernel::Spectral)));
+    let (thin, thick) = (solve(problem.clone().with_kernel(&layer)), solve(problem.with_kernel(&rc_kernel::Spectral)));
     assert_eq!((thin.status(), thick.status()), (Status::Converged, Status::Converged));
     assert_eq!(thin.reason(), &MethodReason::NoSplitOfKernel { kernel: "bonded-layer" });
     // A thin layer on a rigid base yields less than a half-space, so the same load penetrates less.

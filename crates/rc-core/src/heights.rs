@@ -1,6 +1,7 @@
 //! Rough surfaces, and the heights of a contact problem that come from them.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use crate::{DVec2, Field, Grid};
 
@@ -33,8 +34,8 @@ pub trait HeightField: Sync {
 /// The heights of a contact problem on its grid.
 ///
 /// A surface is evaluated where a solver needs it, which is a small part of the grid for the adaptive method. A map is used as it is.
-/// [`HeightField::on`] makes the first kind, `From<&Field>` the second.
-#[derive(Clone, Copy)]
+/// [`HeightField::on`] and `From<&Field>` make sources that borrow, [`HeightSource::shared`] and `From<Arc<Field>>` sources without a lifetime.
+#[derive(Clone)]
 pub enum HeightSource<'a> {
     /// A surface, evaluated at the centres of elements.
     Surface {
@@ -45,37 +46,83 @@ pub enum HeightSource<'a> {
     },
     /// Heights (in λ) at the centres of all elements.
     Map(&'a Field),
+    /// A surface with several owners.
+    SharedSurface {
+        /// The surface.
+        surface: Arc<dyn HeightField + Send + Sync>,
+        /// The grid it is wanted on.
+        grid: Grid,
+    },
+    /// A map with several owners.
+    SharedMap(Arc<Field>),
 }
 
-impl<'a> HeightSource<'a> {
+impl HeightSource<'static> {
+    /// A surface with several owners on `grid`. Nothing is evaluated yet.
+    #[must_use]
+    pub fn shared(surface: Arc<dyn HeightField + Send + Sync>, grid: Grid) -> Self {
+        Self::SharedSurface { surface, grid }
+    }
+}
+
+impl HeightSource<'_> {
     /// The grid.
     #[must_use]
     pub fn grid(&self) -> Grid {
         match self {
-            Self::Surface { grid, .. } => *grid,
+            Self::Surface { grid, .. } | Self::SharedSurface { grid, .. } => *grid,
             Self::Map(map) => map.grid(),
+            Self::SharedMap(map) => map.grid(),
+        }
+    }
+
+    /// The surface, unless the heights are a map.
+    #[must_use]
+    pub fn surface(&self) -> Option<&dyn HeightField> {
+        match self {
+            Self::Surface { surface, .. } => Some(*surface),
+            Self::SharedSurface { surface, .. } => Some(surface.as_ref()),
+            Self::Map(_) | Self::SharedMap(_) => None,
+        }
+    }
+
+    /// The map, unless the heights are those of a surface.
+    #[must_use]
+    pub fn map(&self) -> Option<&Field> {
+        match self {
+            Self::Map(map) => Some(map),
+            Self::SharedMap(map) => Some(map.as_ref()),
+            Self::Surface { .. } | Self::SharedSurface { .. } => None,
+        }
+    }
+
+    /// The surface on another grid; a map stays as it is.
+    #[must_use]
+    pub fn on_grid(self, grid: Grid) -> Self {
+        match self {
+            Self::Surface { surface, .. } => Self::Surface { surface, grid },
+            Self::SharedSurface { surface, .. } => Self::SharedSurface { surface, grid },
+            map => map,
         }
     }
 
     /// Heights (in λ) on the whole grid: those of the map, or those of the surface, evaluated now.
     #[must_use]
-    pub fn heights(&self) -> Cow<'a, Field> {
+    pub fn heights(&self) -> Cow<'_, Field> {
         match self {
             Self::Surface { surface, grid } => Cow::Owned(surface.sample(*grid)),
+            Self::SharedSurface { surface, grid } => Cow::Owned(surface.sample(*grid)),
             Self::Map(map) => Cow::Borrowed(map),
+            Self::SharedMap(map) => Cow::Borrowed(map),
         }
     }
 
     /// Elements along the shorter side of the grid for the shortest wave; `None` where the shortest wave is not known.
     #[must_use]
     pub fn elements_per_wave(&self) -> Option<f64> {
-        match self {
-            Self::Surface { surface, grid } => {
-                let waves = surface.band_limit().filter(|&waves| waves > 0)?;
-                Some(grid.nx().min(grid.ny()) as f64 / waves as f64)
-            }
-            Self::Map(_) => None,
-        }
+        let waves = self.surface()?.band_limit().filter(|&waves| waves > 0)?;
+        let grid = self.grid();
+        Some(grid.nx().min(grid.ny()) as f64 / waves as f64)
     }
 }
 
@@ -85,13 +132,19 @@ impl<'a> From<&'a Field> for HeightSource<'a> {
     }
 }
 
+impl From<Arc<Field>> for HeightSource<'static> {
+    fn from(map: Arc<Field>) -> Self {
+        Self::SharedMap(map)
+    }
+}
+
 impl std::fmt::Debug for HeightSource<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Surface { surface, grid } => {
-                write!(f, "surface with band limit {:?} on {grid} elements", surface.band_limit())
+        match self.surface() {
+            Some(surface) => {
+                write!(f, "surface with band limit {:?} on {} elements", surface.band_limit(), self.grid())
             }
-            Self::Map(map) => write!(f, "map of {} elements", map.grid()),
+            None => write!(f, "map of {} elements", self.grid()),
         }
     }
 }

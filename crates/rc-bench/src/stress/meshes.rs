@@ -156,10 +156,10 @@ fn check_solution(
     let n_levels = (heights.grid().nx() / scene.base).ilog2();
     rows.holds(name, "levels above the base grid", ">= 1", n_levels.to_string(), n_levels >= 1);
     let load = Control::MeanPressure(scene.load);
-    let solution = ContactProblem::new(source, load).solve(&params, &Silent)?;
-    check_mesh(scene, (name, source), (heights, load), &solution, rows)?;
+    let solution = ContactProblem::new(source.clone(), load).solve(&params, &Silent)?;
+    check_mesh(scene, (name, source.clone()), (heights, load), &solution, rows)?;
     let penetration = Control::Penetration(solution.info().penetration);
-    let solution = ContactProblem::new(source, penetration).solve(&params, &Silent)?;
+    let solution = ContactProblem::new(source.clone(), penetration).solve(&params, &Silent)?;
     check_mesh(scene, (&format!("{name} by penetration"), source), (heights, penetration), &solution, rows)
 }
 
@@ -219,7 +219,7 @@ fn of_elements(
     UniformOperator::new(grid, &Love).apply(pressure.values(), &mut v, &mut []);
     let (mut gaps, range) = (gaps(heights, &v), heights.max() - heights.min());
     drop(v);
-    let (levels, mut means) = (LevelHeights::new(source, n)?, 0.0_f64);
+    let (levels, mut means) = (LevelHeights::new(&source, n)?, 0.0_f64);
     for element in elements.iter().filter(|element| element.side > 1) {
         let mean = |values: &[f64]| {
             element.rows(n).map(|row| values[row].iter().sum::<f64>()).sum::<f64>() / element.side.pow(2) as f64
@@ -267,9 +267,9 @@ struct LevelHeights {
 }
 
 impl LevelHeights {
-    fn new(source: HeightSource<'_>, n: usize) -> Result<Self> {
+    fn new(source: &HeightSource<'_>, n: usize) -> Result<Self> {
         let n_larger = (n / source.grid().nx()).ilog2();
-        let HeightSource::Surface { surface, .. } = source else { return Ok(Self { levels: Vec::new() }) };
+        let Some(surface) = source.surface() else { return Ok(Self { levels: Vec::new() }) };
         let sampled = (0..=n_larger).map(|level| Ok(surface.sample(Grid::square(n >> level)?)));
         Ok(Self { levels: sampled.collect::<Result<_>>()? })
     }

@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use rc_core::{Field, Grid, HeightField as _, HeightSource, PeriodicCell};
+use rc_core::{Field, Grid, HeightSource, PeriodicCell};
 use rc_fractal::{Moments, SpectrumParams, Surface, height_and_slope_of_grid, moments_of_grid};
 use rc_heights::{HeightMap, Scales};
 
@@ -60,11 +61,11 @@ pub struct LoadedSurface {
 #[derive(Clone, Debug)]
 pub enum Shape {
     /// A random surface; it has heights anywhere.
-    Random(Surface),
+    Random(Arc<Surface>),
     /// A height map.
     Map {
         /// Heights in λ.
-        heights: Field,
+        heights: Arc<Field>,
         /// What makes them the heights in the file.
         as_read: AsRead,
     },
@@ -93,7 +94,7 @@ impl SurfaceSetup {
             Source::File { path, expected, scales } => self.of_map(path, heights::read(path, *scales)?, *expected),
             Source::Random { spectrum, grid } => {
                 let surface = Surface::new(spectrum).map_err(CliError::input)?;
-                Ok(LoadedSurface { shape: Shape::Random(surface), grid: *grid, keys: self.keys.clone() })
+                Ok(LoadedSurface { shape: Shape::Random(Arc::new(surface)), grid: *grid, keys: self.keys.clone() })
             }
         }
     }
@@ -121,7 +122,8 @@ impl SurfaceSetup {
         // The map in a result folder is an array in metres.
         let (heights_file, unit, height_scale) = (Some(HEIGHTS_FILE.into()), None, None);
         let keys = SurfaceKeys { heights: heights_file, unit, height_scale, grid: Some(spec), ..self.keys.clone() };
-        Ok(LoadedSurface { shape: Shape::Map { heights, as_read }, grid, keys })
+        let shape = Shape::Map { heights: Arc::new(heights), as_read };
+        Ok(LoadedSurface { shape, grid, keys })
     }
 }
 
@@ -142,10 +144,10 @@ impl LoadedSurface {
 
     /// The heights of a contact problem on the finest grid; those of a random surface are not evaluated yet.
     #[must_use]
-    pub fn source(&self) -> HeightSource<'_> {
+    pub fn source(&self) -> HeightSource<'static> {
         match &self.shape {
-            Shape::Random(surface) => surface.on(self.grid),
-            Shape::Map { heights, .. } => heights.into(),
+            Shape::Random(surface) => HeightSource::shared(Arc::<Surface>::clone(surface), self.grid),
+            Shape::Map { heights, .. } => Arc::clone(heights).into(),
         }
     }
 

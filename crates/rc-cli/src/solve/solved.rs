@@ -26,7 +26,7 @@ pub(crate) struct ProblemSetup<'a> {
 /// A solved problem.
 pub(crate) struct Solved<'a> {
     problem: ProblemSetup<'a>,
-    solution: Solution<'a>,
+    solution: Solution<'static>,
     /// What is said of a solution that did not reach the tolerance.
     failure: Option<String>,
     wall: Duration,
@@ -37,11 +37,19 @@ impl<'a> ProblemSetup<'a> {
     ///
     /// # Errors
     /// [`CliError::Input`] when the scene, the method asked for, or the memory there is do not allow it.
-    pub(super) fn plan(&self) -> Result<Plan<'a>, CliError> {
+    pub(crate) fn plan(&self) -> Result<Plan<'static>, CliError> {
         if let Some(spec) = self.contact.keys.output_grid {
             check_factor(self.surface.grid, spec)?;
         }
         self.contact_problem().plan(&self.params()).map_err(|error| self.refuse(&error))
+    }
+
+    /// The same with what `other`, a plan on the same surface with the same parameters, has prepared.
+    ///
+    /// # Errors
+    /// As of [`ProblemSetup::plan`].
+    pub(crate) fn plan_like(&self, other: &Plan<'static>) -> Result<Plan<'static>, CliError> {
+        other.under(self.contact.control).map_err(|error| self.refuse(&error))
     }
 
     /// Solves; `started` is the moment from which `wall_seconds` counts. Nothing is written.
@@ -49,8 +57,20 @@ impl<'a> ProblemSetup<'a> {
     /// # Errors
     /// [`CliError::Input`]; a solution that did not converge is not an error, see [`Solved::failure`].
     pub(crate) fn solve(self, started: Instant, observer: &dyn Observer) -> Result<Solved<'a>, CliError> {
-        let result = self.plan()?.solve(observer);
-        self.solved(result, started)
+        self.solve_planned(self.plan()?, started, observer)
+    }
+
+    /// The same by a plan of this problem.
+    ///
+    /// # Errors
+    /// As of [`ProblemSetup::solve`].
+    pub(crate) fn solve_planned(
+        self,
+        plan: Plan<'static>,
+        started: Instant,
+        observer: &dyn Observer,
+    ) -> Result<Solved<'a>, CliError> {
+        self.solved(plan.solve(observer), started)
     }
 
     /// The same on the coarsest grid that gives the contact area with a relative error of at most `wanted`.
@@ -72,7 +92,7 @@ impl<'a> ProblemSetup<'a> {
         self.solved(result, started)
     }
 
-    fn contact_problem(&self) -> ContactProblem<'a> {
+    fn contact_problem(&self) -> ContactProblem<'static> {
         ContactProblem::new(self.surface.source(), self.contact.control).with_kernel(self.contact.kernel())
     }
 
@@ -80,7 +100,7 @@ impl<'a> ProblemSetup<'a> {
         SolveParams { memory_limit: self.budget.available(), ..self.contact.params }
     }
 
-    fn solved(self, result: Result<Solution<'a>, SolveError>, started: Instant) -> Result<Solved<'a>, CliError> {
+    fn solved(self, result: Result<Solution<'static>, SolveError>, started: Instant) -> Result<Solved<'a>, CliError> {
         let (solution, failure) = match result {
             Ok(solution) => (solution, None),
             Err(SolveError::NotConverged { grid, iterations, certificate, solution }) => {

@@ -1,10 +1,11 @@
 //! How a row of a sweep is solved: as `rc solve` solves its scene.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use rc_core::Silent;
+use rc_solver::Plan;
 use rc_sweep::memory::Budget;
 use rc_sweep::{Cells, Latest, RowError, RowSolver, Summary, Sweep, SweepRow, replace_fields};
 
@@ -21,11 +22,30 @@ pub(super) struct SceneRows<'a> {
     sweep: &'a Sweep,
     surfaces: &'a Surfaces,
     /// The surface that was loaded last: its loads follow one another.
-    loaded: Latest<LoadedSurface>,
+    loaded: Latest<SurfaceOfLoads>,
     /// All threads of the sweep.
     threads: usize,
     limit: Stop,
     bar: RowBar,
+}
+
+/// A surface, and what its loads share.
+struct SurfaceOfLoads {
+    surface: LoadedSurface,
+    /// The plan of the load that came first.
+    first: Mutex<Option<Plan<'static>>>,
+}
+
+impl SurfaceOfLoads {
+    /// The plan of `problem`, which is on this surface.
+    fn plan(&self, problem: &ProblemSetup<'_>) -> Result<Plan<'static>, CliError> {
+        // A worker that panicked has stored a whole plan or none.
+        let mut first = self.first.lock().unwrap_or_else(PoisonError::into_inner);
+        if first.is_none() {
+            *first = Some(problem.plan()?);
+        }
+        first.as_ref().map_or_else(|| problem.plan(), |first| problem.plan_like(first))
+    }
 }
 
 impl<'a> SceneRows<'a> {
@@ -39,12 +59,13 @@ impl<'a> SceneRows<'a> {
     /// `wall_seconds` includes the time that loading the surface took once.
     pub(super) fn solve_contact(&self, row: &SweepRow, contact: &ContactSetup) -> Result<Cells, CliError> {
         let surface = self.surfaces.surface(row);
-        let (loaded, time): (Arc<LoadedSurface>, Duration) = self.loaded.get(row.surface, || surface.load())?;
+        let load = || Ok::<_, CliError>(SurfaceOfLoads { surface: surface.load()?, first: Mutex::default() });
+        let (loaded, time): (Arc<SurfaceOfLoads>, Duration) = self.loaded.get(row.surface, load)?;
         let started = Instant::now().checked_sub(time).unwrap_or_else(Instant::now);
         let folder = self.sweep.fields_folder(row.index);
         let budget = Budget::new(self.surfaces.run.memory_limit);
-        let problem = ProblemSetup { surface: &loaded, contact, budget };
-        let solved = problem.solve(started, &Silent)?;
+        let problem = ProblemSetup { surface: &loaded.surface, contact, budget };
+        let solved = problem.solve_planned(loaded.plan(&problem)?, started, &Silent)?;
         let summary = solved.summary(self.threads);
         if let Some(folder) = folder {
             write_fields(&folder, &solved, &summary)?;

@@ -1,6 +1,6 @@
 //! The base grid: the coarsest whole grid that still has the surface's waves.
 
-use rc_core::{Field, HeightSource};
+use rc_core::{Field, HeightField, HeightSource};
 use rc_quadtree::TILE;
 
 use super::AdaptiveError;
@@ -20,10 +20,7 @@ const SLOPE_KEPT: f64 = 0.8;
 /// Checks or chooses the elements per side of the base grid.
 pub(super) fn base_side(source: &HeightSource<'_>, wanted: Option<usize>) -> Result<usize, AdaptiveError> {
     let finest = source.grid().nx();
-    let waves = match source {
-        HeightSource::Surface { surface, .. } => surface.band_limit(),
-        HeightSource::Map(_) => None,
-    };
+    let waves = source.surface().and_then(HeightField::band_limit);
     if let Some(base) = wanted {
         let fits = base >= TILE && base.is_multiple_of(TILE) && base > 2 * waves.unwrap_or(0) && 2 * base <= finest;
         let divides = fits && finest.is_multiple_of(base) && (finest / base).is_power_of_two();
@@ -32,10 +29,10 @@ pub(super) fn base_side(source: &HeightSource<'_>, wanted: Option<usize>) -> Res
     }
     // Heights may have waves as short as a few elements: two levels above the base grid are safe, and three on large grids.
     let safe = finest / if finest >= 4096 { 8 } else { 4 };
-    let least = match (waves, source) {
+    let least = match (waves, source.map()) {
         (Some(waves), _) => BASE_ELEMENTS_PER_WAVE * waves,
-        (None, HeightSource::Map(map)) => safe.min(smooth_side(map)),
-        (None, HeightSource::Surface { .. }) => safe,
+        (None, Some(map)) => safe.min(smooth_side(map)),
+        (None, None) => safe,
     };
     let least = least.max(SMALLEST_BASE);
     let halves = |side: usize| side.is_multiple_of(2 * TILE) && side / 2 >= least;
@@ -77,7 +74,7 @@ fn mean_square_slope(map: &Field, spacing: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use rc_core::testing::quasi_random;
-    use rc_core::{DVec2, Grid, HeightField};
+    use rc_core::{DVec2, Grid};
 
     use super::*;
 

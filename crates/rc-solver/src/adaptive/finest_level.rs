@@ -104,7 +104,7 @@ impl TablesForGaps {
     fn choose<'t>(&'t self, setup: &'t Setup<'_>, certify: bool) -> (&'t PreparedGap, &'t GapTables) {
         match &self.certificates {
             Some(certified) if certify => (setup.certified(), certified),
-            _ => (&setup.fresh, &self.descents),
+            _ => (setup.fresh, &self.descents),
         }
     }
 }
@@ -133,7 +133,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
             preconditioner: setup.preconditioner.tables(n_levels),
             gaps: TablesForGaps {
                 descents: setup.fresh.tables(n_levels),
-                certificates: setup.better.as_ref().map(|better| better.tables(n_levels)),
+                certificates: setup.better.map(|better| better.tables(n_levels)),
             },
         };
         let candidates = first_candidates(setup, &start, &tables.quick, contact_gap);

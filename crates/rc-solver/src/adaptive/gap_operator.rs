@@ -45,6 +45,14 @@ impl PreparedGap {
         }
     }
 
+    /// The split kernel, if it is in single precision.
+    pub(super) fn single(&self) -> Option<&Prepared<f32>> {
+        match self {
+            Self::Single(_, prepared) => Some(prepared),
+            Self::Double(..) => None,
+        }
+    }
+
     pub(super) fn split(&self) -> GapSplit {
         match self {
             Self::Single(split, _) | Self::Double(split, _) => *split,

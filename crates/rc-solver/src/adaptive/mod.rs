@@ -13,7 +13,9 @@ mod estimate;
 mod exclusion;
 mod finest_level;
 mod gap_operator;
+mod ground;
 pub(crate) mod heights;
+mod kernels;
 mod level;
 mod multilevel;
 mod nested_iteration;
@@ -27,15 +29,17 @@ mod setup;
 mod solution;
 mod split;
 
+use std::sync::Arc;
+
 use rc_core::{Grid, HeightSource, Observer};
 use rc_kernel::SplitParams;
 use rc_quadtree::TILE;
 
-use self::base_side::{SMALLEST_BASE, base_side};
+use self::base_side::SMALLEST_BASE;
 use self::contact_area::contact_area;
 pub use self::error::AdaptiveError;
 pub(crate) use self::estimate::Estimate;
-use self::heights::Heights;
+pub(crate) use self::ground::Ground;
 use self::level::SolvedLevel;
 pub use self::multilevel::MultilevelOperator;
 use self::nested_iteration::{NestedIteration, NestedSolution};
@@ -59,7 +63,7 @@ const OPERATOR_ERROR_PER_ENERGY: f64 = 0.5;
 ///
 /// Displacements are those of Love's squares ([`rc_kernel::Love`]) of the finest side.
 pub(crate) struct AdaptiveProblem<'a> {
-    heights: Heights<'a>,
+    ground: Arc<Ground<'a>>,
     problem: Problem,
     params: AdaptiveParams,
     /// For fresh gaps in descents.
@@ -77,22 +81,31 @@ impl<'a> AdaptiveProblem<'a> {
     ///
     /// # Errors
     /// [`AdaptiveError`].
+    #[cfg(test)]
     pub(crate) fn new(
         source: HeightSource<'a>,
         control: Control,
         params: &AdaptiveParams,
     ) -> Result<Self, AdaptiveError> {
-        let grid = source.grid();
-        check_square(grid)?;
+        Self::on(&Arc::new(Ground::new(source, params)?), control, params)
+    }
+
+    /// The problem of one load. `params` are those that `ground` was made with.
+    ///
+    /// # Errors
+    /// [`AdaptiveError`].
+    pub(crate) fn on(
+        ground: &Arc<Ground<'a>>,
+        control: Control,
+        params: &AdaptiveParams,
+    ) -> Result<Self, AdaptiveError> {
         let split = first_split(params)?;
-        let base_side = base_side(&source, params.base_side)?;
-        check_memory(grid, params.memory_limit, estimate::base_bytes(base_side), None)?;
-        let heights = Heights::new(with_border_level(source, params.border_level)?, base_side)?;
-        let problem = Problem::of_statistics(heights.extremes(), control, &params.solve)?;
+        let problem = Problem::of_statistics(ground.heights.extremes(), control, &params.solve)?;
         if problem.h_range == 0.0 {
             return Err(AdaptiveError::Flat);
         }
-        let prepared = Self { heights, problem, params: *params, split };
+        let prepared = Self { ground: Arc::clone(ground), problem, params: *params, split };
+        let grid = prepared.grid();
         let Estimate { area_fraction, adaptive_bytes, .. } = prepared.estimate();
         check_memory(grid, params.memory_limit, adaptive_bytes, Some(100.0 * area_fraction))?;
         Ok(prepared)
@@ -101,13 +114,19 @@ impl<'a> AdaptiveProblem<'a> {
     /// What solving it will cost, from the surface and the load alone.
     #[must_use]
     pub(crate) fn estimate(&self) -> Estimate {
-        Estimate::new(&self.heights, self.params.border_level, self.problem.control)
+        Estimate::new(&self.ground.heights, self.params.border_level, self.problem.control)
     }
 
-    /// The same problem without a borrow: a map of heights is copied.
+    /// The grid that solutions are on.
+    fn grid(&self) -> Grid {
+        let side = self.ground.heights.finest_side() >> self.params.border_level;
+        Grid::square(side).expect("a coarser grid than the finest")
+    }
+
+    /// The same problem without a borrow: a borrowed map of heights is copied.
     pub(crate) fn into_owned(self) -> AdaptiveProblem<'static> {
-        let Self { heights, problem, params, split } = self;
-        AdaptiveProblem { heights: heights.into_owned(), problem, params, split }
+        let Self { ground, problem, params, split } = self;
+        AdaptiveProblem { ground: Arc::new(Ground::into_owned(ground)), problem, params, split }
     }
 
     /// The greatest height over the finest grid, in λ.
@@ -147,7 +166,7 @@ impl<'a> AdaptiveProblem<'a> {
     }
 
     fn solver(&self, splits: Splits) -> NestedIteration<'_> {
-        NestedIteration::new(&self.heights, self.problem, &self.params, splits)
+        NestedIteration::new(&self.ground, self.problem, &self.params, splits)
     }
 
     /// The split, from `split` on, that can certify a pressure like this one.
@@ -163,8 +182,8 @@ impl<'a> AdaptiveProblem<'a> {
         let border_level = self.params.border_level;
         AdaptiveSolution {
             converged: outcome.certificate.meets(self.params.solve.bound),
-            base: self.heights.base().grid(),
-            grid: Grid::square(grid.nx() >> border_level).expect("a coarser grid than the finest"),
+            base: self.ground.heights.base().grid(),
+            grid: self.grid(),
             finest: grid,
             border_level,
             elements,
@@ -174,6 +193,23 @@ impl<'a> AdaptiveProblem<'a> {
             evaluated,
             proven: grid.len() - evaluated,
         }
+    }
+
+    /// Hands out the displacement of the mean `solution` on the grid, as [`AdaptiveSolution::displacement_rows`] does.
+    ///
+    /// # Errors
+    /// What `take` returns.
+    pub(crate) fn displacement_rows<E>(
+        &self,
+        solution: &AdaptiveSolution,
+        take: impl FnMut(usize, &[f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        solution.displacement_rows(&self.ground.kernels, take)
+    }
+
+    /// The contact stiffness of `solution`: see [`AdaptiveSolution::contact_stiffness`].
+    pub(crate) fn contact_stiffness(&self, solution: &AdaptiveSolution) -> f64 {
+        solution.contact_stiffness(&self.ground.kernels)
     }
 
     /// Hands out the gap under the mean `solution` on the grid, as [`AdaptiveSolution::displacement_rows`] does the
@@ -189,10 +225,10 @@ impl<'a> AdaptiveProblem<'a> {
         solution: &AdaptiveSolution,
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        assert_eq!(solution.finest_side(), self.heights.finest_side(), "not a solution of this problem");
+        assert_eq!(solution.finest_side(), self.ground.heights.finest_side(), "not a solution of this problem");
         let offset = solution.gap_offset(self.h_max());
-        solution.displacement_rows(|first, displacement| {
-            let mut rows = self.heights.row_of_tiles(solution.grid().nx(), first / TILE);
+        self.displacement_rows(solution, |first, displacement| {
+            let mut rows = self.ground.heights.row_of_tiles(solution.grid().nx(), first / TILE);
             for (h, v) in rows.iter_mut().zip(displacement) {
                 *h = v - *h + offset;
             }
@@ -224,16 +260,16 @@ fn first_split(params: &AdaptiveParams) -> Result<GapSplit, AdaptiveError> {
 
 /// The source on the grid of the smallest elements.
 fn with_border_level(source: HeightSource<'_>, border_level: usize) -> Result<HeightSource<'_>, AdaptiveError> {
-    match source {
+    match source.surface() {
         _ if border_level == 0 => Ok(source),
-        HeightSource::Surface { surface, grid } if surface.band_limit().is_some() => {
-            let side = grid.nx();
+        Some(surface) if surface.band_limit().is_some() => {
+            let side = source.grid().nx();
             let finest = (border_level < 32).then(|| side.checked_shl(border_level as u32)).flatten();
             let finest = finest.filter(|&finest| finest >> border_level == side && finest <= DEEPEST_SIDE);
             let deepest = (DEEPEST_SIDE / side.max(1)).checked_ilog2().unwrap_or(0);
             let finest = finest.ok_or(AdaptiveError::BorderLevel { border_level, side, deepest })?;
             let grid = Grid::square(finest).expect("a side of at most the deepest one");
-            Ok(HeightSource::Surface { surface, grid })
+            Ok(source.on_grid(grid))
         }
         _ => Err(AdaptiveError::BorderOfMap),
     }

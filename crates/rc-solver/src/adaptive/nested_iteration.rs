@@ -6,7 +6,7 @@ use rc_quadtree::{TILE, TileSet};
 
 use super::AdaptiveParams;
 use super::finest_level::solve_finest_level;
-use super::heights::Heights;
+use super::ground::Ground;
 use super::level::{SolvedLevel, add_work, solve_coarse_level};
 use super::operator_error::PressureScale;
 use super::prolongation::{self, MeshStart};
@@ -52,8 +52,8 @@ pub(super) struct NestedIteration<'a> {
 }
 
 impl<'a> NestedIteration<'a> {
-    pub(super) fn new(heights: &'a Heights<'a>, problem: Problem, params: &AdaptiveParams, splits: Splits) -> Self {
-        Self { setup: Setup::new(heights, problem, params, splits), splits }
+    pub(super) fn new(ground: &'a Ground<'_>, problem: Problem, params: &AdaptiveParams, splits: Splits) -> Self {
+        Self { setup: Setup::new(ground, problem, params, splits), splits }
     }
 
     /// Solves all levels but the finest, which starts from them.

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use rc_core::Grid;
-use rc_kernel::{ScaleSplit, SplitParams};
 use rc_quadtree::{ContactFields, Elements, RING, divide};
 
 use super::AdaptiveParams;
 use super::element_blocks::blocks_of;
 use super::exclusion::{SmoothDisplacement, possible_contact};
 use super::gap_operator::{GapOperator, GapTables, PreparedGap};
+use super::ground::Ground;
 use super::heights::Heights;
 use super::operator::{Hierarchy, Prepared, Reach, Tables};
 use super::prolongation::MeshStart;
@@ -36,34 +36,33 @@ pub(super) struct Setup<'a> {
     pub(super) params: IterationParams,
     pub(super) border_level: usize,
     /// L, a few percent off on rough pressures, and its approximate inverse, for corrections.
-    pub(super) quick: Prepared<f32>,
-    pub(super) preconditioner: Prepared<f32>,
+    pub(super) quick: &'a Prepared<f32>,
+    pub(super) preconditioner: &'a Prepared<f32>,
     /// L for fresh gaps of descents.
-    pub(super) fresh: PreparedGap,
+    pub(super) fresh: &'a PreparedGap,
     /// L for certificates, where that is another one.
-    pub(super) better: Option<PreparedGap>,
+    pub(super) better: Option<&'a PreparedGap>,
 }
 
 impl<'a> Setup<'a> {
-    pub(super) fn new(heights: &'a Heights<'a>, problem: Problem, params: &AdaptiveParams, splits: Splits) -> Self {
-        let quick = ScaleSplit::new(SplitParams::quick());
-        let (base, border_level) = (heights.base().grid(), params.border_level);
+    pub(super) fn new(ground: &'a Ground<'_>, problem: Problem, params: &AdaptiveParams, splits: Splits) -> Self {
+        let Ground { heights, kernels } = ground;
         let Splits { fresh, certified } = splits;
         Self {
-            quick: Prepared::displacement(&quick, base, border_level),
-            preconditioner: Prepared::inverse(&quick, base),
-            fresh: PreparedGap::new(fresh, base, border_level),
-            better: (certified != fresh).then(|| PreparedGap::new(certified, base, border_level)),
+            quick: kernels.quick(),
+            preconditioner: kernels.preconditioner(),
+            fresh: kernels.gap(fresh),
+            better: (certified != fresh).then(|| kernels.gap(certified)),
             heights,
             problem,
             params: params.solve,
-            border_level,
+            border_level: params.border_level,
         }
     }
 
     /// L for certificates.
-    pub(super) fn certified(&self) -> &PreparedGap {
-        self.better.as_ref().unwrap_or(&self.fresh)
+    pub(super) fn certified(&self) -> &'a PreparedGap {
+        self.better.unwrap_or(self.fresh)
     }
 
     /// The base grid.

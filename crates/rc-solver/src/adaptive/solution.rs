@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use rc_core::{DVec2, Grid};
-use rc_kernel::{ScaleSplit, SplitParams};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, put_tile};
 
 use super::element_blocks::blocks_of;
+use super::kernels::Kernels;
 use super::operator::{Hierarchy, Prepared, Tables, TileCorrections, TileResponse};
 use super::scaled_operator::ScaledOperator;
 use crate::descent::{BlockOperator, read_blocks, write_blocks};
@@ -109,11 +109,15 @@ impl AdaptiveSolution {
     ///
     /// # Errors
     /// What `take` returns.
-    pub(crate) fn displacement_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+    pub(super) fn displacement_rows<E>(
+        &self,
+        kernels: &Kernels,
+        mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
         let (own_tiles, pressure) = self.on_grid();
         let (n, per_side) = (own_tiles.side(), own_tiles.per_side());
         let own = Elements::uniform(own_tiles);
-        let prepared = Prepared::<f32>::displacement(&ScaleSplit::new(SplitParams::certified()), self.base, 0);
+        let prepared = kernels.response();
         let tables = prepared.tables(self.n_levels() - self.border_level);
         // As many rows of tiles at once as about a million cells hold.
         let at_once = (1_000_000 / (TILE * n)).max(1);
@@ -169,26 +173,24 @@ impl AdaptiveSolution {
     /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact. Takes a few
     /// applications of L.
     #[must_use]
-    pub(crate) fn contact_stiffness(&self) -> f64 {
+    pub(super) fn contact_stiffness(&self, kernels: &Kernels) -> f64 {
         if self.is_full_contact() {
             return f64::INFINITY;
         }
         let n = self.finest.len() as f64;
         // The quick operator alone would be up to a percent off.
         let x = {
-            let split = ScaleSplit::new(SplitParams::quick());
-            let mut preconditioner = Prepared::<f32>::inverse(&split, self.base).tables(self.n_levels());
-            let (hierarchy, tables) = self.operator_of(&split);
+            let mut preconditioner = kernels.preconditioner().tables(self.n_levels());
+            let (hierarchy, tables) = self.operator_of(kernels.quick());
             let mut corrections = TileCorrections::new(hierarchy, &tables, &mut preconditioner);
             stiffness_pressure(&self.pressure, n, &mut corrections)
         };
-        let (hierarchy, tables) = self.operator_of(&ScaleSplit::new(SplitParams::certified()));
+        let (hierarchy, tables) = self.operator_of(kernels.response());
         stiffness_under(&x, n, &mut TileResponse::new(hierarchy, &tables))
     }
 
-    /// What L by this split needs on the mesh.
-    fn operator_of(&self, split: &ScaleSplit) -> (Arc<Hierarchy>, Tables<f32>) {
-        let prepared = Prepared::<f32>::displacement(split, self.base, self.border_level);
+    /// What L by this kernel needs on the mesh.
+    fn operator_of(&self, prepared: &Prepared<f32>) -> (Arc<Hierarchy>, Tables<f32>) {
         let hierarchy = Hierarchy::new(self.base.nx(), self.elements.clone(), prepared.reach());
         (Arc::new(hierarchy), prepared.tables(self.n_levels()))
     }

@@ -2,7 +2,7 @@
 
 use rc_core::{Grid, HeightField, HeightSource, Observer};
 
-use super::{ContactProblem, Solution, SolveError, SolveParams, choice};
+use super::{ContactProblem, Solution, SolveError, SolveParams};
 
 /// Elements per shortest wave of the first grid, and of the last that is tried.
 const COARSEST: usize = 4;
@@ -16,18 +16,18 @@ const ORDER: f64 = 1.5;
 
 /// Solves on finer and finer grids until the error bar of the contact area is at most `wanted` of it.
 pub(super) fn solve<'a>(
-    problem: ContactProblem<'a>,
+    problem: &ContactProblem<'a>,
     wanted: f64,
     params: &SolveParams,
     observer: &dyn Observer,
 ) -> Result<Solution<'a>, SolveError> {
-    let (surface, waves) = band_limited(problem.heights)?;
+    let waves = waves_of(&problem.heights)?;
     let mut elements_per_wave = COARSEST;
     loop {
         let side = side(waves, elements_per_wave);
         let grid = Grid::square(side)?;
-        let heights = HeightSource::Surface { surface, grid };
-        let solution = choice::plan(ContactProblem { heights, ..problem }, params)?.solve(observer)?;
+        let heights = problem.heights.clone().on_grid(grid);
+        let solution = ContactProblem { heights, ..problem.clone() }.plan(params)?.solve(observer)?;
         let reached = solution.area().relative_error();
         if reached <= wanted {
             return Ok(solution);
@@ -40,20 +40,14 @@ pub(super) fn solve<'a>(
 }
 
 /// The coarsest grid that is solved on. The sides of all others are multiples of its own.
-pub(super) fn coarsest_grid(heights: HeightSource<'_>) -> Result<Grid, SolveError> {
-    let (_, waves) = band_limited(heights)?;
-    Ok(Grid::square(side(waves, COARSEST))?)
+pub(super) fn coarsest_grid(heights: &HeightSource<'_>) -> Result<Grid, SolveError> {
+    Ok(Grid::square(side(waves_of(heights)?, COARSEST))?)
 }
 
-/// A surface whose grid can be chosen, and its largest wavenumber.
-fn band_limited(heights: HeightSource<'_>) -> Result<(&dyn HeightField, usize), SolveError> {
-    match heights {
-        HeightSource::Surface { surface, grid } if grid.has_square_cell() => {
-            let waves = surface.band_limit().filter(|&waves| waves > 0).ok_or(SolveError::NoWaves)?;
-            Ok((surface, waves))
-        }
-        HeightSource::Surface { .. } | HeightSource::Map(_) => Err(SolveError::NoWaves),
-    }
+/// The largest wavenumber of a surface whose grid can be chosen.
+fn waves_of(heights: &HeightSource<'_>) -> Result<usize, SolveError> {
+    let surface = heights.surface().filter(|_| heights.grid().has_square_cell());
+    surface.and_then(HeightField::band_limit).filter(|&waves| waves > 0).ok_or(SolveError::NoWaves)
 }
 
 /// Elements per side of the grid with this many for the shortest wave, or more where the grid would be tiny.

@@ -1,8 +1,11 @@
 //! The choice of the method: the one that is asked for, else the adaptive one where it fits and is the cheaper one.
 
-use rc_core::{Grid, HeightSource};
+use std::sync::Arc;
+
+use rc_core::{Grid, HeightField, HeightSource};
 
 use super::plan::ChosenMethod;
+use super::shared::Shared;
 use super::{ContactProblem, Plan, SolveError, SolveParams};
 use crate::adaptive::AdaptiveProblem;
 use crate::contract::check_kernel;
@@ -10,13 +13,17 @@ use crate::problem::{check_load, check_tolerance};
 use crate::{AdaptiveError, ErrorBound, Estimate, Method, MethodReason, UNIFORM_BYTES_PER_ELEMENT};
 
 /// Checks the problem and chooses its method.
-pub(super) fn plan<'a>(problem: ContactProblem<'a>, params: &SolveParams) -> Result<Plan<'a>, SolveError> {
+pub(super) fn plan<'a>(
+    problem: ContactProblem<'a>,
+    params: &SolveParams,
+    shared: Arc<Shared<'a>>,
+) -> Result<Plan<'a>, SolveError> {
     let bound = params.tolerance.bound(problem.heights.elements_per_wave());
     check_load(problem.control)?;
     check_tolerance(bound)?;
-    check_grid(problem.heights)?;
+    check_grid(&problem.heights)?;
     check_kernel(problem.kernel, problem.heights.grid())?;
-    let choice = Choice { problem, params, bound };
+    let choice = Choice { problem: &problem, params, bound, shared: &shared };
     let (chosen, reason) = match params.method {
         None => choice.automatic(),
         Some(method) => {
@@ -28,13 +35,14 @@ pub(super) fn plan<'a>(problem: ContactProblem<'a>, params: &SolveParams) -> Res
             Ok((chosen, MethodReason::AskedFor(method)))
         }
     }?;
-    Ok(Plan { problem, params: *params, bound, chosen, reason })
+    Ok(Plan { problem, params: *params, bound, chosen, reason, shared })
 }
 
 struct Choice<'a, 'b> {
-    problem: ContactProblem<'a>,
+    problem: &'b ContactProblem<'a>,
     params: &'b SolveParams,
     bound: ErrorBound,
+    shared: &'b Shared<'a>,
 }
 
 type Chosen<'a> = Result<(ChosenMethod<'a>, MethodReason), SolveError>;
@@ -86,7 +94,9 @@ impl<'a> Choice<'a, '_> {
 
     /// Prepares the adaptive method, if it fits the problem and the memory.
     fn prepare(&self) -> Result<AdaptiveProblem<'a>, AdaptiveError> {
-        AdaptiveProblem::new(self.problem.heights, self.problem.control, &self.params.adaptive(self.bound))
+        let params = self.params.adaptive(self.bound);
+        let ground = self.shared.ground(&self.problem.heights, &params)?;
+        AdaptiveProblem::on(ground, self.problem.control, &params)
     }
 
     /// The uniform grid where the adaptive method does not fit, if that helps.
@@ -140,9 +150,9 @@ pub(super) fn uniform_bytes(grid: Grid) -> f64 {
 }
 
 /// Refuses a grid that does not resolve the waves of its surface.
-fn check_grid(heights: HeightSource<'_>) -> Result<(), SolveError> {
-    let HeightSource::Surface { surface, grid } = heights else { return Ok(()) };
-    match surface.band_limit() {
+fn check_grid(heights: &HeightSource<'_>) -> Result<(), SolveError> {
+    let grid = heights.grid();
+    match heights.surface().and_then(HeightField::band_limit) {
         Some(waves) if grid.resolved_wavenumber() < waves => Err(SolveError::TooCoarse { grid, waves }),
         _ => Ok(()),
     }

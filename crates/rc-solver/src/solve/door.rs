@@ -1,5 +1,7 @@
 //! The ways to a solution.
 
+use std::sync::Arc;
+
 use rc_core::{Grid, HeightSource, Observer, Operator, Silent};
 
 use super::solution::HowSolved;
@@ -15,7 +17,7 @@ impl<'a> ContactProblem<'a> {
     /// # Errors
     /// [`SolveError`], but not [`SolveError::NotConverged`].
     pub fn plan(self, params: &SolveParams) -> Result<Plan<'a>, SolveError> {
-        choice::plan(self, params)
+        choice::plan(self, params, Arc::default())
     }
 
     /// Solves the problem: [`ContactProblem::plan`] and [`Plan::solve`].
@@ -30,8 +32,8 @@ impl<'a> ContactProblem<'a> {
     ///
     /// # Errors
     /// [`SolveError::NoWaves`]; [`SolveError::Grid`] for a surface with too many waves.
-    pub fn coarsest_grid(self) -> Result<Grid, SolveError> {
-        area_error::coarsest_grid(self.heights)
+    pub fn coarsest_grid(&self) -> Result<Grid, SolveError> {
+        area_error::coarsest_grid(&self.heights)
     }
 
     /// Solves the problem on the coarsest grid whose error bar of the contact area is at most `wanted` of the area. The heights must be
@@ -49,7 +51,7 @@ impl<'a> ContactProblem<'a> {
         params: &SolveParams,
         observer: &dyn Observer,
     ) -> Result<Solution<'a>, SolveError> {
-        area_error::solve(self, wanted, params, observer)
+        area_error::solve(&self, wanted, params, observer)
     }
 }
 

@@ -9,6 +9,7 @@ mod params;
 mod plan;
 mod problem;
 mod response;
+mod shared;
 mod solution;
 
 pub use self::cost::Cost;

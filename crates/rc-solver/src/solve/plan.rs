@@ -1,15 +1,18 @@
 //! A problem with its method, ready to be solved.
 
+use std::sync::Arc;
+
 use rc_core::{Field, Observer};
 use rc_kernel::PeriodicLove;
 
+use super::shared::Shared;
 use super::solution::HowSolved;
-use super::{ContactProblem, Solution, SolveError, SolveParams};
+use super::{ContactProblem, Solution, SolveError, SolveParams, choice};
 use crate::adaptive::AdaptiveProblem;
 use crate::gauss_seidel::{HalfSpace, solve_gauss_seidel};
 use crate::solution::{GridSolution, Status};
 use crate::uniform::solve_uniform;
-use crate::{ErrorBound, GaussSeidelError, GaussSeidelParams, Method, MethodReason};
+use crate::{Control, ErrorBound, GaussSeidelError, GaussSeidelParams, Method, MethodReason};
 
 /// A contact problem that has been checked and has its method. Nothing is solved yet.
 pub struct Plan<'a> {
@@ -19,6 +22,7 @@ pub struct Plan<'a> {
     pub(super) bound: ErrorBound,
     pub(super) chosen: ChosenMethod<'a>,
     pub(super) reason: MethodReason,
+    pub(super) shared: Arc<Shared<'a>>,
 }
 
 /// A method with what it needs to start.
@@ -54,13 +58,39 @@ impl<'a> Plan<'a> {
         self.bound
     }
 
+    /// The plan of another load on the same surface, with the same parameters. Heights, their bounds and the tables of the operator are
+    /// shared by the plans, and kept as long as one of them lives; every digit is that of a plan of its own.
+    ///
+    /// ```
+    /// use rc_core::{Field, Grid, Silent};
+    /// use rc_solver::{ContactProblem, Control, SolveParams};
+    ///
+    /// let wave = Field::from_fn(Grid::square(128)?, |at| 1e-3 * (std::f64::consts::TAU * at.x).cos());
+    /// let plan = ContactProblem::new(&wave, Control::MeanPressure(1e-4)).plan(&SolveParams::default())?;
+    /// for load in [2e-4, 4e-4, 8e-4] {
+    ///     let solution = plan.under(Control::MeanPressure(load))?.solve(&Silent)?;
+    ///     println!("{load:e}: {:.3}", solution.area().fraction);
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As of [`ContactProblem::plan`].
+    pub fn under(&self, control: Control) -> Result<Self, SolveError> {
+        let problem = ContactProblem { control, ..self.problem.clone() };
+        choice::plan(problem, &self.params, Arc::clone(&self.shared))
+    }
+
     /// Solves the problem.
     ///
     /// # Errors
     /// [`SolveError::NotConverged`] with the best solution found; [`SolveError::Problem`] for heights that are not finite, and
     /// [`SolveError::GaussSeidel`] for what the paper's procedure refuses.
     pub fn solve(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
-        let Self { problem, params, bound, chosen, reason } = self;
+        let Self { problem, params, bound, chosen, reason, mut shared } = self;
+        if let (false, Some(shared)) = (matches!(chosen, ChosenMethod::Adaptive(_)), Arc::get_mut(&mut shared)) {
+            shared.forget_ground();
+        }
         let how = |method| HowSolved::new(method, reason, bound, problem.kernel.name());
         let solution = match chosen {
             ChosenMethod::Adaptive(adaptive) => {
@@ -68,13 +98,13 @@ impl<'a> Plan<'a> {
                 Solution::on_tiles(how(Method::Adaptive), solution, adaptive)
             }
             ChosenMethod::Uniform => {
-                let (heights, limits) = (problem.heights.heights(), params.iteration(bound));
-                let solution = solve_uniform(&heights, problem.kernel, problem.control, &limits, observer)?;
+                let (heights, limits) = (shared.heights(&problem.heights), params.iteration(bound));
+                let solution = solve_uniform(heights, problem.kernel, problem.control, &limits, observer)?;
                 Solution::on_grid(how(Method::Uniform), problem.kernel, solution, heights.max())
             }
             ChosenMethod::GaussSeidel => {
-                let (heights, params) = (problem.heights.heights(), params.gauss_seidel);
-                let solution = by_gauss_seidel(&problem, &heights, (bound, &params), observer)?;
+                let (heights, params) = (shared.heights(&problem.heights), params.gauss_seidel);
+                let solution = by_gauss_seidel(&problem, heights, (bound, &params), observer)?;
                 Solution::on_grid(how(Method::GaussSeidel), problem.kernel, solution, heights.max())
             }
         };

@@ -21,7 +21,7 @@ use crate::Control;
 /// assert!((solution.area().fraction - 1.0 / 3.0).abs() < 0.02);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct ContactProblem<'a> {
     pub(super) heights: HeightSource<'a>,
     pub(super) kernel: &'a dyn Kernel,

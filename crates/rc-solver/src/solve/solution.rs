@@ -202,7 +202,7 @@ impl<'a> Solution<'a> {
         *self.stiffness.get_or_init(|| match &self.pressures {
             Pressures::Grid { .. } if self.status == Status::FullContact => f64::INFINITY,
             Pressures::Grid { solution, response } => response.stiffness(solution),
-            Pressures::Tiles { solution, .. } => solution.contact_stiffness(),
+            Pressures::Tiles { solution, problem } => problem.contact_stiffness(solution),
         })
     }
 
@@ -274,7 +274,7 @@ impl<'a> Solution<'a> {
     pub fn displacement(&self) -> &Field {
         self.displacement.get_or_init(|| match &self.pressures {
             Pressures::Grid { solution, response } => response.displacement(&solution.pressure),
-            Pressures::Tiles { solution, .. } => self.collect(|take| solution.displacement_rows(take)),
+            Pressures::Tiles { solution, problem } => self.collect(|take| problem.displacement_rows(solution, take)),
         })
     }
 

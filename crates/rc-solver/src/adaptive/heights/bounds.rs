@@ -36,6 +36,7 @@ const MAX_REFINEMENT: u32 = 1;
 
 /// Upper bounds `offset + (remainder + scale · b)` of the heights (or of their negatives), for the b of a pyramid. The
 /// brackets matter: what is added to a large offset is rounded only as heights themselves are.
+#[derive(Clone)]
 pub(super) struct Bounds {
     pyramid: MaxPyramid,
     offset: f64,

@@ -24,6 +24,7 @@ pub(super) type Place<'a> = (&'a Stencil, usize);
 /// The coefficients of the interpolating windows, on a grid of `side` × `side` cells, and stencils for finer levels.
 ///
 /// Memory: 8 bytes for each element of the grid.
+#[derive(Clone)]
 pub(super) struct Interpolation {
     side: usize,
     band_limit: usize,

@@ -13,7 +13,8 @@ mod stencil;
 mod tests;
 mod window;
 
-use std::borrow::Cow;
+use std::ops::Deref;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 use rc_core::{Field, Grid, HeightField, HeightSource};
@@ -31,11 +32,12 @@ use interpolation::{Interpolation, smallest_side};
 /// `base_side` · 2^m that is at least 4N. Of these, 8 are coefficients, 8/3 coarser levels (8 if M is the base), and 16/3 bounds;
 /// making it takes 5 more. Nothing but a few weights depends on the finest level. For a map it is 8/3 bytes an element for
 /// coarser levels and 1/12 for bounds.
+#[derive(Clone)]
 pub(crate) struct Heights<'a> {
     base_side: usize,
     finest_side: usize,
     /// Levels that are kept whole, base first. Of a map all, of a band-limited surface those below the interpolation grid.
-    grids: Vec<Cow<'a, Field>>,
+    grids: Vec<WholeGrid<'a>>,
     interpolation: Option<Interpolation>,
     bounds: Bounds,
     extremes: HeightStatistics,
@@ -51,33 +53,35 @@ impl<'a> Heights<'a> {
     /// When the finest side is not `base_side` · 2^K with K ≥ 0, above [`Grid::MAX_SIDE`], or a map not square.
     pub(crate) fn new(source: HeightSource<'a>, base_side: usize) -> Result<Self, ProblemError> {
         match source {
-            HeightSource::Map(map) => {
-                assert_eq!(map.grid().nx(), map.grid().ny(), "a map of heights must be square");
-                Self::of_map(Cow::Borrowed(map), base_side)
-            }
-            HeightSource::Surface { surface, grid } => {
-                let finest_side = grid.nx();
-                let level = surface.band_limit().map(|limit| (limit, interpolation_level(limit, base_side)));
-                match level {
-                    // A level finer than the interpolation grid; whole tiles on it are what extremes are searched in.
-                    Some((limit, level))
-                        if level < n_refinements(base_side, finest_side) && finest_side % TILE == 0 =>
-                    {
-                        Self::of_surface(surface, limit, level, base_side, finest_side)
-                    }
-                    _ => Self::of_map(Cow::Owned(surface.sample(square(finest_side))), base_side),
-                }
-            }
+            HeightSource::Map(map) => Self::of_map(WholeGrid::Borrowed(map), base_side),
+            HeightSource::SharedMap(map) => Self::of_map(WholeGrid::Shared(map), base_side),
+            HeightSource::Surface { surface, grid } => Self::of_waves(surface, grid.nx(), base_side),
+            HeightSource::SharedSurface { surface, grid } => Self::of_waves(surface.as_ref(), grid.nx(), base_side),
         }
     }
 
-    fn of_map(map: Cow<'a, Field>, base_side: usize) -> Result<Self, ProblemError> {
+    /// Of a surface, band-limited or not.
+    fn of_waves(surface: &dyn HeightField, finest_side: usize, base_side: usize) -> Result<Self, ProblemError> {
+        let level = surface.band_limit().map(|limit| (limit, interpolation_level(limit, base_side)));
+        match level {
+            // A level finer than the interpolation grid; whole tiles on it are what extremes are searched in.
+            Some((limit, level))
+                if level < n_refinements(base_side, finest_side) && finest_side.is_multiple_of(TILE) =>
+            {
+                Self::of_surface(surface, limit, level, base_side, finest_side)
+            }
+            _ => Self::of_map(WholeGrid::new(surface.sample(square(finest_side))), base_side),
+        }
+    }
+
+    fn of_map(map: WholeGrid<'a>, base_side: usize) -> Result<Self, ProblemError> {
+        assert_eq!(map.grid().nx(), map.grid().ny(), "a map of heights must be square");
         let finest_side = map.grid().nx();
         let n_refinements = n_refinements(base_side, finest_side);
         let extremes = HeightStatistics::of(&map)?;
         let bounds = Bounds::of_map(&map, &extremes);
-        let mut grids: Vec<Cow<'a, Field>> =
-            coarsen_without_pits(&map, base_side).into_iter().map(Cow::Owned).collect();
+        let mut grids: Vec<WholeGrid<'a>> =
+            coarsen_without_pits(&map, base_side).into_iter().map(WholeGrid::new).collect();
         grids.reverse();
         grids.push(map);
         debug_assert_eq!(grids.len(), n_refinements as usize + 1);
@@ -97,7 +101,7 @@ impl<'a> Heights<'a> {
         for coarser in 0..level.max(1) {
             let heights = surface.sample(square(base_side << coarser));
             HeightStatistics::of(&heights)?;
-            grids.push(Cow::Owned(heights));
+            grids.push(WholeGrid::new(heights));
         }
         let finest_level = n_refinements(base_side, finest_side) - level;
         let interpolation = Interpolation::new(samples, band_limit, finest_level + 1);
@@ -117,10 +121,10 @@ impl<'a> Heights<'a> {
         Ok(Self { base_side, finest_side, grids, interpolation: Some(interpolation), bounds, extremes })
     }
 
-    /// The same heights without a borrow: a map is copied.
+    /// The same heights without a borrow: a borrowed map is copied.
     pub(crate) fn into_owned(self) -> Heights<'static> {
         let Self { base_side, finest_side, grids, interpolation, bounds, extremes } = self;
-        let grids = grids.into_iter().map(|grid| Cow::Owned(grid.into_owned())).collect();
+        let grids = grids.into_iter().map(WholeGrid::into_owned).collect();
         Heights { base_side, finest_side, grids, interpolation, bounds, extremes }
     }
 
@@ -195,6 +199,37 @@ impl<'a> Heights<'a> {
     /// Greatest and least height at the centres of the finest level, and the mean height.
     pub(crate) fn extremes(&self) -> HeightStatistics {
         self.extremes
+    }
+}
+
+/// Heights on a whole grid.
+#[derive(Clone)]
+enum WholeGrid<'a> {
+    Borrowed(&'a Field),
+    Shared(Arc<Field>),
+}
+
+impl WholeGrid<'_> {
+    fn new(heights: Field) -> Self {
+        Self::Shared(Arc::new(heights))
+    }
+
+    fn into_owned(self) -> WholeGrid<'static> {
+        WholeGrid::Shared(match self {
+            Self::Borrowed(heights) => Arc::new(heights.clone()),
+            Self::Shared(heights) => heights,
+        })
+    }
+}
+
+impl Deref for WholeGrid<'_> {
+    type Target = Field;
+
+    fn deref(&self) -> &Field {
+        match self {
+            Self::Borrowed(heights) => heights,
+            Self::Shared(heights) => heights,
+        }
     }
 }
 

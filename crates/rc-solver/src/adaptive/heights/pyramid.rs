@@ -4,6 +4,7 @@
 ///
 /// Bounds are kept in single precision, rounded up, relative to an offset and in units of the range of heights: 4 bytes a
 /// leaf, and a third more for the larger blocks.
+#[derive(Clone)]
 pub(super) struct MaxPyramid {
     /// From the leaves on: blocks per side, and their maxima, row-major.
     levels: Vec<(usize, Vec<f32>)>,

@@ -8,6 +8,7 @@ use super::window::{Derivative, TAPS, window};
 pub(super) const MAX_WIDTH: usize = TAPS + TILE;
 
 /// Weights for the eight centres at one place relative to the coefficients.
+#[derive(Clone)]
 pub(super) struct Stencil {
     /// The first coefficient of each centre, counted from the tile's origin.
     pub(super) starts: [usize; TILE],
@@ -20,6 +21,7 @@ pub(super) struct Stencil {
 }
 
 /// The stencils of all tiles of one level, whose cells are 2^`refinement` to a coefficient cell.
+#[derive(Clone)]
 pub(super) struct Stencils {
     /// Stencils of consecutive tiles, repeated along the line.
     stencils: Vec<Stencil>,

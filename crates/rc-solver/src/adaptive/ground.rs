@@ -1,0 +1,41 @@
+//! What all loads on one surface share.
+
+use std::sync::Arc;
+
+use rc_core::HeightSource;
+
+use super::base_side::base_side;
+use super::heights::Heights;
+use super::kernels::Kernels;
+use super::{AdaptiveError, AdaptiveParams, check_memory, check_square, estimate, first_split, with_border_level};
+
+/// Heights with their bounds, and the split kernels of the base grid.
+pub(crate) struct Ground<'a> {
+    pub(super) heights: Heights<'a>,
+    pub(super) kernels: Kernels,
+}
+
+impl<'a> Ground<'a> {
+    /// Samples the heights. Kernels are made when they are needed.
+    ///
+    /// # Errors
+    /// [`AdaptiveError`].
+    pub(crate) fn new(source: HeightSource<'a>, params: &AdaptiveParams) -> Result<Self, AdaptiveError> {
+        let grid = source.grid();
+        check_square(grid)?;
+        // Before any work.
+        first_split(params)?;
+        let base_side = base_side(&source, params.base_side)?;
+        check_memory(grid, params.memory_limit, estimate::base_bytes(base_side), None)?;
+        let heights = Heights::new(with_border_level(source, params.border_level)?, base_side)?;
+        let kernels = Kernels::new(heights.base().grid(), params.border_level);
+        Ok(Self { heights, kernels })
+    }
+
+    /// The same without a borrow: a borrowed map is copied.
+    pub(super) fn into_owned(shared: Arc<Self>) -> Ground<'static> {
+        let Self { heights, kernels } = Arc::try_unwrap(shared)
+            .unwrap_or_else(|shared| Self { heights: shared.heights.clone(), kernels: shared.kernels.empty() });
+        Ground { heights: heights.into_owned(), kernels }
+    }
+}

@@ -1,0 +1,46 @@
+//! What the plans of all loads on one surface share.
+
+use std::sync::{Arc, OnceLock};
+
+use rc_core::{Field, HeightSource};
+
+use crate::AdaptiveError;
+use crate::adaptive::{AdaptiveParams, Ground};
+
+/// Heights as the methods need them, evaluated when the first load needs them.
+#[derive(Default)]
+pub(super) struct Shared<'a> {
+    /// For the adaptive method.
+    ground: OnceLock<Arc<Ground<'a>>>,
+    /// On the whole grid.
+    heights: OnceLock<Field>,
+}
+
+impl<'a> Shared<'a> {
+    /// What the adaptive method needs of `source`.
+    pub(super) fn ground(
+        &self,
+        source: &HeightSource<'a>,
+        params: &AdaptiveParams,
+    ) -> Result<&Arc<Ground<'a>>, AdaptiveError> {
+        if self.ground.get().is_none() {
+            let ground = Arc::new(Ground::new(source.clone(), params)?);
+            // Another load may have been faster; its ground is the same.
+            let _ = self.ground.set(ground);
+        }
+        Ok(self.ground.get().expect("it was set"))
+    }
+
+    /// Frees what only the adaptive method needs.
+    pub(super) fn forget_ground(&mut self) {
+        self.ground.take();
+    }
+
+    /// The heights of `source` on its whole grid.
+    pub(super) fn heights<'s>(&'s self, source: &'s HeightSource<'a>) -> &'s Field {
+        match source.map() {
+            Some(map) => map,
+            None => self.heights.get_or_init(|| source.heights().into_owned()),
+        }
+    }
+}
