@@ -39,6 +39,7 @@ pub mod paper;
 mod patch;
 mod prolongation;
 mod refinement;
+mod tile_index;
 mod tiles;
 mod transfer;
 

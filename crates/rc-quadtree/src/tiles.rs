@@ -3,7 +3,7 @@
 use std::ops::{Add, Mul};
 use std::sync::Arc;
 
-use crate::morton::morton_code;
+use crate::tile_index::{TileIndex, TileMarks};
 
 /// Cells per side of a tile.
 pub const TILE: usize = 8;
@@ -11,19 +11,17 @@ pub const TILE: usize = 8;
 /// Cells of a tile.
 pub const CELLS: usize = TILE * TILE;
 
-/// No tile at this place.
-const NONE: u32 = u32::MAX;
-
 /// The tiles of one level, sorted along the Morton curve so that neighbours are near in memory.
 ///
-/// A value of the level is at `tile · 64 + row · 8 + column`. Where tiles are is looked up in a table of 4 bytes for each
-/// possible tile: 1/16 byte a cell of the level, the only memory that grows with the cell and not with the contact.
+/// A value of the level is at `tile · 64 + row · 8 + column`. Where tiles are is looked up in a table of 16 bytes for each 64
+/// possible tiles: 1/256 byte a cell of the level, the only memory that grows with the cell and not with the contact.
 #[derive(Clone, Debug)]
 pub struct TileSet {
     per_side: usize,
     // Shared: meshes are cloned often, and never changed.
     places: Arc<Vec<[u32; 2]>>,
-    index: Arc<Vec<u32>>,
+    /// None where all tiles are there, row by row.
+    index: Option<Arc<TileIndex>>,
 }
 
 impl TileSet {
@@ -32,22 +30,24 @@ impl TileSet {
     /// # Panics
     /// When a place is outside the level.
     #[must_use]
-    pub fn new(per_side: usize, mut places: Vec<[u32; 2]>) -> Self {
-        places.sort_unstable_by_key(|&[column, row]| morton_code(column, row));
-        places.dedup();
-        let mut index = vec![NONE; per_side * per_side];
-        for (tile, &[column, row]) in places.iter().enumerate() {
-            index[row as usize * per_side + column as usize] = tile as u32;
+    pub fn new(per_side: usize, places: Vec<[u32; 2]>) -> Self {
+        let mut marks = TileMarks::new(per_side);
+        for place in places {
+            marks.mark(place);
         }
-        Self { per_side, places: Arc::new(places), index: Arc::new(index) }
+        Self::marked(per_side, marks)
+    }
+
+    fn marked(per_side: usize, marks: TileMarks) -> Self {
+        let (places, index) = marks.into_sorted();
+        Self { per_side, places: Arc::new(places), index: Some(Arc::new(index)) }
     }
 
     /// All tiles of a level of `per_side` tiles per side, row by row.
     #[must_use]
     pub fn full(per_side: usize) -> Self {
         let places = (0..per_side * per_side).map(|i| [(i % per_side) as u32, (i / per_side) as u32]);
-        let index = (0..(per_side * per_side) as u32).collect();
-        Self { per_side, places: Arc::new(places.collect()), index: Arc::new(index) }
+        Self { per_side, places: Arc::new(places.collect()), index: None }
     }
 
     /// Tiles per side of the whole level.
@@ -93,8 +93,11 @@ impl TileSet {
         let per_side = self.per_side as i64;
         // Most places are inside, and a division is slow.
         let wrap = |i: i64| if (0..per_side).contains(&i) { i } else { i.rem_euclid(per_side) };
-        let tile = self.index[(wrap(row) * per_side + wrap(column)) as usize];
-        (tile != NONE).then_some(tile as usize)
+        let (column, row) = (wrap(column) as usize, wrap(row) as usize);
+        match &self.index {
+            Some(index) => index.find(column, row),
+            None => Some(row * self.per_side + column),
+        }
     }
 
     /// Hands out the values of the whole level, zero where there is no tile, a row of tiles at a time: the index of the first row of
@@ -123,21 +126,25 @@ impl TileSet {
     #[must_use]
     pub fn around(&self, halo: usize) -> Self {
         let (n, reach) = (self.per_side as i64, halo.div_ceil(TILE) as i64);
-        let mut places = Vec::with_capacity(self.places.len());
+        let mut marks = TileMarks::new(self.per_side);
         for &[column, row] in self.places() {
             for y in i64::from(row) - reach..=i64::from(row) + reach {
                 for x in i64::from(column) - reach..=i64::from(column) + reach {
-                    places.push([x.rem_euclid(n) as u32, y.rem_euclid(n) as u32]);
+                    marks.mark([x.rem_euclid(n) as u32, y.rem_euclid(n) as u32]);
                 }
             }
         }
-        Self::new(self.per_side, places)
+        Self::marked(self.per_side, marks)
     }
 
     /// These tiles and others of the same level.
     #[must_use]
     pub fn with(&self, others: &Self) -> Self {
-        Self::new(self.per_side, self.places.iter().chain(others.places()).copied().collect())
+        let mut marks = TileMarks::new(self.per_side);
+        for &place in self.places.iter().chain(others.places()) {
+            marks.mark(place);
+        }
+        Self::marked(self.per_side, marks)
     }
 
     /// The tiles of the level with half as many cells per side that hold these tiles, or a cell within `halo` cells of that
@@ -145,7 +152,7 @@ impl TileSet {
     #[must_use]
     pub fn parents(&self, halo: usize) -> Self {
         let (half, halo) = (self.per_side as i64 / 2, halo as i64);
-        let mut marks = vec![false; (half * half) as usize];
+        let mut marks = TileMarks::new(half as usize);
         // A tile covers half a tile of the coarser level.
         let (quarter, tile) = (TILE as i64 / 2, TILE as i64);
         for &[column, row] in self.places() {
@@ -155,13 +162,11 @@ impl TileSet {
             };
             for y in range(row) {
                 for x in range(column) {
-                    marks[(y.rem_euclid(half) * half + x.rem_euclid(half)) as usize] = true;
+                    marks.mark([x.rem_euclid(half) as u32, y.rem_euclid(half) as u32]);
                 }
             }
         }
-        let half = half as usize;
-        let marked = marks.iter().enumerate().filter(|&(_, &mark)| mark);
-        Self::new(half, marked.map(|(i, _)| [(i % half) as u32, (i / half) as u32]).collect())
+        Self::marked(half as usize, marks)
     }
 }
 

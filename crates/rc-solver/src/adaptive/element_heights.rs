@@ -5,12 +5,26 @@ use rc_quadtree::{CELLS, Elements, TileSet, means_of_quarter, quarters};
 
 use super::heights::Heights;
 
-/// Heights of all elements. Values that fill up a vector are the minimum height, which is never in contact.
-pub(super) fn element_heights(heights: &Heights<'_>, elements: &Elements) -> Vec<f64> {
+/// Heights of all elements, those of the elements of `known` taken from there. Values that fill up a vector are the minimum height, which is
+/// never in contact.
+pub(super) fn element_heights(
+    heights: &Heights<'_>,
+    elements: &Elements,
+    known: Option<(&Elements, &[f64])>,
+) -> Vec<f64> {
     let mut result = vec![heights.extremes().least; elements.len()];
     for (coarser, tiles) in elements.levels().iter().enumerate() {
+        let known = known.map(|(known, values)| (&known.levels()[coarser], &values[known.cells(coarser)]));
         let (cells, _) = result[elements.cells(coarser)].as_chunks_mut::<CELLS>();
         cells.par_iter_mut().zip(tiles.places()).with_min_len(16).for_each(|(cells, &place)| {
+            let known = known.and_then(|(tiles, values)| {
+                let tile = tiles.find(i64::from(place[0]), i64::from(place[1]))?;
+                Some(&values[tile * CELLS..][..CELLS])
+            });
+            if let Some(known) = known {
+                cells.copy_from_slice(known);
+                return;
+            }
             heights.tile(tiles.side(), place[0] as usize, place[1] as usize, cells);
             if coarser > 0 {
                 to_means(heights, tiles, place, coarser, cells);
@@ -59,7 +73,7 @@ mod tests {
         let sampled = TwoWaves.sample(finest);
         let tiles = [(32, [16, 16]), (16, [4, 4]), (8, [0, 0])];
         let elements = Elements::new(tiles.map(|(per_side, place)| TileSet::new(per_side, vec![place])).to_vec());
-        let values = element_heights(&heights, &elements);
+        let values = element_heights(&heights, &elements, None);
         for (coarser, (_, [column, row])) in tiles.into_iter().enumerate() {
             let (n, start) = (1 << coarser, elements.cells(coarser).start);
             for cell in 0..CELLS {

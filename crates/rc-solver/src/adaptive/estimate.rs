@@ -27,7 +27,7 @@ const MORE_WORK_PER_BORDER_LEVEL: f64 = 0.8;
 const GROWTH_PER_BORDER_LEVEL: f64 = 2.6;
 
 /// Bytes for each place of the smallest elements, used or not: the tables that find tiles, of a few meshes at a time.
-const BYTES_PER_PLACE: f64 = 0.4;
+const BYTES_PER_PLACE: f64 = 0.02;
 
 /// Bytes for each element of the base grid.
 const BYTES_PER_BASE_ELEMENT: f64 = 130.0;

@@ -144,11 +144,9 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
     /// Improves the pressure on the elements near contact, with fresh gaps of the operator for certificates if `certify`: the first round
     /// has used that of descents. Returns whether the tolerance was reached there.
     fn improve(self, evaluation: Evaluation, certify: bool, observer: &dyn Observer) -> (Self, bool) {
-        let Self { setup, mut tables, candidates, current, mut info } = self;
-        let near = NearContact::choose(&candidates, &current.elements, &evaluation, setup);
+        let Self { setup, mut tables, mut candidates, current, mut info } = self;
         let tolerance = evaluation.error.goal(setup.params.bound, &setup.problem);
-        // The descent needs the memory.
-        drop(evaluation);
+        let near = NearContact::choose(&mut candidates, &current.elements, evaluation, setup);
         let hierarchy = setup.hierarchy(&near.elements, setup.quick.reach());
         let (prepared, fresh) = tables.gaps.choose(setup, certify);
         let fresh_hierarchy = setup.hierarchy(&near.elements, prepared.reach());
@@ -170,6 +168,8 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let last = descent.run(goal(LAST_TOLERANCE), &observer);
         add_work(&mut info, &descent.info());
         let pressure = descent.into_pressure();
+        candidates.heights =
+            element_heights(setup.heights, &candidates.elements, Some((&near.elements, &near.heights)));
         let current = MeshStart { elements: near.elements, pressure };
         (Self { setup, tables, candidates, current, info }, last.converged)
     }
@@ -250,7 +250,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
 
 impl Candidates {
     fn new(setup: &Setup<'_>, elements: Elements) -> Self {
-        Self { heights: element_heights(setup.heights, &elements), elements }
+        Self { heights: element_heights(setup.heights, &elements, None), elements }
     }
 }
 
@@ -279,8 +279,8 @@ struct NearContact {
 }
 
 impl NearContact {
-    /// `before` are the elements of the last descent.
-    fn choose(candidates: &Candidates, before: &Elements, evaluation: &Evaluation, setup: &Setup<'_>) -> Self {
+    /// `before` are the elements of the last descent. Descents need the memory: the candidates are left without heights.
+    fn choose(candidates: &mut Candidates, before: &Elements, evaluation: Evaluation, setup: &Setup<'_>) -> Self {
         let Evaluation { pressure, gap, outcome, .. } = evaluation;
         // Elements that are nearer to contact than the error may come into it yet.
         let error = match outcome.mean_pressure {
@@ -292,9 +292,10 @@ impl NearContact {
         let elements = candidates.elements.filtered(|side, place, cells| {
             before.has(side, place) || cells.into_iter().any(|i| pressure[i] > 0.0 || gap[i] < near)
         });
-        let chosen = |values: &[f64], elsewhere: f64| candidates.elements.moved(&elements, values, elsewhere);
-        // Values that fill up a level are as far from contact as can be.
-        let (heights, gap) = (chosen(&candidates.heights, f64::MIN), chosen(gap, f64::MAX));
-        Self { heights, pressure: chosen(pressure, 0.0), gap, elements }
+        // One vector after the other. Values that fill up a level are as far from contact as can be.
+        let chosen = |values: Vec<f64>, elsewhere: f64| candidates.elements.moved(&elements, &values, elsewhere);
+        let heights = chosen(std::mem::take(&mut candidates.heights), f64::MIN);
+        let (gap, pressure) = (chosen(gap, f64::MAX), chosen(pressure, 0.0));
+        Self { elements, heights, pressure, gap }
     }
 }

@@ -59,7 +59,7 @@ pub(super) fn solve_coarse_level(
         fresh: Box::new(setup.quick_operator(hierarchy, &response, &start)),
     };
     let MeshStart { elements, pressure } = start;
-    let heights = element_heights(setup.heights, &elements);
+    let heights = element_heights(setup.heights, &elements, None);
     let mut descent = Descent::new(&heights, grid, operators, &setup.problem, Start::Pressure(pressure));
     let goal = Goal { tolerance, max_iterations: setup.params.max_iterations, certify: None };
     let outcome = descent.run(goal, &DescentObserver { observer, mesh: &elements });

@@ -286,8 +286,7 @@ fn check_memory(grid: Grid, limit: Option<u64>, bytes: f64, area_percent: Option
     }
 }
 
-/// Most elements per side of the grid of the smallest elements: where tiles are is looked up in tables of 4 bytes for 64 of
-/// them.
+/// Maximum number of the smallest elements per side: indices of tiles are 32-bit numbers.
 const DEEPEST_SIDE: usize = 1 << 17;
 
 #[cfg(test)]

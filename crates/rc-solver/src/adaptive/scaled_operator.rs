@@ -68,4 +68,8 @@ impl<T: Real + Into<f64>> BlockOperator<f64> for ScaledOperator<'_, T> {
             read(i, &values[..cells.len()]);
         });
     }
+
+    fn release(&mut self) {
+        self.operator.release();
+    }
 }

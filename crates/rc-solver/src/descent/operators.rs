@@ -18,6 +18,9 @@ pub(crate) trait BlockOperator<T> {
 
     /// Calls `read` once for each block, with its index and the displacements.
     fn read(&self, read: &(dyn Fn(usize, &[T]) + Sync));
+
+    /// Frees memory that the next [`BlockOperator::write`] takes again.
+    fn release(&mut self) {}
 }
 
 /// L for corrections of a pressure, with an approximate inverse of it.

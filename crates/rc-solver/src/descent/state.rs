@@ -117,7 +117,10 @@ impl<'a> Descent<'a> {
     pub(super) fn fresh_gap(&mut self) -> GapSums {
         self.info.operator_applications += 1;
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
+        // Fresh gaps are rare: neither operator keeps memory for vectors while the other one works.
+        self.operators.corrections.release();
         let sums = fresh_gap(&mut *self.operators.fresh, self.problem, elements, GapSums::empty(self.pressed));
+        self.operators.fresh.release();
         self.pressed = sums.next_pressed();
         sums
     }

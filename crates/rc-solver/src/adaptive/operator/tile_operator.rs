@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pulp::Arch;
 use rc_core::Grid;
 use rc_fft::{BLOCK_ROWS, Convolution, Instructions};
-use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE};
+use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE, TileSet};
 
 use super::coarse::Leaves;
 use super::hierarchy::Hierarchy;
@@ -18,7 +18,7 @@ use crate::adaptive::element_blocks::blocks_of;
 use crate::descent::{BlockLayout, read_rows, write_rows};
 use crate::parallel::{self, Tasks};
 
-/// Buffers for operators on one hierarchy. Blocks of vectors are of [`BLOCK_CELLS`] cells.
+/// Buffers for operators on one hierarchy. Blocks of vectors are of [`BLOCK_CELLS`] cells. Memory for vectors is taken when pressures are written.
 pub(crate) struct TileOperator<T> {
     hierarchy: Arc<Hierarchy>,
     arch: Arch,
@@ -33,24 +33,41 @@ pub(crate) struct TileOperator<T> {
 
 impl<T: Real> TileOperator<T> {
     pub(crate) fn new(hierarchy: Arc<Hierarchy>) -> Self {
-        let n_levels = hierarchy.n_levels();
-        let zeros = || hierarchy.levels[..n_levels].iter().map(|tiles| vec![T::default(); tiles.n_cells()]).collect();
         Self {
             arch: match Instructions::of_process() {
                 Instructions::Best => Arch::new(),
                 Instructions::Scalar | Instructions::Sse => Arch::Scalar,
             },
             convolution: Convolution::new(hierarchy.base()),
-            source: vec![T::default(); hierarchy.elements().len()],
-            densities: zeros(),
-            displacements: zeros(),
-            ghosts: hierarchy.leaves.iter().map(|leaves| vec![T::default(); leaves.ghosts.n_cells()]).collect(),
+            source: Vec::new(),
+            densities: Vec::new(),
+            displacements: Vec::new(),
+            ghosts: Vec::new(),
             hierarchy,
         }
     }
 
+    /// Takes memory for vectors, unless it has it.
+    fn reserve(&mut self) {
+        let hierarchy = &self.hierarchy;
+        if self.source.is_empty() {
+            let zeros = |tiles: &TileSet| vec![T::default(); tiles.n_cells()];
+            let below_finest = &hierarchy.levels[..hierarchy.n_levels()];
+            self.densities = below_finest.iter().map(zeros).collect();
+            self.displacements = below_finest.iter().map(zeros).collect();
+            self.ghosts = hierarchy.leaves.iter().map(|leaves| zeros(&leaves.ghosts)).collect();
+            self.source = vec![T::default(); hierarchy.elements().len()];
+        }
+    }
+
+    /// Frees the memory of vectors until pressures are written again.
+    pub(crate) fn release(&mut self) {
+        (self.source, self.densities, self.displacements, self.ghosts) = Default::default();
+    }
+
     /// What another operator on the base grid and the elements may use, and be changed by: vector instructions, the convolution, room for a vector.
     pub(super) fn buffers(&mut self) -> (Arch, &mut Convolution<T>, &mut [T]) {
+        self.reserve();
         (self.arch, &mut self.convolution, &mut self.source)
     }
 
@@ -71,6 +88,7 @@ impl<T: Real> TileOperator<T> {
 
     /// Calls `write` once for each block, with its index and the values to be filled in.
     pub(crate) fn write(&mut self, write: &(dyn Fn(usize, &mut [T]) + Sync)) {
+        self.reserve();
         parallel::for_each(self.source.chunks_mut(BLOCK_CELLS).enumerate(), |(i, cells)| write(i, cells));
     }
 

@@ -1,0 +1,126 @@
+//! Where the tiles of a level are in a vector: a bit for each possible tile, counted block by block.
+
+use crate::morton::{morton_code, place_of};
+
+/// Tiles per side of a block: as many tiles as a word has bits.
+const BLOCK: usize = 8;
+
+/// Marks of the tiles of a level of so many tiles per side.
+pub(crate) struct TileMarks {
+    per_side: usize,
+    /// The blocks row by row; bit i is the tile at position i of the Morton curve through the block.
+    blocks: Vec<u64>,
+}
+
+/// Finds tiles that are sorted along the Morton curve, on which a block is one piece.
+#[derive(Debug)]
+pub(crate) struct TileIndex {
+    blocks_per_side: usize,
+    blocks: Vec<Block>,
+}
+
+/// The tiles of a block: which there are, and how many are before it on the curve.
+#[derive(Clone, Copy, Debug, Default)]
+struct Block {
+    bits: u64,
+    before: u32,
+}
+
+impl TileMarks {
+    pub(crate) fn new(per_side: usize) -> Self {
+        Self { per_side, blocks: vec![0; per_side.div_ceil(BLOCK).pow(2)] }
+    }
+
+    /// Marks the tile at this column and row.
+    ///
+    /// # Panics
+    /// When it is outside the level.
+    pub(crate) fn mark(&mut self, [column, row]: [u32; 2]) {
+        let per_side = self.per_side as u32;
+        assert!(column < per_side && row < per_side, "tile ({column}, {row}) of {per_side} per side");
+        let (block, bit) = block_and_bit(self.per_side.div_ceil(BLOCK), column as usize, row as usize);
+        self.blocks[block] |= 1 << bit;
+    }
+
+    /// The places of the marked tiles along the Morton curve, and their index.
+    pub(crate) fn into_sorted(self) -> (Vec<[u32; 2]>, TileIndex) {
+        let per_side = self.per_side.div_ceil(BLOCK);
+        let n_tiles: u32 = self.blocks.iter().map(|bits| bits.count_ones()).sum();
+        let mut places = Vec::with_capacity(n_tiles as usize);
+        let mut blocks = vec![Block::default(); self.blocks.len()];
+        for code in 0..per_side.next_power_of_two().pow(2) as u64 {
+            let [column, row] = place_of(code);
+            if column as usize >= per_side || row as usize >= per_side {
+                continue;
+            }
+            let block = row as usize * per_side + column as usize;
+            let mut bits = self.blocks[block];
+            blocks[block] = Block { bits, before: places.len() as u32 };
+            while bits != 0 {
+                let [x, y] = place_of(u64::from(bits.trailing_zeros()));
+                places.push([column * BLOCK as u32 + x, row * BLOCK as u32 + y]);
+                bits &= bits - 1;
+            }
+        }
+        (places, TileIndex { blocks_per_side: per_side, blocks })
+    }
+}
+
+impl TileIndex {
+    /// The tile at this column and row, which are inside the level.
+    #[inline]
+    pub(crate) fn find(&self, column: usize, row: usize) -> Option<usize> {
+        let (block, bit) = block_and_bit(self.blocks_per_side, column, row);
+        let Block { bits, before } = self.blocks[block];
+        let mark = 1_u64 << bit;
+        (bits & mark != 0).then(|| before as usize + (bits & (mark - 1)).count_ones() as usize)
+    }
+}
+
+/// The block of a tile, and its position on the curve through the block.
+#[inline]
+fn block_and_bit(blocks_per_side: usize, column: usize, row: usize) -> (usize, u8) {
+    const CODES: [u8; BLOCK * BLOCK] = codes();
+    (row / BLOCK * blocks_per_side + column / BLOCK, CODES[row % BLOCK * BLOCK + column % BLOCK])
+}
+
+/// Positions on the Morton curve through a block, row by row.
+const fn codes() -> [u8; BLOCK * BLOCK] {
+    let mut codes = [0; BLOCK * BLOCK];
+    let mut i = 0;
+    while i < codes.len() {
+        codes[i] = morton_code((i % BLOCK) as u32, (i / BLOCK) as u32) as u8;
+        i += 1;
+    }
+    codes
+}
+
+#[cfg(test)]
+mod tests {
+    use rc_core::testing::quasi_random;
+
+    use super::*;
+
+    #[test]
+    fn marked_tiles_are_found_in_the_order_of_the_curve() {
+        for per_side in [1, 5, 8, 13, 40] {
+            let chosen: Vec<[u32; 2]> = (0..per_side * per_side)
+                .filter(|&i| quasi_random(i) < 0.3)
+                .map(|i| [(i % per_side) as u32, (i / per_side) as u32])
+                .collect();
+            let mut marks = TileMarks::new(per_side);
+            for &place in chosen.iter().chain(&chosen) {
+                marks.mark(place);
+            }
+            let (places, index) = marks.into_sorted();
+            let mut sorted = chosen;
+            sorted.sort_unstable_by_key(|&[column, row]| morton_code(column, row));
+            assert_eq!(places, sorted);
+            for i in 0..per_side * per_side {
+                let [column, row] = [i % per_side, i / per_side];
+                let expected = places.iter().position(|&place| place == [column as u32, row as u32]);
+                assert_eq!(index.find(column, row), expected, "({column}, {row}) of {per_side}");
+            }
+        }
+    }
+}
