@@ -206,3 +206,27 @@ fn loads_that_share_a_surface_have_the_digits_of_their_own_plans() {
     let error = ContactProblem::new(&map, LOAD).plan(&SolveParams::default()).expect("a plan");
     assert!(error.under(Control::MeanPressure(-1.0)).is_err(), "a load is checked");
 }
+
+#[test]
+fn scattered_contact_is_solved_on_the_uniform_grid() {
+    // Short waves of one size: contacts of a few elements are all over the cell.
+    let spectrum = SpectrumParams { hurst: 0.3, ..SpectrumParams::paper(64, 1) };
+    let surface = Surface::new(&spectrum).expect("a surface");
+    let source = || surface.on(square(512));
+    let solved = |load: f64| {
+        let load = Control::MeanPressure(load);
+        solve(source(), load, &SolveParams::default()).expect("solvable")
+    };
+    let slope = surface.moments().rms_slope;
+    let (light, scattered) = (solved(0.005 * slope), solved(0.08 * slope));
+    assert!(matches!(light.reason(), MethodReason::SmallContact { .. }), "{}", light.reason());
+    assert_eq!(light.method(), Method::Adaptive);
+    let MethodReason::ScatteredContact { percent } = scattered.reason() else { panic!("{}", scattered.reason()) };
+    assert!(*percent > 35.0 && *percent < 90.0 && scattered.area().fraction < 0.25, "{percent} % of the tiles");
+    let load = Control::MeanPressure(0.08 * slope);
+    let uniform = solve(source(), load, &SolveParams::default().by(Method::Uniform)).expect("solvable");
+    assert_eq!(scattered.method(), Method::Uniform);
+    assert_eq!(scattered.pressure().values(), uniform.pressure().values());
+    let adaptive = solve(source(), load, &SolveParams::default().by(Method::Adaptive)).expect("solvable");
+    assert_eq!(adaptive.method(), Method::Adaptive);
+}

@@ -53,6 +53,11 @@ pub enum MethodReason {
         /// Estimated contact area, in percent of the nominal one.
         percent: f64,
     },
+    /// Contact on the base grid of the adaptive method is so scattered that the uniform grid is the cheaper one.
+    ScatteredContact {
+        /// Tiles near contact, in percent of all.
+        percent: f64,
+    },
     /// The uniform grid would be cheaper but exceeds the memory limit.
     UniformDoesNotFit {
         /// Estimated contact area, in percent of the nominal one.
@@ -99,6 +104,9 @@ impl fmt::Display for MethodReason {
             }
             Self::LargeContact { percent } => {
                 write!(f, "uniform: an estimated contact area of {} % is cheaper on the uniform grid", round(percent))
+            }
+            Self::ScatteredContact { percent } => {
+                write!(f, "uniform: contact is near {} % of the tiles of the adaptive method", round(percent))
             }
             Self::UniformDoesNotFit { percent } => write!(
                 f,

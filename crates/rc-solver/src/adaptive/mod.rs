@@ -42,7 +42,7 @@ pub(crate) use self::estimate::Estimate;
 pub(crate) use self::ground::Ground;
 use self::level::SolvedLevel;
 pub use self::multilevel::MultilevelOperator;
-use self::nested_iteration::{NestedIteration, NestedSolution};
+use self::nested_iteration::{BaseStart, NestedIteration, NestedSolution};
 use self::operator_error::{PressureScale, certifying_split};
 pub(crate) use self::params::AdaptiveParams;
 use self::setup::Splits;
@@ -140,14 +140,33 @@ impl<'a> AdaptiveProblem<'a> {
     /// The certificate comes from a fresh application of L on the returned pressure, with bounds on the error of that operator added; it
     /// covers every cell where a bound does not exclude contact. The result is bitwise the same for any number of threads.
     pub(crate) fn solve(&self, observer: &dyn Observer) -> AdaptiveSolution {
-        self.finish(self.solve_levels(observer))
+        let solver = self.first_solver();
+        let base = solver.begin(observer);
+        self.finish(self.solve_levels(&solver, base, observer))
     }
 
-    /// Solves all levels, with operators as good as the bound needs.
-    fn solve_levels(&self, observer: &dyn Observer) -> NestedSolution {
-        let first = Splits { fresh: self.split, certified: self.split };
-        let solver = self.solver(first);
-        let start = solver.prepare(observer);
+    /// The same unless the uniform grid would be cheaper, which the contact on the base grid shows: then the part of the cell in tiles near
+    /// contact is returned.
+    ///
+    /// # Errors
+    /// That part.
+    pub(crate) fn solve_if_sparse(&self, observer: &dyn Observer) -> Result<AdaptiveSolution, f64> {
+        let solver = self.first_solver();
+        let base = solver.begin(observer);
+        if base.tile_fraction > Estimate::GREATEST_TILE_FRACTION {
+            return Err(base.tile_fraction);
+        }
+        Ok(self.finish(self.solve_levels(&solver, base, observer)))
+    }
+
+    fn first_solver(&self) -> NestedIteration<'_> {
+        self.solver(Splits { fresh: self.split, certified: self.split })
+    }
+
+    /// Solves all levels above the base grid, with operators as good as the bound needs.
+    fn solve_levels(&self, solver: &NestedIteration<'_>, base: BaseStart, observer: &dyn Observer) -> NestedSolution {
+        let first = solver.splits();
+        let start = solver.prepare(base, observer);
         let certified = self.certifying_split(first.certified, &solver.scale(&start));
         let solved = if certified == first.certified {
             solver.finish(start, observer)

@@ -1,5 +1,6 @@
 //! Nested iteration from the base grid to the finest level: each level prepares the start on the next.
 
+use rayon::prelude::*;
 use rc_core::{Event, Grid, Observer};
 use rc_kernel::Love;
 use rc_quadtree::{TILE, TileSet};
@@ -45,6 +46,13 @@ pub(super) struct LevelStart {
     coarser: Option<LevelValues>,
 }
 
+/// What the base grid found.
+pub(super) struct BaseStart {
+    start: LevelStart,
+    /// Part of the cell in tiles of the finest level that contact touches or is next to.
+    pub(super) tile_fraction: f64,
+}
+
 /// All levels of one problem, with one set of operators.
 pub(super) struct NestedIteration<'a> {
     setup: Setup<'a>,
@@ -56,11 +64,24 @@ impl<'a> NestedIteration<'a> {
         Self { setup: Setup::new(ground, problem, params, splits), splits }
     }
 
+    /// The splits that it solves with.
+    pub(super) fn splits(&self) -> Splits {
+        self.splits
+    }
+
+    /// Solves the base grid, and the coarser ones that it starts from.
+    pub(super) fn begin(&self, observer: &dyn Observer) -> BaseStart {
+        self.solve_base(self.n_above(), observer)
+    }
+
+    fn n_above(&self) -> usize {
+        (self.setup.heights.finest_side() / self.setup.base().nx()).ilog2() as usize
+    }
+
     /// Solves all levels but the finest, which starts from them.
-    pub(super) fn prepare(&self, observer: &dyn Observer) -> LevelStart {
-        let n_above = (self.setup.heights.finest_side() / self.setup.base().nx()).ilog2() as usize;
-        let mut start = self.solve_base(n_above, observer);
-        for finer in (1..n_above).rev() {
+    pub(super) fn prepare(&self, base: BaseStart, observer: &dyn Observer) -> LevelStart {
+        let mut start = base.start;
+        for finer in (1..self.n_above()).rev() {
             start.announce(finer, observer);
             start = self.solve_level(start, finer, observer);
         }
@@ -79,7 +100,7 @@ impl<'a> NestedIteration<'a> {
     /// Solves the finest level where another operator has prepared it. Where sizes of elements differ they suit the other operator;
     /// all levels are then solved again.
     pub(super) fn take_over(&self, start: LevelStart, observer: &dyn Observer) -> NestedSolution {
-        let start = if self.setup.border_level > 0 { self.prepare(observer) } else { start };
+        let start = if self.setup.border_level > 0 { self.prepare(self.begin(observer), observer) } else { start };
         self.finish(start, observer)
     }
 
@@ -99,21 +120,24 @@ impl<'a> NestedIteration<'a> {
     }
 
     /// Solves uniform grids up to the base grid, which has `n_above` levels above it.
-    fn solve_base(&self, n_above: usize, observer: &dyn Observer) -> LevelStart {
+    fn solve_base(&self, n_above: usize, observer: &dyn Observer) -> BaseStart {
         let Setup { heights, problem, params, .. } = &self.setup;
         let base = heights.base();
         let grids = NestedGrids { kernel: &Love, problem, params: *params, n_above, observer };
         let FinestGrid { descent, outcome, levels, coarser } = grids.solve(base);
-        let function = to_tiles(base.grid(), &uniform::edge_function(&descent));
+        let function = uniform::edge_function(&descent);
+        let tile_fraction = tile_fraction(base.grid(), &function, (TILE >> n_above).max(1));
+        let function = to_tiles(base.grid(), &function);
         let tiles = TileSet::full(base.grid().nx() / TILE);
-        LevelStart {
+        let start = LevelStart {
             grid: next_finer(base.grid()),
             mesh: prolongation::refine_all(&tiles, &function),
             contact_gap: outcome.contact_gap,
             energy_length: outcome.energy_length(),
             levels,
             coarser,
-        }
+        };
+        BaseStart { start, tile_fraction }
     }
 
     /// Solves a level with `finer` levels above it.
@@ -170,6 +194,17 @@ impl LevelStart {
 /// The grid with twice as many elements per side.
 fn next_finer(grid: Grid) -> Grid {
     Grid::square(2 * grid.nx()).expect("a level of a checked grid")
+}
+
+/// Part of the squares of `side` × `side` elements in which the edge function of a contact is not zero.
+fn tile_fraction(grid: Grid, function: &[f64], side: usize) -> f64 {
+    let touches = |row: &[f64]| row.iter().any(|&value| value != 0.0);
+    let rows = function.par_chunks(side * grid.nx()).map(|rows| {
+        let squares = 0..grid.nx() / side;
+        let of_square = |i: usize| rows.chunks_exact(grid.nx()).any(|row| touches(&row[i * side..(i + 1) * side]));
+        squares.filter(|&i| of_square(i)).count()
+    });
+    (rows.sum::<usize>() * side * side) as f64 / grid.len() as f64
 }
 
 /// Values of a grid, tile by tile.

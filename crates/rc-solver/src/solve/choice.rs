@@ -132,15 +132,17 @@ impl<'a> Choice<'a, '_> {
 
     /// A method that stores every element of the grid, if it fits into memory.
     fn on_grid(&self, method: Method) -> Result<ChosenMethod<'a>, SolveError> {
-        let grid = self.problem.heights.grid();
-        let needed = uniform_bytes(grid);
-        match self.params.memory_limit {
-            Some(limit) if needed > limit as f64 => {
-                Err(SolveError::Memory { method, grid, needed: needed as u64, limit })
-            }
-            _ if method == Method::GaussSeidel => Ok(ChosenMethod::GaussSeidel),
-            _ => Ok(ChosenMethod::Uniform),
-        }
+        check_memory(self.problem.heights.grid(), self.params.memory_limit, method)?;
+        Ok(if method == Method::GaussSeidel { ChosenMethod::GaussSeidel } else { ChosenMethod::Uniform })
+    }
+}
+
+/// Refuses a method that stores every element of the grid where it does not fit into memory.
+pub(super) fn check_memory(grid: Grid, limit: Option<u64>, method: Method) -> Result<(), SolveError> {
+    let needed = uniform_bytes(grid);
+    match limit {
+        Some(limit) if needed > limit as f64 => Err(SolveError::Memory { method, grid, needed: needed as u64, limit }),
+        _ => Ok(()),
     }
 }
 

@@ -8,7 +8,7 @@ use rc_kernel::PeriodicLove;
 use super::shared::Shared;
 use super::solution::HowSolved;
 use super::{ContactProblem, Solution, SolveError, SolveParams, choice};
-use crate::adaptive::AdaptiveProblem;
+use crate::adaptive::{AdaptiveProblem, AdaptiveSolution};
 use crate::gauss_seidel::{HalfSpace, solve_gauss_seidel};
 use crate::solution::{GridSolution, Status};
 use crate::uniform::solve_uniform;
@@ -36,7 +36,8 @@ pub(super) enum ChosenMethod<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// The method.
+    /// The method. An adaptive one that was not asked for gives way to the uniform one when contact on its base grid is too scattered:
+    /// [`Solution::method`] is the one that has solved.
     #[must_use]
     pub fn method(&self) -> Method {
         match self.chosen {
@@ -88,28 +89,53 @@ impl<'a> Plan<'a> {
     /// [`SolveError::GaussSeidel`] for what the paper's procedure refuses.
     pub fn solve(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
         let Self { problem, params, bound, chosen, reason, mut shared } = self;
-        if let (false, Some(shared)) = (matches!(chosen, ChosenMethod::Adaptive(_)), Arc::get_mut(&mut shared)) {
+        let how = |method, reason| HowSolved::new(method, reason, bound, problem.kernel.name());
+        let (chosen, reason) = match chosen {
+            ChosenMethod::Adaptive(adaptive) => match by_adaptive(&problem, &params, (&adaptive, &reason), observer)? {
+                Ok(solution) => {
+                    return converged(Solution::on_tiles(how(Method::Adaptive, reason), solution, adaptive));
+                }
+                Err(scattered) => (ChosenMethod::Uniform, scattered),
+            },
+            on_grid => (on_grid, reason),
+        };
+        if let Some(shared) = Arc::get_mut(&mut shared) {
             shared.forget_ground();
         }
-        let how = |method| HowSolved::new(method, reason, bound, problem.kernel.name());
-        let solution = match chosen {
-            ChosenMethod::Adaptive(adaptive) => {
-                let solution = adaptive.solve(observer);
-                Solution::on_tiles(how(Method::Adaptive), solution, adaptive)
-            }
-            ChosenMethod::Uniform => {
-                let (heights, limits) = (shared.heights(&problem.heights), params.iteration(bound));
-                let solution = solve_uniform(heights, problem.kernel, problem.control, &limits, observer)?;
-                Solution::on_grid(how(Method::Uniform), problem.kernel, solution, heights.max())
-            }
-            ChosenMethod::GaussSeidel => {
-                let (heights, params) = (shared.heights(&problem.heights), params.gauss_seidel);
-                let solution = by_gauss_seidel(&problem, heights, (bound, &params), observer)?;
-                Solution::on_grid(how(Method::GaussSeidel), problem.kernel, solution, heights.max())
-            }
+        let (heights, kernel) = (shared.heights(&problem.heights), problem.kernel);
+        let (method, solution) = if matches!(chosen, ChosenMethod::GaussSeidel) {
+            let params = (bound, &params.gauss_seidel);
+            (Method::GaussSeidel, by_gauss_seidel(&problem, heights, params, observer)?)
+        } else {
+            let limits = params.iteration(bound);
+            (Method::Uniform, solve_uniform(heights, kernel, problem.control, &limits, observer)?)
         };
-        if solution.status() == Status::NotConverged { Err(not_converged(solution)) } else { Ok(solution) }
+        converged(Solution::on_grid(how(method, reason), kernel, solution, heights.max()))
     }
+}
+
+/// The solution of the adaptive method; where that was chosen by an estimate, and contact turns out to be so scattered that the uniform grid
+/// is cheaper and fits into memory, that reason.
+fn by_adaptive(
+    problem: &ContactProblem<'_>,
+    params: &SolveParams,
+    (adaptive, reason): (&AdaptiveProblem<'_>, &MethodReason),
+    observer: &dyn Observer,
+) -> Result<Result<AdaptiveSolution, MethodReason>, SolveError> {
+    let uniform_fits = choice::check_memory(problem.heights.grid(), params.memory_limit, Method::Uniform);
+    let may_change = matches!(reason, MethodReason::SmallContact { .. });
+    if !may_change || uniform_fits.is_err() && params.method_follows_memory {
+        return Ok(Ok(adaptive.solve(observer)));
+    }
+    match adaptive.solve_if_sparse(observer) {
+        Ok(solution) => Ok(Ok(solution)),
+        Err(fraction) => uniform_fits.map(|()| Err(MethodReason::ScatteredContact { percent: 100.0 * fraction })),
+    }
+}
+
+/// The solution, or the error that carries it.
+fn converged(solution: Solution<'_>) -> Result<Solution<'_>, SolveError> {
+    if solution.status() == Status::NotConverged { Err(not_converged(solution)) } else { Ok(solution) }
 }
 
 /// The error that carries a solution.

@@ -141,7 +141,8 @@ impl Scene<'_> {
         };
         let source = HeightSource::Map(self.map);
         let problem = AdaptiveProblem::new(source, self.control, &params).expect("a problem");
-        let solved = problem.solve_levels(&Silent);
+        let solver = problem.first_solver();
+        let solved = problem.solve_levels(&solver, solver.begin(&Silent), &Silent);
         let grid = self.map.grid();
         let mut pressure = vec![0.0; grid.len()];
         for (p, place) in solved.level.pressure.iter().zip(places(&solved.level.elements)) {
