@@ -1,6 +1,7 @@
 //! The formats, and how a file is known.
 
 mod binary;
+mod channel;
 mod field;
 mod fields;
 mod format;
