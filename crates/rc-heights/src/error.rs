@@ -104,8 +104,8 @@ pub enum FormatError {
         /// The format.
         format: Format,
     },
-    /// A word of a text that is no number.
-    #[error("line {line}, value {value}: '{text}' is no number")]
+    /// A word of a text that is not a number.
+    #[error("line {line}, value {value}: '{text}' is not a number")]
     NoNumber {
         /// Line, from 1.
         line: usize,
@@ -142,7 +142,36 @@ pub enum FormatError {
     /// No point was measured.
     #[error("all {0} points are missing; nothing was measured")]
     Empty(usize),
+    /// No channel has the name that was asked for.
+    #[error("no channel is called '{name}'; {}", names(channels))]
+    NoChannel {
+        /// As asked for.
+        name: String,
+        /// The names that there are.
+        channels: Vec<String>,
+    },
+    /// No channel has values that are lengths.
+    #[error("no channel has heights; {}, and channel = NAME reads one of them", names(channels))]
+    NoHeights {
+        /// The names that there are.
+        channels: Vec<String>,
+    },
     /// A number of points that no grid has.
     #[error(transparent)]
     Grid(#[from] GridError),
+}
+
+/// Names of channels, at most as many as a line can have.
+fn names(channels: &[String]) -> String {
+    const MOST: usize = 20;
+    match channels {
+        [] => "the file has none".to_owned(),
+        [only] if only.is_empty() => "the file has one channel without a name; omit channel".to_owned(),
+        _ => {
+            let more =
+                if channels.len() > MOST { format!(" and {} more", channels.len() - MOST) } else { String::new() };
+            let shown: Vec<String> = channels.iter().take(MOST).map(|name| crate::formats::shown(name)).collect();
+            format!("the file has {}{more}", shown.join(", "))
+        }
+    }
 }

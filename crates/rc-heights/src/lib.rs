@@ -35,7 +35,10 @@ mod treat;
 mod units;
 
 pub use error::{FormatError, ReadError};
-pub use formats::{Format, format_of, npy, parse, read, text};
+pub use formats::{
+    ChannelInfo, Format, Layout, LayoutError, ReadParams, channels, channels_of, format_of, npy, parse, parse_with,
+    read, read_with, text,
+};
 pub use map::{BorderStep, HeightMap};
 pub use parameters::AreaParameters;
 pub use statistics::MapStatistics;

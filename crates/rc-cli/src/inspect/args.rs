@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rc_heights::LengthUnit;
+use rc_heights::{Layout, LengthUnit};
 
 /// Arguments of `rc inspect`.
 #[derive(Args, Clone, Debug)]
@@ -24,6 +24,12 @@ pub(crate) struct InspectArgs {
     /// Height (m) of 1 in a height map that names no unit, as of one level of grey of an image; goes before --unit
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) height_scale: Option<f64>,
+    /// Channel of a height map that has several; they are listed first [default: the first with heights]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) channel: Option<String>,
+    /// How a text of numbers is laid out, where it could be either: matrix (a row of the map a line) or xyz (a point a line)
+    #[arg(long, value_name = "matrix|xyz")]
+    pub(crate) layout: Option<Layout>,
     /// Folder for pictures of a height map: heights, spectrum with its power law, distribution
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,

@@ -10,13 +10,13 @@ use std::path::{Path, PathBuf};
 
 use rc_core::{Field, PeriodicCell};
 use rc_fractal::moments_of_grid;
-use rc_heights::{Scales, npy};
+use rc_heights::{ChannelInfo, ReadParams, Scales, npy};
 use rc_solver::PressureStatistics;
 use rc_sweep::{Summary, files, to_json};
 use serde::Serialize;
 
 use self::args::InspectArgs;
-use self::record::SurfaceRecord;
+use self::record::{ChannelRow, SurfaceRecord};
 use crate::error::CliError;
 use crate::files::result::ResultFolder;
 use crate::scene::surface::HEIGHTS_FILE;
@@ -83,7 +83,13 @@ fn inspect_result(folder: &Path, json: bool) -> Result<String, CliError> {
 }
 
 fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
-    let map = heights::read(&args.file, Scales { unit: args.unit, height_scale: args.height_scale })?;
+    let channels = rc_heights::channels(&args.file)?;
+    if channels.len() > 1 && !args.json {
+        // Before a channel is read: what there is helps a user to whom it says no.
+        terminal::print(&text::channels(&channels))?;
+    }
+    let params = ReadParams { channel: args.channel.clone(), layout: args.layout };
+    let map = heights::read(&args.file, &params, Scales { unit: args.unit, height_scale: args.height_scale })?;
     heights::check_finite(&args.file, &map.heights)?;
     if map.heights.max() <= map.heights.min() {
         let message = format_args!("all heights are {:e}; a flat surface has no statistics", map.heights.max());
@@ -95,7 +101,11 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
     let (heights, _) = heights::in_cell(&args.file, map.heights, cell)?;
     let grid = heights.grid();
     let note = if map.sides.is_none() && side_y.is_none() && grid.nx() != grid.ny() { TAKEN } else { "" };
-    let record = SurfaceRecord::of(&heights, side, moments_of_grid(&heights));
+    let mut record = SurfaceRecord::of(&heights, side, moments_of_grid(&heights));
+    if channels.len() > 1 {
+        record.channels =
+            channels.into_iter().map(|ChannelInfo { name, is_height }| ChannelRow { name, is_height }).collect();
+    }
     if let Some(folder) = &args.out {
         files::check_folder(folder)?;
         pictures::write(folder, &heights, &record)?;

@@ -47,6 +47,18 @@ pub(crate) struct SurfaceRecord {
     /// What was done to a measured map, state by state.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) treatments: Vec<TreatmentRow>,
+    /// The channels of the file that the map was read from, where it has several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) channels: Vec<ChannelRow>,
+}
+
+/// A channel of a file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub(crate) struct ChannelRow {
+    /// Its name, for `--channel`.
+    pub(crate) name: String,
+    /// Whether its values are lengths.
+    pub(crate) is_height: bool,
 }
 
 /// A power law C = C0 q^(-2(1+H)) through a part of the spectrum.
@@ -156,6 +168,7 @@ impl SurfaceRecord {
             hurst_fit: fit_hurst(&rings).map(|fit| HurstRow::new(fit, side)),
             spectrum: rings.iter().map(|ring| SpectrumRow::new(ring, side)).collect(),
             treatments: Vec::new(),
+            channels: Vec::new(),
         }
     }
 }

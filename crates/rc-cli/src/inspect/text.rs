@@ -2,11 +2,22 @@
 
 use rc_core::Histogram;
 use rc_core::quantity::{digits, engineering};
-use rc_heights::AreaParameters;
+use rc_heights::{AreaParameters, ChannelInfo};
 use rc_solver::PressureStatistics;
 
 use super::record::{SpectrumRow, SurfaceRecord, TreatmentRow};
 use crate::text::{aligned, cell};
+
+/// The channels of a file, a line each.
+pub(crate) fn channels(channels: &[ChannelInfo]) -> String {
+    let read = channels.iter().position(|channel| channel.is_height);
+    let lines = channels.iter().enumerate().map(|(i, channel)| {
+        let kind = if channel.is_height { "heights" } else { "not heights" };
+        let default = if Some(i) == read { ", read unless --channel says otherwise" } else { "" };
+        format!("  {kind:<13}{}{default}\n", channel.name)
+    });
+    "  channel      name\n".to_owned() + &lines.collect::<String>() + "\n"
+}
 
 /// Statistics of a height map, with a short table of its spectrum and its distribution.
 #[must_use]

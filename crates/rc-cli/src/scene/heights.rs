@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rc_core::{Field, Grid, PeriodicCell};
-use rc_heights::{HeightMap, SAME_LENGTH, Scales};
+use rc_heights::{HeightMap, ReadParams, SAME_LENGTH, Scales};
 
 use super::as_read::AsRead;
 use crate::error::CliError;
@@ -13,9 +13,9 @@ use rc_core::quantity::engineering;
 /// `iy` of the field.
 ///
 /// # Errors
-/// [`CliError::Input`] when the file cannot be read or is damaged, or when `scales` does not fit its units.
-pub(crate) fn read(path: &Path, scales: Scales) -> Result<HeightMap, CliError> {
-    rc_heights::read(path)?.in_metres(scales).map_err(|cause| CliError::in_file(path, cause))
+/// [`CliError::Input`] when the file cannot be read, is damaged or does not have the channel, or when `scales` does not fit its units.
+pub(crate) fn read(path: &Path, params: &ReadParams, scales: Scales) -> Result<HeightMap, CliError> {
+    rc_heights::read_with(path, params)?.in_metres(scales).map_err(|cause| CliError::in_file(path, cause))
 }
 
 /// Refuses a field with `NaN` or an infinite value.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use rc_fractal::{Amplitudes, Truncation};
-use rc_heights::{LengthUnit, Scales};
+use rc_heights::{Layout, LengthUnit, ReadParams, Scales};
 use rc_solver::Method;
 use rc_sweep::memory::ByteSize;
 use serde::{Deserialize, Serialize};
@@ -38,6 +38,12 @@ pub struct SurfaceKeys {
     /// Height (m) of 1 in a height map that names no unit, as of one level of grey of an image; goes before --unit
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub height_scale: Option<f64>,
+    /// Channel of a height map that has several, as rc inspect lists them [default: the first with heights]
+    #[arg(long, value_name = "NAME")]
+    pub channel: Option<String>,
+    /// How a text of numbers is laid out, where it could be either: matrix (a row of the map a line) or xyz (a point a line)
+    #[arg(long, value_name = "matrix|xyz")]
+    pub layout: Option<Layout>,
     /// N, waves per cell of the shortest wave
     #[arg(long, allow_hyphen_values = true)]
     pub waves: Option<usize>,
@@ -179,6 +185,7 @@ impl SurfaceKeys {
             lower = Self { cell: lower.cell, cell_y: lower.cell_y, ..Self::default() };
         } else if self.generates() {
             (lower.heights, lower.unit, lower.height_scale, lower.cell_y) = (None, None, None, None);
+            (lower.channel, lower.layout) = (None, None);
         }
         if self.cell.is_some() {
             lower.cell_y = None;
@@ -187,7 +194,7 @@ impl SurfaceKeys {
             (lower.rms, lower.rms_slope, lower.c0) = (None, None, None);
         }
         or_lower!(self, lower, {
-            cell, cell_y, heights, unit, height_scale, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, amplitudes, grid
+            cell, cell_y, heights, unit, height_scale, channel, layout, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, amplitudes, grid
         });
         self
     }
@@ -196,6 +203,12 @@ impl SurfaceKeys {
     #[must_use]
     pub fn scales(&self) -> Scales {
         Scales { unit: self.unit, height_scale: self.height_scale }
+    }
+
+    /// What is read of a height map.
+    #[must_use]
+    pub fn read_params(&self) -> ReadParams {
+        ReadParams { channel: self.channel.clone(), layout: self.layout }
     }
 
     /// Whether any parameter of a random surface is given.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use rc_core::{Field, Grid, HeightSource, PeriodicCell};
 use rc_fractal::{Moments, SpectrumParams, Surface, height_and_slope_of_grid, moments_of_grid};
-use rc_heights::{HeightMap, Scales};
+use rc_heights::{HeightMap, ReadParams, Scales};
 
 use super::as_read::AsRead;
 use super::heights;
@@ -34,6 +34,8 @@ pub enum Source {
         path: PathBuf,
         /// The grid that the user says it has.
         expected: Option<Grid>,
+        /// What is read of it.
+        params: ReadParams,
         /// What the user knows of its units.
         scales: Scales,
     },
@@ -91,7 +93,9 @@ impl SurfaceSetup {
     /// [`CliError::Input`] when the file is not a height map, is on another grid than the scene says, or is flat.
     pub fn load(&self) -> Result<LoadedSurface, CliError> {
         match &self.source {
-            Source::File { path, expected, scales } => self.of_map(path, heights::read(path, *scales)?, *expected),
+            Source::File { path, expected, params, scales } => {
+                self.of_map(path, heights::read(path, params, *scales)?, *expected)
+            }
             Source::Random { spectrum, grid } => {
                 let surface = Surface::new(spectrum).map_err(CliError::input)?;
                 Ok(LoadedSurface { shape: Shape::Random(Arc::new(surface)), grid: *grid, keys: self.keys.clone() })
@@ -120,8 +124,15 @@ impl SurfaceSetup {
         }
         let spec = GridSpec { nx, ny };
         // The map in a result folder is an array in metres.
-        let (heights_file, unit, height_scale) = (Some(HEIGHTS_FILE.into()), None, None);
-        let keys = SurfaceKeys { heights: heights_file, unit, height_scale, grid: Some(spec), ..self.keys.clone() };
+        let keys = SurfaceKeys {
+            heights: Some(HEIGHTS_FILE.into()),
+            unit: None,
+            height_scale: None,
+            channel: None,
+            layout: None,
+            grid: Some(spec),
+            ..self.keys.clone()
+        };
         let shape = Shape::Map { heights: Arc::new(heights), as_read };
         Ok(LoadedSurface { shape, grid, keys })
     }

@@ -82,7 +82,7 @@ fn treated(keys: SurfaceKeys, treatments: &[Treatment], budget: Budget) -> Resul
         return Err(CliError::input(message));
     };
     resolve::check_size(&keys)?;
-    let mut map = heights::read(&path, keys.scales())?;
+    let mut map = heights::read(&path, &keys.read_params(), keys.scales())?;
     let [cell, cell_y] = heights::sides(&path, map.sides, [keys.cell, keys.cell_y])?;
     // A map without a size has points that are equally far apart along both sides.
     let sides = |cell| cell_y.map_or_else(|| map.sides_of_width(cell), |cell_y| [cell, cell_y]);

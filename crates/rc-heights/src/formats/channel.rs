@@ -14,3 +14,97 @@ pub(crate) struct Channel<'a> {
 
 /// The channels of a file, in its order.
 pub(crate) type Channels<'a> = Result<Vec<Channel<'a>>, FormatError>;
+
+/// A channel of a file, as [`crate::channels`] lists it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChannelInfo {
+    /// Its name; empty for the only channel of a format without names.
+    pub name: String,
+    /// Whether its values are lengths. The first such channel is what [`crate::read`] reads.
+    pub is_height: bool,
+}
+
+impl From<&Channel<'_>> for ChannelInfo {
+    fn from(channel: &Channel<'_>) -> Self {
+        Self { name: channel.name.clone(), is_height: channel.is_height }
+    }
+}
+
+/// The only channel of a file, which has no name.
+pub(super) fn only<'a>(read: impl FnOnce() -> Result<HeightMap, FormatError> + 'a) -> Vec<Channel<'a>> {
+    vec![Channel { name: String::new(), is_height: true, read: Box::new(read) }]
+}
+
+/// The same channels with a name of its own for each: its number where it has none, a number behind a name that came before.
+pub(super) fn named(mut channels: Vec<Channel<'_>>) -> Vec<Channel<'_>> {
+    if channels.len() < 2 {
+        return channels;
+    }
+    let mut taken = std::collections::HashSet::new();
+    for (i, channel) in channels.iter_mut().enumerate() {
+        if channel.name.is_empty() {
+            channel.name = (i + 1).to_string();
+        }
+        let name = channel.name.clone();
+        let mut copy = 1;
+        while !taken.insert(channel.name.clone()) {
+            copy += 1;
+            channel.name = format!("{name} ({copy})");
+        }
+    }
+    channels
+}
+
+/// The channel called `name`, in any case of letters, or the first with heights.
+///
+/// # Errors
+/// [`FormatError::NoChannel`], [`FormatError::NoHeights`], with the names that there are.
+pub(super) fn chosen<'a>(channels: Vec<Channel<'a>>, name: Option<&str>) -> Result<Channel<'a>, FormatError> {
+    let names: Vec<String> = channels.iter().map(|channel| channel.name.clone()).collect();
+    let exact = |name: &str| names.iter().position(|other| other == name);
+    let any_case = |name: &str| names.iter().position(|other| other.to_lowercase() == name.to_lowercase());
+    let at = match name {
+        Some(name) => exact(name).or_else(|| any_case(name)),
+        None => channels.iter().position(|channel| channel.is_height),
+    };
+    let refused = match name {
+        Some(name) => FormatError::NoChannel { name: name.to_owned(), channels: names },
+        None => FormatError::NoHeights { channels: names },
+    };
+    at.and_then(|at| channels.into_iter().nth(at)).ok_or(refused)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn channels<'a>(names: &[&str]) -> Vec<Channel<'a>> {
+        let channel = |name: &&str| Channel {
+            name: (*name).to_owned(),
+            is_height: name.starts_with('h'),
+            read: Box::new(|| Err(FormatError::Unknown)),
+        };
+        names.iter().map(channel).collect()
+    }
+
+    #[test]
+    fn every_channel_of_several_has_a_name_of_its_own() {
+        let names = |given: &[&str]| named(channels(given)).into_iter().map(|c| c.name).collect::<Vec<_>>();
+        assert_eq!(names(&["h", "", "h", "h (2)", "h"]), ["h", "2", "h (2)", "h (2) (2)", "h (3)"]);
+        assert_eq!(names(&[""]), [""]);
+    }
+
+    #[test]
+    fn a_channel_is_chosen_by_its_name_and_heights_are_the_default() {
+        let name = |wanted| chosen(channels(&["phase", "height", "h"]), wanted).map(|channel| channel.name);
+        assert_eq!(name(None).as_deref(), Ok("height"));
+        assert_eq!(name(Some("H")).as_deref(), Ok("h"));
+        assert_eq!(name(Some("phase")).as_deref(), Ok("phase"));
+        let error = name(Some("slope")).expect_err("no such channel").to_string();
+        assert!(error.contains("'slope'") && error.contains("phase, height, h"), "{error}");
+        let error = chosen(channels(&["phase"]), None).err().expect("no heights").to_string();
+        assert!(error.contains("phase"), "{error}");
+        let error = chosen(channels(&[""]), Some("x")).err().expect("no names").to_string();
+        assert!(error.contains("omit channel"), "{error}");
+    }
+}

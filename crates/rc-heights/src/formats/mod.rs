@@ -1,4 +1,4 @@
-//! The formats, and how a file is known.
+//! The formats, and how a file is read.
 
 mod binary;
 mod channel;
@@ -6,9 +6,11 @@ mod field;
 mod fields;
 mod format;
 mod gsf;
+mod layout;
 pub mod npy;
 mod png;
 mod sdf;
+mod sniff;
 mod surfer;
 pub mod text;
 mod tiff;
@@ -16,68 +18,24 @@ mod x3p;
 mod xyz;
 
 use std::fs::File;
-use std::io::{Cursor, Read as _};
+use std::io::Read as _;
 use std::path::Path;
 
+pub use channel::ChannelInfo;
+pub(crate) use fields::shown;
 pub use format::Format;
+pub use layout::{Layout, LayoutError};
 
+use self::channel::{Channels, chosen, named, only};
 use crate::{FormatError, HeightMap, ReadError};
 
-/// Bytes at the start of a file that say what it is.
-const MARKS: [(&[u8], Format); 17] = [
-    (b"\x93NUMPY", Format::Npy),
-    (b"DSAA", Format::Surfer),
-    (b"DSBB", Format::Surfer),
-    (b"DSRB", Format::Surfer),
-    (gsf::MARK, Format::Gsf),
-    (b"aISO-1.0", Format::Sdf),
-    (b"bISO-1.0", Format::Sdf),
-    (b"aISO-2.0", Format::Sdf),
-    (b"bISO-2.0", Format::Sdf),
-    (b"aBCR-1.0", Format::Sdf),
-    (b"bBCR-1.0", Format::Sdf),
-    // What Gwyddion makes of the same.
-    (b"aBCR-0.0", Format::Sdf),
-    (b"bBCR-0.0", Format::Sdf),
-    (b"PK\x03\x04", Format::X3p),
-    (b"\x89PNG\r\n\x1a\n", Format::Png),
-    (b"II*\0", Format::Tiff),
-    (b"MM\0*", Format::Tiff),
-];
-
-impl Format {
-    /// Whether files of this format say how large the measured rectangle is, or may say it.
-    #[must_use]
-    pub fn has_sides(self) -> bool {
-        matches!(self, Self::Xyz | Self::Surfer | Self::Gsf | Self::Sdf | Self::X3p)
-    }
-
-    /// The format of a file that is called `path` and starts with `start`, of which 25 bytes are enough where there
-    /// is a mark. The
-    /// first bytes count more than the name.
-    ///
-    /// # Errors
-    /// [`FormatError::Mark`] for a name that promises another start, [`FormatError::Unknown`].
-    pub fn of(path: &Path, start: &[u8]) -> Result<Self, FormatError> {
-        if let Some((_, format)) = MARKS.iter().find(|(mark, _)| start.starts_with(mark)) {
-            return Ok(*format);
-        }
-        let mark = |format, expected| Err(FormatError::Mark { format, expected });
-        let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-        match extension.as_deref() {
-            Some("xyz") => Ok(Self::Xyz),
-            // Three numbers a line are points; no map has only three columns.
-            Some("csv" | "txt") => Ok(if xyz::looks_like_points(start) { Self::Xyz } else { Self::Csv }),
-            Some("npy") => mark(Self::Npy, "it must begin with \\x93NUMPY; numpy.save writes such files"),
-            Some("grd") => mark(Self::Surfer, "it must begin with DSAA, DSBB or DSRB"),
-            Some("gsf") => mark(Self::Gsf, "it must begin with the line 'Gwyddion Simple Field 1.0'"),
-            Some("sdf") => mark(Self::Sdf, "it must begin with aISO-1.0 or bISO-1.0"),
-            Some("x3p") => mark(Self::X3p, "it must be a zip archive"),
-            Some("png") => mark(Self::Png, "it must begin with \\x89PNG"),
-            Some("tif" | "tiff") => mark(Self::Tiff, "it must begin with II* or MM*; BigTIFF is not read"),
-            _ => Err(FormatError::Unknown),
-        }
-    }
+/// What is read of a file that could be read in several ways.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ReadParams {
+    /// The name of a channel; `None` is the first that has heights.
+    pub channel: Option<String>,
+    /// How a text is laid out; `None` is what its first lines look like.
+    pub layout: Option<Layout>,
 }
 
 /// The format of the file at `path`.
@@ -104,21 +62,48 @@ fn opened(path: &Path) -> Result<(Format, File, Vec<u8>), ReadError> {
 }
 
 /// Reads the height map at `path`, in the units of the file ([`HeightMap::in_metres`]). Row `iy` of the file is row `iy` of the
-/// field; `NaN` is a missing point.
+/// field; `NaN` is a missing point. Of several channels it is the first that has heights.
 ///
 /// # Errors
 /// [`ReadError`] when the file cannot be read, is of no known format, damaged, without a measured point, or has an infinite
 /// height.
 pub fn read(path: &Path) -> Result<HeightMap, ReadError> {
+    read_with(path, &ReadParams::default())
+}
+
+/// [`read`] of the channel and the layout that `params` name.
+///
+/// # Errors
+/// Those of [`read`], and a channel that the file does not have.
+pub fn read_with(path: &Path, params: &ReadParams) -> Result<HeightMap, ReadError> {
     let fail = |problem: FormatError| ReadError { path: path.to_owned(), problem };
     let unreadable = |cause: std::io::Error| fail(FormatError::Unreadable(cause.to_string()));
     let (format, mut file, mut bytes) = opened(path)?;
-    if format == Format::Npy {
+    if format == Format::Npy && params.channel.is_none() {
         // Arrays may be as large as memory: they are not read as bytes first.
         return checked(HeightMap::bare(npy::read(path)?)).map_err(fail);
     }
     file.read_to_end(&mut bytes).map_err(unreadable)?;
-    parse(&bytes, format).map_err(fail)
+    parse_with(&bytes, layout::format(format, params.layout), params).map_err(fail)
+}
+
+/// The channels of the file at `path`, in its order; their values are not read.
+///
+/// # Errors
+/// [`ReadError`] when the file cannot be read, is of no known format or damaged.
+pub fn channels(path: &Path) -> Result<Vec<ChannelInfo>, ReadError> {
+    let fail = |problem: FormatError| ReadError { path: path.to_owned(), problem };
+    let (format, mut file, mut bytes) = opened(path)?;
+    file.read_to_end(&mut bytes).map_err(|cause| fail(FormatError::Unreadable(cause.to_string())))?;
+    channels_of(&bytes, format).map_err(fail)
+}
+
+/// [`channels`] of the bytes of a file of the given format.
+///
+/// # Errors
+/// [`FormatError`].
+pub fn channels_of(bytes: &[u8], format: Format) -> Result<Vec<ChannelInfo>, FormatError> {
+    Ok(named(in_bytes(bytes, format)?).iter().map(ChannelInfo::from).collect())
 }
 
 /// Reads a height map from the bytes of a file of the given format.
@@ -126,18 +111,31 @@ pub fn read(path: &Path) -> Result<HeightMap, ReadError> {
 /// # Errors
 /// [`FormatError`].
 pub fn parse(bytes: &[u8], format: Format) -> Result<HeightMap, FormatError> {
-    let map = match format {
-        Format::Npy => HeightMap::bare(npy::read_from(Cursor::new(bytes), bytes.len() as u64)?),
-        Format::Csv => HeightMap::bare(text::parse(bytes)?),
-        Format::Xyz => xyz::parse(bytes)?,
-        Format::Surfer => surfer::parse(bytes)?,
-        Format::Gsf => gsf::parse(bytes)?,
-        Format::Sdf => sdf::parse(bytes)?,
-        Format::X3p => x3p::parse(bytes)?,
-        Format::Png => png::parse(bytes)?,
-        Format::Tiff => tiff::parse(bytes)?,
-    };
-    checked(map)
+    parse_with(bytes, format, &ReadParams::default())
+}
+
+/// [`parse`] of the channel that `params` name.
+///
+/// # Errors
+/// [`FormatError`].
+pub fn parse_with(bytes: &[u8], format: Format, params: &ReadParams) -> Result<HeightMap, FormatError> {
+    let channel = chosen(named(in_bytes(bytes, format)?), params.channel.as_deref())?;
+    checked((channel.read)()?)
+}
+
+/// The channels of a file, one line a format.
+fn in_bytes(bytes: &[u8], format: Format) -> Channels<'_> {
+    Ok(match format {
+        Format::Csv => only(move || Ok(HeightMap::bare(text::parse(bytes)?))),
+        Format::Gsf => only(move || gsf::parse(bytes)),
+        Format::Npy => only(move || npy::read_from(bytes, bytes.len() as u64).map(HeightMap::bare)),
+        Format::Png => only(move || png::parse(bytes)),
+        Format::Sdf => only(move || sdf::parse(bytes)),
+        Format::Surfer => only(move || surfer::parse(bytes)),
+        Format::Tiff => only(move || tiff::parse(bytes)),
+        Format::X3p => only(move || x3p::parse(bytes)),
+        Format::Xyz => only(move || xyz::parse(bytes)),
+    })
 }
 
 /// Refuses infinite heights and maps without a measured point.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use rc_core::{Grid, PeriodicCell};
 use rc_fractal::{Amplitudes, MAX_WAVES, Normalisation, SpectrumParams, Truncation};
-use rc_heights::Scales;
+use rc_heights::{ReadParams, Scales};
 
 use super::checks::{checked_grid, missing, positive};
 use crate::error::CliError;
@@ -43,7 +43,7 @@ pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
     let grid = keys.grid.map(checked_grid).transpose()?;
     match keys.heights.clone() {
         Some(path) => {
-            let source = Source::File { path, expected: grid, scales: keys.scales() };
+            let source = Source::File { path, expected: grid, params: keys.read_params(), scales: keys.scales() };
             Ok(SurfaceSetup { cell, source, keys })
         }
         None => random(keys, cell, grid),
@@ -54,6 +54,9 @@ pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
 fn random(mut keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Result<SurfaceSetup, CliError> {
     if keys.scales() != Scales::default() {
         return Err(CliError::input("unit and height_scale: are for height maps; give --heights FILE, or omit them"));
+    }
+    if keys.read_params() != ReadParams::default() {
+        return Err(CliError::input("channel and layout: are for height maps; give --heights FILE, or omit them"));
     }
     if keys.cell_y.is_some() {
         return Err(CliError::input("cell_y: is for height maps; a random surface has a square cell, so omit it"));
@@ -79,7 +82,7 @@ fn sides_of_map(path: &Path, keys: &SurfaceKeys) -> Result<[Option<f64>; 2], Cli
     if !rc_heights::format_of(path)?.has_sides() {
         return Ok(given);
     }
-    heights::sides(path, heights::read(path, keys.scales())?.sides, given)
+    heights::sides(path, heights::read(path, &keys.read_params(), keys.scales())?.sides, given)
 }
 
 /// The parameters of a random surface on the unit cell; `side` is λ in m.
