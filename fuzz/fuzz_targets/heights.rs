@@ -4,12 +4,17 @@
 use libfuzzer_sys::fuzz_target;
 use rc_heights::{Format, parse};
 
-const FORMATS: [Format; 9] = [
+const FORMATS: &[Format] = &[
     Format::Npy,
     Format::Csv,
     Format::Xyz,
     Format::Surfer,
     Format::Gsf,
+    Format::Gwy,
+    Format::Hdf5,
+    Format::Ibw,
+    Format::Mat,
+    Format::NetCdf,
     Format::Sdf,
     Format::X3p,
     Format::Png,

@@ -26,10 +26,19 @@ pub enum FormatError {
     Unreadable(String),
     /// Neither the first bytes nor the extension say what it is.
     #[error(
-        "neither its first bytes nor its name say what it is; a height map is a .npy, .csv, .txt, .xyz, .grd (Surfer), .gsf \
-         (Gwyddion), .sdf, .x3p, .png or .tif file"
+        "neither its first bytes nor its name say what it is; a height map is a text (.csv, .txt, .dat, .asc, .xyz), an array (.npy, \
+         .mat, .h5, .nc), a file of an instrument or of a program (.gwy, .gsf, .grd, .ibw, .sdf, .x3p), a .png or a .tif file"
     )]
     Unknown,
+    /// An archive that is not a height map.
+    #[error("it is {what}")]
+    Archive {
+        /// What it is, and what to do.
+        what: String,
+    },
+    /// A file that gzip has packed and that cannot be unpacked.
+    #[error("gzip cannot unpack it: {0}; the file is damaged or cut off")]
+    Gzip(String),
     /// The extension promises a format that the first bytes are not of.
     #[error("not a valid {format} file: {expected}")]
     Mark {
@@ -125,7 +134,7 @@ pub enum FormatError {
         expected: String,
     },
     /// Points that are not on a regular grid.
-    #[error("the points are on no regular grid: {0}")]
+    #[error("the points are not on a regular grid: {0}; of a text, layout = matrix reads a row of the map a line")]
     Irregular(String),
     /// A height that is infinite.
     #[error(

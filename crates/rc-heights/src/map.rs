@@ -36,7 +36,8 @@ impl HeightMap {
         let unit_has_use = unnamed(self.height_unit) || self.sides.is_some() && unnamed(self.side_unit);
         match (self.height_unit, scales) {
             (Unit::GreyLevel, Scales { height_scale: None, .. }) => return Err(LengthUnitError::GreyLevels),
-            (Unit::GreyLevel, Scales { unit: Some(_), .. }) if !unit_has_use => {
+            (Unit::NotLength, Scales { height_scale: None, .. }) => return Err(LengthUnitError::NotLength),
+            (Unit::GreyLevel | Unit::NotLength, Scales { unit: Some(_), .. }) if !unit_has_use => {
                 return Err(LengthUnitError::UnitOfLevels);
             }
             (_, Scales { unit: Some(_), .. }) if !unit_has_use => return Err(LengthUnitError::UnitsNamed),
@@ -45,9 +46,10 @@ impl HeightMap {
         let factor = match (self.height_unit, scales.height_scale) {
             (_, Some(value)) if value == 0.0 || !value.is_finite() => return Err(LengthUnitError::Scale { value }),
             (Unit::Metre, Some(_)) => return Err(LengthUnitError::HeightsInMetres),
-            (Unit::GreyLevel, None) => return Err(LengthUnitError::GreyLevels),
-            (Unit::Unnamed | Unit::GreyLevel, Some(value)) => value,
+            (Unit::Unnamed | Unit::GreyLevel | Unit::NotLength, Some(value)) => value,
             (Unit::Unnamed, None) => unit,
+            // Refused above.
+            (Unit::GreyLevel | Unit::NotLength, None) => return Err(LengthUnitError::GreyLevels),
             (Unit::Metre, None) => 1.0,
         };
         scale(self.heights.values_mut(), factor);
@@ -139,7 +141,7 @@ mod tests {
 
     use super::*;
     use crate::LengthUnit;
-    use crate::Unit::{GreyLevel, Metre, Unnamed};
+    use crate::Unit::{GreyLevel, Metre, NotLength, Unnamed};
 
     fn map(height_unit: Unit, side_unit: Unit) -> HeightMap {
         let heights = Field::new(Grid::new(2, 1).expect("a grid"), vec![1.0, 2.0]).expect("two heights");
@@ -162,6 +164,8 @@ mod tests {
             (GreyLevel, Metre, none, Err(LengthUnitError::GreyLevels)),
             (GreyLevel, Unnamed, um, Err(LengthUnitError::GreyLevels)),
             (GreyLevel, Metre, nm, Err(LengthUnitError::UnitOfLevels)),
+            (NotLength, Metre, none, Err(LengthUnitError::NotLength)),
+            (NotLength, Metre, Scales { unit: None, ..nm }, Ok((1e-9, 3.0))),
             (GreyLevel, Unnamed, nm, Ok((1e-9, 3e-6))),
             (GreyLevel, Metre, Scales { unit: None, ..nm }, Ok((1e-9, 3.0))),
         ];

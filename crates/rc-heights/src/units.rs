@@ -31,9 +31,9 @@ impl LengthUnit {
         (Self::Metre, &["m"], 1.0),
         (Self::Centimetre, &["cm"], 1e-2),
         (Self::Millimetre, &["mm"], 1e-3),
-        (Self::Micrometre, &["um", "µm", "μm", "micron"], 1e-6),
+        (Self::Micrometre, &["um", "µm", "μm", "micron", "microns"], 1e-6),
         (Self::Nanometre, &["nm"], 1e-9),
-        (Self::Angstrom, &["angstrom", "Å", "A"], 1e-10),
+        (Self::Angstrom, &["angstrom", "Å", "Å", "A"], 1e-10),
         (Self::Picometre, &["pm"], 1e-12),
     ];
 
@@ -80,6 +80,8 @@ pub enum Unit {
     Unnamed,
     /// A level of grey.
     GreyLevel,
+    /// A quantity that is not a length, as the phase or the voltage of a channel that was picked by name.
+    NotLength,
 }
 
 /// What a user knows of a file that does not name its units.
@@ -104,6 +106,11 @@ pub enum LengthUnitError {
     /// Levels of grey without a scale.
     #[error("levels of grey have no unit; give the height of one level as height_scale (m)")]
     GreyLevels,
+    /// Values that are not lengths, without a scale.
+    #[error(
+        "the values of this channel are not lengths; give the height of one as height_scale (m), or pick another channel"
+    )]
+    NotLength,
     /// A scale that no height can have.
     #[error("height_scale: must be finite and not 0 (m), not {value}")]
     Scale {

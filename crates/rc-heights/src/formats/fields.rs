@@ -69,3 +69,10 @@ pub(crate) fn shown(text: &str) -> String {
     let start = text.chars().take(40).map(|c| if c.is_control() { '\u{FFFD}' } else { c });
     start.collect::<String>() + if text.chars().nth(40).is_some() { "…" } else { "" }
 }
+
+/// A message as one line of at most 200 characters; parsers quote what they find.
+pub(super) fn shown_as_line(text: &str) -> String {
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let start: String = line.chars().take(200).map(|c| if c.is_control() { '\u{FFFD}' } else { c }).collect();
+    if line.chars().nth(200).is_some() { start + "…" } else { start }
+}

@@ -13,6 +13,16 @@ pub enum Format {
     Surfer,
     /// Gwyddion simple field 1.0.
     Gsf,
+    /// Gwyddion native file, version 2.
+    Gwy,
+    /// HDF5, 2-D arrays.
+    Hdf5,
+    /// Igor Pro binary wave, version 5.
+    Ibw,
+    /// MATLAB 5, 2-D arrays.
+    Mat,
+    /// NetCDF: classic and 64-bit.
+    NetCdf,
     /// ISO 25178-71, text and binary.
     Sdf,
     /// ISO 5436-2, now ISO 25178-72.
@@ -31,6 +41,11 @@ impl std::fmt::Display for Format {
             Self::Xyz => "xyz",
             Self::Surfer => "Surfer grid",
             Self::Gsf => "Gwyddion simple field",
+            Self::Gwy => "Gwyddion",
+            Self::Hdf5 => "HDF5",
+            Self::Ibw => "Igor wave",
+            Self::Mat => "MATLAB 5",
+            Self::NetCdf => "NetCDF",
             Self::Sdf => "sdf",
             Self::X3p => "x3p",
             Self::Png => "PNG",

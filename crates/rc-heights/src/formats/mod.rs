@@ -1,12 +1,21 @@
 //! The formats, and how a file is read.
 
+mod archive;
+mod axes;
 mod binary;
 mod channel;
+mod decode;
+mod endian;
 mod field;
 mod fields;
 mod format;
 mod gsf;
+mod gwy;
+mod heading;
+mod ibw;
 mod layout;
+mod mat;
+mod netcdf;
 pub mod npy;
 mod png;
 mod sdf;
@@ -14,6 +23,7 @@ mod sniff;
 mod surfer;
 pub mod text;
 mod tiff;
+mod unit;
 mod x3p;
 mod xyz;
 
@@ -27,6 +37,8 @@ pub use format::Format;
 pub use layout::{Layout, LayoutError};
 
 use self::channel::{Channels, chosen, named, only};
+use self::decode::decoded;
+use self::heading::Heading;
 use crate::{FormatError, HeightMap, ReadError};
 
 /// What is read of a file that could be read in several ways.
@@ -38,27 +50,75 @@ pub struct ReadParams {
     pub layout: Option<Layout>,
 }
 
-/// The format of the file at `path`.
+/// The format of the file at `path`; of a file that gzip has packed, that of what is in it.
 ///
 /// # Errors
 /// As of [`read`], as far as the first bytes tell.
 pub fn format_of(path: &Path) -> Result<Format, ReadError> {
-    opened(path).map(|(format, ..)| format)
+    Opened::new(path).map(|file| file.format)
 }
 
-/// The file at `path`, its format, and its first bytes.
-fn opened(path: &Path) -> Result<(Format, File, Vec<u8>), ReadError> {
-    let fail = |problem: FormatError| ReadError { path: path.to_owned(), problem };
-    let unreadable = |cause: std::io::Error| fail(FormatError::Unreadable(cause.to_string()));
-    let mut file = File::open(path).map_err(unreadable)?;
-    if file.metadata().map_err(unreadable)?.is_dir() {
-        return Err(fail(FormatError::Unreadable("it is a folder, not a height map such as .npy or .csv".into())));
+/// Whether the file at `path` may say how large the measured rectangle is: a format without sizes, or a text whose first lines do not
+/// say it, does not.
+///
+/// # Errors
+/// As of [`read`], as far as the first bytes tell.
+pub fn may_have_sides(path: &Path, params: &ReadParams) -> Result<bool, ReadError> {
+    let file = Opened::new(path)?;
+    Ok(match layout::format(file.format, params.layout) {
+        Format::Csv => Heading::of(&decoded(&file.bytes)).is_ok_and(|heading| heading.says_sides()),
+        format => format.has_sides(),
+    })
+}
+
+/// A file whose format is known.
+struct Opened {
+    format: Format,
+    /// Its first bytes, or all of them.
+    bytes: Vec<u8>,
+    /// Where the others are.
+    rest: Option<File>,
+}
+
+impl Opened {
+    fn new(path: &Path) -> Result<Self, ReadError> {
+        Self::open(path).map_err(|problem| ReadError { path: path.to_owned(), problem })
     }
-    let mut bytes = Vec::new();
-    // Enough for a mark, and for the first lines of a text.
-    file.by_ref().take(4096).read_to_end(&mut bytes).map_err(unreadable)?;
-    let format = Format::of(path, &bytes).map_err(fail)?;
-    Ok((format, file, bytes))
+
+    fn open(path: &Path) -> Result<Self, FormatError> {
+        let mut file = File::open(path).map_err(unreadable)?;
+        if file.metadata().map_err(unreadable)?.is_dir() {
+            return Err(FormatError::Unreadable("it is a folder, not a height map such as .npy or .csv".into()));
+        }
+        let mut bytes = Vec::new();
+        // Enough for a mark, and for the first lines of a text.
+        file.by_ref().take(4096).read_to_end(&mut bytes).map_err(unreadable)?;
+        if bytes.starts_with(archive::GZIP) {
+            file.read_to_end(&mut bytes).map_err(unreadable)?;
+            let bytes = archive::unzipped(&bytes)?;
+            let is_gz = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
+            let name = if is_gz { path.with_extension("") } else { path.to_owned() };
+            return Ok(Self { format: Format::of(&name, &bytes)?, bytes, rest: None });
+        }
+        if bytes.starts_with(archive::ZIP) {
+            file.read_to_end(&mut bytes).map_err(unreadable)?;
+            return Ok(Self { format: Format::of(path, &bytes)?, bytes, rest: None });
+        }
+        Ok(Self { format: Format::of(path, &bytes)?, bytes, rest: Some(file) })
+    }
+
+    /// All bytes.
+    fn whole(mut self) -> Result<Vec<u8>, FormatError> {
+        if let Some(mut rest) = self.rest.take() {
+            rest.read_to_end(&mut self.bytes).map_err(unreadable)?;
+        }
+        Ok(self.bytes)
+    }
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "the shape that map_err wants")]
+fn unreadable(cause: std::io::Error) -> FormatError {
+    FormatError::Unreadable(cause.to_string())
 }
 
 /// Reads the height map at `path`, in the units of the file ([`HeightMap::in_metres`]). Row `iy` of the file is row `iy` of the
@@ -77,14 +137,13 @@ pub fn read(path: &Path) -> Result<HeightMap, ReadError> {
 /// Those of [`read`], and a channel that the file does not have.
 pub fn read_with(path: &Path, params: &ReadParams) -> Result<HeightMap, ReadError> {
     let fail = |problem: FormatError| ReadError { path: path.to_owned(), problem };
-    let unreadable = |cause: std::io::Error| fail(FormatError::Unreadable(cause.to_string()));
-    let (format, mut file, mut bytes) = opened(path)?;
-    if format == Format::Npy && params.channel.is_none() {
+    let file = Opened::new(path)?;
+    if file.format == Format::Npy && file.rest.is_some() && params.channel.is_none() {
         // Arrays may be as large as memory: they are not read as bytes first.
         return checked(HeightMap::bare(npy::read(path)?)).map_err(fail);
     }
-    file.read_to_end(&mut bytes).map_err(unreadable)?;
-    parse_with(&bytes, layout::format(format, params.layout), params).map_err(fail)
+    let format = layout::format(file.format, params.layout);
+    file.whole().and_then(|bytes| parse_with(&bytes, format, params)).map_err(fail)
 }
 
 /// The channels of the file at `path`, in its order; their values are not read.
@@ -92,10 +151,10 @@ pub fn read_with(path: &Path, params: &ReadParams) -> Result<HeightMap, ReadErro
 /// # Errors
 /// [`ReadError`] when the file cannot be read, is of no known format or damaged.
 pub fn channels(path: &Path) -> Result<Vec<ChannelInfo>, ReadError> {
-    let fail = |problem: FormatError| ReadError { path: path.to_owned(), problem };
-    let (format, mut file, mut bytes) = opened(path)?;
-    file.read_to_end(&mut bytes).map_err(|cause| fail(FormatError::Unreadable(cause.to_string())))?;
-    channels_of(&bytes, format).map_err(fail)
+    let file = Opened::new(path)?;
+    let format = file.format;
+    let channels = file.whole().and_then(|bytes| channels_of(&bytes, format));
+    channels.map_err(|problem| ReadError { path: path.to_owned(), problem })
 }
 
 /// [`channels`] of the bytes of a file of the given format.
@@ -126,8 +185,12 @@ pub fn parse_with(bytes: &[u8], format: Format, params: &ReadParams) -> Result<H
 /// The channels of a file, one line a format.
 fn in_bytes(bytes: &[u8], format: Format) -> Channels<'_> {
     Ok(match format {
-        Format::Csv => only(move || Ok(HeightMap::bare(text::parse(bytes)?))),
+        Format::Csv => text::channels(bytes)?,
         Format::Gsf => only(move || gsf::parse(bytes)),
+        Format::Gwy => gwy::channels(bytes)?,
+        Format::Hdf5 | Format::NetCdf => netcdf::channels(bytes, format)?,
+        Format::Ibw => ibw::channels(bytes)?,
+        Format::Mat => mat::channels(bytes)?,
         Format::Npy => only(move || npy::read_from(bytes, bytes.len() as u64).map(HeightMap::bare)),
         Format::Png => only(move || png::parse(bytes)),
         Format::Sdf => only(move || sdf::parse(bytes)),

@@ -2,8 +2,13 @@
 
 use std::path::Path;
 
-use super::{Format, gsf, xyz};
+use super::archive::{self, ZIP};
+use super::decode::is_text;
+use super::{Format, gsf, gwy, ibw, mat, xyz};
 use crate::FormatError;
+
+/// The signature of HDF5, at the start or behind a user block of 512 bytes or a power of two as many.
+const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 /// Bytes at the start of a file that say what it is.
 const MARKS: &[(&[u8], Format)] = &[
@@ -12,6 +17,12 @@ const MARKS: &[(&[u8], Format)] = &[
     (b"DSBB", Format::Surfer),
     (b"DSRB", Format::Surfer),
     (gsf::MARK, Format::Gsf),
+    (gwy::MARK, Format::Gwy),
+    (HDF5, Format::Hdf5),
+    (mat::MARK, Format::Mat),
+    (b"CDF\x01", Format::NetCdf),
+    (b"CDF\x02", Format::NetCdf),
+    (b"CDF\x05", Format::NetCdf),
     (b"aISO-1.0", Format::Sdf),
     (b"bISO-1.0", Format::Sdf),
     (b"aISO-2.0", Format::Sdf),
@@ -21,38 +32,54 @@ const MARKS: &[(&[u8], Format)] = &[
     // What Gwyddion makes of the same.
     (b"aBCR-0.0", Format::Sdf),
     (b"bBCR-0.0", Format::Sdf),
-    (b"PK\x03\x04", Format::X3p),
     (b"\x89PNG\r\n\x1a\n", Format::Png),
     (b"II*\0", Format::Tiff),
     (b"MM\0*", Format::Tiff),
 ];
 
 impl Format {
-    /// Whether files of this format say how large the measured rectangle is, or may say it.
+    /// Whether files of this format may say how large the measured rectangle is. Texts do it in lines before the numbers.
     #[must_use]
     pub fn has_sides(self) -> bool {
-        matches!(self, Self::Xyz | Self::Surfer | Self::Gsf | Self::Sdf | Self::X3p)
+        !matches!(self, Self::Npy | Self::Png | Self::Tiff)
     }
 
-    /// The format of a file that is called `path` and starts with `start`, of which 25 bytes are enough where there
-    /// is a mark. The
-    /// first bytes count more than the name.
+    /// The format of a file that is called `path` and starts with `start`, of which 4096 bytes are enough but for zip archives, which
+    /// are needed whole. The first bytes count more than the name.
     ///
     /// # Errors
-    /// [`FormatError::Mark`] for a name that promises another start, [`FormatError::Unknown`].
+    /// [`FormatError::Mark`] for a name that promises another start, [`FormatError::Archive`], [`FormatError::Unknown`].
     pub fn of(path: &Path, start: &[u8]) -> Result<Self, FormatError> {
         if let Some((_, format)) = MARKS.iter().find(|(mark, _)| start.starts_with(mark)) {
             return Ok(*format);
+        }
+        if start.starts_with(ZIP) {
+            return archive::format_of_zip(start);
+        }
+        if ibw::order(start).is_some() {
+            return Ok(Self::Ibw);
+        }
+        if [512, 1024, 2048].iter().any(|at| start.get(*at..).is_some_and(|rest| rest.starts_with(HDF5))) {
+            return Ok(Self::Hdf5);
         }
         let mark = |format, expected| Err(FormatError::Mark { format, expected });
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         match extension.as_deref() {
             Some("xyz") => Ok(Self::Xyz),
-            // Three numbers a line are points; no map has only three columns.
-            Some("csv" | "txt") => Ok(if xyz::looks_like_points(start) { Self::Xyz } else { Self::Csv }),
+            // Three numbers a line are points; few maps have only three columns.
+            Some("csv" | "txt" | "tsv" | "dat" | "asc") if is_text(start) => {
+                Ok(if xyz::looks_like_points(start) { Self::Xyz } else { Self::Csv })
+            }
             Some("npy") => mark(Self::Npy, "it must begin with \\x93NUMPY; numpy.save writes such files"),
             Some("grd") => mark(Self::Surfer, "it must begin with DSAA, DSBB or DSRB"),
             Some("gsf") => mark(Self::Gsf, "it must begin with the line 'Gwyddion Simple Field 1.0'"),
+            Some("gwy") => mark(Self::Gwy, "it must begin with GWYP"),
+            Some("h5" | "hdf5" | "nc4") => mark(Self::Hdf5, "it must begin with \\x89HDF"),
+            Some("ibw") => mark(Self::Ibw, "it must begin with the headers of version 5, 384 bytes"),
+            Some("mat") => {
+                mark(Self::Mat, "it must begin with 'MATLAB 5.0 MAT-file' or be HDF5; save it with -v6, -v7 or -v7.3")
+            }
+            Some("nc") => mark(Self::NetCdf, "it must begin with CDF or be HDF5"),
             Some("sdf") => mark(Self::Sdf, "it must begin with aISO-1.0 or bISO-1.0"),
             Some("x3p") => mark(Self::X3p, "it must be a zip archive"),
             Some("png") => mark(Self::Png, "it must begin with \\x89PNG"),

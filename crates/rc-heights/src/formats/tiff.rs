@@ -5,6 +5,7 @@ use std::io::Cursor;
 use rc_core::Grid;
 use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
+use tiff::tags::Tag;
 
 use super::field::field;
 use crate::{Format, FormatError, HeightMap, Unit};
@@ -12,10 +13,18 @@ use crate::{Format, FormatError, HeightMap, Unit};
 /// What LZW makes of one byte at most: 12 bits stand for 4096 bytes. Deflate makes less.
 const MOST_INFLATION: u64 = 2731;
 
+/// A tag that only files of Park Systems have; the heights are in others of them.
+const PARK: u16 = 50432;
+
 pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     let invalid = |cause: tiff::TiffError| FormatError::Container { format: Format::Tiff, reason: cause.to_string() };
     let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(invalid)?;
     let (width, height) = decoder.dimensions().map_err(invalid)?;
+    if decoder.find_tag(Tag::Unknown(PARK)).map_err(invalid)?.is_some() {
+        let what = "the file of a Park AFM, whose picture is a thumbnail,".to_owned();
+        let cure = "export its heights as text or save it as .gwy with Gwyddion";
+        return Err(FormatError::Unsupported { format: Format::Tiff, what, cure });
+    }
     let grid = Grid::new(width as usize, height as usize)?;
     let size = match decoder.colortype().map_err(invalid)? {
         ColorType::Gray(16) => 2,

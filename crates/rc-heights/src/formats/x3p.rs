@@ -23,7 +23,12 @@ type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
 
 pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|cause| container(&cause))?;
-    let xml = member(&mut archive, "main.xml", LONGEST_XML)?;
+    // Some programs pack the folder, not its members.
+    let names = super::archive::names(&archive);
+    let folders = names.iter().filter_map(|name| name.strip_suffix("main.xml"));
+    let folders = folders.filter(|folder| folder.is_empty() || folder.ends_with('/'));
+    let folder = folders.min_by_key(|folder| folder.len()).unwrap_or_default();
+    let xml = member(&mut archive, &format!("{folder}main.xml"), LONGEST_XML)?;
     let xml = String::from_utf8_lossy(&xml);
     let document = Document::parse(&xml).map_err(|cause| container(&cause))?;
     let root = document.root_element();
@@ -37,9 +42,9 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     if found < needed {
         return Err(FormatError::CutShort { grid, needed, found });
     }
-    let mut values = number.values(&member(&mut archive, link, needed)?, grid)?;
+    let mut values = number.values(&member(&mut archive, &format!("{folder}{link}"), needed)?, grid)?;
     if let Ok(link) = text(root, "DataLink", "ValidPointsLink") {
-        mask(&mut values, &member(&mut archive, link, needed)?)?;
+        mask(&mut values, &member(&mut archive, &format!("{folder}{link}"), needed)?)?;
     }
     for value in &mut values {
         // ISO 5436-2 lets infinities stand for missing points as well.

@@ -1,7 +1,9 @@
 //! Lists of points, `x y z` a line, in any order, on a regular grid; points may be missing.
 
+use super::decode::decoded;
 use super::field::field;
 use super::fields::shown;
+use super::heading::Heading;
 use super::text::{data_lines, number, words};
 use crate::{FormatError, HeightMap, Unit};
 
@@ -13,19 +15,47 @@ const MOST_MISSING: usize = 16;
 /// Coordinates that differ by less than this part of their range are the same grid line; a grid has fewer lines.
 const SAME_LINE: f64 = 2e-7;
 
-/// Whether the first lines of a text have three numbers each.
+/// Whether the first lines of a text have three numbers each, and no line before them says that they are rows of a map.
 pub(super) fn looks_like_points(start: &[u8]) -> bool {
-    let text = String::from_utf8_lossy(start);
+    let text = decoded(start);
     // The last line may be cut off.
     let whole = text.rsplit_once(['\n', '\r']).map_or("", |(whole, _)| whole);
-    let three = |(_, line): (usize, &str)| words(line).filter(|word| number(word, true).is_some()).count() == 3;
-    let lines: Vec<bool> = data_lines(whole).map(three).collect();
-    // One line of a title may come first.
-    lines.len() > 2 && lines[1..].iter().all(|three| *three)
+    let Ok(heading) = Heading::of(whole) else { return false };
+    let three = |(_, line): (usize, &str)| {
+        let (words, comma) = words(line);
+        words.filter(|word| number(word, comma).is_some()).count() == 3
+    };
+    let lines: Vec<bool> = data_lines(whole, heading.first).map(three).collect();
+    !heading.is_of_rows() && lines.len() + heading.titles.len().min(1) > 2 && lines.iter().all(|three| *three)
 }
 
 pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
-    let points = points(&String::from_utf8_lossy(bytes))?;
+    let text = decoded(bytes);
+    let heading = Heading::of(&text)?;
+    let order = order(&heading.titles);
+    let points = points(&text, heading.first, order)?;
+    let mut map = on_grid(points)?;
+    let units = order.map(|i| heading.units_of_titles()[i]);
+    if let ([Some(x), Some(y), _], Some(sides)) = (units, &mut map.sides) {
+        *sides = [sides[0] * x.metres(), sides[1] * y.metres()];
+        map.side_unit = Unit::Metre;
+    }
+    let (unit, factor) = units[2].map_or_else(|| heading.of_heights(), |unit| Ok((Unit::Metre, unit.metres())))?;
+    crate::map::scale(map.heights.values_mut(), factor);
+    map.height_unit = unit;
+    Ok(map)
+}
+
+/// The columns of x, y and height, if titles begin with these letters; else the first three.
+fn order(titles: &[String]) -> [usize; 3] {
+    let at = |letter: &str| titles.iter().position(|title| title.to_lowercase().starts_with(letter));
+    match (titles.len(), at("x"), at("y"), at("z")) {
+        (3, Some(x), Some(y), Some(z)) => [x, y, z],
+        _ => [0, 1, 2],
+    }
+}
+
+fn on_grid(points: Vec<[f64; 3]>) -> Result<HeightMap, FormatError> {
     let axes = [Axis::of("x", &points, |point| point[0])?, Axis::of("y", &points, |point| point[1])?];
     let grid = Grid::new(axes[0].n, axes[1].n)?;
     if grid.len() > MOST_MISSING * points.len() {
@@ -46,22 +76,20 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     Ok(HeightMap { heights: field(grid, values), height_unit: Unit::Unnamed, sides, side_unit: Unit::Unnamed })
 }
 
-fn points(text: &str) -> Result<Vec<[f64; 3]>, FormatError> {
+/// The points from line `first` on; `order` has the columns of x, y and height.
+fn points(text: &str, first: usize, order: [usize; 3]) -> Result<Vec<[f64; 3]>, FormatError> {
     let mut points = Vec::new();
-    for (line, row) in data_lines(text) {
-        let words: Vec<&str> = words(row).take(4).collect();
-        let parsed: Vec<Option<f64>> = words.iter().map(|word| number(word, row.contains(';'))).collect();
-        if points.is_empty() && parsed.iter().all(Option::is_none) {
-            continue; // A line of titles.
-        }
+    for (line, row) in data_lines(text, first) {
+        let (words, comma) = words(row);
+        let words: Vec<&str> = words.take(4).collect();
         if words.len() != 3 {
             let expected = "a point has three: x, y, z".to_owned();
             return Err(FormatError::Columns { line, found: words.len(), expected });
         }
         let mut point = [0.0; 3];
-        for (i, (to, value)) in point.iter_mut().zip(&parsed).enumerate() {
-            let no_number = || FormatError::NoNumber { line, value: i + 1, text: shown(words[i]) };
-            *to = value.filter(|value| i == 2 || value.is_finite()).ok_or_else(no_number)?;
+        for (i, (to, at)) in point.iter_mut().zip(order).enumerate() {
+            let no_number = || FormatError::NoNumber { line, value: at + 1, text: shown(words[at]) };
+            *to = number(words[at], comma).filter(|value| i == 2 || value.is_finite()).ok_or_else(no_number)?;
         }
         points.push(point);
     }
@@ -129,6 +157,7 @@ mod tests {
         let scattered: Vec<String> = (0..40).map(|i| format!("{i} {} 1", i * 7 % 41)).collect();
         let scattered = scattered.join("\n");
         let cases = [
+            ("l 0 1\n1 0 2\n", "line 1, value 1: 'l'"),
             ("0 0 1\n1 0\n", "line 2 has 2 values"),
             ("0 0 1\n1 x 2\n", "line 2, value 2"),
             ("0 0 1\nnan 1 2\n", "line 2, value 1"),
@@ -145,8 +174,19 @@ mod tests {
     }
 
     #[test]
+    fn titles_give_units_and_the_order_of_columns() {
+        let map = parse("Z_(nm),X_(mm),Y_(mm)\n1,0,0\n2,1,0\n3,0,2\n4,1,2\n".as_bytes()).expect("a map");
+        assert_eq!((map.sides, map.side_unit, map.height_unit), (Some([2e-3, 4e-3]), Unit::Metre, Unit::Metre));
+        assert_eq!(map.heights.values(), [1.0, 2.0, 3.0, 4.0].map(|nm| nm * 1e-9));
+        let map = parse(b"X,Y,Z\n0,0,1\n1,0,2\n0,2,3\n1,2,4\n").expect("a map");
+        assert_eq!((map.side_unit, map.height_unit), (Unit::Unnamed, Unit::Unnamed));
+    }
+
+    #[test]
     fn a_text_of_points_is_told_from_a_text_of_rows() {
         assert!(looks_like_points(b"x y z\n0 0 1\n0 1 2\n1 0"));
+        assert!(looks_like_points(b"X_(microns),Y,Z\n0,0,1\n0,1,2\n1,0"));
+        assert!(!looks_like_points("# Width: 3 µm\n# Height: 3 µm\n0 0 1\n0 1 2\n1 0 3\n".as_bytes()));
         assert!(!looks_like_points(b"0 0 1 4\n0 1 2 4\n1 0 4 4\n"));
     }
 }

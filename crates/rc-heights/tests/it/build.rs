@@ -220,6 +220,12 @@ fn tiff_of(data: &[u8], entries: &[(u16, u16, u32)]) -> Vec<u8> {
     bytes
 }
 
+/// A file of data/formats, small enough to be damaged byte by byte.
+fn written(name: &str) -> Vec<u8> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/formats");
+    std::fs::read(folder.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
 /// A valid file of each kind.
 pub(crate) fn all() -> Vec<(&'static str, Format, Vec<u8>)> {
     vec![
@@ -236,5 +242,16 @@ pub(crate) fn all() -> Vec<(&'static str, Format, Vec<u8>)> {
         ("x3p deflated", Format::X3p, x3p(CompressionMethod::Deflated)),
         ("png", Format::Png, png_16()),
         ("tiff", Format::Tiff, tiff()),
+        ("gwy", Format::Gwy, written("gwyfile.gwy")),
+        ("h5 chunked", Format::Hdf5, written("h5py-chunked.h5")),
+        ("h5 contiguous", Format::Hdf5, written("h5py-contiguous.h5")),
+        ("ibw", Format::Ibw, written("igorwriter-stack.ibw")),
+        ("mat compressed", Format::Mat, written("scipy-mesh.mat")),
+        ("mat", Format::Mat, written("scipy-vectors.mat")),
+        ("nc", Format::NetCdf, written("netcdf4-classic.nc")),
+        ("nc of HDF5", Format::Hdf5, written("netcdf4-zlib.nc")),
+        ("Gwyddion's text", Format::Csv, written("gwyddion.txt")),
+        ("text of UTF-16", Format::Csv, written("gwyddion-utf16.txt")),
+        ("columns", Format::Xyz, written("columns.csv")),
     ]
 }

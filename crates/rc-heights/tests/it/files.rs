@@ -5,20 +5,20 @@ use std::path::{Path, PathBuf};
 use rc_core::Field;
 use rc_heights::{AreaParameters, FormatError, HeightMap, Unit, read};
 
-fn folder() -> PathBuf {
+pub(crate) fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/formats")
 }
 
-fn map(name: &str) -> HeightMap {
+pub(crate) fn map(name: &str) -> HeightMap {
     read(&folder().join(name)).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The heights of all files, in nm.
-fn expected() -> Field {
+pub(crate) fn expected() -> Field {
     map("expected.csv").heights
 }
 
-fn worst(found: &Field, expected: &Field, scale: f64) -> f64 {
+pub(crate) fn worst(found: &Field, expected: &Field, scale: f64) -> f64 {
     assert_eq!(found.grid(), expected.grid());
     let differences = found.values().iter().zip(expected.values()).map(|(a, b)| (a - scale * b).abs());
     differences.fold(0.0, f64::max)

@@ -3,5 +3,6 @@
 mod build;
 mod built;
 mod files;
+mod programs;
 mod robustness;
 mod treatments;

@@ -33,7 +33,7 @@ fn check(surface: &SurfaceKeys, missing: impl IntoIterator<Item = &'static str>)
 /// What is missing of the size. Whether a file of a format with sizes says it is known when it has been read.
 fn size(surface: &SurfaceKeys) -> Result<Option<&'static str>, CliError> {
     let Some(path) = &surface.heights else { return Ok(None) };
-    let is_known = surface.cell.is_some() || rc_heights::format_of(path)?.has_sides();
+    let is_known = surface.cell.is_some() || rc_heights::may_have_sides(path, &surface.read_params())?;
     Ok((!is_known).then_some("cell (m)"))
 }
 

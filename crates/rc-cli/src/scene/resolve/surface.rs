@@ -79,7 +79,7 @@ fn random(mut keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Resu
 /// Sides of the cell of a height map (m), where its file or the keys say them.
 fn sides_of_map(path: &Path, keys: &SurfaceKeys) -> Result<[Option<f64>; 2], CliError> {
     let given = [keys.cell, keys.cell_y];
-    if !rc_heights::format_of(path)?.has_sides() {
+    if !rc_heights::may_have_sides(path, &keys.read_params())? {
         return Ok(given);
     }
     heights::sides(path, heights::read(path, &keys.read_params(), keys.scales())?.sides, given)

@@ -1,0 +1,68 @@
+//! Archives: zip archives are told apart by their members, and gzip is unpacked.
+
+use std::io::{Cursor, Read as _};
+
+use flate2::bufread::MultiGzDecoder;
+use zip::ZipArchive;
+
+use super::Format;
+use super::fields::shown;
+use crate::FormatError;
+
+/// The first bytes of a zip archive.
+pub(super) const ZIP: &[u8] = b"PK\x03\x04";
+/// The first bytes of a gzip file.
+pub(super) const GZIP: &[u8] = b"\x1f\x8b\x08";
+
+/// Longest file that gzip is unpacked to, in bytes. Memory grows with what comes out, not with what is promised.
+const MOST_UNPACKED: u64 = 4 << 30;
+
+/// Ends of members' names by which formats are known.
+const FORMATS: &[(&str, Format)] = &[("main.xml", Format::X3p)];
+
+/// Members' names by which other archives are known, and what these are.
+const OTHERS: &[(&str, &str)] = &[
+    ("xl/workbook.xml", "a workbook of Excel; save the sheet as .csv"),
+    ("[Content_Types].xml", "a document of Office; save the numbers as .csv"),
+    ("META-INF/manifest.xml", "a document of OpenDocument; save the numbers as .csv"),
+    ("header.properties", "a measurement of JPK; export its heights with the program of the instrument"),
+    ("meta.yml", "a container of several maps; unpack it and give one of them"),
+];
+
+/// Names of the members of an archive, without those that are not text.
+pub(super) fn names(archive: &ZipArchive<Cursor<&[u8]>>) -> Vec<String> {
+    archive.file_names().filter_map(|name| Some(name.ok()?.into_owned())).collect()
+}
+
+/// The format of a zip archive, by its members; what cannot be opened is x3p, whose reader says why.
+pub(super) fn format_of_zip(bytes: &[u8]) -> Result<Format, FormatError> {
+    let Ok(archive) = ZipArchive::new(Cursor::new(bytes)) else { return Ok(Format::X3p) };
+    let names = names(&archive);
+    // Members may lie in a folder of the archive.
+    let has = |end: &str| {
+        let is =
+            |name: &String| name.strip_suffix(end).is_some_and(|folder| folder.is_empty() || folder.ends_with('/'));
+        names.iter().any(is)
+    };
+    if let Some((_, format)) = FORMATS.iter().find(|(name, _)| has(name)) {
+        return Ok(*format);
+    }
+    let other = OTHERS.iter().find(|(name, _)| has(name)).map(|(_, what)| (*what).to_owned());
+    let listed = || {
+        let more = if names.len() > 3 { ", …" } else { "" };
+        let first: Vec<String> = names.iter().take(3).map(|name| shown(name)).collect();
+        format!("a zip archive with {}{more}; unpack it and give one of its files", first.join(", "))
+    };
+    Err(FormatError::Archive { what: other.unwrap_or_else(listed) })
+}
+
+/// What gzip has packed.
+pub(super) fn unzipped(bytes: &[u8]) -> Result<Vec<u8>, FormatError> {
+    let mut unpacked = Vec::new();
+    let read = MultiGzDecoder::new(bytes).take(MOST_UNPACKED + 1).read_to_end(&mut unpacked);
+    read.map_err(|cause| FormatError::Gzip(cause.to_string()))?;
+    if unpacked.len() as u64 > MOST_UNPACKED {
+        return Err(FormatError::Gzip(format!("it has more than {MOST_UNPACKED} bytes")));
+    }
+    Ok(unpacked)
+}

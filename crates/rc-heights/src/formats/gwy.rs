@@ -1,0 +1,201 @@
+//! Gwyddion native files, version 2: a tree of named, typed values, little-endian; a channel is the object `/N/data`
+//! (<http://gwyddion.net/documentation/user-guide-en/gwyfile-format.html>).
+//!
+//! Masks mark what the user of Gwyddion wanted to mark, not what was not measured: they are not read.
+
+use std::collections::BTreeMap;
+
+use rc_core::Grid;
+
+use super::binary::{Bytes, Number};
+use super::channel::{Channel, Channels};
+use super::field::field;
+use super::fields::{positive, refused, shown};
+use super::unit;
+use crate::{Format, FormatError, HeightMap, Unit};
+
+/// The first bytes.
+pub(super) const MARK: &[u8] = b"GWYP";
+
+/// A value of the tree; arrays and objects are not looked into before they are needed.
+#[derive(Clone, Copy)]
+enum Value<'a> {
+    Integer(i32),
+    Double(f64),
+    Text(&'a [u8]),
+    Object { name: &'a [u8], content: &'a [u8] },
+    Doubles(&'a [u8]),
+    Other,
+}
+
+type Tree<'a> = Vec<(&'a [u8], Value<'a>)>;
+
+/// A channel of the container, as far as it is found.
+#[derive(Default)]
+struct Found<'a> {
+    title: Option<&'a [u8]>,
+    data: Option<&'a [u8]>,
+}
+
+pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
+    let mut bytes = Bytes::new(bytes, Format::Gwy);
+    bytes.take(MARK.len())?;
+    let Value::Object { name: b"GwyContainer", content } = object(&mut bytes)? else {
+        return Err(refused(Format::Gwy, "the first object", "another object", "a GwyContainer"));
+    };
+    let mut found: BTreeMap<u32, Found<'_>> = BTreeMap::new();
+    for (key, value) in tree(content)? {
+        let Some((number, rest)) = channel_of(key) else { continue };
+        match (rest, value) {
+            ("data", Value::Object { name: b"GwyDataField", content }) => {
+                found.entry(number).or_default().data = Some(content);
+            }
+            ("data/title", Value::Text(title)) => found.entry(number).or_default().title = Some(title),
+            _ => {}
+        }
+    }
+    let channels = found.into_values().filter_map(|Found { title, data }| Some((title.unwrap_or_default(), data?)));
+    let channels: Result<Vec<Channel<'_>>, FormatError> = channels
+        .map(|(title, data)| {
+            let data = DataField::of(data)?;
+            Ok(Channel {
+                name: String::from_utf8_lossy(title).into_owned(),
+                is_height: data.height.0 != Unit::NotLength,
+                read: Box::new(move || data.map()),
+            })
+        })
+        .collect();
+    channels
+}
+
+/// The number of the channel that a key such as `/0/data/title` belongs to, and the rest of the key.
+fn channel_of(key: &[u8]) -> Option<(u32, &str)> {
+    let (number, rest) = std::str::from_utf8(key).ok()?.strip_prefix('/')?.split_once('/')?;
+    Some((number.parse().ok()?, rest))
+}
+
+/// What a data field says of its values.
+struct DataField<'a> {
+    resolution: [i32; 2],
+    sides: [f64; 2],
+    side: (Unit, f64),
+    height: (Unit, f64),
+    values: &'a [u8],
+}
+
+impl<'a> DataField<'a> {
+    fn of(content: &'a [u8]) -> Result<Self, FormatError> {
+        // What is not said is 1, or of no unit.
+        let none = (Unit::Unnamed, 1.0);
+        let mut this = Self { resolution: [0; 2], sides: [1.0; 2], side: none, height: none, values: &[] };
+        for (key, value) in tree(content)? {
+            match (key, value) {
+                (b"xres", Value::Integer(n)) => this.resolution[0] = n,
+                (b"yres", Value::Integer(n)) => this.resolution[1] = n,
+                (b"xreal", Value::Double(side)) => this.sides[0] = side,
+                (b"yreal", Value::Double(side)) => this.sides[1] = side,
+                (b"si_unit_xy", Value::Object { content, .. }) => this.side = unit::of_sides(&unit_name(content)?),
+                (b"si_unit_z", Value::Object { content, .. }) => this.height = unit::of_values(&unit_name(content)?),
+                (b"data", Value::Doubles(values)) => this.values = values,
+                _ => {}
+            }
+        }
+        Ok(this)
+    }
+
+    fn map(&self) -> Result<HeightMap, FormatError> {
+        let side = |n: i32| usize::try_from(n).unwrap_or(0);
+        let grid = Grid::new(side(self.resolution[0]), side(self.resolution[1]))?;
+        let mut values = Number::F64.values_alone(self.values, grid)?;
+        crate::map::scale(&mut values, self.height.1);
+        let x = positive(Format::Gwy, "xreal", self.sides[0] * self.side.1)?;
+        let y = positive(Format::Gwy, "yreal", self.sides[1] * self.side.1)?;
+        let (heights, height_unit) = (field(grid, values), self.height.0);
+        Ok(HeightMap { heights, height_unit, sides: Some([x, y]), side_unit: self.side.0 })
+    }
+}
+
+/// The name of a `GwySIUnit`.
+fn unit_name(content: &[u8]) -> Result<String, FormatError> {
+    let tree = tree(content)?;
+    let name = tree.into_iter().find_map(|(key, value)| match (key, value) {
+        (b"unitstr", Value::Text(name)) => Some(String::from_utf8_lossy(name).into_owned()),
+        _ => None,
+    });
+    Ok(name.unwrap_or_default())
+}
+
+/// The components of an object.
+fn tree(content: &[u8]) -> Result<Tree<'_>, FormatError> {
+    let mut bytes = Bytes::new(content, Format::Gwy);
+    let mut tree = Vec::new();
+    while !bytes.rest().is_empty() {
+        let name = text(&mut bytes)?;
+        tree.push((name, value(&mut bytes)?));
+    }
+    Ok(tree)
+}
+
+fn value<'a>(bytes: &mut Bytes<'a>) -> Result<Value<'a>, FormatError> {
+    Ok(match bytes.u8()? {
+        b'i' => Value::Integer(bytes.u32()?.cast_signed()),
+        b'd' => Value::Double(bytes.f64()?),
+        b's' => Value::Text(text(bytes)?),
+        b'o' => object(bytes)?,
+        b'D' => Value::Doubles(array(bytes, 8)?),
+        b'b' | b'c' => skip(bytes, 1)?,
+        b'q' => skip(bytes, 8)?,
+        b'C' => drop_array(bytes, 1)?,
+        b'I' => drop_array(bytes, 4)?,
+        b'Q' => drop_array(bytes, 8)?,
+        b'S' => {
+            for _ in 0..bytes.u32()? {
+                text(bytes)?;
+            }
+            Value::Other
+        }
+        b'O' => {
+            for _ in 0..bytes.u32()? {
+                object(bytes)?;
+            }
+            Value::Other
+        }
+        other => {
+            return Err(refused(
+                Format::Gwy,
+                "the type of a value",
+                &shown(&char::from(other).to_string()),
+                "one of bciqdsoCIQDSO",
+            ));
+        }
+    })
+}
+
+fn skip<'a>(bytes: &mut Bytes<'a>, n: usize) -> Result<Value<'a>, FormatError> {
+    bytes.take(n)?;
+    Ok(Value::Other)
+}
+
+fn drop_array<'a>(bytes: &mut Bytes<'a>, size: usize) -> Result<Value<'a>, FormatError> {
+    array(bytes, size)?;
+    Ok(Value::Other)
+}
+
+fn array<'a>(bytes: &mut Bytes<'a>, size: usize) -> Result<&'a [u8], FormatError> {
+    let n = bytes.u32()? as usize;
+    bytes.take(n.saturating_mul(size))
+}
+
+fn object<'a>(bytes: &mut Bytes<'a>) -> Result<Value<'a>, FormatError> {
+    let name = text(bytes)?;
+    let size = bytes.u32()? as usize;
+    Ok(Value::Object { name, content: bytes.take(size)? })
+}
+
+/// A text, which a zero byte ends.
+fn text<'a>(bytes: &mut Bytes<'a>) -> Result<&'a [u8], FormatError> {
+    let end = bytes.rest().iter().position(|byte| *byte == 0);
+    let text = bytes.take(end.ok_or(FormatError::HeaderCutShort { format: Format::Gwy })?)?;
+    bytes.take(1)?;
+    Ok(text)
+}

@@ -1,0 +1,280 @@
+//! The lines before the numbers of a text, as instruments and Gwyddion write them: sizes, units, titles of columns.
+
+use super::fields::{refused, shown};
+use super::text::{lines, number, words};
+use super::unit;
+use crate::{Format, FormatError, LengthUnit, Unit};
+
+/// Names of the size along x, in languages that Gwyddion speaks.
+const WIDTHS: [&str; 10] =
+    ["width", "breite", "largeur", "larghezza", "ancho", "largura", "šířka", "ширина", "x size", "xreal"];
+/// Names of the size along y.
+const HEIGHTS: [&str; 10] =
+    ["height", "höhe", "hauteur", "altezza", "alto", "altura", "výška", "высота", "y size", "yreal"];
+/// Names of the unit of the heights.
+const UNITS: [&str; 8] =
+    ["value units", "value unit", "z units", "z unit", "zunits", "data unit", "data units", "einheiten der werte"];
+/// Names of the channel.
+const CHANNELS: [&str; 6] = ["channel", "kanal", "canal", "canale", "kanál", "канал"];
+/// Most lines before the first number.
+const MOST_LINES: usize = 200;
+
+/// A length with the unit that is named with it.
+type Length = (f64, Option<LengthUnit>);
+
+/// What the lines before the numbers say.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Heading {
+    /// The line of the first number, from 1.
+    pub(super) first: usize,
+    /// The name of the channel.
+    pub(super) channel: String,
+    /// Sides, with their unit.
+    sides: [Option<Length>; 2],
+    /// Distance of points along both sides.
+    pixel: Option<Length>,
+    /// Points along x and y.
+    counts: [Option<usize>; 2],
+    /// Unit of the heights, as named.
+    unit: Option<String>,
+    /// Metres of a number, whatever the unit says.
+    metres: Option<f64>,
+    /// Titles of the columns.
+    pub(super) titles: Vec<String>,
+}
+
+impl Heading {
+    /// What stands before the numbers of `text`.
+    ///
+    /// # Errors
+    /// [`FormatError::NoNumber`] when there are no numbers, or when what looks like the first of them is not one.
+    pub(super) fn of(text: &str) -> Result<Self, FormatError> {
+        let mut heading = Self::default();
+        let mut others: Vec<(usize, &str)> = Vec::new();
+        for (line, row) in lines(text) {
+            if let Some(comment) = row.strip_prefix(['#', '%']) {
+                heading.line(comment);
+            } else if words(row).0.next().is_some_and(|word| number(word, words(row).1).is_some()) {
+                heading.first = line;
+                return heading.with_titles(&others, row);
+            } else if others.len() < MOST_LINES {
+                heading.line(row);
+                others.push((line, row));
+            } else {
+                break;
+            }
+        }
+        let Some((line, row)) = others.first() else { return Ok(heading) };
+        let word = words(row).0.next().unwrap_or_default();
+        Err(FormatError::NoNumber { line: *line, value: 1, text: shown(word) })
+    }
+
+    /// Takes the last line before the first `row` of numbers for titles, if it has as many.
+    fn with_titles(mut self, others: &[(usize, &str)], row: &str) -> Result<Self, FormatError> {
+        let Some((line, last)) = others.last() else { return Ok(self) };
+        let (titles, comma) = words(last);
+        let titles: Vec<&str> = titles.collect();
+        if titles.len() != words(row).0.count() {
+            return Ok(self);
+        }
+        if titles.len() > 1 && titles[1..].iter().all(|word| number(word, comma).is_some()) {
+            // A damaged first number, or numbers of columns, whose rows begin with numbers too.
+            return Err(FormatError::NoNumber { line: *line, value: 1, text: shown(titles[0]) });
+        }
+        self.titles = titles.into_iter().map(str::to_owned).collect();
+        Ok(self)
+    }
+
+    /// Takes what a line says: `name: value`, `name = value`, or `a=1 b=2`.
+    fn line(&mut self, line: &str) {
+        if line.matches('=').count() > 1 {
+            for (name, value) in line.split_whitespace().filter_map(|pair| pair.split_once('=')) {
+                self.pair(name, value);
+            }
+        } else if let Some((name, value)) = line.split_once(':').or_else(|| line.rsplit_once('=')) {
+            self.pair(name, value);
+        } else if let Some((name, value)) = line.split_once(['\t', ';', ',']) {
+            self.pair(name, value);
+        }
+    }
+
+    fn pair(&mut self, name: &str, value: &str) {
+        let (name, value) = (name.trim().to_lowercase(), value.trim());
+        // A unit may stand behind the name, as in `Width [µm]`.
+        let (name, unit) = match name.split_once(['[', '(']) {
+            Some((before, unit)) if !name.starts_with("height conversion") => {
+                (before.trim().to_owned(), unit.trim_end_matches([']', ')']).parse().ok())
+            }
+            _ => (name, None),
+        };
+        let is = |names: &[&str]| names.contains(&name.as_str());
+        let length = || length(value).map(|(length, own)| (length, own.or(unit)));
+        if is(&WIDTHS) {
+            self.sides[0] = length();
+        } else if is(&HEIGHTS) {
+            self.sides[1] = length();
+        } else if is(&["pixel size"]) {
+            self.pixel = length();
+        } else if is(&["w"]) {
+            self.counts[0] = value.parse().ok();
+        } else if is(&["h"]) {
+            self.counts[1] = value.parse().ok();
+        } else if is(&UNITS) {
+            self.unit = Some(value.to_owned());
+        } else if is(&CHANNELS) {
+            value.clone_into(&mut self.channel);
+        } else if name.starts_with("height conversion factor") && name.contains("> m") {
+            self.metres = number(value, true);
+        }
+    }
+
+    /// Whether the lines say how large the map is, or how many points it has: numbers are rows of a map then.
+    pub(super) fn is_of_rows(&self) -> bool {
+        self.says_sides() || self.counts.iter().all(Option::is_some)
+    }
+
+    /// Whether the lines say how large the map is.
+    pub(super) fn says_sides(&self) -> bool {
+        self.pixel.is_some() || self.sides.iter().all(Option::is_some)
+    }
+
+    /// Sides of a map of `nx` times `ny` points, and their unit.
+    ///
+    /// # Errors
+    /// [`FormatError::Field`] for a map of other points, or without a positive size.
+    pub(super) fn sides(&self, nx: usize, ny: usize) -> Result<(Option<[f64; 2]>, Unit), FormatError> {
+        if let [Some(w), Some(h)] = self.counts
+            && (w, h) != (nx, ny)
+        {
+            let expected = "the numbers of columns and rows that are there; the file is cut off";
+            return Err(refused(Format::Csv, "w x h", &format!("{w} x {h}, for {nx} x {ny} numbers"), expected));
+        }
+        let points = [nx as f64, ny as f64];
+        let lengths = match (self.sides, self.pixel) {
+            ([Some(x), Some(y)], _) => [x, y],
+            (_, Some((pixel, unit))) => [(pixel * points[0], unit), (pixel * points[1], unit)],
+            _ => return Ok((None, Unit::Unnamed)),
+        };
+        if lengths.iter().any(|(side, _)| *side <= 0.0 || !side.is_finite()) {
+            let found = format!("{} x {}", lengths[0].0, lengths[1].0);
+            return Err(refused(Format::Csv, "width x height", &found, "two positive lengths"));
+        }
+        let named = lengths.iter().all(|(_, unit)| unit.is_some());
+        let metres = |(side, unit): Length| side * unit.filter(|_| named).map_or(1.0, LengthUnit::metres);
+        Ok((Some(lengths.map(metres)), if named { Unit::Metre } else { Unit::Unnamed }))
+    }
+
+    /// What the numbers are in, and the factor that makes metres of them.
+    ///
+    /// # Errors
+    /// [`FormatError::Field`] for another quantity.
+    pub(super) fn of_heights(&self) -> Result<(Unit, f64), FormatError> {
+        match (self.metres, self.unit.as_deref()) {
+            (Some(metres), _) => {
+                Ok((Unit::Metre, super::fields::factor(Format::Csv, "height conversion factor", metres)?))
+            }
+            (None, Some(name)) => match unit::of_values(name) {
+                (Unit::NotLength, _) => Err(refused(
+                    Format::Csv,
+                    "the unit of the values",
+                    name,
+                    "a unit of length, as m; other channels are no heights",
+                )),
+                named => Ok(named),
+            },
+            (None, None) => Ok((Unit::Unnamed, 1.0)),
+        }
+    }
+
+    /// The units that titles of three columns name, in their order. One that is named alone is that of all three.
+    pub(super) fn units_of_titles(&self) -> [Option<LengthUnit>; 3] {
+        let [a, b, c] = self.titles.as_slice() else { return [None; 3] };
+        let units = [a, b, c].map(|title| unit_of_title(title));
+        let named: Vec<LengthUnit> = units.into_iter().flatten().collect();
+        if let [only] = named.as_slice() { [Some(*only); 3] } else { units }
+    }
+}
+
+/// The unit in a title such as `X_(microns)`, `z [nm]`, `y/µm` or `x in mm`: the last of its words, if it has two.
+fn unit_of_title(title: &str) -> Option<LengthUnit> {
+    let is_letter = |c: char| c.is_alphabetic() || c == '\u{b5}' || c == '\u{3bc}';
+    let words: Vec<&str> = title.split(|c: char| !is_letter(c)).filter(|word| !word.is_empty()).collect();
+    let (last, before) = words.split_last()?;
+    if before.is_empty() { None } else { last.parse().ok() }
+}
+
+/// A number and the unit behind it, if there is one.
+fn length(text: &str) -> Option<Length> {
+    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.,eE".contains(c))).unwrap_or(text.len());
+    let (digits, unit) = text.split_at(end);
+    let unit = unit.trim();
+    match (number(digits.trim_end_matches(['e', 'E', ',']), true)?, unit.parse::<LengthUnit>()) {
+        (value, Ok(unit)) => Some((value, Some(unit))),
+        (value, Err(_)) if unit.is_empty() => Some((value, None)),
+        // Points, or another quantity.
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Heading {
+        Heading::of(text).expect(text)
+    }
+
+    #[test]
+    fn sizes_and_units_are_read_in_every_way_they_are_written() {
+        let texts = [
+            "# Channel: h\n# Width: 10 µm\n# Height: 20,0 µm\n# Value units: nm\n1 2\n",
+            "# Kanal: h\n# Breite: 1e-5 m\n# Höhe: 0.02 mm\n# Value units: nm\n1 2\n",
+            "Channel;h\nWidth [um];10\nHeight [um];20\nZ units;nm\n1;2\n",
+            "Kanal: h\nBreite: 10µm\nHöhe: 20000nm\nZ Unit = nm\n\n1\t2\n",
+        ];
+        for text in texts {
+            let heading = of(text);
+            let (sides, unit) = heading.sides(2, 1).expect(text);
+            let [x, y] = sides.expect("sides");
+            assert!((x / 1e-5 - 1.0).abs() < 1e-12 && (y / 2e-5 - 1.0).abs() < 1e-12, "{text}: {x} x {y}");
+            assert_eq!(
+                (unit, heading.of_heights(), heading.channel.as_str()),
+                (Unit::Metre, Ok((Unit::Metre, 1e-9)), "h"),
+                "{text}"
+            );
+            assert!(heading.is_of_rows());
+        }
+    }
+
+    #[test]
+    fn a_pixel_size_and_a_factor_are_those_of_an_interferometer() {
+        let text = "h=1 w=2\npixel size=2.5e-007 m\ndata unit=rad\nheight conversion factor (-> m)=4e-008\n1 2\n";
+        let heading = of(text);
+        assert_eq!(heading.first, 5);
+        assert_eq!(heading.sides(2, 1), Ok((Some([5e-7, 2.5e-7]), Unit::Metre)));
+        assert_eq!(heading.of_heights(), Ok((Unit::Metre, 4e-8)));
+        let error = heading.sides(2, 2).expect_err("cut off").to_string();
+        assert!(error.contains("2 x 1, for 2 x 2"), "{error}");
+        assert!(of("# Value units: V\n1 2\n").of_heights().is_err());
+        assert_eq!(of("# Height: 10 px\n# Width: 3 px\n1 2\n").sides(2, 1), Ok((None, Unit::Unnamed)));
+    }
+
+    #[test]
+    fn titles_name_units() {
+        let (um, nm) = (Some(LengthUnit::Micrometre), Some(LengthUnit::Nanometre));
+        assert_eq!(of("X_(microns),Y,Z\n0,0,1\n").units_of_titles(), [um; 3]);
+        assert_eq!(of("x [µm];y [µm];z [nm]\n0;0;1\n").units_of_titles(), [um, um, nm]);
+        assert_eq!(of("x/µm\ty/µm\tz/nm\n0\t0\t1\n").units_of_titles(), [um, um, nm]);
+        assert_eq!(of("x,y,z\n0,0,1\n").units_of_titles(), [None; 3]);
+    }
+
+    #[test]
+    fn a_damaged_first_number_is_not_a_title() {
+        for (text, expected) in
+            [("l,2,3\n4,5,6\n", "line 1, value 1: 'l'"), ("nothing\nat all\n", "line 1, value 1: 'nothing'")]
+        {
+            let error = Heading::of(text).expect_err(text).to_string();
+            assert!(error.contains(expected), "{error}");
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! MATLAB 5 files (The MathWorks, "MAT-File Format"): named arrays stored column by column, each alone or compressed with zlib. Real
+//! 2-D arrays are channels; the first index is y, the second x. Vectors or meshes called `x` and `y` are coordinates.
+//!
+//! Files of version 7.3 are HDF5. The readers on crates.io inflate whatever a compressed array promises; this one does not.
+
+use std::borrow::Cow;
+use std::io::Read as _;
+use std::rc::Rc;
+
+use flate2::read::ZlibDecoder;
+use rc_core::Grid;
+
+use super::axes;
+use super::binary::Number;
+use super::channel::{Channel, Channels};
+use super::endian::Endian;
+use super::field::{field, flip, transposed};
+use super::fields::refused;
+use crate::{Format, FormatError, HeightMap, Unit};
+
+/// The first bytes.
+pub(super) const MARK: &[u8] = b"MATLAB 5.0 MAT-file";
+/// Length of the header.
+const HEADER: usize = 128;
+/// An array.
+const MATRIX: u32 = 14;
+/// An element compressed with zlib.
+const COMPRESSED: u32 = 15;
+/// Bytes inflated at once: an array without its values is shorter.
+const START: u64 = 512;
+/// Deflate makes at most 1032 bytes of one: what is promised beyond that is not there.
+const MOST_INFLATION: u64 = 1032;
+
+/// An array in the file, inflated when it is read.
+struct Array<'a> {
+    name: String,
+    rows: usize,
+    columns: usize,
+    order: Endian,
+    stored: Stored<'a>,
+}
+
+#[derive(Clone, Copy)]
+enum Stored<'a> {
+    Plain(&'a [u8]),
+    Deflated(&'a [u8]),
+}
+
+pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
+    let order = match bytes.get(126..HEADER) {
+        Some(b"IM") => Endian::Little,
+        Some(b"MI") => Endian::Big,
+        Some(_) => return Err(refused(Format::Mat, "byte order", "another mark", "IM or MI")),
+        None => return Err(FormatError::HeaderCutShort { format: Format::Mat }),
+    };
+    let arrays = Rc::new(arrays(&bytes[HEADER..], order)?);
+    let is_map = |array: &Array<'_>| array.rows > 1 && array.columns > 1 && array.coordinate().is_none();
+    // Meshes of coordinates without heights are maps themselves.
+    let any = arrays.iter().any(is_map);
+    let maps =
+        (0..arrays.len()).filter(|i| is_map(&arrays[*i]) || !any && arrays[*i].rows > 1 && arrays[*i].columns > 1);
+    let channel = |i: usize| {
+        let arrays = arrays.clone();
+        Channel { name: arrays[i].name.clone(), is_height: true, read: Box::new(move || map(&arrays, i)) }
+    };
+    Ok(maps.map(channel).collect())
+}
+
+/// The elements of a file that are real arrays of numbers with two dimensions.
+fn arrays(mut bytes: &[u8], order: Endian) -> Result<Vec<Array<'_>>, FormatError> {
+    let mut arrays = Vec::new();
+    while bytes.len() >= 8 {
+        let (kind, size) = (order.u32_at(bytes, 0), order.u32_at(bytes, 4) as usize);
+        let content = bytes.get(8..).and_then(|rest| rest.get(..size));
+        let Some(content) = content else {
+            let reason = format!("an element of {size} bytes, of which {} are there", bytes.len() - 8);
+            return Err(FormatError::Container { format: Format::Mat, reason });
+        };
+        let stored = match kind {
+            MATRIX => Some(Stored::Plain(content)),
+            COMPRESSED => Some(Stored::Deflated(content)),
+            _ => None,
+        };
+        if let Some(stored) = stored {
+            arrays.extend(Array::of(stored, order)?);
+        }
+        // Elements begin at multiples of eight bytes, but for those behind compressed ones.
+        let padded = if kind == COMPRESSED { size } else { size.next_multiple_of(8) };
+        bytes = bytes.get(8 + padded..).unwrap_or_default();
+    }
+    Ok(arrays)
+}
+
+impl Stored<'_> {
+    /// At most the first `most` bytes of the array.
+    fn bytes(&self, most: u64) -> Result<Cow<'_, [u8]>, FormatError> {
+        let stored = match self {
+            Self::Plain(bytes) => {
+                return Ok(Cow::Borrowed(&bytes[..bytes.len().min(usize::try_from(most).unwrap_or(usize::MAX))]));
+            }
+            Self::Deflated(stored) => stored,
+        };
+        let mut bytes = Vec::new();
+        let read = ZlibDecoder::new(*stored).take(most.saturating_add(8)).read_to_end(&mut bytes);
+        read.map_err(|cause| FormatError::Container { format: Format::Mat, reason: cause.to_string() })?;
+        // The tag of the array comes first.
+        bytes.drain(..bytes.len().min(8));
+        Ok(Cow::Owned(bytes))
+    }
+
+    /// Bytes of the array that there can be.
+    fn most(&self) -> u64 {
+        match self {
+            Self::Plain(bytes) => bytes.len() as u64,
+            Self::Deflated(bytes) => (bytes.len() as u64).saturating_mul(MOST_INFLATION),
+        }
+    }
+}
+
+impl<'a> Array<'a> {
+    /// Flags, dimensions and name; `None` for what is not a real 2-D array of numbers.
+    fn of(stored: Stored<'a>, order: Endian) -> Result<Option<Self>, FormatError> {
+        let start = stored.bytes(START)?;
+        let mut elements = Elements { bytes: &start, order };
+        let Some([(_, flags), (_, sizes), (_, name)]) = elements.three() else { return Ok(None) };
+        let flags = order.u32_at(flags, 0);
+        // Classes 6 to 15 are numbers; bit 11 marks complex ones.
+        let is_real = (6..=15).contains(&(flags & 0xff)) && flags & 0x800 == 0;
+        if !is_real || sizes.len() != 8 {
+            return Ok(None);
+        }
+        let size = |at| usize::try_from(order.i32_at(sizes, at)).unwrap_or(0);
+        let (rows, columns, name) = (size(0), size(4), String::from_utf8_lossy(name).into_owned());
+        Ok(Some(Self { name, rows, columns, order, stored }))
+    }
+
+    /// The values, row by row.
+    fn values(&self) -> Result<(Grid, Vec<f64>), FormatError> {
+        let grid = Grid::new(self.columns, self.rows)?;
+        // Values may be stored in smaller types than the class says; a byte each is the least.
+        let (needed, found) = (grid.len() as u64, self.stored.most());
+        if found < needed {
+            return Err(FormatError::CutShort { grid, needed, found });
+        }
+        let bytes = self.stored.bytes(START + 8 * needed)?;
+        let mut elements = Elements { bytes: &bytes, order: self.order };
+        let parts = elements.three().and_then(|_| elements.next());
+        let Some((kind, data)) = parts else {
+            return Err(FormatError::CutShort { grid, needed, found: bytes.len() as u64 });
+        };
+        let stored = match number(kind) {
+            Some(number) => self.order.values(number, data, grid)?,
+            None if kind == 12 || kind == 13 => long_integers(data, kind == 12, self.order, grid)?,
+            None => return Err(refused(Format::Mat, "type of values", &kind, "that of real numbers")),
+        };
+        Ok((grid, transposed(&stored, grid)))
+    }
+
+    /// Which axis the array has coordinates of, by its name.
+    fn coordinate(&self) -> Option<usize> {
+        ["x", "y"].iter().position(|name| self.name.eq_ignore_ascii_case(name))
+    }
+}
+
+/// Array `i` as a map, with sides where there are coordinates.
+fn map(arrays: &[Array<'_>], i: usize) -> Result<HeightMap, FormatError> {
+    let (grid, mut values) = arrays[i].values()?;
+    let mut sides = None;
+    if let Some([x, y]) = coordinates(arrays, i)? {
+        let steps = [axes::step("x", &x)?, axes::step("y", &y)?];
+        flip(&mut values, grid, steps.map(|step| step < 0.0));
+        sides = Some([steps[0].abs() * grid.nx() as f64, steps[1].abs() * grid.ny() as f64]);
+    }
+    Ok(HeightMap { heights: field(grid, values), height_unit: Unit::Unnamed, sides, side_unit: Unit::Unnamed })
+}
+
+/// Coordinates of array `i` along x and y, if there are arrays with those names and of the right lengths.
+fn coordinates(arrays: &[Array<'_>], i: usize) -> Result<Option<[Vec<f64>; 2]>, FormatError> {
+    let of = |axis| arrays.iter().enumerate().find(|(j, array)| *j != i && array.coordinate() == Some(axis));
+    let (map, Some((_, x)), Some((_, y))) = (&arrays[i], of(0), of(1)) else { return Ok(None) };
+    let is_vector = |array: &Array<'_>, n| array.rows.min(array.columns) == 1 && array.rows.max(array.columns) == n;
+    let is_mesh = |array: &Array<'_>| (array.rows, array.columns) == (map.rows, map.columns);
+    if is_vector(x, map.columns) && is_vector(y, map.rows) {
+        return Ok(Some([x.values()?.1, y.values()?.1]));
+    }
+    if is_mesh(x) && is_mesh(y) {
+        return Ok(axes::of_meshes(&x.values()?.1, &y.values()?.1, map.columns));
+    }
+    Ok(None)
+}
+
+/// The elements of an array.
+struct Elements<'a> {
+    bytes: &'a [u8],
+    order: Endian,
+}
+
+impl<'a> Elements<'a> {
+    /// Type and content of the next element, as far as it is there.
+    fn next(&mut self) -> Option<(u32, &'a [u8])> {
+        let tag = self.bytes.get(..8).map(|_| self.order.u32_at(self.bytes, 0))?;
+        // A small element has its length in the upper half of the type, and its content in the tag.
+        let (kind, at, size) = match tag >> 16 {
+            0 => (tag, 8, self.order.u32_at(self.bytes, 4) as usize),
+            size => (tag & 0xffff, 4, (size as usize).min(4)),
+        };
+        let rest = &self.bytes[at..];
+        let content = &rest[..size.min(rest.len())];
+        let whole = if at == 8 { size.next_multiple_of(8) } else { 4 };
+        self.bytes = rest.get(whole..).unwrap_or_default();
+        Some((kind, content))
+    }
+
+    fn three(&mut self) -> Option<[(u32, &'a [u8]); 3]> {
+        Some([self.next()?, self.next()?, self.next()?])
+    }
+}
+
+fn number(kind: u32) -> Option<Number> {
+    Some(match kind {
+        1 => Number::I8,
+        2 => Number::U8,
+        3 => Number::I16,
+        4 => Number::U16,
+        5 => Number::I32,
+        6 => Number::U32,
+        7 => Number::F32,
+        9 => Number::F64,
+        _ => return None,
+    })
+}
+
+fn long_integers(data: &[u8], signed: bool, order: Endian, grid: Grid) -> Result<Vec<f64>, FormatError> {
+    let (needed, found) = (8 * grid.len() as u64, data.len() as u64);
+    if found < needed {
+        return Err(FormatError::CutShort { grid, needed, found });
+    }
+    let value = |at| if signed { order.i64_at(data, at) as f64 } else { order.i64_at(data, at).cast_unsigned() as f64 };
+    Ok((0..grid.len()).map(|i| value(8 * i)).collect())
+}

@@ -1,0 +1,174 @@
+//! HDF5 and NetCDF (classic, 64-bit, NetCDF-4), with the crate netcdf-reader: every array of numbers with two dimensions longer than 1
+//! is a channel, named with its path.
+//!
+//! `units` (or `unit`) of an array says what it is in; `scale_factor`, `add_offset`, `_FillValue` and `missing_value` are applied.
+//! Coordinates are the variables of the dimensions of NetCDF, else arrays called `x` and `y` beside the map. The last index is x,
+//! unless the dimensions are called x and y in this order.
+
+use std::rc::Rc;
+
+use netcdf_reader::{NcFile, NcGroup, NcMetadataMode, NcOpenOptions, NcType, NcVariable};
+use rc_core::Grid;
+
+use super::axes;
+use super::channel::{Channel, Channels};
+use super::field::{field, flip, transposed};
+use super::unit;
+use crate::{Format, FormatError, HeightMap, Unit};
+
+/// Deflate makes at most 1032 bytes of one: what is promised beyond that is not there.
+const MOST_INFLATION: usize = 1032;
+
+/// What NetCDF has where nothing was written, as 32-bit and as 64-bit float.
+const NEVER_WRITTEN: f64 = 9.969209968386869e36;
+
+/// Deepest group that is looked into.
+const DEEPEST: usize = 16;
+
+/// Coordinates along an axis.
+struct Coordinates {
+    values: Vec<f64>,
+    unit: (Unit, f64),
+}
+
+/// An open file.
+struct Arrays {
+    file: NcFile,
+    format: Format,
+    /// Bytes of the file.
+    bytes: u64,
+}
+
+pub(super) fn channels(bytes: &[u8], format: Format) -> Channels<'_> {
+    let invalid = |cause: &netcdf_reader::Error| container(format, cause);
+    let most = bytes.len().saturating_mul(MOST_INFLATION);
+    let options = NcOpenOptions {
+        metadata_mode: NcMetadataMode::Lossy,
+        max_chunk_bytes: most,
+        max_read_bytes: most,
+        max_object_header_bytes: bytes.len().max(1 << 12),
+        ..NcOpenOptions::default()
+    };
+    let file = NcFile::from_bytes_with_options(bytes, options).map_err(|cause| invalid(&cause))?;
+    let arrays = Rc::new(Arrays { file, format, bytes: bytes.len() as u64 });
+    let mut found = Vec::new();
+    list(arrays.file.root_group().map_err(|cause| invalid(&cause))?, "", 0, &mut found);
+    let channel = |(name, is_height): (String, bool)| {
+        let (arrays, path) = (arrays.clone(), name.clone());
+        Channel { name, is_height, read: Box::new(move || arrays.map(&path)) }
+    };
+    Ok(found.into_iter().map(channel).collect())
+}
+
+/// Paths of the maps in a group, and whether they are lengths.
+fn list(group: &NcGroup, path: &str, depth: usize, found: &mut Vec<(String, bool)>) {
+    for variable in group.variables.iter().filter(|variable| is_map(variable)) {
+        let is_height = unit_of(variable).0 != Unit::NotLength;
+        found.push((format!("{path}{}", variable.name()), is_height));
+    }
+    if depth < DEEPEST {
+        for inner in &group.groups {
+            list(inner, &format!("{path}{}/", inner.name), depth + 1, found);
+        }
+    }
+}
+
+/// Whether a variable has numbers on two dimensions; others have a length of 1.
+fn is_map(variable: &NcVariable) -> bool {
+    let is_mesh = ["x", "y"].iter().any(|name| variable.name().eq_ignore_ascii_case(name));
+    is_number(variable.dtype()) && !is_mesh && variable.shape().iter().filter(|n| **n != 1).count() == 2
+}
+
+fn is_number(kind: &NcType) -> bool {
+    use NcType::{Byte, Double, Float, Int, Int64, Short, UByte, UInt, UInt64, UShort};
+    matches!(kind, Byte | Double | Float | Int | Int64 | Short | UByte | UInt | UInt64 | UShort)
+}
+
+/// What the values of a variable are in.
+fn unit_of(variable: &NcVariable) -> (Unit, f64) {
+    let attribute = ["units", "unit"].iter().find_map(|name| variable.attribute(name));
+    let name = attribute.and_then(|attribute| attribute.value.as_string()).unwrap_or_default();
+    unit::of_values(name.trim_end_matches('\0'))
+}
+
+fn container(format: Format, cause: &netcdf_reader::Error) -> FormatError {
+    // Messages of one line, as short as one.
+    FormatError::Container { format, reason: super::fields::shown_as_line(&cause.to_string()) }
+}
+
+impl Arrays {
+    fn map(&self, path: &str) -> Result<HeightMap, FormatError> {
+        let variable = self.file.variable(path).map_err(|cause| container(self.format, &cause))?;
+        let lengths: Vec<(usize, u64)> = variable.shape().into_iter().enumerate().filter(|(_, n)| *n != 1).collect();
+        let &[(first, rows), (second, columns)] = lengths.as_slice() else {
+            return Err(FormatError::Missing { format: self.format, field: "an array of two dimensions" });
+        };
+        let name =
+            |dimension: usize| variable.dimensions().get(dimension).map_or("", |dimension| dimension.name.as_str());
+        let x_is_first = name(first).eq_ignore_ascii_case("x") && name(second).eq_ignore_ascii_case("y");
+        let [nx, ny] = if x_is_first { [rows, columns] } else { [columns, rows] };
+        let side = |n: u64| usize::try_from(n).unwrap_or(usize::MAX);
+        let grid = Grid::new(side(nx), side(ny))?;
+        let size = variable.dtype().size().unwrap_or(8) as u64;
+        let (needed, found) = (size * grid.len() as u64, self.bytes.saturating_mul(MOST_INFLATION as u64));
+        if found < needed {
+            return Err(FormatError::CutShort { grid, needed, found });
+        }
+        let stored = self.values(path)?;
+        if stored.len() != grid.len() {
+            return Err(FormatError::CutShort { grid, needed, found: size * stored.len() as u64 });
+        }
+        let mut values = if x_is_first { transposed(&stored, grid) } else { stored };
+        let (height_unit, factor) = unit_of(variable);
+        crate::map::scale(&mut values, factor);
+        let dimensions = if x_is_first { [name(first), name(second)] } else { [name(second), name(first)] };
+        let (mut sides, mut side_unit) = (None, Unit::Unnamed);
+        if let Some([x, y]) = self.coordinates(path, dimensions, grid)? {
+            let steps = [axes::step("x", &x.values)?, axes::step("y", &y.values)?];
+            flip(&mut values, grid, steps.map(|step| step < 0.0));
+            let are_lengths = [&x, &y].iter().all(|axis| axis.unit.0 == Unit::Metre);
+            let side = |step: f64, n: usize, axis: &Coordinates| {
+                let factor = if are_lengths { axis.unit.1 } else { 1.0 };
+                step.abs() * n as f64 * factor
+            };
+            sides = Some([side(steps[0], grid.nx(), &x), side(steps[1], grid.ny(), &y)]);
+            side_unit = if are_lengths { Unit::Metre } else { Unit::Unnamed };
+        }
+        Ok(HeightMap { heights: field(grid, values), height_unit, sides, side_unit })
+    }
+
+    /// The values of a variable, unpacked; `NaN` where they are marked as missing.
+    fn values(&self, path: &str) -> Result<Vec<f64>, FormatError> {
+        let array = self.file.read_variable_unpacked_masked(path).map_err(|cause| container(self.format, &cause))?;
+        let missing = |value: f64| if value == NEVER_WRITTEN { f64::NAN } else { value };
+        Ok(array.iter().map(|value| missing(*value)).collect())
+    }
+
+    /// Coordinates along x and y: the variables of the dimensions, or arrays called x and y in the same group.
+    fn coordinates(
+        &self,
+        path: &str,
+        dimensions: [&str; 2],
+        grid: Grid,
+    ) -> Result<Option<[Coordinates; 2]>, FormatError> {
+        let group = path.rsplit_once('/').map_or(String::new(), |(group, _)| format!("{group}/"));
+        let lengths = [grid.nx() as u64, grid.ny() as u64];
+        let names = |axis: usize| [dimensions[axis], ["x", "y"][axis], ["X", "Y"][axis]];
+        let find = |axis: usize, shape: &[u64]| {
+            let paths = names(axis).into_iter().map(|name| format!("{group}{name}"));
+            paths.into_iter().find_map(|path| {
+                let variable = self.file.variable(&path).ok()?;
+                (is_number(variable.dtype()) && variable.shape() == shape).then(|| (path, unit_of(variable)))
+            })
+        };
+        let vector = |axis: usize| find(axis, &[lengths[axis]]);
+        if let (Some((x, of_x)), Some((y, of_y))) = (vector(0), vector(1)) {
+            let x = Coordinates { values: self.values(&x)?, unit: of_x };
+            return Ok(Some([x, Coordinates { values: self.values(&y)?, unit: of_y }]));
+        }
+        let mesh = |axis: usize| find(axis, &[lengths[1], lengths[0]]);
+        let (Some((x, of_x)), Some((y, of_y))) = (mesh(0), mesh(1)) else { return Ok(None) };
+        let axes = axes::of_meshes(&self.values(&x)?, &self.values(&y)?, grid.nx());
+        Ok(axes.map(|[x, y]| [Coordinates { values: x, unit: of_x }, Coordinates { values: y, unit: of_y }]))
+    }
+}
