@@ -31,6 +31,7 @@ const LICENCES: &[&str] = &[
 /// Crates that are there in several versions, and why that is so.
 const SEVERAL_VERSIONS: &[(&str, &str)] = &[
     ("bitflags", "png 0.17, which plotters brings along, is from before its second version"),
+    ("hashbrown", "the cache of hdf5-reader has the older one, toml the newer"),
     ("miniz_oxide", "png 0.17 has the older one, flate2 the newer"),
     ("quick-error", "proptest's rusty-fork has the older one, tiff the newer"),
     ("syn", "the macros of divan and zerocopy have the second version, those of serde and clap the third"),

@@ -191,3 +191,49 @@ fn inspect_draws_a_map_of_any_shape() {
     let pictures = ["distribution.png", "distribution.svg", "spectrum.png", "spectrum.svg", "surface.png"];
     assert_eq!(place.names("look"), pictures);
 }
+
+#[test]
+fn channels_are_listed_and_one_of_them_is_read() {
+    let place = Place::new();
+    let stack = sample("igorwriter-stack.ibw");
+    // A point of its heights is missing, which the list does not wait for.
+    let output = place.run(&["inspect", &stack]);
+    let printed = text(&output.stdout);
+    assert!(printed.contains("not heights  Phase\n") && printed.contains("Height, read unless --channel"), "{printed}");
+    assert_refused(&output, "--fill laplace");
+    let output = place.run(&["inspect", &stack, "--channel", "Phase", "--height-scale", "1e-9", "--json"]);
+    assert_solved(&output);
+    let record: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!((record["h_max"].as_f64().expect("a height") / 90e-9 - 1.0).abs() < 1e-6, "{}", record["h_max"]);
+    assert_eq!(record["channels"][1]["name"], "Height");
+    let refused: [(&[&str], &str); 4] = [
+        (&["surface", "--heights", &stack, "--channel", "Slope"], "no channel is called 'Slope'; the file has Phase, Height"),
+        (&["surface", "--heights", &stack, "--channel", "Phase"], "not lengths"),
+        (&["surface", "--waves", "8", "--channel", "Phase"], "channel and layout"),
+        (&["inspect", &stack, "--layout", "columns"], "'columns' is not a layout"),
+    ];
+    for (args, expected) in refused {
+        assert_refused(&place.run(args), expected);
+    }
+    // The folder that is written has one channel, and its scene names none.
+    let key = format!("heights = {stack:?}\nchannel = \"Phase\"\nheight_scale = 1e-9\n");
+    place.write("scene.toml", key);
+    assert_solved(&place.run(&["surface", "scene.toml", "--fill", "nearest", "--out", "made"]));
+    let scene = text(&place.bytes("made/scene.toml"));
+    assert!(!scene.contains("channel"), "{scene}");
+}
+
+#[test]
+fn the_layout_of_a_text_is_a_flag_and_a_key() {
+    let place = Place::new();
+    place.write("map.txt", "0 0 1\n0 1 2\n1 0 3\n1 1 5\n");
+    let grid = |args: &[&str]| {
+        let output = place.run(&[&["inspect", "map.txt", "--json"], args].concat());
+        assert_solved(&output);
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).expect("JSON")["grid"].clone()
+    };
+    assert_eq!(grid(&[]), serde_json::json!([2, 2]));
+    assert_eq!(grid(&["--layout", "matrix", "--cell", "1"]), serde_json::json!([3, 4]));
+    place.write("scene.toml", "heights = \"map.txt\"\nlayout = \"matrix\"\n");
+    assert_refused(&place.run(&["surface", "scene.toml"]), "needs cell (m)");
+}
