@@ -82,12 +82,30 @@ fn inspect_result(folder: &Path, json: bool) -> Result<String, CliError> {
     Ok(solved(&result.summary, sides, result.e_star) + "\nstored pressure\n" + &text::pressure(&pressure))
 }
 
+/// Statistics of a height map; of several channels, a list first, or the names in the message that says why there are none.
 fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
     let channels = rc_heights::channels(&args.file)?;
-    if channels.len() > 1 && !args.json {
-        // Before a channel is read: what there is helps a user to whom it says no.
-        terminal::print(&text::channels(&channels))?;
+    let several = channels.len() > 1;
+    match statistics(args) {
+        Err(CliError::Input(message)) if several && args.channel.is_none() && channels.iter().any(|c| c.is_height) => {
+            let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
+            Err(CliError::input(format_args!("{message}; the file has the channels {}", names.join(", "))))
+        }
+        Err(error) => Err(error),
+        Ok((mut record, _)) if args.json => {
+            let row = |ChannelInfo { name, is_height }| ChannelRow { name, is_height };
+            record.channels = if several { channels.into_iter().map(row).collect() } else { Vec::new() };
+            Ok(to_json(&record))
+        }
+        Ok((record, note)) => {
+            let list = if several { text::channels(&channels) } else { String::new() };
+            Ok(list + note + &text::heights(&record) + &written(args.out.as_deref()))
+        }
     }
+}
+
+/// The record of a height map, whose pictures are written, and what is to be said of its cell.
+fn statistics(args: &InspectArgs) -> Result<(SurfaceRecord, &'static str), CliError> {
     let params = ReadParams { channel: args.channel.clone(), layout: args.layout };
     let map = heights::read(&args.file, &params, Scales { unit: args.unit, height_scale: args.height_scale })?;
     heights::check_finite(&args.file, &map.heights)?;
@@ -101,20 +119,12 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
     let (heights, _) = heights::in_cell(&args.file, map.heights, cell)?;
     let grid = heights.grid();
     let note = if map.sides.is_none() && side_y.is_none() && grid.nx() != grid.ny() { TAKEN } else { "" };
-    let mut record = SurfaceRecord::of(&heights, side, moments_of_grid(&heights));
-    if channels.len() > 1 {
-        record.channels =
-            channels.into_iter().map(|ChannelInfo { name, is_height }| ChannelRow { name, is_height }).collect();
-    }
+    let record = SurfaceRecord::of(&heights, side, moments_of_grid(&heights));
     if let Some(folder) = &args.out {
         files::check_folder(folder)?;
         pictures::write(folder, &heights, &record)?;
     }
-    Ok(if args.json {
-        to_json(&record)
-    } else {
-        note.to_owned() + &text::heights(&record) + &written(args.out.as_deref())
-    })
+    Ok((record, note))
 }
 
 /// Said of a map that could mean two things.

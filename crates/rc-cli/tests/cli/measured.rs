@@ -196,18 +196,24 @@ fn inspect_draws_a_map_of_any_shape() {
 fn channels_are_listed_and_one_of_them_is_read() {
     let place = Place::new();
     let stack = sample("igorwriter-stack.ibw");
-    // A point of its heights is missing, which the list does not wait for.
+    // A point of its heights is missing.
     let output = place.run(&["inspect", &stack]);
+    assert_refused(&output, "--fill laplace");
+    assert_refused(&output, "the file has the channels Phase, Height");
+    let output = place.run(&["inspect", &stack, "--channel", "phase", "--height-scale", "1e-9"]);
+    assert_solved(&output);
     let printed = text(&output.stdout);
     assert!(printed.contains("not heights  Phase\n") && printed.contains("Height, read unless --channel"), "{printed}");
-    assert_refused(&output, "--fill laplace");
     let output = place.run(&["inspect", &stack, "--channel", "Phase", "--height-scale", "1e-9", "--json"]);
     assert_solved(&output);
     let record: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert!((record["h_max"].as_f64().expect("a height") / 90e-9 - 1.0).abs() < 1e-6, "{}", record["h_max"]);
     assert_eq!(record["channels"][1]["name"], "Height");
     let refused: [(&[&str], &str); 4] = [
-        (&["surface", "--heights", &stack, "--channel", "Slope"], "no channel is called 'Slope'; the file has Phase, Height"),
+        (
+            &["surface", "--heights", &stack, "--channel", "Slope"],
+            "no channel is called 'Slope'; the file has Phase, Height",
+        ),
         (&["surface", "--heights", &stack, "--channel", "Phase"], "not lengths"),
         (&["surface", "--waves", "8", "--channel", "Phase"], "channel and layout"),
         (&["inspect", &stack, "--layout", "columns"], "'columns' is not a layout"),

@@ -55,10 +55,7 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     };
     let arrays = Rc::new(arrays(&bytes[HEADER..], order)?);
     let is_map = |array: &Array<'_>| array.rows > 1 && array.columns > 1 && array.coordinate().is_none();
-    // Meshes of coordinates without heights are maps themselves.
-    let any = arrays.iter().any(is_map);
-    let maps =
-        (0..arrays.len()).filter(|i| is_map(&arrays[*i]) || !any && arrays[*i].rows > 1 && arrays[*i].columns > 1);
+    let maps = (0..arrays.len()).filter(|i| is_map(&arrays[*i]));
     let channel = |i: usize| {
         let arrays = arrays.clone();
         Channel { name: arrays[i].name.clone(), is_height: true, read: Box::new(move || map(&arrays, i)) }

@@ -153,6 +153,10 @@ pub fn read_with(path: &Path, params: &ReadParams) -> Result<HeightMap, ReadErro
 pub fn channels(path: &Path) -> Result<Vec<ChannelInfo>, ReadError> {
     let file = Opened::new(path)?;
     let format = file.format;
+    if format == Format::Npy {
+        // One array, which may be as large as memory.
+        return Ok(vec![ChannelInfo { name: String::new(), is_height: true }]);
+    }
     let channels = file.whole().and_then(|bytes| channels_of(&bytes, format));
     channels.map_err(|problem| ReadError { path: path.to_owned(), problem })
 }

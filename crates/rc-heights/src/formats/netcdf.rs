@@ -7,6 +7,8 @@
 
 use std::rc::Rc;
 
+use hdf5_reader::group::Group;
+use hdf5_reader::{Hdf5File, OpenOptions};
 use netcdf_reader::{NcFile, NcGroup, NcMetadataMode, NcOpenOptions, NcType, NcVariable};
 use rc_core::Grid;
 
@@ -23,7 +25,10 @@ const MOST_INFLATION: usize = 1032;
 const NEVER_WRITTEN: f64 = 9.969209968386869e36;
 
 /// Deepest group that is looked into.
-const DEEPEST: usize = 16;
+const DEEPEST: usize = 32;
+
+/// Most groups of a file.
+const MOST_GROUPS: usize = 1024;
 
 /// Coordinates along an axis.
 struct Coordinates {
@@ -49,10 +54,13 @@ pub(super) fn channels(bytes: &[u8], format: Format) -> Channels<'_> {
         max_object_header_bytes: bytes.len().max(1 << 12),
         ..NcOpenOptions::default()
     };
+    if format == Format::Hdf5 {
+        check_groups(bytes, most)?;
+    }
     let file = NcFile::from_bytes_with_options(bytes, options).map_err(|cause| invalid(&cause))?;
     let arrays = Rc::new(Arrays { file, format, bytes: bytes.len() as u64 });
     let mut found = Vec::new();
-    list(arrays.file.root_group().map_err(|cause| invalid(&cause))?, "", 0, &mut found);
+    list(arrays.file.root_group().map_err(|cause| invalid(&cause))?, "", &mut found);
     let channel = |(name, is_height): (String, bool)| {
         let (arrays, path) = (arrays.clone(), name.clone());
         Channel { name, is_height, read: Box::new(move || arrays.map(&path)) }
@@ -60,16 +68,40 @@ pub(super) fn channels(bytes: &[u8], format: Format) -> Channels<'_> {
     Ok(found.into_iter().map(channel).collect())
 }
 
+/// Refuses groups that contain themselves, which netcdf-reader would follow without an end.
+fn check_groups(bytes: &[u8], most: usize) -> Result<(), FormatError> {
+    let options = OpenOptions {
+        max_chunk_bytes: most,
+        max_read_bytes: most,
+        max_object_header_bytes: bytes.len().max(1 << 12),
+        ..OpenOptions::default()
+    };
+    let file = Hdf5File::from_bytes_with_options(bytes, options).and_then(|file| file.root_group());
+    let mut left = MOST_GROUPS;
+    file.map_err(netcdf_reader::Error::from)
+        .and_then(|root| count(&root, DEEPEST, &mut left))
+        .map_err(|cause| container(Format::Hdf5, &cause))
+}
+
+/// Takes the groups in `group`, and itself, off those that are `left`.
+fn count(group: &Group, depth: usize, left: &mut usize) -> Result<(), netcdf_reader::Error> {
+    let refused = || {
+        let message = format!("more than {MOST_GROUPS} groups, or some inside each other more than {DEEPEST} deep");
+        netcdf_reader::Error::InvalidData(message)
+    };
+    *left = left.checked_sub(1).ok_or_else(refused)?;
+    let depth = depth.checked_sub(1).ok_or_else(refused)?;
+    group.groups()?.iter().try_for_each(|inner| count(inner, depth, left))
+}
+
 /// Paths of the maps in a group, and whether they are lengths.
-fn list(group: &NcGroup, path: &str, depth: usize, found: &mut Vec<(String, bool)>) {
+fn list(group: &NcGroup, path: &str, found: &mut Vec<(String, bool)>) {
     for variable in group.variables.iter().filter(|variable| is_map(variable)) {
         let is_height = unit_of(variable).0 != Unit::NotLength;
         found.push((format!("{path}{}", variable.name()), is_height));
     }
-    if depth < DEEPEST {
-        for inner in &group.groups {
-            list(inner, &format!("{path}{}/", inner.name), depth + 1, found);
-        }
+    for inner in &group.groups {
+        list(inner, &format!("{path}{}/", inner.name), found);
     }
 }
 

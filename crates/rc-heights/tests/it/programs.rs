@@ -1,7 +1,8 @@
 //! Files of arrays, of Gwyddion, of Igor and texts that other programs wrote, in data/formats/ (its README says which and how).
 
 use rc_heights::{
-    ChannelInfo, Format, HeightMap, Layout, ReadParams, Unit, channels, format_of, may_have_sides, read, read_with,
+    ChannelInfo, Format, HeightMap, Layout, ReadParams, Unit, channels, format_of, may_have_sides, parse, read,
+    read_with,
 };
 
 use crate::files::{expected, folder, map, worst};
@@ -142,6 +143,66 @@ fn gzip_holds_any_format() {
         let error = read(&path).expect_err(name).to_string();
         assert!(error.contains("gzip cannot unpack it"), "{error}");
     }
+}
+
+#[test]
+fn groups_that_contain_themselves_are_refused() {
+    let error = read(&folder().join("h5py-cycle.h5")).expect_err("a cycle").to_string();
+    assert!(error.contains("more than 1024 groups, or some inside each other more than 32 deep"), "{error}");
+}
+
+/// `file` with the 32-bit number `from` after `name` replaced by 2^20, little-endian.
+fn promising(file: &str, name: &[u8], from: u32) -> Vec<u8> {
+    let mut bytes = std::fs::read(folder().join(file)).expect(file);
+    let pattern = [name, &from.to_le_bytes()].concat();
+    let places: Vec<usize> = (0..bytes.len()).filter(|at| bytes[*at..].starts_with(&pattern)).collect();
+    assert!(!places.is_empty(), "{file} has no {pattern:?}");
+    for at in places {
+        bytes[at + name.len()..][..4].copy_from_slice(&(1_u32 << 20).to_le_bytes());
+    }
+    bytes
+}
+
+#[test]
+fn arrays_that_promise_terabytes_are_refused_before_memory_is_taken() {
+    use std::io::Write as _;
+    let gwy = promising("gwyfile.gwy", b"xres\0i", 12);
+    let mat = promising("scipy-vectors.mat", &8_u32.to_le_bytes(), 12);
+    // The same in an element that is compressed.
+    let tag = [14_u32.to_le_bytes(), u32::MAX.to_le_bytes()].concat();
+    let flags = [6_u32, 8, 6, 0].map(u32::to_le_bytes).concat();
+    let sizes = [5_u32, 8, 1 << 20, 1 << 20].map(u32::to_le_bytes).concat();
+    let name = [1_u32 | 1 << 16, 0x41].map(u32::to_le_bytes).concat();
+    let values = [9_u32, u32::MAX].map(u32::to_le_bytes).concat();
+    let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
+    packed.write_all(&[tag, flags, sizes, name, values, vec![0; 4096]].concat()).expect("in memory");
+    let packed = packed.finish().expect("in memory");
+    let tag = [15_u32, packed.len() as u32].map(u32::to_le_bytes).concat();
+    let deflated = [&mat[..128], &tag, &packed].concat();
+    let files = [
+        (Format::Gwy, gwy),
+        (Format::Ibw, huge_wave()),
+        (Format::Mat, mat),
+        (Format::Mat, deflated),
+        (Format::Hdf5, std::fs::read(folder().join("h5py-huge.h5")).expect("a file")),
+    ];
+    for (format, bytes) in files {
+        let error = parse(&bytes, format).expect_err("a promise").to_string();
+        assert!(error.contains("shorter than its header says"), "{format}: {error}");
+    }
+}
+
+/// The image of Igor with 2^20 x 2^20 points, and the checksum that goes with it.
+fn huge_wave() -> Vec<u8> {
+    let mut bytes = std::fs::read(folder().join("igorwriter.ibw")).expect("a file");
+    for at in [132, 136] {
+        bytes[at..at + 4].copy_from_slice(&(1_u32 << 20).to_le_bytes());
+    }
+    bytes[2..4].fill(0);
+    let words = bytes[..384].chunks(2).map(|word| u16::from_le_bytes([word[0], word[1]]));
+    let sum = words.fold(0_u16, u16::wrapping_add);
+    bytes[2..4].copy_from_slice(&sum.wrapping_neg().to_le_bytes());
+    bytes
 }
 
 #[test]
