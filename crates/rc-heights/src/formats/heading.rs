@@ -1,7 +1,7 @@
 //! The lines before the numbers of a text, as instruments and Gwyddion write them: sizes, units, titles of columns.
 
 use super::fields::{refused, shown};
-use super::text::{lines, number, words};
+use super::lines::{lines, number, words};
 use super::unit;
 use crate::{Format, FormatError, LengthUnit, Unit};
 

@@ -14,6 +14,7 @@ mod gwy;
 mod heading;
 mod ibw;
 mod layout;
+mod lines;
 mod mat;
 mod netcdf;
 pub mod npy;

@@ -4,7 +4,7 @@ use super::decode::decoded;
 use super::field::field;
 use super::fields::shown;
 use super::heading::Heading;
-use super::text::{data_lines, number, words};
+use super::lines::{data_lines, number, words};
 use crate::{FormatError, HeightMap, Unit};
 
 use rc_core::Grid;
