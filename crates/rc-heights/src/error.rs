@@ -179,8 +179,8 @@ fn names(channels: &[String]) -> String {
         _ => {
             let more =
                 if channels.len() > MOST { format!(" and {} more", channels.len() - MOST) } else { String::new() };
-            let shown: Vec<String> = channels.iter().take(MOST).map(|name| crate::formats::shown(name)).collect();
-            format!("the file has {}{more}", shown.join(", "))
+            let first = channels[..channels.len().min(MOST)].join(", ");
+            format!("the file has {first}{more}")
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What a file holds: one or several channels of values on a grid, read one at a time.
 
+use super::fields::shown;
 use crate::{FormatError, HeightMap};
 
 /// A channel of a file, whose values are not read yet.
@@ -67,9 +68,10 @@ pub(super) fn chosen<'a>(channels: Vec<Channel<'a>>, name: Option<&str>) -> Resu
         Some(name) => exact(name).or_else(|| any_case(name)),
         None => channels.iter().position(|channel| channel.is_height),
     };
+    let shown_names = names.iter().map(|name| shown(name)).collect();
     let refused = match name {
-        Some(name) => FormatError::NoChannel { name: name.to_owned(), channels: names },
-        None => FormatError::NoHeights { channels: names },
+        Some(name) => FormatError::NoChannel { name: shown(name), channels: shown_names },
+        None => FormatError::NoHeights { channels: shown_names },
     };
     at.and_then(|at| channels.into_iter().nth(at)).ok_or(refused)
 }

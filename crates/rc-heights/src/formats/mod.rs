@@ -33,7 +33,6 @@ use std::io::Read as _;
 use std::path::Path;
 
 pub use channel::ChannelInfo;
-pub(crate) use fields::shown;
 pub use format::Format;
 pub use layout::{Layout, LayoutError};
 
