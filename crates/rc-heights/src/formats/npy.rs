@@ -7,7 +7,7 @@ use std::path::Path;
 use npyz::{DType, Deserialize, NpyFile, NpyHeader, Order, TypeChar, WriterBuilder as _};
 use rc_core::{Field, Grid};
 
-use super::field::field;
+use super::field::{field, transposed};
 use crate::{Format, FormatError, ReadError};
 
 /// Longest header that is read; that of a 2-D array has about 120 bytes. The parser of headers goes one call deeper for each
@@ -196,12 +196,6 @@ fn collect<T: Deserialize>(npy: NpyFile<impl Read>, n: usize, to_f64: impl Fn(T)
         values.push(to_f64(value?));
     }
     Ok(values)
-}
-
-/// Row-major values of an array that is stored column by column.
-fn transposed(stored: &[f64], grid: Grid) -> Vec<f64> {
-    let (nx, ny) = (grid.nx(), grid.ny());
-    (0..ny).flat_map(|iy| (0..nx).map(move |ix| stored[ix * ny + iy])).collect()
 }
 
 #[cfg(test)]
