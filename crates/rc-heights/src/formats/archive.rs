@@ -18,7 +18,7 @@ pub(super) const GZIP: &[u8] = b"\x1f\x8b\x08";
 const MOST_UNPACKED: u64 = 4 << 30;
 
 /// Ends of members' names by which formats are known.
-const FORMATS: &[(&str, Format)] = &[("main.xml", Format::X3p)];
+const FORMATS: &[(&str, Format)] = &[("main.xml", Format::X3p), ("index.xml", Format::Plux)];
 
 /// Members' names by which other archives are known, and what these are.
 const OTHERS: &[(&str, &str)] = &[

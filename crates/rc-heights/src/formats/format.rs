@@ -31,6 +31,22 @@ pub enum Format {
     Png,
     /// TIFF, grayscale of 16 bits, or of 32-bit floats.
     Tiff,
+    /// Digital Surf, plain or compressed.
+    Sur,
+    /// Bruker Nanoscope.
+    Nanoscope,
+    /// Wyko (Bruker Vision).
+    Opd,
+    /// Zygo MetroPro.
+    MetroPro,
+    /// Alicona.
+    Al3d,
+    /// Sensofar, binary.
+    Plu,
+    /// Sensofar, an archive.
+    Plux,
+    /// Keyence VK.
+    Vk4,
 }
 
 impl std::fmt::Display for Format {
@@ -50,6 +66,14 @@ impl std::fmt::Display for Format {
             Self::X3p => "x3p",
             Self::Png => "PNG",
             Self::Tiff => "TIFF",
+            Self::Sur => "Digital Surf",
+            Self::Nanoscope => "Nanoscope",
+            Self::Opd => "Wyko OPD",
+            Self::MetroPro => "MetroPro",
+            Self::Al3d => "al3d",
+            Self::Plu => "plu",
+            Self::Plux => "plux",
+            Self::Vk4 => "Keyence VK",
         })
     }
 }

@@ -1,5 +1,6 @@
 //! The formats, and how a file is read.
 
+mod al3d;
 mod archive;
 mod axes;
 mod binary;
@@ -13,18 +14,26 @@ mod gsf;
 mod gwy;
 mod heading;
 mod ibw;
+mod instrument;
 mod layout;
 mod lines;
 mod mat;
+mod metropro;
+mod nanoscope;
 mod netcdf;
 pub mod npy;
+mod opd;
+mod plu;
+mod plux;
 mod png;
 mod sdf;
 mod sniff;
+mod sur;
 mod surfer;
 pub mod text;
 mod tiff;
 mod unit;
+mod vk4;
 mod x3p;
 mod xyz;
 
@@ -189,17 +198,25 @@ pub fn parse_with(bytes: &[u8], format: Format, params: &ReadParams) -> Result<H
 /// The channels of a file, one line a format.
 fn in_bytes(bytes: &[u8], format: Format) -> Channels<'_> {
     Ok(match format {
+        Format::Al3d => al3d::channels(bytes)?,
         Format::Csv => text::channels(bytes)?,
         Format::Gsf => only(move || gsf::parse(bytes)),
         Format::Gwy => gwy::channels(bytes)?,
         Format::Hdf5 | Format::NetCdf => netcdf::channels(bytes, format)?,
         Format::Ibw => ibw::channels(bytes)?,
         Format::Mat => mat::channels(bytes)?,
+        Format::MetroPro => metropro::channels(bytes)?,
+        Format::Nanoscope => nanoscope::channels(bytes)?,
         Format::Npy => only(move || npy::read_from(bytes, bytes.len() as u64).map(HeightMap::bare)),
+        Format::Opd => opd::channels(bytes)?,
+        Format::Plu => plu::channels(bytes)?,
+        Format::Plux => plux::channels(bytes)?,
         Format::Png => only(move || png::parse(bytes)),
         Format::Sdf => only(move || sdf::parse(bytes)),
+        Format::Sur => sur::channels(bytes)?,
         Format::Surfer => only(move || surfer::parse(bytes)),
         Format::Tiff => only(move || tiff::parse(bytes)),
+        Format::Vk4 => vk4::channels(bytes)?,
         Format::X3p => only(move || x3p::parse(bytes)),
         Format::Xyz => only(move || xyz::parse(bytes)),
     })

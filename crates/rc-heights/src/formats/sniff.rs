@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::archive::{self, ZIP};
 use super::decode::is_text;
-use super::{Format, gsf, gwy, ibw, mat, xyz};
+use super::{Format, al3d, gsf, gwy, ibw, mat, metropro, nanoscope, opd, sur, vk4, xyz};
 use crate::FormatError;
 
 /// The signature of HDF5, at the start or behind a user block of 512 bytes or a power of two as many.
@@ -35,6 +35,16 @@ const MARKS: &[(&[u8], Format)] = &[
     (b"\x89PNG\r\n\x1a\n", Format::Png),
     (b"II*\0", Format::Tiff),
     (b"MM\0*", Format::Tiff),
+    (sur::PLAIN, Format::Sur),
+    (sur::COMPRESSED, Format::Sur),
+    (nanoscope::MARK, Format::Nanoscope),
+    (opd::MARK, Format::Opd),
+    (metropro::MARKS[0], Format::MetroPro),
+    (metropro::MARKS[1], Format::MetroPro),
+    (metropro::MARKS[2], Format::MetroPro),
+    (al3d::MARK, Format::Al3d),
+    (vk4::MARKS[0], Format::Vk4),
+    (vk4::MARKS[1], Format::Vk4),
 ];
 
 impl Format {
@@ -84,6 +94,13 @@ impl Format {
             Some("x3p") => mark(Self::X3p, "it must be a zip archive"),
             Some("png") => mark(Self::Png, "it must begin with \\x89PNG"),
             Some("tif" | "tiff") => mark(Self::Tiff, "it must begin with II* or MM*; BigTIFF is not read"),
+            Some("sur") => mark(Self::Sur, "it must begin with DIGITAL SURF or DSCOMPRESSED"),
+            Some("spm") => mark(Self::Nanoscope, "it must begin with the line '\\*File list'"),
+            Some("opd") => mark(Self::Opd, "it must begin with a block called Directory"),
+            Some("al3d") => mark(Self::Al3d, "it must begin with AliconaImaging"),
+            Some("plu") => Ok(Self::Plu),
+            Some("plux") => mark(Self::Plux, "it must be a zip archive"),
+            Some("vk4") => mark(Self::Vk4, "it must begin with VK4_"),
             _ => Err(FormatError::Unknown),
         }
     }

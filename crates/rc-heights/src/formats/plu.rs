@@ -1,0 +1,60 @@
+//! Sensofar: a header without a mark, then layers of 32-bit floats in µm, rows from top to bottom (the documentation of Gwyddion
+//! describes the format).
+
+use rc_core::Grid;
+
+use super::binary::Number;
+use super::channel::{Channel, Channels};
+use super::fields::refused;
+use super::instrument::{Places, map, scale_measured, sides};
+use crate::{Format, FormatError, HeightMap};
+
+/// Place of the calibration, behind a date, a time and a comment.
+const CALIBRATION: usize = 388;
+/// Place of the configuration of the measurement.
+const CONFIGURATION: usize = 428;
+/// Place of the first layer.
+const LAYERS: usize = 500;
+
+/// The type of a measurement that is a map of heights.
+const TOPOGRAPHY: usize = 3;
+
+/// The height of a missing point.
+const MISSING: f64 = 1_000_001.0;
+
+const MICROMETRE: f64 = 1e-6;
+
+pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
+    let header = Places::new(bytes, Format::Plu);
+    let kind = header.size(CONFIGURATION)?;
+    if kind != TOPOGRAPHY {
+        return Err(refused(Format::Plu, "type of measurement", &kind, "3, a map of heights"));
+    }
+    let spacing = [header.f32(CALIBRATION + 16)? * MICROMETRE, header.f32(CALIBRATION + 20)? * MICROMETRE];
+    let [_, layers, _, _] = header.array(LAYERS - 12)?;
+    let [images] = header.array(LAYERS - 8)?;
+    let (mut channels, mut at) = (Vec::new(), LAYERS);
+    // Of layers that are cut off, the first is an error and the others are left out.
+    while channels.is_empty() || channels.len() < usize::from(layers) && header.rest(at).len() > 8 {
+        let grid = Grid::new(header.size(at + 4)?, header.size(at)?)?;
+        let sides = sides(Format::Plu, ["distance of points along x", "distance of points along y"], grid, spacing)?;
+        let heights = header.rest(at + 8);
+        channels.push(Channel {
+            name: format!("layer {}", channels.len() + 1),
+            is_height: true,
+            read: Box::new(move || read(heights, grid, sides)),
+        });
+        // Heights, the lowest and the highest, and images of three bytes a point.
+        at = at.saturating_add(16).saturating_add(grid.len() * (Number::F32.size() + 3 * usize::from(images)));
+    }
+    if let [only] = &mut channels[..] {
+        only.name.clear();
+    }
+    Ok(channels)
+}
+
+fn read(heights: &[u8], grid: Grid, sides: [f64; 2]) -> Result<HeightMap, FormatError> {
+    let mut values = Number::F32.values(heights, grid)?;
+    scale_measured(&mut values, MICROMETRE, |value| value == MISSING);
+    Ok(map(grid, values, true, Some(sides)))
+}

@@ -1,0 +1,95 @@
+//! Sensofar, the newer format: a zip archive with `index.xml`, and for each layer a file of 32-bit floats in µm, rows from top to
+//! bottom; a missing point is not a number.
+
+use std::io::{Cursor, Read as _};
+
+use rc_core::Grid;
+use roxmltree::{Document, Node};
+use zip::ZipArchive;
+
+use super::binary::Number;
+use super::channel::{Channel, Channels};
+use super::fields::refused;
+use super::instrument::{map, sides};
+use crate::{Format, FormatError, HeightMap};
+
+/// Longest `index.xml`; heights are not in it.
+const LONGEST_XML: u64 = 16 << 20;
+
+/// Deflate makes at most 1032 bytes of one: what is promised beyond that is not there.
+const MOST_INFLATION: u64 = 1032;
+
+const MICROMETRE: f64 = 1e-6;
+
+pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
+    let xml = member(bytes, "index.xml", LONGEST_XML)?;
+    let xml = String::from_utf8_lossy(&xml);
+    let document = Document::parse(&xml).map_err(|cause| container(&cause))?;
+    let root = document.root_element();
+    let general = child(root, "GENERAL").ok_or(FormatError::Missing { format: Format::Plux, field: "GENERAL" })?;
+    let grid = Grid::new(number(general, "IMAGE_SIZE_X")?, number(general, "IMAGE_SIZE_Y")?)?;
+    // Despite their name, these are the sides of a pixel.
+    let spacing = [number::<f64>(general, "FOV_X")? * MICROMETRE, number::<f64>(general, "FOV_Y")? * MICROMETRE];
+    let sides = sides(Format::Plux, ["FOV_X", "FOV_Y"], grid, spacing)?;
+    let layers = root.children().filter(|node| node.tag_name().name().starts_with("LAYER_"));
+    let mut channels = Vec::new();
+    for layer in layers {
+        // Layers without heights have an image alone.
+        if let Some(file) = text(layer, "FILENAME_Z") {
+            let file = file.to_owned();
+            channels.push(Channel {
+                name: layer.tag_name().name().to_owned(),
+                is_height: true,
+                read: Box::new(move || read(bytes, &file, grid, sides)),
+            });
+        }
+    }
+    Ok(channels)
+}
+
+fn read(bytes: &[u8], file: &str, grid: Grid, sides: [f64; 2]) -> Result<HeightMap, FormatError> {
+    let needed = Number::F32.bytes_of(grid);
+    let found = (bytes.len() as u64).saturating_mul(MOST_INFLATION);
+    if found < needed {
+        return Err(FormatError::CutShort { grid, needed, found });
+    }
+    let mut values = Number::F32.values(&member(bytes, file, needed)?, grid)?;
+    crate::map::scale(&mut values, MICROMETRE);
+    Ok(map(grid, values, true, Some(sides)))
+}
+
+/// A file of the archive, of `most` bytes at most. Some names begin with `./` in the archive and not in the index.
+fn member(bytes: &[u8], name: &str, most: u64) -> Result<Vec<u8>, FormatError> {
+    let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|cause| container(&cause))?;
+    let dotted = format!("./{name}");
+    let name = if archive.index_for_name(name).is_none() && archive.index_for_name(&dotted).is_some() {
+        &dotted
+    } else {
+        name
+    };
+    let file = archive.by_name(name).map_err(|cause| container(&format_args!("{name}: {cause}")))?;
+    let mut content = Vec::new();
+    let read = file.take(most.saturating_add(1)).read_to_end(&mut content);
+    read.map_err(|cause| container(&format_args!("{name}: {cause}")))?;
+    if content.len() as u64 > most {
+        return Err(container(&format_args!("{name} has more than the {most} bytes that it should have")));
+    }
+    Ok(content)
+}
+
+fn child<'a, 'input>(node: Node<'a, 'input>, name: &str) -> Option<Node<'a, 'input>> {
+    node.children().find(|child| child.tag_name().name() == name)
+}
+
+fn text<'a>(node: Node<'a, '_>, name: &str) -> Option<&'a str> {
+    child(node, name).and_then(|node| node.text()).map(str::trim).filter(|text| !text.is_empty())
+}
+
+fn number<T: std::str::FromStr>(node: Node<'_, '_>, name: &'static str) -> Result<T, FormatError> {
+    let text = text(node, name).ok_or(FormatError::Missing { format: Format::Plux, field: name })?;
+    text.parse().map_err(|_| refused(Format::Plux, name, text, "a number"))
+}
+
+fn container(reason: &(impl ToString + ?Sized)) -> FormatError {
+    FormatError::Container { format: Format::Plux, reason: reason.to_string() }
+}

@@ -1,0 +1,177 @@
+//! Digital Surf: objects one behind the other, each a header of 512 bytes, a comment, private bytes, and integers, plain or
+//! compressed by zlib ("Surface file format", Digital Surf; the header is described in the documentation of Gwyddion and of
+//! RosettaSciIO too). Heights are offset + spacing x integer; rows from top to bottom.
+
+use std::io::Read as _;
+
+use flate2::read::ZlibDecoder;
+use rc_core::Grid;
+
+use super::binary::Number;
+use super::channel::{Channel, Channels};
+use super::fields::{factor, refused};
+use super::instrument::{Places, map, metres, scale_measured, sides, turn_rows};
+use crate::{Format, FormatError, HeightMap};
+
+/// The first bytes of an object whose integers are stored as they are.
+pub(super) const PLAIN: &[u8] = b"DIGITAL SURF";
+/// The first bytes of an object whose integers are compressed.
+pub(super) const COMPRESSED: &[u8] = b"DSCOMPRESSED";
+
+const HEADER: usize = 512;
+
+/// The types of objects that have a spectrum at each point.
+const SPECTRA: [u16; 2] = [20, 21];
+
+/// Deflate makes at most 1032 bytes of one: what is promised beyond that is not there.
+const MOST_INFLATION: u64 = 1032;
+
+/// An object: its header, and the bytes from its integers on.
+struct Object<'a> {
+    name: String,
+    grid: Grid,
+    number: Number,
+    /// Values of a point: 1, or as many as its spectrum has.
+    values: usize,
+    compressed: bool,
+    /// The integer that stands for a missing point.
+    missing: Option<f64>,
+    /// The value of an integer of 1, and that of 0.
+    scale: [f64; 2],
+    is_height: bool,
+    /// Sides (m) where the axes are lengths.
+    sides: Option<[f64; 2]>,
+    inversion: u16,
+    data: &'a [u8],
+}
+
+pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
+    let mut channels = Vec::new();
+    let mut rest = bytes;
+    loop {
+        let object = object(rest)?;
+        let stored = object.stored();
+        let data = object.data;
+        channels.push(Channel {
+            name: object.name.clone(),
+            is_height: object.is_height,
+            read: Box::new(move || object.read()),
+        });
+        rest = stored.and_then(|stored| data.get(stored..)).unwrap_or_default();
+        // An object that is cut off before its integers does not take the others away.
+        if !(rest.starts_with(PLAIN) || rest.starts_with(COMPRESSED)) || rest.len() < HEADER {
+            return Ok(channels);
+        }
+    }
+}
+
+fn object(bytes: &[u8]) -> Result<Object<'_>, FormatError> {
+    let header = Places::new(bytes, Format::Sur);
+    if !(bytes.starts_with(PLAIN) || bytes.starts_with(COMPRESSED)) {
+        let expected = "it must begin with DIGITAL SURF or DSCOMPRESSED";
+        return Err(FormatError::Mark { format: Format::Sur, expected });
+    }
+    let field = |field, found: u16, expected| Err(refused(Format::Sur, field, &found, expected));
+    let number = match (header.u16(12)?, header.u16(98)?) {
+        (0, 8) => Number::U8,
+        (0, 16) => Number::I16,
+        (0, 32) => Number::I32,
+        (0, bits) => return field("bits of a point", bits, "8, 16 or 32"),
+        (format, _) => return field("format", format, "0, the byte order of a PC"),
+    };
+    let count = |at| header.i32(at).map(|n| usize::try_from(n).unwrap_or(0));
+    let grid = Grid::new(count(108)?, count(112)?)?;
+    if count(116)? != grid.len() {
+        return Err(refused(Format::Sur, "number of points", &header.i32(116)?, "points of a line x lines"));
+    }
+    let units = [header.text::<16>(180)?, header.text::<16>(196)?, header.text::<16>(212)?];
+    let [x, y, z] = [metres(&units[0]), metres(&units[1]), metres(&units[2])];
+    let sides = match (x, y) {
+        (Some(x), Some(y)) => {
+            let spacing = [x * header.f32(120)?, y * header.f32(124)?];
+            Some(sides(Format::Sur, ["spacing along x", "spacing along y"], grid, spacing)?)
+        }
+        _ => None,
+    };
+    let scale = factor(Format::Sur, "spacing along z", header.f32(128)? * z.unwrap_or(1.0))?;
+    let name = [header.text::<30>(20)?, header.text::<16>(164)?].into_iter().find(|name| !name.is_empty());
+    Ok(Object {
+        name: name.unwrap_or_default(),
+        grid,
+        number,
+        values: if SPECTRA.contains(&header.u16(18)?) { header.size(94)?.max(1) } else { 1 },
+        compressed: bytes.starts_with(COMPRESSED),
+        missing: if header.u16(86)? == 1 { Some(f64::from(header.i32(100)?) - 2.0) } else { None },
+        scale: [scale, header.f32(474)? * z.unwrap_or(1.0)],
+        is_height: z.is_some(),
+        sides,
+        inversion: header.u16(290)?,
+        data: header.rest(HEADER + usize::from(header.u16(334)?) + usize::from(header.u16(336)?)),
+    })
+}
+
+impl Object<'_> {
+    fn read(&self) -> Result<HeightMap, FormatError> {
+        if self.values > 1 {
+            let (what, cure) = (format!("an object of {} values a point", self.values), "save a map of one of them");
+            return Err(FormatError::Unsupported { format: Format::Sur, what, cure });
+        }
+        let inflated = if self.compressed { Some(self.inflated()?) } else { None };
+        let mut values = self.number.values(inflated.as_deref().unwrap_or(self.data), self.grid)?;
+        // Heights of a replica are negative: the file says so, and along which axis the replica is mirrored.
+        let [scale, offset] = self.scale;
+        let scale = if matches!(self.inversion, 1..=3) { -scale } else { scale };
+        scale_measured(&mut values, scale, |value| Some(value) == self.missing);
+        if offset != 0.0 {
+            for value in &mut values {
+                *value += offset;
+            }
+        }
+        match self.inversion {
+            2 => values.chunks_mut(self.grid.nx()).for_each(<[f64]>::reverse),
+            3 => turn_rows(&mut values, self.grid),
+            _ => {}
+        }
+        Ok(map(self.grid, values, self.is_height, self.sides))
+    }
+
+    /// The number of streams, and for each the lengths of what it makes and of what is stored; the streams follow.
+    fn streams(&self) -> Result<(Vec<[usize; 2]>, usize), FormatError> {
+        let directory = Places::new(self.data, Format::Sur);
+        let count = directory.size(0)?;
+        if count > self.data.len() / 8 {
+            return Err(FormatError::HeaderCutShort { format: Format::Sur });
+        }
+        let lengths = |i| Ok([directory.size(4 + 8 * i)?, directory.size(8 + 8 * i)?]);
+        Ok(((0..count).map(lengths).collect::<Result<_, FormatError>>()?, 4 + 8 * count))
+    }
+
+    /// Bytes of the integers in the file, if they can be told.
+    fn stored(&self) -> Option<usize> {
+        if !self.compressed {
+            return usize::try_from(self.number.bytes_of(self.grid)).ok()?.checked_mul(self.values);
+        }
+        let (lengths, start) = self.streams().ok()?;
+        lengths.iter().try_fold(start, |end, [_, stored]| end.checked_add(*stored))
+    }
+
+    /// The integers of all streams, at most as many bytes as the points need.
+    fn inflated(&self) -> Result<Vec<u8>, FormatError> {
+        let needed = self.number.bytes_of(self.grid);
+        let found = (self.data.len() as u64).saturating_mul(MOST_INFLATION);
+        if found < needed {
+            return Err(FormatError::CutShort { grid: self.grid, needed, found });
+        }
+        let (lengths, mut at) = self.streams()?;
+        let mut integers = Vec::new();
+        for [_, stored] in lengths {
+            let stream = Places::new(self.data, Format::Sur).rest(at);
+            let stream = &stream[..stored.min(stream.len())];
+            let room = needed.saturating_sub(integers.len() as u64);
+            let read = ZlibDecoder::new(stream).take(room).read_to_end(&mut integers);
+            read.map_err(|cause| FormatError::Container { format: Format::Sur, reason: cause.to_string() })?;
+            at = at.saturating_add(stored);
+        }
+        Ok(integers)
+    }
+}

@@ -1,0 +1,63 @@
+//! Keyence: a table of places, the conditions of the measurement, and images, of which up to three have heights, as integers of
+//! as many picometres as the conditions say; rows from top to bottom (the documentation of Gwyddion describes the format).
+
+use rc_core::Grid;
+
+use super::binary::Number;
+use super::channel::{Channel, Channels};
+use super::fields::{factor, refused};
+use super::instrument::{Places, map, sides};
+use crate::map::scale;
+use crate::{Format, FormatError, HeightMap};
+
+/// The first bytes. Files of version 3 have a table with one place less.
+pub(super) const MARKS: [&[u8]; 2] = [b"VK4_", b"VK3_"];
+
+/// Place of the table, behind mark, version and four zero bytes.
+const TABLE: usize = 12;
+/// Places in the table of the three images of heights.
+const HEIGHTS: [usize; 3] = [TABLE + 24, TABLE + 28, TABLE + 32];
+
+/// Bytes of the header of an image with a palette.
+const IMAGE_HEADER: usize = 28 + 768;
+
+const PICOMETRE: f64 = 1e-12;
+
+pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
+    let file = Places::new(bytes, Format::Vk4);
+    let conditions = Places::new(file.rest(file.size(TABLE)?), Format::Vk4);
+    let length = |at| Ok::<_, FormatError>(conditions.size(at)? as f64 * PICOMETRE);
+    let (spacing, unit) = ([length(168)?, length(172)?], length(176)?);
+    let unit = factor(Format::Vk4, "length of a digit along z", unit)?;
+    let mut channels = Vec::new();
+    for (i, at) in HEIGHTS.into_iter().enumerate() {
+        // 0 is an image that the file does not have.
+        let place = file.size(at)?;
+        if place != 0 {
+            channels.push(Channel {
+                name: if i == 0 { "Height".to_owned() } else { format!("Height {}", i + 1) },
+                is_height: true,
+                read: Box::new(move || read(Places::new(file.rest(place), Format::Vk4), spacing, unit)),
+            });
+        }
+    }
+    Ok(channels)
+}
+
+fn read(image: Places<'_>, spacing: [f64; 2], unit: f64) -> Result<HeightMap, FormatError> {
+    let grid = Grid::new(image.size(0)?, image.size(4)?)?;
+    let number = match image.size(8)? {
+        8 => Number::U8,
+        16 => Number::U16,
+        32 => Number::U32,
+        other => return Err(refused(Format::Vk4, "bits of a height", &other, "8, 16 or 32")),
+    };
+    if image.size(12)? != 0 {
+        let what = "compressed heights".to_owned();
+        return Err(FormatError::Unsupported { format: Format::Vk4, what, cure: "save them without compression" });
+    }
+    let sides = sides(Format::Vk4, ["length of a pixel along x", "length of a pixel along y"], grid, spacing)?;
+    let mut values = number.values(image.rest(IMAGE_HEADER), grid)?;
+    scale(&mut values, unit);
+    Ok(map(grid, values, true, Some(sides)))
+}
