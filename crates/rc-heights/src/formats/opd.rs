@@ -23,8 +23,8 @@ const HEIGHTS: [&str; 5] = ["RAW_DATA", "RAW DATA", "OPD", "Raw", "SAMPLE_DATA"]
 
 /// Integers from here on are missing points.
 const MISSING_INTEGER: f64 = 32766.0;
-/// Floats from here on are missing points.
-const MISSING_FLOAT: f64 = 1e38;
+/// Floats from here on are missing points, which are 1e38 or what is next to it in 32 bits.
+const MISSING_FLOAT: f64 = 9.9999e37;
 
 struct Block<'a> {
     name: String,

@@ -155,7 +155,7 @@ impl Object<'_> {
         lengths.iter().try_fold(start, |end, [_, stored]| end.checked_add(*stored))
     }
 
-    /// The integers of all streams, at most as many bytes as the points need.
+    /// The integers of all streams.
     fn inflated(&self) -> Result<Vec<u8>, FormatError> {
         let needed = self.number.bytes_of(self.grid);
         let found = (self.data.len() as u64).saturating_mul(MOST_INFLATION);
@@ -167,10 +167,15 @@ impl Object<'_> {
         for [_, stored] in lengths {
             let stream = Places::new(self.data, Format::Sur).rest(at);
             let stream = &stream[..stored.min(stream.len())];
-            let room = needed.saturating_sub(integers.len() as u64);
+            // A byte more than there is room for: the checksum of a stream is verified at its end.
+            let room = (needed + 1).saturating_sub(integers.len() as u64);
             let read = ZlibDecoder::new(stream).take(room).read_to_end(&mut integers);
             read.map_err(|cause| FormatError::Container { format: Format::Sur, reason: cause.to_string() })?;
             at = at.saturating_add(stored);
+        }
+        let found = integers.len() as u64;
+        if found > needed {
+            return Err(FormatError::Surplus { grid: self.grid, needed, found });
         }
         Ok(integers)
     }

@@ -228,7 +228,7 @@ fn written(name: &str) -> Vec<u8> {
 
 /// A valid file of each kind.
 pub(crate) fn all() -> Vec<(&'static str, Format, Vec<u8>)> {
-    vec![
+    let mut all = vec![
         ("npy", Format::Npy, npy()),
         ("csv", Format::Csv, b"1,2,3\n4,5,6\n".to_vec()),
         ("xyz", Format::Xyz, b"0 0 1\n1 0 2\n2 0 3\n0 1 4\n1 1 5\n2 1 6\n".to_vec()),
@@ -253,5 +253,7 @@ pub(crate) fn all() -> Vec<(&'static str, Format, Vec<u8>)> {
         ("Gwyddion's text", Format::Csv, written("gwyddion.txt")),
         ("text of UTF-16", Format::Csv, written("gwyddion-utf16.txt")),
         ("columns", Format::Xyz, written("columns.csv")),
-    ]
+    ];
+    all.extend(crate::build_instruments::all());
+    all
 }

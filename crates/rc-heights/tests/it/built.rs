@@ -6,7 +6,7 @@ use zip::CompressionMethod;
 use crate::build::{self, HEIGHTS};
 
 /// Heights are `scale` times 1 to 6 plus `offset`, sides as given, both within rounding.
-fn assert_map(name: &str, map: &HeightMap, scale: f64, offset: f64, sides: Option<[f64; 2]>) {
+pub(crate) fn assert_map(name: &str, map: &HeightMap, scale: f64, offset: f64, sides: Option<[f64; 2]>) {
     assert_eq!((map.heights.grid().nx(), map.heights.grid().ny()), (3, 2), "{name}");
     for (found, height) in map.heights.values().iter().zip(HEIGHTS) {
         let expected = scale * height + offset;
@@ -17,7 +17,7 @@ fn assert_map(name: &str, map: &HeightMap, scale: f64, offset: f64, sides: Optio
     assert!(map.sides.iter().zip(&sides).all(difference), "{name}: {:?}, expected {sides:?}", map.sides);
 }
 
-fn read(name: &str, bytes: &[u8], format: Format) -> HeightMap {
+pub(crate) fn read(name: &str, bytes: &[u8], format: Format) -> HeightMap {
     parse(bytes, format).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 

@@ -1,8 +1,10 @@
 //! Readers on files of other programs, on files built byte by byte, and on damaged ones; treatments against closed forms.
 
 mod build;
+mod build_instruments;
 mod built;
 mod files;
+mod instruments;
 mod programs;
 mod robustness;
 mod treatments;
