@@ -14,42 +14,64 @@ fn parsed(name: &str, bytes: &[u8], format: Format) -> Result<HeightMap, FormatE
     parse(bytes, format).inspect(|map| assert_eq!(map.height_unit, Unit::Metre, "{name}"))
 }
 
+/// A file of the folder, what its heights are above those of `expected.csv`, how far they may be off (both nm), and its sides (µm).
+///
+/// Errors are half a digit of the file, or the rounding of its 32-bit floats.
+const FILES: [(&str, f64, f64, [f64; 2]); 16] = [
+    ("surfalize.sur", 0.0, 5e-4, [24.0, 24.0]),
+    ("surfalize-zlib.sur", 0.0, 5e-4, [24.0, 24.0]),
+    // It counts heights from the middle of its integers.
+    ("rosettasciio-zlib.sur", -1450.0, 5e-4, [24.0, 24.0]),
+    ("python-16bit.sur", 0.0, 1e-9, [24.0, 24.0]),
+    ("python-zlib.sur", 0.0, 1e-4, [24.0, 24.0]),
+    ("surfalize.al3d", 0.0, 2e-4, [24.0, 24.0]),
+    ("python.al3d", 0.0, 2e-4, [24.0, 24.0]),
+    ("python-two-channels.spm", 0.0, 1e-9, [24.0, 24.0]),
+    ("python-32bit.spm", 0.0, 2e-6, [24.0, 24.0]),
+    ("python-wide.spm", 0.0, 1e-9, [24.0, 24.0]),
+    ("python-int16.opd", 0.0, 1e-9, [24.0, 24.0]),
+    ("python-float.opd", 0.0, 1e-3, [24.0, 24.0]),
+    // The distance of points is one number for both axes.
+    ("python.dat", 0.0, 6e-3, [24.0, 16.0]),
+    ("python.plu", 0.0, 2e-4, [24.0, 24.0]),
+    ("python.plux", 0.0, 2e-4, [24.0, 24.0]),
+    // Heights are above the lowest.
+    ("python.vk4", 950.0, 1e-9, [24.0, 24.0]),
+];
+
 #[test]
 fn the_files_of_the_folder_have_their_heights_sides_and_missing_point() {
     let expected = expected();
-    let sides = [24e-6, 24e-6];
-    // Errors (nm) are half a digit of the file, or rounding of its 32-bit floats.
-    let files = [
-        ("surfalize.sur", 5e-4, sides),
-        ("surfalize-zlib.sur", 5e-4, sides),
-        ("surfalize.al3d", 2e-4, sides),
-        ("python-16bit.sur", 1e-9, sides),
-        ("python-zlib.sur", 1e-4, sides),
-        ("python-two-channels.spm", 1e-9, sides),
-        ("python-32bit.spm", 2e-6, sides),
-        ("python-wide.spm", 1e-9, sides),
-        ("python-int16.opd", 1e-9, sides),
-        ("python-float.opd", 1e-3, sides),
-        ("python.dat", 6e-3, [24e-6, 16e-6]),
-        ("python.al3d", 2e-4, sides),
-        ("python.plu", 2e-4, sides),
-        ("python.plux", 2e-4, sides),
-        ("python.vk4", 1e-9, sides),
-    ];
-    for (name, tolerance, sides) in files {
+    for (name, offset, tolerance, sides) in FILES {
         let map = map(name);
-        let unmarked = name.ends_with(".spm") || name.ends_with(".vk4");
-        assert_eq!(map.missing(), usize::from(!unmarked), "{name}");
-        assert!(unmarked || map.heights.at(3, 2).is_nan(), "{name}: the missing point is another");
-        // Those of Keyence are above the lowest.
-        let offset = if name.ends_with(".vk4") { 950.0 } else { 0.0 };
+        let whole = [".spm", ".vk4"].iter().any(|end| name.ends_with(end)) || name.starts_with("rosettasciio");
+        assert_eq!(map.missing(), usize::from(!whole), "{name}");
+        assert!(whole || map.heights.at(3, 2).is_nan(), "{name}: the missing point is another");
         let heights = map.heights.values().iter().zip(expected.values());
         let errors = heights.map(|(found, height)| (found * 1e9 - height - offset).abs());
         let worst = errors.filter(|error| !error.is_nan()).fold(0.0, f64::max);
         assert!(worst <= tolerance, "{name}: off by {worst:e} nm");
         let found = map.sides.expect(name);
-        assert!((0..2).all(|i| (found[i] / sides[i] - 1.0).abs() < 1e-7), "{name}: sides {found:?}");
+        assert!((0..2).all(|i| (found[i] / (1e-6 * sides[i]) - 1.0).abs() < 1e-7), "{name}: sides {found:?}");
         assert_eq!((map.height_unit, map.side_unit), (Unit::Metre, Unit::Metre), "{name}");
+    }
+}
+
+#[test]
+fn files_that_are_cut_at_any_64th_are_refused_or_the_same_map() {
+    // Missing points are NaN, so maps are compared as bits.
+    let bits = |map: &HeightMap| map.heights.values().iter().map(|height| height.to_bits()).collect::<Vec<_>>();
+    for (name, ..) in FILES {
+        let path = folder().join(name);
+        let bytes = std::fs::read(&path).expect(name);
+        let format = Format::of(&path, &bytes).expect(name);
+        let whole = bits(&parse(&bytes, format).expect(name));
+        for part in 0..64 {
+            match parse(&bytes[..bytes.len() * part / 64], format) {
+                Ok(map) => assert!(bits(&map) == whole, "{name}: {part} of 64 parts are read as another map"),
+                Err(error) => assert_eq!(error.to_string().lines().count(), 1, "{name}: {error}"),
+            }
+        }
     }
 }
 
