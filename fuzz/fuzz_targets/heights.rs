@@ -19,6 +19,14 @@ const FORMATS: &[Format] = &[
     Format::X3p,
     Format::Png,
     Format::Tiff,
+    Format::Sur,
+    Format::Nanoscope,
+    Format::Opd,
+    Format::MetroPro,
+    Format::Al3d,
+    Format::Plu,
+    Format::Plux,
+    Format::Vk4,
 ];
 
 fuzz_target!(|data: &[u8]| {

@@ -27,7 +27,8 @@ pub enum FormatError {
     /// Neither the first bytes nor the extension say what it is.
     #[error(
         "neither its first bytes nor its name say what it is; a height map is a text (.csv, .txt, .dat, .asc, .xyz), an array (.npy, \
-         .mat, .h5, .nc), a file of an instrument or of a program (.gwy, .gsf, .grd, .ibw, .sdf, .x3p), a .png or a .tif file"
+         .mat, .h5, .nc), a file of a program (.gwy, .gsf, .grd, .ibw, .sdf, .x3p) or of an instrument (.sur, .spm, .opd, .dat of \
+         MetroPro, .al3d, .plu, .plux, .vk4), a .png or a .tif file"
     )]
     Unknown,
     /// An archive that is not a height map.

@@ -2,9 +2,10 @@
 //!
 //! [`read`] knows a file by its first bytes, or by its extension where the format has no mark: text as instruments and Gwyddion
 //! export it, lists of `x y z`, arrays (`.npy`, `.mat`, `.h5`, `.nc`), Gwyddion `.gwy` and `.gsf`, Surfer `.grd`, Igor `.ibw`,
-//! ISO 25178-71 `.sdf`, ISO 5436-2 `.x3p`, grayscale PNG and TIFF, and any of them packed with gzip. Of several [`channels`] it
-//! reads the first with heights; [`read_with`] reads another. [`Treatment`]s level, fill, crop, flip, filter and resample it and make it periodic; [`AreaParameters`] are
-//! those of ISO 25178-2.
+//! ISO 25178-71 `.sdf`, ISO 5436-2 `.x3p`, files of instruments (Digital Surf `.sur`, Nanoscope `.spm`, Wyko `.opd`, MetroPro
+//! `.dat`, Alicona `.al3d`, Sensofar `.plu` and `.plux`, Keyence `.vk4`), grayscale PNG and TIFF, and any of them packed with gzip.
+//! Of several [`channels`] it reads the first with heights; [`read_with`] reads another. [`Treatment`]s level, fill, crop, flip,
+//! filter and resample it and make it periodic; [`AreaParameters`] are those of ISO 25178-2.
 //!
 //! Besides the command line, this is the only crate that knows metres: a file carries units, and [`HeightMap::in_metres`]
 //! applies them once. Row `iy` of a file is row `iy` of the field; a missing point is `NaN`.

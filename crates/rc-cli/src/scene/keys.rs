@@ -28,8 +28,8 @@ pub struct SurfaceKeys {
     /// along x]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub cell_y: Option<f64>,
-    /// Height map instead of a random surface: text, .xyz, .npy, .mat, .h5, .nc, .gwy, .gsf, .grd, .ibw, .sdf, .x3p, 16-bit .png or
-    /// .tif; positive towards the half-space
+    /// Height map instead of a random surface: text, .xyz, .npy, .mat, .h5, .nc, .gwy, .gsf, .grd, .ibw, .sdf, .x3p, .sur, .spm, .opd,
+    /// .dat, .al3d, .plu, .plux, .vk4, 16-bit .png or .tif; positive towards the half-space
     #[arg(long, value_name = "FILE")]
     pub heights: Option<PathBuf>,
     /// Unit of the lengths of a height map that names none: m, mm, um, nm [default: m]

@@ -84,8 +84,8 @@ pub(super) fn sides(
 
 /// The map of `values`, which are in m if `is_height`, on a rectangle of `sides` (m).
 pub(super) fn map(grid: Grid, values: Vec<f64>, is_height: bool, sides: Option<[f64; 2]>) -> HeightMap {
-    let unit = |is_metre: bool| if is_metre { Unit::Metre } else { Unit::Unnamed };
-    let (height_unit, side_unit) = (unit(is_height), unit(sides.is_some()));
+    let height_unit = if is_height { Unit::Metre } else { Unit::NotLength };
+    let side_unit = if sides.is_some() { Unit::Metre } else { Unit::Unnamed };
     HeightMap { heights: field(grid, values), height_unit, sides, side_unit }
 }
 
@@ -93,15 +93,6 @@ pub(super) fn map(grid: Grid, values: Vec<f64>, is_height: bool, sides: Option<[
 pub(super) fn scale_measured(values: &mut [f64], scale: f64, is_missing: impl Fn(f64) -> bool) {
     for value in values {
         *value = if is_missing(*value) { f64::NAN } else { *value * scale };
-    }
-}
-
-/// Turns the first row into the last.
-pub(super) fn turn_rows(values: &mut [f64], grid: Grid) {
-    let (nx, ny) = (grid.nx(), grid.ny());
-    for iy in 0..ny / 2 {
-        let (top, bottom) = values.split_at_mut((ny - 1 - iy) * nx);
-        top[iy * nx..(iy + 1) * nx].swap_with_slice(&mut bottom[..nx]);
     }
 }
 
@@ -118,13 +109,5 @@ mod tests {
         assert_eq!(text(b"\xb5m   \0junk"), "µm");
         assert_eq!(text("µm ".as_bytes()), "µm");
         assert_eq!(metres(&text(b"\xe6m")), Some(1e-6));
-    }
-
-    #[test]
-    fn turned_rows_are_in_reverse_order() {
-        let grid = Grid::new(2, 3).expect("a grid");
-        let mut values = vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
-        turn_rows(&mut values, grid);
-        assert_eq!(values, [4.0, 5.0, 2.0, 3.0, 0.0, 1.0]);
     }
 }

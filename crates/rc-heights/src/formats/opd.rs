@@ -5,6 +5,7 @@ use rc_core::Grid;
 
 use super::binary::{Bytes, Number};
 use super::channel::{Channel, Channels};
+use super::field::transposed;
 use super::fields::{factor, refused};
 use super::instrument::{Places, map, scale_measured, sides, text};
 use crate::{Format, FormatError, HeightMap};
@@ -107,10 +108,7 @@ fn read(bytes: &[u8], scale: Option<f64>, spacing: Option<[f64; 2]>) -> Result<H
     };
     let sides =
         spacing.map(|spacing| sides(Format::Opd, ["Pixel_size", "Pixel_size x Aspect"], grid, spacing)).transpose()?;
-    let columns = number.values(bytes.rest(), grid)?;
-    let (nx, ny) = (grid.nx(), grid.ny());
-    let points = (0..ny).flat_map(|iy| (0..nx).map(move |ix| ix * ny + iy));
-    let mut values: Vec<f64> = points.map(|at| columns[at]).collect();
+    let mut values = transposed(&number.values(bytes.rest(), grid)?, grid);
     scale_measured(&mut values, scale.unwrap_or(1.0), |value| value >= missing);
     Ok(map(grid, values, scale.is_some(), sides))
 }

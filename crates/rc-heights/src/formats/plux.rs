@@ -9,7 +9,7 @@ use zip::ZipArchive;
 
 use super::binary::Number;
 use super::channel::{Channel, Channels};
-use super::fields::refused;
+use super::fields::{refused, shown_as_line};
 use super::instrument::{map, sides};
 use crate::{Format, FormatError, HeightMap};
 
@@ -91,5 +91,5 @@ fn number<T: std::str::FromStr>(node: Node<'_, '_>, name: &'static str) -> Resul
 }
 
 fn container(reason: &(impl ToString + ?Sized)) -> FormatError {
-    FormatError::Container { format: Format::Plux, reason: reason.to_string() }
+    FormatError::Container { format: Format::Plux, reason: shown_as_line(&reason.to_string()) }
 }

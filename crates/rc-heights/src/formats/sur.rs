@@ -1,6 +1,6 @@
 //! Digital Surf: objects one behind the other, each a header of 512 bytes, a comment, private bytes, and integers, plain or
 //! compressed by zlib ("Surface file format", Digital Surf; the header is described in the documentation of Gwyddion and of
-//! RosettaSciIO too). Heights are offset + spacing x integer; rows from top to bottom.
+//! RosettaSciIO too); rows from top to bottom. Heights are offset + spacing x integer; some programs count integers from the lowest.
 
 use std::io::Read as _;
 
@@ -9,8 +9,9 @@ use rc_core::Grid;
 
 use super::binary::Number;
 use super::channel::{Channel, Channels};
+use super::field::flip;
 use super::fields::{factor, refused};
-use super::instrument::{Places, map, metres, scale_measured, sides, turn_rows};
+use super::instrument::{Places, map, metres, scale_measured, sides};
 use crate::{Format, FormatError, HeightMap};
 
 /// The first bytes of an object whose integers are stored as they are.
@@ -127,11 +128,7 @@ impl Object<'_> {
                 *value += offset;
             }
         }
-        match self.inversion {
-            2 => values.chunks_mut(self.grid.nx()).for_each(<[f64]>::reverse),
-            3 => turn_rows(&mut values, self.grid),
-            _ => {}
-        }
+        flip(&mut values, self.grid, [self.inversion == 2, self.inversion == 3]);
         Ok(map(self.grid, values, self.is_height, self.sides))
     }
 

@@ -90,7 +90,7 @@ fn channels_are_listed_and_read_by_name() {
     let phase = ReadParams { channel: Some("Phase".into()), ..ReadParams::default() };
     let phase = parse_with(&spm, Format::Nanoscope, &phase).expect("a phase");
     // Integers from -40 on, 360° / 2^16 each.
-    assert_eq!((phase.height_unit, phase.heights.at(1, 0)), (Unit::Unnamed, -39.0 * 360.0 / 65536.0));
+    assert_eq!((phase.height_unit, phase.heights.at(1, 0)), (Unit::NotLength, -39.0 * 360.0 / 65536.0));
     let (_, list) = names("python-16bit.sur", Format::Sur);
     assert_eq!(list, named(&[("Scan", true), ("Grey", false)]));
     let (_, list) = names("python-int16.opd", Format::Opd);
