@@ -1,7 +1,6 @@
 //! What ends a command early, and the exit code that goes with it.
 
 use std::path::Path;
-use std::process::ExitCode;
 
 use rc_sweep::files::FileError;
 use rc_sweep::memory::{Bound, MemoryError};
@@ -86,9 +85,13 @@ impl From<MemoryError> for CliError {
     }
 }
 
-impl From<&CliError> for ExitCode {
-    fn from(error: &CliError) -> Self {
-        Self::from(error.exit_code())
+/// Words that are not a command line, without the usage that clap adds.
+impl From<&clap::Error> for CliError {
+    fn from(error: &clap::Error) -> Self {
+        let text = error.to_string();
+        let before_usage = text.split("\n\nUsage:").next().unwrap_or_default();
+        let before_usage = before_usage.split("\n\nFor more information").next().unwrap_or_default();
+        Self::input(before_usage.trim_start_matches("error: "))
     }
 }
 

@@ -18,6 +18,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
@@ -29,13 +30,13 @@ pub mod scene;
 
 mod export;
 mod files;
-mod inspect;
+pub mod inspect;
 mod manual;
 mod plot;
 mod report;
-mod run;
-mod solve;
-mod surface;
+pub mod run;
+pub mod solve;
+pub mod surface;
 mod sweep;
 mod terminal;
 mod text;
@@ -48,17 +49,31 @@ use error::CliError;
 /// Runs the command line of this process.
 #[must_use]
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    main_with(std::env::args_os()).into()
+}
+
+/// Runs a command line, the name of the program first, and returns the exit code of the process.
+#[must_use]
+pub fn main_with(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let cli = match Cli::try_parse_from(words) {
         Ok(cli) => cli,
         Err(error) => return refuse(&error),
     };
     match run(cli) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(error) => {
             terminal::tell(&format!("error: {error}"));
-            ExitCode::from(&error)
+            error.exit_code()
         }
     }
+}
+
+/// Runs a command line, the name of the program first, as a program does.
+///
+/// # Errors
+/// [`CliError`] with the exit code in it.
+pub fn run_words(words: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
+    run(Cli::try_parse_from(words).map_err(|error| CliError::from(&error))?)
 }
 
 /// Runs one command.
@@ -80,19 +95,16 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
 }
 
 /// Help and version as clap prints them; anything else as one line, exit code 2.
-fn refuse(error: &clap::Error) -> ExitCode {
+fn refuse(error: &clap::Error) -> u8 {
     if matches!(
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
     ) {
         // There is nowhere left to report that the output is closed.
         let _ = error.print();
-        return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        return u8::try_from(error.exit_code()).unwrap_or(2);
     }
-    let text = error.to_string();
-    let before_usage = text.split("\n\nUsage:").next().unwrap_or_default();
-    let before_usage = before_usage.split("\n\nFor more information").next().unwrap_or_default();
-    let error = CliError::input(before_usage.trim_start_matches("error: "));
+    let error = CliError::from(error);
     terminal::tell(&format!("error: {error}"));
-    ExitCode::from(&error)
+    error.exit_code()
 }

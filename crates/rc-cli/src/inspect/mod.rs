@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use rc_core::{Field, PeriodicCell};
 use rc_fractal::moments_of_grid;
-use rc_heights::{ChannelInfo, ReadParams, Scales, npy};
+use rc_heights::{ChannelInfo, HeightMap, ReadParams, Scales, npy};
 use rc_solver::PressureStatistics;
 use rc_sweep::{Summary, files, to_json};
 use serde::Serialize;
@@ -19,7 +19,7 @@ use self::args::InspectArgs;
 use self::record::{ChannelRow, SurfaceRecord};
 use crate::error::CliError;
 use crate::files::result::ResultFolder;
-use crate::scene::surface::HEIGHTS_FILE;
+use crate::scene::surface::{HEIGHTS_FILE, LoadedSurface};
 use crate::scene::{file, heights};
 use crate::terminal;
 use crate::text::{solved, written};
@@ -67,6 +67,32 @@ fn result_folder(file: &Path) -> Option<PathBuf> {
     (name == "summary.json" || RESULT_FILES.contains(&name) && complete).then(|| folder.to_owned())
 }
 
+/// What `rc inspect --json` says of the result in `folder`.
+///
+/// # Errors
+/// [`CliError::Input`] that names the file that is missing or wrong.
+pub fn result(folder: &Path) -> Result<String, CliError> {
+    inspect_result(folder, true)
+}
+
+/// What `rc inspect --json` says of a height map in metres, which is called `name`; `sides` of its cell (m) are given where the map
+/// does not know them.
+///
+/// # Errors
+/// [`CliError::Input`] for a map that has no statistics.
+pub fn height_map(name: &Path, map: HeightMap, sides: [Option<f64>; 2]) -> Result<String, CliError> {
+    Ok(to_json(&Inspected::new(name, map, sides)?.record))
+}
+
+/// What `rc surface --json` says of a surface in a cell of this side (m).
+///
+/// # Errors
+/// [`CliError::Input`] when the grid is too coarse for the waves.
+pub fn surface(surface: &LoadedSurface, side: f64) -> Result<String, CliError> {
+    let heights = surface.heights()?;
+    Ok(to_json(&SurfaceRecord::of(&heights, side, surface.moments())))
+}
+
 fn inspect_result(folder: &Path, json: bool) -> Result<String, CliError> {
     // A folder that `rc surface` wrote has heights and no pressure.
     let heights = folder.join(HEIGHTS_FILE);
@@ -80,6 +106,33 @@ fn inspect_result(folder: &Path, json: bool) -> Result<String, CliError> {
         return Ok(to_json(&ResultStatistics { summary: result.summary, pressure }));
     }
     Ok(solved(&result.summary, sides, result.e_star) + "\nstored pressure\n" + &text::pressure(&pressure))
+}
+
+/// A height map and what it is like.
+struct Inspected {
+    /// Heights in λ.
+    heights: Field,
+    record: SurfaceRecord,
+    /// Said before the statistics.
+    note: &'static str,
+}
+
+impl Inspected {
+    fn new(path: &Path, map: HeightMap, given: [Option<f64>; 2]) -> Result<Self, CliError> {
+        heights::check_finite(path, &map.heights)?;
+        if map.heights.max() <= map.heights.min() {
+            let message = format_args!("all heights are {:e}; a flat surface has no statistics", map.heights.max());
+            return Err(CliError::in_file(path, message));
+        }
+        let [side, side_y] = heights::sides(path, map.sides, given)?;
+        let side = side.or(file::example().surface.cell).unwrap_or(1.0);
+        let cell = PeriodicCell::rectangle(side, side_y.unwrap_or(side)).map_err(CliError::input)?;
+        let (heights, _) = heights::in_cell(path, map.heights, cell)?;
+        let grid = heights.grid();
+        let note = if map.sides.is_none() && side_y.is_none() && grid.nx() != grid.ny() { TAKEN } else { "" };
+        let record = SurfaceRecord::of(&heights, side, moments_of_grid(&heights));
+        Ok(Self { heights, record, note })
+    }
 }
 
 /// Statistics of a height map; of several channels, a list first, or the names in the message that says why there are none.
@@ -108,18 +161,7 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
 fn statistics(args: &InspectArgs) -> Result<(SurfaceRecord, &'static str), CliError> {
     let params = ReadParams { channel: args.channel.clone(), layout: args.layout };
     let map = heights::read(&args.file, &params, Scales { unit: args.unit, height_scale: args.height_scale })?;
-    heights::check_finite(&args.file, &map.heights)?;
-    if map.heights.max() <= map.heights.min() {
-        let message = format_args!("all heights are {:e}; a flat surface has no statistics", map.heights.max());
-        return Err(CliError::in_file(&args.file, message));
-    }
-    let [side, side_y] = heights::sides(&args.file, map.sides, [args.cell, args.cell_y])?;
-    let side = side.or(file::example().surface.cell).unwrap_or(1.0);
-    let cell = PeriodicCell::rectangle(side, side_y.unwrap_or(side)).map_err(CliError::input)?;
-    let (heights, _) = heights::in_cell(&args.file, map.heights, cell)?;
-    let grid = heights.grid();
-    let note = if map.sides.is_none() && side_y.is_none() && grid.nx() != grid.ny() { TAKEN } else { "" };
-    let record = SurfaceRecord::of(&heights, side, moments_of_grid(&heights));
+    let Inspected { heights, record, note } = Inspected::new(&args.file, map, [args.cell, args.cell_y])?;
     if let Some(folder) = &args.out {
         files::check_folder(folder)?;
         pictures::write(folder, &heights, &record)?;

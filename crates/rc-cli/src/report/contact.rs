@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rc_core::{Field, Kernel};
+use rc_core::{EdgeBias, Field, Kernel};
 use rc_solver::{ContactSpot, StressDistribution};
 use rc_theory::persson::Persson;
 use serde::Serialize;
@@ -96,6 +96,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
         .map_err(|cause| CliError::in_file(&scene_path, format_args!("cannot read this scene file: {cause}")))?;
     let scene = file::parse(&scene_text).map_err(|message| CliError::in_file(&scene_path, message))?;
     let kernel = resolve::kernel(scene.contact.kernel.unwrap_or(KernelName::Love));
+    let bias = kernel.map_or_else(EdgeBias::default, Kernel::edge_bias);
     let summary = &result.summary;
     let load = match summary.control.as_str() {
         "penetration" => format!("at a penetration of {}", engineering(summary.penetration, "m")),
@@ -120,7 +121,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
             certificate: certificate(summary),
             lines: text::solved_lines(summary, result.sides(), result.e_star),
             // Last: it takes the fields.
-            spots: spots(result, kernel),
+            spots: spots(result, bias),
         },
     })
 }
@@ -248,7 +249,7 @@ fn stress(result: &ResultFolder) -> Option<Stress> {
 }
 
 /// Spots of the stored fields, in the units in which their edges are located; `None` without contact, and without the elements.
-fn spots(result: ResultFolder, kernel: &dyn Kernel) -> Option<SpotSizes> {
+fn spots(result: ResultFolder, bias: EdgeBias) -> Option<SpotSizes> {
     if !result.is_of_elements() {
         return None;
     }
@@ -258,7 +259,7 @@ fn spots(result: ResultFolder, kernel: &dyn Kernel) -> Option<SpotSizes> {
         field
     };
     let (pressure, gap) = (over(pressure, e_star), over(gap, side));
-    let spots = ContactSpot::all(&pressure, &gap, kernel.edge_bias());
+    let spots = ContactSpot::all(&pressure, &gap, bias);
     SpotSizes::of(&spots, pressure.grid(), side)
 }
 

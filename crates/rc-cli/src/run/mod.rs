@@ -2,5 +2,5 @@
 
 pub(crate) mod progress;
 pub(crate) mod stop;
-pub(crate) mod threads;
+pub mod threads;
 pub(crate) mod watch;

@@ -8,16 +8,26 @@ use crate::error::CliError;
 /// # Errors
 /// [`CliError::Input`]: a number out of range, or another one than this process has already.
 pub(crate) fn start(threads: Option<usize>) -> Result<usize, CliError> {
-    const MAX: usize = 1024;
-    let builder = rayon::ThreadPoolBuilder::new();
-    match threads {
-        // Started on first use.
-        None => {}
-        Some(n @ 1..=MAX) => match builder.num_threads(n).build_global() {
+    // All cores are started on first use.
+    if let Some(n) = checked(threads)? {
+        match rayon::ThreadPoolBuilder::new().num_threads(n).build_global() {
             Err(_) if rayon::current_num_threads() == n => {}
             started => started.map_err(|cause| CliError::input(format_args!("threads: {cause}")))?,
-        },
-        Some(n) => return Err(CliError::input(format_args!("threads: must be from 1 to {MAX}, not {n}"))),
+        }
     }
     Ok(rayon::current_num_threads())
+}
+
+/// A number of worker threads that there can be.
+///
+/// # Errors
+/// [`CliError::Input`] for a number out of range.
+pub fn checked(threads: Option<usize>) -> Result<Option<usize>, CliError> {
+    const MAX: usize = 1024;
+    match threads {
+        Some(n) if !(1..=MAX).contains(&n) => {
+            Err(CliError::input(format_args!("threads: must be from 1 to {MAX}, not {n}")))
+        }
+        _ => Ok(threads),
+    }
 }

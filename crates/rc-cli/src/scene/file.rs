@@ -1,9 +1,11 @@
 //! Reading a scene file: TOML, with errors that name the line and the nearest known key.
 
 use std::path::Path;
+use std::sync::LazyLock;
 
 use clap::Args as _;
 use serde::{Deserialize, Serialize};
+use toml::Table;
 use toml::de::DeTable;
 
 use crate::error::CliError;
@@ -26,7 +28,9 @@ pub fn read(path: &Path) -> Result<Scene, CliError> {
 /// Never: a test reads it.
 #[must_use]
 pub fn example() -> Scene {
-    parse(EXAMPLE).expect("the embedded example is a valid scene")
+    static SCENE: LazyLock<Scene> =
+        LazyLock::new(|| parse(EXAMPLE).expect("the embedded example is a valid scene"));
+    SCENE.clone()
 }
 
 /// Parses a scene.
@@ -35,11 +39,10 @@ pub fn example() -> Scene {
 /// One line, without the name of the file: where, what, and what would be right.
 pub fn parse(text: &str) -> Result<Scene, String> {
     let table = DeTable::parse(text).map_err(|error| at_line(text, &error))?;
-    let known = known_keys();
     for key in table.get_ref().keys() {
-        if !known.iter().any(|k| k == key.get_ref()) {
+        if !known_keys().iter().any(|k| k == key.get_ref()) {
             let line = line_of(text, key.span().start);
-            return Err(format!("line {line}: {}", unknown_key(key.get_ref(), &known)));
+            return Err(format!("line {line}: {}", unknown_key(key.get_ref(), known_keys())));
         }
     }
     Ok(Scene {
@@ -47,6 +50,17 @@ pub fn parse(text: &str) -> Result<Scene, String> {
         contact: group::<ContactKeys>(text)?,
         run: group::<RunKeys>(text)?,
     })
+}
+
+/// A scene from keys with their values, as a program gives them.
+///
+/// # Errors
+/// [`CliError::Input`] that names the key which is unknown, or whose value has the wrong type.
+pub fn from_table(table: &Table) -> Result<Scene, CliError> {
+    if let Some(key) = table.keys().find(|key| !known_keys().contains(key)) {
+        return Err(CliError::input(unknown_key(key, known_keys())));
+    }
+    Ok(Scene { surface: group_of(table)?, contact: group_of(table)?, run: group_of(table)? })
 }
 
 /// A group of keys as TOML; keys without a value are left out.
@@ -64,10 +78,27 @@ fn group<T: for<'de> Deserialize<'de>>(text: &str) -> Result<T, String> {
     toml::from_str(text).map_err(|error| at_line(text, &error))
 }
 
+/// One group of keys from a table.
+fn group_of<T: for<'de> Deserialize<'de>>(table: &Table) -> Result<T, CliError> {
+    T::deserialize(table.clone()).map_err(|error| {
+        // The key is the one that is wrong alone.
+        let is_wrong = |key: &str, value: &toml::Value| {
+            T::deserialize(Table::from_iter([(key.to_owned(), value.clone())])).is_err()
+        };
+        let wrong = table.iter().find(|(key, value)| is_wrong(key, value));
+        let key = wrong.map_or("scene", |(key, _)| key.as_str());
+        CliError::input(format_args!("{key}: {}", error.message()))
+    })
+}
+
 /// The keys of a scene file: the flags of the command line.
-fn known_keys() -> Vec<String> {
-    let command = Scene::augment_args(clap::Command::new("scene"));
-    command.get_arguments().map(|argument| argument.get_id().to_string()).collect()
+#[must_use]
+pub fn known_keys() -> &'static [String] {
+    static KEYS: LazyLock<Vec<String>> = LazyLock::new(|| {
+        let command = Scene::augment_args(clap::Command::new("scene"));
+        command.get_arguments().map(|argument| argument.get_id().to_string()).collect()
+    });
+    &KEYS
 }
 
 fn unknown_key(key: &str, known: &[String]) -> String {

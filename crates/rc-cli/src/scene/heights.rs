@@ -14,7 +14,7 @@ use rc_core::quantity::engineering;
 ///
 /// # Errors
 /// [`CliError::Input`] when the file cannot be read, is damaged or does not have the channel, or when `scales` does not fit its units.
-pub(crate) fn read(path: &Path, params: &ReadParams, scales: Scales) -> Result<HeightMap, CliError> {
+pub fn read(path: &Path, params: &ReadParams, scales: Scales) -> Result<HeightMap, CliError> {
     rc_heights::read_with(path, params)?.in_metres(scales).map_err(|cause| CliError::in_file(path, cause))
 }
 

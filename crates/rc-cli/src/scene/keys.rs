@@ -155,6 +155,9 @@ pub enum KernelName {
     Love,
     /// The symbol 2/(E* q), as FFT codes have it.
     Spectral,
+    /// A symbol that a Python program gives; only that program can repeat the result.
+    #[value(skip)]
+    Own,
 }
 
 /// A scene: the three groups of keys.

@@ -8,5 +8,5 @@ pub mod surface;
 pub mod time_limit;
 pub mod values;
 
-pub(crate) mod heights;
+pub mod heights;
 mod names;

@@ -76,6 +76,22 @@ pub enum Shape {
 /// The name of a height map in a result folder.
 pub const HEIGHTS_FILE: &str = "heights.npy";
 
+impl SurfaceKeys {
+    /// The keys of a height map that a program holds, with the sides of its cell (m) where it knows them. The map is called as in a
+    /// result folder.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] when keys of a random surface, or of a file, are given; or another size than that of the map.
+    pub fn of_map(self, sides: Option<[f64; 2]>) -> Result<Self, CliError> {
+        if self.heights.is_some() || self.generates() {
+            let message = "heights is a surface already; give no parameters of a random one (waves, hurst, rms, ...)";
+            return Err(CliError::input(message));
+        }
+        let [cell, cell_y] = heights::sides(Path::new("heights"), sides, [self.cell, self.cell_y])?;
+        Ok(Self { heights: Some(HEIGHTS_FILE.into()), cell, cell_y, ..self })
+    }
+}
+
 impl SurfaceSetup {
     /// Elements of the finest grid; at most, for a height map, by the length of its file.
     #[must_use]

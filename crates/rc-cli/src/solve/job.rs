@@ -5,25 +5,20 @@ use std::time::Instant;
 use rc_sweep::memory::Budget;
 use rc_sweep::{Summary, files};
 
-use super::solved::{ProblemSetup, Solved};
+use super::checked::CheckedScene;
+use super::solved::Solved;
 use crate::error::CliError;
 use crate::run::progress::Progress;
 use crate::run::stop::{Reason, Stop};
 use crate::run::watch::Watch;
-use crate::scene::keys::{ContactKeys, RunKeys, Scene};
-use crate::scene::resolve::{self, ContactSetup};
-use crate::scene::surface::SurfaceSetup;
-use crate::scene::values::{Fraction, ToleranceSpec};
+use crate::scene::keys::{RunKeys, Scene};
 use crate::{terminal, text};
 
 /// A resolved scene and how it is run.
 #[derive(Clone, Debug)]
 pub(super) struct Job {
-    pub(super) surface: SurfaceSetup,
-    pub(super) contact: ContactSetup,
+    pub(super) scene: CheckedScene,
     pub(super) run: RunKeys,
-    /// The relative error of the contact area by which the grid is chosen.
-    area_error: Option<Fraction>,
     /// Whether the solve is drawn while it runs.
     watch: bool,
     /// The moment from which `wall_seconds` counts.
@@ -31,31 +26,15 @@ pub(super) struct Job {
 }
 
 impl Job {
-    /// Checks `scene`. With an error of the area that is wanted, the tolerance is `auto` unless it is given.
+    /// Checks `scene`.
     ///
     /// # Errors
     /// [`CliError::Input`].
     pub(super) fn new(scene: Scene, watch: bool) -> Result<Self, CliError> {
         let Scene { surface, contact, run } = scene;
         let started = Instant::now();
-        let area_error = contact.area_error;
-        resolve::check_size_and_material(&surface, &contact)?;
-        let contact = match area_error {
-            None => contact,
-            Some(_) if surface.heights.is_some() => {
-                return Err(CliError::input(
-                    "area_error: a height map has its own grid, which cannot be chosen; omit it",
-                ));
-            }
-            Some(_) => {
-                let auto = contact.energy_tolerance.is_none().then_some(ToleranceSpec::Auto);
-                let tolerance = contact.tolerance.or(auto);
-                ContactKeys { area_error: None, tolerance, ..contact }
-            }
-        };
-        let surface = resolve::surface(surface)?;
-        let contact = resolve::contact(contact, surface.cell)?;
-        Ok(Self { surface, contact, run, area_error, watch, started })
+        let scene = CheckedScene::new(surface, contact)?;
+        Ok(Self { scene, run, watch, started })
     }
 
     /// Memory that there is.
@@ -73,19 +52,17 @@ impl Job {
         }
         let progress = self.progress();
         progress.say("heights");
-        let surface = self.surface.load()?;
-        let problem = ProblemSetup { surface: &surface, contact: &self.contact, budget: self.budget() };
-        let solved = match self.area_error {
-            None => problem.solve(self.started, &progress)?,
-            Some(wanted) => problem.solve_to_area_error(wanted, self.started, &progress)?,
-        };
+        let kernel = self.scene.contact.kernel()?;
+        let surface = self.scene.surface.load()?;
+        let problem = self.scene.problem(&surface, kernel, self.budget());
+        let solved = self.scene.solve(problem, self.started, &progress)?;
         self.finish(&solved, threads, progress)
     }
 
     /// What tells of the solve, draws it, and ends it early.
     fn progress(&self) -> Progress {
         let folder = self.run.out.as_deref().filter(|_| self.watch);
-        let units = self.contact.units;
+        let units = self.scene.contact.units;
         let watch = folder.map(|folder| Watch::new(folder, units.elasticity().e_star(), units.cell().side()));
         Progress::new(self.run.quiet).until(Stop::at(self.started, self.run.time_limit)).watched_by(watch)
     }
@@ -116,7 +93,7 @@ impl Job {
             (true, _) => terminal::print(&summary.to_json()),
             (false, true) => Ok(()),
             (false, false) => {
-                let units = self.contact.units;
+                let units = self.scene.contact.units;
                 let text = text::solved(summary, units.cell().sides(), units.elasticity().e_star());
                 terminal::print(&(text + &text::written(self.run.out.as_deref())))
             }
@@ -135,7 +112,7 @@ mod tests {
         let scene = file::parse("waves = 8\ngrid = 64\npressure = 1e5").expect("a scene");
         let run = RunKeys { out: Some(dir.path().join("r")), quiet: true, ..RunKeys::default() };
         let mut job = Job::new(Scene { run, ..scene }, false).expect("a job");
-        job.contact.params.max_iterations = 1;
+        job.scene.contact.params.max_iterations = 1;
         let error = job.execute(1).expect_err("one iteration is too few");
         assert_eq!(error.exit_code(), 3, "{error}");
         assert!(error.to_string().contains("complementarity error"), "no residuals: {error}");

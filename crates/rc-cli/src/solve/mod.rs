@@ -3,16 +3,20 @@
 pub(crate) mod args;
 pub(crate) mod solved;
 
+mod checked;
 mod dry_run;
 mod job;
 mod messages;
 mod result_files;
 
+pub use checked::CheckedScene;
+pub use result_files::{MapHeights, ResultFiles};
+pub use solved::{ProblemSetup, Solved};
+
 use std::path::PathBuf;
 
 use self::args::SolveArgs;
 use self::job::Job;
-use self::solved::ProblemSetup;
 use crate::error::CliError;
 use crate::run::{stop, threads};
 use crate::scene::keys::{RunKeys, Scene};
@@ -42,8 +46,8 @@ pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
     let threads = threads::start(job.run.threads)?;
     stop::listen();
     if dry_run {
-        let (surface, budget) = (job.surface.load()?, job.budget());
-        let problem = ProblemSetup { surface: &surface, contact: &job.contact, budget };
+        let (kernel, surface) = (job.scene.contact.kernel()?, job.scene.surface.load()?);
+        let problem = job.scene.problem(&surface, kernel, job.budget());
         return dry_run::run(&problem, threads, &job.run);
     }
     job.execute(threads)

@@ -2,51 +2,120 @@
 
 use std::io;
 use std::path::Path;
+use std::time::Duration;
 
 use rc_core::{DVec2, Field, Grid, Units};
 use rc_heights::npy::{self, RowWriter};
 use rc_plot::{ContactRows, save_png};
 use rc_solver::{ContactElement, Solution};
-use rc_sweep::Summary;
 use rc_sweep::files::{FileError, Staged};
+use rc_sweep::{SolveContext, Summary};
 
+use crate::error::CliError;
 use crate::files::coarsen::BlockMean;
 use crate::scene::as_read::AsRead;
 use crate::scene::file;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
 use crate::scene::resolve::ContactSetup;
-use crate::scene::surface::{HEIGHTS_FILE, LoadedSurface};
+use crate::scene::surface::HEIGHTS_FILE;
 use crate::scene::values::GridSpec;
 
-/// Writes the result folder. The method decides whether pressure and gap are ever whole in memory: they are handed out some
-/// rows at a time.
-pub(super) fn write(
-    folder: &Path,
-    surface: &LoadedSurface,
-    contact: &ContactSetup,
-    solution: &Solution<'_>,
-    summary: &Summary,
-) -> Result<(), FileError> {
-    let mut staged = Staged::new(folder)?;
-    add_fields(&mut staged, contact, solution)?;
-    if let Some((heights, as_read)) = surface.map() {
-        staged.add(HEIGHTS_FILE, |path| write_as_read(path, heights, as_read))?;
-    }
-    staged.add_text("scene.toml", &scene_text(&surface.keys, &contact.keys, solution))?;
-    staged.add_text("summary.json", &summary.to_json())?;
-    staged.commit()
+/// A solution with what its summary and its files need besides.
+#[derive(Clone, Copy, Debug)]
+pub struct ResultFiles<'a> {
+    /// Keys of the surface as they were resolved.
+    pub surface: &'a SurfaceKeys,
+    /// The height map that was solved; `None` for a random surface.
+    pub map: Option<MapHeights<'a>>,
+    /// Half-space, load and method.
+    pub contact: &'a ContactSetup,
+    /// The solution.
+    pub solution: &'a Solution<'a>,
 }
 
-/// Writes heights (λ) as they are in the file that they come from, row by row.
-fn write_as_read(path: &Path, heights: &Field, as_read: &AsRead) -> io::Result<()> {
-    let mut file = RowWriter::create(path, heights.grid(), 1.0)?;
-    let mut row = vec![0.0; heights.grid().nx()];
-    for iy in 0..heights.grid().ny() {
-        row.copy_from_slice(heights.row(iy));
-        as_read.restore(iy * row.len(), &mut row);
-        file.write(&row)?;
+/// The heights of a map.
+#[derive(Clone, Copy, Debug)]
+pub enum MapHeights<'a> {
+    /// In λ, with what makes them those of the file.
+    InCell {
+        /// Heights in λ.
+        heights: &'a Field,
+        /// What makes them the heights in the file.
+        as_read: &'a AsRead,
+    },
+    /// In m, row by row.
+    InMetres {
+        /// The grid.
+        grid: Grid,
+        /// The heights.
+        values: &'a [f64],
+    },
+}
+
+impl ResultFiles<'_> {
+    /// The summary in SI, with rms height (λ) and rms slope of the surface; `wall` and `threads` are what it says of them.
+    #[must_use]
+    pub fn summary(&self, [rms_height, rms_slope]: [f64; 2], wall: Duration, threads: usize) -> Summary {
+        let context = SolveContext {
+            control: self.contact.control.into(),
+            border_level: self.contact.params.border_level,
+            rms_height,
+            rms_slope,
+            wall,
+            threads,
+        };
+        Summary::of(self.solution, self.contact.units, &context)
     }
-    file.finish()
+
+    /// Writes the result folder. The method decides whether pressure and gap are ever whole in memory: they are handed out some
+    /// rows at a time.
+    ///
+    /// # Errors
+    /// [`CliError::Write`].
+    pub fn write(&self, folder: &Path, summary: &Summary) -> Result<(), CliError> {
+        Ok(self.stage(folder, summary)?)
+    }
+
+    /// The scene as it was solved, as the file `scene.toml`.
+    #[must_use]
+    pub fn scene(&self) -> String {
+        scene_text(self.surface, &self.contact.keys, self.solution)
+    }
+
+    fn stage(&self, folder: &Path, summary: &Summary) -> Result<(), FileError> {
+        let mut staged = Staged::new(folder)?;
+        add_fields(&mut staged, self.contact, self.solution)?;
+        if let Some(map) = self.map {
+            staged.add(HEIGHTS_FILE, |path| map.write(path))?;
+        }
+        staged.add_text("scene.toml", &self.scene())?;
+        staged.add_text("summary.json", &summary.to_json())?;
+        staged.commit()
+    }
+}
+
+impl MapHeights<'_> {
+    /// Writes the heights as they were given, row by row.
+    fn write(self, path: &Path) -> io::Result<()> {
+        let grid = match self {
+            Self::InCell { heights, .. } => heights.grid(),
+            Self::InMetres { grid, .. } => grid,
+        };
+        let mut file = RowWriter::create(path, grid, 1.0)?;
+        let mut row = vec![0.0; grid.nx()];
+        for iy in 0..grid.ny() {
+            let first = iy * row.len();
+            match self {
+                Self::InCell { heights, as_read } => {
+                    row.copy_from_slice(heights.row(iy));
+                    as_read.restore(first, &mut row);
+                }
+                Self::InMetres { values, .. } => row.copy_from_slice(&values[first..first + grid.nx()]),
+            }
+            file.write(&row)?;
+        }
+        file.finish()
+    }
 }
 
 /// Pressure, gap, elements and the picture of the contact.

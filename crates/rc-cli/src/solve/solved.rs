@@ -3,12 +3,13 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use rc_core::Observer;
+use rc_core::{Kernel, Observer};
 use rc_solver::{ContactProblem, Plan, Solution, SolveError, SolveParams};
 use rc_sweep::memory::Budget;
-use rc_sweep::{SolveContext, Summary};
+use rc_sweep::Summary;
 
-use super::{messages, result_files};
+use super::messages;
+use super::result_files::{MapHeights, ResultFiles};
 use crate::error::CliError;
 use crate::files::coarsen::check_factor;
 use crate::scene::resolve::ContactSetup;
@@ -17,16 +18,21 @@ use crate::scene::values::Fraction;
 
 /// What is solved: a surface, a contact, and the memory that there is.
 #[derive(Clone, Copy)]
-pub(crate) struct ProblemSetup<'a> {
-    pub(crate) surface: &'a LoadedSurface,
-    pub(crate) contact: &'a ContactSetup,
-    pub(crate) budget: Budget,
+pub struct ProblemSetup<'a> {
+    /// The surface.
+    pub surface: &'a LoadedSurface,
+    /// Half-space, load and method.
+    pub contact: &'a ContactSetup,
+    /// The half-space's response, that of the contact or another one.
+    pub kernel: &'a dyn Kernel,
+    /// The memory.
+    pub budget: Budget,
 }
 
 /// A solved problem.
-pub(crate) struct Solved<'a> {
+pub struct Solved<'a> {
     problem: ProblemSetup<'a>,
-    solution: Solution<'static>,
+    solution: Solution<'a>,
     /// What is said of a solution that did not reach the tolerance.
     failure: Option<String>,
     wall: Duration,
@@ -37,10 +43,8 @@ impl<'a> ProblemSetup<'a> {
     ///
     /// # Errors
     /// [`CliError::Input`] when the scene, the method asked for, or the memory there is do not allow it.
-    pub(crate) fn plan(&self) -> Result<Plan<'static>, CliError> {
-        if let Some(spec) = self.contact.keys.output_grid {
-            check_factor(self.surface.grid, spec)?;
-        }
+    pub(crate) fn plan(&self) -> Result<Plan<'a>, CliError> {
+        self.check_output()?;
         self.contact_problem().plan(&self.params()).map_err(|error| self.refuse(&error))
     }
 
@@ -56,11 +60,22 @@ impl<'a> ProblemSetup<'a> {
     ///
     /// # Errors
     /// [`CliError::Input`]; a solution that did not converge is not an error, see [`Solved::failure`].
-    pub(crate) fn solve(self, started: Instant, observer: &dyn Observer) -> Result<Solved<'a>, CliError> {
-        self.solve_planned(self.plan()?, started, observer)
+    pub fn solve(self, started: Instant, observer: &dyn Observer) -> Result<Solved<'a>, CliError> {
+        let result = self.plan()?.solve(observer);
+        self.solved(result, started)
     }
 
-    /// The same by a plan of this problem.
+    /// The plan of the first load of many on this surface, by a kernel of rc.
+    ///
+    /// # Errors
+    /// As of [`ProblemSetup::plan`].
+    pub(crate) fn first_plan(&self) -> Result<Plan<'static>, CliError> {
+        self.check_output()?;
+        let problem = ContactProblem::new(self.surface.source(), self.contact.control);
+        problem.with_kernel(self.contact.kernel()?).plan(&self.params()).map_err(|error| self.refuse(&error))
+    }
+
+    /// Solves by a plan of this problem.
     ///
     /// # Errors
     /// As of [`ProblemSetup::solve`].
@@ -92,15 +107,19 @@ impl<'a> ProblemSetup<'a> {
         self.solved(result, started)
     }
 
-    fn contact_problem(&self) -> ContactProblem<'static> {
-        ContactProblem::new(self.surface.source(), self.contact.control).with_kernel(self.contact.kernel())
+    fn check_output(&self) -> Result<(), CliError> {
+        self.contact.keys.output_grid.map_or(Ok(()), |spec| check_factor(self.surface.grid, spec))
+    }
+
+    fn contact_problem(&self) -> ContactProblem<'a> {
+        ContactProblem::new(self.surface.source(), self.contact.control).with_kernel(self.kernel)
     }
 
     fn params(&self) -> SolveParams {
         SolveParams { memory_limit: self.budget.available(), ..self.contact.params }
     }
 
-    fn solved(self, result: Result<Solution<'static>, SolveError>, started: Instant) -> Result<Solved<'a>, CliError> {
+    fn solved(self, result: Result<Solution<'a>, SolveError>, started: Instant) -> Result<Solved<'a>, CliError> {
         let (solution, failure) = match result {
             Ok(solution) => (solution, None),
             Err(SolveError::NotConverged { grid, iterations, certificate, solution }) => {
@@ -117,26 +136,24 @@ impl<'a> ProblemSetup<'a> {
     }
 }
 
-impl Solved<'_> {
+impl<'a> Solved<'a> {
+    /// The solution, what is said of it if it did not reach the tolerance, and the time that it took.
+    #[must_use]
+    pub fn into_parts(self) -> (Solution<'a>, Option<String>, Duration) {
+        (self.solution, self.failure, self.wall)
+    }
+
     /// What is to be said of a solution that did not reach the tolerance.
-    pub(crate) fn failure(&self) -> Option<&str> {
+    #[must_use]
+    pub fn failure(&self) -> Option<&str> {
         self.failure.as_deref()
     }
 
     /// The summary in SI; `threads` is what it says of them.
     pub(crate) fn summary(&self, threads: usize) -> Summary {
-        let ProblemSetup { surface, contact, .. } = self.problem;
         // Not before: the time to the certified solution does not include what the solution does not need.
-        let [rms_height, rms_slope] = surface.height_and_slope();
-        let context = SolveContext {
-            control: contact.control.into(),
-            border_level: contact.params.border_level,
-            rms_height,
-            rms_slope,
-            wall: self.wall,
-            threads,
-        };
-        Summary::of(&self.solution, contact.units, &context)
+        let height_and_slope = self.problem.surface.height_and_slope();
+        self.files().summary(height_and_slope, self.wall, threads)
     }
 
     /// Writes the result folder.
@@ -144,7 +161,26 @@ impl Solved<'_> {
     /// # Errors
     /// [`CliError::Write`].
     pub(crate) fn write(&self, folder: &Path, summary: &Summary) -> Result<(), CliError> {
+        self.files().write(folder, summary)
+    }
+
+    fn files(&self) -> ResultFiles<'_> {
         let ProblemSetup { surface, contact, .. } = self.problem;
-        Ok(result_files::write(folder, surface, contact, &self.solution, summary)?)
+        let map = surface.map().map(|(heights, as_read)| MapHeights::InCell { heights, as_read });
+        ResultFiles { surface: &surface.keys, map, contact, solution: &self.solution }
+    }
+}
+
+impl std::fmt::Debug for ProblemSetup<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut out = f.debug_struct("ProblemSetup");
+        out.field("surface", &self.surface.keys).field("contact", &self.contact.keys).finish_non_exhaustive()
+    }
+}
+
+impl std::fmt::Debug for Solved<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut out = f.debug_struct("Solved");
+        out.field("problem", &self.problem).field("solution", &self.solution).finish_non_exhaustive()
     }
 }

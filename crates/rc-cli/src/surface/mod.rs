@@ -5,6 +5,8 @@ pub(crate) mod args;
 mod surface_files;
 mod treatment;
 
+pub use treatment::treatments;
+
 use std::path::Path;
 
 use rc_heights::{Effect, Treatment};

@@ -1,9 +1,10 @@
 //! Flags that treat a measured map, in the order in which they are applied.
 
-use clap::{Args, ValueEnum};
+use clap::{Args, FromArgMatches as _, ValueEnum};
 use rc_core::{Grid, GridError};
 use rc_heights::{Crop, Fill, Flip, Level, Periodic, Repeat, Treatment};
 
+use crate::error::CliError;
 use crate::scene::values::GridSpec;
 
 /// What is done to a height map before it is written.
@@ -49,6 +50,17 @@ pub(crate) enum PeriodicName {
     Window,
     /// It is.
     AsIs,
+}
+
+/// The treatments that flags of `rc surface` name, as `["--level", "plane"]`, in the order in which they are applied.
+///
+/// # Errors
+/// [`CliError::Input`] for words that are not such flags.
+pub fn treatments(words: &[String]) -> Result<Vec<Treatment>, CliError> {
+    let command = TreatmentKeys::augment_args(clap::Command::new("treatments").no_binary_name(true));
+    let matches = command.try_get_matches_from(words).map_err(|error| CliError::from(&error))?;
+    let keys = TreatmentKeys::from_arg_matches(&matches).map_err(|error| CliError::from(&error))?;
+    keys.treatments().map_err(|cause| CliError::input(format_args!("resample: {cause}")))
 }
 
 impl TreatmentKeys {

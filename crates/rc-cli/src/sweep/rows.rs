@@ -42,9 +42,9 @@ impl SurfaceOfLoads {
         // A worker that panicked has stored a whole plan or none.
         let mut first = self.first.lock().unwrap_or_else(PoisonError::into_inner);
         if first.is_none() {
-            *first = Some(problem.plan()?);
+            *first = Some(problem.first_plan()?);
         }
-        first.as_ref().map_or_else(|| problem.plan(), |first| problem.plan_like(first))
+        first.as_ref().map_or_else(|| problem.first_plan(), |first| problem.plan_like(first))
     }
 }
 
@@ -64,7 +64,7 @@ impl<'a> SceneRows<'a> {
         let started = Instant::now().checked_sub(time).unwrap_or_else(Instant::now);
         let folder = self.sweep.fields_folder(row.index);
         let budget = Budget::new(self.surfaces.run.memory_limit);
-        let problem = ProblemSetup { surface: &loaded.surface, contact, budget };
+        let problem = ProblemSetup { surface: &loaded.surface, contact, kernel: contact.kernel()?, budget };
         let solved = problem.solve_planned(loaded.plan(&problem)?, started, &Silent)?;
         let summary = solved.summary(self.threads);
         if let Some(folder) = folder {

@@ -112,6 +112,20 @@ impl<'a> Solution<'a> {
         Solution { how, status, h_max, pressures, pressure, gap, displacement, observables, stiffness }
     }
 
+    /// The same solution without borrows, with the kernel that it was solved with. Nothing is tabulated then.
+    #[must_use]
+    pub fn into_owned_with(self, kernel: &'static dyn Kernel) -> Solution<'static> {
+        match self.pressures {
+            Pressures::Grid { solution, response: Response::Kernel(KernelOfGrid::Borrowed(_)) } => {
+                let pressures =
+                    Pressures::Grid { solution, response: Response::Kernel(KernelOfGrid::Borrowed(kernel)) };
+                let Self { how, status, h_max, pressure, gap, displacement, observables, stiffness, .. } = self;
+                Solution { how, status, h_max, pressures, pressure, gap, displacement, observables, stiffness }
+            }
+            pressures => Self { pressures, ..self }.into_owned(),
+        }
+    }
+
     /// How the solve ended.
     #[must_use]
     pub fn status(&self) -> Status {

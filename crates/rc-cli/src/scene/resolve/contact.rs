@@ -27,18 +27,23 @@ pub struct ContactSetup {
 
 impl ContactSetup {
     /// The kernel itself.
-    #[must_use]
-    pub fn kernel(&self) -> &'static dyn Kernel {
-        kernel(self.kernel)
+    ///
+    /// # Errors
+    /// [`CliError::Input`] for a kernel that only a program knows.
+    pub fn kernel(&self) -> Result<&'static dyn Kernel, CliError> {
+        kernel(self.kernel).ok_or_else(|| {
+            CliError::input("kernel: 'own' is a function of a Python program, which alone can solve with it; give love or spectral")
+        })
     }
 }
 
-/// The kernel of this name.
+/// The kernel of this name; `None` for one that only a program knows.
 #[must_use]
-pub fn kernel(name: KernelName) -> &'static dyn Kernel {
+pub fn kernel(name: KernelName) -> Option<&'static dyn Kernel> {
     match name {
-        KernelName::Love => &Love,
-        KernelName::Spectral => &Spectral,
+        KernelName::Love => Some(&Love),
+        KernelName::Spectral => Some(&Spectral),
+        KernelName::Own => None,
     }
 }
 
@@ -77,13 +82,15 @@ fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {
 
 /// Refuses a method that cannot solve with this kernel or border level.
 fn check_method(keys: &ContactKeys, kernel: KernelName) -> Result<(), CliError> {
-    if let (Some(method @ (Method::Adaptive | Method::GaussSeidel)), KernelName::Spectral) = (keys.method, kernel) {
+    if let (Some(method @ (Method::Adaptive | Method::GaussSeidel)), KernelName::Spectral | KernelName::Own) =
+        (keys.method, kernel)
+    {
         return Err(CliError::input(format_args!(
             "method: '{method}' has the paper's elements, so kernel must be love; uniform has spectral too"
         )));
     }
     match (keys.border_level, keys.method, kernel) {
-        (Some(1..), Some(Method::Uniform | Method::GaussSeidel), _) | (Some(1..), _, KernelName::Spectral) => {
+        (Some(1..), Some(Method::Uniform | Method::GaussSeidel), _) | (Some(1..), _, KernelName::Spectral | KernelName::Own) => {
             Err(CliError::input(
                 "border_level: only the adaptive method, with kernel love, halves elements at the edges of contacts",
             ))

@@ -19,6 +19,14 @@ pub fn check_size_and_material(surface: &SurfaceKeys, contact: &ContactKeys) -> 
     check(surface, size(surface)?.into_iter().chain(material(contact)))
 }
 
+/// The same where the map is not in a file, so that only the keys say its size.
+///
+/// # Errors
+/// [`CliError::Input`] that names what is missing.
+pub fn check_cell_and_material(surface: &SurfaceKeys, contact: &ContactKeys) -> Result<(), CliError> {
+    check(surface, surface.cell.is_none().then_some(CELL).into_iter().chain(material(contact)))
+}
+
 fn check(surface: &SurfaceKeys, missing: impl IntoIterator<Item = &'static str>) -> Result<(), CliError> {
     let missing: Vec<&str> = missing.into_iter().collect();
     match surface.heights {
@@ -30,11 +38,14 @@ fn check(surface: &SurfaceKeys, missing: impl IntoIterator<Item = &'static str>)
     }
 }
 
+/// What a map without a size needs.
+const CELL: &str = "cell (m)";
+
 /// What is missing of the size. Whether a file of a format with sizes says it is known when it has been read.
 fn size(surface: &SurfaceKeys) -> Result<Option<&'static str>, CliError> {
     let Some(path) = &surface.heights else { return Ok(None) };
     let is_known = surface.cell.is_some() || rc_heights::may_have_sides(path, &surface.read_params())?;
-    Ok((!is_known).then_some("cell (m)"))
+    Ok((!is_known).then_some(CELL))
 }
 
 /// What is missing of the material.

@@ -9,5 +9,5 @@ mod surface;
 pub use checks::checked_grid;
 pub use contact::{ContactSetup, contact, kernel};
 pub use layers::layers;
-pub use map::{check_size, check_size_and_material};
+pub use map::{check_cell_and_material, check_size, check_size_and_material};
 pub use surface::{surface, surface_in_cell};

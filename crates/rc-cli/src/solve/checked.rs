@@ -1,0 +1,100 @@
+//! A scene that has been checked, before its heights are read or evaluated.
+
+use std::time::Instant;
+
+use rc_core::{Kernel, Observer};
+use rc_sweep::memory::Budget;
+
+use super::solved::{ProblemSetup, Solved};
+use crate::error::CliError;
+use crate::scene::keys::{ContactKeys, SurfaceKeys};
+use crate::scene::resolve::{self, ContactSetup};
+use crate::scene::surface::{LoadedSurface, SurfaceSetup};
+use crate::scene::values::{Fraction, ToleranceSpec};
+
+/// A checked contact problem: the command line and the Python module solve the same one.
+#[derive(Clone, Debug)]
+pub struct CheckedScene {
+    /// The surface, not read or realised yet.
+    pub surface: SurfaceSetup,
+    /// Half-space, load and method.
+    pub contact: ContactSetup,
+    /// The relative error of the contact area by which the grid is chosen.
+    area_error: Option<Fraction>,
+}
+
+impl CheckedScene {
+    /// Checks the keys. With an error of the area that is wanted, the tolerance is `auto` unless it is given.
+    ///
+    /// # Errors
+    /// [`CliError::Input`].
+    pub fn new(surface: SurfaceKeys, contact: ContactKeys) -> Result<Self, CliError> {
+        resolve::check_size_and_material(&surface, &contact)?;
+        Self::with_surface(contact, surface.heights.is_some(), || resolve::surface(surface))
+    }
+
+    /// The same for a height map that a program holds. It has these sides (m), or those of the keys.
+    ///
+    /// # Errors
+    /// [`CliError::Input`].
+    pub fn of_map(
+        surface: SurfaceKeys,
+        sides: Option<[f64; 2]>,
+        contact: ContactKeys,
+    ) -> Result<Self, CliError> {
+        let surface = surface.of_map(sides)?;
+        resolve::check_cell_and_material(&surface, &contact)?;
+        Self::with_surface(contact, true, || resolve::surface_in_cell(surface))
+    }
+
+    fn with_surface(
+        contact: ContactKeys,
+        is_map: bool,
+        surface: impl FnOnce() -> Result<SurfaceSetup, CliError>,
+    ) -> Result<Self, CliError> {
+        let area_error = contact.area_error;
+        let contact = match area_error {
+            None => contact,
+            Some(_) if is_map => {
+                return Err(CliError::input(
+                    "area_error: a height map has its own grid, which cannot be chosen; omit it",
+                ));
+            }
+            Some(_) => {
+                let auto = contact.energy_tolerance.is_none().then_some(ToleranceSpec::Auto);
+                let tolerance = contact.tolerance.or(auto);
+                ContactKeys { area_error: None, tolerance, ..contact }
+            }
+        };
+        let surface = surface()?;
+        let contact = resolve::contact(contact, surface.cell)?;
+        Ok(Self { surface, contact, area_error })
+    }
+
+    /// The problem on `surface`, with this kernel and as much memory.
+    #[must_use]
+    pub fn problem<'a>(
+        &'a self,
+        surface: &'a LoadedSurface,
+        kernel: &'a dyn Kernel,
+        budget: Budget,
+    ) -> ProblemSetup<'a> {
+        ProblemSetup { surface, contact: &self.contact, kernel, budget }
+    }
+
+    /// Solves the problem of [`CheckedScene::problem`]; `started` is the moment from which `wall_seconds` counts.
+    ///
+    /// # Errors
+    /// [`CliError::Input`]; a solution that did not converge is not an error, see [`Solved::failure`].
+    pub fn solve<'a>(
+        &self,
+        problem: ProblemSetup<'a>,
+        started: Instant,
+        observer: &dyn Observer,
+    ) -> Result<Solved<'a>, CliError> {
+        match self.area_error {
+            None => problem.solve(started, observer),
+            Some(wanted) => problem.solve_to_area_error(wanted, started, observer),
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! Fields of the libraries as arrays of NumPy, and the reverse.
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods as _, PyReadonlyArray2, PyUntypedArrayMethods as _};
+use pyo3::prelude::*;
+use rc_core::{Field, Grid};
+use rc_heights::{HeightMap, Unit};
+
+use crate::errors::bad_input;
+
+/// Heights (m) of shape (ny, nx), row by row in memory: the package hands in nothing else.
+pub(crate) type Heights<'py> = PyReadonlyArray2<'py, f64>;
+
+/// The grid of an array.
+pub(crate) fn grid_of(heights: &Heights<'_>) -> PyResult<Grid> {
+    let [ny, nx] = [heights.shape()[0], heights.shape()[1]];
+    Grid::new(nx, ny).map_err(|cause| bad_input(format_args!("heights: {cause}")))
+}
+
+/// The values of an array, without a copy.
+pub(crate) fn values_of<'a>(heights: &'a Heights<'_>) -> PyResult<&'a [f64]> {
+    heights.as_slice().map_err(|_| bad_input("heights: the array must be contiguous, row by row"))
+}
+
+/// The heights as a map in metres, the only copy that is made of them: it becomes the heights in units of the cell.
+pub(crate) fn map_of(heights: &Heights<'_>, sides: Option<[f64; 2]>) -> PyResult<HeightMap> {
+    let field = Field::new(grid_of(heights)?, values_of(heights)?.to_vec()).map_err(bad_input)?;
+    Ok(HeightMap { heights: field, height_unit: Unit::Metre, sides, side_unit: Unit::Metre })
+}
+
+/// An array of shape (ny, nx) from values row by row, without a copy.
+pub(crate) fn array_of<'py>(py: Python<'py>, grid: Grid, values: Vec<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    PyArray1::from_vec(py, values).reshape([grid.ny(), grid.nx()])
+}
+
+/// What tells two arrays apart: it depends on each value and on its place.
+pub(crate) fn fingerprint(values: &[f64]) -> u64 {
+    let of = |(i, value): (usize, &f64)| value.to_bits().wrapping_mul(2 * i as u64 + 1);
+    values.iter().enumerate().map(of).fold(0, u64::wrapping_add)
+}

@@ -1,0 +1,67 @@
+//! What is computed from the fields of a result, live or stored.
+
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use rc_core::{EdgeBias, Field, Grid, Kernel};
+use rc_cli::scene::resolve;
+use rc_solver::{ContactSpot, StressDistribution};
+
+use crate::arrays::{self, Heights};
+use crate::errors::{bad_input, raised};
+use crate::maps::on_threads;
+
+/// A spot: elements, part of the cell, perimeter (m), Euler number, part of the mean pressure (Pa).
+type Spot = (usize, f64, f64, f64, f64);
+
+/// An array as a field on a cell of these sides, each value divided by `unit`.
+fn field_of(array: &Heights<'_>, sides: [f64; 2], unit: f64) -> PyResult<Field> {
+    let grid = arrays::grid_of(array)?;
+    let grid = Grid::in_cell(grid.nx(), grid.ny(), sides[1] / sides[0]).map_err(bad_input)?;
+    let values = arrays::values_of(array)?.iter().map(|value| value / unit).collect();
+    Field::new(grid, values).map_err(bad_input)
+}
+
+/// Density (1/Pa) of a pressure (Pa) over the nominal area on bins with these ends (Pa), and the contact area of the same interpolation.
+#[pyfunction]
+pub(crate) fn stress_distribution<'py>(
+    py: Python<'py>,
+    pressure: Heights<'py>,
+    e_star: f64,
+    edges: Vec<f64>,
+) -> PyResult<(Bound<'py, PyArray1<f64>>, f64)> {
+    let pressure = field_of(&pressure, [1.0, 1.0], e_star)?;
+    let edges: Vec<f64> = edges.into_iter().map(|edge| edge / e_star).collect();
+    let found = on_threads(py, 0, || StressDistribution::of(&pressure, &edges))?;
+    let density = found.density.into_iter().map(|density| density / e_star).collect();
+    Ok((PyArray1::from_vec(py, density), found.area_fraction))
+}
+
+/// Contact spots of a pressure (Pa) and a gap (m), largest first.
+#[pyfunction]
+pub(crate) fn spots(
+    py: Python<'_>,
+    pressure: Heights<'_>,
+    gap: Heights<'_>,
+    sides: [f64; 2],
+    e_star: f64,
+    kernel: &str,
+) -> PyResult<Vec<Spot>> {
+    let name = rc_cli::scene::file::parse(&format!("kernel = {kernel:?}")).map_err(bad_input)?.contact.kernel;
+    let bias = name.and_then(resolve::kernel).map_or_else(EdgeBias::default, Kernel::edge_bias);
+    let (pressure, gap) = (field_of(&pressure, sides, e_star)?, field_of(&gap, sides, sides[0])?);
+    if pressure.grid() != gap.grid() {
+        return Err(bad_input(format_args!("gap: {} elements, but the pressure has {}", gap.grid(), pressure.grid())));
+    }
+    let spots = on_threads(py, 0, || ContactSpot::all(&pressure, &gap, bias))?;
+    let in_si = |spot: ContactSpot| {
+        let ContactSpot { elements, area_fraction, perimeter, euler_number, mean_pressure } = spot;
+        (elements, area_fraction, perimeter * sides[0], euler_number, mean_pressure * e_star)
+    };
+    Ok(spots.into_iter().map(in_si).collect())
+}
+
+/// Runs a command of `rc` that writes files; its error is an exception.
+#[pyfunction]
+pub(crate) fn run(py: Python<'_>, words: Vec<String>) -> PyResult<()> {
+    py.detach(|| rc_cli::run_words(words.into_iter().map(Into::into))).map_err(raised)
+}

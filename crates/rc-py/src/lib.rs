@@ -1,0 +1,46 @@
+//! The extension module `roughcontact._core`: conversions between Python and the libraries, and nothing else.
+//!
+//! What a user calls is in `python/roughcontact`, which documents it. A call takes the keys of a scene and perhaps heights ([`scene`]),
+//! solves without the lock of the interpreter ([`running`]), and returns a [`solved::Solved`], whose arrays are made when they are asked for.
+
+use pyo3::prelude::*;
+
+mod arrays;
+mod errors;
+mod fields;
+mod kernel;
+mod maps;
+mod pools;
+mod running;
+mod scene;
+mod solve;
+mod solved;
+
+/// Runs the command `rc` with these words, the name of the program first, and returns its exit code.
+#[pyfunction]
+fn main(py: Python<'_>, words: Vec<String>) -> u8 {
+    py.detach(|| rc_cli::main_with(words.into_iter().map(Into::into)))
+}
+
+/// The extension module.
+#[pymodule]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<solved::Solved>()?;
+    module.add_function(wrap_pyfunction!(main, module)?)?;
+    module.add_function(wrap_pyfunction!(scene::known_keys, module)?)?;
+    module.add_function(wrap_pyfunction!(scene::loads, module)?)?;
+    module.add_function(wrap_pyfunction!(scene::seeds, module)?)?;
+    module.add_function(wrap_pyfunction!(solve::solve, module)?)?;
+    module.add_function(wrap_pyfunction!(maps::read, module)?)?;
+    module.add_function(wrap_pyfunction!(maps::surface, module)?)?;
+    module.add_function(wrap_pyfunction!(maps::inspect_surface, module)?)?;
+    module.add_function(wrap_pyfunction!(maps::inspect_map, module)?)?;
+    module.add_function(wrap_pyfunction!(maps::inspect_result, module)?)?;
+    module.add_function(wrap_pyfunction!(maps::treat, module)?)?;
+    module.add_function(wrap_pyfunction!(maps::resolved_surface, module)?)?;
+    module.add_function(wrap_pyfunction!(fields::stress_distribution, module)?)?;
+    module.add_function(wrap_pyfunction!(fields::spots, module)?)?;
+    module.add_function(wrap_pyfunction!(fields::run, module)?)?;
+    Ok(())
+}

@@ -1,0 +1,131 @@
+//! Surfaces and height maps without a contact.
+
+use std::path::{Path, PathBuf};
+
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rc_cli::scene::keys::{Scene, SurfaceKeys};
+use rc_cli::scene::resolve;
+use rc_cli::scene::surface::{LoadedSurface, SurfaceSetup};
+use rc_cli::{inspect, scene::heights, surface as surfaces};
+use rc_core::Field;
+use rc_heights::HeightMap;
+use rc_sweep::memory::Budget;
+
+use crate::arrays::{self, Heights};
+use crate::errors::{bad_input, raised};
+use crate::running::{self, Run};
+use crate::scene::scene_of;
+
+/// An array (m) and the sides of its rectangle along x and y (m), where they are known.
+type MapParts<'py> = (Bound<'py, PyArray2<f64>>, Option<[f64; 2]>);
+
+/// Runs `work` on all cores, or on those of `RAYON_NUM_THREADS`.
+pub(crate) fn on_threads<T: Send>(py: Python<'_>, threads: usize, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    let (value, _, ended) = running::run(py, Run { threads, end: None, progress: None }, move |_| work())?;
+    ended.map_or(Ok(value), Err)
+}
+
+fn parts(py: Python<'_>, map: HeightMap) -> PyResult<MapParts<'_>> {
+    let grid = map.heights.grid();
+    Ok((arrays::array_of(py, grid, map.heights.into_values())?, map.sides))
+}
+
+/// Reads a height map of any format, in metres; `NaN` where nothing was measured.
+#[pyfunction]
+pub(crate) fn read<'py>(py: Python<'py>, path: PathBuf, keys: &Bound<'py, PyDict>) -> PyResult<MapParts<'py>> {
+    let scales = scene_of(keys, None)?.surface.scales();
+    let map = py.detach(|| heights::read(&path, &rc_heights::ReadParams::default(), scales)).map_err(raised)?;
+    parts(py, map)
+}
+
+/// A random surface that has been checked, with the threads to be used.
+fn checked(keys: &Bound<'_, PyDict>) -> PyResult<(SurfaceSetup, Budget, usize)> {
+    let Scene { surface, run, .. } = scene_of(keys, None)?;
+    resolve::check_size(&surface).map_err(raised)?;
+    let setup = resolve::surface(surface).map_err(raised)?;
+    let threads = rc_cli::run::threads::checked(run.threads).map_err(raised)?.unwrap_or(0);
+    Ok((setup, Budget::new(run.memory_limit), threads))
+}
+
+/// Heights (m) of a random surface on its grid, and the sides of its cell (m).
+#[pyfunction]
+pub(crate) fn surface<'py>(py: Python<'py>, keys: &Bound<'py, PyDict>) -> PyResult<MapParts<'py>> {
+    let (setup, budget, threads) = checked(keys)?;
+    let heights = on_threads(py, threads, || {
+        let surface = setup.load()?;
+        budget.check_grid("the surface", surface.grid)?;
+        in_metres(&surface, setup.cell.side())
+    })?;
+    let heights = heights.map_err(raised)?;
+    Ok((arrays::array_of(py, heights.grid(), heights.into_values())?, Some(setup.cell.sides())))
+}
+
+/// Heights in m, as `rc surface` writes them.
+fn in_metres(surface: &LoadedSurface, side: f64) -> Result<Field, rc_cli::error::CliError> {
+    let mut heights = surface.heights()?.into_owned();
+    match surface.map() {
+        Some((_, as_read)) => as_read.restore(0, heights.values_mut()),
+        None => heights.values_mut().iter_mut().for_each(|height| *height *= side),
+    }
+    Ok(heights)
+}
+
+/// The keys of a random surface as they are resolved, as JSON.
+#[pyfunction]
+pub(crate) fn resolved_surface(keys: &Bound<'_, PyDict>) -> PyResult<String> {
+    Ok(rc_sweep::to_json(&checked(keys)?.0.keys))
+}
+
+/// Statistics of a random surface as JSON.
+#[pyfunction]
+pub(crate) fn inspect_surface(py: Python<'_>, keys: &Bound<'_, PyDict>) -> PyResult<String> {
+    let (setup, budget, threads) = checked(keys)?;
+    let record = on_threads(py, threads, || {
+        let surface = setup.load()?;
+        budget.check_grid("the surface", surface.grid)?;
+        inspect::surface(&surface, setup.cell.side())
+    })?;
+    record.map_err(raised)
+}
+
+/// Statistics of a height map as JSON; the size of its cell is among the keys where the map does not know it.
+#[pyfunction]
+pub(crate) fn inspect_map(
+    py: Python<'_>,
+    heights: Heights<'_>,
+    sides: Option<[f64; 2]>,
+    keys: &Bound<'_, PyDict>,
+) -> PyResult<String> {
+    let SurfaceKeys { cell, cell_y, .. } = scene_of(keys, None)?.surface;
+    let map = arrays::map_of(&heights, sides)?;
+    on_threads(py, 0, || inspect::height_map(Path::new("heights"), map, [cell, cell_y]))?.map_err(raised)
+}
+
+/// Summary and statistics of a result folder as JSON.
+#[pyfunction]
+pub(crate) fn inspect_result(py: Python<'_>, folder: PathBuf) -> PyResult<String> {
+    on_threads(py, 0, || inspect::result(&folder))?.map_err(raised)
+}
+
+/// A height map after treatments, which are named as the flags of `rc surface`.
+#[pyfunction]
+pub(crate) fn treat<'py>(
+    py: Python<'py>,
+    heights: Heights<'py>,
+    sides: Option<[f64; 2]>,
+    words: Vec<String>,
+) -> PyResult<MapParts<'py>> {
+    let treatments = surfaces::treatments(&words).map_err(raised)?;
+    let map = arrays::map_of(&heights, sides)?;
+    let treated = on_threads(py, 0, || {
+        let grids = rc_heights::grids_after(&map, &treatments).map_err(|cause| bad_input(format!("heights: {cause}")))?;
+        for (grid, treatment) in grids.into_iter().zip(&treatments) {
+            let checked = Budget::new(None).check_grid(&format!("the map after {treatment}"), grid);
+            checked.map_err(|error| raised(error.into()))?;
+        }
+        rc_heights::apply(map, &treatments).map_err(|cause| bad_input(format!("heights: {cause}")))
+    })?;
+    parts(py, treated?.0)
+}

@@ -1,0 +1,164 @@
+//! `solve`: keys and heights in, a solution out.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rc_cli::error::CliError;
+use rc_cli::run::threads;
+use rc_cli::scene::keys::{KernelName, RunKeys, Scene};
+use rc_cli::scene::surface::{LoadedSurface, Source};
+use rc_cli::solve::{CheckedScene, Solved as SolvedScene};
+use rc_core::{Kernel, Observer};
+use rc_heights::HeightMap;
+use rc_solver::Solution;
+use rc_sweep::memory::Budget;
+
+use crate::arrays::{self, Heights};
+use crate::errors::{bad_input, raised};
+use crate::kernel::OwnKernel;
+use crate::running::{self, Run};
+use crate::solved::{HeldMap, Parts, Solved};
+
+/// Where heights come from that are not named by keys.
+#[derive(FromPyObject)]
+pub(crate) struct Given<'py> {
+    /// Heights (m), row by row.
+    #[pyo3(item)]
+    heights: Option<Heights<'py>>,
+    /// Sides of their cell along x and y (m), where they know them.
+    #[pyo3(item)]
+    sides: Option<[f64; 2]>,
+    /// A scene file.
+    #[pyo3(item)]
+    scene: Option<PathBuf>,
+    /// The symbol of the half-space.
+    #[pyo3(item)]
+    kernel: Option<Bound<'py, PyAny>>,
+    /// A function that sees progress.
+    #[pyo3(item)]
+    progress: Option<Bound<'py, PyAny>>,
+    /// Whether it is a row of a sweep, of which the memory of the machine decides nothing.
+    #[pyo3(item)]
+    is_row: bool,
+}
+
+/// A problem that is ready to be solved without Python.
+struct Prepared {
+    scene: CheckedScene,
+    kernel: Option<OwnKernel>,
+    map: Option<HeightMap>,
+    budget: Budget,
+    started: Instant,
+}
+
+/// Solves. Returns the solution, and the exception that ended it early.
+#[pyfunction]
+pub(crate) fn solve(
+    py: Python<'_>,
+    keys: &Bound<'_, PyDict>,
+    given: Given<'_>,
+) -> PyResult<(Solved, Option<Py<PyAny>>)> {
+    let scene = scene_of(keys, &given)?;
+    let run_keys = scene.run.clone();
+    let prepared = Prepared::new(scene, &given)?;
+    let held = given.heights.map(HeldMap::new).transpose()?;
+    let run = Run {
+        threads: threads::checked(run_keys.threads).map_err(raised)?.unwrap_or(0),
+        end: end(&run_keys, prepared.started),
+        progress: given.progress,
+    };
+    let (parts, threads, ended) = running::run(py, run, move |observer| prepared.solve(observer))?;
+    let solved = Solved::new(parts.map_err(raised)?, held, threads);
+    Ok((solved, ended.map(|error| error.into_value(py).into_any())))
+}
+
+/// The scene of the keys. A function for a kernel has a name among them.
+fn scene_of(keys: &Bound<'_, PyDict>, given: &Given<'_>) -> PyResult<Scene> {
+    let mut scene = crate::scene::scene_of(keys, given.scene.as_deref())?;
+    if given.heights.is_some() {
+        // The array takes the place of the surface in a scene file, as a file would; what else the call says of a surface is refused later.
+        let call = crate::scene::scene_of(keys, None)?.surface;
+        let kept = &mut scene.surface;
+        if call.heights.is_none() && !call.generates() {
+            *kept = rc_cli::scene::keys::SurfaceKeys { cell: kept.cell, cell_y: kept.cell_y, grid: call.grid, ..call };
+        }
+    }
+    if given.kernel.is_some() {
+        scene.contact.kernel = Some(KernelName::Own);
+    }
+    Ok(scene)
+}
+
+fn end(keys: &RunKeys, started: Instant) -> Option<Instant> {
+    keys.time_limit.and_then(|limit| started.checked_add(limit.0))
+}
+
+impl Prepared {
+    fn new(scene: Scene, given: &Given<'_>) -> PyResult<Self> {
+        let started = Instant::now();
+        let Scene { surface, contact, run } = scene;
+        if given.kernel.is_some() && contact.area_error.is_some() {
+            return Err(bad_input("area_error: a function for a kernel is asked on one grid; give grid instead"));
+        }
+        let map = given.heights.as_ref().map(|heights| arrays::map_of(heights, given.sides)).transpose()?;
+        let mut scene = match &map {
+            Some(_) => CheckedScene::of_map(surface, given.sides, contact),
+            None => CheckedScene::new(surface, contact),
+        }
+        .map_err(raised)?;
+        scene.contact.params.method_follows_memory &= !given.is_row;
+        let kernel = given.kernel.as_ref().map(|symbol| own_kernel(symbol, &scene, map.as_ref())).transpose()?;
+        Ok(Self { scene, kernel, map, budget: Budget::new(run.memory_limit), started })
+    }
+
+    /// Solves, on the threads of the caller.
+    fn solve(self, observer: &dyn Observer) -> Result<Parts, CliError> {
+        let Self { scene, kernel, map, budget, started } = self;
+        let surface = load(&scene, map)?;
+        let own = kernel.as_ref().map(|kernel| kernel as &dyn Kernel);
+        let chosen = match own {
+            Some(kernel) => kernel,
+            None => scene.contact.kernel()?,
+        };
+        let solved = scene.solve(scene.problem(&surface, chosen, budget), started, observer)?;
+        let (solution, failure, wall) = owned(solved, &scene, own.is_some())?;
+        // Of a map only this is kept: the heights are those of the caller.
+        let height_and_slope = surface.height_and_slope();
+        Ok(Parts { surface: surface.keys, contact: scene.contact, solution, failure, wall, height_and_slope })
+    }
+}
+
+/// The solution without borrows.
+fn owned(
+    solved: SolvedScene<'_>,
+    scene: &CheckedScene,
+    is_own: bool,
+) -> Result<(Solution<'static>, Option<String>, Duration), CliError> {
+    let (solution, failure, wall) = solved.into_parts();
+    let solution = if is_own { solution.into_owned() } else { solution.into_owned_with(scene.contact.kernel()?) };
+    Ok((solution, failure, wall))
+}
+
+/// Reads or realises the surface; heights of the caller become those in units of the cell.
+fn load(scene: &CheckedScene, map: Option<HeightMap>) -> Result<LoadedSurface, CliError> {
+    let expected = match &scene.surface.source {
+        Source::File { expected, .. } => *expected,
+        Source::Random { .. } => None,
+    };
+    match map {
+        Some(map) => scene.surface.of_map(Path::new("heights"), map, expected),
+        None => scene.surface.load(),
+    }
+}
+
+/// The caller's kernel on the grid of the scene.
+fn own_kernel(symbol: &Bound<'_, PyAny>, scene: &CheckedScene, map: Option<&HeightMap>) -> PyResult<OwnKernel> {
+    let grid = match (&scene.surface.source, map) {
+        (Source::Random { grid, .. }, _) => *grid,
+        (_, Some(map)) => map.heights.grid(),
+        (Source::File { .. }, None) => scene.surface.load().map_err(raised)?.grid,
+    };
+    OwnKernel::new(symbol, grid, scene.contact.units)
+}

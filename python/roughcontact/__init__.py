@@ -1,0 +1,45 @@
+"""Contact of rough elastic surfaces: what the command ``rc`` has, with arrays in and out.
+
+A rigid rough surface is pressed into an elastic half-space, on a periodic cell, without friction or adhesion.
+All quantities are in SI units; a cell of 1 and an E* of 1 give dimensionless results. Arrays have the shape
+``(ny, nx)``, row by row; heights are positive towards the half-space.
+
+>>> import roughcontact as rc
+>>> result = rc.solve(rc.Surface(waves=8, seed=1), grid=64, pressure=1e5)
+>>> result.converged, result.pressure.shape
+(True, (64, 64))
+
+:func:`solve` solves one problem and :func:`sweep` many; :class:`Surface` is a random surface, :func:`surface` its
+heights; :func:`read` reads a measured map, :func:`prepare` treats it and :func:`inspect` describes it.
+:func:`load` reads a result folder. Errors are ``ValueError`` with the sentence of the command line.
+"""
+
+from roughcontact._core import __version__
+from roughcontact._maps import HeightMap, inspect, prepare, read
+from roughcontact._result import Certificate, ContactSpot, Elements, Result, StressDistribution, load
+from roughcontact._run import NotConvergedError, NotConvergedWarning, Progress
+from roughcontact._solve import solve
+from roughcontact._surface import Surface, surface
+from roughcontact._sweep import Table, sweep
+
+__all__ = [
+    "Certificate",
+    "ContactSpot",
+    "Elements",
+    "HeightMap",
+    "NotConvergedError",
+    "NotConvergedWarning",
+    "Progress",
+    "Result",
+    "StressDistribution",
+    "Surface",
+    "Table",
+    "__version__",
+    "inspect",
+    "load",
+    "prepare",
+    "read",
+    "solve",
+    "surface",
+    "sweep",
+]

@@ -1,0 +1,7 @@
+"""``python -m roughcontact``: the command ``rc``."""
+
+import sys
+
+from roughcontact._command import main
+
+sys.exit(main())

@@ -1,0 +1,36 @@
+"""Keyword arguments as keys of a scene."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import Any, Literal, Union
+
+import numpy as np
+
+#: Elements per side: a number, ``(nx, ny)``, or text as ``"512x256"``.
+Grid = Union[int, tuple[int, int], str]
+#: How the problem is solved.
+Method = Literal["adaptive", "uniform", "gauss-seidel"]
+#: A file or a folder.
+Path = Union[str, "os.PathLike[str]"]
+#: Units of the lengths of a file.
+LengthUnit = Literal["m", "mm", "um", "nm"]
+
+
+def plain(keys: Mapping[str, Any]) -> dict[str, Any]:
+    """The keys that have a value, with numbers of NumPy, paths and pairs as what they stand for."""
+    return {name: _plain(value) for name, value in keys.items() if value is not None}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, (str, int, float)):
+        # Numbers of NumPy that are floats too keep their value.
+        return float(value) if type(value) is np.float64 else value
+    if isinstance(value, (np.generic, np.ndarray)) and value.ndim == 0:
+        return value.item()
+    if isinstance(value, (tuple, list)) and len(value) == 2:
+        return f"{value[0]}x{value[1]}"
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    return value

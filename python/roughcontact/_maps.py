@@ -1,0 +1,246 @@
+"""Height maps: arrays with the size of what was measured."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from typing import TYPE_CHECKING, Any, Literal, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from roughcontact import _core
+from roughcontact._keys import Grid, LengthUnit, Path, plain
+
+if TYPE_CHECKING:
+    from roughcontact._result import Result
+    from roughcontact._surface import Surface
+
+Floats = NDArray[np.float64]
+Sides = tuple[float, float]
+
+
+class HeightMap:
+    """A measured map: heights in m, and the size of its cell where it is known.
+
+    It takes the place of an array everywhere, and brings its size along.
+
+    Parameters
+    ----------
+    heights : array_like, shape (ny, nx)
+        Heights (m), positive towards the half-space; NaN where nothing was measured.
+    sides : (float, float), optional
+        Sides of the map along x and y (m).
+    """
+
+    __slots__ = ("heights", "sides")
+
+    #: Heights (m), shape (ny, nx).
+    heights: Floats
+    #: Sides along x and y (m), or None where they are not known.
+    sides: Sides | None
+
+    def __init__(self, heights: ArrayLike, sides: Sides | None = None) -> None:
+        self.heights = as_heights(heights)
+        self.sides = None if sides is None else (float(sides[0]), float(sides[1]))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the heights, (ny, nx)."""
+        return self.heights.shape
+
+    @property
+    def missing(self) -> int:
+        """Number of points that were not measured."""
+        return int(np.isnan(self.heights).sum())
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        if copy:
+            return np.array(self.heights, dtype=dtype)
+        return np.asarray(self.heights, dtype=dtype)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, HeightMap):
+            return NotImplemented
+        return self.sides == other.sides and np.array_equal(self.heights, other.heights, equal_nan=True)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        ny, nx = self.heights.shape
+        size = "size not known" if self.sides is None else f"{self.sides[0]:g} m x {self.sides[1]:g} m"
+        return f"HeightMap({nx} x {ny} points, {size}, {self.missing} missing)"
+
+
+#: What :func:`roughcontact.solve` takes for a surface besides keywords.
+Heights = Union[ArrayLike, HeightMap, "Surface", Path]
+
+
+def as_heights(heights: Any) -> Floats:
+    """Heights as an array of float64, row by row; what is that already is not copied."""
+    if isinstance(heights, np.ma.MaskedArray):
+        heights = np.ma.filled(heights.astype(np.float64), np.nan)
+    try:
+        array = np.asarray(heights)
+        if np.iscomplexobj(array):
+            raise TypeError("complex heights")
+        array = np.require(array, np.float64, ["C", "A"])
+    except (TypeError, ValueError) as cause:
+        raise ValueError(f"heights: must be a 2-D array of numbers, shape (ny, nx): {cause}") from None
+    if array.ndim != 2:
+        raise ValueError(f"heights: must be a 2-D array, shape (ny, nx), not of shape {array.shape}")
+    return array
+
+
+def map_parts(heights: Any) -> tuple[Floats, Sides | None]:
+    """Array and size of anything that has heights: an array, a map, a topography, an array with names."""
+    if isinstance(heights, HeightMap):
+        return heights.heights, heights.sides
+    if callable(getattr(heights, "heights", None)) and hasattr(heights, "physical_sizes"):
+        return _of_topography(heights)
+    dimensions = getattr(heights, "dims", None)
+    if dimensions is not None and tuple(dimensions) == ("x", "y"):
+        heights = heights.transpose("y", "x")
+    return as_heights(heights), None
+
+
+def _of_topography(topography: Any) -> tuple[Floats, Sides]:
+    """A topography of SurfaceTopography, whose arrays have x first."""
+    if topography.unit is not None:
+        topography = topography.to_unit("m")
+    array = topography.heights()
+    x, y = topography.physical_sizes
+    return as_heights(np.ma.transpose(array) if np.ma.isMaskedArray(array) else array.T), (float(x), float(y))
+
+
+def pair(sides: list[float] | None) -> Sides | None:
+    """Sides as a tuple."""
+    return None if sides is None else (sides[0], sides[1])
+
+
+def read(path: Path, *, unit: LengthUnit | None = None, height_scale: float | None = None) -> HeightMap:
+    """Read a height map of any format that the command line reads.
+
+    Parameters
+    ----------
+    path : path
+        ``.npy``, ``.csv``, ``.txt``, ``.xyz``, ``.grd``, ``.gsf``, ``.sdf``, ``.x3p``, 16-bit ``.png`` or ``.tif``.
+    unit : {"m", "mm", "um", "nm"}, optional
+        Unit of the lengths of a file that names none. Default: m.
+    height_scale : float, optional
+        Height (m) of 1 in a file that names no unit, as of one level of grey of an image.
+
+    Returns
+    -------
+    HeightMap
+        Heights in m, NaN where nothing was measured, and the size where the file has it.
+    """
+    keys = plain({"unit": unit, "height_scale": height_scale})
+    heights, sides = _core.read(os.fspath(path), keys)
+    return HeightMap(heights, pair(sides))
+
+
+def prepare(
+    heights: ArrayLike | HeightMap | Path,
+    *,
+    cell: float | None = None,
+    cell_y: float | None = None,
+    crop: str | None = None,
+    flip: str | None = None,
+    fill: Literal["laplace", "nearest", "lowest"] | None = None,
+    level: Literal["mean", "plane", "quadratic"] | None = None,
+    periodic: Literal["mirror", "window", "as-is"] | None = None,
+    taper: float | None = None,
+    low_pass: float | None = None,
+    resample: Grid | None = None,
+    repeat: str | None = None,
+) -> HeightMap:
+    """Treat a measured map, as ``rc surface`` does, in the order of the parameters.
+
+    A measured map mostly needs ``crop="square", fill="laplace", level="plane", periodic="mirror"``.
+
+    Parameters
+    ----------
+    heights : array_like of shape (ny, nx), HeightMap or path
+        The map (m).
+    cell, cell_y : float, optional
+        Sides (m) along x and y, where the map does not know them. Default of ``cell_y``: points are squares.
+    crop : str, optional
+        ``"square"``, or points as ``"512"``, ``"512x256"``, ``"512x256+100+50"``.
+    flip : str, optional
+        Axes ``"x"``, ``"y"``, ``"z"``, with commas between them.
+    fill : {"laplace", "nearest", "lowest"}, optional
+        Give missing points heights.
+    level : {"mean", "plane", "quadratic"}, optional
+        Take a form away.
+    periodic : {"mirror", "window", "as-is"}, optional
+        Make opposite borders meet; ``mirror`` doubles the sides.
+    taper : float, optional
+        Part of each side that ``window`` fades. Default: 0.1.
+    low_pass : float, optional
+        Gaussian filter: waves of this length (m) keep half of their height.
+    resample : int, (int, int) or str, optional
+        Other numbers of points along x and y on the same area.
+    repeat : str, optional
+        Copies of a periodic map: ``"square"``, or ``"3x4"``.
+
+    Returns
+    -------
+    HeightMap
+        The map after all treatments.
+    """
+    array, sides = map_parts(read(heights) if isinstance(heights, (str, os.PathLike)) else heights)
+    if cell is not None:
+        ny, nx = array.shape
+        sides = (float(cell), float(cell * ny / nx if cell_y is None else cell_y))
+    flags = {
+        "--crop": crop,
+        "--flip": flip,
+        "--fill": fill,
+        "--level": level,
+        "--periodic": periodic,
+        "--taper": taper,
+        "--low-pass": low_pass,
+        "--resample": resample,
+        "--repeat": repeat,
+    }
+    words = [word for flag, value in plain(flags).items() for word in (flag, str(value))]
+    treated, sides_after = _core.treat(array, sides, words)
+    return HeightMap(treated, pair(sides_after))
+
+
+def inspect(
+    what: ArrayLike | HeightMap | Surface | Result | Path, *, cell: float | None = None, cell_y: float | None = None
+) -> dict[str, Any]:
+    """Statistics of a surface or of a result, as ``rc inspect --json`` prints them.
+
+    Parameters
+    ----------
+    what : array_like, HeightMap, Surface, Result or path
+        Heights (m), a random surface, a result, or a file or result folder.
+    cell, cell_y : float, optional
+        Sides (m) of a map that does not know them. Default: 0.01 for ``cell``, ``cell`` for ``cell_y``.
+
+    Returns
+    -------
+    dict
+        Of a surface: rms height (m), slope and curvature (1/m), parameters of ISO 25178, spectrum, distribution.
+        Of a result: ``summary`` and ``pressure``.
+    """
+    from roughcontact._result import Result
+    from roughcontact._surface import Surface
+
+    found: dict[str, Any]
+    if isinstance(what, Surface):
+        found = json.loads(_core.inspect_surface(plain(what.keys())))
+    elif isinstance(what, Result):
+        with tempfile.TemporaryDirectory() as folder:
+            what.save(folder)
+            found = json.loads(_core.inspect_result(folder))
+    elif isinstance(what, (str, os.PathLike)) and os.path.isdir(what):
+        found = json.loads(_core.inspect_result(os.fspath(what)))
+    else:
+        array, sides = map_parts(read(what) if isinstance(what, (str, os.PathLike)) else what)
+        found = json.loads(_core.inspect_map(array, sides, plain({"cell": cell, "cell_y": cell_y})))
+    return found

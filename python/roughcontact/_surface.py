@@ -1,0 +1,132 @@
+"""Random surfaces with a power-law spectrum."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roughcontact import _core
+from roughcontact._keys import Grid, plain
+
+_KEYS = (
+    "cell",
+    "waves",
+    "hurst",
+    "rms",
+    "rms_slope",
+    "c0",
+    "seed",
+    "truncation",
+    "roll_off",
+    "amplitudes",
+    "grid",
+)
+
+
+class Surface:
+    """A random surface (Eq. 9-14 of the paper), evaluated only where a solver needs it.
+
+    What is not given has the value of the paper's surface.
+
+    Parameters
+    ----------
+    cell : float, default 0.01
+        Side of the periodic cell (m).
+    waves : int, default 64
+        Waves per cell of the shortest wave.
+    hurst : float, default 0.8
+        Hurst exponent, above 0 and at most 1.
+    rms, rms_slope, c0 : float, optional
+        Rms height (m), or rms slope, or C0 of Eq. 9 (m⁴): one of the three. Default: an rms height of 13 µm.
+    seed : int, default 1
+        Seed of the random phases.
+    truncation : {"disc", "square"}, default "disc"
+        Which waves take part: |k| ≤ N, or max(|kx|, |ky|) ≤ N.
+    roll_off : float, default 1
+        Below this number of waves per cell the spectrum is flat.
+    amplitudes : {"fixed", "random"}, default "fixed"
+        Amplitudes exactly of the spectrum, or random about it.
+    grid : int, (int, int) or str, optional
+        Finest elements along x and y. Default: 32 per shortest wave.
+    """
+
+    __slots__ = ("_keys",)
+
+    def __init__(
+        self,
+        *,
+        cell: float | None = None,
+        waves: int | None = None,
+        hurst: float | None = None,
+        rms: float | None = None,
+        rms_slope: float | None = None,
+        c0: float | None = None,
+        seed: int | None = None,
+        truncation: Literal["disc", "square"] | None = None,
+        roll_off: float | None = None,
+        amplitudes: Literal["fixed", "random"] | None = None,
+        grid: Grid | None = None,
+    ) -> None:
+        given = locals()
+        self._keys = plain({name: given[name] for name in _KEYS})
+        # Refuses what is wrong now, not when it is solved.
+        _core.resolved_surface(self._keys)
+
+    def keys(self) -> dict[str, Any]:
+        """The parameters that were given."""
+        return dict(self._keys)
+
+    def resolved(self) -> dict[str, Any]:
+        """All parameters, with their defaults."""
+        keys: dict[str, Any] = json.loads(_core.resolved_surface(self._keys))
+        return {name: value for name, value in keys.items() if value is not None}
+
+    def heights(self, *, threads: int | None = None) -> NDArray[np.float64]:
+        """Heights (m) on the grid, shape (ny, nx)."""
+        return _core.surface({**self._keys, **plain({"threads": threads})})[0]
+
+    def __eq__(self, other: object) -> bool:
+        return self._keys == other._keys if isinstance(other, Surface) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(tuple(sorted(self._keys.items())))
+
+    def __repr__(self) -> str:
+        return f"Surface({', '.join(f'{name}={value!r}' for name, value in self._keys.items())})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _surface_of, (self._keys,)
+
+
+def _surface_of(keys: dict[str, Any]) -> Surface:
+    return Surface(**keys)
+
+
+def surface(
+    *,
+    cell: float | None = None,
+    waves: int | None = None,
+    hurst: float | None = None,
+    rms: float | None = None,
+    rms_slope: float | None = None,
+    c0: float | None = None,
+    seed: int | None = None,
+    truncation: Literal["disc", "square"] | None = None,
+    roll_off: float | None = None,
+    amplitudes: Literal["fixed", "random"] | None = None,
+    grid: Grid | None = None,
+    threads: int | None = None,
+) -> NDArray[np.float64]:
+    """Heights (m) of a random surface on its grid, as ``rc surface --out heights.npy`` writes them.
+
+    The parameters are those of :class:`Surface`; ``threads`` are worker threads, by default all cores.
+
+    Returns
+    -------
+    ndarray, shape (ny, nx)
+    """
+    given = locals()
+    return Surface(**{name: given[name] for name in _KEYS}).heights(threads=threads)
