@@ -1,0 +1,90 @@
+"""Signatures, stubs and docstrings are complete."""
+
+import ast
+import inspect
+import pathlib
+import subprocess
+import sys
+
+import pytest
+
+import roughcontact as rc
+from roughcontact import _core
+
+PACKAGE = pathlib.Path(rc.__file__).parent
+
+#: Keys of a scene that calls have in another way: the argument `heights`, and what concerns standard output.
+IN_ANOTHER_WAY = {"heights", "out", "quiet", "json"}
+
+
+def test_solve_has_every_key_of_a_scene():
+    keywords = set(inspect.signature(rc.solve).parameters)
+    assert keywords - {"scene", "progress", "check", "heights"} == set(_core.known_keys()) - IN_ANOTHER_WAY
+
+
+def test_sweep_and_surface_have_the_keywords_of_solve():
+    of = lambda function: inspect.signature(function).parameters  # noqa: E731
+    solve, sweep = of(rc.solve), of(rc.sweep)
+    own = {"pressures", "penetrations", "seeds", "executor", "keep_results"}
+    one = {"pressure", "penetration", "seed", "area_error", "output_grid", "unit", "height_scale"}
+    assert set(sweep) - own == set(solve) - one
+    for name in set(sweep) - own:
+        assert sweep[name].annotation == solve[name].annotation, name
+    for name in of(rc.Surface):
+        assert of(rc.Surface)[name].annotation == solve[name].annotation == of(rc.surface)[name].annotation, name
+
+
+def stubs():
+    tree = ast.parse((PACKAGE / "_core.pyi").read_text())
+    functions = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
+    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef) and node.name != "Given"}
+    return functions, classes
+
+
+def arguments(node):
+    return [argument.arg for argument in node.args.args]
+
+
+def test_the_stub_has_the_names_and_arguments_of_the_module():
+    functions, classes = stubs()
+    public = {name for name in dir(_core) if not name.startswith("__")}
+    assert public == set(functions) | set(classes)
+    for name, node in functions.items():
+        assert arguments(node) == list(inspect.signature(getattr(_core, name)).parameters), name
+    methods = {node.name: node for node in classes["Solved"].body if isinstance(node, ast.FunctionDef)}
+    assert {name for name in dir(_core.Solved) if not name.startswith("__")} == set(methods)
+    for name, node in methods.items():
+        member = getattr(_core.Solved, name)
+        if callable(member):
+            assert arguments(node) == list(inspect.signature(member).parameters), name
+
+
+def test_everything_public_is_documented_and_its_parameters_are():
+    for name in rc.__all__:
+        if name.startswith("__"):
+            continue
+        member = getattr(rc, name)
+        assert inspect.getdoc(member), name
+        if inspect.isfunction(member) and name not in ("surface", "sweep"):
+            for parameter in inspect.signature(member).parameters:
+                assert parameter in member.__doc__, f"{name}: {parameter}"
+        if inspect.isclass(member) and not issubclass(member, BaseException):
+            for attribute, value in vars(member).items():
+                if not attribute.startswith("_") and (inspect.isfunction(value) or isinstance(value, property)):
+                    assert inspect.getdoc(value), f"{name}.{attribute}"
+
+
+def test_package_and_examples_are_typed():
+    pytest.importorskip("mypy")
+    root = pathlib.Path(__file__).parents[1]
+    files = sorted((root / "examples").glob("*.py"))
+    assert files
+    line = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "--cache-dir", "/dev/null", *map(str, files)]
+    done = subprocess.run(line, capture_output=True, text=True, check=False, cwd=root / "examples")
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize("path", sorted((pathlib.Path(__file__).parents[1] / "examples").glob("*.py")), ids=lambda p: p.stem)
+def test_examples_run(path, tmp_path):
+    done = subprocess.run([sys.executable, path], capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert done.returncode == 0 and done.stdout, done.stderr
