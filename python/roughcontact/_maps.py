@@ -100,9 +100,10 @@ def map_parts(heights: Any) -> tuple[Floats, Sides | None]:
     if callable(getattr(heights, "heights", None)) and hasattr(heights, "physical_sizes"):
         return _of_topography(heights)
     dimensions = getattr(heights, "dims", None)
+    by_names: Any = heights
     if dimensions is not None and tuple(dimensions) == ("x", "y"):
-        heights = heights.transpose("y", "x")
-    return as_heights(heights), None
+        by_names = by_names.transpose("y", "x")
+    return as_heights(by_names), None
 
 
 def _of_topography(topography: Any) -> tuple[Floats, Sides]:
@@ -111,7 +112,7 @@ def _of_topography(topography: Any) -> tuple[Floats, Sides]:
         topography = topography.to_unit("m")
     array = topography.heights()
     x, y = topography.physical_sizes
-    return as_heights(np.ma.transpose(array) if np.ma.isMaskedArray(array) else array.T), (float(x), float(y))
+    return as_heights(array.T), (float(x), float(y))
 
 
 def pair(sides: list[float] | None) -> Sides | None:

@@ -97,8 +97,8 @@ class Table:
         return f"Table({len(self)} rows, {len(self.columns)} columns)"
 
     def _repr_html_(self) -> str:
-        names = ("seed", "control_value", "area_fraction", "area_fraction_error", "penetration", "mean_gap", "status")
-        names = tuple(name for name in names if name in self.columns)
+        known = ("seed", "control_value", "area_fraction", "area_fraction_error", "penetration", "mean_gap", "status")
+        names = [name for name in known if name in self.columns]
         head = "".join(f"<th>{name}</th>" for name in names)
         body = "".join(
             "<tr>" + "".join(f"<td>{text.escape(_short(row[name]))}</td>" for name in names) + "</tr>" for row in self.rows

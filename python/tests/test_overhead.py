@@ -1,40 +1,51 @@
 """What a call costs beside the solver."""
 
+import os
+import subprocess
+import sys
+import textwrap
 import time
 
 import numpy as np
+import pytest
 
 import roughcontact as rc
 
 
-def test_a_small_solve_spends_little_outside_of_the_solver():
+@pytest.mark.parametrize("method", ["uniform", "adaptive"])
+def test_a_small_solve_spends_little_outside_of_the_solver(method):
     heights = rc.surface(waves=8, grid=64, seed=2)
-    keys = {"cell": 0.01, "e_star": 1e9, "pressure": 1e5, "threads": 1}
+    keys = {"cell": 0.01, "e_star": 1e9, "pressure": 1e5, "threads": 1, "method": method}
     outside = []
-    for _ in range(1000):
+    for _ in range(300):
         started = time.perf_counter()
         result = rc.solve(heights, **keys)
         outside.append(time.perf_counter() - started - result._source.wall_seconds)
-    # Half of the calls, since others may use the machine: waiting for a processor is no work.
-    median = np.median(outside)
-    assert median < 0.3e-3, f"{1e3 * median:.3f} ms"
+    # The quicker calls: where others use the machine, waiting for a processor is no work.
+    seconds = np.quantile(outside, 0.25)
+    assert seconds < 0.3e-3, f"{1e3 * seconds:.3f} ms"
 
 
-def test_heights_are_not_kept_twice():
-    """The solver's own heights, in units of the cell, are gone with the solve; what stays are pressure and gap."""
-    import resource
+@pytest.mark.skipif(sys.platform != "linux", reason="/proc/self/statm")
+def test_a_result_keeps_pressure_and_gap_and_no_heights():
+    program = """
+        import resource
+        import roughcontact as rc
 
-    heights = rc.surface(waves=8, grid=2048, seed=2)
-    keys = {"cell": 0.01, "e_star": 1e9, "pressure": 1e5, "method": "uniform", "tolerance": 0.1}
-    rc.solve(heights, **keys)
+        def resident():
+            with open("/proc/self/statm") as file:
+                return int(file.read().split()[1]) * resource.getpagesize()
 
-    def resident():
-        with open("/proc/self/statm") as file:
-            return int(file.read().split()[1]) * resource.getpagesize()
-
-    before = resident()
-    result = rc.solve(heights, **keys)
-    kept = resident() - before
-    assert result.converged
-    # Two fields and the scratch of an allocator; a third field would be a copy.
-    assert kept < 2.6 * heights.nbytes, f"{kept / heights.nbytes:.2f} fields"
+        heights = rc.surface(waves=8, grid=1024, seed=2)
+        for _ in range(2):
+            before = resident()
+            result = rc.solve(heights, cell=0.01, e_star=1e9, pressure=1e5, method="uniform", tolerance=0.1)
+            kept = resident() - before
+            del result
+        print(kept / heights.nbytes)
+    """
+    # So that what is freed is given back at once.
+    environment = {**os.environ, "MALLOC_MMAP_THRESHOLD_": "131072", "MALLOC_TRIM_THRESHOLD_": "0"}
+    line = [sys.executable, "-c", textwrap.dedent(program)]
+    done = subprocess.run(line, capture_output=True, text=True, check=True, env=environment)
+    assert float(done.stdout) < 2.3, f"{done.stdout} fields"

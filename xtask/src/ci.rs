@@ -4,7 +4,7 @@ use anyhow::Result;
 
 use crate::process::Step;
 
-/// Checks format, lints and documentation, then runs every test, and swaps crates for forks; stops at the first failure.
+/// Checks format, lints and documentation, then runs every test, swaps crates for forks, and tries the Python package; stops at the first failure.
 ///
 /// The same steps as the script `.ci/run`.
 #[derive(clap::Args)]
@@ -23,6 +23,7 @@ pub(crate) const STEPS: &[Step] = &[
     },
     Step { environment: &[], words: &["xtask", "test"] },
     Step { environment: &[], words: &["xtask", "swap"] },
+    Step { environment: &[], words: &["xtask", "python"] },
 ];
 
 pub(crate) fn run(_args: &Args) -> Result<()> {

@@ -6,10 +6,12 @@ mod dist;
 mod docs;
 mod figures;
 mod process;
+mod python;
 mod stress;
 mod swap;
 mod test;
 mod tidy;
+mod wheel;
 
 use clap::{Parser, Subcommand};
 use rc_bench::{Accuracy, KernelErrors};
@@ -57,6 +59,8 @@ enum Command {
     Stress(stress::Args),
     Swap(swap::Args),
     Dist(dist::Args),
+    Python(python::Args),
+    Wheel(wheel::Args),
     Docs(docs::Args),
 }
 
@@ -82,6 +86,8 @@ fn main() -> anyhow::Result<()> {
         Command::Stress(args) => stress::run(&args),
         Command::Swap(args) => swap::run(&args),
         Command::Dist(args) => dist::run(&args),
+        Command::Python(args) => python::run(&args),
+        Command::Wheel(args) => wheel::run(&args),
         Command::Docs(args) => docs::run(&args),
     }
 }

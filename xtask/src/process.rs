@@ -1,5 +1,6 @@
-//! Steps that run cargo, announced before they run.
+//! Steps that run cargo or another program, announced before they run.
 
+use std::ffi::OsString;
 use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
@@ -50,6 +51,47 @@ impl Step {
             .current_dir(folder)
             .status()
             .with_context(|| format!("could not start `{line}`; is cargo installed?"))?;
+        if !status.success() {
+            bail!("`{line}` failed; repeat that line alone to see why");
+        }
+        eprintln!("  done in {:.0} s", start.elapsed().as_secs_f64());
+        Ok(())
+    }
+}
+
+/// A call of a program that is not cargo, in the root of the repository.
+pub(crate) struct Program {
+    name: OsString,
+    words: Vec<String>,
+    path: Option<String>,
+}
+
+impl Program {
+    /// The program with these words.
+    pub(crate) fn new(name: impl Into<OsString>, words: &[&str]) -> Self {
+        Self { name: name.into(), words: words.iter().map(ToString::to_string).collect(), path: None }
+    }
+
+    /// The same with this for the folders in which programs are found.
+    pub(crate) fn with_path(self, path: &str) -> Self {
+        Self { path: Some(path.to_owned()), ..self }
+    }
+
+    /// Runs it, its output going where ours goes.
+    ///
+    /// # Errors
+    /// When it cannot be started, or fails.
+    #[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
+    pub(crate) fn run(&self) -> Result<()> {
+        let line = format!("{} {}", self.name.display(), self.words.join(" "));
+        eprintln!("$ {line}");
+        let start = Instant::now();
+        let mut command = Command::new(&self.name);
+        command.args(&self.words).current_dir(repository::root());
+        if let Some(path) = &self.path {
+            command.env("PATH", path);
+        }
+        let status = command.status().with_context(|| format!("could not start `{line}`; is it installed?"))?;
         if !status.success() {
             bail!("`{line}` failed; repeat that line alone to see why");
         }

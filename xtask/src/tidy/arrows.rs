@@ -24,6 +24,7 @@ const ABOVE_THE_LIBRARIES: &[(&str, &[&str])] = &[
     ("rc-figures", &[]),
     ("rc-bench", &["rc-figures"]),
     ("rc-cli", &[]),
+    ("rc-py", &["rc-cli"]),
     ("xtask", &["rc-figures", "rc-bench", "rc-cli"]),
     ("rc-tests", &["rc-figures", "rc-bench", "rc-cli"]),
     ("rc-fuzz", &["rc-figures", "rc-bench", "rc-cli"]),

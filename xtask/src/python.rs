@@ -1,0 +1,141 @@
+//! `cargo xtask python`: the Python package, built, installed and tested.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use rc_figures::repository;
+
+use crate::process::Program;
+
+/// Builds the wheel of the Python package, installs it into an environment of its own in target/python, and runs its tests, type checks,
+/// examples and notebooks.
+///
+/// Needs a Python from 3.10 on: `python3`, or what the variable PYTHON names.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Build its documentation instead, with the notebooks and the guide, into target/python/site
+    #[arg(long)]
+    docs: bool,
+    /// Words for pytest, for instance part of a test's name after -k
+    #[arg(last = true)]
+    pytest: Vec<String>,
+}
+
+/// What tests, type checks, notebooks and documentation need, with versions.
+const REQUIREMENTS: &str = "python/requirements-test.txt";
+
+pub(crate) fn run(args: &Args) -> Result<()> {
+    let environment = Environment::new()?;
+    environment.install_package()?;
+    if args.docs {
+        return documentation(&environment);
+    }
+    environment.python(&["-m", "mypy", "--strict", "python/examples", "python/roughcontact"]).run()?;
+    let words: Vec<&str> = ["-m", "pytest", "-q"].into_iter().chain(args.pytest.iter().map(String::as_str)).collect();
+    environment.python(&words).run()
+}
+
+/// A virtual environment in the folder of build results.
+struct Environment {
+    folder: PathBuf,
+}
+
+impl Environment {
+    /// Made the first time, and again when the requirements change.
+    fn new() -> Result<Self> {
+        let folder = folder().join("environment");
+        let environment = Self { folder };
+        let wanted = fs::read_to_string(repository::root().join(REQUIREMENTS)).context(REQUIREMENTS)?;
+        let mark = environment.folder.join("requirements.txt");
+        if fs::read_to_string(&mark).is_ok_and(|installed| installed == wanted) {
+            return Ok(environment);
+        }
+        let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
+        let folder = path_text(&environment.folder)?;
+        Program::new(python, &["-m", "venv", "--clear", folder]).run()?;
+        environment.python(&["-m", "pip", "install", "--quiet", "--requirement", REQUIREMENTS]).run()?;
+        fs::write(&mark, wanted)?;
+        Ok(environment)
+    }
+
+    /// Builds the wheel with the folder of build results of cargo, and installs it.
+    fn install_package(&self) -> Result<()> {
+        let wheels = folder().join("wheels");
+        // Another wheel there might be taken for the new one.
+        let _ = fs::remove_dir_all(&wheels);
+        let out = path_text(&wheels)?;
+        self.python(&["-m", "maturin", "build", "--release", "--locked", "--quiet", "--out", out]).run()?;
+        let wheel = only_wheel(&wheels)?;
+        let install = ["-m", "pip", "install", "--quiet", "--no-deps", "--force-reinstall", path_text(&wheel)?];
+        self.python(&install).run()
+    }
+
+    /// A call of its Python.
+    fn python(&self, words: &[&str]) -> Program {
+        Program::new(in_environment(&self.folder, "python"), words)
+    }
+}
+
+/// Sphinx over the docstrings, the guide and the notebooks.
+fn documentation(environment: &Environment) -> Result<()> {
+    let (source, site) = (folder().join("source"), folder().join("site"));
+    for old in [&source, &site] {
+        let _ = fs::remove_dir_all(old);
+    }
+    let root = repository::root();
+    copy_files(&root.join("python/docs"), &source)?;
+    copy_files(&root.join("docs"), &source.join("guide"))?;
+    copy_files(&root.join("docs/images"), &source.join("guide/images"))?;
+    let notebooks = source.join("extra/notebooks");
+    copy_files(&root.join("python/notebooks"), &notebooks)?;
+    let pattern = format!("{}/*.ipynb", path_text(&notebooks)?);
+    environment.python(&["-m", "nbconvert", "--execute", "--to", "html", "--log-level", "WARN", &pattern]).run()?;
+    let words = ["-m", "sphinx", "-q", "-W", "--keep-going", path_text(&source)?, path_text(&site)?];
+    environment.python(&words).run()
+}
+
+/// Where everything of Python goes.
+pub(crate) fn folder() -> PathBuf {
+    repository::target().join("python")
+}
+
+/// A program of a virtual environment.
+pub(crate) fn in_environment(environment: &Path, name: &str) -> PathBuf {
+    let programs = if cfg!(windows) { "Scripts" } else { "bin" };
+    environment.join(programs).join(name).with_extension(std::env::consts::EXE_EXTENSION)
+}
+
+/// The one wheel in `folder`.
+///
+/// # Errors
+/// When there is none, or more than one.
+pub(crate) fn only_wheel(folder: &Path) -> Result<PathBuf> {
+    let entries = fs::read_dir(folder).with_context(|| format!("no wheel in {}", folder.display()))?;
+    let paths = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<PathBuf>>>()?;
+    let mut wheels = paths.into_iter().filter(|path| path.extension().is_some_and(|e| e == "whl"));
+    match (wheels.next(), wheels.next()) {
+        (Some(wheel), None) => Ok(wheel),
+        _ => bail!("{} must hold exactly one wheel", folder.display()),
+    }
+}
+
+/// A path as a word of a command line.
+///
+/// # Errors
+/// When it is not UTF-8.
+pub(crate) fn path_text(path: &Path) -> Result<&str> {
+    path.to_str().with_context(|| format!("{} is not UTF-8", path.display()))
+}
+
+/// Copies the files of a folder, not those of folders in it.
+fn copy_files(from: &Path, to: &Path) -> Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
+        let entry = entry?;
+        if entry.file_type()?.is_file() {
+            fs::copy(entry.path(), to.join(entry.file_name()))?;
+        }
+    }
+    Ok(())
+}
