@@ -40,12 +40,18 @@ _PIXELS = 192
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 
 
+def scale(value: float, unit: str) -> tuple[str, float]:
+    """The unit with a prefix that suits the value, and how much of the unit it is."""
+    if value == 0.0 or not np.isfinite(value):
+        return unit, 1.0
+    power = int(np.clip(3 * np.floor(np.log10(abs(value)) / 3), -12, 9))
+    return f"{_PREFIXES[power]}{unit}", 10.0**power
+
+
 def quantity(value: float, unit: str) -> str:
     """A number with a prefix before its unit."""
-    if value == 0.0 or not np.isfinite(value):
-        return f"{value:g} {unit}"
-    power = int(np.clip(3 * np.floor(np.log10(abs(value)) / 3), -12, 9))
-    return f"{value / 10.0**power:.4g} {_PREFIXES[power]}{unit}"
+    name, size = scale(value, unit)
+    return f"{value / size:.4g} {name}"
 
 
 def figure(result: Result) -> Figure:
@@ -54,22 +60,24 @@ def figure(result: Result) -> Figure:
         from matplotlib.figure import Figure
     except ImportError:
         raise ImportError("plot needs matplotlib: pip install roughcontact[plot]") from None
-    drawing = Figure(figsize=(12.0, 3.6), layout="constrained")
+    drawing = Figure(figsize=(13.0, 3.6), layout="constrained")
     axes: Any = drawing.subplots(1, 3)
-    side_x, side_y = result.sides
+    (length, metres), (stress_unit, pascals) = scale(max(result.sides), "m"), scale(result.max_pressure, "Pa")
+    gap_unit, gap_metres = scale(float(result.gap.max()), "m")
     # The first row is at the bottom, as in the pictures of the command line.
-    place = {"origin": "lower", "extent": (0.0, side_x, 0.0, side_y), "interpolation": "nearest"}
-    pressure = np.ma.masked_equal(result.pressure, 0.0)
+    extent = (0.0, result.sides[0] / metres, 0.0, result.sides[1] / metres)
+    pressure = np.ma.masked_equal(result.pressure, 0.0) / pascals
     for axis, field, title, colours in (
-        (axes[0], pressure, "Pressure (Pa)", "viridis"),
-        (axes[1], np.maximum(result.gap, 0.0), "Gap (m)", "cividis"),
+        (axes[0], pressure, f"Pressure ({stress_unit})", "viridis"),
+        (axes[1], np.maximum(result.gap, 0.0) / gap_metres, f"Gap ({gap_unit})", "cividis"),
     ):
-        image = axis.imshow(field, cmap=colours, **place)
-        axis.set(title=title, xlabel="x (m)", ylabel="y (m)")
+        image = axis.imshow(field, cmap=colours, origin="lower", extent=extent, interpolation="nearest")
+        axis.set(title=title, xlabel=f"x ({length})", ylabel=f"y ({length})")
         drawing.colorbar(image, ax=axis)
     stress = result.stress_distribution()
-    axes[2].stairs(stress.density, stress.edges, fill=True)
-    axes[2].set(title="Stress distribution", xlabel="σ (Pa)", ylabel="P(σ) (1/Pa)", xlim=(0.0, stress.edges[-1]))
+    axes[2].stairs(stress.density * pascals, stress.edges / pascals, fill=True)
+    labels = {"xlabel": f"σ ({stress_unit})", "ylabel": f"P(σ) (1/{stress_unit})"}
+    axes[2].set(title="Stress distribution", xlim=(0.0, stress.edges[-1] / pascals), **labels)
     return drawing
 
 

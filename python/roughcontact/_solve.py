@@ -88,7 +88,7 @@ def solve(
         Mean pressure (Pa) or penetration (m): exactly one.
     kernel : {"love", "spectral"} or callable, default "love"
         Discretisation of the half-space. A function ``f(kx, ky)`` of two arrays of wavenumbers (rad/m) returns the
-        displacement (m) of a pressure wave of 1 Pa, 2/(E* |k|) for a half-space: it must be positive, and even in kx and ky. It
+        displacement (m) of a pressure wave of 1 Pa, ``2 / (E* |k|)`` for a half-space: it must be positive, and even in kx and ky. It
         is called once, with all waves of the grid but the zero wave.
     method : {"adaptive", "uniform", "gauss-seidel"}, optional
         Default: adaptive, or uniform where that is cheaper.

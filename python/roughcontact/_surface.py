@@ -44,7 +44,7 @@ class Surface:
     seed : int, default 1
         Seed of the random phases.
     truncation : {"disc", "square"}, default "disc"
-        Which waves take part: |k| ≤ N, or max(|kx|, |ky|) ≤ N.
+        Which waves take part: ``|k| <= N``, or ``max(|kx|, |ky|) <= N``.
     roll_off : float, default 1
         Below this number of waves per cell the spectrum is flat.
     amplitudes : {"fixed", "random"}, default "fixed"

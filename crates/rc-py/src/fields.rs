@@ -2,8 +2,8 @@
 
 use numpy::PyArray1;
 use pyo3::prelude::*;
-use rc_core::{EdgeBias, Field, Grid, Kernel};
 use rc_cli::scene::resolve;
+use rc_core::{EdgeBias, Field, Grid, Kernel};
 use rc_solver::{ContactSpot, StressDistribution};
 
 use crate::arrays::{self, Heights};

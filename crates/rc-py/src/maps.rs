@@ -120,7 +120,8 @@ pub(crate) fn treat<'py>(
     let treatments = surfaces::treatments(&words).map_err(raised)?;
     let map = arrays::map_of(&heights, sides)?;
     let treated = on_threads(py, 0, || {
-        let grids = rc_heights::grids_after(&map, &treatments).map_err(|cause| bad_input(format!("heights: {cause}")))?;
+        let grids =
+            rc_heights::grids_after(&map, &treatments).map_err(|cause| bad_input(format!("heights: {cause}")))?;
         for (grid, treatment) in grids.into_iter().zip(&treatments) {
             let checked = Budget::new(None).check_grid(&format!("the map after {treatment}"), grid);
             checked.map_err(|error| raised(error.into()))?;

@@ -187,7 +187,9 @@ impl Solved {
     fn map_heights<'a>(&self, heights: &'a Heights<'_>) -> PyResult<MapHeights<'a>> {
         let values = arrays::values_of(heights)?;
         if self.map.as_ref().is_some_and(|map| map.fingerprint != arrays::fingerprint(values)) {
-            return Err(bad_input("heights: the array was changed after the solve, so it cannot be written; solve a copy"));
+            return Err(bad_input(
+                "heights: the array was changed after the solve, so it cannot be written; solve a copy",
+            ));
         }
         Ok(MapHeights::InMetres { grid: arrays::grid_of(heights)?, values })
     }

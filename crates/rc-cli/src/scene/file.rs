@@ -28,8 +28,7 @@ pub fn read(path: &Path) -> Result<Scene, CliError> {
 /// Never: a test reads it.
 #[must_use]
 pub fn example() -> Scene {
-    static SCENE: LazyLock<Scene> =
-        LazyLock::new(|| parse(EXAMPLE).expect("the embedded example is a valid scene"));
+    static SCENE: LazyLock<Scene> = LazyLock::new(|| parse(EXAMPLE).expect("the embedded example is a valid scene"));
     SCENE.clone()
 }
 

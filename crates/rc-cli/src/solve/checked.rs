@@ -37,11 +37,7 @@ impl CheckedScene {
     ///
     /// # Errors
     /// [`CliError::Input`].
-    pub fn of_map(
-        surface: SurfaceKeys,
-        sides: Option<[f64; 2]>,
-        contact: ContactKeys,
-    ) -> Result<Self, CliError> {
+    pub fn of_map(surface: SurfaceKeys, sides: Option<[f64; 2]>, contact: ContactKeys) -> Result<Self, CliError> {
         let surface = surface.of_map(sides)?;
         resolve::check_cell_and_material(&surface, &contact)?;
         Self::with_surface(contact, true, || resolve::surface_in_cell(surface))

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use rc_core::{Kernel, Observer};
 use rc_solver::{ContactProblem, Plan, Solution, SolveError, SolveParams};
-use rc_sweep::memory::Budget;
 use rc_sweep::Summary;
+use rc_sweep::memory::Budget;
 
 use super::messages;
 use super::result_files::{MapHeights, ResultFiles};

@@ -32,7 +32,9 @@ impl ContactSetup {
     /// [`CliError::Input`] for a kernel that only a program knows.
     pub fn kernel(&self) -> Result<&'static dyn Kernel, CliError> {
         kernel(self.kernel).ok_or_else(|| {
-            CliError::input("kernel: 'own' is a function of a Python program, which alone can solve with it; give love or spectral")
+            CliError::input(
+                "kernel: 'own' is a function of a Python program, which alone can solve with it; give love or spectral",
+            )
         })
     }
 }
@@ -90,11 +92,10 @@ fn check_method(keys: &ContactKeys, kernel: KernelName) -> Result<(), CliError> 
         )));
     }
     match (keys.border_level, keys.method, kernel) {
-        (Some(1..), Some(Method::Uniform | Method::GaussSeidel), _) | (Some(1..), _, KernelName::Spectral | KernelName::Own) => {
-            Err(CliError::input(
-                "border_level: only the adaptive method, with kernel love, halves elements at the edges of contacts",
-            ))
-        }
+        (Some(1..), Some(Method::Uniform | Method::GaussSeidel), _)
+        | (Some(1..), _, KernelName::Spectral | KernelName::Own) => Err(CliError::input(
+            "border_level: only the adaptive method, with kernel love, halves elements at the edges of contacts",
+        )),
         _ => Ok(()),
     }
 }
