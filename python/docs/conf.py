@@ -11,7 +11,7 @@ root_doc = "index"
 exclude_patterns = ["extra", "guide/SUMMARY.md"]
 html_extra_path = ["extra"]
 html_theme = "alabaster"
-html_theme_options = {"description": roughcontact.__doc__.splitlines()[0], "page_width": "1100px", "sidebar_width": "260px"}
+html_theme_options = {"description": "Contact of rough elastic surfaces", "page_width": "1100px", "sidebar_width": "260px"}
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"

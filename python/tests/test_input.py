@@ -119,3 +119,14 @@ def test_values_of_a_wrong_kind_are_refused():
         rc.Surface(hurst=2.0)
     with pytest.raises(ValueError, match="no-such-file"):
         rc.read("no-such-file.npy")
+
+
+def test_a_topography_brings_its_size_and_unit_along(heights):
+    topographies = pytest.importorskip("SurfaceTopography")
+    part = heights[:48]
+    # Its arrays have x first.
+    topography = topographies.Topography(1e6 * part.T, (10e3, 7.5e3), unit="µm", periodic=True)
+    one = rc.solve(topography, e_star=1e9, pressure=1e6)
+    other = rc.solve(part, cell=0.01, cell_y=0.0075, e_star=1e9, pressure=1e6)
+    assert one.sides == pytest.approx((0.01, 0.0075), rel=1e-12)
+    assert one.pressure == pytest.approx(other.pressure, abs=1e-6 * other.max_pressure)
