@@ -28,7 +28,7 @@ pub(crate) fn map_of(heights: &Heights<'_>, sides: Option<[f64; 2]>) -> PyResult
 }
 
 /// An array of shape (ny, nx) from values row by row, without a copy.
-pub(crate) fn array_of<'py>(py: Python<'py>, grid: Grid, values: Vec<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+pub(crate) fn array_of(py: Python<'_>, grid: Grid, values: Vec<f64>) -> PyResult<Bound<'_, PyArray2<f64>>> {
     PyArray1::from_vec(py, values).reshape([grid.ny(), grid.nx()])
 }
 

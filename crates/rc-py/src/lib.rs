@@ -3,6 +3,8 @@
 //! What a user calls is in `python/roughcontact`, which documents it. A call takes the keys of a scene and perhaps heights ([`scene`]),
 //! solves without the lock of the interpreter ([`running`]), and returns a [`solved::Solved`], whose arrays are made when they are asked for.
 
+#![expect(clippy::needless_pass_by_value, reason = "Python hands arguments in by value")]
+
 use pyo3::prelude::*;
 
 mod arrays;

@@ -95,7 +95,7 @@ fn on_pool<T: Send>(
                     calls.tell(py, event)?;
                     py.check_signals()
                 }),
-                Err(RecvTimeoutError::Timeout) => Python::attach(|py| py.check_signals()),
+                Err(RecvTimeoutError::Timeout) => Python::attach(look_for_signals),
             };
             if let Err(error) = looked {
                 stop.store(true, Ordering::Relaxed);
@@ -104,6 +104,11 @@ fn on_pool<T: Send>(
         }
     });
     (value, ended)
+}
+
+/// Runs the handlers of signals that have come; that of Ctrl-C raises an exception.
+fn look_for_signals(py: Python<'_>) -> PyResult<()> {
+    py.check_signals()
 }
 
 /// Calls of the function that sees progress; an iteration does not say on which level it is.

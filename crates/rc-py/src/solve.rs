@@ -63,7 +63,7 @@ pub(crate) fn solve(
     let scene = scene_of(keys, &given)?;
     let run_keys = scene.run.clone();
     let prepared = Prepared::new(scene, &given)?;
-    let held = given.heights.map(HeldMap::new).transpose()?;
+    let held = given.heights.as_ref().map(HeldMap::new).transpose()?;
     let run = Run {
         threads: threads::checked(run_keys.threads).map_err(raised)?.unwrap_or(0),
         end: end(&run_keys, prepared.started),

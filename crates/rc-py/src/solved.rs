@@ -37,9 +37,9 @@ pub(crate) struct HeldMap {
 }
 
 impl HeldMap {
-    pub(crate) fn new(heights: Heights<'_>) -> PyResult<Self> {
-        let fingerprint = arrays::fingerprint(arrays::values_of(&heights)?);
-        Ok(Self { array: (*heights).clone().unbind(), fingerprint })
+    pub(crate) fn new(heights: &Heights<'_>) -> PyResult<Self> {
+        let fingerprint = arrays::fingerprint(arrays::values_of(heights)?);
+        Ok(Self { array: (**heights).clone().unbind(), fingerprint })
     }
 }
 
