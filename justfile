@@ -16,6 +16,10 @@ ci:
 tidy:
     cargo xtask tidy
 
+# The Python package: built, installed below target/, tested.
+python:
+    cargo xtask python
+
 # Every figure of the paper, at full size.
 figures:
     cargo xtask figures

@@ -267,30 +267,24 @@ class Result:
         return self._source.scene()
 
     @cached_property
-    def _keys(self) -> dict[str, Any]:
-        """Numbers of the scene."""
-        pairs = (line.split(" = ", 1) for line in self.scene.splitlines() if " = " in line)
-        keys: dict[str, Any] = {key: value for key, value in pairs}
-        return keys
+    def _numbers(self) -> tuple[list[float], float, int | None]:
+        return _core.scene_numbers(self.scene)
 
-    @cached_property
+    @property
     def sides(self) -> tuple[float, float]:
         """Sides of the cell along x and y (m)."""
-        side = float(self._keys["cell"])
-        return side, float(self._keys.get("cell_y", side))
+        x, y = self._numbers[0]
+        return x, y
 
-    @cached_property
+    @property
     def e_star(self) -> float:
         """E* (Pa)."""
-        if "e_star" in self._keys:
-            return float(self._keys["e_star"])
-        poisson = float(self._keys["poisson"])
-        return float(self._keys["young"]) / (1.0 - poisson * poisson)
+        return self._numbers[1]
 
     @property
     def seed(self) -> int | None:
         """Seed of a random surface; None of a height map."""
-        return int(self._keys["seed"]) if "seed" in self._keys else None
+        return self._numbers[2]
 
     @cached_property
     def pressure(self) -> Floats:

@@ -3,7 +3,7 @@
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use rc_cli::scene::resolve;
-use rc_core::{EdgeBias, Field, Grid, Kernel};
+use rc_core::{EdgeBias, Field, Grid, Kernel, PeriodicCell};
 use rc_solver::{ContactSpot, StressDistribution};
 
 use crate::arrays::{self, Heights};
@@ -19,6 +19,16 @@ fn field_of(array: &Heights<'_>, sides: [f64; 2], unit: f64) -> PyResult<Field> 
     let grid = Grid::in_cell(grid.nx(), grid.ny(), sides[1] / sides[0]).map_err(bad_input)?;
     let values = arrays::values_of(array)?.iter().map(|value| value / unit).collect();
     Field::new(grid, values).map_err(bad_input)
+}
+
+/// Of the text of `scene.toml`: sides of the cell along x and y (m), E* (Pa), and the seed of a random surface.
+#[pyfunction]
+pub(crate) fn scene_numbers(scene: &str) -> PyResult<([f64; 2], f64, Option<u64>)> {
+    let scene = rc_cli::scene::file::parse(scene).map_err(|cause| bad_input(format!("scene.toml: {cause}")))?;
+    let side = scene.surface.cell.ok_or_else(|| bad_input("scene.toml: cell: must be given"))?;
+    let cell = PeriodicCell::rectangle(side, scene.surface.cell_y.unwrap_or(side)).map_err(bad_input)?;
+    let contact = resolve::contact(scene.contact, cell).map_err(raised)?;
+    Ok((cell.sides(), contact.units.elasticity().e_star(), scene.surface.seed))
 }
 
 /// Density (1/Pa) of a pressure (Pa) over the nominal area on bins with these ends (Pa), and the contact area of the same interpolation.

@@ -112,19 +112,6 @@ impl Solved {
         self.parts.failure.as_deref()
     }
 
-    /// E* (Pa).
-    #[getter]
-    fn modulus(&self) -> f64 {
-        self.e_star()
-    }
-
-    /// Sides of the cell along x and y (m).
-    #[getter]
-    fn sides(&self) -> (f64, f64) {
-        let [x, y] = self.parts.contact.units.cell().sides();
-        (x, y)
-    }
-
     /// Seconds from the checked scene to the certified solution.
     #[getter]
     fn wall_seconds(&self) -> f64 {
