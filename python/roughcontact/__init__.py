@@ -15,7 +15,7 @@ heights; :func:`read` reads a measured map, :func:`prepare` treats it and :func:
 """
 
 from roughcontact._core import __version__
-from roughcontact._maps import HeightMap, inspect, prepare, read
+from roughcontact._maps import HeightMap, channels, inspect, prepare, read
 from roughcontact._result import Certificate, ContactSpot, Elements, Result, StressDistribution, load
 from roughcontact._run import NotConvergedError, NotConvergedWarning, Progress
 from roughcontact._solve import solve
@@ -35,6 +35,7 @@ __all__ = [
     "Surface",
     "Table",
     "__version__",
+    "channels",
     "inspect",
     "load",
     "prepare",

@@ -120,24 +120,51 @@ def pair(sides: list[float] | None) -> Sides | None:
     return None if sides is None else (sides[0], sides[1])
 
 
-def read(path: Path, *, unit: LengthUnit | None = None, height_scale: float | None = None) -> HeightMap:
+def channels(path: Path) -> dict[str, bool]:
+    """List the channels of a file, as ``rc inspect`` does.
+
+    Parameters
+    ----------
+    path : path
+        A height map of any format.
+
+    Returns
+    -------
+    dict
+        The names, in the order of the file, and whether the values are lengths. :func:`read` takes the first of those.
+    """
+    return dict(_core.channels(os.fspath(path)))
+
+
+def read(
+    path: Path,
+    *,
+    unit: LengthUnit | None = None,
+    height_scale: float | None = None,
+    channel: str | None = None,
+    layout: Literal["matrix", "xyz"] | None = None,
+) -> HeightMap:
     """Read a height map of any format that the command line reads.
 
     Parameters
     ----------
     path : path
-        ``.npy``, ``.csv``, ``.txt``, ``.xyz``, ``.grd``, ``.gsf``, ``.sdf``, ``.x3p``, 16-bit ``.png`` or ``.tif``.
+        Text, ``.npy``, ``.h5``, ``.nc``, ``.mat``, 16-bit ``.png`` or ``.tif``, or a file of an instrument or of Gwyddion.
     unit : {"m", "mm", "um", "nm"}, optional
         Unit of the lengths of a file that names none. Default: m.
     height_scale : float, optional
         Height (m) of 1 in a file that names no unit, as of one level of grey of an image.
+    channel : str, optional
+        Of a file with several, as :func:`channels` lists them. Default: the first with heights.
+    layout : {"matrix", "xyz"}, optional
+        How a text of numbers is laid out, where it could be either: a row of the map a line, or a point a line.
 
     Returns
     -------
     HeightMap
         Heights in m, NaN where nothing was measured, and the size where the file has it.
     """
-    keys = plain({"unit": unit, "height_scale": height_scale})
+    keys = plain({"unit": unit, "height_scale": height_scale, "channel": channel, "layout": layout})
     heights, sides = _core.read(os.fspath(path), keys)
     return HeightMap(heights, pair(sides))
 

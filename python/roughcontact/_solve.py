@@ -32,6 +32,8 @@ def solve(
     cell_y: float | None = None,
     unit: LengthUnit | None = None,
     height_scale: float | None = None,
+    channel: str | None = None,
+    layout: Literal["matrix", "xyz"] | None = None,
     waves: int | None = None,
     hurst: float | None = None,
     rms: float | None = None,
@@ -73,8 +75,8 @@ def solve(
         A scene file; keywords override it.
     cell, cell_y : float, optional
         Sides of the periodic cell along x and y (m). An array needs ``cell``. Default of ``cell_y``: ``cell``.
-    unit, height_scale : optional
-        Of a file that names no units, as for :func:`read`.
+    unit, height_scale, channel, layout : optional
+        Of a file, as for :func:`read`.
     waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, amplitudes : optional
         A random surface instead of ``heights``, as for :class:`Surface`.
     grid : int, (int, int) or str, optional

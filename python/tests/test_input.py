@@ -1,5 +1,7 @@
 """Heights of every kind, and input that is refused."""
 
+import pathlib
+
 import numpy as np
 import pytest
 
@@ -130,3 +132,13 @@ def test_a_topography_brings_its_size_and_unit_along(heights):
     other = rc.solve(part, cell=0.01, cell_y=0.0075, e_star=1e9, pressure=1e6)
     assert one.sides == pytest.approx((0.01, 0.0075), rel=1e-12)
     assert one.pressure == pytest.approx(other.pressure, abs=1e-6 * other.max_pressure)
+
+
+def test_channels_of_a_file_are_listed_and_picked():
+    file = pathlib.Path(__file__).parents[2] / "data/formats/h5py-chunked.h5"
+    names = rc.channels(file)
+    assert set(names.values()) == {True, False}, names
+    first = next(name for name, is_height in names.items() if is_height)
+    assert np.array_equal(rc.read(file, channel=first).heights, rc.read(file).heights, equal_nan=True)
+    with pytest.raises(ValueError, match="channel"):
+        rc.read(file, channel="not there")

@@ -34,6 +34,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(scene::loads, module)?)?;
     module.add_function(wrap_pyfunction!(scene::seeds, module)?)?;
     module.add_function(wrap_pyfunction!(solve::solve, module)?)?;
+    module.add_function(wrap_pyfunction!(maps::channels, module)?)?;
     module.add_function(wrap_pyfunction!(maps::read, module)?)?;
     module.add_function(wrap_pyfunction!(maps::surface, module)?)?;
     module.add_function(wrap_pyfunction!(maps::inspect_surface, module)?)?;

@@ -32,11 +32,19 @@ fn parts(py: Python<'_>, map: HeightMap) -> PyResult<MapParts<'_>> {
     Ok((arrays::array_of(py, grid, map.heights.into_values())?, map.sides))
 }
 
+/// Names of the channels of a file, and whether they are heights.
+#[pyfunction]
+pub(crate) fn channels(py: Python<'_>, path: PathBuf) -> PyResult<Vec<(String, bool)>> {
+    let channels = py.detach(|| rc_heights::channels(&path)).map_err(|error| raised(error.into()))?;
+    Ok(channels.into_iter().map(|channel| (channel.name, channel.is_height)).collect())
+}
+
 /// Reads a height map of any format, in metres; `NaN` where nothing was measured.
 #[pyfunction]
 pub(crate) fn read<'py>(py: Python<'py>, path: PathBuf, keys: &Bound<'py, PyDict>) -> PyResult<MapParts<'py>> {
-    let scales = scene_of(keys, None)?.surface.scales();
-    let map = py.detach(|| heights::read(&path, &rc_heights::ReadParams::default(), scales)).map_err(raised)?;
+    let surface = scene_of(keys, None)?.surface;
+    let (params, scales) = (surface.read_params(), surface.scales());
+    let map = py.detach(|| heights::read(&path, &params, scales)).map_err(raised)?;
     parts(py, map)
 }
 
