@@ -24,6 +24,7 @@
 mod coarse;
 mod filter;
 mod inverse;
+mod kept;
 mod params;
 mod stencil;
 mod window;
@@ -33,6 +34,7 @@ pub use filter::Filter;
 pub use params::SplitParams;
 pub use stencil::Stencil;
 
+use kept::Kept;
 use window::Window;
 
 /// Tables of the split kernel.
@@ -59,26 +61,30 @@ impl ScaleSplit {
     /// of side 1.
     #[must_use]
     pub fn love_stencil(&self) -> Stencil {
-        stencil::love(&self.window, self.params.cutoff)
+        static STENCILS: Kept<Stencil> = Kept::new();
+        STENCILS.of(self.params, || stencil::love(&self.window, self.params.cutoff))
     }
 
     /// The part of the next finer level's remainder that this level adds, for elements of side 1: the kernel between
     /// cutoffs c/2 and c, sampled at the centres.
     #[must_use]
     pub fn level_stencil(&self) -> Stencil {
-        stencil::level(&self.window, self.params.cutoff)
+        static STENCILS: Kept<Stencil> = Kept::new();
+        STENCILS.of(self.params, || stencil::level(&self.window, self.params.cutoff))
     }
 
     /// Filter between the finest level, of Love's squares, and the next one.
     #[must_use]
     pub fn love_filter(&self) -> Filter {
-        filter::design(&self.window, self.params, filter::love_target)
+        static FILTERS: Kept<Filter> = Kept::new();
+        FILTERS.of(self.params, || filter::design(&self.window, self.params, filter::love_target))
     }
 
     /// Filter between two coarser levels, whose values are samples of smooth functions.
     #[must_use]
     pub fn level_filter(&self) -> Filter {
-        filter::design(&self.window, self.params, |_| 1.0)
+        static FILTERS: Kept<Filter> = Kept::new();
+        FILTERS.of(self.params, || filter::design(&self.window, self.params, |_| 1.0))
     }
 
     /// Elements of 2, 4, … 2^`n_levels` times the finest side, each as one pressure and one mean displacement.
