@@ -94,7 +94,8 @@ impl<T: TransformReal> Convolution<T> {
             scratch: vec![zero; scratch_len],
         };
         let workspaces = (0..rayon::current_num_threads()).map(|_| Mutex::new(workspace())).collect();
-        let spectrum = vec![zero; n_columns * grid.ny()];
+        // Written by all threads: a large one is new memory.
+        let spectrum = rayon::iter::repeat_n(zero, n_columns * grid.ny()).collect();
         Self { grid, row_forward, row_inverse, column_forward, column_inverse, spectrum, workspaces }
     }
 

@@ -5,6 +5,9 @@ use rc_core::Grid;
 
 use crate::TransformReal;
 
+/// Columns that are filled at once, so that each cache line of those before the diagonal is read once.
+const COLUMNS: usize = 16;
+
 /// Eigenvalues of a [`Convolution`](crate::Convolution) for 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2, even in kx and in ky; columns of constant
 /// kx are contiguous, and the 1/(nx·ny) of the inverse transform is a factor of the entries.
 #[derive(Clone, Debug)]
@@ -22,32 +25,38 @@ impl<T: TransformReal> SymbolTable<T> {
         let column_len = grid.ny() / 2 + 1;
         let symmetric = grid.is_square();
         let scale = 1.0 / grid.len() as f64;
-        let mut values = vec![T::zero(); (grid.nx() / 2 + 1) * column_len];
-        values.par_chunks_exact_mut(column_len).enumerate().for_each(|(kx, column)| {
-            for (ky, value) in column.iter_mut().enumerate().skip(if symmetric { kx } else { 0 }) {
-                *value = T::from_f64(scale * eigenvalue(kx, ky)).expect("a float type holds every f64, rounded");
-            }
-        });
-        if symmetric {
-            for kx in 1..column_len {
-                for ky in 0..kx {
-                    values[kx * column_len + ky] = values[ky * column_len + kx];
+        let entry = |kx, ky| T::from_f64(scale * eigenvalue(kx, ky)).expect("a float type holds every f64, rounded");
+        // From the diagonal on, where the rest is known by symmetry.
+        let first = |kx: usize| if symmetric { kx } else { 0 };
+        let columns: Vec<Vec<T>> = (0..=grid.nx() / 2)
+            .into_par_iter()
+            .map(|kx| (first(kx)..column_len).map(|ky| entry(kx, ky)).collect())
+            .collect();
+        let mut values = vec![T::zero(); columns.len() * column_len];
+        values.par_chunks_mut(COLUMNS * column_len).enumerate().for_each(|(panel, values)| {
+            for ky in 0..column_len {
+                for (column, kx) in values.chunks_exact_mut(column_len).zip(panel * COLUMNS..) {
+                    column[ky] = if ky < first(kx) { columns[ky][kx - ky] } else { columns[kx][ky - first(kx)] };
                 }
             }
-        }
+        });
         Self { column_len, values }
     }
 
-    /// The table of the inverse operator on the same grid: reciprocals, and 0 at k = 0.
+    /// The table of the inverse operator on the same grid, in any precision: reciprocals, and 0 at k = 0.
+    ///
+    /// # Panics
+    /// As [`SymbolTable::new`].
     #[must_use]
-    pub fn inverse(&self, grid: Grid) -> SymbolTable<f64>
+    pub fn inverse<U: TransformReal>(&self, grid: Grid) -> SymbolTable<U>
     where
         T: Into<f64>,
     {
         let scale = 1.0 / grid.len() as f64;
-        let mut values: Vec<f64> = self.values.par_iter().map(|&value| scale * scale / value.into()).collect();
-        values[0] = 0.0;
-        SymbolTable { column_len: self.column_len, values }
+        let inverse = |value: T| U::from_f64(scale * scale / value.into());
+        let mut table = self.map(|value| inverse(value).expect("a float type holds every f64, rounded"));
+        table.set_mean(U::zero());
+        table
     }
 
     /// Sets the entry at k = 0, factor of the inverse transform included.
@@ -65,5 +74,30 @@ impl<T: TransformReal> SymbolTable<T> {
     /// The column of `kx`: eigenvalues for 0 ≤ ky ≤ ny/2.
     pub(crate) fn column(&self, kx: usize) -> &[T] {
         &self.values[kx * self.column_len..(kx + 1) * self.column_len]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_of_any_size_have_the_eigenvalues_and_their_reciprocals() {
+        for (nx, ny) in [(64, 64), (37, 37), (30, 41), (1, 1)] {
+            let grid = Grid::new(nx, ny).expect("a grid");
+            // Symmetric in kx and ky, as eigenvalues of square grids are.
+            let eigenvalue = |kx: usize, ky: usize| (kx * kx + ky * ky) as f64 + (kx * ky) as f64 / 7.0;
+            let table = SymbolTable::<f64>::new(grid, eigenvalue);
+            let inverse: SymbolTable<f32> = table.inverse(grid);
+            for kx in 0..=nx / 2 {
+                for ky in 0..=ny / 2 {
+                    let expected = eigenvalue(kx, ky) / grid.len() as f64;
+                    assert!((table.column(kx)[ky] - expected).abs() <= 1e-15 * expected, "{grid}: ({kx}, {ky})");
+                    let product = f64::from(inverse.column(kx)[ky]) * eigenvalue(kx, ky) * grid.len() as f64;
+                    let expected = if kx + ky == 0 { 0.0 } else { 1.0 };
+                    assert!((product - expected).abs() < 1e-6, "{grid}: ({kx}, {ky}): {product}");
+                }
+            }
+        }
     }
 }

@@ -3,7 +3,7 @@
 use rc_core::EdgeBias;
 
 use crate::solution::GridSolution;
-use crate::{ContactArea, SolveInfo};
+use crate::{ContactArea, SolveInfo, parallel};
 
 /// Observables of a solution, in units of λ and E*.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,8 @@ impl Observables {
     /// Evaluates the observables of a solution whose contact edges are shifted by `bias`: one pass over the fields.
     pub(crate) fn of(solution: &GridSolution, bias: EdgeBias) -> Self {
         let area = ContactArea::of(&solution.pressure, &solution.gap, bias);
-        Self::new(&solution.info, area, solution.pressure.rms(), solution.pressure.max())
+        let pressure = &solution.pressure;
+        Self::new(&solution.info, area, parallel::rms(pressure), parallel::maximum(pressure.values(), 0.0))
     }
 
     /// From the contact area and the pressures of the elements; the error bars have what the iteration has left.

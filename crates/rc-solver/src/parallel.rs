@@ -8,6 +8,7 @@ use std::mem;
 use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
+use rc_core::Field;
 
 /// Values in a block where nothing else decides.
 const BLOCK: usize = 4096;
@@ -44,6 +45,20 @@ pub(crate) fn minimum(values: &[f64]) -> f64 {
 /// Changes each of `values`.
 pub(crate) fn update(values: &mut [f64], change: impl Fn(&mut f64) + Sync) {
     for_each(values.chunks_mut(BLOCK), |block| block.iter_mut().for_each(&change));
+}
+
+/// [`Field::rms`].
+pub(crate) fn rms(field: &Field) -> f64 {
+    let rows = map(field.values().chunks(field.grid().nx()), |row| row.iter().map(|v| v * v).sum::<f64>());
+    (rows.into_iter().sum::<f64>() / field.grid().len() as f64).sqrt()
+}
+
+/// Zeros, in memory that is written at once. What `vec!` gives is mapped page by page when it is first read, and once more, in all threads,
+/// when it is written.
+pub(crate) fn zeros<T: Copy + Default + Send>(n: usize) -> Vec<T> {
+    let mut values = vec![T::default(); n];
+    for_each(values.chunks_mut(BLOCK), |block| block.fill(T::default()));
+    values
 }
 
 /// One item for each block, and what was made of it.

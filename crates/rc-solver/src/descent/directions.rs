@@ -48,13 +48,13 @@ pub(crate) enum Slope<'a> {
 impl ConjugateDirections {
     /// On `n` elements, none active.
     pub(crate) fn new(n: usize) -> Self {
-        let zeros = || vec![0.0; n];
+        let zeros = || parallel::zeros(n);
         Self { active: vec![false; n], direction: zeros(), displacement: zeros(), preconditioned: zeros() }
     }
 
     /// On the elements of `active`. [`ConjugateDirections::advance`] starts along `-preconditioned`.
     pub(crate) fn along(active: Vec<bool>, preconditioned: Vec<f32>) -> Self {
-        let zeros = || vec![0.0; active.len()];
+        let zeros = || parallel::zeros(active.len());
         Self { direction: zeros(), displacement: zeros(), active, preconditioned }
     }
 

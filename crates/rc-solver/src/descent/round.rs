@@ -19,9 +19,19 @@ struct ActiveSet {
     direction_mean: f64,
 }
 
+/// The part of the cell in contact above which each step is clipped, and what joins the contact gets a pressure at once.
+/// `docs/uniform-solver.md` compares both rules.
+const HEAVY_CONTACT: f64 = 0.5;
+
+/// What displaces a square of side 1 by 1 at its centre when it presses on it alone, π / (4 ln(1 + √2)) E*.
+const ALONE: f64 = 0.891;
+
 impl Descent<'_> {
     /// Takes so many steps, clips tensile pressures and restores the load.
     pub(super) fn round(&mut self, steps: usize, sums: &GapSums) -> GapSums {
+        // Of operators of the caller nothing is known.
+        let is_heavy = sums.n_contact > HEAVY_CONTACT * self.n_cell() && self.operators.corrections.extends();
+        let steps = if is_heavy { 1 } else { steps };
         self.precondition_mean(sums);
         let mut set = self.begin_round();
         if set.n == 0.0 {
@@ -31,7 +41,7 @@ impl Descent<'_> {
             let length = self.step_length(&set);
             set.direction_mean = 0.0;
             if step == steps {
-                return self.project(length);
+                return self.project(length, is_heavy);
             }
             self.take_step(length);
         }
@@ -90,9 +100,9 @@ impl Descent<'_> {
     }
 
     /// Takes a step, clips tensile pressures and restores the load, each part of it where it was, or the penetration.
-    fn project(&mut self, length: f64) -> GapSums {
+    fn project(&mut self, length: f64, is_heavy: bool) -> GapSums {
         let gradient = self.gradient();
-        let (n_clipped, loads) = self.clip(length, &gradient);
+        let (n_clipped, loads) = self.clip(length, is_heavy, &gradient);
         let wanted = match self.problem.control {
             Control::MeanPressure(mean) => Some(mean * self.n_cell()),
             Control::Penetration(_) => None,
@@ -131,13 +141,16 @@ impl Descent<'_> {
         self.meet_penetration(sums)
     }
 
-    /// Takes a step and clips tensile pressures. Returns the number clipped, and the load of each square.
-    fn clip(&mut self, length: f64, gradient: &Gradient) -> (u64, Vec<Load>) {
+    /// Takes a step and clips tensile pressures; in heavy contact what joins gets its own. Returns how many pressures that changed, and the
+    /// load of each square.
+    fn clip(&mut self, length: f64, is_heavy: bool, gradient: &Gradient) -> (u64, Vec<Load>) {
         let (len, squares, layout) = (self.layout.len(), self.squares(), &self.layout);
+        let spacing = self.info.grid.spacing();
+        let joining = if is_heavy { ALONE / (spacing.x * spacing.y).sqrt() } else { 0.0 };
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         let blocks = elements.blocks(len).zip(self.directions.clipped_steps(len)).enumerate();
         let of_blocks = parallel::map(blocks, |(i, (mut block, mut step))| {
-            let n_clipped = block.clip(length, &mut step, gradient);
+            let n_clipped = block.clip(length, joining / layout.area(i).sqrt(), &mut step, gradient);
             let (mut loads, mut last): (Vec<(usize, Load)>, _) = (Vec::new(), 0);
             layout.for_each_run(i, block.heights.len(), |run, place| {
                 let (square, pressure) = (squares.at(place), &block.pressure[run.clone()]);

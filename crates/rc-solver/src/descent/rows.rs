@@ -99,9 +99,9 @@ impl ElementValues<'_> {
     }
 
     /// Takes the step `length` along a direction, clips tensile pressures, and writes what the clipping has added, in units of
-    /// `1 / unit`. Chooses the next active elements before clipping: those that press, and those outside that penetrate. Returns the
-    /// number clipped.
-    pub(super) fn clip(&mut self, length: f64, step: &mut ClippedStep<'_>, gradient: &Gradient) -> u32 {
+    /// `1 / unit`. Chooses the next active elements before clipping: those that press, and those outside that penetrate, which get
+    /// `joining` times their overlap for a pressure. Returns the number of pressures that changed so.
+    pub(super) fn clip(&mut self, length: f64, joining: f64, step: &mut ClippedStep<'_>, gradient: &Gradient) -> u32 {
         let ClippedStep { direction, displacement, active, added } = step;
         let mut clipped = 0;
         let along = direction.iter().zip(*displacement).zip(active.iter_mut());
@@ -112,9 +112,13 @@ impl ElementValues<'_> {
             *g += length * f64::from(u);
             *p = stepped.max(0.0);
             // Without a step, what has just come stays.
-            *active = stepped > 0.0 || (!*active || stepped == 0.0) && gradient.of_gap(*g) < 0.0;
+            let joins = (!*active || stepped == 0.0) && gradient.of_gap(*g) < 0.0;
+            if joining > 0.0 && joins && stepped == 0.0 {
+                *p = -joining * gradient.of_gap(*g);
+            }
+            *active = stepped > 0.0 || joins;
             *added = ((*p - stepped) * gradient.unit) as f32;
-            clipped += u32::from(stepped < 0.0);
+            clipped += u32::from(*p > stepped);
         }
         clipped
     }
@@ -222,5 +226,34 @@ pub(super) fn next_direction(
     for (((&z, &active), t), written) in preconditioned.iter().zip(active).zip(direction).zip(written) {
         *t = if active { beta * *t - z + shift } else { 0.0 };
         *written = *t;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pressures, active elements and what was added after a step of length 1 on five elements: one that stays, one that turns tensile, one
+    /// that comes to penetrate, one that does not, and one that stopped penetrating.
+    fn clipped(joining: f64) -> ([f64; 5], [bool; 5], [f32; 5], u32) {
+        let (mut pressure, mut gap) = ([2.0, 1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.5, 0.5, -0.5]);
+        let (mut active, mut added) = ([true, true, false, false, true], [0.0; 5]);
+        let direction = [1.0, -3.0, 0.0, 0.0, 0.0];
+        let displacement = [0.0, 0.25, -1.0, 0.25, 1.0];
+        let mut step =
+            ClippedStep { direction: &direction, displacement: &displacement, active: &mut active, added: &mut added };
+        let mut elements = ElementValues { heights: &[0.0; 5], pressure: &mut pressure, gap: &mut gap };
+        let changed = elements.clip(1.0, joining, &mut step, &Gradient { zero_gap: 0.0, unit: 1.0 });
+        (pressure, active, added, changed)
+    }
+
+    #[test]
+    fn what_joins_the_contact_gets_a_pressure_in_proportion_to_its_overlap() {
+        let (pressure, active, added, changed) = clipped(0.0);
+        assert_eq!((pressure, active), ([3.0, 0.0, 0.0, 0.0, 0.0], [true, false, true, false, false]));
+        assert_eq!((added, changed), ([0.0, 2.0, 0.0, 0.0, 0.0], 1));
+        let (pressure, active, added, changed) = clipped(4.0);
+        assert_eq!((pressure, active), ([3.0, 0.0, 2.0, 0.0, 0.0], [true, false, true, false, false]));
+        assert_eq!((added, changed), ([0.0, 2.0, 2.0, 0.0, 0.0], 2));
     }
 }

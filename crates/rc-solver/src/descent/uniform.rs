@@ -32,7 +32,7 @@ impl UniformCorrections {
         Self {
             convolution: Convolution::new(grid),
             extension: GridExtension::new(grid),
-            preconditioner: displacement.inverse(grid).map(|value| value as f32),
+            preconditioner: displacement.inverse(grid),
             displacement: displacement.map(|value| value as f32),
         }
     }

@@ -13,28 +13,20 @@ use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
 
 /// The solution when `mean_pressure` closes every gap: v = h - mean(h) and p = σ0 + L⁻¹ h, provided that is nowhere
 /// tensile. (For the spectral kernel p̂ = E*|q|ĥ/2.) `None` otherwise, and where rounding or a faulty kernel leave a larger error than
-/// `bound`.
+/// `bound`. Coarser grids have the heights `coarser`, finest first.
 pub(super) fn solve(
-    heights: &Field,
+    (heights, coarser): (&Field, &[Field]),
     kernel: &dyn Kernel,
     mean_pressure: f64,
     problem: &Problem,
     bound: ErrorBound,
 ) -> Option<GridSolution> {
-    if proves_partial_contact(heights, kernel, mean_pressure) {
+    if proves_partial_contact(heights, kernel, mean_pressure) || shows_partial_contact(coarser, kernel, mean_pressure) {
         return None;
     }
     let grid = heights.grid();
-    let inverse = SymbolTable::<f64>::new(grid, kernel.symbol(grid)).inverse(grid);
-    let mut inverse = SymbolOperator::new(grid, inverse);
+    let mut inverse = fluctuation(heights, kernel, problem.h_mean);
     let block = inverse.layout().len();
-    write_blocks(&mut inverse, heights.values().chunks(block), |h, rows| {
-        // The mean would only add rounding.
-        for (row, h) in rows.iter_mut().zip(h) {
-            *row = h - problem.h_mean;
-        }
-    });
-    inverse.apply();
     let mut pressure = Field::zeros(grid);
     let least = read_blocks(&inverse, pressure.values_mut().chunks_mut(block), |p, rows| {
         let mut least = f64::INFINITY;
@@ -49,6 +41,39 @@ pub(super) fn solve(
     }
     let solution = certified(heights, kernel, problem, (pressure, mean_pressure), &mut inverse);
     solution.info.certificate.meets(bound).then_some(solution)
+}
+
+/// L⁻¹ h, ready to be read.
+fn fluctuation(heights: &Field, kernel: &dyn Kernel, mean: f64) -> SymbolOperator {
+    let grid = heights.grid();
+    let inverse = SymbolTable::<f64>::new(grid, kernel.symbol(grid)).inverse(grid);
+    let mut inverse = SymbolOperator::new(grid, inverse);
+    let block = inverse.layout().len();
+    write_blocks(&mut inverse, heights.values().chunks(block), |h, rows| {
+        // The mean would only add rounding.
+        for (row, h) in rows.iter_mut().zip(h) {
+            *row = h - mean;
+        }
+    });
+    inverse.apply();
+    inverse
+}
+
+/// Elements of a grid that shows whether contact is partial, at most.
+const SKETCH: usize = 1 << 18;
+
+/// A coarser grid shows it where its pressure of full contact is this many times below the mean that lies above it: the pressures of the
+/// two grids differ by much less.
+const CLEARLY: f64 = 2.0;
+
+/// Whether full contact would pull on a coarse grid, so clearly that it does on the finest one. Should it not, the iteration finds full
+/// contact.
+fn shows_partial_contact(coarser: &[Field], kernel: &dyn Kernel, mean_pressure: f64) -> bool {
+    let Some(heights) = coarser.iter().find(|heights| heights.grid().len() <= SKETCH) else { return false };
+    let fluctuation = fluctuation(heights, kernel, heights.mean());
+    let rows = heights.values().chunks(fluctuation.layout().len());
+    let least = read_blocks(&fluctuation, rows, |_, rows| rows.iter().copied().fold(f64::INFINITY, f64::min));
+    least.into_iter().fold(f64::INFINITY, f64::min) < -CLEARLY * mean_pressure
 }
 
 /// A pressure p ≥ 0 has no Fourier coefficient above its mean. Full contact prescribes them, and the longest waves are the
@@ -145,4 +170,26 @@ fn error_of_residual(gap: &Field, elastic_energy: f64, inverse: &mut SymbolOpera
     let product = products.into_iter().sum::<f64>() / gap.grid().len() as f64;
     // Rounding may leave less than nothing of an exact solution.
     if product <= 0.0 { 0.0 } else { (product / elastic_energy).sqrt() }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{PI, TAU};
+
+    use rc_core::Grid;
+    use rc_kernel::Spectral;
+
+    use super::*;
+
+    /// A wave of amplitude a and length λ/k fluctuates by π k a E* under full contact.
+    #[test]
+    fn a_coarse_grid_shows_partial_contact_only_far_below_full_contact() {
+        let (waves, amplitude) = (8.0, 1e-3);
+        let coarse = [Field::from_fn(Grid::square(128).expect("a grid"), |at| amplitude * (TAU * waves * at.x).cos())];
+        let full = PI * waves * amplitude;
+        for (part, expected) in [(0.1, true), (0.49, true), (0.51, false), (1.0, false), (2.0, false)] {
+            assert_eq!(shows_partial_contact(&coarse, &Spectral, part * full), expected, "at {part} of full contact");
+        }
+        assert!(!shows_partial_contact(&[], &Spectral, 0.1 * full), "no coarser grid shows nothing");
+    }
 }

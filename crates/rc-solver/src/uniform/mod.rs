@@ -8,7 +8,9 @@ mod prolongation;
 
 use rc_core::{Field, Kernel, Observer};
 
+use self::levels::nest_without_pits;
 pub(crate) use self::levels::{coarsen, coarsen_without_pits};
+use self::nested_grids::SMALLEST_SIDE;
 pub(crate) use self::nested_grids::{FinestGrid, NestedGrids};
 pub(crate) use self::prolongation::{edge_function, edge_function_outside};
 use crate::problem::Problem;
@@ -38,12 +40,13 @@ pub(crate) fn solve_uniform(
     observer: &dyn Observer,
 ) -> Result<GridSolution, ProblemError> {
     let problem = Problem::check(heights, control, params)?;
+    let coarser = nest_without_pits(heights, SMALLEST_SIDE);
     if let Control::MeanPressure(mean_pressure) = control
-        && let Some(solution) = full_contact::solve(heights, kernel, mean_pressure, &problem, params.bound)
+        && let Some(solution) = full_contact::solve((heights, &coarser), kernel, mean_pressure, &problem, params.bound)
     {
         return Ok(solution);
     }
     let levels = NestedGrids { kernel, problem: &problem, params: *params, n_above: 0, observer };
-    let FinestGrid { descent, outcome, levels, coarser } = levels.solve(heights);
+    let FinestGrid { descent, outcome, levels, coarser } = levels.solve_from(&coarser, heights);
     Ok(descent.into_solution(&outcome, levels, coarser))
 }

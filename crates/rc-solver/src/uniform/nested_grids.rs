@@ -11,7 +11,7 @@ use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues};
 
 /// Grids with fewer elements per side cost nothing, so no coarser ones prepare them.
-const SMALLEST_SIDE: usize = 64;
+pub(super) const SMALLEST_SIDE: usize = 64;
 
 /// Nested grids: what their levels share.
 pub(crate) struct NestedGrids<'a> {
@@ -36,7 +36,11 @@ pub(crate) struct FinestGrid<'a> {
 impl<'a> NestedGrids<'a> {
     /// Solves on coarser grids and then on that of `heights`.
     pub(crate) fn solve(&self, heights: &'a Field) -> FinestGrid<'a> {
-        let coarser = nest_without_pits(heights, SMALLEST_SIDE);
+        self.solve_from(&nest_without_pits(heights, SMALLEST_SIDE), heights)
+    }
+
+    /// Solves on coarser grids with these heights, finest first, and then on that of `heights`.
+    pub(super) fn solve_from(&self, coarser: &[Field], heights: &'a Field) -> FinestGrid<'a> {
         let n_levels = coarser.len() + 1 + self.n_above;
         let finer = coarser.iter().rev().skip(1).chain([heights]).map(Field::grid);
         let (mut levels, mut start, mut values) = (Vec::with_capacity(n_levels), Start::Nothing, None);

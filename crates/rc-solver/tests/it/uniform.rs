@@ -121,6 +121,26 @@ fn load_just_below_full_contact_leaves_a_gap_and_just_above_none() {
     assert!(below.gap().max() > 0.0 && below.pressure().min() == 0.0, "a gap opens in the deepest valley");
 }
 
+/// Most of the cell in contact: each step is clipped, and what joins the contact presses at once.
+#[test]
+fn heavy_contact_takes_few_iterations() {
+    let heights = bumps(256, 256);
+    let full = solve(&heights, &Love, Control::MeanPressure(1.0), 1e-6).expect("solvable");
+    let threshold = 1.0 - full.pressure().min();
+    for part in [0.3, 0.5, 0.7, 0.9] {
+        let control = Control::MeanPressure(part * threshold);
+        let solution = solve(&heights, &Love, control, 1e-6).expect("solvable");
+        let contact = solution.area().cells;
+        assert!((0.5..1.0).contains(&contact), "{contact} in contact at {part} of full contact");
+        let iterations = solution.info().fine_iterations();
+        assert!(iterations <= 6, "{iterations} iterations at {contact}");
+        let by_penetration =
+            solve(&heights, &Love, Control::Penetration(solution.info().penetration), 1e-6).expect("solvable");
+        let iterations = by_penetration.info().fine_iterations();
+        assert!(iterations <= 10, "{iterations} iterations at {contact} under a penetration");
+    }
+}
+
 #[test]
 fn stiffness_is_the_slope_of_load_over_penetration() {
     let heights = bumps(128, 96);

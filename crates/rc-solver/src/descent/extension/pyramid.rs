@@ -51,7 +51,7 @@ impl Pyramid {
         let (mut levels, mut sides) = (Vec::new(), [nx, ny]);
         loop {
             let [nx, ny] = sides;
-            let zeros = || vec![0.0; nx * ny];
+            let zeros = || parallel::zeros(nx * ny);
             levels.push(Level { nx, own: zeros(), rest: zeros(), values: zeros() });
             if nx * ny <= 1 {
                 return Self { levels };
