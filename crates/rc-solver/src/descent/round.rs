@@ -29,8 +29,9 @@ const ALONE: f64 = 0.891;
 impl Descent<'_> {
     /// Takes so many steps, clips tensile pressures and restores the load.
     pub(super) fn round(&mut self, steps: usize, sums: &GapSums) -> GapSums {
-        // Of operators of the caller nothing is known.
-        let is_heavy = sums.n_contact > HEAVY_CONTACT * self.n_cell() && self.operators.corrections.extends();
+        // Without a start, contact is at first too large at any load. Of operators of the caller nothing is known.
+        let is_prepared = self.has_start && self.operators.corrections.extends();
+        let is_heavy = is_prepared && sums.n_contact > HEAVY_CONTACT * self.n_cell();
         let steps = if is_heavy { 1 } else { steps };
         self.precondition_mean(sums);
         let mut set = self.begin_round();
