@@ -231,7 +231,9 @@ fn what_cannot_be_done_is_said_before_any_work() {
     };
     let error = |side: usize, params| refused(surface.on(Grid::square(side).expect("a grid")), params);
     let params = certified();
-    assert!(matches!(error(500, params), AdaptiveError::Grid { .. }), "500 does not divide into tiles twice");
+    assert!(matches!(error(66, params), AdaptiveError::Grid { .. }), "no coarser grid has 32 waves");
+    let border = SolveParams { border_level: 1, ..params };
+    assert!(matches!(error(501, border), AdaptiveError::BorderOfGrid { .. }), "1002 has no whole tiles of halves");
     let small = SolveParams { base_side: Some(64), ..params };
     assert!(matches!(error(1024, small), AdaptiveError::Base { waves: 32, .. }), "64 elements for 32 waves");
     let little = SolveParams { memory_limit: Some(1_000_000), ..params };

@@ -74,7 +74,8 @@ fn the_method_is_chosen_by_the_estimated_area() {
     let params = SolveParams::default();
     assert!(matches!(chosen(8.9e-4, 256, &params), MethodReason::SmallContact { percent } if percent < 15.0));
     assert!(matches!(chosen(2e-2, 256, &params), MethodReason::LargeContact { percent } if percent > 35.0));
-    assert!(matches!(chosen(8.9e-4, 250, &params), MethodReason::NoLevels { .. }));
+    assert!(matches!(chosen(8.9e-4, 250, &params), MethodReason::SmallContact { .. }), "no halves of whole tiles");
+    assert!(matches!(chosen(8.9e-4, 40, &params), MethodReason::NoLevels { .. }));
     let tight = SolveParams::to_tolerance(1e-12);
     assert!(matches!(chosen(8.9e-4, 256, &tight), MethodReason::ToleranceTooSmall { .. }));
     let border = SolveParams { border_level: 1, ..params };

@@ -56,7 +56,7 @@ pub use love::love_displacement;
 pub use periodic::{PeriodicLove, PeriodicSource};
 pub use shells::MAX_SHELLS;
 pub use spectral::Spectral;
-pub use split::{CoarseElement, CoarseFilter, Filter, ScaleSplit, SplitParams, Stencil};
+pub use split::{CoarseElement, CoarseFilter, Filter, ScaleSplit, SplitParams, Stencil, UnevenFilter};
 pub use truncated::{LoadForm, shells_for, truncated_coefficient, truncation_error_bound};
 
 use love_symbol::LoveSymbol;

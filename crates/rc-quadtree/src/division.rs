@@ -21,14 +21,17 @@ pub fn divide(elements: &Elements, mut chosen: Vec<Vec<bool>>, deepen: bool, rea
     let levels = elements.levels();
     let mut result = Vec::with_capacity(levels.len() + 1);
     if deepen {
-        result.push(TileSet::new(2 * levels[0].per_side(), quarters_of_chosen(&levels[0], &chosen[0]).collect()));
+        result.push(TileSet::new(
+            levels[0].sides().map(|side| 2 * side),
+            quarters_of_chosen(&levels[0], &chosen[0]).collect(),
+        ));
     }
     for (coarser, tiles) in levels.iter().enumerate() {
         let mut places: Vec<[u32; 2]> = with_flag(tiles, &chosen[coarser], false).collect();
         if let Some(larger) = levels.get(coarser + 1) {
             places.extend(quarters_of_chosen(larger, &chosen[coarser + 1]));
         }
-        result.push(TileSet::new(tiles.per_side(), places));
+        result.push(TileSet::new(tiles.sides(), places));
     }
     Elements::new(result)
 }
@@ -71,7 +74,7 @@ mod tests {
 
     #[test]
     fn sizes_stay_graded() {
-        let all = Elements::uniform(TileSet::full(8));
+        let all = Elements::uniform(TileSet::full([64, 64]));
         let corner = |elements: &Elements| {
             let flags = |tiles: &TileSet| tiles.places().iter().map(|place| *place == [0, 0]).collect();
             elements.levels().iter().map(flags).collect::<Vec<Vec<bool>>>()
@@ -92,7 +95,7 @@ mod tests {
 
     #[test]
     fn values_move_to_parts_and_means() {
-        let all = Elements::uniform(TileSet::full(4));
+        let all = Elements::uniform(TileSet::full([32, 32]));
         let values: Vec<f64> = (0..all.len()).map(|i| i as f64).collect();
         let flags = vec![all.levels()[0].places().iter().map(|place| *place == [1, 2]).collect()];
         let two = divide(&all, flags, true, 8);

@@ -16,7 +16,8 @@ pub const BLOCK_CELLS: usize = BLOCK_TILES * CELLS;
 ///
 /// Vectors have one value for each cell: those of the finest level first, then those of the next coarser one and so on. Each level
 /// begins at a whole block of [`BLOCK_CELLS`], so that all cells of a block are of one size. Values between the last cell of a level
-/// and the next block have no element.
+/// and the next block have no element, nor have those of tiles that reach beyond their level ([`TileSet`]); a mesh with such tiles has one
+/// level.
 #[derive(Clone, Debug)]
 pub struct Elements {
     levels: Vec<TileSet>,
@@ -62,13 +63,13 @@ impl Elements {
     /// Number of elements.
     #[must_use]
     pub fn n_cells(&self) -> usize {
-        self.levels.iter().map(TileSet::n_cells).sum()
+        self.levels.iter().map(TileSet::n_inside).sum()
     }
 
-    /// Is there the tile at a place of the level with `side` cells per side?
+    /// Is there the tile at a place of the level with `sides` cells?
     #[must_use]
-    pub fn has(&self, side: usize, [column, row]: [u32; 2]) -> bool {
-        let level = self.levels.iter().find(|tiles| tiles.side() == side);
+    pub fn has(&self, sides: [usize; 2], [column, row]: [u32; 2]) -> bool {
+        let level = self.levels.iter().find(|tiles| tiles.sides() == sides);
         level.is_some_and(|tiles| tiles.find(column.into(), row.into()).is_some())
     }
 
@@ -97,20 +98,19 @@ impl Elements {
         let last = self.levels.len() - 1;
         let mut levels = self.levels.clone();
         let new = places.iter().filter(|&&[column, row]| !self.cover(last, column, row));
-        levels[last] =
-            TileSet::new(levels[last].per_side(), levels[last].places().iter().chain(new).copied().collect());
+        levels[last] = TileSet::new(levels[last].sides(), levels[last].places().iter().chain(new).copied().collect());
         Self::new(levels)
     }
 
-    /// The tiles for which `wanted` is true; it gets the cells per side of the level, the place and where the cells are.
+    /// The tiles for which `wanted` is true; it gets the sides of the level in cells, the place and where the cells are.
     #[must_use]
-    pub fn filtered(&self, wanted: impl Fn(usize, [u32; 2], Range<usize>) -> bool) -> Self {
+    pub fn filtered(&self, wanted: impl Fn([usize; 2], [u32; 2], Range<usize>) -> bool) -> Self {
         let level = |(tiles, &start): (&TileSet, &usize)| {
             let places = tiles.places().iter().enumerate();
             let cells = |tile: usize| start + tile * CELLS..start + (tile + 1) * CELLS;
             let chosen =
-                places.filter(|&(tile, &place)| wanted(tiles.side(), place, cells(tile))).map(|(_, &place)| place);
-            TileSet::new(tiles.per_side(), chosen.collect())
+                places.filter(|&(tile, &place)| wanted(tiles.sides(), place, cells(tile))).map(|(_, &place)| place);
+            TileSet::new(tiles.sides(), chosen.collect())
         };
         Self::new(self.levels.iter().zip(&self.starts).map(level).collect())
     }
@@ -118,8 +118,8 @@ impl Elements {
     /// Whether they cover the whole cell.
     #[must_use]
     pub fn cover_cell(&self) -> bool {
-        let areas = self.levels.iter().enumerate().map(|(coarser, tiles)| tiles.n_cells() << (2 * coarser));
-        areas.sum::<usize>() == self.finest().side().pow(2)
+        let areas = self.levels.iter().enumerate().map(|(coarser, tiles)| tiles.n_inside() << (2 * coarser));
+        areas.sum::<usize>() == self.finest().sides().into_iter().product::<usize>()
     }
 
     /// Where the cells of a level are in a vector.
@@ -145,10 +145,10 @@ impl Elements {
         f64::from(1_u32 << (2 * coarser))
     }
 
-    /// Side of an element of a level, in λ.
+    /// Side of an element of a level, in λ, the side of the cell along x. Elements are squares, or nearly.
     #[must_use]
     pub fn side(&self, coarser: usize) -> f64 {
-        1.0 / self.levels[coarser].side() as f64
+        1.0 / self.levels[coarser].sides()[0] as f64
     }
 
     /// All tiles: how much coarser than the finest, the index among those of its level, and the first cell.

@@ -18,7 +18,7 @@
 //! use rc_quadtree::{Elements, TileSet, divide};
 //!
 //! // 64 × 64 elements; those of the tile in the corner are divided into quarters.
-//! let elements = Elements::uniform(TileSet::full(8));
+//! let elements = Elements::uniform(TileSet::full([64, 64]));
 //! let chosen = elements.finest().places().iter().map(|&place| place == [0, 0]).collect();
 //! let refined = divide(&elements, vec![chosen], true, 8);
 //! assert_eq!(refined.n_cells(), 64 * 64 + 3 * 64);

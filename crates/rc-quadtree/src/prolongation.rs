@@ -9,6 +9,8 @@ use crate::elements::Elements;
 use crate::patch::{Patch, gather};
 use crate::tiles::{CELLS, TILE, TileSet, quarters};
 
+mod uneven;
+
 /// Cells around a tile that must be out of contact for it to be left out: contacts may grow a little.
 const MARGIN: usize = 2;
 
@@ -18,25 +20,28 @@ const SIDE: usize = 3 * TILE;
 /// Part of the function that a contact of a single cell keeps when the interpolation leaves nothing of it.
 const PART_KEPT_OF_SINGLE_CELL: f64 = 0.25;
 
-/// The tiles of the next finer level where `function` is positive, or within two cells of them, and its positive part on their cells.
+/// The tiles of the next finer level, of `sides` cells, where `function` is positive, or within two cells of them, and its positive part on
+/// their cells. The finer level has twice as many cells along both sides, or a little less.
 ///
-/// `function` has a value for each cell of `tiles`; `elsewhere` is its value where there is no tile.
+/// `function` has a value for each cell of `tiles`, which are whole; `elsewhere` is its value where there is no tile.
 ///
 /// # Panics
 /// When there are fewer values than cells.
 #[must_use]
-pub fn prolong(tiles: &TileSet, function: &[f64], elsewhere: f64) -> (TileSet, Vec<f64>) {
-    let children: Vec<[Option<Box<[f64; CELLS]>>; 4]> =
-        tiles.places().par_iter().map(|&place| quarters_in_contact(tiles, function, elsewhere, place)).collect();
-    let place = |tile: usize, child: usize| quarters(tiles.places()[tile])[child];
-    let chosen = children.iter().enumerate().flat_map(|(tile, children)| {
-        children.iter().enumerate().filter_map(move |(child, values)| values.as_ref().map(|v| (tile, child, v)))
-    });
-    let fine = TileSet::new(2 * tiles.per_side(), chosen.clone().map(|(tile, child, _)| place(tile, child)).collect());
+pub fn prolong(tiles: &TileSet, function: &[f64], elsewhere: f64, sides: [usize; 2]) -> (TileSet, Vec<f64>) {
+    let children: Vec<([u32; 2], Box<[f64; CELLS]>)> = if sides == tiles.sides().map(|side| 2 * side) {
+        let of_tile = |&place: &[u32; 2]| {
+            let children = quarters(place).into_iter().zip(quarters_in_contact(tiles, function, elsewhere, place));
+            children.filter_map(|(place, values)| values.map(|values| (place, values))).collect()
+        };
+        tiles.places().par_iter().map(of_tile).collect::<Vec<Vec<_>>>().into_iter().flatten().collect()
+    } else {
+        uneven::prolong(tiles, function, elsewhere, sides)
+    };
+    let fine = TileSet::new(sides, children.iter().map(|&(place, _)| place).collect());
     let mut result = vec![0.0; fine.n_cells()];
-    for (tile, child, values) in chosen {
-        let [column, row] = place(tile, child).map(i64::from);
-        let at = fine.find(column, row).expect("it was just put there");
+    for ([column, row], values) in children {
+        let at = fine.find(column.into(), row.into()).expect("it was just put there");
         result[at * CELLS..][..CELLS].copy_from_slice(values.as_slice());
     }
     (fine, result)
@@ -70,11 +75,17 @@ fn quarters_in_contact(
     let mut patch: Patch<f64, SIDE> = [[0.0; SIDE]; SIDE];
     let corner = (i64::from(column) - 1, i64::from(row) - 1);
     gather(function, tiles, corner, TILE - 3..2 * TILE + 3, &mut patch);
-    if !patch[TILE - 2..2 * TILE + 2].iter().flat_map(|row| &row[TILE - 2..2 * TILE + 2]).any(|&f| f > 0.0) {
+    if !is_near_contact(&patch) {
         return [const { None }; 4];
     }
     mark_missing(tiles, corner, elsewhere, &mut patch);
     std::array::from_fn(|child| fine_tile(&patch, (child % 2, child / 2)))
+}
+
+/// Is the function positive anywhere on the tile in the middle of the patch, or within two cells of it?
+fn is_near_contact(patch: &Patch<f64, SIDE>) -> bool {
+    let near = TILE - MARGIN..2 * TILE + MARGIN;
+    patch[near.clone()].iter().flat_map(|row| &row[near.clone()]).any(|&f| f > 0.0)
 }
 
 fn mark_missing(tiles: &TileSet, (column, row): (i64, i64), elsewhere: f64, patch: &mut Patch<f64, SIDE>) {
@@ -134,7 +145,7 @@ mod tests {
 
     /// Distance inside a disc in λ, negative outside.
     fn disc(tiles: &TileSet, radius: f64) -> Vec<f64> {
-        let side = tiles.side() as f64;
+        let side = tiles.sides()[0] as f64;
         let centre = |i: u32, cell: usize| (i as usize * TILE + cell) as f64 + 0.5;
         let of_tile = |&[column, row]: &[u32; 2]| {
             let distance = move |cell: usize| {
@@ -148,8 +159,8 @@ mod tests {
 
     #[test]
     fn the_edge_of_a_disc_stays_where_it_is() {
-        let tiles = TileSet::full(8);
-        let (fine, values) = prolong(&tiles, &disc(&tiles, 0.2), -1.0);
+        let tiles = TileSet::full([64, 64]);
+        let (fine, values) = prolong(&tiles, &disc(&tiles, 0.2), -1.0, [128, 128]);
         assert!(fine.len() < 4 * tiles.len() / 2, "only the disc and its surroundings have tiles");
         let exact = disc(&fine, 0.2);
         for (value, exact) in values.iter().zip(&exact) {
@@ -160,20 +171,55 @@ mod tests {
     }
 
     #[test]
+    fn the_edge_of_a_disc_stays_where_it_is_on_a_level_of_any_size() {
+        let tiles = TileSet::full([64, 64]);
+        for sides in [[125, 125], [120, 120], [113, 113]] {
+            let (fine, values) = prolong(&tiles, &disc(&tiles, 0.2), -1.0, sides);
+            assert!(fine.len() < TileSet::full(sides).len() / 2, "only the disc and its surroundings have tiles");
+            for (value, exact) in values.iter().zip(&disc(&fine, 0.2)) {
+                let allowed = if *exact > 0.15 { 0.02 } else { 1e-3 };
+                assert!((value - exact.max(0.0)).abs() < allowed, "{sides:?}: {value} for {exact}");
+            }
+            // Without tiles around the disc, and over a seam.
+            let corner = |at: f64| at.min(1.0 - at);
+            let near_corner = |tiles: &TileSet| -> Vec<f64> {
+                let centre = |i: u32, cell: usize, side: usize| ((i as usize * TILE + cell) as f64 + 0.5) / side as f64;
+                let of_tile = |&[column, row]: &[u32; 2]| {
+                    let [nx, ny] = tiles.sides();
+                    (0..CELLS).map(move |cell| {
+                        let (x, y) = (centre(column, cell % TILE, nx), centre(row, cell / TILE, ny));
+                        if x < 1.0 && y < 1.0 { 0.2 - corner(x).hypot(corner(y)) } else { 0.0 }
+                    })
+                };
+                tiles.places().iter().flat_map(of_tile).collect()
+            };
+            let function = near_corner(&tiles);
+            let near = tiles.places().iter().zip(function.chunks(CELLS)).filter(|(_, f)| f.iter().any(|&f| f > -0.05));
+            let some = TileSet::new([64, 64], near.map(|(&place, _)| place).collect());
+            assert!(some.len() < 40);
+            let (fine, values) = prolong(&some, &near_corner(&some), -1.0, sides);
+            for (value, exact) in values.iter().zip(&near_corner(&fine)) {
+                let allowed = if *exact > 0.15 { 0.02 } else { 1e-3 };
+                assert!((value - exact.max(0.0)).abs() < allowed, "{sides:?}: {value} for {exact}");
+            }
+        }
+    }
+
+    #[test]
     fn a_single_cell_in_contact_is_kept() {
-        let tiles = TileSet::full(4);
+        let tiles = TileSet::full([32, 32]);
         let mut function = vec![-1.0; tiles.n_cells()];
         function[CELLS + 27] = 0.1;
-        let (fine, values) = prolong(&tiles, &function, -1.0);
+        let (fine, values) = prolong(&tiles, &function, -1.0, [64, 64]);
         assert_eq!(values.iter().filter(|&&value| value > 0.0).count(), 4, "its four quarters");
         assert!(fine.len() < 5, "tiles near the cell");
     }
 
     #[test]
     fn on_elements_of_one_size_both_ways_agree() {
-        let tiles = TileSet::full(8);
+        let tiles = TileSet::full([64, 64]);
         let function = disc(&tiles, 0.3);
-        let (fine, values) = prolong(&tiles, &function, -1.0);
+        let (fine, values) = prolong(&tiles, &function, -1.0, [128, 128]);
         let (elements, refined) = (Elements::uniform(tiles), Elements::uniform(fine));
         let mut onto = vec![f64::NAN; refined.len()];
         prolong_onto(&elements, &function, -1.0, &refined, &mut onto);

@@ -104,7 +104,7 @@ mod tests {
     /// A parabola that dips below zero between centres only is found, one that stays above is not.
     #[test]
     fn a_dip_between_centres_is_found() {
-        let elements = Elements::uniform(TileSet::new(4, vec![[1, 1]]));
+        let elements = Elements::uniform(TileSet::new([32, 32], vec![[1, 1]]));
         let side = elements.side(0);
         let curvature = 8.0 / (side * side);
         for (minimum, found) in [(-1.0, true), (20.0, false)] {
@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn edges_are_refined_and_interiors_are_not() {
-        let elements = Elements::uniform(TileSet::full(8));
+        let elements = Elements::uniform(TileSet::full([64, 64]));
         let mut pressure = vec![0.0; elements.len()];
         for (tile, &[column, _]) in elements.levels()[0].places().iter().enumerate() {
             pressure[tile * CELLS..(tile + 1) * CELLS].fill(if column < 4 { 1.0 } else { 0.0 });
@@ -141,7 +141,7 @@ mod tests {
     /// Tiles beside an edge are divided too, where it is within [`RING`] cells of them.
     #[test]
     fn edges_keep_two_cells_from_larger_elements() {
-        let elements = Elements::uniform(TileSet::full(8));
+        let elements = Elements::uniform(TileSet::full([64, 64]));
         // Cells of the tiles of column 4 that press; those of columns 0 to 3 all do. The other edge is on the seam.
         for (n_pressed, third_column) in [(0, true), (1, true), (2, false), (3, false)] {
             let column_of = |cell: usize, column: u32| column as usize * TILE + cell % TILE;

@@ -5,9 +5,9 @@ use crate::morton::{morton_code, place_of};
 /// Tiles per side of a block: as many tiles as a word has bits.
 const BLOCK: usize = 8;
 
-/// Marks of the tiles of a level of so many tiles per side.
+/// Marks of the tiles of a level of so many columns and rows of tiles.
 pub(crate) struct TileMarks {
-    per_side: usize,
+    extent: [usize; 2],
     /// The blocks row by row; bit i is the tile at position i of the Morton curve through the block.
     blocks: Vec<u64>,
 }
@@ -15,7 +15,8 @@ pub(crate) struct TileMarks {
 /// Finds tiles that are sorted along the Morton curve, on which a block is one piece.
 #[derive(Debug)]
 pub(crate) struct TileIndex {
-    blocks_per_side: usize,
+    /// Blocks in a row.
+    columns: usize,
     blocks: Vec<Block>,
 }
 
@@ -27,8 +28,9 @@ struct Block {
 }
 
 impl TileMarks {
-    pub(crate) fn new(per_side: usize) -> Self {
-        Self { per_side, blocks: vec![0; per_side.div_ceil(BLOCK).pow(2)] }
+    pub(crate) fn new(extent: [usize; 2]) -> Self {
+        let [columns, rows] = extent.map(|n| n.div_ceil(BLOCK));
+        Self { extent, blocks: vec![0; columns * rows] }
     }
 
     /// Marks the tile at this column and row.
@@ -36,24 +38,24 @@ impl TileMarks {
     /// # Panics
     /// When it is outside the level.
     pub(crate) fn mark(&mut self, [column, row]: [u32; 2]) {
-        let per_side = self.per_side as u32;
-        assert!(column < per_side && row < per_side, "tile ({column}, {row}) of {per_side} per side");
-        let (block, bit) = block_and_bit(self.per_side.div_ceil(BLOCK), column as usize, row as usize);
+        let ([columns, rows], [column, row]) = (self.extent, [column as usize, row as usize]);
+        assert!(column < columns && row < rows, "tile ({column}, {row}) of {columns} x {rows}");
+        let (block, bit) = block_and_bit(columns.div_ceil(BLOCK), column, row);
         self.blocks[block] |= 1 << bit;
     }
 
     /// The places of the marked tiles along the Morton curve, and their index.
     pub(crate) fn into_sorted(self) -> (Vec<[u32; 2]>, TileIndex) {
-        let per_side = self.per_side.div_ceil(BLOCK);
+        let [columns, rows] = self.extent.map(|n| n.div_ceil(BLOCK));
         let n_tiles: u32 = self.blocks.iter().map(|bits| bits.count_ones()).sum();
         let mut places = Vec::with_capacity(n_tiles as usize);
         let mut blocks = vec![Block::default(); self.blocks.len()];
-        for code in 0..per_side.next_power_of_two().pow(2) as u64 {
+        for code in 0..columns.max(rows).next_power_of_two().pow(2) as u64 {
             let [column, row] = place_of(code);
-            if column as usize >= per_side || row as usize >= per_side {
+            if column as usize >= columns || row as usize >= rows {
                 continue;
             }
-            let block = row as usize * per_side + column as usize;
+            let block = row as usize * columns + column as usize;
             let mut bits = self.blocks[block];
             blocks[block] = Block { bits, before: places.len() as u32 };
             while bits != 0 {
@@ -62,7 +64,7 @@ impl TileMarks {
                 bits &= bits - 1;
             }
         }
-        (places, TileIndex { blocks_per_side: per_side, blocks })
+        (places, TileIndex { columns, blocks })
     }
 }
 
@@ -70,7 +72,7 @@ impl TileIndex {
     /// The tile at this column and row, which are inside the level.
     #[inline]
     pub(crate) fn find(&self, column: usize, row: usize) -> Option<usize> {
-        let (block, bit) = block_and_bit(self.blocks_per_side, column, row);
+        let (block, bit) = block_and_bit(self.columns, column, row);
         let Block { bits, before } = self.blocks[block];
         let mark = 1_u64 << bit;
         (bits & mark != 0).then(|| before as usize + (bits & (mark - 1)).count_ones() as usize)
@@ -79,9 +81,9 @@ impl TileIndex {
 
 /// The block of a tile, and its position on the curve through the block.
 #[inline]
-fn block_and_bit(blocks_per_side: usize, column: usize, row: usize) -> (usize, u8) {
+fn block_and_bit(columns: usize, column: usize, row: usize) -> (usize, u8) {
     const CODES: [u8; BLOCK * BLOCK] = codes();
-    (row / BLOCK * blocks_per_side + column / BLOCK, CODES[row % BLOCK * BLOCK + column % BLOCK])
+    (row / BLOCK * columns + column / BLOCK, CODES[row % BLOCK * BLOCK + column % BLOCK])
 }
 
 /// Positions on the Morton curve through a block, row by row.
@@ -103,12 +105,12 @@ mod tests {
 
     #[test]
     fn marked_tiles_are_found_in_the_order_of_the_curve() {
-        for per_side in [1, 5, 8, 13, 40] {
-            let chosen: Vec<[u32; 2]> = (0..per_side * per_side)
+        for [columns, rows] in [[1, 1], [5, 5], [8, 8], [13, 40], [40, 9]] {
+            let chosen: Vec<[u32; 2]> = (0..columns * rows)
                 .filter(|&i| quasi_random(i) < 0.3)
-                .map(|i| [(i % per_side) as u32, (i / per_side) as u32])
+                .map(|i| [(i % columns) as u32, (i / columns) as u32])
                 .collect();
-            let mut marks = TileMarks::new(per_side);
+            let mut marks = TileMarks::new([columns, rows]);
             for &place in chosen.iter().chain(&chosen) {
                 marks.mark(place);
             }
@@ -116,10 +118,10 @@ mod tests {
             let mut sorted = chosen;
             sorted.sort_unstable_by_key(|&[column, row]| morton_code(column, row));
             assert_eq!(places, sorted);
-            for i in 0..per_side * per_side {
-                let [column, row] = [i % per_side, i / per_side];
+            for i in 0..columns * rows {
+                let [column, row] = [i % columns, i / columns];
                 let expected = places.iter().position(|&place| place == [column as u32, row as u32]);
-                assert_eq!(index.find(column, row), expected, "({column}, {row}) of {per_side}");
+                assert_eq!(index.find(column, row), expected, "({column}, {row}) of {columns} x {rows}");
             }
         }
     }

@@ -15,9 +15,14 @@ pub const CELLS: usize = TILE * TILE;
 ///
 /// A value of the level is at `tile · 64 + row · 8 + column`. Where tiles are is looked up in a table of 16 bytes for each 64
 /// possible tiles: 1/256 byte a cell of the level, the only memory that grows with the cell and not with the contact.
+///
+/// Where a side is not a multiple of 8, the last tiles along it reach beyond the level. What lies there is not part of the level: its
+/// values are never read by [`crate::gather`] and [`Elements::around`](crate::Elements::around), which continue the level periodically.
 #[derive(Clone, Debug)]
 pub struct TileSet {
-    per_side: usize,
+    sides: [usize; 2],
+    /// Columns and rows of tiles.
+    extent: [usize; 2],
     // Shared: meshes are cloned often, and never changed.
     places: Arc<Vec<[u32; 2]>>,
     /// None where all tiles are there, row by row.
@@ -25,41 +30,43 @@ pub struct TileSet {
 }
 
 impl TileSet {
-    /// The tiles at `places` (column, row) of a level of `per_side` tiles per side, in any order; double ones are dropped.
+    /// The tiles at `places` (column, row) of a level of `sides` cells along x and y, in any order; double ones are dropped.
     ///
     /// # Panics
     /// When a place is outside the level.
     #[must_use]
-    pub fn new(per_side: usize, places: Vec<[u32; 2]>) -> Self {
-        let mut marks = TileMarks::new(per_side);
+    pub fn new(sides: [usize; 2], places: Vec<[u32; 2]>) -> Self {
+        let mut marks = marks_of(sides);
         for place in places {
             marks.mark(place);
         }
-        Self::marked(per_side, marks)
+        Self::marked(sides, marks)
     }
 
-    fn marked(per_side: usize, marks: TileMarks) -> Self {
+    fn marked(sides: [usize; 2], marks: TileMarks) -> Self {
         let (places, index) = marks.into_sorted();
-        Self { per_side, places: Arc::new(places), index: Some(Arc::new(index)) }
+        let extent = sides.map(|side| side.div_ceil(TILE));
+        Self { sides, extent, places: Arc::new(places), index: Some(Arc::new(index)) }
     }
 
-    /// All tiles of a level of `per_side` tiles per side, row by row.
+    /// All tiles of a level of `sides` cells along x and y, row by row.
     #[must_use]
-    pub fn full(per_side: usize) -> Self {
-        let places = (0..per_side * per_side).map(|i| [(i % per_side) as u32, (i / per_side) as u32]);
-        Self { per_side, places: Arc::new(places.collect()), index: None }
+    pub fn full(sides: [usize; 2]) -> Self {
+        let [columns, rows] = sides.map(|side| side.div_ceil(TILE));
+        let places = (0..columns * rows).map(|i| [(i % columns) as u32, (i / columns) as u32]);
+        Self { sides, extent: [columns, rows], places: Arc::new(places.collect()), index: None }
     }
 
-    /// Tiles per side of the whole level.
+    /// Columns and rows of tiles of the whole level.
     #[must_use]
-    pub fn per_side(&self) -> usize {
-        self.per_side
+    pub fn extent(&self) -> [usize; 2] {
+        self.extent
     }
 
-    /// Cells per side of the whole level.
+    /// Cells of the whole level along x and y.
     #[must_use]
-    pub fn side(&self) -> usize {
-        self.per_side * TILE
+    pub fn sides(&self) -> [usize; 2] {
+        self.sides
     }
 
     /// Number of tiles.
@@ -74,10 +81,31 @@ impl TileSet {
         self.places.is_empty()
     }
 
-    /// Number of cells.
+    /// Number of values: [`CELLS`] for each tile.
     #[must_use]
     pub fn n_cells(&self) -> usize {
         self.places.len() * CELLS
+    }
+
+    /// Number of cells that are part of the level: [`TileSet::n_cells`] where sides are multiples of 8.
+    #[must_use]
+    pub fn n_inside(&self) -> usize {
+        if self.is_whole() {
+            return self.n_cells();
+        }
+        self.places.iter().map(|&place| self.inside(place).into_iter().product::<usize>()).sum()
+    }
+
+    /// Columns and rows of the cells of the tile at a place that are part of the level.
+    #[must_use]
+    pub fn inside(&self, place: [u32; 2]) -> [usize; 2] {
+        [0, 1].map(|axis| TILE.min(self.sides[axis] - TILE * place[axis] as usize))
+    }
+
+    /// Whether no tile reaches beyond the level.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.sides.iter().all(|side| side.is_multiple_of(TILE))
     }
 
     /// Column and row of each tile.
@@ -90,18 +118,38 @@ impl TileSet {
     #[must_use]
     #[inline]
     pub fn find(&self, column: i64, row: i64) -> Option<usize> {
-        let per_side = self.per_side as i64;
+        let [columns, rows] = self.extent.map(|n| n as i64);
         // Most places are inside, and a division is slow.
-        let wrap = |i: i64| if (0..per_side).contains(&i) { i } else { i.rem_euclid(per_side) };
-        let (column, row) = (wrap(column) as usize, wrap(row) as usize);
+        let wrap = |i: i64, n: i64| if (0..n).contains(&i) { i } else { i.rem_euclid(n) };
+        let (column, row) = (wrap(column, columns) as usize, wrap(row, rows) as usize);
         match &self.index {
             Some(index) => index.find(column, row),
-            None => Some(row * self.per_side + column),
+            None => Some(row * self.extent[0] + column),
         }
     }
 
+    /// Where the value of a cell of the periodically continued level is; none where there is no tile.
+    #[must_use]
+    pub fn find_cell(&self, x: i64, y: i64) -> Option<usize> {
+        let [nx, ny] = self.sides.map(|side| side as i64);
+        let (x, y) = (x.rem_euclid(nx) as usize, y.rem_euclid(ny) as usize);
+        let tile = self.find((x / TILE) as i64, (y / TILE) as i64)?;
+        Some(tile * CELLS + y % TILE * TILE + x % TILE)
+    }
+
+    /// Whether a patch of `n` × `n` tiles, the lower left one at a place of the periodically continued level, has tiles that reach beyond the
+    /// level, or crosses a seam where they do.
+    #[must_use]
+    #[inline]
+    pub(crate) fn is_cut(&self, (column, row): (i64, i64), n: usize) -> bool {
+        let cut = |side: usize, first: i64, extent: usize| {
+            !side.is_multiple_of(TILE) && (first < 0 || first + n as i64 >= extent as i64)
+        };
+        cut(self.sides[0], column, self.extent[0]) || cut(self.sides[1], row, self.extent[1])
+    }
+
     /// Hands out the values of the whole level, zero where there is no tile, a row of tiles at a time: the index of the first row of
-    /// cells, and eight rows one after the other. Stops at the first error.
+    /// cells, and eight rows one after the other (fewer where the last tiles reach beyond the level). Stops at the first error.
     ///
     /// # Errors
     /// What `take` returns.
@@ -109,15 +157,16 @@ impl TileSet {
     /// # Panics
     /// When there are fewer than [`TileSet::n_cells`] values.
     pub fn rows<E>(&self, values: &[f64], mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
-        let mut rows = vec![0.0; TILE * self.side()];
-        for row in 0..self.per_side {
+        let ([nx, ny], [columns, rows_of_tiles]) = (self.sides, self.extent);
+        let mut rows = vec![0.0; TILE * nx];
+        for row in 0..rows_of_tiles {
             rows.fill(0.0);
-            for column in 0..self.per_side {
+            for column in 0..columns {
                 if let Some(tile) = self.find(column as i64, row as i64) {
-                    put_tile(&mut rows, self.side(), column, &values[tile * CELLS..][..CELLS]);
+                    put_tile(&mut rows, nx, column, &values[tile * CELLS..][..CELLS]);
                 }
             }
-            take(row * TILE, &rows)?;
+            take(row * TILE, &rows[..TILE.min(ny - row * TILE) * nx])?;
         }
         Ok(())
     }
@@ -125,58 +174,73 @@ impl TileSet {
     /// These tiles and those within `halo` cells of them.
     #[must_use]
     pub fn around(&self, halo: usize) -> Self {
-        let (n, reach) = (self.per_side as i64, halo.div_ceil(TILE) as i64);
-        let mut marks = TileMarks::new(self.per_side);
+        let ([columns, rows], reach) = (self.extent.map(|n| n as i64), halo.div_ceil(TILE) as i64);
+        let mut marks = marks_of(self.sides);
         for &[column, row] in self.places() {
             for y in i64::from(row) - reach..=i64::from(row) + reach {
                 for x in i64::from(column) - reach..=i64::from(column) + reach {
-                    marks.mark([x.rem_euclid(n) as u32, y.rem_euclid(n) as u32]);
+                    marks.mark([x.rem_euclid(columns) as u32, y.rem_euclid(rows) as u32]);
                 }
             }
         }
-        Self::marked(self.per_side, marks)
+        Self::marked(self.sides, marks)
     }
 
     /// These tiles and others of the same level.
     #[must_use]
     pub fn with(&self, others: &Self) -> Self {
-        let mut marks = TileMarks::new(self.per_side);
+        let mut marks = marks_of(self.sides);
         for &place in self.places.iter().chain(others.places()) {
             marks.mark(place);
         }
-        Self::marked(self.per_side, marks)
+        Self::marked(self.sides, marks)
     }
 
-    /// The tiles of the level with half as many cells per side that hold these tiles, or a cell within `halo` cells of that
+    /// The tiles of the level with half as many cells along both sides that hold these tiles, or a cell within `halo` cells of that
     /// level from them.
     #[must_use]
     pub fn parents(&self, halo: usize) -> Self {
-        let (half, halo) = (self.per_side as i64 / 2, halo as i64);
-        let mut marks = TileMarks::new(half as usize);
-        // A tile covers half a tile of the coarser level.
-        let (quarter, tile) = (TILE as i64 / 2, TILE as i64);
-        for &[column, row] in self.places() {
-            let range = |i: u32| {
-                let start = i64::from(i) * quarter;
-                (start - halo).div_euclid(tile)..=(start + quarter + halo - 1).div_euclid(tile)
-            };
-            for y in range(row) {
-                for x in range(column) {
-                    marks.mark([x.rem_euclid(half) as u32, y.rem_euclid(half) as u32]);
+        self.on_coarser(self.sides.map(|side| side / 2), halo)
+    }
+
+    /// The same tiles of a coarser level of `sides` cells, whole numbers of tiles.
+    #[must_use]
+    pub fn on_coarser(&self, sides: [usize; 2], halo: usize) -> Self {
+        let [columns, rows] = sides.map(|side| (side / TILE) as i64);
+        let mut marks = marks_of(sides);
+        let tiles = |[column, row]: [u32; 2], axis: usize| {
+            let first = TILE * if axis == 0 { column } else { row } as usize;
+            let last = (first + TILE).min(self.sides[axis]);
+            // The cells of the coarser level that the tile has a part of.
+            let start = (first * sides[axis] / self.sides[axis]) as i64 - halo as i64;
+            let end = ((last * sides[axis]).div_ceil(self.sides[axis]) + halo) as i64;
+            start.div_euclid(TILE as i64)..=(end - 1).div_euclid(TILE as i64)
+        };
+        for &place in self.places() {
+            for y in tiles(place, 1) {
+                for x in tiles(place, 0) {
+                    marks.mark([x.rem_euclid(columns) as u32, y.rem_euclid(rows) as u32]);
                 }
             }
         }
-        Self::marked(half as usize, marks)
+        Self::marked(sides, marks)
     }
 }
 
-/// Writes the [`CELLS`] values of a tile into a row of tiles, which is eight rows of `side` cells each, at this column of tiles.
+/// No marks on a level of `sides` cells.
+fn marks_of(sides: [usize; 2]) -> TileMarks {
+    TileMarks::new(sides.map(|side| side.div_ceil(TILE)))
+}
+
+/// Writes the [`CELLS`] values of a tile into a row of tiles, which is eight rows of `side` cells each, at this column of tiles. What reaches
+/// beyond the rows is omitted.
 ///
 /// # Panics
 /// When the column is outside the rows.
 pub fn put_tile(rows: &mut [f64], side: usize, column: usize, tile: &[f64]) {
     for (line, cells) in rows.chunks_exact_mut(side).zip(tile.as_chunks::<TILE>().0) {
-        line[column * TILE..][..TILE].copy_from_slice(cells);
+        let cells = &cells[..TILE.min(side - column * TILE)];
+        line[column * TILE..][..cells.len()].copy_from_slice(cells);
     }
 }
 
@@ -221,15 +285,42 @@ mod tests {
 
     #[test]
     fn tiles_are_found_across_the_seam() {
-        let set = TileSet::new(6, vec![[5, 0], [0, 5], [2, 3], [2, 3]]);
+        let set = TileSet::new([48, 48], vec![[5, 0], [0, 5], [2, 3], [2, 3]]);
         assert_eq!(set.len(), 3);
         assert_eq!(set.places()[set.find(-1, 6).expect("stored")], [5, 0]);
         assert_eq!(set.find(3, 2), None);
     }
 
     #[test]
+    fn cells_are_found_across_a_seam_that_cuts_tiles() {
+        let set = TileSet::new([21, 12], vec![[0, 0], [2, 0], [2, 1]]);
+        assert_eq!((set.extent(), set.n_cells(), set.n_inside()), ([3, 2], 192, 64 + 5 * 8 + 5 * 4));
+        let at = |x: i64, y: i64| set.find_cell(x, y).map(|i| (set.places()[i / CELLS], i % TILE, i % CELLS / TILE));
+        assert_eq!(at(-1, 0), Some(([2, 0], 4, 0)));
+        assert_eq!(at(21, 12), Some(([0, 0], 0, 0)));
+        assert_eq!(at(20, -1), Some(([2, 1], 4, 3)));
+        assert_eq!(at(9, 0), None);
+    }
+
+    #[test]
+    fn rows_end_with_the_level() {
+        let set = TileSet::full([11, 9]);
+        let mut values = vec![f64::NAN; set.n_cells()];
+        for (x, y) in (0..99).map(|i| (i % 11, i / 11)) {
+            values[set.find_cell(x, y).expect("all tiles")] = (y * 11 + x) as f64;
+        }
+        let mut all = Vec::new();
+        let Ok(()) = set.rows(&values, |first, rows| {
+            assert_eq!(first * 11, all.len());
+            all.extend_from_slice(rows);
+            Ok::<_, std::convert::Infallible>(())
+        });
+        assert!(all.iter().enumerate().all(|(i, &value)| (value - i as f64).abs() < 1e-9), "{all:?}");
+    }
+
+    #[test]
     fn parents_hold_the_halo() {
-        let set = TileSet::new(8, vec![[0, 0]]);
+        let set = TileSet::new([64, 64], vec![[0, 0]]);
         let places = |halo| {
             let mut places = set.parents(halo).places().to_vec();
             places.sort_unstable();

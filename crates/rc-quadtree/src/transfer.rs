@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use rayon::prelude::*;
 
 use crate::elements::Elements;
-use crate::patch::Patch;
+use crate::patch::{Patch, gather_cells};
 use crate::tiles::{CELLS, TILE, TileSet, cell_over, means_of_quarter, quarters};
 
 impl Elements {
@@ -29,8 +29,8 @@ impl Elements {
         }
         let Some(finer) = coarser.checked_sub(1) else { return false };
         let mut any = false;
-        let wrap = |i: i64| i.rem_euclid(self.levels()[coarser].per_side() as i64) as u32;
-        for quarter in quarters([wrap(column), wrap(row)]) {
+        let [columns, rows] = self.levels()[coarser].extent().map(|n| n as i64);
+        for quarter in quarters([column.rem_euclid(columns) as u32, row.rem_euclid(rows) as u32]) {
             let Some(start) = self.find(finer, quarter[0].into(), quarter[1].into()) else { continue };
             any = true;
             means_of_quarter(quarter, &values[start..start + CELLS], |cell, mean| put(cell % TILE, cell / TILE, mean));
@@ -66,6 +66,11 @@ impl Elements {
         missing: f64,
     ) -> Patch<f64, { 3 * TILE }> {
         let mut patch = [[missing; 3 * TILE]; 3 * TILE];
+        let (tiles, corner) = (&self.levels()[coarser], (i64::from(column) - 1, i64::from(row) - 1));
+        if tiles.is_cut(corner, 3) {
+            gather_cells(&values[self.cells(coarser)], tiles, corner, (0..3 * TILE, missing), &mut patch);
+            return patch;
+        }
         for j in 0..3 {
             for i in 0..3 {
                 let place = (i64::from(column) + i as i64 - 1, i64::from(row) + j as i64 - 1);
@@ -104,7 +109,7 @@ impl Elements {
         let mut result = vec![elsewhere; to.len()];
         for (coarser, tiles) in to.levels().iter().enumerate() {
             // The same level here, unless the other mesh has a finer one.
-            let here = self.levels().iter().position(|level| level.side() == tiles.side());
+            let here = self.levels().iter().position(|level| level.sides() == tiles.sides());
             let cells = &mut result[to.cells(coarser)];
             let sinks = cells.par_chunks_mut(CELLS).zip(tiles.places()).with_min_len(64);
             sinks.for_each(|(cells, &place)| {

@@ -72,14 +72,12 @@ pub enum MethodReason {
         /// Name of the kernel.
         kernel: &'static str,
     },
-    /// The adaptive method needs a square cell.
-    CellNotSquare,
-    /// The adaptive method needs as many elements along x as along y.
-    GridNotSquare {
+    /// The adaptive method needs square elements.
+    ElementsNotSquare {
         /// The grid.
         grid: Grid,
     },
-    /// The adaptive method needs a grid that can be halved.
+    /// The grid is too small for a base grid below it.
     NoLevels {
         /// The grid.
         grid: Grid,
@@ -116,9 +114,8 @@ impl fmt::Display for MethodReason {
             Self::AdaptiveDoesNotFit => write!(f, "uniform: the adaptive method does not fit into memory"),
             Self::OwnOperator => write!(f, "uniform: an operator of the caller"),
             Self::NoSplitOfKernel { kernel } => write!(f, "uniform: the kernel {kernel} has no adaptive form"),
-            Self::CellNotSquare => write!(f, "uniform: the cell is not a square"),
-            Self::GridNotSquare { grid } => write!(f, "uniform: {grid} elements are not square"),
-            Self::NoLevels { grid } => write!(f, "uniform: {grid} elements do not divide into adaptive levels"),
+            Self::ElementsNotSquare { grid } => write!(f, "uniform: {grid} elements are not square"),
+            Self::NoLevels { grid } => write!(f, "uniform: {grid} elements are too few for adaptive levels"),
             Self::Flat => write!(f, "uniform: a flat surface has nothing to adapt to"),
             Self::ToleranceTooSmall { tolerance } => {
                 write!(f, "uniform: the adaptive operator cannot certify a tolerance of {tolerance:e}")

@@ -1,9 +1,10 @@
 //! The adaptive method on many levels and on elements of several sizes, audited on the whole grid of its smallest elements.
 
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use anyhow::Result;
-use rc_core::{Field, Grid, HeightSource, Operator, Silent};
+use rc_core::{DVec2, Field, Grid, HeightSource, Operator, Silent};
 use rc_figures::Preset;
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Love;
@@ -34,11 +35,14 @@ enum Relief {
     Noise,
     /// Elements high and low by turns.
     Chequered,
+    /// A few waves on a map of so many elements along x and y.
+    Map([usize; 2]),
 }
 
 /// A contact problem for the adaptive method.
 struct MeshScene {
     relief: Relief,
+    /// Elements of the base grid per side; 0 where the method chooses.
     base: usize,
     side: usize,
     border_level: usize,
@@ -53,12 +57,18 @@ impl MeshScene {
         Self { relief: Relief::Waves(waves, 0.8), base, side, border_level, load: 1e-3, tolerance: TOLERANCE }
     }
 
+    /// A map whose base grid the method chooses.
+    const fn map(sides: [usize; 2], load: f64) -> Self {
+        Self { relief: Relief::Map(sides), load, ..Self::waves(0, 0, sides[0], 0) }
+    }
+
     fn name(&self) -> String {
         let Self { base, side, border_level, load, tolerance, .. } = self;
         let relief = match self.relief {
             Relief::Waves(waves, hurst) => format!("N = {waves} H = {hurst}"),
             Relief::Noise => "white noise".to_owned(),
             Relief::Chequered => "chequered".to_owned(),
+            Relief::Map([nx, ny]) => return format!("map of {nx} x {ny} load {load:.0e} to {tolerance:.0e}"),
         };
         format!("{relief} base {base} side {side} border level {border_level} load {load:.0e} to {tolerance:.0e}")
     }
@@ -78,6 +88,9 @@ fn reduced() -> Vec<MeshScene> {
         MeshScene { relief: Relief::Noise, ..waves(0, 32, 256, 0) },
         MeshScene { relief: Relief::Chequered, load: 1e-2, ..waves(0, 32, 256, 0) },
         MeshScene { tolerance: 1e-8, ..waves(16, 64, 256, 0) },
+        MeshScene::map([256, 64], 1e-3),
+        MeshScene::map([300, 207], 1e-2),
+        MeshScene { tolerance: 1e-8, ..MeshScene::map([251, 251], 1e-2) },
     ]
 }
 
@@ -93,6 +106,10 @@ fn further() -> Vec<MeshScene> {
         waves(64, 256, 512, 4),
         waves(16, 64, 2048, 0),
         waves(16, 64, 256, 4),
+        MeshScene::map([640, 480], 1e-3),
+        MeshScene::map([860, 634], 1e-3),
+        MeshScene::map([1001, 1001], 1e-3),
+        MeshScene::map([130, 520], 1e-2),
     ];
     for load in [1e-6, 1e-4, 1e-2] {
         scenes.extend([0, 2, 4].map(|border| MeshScene { load, ..waves(16, 64, 256, border) }));
@@ -126,6 +143,10 @@ pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
 fn check(scene: &MeshScene, name: &str, rows: &mut Rows) -> Result<()> {
     let finest = Grid::square(scene.side << scene.border_level)?;
     match scene.relief {
+        Relief::Map(sides) => {
+            let heights = waves_on(sides)?;
+            check_solution(scene, (name, HeightSource::Map(&heights)), &heights, rows)
+        }
         Relief::Waves(waves, hurst) => {
             let surface = Surface::new(&SpectrumParams { hurst, ..SpectrumParams::paper(waves, 31) })?;
             let source = HeightSource::Surface { surface: &surface, grid: Grid::square(scene.side)? };
@@ -141,6 +162,24 @@ fn check(scene: &MeshScene, name: &str, rows: &mut Rows) -> Result<()> {
     }
 }
 
+/// Waves of many directions, up to 19 along the longer side, on square elements.
+fn waves_on([nx, ny]: [usize; 2]) -> Result<Field> {
+    let ratio = ny as f64 / nx as f64;
+    let long = ratio.max(1.0);
+    let waves =
+        [[1.0, 2.0, 0.1], [-3.0, 2.0, 0.7], [5.0, -4.0, 0.3], [7.0, 9.0, 0.9], [-12.0, 6.0, 0.2], [17.0, 13.0, 0.5]];
+    let height = |at: DVec2| {
+        let of_wave = |&[kx, ky, phase]: &[f64; 3]| {
+            // Whole numbers along both sides, about as many a length.
+            let [kx, ky] = [(kx / long).round(), (ky * ratio / long).round()];
+            let phase = TAU * (kx * at.x + ky * at.y / ratio + phase);
+            phase.cos() / (1.0 + kx.hypot(ky / ratio)).powf(1.7)
+        };
+        waves.iter().map(of_wave).sum::<f64>()
+    };
+    Ok(Field::from_fn(Grid::in_cell(nx, ny, ratio)?, height))
+}
+
 /// Solves, and audits on the whole grid of the smallest elements.
 fn check_solution(
     scene: &MeshScene,
@@ -149,12 +188,14 @@ fn check_solution(
     rows: &mut Rows,
 ) -> Result<()> {
     let params = SolveParams {
-        base_side: Some(scene.base),
+        base_side: Some(scene.base).filter(|&base| base > 0),
         border_level: scene.border_level,
         ..SolveParams::to_tolerance(scene.tolerance).by(Method::Adaptive)
     };
-    let n_levels = (heights.grid().nx() / scene.base).ilog2();
-    rows.holds(name, "levels above the base grid", ">= 1", n_levels.to_string(), n_levels >= 1);
+    if let Some(ratio) = heights.grid().nx().checked_div(scene.base) {
+        let n_levels = ratio.ilog2();
+        rows.holds(name, "levels above the base grid", ">= 1", n_levels.to_string(), n_levels >= 1);
+    }
     let load = Control::MeanPressure(scene.load);
     let solution = ContactProblem::new(source.clone(), load).solve(&params, &Silent)?;
     check_mesh(scene, (name, source.clone()), (heights, load), &solution, rows)?;

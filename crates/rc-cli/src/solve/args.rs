@@ -32,7 +32,7 @@ unless the file has a size, and --e-star, or --young and --poisson. The control 
 Relative paths in a scene file start at its folder.
 
 Without --method, the solver is adaptive where the estimated contact area makes that cheaper than the uniform grid, and where \
-it can be: kernel love, and a square grid that halves into levels. --method adaptive, uniform or gauss-seidel is used as given.
+it can be: kernel love, and square elements. --method adaptive, uniform or gauss-seidel is used as given.
 
 DIR receives summary.json, pressure.npy (Pa), gap.npy (m), contact.png and scene.toml, from which the result can be repeated; \
 elements.csv (m, m, m, Pa) from the methods with elements of their own, adaptive and gauss-seidel; and heights.npy, if the \

@@ -68,12 +68,9 @@ fn of_problem(error: &ProblemError, contact: &ContactSetup) -> CliError {
 
 fn of_adaptive(error: &AdaptiveError, budget: Budget) -> CliError {
     match error {
-        AdaptiveError::Grid { .. } | AdaptiveError::Base { .. } => {
+        AdaptiveError::Grid { .. } | AdaptiveError::Base { .. } | AdaptiveError::Elements { .. } => {
             CliError::input(format_args!("grid: {error}; --method uniform takes any grid"))
         }
-        AdaptiveError::RectangularCell => CliError::input(format_args!(
-            "cell_y: {error}; rc surface --repeat square makes one of copies, --method uniform takes any"
-        )),
         AdaptiveError::Memory { grid, needed, area_percent, .. } => {
             let part = match area_percent {
                 Some(percent) => format!(", at an estimated contact area of {} %,", digits(*percent, 2)),
@@ -85,7 +82,7 @@ fn of_adaptive(error: &AdaptiveError, budget: Budget) -> CliError {
                 Ok(()) => CliError::input(format_args!("memory_limit: {error}")),
             }
         }
-        AdaptiveError::BorderLevel { .. } | AdaptiveError::BorderOfMap => {
+        AdaptiveError::BorderLevel { .. } | AdaptiveError::BorderOfMap | AdaptiveError::BorderOfGrid { .. } => {
             CliError::input(format_args!("border_level: {error}"))
         }
         other => CliError::input(format_args!("method: {other}")),

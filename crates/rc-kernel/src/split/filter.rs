@@ -67,8 +67,15 @@ pub(super) fn design(window: &Window, params: SplitParams, target: impl Fn(f64) 
     Filter { taps: least_squares(rows, n) }
 }
 
-/// Solves an overdetermined system, rows with the right-hand side last, by Householder reflections.
-pub(super) fn least_squares(mut rows: Vec<Vec<f64>>, n: usize) -> Vec<f64> {
+/// Solves an overdetermined system, rows with the right-hand side last.
+pub(super) fn least_squares(rows: Vec<Vec<f64>>, n: usize) -> Vec<f64> {
+    fit(rows, n).pop().unwrap_or_default()
+}
+
+/// Solves an overdetermined system of `n` unknowns, rows with right-hand sides last, by Householder reflections: a solution for each of
+/// these.
+pub(super) fn fit(mut rows: Vec<Vec<f64>>, n: usize) -> Vec<Vec<f64>> {
+    let width = rows.first().map_or(n, Vec::len);
     for column in 0..n {
         let norm = rows[column..].iter().map(|row| row[column] * row[column]).sum::<f64>().sqrt();
         let alpha = if rows[column][column] > 0.0 { -norm } else { norm };
@@ -78,7 +85,7 @@ pub(super) fn least_squares(mut rows: Vec<Vec<f64>>, n: usize) -> Vec<f64> {
         if squared == 0.0 {
             continue;
         }
-        for k in column..=n {
+        for k in column..width {
             let product: f64 = reflector.iter().zip(&rows[column..]).map(|(v, row)| v * row[k]).sum();
             let factor = 2.0 * product / squared;
             for (v, row) in reflector.iter().zip(&mut rows[column..]) {
@@ -86,12 +93,15 @@ pub(super) fn least_squares(mut rows: Vec<Vec<f64>>, n: usize) -> Vec<f64> {
             }
         }
     }
-    let mut solution = vec![0.0; n];
-    for k in (0..n).rev() {
-        let known: f64 = (k + 1..n).map(|j| rows[k][j] * solution[j]).sum();
-        solution[k] = (rows[k][n] - known) / rows[k][k];
-    }
-    solution
+    let solve = |side: usize| {
+        let mut solution = vec![0.0; n];
+        for k in (0..n).rev() {
+            let known: f64 = (k + 1..n).map(|j| rows[k][j] * solution[j]).sum();
+            solution[k] = (rows[k][side] - known) / rows[k][k];
+        }
+        solution
+    };
+    (n..width).map(solve).collect()
 }
 
 #[cfg(test)]

@@ -27,12 +27,14 @@ mod inverse;
 mod kept;
 mod params;
 mod stencil;
+mod uneven;
 mod window;
 
 pub use coarse::{CoarseElement, CoarseFilter};
 pub use filter::Filter;
 pub use params::SplitParams;
 pub use stencil::Stencil;
+pub use uneven::UnevenFilter;
 
 use kept::Kept;
 use window::Window;
@@ -71,6 +73,18 @@ impl ScaleSplit {
     pub fn level_stencil(&self) -> Stencil {
         static STENCILS: Kept<Stencil> = Kept::new();
         STENCILS.of(self.params, || stencil::level(&self.window, self.params.cutoff))
+    }
+
+    /// The same for elements of other `sides`, of which the smaller is 1, when the finer level has the cutoff `inner`.
+    #[must_use]
+    pub fn uneven_level_stencil(&self, inner: f64, sides: [f64; 2]) -> Stencil {
+        stencil::between(&self.window, self.params.cutoff, inner, sides)
+    }
+
+    /// Filter between the finest level, of Love's squares, and a level with `ratio` elements to a finest one, along one axis.
+    #[must_use]
+    pub fn uneven_filter(&self, ratio: f64) -> UnevenFilter {
+        uneven::design(&self.window, self.params, ratio)
     }
 
     /// Filter between the finest level, of Love's squares, and the next one.

@@ -37,6 +37,14 @@ impl Stencil {
         Self { radius, weights }
     }
 
+    /// The same of elements that are not squares: the weight is asked for 0 ≤ dx, dy ≤ `radius`.
+    pub(super) fn of_rectangles(radius: usize, weight: impl Fn(usize, usize) -> f64) -> Self {
+        let side = 2 * radius + 1;
+        let distance = |i: usize| i.abs_diff(radius);
+        let weights = (0..side * side).map(|i| weight(distance(i % side), distance(i / side)));
+        Self { radius, weights: weights.collect() }
+    }
+
     /// Largest offset along x and along y.
     #[must_use]
     pub fn radius(&self) -> usize {
@@ -99,9 +107,32 @@ pub(super) fn level(window: &Window, cutoff: usize) -> Stencil {
     })
 }
 
+/// The kernel between cutoffs `inner` and c, at the centres of elements of these sides, of which the smaller is 1.
+pub(super) fn between(window: &Window, cutoff: usize, inner: f64, [width, height]: [f64; 2]) -> Stencil {
+    let c = cutoff as f64;
+    let remainder = |r: f64, c: f64| window.rise_over(r / c) / c;
+    Stencil::of_rectangles(cutoff, |dx, dy| {
+        let r = (width * dx as f64).hypot(height * dy as f64);
+        FRAC_1_PI * width * height * (remainder(r, inner) - remainder(r, c))
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn between_half_the_cutoff_and_all_of_it_is_the_stencil_of_a_level() {
+        let window = Window::new(10.0, 8);
+        let (even, any) = (level(&window, 8), between(&window, 8, 4.0, [1.0, 1.0]));
+        for (dx, dy) in (0..=64).map(|i| (i / 8 - 4, i % 8 - 4)) {
+            assert!((even.weight(dx, dy) - any.weight(dx, dy)).abs() < 1e-15);
+        }
+        // The sum over rectangles is the same integral.
+        let sum = between(&window, 8, 4.1, [1.03, 1.0]).sum();
+        let squares = between(&window, 8, 4.1, [1.0, 1.0]).sum();
+        assert!((sum / squares - 1.0).abs() < 1e-4, "{sum} for {squares}");
+    }
 
     /// The weights of all squares add up to the integral of the short-range kernel.
     #[test]

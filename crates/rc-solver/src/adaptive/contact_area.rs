@@ -20,7 +20,7 @@ pub(super) fn contact_area(
 ) -> ContactArea {
     let of_level = |coarser: usize| {
         let (side, first) = (elements.side(coarser), elements.cells(coarser).start);
-        let places = elements.levels()[coarser].places();
+        let tiles = &elements.levels()[coarser];
         let of_tile = |(tile, &place): (usize, &[u32; 2])| {
             let start = first + tile * CELLS;
             if pressure[start..start + CELLS].iter().all(|&p| p <= 0.0) {
@@ -30,7 +30,10 @@ pub(super) fn contact_area(
             // Where no element is the gap is not known.
             let gap = elements.around(gap, coarser, place, f64::NAN);
             let mut sums = EdgeSums::default();
-            for (x, y) in (0..CELLS).map(|cell| (TILE + cell % TILE, TILE + cell / TILE)) {
+            // What reaches beyond the grid is across the seam.
+            let [width, height] = tiles.inside(place);
+            let cells = (0..CELLS).map(|cell| (cell % TILE, cell / TILE)).filter(|&(x, y)| x < width && y < height);
+            for (x, y) in cells.map(|(x, y)| (TILE + x, TILE + y)) {
                 if pressure[y][x] > 0.0 {
                     sums.add([side; 2], &|dx, dy| {
                         let (x, y) = (x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
@@ -40,7 +43,7 @@ pub(super) fn contact_area(
             }
             sums
         };
-        let chunks = places.par_chunks(TILES_AT_ONCE).enumerate();
+        let chunks = tiles.places().par_chunks(TILES_AT_ONCE).enumerate();
         let chunks: Vec<EdgeSums> = chunks
             .map(|(chunk, places)| {
                 let tiles = places.iter().enumerate();

@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use rc_core::{Grid, Observer, Snapshot};
-use rc_quadtree::{BLOCK_CELLS, CELLS, Elements};
+use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE};
 
 use crate::descent::{BlockLayout, ObservedMesh};
 
@@ -13,10 +13,11 @@ pub(crate) fn blocks_of(elements: &Elements) -> BlockLayout {
     for (coarser, tiles) in elements.levels().iter().enumerate() {
         // Levels begin at whole blocks.
         centres.resize(elements.cells(coarser).start / CELLS, [0.0; 2]);
-        let per_side = tiles.per_side() as f32;
-        centres.extend(tiles.places().iter().map(|place| place.map(|i| (i as f32 + 0.5) / per_side)));
+        let per_side = tiles.sides().map(|side| side as f32 / TILE as f32);
+        let centre = |place: &[u32; 2]| [0, 1].map(|axis| (place[axis] as f32 + 0.5) / per_side[axis]);
+        centres.extend(tiles.places().iter().map(centre));
     }
-    let layout = BlockLayout::of(BLOCK_CELLS).with_runs(CELLS, centres, elements.coarsest().side());
+    let layout = BlockLayout::of(BLOCK_CELLS).with_runs(CELLS, centres, elements.coarsest().sides());
     if elements.levels().len() == 1 {
         return layout;
     }
@@ -26,7 +27,9 @@ pub(crate) fn blocks_of(elements: &Elements) -> BlockLayout {
 
 impl ObservedMesh for Elements {
     fn show_pressure(&self, pressure: &[f64], observer: &dyn Observer) {
-        let grid = Grid::square(self.coarsest().side()).expect("a level of a checked grid");
+        let [nx, ny] = self.coarsest().sides();
+        // Elements are squares.
+        let grid = Grid::in_cell(nx, ny, ny as f64 / nx as f64).expect("a level of a checked grid");
         let rows = |take: &mut dyn FnMut(&[f64])| {
             let (tiles, pressure) = self.on_coarsest(pressure);
             let Ok(()) = tiles.rows(&pressure, |_, rows| {
@@ -48,7 +51,7 @@ mod tests {
     fn tiles_of_all_levels_are_around_their_centres() {
         let fine: Vec<[u32; 2]> = (0..40).map(|i| [i % 8 + 4, i / 8 + 1]).collect();
         let coarse: Vec<[u32; 2]> = vec![[0, 5], [7, 7], [1, 6]];
-        let elements = Elements::new(vec![TileSet::new(16, fine), TileSet::new(8, coarse)]);
+        let elements = Elements::new(vec![TileSet::new([128, 128], fine), TileSet::new([64, 64], coarse)]);
         let layout = blocks_of(&elements);
         for (coarser, tiles) in elements.levels().iter().enumerate() {
             for (tile, place) in tiles.places().iter().enumerate() {
@@ -60,7 +63,7 @@ mod tests {
                         found = Some(centre);
                     }
                 });
-                let expected = place.map(|i| (f64::from(i) + 0.5) / tiles.per_side() as f64);
+                let expected = place.map(|i| (f64::from(i) + 0.5) / tiles.extent()[0] as f64);
                 assert_eq!(found, Some(expected), "level {coarser}, {place:?}");
             }
         }

@@ -4,15 +4,21 @@ use rayon::prelude::*;
 use rc_quadtree::{CELLS, Elements, TileSet, means_of_quarter, quarters};
 
 use super::heights::Heights;
+use crate::problem::HeightStatistics;
 
-/// Heights of all elements, those of the elements of `known` taken from there. Values that fill up a vector are the minimum height, which is
-/// never in contact.
+/// In units of the height range: displacements differ by no more than that.
+const FAR_BELOW: f64 = 10.0;
+
+/// Heights of all elements, those of the elements of `known` taken from there. Values that have no element are never in contact: what fills
+/// up a vector has the minimum height, and what is beyond a level, where displacements are those of elements across the seam, is far below.
 pub(super) fn element_heights(
     heights: &Heights<'_>,
     elements: &Elements,
     known: Option<(&Elements, &[f64])>,
 ) -> Vec<f64> {
-    let mut result = vec![heights.extremes().least; elements.len()];
+    let HeightStatistics { greatest, least, .. } = heights.extremes();
+    let none = if elements.finest().is_whole() { least } else { least - FAR_BELOW * (greatest - least) };
+    let mut result = vec![none; elements.len()];
     for (coarser, tiles) in elements.levels().iter().enumerate() {
         let known = known.map(|(known, values)| (&known.levels()[coarser], &values[known.cells(coarser)]));
         let (cells, _) = result[elements.cells(coarser)].as_chunks_mut::<CELLS>();
@@ -25,7 +31,7 @@ pub(super) fn element_heights(
                 cells.copy_from_slice(known);
                 return;
             }
-            heights.tile(tiles.side(), place[0] as usize, place[1] as usize, cells);
+            heights.tile(tiles.sides(), place.map(|i| i as usize), cells);
             if coarser > 0 {
                 to_means(heights, tiles, place, coarser, cells);
             }
@@ -41,7 +47,7 @@ fn to_means(heights: &Heights<'_>, tiles: &TileSet, place: [u32; 2], coarser: us
     let ratio = (1.0 - 1.0 / Elements::area(coarser)) / (1.0 - 0.25);
     for quarter in quarters(place) {
         let mut fine = [0.0; CELLS];
-        heights.tile(2 * tiles.side(), quarter[0] as usize, quarter[1] as usize, &mut fine);
+        heights.tile(tiles.sides().map(|side| 2 * side), quarter.map(|i| i as usize), &mut fine);
         means_of_quarter(quarter, &fine, |cell, mean| cells[cell] += ratio * (mean - cells[cell]));
     }
 }
@@ -69,10 +75,12 @@ mod tests {
     #[test]
     fn a_larger_element_is_as_high_as_the_smallest_in_it_on_average() {
         let finest = Grid::square(256).expect("a grid");
-        let heights = Heights::new(HeightSource::Surface { surface: &TwoWaves, grid: finest }, 64).expect("heights");
+        let heights =
+            Heights::new(HeightSource::Surface { surface: &TwoWaves, grid: finest }, [64, 64]).expect("heights");
         let sampled = TwoWaves.sample(finest);
         let tiles = [(32, [16, 16]), (16, [4, 4]), (8, [0, 0])];
-        let elements = Elements::new(tiles.map(|(per_side, place)| TileSet::new(per_side, vec![place])).to_vec());
+        let elements =
+            Elements::new(tiles.map(|(per_side, place)| TileSet::new([8 * per_side; 2], vec![place])).to_vec());
         let values = element_heights(&heights, &elements, None);
         for (coarser, (_, [column, row])) in tiles.into_iter().enumerate() {
             let (n, start) = (1 << coarser, elements.cells(coarser).start);

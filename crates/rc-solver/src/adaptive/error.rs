@@ -1,6 +1,7 @@
 //! Why the adaptive method does not fit a problem.
 
 use rc_core::Grid;
+use rc_core::quantity::digits;
 use thiserror::Error;
 
 use crate::ProblemError;
@@ -12,20 +13,24 @@ pub enum AdaptiveError {
     /// Heights, load or tolerance are out of range. At the front door this is [`crate::SolveError::Problem`].
     #[error(transparent)]
     Problem(#[from] ProblemError),
-    /// Squares of the mesh are halves of halves of the cell.
-    #[error("the adaptive method needs a square cell")]
-    RectangularCell,
-    /// The grid does not divide into tiles.
+    /// The elements of the mesh are squares.
+    #[error("the adaptive method needs square elements, but those of {grid} are {} times as long along y as along x", digits(*ratio, 4))]
+    Elements {
+        /// The grid.
+        grid: Grid,
+        /// Side of an element along y, relative to that along x.
+        ratio: f64,
+    },
+    /// The grid is too small for a base grid below it.
     #[error(
-        "the adaptive method needs a square grid of at least {smallest} elements per side, 16 or a larger power of 2 times \
-         another number, not {nx} x {ny}"
+        "the adaptive method needs at least {smallest} elements along the longer side of the grid, not {nx} x {ny}"
     )]
     Grid {
         /// Elements along x.
         nx: usize,
         /// Elements along y.
         ny: usize,
-        /// Fewest elements per side.
+        /// Fewest elements along the longer side.
         smallest: usize,
     },
     /// The base grid cannot hold the surface's spectrum, or does not divide the finest grid.
@@ -51,6 +56,14 @@ pub enum AdaptiveError {
         side: usize,
         /// The deepest.
         deepest: u32,
+    },
+    /// Elements are divided on grids that are halved down to the base grid.
+    #[error(
+        "a border level needs a grid that halves: 16 or a larger power of 2 times another number of elements per side, not {grid}"
+    )]
+    BorderOfGrid {
+        /// The grid of the smallest elements.
+        grid: Grid,
     },
     /// A border level for heights that are known on a grid only.
     #[error(

@@ -3,6 +3,7 @@
 use rc_core::Field;
 
 use super::heights::Heights;
+use super::ladder::sides_of;
 use crate::Control;
 
 /// Contact area relative to σ0/(E* · rms slope) at low loads; the literature has 1.6 to 2.5, and this solver 2.0 to 2.2.
@@ -33,8 +34,8 @@ const BYTES_PER_PLACE: f64 = 0.02;
 const BYTES_PER_BASE_ELEMENT: f64 = 130.0;
 
 /// Memory of the base grid, in bytes: what the adaptive method needs at least.
-pub(super) fn base_bytes(base_side: usize) -> f64 {
-    BYTES_PER_BASE_ELEMENT * (base_side as f64).powi(2)
+pub(super) fn base_bytes([nx, ny]: [usize; 2]) -> f64 {
+    BYTES_PER_BASE_ELEMENT * (nx as f64 * ny as f64)
 }
 
 /// An estimate of area, time and memory, from the surface and the load alone.
@@ -73,7 +74,7 @@ impl Estimate {
         let area_fraction = if area.is_finite() { area.min(1.0) } else { 1.0 };
         // Contacts of a few cells take a whole tile each.
         let tile_fraction = (TILES_PER_AREA * area_fraction + 0.005).min(1.0);
-        let n_finest = (heights.finest_side() as f64).powi(2);
+        let n_finest = heights.ladder().finest().len() as f64;
         let n_cells = tile_fraction * n_finest * (0.25 * GROWTH_PER_BORDER_LEVEL).powi(border_level as i32);
         let with_borders = |more: f64| n_cells * (1.0 + more * border_level as f64);
         let cell_bytes = BYTES_PER_CELL * with_borders(MORE_BYTES_PER_BORDER_LEVEL);
@@ -82,7 +83,7 @@ impl Estimate {
             tile_fraction,
             cells: n_cells,
             work: with_borders(MORE_WORK_PER_BORDER_LEVEL),
-            adaptive_bytes: cell_bytes + BYTES_PER_PLACE * n_finest + base_bytes(base.grid().nx()),
+            adaptive_bytes: cell_bytes + BYTES_PER_PLACE * n_finest + base_bytes(sides_of(base.grid())),
         }
     }
 }
@@ -90,12 +91,13 @@ impl Estimate {
 /// Isotropic rms slope by differences of neighbours, exact enough for an estimate.
 fn rms_slope(heights: &Field) -> f64 {
     let (nx, ny) = (heights.grid().nx(), heights.grid().ny());
+    let (along_x, along_y) = (nx as f64, ny as f64 / heights.grid().cell_ratio());
     let mut sum = 0.0;
     for iy in 0..ny {
         let (row, next) = (heights.row(iy), heights.row((iy + 1) % ny));
         for ix in 0..nx {
             let (dx, dy) = (row[(ix + 1) % nx] - row[ix], next[ix] - row[ix]);
-            sum += (dx * nx as f64).powi(2) + (dy * ny as f64).powi(2);
+            sum += (dx * along_x).powi(2) + (dy * along_y).powi(2);
         }
     }
     (sum / heights.grid().len() as f64).sqrt()

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use rc_quadtree::{CELLS, Patch, TILE, TileSet, gather};
 
 use super::heights::Heights;
+use super::ladder::sides_of;
 
 /// Side of a patch that holds a tile and its neighbours.
 const SIDE: usize = 3 * TILE;
@@ -18,7 +19,7 @@ const SAGITTA: f64 = 0.25;
 
 /// The values on the base grid are the smooth displacement less 1/48 of its Laplacian, times the square of the finest elements' side, to leading
 /// order: the filter to the finest level holds the square root of the mean over an element. Those elements are at most half as large as
-/// the spacing.
+/// the spacing where levels halve.
 const DECONVOLUTION: f64 = 1.0 / 96.0;
 
 /// The smooth part of the displacement.
@@ -31,16 +32,19 @@ pub(super) struct SmoothDisplacement<'a> {
     pub(super) error: f64,
 }
 
-/// The tiles of the level of `per_side` tiles per side where the gap `v - h` may be less than `contact_gap`.
+/// The tiles, of a level of so many columns and rows, where the gap `v - h` may be less than `contact_gap`.
 pub(super) fn possible_contact(
     smooth: &SmoothDisplacement<'_>,
     heights: &Heights<'_>,
     contact_gap: f64,
-    per_side: usize,
+    extent: [usize; 2],
 ) -> Vec<[u32; 2]> {
-    let base = TileSet::full(heights.base().grid().nx() / TILE);
-    let spacing = 1.0 / base.side() as f64;
-    let slack = (SAGITTA + DECONVOLUTION) * smooth.curvature * spacing * spacing + smooth.error;
+    let ladder = heights.ladder();
+    let base = TileSet::full(sides_of(ladder.base()));
+    let spacing = ladder.base().spacing().max_element();
+    let from_half = (2.0 * ladder.finest().spacing().max_element() / spacing).max(1.0);
+    let slack = (SAGITTA + DECONVOLUTION * from_half * from_half) * smooth.curvature * spacing * spacing + smooth.error;
+    let cells = Cells { base: base.sides(), extent, finest: (!ladder.is_even()).then_some(sides_of(ladder.finest())) };
     let of_tile = |&[column, row]: &[u32; 2]| {
         let mut patch: Patch<f64, SIDE> = [[0.0; SIDE]; SIDE];
         let corner = (i64::from(column) - 1, i64::from(row) - 1);
@@ -49,11 +53,10 @@ pub(super) fn possible_contact(
         for cell in 0..CELLS {
             let (x, y) = (cell % TILE, cell / TILE);
             let minimum = minimum_around(&patch, TILE + x, TILE + y) - slack;
-            let (bx, by) = (column as usize * TILE + x, row as usize * TILE + y);
-            let may_touch =
-                |blocks: usize, ix: usize, iy: usize| minimum - heights.upper_bound(blocks, ix, iy) < contact_gap;
-            if may_touch(base.side(), bx, by) {
-                append_tiles_of_cell(base.side(), per_side, (bx, by), &may_touch, &mut tiles);
+            let at = [column as usize * TILE + x, row as usize * TILE + y];
+            if minimum - heights.upper_bound(base.sides(), at) < contact_gap {
+                let may_touch = |tile| minimum - cells.upper_bound(heights, tile) < contact_gap;
+                cells.append_tiles(at, &may_touch, &mut tiles);
             }
         }
         tiles.sort_unstable();
@@ -64,24 +67,47 @@ pub(super) fn possible_contact(
     tiles.into_iter().flatten().collect()
 }
 
-/// Appends the tile that a cell of the base grid is in, or those tiles in the cell that pass `may_touch` themselves.
-fn append_tiles_of_cell(
-    base_side: usize,
-    per_side: usize,
-    (bx, by): (usize, usize),
-    may_touch: &impl Fn(usize, usize, usize) -> bool,
-    tiles: &mut Vec<[u32; 2]>,
-) {
-    if per_side <= base_side {
-        let cells = base_side / per_side;
-        tiles.push([(bx / cells) as u32, (by / cells) as u32]);
-        return;
+/// The cells of the base grid over tiles of a level.
+struct Cells {
+    base: [usize; 2],
+    /// Columns and rows of tiles.
+    extent: [usize; 2],
+    /// Sides of the level, where its tiles are not whole parts of cells nor cells of tiles.
+    finest: Option<[usize; 2]>,
+}
+
+impl Cells {
+    /// Of the heights in a tile.
+    fn upper_bound(&self, heights: &Heights<'_>, tile: [usize; 2]) -> f64 {
+        match self.finest {
+            None => heights.upper_bound(self.extent, tile),
+            Some(_) => heights.upper_bound_of_tile(tile),
+        }
     }
-    let parts = per_side / base_side;
-    for y in by * parts..(by + 1) * parts {
-        for x in bx * parts..(bx + 1) * parts {
-            if may_touch(per_side, x, y) {
-                tiles.push([x as u32, y as u32]);
+
+    /// Appends the tile that a cell of the base grid is in, or those tiles in the cell that pass `may_touch` themselves.
+    fn append_tiles(&self, at: [usize; 2], may_touch: &impl Fn([usize; 2]) -> bool, tiles: &mut Vec<[u32; 2]>) {
+        let Self { base, extent, finest } = *self;
+        if finest.is_none() && extent[0] <= base[0] {
+            tiles.push([0, 1].map(|axis| (at[axis] / (base[axis] / extent[axis])) as u32));
+            return;
+        }
+        let [columns, rows] = [0, 1].map(|axis| match finest {
+            None => {
+                let parts = extent[axis] / base[axis];
+                at[axis] * parts..(at[axis] + 1) * parts
+            }
+            // Tiles with a part in the cell.
+            Some(sides) => {
+                let last = ((at[axis] + 1) * sides[axis]).div_ceil(base[axis]).div_ceil(TILE);
+                at[axis] * sides[axis] / base[axis] / TILE..last
+            }
+        });
+        for y in rows {
+            for x in columns.clone() {
+                if may_touch([x, y]) {
+                    tiles.push([x as u32, y as u32]);
+                }
             }
         }
     }
@@ -103,13 +129,13 @@ mod tests {
     /// A displacement whose minimum, at the corner between four points of the base grid, touches a flat surface. At the points it does not.
     #[test]
     fn a_displacement_that_dips_between_points_is_not_excluded() {
-        let (side, per_side) = (32_usize, 8);
+        let (side, extent) = (32_usize, [8, 8]);
         let flat = Field::zeros(Grid::square(64).expect("a grid"));
-        let heights = Heights::new(HeightSource::Map(&flat), side).expect("heights");
+        let heights = Heights::new(HeightSource::Map(&flat), [side, side]).expect("heights");
         let sagitta = 2.0 * (1.0 - (PI / side as f64).cos());
         let error = 0.5 * sagitta;
         let wave = |i: usize| (TAU * (i as f64 + 0.5 - 0.5 * side as f64) / side as f64).cos();
-        let base = TileSet::full(side / TILE);
+        let base = TileSet::full([side, side]);
         let of_tile = |&[column, row]: &[u32; 2]| {
             let at = move |place: u32, i: usize| wave(place as usize * TILE + i);
             (0..CELLS).map(move |cell| error - at(column, cell % TILE) - at(row, cell / TILE))
@@ -117,11 +143,11 @@ mod tests {
         let values: Vec<f64> = base.places().iter().flat_map(of_tile).collect();
         let smooth = SmoothDisplacement { values: &values, curvature: TAU * TAU, error };
         let minimum = -2.0;
-        let touched = possible_contact(&smooth, &heights, minimum + 0.01 * sagitta, per_side);
+        let touched = possible_contact(&smooth, &heights, minimum + 0.01 * sagitta, extent);
         for place in [[3, 3], [4, 3], [3, 4], [4, 4]] {
             assert!(touched.contains(&place), "{place:?} is not among {touched:?}");
         }
         assert!(!touched.contains(&[0, 0]), "{touched:?}");
-        assert!(possible_contact(&smooth, &heights, minimum - 0.01 * sagitta - 2.0 * error, per_side).is_empty());
+        assert!(possible_contact(&smooth, &heights, minimum - 0.01 * sagitta - 2.0 * error, extent).is_empty());
     }
 }

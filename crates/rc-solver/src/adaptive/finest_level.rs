@@ -127,13 +127,12 @@ struct FinestLevel<'s, 'a> {
 impl<'s, 'a> FinestLevel<'s, 'a> {
     fn new(setup: &'s Setup<'a>, grid: Grid, mut start: MeshStart, contact_gap: f64) -> Self {
         scale_to_load(&setup.problem, grid.len() as f64, &blocks_of(&start.elements), &mut start.pressure);
-        let n_levels = setup.n_levels(grid);
         let tables = OperatorTables {
-            quick: setup.quick.tables(n_levels),
-            preconditioner: setup.preconditioner.tables(n_levels),
+            quick: setup.quick.tables(grid),
+            preconditioner: setup.preconditioner.tables(grid),
             gaps: TablesForGaps {
-                descents: setup.fresh.tables(n_levels),
-                certificates: setup.better.map(|better| better.tables(n_levels)),
+                descents: setup.fresh.tables(grid),
+                certificates: setup.better.map(|better| better.tables(grid)),
             },
         };
         let candidates = first_candidates(setup, &start, &tables.quick, contact_gap);
@@ -233,7 +232,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
             curvature: setup.certified().remainder_curvature() * maximum(pressure),
             error: EXCLUSION_MARGIN * error.displacement,
         };
-        let places = setup.possible_contact(&smooth, elements.coarsest().per_side(), outcome.contact_gap);
+        let places = setup.possible_contact(&smooth, elements.coarsest().extent(), outcome.contact_gap);
         if elements.levels().len() == 1 {
             return elements.with(&places);
         }
@@ -266,7 +265,7 @@ fn first_candidates(setup: &Setup<'_>, start: &MeshStart, tables: &Tables<f32>, 
     let gap = contact_gap.max(first_touch) + CANDIDATE_MARGIN * setup.penetration(contact_gap).abs();
     let curvature = setup.quick.remainder_curvature() * maximum(pressure);
     let smooth = SmoothDisplacement { values: &quick.base_displacement(), curvature, error: 0.0 };
-    let places = setup.possible_contact(&smooth, elements.coarsest().per_side(), gap);
+    let places = setup.possible_contact(&smooth, elements.coarsest().extent(), gap);
     Candidates::new(setup, elements.with(&places))
 }
 
@@ -289,8 +288,8 @@ impl NearContact {
             _ => outcome.certificate.penetration * setup.problem.h_range,
         };
         let near = outcome.contact_gap + error;
-        let elements = candidates.elements.filtered(|side, place, cells| {
-            before.has(side, place) || cells.into_iter().any(|i| pressure[i] > 0.0 || gap[i] < near)
+        let elements = candidates.elements.filtered(|sides, place, cells| {
+            before.has(sides, place) || cells.into_iter().any(|i| pressure[i] > 0.0 || gap[i] < near)
         });
         // One vector after the other. Values that fill up a level are as far from contact as can be.
         let chosen = |values: Vec<f64>, elsewhere: f64| candidates.elements.moved(&elements, &values, elsewhere);

@@ -28,7 +28,7 @@ pub(super) enum PreparedGap {
     Double(GapSplit, Prepared<f64>),
 }
 
-/// Its tables for one number of levels.
+/// Its tables for one finest grid.
 pub(super) enum GapTables {
     Single(Tables<f32>),
     Double(Tables<f64>),
@@ -75,10 +75,10 @@ impl PreparedGap {
         }
     }
 
-    pub(super) fn tables(&self, n_levels: usize) -> GapTables {
+    pub(super) fn tables(&self, finest: Grid) -> GapTables {
         match self {
-            Self::Single(_, prepared) => GapTables::Single(prepared.tables(n_levels)),
-            Self::Double(_, prepared) => GapTables::Double(prepared.tables(n_levels)),
+            Self::Single(_, prepared) => GapTables::Single(prepared.tables(finest)),
+            Self::Double(_, prepared) => GapTables::Double(prepared.tables(finest)),
         }
     }
 }

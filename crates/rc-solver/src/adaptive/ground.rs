@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use rc_core::HeightSource;
 
-use super::base_side::base_side;
+use super::base_grid::base_sides;
 use super::heights::Heights;
 use super::kernels::Kernels;
-use super::{AdaptiveError, AdaptiveParams, check_memory, check_square, estimate, first_split, with_border_level};
+use super::ladder::Ladder;
+use super::{AdaptiveError, AdaptiveParams, check_elements, check_memory, estimate, first_split, with_border_level};
 
 /// Heights with their bounds, and the split kernels of the base grid.
 pub(crate) struct Ground<'a> {
@@ -22,12 +23,16 @@ impl<'a> Ground<'a> {
     /// [`AdaptiveError`].
     pub(crate) fn new(source: HeightSource<'a>, params: &AdaptiveParams) -> Result<Self, AdaptiveError> {
         let grid = source.grid();
-        check_square(grid)?;
+        check_elements(grid)?;
         // Before any work.
         first_split(params)?;
-        let base_side = base_side(&source, params.base_side)?;
-        check_memory(grid, params.memory_limit, estimate::base_bytes(base_side), None)?;
-        let heights = Heights::new(with_border_level(source, params.border_level)?, base_side)?;
+        let base = base_sides(&source, params.base_side)?;
+        check_memory(grid, params.memory_limit, estimate::base_bytes(base), None)?;
+        let source = with_border_level(source, params.border_level)?;
+        if params.border_level > 0 && !Ladder::new(base, source.grid()).is_even() {
+            return Err(AdaptiveError::BorderOfGrid { grid: source.grid() });
+        }
+        let heights = Heights::new(source, base)?;
         let kernels = Kernels::new(heights.base().grid(), params.border_level);
         Ok(Self { heights, kernels })
     }

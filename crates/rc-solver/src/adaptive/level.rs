@@ -50,10 +50,9 @@ pub(super) fn solve_coarse_level(
     tolerance: f64,
     observer: &dyn Observer,
 ) -> SolvedLevel {
-    let n_levels = setup.n_levels(grid);
     let hierarchy = setup.hierarchy(&start.elements, setup.quick.reach());
-    let response = setup.quick.tables(n_levels);
-    let mut preconditioner = setup.preconditioner.tables(n_levels);
+    let response = setup.quick.tables(grid);
+    let mut preconditioner = setup.preconditioner.tables(grid);
     let operators = LevelOperators {
         corrections: Box::new(TileCorrections::new(Arc::clone(&hierarchy), &response, &mut preconditioner)),
         fresh: Box::new(setup.quick_operator(hierarchy, &response, &start)),

@@ -4,7 +4,7 @@
 //! cells that contact touches or nearly does, with the multilevel operator. What is not stored is out of contact, and the
 //! exclusion proves it.
 
-mod base_side;
+mod base_grid;
 mod contact_area;
 mod element_blocks;
 mod element_heights;
@@ -16,6 +16,7 @@ mod gap_operator;
 mod ground;
 pub(crate) mod heights;
 mod kernels;
+pub(crate) mod ladder;
 mod level;
 mod multilevel;
 mod nested_iteration;
@@ -31,15 +32,15 @@ mod split;
 
 use std::sync::Arc;
 
-use rc_core::{Grid, HeightSource, Observer};
+use rc_core::{DVec2, Grid, HeightSource, Observer};
 use rc_kernel::SplitParams;
 use rc_quadtree::TILE;
 
-use self::base_side::SMALLEST_BASE;
 use self::contact_area::contact_area;
 pub use self::error::AdaptiveError;
 pub(crate) use self::estimate::Estimate;
 pub(crate) use self::ground::Ground;
+use self::ladder::{has_squares, sides_of};
 use self::level::SolvedLevel;
 pub use self::multilevel::MultilevelOperator;
 use self::nested_iteration::{BaseStart, NestedIteration, NestedSolution};
@@ -119,8 +120,8 @@ impl<'a> AdaptiveProblem<'a> {
 
     /// The grid that solutions are on.
     fn grid(&self) -> Grid {
-        let side = self.ground.heights.finest_side() >> self.params.border_level;
-        Grid::square(side).expect("a coarser grid than the finest")
+        let (finest, level) = (self.ground.heights.ladder().finest(), self.params.border_level);
+        finest.with_elements(finest.nx() >> level, finest.ny() >> level).expect("a coarser grid than the finest")
     }
 
     /// The same problem without a borrow: a borrowed map of heights is copied.
@@ -198,13 +199,11 @@ impl<'a> AdaptiveProblem<'a> {
         let NestedSolution { grid, level, levels, coarser, .. } = solved;
         let SolvedLevel { elements, pressure, gap, outcome, evaluated, .. } = level;
         let area = contact_area(&elements, &pressure, (&gap, outcome.contact_gap), grid);
-        let border_level = self.params.border_level;
         AdaptiveSolution {
             converged: outcome.certificate.meets(self.params.solve.bound),
             base: self.ground.heights.base().grid(),
             grid: self.grid(),
             finest: grid,
-            border_level,
             elements,
             pressure,
             area,
@@ -244,10 +243,10 @@ impl<'a> AdaptiveProblem<'a> {
         solution: &AdaptiveSolution,
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        assert_eq!(solution.finest_side(), self.ground.heights.finest_side(), "not a solution of this problem");
+        assert_eq!(solution.finest_grid(), self.ground.heights.ladder().finest(), "not a solution of this problem");
         let offset = solution.gap_offset(self.h_max());
         self.displacement_rows(solution, |first, displacement| {
-            let mut rows = self.ground.heights.row_of_tiles(solution.grid().nx(), first / TILE);
+            let mut rows = self.ground.heights.row_of_tiles(sides_of(solution.grid()), first / TILE);
             for (h, v) in rows.iter_mut().zip(displacement) {
                 *h = v - *h + offset;
             }
@@ -256,14 +255,10 @@ impl<'a> AdaptiveProblem<'a> {
     }
 }
 
-/// Refuses a cell that is not a square, and one that has not as many elements along x as along y.
-fn check_square(grid: Grid) -> Result<(), AdaptiveError> {
-    let (nx, ny) = (grid.nx(), grid.ny());
-    match grid.has_square_cell() {
-        false => Err(AdaptiveError::RectangularCell),
-        true if nx != ny => Err(AdaptiveError::Grid { nx, ny, smallest: 2 * SMALLEST_BASE }),
-        true => Ok(()),
-    }
+/// Refuses elements that are not squares.
+fn check_elements(grid: Grid) -> Result<(), AdaptiveError> {
+    let DVec2 { x, y } = grid.spacing();
+    if has_squares(grid) { Ok(()) } else { Err(AdaptiveError::Elements { grid, ratio: y / x }) }
 }
 
 /// The operator of descents, by the tolerance alone.
@@ -281,7 +276,7 @@ fn first_split(params: &AdaptiveParams) -> Result<GapSplit, AdaptiveError> {
 fn with_border_level(source: HeightSource<'_>, border_level: usize) -> Result<HeightSource<'_>, AdaptiveError> {
     match source.surface() {
         _ if border_level == 0 => Ok(source),
-        Some(surface) if surface.band_limit().is_some() => {
+        Some(surface) if surface.band_limit().is_some() && source.grid().is_square() => {
             let side = source.grid().nx();
             let finest = (border_level < 32).then(|| side.checked_shl(border_level as u32)).flatten();
             let finest = finest.filter(|&finest| finest >> border_level == side && finest <= DEEPEST_SIDE);

@@ -41,17 +41,17 @@ impl MultilevelOperator {
         if !(divides && side.is_multiple_of(base_side) && (side / base_side).is_power_of_two()) {
             return Err(bad);
         }
-        let (Ok(base), Ok(_)) = (Grid::square(base_side), Grid::square(side)) else { return Err(bad) };
+        let (Ok(base), Ok(grid)) = (Grid::square(base_side), Grid::square(side)) else { return Err(bad) };
         if places.iter().flatten().any(|&i| i as usize >= side / TILE) {
             return Err(bad);
         }
         let smallest = SplitParams::SMALLEST_ERROR;
         let split = SplitParams::for_error(error).ok_or(AdaptiveError::OperatorError { value: error, smallest })?;
         let prepared = Prepared::displacement(&ScaleSplit::new(split), base, 0);
-        let tiles = TileSet::new(side / TILE, places);
+        let tiles = TileSet::new([side, side], places);
         let (n_elements, places) = (tiles.n_cells(), tiles.places().to_vec());
-        let hierarchy = Arc::new(Hierarchy::new(base_side, Elements::uniform(tiles), prepared.reach()));
-        let tables = prepared.tables(hierarchy.n_levels());
+        let hierarchy = Arc::new(Hierarchy::new(base, Elements::uniform(tiles), prepared.reach()));
+        let tables = prepared.tables(grid);
         Ok(Self { tables, n_elements, places, operator: Mutex::new(TileOperator::new(hierarchy)) })
     }
 

@@ -8,6 +8,7 @@ use rc_quadtree::{TILE, TileSet};
 use super::AdaptiveParams;
 use super::finest_level::solve_finest_level;
 use super::ground::Ground;
+use super::ladder::{Ladder, sides_of};
 use super::level::{SolvedLevel, add_work, solve_coarse_level};
 use super::operator_error::PressureScale;
 use super::prolongation::{self, MeshStart};
@@ -75,7 +76,11 @@ impl<'a> NestedIteration<'a> {
     }
 
     fn n_above(&self) -> usize {
-        (self.setup.heights.finest_side() / self.setup.base().nx()).ilog2() as usize
+        self.ladder().n_levels()
+    }
+
+    fn ladder(&self) -> Ladder {
+        self.setup.heights.ladder()
     }
 
     /// Solves all levels but the finest, which starts from them.
@@ -128,14 +133,14 @@ impl<'a> NestedIteration<'a> {
         let function = uniform::edge_function(&descent);
         let tile_fraction = tile_fraction(base.grid(), &function, (TILE >> n_above).max(1));
         let function = to_tiles(base.grid(), &function);
-        let tiles = TileSet::full(base.grid().nx() / TILE);
+        let (tiles, grid) = (TileSet::full(sides_of(base.grid())), self.ladder().grid(1));
         let start = LevelStart {
-            grid: next_finer(base.grid()),
-            mesh: prolongation::refine_all(&tiles, &function),
+            grid,
+            mesh: prolongation::refine_all(&tiles, &function, grid),
             contact_gap: outcome.contact_gap,
             energy_length: outcome.energy_length(),
             levels,
-            coarser,
+            coarser: coarser.filter(|_| self.ladder().is_even()),
         };
         BaseStart { start, tile_fraction }
     }
@@ -146,25 +151,27 @@ impl<'a> NestedIteration<'a> {
         let tolerance = self.setup.problem.measure.coarse_tolerance(finer - 1).max(self.setup.params.bound.aim());
         let level = solve_coarse_level(&self.setup, grid, mesh, tolerance, observer);
         levels.push(level.info);
+        let ladder = self.ladder();
+        let finer_grid = ladder.grid(ladder.n_levels() + 1 - finer);
         LevelStart {
-            grid: next_finer(grid),
-            mesh: self.refined(&level, finer <= self.setup.border_level),
+            grid: finer_grid,
+            mesh: self.refined(&level, finer_grid, finer <= self.setup.border_level),
             contact_gap: level.outcome.contact_gap,
             energy_length: level.outcome.energy_length(),
             levels,
-            coarser: if finer == 1 { Some(self.values(&level)) } else { coarser },
+            coarser: if finer == 1 && ladder.is_even() { Some(self.values(&level)) } else { coarser },
         }
     }
 
-    /// The start on elements half as large: of all, or of those `at_edges` of contacts only.
-    fn refined(&self, level: &SolvedLevel, at_edges: bool) -> MeshStart {
+    /// The start on the next finer `grid`: on its elements, or on those `at_edges` of contacts only.
+    fn refined(&self, level: &SolvedLevel, grid: Grid, at_edges: bool) -> MeshStart {
         let SolvedLevel { elements, pressure, gap, outcome, .. } = level;
         let function = prolongation::edge_function(elements, pressure, gap, outcome.contact_gap);
         if at_edges {
             let refined = self.setup.refined(&level.fields(), true);
             prolongation::refine_some(elements, pressure, &function, refined)
         } else {
-            prolongation::refine_all(elements.finest(), &function)
+            prolongation::refine_all(elements.finest(), &function, grid)
         }
     }
 
@@ -191,11 +198,6 @@ impl LevelStart {
     }
 }
 
-/// The grid with twice as many elements per side.
-fn next_finer(grid: Grid) -> Grid {
-    Grid::square(2 * grid.nx()).expect("a level of a checked grid")
-}
-
 /// Part of the squares of `side` × `side` elements in which the edge function of a contact is not zero.
 fn tile_fraction(grid: Grid, function: &[f64], side: usize) -> f64 {
     let touches = |row: &[f64]| row.iter().any(|&value| value != 0.0);
@@ -209,7 +211,7 @@ fn tile_fraction(grid: Grid, function: &[f64], side: usize) -> f64 {
 
 /// Values of a grid, tile by tile.
 fn to_tiles(grid: Grid, values: &[f64]) -> Vec<f64> {
-    let tiles = TileSet::full(grid.nx() / TILE);
+    let tiles = TileSet::full(sides_of(grid));
     let mut result = Vec::with_capacity(values.len());
     for &[column, row] in tiles.places() {
         for y in 0..TILE {

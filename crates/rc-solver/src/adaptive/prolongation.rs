@@ -4,8 +4,10 @@
 //! outside, which is linear across the edge of a contact.
 
 use rayon::prelude::*;
+use rc_core::Grid;
 use rc_quadtree::{CELLS, Elements, TILE, TileSet, prolong, prolong_onto};
 
+use super::ladder::sides_of;
 use crate::uniform::edge_function_outside;
 
 /// Elements, and the pressure that an iteration on them starts from; the pressure is zero everywhere else.
@@ -38,9 +40,9 @@ pub(super) fn edge_function(elements: &Elements, pressure: &[f64], gap: &[f64], 
     function
 }
 
-/// The start on elements half as large, where there is contact or nearly, from φ on tiles of one size.
-pub(super) fn refine_all(tiles: &TileSet, function: &[f64]) -> MeshStart {
-    let (fine, mut pressure) = prolong(tiles, function, far_from_contact(function));
+/// The start on the elements of the next finer `grid`, where there is contact or nearly, from φ on tiles of one size.
+pub(super) fn refine_all(tiles: &TileSet, function: &[f64], grid: Grid) -> MeshStart {
+    let (fine, mut pressure) = prolong(tiles, function, far_from_contact(function), sides_of(grid));
     to_pressure(&mut pressure);
     MeshStart { elements: Elements::uniform(fine), pressure }
 }

@@ -34,7 +34,7 @@ mod tests {
 
     #[test]
     fn a_chequered_pressure_is_as_rough_as_its_steps_and_a_uniform_one_is_smooth() {
-        let elements = Elements::uniform(TileSet::full(4));
+        let elements = Elements::uniform(TileSet::full([4 * TILE; 2]));
         let chequered: Vec<f64> = (0..elements.len()).map(|i| f64::from((i % TILE + i / TILE) as u32 % 2)).collect();
         let side = 1.0 / (4 * TILE) as f64;
         assert!((roughness(&elements, &chequered) / side - 1.0).abs() < 1e-12);

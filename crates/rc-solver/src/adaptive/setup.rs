@@ -11,6 +11,7 @@ use super::exclusion::{SmoothDisplacement, possible_contact};
 use super::gap_operator::{GapOperator, GapTables, PreparedGap};
 use super::ground::Ground;
 use super::heights::Heights;
+use super::ladder;
 use super::operator::{Hierarchy, Prepared, Reach, Tables};
 use super::prolongation::MeshStart;
 use super::scaled_operator::ScaledOperator;
@@ -72,16 +73,16 @@ impl<'a> Setup<'a> {
 
     /// Levels from the base grid to one whose whole grid is `grid`.
     pub(super) fn n_levels(&self, grid: Grid) -> usize {
-        (grid.nx() / self.base().nx()).ilog2() as usize
+        ladder::n_levels(self.base(), grid)
     }
 
     pub(super) fn hierarchy(&self, elements: &Elements, reach: Reach) -> Arc<Hierarchy> {
-        Arc::new(Hierarchy::new(self.base().nx(), elements.clone(), reach))
+        Arc::new(Hierarchy::new(self.base(), elements.clone(), reach))
     }
 
     /// About what pressures like that of `start` have for a mean.
     pub(super) fn mean_pressure(&self, start: &MeshStart) -> f64 {
-        let n_cell = (start.elements.finest().side() as f64).powi(2);
+        let n_cell = start.elements.finest().sides().into_iter().product::<usize>() as f64;
         match self.problem.control {
             Control::MeanPressure(mean) => mean,
             Control::Penetration(_) => mean_pressure(n_cell, &blocks_of(&start.elements), &start.pressure),
@@ -113,9 +114,14 @@ impl<'a> Setup<'a> {
         contact_gap - self.problem.offset() + self.problem.h_max
     }
 
-    /// Tiles, of `per_side` per side of the cell, where the gap may be less than `gap` under a displacement whose smooth part is `smooth`.
-    pub(super) fn possible_contact(&self, smooth: &SmoothDisplacement<'_>, per_side: usize, gap: f64) -> Vec<[u32; 2]> {
-        possible_contact(smooth, self.heights, gap - self.problem.offset(), per_side)
+    /// Tiles, of so many columns and rows, where the gap may be less than `gap` under a displacement whose smooth part is `smooth`.
+    pub(super) fn possible_contact(
+        &self,
+        smooth: &SmoothDisplacement<'_>,
+        extent: [usize; 2],
+        gap: f64,
+    ) -> Vec<[u32; 2]> {
+        possible_contact(smooth, self.heights, gap - self.problem.offset(), extent)
     }
 
     /// The mesh with elements divided wherever they are too coarse for the pressure and the gap on them; with `deepen` the smallest

@@ -28,8 +28,6 @@ pub(crate) struct AdaptiveSolution {
     pub(super) grid: Grid,
     /// The grid of the smallest elements.
     pub(super) finest: Grid,
-    /// The smallest elements are 2^`border_level` times smaller than those of the grid.
-    pub(super) border_level: usize,
     pub(super) elements: Elements,
     pub(super) pressure: Vec<f64>,
     pub(super) area: ContactArea,
@@ -115,17 +113,17 @@ impl AdaptiveSolution {
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
         let (own_tiles, pressure) = self.on_grid();
-        let (n, per_side) = (own_tiles.side(), own_tiles.per_side());
+        let ([nx, ny], [columns, n_rows]) = (own_tiles.sides(), own_tiles.extent());
         let own = Elements::uniform(own_tiles);
         let prepared = kernels.response();
-        let tables = prepared.tables(self.n_levels() - self.border_level);
+        let tables = prepared.tables(self.grid);
         // As many rows of tiles at once as about a million cells hold.
-        let at_once = (1_000_000 / (TILE * n)).max(1);
-        for first in (0..per_side).step_by(at_once) {
-            let band = first..(first + at_once).min(per_side);
-            let more = band.clone().flat_map(|row| (0..per_side).map(move |column| [column as u32, row as u32]));
-            let tiles = TileSet::new(per_side, own.finest().places().iter().copied().chain(more).collect());
-            let hierarchy = Arc::new(Hierarchy::new(self.base.nx(), Elements::uniform(tiles), prepared.reach()));
+        let at_once = (1_000_000 / (TILE * nx)).max(1);
+        for first in (0..n_rows).step_by(at_once) {
+            let band = first..(first + at_once).min(n_rows);
+            let more = band.clone().flat_map(|row| (0..columns).map(move |column| [column as u32, row as u32]));
+            let tiles = TileSet::new([nx, ny], own.finest().places().iter().copied().chain(more).collect());
+            let hierarchy = Arc::new(Hierarchy::new(self.base, Elements::uniform(tiles), prepared.reach()));
             let mut values = own.moved(hierarchy.elements(), &pressure, 0.0);
             let tiles = hierarchy.elements().finest();
             // Where the pressure is on part of the cell, the mean over all of it says nothing of its size.
@@ -135,13 +133,13 @@ impl AdaptiveSolution {
             write_blocks(&mut fresh, values.chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
             fresh.apply();
             read_blocks(&fresh, values.chunks_mut(BLOCK_CELLS), |v, cells| v.copy_from_slice(cells));
-            let mut rows = vec![0.0; TILE * n];
+            let mut rows = vec![0.0; TILE * nx];
             for row in band {
-                for column in 0..per_side {
+                for column in 0..columns {
                     let Some(tile) = tiles.find(column as i64, row as i64) else { continue };
-                    put_tile(&mut rows, n, column, &values[tile * CELLS..][..CELLS]);
+                    put_tile(&mut rows, nx, column, &values[tile * CELLS..][..CELLS]);
                 }
-                take(row * TILE, &rows)?;
+                take(row * TILE, &rows[..TILE.min(ny - row * TILE) * nx])?;
             }
         }
         Ok(())
@@ -151,16 +149,6 @@ impl AdaptiveSolution {
     #[must_use]
     pub(crate) fn gap_offset(&self, h_max: f64) -> f64 {
         h_max - self.info.penetration
-    }
-
-    /// Smallest elements that a side of the cell has room for.
-    pub(super) fn finest_side(&self) -> usize {
-        self.finest.nx()
-    }
-
-    /// Levels above the base grid, up to the smallest elements.
-    fn n_levels(&self) -> usize {
-        (self.finest.nx() / self.base.nx()).ilog2() as usize
     }
 
     /// Evaluates the observables, as [`Observables::of`] does for a solution on a uniform grid.
@@ -180,7 +168,7 @@ impl AdaptiveSolution {
         let n = self.finest.len() as f64;
         // The quick operator alone would be up to a percent off.
         let x = {
-            let mut preconditioner = kernels.preconditioner().tables(self.n_levels());
+            let mut preconditioner = kernels.preconditioner().tables(self.finest);
             let (hierarchy, tables) = self.operator_of(kernels.quick());
             let mut corrections = TileCorrections::new(hierarchy, &tables, &mut preconditioner);
             stiffness_pressure(&self.pressure, n, &mut corrections)
@@ -191,8 +179,8 @@ impl AdaptiveSolution {
 
     /// What L by this kernel needs on the mesh.
     fn operator_of(&self, prepared: &Prepared<f32>) -> (Arc<Hierarchy>, Tables<f32>) {
-        let hierarchy = Hierarchy::new(self.base.nx(), self.elements.clone(), prepared.reach());
-        (Arc::new(hierarchy), prepared.tables(self.n_levels()))
+        let hierarchy = Hierarchy::new(self.base, self.elements.clone(), prepared.reach());
+        (Arc::new(hierarchy), prepared.tables(self.finest))
     }
 }
 
@@ -200,6 +188,6 @@ impl AdaptiveSolution {
 pub(super) fn rms_pressure(elements: &Elements, pressure: &[f64]) -> f64 {
     let squares = pressure.par_chunks(BLOCK_CELLS).map(|p| [p.iter().map(|p| p * p).sum()]).collect();
     let [squares] = blocks_of(elements).total(squares);
-    let smallest = elements.finest().side();
-    (squares / (smallest * smallest) as f64).sqrt()
+    let n_cell: usize = elements.finest().sides().into_iter().product();
+    (squares / n_cell as f64).sqrt()
 }

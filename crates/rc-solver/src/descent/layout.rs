@@ -20,7 +20,7 @@ enum Places {
     /// Rows of a grid of so many elements along both axes.
     Rows([usize; 2]),
     /// Runs of so many elements, each around its own centre, in a cell of so many of the largest elements along both axes.
-    Runs { run: usize, centres: Arc<[[f32; 2]]>, side: usize },
+    Runs { run: usize, centres: Arc<[[f32; 2]]>, sides: [usize; 2] },
 }
 
 /// Elements of a row that count as one place.
@@ -42,19 +42,18 @@ impl BlockLayout {
         Self { areas: areas.into(), ..self }
     }
 
-    /// With the centres of runs of `run` elements, in parts of a cell of `side` of the largest elements along both axes. What is behind the
+    /// With the centres of runs of `run` elements, in parts of a cell of `sides` of the largest elements along both axes. What is behind the
     /// last of a level has no element, but a centre.
-    pub(crate) fn with_runs(self, run: usize, centres: Vec<[f32; 2]>, side: usize) -> Self {
+    pub(crate) fn with_runs(self, run: usize, centres: Vec<[f32; 2]>, sides: [usize; 2]) -> Self {
         debug_assert!(self.len.is_multiple_of(run), "blocks of whole runs");
-        Self { places: Places::Runs { run, centres: centres.into(), side }, ..self }
+        Self { places: Places::Runs { run, centres: centres.into(), sides }, ..self }
     }
 
     /// The largest elements along both axes of the cell, as far as anybody knows.
     pub(super) fn sides(&self) -> [usize; 2] {
         match self.places {
             Places::Anywhere => [1, 1],
-            Places::Rows(sides) => sides,
-            Places::Runs { side, .. } => [side, side],
+            Places::Rows(sides) | Places::Runs { sides, .. } => sides,
         }
     }
 

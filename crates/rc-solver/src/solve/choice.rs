@@ -119,8 +119,7 @@ impl<'a> Choice<'a, '_> {
                 Some(percent) => Some(MethodReason::LargeContact { percent }),
                 None => self.params.method_follows_memory.then_some(MethodReason::AdaptiveDoesNotFit),
             },
-            AdaptiveError::RectangularCell => Some(MethodReason::CellNotSquare),
-            AdaptiveError::Grid { nx, ny, .. } if nx != ny => Some(MethodReason::GridNotSquare { grid }),
+            AdaptiveError::Elements { .. } => Some(MethodReason::ElementsNotSquare { grid }),
             AdaptiveError::Grid { .. } | AdaptiveError::Base { .. } => Some(MethodReason::NoLevels { grid }),
             AdaptiveError::Flat => Some(MethodReason::Flat),
             AdaptiveError::OperatorError { .. } => {

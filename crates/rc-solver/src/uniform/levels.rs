@@ -19,7 +19,18 @@ pub(crate) fn coarsen(heights: &Field, smallest_side: usize) -> Vec<Field> {
     coarsen_above(heights, smallest_side, f64::NEG_INFINITY, half)
 }
 
-/// The same for starts on finer grids: heights below the [`floor`] count as that.
+/// The heights on coarser grids of any sizes, one after the other, for starts on finer grids: heights below the [`floor`] count as that.
+pub(crate) fn coarsen_to(heights: &Field, coarser: impl Iterator<Item = Grid>) -> Vec<Field> {
+    let floor = floor(heights);
+    let mut levels: Vec<Field> = Vec::new();
+    for grid in coarser {
+        let next = sample(levels.last().unwrap_or(heights), grid, floor);
+        levels.push(next);
+    }
+    levels
+}
+
+/// The same as [`coarsen`] for starts on finer grids: heights below the [`floor`] count as that.
 pub(crate) fn coarsen_without_pits(heights: &Field, smallest_side: usize) -> Vec<Field> {
     coarsen_above(heights, smallest_side, floor(heights), half)
 }

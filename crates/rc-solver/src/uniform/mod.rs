@@ -9,7 +9,7 @@ mod prolongation;
 use rc_core::{Field, Kernel, Observer};
 
 use self::levels::nest_without_pits;
-pub(crate) use self::levels::{coarsen, coarsen_without_pits};
+pub(crate) use self::levels::{coarsen, coarsen_to, coarsen_without_pits};
 use self::nested_grids::SMALLEST_SIDE;
 pub(crate) use self::nested_grids::{FinestGrid, NestedGrids};
 pub(crate) use self::prolongation::{edge_function, edge_function_outside};

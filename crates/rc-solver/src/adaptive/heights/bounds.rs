@@ -46,20 +46,18 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// The maxima of a map, over blocks of eight elements per side, or fewer if its side is no multiple of eight.
+    /// The maxima of a map, over its tiles of 8 × 8 elements.
     pub(super) fn of_map(map: &Field, extremes: &HeightStatistics) -> Self {
-        let side = map.grid().nx();
-        let block = 1 << side.trailing_zeros().min(TILE.ilog2());
+        let sides = [map.grid().nx(), map.grid().ny()];
         let (offset, scale) = (extremes.mean, scale(extremes));
-        let n_blocks = side / block;
-        let leaves = map.values().par_chunks_exact(block * side).flat_map_iter(|rows| {
-            (0..n_blocks).map(move |ix| {
-                let inside = rows.chunks_exact(side).flat_map(|row| &row[ix * block..(ix + 1) * block]);
+        let leaves = map.values().par_chunks(TILE * sides[0]).flat_map_iter(|rows| {
+            (0..sides[0]).step_by(TILE).map(move |x| {
+                let inside = rows.chunks_exact(sides[0]).flat_map(|row| &row[x..(x + TILE).min(sides[0])]);
                 round_up((inside.fold(f64::NEG_INFINITY, |max, &h| max.max(h)) - offset) / scale)
             })
         });
         Self {
-            pyramid: MaxPyramid::new(n_blocks, leaves.collect()),
+            pyramid: MaxPyramid::new(sides, TILE, leaves.collect()),
             offset,
             remainder: 0.0,
             scale,
@@ -82,16 +80,24 @@ impl Bounds {
         let mut signs = [surface.mean(), -surface.mean()].into_iter();
         leaves.map(|leaves| {
             let offset = signs.next().unwrap_or(0.0);
-            Self { pyramid: MaxPyramid::new(side, leaves), offset, remainder, scale, curvature }
+            Self { pyramid: MaxPyramid::new([side; 2], 1, leaves), offset, remainder, scale, curvature }
         })
     }
 
-    /// Upper bound of the heights in block (`ix`, `iy`) of `blocks` × `blocks` equal squares of the cell.
+    /// Upper bound of the heights in the block at `place`, of `blocks` equal ones along both sides of the cell.
     ///
     /// # Panics
     /// When the block is outside the cell.
-    pub(super) fn of_block(&self, blocks: usize, ix: usize, iy: usize) -> f64 {
-        self.height(self.pyramid.max(blocks, ix, iy))
+    pub(super) fn of_block(&self, blocks: [usize; 2], place: [usize; 2]) -> f64 {
+        self.height(self.pyramid.max(blocks, place))
+    }
+
+    /// The same of a tile of a map.
+    ///
+    /// # Panics
+    /// When the tile is outside the map.
+    pub(super) fn of_leaf(&self, place: [usize; 2]) -> f64 {
+        self.height(self.pyramid.leaf(place))
     }
 
     /// Upper bound of |∂²h/∂x²| and |∂²h/∂y²| everywhere; infinite for a map, of which nothing is known between elements.
@@ -99,9 +105,9 @@ impl Bounds {
         self.curvature
     }
 
-    /// Leaves per side.
-    pub(super) fn side(&self) -> usize {
-        self.pyramid.side()
+    /// Leaves along both sides.
+    pub(super) fn sides(&self) -> [usize; 2] {
+        self.pyramid.sides()
     }
 
     /// Upper bounds of the leaves, row-major.

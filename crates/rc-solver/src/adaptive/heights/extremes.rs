@@ -8,7 +8,7 @@ use super::bounds::Bounds;
 ///
 /// That is a few leaves of a rough surface; of a wavy one with a level ridge, all leaves along it.
 pub(super) fn greatest(bounds: &Bounds, tiles_per_side: usize, tile: impl Fn(usize, usize) -> f64) -> f64 {
-    let side = bounds.side();
+    let [side, _] = bounds.sides();
     let of_leaf = |leaf: usize| {
         let tiles = |i: usize| i * tiles_per_side / side..((i + 1) * tiles_per_side).div_ceil(side);
         let rows = tiles(leaf / side).flat_map(|ty| tiles(leaf % side).map(move |tx| (tx, ty)));

@@ -21,21 +21,21 @@ use rc_core::{Field, Grid, HeightField, HeightSource};
 use rc_quadtree::{TILE, put_tile};
 
 use crate::ProblemError;
+use crate::adaptive::ladder::Ladder;
 use crate::problem::HeightStatistics;
-use crate::uniform::coarsen_without_pits;
+use crate::uniform::coarsen_to;
 use bounds::Bounds;
 use interpolation::{Interpolation, smallest_side};
 
-/// Heights at the centres of the levels `base_side · 2^k`, k = 0, …, K, of cells per side.
+/// Heights at the centres of the levels of a [`Ladder`].
 ///
 /// Memory for a band-limited surface with waves up to N is 16 M² bytes, where M × M is the interpolation grid: M is the least
-/// `base_side` · 2^m that is at least 4N. Of these, 8 are coefficients, 8/3 coarser levels (8 if M is the base), and 16/3 bounds;
+/// side of a level that is at least 4N. Of these, 8 are coefficients, 8/3 coarser levels (8 if M is the base), and 16/3 bounds;
 /// making it takes 5 more. Nothing but a few weights depends on the finest level. For a map it is 8/3 bytes an element for
 /// coarser levels and 1/12 for bounds.
 #[derive(Clone)]
 pub(crate) struct Heights<'a> {
-    base_side: usize,
-    finest_side: usize,
+    ladder: Ladder,
     /// Levels that are kept whole, base first. Of a map all, of a band-limited surface those below the interpolation grid.
     grids: Vec<WholeGrid<'a>>,
     interpolation: Option<Interpolation>,
@@ -44,57 +44,51 @@ pub(crate) struct Heights<'a> {
 }
 
 impl<'a> Heights<'a> {
-    /// Prepares the levels from `base_side` to the finest side.
+    /// Prepares the levels from a base grid of these sides to the finest grid.
     ///
     /// # Errors
     /// [`ProblemError::Height`] for a height that is not finite; of a surface, its element is one of the grid it is sampled on.
-    ///
-    /// # Panics
-    /// When the finest side is not `base_side` · 2^K with K ≥ 0, above [`Grid::MAX_SIDE`], or a map not square.
-    pub(crate) fn new(source: HeightSource<'a>, base_side: usize) -> Result<Self, ProblemError> {
+    pub(crate) fn new(source: HeightSource<'a>, base: [usize; 2]) -> Result<Self, ProblemError> {
+        let ladder = Ladder::new(base, source.grid());
         match source {
-            HeightSource::Map(map) => Self::of_map(WholeGrid::Borrowed(map), base_side),
-            HeightSource::SharedMap(map) => Self::of_map(WholeGrid::Shared(map), base_side),
-            HeightSource::Surface { surface, grid } => Self::of_waves(surface, grid.nx(), base_side),
-            HeightSource::SharedSurface { surface, grid } => Self::of_waves(surface.as_ref(), grid.nx(), base_side),
+            HeightSource::Map(map) => Self::of_map(WholeGrid::Borrowed(map), ladder),
+            HeightSource::SharedMap(map) => Self::of_map(WholeGrid::Shared(map), ladder),
+            HeightSource::Surface { surface, grid } => Self::of_waves(surface, grid, ladder),
+            HeightSource::SharedSurface { surface, grid } => Self::of_waves(surface.as_ref(), grid, ladder),
         }
     }
 
     /// Of a surface, band-limited or not.
-    fn of_waves(surface: &dyn HeightField, finest_side: usize, base_side: usize) -> Result<Self, ProblemError> {
-        let level = surface.band_limit().map(|limit| (limit, interpolation_level(limit, base_side)));
+    fn of_waves(surface: &dyn HeightField, grid: Grid, ladder: Ladder) -> Result<Self, ProblemError> {
+        let is_square = grid.is_square() && ladder.is_even();
+        let level = surface.band_limit().filter(|_| is_square);
+        let level = level.map(|limit| (limit, interpolation_level(limit, ladder.grid(0).nx())));
         match level {
             // A level finer than the interpolation grid; whole tiles on it are what extremes are searched in.
-            Some((limit, level))
-                if level < n_refinements(base_side, finest_side) && finest_side.is_multiple_of(TILE) =>
-            {
-                Self::of_surface(surface, limit, level, base_side, finest_side)
+            Some((limit, level)) if (level as usize) < ladder.n_levels() && grid.nx().is_multiple_of(TILE) => {
+                Self::of_surface(surface, limit, level, ladder)
             }
-            _ => Self::of_map(WholeGrid::new(surface.sample(square(finest_side))), base_side),
+            _ => Self::of_map(WholeGrid::new(surface.sample(grid)), ladder),
         }
     }
 
-    fn of_map(map: WholeGrid<'a>, base_side: usize) -> Result<Self, ProblemError> {
-        assert_eq!(map.grid().nx(), map.grid().ny(), "a map of heights must be square");
-        let finest_side = map.grid().nx();
-        let n_refinements = n_refinements(base_side, finest_side);
+    fn of_map(map: WholeGrid<'a>, ladder: Ladder) -> Result<Self, ProblemError> {
         let extremes = HeightStatistics::of(&map)?;
         let bounds = Bounds::of_map(&map, &extremes);
-        let mut grids: Vec<WholeGrid<'a>> =
-            coarsen_without_pits(&map, base_side).into_iter().map(WholeGrid::new).collect();
+        let coarser = (0..ladder.n_levels()).rev().map(|level| ladder.grid(level));
+        let mut grids: Vec<WholeGrid<'a>> = coarsen_to(&map, coarser).into_iter().map(WholeGrid::new).collect();
         grids.reverse();
         grids.push(map);
-        debug_assert_eq!(grids.len(), n_refinements as usize + 1);
-        Ok(Self { base_side, finest_side, grids, interpolation: None, bounds, extremes })
+        Ok(Self { ladder, grids, interpolation: None, bounds, extremes })
     }
 
     fn of_surface(
         surface: &dyn HeightField,
         band_limit: usize,
         level: u32,
-        base_side: usize,
-        finest_side: usize,
+        ladder: Ladder,
     ) -> Result<Self, ProblemError> {
+        let (base_side, finest_side) = (ladder.base().nx(), ladder.finest().nx());
         let samples = surface.sample(square(base_side << level));
         let of_samples = HeightStatistics::of(&samples)?;
         let mut grids = Vec::new();
@@ -103,7 +97,7 @@ impl<'a> Heights<'a> {
             HeightStatistics::of(&heights)?;
             grids.push(WholeGrid::new(heights));
         }
-        let finest_level = n_refinements(base_side, finest_side) - level;
+        let finest_level = ladder.n_levels() as u32 - level;
         let interpolation = Interpolation::new(samples, band_limit, finest_level + 1);
         let [bounds, of_negative] = Bounds::of_surface(&interpolation, &of_samples);
         let tiles = finest_side / TILE;
@@ -118,77 +112,87 @@ impl<'a> Heights<'a> {
             // Samples of whole waves, each more than two elements long, have mean zero.
             mean: of_samples.mean,
         };
-        Ok(Self { base_side, finest_side, grids, interpolation: Some(interpolation), bounds, extremes })
+        Ok(Self { ladder, grids, interpolation: Some(interpolation), bounds, extremes })
     }
 
     /// The same heights without a borrow: a borrowed map is copied.
     pub(crate) fn into_owned(self) -> Heights<'static> {
-        let Self { base_side, finest_side, grids, interpolation, bounds, extremes } = self;
+        let Self { ladder, grids, interpolation, bounds, extremes } = self;
         let grids = grids.into_iter().map(WholeGrid::into_owned).collect();
-        Heights { base_side, finest_side, grids, interpolation, bounds, extremes }
+        Heights { ladder, grids, interpolation, bounds, extremes }
     }
 
-    /// Cells per side of the finest level.
-    pub(crate) fn finest_side(&self) -> usize {
-        self.finest_side
+    /// The grids of the levels.
+    pub(crate) fn ladder(&self) -> Ladder {
+        self.ladder
     }
 
-    /// Heights at the centres of the grid with `base_side` elements per side.
+    /// Heights at the centres of the base grid.
     pub(crate) fn base(&self) -> &Field {
         &self.grids[0]
     }
 
-    /// Heights at the centres of tile (`tx`, `ty`) of the level with `side` cells per side, row-major, in λ.
+    /// Heights at the centres of tile (`tx`, `ty`) of the level of these sides in cells, row-major, in λ. What reaches beyond the level
+    /// is left as it is.
     ///
     /// A band-limited surface is exact to 1e-9 of its rms height on every level. The coarser levels of a map are interpolated
     /// at their centres from the next finer ones.
     ///
     /// # Panics
-    /// When there is no such level, its side is no multiple of [`TILE`], or the tile is outside it.
-    pub(crate) fn tile(&self, side: usize, tx: usize, ty: usize, out: &mut [f64; TILE * TILE]) {
-        let level = n_refinements(self.base_side, side) as usize;
+    /// When there is no such level, or the tile is outside it.
+    pub(crate) fn tile(&self, sides: [usize; 2], [tx, ty]: [usize; 2], out: &mut [f64; TILE * TILE]) {
+        let level = self.ladder.level_of(sides);
         match (self.grids.get(level), &self.interpolation) {
             (Some(grid), _) => {
-                for (iy, row) in out.as_chunks_mut::<TILE>().0.iter_mut().enumerate() {
-                    row.copy_from_slice(&grid.row(TILE * ty + iy)[TILE * tx..TILE * (tx + 1)]);
+                let columns = TILE * tx..(TILE * (tx + 1)).min(sides[0]);
+                for (iy, row) in (TILE * ty..sides[1]).zip(out.as_chunks_mut::<TILE>().0) {
+                    row[..columns.len()].copy_from_slice(&grid.row(iy)[columns.clone()]);
                 }
             }
             (None, Some(interpolation)) => {
-                let coarsest = n_refinements(self.base_side, interpolation.side()) as usize;
-                interpolation.tile(level - coarsest, tx, ty, out);
+                let side = interpolation.side();
+                interpolation.tile(level - self.ladder.level_of([side, side]), tx, ty, out);
             }
             (None, None) => unreachable!("a map keeps all levels"),
         }
     }
 
-    /// Heights of row `ty` of the tiles of the level with `side` cells per side: eight rows of cells.
+    /// Heights of row `ty` of the tiles of the level of these sides in cells: eight rows of cells, or what is left of them.
     ///
     /// # Panics
     /// As [`Heights::tile`].
-    pub(crate) fn row_of_tiles(&self, side: usize, ty: usize) -> Vec<f64> {
+    pub(crate) fn row_of_tiles(&self, sides: [usize; 2], ty: usize) -> Vec<f64> {
         let tile = |tx: usize| {
             let mut tile = [0.0; TILE * TILE];
-            self.tile(side, tx, ty, &mut tile);
+            self.tile(sides, [tx, ty], &mut tile);
             tile
         };
-        let tiles: Vec<[f64; TILE * TILE]> = (0..side / TILE).into_par_iter().map(tile).collect();
-        let mut rows = vec![0.0; TILE * side];
+        let tiles: Vec<[f64; TILE * TILE]> = (0..sides[0].div_ceil(TILE)).into_par_iter().map(tile).collect();
+        let mut rows = vec![0.0; TILE.min(sides[1] - TILE * ty) * sides[0]];
         for (tx, tile) in tiles.iter().enumerate() {
-            put_tile(&mut rows, side, tx, tile);
+            put_tile(&mut rows, sides[0], tx, tile);
         }
         rows
     }
 
-    /// Upper bound of the heights at all centres of the finest level in block (`ix`, `iy`) of `blocks` × `blocks` equal
-    /// squares of the cell. Of a band-limited surface it bounds every point, and so the tiles of every level.
+    /// Upper bound of the heights at all centres of the finest level in the block at `place`, of `blocks` equal ones along both
+    /// sides of the cell. Of a band-limited surface it bounds every point, and so the tiles of every level.
     ///
     /// One look-up when the blocks are the tiles of a level, a few otherwise. Blocks smaller than what is kept (cells of the
     /// interpolation grid, finest tiles of a map) get the bound of what contains them.
     ///
     /// # Panics
     /// When the block is outside the cell.
-    pub(crate) fn upper_bound(&self, blocks: usize, ix: usize, iy: usize) -> f64 {
-        self.bounds.of_block(blocks, ix, iy)
+    pub(crate) fn upper_bound(&self, blocks: [usize; 2], place: [usize; 2]) -> f64 {
+        self.bounds.of_block(blocks, place)
+    }
+
+    /// The same of a tile of the finest level that the finest grid does not divide into evenly: heights are those of a map then.
+    ///
+    /// # Panics
+    /// When the tile is outside the level.
+    pub(crate) fn upper_bound_of_tile(&self, place: [usize; 2]) -> f64 {
+        self.bounds.of_leaf(place)
     }
 
     /// Upper bound of |∂²h/∂x²| and |∂²h/∂y²|, in 1/λ; infinite for a map.
@@ -238,13 +242,6 @@ fn interpolation_level(band_limit: usize, base_side: usize) -> u32 {
     // What no grid resolves ends above every finest level.
     let smallest = smallest_side(band_limit).min(2 * Grid::MAX_SIDE);
     smallest.div_ceil(base_side.max(1)).next_power_of_two().ilog2()
-}
-
-/// k of the level with `side = base_side · 2^k` cells per side.
-fn n_refinements(base_side: usize, side: usize) -> u32 {
-    let k = (side / base_side.max(1)).checked_ilog2();
-    let k = k.filter(|&k| base_side << k == side);
-    k.expect("the side of a level is a power of two times that of the base")
 }
 
 fn square(side: usize) -> Grid {

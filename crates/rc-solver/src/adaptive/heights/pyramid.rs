@@ -1,34 +1,38 @@
 //! Maxima over nested squares of a grid.
 
-/// Maxima of a square field of bounds over blocks of 1, 2², 4², … leaves, as long as the number of blocks is even.
+/// Maxima of a field of bounds over blocks of 1, 2², 4², … leaves, as long as the numbers of blocks along both sides are even.
 ///
 /// Bounds are kept in single precision, rounded up, relative to an offset and in units of the range of heights: 4 bytes a
 /// leaf, and a third more for the larger blocks.
 #[derive(Clone)]
 pub(super) struct MaxPyramid {
-    /// From the leaves on: blocks per side, and their maxima, row-major.
-    levels: Vec<(usize, Vec<f32>)>,
+    /// Cells along both sides, and cells of a leaf; the last leaves along a side may reach beyond it.
+    cells: [usize; 2],
+    of_leaf: usize,
+    /// From the leaves on: blocks along both sides, and their maxima, row-major.
+    levels: Vec<([usize; 2], Vec<f32>)>,
 }
 
 impl MaxPyramid {
-    /// From the bounds of `side` × `side` leaves, row-major.
-    pub(super) fn new(side: usize, leaves: Vec<f32>) -> Self {
-        let mut levels = vec![(side, leaves)];
-        while let Some((side, finer)) = levels.last().filter(|(side, _)| side.is_multiple_of(2) && *side > 0) {
-            let half = side / 2;
-            let rows = finer.chunks_exact(2 * side).flat_map(|rows| {
-                let (above, below) = rows.split_at(*side);
+    /// From the bounds of leaves, row-major, each of `of_leaf` × `of_leaf` cells.
+    pub(super) fn new(cells: [usize; 2], of_leaf: usize, leaves: Vec<f32>) -> Self {
+        let mut levels = vec![(cells.map(|n| n.div_ceil(of_leaf)), leaves)];
+        let halves = |sides: &[usize; 2]| sides.iter().all(|&side| side.is_multiple_of(2) && side > 0);
+        while let Some((sides, finer)) = levels.last().filter(|(sides, _)| halves(sides)) {
+            let half = sides.map(|side| side / 2);
+            let rows = finer.chunks_exact(2 * sides[0]).flat_map(|rows| {
+                let (above, below) = rows.split_at(sides[0]);
                 let pairs = above.as_chunks::<2>().0.iter().zip(below.as_chunks::<2>().0);
                 pairs.map(|(a, b)| a[0].max(a[1]).max(b[0].max(b[1])))
             });
             let coarser = (half, rows.collect());
             levels.push(coarser);
         }
-        Self { levels }
+        Self { cells, of_leaf, levels }
     }
 
-    /// Leaves per side.
-    pub(super) fn side(&self) -> usize {
+    /// Leaves along both sides.
+    pub(super) fn sides(&self) -> [usize; 2] {
         self.levels[0].0
     }
 
@@ -37,18 +41,31 @@ impl MaxPyramid {
         &self.levels[0].1
     }
 
-    /// Greatest bound of the leaves that block (`ix`, `iy`) of `blocks` × `blocks` equal squares of the cell overlaps. One
+    /// Greatest bound of the leaves that the block at `place` overlaps, of `blocks` equal ones along both sides of the cell. One
     /// look-up when a level of the pyramid has this number of blocks, or when they divide its leaves, and a few otherwise.
     ///
     /// # Panics
     /// When the block is outside the cell.
-    pub(super) fn max(&self, blocks: usize, ix: usize, iy: usize) -> f32 {
-        let level = self.levels.iter().rev().find(|(side, _)| *side >= blocks);
-        let (side, values) = level.unwrap_or(&self.levels[0]);
-        let columns = ix * side / blocks..((ix + 1) * side).div_ceil(blocks);
-        let rows = iy * side / blocks..((iy + 1) * side).div_ceil(blocks);
-        let rows = rows.map(|row| &values[row * side..][columns.clone()]);
+    pub(super) fn max(&self, blocks: [usize; 2], place: [usize; 2]) -> f32 {
+        let is_fine = |sides: &[usize; 2]| sides.iter().zip(blocks).all(|(&side, blocks)| side >= blocks);
+        let level = self.levels.iter().rposition(|(sides, _)| is_fine(sides)).unwrap_or(0);
+        let (sides, values) = &self.levels[level];
+        let cells = self.of_leaf << level;
+        let [columns, rows] = [0, 1].map(|axis| {
+            let (i, n) = (place[axis], blocks[axis] * cells);
+            i * self.cells[axis] / n..((i + 1) * self.cells[axis]).div_ceil(n)
+        });
+        let rows = rows.map(|row| &values[row * sides[0]..][columns.clone()]);
         rows.flatten().copied().fold(f32::NEG_INFINITY, f32::max)
+    }
+
+    /// The bound of a leaf.
+    ///
+    /// # Panics
+    /// When there is no such leaf.
+    pub(super) fn leaf(&self, [ix, iy]: [usize; 2]) -> f32 {
+        let (sides, values) = &self.levels[0];
+        values[iy * sides[0] + ix]
     }
 }
 
@@ -61,7 +78,7 @@ mod tests {
         for side in [1, 6, 24, 25] {
             let leaf = |ix: usize, iy: usize| ((ix * 37 + iy * 53 + 11) % 101) as f32;
             let leaves = (0..side * side).map(|i| leaf(i % side, i / side)).collect();
-            let pyramid = MaxPyramid::new(side, leaves);
+            let pyramid = MaxPyramid::new([side, side], 1, leaves);
             for blocks in 1..=2 * side {
                 for (ix, iy) in (0..blocks * blocks).map(|i| (i % blocks, i / blocks)) {
                     let overlaps = |leaf: usize, block: usize| {
@@ -70,7 +87,7 @@ mod tests {
                     let inside = (0..side * side).map(|i| (i % side, i / side));
                     let inside = inside.filter(|&(lx, ly)| overlaps(lx, ix) && overlaps(ly, iy));
                     let expected = inside.map(|(lx, ly)| leaf(lx, ly)).fold(f32::NEG_INFINITY, f32::max);
-                    let found = pyramid.max(blocks, ix, iy);
+                    let found = pyramid.max([blocks, blocks], [ix, iy]);
                     // A coarser level may hold more than the block when their borders do not meet.
                     let exact = side % blocks == 0 && (side / blocks).is_power_of_two() || blocks % side == 0;
                     // Leaves are whole numbers.

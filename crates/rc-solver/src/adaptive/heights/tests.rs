@@ -121,7 +121,7 @@ fn worst_tile(heights: &Heights<'_>, exact: &Field) -> f64 {
     let mut worst = 0.0_f64;
     for (tx, ty) in (0..(side / TILE).pow(2)).map(|tile| (tile % (side / TILE), tile / (side / TILE))) {
         let mut tile = [f64::NAN; TILE * TILE];
-        heights.tile(side, tx, ty, &mut tile);
+        heights.tile([side, side], [tx, ty], &mut tile);
         for (i, height) in tile.iter().enumerate() {
             let difference = (height - exact.at(tx * TILE + i % TILE, ty * TILE + i / TILE)).abs();
             assert!(!difference.is_nan(), "tile ({tx}, {ty}) was not filled");
@@ -138,7 +138,7 @@ fn excess(heights: &Heights<'_>, finest: &Field, blocks: usize) -> (f64, f64) {
     for (ix, iy) in (0..blocks * blocks).map(|block| (block % blocks, block / blocks)) {
         let inside = (iy * n..(iy + 1) * n).flat_map(|row| &finest.row(row)[ix * n..(ix + 1) * n]);
         let greatest = inside.copied().fold(f64::NEG_INFINITY, f64::max);
-        let excess = heights.upper_bound(blocks, ix, iy) - greatest;
+        let excess = heights.upper_bound([blocks; 2], [ix, iy]) - greatest;
         least = least.min(excess);
         sum += excess;
     }
@@ -154,10 +154,10 @@ fn tiles_of_all_levels_are_exact_to_nine_digits_of_the_rms_height() {
             let surface = SelfAffine::new(waves, hurst, 1e3);
             let heights = Heights::new(
                 HeightSource::Surface { surface: &surface, grid: Grid::square(finest).expect("a grid") },
-                base,
+                [base; 2],
             )
             .expect("finite");
-            assert_eq!(heights.finest_side(), finest);
+            assert_eq!(heights.ladder().finest(), square(finest));
             assert_eq!(heights.base(), &surface.sample(square(base)));
             let sides = (0..).map(|k| base << k).take_while(|&side| side <= finest);
             for side in sides.filter(|side| side % TILE == 0) {
@@ -173,11 +173,11 @@ fn tiles_far_below_a_cell_of_the_interpolation_grid_are_exact() {
     let surface = SelfAffine::new(5, 0.8, 0.0);
     let side = 32 << 10;
     let heights =
-        Heights::new(HeightSource::Surface { surface: &surface, grid: Grid::square(side).expect("a grid") }, 32)
+        Heights::new(HeightSource::Surface { surface: &surface, grid: Grid::square(side).expect("a grid") }, [32; 2])
             .expect("finite");
     let mut tile = [0.0; TILE * TILE];
     for (tx, ty) in [(0, 0), (4095, 4095), (63, 64), (2047, 1), (1234, 3210)] {
-        heights.tile(side, tx, ty, &mut tile);
+        heights.tile([side, side], [tx, ty], &mut tile);
         for (i, height) in tile.iter().enumerate() {
             let exact = surface.height(square(side).centre(tx * TILE + i % TILE, ty * TILE + i / TILE));
             assert!((height - exact).abs() <= 1e-9, "({tx}, {ty}) {i}: {height} against {exact}");
@@ -195,7 +195,7 @@ fn bounds_of_a_surface_hold_in_every_block_and_are_close() {
         let surface = SelfAffine::new(waves, hurst, -50.0);
         let heights = Heights::new(
             HeightSource::Surface { surface: &surface, grid: Grid::square(finest).expect("a grid") },
-            base,
+            [base; 2],
         )
         .expect("finite");
         let field = surface.sample(square(finest));
@@ -214,7 +214,7 @@ fn bounds_and_extremes_hold_for_the_shortest_waves_alone() {
         let surface = EggBox { waves };
         let heights = Heights::new(
             HeightSource::Surface { surface: &surface, grid: Grid::square(16 * base).expect("a grid") },
-            base,
+            [base; 2],
         )
         .expect("finite");
         let field = surface.sample(square(16 * base));
@@ -234,7 +234,7 @@ fn extremes_are_those_of_every_centre_of_the_finest_grid() {
         let surface = SelfAffine::new(waves, 0.8, 7.0);
         let heights = Heights::new(
             HeightSource::Surface { surface: &surface, grid: Grid::square(finest).expect("a grid") },
-            base,
+            [base; 2],
         )
         .expect("finite");
         let exact = extremes_of(&surface.sample(square(finest)));
@@ -249,7 +249,7 @@ fn a_surface_that_the_finest_grid_barely_resolves_is_sampled_there() {
     let surface = SelfAffine::new(32, 0.8, 0.0);
     // 120 < 4 · 32, and 60 elements per side cannot even represent the waves.
     let heights =
-        Heights::new(HeightSource::Surface { surface: &surface, grid: Grid::square(120).expect("a grid") }, 60)
+        Heights::new(HeightSource::Surface { surface: &surface, grid: Grid::square(120).expect("a grid") }, [60; 2])
             .expect("finite");
     let field = surface.sample(square(120));
     assert!(worst_tile(&heights, &field) == 0.0);
@@ -261,17 +261,17 @@ fn a_surface_that_the_finest_grid_barely_resolves_is_sampled_there() {
 fn a_flat_surface_has_its_height_everywhere() {
     let surface = SelfAffine { waves: 0, mean: 0.25, columns: vec![vec![Complex64::ZERO]] };
     let heights =
-        Heights::new(HeightSource::Surface { surface: &surface, grid: Grid::square(256).expect("a grid") }, 16)
+        Heights::new(HeightSource::Surface { surface: &surface, grid: Grid::square(256).expect("a grid") }, [16; 2])
             .expect("finite");
     assert!(worst_tile(&heights, &surface.sample(square(256))) == 0.0);
     assert_eq!(extremes(&heights), vec![0.25; 3]);
-    assert!((heights.upper_bound(32, 3, 4) - 0.25).abs() < f64::EPSILON);
+    assert!((heights.upper_bound([32, 32], [3, 4]) - 0.25).abs() < f64::EPSILON);
 }
 
 #[test]
 fn a_map_keeps_its_values_and_its_bounds_are_its_maxima() {
     let map = Field::from_fn(square(400), |DVec2 { x, y }| 3.0 + quasi_random((997.0 * x + 31.0 * y * 400.0) as usize));
-    let heights = Heights::new(HeightSource::Map(&map), 50).expect("finite");
+    let heights = Heights::new(HeightSource::Map(&map), [50; 2]).expect("finite");
     assert!(worst_tile(&heights, &map) == 0.0, "the finest level is the map");
     let coarser = coarsen(&map, 50);
     assert!(worst_tile(&heights, &coarser[0]) == 0.0, "the next is interpolated between its values");
@@ -287,8 +287,9 @@ fn a_map_keeps_its_values_and_its_bounds_are_its_maxima() {
 
 #[test]
 fn a_surface_without_band_limit_is_a_map() {
-    let heights = Heights::new(HeightSource::Surface { surface: &Ridge, grid: Grid::square(256).expect("a grid") }, 32)
-        .expect("finite");
+    let heights =
+        Heights::new(HeightSource::Surface { surface: &Ridge, grid: Grid::square(256).expect("a grid") }, [32; 2])
+            .expect("finite");
     let map = Ridge.sample(square(256));
     assert!(worst_tile(&heights, &map) == 0.0);
     assert_eq!(extremes(&heights), extremes_of(&map));
@@ -299,15 +300,18 @@ fn heights_that_are_not_finite_are_refused() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let mut map = Field::zeros(square(64));
         map.values_mut()[64 * 5 + 7] = bad;
-        let error = Heights::new(HeightSource::Map(&map), 16).err();
+        let error = Heights::new(HeightSource::Map(&map), [16; 2]).err();
         let found =
             matches!(error, Some(ProblemError::Height { ix: 7, iy: 5, value }) if value.to_bits() == bad.to_bits());
         assert!(found, "{error:?}");
         let mut surface = SelfAffine::new(3, 0.8, 0.0);
         surface.mean = bad;
         assert!(
-            Heights::new(HeightSource::Surface { surface: &surface, grid: Grid::square(256).expect("a grid") }, 16)
-                .is_err()
+            Heights::new(
+                HeightSource::Surface { surface: &surface, grid: Grid::square(256).expect("a grid") },
+                [16; 2]
+            )
+            .is_err()
         );
     }
 }
@@ -318,12 +322,14 @@ fn heights_do_not_depend_on_the_number_of_threads() {
     let with_threads = |n_threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().expect("a pool");
         pool.install(|| {
-            let heights =
-                Heights::new(HeightSource::Surface { surface: &surface, grid: Grid::square(800).expect("a grid") }, 50)
-                    .expect("finite");
+            let heights = Heights::new(
+                HeightSource::Surface { surface: &surface, grid: Grid::square(800).expect("a grid") },
+                [50; 2],
+            )
+            .expect("finite");
             let mut tile = [0.0; TILE * TILE];
-            heights.tile(800, 99, 13, &mut tile);
-            let bounds: Vec<f64> = (0..10_000).map(|i| heights.upper_bound(100, i % 100, i / 100)).collect();
+            heights.tile([800, 800], [99, 13], &mut tile);
+            let bounds: Vec<f64> = (0..10_000).map(|i| heights.upper_bound([100; 2], [i % 100, i / 100])).collect();
             (tile, bounds, extremes(&heights))
         })
     };

@@ -50,7 +50,7 @@ impl Leaves {
                 ghosts.push([x, y]);
             }
         }
-        Self { ghosts: TileSet::new(2 * tiles.per_side(), ghosts), tiles }
+        Self { ghosts: TileSet::new(tiles.sides().map(|side| 2 * side), ghosts), tiles }
     }
 
     /// The values of the ghosts at `places`.

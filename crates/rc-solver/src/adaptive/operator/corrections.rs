@@ -53,7 +53,7 @@ impl<'a> TileCorrections<'a> {
         displacement: &'a Tables<f32>,
         preconditioner: &'a mut Tables<f32>,
     ) -> Self {
-        let extension = TileExtension::new(Arc::clone(&hierarchy));
+        let extension = TileExtension::new(hierarchy.halved());
         Self { response: TileResponse::new(hierarchy, displacement), extension, preconditioner }
     }
 }

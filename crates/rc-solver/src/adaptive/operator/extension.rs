@@ -17,6 +17,7 @@ use super::stencil::{Taps, add_short_range};
 use super::tables::Tables;
 use super::tile_operator::{rows_to_tiles, tiles_to_rows};
 use super::tile_values::TileValues;
+use crate::adaptive::ladder::sides_of;
 use crate::descent::{Pyramid, read_rows, set_shares, write_rows};
 use crate::parallel::{self, Tasks};
 
@@ -50,13 +51,13 @@ pub(super) struct TileExtension {
 
 impl TileExtension {
     pub(super) fn new(hierarchy: Arc<Hierarchy>) -> Self {
-        let side = hierarchy.base().nx();
+        let [nx, ny] = sides_of(hierarchy.base());
         let level = |tiles: &TileSet| {
             let zeros = || vec![0.0; tiles.n_cells()];
             Level { own: zeros(), rest: zeros(), values: zeros(), detail: zeros(), pressure: zeros() }
         };
         let levels = hierarchy.levels[1..hierarchy.n_levels()].iter().map(level).collect();
-        Self { levels, pyramid: Pyramid::new(side, side), base: vec![0.0; side * side], hierarchy }
+        Self { levels, pyramid: Pyramid::new(nx, ny), base: vec![0.0; nx * ny], hierarchy }
     }
 
     /// Prepares for these active elements.

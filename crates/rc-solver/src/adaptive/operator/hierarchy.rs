@@ -1,14 +1,18 @@
 //! The tiles of all levels between the base grid and the finest elements.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use rc_core::Grid;
-use rc_quadtree::{Elements, TILE, TileSet};
+use rc_quadtree::{Elements, TileSet};
 
 use super::coarse::Leaves;
+use crate::adaptive::ladder::{self, sides_of};
 
 /// The tiles of all levels, coarsest first: the first is the whole base grid, the last has the finest elements.
 pub(crate) struct Hierarchy {
+    base: Grid,
+    reach: Reach,
     elements: Elements,
     /// The blocks of a vector: how much coarser than the finest level, and which of its tiles.
     pub(super) blocks: Vec<(usize, Range<usize>)>,
@@ -28,24 +32,27 @@ pub(crate) struct Reach {
 }
 
 impl Hierarchy {
-    /// The levels over `elements` down to the base grid of `base_side` cells per side, a multiple of 8, each with the tiles
+    /// The levels over `elements` down to the base grid, whose sides are multiples of 8, each with the tiles
     /// that filters need. The coarsest elements are finer than the base grid's, and elements whose sizes differ by more than
     /// a factor of 2 are farther from each other than stencils of the level between them reach.
-    pub(crate) fn new(base_side: usize, elements: Elements, reach: Reach) -> Self {
+    pub(crate) fn new(base: Grid, elements: Elements, reach: Reach) -> Self {
         let mut levels = vec![elements.finest().clone()];
-        while levels[levels.len() - 1].side() > 2 * base_side {
-            let parents = levels[levels.len() - 1].parents(reach.filter);
+        let [nx, ny] = elements.finest().sides();
+        let finest = base.with_elements(nx, ny).expect("a level of a checked grid");
+        for level in (1..ladder::n_levels(base, finest)).rev() {
+            let sides = sides_of(ladder::doubled(base, level));
+            let parents = levels[levels.len() - 1].on_coarser(sides, reach.filter);
             levels.push(match elements.levels().get(levels.len()) {
                 Some(leaves) => parents.with(&leaves.around(reach.filter)),
                 None => parents,
             });
         }
-        levels.push(TileSet::full(base_side / TILE));
+        levels.push(TileSet::full(sides_of(base)));
         levels.reverse();
         debug_assert!(elements.levels().len() < levels.len(), "no elements are on the base grid");
         let pairs = elements.levels().windows(2);
         let leaves = pairs.map(|pair| Leaves::new(pair[1].clone(), &pair[0], reach.stencil)).collect();
-        Self { blocks: elements.blocks(), elements, levels, leaves }
+        Self { base, reach, blocks: elements.blocks(), elements, levels, leaves }
     }
 
     /// The elements.
@@ -55,7 +62,18 @@ impl Hierarchy {
 
     /// The base grid.
     pub(crate) fn base(&self) -> Grid {
-        Grid::square(self.levels[0].side()).expect("the base grid is smaller than the finest")
+        self.base
+    }
+
+    /// The same for the preconditioner, which halves every level: where the finest has not twice as many elements as the level below
+    /// it, a strip without elements takes the place of what is missing, along the seam.
+    pub(super) fn halved(self: &Arc<Self>) -> Arc<Self> {
+        let sides = sides_of(ladder::doubled(self.base, self.n_levels()));
+        if self.elements.finest().sides() == sides {
+            return Arc::clone(self);
+        }
+        let tiles = TileSet::new(sides, self.elements.finest().places().to_vec());
+        Arc::new(Self::new(self.base, Elements::uniform(tiles), self.reach))
     }
 
     /// Levels above the base grid.

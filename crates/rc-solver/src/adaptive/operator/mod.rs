@@ -22,6 +22,7 @@ mod tables;
 mod tile_operator;
 mod tile_values;
 mod transfer;
+mod uneven;
 
 pub(crate) use self::corrections::{TileCorrections, TileResponse};
 pub(crate) use self::hierarchy::{Hierarchy, Reach};

@@ -11,6 +11,7 @@ use super::real::Arithmetic;
 use super::stencil::{Taps, add_short_range};
 use super::tile_values::TileValues;
 use super::transfer::Transfer;
+use super::uneven::Uneven;
 
 /// Tiles to be computed: their places, and their cells one tile after the other.
 pub(super) struct Targets<'a, T> {
@@ -34,6 +35,20 @@ pub(super) struct Restriction<'a, T> {
 /// The displacements of tiles: the level's stencil on its density, and the prolonged displacement of the coarser level.
 pub(super) struct Displacement<'a, T> {
     pub(super) table: &'a (Taps<T>, Transfer<T>),
+    pub(super) density: TileValues<'a, T>,
+    pub(super) coarser: TileValues<'a, T>,
+}
+
+/// [`Restriction`] of a level that has not half as many elements along a side as the finest.
+pub(super) struct UnevenRestriction<'a, T> {
+    pub(super) uneven: &'a Uneven<T>,
+    pub(super) finer: TileValues<'a, T>,
+}
+
+/// [`Displacement`] of the finest level over one that has not half as many elements along a side.
+pub(super) struct UnevenDisplacement<'a, T> {
+    pub(super) taps: &'a Taps<T>,
+    pub(super) uneven: &'a Uneven<T>,
     pub(super) density: TileValues<'a, T>,
     pub(super) coarser: TileValues<'a, T>,
 }
@@ -67,6 +82,8 @@ pub(super) struct TilePasses<T> {
     /// Sets the targets.
     pub(super) restrict: fn(Arch, &Restriction<'_, T>, Targets<'_, T>),
     pub(super) displace: fn(Arch, &Displacement<'_, T>, Targets<'_, T>),
+    pub(super) restrict_uneven: fn(Arch, &UnevenRestriction<'_, T>, Targets<'_, T>),
+    pub(super) displace_uneven: fn(Arch, &UnevenDisplacement<'_, T>, Targets<'_, T>),
     pub(super) displace_coarse: fn(Arch, &CoarseDisplacement<'_, T>, Targets<'_, T>),
     /// Adds to the targets.
     pub(super) add_coarse: fn(Arch, &CoarseDensity<'_, T>, Targets<'_, T>),
@@ -75,11 +92,19 @@ pub(super) struct TilePasses<T> {
 
 impl<T: Arithmetic> TilePasses<T> {
     /// For filters of `TAPS` taps; patches have `AROUND` cells per side around one tile, and `UNDER` cells around the tiles under a coarse
-    /// one.
-    pub(super) const fn new<const TAPS: usize, const AROUND: usize, const UNDER: usize>() -> Self {
+    /// one. Where sides are not halved, a fine tile takes from a patch of `OVER` cells per side, and a coarse one from `BELOW` cells.
+    pub(super) const fn new<
+        const TAPS: usize,
+        const AROUND: usize,
+        const UNDER: usize,
+        const OVER: usize,
+        const BELOW: usize,
+    >() -> Self {
         Self {
             restrict: restrict::<T, TAPS, UNDER>,
             displace: displace::<T, TAPS, AROUND>,
+            restrict_uneven: restrict_uneven::<T, 0, BELOW>,
+            displace_uneven: displace_uneven::<T, OVER, AROUND>,
             displace_coarse: displace_coarse::<T, 0, AROUND>,
             add_coarse: add_coarse::<T, 0, AROUND>,
             add_ghosts: add_ghosts::<T, 0, AROUND>,
@@ -103,6 +128,8 @@ macro_rules! dispatched {
 dispatched!(
     restrict: Restriction,
     displace: Displacement,
+    restrict_uneven: UnevenRestriction,
+    displace_uneven: UnevenDisplacement,
     displace_coarse: CoarseDisplacement,
     add_coarse: CoarseDensity,
     add_ghosts: GhostDisplacement
@@ -147,6 +174,46 @@ impl<T: Arithmetic, const TAPS: usize, const SIDE: usize> WithSimd for Loop<'_, 
             gather(coarser.values, coarser.tiles, corner, transfer.rows_to_prolong(SIDE, half.1), &mut patch);
             transfer.prolong::<S, TAPS, SIDE>(&patch, half, out);
             add_short_range::<S, T, SIDE>(taps, *density, [column, row], &mut patch, out);
+        }
+    }
+}
+
+impl<T: Arithmetic, const TAPS: usize, const SIDE: usize> WithSimd
+    for Loop<'_, UnevenRestriction<'_, T>, T, TAPS, SIDE>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let UnevenRestriction { uneven, finer } = self.pass;
+        let mut patch = [[T::default(); SIDE]; SIDE];
+        for (place, out) in self.targets.tiles() {
+            let under = uneven.to_restrict(place);
+            if gather(finer.values, finer.tiles, under.corner, under.rows.clone(), &mut patch) {
+                uneven.restrict::<S, SIDE>(place, (&under, &patch), out);
+            } else {
+                *out = [T::default(); CELLS];
+            }
+        }
+    }
+}
+
+/// The first number is the side of the patch of the coarser level.
+impl<T: Arithmetic, const OVER: usize, const SIDE: usize> WithSimd
+    for Loop<'_, UnevenDisplacement<'_, T>, T, OVER, SIDE>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let UnevenDisplacement { taps, uneven, density, coarser } = self.pass;
+        let mut over = [[T::default(); OVER]; OVER];
+        let mut patch = [[T::default(); SIDE]; SIDE];
+        for (place, out) in self.targets.tiles() {
+            let under = uneven.to_prolong(place);
+            gather(coarser.values, coarser.tiles, under.corner, under.rows.clone(), &mut over);
+            uneven.prolong::<S, OVER>(place, (&under, &over), out);
+            add_short_range::<S, T, SIDE>(taps, *density, place, &mut patch, out);
         }
     }
 }

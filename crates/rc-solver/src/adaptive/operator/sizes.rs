@@ -18,9 +18,13 @@ pub(crate) struct Sizes<T> {
 }
 
 impl<T: Arithmetic> Sizes<T> {
-    /// `UNDER` is the side of the patch around the four tiles under a coarse one.
-    const fn new<const TAPS: usize, const AROUND: usize, const UNDER: usize>(cutoff: usize) -> Self {
-        Self { taps: TAPS, cutoff, around: AROUND, passes: TilePasses::new::<TAPS, AROUND, UNDER>() }
+    /// `UNDER` is the side of the patch around the four tiles under a coarse one, `OVER` and `BELOW` are those of the patches that a fine
+    /// and a coarse tile take from where sides are not halved: they hold 12 elements more than the taps, and 23 more than twice the taps.
+    const fn new<const TAPS: usize, const AROUND: usize, const UNDER: usize, const OVER: usize, const BELOW: usize>(
+        cutoff: usize,
+    ) -> Self {
+        let passes = TilePasses::new::<TAPS, AROUND, UNDER, OVER, BELOW>();
+        Self { taps: TAPS, cutoff, around: AROUND, passes }
     }
 }
 
@@ -40,9 +44,9 @@ pub(crate) trait Real: Arithmetic {
 }
 
 impl Real for f32 {
-    const SIZES: &'static [Sizes<Self>] = &[Sizes::new::<4, 24, 32>(8), Sizes::new::<16, 24, 48>(8)];
+    const SIZES: &'static [Sizes<Self>] = &[Sizes::new::<4, 24, 32, 16, 32>(8), Sizes::new::<16, 24, 48, 32, 56>(8)];
 }
 
 impl Real for f64 {
-    const SIZES: &'static [Sizes<Self>] = &[Sizes::new::<16, 24, 48>(8), Sizes::new::<32, 40, 80>(16)];
+    const SIZES: &'static [Sizes<Self>] = &[Sizes::new::<16, 24, 48, 32, 56>(8), Sizes::new::<32, 40, 80, 48, 88>(16)];
 }

@@ -11,6 +11,8 @@ use super::hierarchy::Reach;
 use super::sizes::{Real, Sizes};
 use super::stencil::Taps;
 use super::transfer::Transfer;
+use super::uneven::Uneven;
+use crate::adaptive::ladder::{self, has_squares, sides_of};
 
 /// Tables of one operator on levels 0 (the base grid, with its Fourier transform) to K.
 #[derive(Clone)]
@@ -19,6 +21,8 @@ pub(crate) struct Tables<T> {
     pub(super) base: SymbolTable<T>,
     /// Of levels 1 to K: the stencil on the level, and the transfer between it and the next coarser one.
     pub(super) levels: Vec<(Taps<T>, Transfer<T>)>,
+    /// The transfer between the finest level and the next coarser one, where that has not half as many elements along a side.
+    pub(super) uneven: Option<Uneven<T>>,
     /// Of elements 2, 4, … times as large as the finest; empty when they are like any value of their level.
     coarse: Vec<CoarseTable<T>>,
 }
@@ -46,6 +50,7 @@ pub(crate) struct Prepared<T> {
     coarse: Vec<CoarseElement>,
     scale: Scale,
     remainder_curvature: f64,
+    split: ScaleSplit,
 }
 
 /// How weights follow from the side h of an element.
@@ -63,22 +68,19 @@ const INVERSE_RADIUS: usize = 2;
 impl<T: Real> Prepared<T> {
     /// `v = L p` for Love's squares, and elements up to 2^`n_coarse` times as large.
     pub(crate) fn displacement(split: &ScaleSplit, base: Grid, n_coarse: usize) -> Self {
-        let cutoff = 0.5 * split.params().cutoff as f64 / base.nx() as f64;
-        let symbol = SymbolTable::new(base, |kx: usize, ky: usize| {
-            let q = 2.0 * PI * (kx as f64).hypot(ky as f64);
-            if q == 0.0 { 0.0 } else { split.remainder_symbol(q, cutoff) }
-        });
+        let cutoff = 0.5 * split.params().cutoff as f64 * base.spacing().min_element();
         let sizes = T::sizes(split.params());
         let transfer = |filter: &Filter| Transfer::new(filter, sizes.taps);
         Self {
             sizes,
             base,
-            symbol,
+            symbol: remainder_symbol(split, base, cutoff),
             finest: (split.love_stencil(), transfer(&split.love_filter())),
-            between: (split.level_stencil(), transfer(&split.level_filter())),
+            between: (level_stencil(split, base), transfer(&split.level_filter())),
             coarse: split.coarse_elements(n_coarse),
             scale: Scale::Side,
             remainder_curvature: split.remainder_curvature(cutoff),
+            split: split.clone(),
         }
     }
 
@@ -86,7 +88,8 @@ impl<T: Real> Prepared<T> {
     pub(crate) fn inverse(split: &ScaleSplit, base: Grid) -> Self {
         let sizes = T::sizes(split.params());
         let part = (split.inverse_stencil(INVERSE_RADIUS), Transfer::new(&split.level_filter(), sizes.taps));
-        let symbol = SymbolTable::new(base, |kx: usize, ky: usize| PI * (kx as f64).hypot(ky as f64));
+        let symbol =
+            SymbolTable::new(base, |kx: usize, ky: usize| PI * (kx as f64).hypot(ky as f64 / base.cell_ratio()));
         Self {
             sizes,
             base,
@@ -97,6 +100,7 @@ impl<T: Real> Prepared<T> {
             scale: Scale::Inverse,
             // No bound: what comes down from the base grid is not a smooth part of anything.
             remainder_curvature: f64::INFINITY,
+            split: split.clone(),
         }
     }
 
@@ -110,16 +114,25 @@ impl<T: Real> Prepared<T> {
         self.remainder_curvature
     }
 
-    /// Tables for a finest level of `base side · 2^n_levels` cells per side.
-    pub(crate) fn tables(&self, n_levels: usize) -> Tables<T> {
+    /// Tables for a finest level of this whole grid.
+    pub(crate) fn tables(&self, finest: Grid) -> Tables<T> {
+        let n_levels = ladder::n_levels(self.base, finest);
+        // A preconditioner halves every level.
+        let is_uneven = matches!(self.scale, Scale::Side) && !ladder::is_even(self.base, finest);
+        let below = is_uneven.then(|| self.below_uneven(finest, n_levels));
         let (mut levels, mut sum) = (Vec::with_capacity(n_levels), 0.0);
         for level in 1..=n_levels {
             let (stencil, transfer) = if level == n_levels { &self.finest } else { &self.between };
-            let factor = self.factor(level);
+            let stencil = below.as_ref().filter(|_| level + 1 == n_levels).unwrap_or(stencil);
+            let factor = self.factor(level, (level == n_levels && is_uneven).then_some(finest));
             sum += factor * stencil.sum();
             levels.push((Taps::new(stencil, factor, self.sizes.around), transfer.clone()));
         }
-        let mut base = self.symbol.clone();
+        let mut base = if is_uneven && n_levels == 1 {
+            remainder_symbol(&self.split, self.base, self.cutoff() * finest.spacing().min_element())
+        } else {
+            self.symbol.clone()
+        };
         // A constant gives zero (Eq. 3): the base grid takes off what the stencils add to it.
         let of_mean = match self.scale {
             Scale::Side => -sum,
@@ -127,15 +140,36 @@ impl<T: Real> Prepared<T> {
             Scale::Inverse => 0.0,
         };
         base.set_mean(T::rounded(of_mean / self.base.len() as f64));
-        Tables { sizes: self.sizes, base, levels, coarse: self.coarse_tables(n_levels) }
+        let uneven = is_uneven.then(|| self.uneven(finest, n_levels));
+        Tables { sizes: self.sizes, base, levels, uneven, coarse: self.coarse_tables(n_levels) }
     }
 
-    /// What a stencil in units of the elements of a level is multiplied by.
-    fn factor(&self, level: usize) -> f64 {
-        let cells = (self.base.nx() << level) as f64;
+    /// In elements of a level.
+    fn cutoff(&self) -> f64 {
+        self.split.params().cutoff as f64
+    }
+
+    /// The stencil of the level below the finest, when that has not twice as many elements: cutoffs differ by less than a factor of two.
+    fn below_uneven(&self, finest: Grid, n_levels: usize) -> Stencil {
+        let spacing = ladder::doubled(self.base, n_levels - 1).spacing();
+        let inner = self.cutoff() * finest.spacing().min_element() / spacing.min_element();
+        self.split.uneven_level_stencil(inner, (spacing / spacing.min_element()).into())
+    }
+
+    /// The transfer to the finest level.
+    fn uneven(&self, finest: Grid, n_levels: usize) -> Uneven<T> {
+        let (fine, coarse) = (sides_of(finest), sides_of(ladder::doubled(self.base, n_levels - 1)));
+        let filters = [0, 1].map(|axis| self.split.uneven_filter(coarse[axis] as f64 / fine[axis] as f64));
+        Uneven::new(&filters, fine, coarse)
+    }
+
+    /// What a stencil in units of the elements of a level is multiplied by; the level's grid is the base grid doubled unless it is
+    /// another one.
+    fn factor(&self, level: usize, grid: Option<Grid>) -> f64 {
+        let grid = grid.unwrap_or_else(|| ladder::doubled(self.base, level));
         match self.scale {
-            Scale::Side => 1.0 / cells,
-            Scale::Inverse => cells,
+            Scale::Side => grid.spacing().min_element(),
+            Scale::Inverse => grid.nx() as f64,
         }
     }
 
@@ -147,9 +181,26 @@ impl<T: Real> Prepared<T> {
         levels
             .zip(self.coarse.iter().zip(whole))
             .map(|(level, (element, finer))| {
-                let across = Taps::new(finer, self.factor(level + 1), side);
-                CoarseTable::new(element, self.factor(level), across, side)
+                let across = Taps::new(finer, self.factor(level + 1, None), side);
+                CoarseTable::new(element, self.factor(level, None), across, side)
             })
             .collect()
     }
+}
+
+/// The remainder of a cutoff, in λ, on the base grid.
+fn remainder_symbol<T: Real>(split: &ScaleSplit, base: Grid, cutoff: f64) -> SymbolTable<T> {
+    SymbolTable::new(base, |kx: usize, ky: usize| {
+        let q = 2.0 * PI * (kx as f64).hypot(ky as f64 / base.cell_ratio());
+        if q == 0.0 { 0.0 } else { split.remainder_symbol(q, cutoff) }
+    })
+}
+
+/// The stencil of levels between the base grid and the finest: their elements are squares, or nearly, as those of the base grid.
+fn level_stencil(split: &ScaleSplit, base: Grid) -> Stencil {
+    if has_squares(base) {
+        return split.level_stencil();
+    }
+    let sides = base.spacing() / base.spacing().min_element();
+    split.uneven_level_stencil(0.5 * split.params().cutoff as f64, sides.into())
 }

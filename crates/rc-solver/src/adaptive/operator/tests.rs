@@ -23,7 +23,7 @@ const LARGE: [f64; 2] = [0.06, 0.12];
 /// Round contacts with Hertz's pressure, at random places, as in contact problems.
 fn spots(tiles: &TileSet, [least, greatest]: [f64; 2], seed: u64) -> Vec<f64> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let side = tiles.side() as f64;
+    let side = tiles.sides()[0] as f64;
     let centres: Vec<[f64; 3]> =
         (0..12).map(|_| [rng.random(), rng.random(), rng.random_range(least..greatest)]).collect();
     let mut p = vec![0.0; tiles.n_cells()];
@@ -42,7 +42,7 @@ fn spots(tiles: &TileSet, [least, greatest]: [f64; 2], seed: u64) -> Vec<f64> {
 
 /// The tiles of a level that any of the spots touches, and some at random.
 fn tiles_of_spots(side: usize, radii: [f64; 2], seed: u64) -> TileSet {
-    let all = TileSet::full(side / TILE);
+    let all = TileSet::full([side, side]);
     let p = spots(&all, radii, seed);
     let mut rng = ChaCha8Rng::seed_from_u64(seed + 100);
     let touched = all
@@ -50,14 +50,16 @@ fn tiles_of_spots(side: usize, radii: [f64; 2], seed: u64) -> TileSet {
         .iter()
         .enumerate()
         .filter(|(tile, _)| p[tile * CELLS..][..CELLS].iter().any(|&p| p > 0.0) || rng.random::<f64>() < 0.02);
-    TileSet::new(side / TILE, touched.map(|(_, &place)| place).collect())
+    TileSet::new([side, side], touched.map(|(_, &place)| place).collect())
 }
 
 fn apply<T: Real + Into<f64>>(split: &ScaleSplit, base: usize, elements: Elements, p: &[f64]) -> Vec<f64> {
     let n_coarse = elements.levels().len() - 1;
-    let prepared = Prepared::<T>::displacement(split, Grid::square(base).expect("a grid"), n_coarse);
+    let base = Grid::square(base).expect("a grid");
+    let finest = Grid::square(elements.finest().sides()[0]).expect("a grid");
+    let prepared = Prepared::<T>::displacement(split, base, n_coarse);
     let hierarchy = Arc::new(Hierarchy::new(base, elements, prepared.reach()));
-    let tables = prepared.tables(hierarchy.n_levels());
+    let tables = prepared.tables(finest);
     let mut operator = TileOperator::<T>::new(Arc::clone(&hierarchy));
     operator.write(&|i, cells| {
         for (cell, &p) in cells.iter_mut().zip(&p[i * BLOCK_CELLS..]) {
@@ -81,7 +83,7 @@ fn apply<T: Real + Into<f64>>(split: &ScaleSplit, base: usize, elements: Element
 /// Exact sums at some of the cells; returns the rms difference over the rms displacement.
 fn error_against_exact_sums(tiles: &TileSet, p: &[f64], v: &[f64]) -> f64 {
     let exact = PeriodicLove::new();
-    let (side, half_side) = (tiles.side() as f64, 0.5 / tiles.side() as f64);
+    let (side, half_side) = (tiles.sides()[0] as f64, 0.5 / tiles.sides()[0] as f64);
     let centre = |i: usize| {
         let place = tiles.places()[i / CELLS];
         let cell = i % CELLS;
@@ -119,7 +121,7 @@ fn graded(side: usize, cutoff: usize, seed: u64) -> Elements {
     let mut fine = tiles_of_spots(side / 4, LARGE, seed);
     let mut levels = Vec::new();
     for radius in [0.4, 0.33 - (cutoff.div_ceil(TILE) * 2 * TILE) as f64 / side as f64] {
-        let per_side = fine.per_side() as f64;
+        let per_side = fine.extent()[0] as f64;
         let is_near = |place: &[u32; 2]| {
             let [dx, dy] = [0, 1].map(|axis| {
                 let d = (f64::from(place[axis]) + 0.5) / per_side - centre[axis];
@@ -128,8 +130,8 @@ fn graded(side: usize, cutoff: usize, seed: u64) -> Elements {
             dx.hypot(dy) < radius
         };
         let (near, far): (Vec<_>, Vec<_>) = fine.places().iter().copied().partition(is_near);
-        levels.insert(0, TileSet::new(fine.per_side(), far));
-        fine = TileSet::new(2 * fine.per_side(), near.into_iter().flat_map(quarters).collect());
+        levels.insert(0, TileSet::new(fine.sides(), far));
+        fine = TileSet::new(fine.sides().map(|side| 2 * side), near.into_iter().flat_map(quarters).collect());
     }
     levels.insert(0, fine);
     Elements::new(levels)
@@ -149,7 +151,7 @@ fn finest_centres(elements: &Elements, coarser: usize, cell: usize) -> impl Iter
     let tiles = &elements.levels()[coarser];
     let [column, row] = tiles.places()[cell / CELLS].map(|i| i as usize * TILE);
     let (x, y) = (column + cell % CELLS % TILE, row + cell % CELLS / TILE);
-    let (n, side) = (1_usize << coarser, (tiles.side() << coarser) as f64);
+    let (n, side) = (1_usize << coarser, (tiles.sides()[0] << coarser) as f64);
     let centre = move |i: usize, part: usize| ((i * n + part) as f64 + 0.5) / side;
     (0..n * n).map(move |part| DVec2::new(centre(x, part % n), centre(y, part / n)))
 }
@@ -213,11 +215,11 @@ fn the_operator_is_symmetric_in_the_areas() {
 /// The preconditioner of `active` elements applied to `values`.
 fn preconditioned(elements: &Elements, base: usize, active: &[bool], values: &[f32]) -> Vec<f32> {
     let split = ScaleSplit::new(SplitParams::quick());
-    let grid = Grid::square(base).expect("a grid");
+    let [grid, finest] = [base, elements.finest().sides()[0]].map(|side| Grid::square(side).expect("a grid"));
     let quick = Prepared::<f32>::displacement(&split, grid, elements.levels().len() - 1);
-    let hierarchy = Arc::new(Hierarchy::new(base, elements.clone(), quick.reach()));
-    let displacement = quick.tables(hierarchy.n_levels());
-    let mut inverse = Prepared::inverse(&split, grid).tables(hierarchy.n_levels());
+    let hierarchy = Arc::new(Hierarchy::new(grid, elements.clone(), quick.reach()));
+    let displacement = quick.tables(finest);
+    let mut inverse = Prepared::inverse(&split, grid).tables(finest);
     let mut corrections = TileCorrections::new(hierarchy, &displacement, &mut inverse);
     let mut values = values.to_vec();
     corrections.set_active(active);
@@ -273,7 +275,7 @@ fn rough_pressures(n_elements: usize) -> Vec<Vec<f64>> {
 fn on_rough_pressures_the_error_is_in_proportion_to_the_roughness() {
     let finest = ScaleSplit::new(SplitParams::for_error(SplitParams::SMALLEST_ERROR).expect("a bound in range"));
     for (base, side) in [(64, 128), (64, 512)] {
-        let elements = Elements::uniform(TileSet::full(side / TILE));
+        let elements = Elements::uniform(TileSet::full([side, side]));
         for mut p in rough_pressures(elements.len()) {
             // As fresh gaps do: a uniform pressure displaces nothing.
             let mean = p.iter().sum::<f64>() / p.len() as f64;

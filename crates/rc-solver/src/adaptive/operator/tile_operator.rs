@@ -10,7 +10,10 @@ use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE, TileSet};
 
 use super::coarse::Leaves;
 use super::hierarchy::Hierarchy;
-use super::passes::{CoarseDensity, CoarseDisplacement, Displacement, GhostDisplacement, Restriction, Targets};
+use super::passes::{
+    CoarseDensity, CoarseDisplacement, Displacement, GhostDisplacement, Restriction, Targets, UnevenDisplacement,
+    UnevenRestriction,
+};
 use super::sizes::Real;
 use super::tables::Tables;
 use super::tile_values::TileValues;
@@ -135,10 +138,9 @@ impl<T: Real> TileOperator<T> {
         for level in (1..n_levels).rev() {
             let (coarser, finer) = self.densities.split_at_mut(level + 1);
             let finer = TileValues::new(finer.first().unwrap_or(&self.source), &levels[level + 1]);
-            let pass = Restriction { transfer: &tables.levels[level].1, finer };
             let density = &mut coarser[level];
             parallel::for_each(blocks(levels[level].places(), density), |targets| {
-                (tables.sizes.passes.restrict)(arch, &pass, targets);
+                restrict(tables, (level, n_levels), finer, (arch, targets));
             });
             let Some((cells, tiles)) = self.hierarchy.elements_of(level) else { continue };
             let elements = TileValues::new(&self.source[cells], tiles);
@@ -153,12 +155,12 @@ impl<T: Real> TileOperator<T> {
     fn convolve_base(&mut self, tables: &Tables<T>) {
         let (side, arch, levels) = (self.hierarchy.base().nx(), self.arch, &self.hierarchy.levels);
         let finer = TileValues::new(self.densities.get(1).unwrap_or(&self.source), &levels[1]);
-        let pass = Restriction { transfer: &tables.levels[0].1, finer };
+        let n_levels = self.hierarchy.n_levels();
         let tiles_per_block = BLOCK_ROWS / TILE * (side / TILE);
         write_rows(&mut self.convolution, &|i, rows| {
             let mut cells = vec![T::default(); rows.len()];
             let places = &levels[0].places()[i * tiles_per_block..][..rows.len() / CELLS];
-            (tables.sizes.passes.restrict)(arch, &pass, Targets { places, cells: &mut cells });
+            restrict(tables, (0, n_levels), finer, (arch, Targets { places, cells: &mut cells }));
             tiles_to_rows(&cells, rows, side);
         });
         self.convolution.apply_symbol(&tables.base);
@@ -186,13 +188,17 @@ impl<T: Real> TileOperator<T> {
     fn displace_finest(&self, tables: &Tables<T>, tiles: Range<usize>, cells: &mut [T]) {
         let (levels, level) = (&self.hierarchy.levels, self.hierarchy.n_levels());
         let finest = self.hierarchy.elements().cells(0);
-        let pass = Displacement {
-            table: &tables.levels[level - 1],
-            density: TileValues::new(&self.source[finest], &levels[level]),
-            coarser: TileValues::new(&self.displacements[level - 1], &levels[level - 1]),
-        };
-        let places = &levels[level].places()[tiles];
-        (tables.sizes.passes.displace)(self.arch, &pass, Targets { places, cells });
+        let table = &tables.levels[level - 1];
+        let density = TileValues::new(&self.source[finest], &levels[level]);
+        let coarser = TileValues::new(&self.displacements[level - 1], &levels[level - 1]);
+        let targets = Targets { places: &levels[level].places()[tiles], cells };
+        if let Some(uneven) = &tables.uneven {
+            let pass = UnevenDisplacement { taps: &table.0, uneven, density, coarser };
+            (tables.sizes.passes.displace_uneven)(self.arch, &pass, targets);
+        } else {
+            let pass = Displacement { table, density, coarser };
+            (tables.sizes.passes.displace)(self.arch, &pass, targets);
+        }
     }
 
     /// The displacement of some tiles of elements 2^`coarser` times as large as the finest.
@@ -220,6 +226,21 @@ impl<T: Real> TileOperator<T> {
         let places = &self.hierarchy.elements().levels()[coarser].places()[tiles];
         let pass = GhostDisplacement { taps: &table.across, ghosts };
         (tables.sizes.passes.add_ghosts)(self.arch, &pass, Targets { places, cells });
+    }
+}
+
+/// The densities of tiles of a level from those of the next finer one, the last of which is the finest.
+fn restrict<T: Real>(
+    tables: &Tables<T>,
+    (level, n_levels): (usize, usize),
+    finer: TileValues<'_, T>,
+    (arch, targets): (Arch, Targets<'_, T>),
+) {
+    match &tables.uneven {
+        Some(uneven) if level + 1 == n_levels => {
+            (tables.sizes.passes.restrict_uneven)(arch, &UnevenRestriction { uneven, finer }, targets);
+        }
+        _ => (tables.sizes.passes.restrict)(arch, &Restriction { transfer: &tables.levels[level].1, finer }, targets),
     }
 }
 

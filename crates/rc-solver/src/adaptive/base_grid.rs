@@ -1,0 +1,205 @@
+//! The base grid: the coarsest whole grid that still has the surface's waves.
+
+use rc_core::{Field, Grid, HeightField, HeightSource};
+use rc_quadtree::TILE;
+
+use super::AdaptiveError;
+use super::ladder::sides_of;
+use crate::descent::BlockLayout;
+use crate::parallel;
+
+/// Elements of the base grid for the shortest wave: what interpolates heights to other levels needs no more.
+const BASE_ELEMENTS_PER_WAVE: usize = 4;
+
+/// Fewest elements along the longer side of the base grid.
+pub(super) const SMALLEST_BASE: usize = 64;
+
+/// The same along the shorter side, where it does not follow from the finest grid.
+const SMALLEST_WIDTH: usize = 16;
+
+/// Part of the mean square slope of a map that differences over the base grid's spacing must keep: four elements for a wave keep 0.81 of its slope,
+/// two keep 0.41.
+const SLOPE_KEPT: f64 = 0.8;
+
+/// Checks or chooses the sides of the base grid in elements. Where its elements along x are `wanted`, those along y are in proportion.
+pub(super) fn base_sides(source: &HeightSource<'_>, wanted: Option<usize>) -> Result<[usize; 2], AdaptiveError> {
+    let finest = sides_of(source.grid());
+    let waves = source.surface().and_then(HeightField::band_limit);
+    if let Some(base) = wanted {
+        let error = AdaptiveError::Base { base, waves: waves.unwrap_or(0), finest: finest[0] };
+        return wanted_sides(base, waves.unwrap_or(0), finest).ok_or(error);
+    }
+    let long = finest[0].max(finest[1]);
+    // Heights may have waves as short as a few elements: two levels above the base grid are safe, and three on large grids.
+    let safe = long / if long >= 4096 { 8 } else { 4 };
+    let least = match (waves, source.map()) {
+        (Some(waves), _) => BASE_ELEMENTS_PER_WAVE * waves,
+        (None, Some(map)) => safe.min(smooth_side(map)),
+        (None, None) => safe,
+    };
+    let least = least.max(SMALLEST_BASE);
+    let halved = |n: usize| {
+        let is_whole = finest.iter().all(|&side| side.is_multiple_of(n * TILE));
+        is_whole.then(|| finest.map(|side| side / n))
+    };
+    // As many levels as the longer side has halves that are not below `least`; one at least, where that keeps the waves.
+    let mut n = 1;
+    while long / (2 * n) >= least {
+        n *= 2;
+    }
+    if n == 1 && long / 2 > 2 * waves.unwrap_or(0) {
+        n = 2;
+    }
+    // A surface is sampled where it is needed if all levels are halves.
+    let is_surface = waves.is_some() && source.grid().is_square();
+    let mut halves = std::iter::successors(Some(n), |n| Some(n / 2)).take_while(|&n| n > 1);
+    let even = if is_surface { halves.find_map(halved) } else { halves.next().and_then(halved) };
+    let [nx, ny] = finest;
+    let error = AdaptiveError::Grid { nx, ny, smallest: 2 * least };
+    let is_large = n > 1 && long >= SMALLEST_BASE;
+    even.or_else(|| is_large.then(|| uneven_sides(source.grid(), n)).flatten()).ok_or(error)
+}
+
+/// How many more elements than the finest grid the base grid doubled may have along a side, in parts of the side.
+const MOST_ADDED: f64 = 0.15;
+
+/// Elements of the base grid may be longer along one side by this part.
+const OBLONG: f64 = 0.01;
+
+/// Greatest prime factor of the base grid's sides: Fourier transforms of such lengths are fast.
+const GREATEST_FACTOR: usize = 7;
+
+/// The base grid with the fewest elements that `n` times as many along a side are not fewer than those of the finest, among those with
+/// elements that are nearly squares; the one with the most nearly square elements where there is none.
+fn uneven_sides(finest: Grid, n: usize) -> Option<[usize; 2]> {
+    let candidates = |side: usize| -> Vec<usize> {
+        let least = side.div_ceil(n).next_multiple_of(TILE).max(SMALLEST_WIDTH);
+        let most = ((1.0 + MOST_ADDED) * side as f64 / n as f64) as usize;
+        (least..=most.max(least)).step_by(TILE).filter(|&side| has_small_factors(side)).collect()
+    };
+    let [along_x, along_y] = sides_of(finest).map(candidates);
+    // Elements of the base grid, beyond what is allowed as oblong, then by number. (The least number that fits is not below the smallest.)
+    let fits = |[nx, ny]: [usize; 2]| {
+        let is_coarser = |base: usize, side: usize| base < side && base * n < 2 * side;
+        is_coarser(nx, finest.nx()) && is_coarser(ny, finest.ny())
+    };
+    let all = along_x.iter().flat_map(|&nx| along_y.iter().map(move |&ny| [nx, ny])).filter(|&sides| fits(sides));
+    let cost = |&[nx, ny]: &[usize; 2]| {
+        let spacing = [finest.cell_ratio().recip() * ny as f64, nx as f64];
+        let oblong = (spacing[0] / spacing[1]).max(spacing[1] / spacing[0]) - 1.0;
+        (oblong.max(OBLONG), nx * ny)
+    };
+    all.min_by(|a, b| {
+        let (a, b) = (cost(a), cost(b));
+        a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
+    })
+}
+
+fn has_small_factors(mut side: usize) -> bool {
+    for factor in 2..=GREATEST_FACTOR {
+        while side.is_multiple_of(factor) {
+            side /= factor;
+        }
+    }
+    side == 1
+}
+
+/// The sides of a base grid of `base` elements along x, if they fit.
+fn wanted_sides(base: usize, waves: usize, [nx, ny]: [usize; 2]) -> Option<[usize; 2]> {
+    let fits = base >= TILE && base > 2 * waves && 2 * base <= nx;
+    let n = (fits && nx.is_multiple_of(base)).then(|| nx / base).filter(|n| n.is_power_of_two())?;
+    let sides = [base, ny / n];
+    (ny.is_multiple_of(n) && sides.iter().all(|side| side.is_multiple_of(TILE))).then_some(sides)
+}
+
+/// Elements along the longer side that keep the slopes of a map, at a spacing of a power of two.
+fn smooth_side(map: &Field) -> usize {
+    let sides = sides_of(map.grid());
+    let finest = mean_square_slope(map, 1);
+    let mut spacing = 1;
+    while 4 * spacing <= sides[0].min(sides[1]) && mean_square_slope(map, 2 * spacing) >= SLOPE_KEPT * finest {
+        spacing *= 2;
+    }
+    sides[0].max(sides[1]) / spacing
+}
+
+/// Of differences over so many elements along both axes, in units of the height over the side of an element. All rows are looked at: on
+/// some of them a surface that repeats may look smooth.
+fn mean_square_slope(map: &Field, spacing: usize) -> f64 {
+    let (nx, ny) = (map.grid().nx(), map.grid().ny());
+    let of_row = |iy: usize| {
+        let (row, below) = (map.row(iy), map.row((iy + spacing) % ny));
+        let squares = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (b - a).powi(2)).sum::<f64>();
+        let (near, far) = row.split_at(nx - spacing);
+        [squares(near, &row[spacing..]) + squares(far, &row[..spacing]) + squares(row, below)]
+    };
+    let [sum] = BlockLayout::of(nx).total(parallel::map(0..ny, of_row));
+    sum / (map.grid().len() * spacing * spacing) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use rc_core::testing::quasi_random;
+    use rc_core::{DVec2, Grid};
+
+    use super::*;
+
+    /// Any surface with this many waves.
+    struct Waves(usize);
+
+    impl HeightField for Waves {
+        fn height(&self, _at: DVec2) -> f64 {
+            0.0
+        }
+
+        fn band_limit(&self) -> Option<usize> {
+            Some(self.0)
+        }
+    }
+
+    #[test]
+    fn the_base_grid_follows_the_waves_and_the_divisors() {
+        let base = |side, waves| base_sides(&Waves(waves).on(Grid::square(side).expect("a grid")), None);
+        for (side, waves, expected) in [(2048, 64, 256), (32768, 1024, 4096), (128, 8, 64), (1_000_000, 8, 125_000)] {
+            assert_eq!(base(side, waves).ok(), Some([expected; 2]), "{side}, {waves} waves");
+        }
+        // Sides that do not divide have a base grid of their own.
+        for (side, waves, expected) in [(1001, 8, 128), (1000, 62, 256), (997, 8, 128), (1040, 30, 130 * 4)] {
+            assert_eq!(base(side, waves).ok(), Some([expected; 2]), "{side}, {waves} waves");
+        }
+        assert!(matches!(base(60, 20), Err(AdaptiveError::Grid { .. })));
+    }
+
+    #[test]
+    fn a_map_is_coarsened_as_far_as_it_is_smooth() {
+        let grid = Grid::square(1024).expect("a grid");
+        let wave = |n: f64| Field::from_fn(grid, move |at| (std::f64::consts::TAU * n * (at.x + at.y)).cos());
+        let noise = Field::new(grid, (0..grid.len()).map(quasi_random).collect()).expect("a value for each element");
+        let mut with_pit = wave(8.0);
+        with_pit.values_mut()[39 * 1024 + 512] = -1e3;
+        let grooves = |along_x: bool| {
+            let is_groove = |i: usize| (6..10).contains(&(if along_x { i / 1024 } else { i % 1024 } % 16));
+            let heights = (0..grid.len()).map(|i| if is_groove(i) { -1.0 } else { 0.0 }).collect();
+            Field::new(grid, heights).expect("a value for each element")
+        };
+        let of_noise = |nx: usize, ny: usize| {
+            let grid = Grid::in_cell(nx, ny, ny as f64 / nx as f64).expect("a grid");
+            let noise = Field::new(grid, (0..nx * ny).map(quasi_random).collect()).expect("a value for each element");
+            base_sides(&HeightSource::Map(&noise), None).ok()
+        };
+        for ([nx, ny], expected) in [
+            ([640, 480], [160, 120]),
+            ([1024, 256], [256, 64]),
+            ([860, 634], [216, 160]),
+            ([1001, 1001], [256, 256]),
+            ([1000, 1000], [256, 256]),
+        ] {
+            assert_eq!(of_noise(nx, ny), Some(expected), "{nx} x {ny}");
+        }
+        assert_eq!(base_sides(&HeightSource::Map(&grooves(true)), None).ok(), Some([256; 2]));
+        assert_eq!(base_sides(&HeightSource::Map(&grooves(false)), None).ok(), Some([256; 2]));
+        for (map, expected) in [(wave(8.0), 64), (wave(30.0), 128), (wave(100.0), 256), (noise, 256), (with_pit, 256)] {
+            assert_eq!(base_sides(&HeightSource::Map(&map), None).ok(), Some([expected; 2]));
+        }
+    }
+}
