@@ -223,8 +223,9 @@ mod tests {
                 for (i, tap) in row.iter().enumerate() {
                     assert!((tap - ratio * down[i][c]).abs() < 1e-12, "{fine} and {coarse}: ({i}, {c})");
                 }
-                // Where sides are halved, exactly.
-                assert!((row.iter().sum::<f64>() - 1.0).abs() < 1e-6, "{fine} and {coarse}: {c}");
+                // A constant stays what it is where sides are halved, and elsewhere as far as the filter passes long waves.
+                let sum: f64 = row.iter().sum();
+                assert!((sum - 1.0).abs() < 1e-4, "{fine} and {coarse}: {c} has {sum}");
             }
         }
     }
