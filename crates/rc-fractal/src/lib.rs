@@ -11,7 +11,7 @@
 //! plateau) and N = [`SpectrumParams::waves`] the largest wavenumber. In a periodic cell of side λ the δ(0) of Eq. 12 is
 //! 1/q0² with q0 = 2π/λ, which gives the factor (2π)² for λ = 1; C is in λ⁴, a in λ.
 //!
-//! [`Surface`] realises such a spectrum. The phase of a wave depends on the seed and on k alone, so one seed means one surface:
+//! [`Surface`] realises such a spectrum, or is the sum of given waves ([`Surface::from_waves`]). The phase of a wave depends on the seed and on k alone, so one seed means one surface:
 //! on every grid, and, for its long waves, for every N. Everything else here measures surfaces: [`Surface::moments`]
 //! without a grid, [`moments_of_grid`] and [`radial_spectrum`] for any height map.
 //!
@@ -33,6 +33,7 @@ mod params;
 mod power;
 mod radial;
 mod surface;
+mod waves;
 
 pub use hurst::{HurstFit, fit_hurst};
 pub use moments::{Moments, height_and_slope_of_grid, moments_of_grid};
@@ -40,3 +41,4 @@ pub use params::{Amplitudes, MAX_WAVES, Normalisation, SpectrumError, SpectrumPa
 pub use radial::{SpectrumBin, radial_spectrum};
 pub use rc_fft::Complex64;
 pub use surface::{SampleError, Surface};
+pub use waves::{Wave, WaveError};

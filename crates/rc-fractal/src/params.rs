@@ -50,6 +50,10 @@ pub struct SpectrumParams {
     pub hurst: f64,
     /// Wavenumber `k_r` in [1, N] (waves per cell) below which the spectrum is flat; 1 means no plateau.
     pub roll_off: f64,
+    /// Wavenumber in [1, N] (waves per cell) below which there are no waves; 1 means all are there. The plateau of the roll-off, if there
+    /// is one, lies between the two.
+    #[cfg_attr(feature = "serde", serde(default = "no_cut"))]
+    pub low_cut: f64,
     /// Which wave vectors take part.
     pub truncation: Truncation,
     /// Distribution of the |`a_k`|.
@@ -84,6 +88,14 @@ pub enum SpectrumError {
         /// N.
         waves: usize,
     },
+    /// Low cut below one wave per cell or beyond the shortest wave.
+    #[error("the lowest wavenumber must be between 1 and the number of waves ({waves}), not {low_cut}")]
+    LowCut {
+        /// The wavenumber as given.
+        low_cut: f64,
+        /// N.
+        waves: usize,
+    },
     /// A normalisation that is not positive and finite.
     #[error("the {what} must be positive and finite, not {value}")]
     Normalisation {
@@ -103,6 +115,7 @@ impl SpectrumParams {
             waves,
             hurst: 0.8,
             roll_off: 1.0,
+            low_cut: 1.0,
             truncation: Truncation::Disc,
             amplitudes: Amplitudes::Fixed,
             normalisation: Normalisation::RmsHeight(1.3e-3),
@@ -112,7 +125,7 @@ impl SpectrumParams {
 
     /// Says what is wrong with the parameters, if anything; `NaN` is wrong everywhere.
     pub(crate) fn validate(&self) -> Result<(), SpectrumError> {
-        let &Self { waves, hurst, roll_off, .. } = self;
+        let &Self { waves, hurst, roll_off, low_cut, .. } = self;
         if !(1..=MAX_WAVES).contains(&waves) {
             return Err(SpectrumError::Waves { waves });
         }
@@ -121,6 +134,9 @@ impl SpectrumParams {
         }
         if !(1.0..=waves as f64).contains(&roll_off) {
             return Err(SpectrumError::RollOff { roll_off, waves });
+        }
+        if !(1.0..=waves as f64).contains(&low_cut) {
+            return Err(SpectrumError::LowCut { low_cut, waves });
         }
         let (what, value) = match self.normalisation {
             Normalisation::RmsHeight(value) => ("rms height", value),
@@ -138,9 +154,18 @@ impl SpectrumParams {
         }
     }
 
-    /// Root mean square of |`a_k`| relative to the plateau: (max(|k|, `k_r`)/`k_r`)^(-(1+H)), with |k|² given.
+    /// Root mean square of |`a_k`| relative to the plateau: (max(|k|, `k_r`)/`k_r`)^(-(1+H)), and 0 below the low cut, with |k|² given.
     pub(crate) fn relative_amplitude(&self, k_squared: f64) -> f64 {
+        if k_squared < self.low_cut * self.low_cut {
+            return 0.0;
+        }
         let beyond_plateau = (k_squared / (self.roll_off * self.roll_off)).max(1.0);
         beyond_plateau.powf(-0.5 * (1.0 + self.hurst))
     }
+}
+
+/// The low cut of data that were written before there was one.
+#[cfg(feature = "serde")]
+fn no_cut() -> f64 {
+    1.0
 }

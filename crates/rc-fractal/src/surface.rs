@@ -9,16 +9,20 @@ use thiserror::Error;
 
 use crate::draws::draw_column;
 use crate::moments::SpectralSums;
+use crate::waves::{Wave, WaveError, columns_of_waves};
 use crate::{Moments, Normalisation, SpectrumError, SpectrumParams};
 
-/// One realisation of a [`SpectrumParams`]: a band-limited random surface of zero mean height on the unit cell.
+/// A band-limited surface of zero mean height on the unit cell: one realisation of a [`SpectrumParams`], or a sum of given waves.
 ///
 /// Holds one complex amplitude (16 bytes) for each wave vector of the half plane kx ≥ 0; the others are conjugates.
 /// [`HeightField::height`] is the direct sum of Eq. 10 and costs one multiplication per wave; [`HeightField::sample`] is the
 /// Fourier synthesis, equal to it at every element centre of any grid up to rounding.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    params: SpectrumParams,
+    /// `None` of a surface that was not generated.
+    params: Option<SpectrumParams>,
+    /// The largest |kx| or |ky| of a wave; N of a generated surface.
+    waves: usize,
     /// `columns[kx][reach + ky]`, with the reach of that column.
     columns: Vec<Vec<Complex64>>,
 }
@@ -38,7 +42,7 @@ pub enum SampleError {
         smallest: usize,
     },
     /// The surface repeats itself in squares.
-    #[error("a random surface is periodic on a square cell, not on one whose sides differ")]
+    #[error("a surface made of waves is periodic on a square cell, not on one whose sides differ")]
     RectangularCell,
 }
 
@@ -53,7 +57,7 @@ impl Surface {
     pub fn new(params: &SpectrumParams) -> Result<Self, SpectrumError> {
         params.validate()?;
         let columns = (0..=params.waves).into_par_iter().map(|kx| relative_column(params, kx)).collect();
-        let mut surface = Self { params: *params, columns };
+        let mut surface = Self { params: Some(*params), waves: params.waves, columns };
         let factor = match params.normalisation {
             Normalisation::RmsHeight(rms) => rms / surface.sums().height.sqrt(),
             Normalisation::RmsSlope(rms) => rms / surface.sums().slope.sqrt(),
@@ -63,16 +67,28 @@ impl Surface {
         Ok(surface)
     }
 
-    /// The spectrum it realises.
-    #[must_use]
-    pub fn params(&self) -> &SpectrumParams {
-        &self.params
+    /// The surface that has these waves and no others (Eq. 10), in any order, its amplitudes in λ.
+    ///
+    /// A wave is given by k, by -k, whose amplitude is the conjugate, or by both if these agree to 1e-6; zeros may be left out. The mean
+    /// height, k = 0, is not part of a surface and is dropped.
+    ///
+    /// # Errors
+    /// [`WaveError`] when a wave is given twice, is not the conjugate of its opposite, is too short or not finite, or when all are zero.
+    pub fn from_waves(waves: Vec<Wave>) -> Result<Self, WaveError> {
+        let (columns, waves) = columns_of_waves(waves)?;
+        Ok(Self { params: None, waves, columns })
     }
 
-    /// N, the largest wavenumber in waves per cell.
+    /// The spectrum it realises; `None` of a surface of given waves.
+    #[must_use]
+    pub fn params(&self) -> Option<&SpectrumParams> {
+        self.params.as_ref()
+    }
+
+    /// N, in waves per cell: the largest wavenumber of a generated surface, the largest component of a wave vector in one of given waves.
     #[must_use]
     pub fn waves(&self) -> usize {
-        self.params.waves
+        self.waves
     }
 
     /// Moments from exact sums over the waves, without any grid. Test `moments_are_those_of_the_paper` compares them with

@@ -37,6 +37,17 @@ fn the_roll_off_lies_within_the_spectrum() {
 }
 
 #[test]
+fn the_low_cut_lies_within_the_spectrum() {
+    for low_cut in [0.0, -1.0, 4.01, f64::INFINITY] {
+        let params = SpectrumParams { low_cut, ..SpectrumParams::paper(4, 1) };
+        assert_eq!(error(params), SpectrumError::LowCut { low_cut, waves: 4 });
+    }
+    let nan = error(SpectrumParams { low_cut: f64::NAN, ..SpectrumParams::paper(4, 1) });
+    assert_eq!(nan.to_string(), "the lowest wavenumber must be between 1 and the number of waves (4), not NaN");
+    assert!(Surface::new(&SpectrumParams { low_cut: 4.0, ..SpectrumParams::paper(4, 1) }).is_ok());
+}
+
+#[test]
 fn the_size_is_positive_and_finite() {
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let normalisations = [

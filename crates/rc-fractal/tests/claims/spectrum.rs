@@ -157,3 +157,26 @@ fn a_flat_map_has_an_empty_spectrum() {
     assert!(rings.iter().all(|ring| ring.psd == 0.0), "{rings:?}");
     assert!(radial_spectrum(&rc_core::Field::zeros(Grid::square(1).expect("small"))).is_empty());
 }
+
+#[test]
+fn the_low_cut_takes_long_waves_away_and_leaves_the_others() {
+    let base = SpectrumParams { roll_off: 7.0, ..SpectrumParams::paper(20, 3) };
+    for amplitudes in [Amplitudes::Fixed, Amplitudes::Random] {
+        let base = SpectrumParams { amplitudes, ..base };
+        let (all, cut) = (c0(1e-9, base), c0(1e-9, SpectrumParams { low_cut: 5.0, ..base }));
+        let (mut height, mut slope) = (0.0, 0.0);
+        for (kx, ky) in half_plane(20) {
+            let k_squared = (kx * kx + ky * ky) as f64;
+            // (3, 4) and (5, 0) are not below 5.
+            let expected = if k_squared < 25.0 { Complex64::ZERO } else { all.amplitude(kx, ky) };
+            assert_eq!(cut.amplitude(kx, ky), expected, "a({kx}, {ky}), {amplitudes:?}");
+            height += 2.0 * expected.norm_sqr();
+            slope += 2.0 * TAU * TAU * k_squared * expected.norm_sqr();
+        }
+        assert!(cut.amplitude(3, 4) != Complex64::ZERO && cut.amplitude(4, 2) == Complex64::ZERO);
+        assert_close("rms height", cut.moments().rms_height, height.sqrt(), 1e-13);
+        assert_close("rms slope", cut.moments().rms_slope, slope.sqrt(), 1e-13);
+    }
+    let sized = surface(SpectrumParams { low_cut: 5.0, ..base });
+    assert_close("rms height as asked for", sized.moments().rms_height, 1.3e-3, 1e-13);
+}
