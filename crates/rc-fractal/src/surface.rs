@@ -79,6 +79,13 @@ impl Surface {
         Ok(Self { params: None, waves, columns })
     }
 
+    /// The surface with all heights multiplied by `factor`; no longer that of a spectrum.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.columns.par_iter_mut().flatten().for_each(|amplitude| *amplitude = amplitude.scale(factor));
+        Self { params: None, ..self }
+    }
+
     /// The spectrum it realises; `None` of a surface of given waves.
     #[must_use]
     pub fn params(&self) -> Option<&SpectrumParams> {

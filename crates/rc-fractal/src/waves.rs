@@ -105,9 +105,9 @@ pub(crate) fn columns_of_waves(waves: Vec<Wave>) -> Result<(Vec<Vec<Complex64>>,
         for same in column.chunk_by(|a, b| a.k == b.k) {
             merged.extend(merge(same, largest)?);
         }
-        let reach = merged.iter().map(|((_, ky), _)| ky.unsigned_abs() as usize).max();
-        let (Some(reach), Some(((kx, _), _))) = (reach, merged.first()) else { continue };
-        let kx = kx.unsigned_abs() as usize;
+        let reach = merged.iter().map(|half: &Half| half.k.1.unsigned_abs() as usize).max();
+        let (Some(reach), Some(first)) = (reach, merged.first()) else { continue };
+        let kx = first.k.0.unsigned_abs() as usize;
         // Columns between hold no wave but the one with ky = 0, which is zero.
         columns.resize(kx, vec![Complex64::ZERO]);
         columns.push(column_of(kx, reach, &merged));
@@ -127,23 +127,23 @@ fn check(&Wave { kx, ky, amplitude }: &Wave) -> Result<(), WaveError> {
 }
 
 /// The one amplitude of a wave vector: of k, of -k, or the mean of both; none for zeros and for the mean height.
-fn merge(same: &[Half], largest: f64) -> Result<Option<((i64, i64), Complex64)>, WaveError> {
+fn merge(same: &[Half], largest: f64) -> Result<Option<Half>, WaveError> {
     let near = |a: Complex64, b: Complex64| (a - b).norm() <= SAME * a.norm() + SAME_AS_LARGEST * largest;
     let failed = |half: &Half, of_opposite: Complex64| {
         let ((kx, ky), Complex64 { re, im }) = (half.k, half.amplitude);
         Err(WaveError::NotConjugate { kx, ky, re, im, of_opposite })
     };
-    let (k, amplitude) = match same {
+    let merged = match same {
         // Its own opposite.
         [half] if half.k == (0, 0) => {
             return if near(half.amplitude, half.amplitude.conj()) { Ok(None) } else { failed(half, half.amplitude) };
         }
-        [half] => (half.k, half.amplitude),
+        [half] => *half,
         [half, opposite] if half.is_opposite != opposite.is_opposite => {
             if !near(half.amplitude, opposite.amplitude) {
                 return failed(half, opposite.amplitude.conj());
             }
-            (half.k, 0.5 * (half.amplitude + opposite.amplitude))
+            Half { amplitude: 0.5 * (half.amplitude + opposite.amplitude), ..*half }
         }
         [first, ..] => {
             let sign = if same.iter().filter(|half| half.is_opposite).count() > 1 { -1 } else { 1 };
@@ -151,13 +151,13 @@ fn merge(same: &[Half], largest: f64) -> Result<Option<((i64, i64), Complex64)>,
         }
         [] => return Ok(None),
     };
-    Ok((amplitude != Complex64::ZERO).then_some((k, amplitude)))
+    Ok(Some(merged).filter(|half| half.amplitude != Complex64::ZERO))
 }
 
 /// The column of the waves with this kx; that of kx = 0 has their opposites too.
-fn column_of(kx: usize, reach: usize, waves: &[((i64, i64), Complex64)]) -> Vec<Complex64> {
+fn column_of(kx: usize, reach: usize, waves: &[Half]) -> Vec<Complex64> {
     let mut column = vec![Complex64::ZERO; 2 * reach + 1];
-    for &((_, ky), amplitude) in waves {
+    for &Half { k: (_, ky), amplitude, .. } in waves {
         let place = |ky: i64| (reach as i64 + ky).unsigned_abs() as usize;
         column[place(ky)] = amplitude;
         if kx == 0 {

@@ -134,6 +134,19 @@ pub enum FormatError {
         /// What would be right.
         expected: String,
     },
+    /// A wave vector that is not of a periodic surface.
+    #[error("line {line}: wave number {value} is not an integer; kx and ky are waves per cell")]
+    WaveNumber {
+        /// Line, from 1.
+        line: usize,
+        /// As read.
+        value: f64,
+    },
+    /// Coefficients in a container that rc does not open.
+    #[error(
+        "an HDF5 file, which cannot be read here; write its waves as text with h5dump or Python, a line of kx ky Re Im for each"
+    )]
+    Hdf5Spectrum,
     /// Points that are not on a regular grid.
     #[error("the points are not on a regular grid: {0}; of a text, layout = matrix reads a row of the map a line")]
     Irregular(String),

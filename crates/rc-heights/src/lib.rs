@@ -7,6 +7,8 @@
 //! Of several [`channels`] it reads the first with heights; [`read_with`] reads another. [`Treatment`]s level, fill, crop, flip,
 //! filter and resample it and make it periodic; [`AreaParameters`] are those of ISO 25178-2.
 //!
+//! [`spectrum`] reads surfaces that are given by their Fourier coefficients instead.
+//!
 //! Besides the command line, this is the only crate that knows metres: a file carries units, and [`HeightMap::in_metres`]
 //! applies them once. Row `iy` of a file is row `iy` of the field; a missing point is `NaN`.
 //!
@@ -32,6 +34,7 @@ mod error;
 mod formats;
 mod map;
 mod parameters;
+pub mod spectrum;
 mod statistics;
 mod treat;
 mod units;

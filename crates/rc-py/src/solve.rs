@@ -126,7 +126,8 @@ impl Prepared {
         let (solution, failure, wall) = owned(solved, &scene, own.is_some())?;
         // Of a map only this is kept: the heights are those of the caller.
         let height_and_slope = surface.height_and_slope();
-        Ok(Parts { surface: surface.keys, contact: scene.contact, solution, failure, wall, height_and_slope })
+        let waves = surface.wave_file().cloned();
+        Ok(Parts { surface: surface.keys, waves, contact: scene.contact, solution, failure, wall, height_and_slope })
     }
 }
 
@@ -145,7 +146,7 @@ fn owned(
 fn load(scene: &CheckedScene, map: Option<HeightMap>) -> Result<LoadedSurface, CliError> {
     let expected = match &scene.surface.source {
         Source::File { expected, .. } => *expected,
-        Source::Random { .. } => None,
+        Source::Random { .. } | Source::Waves { .. } => None,
     };
     match map {
         Some(map) => scene.surface.of_map(Path::new("heights"), map, expected),
@@ -156,7 +157,7 @@ fn load(scene: &CheckedScene, map: Option<HeightMap>) -> Result<LoadedSurface, C
 /// The caller's kernel on the grid of the scene.
 fn own_kernel(symbol: &Bound<'_, PyAny>, scene: &CheckedScene, map: Option<&HeightMap>) -> PyResult<OwnKernel> {
     let grid = match (&scene.surface.source, map) {
-        (Source::Random { grid, .. }, _) => *grid,
+        (Source::Random { grid, .. } | Source::Waves { grid, .. }, _) => *grid,
         (_, Some(map)) => map.heights.grid(),
         (Source::File { .. }, None) => scene.surface.load().map_err(raised)?.grid,
     };

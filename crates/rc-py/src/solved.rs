@@ -1,13 +1,14 @@
 //! A solution as Python sees it.
 
 use std::path::PathBuf;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods as _};
 use pyo3::prelude::*;
 use rc_cli::scene::keys::SurfaceKeys;
 use rc_cli::scene::resolve::ContactSetup;
+use rc_cli::scene::wave_file::WaveFile;
 use rc_cli::solve::{MapHeights, ResultFiles};
 use rc_core::Field;
 use rc_solver::{Solution, Status};
@@ -20,6 +21,8 @@ use crate::running::{self, Run};
 /// What a solve leaves, without borrows.
 pub(crate) struct Parts {
     pub(crate) surface: SurfaceKeys,
+    /// The file of waves that was solved, if one was.
+    pub(crate) waves: Option<Arc<WaveFile>>,
     pub(crate) contact: ContactSetup,
     pub(crate) solution: Solution<'static>,
     /// What is said of a solution that did not reach the tolerance.
@@ -66,8 +69,8 @@ impl Solved {
     }
 
     fn files<'a>(&'a self, map: Option<MapHeights<'a>>) -> ResultFiles<'a> {
-        let Parts { surface, contact, solution, .. } = &self.parts;
-        ResultFiles { surface, map, contact, solution }
+        let Parts { surface, waves, contact, solution, .. } = &self.parts;
+        ResultFiles { surface, map, waves: waves.as_deref(), contact, solution }
     }
 
     fn summary_of(&self) -> &Summary {

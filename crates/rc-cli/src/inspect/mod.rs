@@ -12,6 +12,7 @@ use rc_core::{Field, PeriodicCell};
 use rc_fractal::moments_of_grid;
 use rc_heights::{ChannelInfo, HeightMap, ReadParams, Scales, npy};
 use rc_solver::PressureStatistics;
+use rc_sweep::memory::Budget;
 use rc_sweep::{Summary, files, to_json};
 use serde::Serialize;
 
@@ -19,8 +20,10 @@ use self::args::InspectArgs;
 use self::record::{ChannelRow, SurfaceRecord};
 use crate::error::CliError;
 use crate::files::result::ResultFolder;
+use crate::scene::keys::SurfaceKeys;
 use crate::scene::surface::{HEIGHTS_FILE, LoadedSurface};
-use crate::scene::{file, heights};
+use crate::scene::values::GridSpec;
+use crate::scene::{file, heights, resolve};
 use crate::terminal;
 use crate::text::{solved, written};
 
@@ -39,7 +42,7 @@ struct ResultStatistics {
 /// # Errors
 /// [`CliError::Input`] when the file is neither a height map nor part of a result.
 pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
-    let text = match result_folder(&args.file) {
+    let text = match result_folder(&args.file).filter(|_| !args.spectrum) {
         Some(_) if args.cell.is_some() || args.cell_y.is_some() => {
             return Err(CliError::input("cell: a result has its own, in its scene.toml; omit --cell and --cell-y"));
         }
@@ -51,6 +54,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
             let statistics = PressureStatistics::of(&finite(&args.file, npy::read(&args.file)?)?);
             if args.json { to_json(&statistics) } else { text::pressure(&statistics) }
         }
+        None if args.spectrum => inspect_waves(args)?,
         None => inspect_heights(args)?,
     };
     terminal::print(&text)
@@ -162,12 +166,44 @@ fn statistics(args: &InspectArgs) -> Result<(SurfaceRecord, &'static str), CliEr
     let params = ReadParams { channel: args.channel.clone(), layout: args.layout };
     let map = heights::read(&args.file, &params, Scales { unit: args.unit, height_scale: args.height_scale })?;
     let Inspected { heights, record, note } = Inspected::new(&args.file, map, [args.cell, args.cell_y])?;
-    if let Some(folder) = &args.out {
-        files::check_folder(folder)?;
-        pictures::write(folder, &heights, &record)?;
-    }
+    draw(args, &heights, &record)?;
     Ok((record, note))
 }
+
+/// Moments are those of the waves, the distribution of heights is that of a grid.
+fn inspect_waves(args: &InspectArgs) -> Result<String, CliError> {
+    let keys = SurfaceKeys {
+        spectrum: Some(args.file.clone()),
+        cell: args.cell.or(file::example().surface.cell),
+        cell_y: args.cell_y,
+        unit: args.unit,
+        height_scale: args.height_scale,
+        grid: args.grid,
+        ..SurfaceKeys::default()
+    };
+    let setup = resolve::surface(keys)?;
+    let mut surface = setup.load()?;
+    if let (None, Some(waves)) = (args.grid, surface.wave_file().map(|file| file.surface().waves())) {
+        surface.grid = resolve::checked_grid(GridSpec::square(ELEMENTS_PER_WAVE * waves))?;
+    }
+    Budget::new(None).check_grid("the surface", surface.grid)?;
+    let heights = surface.heights()?;
+    let record = SurfaceRecord::of(&heights, setup.cell.side(), surface.moments());
+    draw(args, &heights, &record)?;
+    Ok(if args.json { to_json(&record) } else { text::heights(&record) + &written(args.out.as_deref()) })
+}
+
+/// Writes the pictures that are asked for.
+fn draw(args: &InspectArgs, heights: &Field, record: &SurfaceRecord) -> Result<(), CliError> {
+    if let Some(folder) = &args.out {
+        files::check_folder(folder)?;
+        pictures::write(folder, heights, record)?;
+    }
+    Ok(())
+}
+
+/// Elements per shortest wave, of waves.
+const ELEMENTS_PER_WAVE: usize = 4;
 
 /// Said of a map that could mean two things.
 const TAKEN: &str = "a map without a size is taken for a square, as rc solve takes it, so its points here are rectangles; --cell-y says \

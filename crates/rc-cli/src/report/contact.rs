@@ -128,7 +128,8 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
 
 fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
     let keys = &scene.surface;
-    let surface = match (&keys.heights, keys.waves, keys.hurst, keys.seed) {
+    let surface = match (keys.file(), keys.waves, keys.hurst, keys.seed) {
+        (Some(("spectrum", _)), ..) => "a surface of given waves".to_owned(),
         (Some(_), ..) => "a height map".to_owned(),
         (None, Some(waves), Some(hurst), Some(seed)) => format!("{waves} waves, H = {hurst}, seed {seed}"),
         _ => "a random surface".to_owned(),
@@ -166,7 +167,7 @@ fn commands(folder: &Path, scene: &Scene) -> Vec<Command> {
         note: "From its folder, digit by digit:".to_owned(),
         text: format!("rc solve {path} --out again"),
     }];
-    if scene.surface.heights.is_none() {
+    if scene.surface.file().is_none() {
         let text = format!("rc solve{}{} --out again", flags(&scene.surface), flags(&scene.contact));
         commands.push(Command { note: "Without any file:".to_owned(), text });
     }

@@ -223,9 +223,10 @@ fn commands(settings: &Value) -> Vec<Command> {
             flags(&surface),
             quoted(&format!("again{}{name}", if name.is_empty() { "" } else { "-" }))
         );
-        let note = match surface["heights"].as_str() {
-            Some(map) => format!("In the folder of the height map {map}:"),
-            None => "Without any file, digit by digit:".to_owned(),
+        let note = match (surface["heights"].as_str(), surface["spectrum"].as_str()) {
+            (Some(map), _) => format!("In the folder of the height map {map}:"),
+            (None, Some(waves)) => format!("In the folder of the file of waves {waves}:"),
+            (None, None) => "Without any file, digit by digit:".to_owned(),
         };
         Command { note, text }
     };

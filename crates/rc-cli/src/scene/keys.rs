@@ -16,7 +16,7 @@ use super::values::{Fraction, GridSpec, ToleranceSpec};
 /// The embedded example: the paper's surface with N = 64 at σ0/E* = 8.9e-4. Also the source of defaults.
 pub const EXAMPLE: &str = include_str!("../../assets/paper-n64.toml");
 
-/// The rough surface: a file, or the parameters of a random one (Eq. 9-14).
+/// The rough surface: a file of heights or of waves, or the parameters of a random one (Eq. 9-14).
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[command(next_help_heading = "Surface")]
 pub struct SurfaceKeys {
@@ -32,10 +32,15 @@ pub struct SurfaceKeys {
     /// .dat, .al3d, .plu, .plux, .vk4, 16-bit .png or .tif; positive towards the half-space
     #[arg(long, value_name = "FILE")]
     pub heights: Option<PathBuf>,
-    /// Unit of the lengths of a height map that names none: m, mm, um, nm [default: m]
+    /// Fourier coefficients instead of a random surface: text, a line of kx ky Re Im for each wave, kx and ky in waves per cell, Re and
+    /// Im in m
+    #[arg(long, value_name = "FILE")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spectrum: Option<PathBuf>,
+    /// Unit of the lengths of a height map that names none, or of coefficients: m, mm, um, nm [default: m]
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<LengthUnit>,
-    /// Height (m) of 1 in a height map that names no unit, as of one level of grey of an image; goes before --unit
+    /// Height (m) of 1 in a height map that names no unit, as of one level of grey of an image, or in coefficients; goes before --unit
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub height_scale: Option<f64>,
     /// Channel of a height map that has several, as rc inspect lists them [default: the first with heights]
@@ -68,6 +73,10 @@ pub struct SurfaceKeys {
     /// Below this number of waves per cell the spectrum is flat (1: no roll-off)
     #[arg(long, allow_hyphen_values = true)]
     pub roll_off: Option<f64>,
+    /// No waves below this number of waves per cell [default: 1]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub low_cut: Option<f64>,
     /// Amplitudes exactly of the spectrum (Eq. 14), or random about it
     #[arg(long, value_parser = amplitudes())]
     pub amplitudes: Option<Amplitudes>,
@@ -180,14 +189,16 @@ macro_rules! or_lower {
 }
 
 impl SurfaceKeys {
-    /// These keys laid over `lower`. A key given here also removes its alternatives below: a height map the parameters of
-    /// a random surface (and the reverse), each of `rms`, `rms_slope`, `c0` the other two, and `cell` the other side.
+    /// These keys laid over `lower`. A key given here also removes its alternatives below: a height map, a file of waves and the
+    /// parameters of a random surface each other, each of `rms`, `rms_slope`, `c0` the other two, and `cell` the other side.
     #[must_use]
     pub fn over(mut self, mut lower: Self) -> Self {
         if self.heights.is_some() {
             lower = Self { cell: lower.cell, cell_y: lower.cell_y, ..Self::default() };
+        } else if self.spectrum.is_some() {
+            lower = Self { cell: lower.cell, ..Self::default() };
         } else if self.generates() {
-            (lower.heights, lower.unit, lower.height_scale, lower.cell_y) = (None, None, None, None);
+            lower = Self { heights: None, spectrum: None, unit: None, height_scale: None, cell_y: None, ..lower };
             (lower.channel, lower.layout) = (None, None);
         }
         if self.cell.is_some() {
@@ -197,12 +208,20 @@ impl SurfaceKeys {
             (lower.rms, lower.rms_slope, lower.c0) = (None, None, None);
         }
         or_lower!(self, lower, {
-            cell, cell_y, heights, unit, height_scale, channel, layout, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, amplitudes, grid
+            cell, cell_y, heights, spectrum, unit, height_scale, channel, layout, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off,
+            low_cut, amplitudes, grid
         });
         self
     }
 
-    /// What is known of the units of a height map.
+    /// The file that the surface is read from, if it is, with its key.
+    #[must_use]
+    pub fn file(&self) -> Option<(&'static str, &Path)> {
+        let heights = self.heights.as_deref().map(|path| ("heights", path));
+        heights.or_else(|| self.spectrum.as_deref().map(|path| ("spectrum", path)))
+    }
+
+    /// What is known of the units of a height map, or of coefficients.
     #[must_use]
     pub fn scales(&self) -> Scales {
         Scales { unit: self.unit, height_scale: self.height_scale }
@@ -217,8 +236,8 @@ impl SurfaceKeys {
     /// Whether any parameter of a random surface is given.
     #[must_use]
     pub fn generates(&self) -> bool {
-        let Self { waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, amplitudes, .. } = self;
-        let numbers = [hurst, rms, rms_slope, c0, roll_off].iter().any(|key| key.is_some());
+        let Self { waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, low_cut, amplitudes, .. } = self;
+        let numbers = [hurst, rms, rms_slope, c0, roll_off, low_cut].iter().any(|key| key.is_some());
         numbers || waves.is_some() || seed.is_some() || truncation.is_some() || amplitudes.is_some()
     }
 }
@@ -282,7 +301,7 @@ impl Scene {
     /// The scene with its relative paths taken from `folder`.
     #[must_use]
     pub fn relative_to(mut self, folder: &Path) -> Self {
-        for path in [&mut self.surface.heights, &mut self.run.out].into_iter().flatten() {
+        for path in [&mut self.surface.heights, &mut self.surface.spectrum, &mut self.run.out].into_iter().flatten() {
             *path = folder.join(&*path);
         }
         self
@@ -324,6 +343,12 @@ mod tests {
         assert_eq!((other.cell, other.cell_y), (Some(4.0), None), "the other side was that of another cell");
         let same = SurfaceKeys { grid: Some(GridSpec::square(64)), ..Default::default() }.over(rectangle());
         assert_eq!((same.cell, same.cell_y), (Some(2.0), Some(1.0)));
-        assert_eq!(random.over(map).heights, None);
+        assert_eq!(random.clone().over(map.clone()).heights, None);
+        let waves = SurfaceKeys { spectrum: Some("waves.txt".into()), ..Default::default() };
+        for lower in [&random, &map] {
+            let merged = waves.clone().over(lower.clone());
+            assert_eq!((merged.waves, merged.heights, merged.cell), (None, None, lower.cell));
+            assert_eq!(lower.clone().over(waves.clone()).spectrum, None);
+        }
     }
 }

@@ -7,6 +7,7 @@ pub mod resolve;
 pub mod surface;
 pub mod time_limit;
 pub mod values;
+pub mod wave_file;
 
 pub mod heights;
 mod names;

@@ -12,6 +12,7 @@ use super::as_read::AsRead;
 use super::heights;
 use super::keys::SurfaceKeys;
 use super::values::GridSpec;
+use super::wave_file::{WAVES_FILE, WaveFile};
 use crate::error::CliError;
 
 /// A checked surface, before it is realised or read.
@@ -46,6 +47,15 @@ pub enum Source {
         /// The finest grid.
         grid: Grid,
     },
+    /// A surface whose waves are in a file.
+    Waves {
+        /// The file.
+        path: PathBuf,
+        /// What was read from it.
+        waves: Arc<WaveFile>,
+        /// The finest grid.
+        grid: Grid,
+    },
 }
 
 /// A surface, ready to be evaluated.
@@ -64,6 +74,8 @@ pub struct LoadedSurface {
 pub enum Shape {
     /// A random surface; it has heights anywhere.
     Random(Arc<Surface>),
+    /// A surface of the waves in a file; it too has heights anywhere.
+    Waves(Arc<WaveFile>),
     /// A height map.
     Map {
         /// Heights in λ.
@@ -97,13 +109,13 @@ impl SurfaceSetup {
     #[must_use]
     pub fn max_elements(&self) -> f64 {
         match &self.source {
-            Source::Random { grid, .. } => grid.len() as f64,
+            Source::Random { grid, .. } | Source::Waves { grid, .. } => grid.len() as f64,
             // Two bytes are the least that a useful map has for a height.
             Source::File { path, .. } => path.metadata().map_or(0.0, |file| file.len() as f64 / 2.0),
         }
     }
 
-    /// Reads the map or realises the random surface, whose heights are not evaluated yet.
+    /// Reads the map or realises the random surface. Heights of a sum of waves are not evaluated yet.
     ///
     /// # Errors
     /// [`CliError::Input`] when the file is not a height map, is on another grid than the scene says, or is flat.
@@ -115,6 +127,10 @@ impl SurfaceSetup {
             Source::Random { spectrum, grid } => {
                 let surface = Surface::new(spectrum).map_err(CliError::input)?;
                 Ok(LoadedSurface { shape: Shape::Random(Arc::new(surface)), grid: *grid, keys: self.keys.clone() })
+            }
+            Source::Waves { waves, grid, .. } => {
+                let keys = SurfaceKeys { spectrum: Some(WAVES_FILE.into()), ..self.keys.clone() };
+                Ok(LoadedSurface { shape: Shape::Waves(Arc::clone(waves)), grid: *grid, keys })
             }
         }
     }
@@ -154,48 +170,60 @@ impl SurfaceSetup {
     }
 }
 
+impl Shape {
+    /// The sum of waves that the surface is, or the map.
+    fn waves_or_map(&self) -> Result<&Surface, &Field> {
+        match self {
+            Self::Random(surface) => Ok(surface),
+            Self::Waves(file) => Ok(file.surface()),
+            Self::Map { heights, .. } => Err(heights),
+        }
+    }
+}
+
 impl LoadedSurface {
-    /// Heights on the finest grid, in λ; those of a random surface are evaluated for it, 8 bytes each.
+    /// Heights on the finest grid, in λ; those of a sum of waves are evaluated for it, 8 bytes each.
     ///
     /// # Errors
     /// [`CliError::Input`] when the grid is too coarse for the waves.
     pub fn heights(&self) -> Result<Cow<'_, Field>, CliError> {
-        match &self.shape {
-            Shape::Random(surface) => {
-                let sampled = surface.sample_on(self.grid);
+        match self.shape.waves_or_map() {
+            Ok(waves) => {
+                let sampled = waves.sample_on(self.grid);
                 sampled.map(Cow::Owned).map_err(|cause| CliError::input(format_args!("grid: {cause}")))
             }
-            Shape::Map { heights, .. } => Ok(Cow::Borrowed(heights)),
+            Err(map) => Ok(Cow::Borrowed(map)),
         }
     }
 
-    /// The heights of a contact problem on the finest grid; those of a random surface are not evaluated yet.
+    /// The heights of a contact problem on the finest grid; those of a sum of waves are not evaluated yet.
     #[must_use]
     pub fn source(&self) -> HeightSource<'static> {
         match &self.shape {
             Shape::Random(surface) => HeightSource::shared(Arc::<Surface>::clone(surface), self.grid),
+            Shape::Waves(file) => HeightSource::shared(Arc::<Surface>::clone(file.surface()), self.grid),
             Shape::Map { heights, .. } => Arc::clone(heights).into(),
         }
     }
 
-    /// rms height (λ) and rms slope: exact ones of a random surface, those of its grid for a height map.
+    /// rms height (λ) and rms slope: exact ones of a sum of waves, those of its grid for a height map.
     #[must_use]
     pub fn height_and_slope(&self) -> [f64; 2] {
-        match &self.shape {
-            Shape::Random(surface) => {
-                let Moments { rms_height, rms_slope, .. } = surface.moments();
+        match self.shape.waves_or_map() {
+            Ok(waves) => {
+                let Moments { rms_height, rms_slope, .. } = waves.moments();
                 [rms_height, rms_slope]
             }
-            Shape::Map { heights, .. } => height_and_slope_of_grid(heights),
+            Err(map) => height_and_slope_of_grid(map),
         }
     }
 
-    /// Moments, in λ: exact ones of a random surface, those of its grid for a height map.
+    /// Moments, in λ: exact ones of a sum of waves, those of its grid for a height map.
     #[must_use]
     pub fn moments(&self) -> Moments {
-        match &self.shape {
-            Shape::Random(surface) => surface.moments(),
-            Shape::Map { heights, .. } => moments_of_grid(heights),
+        match self.shape.waves_or_map() {
+            Ok(waves) => waves.moments(),
+            Err(map) => moments_of_grid(map),
         }
     }
 
@@ -203,8 +231,17 @@ impl LoadedSurface {
     #[must_use]
     pub fn map(&self) -> Option<(&Field, &AsRead)> {
         match &self.shape {
-            Shape::Random(_) => None,
             Shape::Map { heights, as_read } => Some((heights, as_read)),
+            Shape::Random(_) | Shape::Waves(_) => None,
+        }
+    }
+
+    /// The file that has the waves of the surface, if one has.
+    #[must_use]
+    pub fn wave_file(&self) -> Option<&Arc<WaveFile>> {
+        match &self.shape {
+            Shape::Waves(file) => Some(file),
+            Shape::Random(_) | Shape::Map { .. } => None,
         }
     }
 }

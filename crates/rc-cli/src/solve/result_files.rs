@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use rc_core::{DVec2, Field, Grid, Units};
 use rc_heights::npy::{self, RowWriter};
+use rc_heights::spectrum;
 use rc_plot::{ContactRows, save_png};
 use rc_solver::{ContactElement, Solution};
 use rc_sweep::files::{FileError, Staged};
@@ -19,6 +20,7 @@ use crate::scene::keys::{ContactKeys, SurfaceKeys};
 use crate::scene::resolve::ContactSetup;
 use crate::scene::surface::HEIGHTS_FILE;
 use crate::scene::values::GridSpec;
+use crate::scene::wave_file::{WAVES_FILE, WaveFile};
 
 /// A solution with what its summary and its files need besides.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +29,8 @@ pub struct ResultFiles<'a> {
     pub surface: &'a SurfaceKeys,
     /// The height map that was solved; `None` for a random surface.
     pub map: Option<MapHeights<'a>>,
+    /// The file of waves that was solved, if one was.
+    pub waves: Option<&'a WaveFile>,
     /// Half-space, load and method.
     pub contact: &'a ContactSetup,
     /// The solution.
@@ -87,6 +91,9 @@ impl ResultFiles<'_> {
         add_fields(&mut staged, self.contact, self.solution)?;
         if let Some(map) = self.map {
             staged.add(HEIGHTS_FILE, |path| map.write(path))?;
+        }
+        if let Some(waves) = self.waves {
+            staged.add(WAVES_FILE, |path| spectrum::write(path, waves.coefficients()))?;
         }
         staged.add_text("scene.toml", &self.scene())?;
         staged.add_text("summary.json", &summary.to_json())?;

@@ -167,7 +167,8 @@ impl<'a> Solved<'a> {
     fn files(&self) -> ResultFiles<'_> {
         let ProblemSetup { surface, contact, .. } = self.problem;
         let map = surface.map().map(|(heights, as_read)| MapHeights::InCell { heights, as_read });
-        ResultFiles { surface: &surface.keys, map, contact, solution: &self.solution }
+        let waves = surface.wave_file().map(AsRef::as_ref);
+        ResultFiles { surface: &surface.keys, map, waves, contact, solution: &self.solution }
     }
 }
 

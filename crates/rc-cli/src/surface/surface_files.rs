@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use rc_core::Field;
-use rc_heights::{npy, text};
+use rc_heights::{npy, spectrum, text};
 use rc_plot::{Map, MapPicture, Palette, Shade, save_png};
 use rc_sweep::files::{self, FileError, Staged};
 use rc_sweep::to_json;
@@ -12,6 +12,7 @@ use rc_sweep::to_json;
 use crate::inspect::record::SurfaceRecord;
 use crate::scene::file;
 use crate::scene::surface::{HEIGHTS_FILE, LoadedSurface};
+use crate::scene::wave_file::WAVES_FILE;
 
 /// Whether the heights alone are to go into a file of this name.
 pub(super) fn is_map(target: &Path) -> bool {
@@ -60,6 +61,9 @@ pub(super) fn write_folder(
     let picture = MapPicture(Map { title: "Height", field: heights, shade, side });
     let mut staged = Staged::new(folder)?;
     staged.add(HEIGHTS_FILE, |path| npy::write(path, &field, factor))?;
+    if let Some(waves) = surface.wave_file() {
+        staged.add(WAVES_FILE, |path| spectrum::write(path, waves.coefficients()))?;
+    }
     staged.add("surface.png", |path| save_png(&picture, path))?;
     staged.add_text("scene.toml", &scene)?;
     staged.add_text("surface.json", &to_json(record))?;

@@ -16,7 +16,7 @@ use crate::scene::surface::{Source, SurfaceSetup};
 pub(super) struct SweptSurface {
     /// Name of the scene: of its file, without folder and extension.
     scene: String,
-    /// `None` for a height map.
+    /// `None` for a surface from a file.
     seed: Option<u64>,
     setup: SurfaceSetup,
     /// The keys as resolved, without a load.
@@ -104,13 +104,17 @@ impl SweptSurface {
         Ok(Self { scene: name.to_owned(), seed, setup, contact, loads: loads.to_vec() })
     }
 
-    /// What determines its rows. Where a height map lies does not, so its name and its content count.
+    /// What determines its rows. Where a file lies does not, so its name and its content count.
     fn planned(&self) -> Result<PlannedSurface, CliError> {
         let mut surface = self.setup.keys.clone();
         let map = match &self.setup.source {
             Source::Random { .. } => None,
             Source::File { path, .. } => {
                 surface.heights = path.file_name().map(Into::into);
+                Some(FileMark::of(path)?)
+            }
+            Source::Waves { path, .. } => {
+                surface.spectrum = path.file_name().map(Into::into);
                 Some(FileMark::of(path)?)
             }
         };
@@ -230,9 +234,10 @@ fn loads(args: &SweepArgs, control: ControlKind, keys: &ContactKeys) -> Result<V
 /// The scene with each of the seeds; as it is when there are none.
 fn seeded(seeds: Option<&Seeds>, name: &str, scene: &Scene) -> Result<Vec<Scene>, CliError> {
     let Some(Seeds(seeds)) = seeds else { return Ok(vec![scene.clone()]) };
-    if scene.surface.heights.is_some() {
+    if let Some((key, _)) = scene.surface.file() {
+        let what = if key == "heights" { "height map" } else { "file of waves" };
         let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
-        return Err(CliError::input(format_args!("seeds: the height map{of} has none; omit --seeds")));
+        return Err(CliError::input(format_args!("seeds: the {what}{of} has none; omit --seeds")));
     }
     let with = |seed: &u64| {
         let mut scene = scene.clone();

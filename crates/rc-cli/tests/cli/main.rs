@@ -9,6 +9,7 @@ mod rectangles;
 mod report;
 mod robustness;
 mod solve;
+mod spectrum;
 mod stopped;
 mod support;
 mod sweep;

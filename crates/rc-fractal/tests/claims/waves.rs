@@ -7,6 +7,9 @@ use rc_fractal::{Amplitudes, Complex64, MAX_WAVES, SpectrumParams, Surface, Trun
 
 use crate::surface;
 
+/// Which waves of a surface are given.
+type Half = fn(&Wave) -> bool;
+
 /// Every wave of a surface, its opposite too.
 fn waves_of(surface: &Surface) -> Vec<Wave> {
     let n = surface.waves() as i64;
@@ -26,7 +29,6 @@ fn a_surface_is_that_of_its_waves_whichever_half_is_given() {
         let params = SpectrumParams { truncation, amplitudes: Amplitudes::Random, ..SpectrumParams::paper(12, 3) };
         let original = surface(params);
         let all = waves_of(&original);
-        type Half = fn(&Wave) -> bool;
         let halves: [Half; 5] = [
             |wave| (wave.kx, wave.ky) > (0, 0),
             |wave| (wave.kx, wave.ky) < (0, 0),
@@ -67,6 +69,15 @@ fn one_wave_is_a_cosine() {
         let moments = surface.moments();
         assert!((moments.rms_height / (amplitude / 2.0_f64.sqrt()) - 1.0).abs() < 1e-14, "{moments:?}");
     }
+}
+
+#[test]
+fn a_scaled_surface_has_scaled_heights_and_no_spectrum() {
+    let original = surface(SpectrumParams::paper(8, 2));
+    let scaled = original.clone().scaled(-0.25);
+    assert_eq!((scaled.params(), scaled.waves()), (None, 8));
+    let at = DVec2::new(0.3, 0.6);
+    assert_eq!(scaled.height(at).to_bits(), (-0.25 * original.height(at)).to_bits());
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 /// UTF-8, with a byte-order mark or without; UTF-16 of either byte order with one; else Latin-1, in which old programs write µ.
-pub(super) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
+pub(crate) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
     match bytes {
         [0xff, 0xfe, rest @ ..] => Cow::Owned(utf_16(rest, u16::from_le_bytes)),
         [0xfe, 0xff, rest @ ..] => Cow::Owned(utf_16(rest, u16::from_be_bytes)),

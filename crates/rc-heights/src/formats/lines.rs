@@ -8,13 +8,13 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
 }
 
 /// Lines with data from line `first` on, and their numbers.
-pub(super) fn data_lines(text: &str, first: usize) -> impl Iterator<Item = (usize, &str)> {
+pub(crate) fn data_lines(text: &str, first: usize) -> impl Iterator<Item = (usize, &str)> {
     lines(text).filter(move |(n, line)| *n >= first && !line.starts_with(['#', '%']))
 }
 
 /// The values of a line, and whether a comma is a decimal point in them. Nothing between two separators is a value that is not a
 /// number.
-pub(super) fn words(line: &str) -> (Box<dyn Iterator<Item = &str> + '_>, bool) {
+pub(crate) fn words(line: &str) -> (Box<dyn Iterator<Item = &str> + '_>, bool) {
     if line.contains(';') {
         (Box::new(line.split(';').map(str::trim)), true)
     } else if line.contains(',') && !has_decimal_commas(line) {
@@ -33,7 +33,7 @@ fn has_decimal_commas(line: &str) -> bool {
 }
 
 /// A number, or `NaN` for the marks of a missing point; with a comma for a decimal point, if that is allowed.
-pub(super) fn number(word: &str, comma: bool) -> Option<f64> {
+pub(crate) fn number(word: &str, comma: bool) -> Option<f64> {
     let parsed = if comma && word.contains(',') { word.replacen(',', ".", 1).parse() } else { word.parse() };
     parsed.ok().or_else(|| ["BAD", "***", "---"].contains(&word).then_some(f64::NAN))
 }

@@ -42,11 +42,13 @@ use std::io::Read as _;
 use std::path::Path;
 
 pub use channel::ChannelInfo;
+pub(crate) use decode::decoded;
+pub(crate) use fields::shown;
 pub use format::Format;
 pub use layout::{Layout, LayoutError};
+pub(crate) use lines::{data_lines, number, words};
 
 use self::channel::{Channels, chosen, named, only};
-use self::decode::decoded;
 use self::heading::Heading;
 use crate::{FormatError, HeightMap, ReadError};
 

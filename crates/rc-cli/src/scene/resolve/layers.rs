@@ -33,8 +33,11 @@ fn check_alternatives(scene: &Scene) -> Result<(), String> {
     if surface.grid.is_some() && contact.area_error.is_some() {
         return Err("area_error chooses the grid; give either area_error or grid".into());
     }
-    if surface.heights.is_some() && surface.generates() {
-        return Err("heights is a surface already; give no parameters of a random one (waves, hurst, rms, ...)".into());
+    if surface.heights.is_some() && surface.spectrum.is_some() {
+        return Err("heights and spectrum are both a surface; give one of them".into());
+    }
+    if let (Some((key, _)), true) = (surface.file(), surface.generates()) {
+        return Err(format!("{key} is a surface already; give no parameters of a random one (waves, hurst, rms, ...)"));
     }
     Ok(())
 }

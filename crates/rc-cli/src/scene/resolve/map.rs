@@ -1,9 +1,9 @@
-//! What a height map must be given: the example's size and material are those of another surface.
+//! What a surface from a file must be given: the example's size and material are those of another surface.
 
 use crate::error::CliError;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
 
-/// Refuses a height map without a size: neither the keys nor a file of its format say it.
+/// Refuses a surface from a file without a size: neither the keys nor a file of its format say it.
 ///
 /// # Errors
 /// [`CliError::Input`] that names what is missing.
@@ -11,7 +11,7 @@ pub fn check_size(surface: &SurfaceKeys) -> Result<(), CliError> {
     check(surface, size(surface)?)
 }
 
-/// Refuses a height map without a size or without a material.
+/// Refuses a surface from a file without a size or without a material.
 ///
 /// # Errors
 /// [`CliError::Input`] that names what is missing.
@@ -29,9 +29,10 @@ pub fn check_cell_and_material(surface: &SurfaceKeys, contact: &ContactKeys) -> 
 
 fn check(surface: &SurfaceKeys, missing: impl IntoIterator<Item = &'static str>) -> Result<(), CliError> {
     let missing: Vec<&str> = missing.into_iter().collect();
-    match surface.heights {
+    let what = if surface.spectrum.is_some() { "spectrum: a file of waves" } else { "heights: a height map" };
+    match surface.file() {
         Some(_) if !missing.is_empty() => Err(CliError::input(format_args!(
-            "heights: a height map needs {} too; the example's values are for generated surfaces only",
+            "{what} needs {} too; the example's values are for generated surfaces only",
             missing.join(", and ")
         ))),
         _ => Ok(()),
@@ -43,8 +44,10 @@ const CELL: &str = "cell (m)";
 
 /// What is missing of the size. Whether a file of a format with sizes says it is known when it has been read.
 fn size(surface: &SurfaceKeys) -> Result<Option<&'static str>, CliError> {
-    let Some(path) = &surface.heights else { return Ok(None) };
-    let is_known = surface.cell.is_some() || rc_heights::may_have_sides(path, &surface.read_params())?;
+    let is_known = match &surface.heights {
+        Some(path) => surface.cell.is_some() || rc_heights::may_have_sides(path, &surface.read_params())?,
+        None => surface.cell.is_some() || surface.spectrum.is_none(),
+    };
     Ok((!is_known).then_some(CELL))
 }
 
@@ -85,6 +88,9 @@ mod tests {
         for material in [material(Some(1.0), None, None), material(None, Some(1.0), Some(0.3))] {
             check_size_and_material(&map(Some(1.0)), &material).expect("all that is needed");
         }
+        let waves = SurfaceKeys { spectrum: Some("waves.txt".into()), ..SurfaceKeys::default() };
+        let error = check_size_and_material(&waves, &none).expect_err("neither").to_string();
+        assert!(error.starts_with("spectrum: a file of waves needs cell (m), and e_star (Pa)"), "{error}");
         check_size_and_material(&SurfaceKeys::default(), &none).expect("a generated surface");
         check_size(&map(Some(1.0))).expect("a size");
     }

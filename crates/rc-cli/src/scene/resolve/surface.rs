@@ -1,6 +1,7 @@
 //! From keys to a checked surface.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use rc_core::{Grid, PeriodicCell};
 use rc_fractal::{Amplitudes, MAX_WAVES, Normalisation, SpectrumParams, Truncation};
@@ -13,8 +14,9 @@ use crate::scene::heights;
 use crate::scene::keys::SurfaceKeys;
 use crate::scene::surface::{Source, SurfaceSetup};
 use crate::scene::values::GridSpec;
+use crate::scene::wave_file::WaveFile;
 
-/// Elements per shortest wave of a random surface, when no grid is given: element side `λ_min/32`.
+/// Elements per shortest wave of a surface made of waves, when no grid is given: element side `λ_min/32`.
 const ELEMENTS_PER_WAVE: usize = 32;
 
 /// Checks the keys of the surface, with the embedded example for defaults.
@@ -34,26 +36,28 @@ pub fn surface(mut keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
 /// # Errors
 /// [`CliError::Input`].
 pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
-    let is_map = keys.heights.is_some();
     let example = SurfaceKeys { grid: None, ..file::example().surface };
-    let keys = if is_map { keys } else { keys.over(example) };
+    let keys = if keys.file().is_some() { keys } else { keys.over(example) };
     let side = positive("cell", "m", keys.cell)?;
     let side_y = keys.cell_y.map_or(Ok(side), |side_y| positive("cell_y", "m", Some(side_y)))?;
     let cell = PeriodicCell::rectangle(side, side_y).map_err(CliError::input)?;
     let grid = keys.grid.map(checked_grid).transpose()?;
-    match keys.heights.clone() {
-        Some(path) => {
+    match (keys.heights.clone(), keys.spectrum.clone()) {
+        (Some(path), _) => {
             let source = Source::File { path, expected: grid, params: keys.read_params(), scales: keys.scales() };
             Ok(SurfaceSetup { cell, source, keys })
         }
-        None => random(keys, cell, grid),
+        (None, Some(path)) => of_waves(keys, &path, cell, grid),
+        (None, None) => random(keys, cell, grid),
     }
 }
 
 /// A random surface, on a grid that resolves its waves.
-fn random(mut keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Result<SurfaceSetup, CliError> {
+fn random(keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Result<SurfaceSetup, CliError> {
     if keys.scales() != Scales::default() {
-        return Err(CliError::input("unit and height_scale: are for height maps; give --heights FILE, or omit them"));
+        return Err(CliError::input(
+            "unit and height_scale: are for surfaces from files; give --heights FILE or --spectrum FILE, or omit them",
+        ));
     }
     if keys.read_params() != ReadParams::default() {
         return Err(CliError::input("channel and layout: are for height maps; give --heights FILE, or omit them"));
@@ -62,18 +66,35 @@ fn random(mut keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Resu
         return Err(CliError::input("cell_y: is for height maps; a random surface has a square cell, so omit it"));
     }
     let spectrum = spectrum(&keys, cell.side())?;
-    let default = GridSpec::square(spectrum.waves.saturating_mul(ELEMENTS_PER_WAVE));
+    let grid = resolving_grid(grid, spectrum.waves)?;
+    let keys = SurfaceKeys { grid: Some(GridSpec { nx: grid.nx(), ny: grid.ny() }), ..keys };
+    Ok(SurfaceSetup { cell, source: Source::Random { spectrum, grid }, keys })
+}
+
+/// The surface that a file has the waves of, on a grid that resolves them. The file is read here, since the grid depends on it.
+fn of_waves(keys: SurfaceKeys, path: &Path, cell: PeriodicCell, grid: Option<Grid>) -> Result<SurfaceSetup, CliError> {
+    if keys.cell_y.is_some() {
+        return Err(CliError::input("cell_y: is for height maps; a surface of waves has a square cell, so omit it"));
+    }
+    let waves = Arc::new(WaveFile::read(path, keys.scales(), cell.side())?);
+    let grid = resolving_grid(grid, waves.surface().waves())?;
+    let keys = SurfaceKeys { grid: Some(GridSpec { nx: grid.nx(), ny: grid.ny() }), ..keys };
+    Ok(SurfaceSetup { cell, source: Source::Waves { path: path.to_owned(), waves, grid }, keys })
+}
+
+/// The grid that is given, or one that resolves `waves` per cell well.
+fn resolving_grid(grid: Option<Grid>, waves: usize) -> Result<Grid, CliError> {
+    let default = GridSpec::square(waves.saturating_mul(ELEMENTS_PER_WAVE));
     let grid = grid.map_or_else(|| checked_grid(default), Ok)?;
-    let smallest = spectrum.waves.saturating_mul(2).saturating_add(1);
-    if grid.resolved_wavenumber() < spectrum.waves {
+    if grid.resolved_wavenumber() < waves {
+        let smallest = waves.saturating_mul(2).saturating_add(1);
         return Err(CliError::input(format_args!(
-            "grid: {grid} elements are too coarse for waves = {}; at least {smallest} per side are needed, and {} resolve \
+            "grid: {grid} elements are too coarse for waves = {waves}; at least {smallest} per side are needed, and {} resolve \
              the shortest wave well",
-            spectrum.waves, default.nx
+            default.nx
         )));
     }
-    keys.grid = Some(GridSpec { nx: grid.nx(), ny: grid.ny() });
-    Ok(SurfaceSetup { cell, source: Source::Random { spectrum, grid }, keys })
+    Ok(grid)
 }
 
 /// Sides of the cell of a height map (m), where its file or the keys say them.
@@ -107,6 +128,11 @@ fn spectrum(keys: &SurfaceKeys, side: f64) -> Result<SpectrumParams, CliError> {
         let range = format_args!("roll_off: must be from 1 (none) to waves = {waves}, not {roll_off}");
         return Err(CliError::input(range));
     }
+    let low_cut = keys.low_cut.unwrap_or(1.0);
+    if !(low_cut >= 1.0 && low_cut <= waves as f64) {
+        let range = format_args!("low_cut: must be from 1 (none) to waves = {waves}, not {low_cut}");
+        return Err(CliError::input(range));
+    }
     let seed = keys.seed.ok_or_else(|| missing("seed"))?;
     if i64::try_from(seed).is_err() {
         // Larger ones could not be written to the scene file that repeats the result.
@@ -115,6 +141,7 @@ fn spectrum(keys: &SurfaceKeys, side: f64) -> Result<SpectrumParams, CliError> {
     Ok(SpectrumParams {
         hurst,
         roll_off,
+        low_cut,
         normalisation,
         truncation: keys.truncation.unwrap_or(Truncation::Disc),
         amplitudes: keys.amplitudes.unwrap_or(Amplitudes::Fixed),
@@ -153,6 +180,9 @@ mod tests {
             ("waves = 4000000000", "waves"),
             ("roll_off = 0.5", "roll_off"),
             ("roll_off = 65", "roll_off"),
+            ("low_cut = 0.5", "low_cut"),
+            ("low_cut = 65", "low_cut"),
+            ("low_cut = nan", "low_cut"),
             ("grid = 0", "grid"),
             ("grid = 128", "grid"),
             ("grid = \"256x100\"", "grid"),

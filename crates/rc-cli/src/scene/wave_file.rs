@@ -1,0 +1,58 @@
+//! Surfaces from files of Fourier coefficients.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use rc_fractal::{Complex64, Moments, Surface, Wave};
+use rc_heights::spectrum::{self, Coefficient};
+use rc_heights::{LengthUnit, Scales};
+
+use crate::error::CliError;
+
+/// The name of a file of coefficients in a result folder.
+pub(crate) const WAVES_FILE: &str = "spectrum.txt";
+
+/// A file of coefficients, and the surface that they make.
+///
+/// The coefficients are kept as read: a result is repeated bit for bit only from these.
+#[derive(Clone, Debug)]
+pub struct WaveFile {
+    coefficients: Vec<Coefficient>,
+    surface: Arc<Surface>,
+}
+
+impl WaveFile {
+    /// Reads `path`; 1 in it is the height of 1 by `scales`, and `side` is λ (m).
+    ///
+    /// # Errors
+    /// [`CliError::Input`] when the file cannot be read, or its waves make no surface.
+    pub(super) fn read(path: &Path, scales: Scales, side: f64) -> Result<Self, CliError> {
+        let one = scales.height_scale.unwrap_or_else(|| scales.unit.map_or(1.0, LengthUnit::metres));
+        if !(one.is_finite() && one != 0.0) {
+            return Err(CliError::input(format_args!("height_scale: must be finite and not 0 (m), not {one}")));
+        }
+        let coefficients = spectrum::read(path)?;
+        let wave = |&Coefficient { kx, ky, re, im }: &Coefficient| Wave { kx, ky, amplitude: Complex64::new(re, im) };
+        let surface = Surface::from_waves(coefficients.iter().map(wave).collect());
+        let surface = surface.map_err(|cause| CliError::in_file(path, cause))?.scaled(one / side);
+        let Moments { rms_height, rms_slope, .. } = surface.moments();
+        if ![rms_height, rms_slope].iter().all(|moment| moment.is_finite() && *moment > 0.0) {
+            let message =
+                format_args!("an rms height of {rms_height:e} cells is beyond all numbers; check cell and unit");
+            return Err(CliError::in_file(path, message));
+        }
+        Ok(Self { coefficients, surface: Arc::new(surface) })
+    }
+
+    /// The surface on the unit cell.
+    #[must_use]
+    pub fn surface(&self) -> &Arc<Surface> {
+        &self.surface
+    }
+
+    /// The coefficients in the unit of the file, in its order.
+    #[must_use]
+    pub(crate) fn coefficients(&self) -> &[Coefficient] {
+        &self.coefficients
+    }
+}
