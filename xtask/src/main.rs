@@ -1,10 +1,12 @@
 //! The task runner: `cargo xtask <command>`, one file per command.
 
 mod bench;
+mod challenge;
 mod ci;
 mod dist;
 mod docs;
 mod figures;
+mod gfmd;
 mod process;
 mod python;
 mod stress;
@@ -51,6 +53,8 @@ enum Command {
     /// Draws every figure of the paper; compares with the archived run, or archives the run
     Figures(figures::AllArgs),
     Reproduction(figures::ReproductionArgs),
+    Gfmd(gfmd::Args),
+    Challenge(challenge::Args),
     /// Tabulates and draws the truncation error of the image sums against shells and time, beside the exact coefficients
     KernelError(figures::Args),
     /// Measures the error of area, rms pressure and mean gap on usual meshes, and how often their error bars hold it
@@ -80,6 +84,8 @@ fn main() -> anyhow::Result<()> {
         Command::Statements(args) => figures::run::<Statements>(&args),
         Command::Figures(args) => figures::run_all(&args),
         Command::Reproduction(args) => figures::run_reproduction(&args),
+        Command::Gfmd(args) => gfmd::run(&args),
+        Command::Challenge(args) => challenge::run(&args),
         Command::KernelError(args) => figures::run::<KernelErrors>(&args),
         Command::Accuracy(args) => figures::run::<Accuracy>(&args),
         Command::Bench(args) => bench::run(&args),

@@ -19,7 +19,7 @@ use complaint::Complaint;
 use rc_figures::repository::{self, Sources};
 
 /// Checks dependency arrows, circles between modules, licences and versions of dependencies, paper map, guide, snapshots, house rules and the numbers of
-/// docs/reproduction.md, docs/benchmarks.md and README.md (also a test, so `cargo xtask test` runs it).
+/// docs/reproduction.md, docs/gfmd.md, docs/challenge.md, docs/benchmarks.md and README.md (also a test, so `cargo xtask test` runs it).
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
@@ -37,6 +37,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("guide", guide::check),
     ("packages", packages::check),
     ("reproduction", rc_figures::reproduction::check),
+    ("references", rc_figures::documents::check),
     ("benchmark", rc_bench::bench::check_documents),
 ];
 

@@ -1,13 +1,16 @@
 //! The figures of the paper, one file per figure: numbers first, then a picture of these numbers.
 //!
 //! A [`Figure`] computes itself from its parameters, and knows its tables and how to draw itself. [`run`] writes one,
-//! [`all::run`] every figure of the paper, and [`reproduction`] puts their numbers into docs/reproduction.md. `rc-bench` uses
+//! [`all::run`] every figure of the paper, and [`reproduction`] puts their numbers into docs/reproduction.md. [`Gfmd`] and [`Challenge`] are
+//! published references instead, archived by [`run_one`], their numbers in [`documents`]. `rc-bench` uses
 //! [`Table`], [`comparison`], [`numeric`], [`snapshot`], [`blocks`] and [`repository`] too.
 
 pub mod all;
 pub mod archive;
 pub mod blocks;
+pub mod challenge;
 pub mod comparison;
+pub mod documents;
 pub mod numeric;
 pub mod repository;
 pub mod reproduction;
@@ -25,12 +28,15 @@ mod fig7;
 mod fig8;
 mod figure;
 mod fit;
+mod gfmd;
 mod marks;
 mod paper;
+mod single;
 mod statements;
 mod sweep;
 mod table;
 
+pub use challenge::Challenge;
 pub use comparison::Rule;
 pub use fig1::Fig1;
 pub use fig2::Fig2;
@@ -41,5 +47,7 @@ pub use fig6::Fig6;
 pub use fig7::Fig7;
 pub use fig8::Fig8;
 pub use figure::{Figure, Preset, run, write};
+pub use gfmd::{Gfmd, beside};
+pub use single::run_one;
 pub use statements::Statements;
 pub use table::{Table, number};

@@ -44,7 +44,7 @@ fn commands(document: &str) -> Vec<(usize, String)> {
     commands
 }
 
-/// The files that the documents say one has: measured maps, a sphere, scenes, the file of an instrument.
+/// The files that the documents say one has: measured maps, a sphere, waves, scenes, the file of an instrument.
 fn prepare(place: &Place) {
     place.write("map.npy", npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
     let wide = |i: usize| (0.3 * (i % 128) as f64).sin() * 1e-6 + (0.2 * (i / 128) as f64).cos() * 1e-6;
@@ -54,6 +54,7 @@ fn prepare(place: &Place) {
     let x = |i: usize| (i as f64 - n as f64 / 2.0) * 1e-2 / n as f64;
     let sphere = (0..n * n).flat_map(|i| (-(x(i % n).powi(2) + x(i / n).powi(2)) / 2e-2).to_le_bytes());
     place.write("sphere.npy", npy("<f8", false, "(256, 256)", &sphere.collect::<Vec<u8>>()));
+    place.write("waves.txt", "1 0 2e-7 1e-7\n0 3 -1e-7 5e-8\n4 4 3e-8 0\n");
     place.write("a.toml", "waves = 8\ngrid = 64\n");
     place.write("b.toml", "waves = 8\ngrid = 64\nhurst = 0.5\n");
     fs::copy(repository().join("data/formats/surfalize.x3p"), place.path("scan.x3p"))

@@ -1,0 +1,84 @@
+//! One load on the grid of the published reference.
+
+use std::fs;
+
+use anyhow::{Context, Result};
+use rc_sweep::memory;
+
+use super::tables::SOLVED;
+use super::{Params, REFERENCE_LOAD, Solved, Source, press};
+use crate::{Table, documents, number, repository};
+
+/// File of the archived run.
+const FILE: &str = "data/runs/challenge/large.csv";
+
+/// The contact under [`REFERENCE_LOAD`] on a grid of the reference's size.
+#[derive(Clone, Debug)]
+pub struct Large {
+    side: usize,
+    solved: Solved,
+    megabytes: f64,
+    source: &'static str,
+}
+
+impl Large {
+    /// Elements along a side of the published reference.
+    pub const REFERENCE_SIDE: usize = 65_536;
+
+    /// Solves it. At 65536² this takes about 12 GB; no field is ever whole in memory.
+    ///
+    /// # Errors
+    /// When the surface cannot be made, or the contact not be solved.
+    pub fn compute(params: &Params, side: usize) -> Result<Self> {
+        let surface = params.source.surface()?;
+        let (solved, ()) = press(&surface, (side, REFERENCE_LOAD, params.energy_tolerance), |_| ())?;
+        let source = match params.source {
+            Source::Generated { .. } => "generated",
+            Source::File { .. } => "distributed",
+        };
+        Ok(Self { side, solved, megabytes: memory::peak().map_or(f64::NAN, |bytes| bytes as f64 / 1e6), source })
+    }
+
+    /// Its line.
+    #[must_use]
+    pub fn table(&self) -> Table {
+        let mut header = vec!["surface", "side"];
+        header.extend(SOLVED);
+        header.extend(["threads", "seconds", "peak_memory_megabytes"]);
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let mut cells = vec![self.source.to_owned(), self.side.to_string()];
+        cells.extend(self.solved.cells(REFERENCE_LOAD));
+        cells.extend([threads.to_string(), number(self.solved.seconds), number(self.megabytes)]);
+        Table::new("large", &header, [cells])
+    }
+}
+
+/// Makes `large` the archived one: its line in `data/runs/challenge/`, its numbers in the document.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn archive_large(large: &Large) -> Result<()> {
+    let path = repository::root().join(FILE);
+    fs::write(&path, large.table().csv).with_context(|| format!("could not write {}", path.display()))?;
+    documents::update()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::challenge::Challenge;
+    use crate::{Figure as _, Preset};
+
+    #[test]
+    fn the_line_is_that_of_the_curve_on_the_same_grid() {
+        let params = Challenge::params(Preset::Quick).expect("parameters");
+        let large = Large::compute(&params, params.side).expect("a small grid").table();
+        let curve = Challenge::compute(&params).expect("the quick figure").curve_table();
+        let line = |table: &Table, starts: &str| -> Vec<String> {
+            let line = table.csv.lines().find(|line| line.contains(starts)).expect("its line");
+            line.split(',').map(str::to_owned).collect()
+        };
+        let (large, curve) = (line(&large, "2.500000e-1,"), line(&curve, "2.500000e-1,"));
+        assert_eq!(large[2..10], curve[..8]);
+    }
+}
