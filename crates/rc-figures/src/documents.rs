@@ -14,16 +14,13 @@ use crate::repository::{self, Sources};
 /// A document and the command that archives its run.
 const DOCUMENTS: [(&str, &str); 2] = [("docs/gfmd.md", "gfmd"), ("docs/challenge.md", "challenge")];
 
-/// Rewrites the numbers of the documents from the archived runs that are there.
+/// Rewrites the numbers of the documents from the archived runs.
 ///
 /// # Errors
 /// When an archived run lacks a number, or a document cannot be written.
 pub(crate) fn update() -> Result<()> {
     let sources = repository::read_sources(&repository::root())?;
-    for (document, command) in DOCUMENTS {
-        if !sources.contains_key(&format!("data/runs/{command}/run.toml")) {
-            continue;
-        }
+    for (document, _) in DOCUMENTS {
         let text = render(document, &sources).map_err(anyhow::Error::msg)?;
         let path = repository::root().join(document);
         fs::write(&path, text).with_context(|| format!("could not write {}", path.display()))?;
@@ -45,14 +42,22 @@ pub fn check(sources: &Sources) -> Vec<String> {
 }
 
 fn render(document: &str, sources: &Sources) -> Result<String, String> {
-    blocks::fill(document, sources, |name| match name {
-        "gfmd-run" => run_line("gfmd", sources),
-        "challenge-run" => run_line("challenge", sources),
-        "gfmd-areas" => areas(sources),
-        _ => {
-            let shown = SHOWN.iter().find(|shown| shown.block == name);
-            let shown = shown.ok_or_else(|| format!("{document}: no numbers are called `{name}`"))?;
-            Csv::read(shown.path, sources)?.markdown(shown.columns)
+    blocks::fill(document, sources, |name| {
+        let (command, what) = name.split_once('-').unwrap_or((name, ""));
+        let archived = if what == "large" { "large.csv" } else { "run.toml" };
+        if !sources.contains_key(&format!("data/runs/{command}/{archived}")) {
+            let flag = if what == "large" { " --large" } else { "" };
+            return Ok(format!("No run is archived yet: `cargo xtask {command}{flag} --archive` makes one.\n"));
+        }
+        match what {
+            "run" => run_line(command, sources),
+            "picture" => Ok(format!("![What was computed](images/{command}.png)\n")),
+            "areas" => areas(sources),
+            _ => {
+                let shown = SHOWN.iter().find(|shown| shown.block == name);
+                let shown = shown.ok_or_else(|| format!("{document}: no numbers are called `{name}`"))?;
+                Csv::read(shown.path, sources)?.markdown(shown.columns)
+            }
         }
     })
 }
@@ -258,7 +263,11 @@ mod tests {
         assert_eq!(check(&sources), Vec::<String>::new());
         sources.remove("data/runs/gfmd/gfmd-areas.csv");
         assert!(check(&sources)[0].contains("gfmd-areas.csv is missing"));
-        sources.insert("docs/gfmd.md".to_owned(), format!("{BEGIN}nothing -->{END}"));
-        assert!(check(&sources)[0].contains("`nothing`"));
+        sources.insert("docs/gfmd.md".to_owned(), format!("{BEGIN}gfmd-nothing -->{END}"));
+        assert!(check(&sources)[0].contains("`gfmd-nothing`"));
+        let text = format!("{BEGIN}challenge-large -->{END} {BEGIN}gfmd-picture -->{END}");
+        sources.insert("docs/gfmd.md".to_owned(), text);
+        let text = render("docs/gfmd.md", &sources).expect("nothing is needed");
+        assert!(text.contains("challenge --large --archive") && text.contains("(images/gfmd.png)"), "{text}");
     }
 }
