@@ -157,12 +157,12 @@ impl<'a> Csv<'a> {
             None => String::new(),
         };
         let titles: Vec<&str> = columns.iter().map(|(_, title, ..)| *title).collect();
-        let mut text = format!("| {} |\n|{}\n", titles.join(" | "), "---|".repeat(titles.len()));
-        for row in self.rows.iter().skip(1) {
+        let head = format!("| {} |\n|{}\n", titles.join(" | "), "---|".repeat(titles.len()));
+        let line = |row: &Vec<&str>| {
             let cells = columns.iter().zip(&indices).map(|((_, _, factor, n), at)| cell(row, *at, *factor, *n));
-            text += &format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "));
-        }
-        Ok(text)
+            ["| ", &cells.collect::<Vec<_>>().join(" | "), " |\n"].concat()
+        };
+        Ok(head + &self.rows.iter().skip(1).map(line).collect::<String>())
     }
 }
 
@@ -203,7 +203,7 @@ fn areas(sources: &Sources) -> Result<String, String> {
             difference(4, 5),
             show(7, 4),
         ];
-        text += &format!("| {} |\n", cells.join(" | "));
+        text.extend(["| ", &cells.join(" | "), " |\n"]);
     }
     Ok(text)
 }
