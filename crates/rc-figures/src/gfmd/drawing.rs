@@ -132,7 +132,7 @@ impl Gfmd {
             x,
             y: (low, 1.0),
             x_label: "log10 (σ0 / E*)",
-            y_label: "log10 (ū / h_rms), log10 (U / U_full)",
+            y_label: "log10 (gap / h_rms), log10 (U / U_full)",
             n_labels: (6, 9),
         };
         let mut chart = axes.on(area)?;
