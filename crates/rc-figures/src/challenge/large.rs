@@ -59,6 +59,9 @@ impl Large {
 /// When a file cannot be written.
 pub fn archive_large(large: &Large) -> Result<()> {
     let path = repository::root().join(FILE);
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).with_context(|| format!("could not make {}", folder.display()))?;
+    }
     fs::write(&path, large.table().csv).with_context(|| format!("could not write {}", path.display()))?;
     documents::update()
 }
