@@ -56,42 +56,38 @@ pub(super) fn base_sides(source: &HeightSource<'_>, wanted: Option<usize>) -> Re
     let even = if is_surface { halves.find_map(halved) } else { halves.next().and_then(halved) };
     let [nx, ny] = finest;
     let error = AdaptiveError::Grid { nx, ny, smallest: 2 * least };
-    let is_large = n > 1 && long >= SMALLEST_BASE;
-    even.or_else(|| is_large.then(|| uneven_sides(source.grid(), n)).flatten()).ok_or(error)
+    let mut all = std::iter::successors(Some(n), |n| Some(n / 2)).take_while(|&n| n > 1 && long >= SMALLEST_BASE);
+    even.or_else(|| all.find_map(|n| uneven_sides(source.grid(), n))).ok_or(error)
 }
 
-/// How many more elements than the finest grid the base grid doubled may have along a side, in parts of the side.
+/// How many more elements than the finest grid the base grid doubled may have along a side, in parts of the side. (Patches of the operator
+/// are large enough for this.)
 const MOST_ADDED: f64 = 0.15;
 
-/// Elements of the base grid may be longer along one side by this part.
-const OBLONG: f64 = 0.01;
+/// Elements of the base grid may be longer along one side by this part, or by the second one where there is no other grid.
+const OBLONG: [f64; 2] = [0.01, 0.02];
 
 /// Greatest prime factor of the base grid's sides: Fourier transforms of such lengths are fast.
 const GREATEST_FACTOR: usize = 7;
 
-/// The base grid with the fewest elements that `n` times as many along a side are not fewer than those of the finest, among those with
-/// elements that are nearly squares; the one with the most nearly square elements where there is none.
+/// The base grid with the fewest elements that `n` times as many along a side are not fewer than those of the finest, nor many more, with
+/// elements that are nearly squares; none where there is no such grid.
 fn uneven_sides(finest: Grid, n: usize) -> Option<[usize; 2]> {
     let candidates = |side: usize| -> Vec<usize> {
         let least = side.div_ceil(n).next_multiple_of(TILE).max(SMALLEST_WIDTH);
         let most = ((1.0 + MOST_ADDED) * side as f64 / n as f64) as usize;
-        (least..=most.max(least)).step_by(TILE).filter(|&side| has_small_factors(side)).collect()
+        (least..=most).step_by(TILE).filter(|&side| has_small_factors(side)).collect()
     };
     let [along_x, along_y] = sides_of(finest).map(candidates);
-    // Elements of the base grid, beyond what is allowed as oblong, then by number. (The least number that fits is not below the smallest.)
-    let fits = |[nx, ny]: [usize; 2]| {
-        let is_coarser = |base: usize, side: usize| base < side && base * n < 2 * side;
-        is_coarser(nx, finest.nx()) && is_coarser(ny, finest.ny())
+    let oblong = |[nx, ny]: [usize; 2]| {
+        let ratio = ny as f64 / (nx as f64 * finest.cell_ratio());
+        ratio.max(ratio.recip()) - 1.0
     };
-    let all = along_x.iter().flat_map(|&nx| along_y.iter().map(move |&ny| [nx, ny])).filter(|&sides| fits(sides));
-    let cost = |&[nx, ny]: &[usize; 2]| {
-        let spacing = [finest.cell_ratio().recip() * ny as f64, nx as f64];
-        let oblong = (spacing[0] / spacing[1]).max(spacing[1] / spacing[0]) - 1.0;
-        (oblong.max(OBLONG), nx * ny)
-    };
-    all.min_by(|a, b| {
-        let (a, b) = (cost(a), cost(b));
-        a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
+    let all = along_x.iter().flat_map(|&nx| along_y.iter().map(move |&ny| [nx, ny]));
+    let allowed = all.filter(|&sides| oblong(sides) <= OBLONG[1]);
+    allowed.min_by(|&a, &b| {
+        let is_oblong = |sides| oblong(sides).max(OBLONG[0]);
+        is_oblong(a).total_cmp(&is_oblong(b)).then((a[0] * a[1]).cmp(&(b[0] * b[1])))
     })
 }
 
@@ -193,6 +189,8 @@ mod tests {
             ([860, 634], [216, 160]),
             ([1001, 1001], [256, 256]),
             ([1000, 1000], [256, 256]),
+            // Eight times as few along both sides would be far from it along x.
+            ([130, 520], [72, 288]),
         ] {
             assert_eq!(of_noise(nx, ny), Some(expected), "{nx} x {ny}");
         }

@@ -99,13 +99,13 @@ fn the_error_in_the_energy_norm_is_the_same_on_any_grid() {
     let mut rng = ChaCha8Rng::seed_from_u64(4);
     for (error, bound) in [(1e-6, 4.5e-5), (2e-9, 4e-7), (1e-10, 4e-9)] {
         let split = GapSplit::for_error(error).expect("a split");
-        // In the last one the elements of coarser levels are 2 % longer along one side.
+        // In the last one the elements of coarser levels are 2 % longer along one side, the most that there is: twice the error of squares.
         for ([bx, by], [nx, ny], times) in [
             ([64, 32], [128, 64], 1.0),
             ([64, 64], [125, 125], 1.0),
             ([64, 64], [249, 249], 1.0),
             ([56, 56], [201, 201], 1.0),
-            ([72, 40], [260, 142], 1.25),
+            ([72, 40], [260, 142], 1.5),
         ] {
             let grid = Grid::in_cell(nx, ny, ny as f64 / nx as f64).expect("a grid");
             let base = grid.with_elements(bx, by).expect("a grid");
