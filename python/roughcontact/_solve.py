@@ -30,6 +30,7 @@ def solve(
     scene: Path | None = None,
     cell: float | None = None,
     cell_y: float | None = None,
+    spectrum: Path | None = None,
     unit: LengthUnit | None = None,
     height_scale: float | None = None,
     channel: str | None = None,
@@ -42,6 +43,7 @@ def solve(
     seed: int | None = None,
     truncation: Literal["disc", "square"] | None = None,
     roll_off: float | None = None,
+    low_cut: float | None = None,
     amplitudes: Literal["fixed", "random"] | None = None,
     grid: Grid | None = None,
     young: float | None = None,
@@ -77,7 +79,7 @@ def solve(
         Sides of the periodic cell along x and y (m). An array needs ``cell``. Default of ``cell_y``: ``cell``.
     unit, height_scale, channel, layout : optional
         Of a file, as for :func:`read`.
-    waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, amplitudes : optional
+    spectrum, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, low_cut, amplitudes : optional
         A random surface instead of ``heights``, as for :class:`Surface`.
     grid : int, (int, int) or str, optional
         Finest elements along x and y. Default: 32 per shortest wave; a map has its own.

@@ -1,4 +1,4 @@
-"""Random surfaces with a power-law spectrum."""
+"""Surfaces as sums of waves: random ones with a power-law spectrum, and those of Fourier coefficients."""
 
 from __future__ import annotations
 
@@ -9,10 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughcontact import _core
-from roughcontact._keys import Grid, plain
+from roughcontact._keys import Grid, LengthUnit, Path, plain
 
 _KEYS = (
     "cell",
+    "spectrum",
+    "unit",
+    "height_scale",
     "waves",
     "hurst",
     "rms",
@@ -21,13 +24,14 @@ _KEYS = (
     "seed",
     "truncation",
     "roll_off",
+    "low_cut",
     "amplitudes",
     "grid",
 )
 
 
 class Surface:
-    """A random surface (Eq. 9-14 of the paper), evaluated only where a solver needs it.
+    """A random surface (Eq. 9-14 of the paper), or one of Fourier coefficients, evaluated only where a solver needs it.
 
     What is not given has the value of the paper's surface.
 
@@ -35,6 +39,10 @@ class Surface:
     ----------
     cell : float, default 0.01
         Side of the periodic cell (m).
+    spectrum : path, optional
+        Fourier coefficients instead of a random surface: a text with a line of kx, ky, Re and Im for each wave. It needs ``cell``.
+    unit, height_scale : optional
+        Unit of the coefficients, m by default, or the height (m) of 1 in them.
     waves : int, default 64
         Waves per cell of the shortest wave.
     hurst : float, default 0.8
@@ -47,6 +55,8 @@ class Surface:
         Which waves take part: ``|k| <= N``, or ``max(|kx|, |ky|) <= N``.
     roll_off : float, default 1
         Below this number of waves per cell the spectrum is flat.
+    low_cut : float, optional
+        There are no waves below this number of waves per cell.
     amplitudes : {"fixed", "random"}, default "fixed"
         Amplitudes exactly of the spectrum, or random about it.
     grid : int, (int, int) or str, optional
@@ -59,6 +69,9 @@ class Surface:
         self,
         *,
         cell: float | None = None,
+        spectrum: Path | None = None,
+        unit: LengthUnit | None = None,
+        height_scale: float | None = None,
         waves: int | None = None,
         hurst: float | None = None,
         rms: float | None = None,
@@ -67,6 +80,7 @@ class Surface:
         seed: int | None = None,
         truncation: Literal["disc", "square"] | None = None,
         roll_off: float | None = None,
+        low_cut: float | None = None,
         amplitudes: Literal["fixed", "random"] | None = None,
         grid: Grid | None = None,
     ) -> None:
@@ -108,6 +122,9 @@ def _surface_of(keys: dict[str, Any]) -> Surface:
 def surface(
     *,
     cell: float | None = None,
+    spectrum: Path | None = None,
+    unit: LengthUnit | None = None,
+    height_scale: float | None = None,
     waves: int | None = None,
     hurst: float | None = None,
     rms: float | None = None,
@@ -116,6 +133,7 @@ def surface(
     seed: int | None = None,
     truncation: Literal["disc", "square"] | None = None,
     roll_off: float | None = None,
+    low_cut: float | None = None,
     amplitudes: Literal["fixed", "random"] | None = None,
     grid: Grid | None = None,
     threads: int | None = None,

@@ -142,3 +142,16 @@ def test_channels_of_a_file_are_listed_and_picked():
     assert np.array_equal(rc.read(file, channel=first).heights, rc.read(file).heights, equal_nan=True)
     with pytest.raises(ValueError, match="channel"):
         rc.read(file, channel="not there")
+
+
+def test_a_file_of_waves_is_a_surface(tmp_path):
+    file = tmp_path / "waves.txt"
+    file.write_text("# one wave\n2 0 5e-7 0\n")
+    surface = rc.Surface(spectrum=file, cell=1e-3, grid=64)
+    x = (np.arange(64) + 0.5) / 64
+    assert np.allclose(surface.heights(), 1e-6 * np.cos(4 * np.pi * x), atol=1e-18)
+    solved = [rc.solve(h, pressure=1e5, e_star=1e9, grid=64, **k) for h, k in ((surface, {}), (None, {"spectrum": file, "cell": 1e-3}))]
+    assert np.array_equal(solved[0].pressure, solved[1].pressure)
+    solved[0].save(tmp_path / "out")
+    again = rc.solve(scene=tmp_path / "out/scene.toml")
+    assert np.array_equal(again.pressure, solved[0].pressure)

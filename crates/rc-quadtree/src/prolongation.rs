@@ -9,16 +9,10 @@ use crate::elements::Elements;
 use crate::patch::{Patch, gather};
 use crate::tiles::{CELLS, TILE, TileSet, quarters};
 
+mod near_contact;
 mod uneven;
 
-/// Cells around a tile that must be out of contact for it to be left out: contacts may grow a little.
-const MARGIN: usize = 2;
-
-/// Side of the patches that hold a tile and its neighbours.
-const SIDE: usize = 3 * TILE;
-
-/// Part of the function that a contact of a single cell keeps when the interpolation leaves nothing of it.
-const PART_KEPT_OF_SINGLE_CELL: f64 = 0.25;
+use near_contact::{MARGIN, PART_KEPT_OF_SINGLE_CELL, SIDE, is_near_contact, is_single, mark_missing};
 
 /// The tiles of the next finer level, of `sides` cells, where `function` is positive, or within two cells of them, and its positive part on
 /// their cells. The finer level has twice as many cells along both sides, or a little less.
@@ -82,24 +76,6 @@ fn quarters_in_contact(
     std::array::from_fn(|child| fine_tile(&patch, (child % 2, child / 2)))
 }
 
-/// Is the function positive anywhere on the tile in the middle of the patch, or within two cells of it?
-fn is_near_contact(patch: &Patch<f64, SIDE>) -> bool {
-    let near = TILE - MARGIN..2 * TILE + MARGIN;
-    patch[near.clone()].iter().flat_map(|row| &row[near.clone()]).any(|&f| f > 0.0)
-}
-
-fn mark_missing(tiles: &TileSet, (column, row): (i64, i64), elsewhere: f64, patch: &mut Patch<f64, SIDE>) {
-    for y in 0..3 {
-        for x in 0..3 {
-            if tiles.find(column + x as i64, row + y as i64).is_none() {
-                for line in &mut patch[y * TILE..][..TILE] {
-                    line[x * TILE..][..TILE].fill(elsewhere);
-                }
-            }
-        }
-    }
-}
-
 /// The positive part of the function on the fine tile in a quarter of the middle of the patch; none when it is not positive anywhere
 /// on the tile or near it.
 fn fine_tile(patch: &Patch<f64, SIDE>, (half_x, half_y): (usize, usize)) -> Option<Box<[f64; CELLS]>> {
@@ -130,13 +106,6 @@ fn fine_tile(patch: &Patch<f64, SIDE>, (half_x, half_y): (usize, usize)) -> Opti
         }
     }
     touched.then(|| Box::new(values))
-}
-
-/// Is none of the neighbours of this cell in contact?
-fn is_single(patch: &Patch<f64, SIDE>, x: usize, y: usize) -> bool {
-    let around = patch[y - 1..=y + 1].iter().flat_map(|row| &row[x - 1..=x + 1]);
-    let positive = around.filter(|&&f| f > 0.0).count();
-    positive == 1
 }
 
 #[cfg(test)]

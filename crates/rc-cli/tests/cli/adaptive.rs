@@ -76,7 +76,8 @@ fn the_method_is_chosen_by_what_can_and_what_is_cheaper() {
         (&["4e6", "--grid", "128"], "uniform", "is cheaper on the uniform grid"),
         (&["1e9", "--grid", "128"], "uniform", "100 % is cheaper on the uniform grid"),
         (&["1e5", "--grid", "128x64"], "uniform", "not square"),
-        (&["1e5", "--grid", "130"], "uniform", "do not divide"),
+        (&["1e5", "--grid", "66"], "uniform", "too few"),
+        (&["1e5", "--grid", "130"], "adaptive", "an estimated contact area of"),
         (&["1e5", "--grid", "128", "--tolerance", "1e-12"], "uniform", "1e-12"),
     ];
     for (flags, method, expected) in cases {

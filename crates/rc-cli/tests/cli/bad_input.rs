@@ -58,7 +58,7 @@ fn bad_values_of_the_contact_are_refused_with_their_key() {
         (&["--tolerance", "small"], "tolerance"),
         (&["--method", "adaptive", "--kernel", "spectral"], "kernel must be love"),
         (&["--method", "adaptive", "--grid", "128x64"], "square elements"),
-        (&["--method", "adaptive", "--grid", "130"], "at least 512 elements"),
+        (&["--method", "adaptive", "--grid", "66"], "at least 128 elements"),
         (&["--method", "adaptive", "--tolerance", "1e-13"], "tolerance"),
         (&["--memory-limit", "100kB"], "memory_limit"),
         (&["--memory-limit", "100kB", "--method", "uniform"], "memory_limit"),
@@ -147,7 +147,7 @@ fn write_bad_maps(place: &Place) -> Vec<(&'static str, &'static str)> {
     place.write("text.csv", "1,2\n3,four\n");
     place.write("nan.csv", "1,2\n3,nan\n");
     place.write("empty.csv", "");
-    place.write("map.dat", "1,2\n3,4\n");
+    place.write("map.bin", "1,2\n3,4\n");
     vec![
         ("nan.npy", "row 2, column 3"),
         ("inf.npy", "row 0, column 0"),
@@ -164,7 +164,7 @@ fn write_bad_maps(place: &Place) -> Vec<(&'static str, &'static str)> {
         ("text.csv", "line 2, value 2"),
         ("nan.csv", "row 1, column 1"),
         ("empty.csv", "1 to"),
-        ("map.dat", ".csv"),
+        ("map.bin", ".npy"),
         ("missing.npy", "cannot read"),
     ]
 }

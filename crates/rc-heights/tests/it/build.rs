@@ -1,13 +1,9 @@
 //! Small files of each format, built byte by byte from its specification: 3 x 2 points with the heights 1 to 6.
 
-use std::io::{Cursor, Write as _};
-
 use rc_heights::Format;
-use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, ZipWriter};
+use zip::CompressionMethod;
 
-/// The heights of every file here, before scales.
-pub(crate) const HEIGHTS: [f64; 6] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+use crate::parts::{HEIGHTS, zipped};
 
 fn concat<const N: usize>(values: impl IntoIterator<Item = f64>, bytes: impl Fn(f64) -> [u8; N]) -> Vec<u8> {
     values.into_iter().flat_map(bytes).collect()
@@ -133,15 +129,6 @@ pub(crate) fn x3p_xml(kind: &str, size: &str, mask: &str) -> String {
 }
 
 pub(crate) const X3P_SIZE: &str = "<SizeX>3</SizeX><SizeY>2</SizeY><SizeZ>1</SizeZ>";
-
-pub(crate) fn zipped(members: &[(&str, &[u8])], method: CompressionMethod) -> Vec<u8> {
-    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
-    for (name, content) in members {
-        archive.start_file(*name, SimpleFileOptions::default().compression_method(method)).expect("a member");
-        archive.write_all(content).expect("its content");
-    }
-    archive.finish().expect("an archive").into_inner()
-}
 
 /// 16-bit integers; point 4 is marked as missing.
 pub(crate) fn x3p(method: CompressionMethod) -> Vec<u8> {

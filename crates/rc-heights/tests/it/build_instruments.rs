@@ -7,7 +7,7 @@ use flate2::write::ZlibEncoder;
 use rc_heights::Format;
 use zip::CompressionMethod;
 
-use crate::build::{HEIGHTS, zipped};
+use crate::parts::{HEIGHTS, zipped};
 
 /// `bytes` with others at some places.
 pub(crate) fn with(mut bytes: Vec<u8>, changes: &[(usize, &[u8])]) -> Vec<u8> {

@@ -3,7 +3,8 @@
 use rc_heights::{Format, HeightMap, Unit, parse};
 use zip::CompressionMethod;
 
-use crate::build::{self, HEIGHTS};
+use crate::build;
+use crate::parts::HEIGHTS;
 
 /// Heights are `scale` times 1 to 6 plus `offset`, sides as given, both within rounding.
 pub(crate) fn assert_map(name: &str, map: &HeightMap, scale: f64, offset: f64, sides: Option<[f64; 2]>) {
@@ -131,7 +132,7 @@ fn an_x3p_file_has_increments_and_offset() {
     let xml = build::x3p_xml("D", build::X3P_SIZE, "");
     let data: Vec<u8> = HEIGHTS.iter().flat_map(|v| v.to_le_bytes()).collect();
     let members = [("main.xml", xml.as_bytes()), ("bindata/data.bin", data.as_slice())];
-    let map = read("x3p", &build::zipped(&members, CompressionMethod::Stored), Format::X3p);
+    let map = read("x3p", &crate::parts::zipped(&members, CompressionMethod::Stored), Format::X3p);
     assert_map("x3p", &map, 1e-9, 1e-6, Some([6e-6, 6e-6]));
 }
 
@@ -156,8 +157,10 @@ fn headers_that_promise_terabytes_are_refused_before_memory_is_taken() {
     surfer[4..8].fill(0x7f);
     let size = build::X3P_SIZE.replace(">3<", ">1048576<").replace(">2<", ">1048576<");
     let xml = build::x3p_xml("D", &size, "");
-    let x3p =
-        build::zipped(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &[0; 64])], CompressionMethod::Deflated);
+    let x3p = crate::parts::zipped(
+        &[("main.xml", xml.as_bytes()), ("bindata/data.bin", &[0; 64])],
+        CompressionMethod::Deflated,
+    );
     let mut tiff = build::tiff();
     // The directory starts after header and heights: a count, then entries of 12 bytes, their values at 8.
     for entry in [0, 1, 7] {
@@ -203,7 +206,7 @@ fn wrong_headers_are_named_with_their_field() {
     let gsf = |fields: &str| (Format::Gsf, build::gsf(fields));
     let xml = |xml: String| {
         let members = [("main.xml", xml.as_bytes()), ("bindata/data.bin", &[0; 48])];
-        (Format::X3p, build::zipped(&members, CompressionMethod::Stored))
+        (Format::X3p, crate::parts::zipped(&members, CompressionMethod::Stored))
     };
     let surfer = |text: &str| (Format::Surfer, text.as_bytes().to_vec());
     let mut checked = build::sdf_binary("ISO-1.0", 7, &[0; 48]);

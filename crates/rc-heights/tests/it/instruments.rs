@@ -2,10 +2,10 @@
 
 use rc_heights::{Format, FormatError, HeightMap, ReadParams, Unit, channels_of, parse, parse_with};
 
-use crate::build::HEIGHTS;
 use crate::build_instruments as build;
 use crate::built::{assert_map, read};
 use crate::files::{expected, folder, map};
+use crate::parts::HEIGHTS;
 
 /// The built files have 2 µm x 3 µm between points.
 const SIDES: Option<[f64; 2]> = Some([6e-6, 6e-6]);

@@ -5,6 +5,7 @@ mod build_instruments;
 mod built;
 mod files;
 mod instruments;
+mod parts;
 mod programs;
 mod robustness;
 mod treatments;

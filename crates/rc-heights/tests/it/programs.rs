@@ -116,7 +116,7 @@ fn an_archive_is_told_apart_by_its_members() {
     for (name, members, expected) in cases {
         let path = dir.path().join(name);
         let members: Vec<(&str, &[u8])> = members.iter().map(|name| (*name, b"".as_slice())).collect();
-        std::fs::write(&path, crate::build::zipped(&members, stored)).expect("an archive");
+        std::fs::write(&path, crate::parts::zipped(&members, stored)).expect("an archive");
         let error = read(&path).expect_err(name).to_string();
         assert!(error.contains(expected), "{error}");
     }

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{MARGIN, PART_KEPT_OF_SINGLE_CELL, SIDE, is_near_contact, is_single, mark_missing};
+use super::near_contact::{MARGIN, PART_KEPT_OF_SINGLE_CELL, SIDE, is_near_contact, is_single, mark_missing};
 use crate::patch::{Patch, gather};
 use crate::tiles::{CELLS, TILE, TileSet};
 

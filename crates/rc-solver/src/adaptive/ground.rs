@@ -5,10 +5,13 @@ use std::sync::Arc;
 use rc_core::HeightSource;
 
 use super::base_grid::base_sides;
+use super::checks::{check_elements, check_memory, first_split, with_border_level};
+use super::error::AdaptiveError;
+use super::estimate;
 use super::heights::Heights;
 use super::kernels::Kernels;
 use super::ladder::Ladder;
-use super::{AdaptiveError, AdaptiveParams, check_elements, check_memory, estimate, first_split, with_border_level};
+use super::params::AdaptiveParams;
 
 /// Heights with their bounds, and the split kernels of the base grid.
 pub(crate) struct Ground<'a> {

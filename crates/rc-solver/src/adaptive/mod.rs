@@ -5,6 +5,7 @@
 //! exclusion proves it.
 
 mod base_grid;
+mod checks;
 mod contact_area;
 mod element_blocks;
 mod element_heights;
@@ -32,15 +33,15 @@ mod split;
 
 use std::sync::Arc;
 
-use rc_core::{DVec2, Grid, HeightSource, Observer};
-use rc_kernel::SplitParams;
+use rc_core::{Grid, Observer};
 use rc_quadtree::TILE;
 
+use self::checks::{check_memory, first_split};
 use self::contact_area::contact_area;
 pub use self::error::AdaptiveError;
 pub(crate) use self::estimate::Estimate;
 pub(crate) use self::ground::Ground;
-use self::ladder::{has_squares, sides_of};
+use self::ladder::sides_of;
 use self::level::SolvedLevel;
 pub use self::multilevel::MultilevelOperator;
 use self::nested_iteration::{BaseStart, NestedIteration, NestedSolution};
@@ -49,16 +50,8 @@ pub(crate) use self::params::AdaptiveParams;
 use self::setup::Splits;
 pub(crate) use self::solution::AdaptiveSolution;
 use self::split::GapSplit;
+use crate::Control;
 use crate::problem::Problem;
-use crate::{Control, ErrorBound};
-
-/// Error of L relative to the rms displacement, over a relative tolerance, that descents may have: tolerances are relative to
-/// the height range, which is at least ten times the error's measure on any surface, and the greatest error of an element is up to five times
-/// the rms one. With 10, a third of a cell in contact at λ_min/128 did not converge to 3e-7.
-const OPERATOR_ERROR_PER_TOLERANCE: f64 = 3.0;
-
-/// The same over the overlap that an energy error aims at, in units of U/σ0, which is 0.02 to 0.08 of the height range.
-const OPERATOR_ERROR_PER_ENERGY: f64 = 0.5;
 
 /// A checked contact problem, ready for the adaptive method: heights are sampled, nothing is solved.
 ///
@@ -84,7 +77,7 @@ impl<'a> AdaptiveProblem<'a> {
     /// [`AdaptiveError`].
     #[cfg(test)]
     pub(crate) fn new(
-        source: HeightSource<'a>,
+        source: rc_core::HeightSource<'a>,
         control: Control,
         params: &AdaptiveParams,
     ) -> Result<Self, AdaptiveError> {
@@ -254,54 +247,6 @@ impl<'a> AdaptiveProblem<'a> {
         })
     }
 }
-
-/// Refuses elements that are not squares.
-fn check_elements(grid: Grid) -> Result<(), AdaptiveError> {
-    let DVec2 { x, y } = grid.spacing();
-    if has_squares(grid) { Ok(()) } else { Err(AdaptiveError::Elements { grid, ratio: y / x }) }
-}
-
-/// The operator of descents, by the tolerance alone.
-fn first_split(params: &AdaptiveParams) -> Result<GapSplit, AdaptiveError> {
-    let of_bound = match params.solve.bound {
-        ErrorBound::Relative(value) => OPERATOR_ERROR_PER_TOLERANCE * value,
-        ErrorBound::Energy(_) => OPERATOR_ERROR_PER_ENERGY * params.solve.bound.aim(),
-    };
-    let error = params.operator_error.min(of_bound);
-    GapSplit::for_error(error)
-        .ok_or(AdaptiveError::OperatorError { value: error, smallest: SplitParams::SMALLEST_ERROR })
-}
-
-/// The source on the grid of the smallest elements.
-fn with_border_level(source: HeightSource<'_>, border_level: usize) -> Result<HeightSource<'_>, AdaptiveError> {
-    match source.surface() {
-        _ if border_level == 0 => Ok(source),
-        Some(surface) if surface.band_limit().is_some() && source.grid().is_square() => {
-            let side = source.grid().nx();
-            let finest = (border_level < 32).then(|| side.checked_shl(border_level as u32)).flatten();
-            let finest = finest.filter(|&finest| finest >> border_level == side && finest <= DEEPEST_SIDE);
-            let deepest = (DEEPEST_SIDE / side.max(1)).checked_ilog2().unwrap_or(0);
-            let finest = finest.ok_or(AdaptiveError::BorderLevel { border_level, side, deepest })?;
-            let grid = Grid::square(finest).expect("a side of at most the deepest one");
-            Ok(source.on_grid(grid))
-        }
-        _ => Err(AdaptiveError::BorderOfMap),
-    }
-}
-
-/// Refuses what needs more bytes than the limit.
-fn check_memory(grid: Grid, limit: Option<u64>, bytes: f64, area_percent: Option<f64>) -> Result<(), AdaptiveError> {
-    match limit {
-        Some(limit) if bytes > limit as f64 => {
-            let needed = (bytes / 1e6).ceil() as u64;
-            Err(AdaptiveError::Memory { grid, needed, limit: limit / 1_000_000, area_percent })
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Maximum number of the smallest elements per side: indices of tiles are 32-bit numbers.
-const DEEPEST_SIDE: usize = 1 << 17;
 
 #[cfg(test)]
 mod tests {

@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
-use rc_core::{Grid, HeightField, HeightSource};
+use rc_core::{HeightField, HeightSource};
 
+use super::memory::check_uniform;
 use super::plan::ChosenMethod;
 use super::shared::Shared;
 use super::{ContactProblem, Plan, SolveError, SolveParams};
 use crate::adaptive::AdaptiveProblem;
 use crate::contract::check_kernel;
 use crate::problem::{check_load, check_tolerance};
-use crate::{AdaptiveError, ErrorBound, Estimate, Method, MethodReason, UNIFORM_BYTES_PER_ELEMENT};
+use crate::{AdaptiveError, ErrorBound, Estimate, Method, MethodReason};
 
 /// Checks the problem and chooses its method.
 pub(super) fn plan<'a>(
@@ -131,23 +132,9 @@ impl<'a> Choice<'a, '_> {
 
     /// A method that stores every element of the grid, if it fits into memory.
     fn on_grid(&self, method: Method) -> Result<ChosenMethod<'a>, SolveError> {
-        check_memory(self.problem.heights.grid(), self.params.memory_limit, method)?;
+        check_uniform(self.problem.heights.grid(), self.params.memory_limit, method)?;
         Ok(if method == Method::GaussSeidel { ChosenMethod::GaussSeidel } else { ChosenMethod::Uniform })
     }
-}
-
-/// Refuses a method that stores every element of the grid where it does not fit into memory.
-pub(super) fn check_memory(grid: Grid, limit: Option<u64>, method: Method) -> Result<(), SolveError> {
-    let needed = uniform_bytes(grid);
-    match limit {
-        Some(limit) if needed > limit as f64 => Err(SolveError::Memory { method, grid, needed: needed as u64, limit }),
-        _ => Ok(()),
-    }
-}
-
-/// Bytes that a method that stores every element needs.
-pub(super) fn uniform_bytes(grid: Grid) -> f64 {
-    grid.len() as f64 * UNIFORM_BYTES_PER_ELEMENT as f64
 }
 
 /// Refuses a grid that does not resolve the waves of its surface.

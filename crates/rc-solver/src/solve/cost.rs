@@ -1,6 +1,6 @@
 //! What a plan will cost.
 
-use super::choice::uniform_bytes;
+use super::memory::uniform_bytes;
 use super::plan::{ChosenMethod, Plan};
 use crate::ErrorBound;
 

@@ -55,6 +55,31 @@ impl<'a> ContactProblem<'a> {
     }
 }
 
+impl Plan<'_> {
+    /// The plan of another load on the same surface, with the same parameters. Heights, their bounds and the tables of the operator are
+    /// shared by the plans, and kept as long as one of them lives; every digit is that of a plan of its own.
+    ///
+    /// ```
+    /// use rc_core::{Field, Grid, Silent};
+    /// use rc_solver::{ContactProblem, Control, SolveParams};
+    ///
+    /// let wave = Field::from_fn(Grid::square(128)?, |at| 1e-3 * (std::f64::consts::TAU * at.x).cos());
+    /// let plan = ContactProblem::new(&wave, Control::MeanPressure(1e-4)).plan(&SolveParams::default())?;
+    /// for load in [2e-4, 4e-4, 8e-4] {
+    ///     let solution = plan.under(Control::MeanPressure(load))?.solve(&Silent)?;
+    ///     println!("{load:e}: {:.3}", solution.area().fraction);
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As of [`ContactProblem::plan`].
+    pub fn under(&self, control: Control) -> Result<Self, SolveError> {
+        let problem = ContactProblem { control, ..self.problem.clone() };
+        choice::plan(problem, &self.params, Arc::clone(&self.shared))
+    }
+}
+
 /// Solves the contact of `heights` (in λ) with the elastic half-space under a load.
 ///
 /// The method is chosen by the estimated contact area unless `params` name one. The certificate comes from a fresh application of L on the

@@ -5,6 +5,7 @@ mod choice;
 mod cost;
 mod door;
 mod error;
+mod memory;
 mod params;
 mod plan;
 mod problem;

@@ -5,14 +5,15 @@ use std::sync::Arc;
 use rc_core::{Field, Observer};
 use rc_kernel::PeriodicLove;
 
+use super::memory::check_uniform;
 use super::shared::Shared;
 use super::solution::HowSolved;
-use super::{ContactProblem, Solution, SolveError, SolveParams, choice};
+use super::{ContactProblem, Solution, SolveError, SolveParams};
 use crate::adaptive::{AdaptiveProblem, AdaptiveSolution};
 use crate::gauss_seidel::{HalfSpace, solve_gauss_seidel};
 use crate::solution::{GridSolution, Status};
 use crate::uniform::solve_uniform;
-use crate::{Control, ErrorBound, GaussSeidelError, GaussSeidelParams, Method, MethodReason};
+use crate::{ErrorBound, GaussSeidelError, GaussSeidelParams, Method, MethodReason};
 
 /// A contact problem that has been checked and has its method. Nothing is solved yet.
 pub struct Plan<'a> {
@@ -59,29 +60,6 @@ impl<'a> Plan<'a> {
         self.bound
     }
 
-    /// The plan of another load on the same surface, with the same parameters. Heights, their bounds and the tables of the operator are
-    /// shared by the plans, and kept as long as one of them lives; every digit is that of a plan of its own.
-    ///
-    /// ```
-    /// use rc_core::{Field, Grid, Silent};
-    /// use rc_solver::{ContactProblem, Control, SolveParams};
-    ///
-    /// let wave = Field::from_fn(Grid::square(128)?, |at| 1e-3 * (std::f64::consts::TAU * at.x).cos());
-    /// let plan = ContactProblem::new(&wave, Control::MeanPressure(1e-4)).plan(&SolveParams::default())?;
-    /// for load in [2e-4, 4e-4, 8e-4] {
-    ///     let solution = plan.under(Control::MeanPressure(load))?.solve(&Silent)?;
-    ///     println!("{load:e}: {:.3}", solution.area().fraction);
-    /// }
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
-    /// # Errors
-    /// As of [`ContactProblem::plan`].
-    pub fn under(&self, control: Control) -> Result<Self, SolveError> {
-        let problem = ContactProblem { control, ..self.problem.clone() };
-        choice::plan(problem, &self.params, Arc::clone(&self.shared))
-    }
-
     /// Solves the problem.
     ///
     /// # Errors
@@ -122,7 +100,7 @@ fn by_adaptive(
     (adaptive, reason): (&AdaptiveProblem<'_>, &MethodReason),
     observer: &dyn Observer,
 ) -> Result<Result<AdaptiveSolution, MethodReason>, SolveError> {
-    let uniform_fits = choice::check_memory(problem.heights.grid(), params.memory_limit, Method::Uniform);
+    let uniform_fits = check_uniform(problem.heights.grid(), params.memory_limit, Method::Uniform);
     let may_change = matches!(reason, MethodReason::SmallContact { .. });
     if !may_change || uniform_fits.is_err() && params.method_follows_memory {
         return Ok(Ok(adaptive.solve(observer)));
