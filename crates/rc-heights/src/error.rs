@@ -1,4 +1,4 @@
-//! Why a file is no height map. Each message is one line: what, where, and what would be right.
+//! Why a file is not a height map. Each message is one line: what, where, and what would be right.
 
 use std::path::PathBuf;
 
@@ -37,6 +37,9 @@ pub enum FormatError {
         /// What it is, and what to do.
         what: String,
     },
+    /// A text by its name that is not one by its bytes.
+    #[error("it has zero bytes, as no text has; save it as UTF-8, or UTF-16 with a byte-order mark")]
+    ZeroBytes,
     /// A file that gzip has packed and that cannot be unpacked.
     #[error("gzip cannot unpack it: {0}; the file is damaged or cut off")]
     Gzip(String),
@@ -148,7 +151,7 @@ pub enum FormatError {
     )]
     Hdf5Spectrum,
     /// Points that are not on a regular grid.
-    #[error("the points are not on a regular grid: {0}; of a text, layout = matrix reads a row of the map a line")]
+    #[error("the points are not on a regular grid: {0}")]
     Irregular(String),
     /// A height that is infinite.
     #[error(
@@ -174,7 +177,7 @@ pub enum FormatError {
         channels: Vec<String>,
     },
     /// No channel has values that are lengths.
-    #[error("no channel has heights; {}, and channel = NAME reads one of them", names(channels))]
+    #[error("{}", no_heights(channels))]
     NoHeights {
         /// The names that there are.
         channels: Vec<String>,
@@ -182,6 +185,22 @@ pub enum FormatError {
     /// A number of points that no grid has.
     #[error(transparent)]
     Grid(#[from] GridError),
+}
+
+/// Why no channel is read, and how one is.
+fn no_heights(channels: &[String]) -> String {
+    match channels {
+        [] => "the file has no 2-D array of numbers".to_owned(),
+        [only] if only.is_empty() => {
+            "no channel has heights: the values of the only one, which has no name, are not lengths; channel = 1 with height_scale (m), \
+             the height of one, reads them"
+                .to_owned()
+        }
+        _ => format!(
+            "no channel has heights; {}; channel = NAME with height_scale (m), the height of one, reads a channel",
+            names(channels)
+        ),
+    }
 }
 
 /// Names of channels, at most as many as a line can have.

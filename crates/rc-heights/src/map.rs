@@ -37,8 +37,11 @@ impl HeightMap {
         match (self.height_unit, scales) {
             (Unit::GreyLevel, Scales { height_scale: None, .. }) => return Err(LengthUnitError::GreyLevels),
             (Unit::NotLength, Scales { height_scale: None, .. }) => return Err(LengthUnitError::NotLength),
-            (Unit::GreyLevel | Unit::NotLength, Scales { unit: Some(_), .. }) if !unit_has_use => {
+            (Unit::GreyLevel, Scales { unit: Some(_), .. }) if !unit_has_use => {
                 return Err(LengthUnitError::UnitOfLevels);
+            }
+            (Unit::NotLength, Scales { unit: Some(_), .. }) if !unit_has_use => {
+                return Err(LengthUnitError::UnitOfNotLength);
             }
             (_, Scales { unit: Some(_), .. }) if !unit_has_use => return Err(LengthUnitError::UnitsNamed),
             _ => {}

@@ -28,13 +28,17 @@ pub enum LengthUnit {
 impl LengthUnit {
     /// Every unit, its names (the first is how rc writes it) and its length in m.
     const ALL: [(Self, &[&str], f64); 7] = [
-        (Self::Metre, &["m"], 1.0),
-        (Self::Centimetre, &["cm"], 1e-2),
-        (Self::Millimetre, &["mm"], 1e-3),
-        (Self::Micrometre, &["um", "µm", "μm", "micron", "microns"], 1e-6),
-        (Self::Nanometre, &["nm"], 1e-9),
-        (Self::Angstrom, &["angstrom", "Å", "Å", "A"], 1e-10),
-        (Self::Picometre, &["pm"], 1e-12),
+        (Self::Metre, &["m", "metre", "metres", "meter", "meters"], 1.0),
+        (Self::Centimetre, &["cm", "centimetre", "centimetres", "centimeter", "centimeters"], 1e-2),
+        (Self::Millimetre, &["mm", "millimetre", "millimetres", "millimeter", "millimeters"], 1e-3),
+        (
+            Self::Micrometre,
+            &["um", "µm", "μm", "micron", "microns", "micrometre", "micrometres", "micrometer", "micrometers"],
+            1e-6,
+        ),
+        (Self::Nanometre, &["nm", "nanometre", "nanometres", "nanometer", "nanometers"], 1e-9),
+        (Self::Angstrom, &["angstrom", "Å", "Å", "A", "angstroms", "ångström"], 1e-10),
+        (Self::Picometre, &["pm", "picometre", "picometres", "picometer", "picometers"], 1e-12),
     ];
 
     /// Its length in m.
@@ -66,7 +70,11 @@ impl FromStr for LengthUnit {
     type Err = LengthUnitError;
 
     fn from_str(text: &str) -> Result<Self, LengthUnitError> {
-        let unit = Self::ALL.iter().find(|(_, names, _)| names.contains(&text.trim()));
+        let name = text.trim();
+        // `mm` and `Mm` are not the same; long names may have any case.
+        let long = name.to_lowercase();
+        let is = |other: &&str| *other == name || other.len() > 4 && *other == long;
+        let unit = Self::ALL.iter().find(|(_, names, _)| names.iter().any(is));
         unit.map(|(unit, ..)| *unit).ok_or_else(|| LengthUnitError::Unknown { name: text.trim().to_owned() })
     }
 }
@@ -98,7 +106,7 @@ pub struct Scales {
 #[non_exhaustive]
 pub enum LengthUnitError {
     /// No such unit of length.
-    #[error("'{name}' is no unit of length; m, cm, mm, um, nm, angstrom and pm are")]
+    #[error("'{name}' is not a unit of length; m, cm, mm, um, nm, angstrom and pm are")]
     Unknown {
         /// As written.
         name: String,
@@ -123,6 +131,11 @@ pub enum LengthUnitError {
     /// A unit for levels of grey on a map without a size.
     #[error("unit: levels of grey have none, and height_scale (m) is theirs; omit unit")]
     UnitOfLevels,
+    /// A unit for values that are not lengths on a map without a size.
+    #[error(
+        "unit: the values of this channel are not lengths; height_scale (m) says how high one is, so omit unit, or pick another channel"
+    )]
+    UnitOfNotLength,
     /// A unit for a file that names its own.
     #[error("unit: the file names its units already; omit it")]
     UnitsNamed,
@@ -140,6 +153,10 @@ mod tests {
                 assert_eq!(name.parse::<LengthUnit>().map(LengthUnit::metres), Ok(metres), "{name}");
             }
         }
+        for (name, metres) in [("Meters", 1.0), ("Micrometer", 1e-6), ("nanometres", 1e-9)] {
+            assert_eq!(name.parse::<LengthUnit>().map(LengthUnit::metres), Ok(metres), "{name}");
+        }
+        assert!("Mm".parse::<LengthUnit>().is_err() && "NM".parse::<LengthUnit>().is_err());
         assert!("V".parse::<LengthUnit>().is_err(), "a volt is no length");
     }
 }

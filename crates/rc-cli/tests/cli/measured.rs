@@ -86,7 +86,7 @@ fn contradictions_and_what_is_missing_are_refused() {
         (&["surface", "--heights", &png, "--cell", "1"], "height_scale"),
         (&["surface", "--heights", &png, "--cell", "1", "--unit", "um", "--height-scale", "1e-9"], "omit unit"),
         (&["surface", "--heights", "map.xyz", "--cell-y", "1"], "2 m high, cell_y says 1 m"),
-        (&["surface", "--heights", "map.npy", "--cell", "1", "--unit", "V"], "'V' is no unit of length"),
+        (&["surface", "--heights", "map.npy", "--cell", "1", "--unit", "V"], "'V' is not a unit of length"),
         (&["surface", "--heights", "map.npy", "--cell", "1", "--crop", "9"], "not inside the map of 8 x 8"),
         (&["surface", "--heights", "map.npy", "--cell", "1", "--crop", "half"], "512x256+100+50"),
         (&["surface", "--heights", "map.npy", "--cell", "0.01", "--low-pass", "1"], "low_pass"),

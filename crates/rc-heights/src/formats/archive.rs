@@ -1,6 +1,7 @@
 //! Archives: zip archives are told apart by their members, and gzip is unpacked.
 
 use std::io::{Cursor, Read as _};
+use std::path::Path;
 
 use flate2::bufread::MultiGzDecoder;
 use zip::ZipArchive;
@@ -34,9 +35,9 @@ pub(super) fn names(archive: &ZipArchive<Cursor<&[u8]>>) -> Vec<String> {
     archive.file_names().filter_map(|name| Some(name.ok()?.into_owned())).collect()
 }
 
-/// The format of a zip archive, by its members; what cannot be opened is x3p, whose reader says why.
-pub(super) fn format_of_zip(bytes: &[u8]) -> Result<Format, FormatError> {
-    let Ok(archive) = ZipArchive::new(Cursor::new(bytes)) else { return Ok(Format::X3p) };
+/// The format of a zip archive, by its members; the name of the file says what a damaged one should be.
+pub(super) fn format_of_zip(path: &Path, bytes: &[u8]) -> Result<Format, FormatError> {
+    let Ok(archive) = ZipArchive::new(Cursor::new(bytes)) else { return Err(damaged(path)) };
     let names = names(&archive);
     // Members may lie in a folder of the archive.
     let has = |end: &str| {
@@ -54,6 +55,25 @@ pub(super) fn format_of_zip(bytes: &[u8]) -> Result<Format, FormatError> {
         format!("a zip archive with {}{more}; unpack it and give one of its files", first.join(", "))
     };
     Err(FormatError::Archive { what: other.unwrap_or_else(listed) })
+}
+
+/// What is wrong with a zip archive that cannot be opened.
+fn damaged(path: &Path) -> FormatError {
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
+    let format = match extension.as_deref() {
+        Some("x3p") => Format::X3p,
+        Some("plux") => Format::Plux,
+        _ => return FormatError::Archive { what: "a zip archive that is cut off or damaged".to_owned() },
+    };
+    FormatError::Container { format, reason: "the archive is cut off or damaged".to_owned() }
+}
+
+/// The folder of the archive in which `member` lies, with a slash at its end; the uppermost of several. Some programs pack the folder,
+/// not its members.
+pub(super) fn folder_of(names: &[String], member: &str) -> String {
+    let folders = names.iter().filter_map(|name| name.strip_suffix(member));
+    let folders = folders.filter(|folder| folder.is_empty() || folder.ends_with('/'));
+    folders.min_by_key(|folder| folder.len()).unwrap_or_default().to_owned()
 }
 
 /// What gzip has packed.

@@ -22,13 +22,13 @@ pub(super) fn step(name: &str, coordinates: &[f64]) -> Result<f64, FormatError> 
         distance.is_nan() || distance > EVEN * step.abs()
     };
     if step == 0.0 || !step.is_finite() {
-        return Err(FormatError::Irregular(format!("{name} goes from {first} to {last}")));
+        return Err(FormatError::Irregular(format!("{name} goes from {first:e} to {last:e}")));
     }
     match coordinates.iter().enumerate().position(off) {
         None => Ok(step),
         Some(i) => {
             let message =
-                format!("{name} is not evenly spaced: value {i} (from 0) is {}, the first {first}", coordinates[i]);
+                format!("{name} is not evenly spaced: value {i} (from 0) is {:e}, the first {first:e}", coordinates[i]);
             Err(FormatError::Irregular(message))
         }
     }

@@ -7,7 +7,7 @@ use crate::{FormatError, HeightMap};
 pub(crate) struct Channel<'a> {
     /// Its name in the file, or an empty text where the format has none.
     pub(crate) name: String,
-    /// Whether its values are lengths, so that it can be a map of heights.
+    /// Whether it can be a map of heights: its values are lengths, as far as the file says.
     pub(crate) is_height: bool,
     /// Reads the values.
     pub(crate) read: Box<dyn FnOnce() -> Result<HeightMap, FormatError> + 'a>,
@@ -21,8 +21,16 @@ pub(crate) type Channels<'a> = Result<Vec<Channel<'a>>, FormatError>;
 pub struct ChannelInfo {
     /// Its name; empty for the only channel of a format without names.
     pub name: String,
-    /// Whether its values are lengths. The first such channel is what [`crate::read`] reads.
+    /// Whether it can be a map of heights: its values are lengths, as far as the file says. The first such channel is what [`crate::read`] reads.
     pub is_height: bool,
+}
+
+impl ChannelInfo {
+    /// Its name as a line can show it: at most 40 characters, none of which controls a terminal.
+    #[must_use]
+    pub fn shown_name(&self) -> String {
+        shown(&self.name)
+    }
 }
 
 impl From<&Channel<'_>> for ChannelInfo {
@@ -56,7 +64,21 @@ pub(super) fn named(mut channels: Vec<Channel<'_>>) -> Vec<Channel<'_>> {
     channels
 }
 
-/// The channel called `name`, in any case of letters, or the first with heights.
+/// Whether a microscope calls the heights so, and not an error of its feedback loop.
+pub(super) fn is_topography(name: &str) -> bool {
+    let name = name.to_lowercase();
+    ["height", "zsensor", "z sensor", "topo"].iter().any(|word| name.contains(word))
+}
+
+/// Channels whose headers were read one by one, each with its name: what is wrong with one is said when it is read, and it counts as
+/// heights only where no other channel does.
+pub(super) fn each<'a>(found: Vec<(String, Result<Channel<'a>, FormatError>)>) -> Vec<Channel<'a>> {
+    let is_height = !found.iter().any(|(_, channel)| channel.as_ref().is_ok_and(|channel| channel.is_height));
+    let damaged = |name, error| Channel { name, is_height, read: Box::new(move || Err(error)) };
+    found.into_iter().map(|(name, channel)| channel.unwrap_or_else(|error| damaged(name, error))).collect()
+}
+
+/// The channel called `name`, in any case of letters, or the first with heights. A single channel without a name is called 1 too.
 ///
 /// # Errors
 /// [`FormatError::NoChannel`], [`FormatError::NoHeights`], with the names that there are.
@@ -65,7 +87,7 @@ pub(super) fn chosen<'a>(channels: Vec<Channel<'a>>, name: Option<&str>) -> Resu
     let exact = |name: &str| names.iter().position(|other| other == name);
     let any_case = |name: &str| names.iter().position(|other| other.to_lowercase() == name.to_lowercase());
     let at = match name {
-        Some(name) => exact(name).or_else(|| any_case(name)),
+        Some(name) => exact(name).or_else(|| any_case(name)).or_else(|| (name == "1" && names == [""]).then_some(0)),
         None => channels.iter().position(|channel| channel.is_height),
     };
     let shown_names = names.iter().map(|name| shown(name)).collect();
@@ -108,5 +130,29 @@ mod tests {
         assert!(error.contains("phase"), "{error}");
         let error = chosen(channels(&[""]), Some("x")).err().expect("no names").to_string();
         assert!(error.contains("omit channel"), "{error}");
+    }
+
+    #[test]
+    fn a_channel_without_a_name_is_picked_by_its_number() {
+        assert!(chosen(channels(&[""]), Some("1")).is_ok());
+        for (names, expected) in [
+            (&[][..], "no 2-D array"),
+            (&[""], "channel = 1 with height_scale"),
+            (&["phase", "V"], "phase, V; channel"),
+        ] {
+            let error = chosen(channels(names), None).err().expect("no heights").to_string();
+            assert!(error.contains(expected), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_damaged_channel_is_refused_when_it_is_read() {
+        let found = |good: &str| {
+            let [good] = <[Channel<'_>; 1]>::try_from(channels(&[good])).ok().expect("one");
+            each(vec![("bad".into(), Err(FormatError::Empty(7))), (good.name.clone(), Ok(good))])
+        };
+        assert_eq!(chosen(found("height"), None).map(|channel| channel.name).as_deref(), Ok("height"));
+        let bad = chosen(found("phase"), None).expect("the damaged one");
+        assert_eq!((bad.read)(), Err(FormatError::Empty(7)));
     }
 }

@@ -3,8 +3,9 @@
 
 use super::binary::Number;
 use super::field::field;
-use super::fields::{Fields, positive, refused};
-use crate::{Format, FormatError, HeightMap, LengthUnit, Unit};
+use super::fields::{Fields, positive};
+use super::unit;
+use crate::{Format, FormatError, HeightMap};
 
 /// The first line.
 pub(super) const MARK: &[u8] = b"Gwyddion Simple Field 1.0";
@@ -15,8 +16,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     let header = String::from_utf8_lossy(&bytes[..end]);
     let fields = Fields::of(&header, Format::Gsf);
     let grid = fields.grid("XRes", "YRes")?;
-    let (side_unit, side_factor) = unit(&fields, "XYUnits")?;
-    let (height_unit, height_factor) = unit(&fields, "ZUnits")?;
+    let (side_unit, side_factor) = unit::of_sides(Format::Gsf, "XYUnits", fields.text("XYUnits").unwrap_or_default())?;
+    let (height_unit, height_factor) = unit::of_values(fields.text("ZUnits").unwrap_or_default());
     let side = |name| {
         let length: Option<f64> = fields.optional(name)?;
         length.map(|length| positive(Format::Gsf, name, length * side_factor)).transpose()
@@ -34,13 +35,4 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     let mut values = Number::F32.values_alone(bytes.get(end + 4 - end % 4..).unwrap_or_default(), grid)?;
     crate::map::scale(&mut values, height_factor);
     Ok(HeightMap { heights: field(grid, values), height_unit, sides, side_unit })
-}
-
-/// A unit of length and what it is in metres.
-fn unit(fields: &Fields<'_>, name: &'static str) -> Result<(Unit, f64), FormatError> {
-    let Some(text) = fields.text(name) else { return Ok((Unit::Unnamed, 1.0)) };
-    match text.parse::<LengthUnit>() {
-        Ok(unit) => Ok((Unit::Metre, unit.metres())),
-        Err(_) => Err(refused(Format::Gsf, name, text, "a unit of length, as m; other channels are no heights")),
-    }
 }

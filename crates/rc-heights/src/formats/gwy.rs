@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use rc_core::Grid;
 
 use super::binary::{Bytes, Number};
-use super::channel::{Channel, Channels};
+use super::channel::{Channel, Channels, each};
 use super::field::field;
 use super::fields::{positive, refused, shown};
 use super::unit;
@@ -55,17 +55,16 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
         }
     }
     let channels = found.into_values().filter_map(|Found { title, data }| Some((title.unwrap_or_default(), data?)));
-    let channels: Result<Vec<Channel<'_>>, FormatError> = channels
-        .map(|(title, data)| {
-            let data = DataField::of(data)?;
-            Ok(Channel {
-                name: String::from_utf8_lossy(title).into_owned(),
-                is_height: data.height.0 != Unit::NotLength,
-                read: Box::new(move || data.map()),
-            })
-        })
-        .collect();
-    channels
+    let channel = |(title, data)| {
+        let name = String::from_utf8_lossy(title).into_owned();
+        let channel = DataField::of(data).map(|data| Channel {
+            name: name.clone(),
+            is_height: data.height.0 != Unit::NotLength,
+            read: Box::new(move || data.map()),
+        });
+        (name, channel)
+    };
+    Ok(each(channels.map(channel).collect()))
 }
 
 /// The number of the channel that a key such as `/0/data/title` belongs to, and the rest of the key.
@@ -78,24 +77,28 @@ fn channel_of(key: &[u8]) -> Option<(u32, &str)> {
 struct DataField<'a> {
     resolution: [i32; 2],
     sides: [f64; 2],
-    side: (Unit, f64),
+    /// Name of the unit of the sides.
+    side: String,
     height: (Unit, f64),
     values: &'a [u8],
 }
 
 impl<'a> DataField<'a> {
     fn of(content: &'a [u8]) -> Result<Self, FormatError> {
-        // What is not said is 1, or of no unit.
-        let none = (Unit::Unnamed, 1.0);
-        let mut this = Self { resolution: [0; 2], sides: [1.0; 2], side: none, height: none, values: &[] };
+        // What is not said is 1, or of no unit: numbers without a dimension are not heights.
+        let (side, height) = (String::new(), (Unit::NotLength, 1.0));
+        let mut this = Self { resolution: [0; 2], sides: [1.0; 2], side, height, values: &[] };
         for (key, value) in tree(content)? {
             match (key, value) {
                 (b"xres", Value::Integer(n)) => this.resolution[0] = n,
                 (b"yres", Value::Integer(n)) => this.resolution[1] = n,
                 (b"xreal", Value::Double(side)) => this.sides[0] = side,
                 (b"yreal", Value::Double(side)) => this.sides[1] = side,
-                (b"si_unit_xy", Value::Object { content, .. }) => this.side = unit::of_sides(&unit_name(content)?),
-                (b"si_unit_z", Value::Object { content, .. }) => this.height = unit::of_values(&unit_name(content)?),
+                (b"si_unit_xy", Value::Object { content, .. }) => this.side = unit_name(content)?,
+                (b"si_unit_z", Value::Object { content, .. }) => {
+                    let (unit, factor) = unit::of_values(&unit_name(content)?);
+                    this.height = (if unit == Unit::Metre { unit } else { Unit::NotLength }, factor);
+                }
                 (b"data", Value::Doubles(values)) => this.values = values,
                 _ => {}
             }
@@ -108,10 +111,11 @@ impl<'a> DataField<'a> {
         let grid = Grid::new(side(self.resolution[0]), side(self.resolution[1]))?;
         let mut values = Number::F64.values_alone(self.values, grid)?;
         crate::map::scale(&mut values, self.height.1);
-        let x = positive(Format::Gwy, "xreal", self.sides[0] * self.side.1)?;
-        let y = positive(Format::Gwy, "yreal", self.sides[1] * self.side.1)?;
+        let (side_unit, factor) = unit::of_sides(Format::Gwy, "si_unit_xy", &self.side)?;
+        let x = positive(Format::Gwy, "xreal", self.sides[0] * factor)?;
+        let y = positive(Format::Gwy, "yreal", self.sides[1] * factor)?;
         let (heights, height_unit) = (field(grid, values), self.height.0);
-        Ok(HeightMap { heights, height_unit, sides: Some([x, y]), side_unit: self.side.0 })
+        Ok(HeightMap { heights, height_unit, sides: Some([x, y]), side_unit })
     }
 }
 

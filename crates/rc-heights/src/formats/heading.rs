@@ -99,16 +99,16 @@ impl Heading {
     }
 
     fn pair(&mut self, name: &str, value: &str) {
-        let (name, value) = (name.trim().to_lowercase(), value.trim());
+        let (whole, lower, value) = (name.trim(), name.trim().to_lowercase(), value.trim());
         // A unit may stand behind the name, as in `Width [µm]`.
-        let (name, unit) = match name.split_once(['[', '(']) {
-            Some((before, unit)) if !name.starts_with("height conversion") => {
-                (before.trim().to_owned(), unit.trim_end_matches([']', ')']).parse().ok())
+        let (name, unit) = match whole.split_once(['[', '(']) {
+            Some((before, unit)) if !lower.starts_with("height conversion") => {
+                (before.trim().to_lowercase(), unit.trim_end_matches([']', ')']).trim())
             }
-            _ => (name, None),
+            _ => (lower, ""),
         };
         let is = |names: &[&str]| names.contains(&name.as_str());
-        let length = || length(value).map(|(length, own)| (length, own.or(unit)));
+        let length = || length(value, unit);
         if is(&WIDTHS) {
             self.sides[0] = length();
         } else if is(&HEIGHTS) {
@@ -150,38 +150,40 @@ impl Heading {
             return Err(refused(Format::Csv, "w x h", &format!("{w} x {h}, for {nx} x {ny} numbers"), expected));
         }
         let points = [nx as f64, ny as f64];
-        let lengths = match (self.sides, self.pixel) {
+        // Numbers of points are no lengths.
+        let counts = |[x, y]: [Length; 2]| {
+            let same = (x.0 - points[0]).abs() + (y.0 - points[1]).abs() < 1e-9;
+            same && x.1.is_none() && y.1.is_none()
+        };
+        let sides = match self.sides {
+            [Some(x), Some(y)] if counts([x, y]) => [None; 2],
+            sides => sides,
+        };
+        let lengths = match (sides, self.pixel) {
             ([Some(x), Some(y)], _) => [x, y],
             (_, Some((pixel, unit))) => [(pixel * points[0], unit), (pixel * points[1], unit)],
             _ => return Ok((None, Unit::Unnamed)),
         };
         if lengths.iter().any(|(side, _)| *side <= 0.0 || !side.is_finite()) {
-            let found = format!("{} x {}", lengths[0].0, lengths[1].0);
+            let found = format!("{:e} x {:e}", lengths[0].0, lengths[1].0);
             return Err(refused(Format::Csv, "width x height", &found, "two positive lengths"));
         }
-        let named = lengths.iter().all(|(_, unit)| unit.is_some());
-        let metres = |(side, unit): Length| side * unit.filter(|_| named).map_or(1.0, LengthUnit::metres);
-        Ok((Some(lengths.map(metres)), if named { Unit::Metre } else { Unit::Unnamed }))
+        // A unit that only one side has is that of both.
+        let named = lengths.iter().find_map(|(_, unit)| *unit);
+        let metres = |(side, unit): Length| side * unit.or(named).map_or(1.0, LengthUnit::metres);
+        Ok((Some(lengths.map(metres)), if named.is_some() { Unit::Metre } else { Unit::Unnamed }))
     }
 
     /// What the numbers are in, and the factor that makes metres of them.
     ///
     /// # Errors
-    /// [`FormatError::Field`] for another quantity.
+    /// [`FormatError::Field`] for a factor that is not one.
     pub(super) fn of_heights(&self) -> Result<(Unit, f64), FormatError> {
         match (self.metres, self.unit.as_deref()) {
             (Some(metres), _) => {
                 Ok((Unit::Metre, super::fields::factor(Format::Csv, "height conversion factor", metres)?))
             }
-            (None, Some(name)) => match unit::of_values(name) {
-                (Unit::NotLength, _) => Err(refused(
-                    Format::Csv,
-                    "the unit of the values",
-                    name,
-                    "a unit of length, as m; other channels are no heights",
-                )),
-                named => Ok(named),
-            },
+            (None, Some(name)) => Ok(unit::of_values(name)),
             (None, None) => Ok((Unit::Unnamed, 1.0)),
         }
     }
@@ -200,20 +202,16 @@ fn unit_of_title(title: &str) -> Option<LengthUnit> {
     let is_letter = |c: char| c.is_alphabetic() || c == '\u{b5}' || c == '\u{3bc}';
     let words: Vec<&str> = title.split(|c: char| !is_letter(c)).filter(|word| !word.is_empty()).collect();
     let (last, before) = words.split_last()?;
-    if before.is_empty() { None } else { last.parse().ok() }
+    if before.is_empty() { None } else { unit::length(last) }
 }
 
-/// A number and the unit behind it, if there is one.
-fn length(text: &str) -> Option<Length> {
+/// A number and the unit behind it, or else that `beside` its name; `None` for points and other quantities.
+fn length(text: &str, beside: &str) -> Option<Length> {
     let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.,eE".contains(c))).unwrap_or(text.len());
     let (digits, unit) = text.split_at(end);
-    let unit = unit.trim();
-    match (number(digits.trim_end_matches(['e', 'E', ',']), true)?, unit.parse::<LengthUnit>()) {
-        (value, Ok(unit)) => Some((value, Some(unit))),
-        (value, Err(_)) if unit.is_empty() => Some((value, None)),
-        // Points, or another quantity.
-        _ => None,
-    }
+    let name = if unit.trim().is_empty() { beside } else { unit.trim() };
+    let unit = if name.is_empty() { None } else { Some(unit::length(name)?) };
+    Some((number(digits.trim_end_matches(['e', 'E', ',']), true)?, unit))
 }
 
 #[cfg(test)]
@@ -255,8 +253,20 @@ mod tests {
         assert_eq!(heading.of_heights(), Ok((Unit::Metre, 4e-8)));
         let error = heading.sides(2, 2).expect_err("cut off").to_string();
         assert!(error.contains("2 x 1, for 2 x 2"), "{error}");
-        assert!(of("# Value units: V\n1 2\n").of_heights().is_err());
+        assert_eq!(of("# Value units: V\n1 2\n").of_heights(), Ok((Unit::NotLength, 1.0)));
         assert_eq!(of("# Height: 10 px\n# Width: 3 px\n1 2\n").sides(2, 1), Ok((None, Unit::Unnamed)));
+    }
+
+    #[test]
+    fn sizes_are_lengths_in_one_unit_or_numbers_of_points() {
+        let both = of("# Width: 10 µm\n# Height: 20\n1 2\n").sides(2, 1).expect("sides");
+        assert_eq!(both, (Some([10.0 * 1e-6, 20.0 * 1e-6]), Unit::Metre));
+        let text = "# Width: 2\n# Height: 1\n1 2\n";
+        assert_eq!(of(text).sides(2, 1), Ok((None, Unit::Unnamed)), "numbers of points");
+        assert_eq!(of(text).sides(4, 1), Ok((Some([2.0, 1.0]), Unit::Unnamed)));
+        for other in ["Width (px): 2\nHeight (px): 3\n1 2\n", "Width [A]: 2\nHeight [A]: 3\n1 2\n"] {
+            assert_eq!(of(other).sides(2, 1), Ok((None, Unit::Unnamed)), "{other}");
+        }
     }
 
     #[test]

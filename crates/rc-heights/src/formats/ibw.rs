@@ -4,10 +4,11 @@
 use rc_core::Grid;
 
 use super::binary::Number;
-use super::channel::{Channel, Channels};
+use super::channel::{Channel, Channels, is_topography};
 use super::endian::Endian;
 use super::field::{field, flip};
 use super::fields::{positive, refused};
+use super::instrument::text;
 use super::unit;
 use crate::{Format, FormatError, HeightMap, Unit};
 
@@ -47,10 +48,6 @@ struct Wave<'a> {
 
 pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     let wave = std::rc::Rc::new(Wave::of(bytes)?);
-    let is_topography = |name: &str| {
-        let name = name.to_lowercase();
-        ["height", "zsensor", "z sensor", "topo"].iter().any(|word| name.contains(word))
-    };
     let is_named = wave.labels.iter().any(|name| is_topography(name));
     let is_length = unit::of_values(&wave.units[0]).0 != Unit::NotLength;
     let channel = |layer: usize| {
@@ -130,26 +127,18 @@ impl<'a> Wave<'a> {
         let mut values = self.order.values(self.number, stored, grid)?;
         let (height_unit, factor) = if is_height { unit::of_values(&self.units[0]) } else { (Unit::NotLength, 1.0) };
         crate::map::scale(&mut values, factor);
-        let units = [0, 1].map(|i| unit::of_sides(&self.units[1 + i]));
-        let are_lengths = units.iter().all(|unit| unit.0 == Unit::Metre);
-        let step = |i: usize, name| {
-            positive(Format::Ibw, name, self.steps[i].abs() * if are_lengths { units[i].1 } else { 1.0 })
-        };
+        let of_side = |field, name: &str| unit::of_sides(Format::Ibw, field, name);
+        let units = [of_side("unit of x", &self.units[1])?, of_side("unit of y", &self.units[2])?];
+        let (factors, side_unit) = unit::of_both(units);
+        let step = |i: usize, name| positive(Format::Ibw, name, self.steps[i].abs() * factors[i]);
         let (x, y) = (step(0, "distance of points along x")?, step(1, "distance of points along y")?);
-        let side_unit = if are_lengths { Unit::Metre } else { Unit::Unnamed };
         flip(&mut values, grid, self.steps.map(|step| step < 0.0));
         // A wave that was never scaled has a step of 1 in no unit.
         #[expect(clippy::float_cmp, reason = "the step of a wave that was never scaled is exactly 1")]
-        let is_scaled = are_lengths || self.steps != [1.0, 1.0];
+        let is_scaled = side_unit == Unit::Metre || self.steps != [1.0, 1.0];
         let sides = is_scaled.then(|| [x * grid.nx() as f64, y * grid.ny() as f64]);
         Ok(HeightMap { heights: field(grid, values), height_unit, sides, side_unit })
     }
-}
-
-/// A text that a zero byte ends, or its length.
-fn text(bytes: &[u8]) -> String {
-    let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
-    String::from_utf8_lossy(&bytes[..end]).trim().to_owned()
 }
 
 /// The type of numbers of a wave.

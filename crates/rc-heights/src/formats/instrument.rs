@@ -65,9 +65,7 @@ pub(super) fn metres(unit: &str) -> Option<f64> {
     match unit.trim() {
         // "æ" is the µ of a code page of DOS, and "~" that of Nanoscope.
         "æm" | "~m" => Some(LengthUnit::Micrometre.metres()),
-        // An ampere.
-        "A" => None,
-        name => name.parse::<LengthUnit>().ok().map(LengthUnit::metres),
+        name => super::unit::length(name).map(LengthUnit::metres),
     }
 }
 

@@ -26,7 +26,9 @@ pub(crate) fn words(line: &str) -> (Box<dyn Iterator<Item = &str> + '_>, bool) {
 
 /// Whether a line with commas has several words between blanks, all of them numbers with a comma at most, which is inside.
 fn has_decimal_commas(line: &str) -> bool {
-    let is_inside = |word: &str| word.bytes().filter(|byte| *byte == b',').count() <= 1 && !word.ends_with(',');
+    let is_inside = |word: &str| {
+        word.bytes().filter(|byte| *byte == b',').count() <= 1 && !word.starts_with(',') && !word.ends_with(',')
+    };
     let mut words = line.split_whitespace();
     let several = words.clone().nth(1).is_some();
     several && words.all(|word| is_inside(word) && number(word, true).is_some())

@@ -15,7 +15,7 @@ use super::binary::Number;
 use super::channel::{Channel, Channels};
 use super::endian::Endian;
 use super::field::{field, flip, transposed};
-use super::fields::refused;
+use super::fields::{refused, shown_as_line};
 use crate::{Format, FormatError, HeightMap, Unit};
 
 /// The first bytes.
@@ -99,7 +99,10 @@ impl Stored<'_> {
         };
         let mut bytes = Vec::new();
         let read = ZlibDecoder::new(*stored).take(most.saturating_add(8)).read_to_end(&mut bytes);
-        read.map_err(|cause| FormatError::Container { format: Format::Mat, reason: cause.to_string() })?;
+        read.map_err(|cause| FormatError::Container {
+            format: Format::Mat,
+            reason: shown_as_line(&cause.to_string()),
+        })?;
         // The tag of the array comes first.
         bytes.drain(..bytes.len().min(8));
         Ok(Cow::Owned(bytes))

@@ -115,7 +115,16 @@ impl Opened {
             file.read_to_end(&mut bytes).map_err(unreadable)?;
             return Ok(Self { format: Format::of(path, &bytes)?, bytes, rest: None });
         }
-        Ok(Self { format: Format::of(path, &bytes)?, bytes, rest: Some(file) })
+        let mut format = Format::of(path, &bytes)?;
+        // The first numbers of a text say how it is laid out; many lines may stand before them.
+        while matches!(format, Format::Csv | Format::Xyz) && !xyz::has_numbers(&bytes) {
+            let as_many = bytes.len() as u64;
+            if file.by_ref().take(as_many).read_to_end(&mut bytes).map_err(unreadable)? == 0 {
+                break;
+            }
+            format = Format::of(path, &bytes)?;
+        }
+        Ok(Self { format, bytes, rest: Some(file) })
     }
 
     /// All bytes.
@@ -177,7 +186,7 @@ pub fn channels(path: &Path) -> Result<Vec<ChannelInfo>, ReadError> {
 /// # Errors
 /// [`FormatError`].
 pub fn channels_of(bytes: &[u8], format: Format) -> Result<Vec<ChannelInfo>, FormatError> {
-    Ok(named(in_bytes(bytes, format)?).iter().map(ChannelInfo::from).collect())
+    Ok(named(in_bytes(bytes, format, None)?).iter().map(ChannelInfo::from).collect())
 }
 
 /// Reads a height map from the bytes of a file of the given format.
@@ -193,15 +202,15 @@ pub fn parse(bytes: &[u8], format: Format) -> Result<HeightMap, FormatError> {
 /// # Errors
 /// [`FormatError`].
 pub fn parse_with(bytes: &[u8], format: Format, params: &ReadParams) -> Result<HeightMap, FormatError> {
-    let channel = chosen(named(in_bytes(bytes, format)?), params.channel.as_deref())?;
+    let channel = chosen(named(in_bytes(bytes, format, params.layout)?), params.channel.as_deref())?;
     checked((channel.read)()?)
 }
 
 /// The channels of a file, one line a format.
-fn in_bytes(bytes: &[u8], format: Format) -> Channels<'_> {
+fn in_bytes(bytes: &[u8], format: Format, layout: Option<Layout>) -> Channels<'_> {
     Ok(match format {
         Format::Al3d => al3d::channels(bytes)?,
-        Format::Csv => text::channels(bytes)?,
+        Format::Csv => text::channels(bytes, layout)?,
         Format::Gsf => only(move || gsf::parse(bytes)),
         Format::Gwy => gwy::channels(bytes)?,
         Format::Hdf5 | Format::NetCdf => netcdf::channels(bytes, format)?,

@@ -7,7 +7,7 @@
 use rc_core::Grid;
 
 use super::binary::Number;
-use super::channel::{Channel, Channels};
+use super::channel::{Channel, Channels, each, is_topography};
 use super::fields::{factor, refused};
 use super::instrument::{Places, map, metres, scale_measured, sides, text};
 use crate::{Format, FormatError, HeightMap};
@@ -60,14 +60,23 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     for name in ["microscope list", "ciao scan list", "afm list", "stm list", "nc afm list"] {
         globals.extend(named(name));
     }
-    let mut channels = Vec::new();
-    for list in lists.iter().filter(|list| list.name.ends_with("image list")) {
-        let image = image(list, &globals, version)?;
-        let data = Places::new(bytes, Format::Nanoscope).rest(list.number("data offset")?);
-        let is_height = image.is_height;
-        channels.push(Channel { name: name(list), is_height, read: Box::new(move || read(data, &image)) });
+    let images = lists.iter().filter(|list| list.name.ends_with("image list"));
+    let mut found: Vec<_> = images.map(|list| (name(list), channel(list, &globals, version, bytes))).collect();
+    // Errors of the feedback loop are in nm too.
+    let is_topography = |(name, channel): &(String, Result<Channel<'_>, _>)| {
+        channel.as_ref().is_ok_and(|c| c.is_height) && is_topography(name)
+    };
+    if found.iter().any(is_topography) {
+        let others = found.iter_mut().filter(|found| !is_topography(found));
+        others.filter_map(|(_, channel)| channel.as_mut().ok()).for_each(|channel| channel.is_height = false);
     }
-    Ok(channels)
+    Ok(each(found))
+}
+
+fn channel<'a>(list: &List, globals: &[&List], version: u32, bytes: &'a [u8]) -> Result<Channel<'a>, FormatError> {
+    let image = image(list, globals, version)?;
+    let data = Places::new(bytes, Format::Nanoscope).rest(list.number("data offset")?);
+    Ok(Channel { name: name(list), is_height: image.is_height, read: Box::new(move || read(data, &image)) })
 }
 
 fn read(data: &[u8], image: &Image) -> Result<HeightMap, FormatError> {

@@ -3,7 +3,8 @@
 //!
 //! `units` (or `unit`) of an array says what it is in; `scale_factor`, `add_offset`, `_FillValue` and `missing_value` are applied.
 //! Coordinates are the variables of the dimensions of NetCDF, else arrays called `x` and `y` beside the map. The last index is x,
-//! unless the dimensions are called x and y in this order.
+//! unless the dimensions are called x and y in this order, or MATLAB wrote the array: its files have dimensions in reverse order, and
+//! vectors of two dimensions.
 
 use std::rc::Rc;
 
@@ -21,7 +22,7 @@ use crate::{Format, FormatError, HeightMap, Unit};
 /// Deflate makes at most 1032 bytes of one: what is promised beyond that is not there.
 const MOST_INFLATION: usize = 1032;
 
-/// What NetCDF has where nothing was written, as 32-bit and as 64-bit float.
+/// What NetCDF has where nothing was written, as 32-bit and as 64-bit float; integers have one by their type.
 const NEVER_WRITTEN: f64 = 9.969209968386869e36;
 
 /// Deepest group that is looked into.
@@ -33,7 +34,17 @@ const MOST_GROUPS: usize = 1024;
 /// Coordinates along an axis.
 struct Coordinates {
     values: Vec<f64>,
-    unit: (Unit, f64),
+    /// Name of their unit.
+    unit: String,
+}
+
+/// Where coordinates are looked for.
+struct Beside<'a> {
+    path: &'a str,
+    /// Names of the dimensions along x and y.
+    dimensions: [&'a str; 2],
+    grid: Grid,
+    of_matlab: bool,
 }
 
 /// An open file.
@@ -59,13 +70,14 @@ pub(super) fn channels(bytes: &[u8], format: Format) -> Channels<'_> {
     }
     let file = NcFile::from_bytes_with_options(bytes, options).map_err(|cause| invalid(&cause))?;
     let arrays = Rc::new(Arrays { file, format, bytes: bytes.len() as u64 });
-    let mut found = Vec::new();
-    list(arrays.file.root_group().map_err(|cause| invalid(&cause))?, "", &mut found);
+    let mut listed = Vec::new();
+    list(arrays.file.root_group().map_err(|cause| invalid(&cause))?, "", &mut listed);
+    let (names, units): (Vec<String>, Vec<Unit>) = listed.into_iter().unzip();
     let channel = |(name, is_height): (String, bool)| {
         let (arrays, path) = (arrays.clone(), name.clone());
         Channel { name, is_height, read: Box::new(move || arrays.map(&path)) }
     };
-    Ok(found.into_iter().map(channel).collect())
+    Ok(names.into_iter().zip(unit::are_heights(&units)).map(channel).collect())
 }
 
 /// Refuses groups that contain themselves, which netcdf-reader would follow without an end.
@@ -94,11 +106,10 @@ fn count(group: &Group, depth: usize, left: &mut usize) -> Result<(), netcdf_rea
     group.groups()?.iter().try_for_each(|inner| count(inner, depth, left))
 }
 
-/// Paths of the maps in a group, and whether they are lengths.
-fn list(group: &NcGroup, path: &str, found: &mut Vec<(String, bool)>) {
+/// Paths of the maps in a group, and what they are in.
+fn list(group: &NcGroup, path: &str, found: &mut Vec<(String, Unit)>) {
     for variable in group.variables.iter().filter(|variable| is_map(variable)) {
-        let is_height = unit_of(variable).0 != Unit::NotLength;
-        found.push((format!("{path}{}", variable.name()), is_height));
+        found.push((format!("{path}{}", variable.name()), unit_of(variable).0));
     }
     for inner in &group.groups {
         list(inner, &format!("{path}{}/", inner.name), found);
@@ -108,7 +119,8 @@ fn list(group: &NcGroup, path: &str, found: &mut Vec<(String, bool)>) {
 /// Whether a variable has numbers on two dimensions; others have a length of 1.
 fn is_map(variable: &NcVariable) -> bool {
     let is_mesh = ["x", "y"].iter().any(|name| variable.name().eq_ignore_ascii_case(name));
-    is_number(variable.dtype()) && !is_mesh && variable.shape().iter().filter(|n| **n != 1).count() == 2
+    let is_text = class_of_matlab(variable).is_some_and(|class| class == "char");
+    is_number(variable.dtype()) && !is_mesh && !is_text && variable.shape().iter().filter(|n| **n != 1).count() == 2
 }
 
 fn is_number(kind: &NcType) -> bool {
@@ -116,11 +128,39 @@ fn is_number(kind: &NcType) -> bool {
     matches!(kind, Byte | Double | Float | Int | Int64 | Short | UByte | UInt | UInt64 | UShort)
 }
 
-/// What the values of a variable are in.
-fn unit_of(variable: &NcVariable) -> (Unit, f64) {
+/// The type of an array that MATLAB wrote.
+fn class_of_matlab(variable: &NcVariable) -> Option<String> {
+    let class = variable.attribute("MATLAB_class")?.value.as_string()?;
+    Some(class.trim_end_matches('\0').to_owned())
+}
+
+/// The name of the unit of a variable, which may be empty.
+fn unit_name(variable: &NcVariable) -> String {
     let attribute = ["units", "unit"].iter().find_map(|name| variable.attribute(name));
     let name = attribute.and_then(|attribute| attribute.value.as_string()).unwrap_or_default();
-    unit::of_values(name.trim_end_matches('\0'))
+    name.trim_end_matches('\0').to_owned()
+}
+
+/// What the values of a variable are in.
+fn unit_of(variable: &NcVariable) -> (Unit, f64) {
+    unit::of_values(&unit_name(variable))
+}
+
+/// What NetCDF has in a variable where nothing was written. Of HDF5 only floats: its integers are 0 there.
+fn default_fill(variable: &NcVariable, format: Format) -> Option<f64> {
+    if variable.attribute("_FillValue").is_some() {
+        return None;
+    }
+    match variable.dtype() {
+        NcType::Float | NcType::Double => Some(NEVER_WRITTEN),
+        _ if format != Format::NetCdf => None,
+        NcType::Short => Some(-32767.0),
+        NcType::Int => Some(-2_147_483_647.0),
+        NcType::UShort => Some(65535.0),
+        NcType::UInt => Some(4_294_967_295.0),
+        // All numbers of a byte are in use; those of 64 bits are not told apart as floats.
+        _ => None,
+    }
 }
 
 fn container(format: Format, cause: &netcdf_reader::Error) -> FormatError {
@@ -137,7 +177,8 @@ impl Arrays {
         };
         let name =
             |dimension: usize| variable.dimensions().get(dimension).map_or("", |dimension| dimension.name.as_str());
-        let x_is_first = name(first).eq_ignore_ascii_case("x") && name(second).eq_ignore_ascii_case("y");
+        let of_matlab = class_of_matlab(variable).is_some();
+        let x_is_first = of_matlab || name(first).eq_ignore_ascii_case("x") && name(second).eq_ignore_ascii_case("y");
         let [nx, ny] = if x_is_first { [rows, columns] } else { [columns, rows] };
         let side = |n: u64| usize::try_from(n).unwrap_or(usize::MAX);
         let grid = Grid::new(side(nx), side(ny))?;
@@ -155,16 +196,13 @@ impl Arrays {
         crate::map::scale(&mut values, factor);
         let dimensions = if x_is_first { [name(first), name(second)] } else { [name(second), name(first)] };
         let (mut sides, mut side_unit) = (None, Unit::Unnamed);
-        if let Some([x, y]) = self.coordinates(path, dimensions, grid)? {
+        if let Some([x, y]) = self.coordinates(&Beside { path, dimensions, grid, of_matlab })? {
             let steps = [axes::step("x", &x.values)?, axes::step("y", &y.values)?];
             flip(&mut values, grid, steps.map(|step| step < 0.0));
-            let are_lengths = [&x, &y].iter().all(|axis| axis.unit.0 == Unit::Metre);
-            let side = |step: f64, n: usize, axis: &Coordinates| {
-                let factor = if are_lengths { axis.unit.1 } else { 1.0 };
-                step.abs() * n as f64 * factor
-            };
-            sides = Some([side(steps[0], grid.nx(), &x), side(steps[1], grid.ny(), &y)]);
-            side_unit = if are_lengths { Unit::Metre } else { Unit::Unnamed };
+            let of_side = |field, axis: &Coordinates| unit::of_sides(self.format, field, &axis.unit);
+            let (factors, unit) = unit::of_both([of_side("unit of x", &x)?, of_side("unit of y", &y)?]);
+            let side = |axis: usize, n: usize| steps[axis].abs() * n as f64 * factors[axis];
+            (sides, side_unit) = (Some([side(0, grid.nx()), side(1, grid.ny())]), unit);
         }
         Ok(HeightMap { heights: field(grid, values), height_unit, sides, side_unit })
     }
@@ -172,35 +210,52 @@ impl Arrays {
     /// The values of a variable, unpacked; `NaN` where they are marked as missing.
     fn values(&self, path: &str) -> Result<Vec<f64>, FormatError> {
         let array = self.file.read_variable_unpacked_masked(path).map_err(|cause| container(self.format, &cause))?;
-        let missing = |value: f64| if value == NEVER_WRITTEN { f64::NAN } else { value };
-        Ok(array.iter().map(|value| missing(*value)).collect())
+        let mut values: Vec<f64> = array.iter().copied().collect();
+        let variable = self.file.variable(path).map_err(|cause| container(self.format, &cause))?;
+        let Some(fill) = default_fill(variable, self.format) else { return Ok(values) };
+        if ["scale_factor", "add_offset"].iter().any(|name| variable.attribute(name).is_some()) {
+            let stored = self.file.read_variable_as_f64(path).map_err(|cause| container(self.format, &cause))?;
+            values
+                .iter_mut()
+                .zip(&stored)
+                .filter(|(_, stored)| **stored == fill)
+                .for_each(|(value, _)| *value = f64::NAN);
+        } else {
+            values.iter_mut().filter(|value| **value == fill).for_each(|value| *value = f64::NAN);
+        }
+        Ok(values)
     }
 
     /// Coordinates along x and y: the variables of the dimensions, or arrays called x and y in the same group.
-    fn coordinates(
-        &self,
-        path: &str,
-        dimensions: [&str; 2],
-        grid: Grid,
-    ) -> Result<Option<[Coordinates; 2]>, FormatError> {
+    fn coordinates(&self, beside: &Beside<'_>) -> Result<Option<[Coordinates; 2]>, FormatError> {
+        let Beside { path, dimensions, grid, of_matlab } = *beside;
         let group = path.rsplit_once('/').map_or(String::new(), |(group, _)| format!("{group}/"));
         let lengths = [grid.nx() as u64, grid.ny() as u64];
         let names = |axis: usize| [dimensions[axis], ["x", "y"][axis], ["X", "Y"][axis]];
-        let find = |axis: usize, shape: &[u64]| {
+        let find = |axis: usize, shapes: &[&[u64]]| {
             let paths = names(axis).into_iter().map(|name| format!("{group}{name}"));
             paths.into_iter().find_map(|path| {
                 let variable = self.file.variable(&path).ok()?;
-                (is_number(variable.dtype()) && variable.shape() == shape).then(|| (path, unit_of(variable)))
+                let is_there = is_number(variable.dtype()) && shapes.contains(&variable.shape().as_slice());
+                is_there.then(|| (path, unit_name(variable)))
             })
         };
-        let vector = |axis: usize| find(axis, &[lengths[axis]]);
+        let vector = |axis: usize| {
+            let n = lengths[axis];
+            let shapes: [&[u64]; 3] = [&[n], &[1, n], &[n, 1]];
+            find(axis, if of_matlab { &shapes } else { &shapes[..1] })
+        };
         if let (Some((x, of_x)), Some((y, of_y))) = (vector(0), vector(1)) {
             let x = Coordinates { values: self.values(&x)?, unit: of_x };
             return Ok(Some([x, Coordinates { values: self.values(&y)?, unit: of_y }]));
         }
-        let mesh = |axis: usize| find(axis, &[lengths[1], lengths[0]]);
-        let (Some((x, of_x)), Some((y, of_y))) = (mesh(0), mesh(1)) else { return Ok(None) };
-        let axes = axes::of_meshes(&self.values(&x)?, &self.values(&y)?, grid.nx());
+        let shape = if of_matlab { lengths } else { [lengths[1], lengths[0]] };
+        let (Some((x, of_x)), Some((y, of_y))) = (find(0, &[&shape]), find(1, &[&shape])) else { return Ok(None) };
+        let mesh = |path: &str| {
+            let stored = self.values(path)?;
+            Ok::<_, FormatError>(if of_matlab { transposed(&stored, grid) } else { stored })
+        };
+        let axes = axes::of_meshes(&mesh(&x)?, &mesh(&y)?, grid.nx());
         Ok(axes.map(|[x, y]| [Coordinates { values: x, unit: of_x }, Coordinates { values: y, unit: of_y }]))
     }
 }

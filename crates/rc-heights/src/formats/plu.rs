@@ -4,7 +4,7 @@
 use rc_core::Grid;
 
 use super::binary::Number;
-use super::channel::{Channel, Channels};
+use super::channel::{Channel, Channels, each};
 use super::fields::refused;
 use super::instrument::{Places, map, scale_measured, sides};
 use crate::{Format, FormatError, HeightMap};
@@ -36,21 +36,33 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     let (mut channels, mut at) = (Vec::new(), LAYERS);
     // Of layers that are cut off, the first is an error and the others are left out.
     while channels.is_empty() || channels.len() < usize::from(layers) && header.rest(at).len() > 8 {
-        let grid = Grid::new(header.size(at + 4)?, header.size(at)?)?;
-        let sides = sides(Format::Plu, ["distance of points along x", "distance of points along y"], grid, spacing)?;
+        let name = format!("layer {}", channels.len() + 1);
+        let (grid, sides) = match layer(header, at, spacing) {
+            Ok(layer) => layer,
+            // Where the layers behind it begin is not known.
+            Err(error) => {
+                channels.push((name, Err(error)));
+                break;
+            }
+        };
         let heights = header.rest(at + 8);
-        channels.push(Channel {
-            name: format!("layer {}", channels.len() + 1),
-            is_height: true,
-            read: Box::new(move || read(heights, grid, sides)),
-        });
+        let read = Box::new(move || read(heights, grid, sides));
+        channels.push((name.clone(), Ok(Channel { name, is_height: true, read })));
         // Heights, the lowest and the highest, and images of three bytes a point.
         at = at.saturating_add(16).saturating_add(grid.len() * (Number::F32.size() + 3 * usize::from(images)));
     }
+    let mut channels = each(channels);
     if let [only] = &mut channels[..] {
         only.name.clear();
     }
     Ok(channels)
+}
+
+/// Points and sides of the layer at `at`.
+fn layer(header: Places<'_>, at: usize, spacing: [f64; 2]) -> Result<(Grid, [f64; 2]), FormatError> {
+    let grid = Grid::new(header.size(at.saturating_add(4))?, header.size(at)?)?;
+    let fields = ["distance of points along x", "distance of points along y"];
+    Ok((grid, sides(Format::Plu, fields, grid, spacing)?))
 }
 
 fn read(heights: &[u8], grid: Grid, sides: [f64; 2]) -> Result<HeightMap, FormatError> {

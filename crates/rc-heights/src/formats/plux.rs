@@ -7,6 +7,7 @@ use rc_core::Grid;
 use roxmltree::{Document, Node};
 use zip::ZipArchive;
 
+use super::archive::{folder_of, names};
 use super::binary::Number;
 use super::channel::{Channel, Channels};
 use super::fields::{refused, shown_as_line};
@@ -22,7 +23,9 @@ const MOST_INFLATION: u64 = 1032;
 const MICROMETRE: f64 = 1e-6;
 
 pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
-    let xml = member(bytes, "index.xml", LONGEST_XML)?;
+    let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|cause| container(&cause))?;
+    let folder = folder_of(&names(&archive), "index.xml");
+    let xml = member(bytes, &format!("{folder}index.xml"), LONGEST_XML)?;
     let xml = String::from_utf8_lossy(&xml);
     let document = Document::parse(&xml).map_err(|cause| container(&cause))?;
     let root = document.root_element();
@@ -36,7 +39,7 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     for layer in layers {
         // Layers without heights have an image alone.
         if let Some(file) = text(layer, "FILENAME_Z") {
-            let file = file.to_owned();
+            let file = format!("{folder}{}", file.trim_start_matches("./"));
             channels.push(Channel {
                 name: layer.tag_name().name().to_owned(),
                 is_height: true,
@@ -58,15 +61,12 @@ fn read(bytes: &[u8], file: &str, grid: Grid, sides: [f64; 2]) -> Result<HeightM
     Ok(map(grid, values, true, Some(sides)))
 }
 
-/// A file of the archive, of `most` bytes at most. Some names begin with `./` in the archive and not in the index.
+/// A file of the archive, of `most` bytes at most. Some names begin with `./` in the archive and others do not.
 fn member(bytes: &[u8], name: &str, most: u64) -> Result<Vec<u8>, FormatError> {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|cause| container(&cause))?;
-    let dotted = format!("./{name}");
-    let name = if archive.index_for_name(name).is_none() && archive.index_for_name(&dotted).is_some() {
-        &dotted
-    } else {
-        name
-    };
+    let bare = name.trim_start_matches("./");
+    let dotted = format!("./{bare}");
+    let name = [name, bare, &dotted].into_iter().find(|name| archive.index_for_name(name).is_some()).unwrap_or(name);
     let file = archive.by_name(name).map_err(|cause| container(&format_args!("{name}: {cause}")))?;
     let mut content = Vec::new();
     let read = file.take(most.saturating_add(1)).read_to_end(&mut content);

@@ -58,13 +58,14 @@ impl Format {
     /// are needed whole. The first bytes count more than the name.
     ///
     /// # Errors
-    /// [`FormatError::Mark`] for a name that promises another start, [`FormatError::Archive`], [`FormatError::Unknown`].
+    /// [`FormatError::Mark`] for a name that promises another start, [`FormatError::Container`] or [`FormatError::Archive`] for a zip
+    /// archive, [`FormatError::ZeroBytes`], [`FormatError::Unknown`].
     pub fn of(path: &Path, start: &[u8]) -> Result<Self, FormatError> {
         if let Some((_, format)) = MARKS.iter().find(|(mark, _)| start.starts_with(mark)) {
             return Ok(*format);
         }
         if start.starts_with(ZIP) {
-            return archive::format_of_zip(start);
+            return archive::format_of_zip(path, start);
         }
         if ibw::order(start).is_some() {
             return Ok(Self::Ibw);
@@ -80,6 +81,7 @@ impl Format {
             Some("csv" | "txt" | "tsv" | "dat" | "asc") if is_text(start) => {
                 Ok(if xyz::looks_like_points(start) { Self::Xyz } else { Self::Csv })
             }
+            Some("csv" | "txt" | "tsv" | "asc") => Err(FormatError::ZeroBytes),
             Some("npy") => mark(Self::Npy, "it must begin with \\x93NUMPY; numpy.save writes such files"),
             Some("grd") => mark(Self::Surfer, "it must begin with DSAA, DSBB or DSRB"),
             Some("gsf") => mark(Self::Gsf, "it must begin with the line 'Gwyddion Simple Field 1.0'"),

@@ -8,9 +8,9 @@ use flate2::read::ZlibDecoder;
 use rc_core::Grid;
 
 use super::binary::Number;
-use super::channel::{Channel, Channels};
+use super::channel::{Channel, Channels, each};
 use super::field::flip;
-use super::fields::{factor, refused};
+use super::fields::{factor, refused, shown_as_line};
 use super::instrument::{Places, map, metres, scale_measured, sides};
 use crate::{Format, FormatError, HeightMap};
 
@@ -20,6 +20,9 @@ pub(super) const PLAIN: &[u8] = b"DIGITAL SURF";
 pub(super) const COMPRESSED: &[u8] = b"DSCOMPRESSED";
 
 const HEADER: usize = 512;
+
+/// The type of objects that are profiles.
+const PROFILE: u16 = 1;
 
 /// The types of objects that have a spectrum at each point.
 const SPECTRA: [u16; 2] = [20, 21];
@@ -32,6 +35,7 @@ struct Object<'a> {
     name: String,
     grid: Grid,
     number: Number,
+    is_profile: bool,
     /// Values of a point: 1, or as many as its spectrum has.
     values: usize,
     compressed: bool,
@@ -50,18 +54,23 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     let mut channels = Vec::new();
     let mut rest = bytes;
     loop {
-        let object = object(rest)?;
+        let object = match object(rest) {
+            Ok(object) => object,
+            // Where the objects behind it begin is not known.
+            Err(error) => {
+                channels.push((String::new(), Err(error)));
+                return Ok(each(channels));
+            }
+        };
         let stored = object.stored();
         let data = object.data;
-        channels.push(Channel {
-            name: object.name.clone(),
-            is_height: object.is_height,
-            read: Box::new(move || object.read()),
-        });
+        let (name, is_height) = (object.name.clone(), object.is_height);
+        let read = Box::new(move || object.read());
+        channels.push((name.clone(), Ok(Channel { name, is_height, read })));
         rest = stored.and_then(|stored| data.get(stored..)).unwrap_or_default();
         // An object that is cut off before its integers does not take the others away.
         if !(rest.starts_with(PLAIN) || rest.starts_with(COMPRESSED)) || rest.len() < HEADER {
-            return Ok(channels);
+            return Ok(each(channels));
         }
     }
 }
@@ -100,6 +109,7 @@ fn object(bytes: &[u8]) -> Result<Object<'_>, FormatError> {
         name: name.unwrap_or_default(),
         grid,
         number,
+        is_profile: header.u16(18)? == PROFILE,
         values: if SPECTRA.contains(&header.u16(18)?) { header.size(94)?.max(1) } else { 1 },
         compressed: bytes.starts_with(COMPRESSED),
         missing: if header.u16(86)? == 1 { Some(f64::from(header.i32(100)?) - 2.0) } else { None },
@@ -113,6 +123,10 @@ fn object(bytes: &[u8]) -> Result<Object<'_>, FormatError> {
 
 impl Object<'_> {
     fn read(&self) -> Result<HeightMap, FormatError> {
+        if self.is_profile {
+            let (what, cure) = ("a profile".to_owned(), "a map of heights is needed: save the surface");
+            return Err(FormatError::Unsupported { format: Format::Sur, what, cure });
+        }
         if self.values > 1 {
             let (what, cure) = (format!("an object of {} values a point", self.values), "save a map of one of them");
             return Err(FormatError::Unsupported { format: Format::Sur, what, cure });
@@ -167,7 +181,10 @@ impl Object<'_> {
             // A byte more than there is room for: the checksum of a stream is verified at its end.
             let room = (needed + 1).saturating_sub(integers.len() as u64);
             let read = ZlibDecoder::new(stream).take(room).read_to_end(&mut integers);
-            read.map_err(|cause| FormatError::Container { format: Format::Sur, reason: cause.to_string() })?;
+            read.map_err(|cause| FormatError::Container {
+                format: Format::Sur,
+                reason: shown_as_line(&cause.to_string()),
+            })?;
             at = at.saturating_add(stored);
         }
         let found = integers.len() as u64;

@@ -11,8 +11,9 @@ use super::decode::decoded;
 use super::field::field;
 use super::fields::shown;
 use super::heading::Heading;
+use super::layout::Layout;
 use super::lines::{data_lines, number, words};
-use crate::{FormatError, HeightMap};
+use crate::{Format, FormatError, HeightMap};
 
 /// The numbers of a text, a row of the map a line, which a line feed, a carriage return, or both end. Between numbers are commas,
 /// semicolons, tabs or blanks; where it is none of the first two, or a semicolon, commas may stand for decimal points, as many countries
@@ -27,19 +28,25 @@ pub fn parse(bytes: &[u8]) -> Result<Field, FormatError> {
 }
 
 /// The channel of a text, whose lines before the numbers say what it is called.
-pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
+pub(super) fn channels(bytes: &[u8], layout: Option<Layout>) -> Channels<'_> {
     let text = decoded(bytes);
     let heading = Heading::of(&text)?;
     let name = heading.channel.clone();
-    Ok(vec![Channel { name, is_height: true, read: Box::new(move || map(&text, &heading)) }])
+    // Of another quantity too: it is the only one.
+    Ok(vec![Channel { name, is_height: true, read: Box::new(move || map(&text, &heading, layout)) }])
 }
 
-fn map(text: &str, heading: &Heading) -> Result<HeightMap, FormatError> {
-    if let [_, _] = heading.titles.as_slice() {
+fn map(text: &str, heading: &Heading, layout: Option<Layout>) -> Result<HeightMap, FormatError> {
+    if let ([_, _], None) = (heading.titles.as_slice(), layout) {
         let expected = "a map has titles of three columns, x, y and height, or none".to_owned();
         return Err(FormatError::Columns { line: heading.first.saturating_sub(1), found: 2, expected });
     }
     let mut heights = rows(text, heading.first)?;
+    if heights.grid().nx() <= 2 && layout.is_none() && !heading.is_of_rows() {
+        let columns = if heights.grid().nx() == 1 { "one column" } else { "two columns" };
+        let (what, cure) = (format!("a text of {columns}, which is a profile,"), "layout = matrix reads it as a map");
+        return Err(FormatError::Unsupported { format: Format::Csv, what, cure });
+    }
     let (sides, side_unit) = heading.sides(heights.grid().nx(), heights.grid().ny())?;
     let (height_unit, factor) = heading.of_heights()?;
     crate::map::scale(heights.values_mut(), factor);
@@ -102,6 +109,7 @@ mod tests {
             "1,0 2,0 3,0\n4 -0,5 6\n",
             "rows\n1,\t2,\t3\n4,\t-0.5,\t6\n",
             "1 2 3\r\n\r\n4 -0.5 6\r\n",
+            "1 ,2 ,3\n4 ,-0.5 ,6\n",
         ];
         for text in texts {
             let field = parse(text.as_bytes()).expect(text);
@@ -130,8 +138,10 @@ mod tests {
             ("1,\n3,4\n", "line 1, value 2"),
             ("1;2\n3,5;4,,5\n", "line 2, value 2"),
             ("x,z\n1,2\n3,4\n", "three columns"),
-            ("1,2\n3,inf\n", "row 1, column 1"),
-            ("nan,nan\n", "all 2 points"),
+            ("1,2,3\n3,inf,5\n", "row 1, column 1"),
+            ("nan,nan,nan\n", "all 3 points"),
+            ("1,2\n3,4\n", "two columns, which is a profile"),
+            ("1\n2\n", "layout = matrix"),
             ("", "1 to"),
         ];
         for (text, expected) in cases {

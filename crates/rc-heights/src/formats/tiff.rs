@@ -8,6 +8,7 @@ use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 
 use super::field::field;
+use super::fields::shown_as_line;
 use crate::{Format, FormatError, HeightMap, Unit};
 
 /// What LZW makes of one byte at most: 12 bits stand for 4096 bytes. Deflate makes less.
@@ -17,7 +18,10 @@ const MOST_INFLATION: u64 = 2731;
 const PARK: u16 = 50432;
 
 pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
-    let invalid = |cause: tiff::TiffError| FormatError::Container { format: Format::Tiff, reason: cause.to_string() };
+    let invalid = |cause: tiff::TiffError| FormatError::Container {
+        format: Format::Tiff,
+        reason: shown_as_line(&cause.to_string()),
+    };
     let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(invalid)?;
     let (width, height) = decoder.dimensions().map_err(invalid)?;
     if decoder.find_tag(Tag::Unknown(PARK)).map_err(invalid)?.is_some() {

@@ -8,9 +8,10 @@ use rc_core::Grid;
 use roxmltree::{Document, Node};
 use zip::ZipArchive;
 
+use super::archive::folder_of;
 use super::binary::Number;
 use super::field::field;
-use super::fields::{factor, positive, refused};
+use super::fields::{factor, positive, refused, shown_as_line};
 use crate::{Format, FormatError, HeightMap, Unit};
 
 /// Longest `main.xml`; heights are not in it.
@@ -23,11 +24,7 @@ type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
 
 pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|cause| container(&cause))?;
-    // Some programs pack the folder, not its members.
-    let names = super::archive::names(&archive);
-    let folders = names.iter().filter_map(|name| name.strip_suffix("main.xml"));
-    let folders = folders.filter(|folder| folder.is_empty() || folder.ends_with('/'));
-    let folder = folders.min_by_key(|folder| folder.len()).unwrap_or_default();
+    let folder = folder_of(&super::archive::names(&archive), "main.xml");
     let xml = member(&mut archive, &format!("{folder}main.xml"), LONGEST_XML)?;
     let xml = String::from_utf8_lossy(&xml);
     let document = Document::parse(&xml).map_err(|cause| container(&cause))?;
@@ -127,7 +124,7 @@ fn text<'a>(root: Node<'a, '_>, parent: &str, field: &'static str) -> Result<&'a
 }
 
 fn container(reason: &(impl ToString + ?Sized)) -> FormatError {
-    FormatError::Container { format: Format::X3p, reason: reason.to_string() }
+    FormatError::Container { format: Format::X3p, reason: shown_as_line(&reason.to_string()) }
 }
 
 fn unsupported(what: &str, cure: &'static str) -> FormatError {

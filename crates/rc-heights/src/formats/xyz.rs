@@ -2,10 +2,10 @@
 
 use super::decode::decoded;
 use super::field::field;
-use super::fields::shown;
+use super::fields::{refused, shown};
 use super::heading::Heading;
 use super::lines::{data_lines, number, words};
-use crate::{FormatError, HeightMap, Unit};
+use crate::{Format, FormatError, HeightMap, Unit};
 
 use rc_core::Grid;
 
@@ -29,14 +29,24 @@ pub(super) fn looks_like_points(start: &[u8]) -> bool {
     !heading.is_of_rows() && lines.len() + heading.titles.len().min(1) > 2 && lines.iter().all(|three| *three)
 }
 
+/// Whether the first lines of a text have enough numbers to say how they are laid out.
+pub(super) fn has_numbers(start: &[u8]) -> bool {
+    const ENOUGH: usize = 4;
+    let text = decoded(start);
+    let whole = text.rsplit_once(['\n', '\r']).map_or("", |(whole, _)| whole);
+    Heading::of(whole).is_ok_and(|heading| data_lines(whole, heading.first).take(ENOUGH).count() == ENOUGH)
+}
+
 pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     let text = decoded(bytes);
     let heading = Heading::of(&text)?;
-    let order = order(&heading.titles);
+    let order = order(&heading.titles)?;
     let points = points(&text, heading.first, order)?;
     let mut map = on_grid(points)?;
     let units = order.map(|i| heading.units_of_titles()[i]);
-    if let ([Some(x), Some(y), _], Some(sides)) = (units, &mut map.sides) {
+    // A unit that only one of them has is that of both.
+    let both = units[0].or(units[1]).zip(units[1].or(units[0]));
+    if let (Some((x, y)), Some(sides)) = (both, &mut map.sides) {
         *sides = [sides[0] * x.metres(), sides[1] * y.metres()];
         map.side_unit = Unit::Metre;
     }
@@ -46,13 +56,37 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     Ok(map)
 }
 
-/// The columns of x, y and height, if titles begin with these letters; else the first three.
-fn order(titles: &[String]) -> [usize; 3] {
+/// First words of titles that count points.
+const COUNTS: [&str; 12] = ["index", "idx", "id", "no", "nr", "num", "number", "point", "row", "line", "col", "column"];
+
+/// The columns of x, y and height: those of x and y have titles that begin with these letters, the third is the height; else the first
+/// three.
+///
+/// # Errors
+/// [`FormatError::Field`] for titles of other columns.
+fn order(titles: &[String]) -> Result<[usize; 3], FormatError> {
+    let [a, b, c] = titles else { return Ok([0, 1, 2]) };
     let at = |letter: &str| titles.iter().position(|title| title.to_lowercase().starts_with(letter));
-    match (titles.len(), at("x"), at("y"), at("z")) {
-        (3, Some(x), Some(y), Some(z)) => [x, y, z],
-        _ => [0, 1, 2],
+    let is_count = |title: &String| {
+        let title = title.to_lowercase();
+        let word = title.split(|c: char| !c.is_alphabetic()).next().unwrap_or_default();
+        COUNTS.contains(&word)
+    };
+    let (x, y) = (at("x"), at("y"));
+    // Words before numbers may also be a remark.
+    let in_place = x.is_none_or(|x| x == 0) && y.is_none_or(|y| y == 1);
+    match (x, y) {
+        _ if titles.iter().any(is_count) => {}
+        (Some(x), Some(y)) => return Ok([x, y, 3 - x - y]),
+        _ if in_place => return Ok([0, 1, 2]),
+        _ => {}
     }
+    let found = format!("{a}, {b}, {c}");
+    Err(refused(Format::Xyz, "titles of columns", &found, "x, y and height in any order, without other columns"))
+}
+
+fn irregular(message: String) -> FormatError {
+    FormatError::Irregular(message + "; layout = matrix reads a row of the map a line")
 }
 
 fn on_grid(points: Vec<[f64; 3]>) -> Result<HeightMap, FormatError> {
@@ -61,14 +95,14 @@ fn on_grid(points: Vec<[f64; 3]>) -> Result<HeightMap, FormatError> {
     if grid.len() > MOST_MISSING * points.len() {
         let message =
             format!("{} points on {grid} grid lines; fewer than one in {MOST_MISSING} is there", points.len());
-        return Err(FormatError::Irregular(message));
+        return Err(irregular(message));
     }
     let mut values = vec![f64::NAN; grid.len()];
     let mut seen = vec![false; grid.len()];
     for [x, y, z] in points {
         let i = grid.index(axes[0].line(x)?, axes[1].line(y)?);
         if std::mem::replace(&mut seen[i], true) {
-            return Err(FormatError::Irregular(format!("two points are at x = {x}, y = {y}")));
+            return Err(irregular(format!("two points are at x = {x:e}, y = {y:e}")));
         }
         values[i] = z;
     }
@@ -113,7 +147,7 @@ impl Axis {
         let n = 1 + all.windows(2).filter(|pair| pair[1] - pair[0] > same).count();
         let step = (last - first) / (n.max(2) - 1) as f64;
         if n < 2 || !step.is_finite() {
-            return Err(FormatError::Irregular(format!("{n} different values of {name}; two at least make a grid")));
+            return Err(irregular(format!("{n} different values of {name}; two at least make a grid")));
         }
         Ok(Self { name, first, step, n })
     }
@@ -124,8 +158,8 @@ impl Axis {
         let line = at.round();
         if (at - line).abs() > 0.1 {
             let Self { name, first, step, n } = self;
-            let message = format!("{name} = {coordinate} is none of {n} values from {first} in steps of {step}");
-            return Err(FormatError::Irregular(message));
+            let message = format!("{name} = {coordinate:e} is none of {n} values from {first:e} in steps of {step:e}");
+            return Err(irregular(message));
         }
         Ok((line as usize).min(self.n - 1))
     }
@@ -180,6 +214,18 @@ mod tests {
         assert_eq!(map.heights.values(), [1.0, 2.0, 3.0, 4.0].map(|nm| nm * 1e-9));
         let map = parse(b"X,Y,Z\n0,0,1\n1,0,2\n0,2,3\n1,2,4\n").expect("a map");
         assert_eq!((map.side_unit, map.height_unit), (Unit::Unnamed, Unit::Unnamed));
+    }
+
+    #[test]
+    fn titles_of_x_and_y_leave_the_height_and_titles_of_counts_are_refused() {
+        let map = parse(b"Y,X,Height\n0,0,1\n0,1,2\n2,0,3\n2,1,4\n").expect("a map");
+        assert_eq!((map.sides, map.heights.values()), (Some([2.0, 4.0]), &[1.0, 2.0, 3.0, 4.0][..]));
+        for titles in ["X,Y,index", "Index,x,height", "row,column,height", "time,x,z"] {
+            let error = parse(format!("{titles}\n0,0,1\n1,0,2\n0,2,3\n1,2,4\n").as_bytes()).expect_err(titles);
+            assert!(error.to_string().contains("titles of columns"), "{titles}: {error}");
+        }
+        let map = parse(b"x [mm];y;z [nm]\n0;0;1\n1;0;2\n0;2;3\n1;2;4\n").expect("a map");
+        assert_eq!((map.sides, map.side_unit), (Some([2e-3, 4e-3]), Unit::Metre));
     }
 
     #[test]

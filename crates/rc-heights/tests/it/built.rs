@@ -1,6 +1,6 @@
 //! Files built byte by byte are read as their specifications say; headers that promise too much or nonsense are refused.
 
-use rc_heights::{Format, HeightMap, Unit, parse};
+use rc_heights::{Format, HeightMap, LengthUnit, Scales, Unit, parse};
 use zip::CompressionMethod;
 
 use crate::build;
@@ -66,6 +66,15 @@ fn a_simple_field_has_its_units() {
     let bare = read("gsf", &build::gsf("XRes=3\nYRes=2\n"), Format::Gsf);
     assert_map("gsf", &bare, 1.0, 0.0, None);
     assert_eq!((map.height_unit, bare.height_unit), (Unit::Metre, Unit::Unnamed));
+    for other in ["V", "A"] {
+        let map = read("gsf", &build::gsf(&format!("XRes=3\nYRes=2\nZUnits={other}\n")), Format::Gsf);
+        assert_eq!(map.height_unit, Unit::NotLength, "{other}");
+        let height_scale = Some(1e-9);
+        let unit_alone = Scales { unit: Some(LengthUnit::Nanometre), height_scale };
+        let error = map.clone().in_metres(unit_alone).expect_err("a unit").to_string();
+        assert!(error.contains("not lengths") && !error.contains("levels"), "{error}");
+        assert_map(other, &map.in_metres(Scales { height_scale, ..Scales::default() }).expect(other), 1e-9, 0.0, None);
+    }
 }
 
 #[test]
@@ -225,7 +234,7 @@ fn wrong_headers_are_named_with_their_field() {
         (sdf("4 5 6", "4 x 6"), "line 15, value 5: 'x'"),
         (sdf(" 4 5 6", " 4 5"), "of which 5 heights"),
         (sdf("*", ""), "shorter than the header"),
-        (gsf("XRes=3\nYRes=2\nZUnits=V\n"), "ZUnits is 'V'"),
+        (gsf("XRes=3\nYRes=2\nXReal=1\nYReal=1\nXYUnits=A\n"), "XYUnits is 'A'"),
         (gsf("XRes=3\nYRes=2\nXReal=-1\nYReal=1\n"), "XReal"),
         (gsf("XRes=3\n"), "YRes is missing"),
         (gsf("XRes=3\nYRes=2\nXReal=1\n"), "YReal is missing"),

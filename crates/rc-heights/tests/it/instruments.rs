@@ -336,7 +336,7 @@ fn wrong_headers_of_instruments_are_named_with_their_field() {
         (spm("6 6 ~m", "6 6 V"), "Scan size is '6 6 V'"),
         (spm("Zsens] (0.0001 V/LSB) 6.5536 V", "None] (0.0001 V/LSB) 6.5536 V"), "no channel has heights"),
         ((Format::Nanoscope, build::nanoscope("\\Operating mode: Force\r\n", "", &[])), "force curves"),
-        ((Format::Nanoscope, build::nanoscope("", "", &[])), "no channel has heights"),
+        ((Format::Nanoscope, build::nanoscope("", "", &[])), "the file has no 2-D array of numbers"),
         (opd(2, Vec::new()), "Wavelength is missing"),
         (opd(3, vec![0, 0]), "Wavelength / Mult"),
         (opd(5, vec![0; 4]), "Pixel_size is '0'"),
@@ -363,4 +363,28 @@ fn wrong_headers_of_instruments_are_named_with_their_field() {
         let error = parse(&bytes, format).expect_err(expected).to_string();
         assert!(error.contains(expected), "no '{expected}' in: {error}");
     }
+}
+
+/// `bytes` with the first `from` as `to`, which is as long.
+fn replaced(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
+    assert_eq!(from.len(), to.len(), "{from}");
+    let at = bytes.windows(from.len()).position(|part| part == from.as_bytes()).expect(from);
+    [&bytes[..at], to.as_bytes(), &bytes[at + from.len()..]].concat()
+}
+
+#[test]
+fn a_damaged_channel_leaves_the_others() {
+    let spm = std::fs::read(folder().join("python-two-channels.spm")).expect("a file");
+    let whole = parse(&spm, Format::Nanoscope).expect("heights");
+    let damaged = replaced(&spm, "OL\r\n\\Samps/line: 12", "OL\r\n\\Samps/line: no");
+    assert_eq!(parse(&damaged, Format::Nanoscope).expect("heights"), whole);
+    let phase = ReadParams { channel: Some("Phase".into()), ..ReadParams::default() };
+    let error = parse_with(&damaged, Format::Nanoscope, &phase).expect_err("a damaged channel").to_string();
+    assert!(error.contains("samps/line is 'no'"), "{error}");
+    // Not a unit of length any more, and a channel without a unit is not heights.
+    let gwy = std::fs::read(folder().join("gwyfile.gwy")).expect("a file");
+    let list = |bytes: &[u8]| channels_of(bytes, Format::Gwy).expect("channels");
+    assert_eq!(list(&gwy).iter().map(|c| c.is_height).collect::<Vec<_>>(), [false, true]);
+    let degrees = replaced(&gwy, "deg\0", "   \0");
+    assert_eq!(list(&degrees).iter().map(|c| c.is_height).collect::<Vec<_>>(), [false, true]);
 }

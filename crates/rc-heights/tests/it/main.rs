@@ -8,4 +8,5 @@ mod instruments;
 mod parts;
 mod programs;
 mod robustness;
+mod texts;
 mod treatments;

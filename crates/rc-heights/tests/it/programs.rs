@@ -40,6 +40,9 @@ fn heights_units_sizes_axes_and_missing_points_come_from_the_file() {
         // Meshes, and vectors of which y falls.
         ("scipy-mesh.mat", [1e-9, 1e-20], true, unnamed, unnamed),
         ("scipy-vectors.mat", [1.0, 1e-12], false, unnamed, unnamed),
+        // Dimensions in reverse order, vectors of two dimensions, and meshes.
+        ("h5py-matlab.mat", [1e-9, 1e-20], false, unnamed, unnamed),
+        ("h5py-matlab-mesh.mat", [1e-9, 1e-20], false, unnamed, unnamed),
         ("igorwriter.ibw", [1e-9, 1e-20], false, metre, metre),
         ("igorwriter-stack.ibw", [1e-9, 1e-12], true, metre, metre),
         ("gwyddion.txt", [1e-9, 1e-20], false, metre, metre),
@@ -78,6 +81,8 @@ fn channels_are_listed_and_picked_and_heights_are_the_default() {
         ("igorwriter-stack.ibw", vec![("Phase", false), ("Height", true)]),
         ("netcdf4-classic.nc", vec![("z", true)]),
         ("scipy-mesh.mat", vec![("Z", true)]),
+        // A text of MATLAB is not a map.
+        ("h5py-matlab.mat", vec![("z", true)]),
         ("gwyddion.txt", vec![("Height", true)]),
         ("expected.csv", vec![("", true)]),
     ];
