@@ -145,11 +145,12 @@ pub enum FormatError {
         /// As read.
         value: f64,
     },
-    /// Coefficients in a container that rc does not open.
-    #[error(
-        "an HDF5 file, which cannot be read here; write its waves as text with h5dump or Python, a line of kx ky Re Im for each"
-    )]
-    Hdf5Spectrum,
+    /// An HDF5 file without the table that is looked for.
+    #[error("the HDF5 file has neither arrays {names} of one length in one group nor an array of four columns")]
+    NoTable {
+        /// Names of the columns.
+        names: String,
+    },
     /// Points that are not on a regular grid.
     #[error("the points are not on a regular grid: {0}")]
     Irregular(String),

@@ -1,14 +1,14 @@
 //! Surfaces as their Fourier coefficients: what a file of waves holds, read and written.
 //!
-//! A surface is h(x) = Σ c exp(2πi (kx x/λ + ky y/λ)) with integer kx and ky, in waves per cell. A file has a line of `kx ky Re(c) Im(c)` for
-//! each wave whose coefficient is not zero. Since heights are real, c of -k is the conjugate of c of k, so a file may have
+//! A surface is h(x) = Σ c exp(2πi (kx x/λ + ky y/λ)) with integer kx and ky, in waves per cell. A text has a line of `kx ky Re(c) Im(c)` for
+//! each wave whose coefficient is not zero, an HDF5 file arrays of these names or one array of four columns. Since heights are real, c of -k is the conjugate of c of k, so a file may have
 //! either of them or both. What of that is wrong is found by who makes a surface of the coefficients.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Read as _, Write as _};
 use std::path::Path;
 
-use crate::formats::{data_lines, decoded, number, shown, words};
+use crate::formats::{data_lines, decoded, hdf5_table, number, shown, words};
 use crate::{FormatError, ReadError};
 
 /// First bytes of an HDF5 file.
@@ -51,7 +51,16 @@ pub fn read(path: &Path) -> Result<Vec<Coefficient>, ReadError> {
 /// # Errors
 /// [`FormatError`].
 pub fn parse(bytes: &[u8]) -> Result<Vec<Coefficient>, FormatError> {
-    if bytes.starts_with(HDF5_MARK) { Err(FormatError::Hdf5Spectrum) } else { parse_text(bytes) }
+    if bytes.starts_with(HDF5_MARK) { parse_hdf5(bytes) } else { parse_text(bytes) }
+}
+
+/// Arrays kx, ky, Re and Im, or one array of these columns.
+fn parse_hdf5(bytes: &[u8]) -> Result<Vec<Coefficient>, FormatError> {
+    let rows = hdf5_table(bytes, ["kx", "ky", "Re", "Im"])?;
+    let of_row = |(i, [kx, ky, re, im]): (usize, [f64; 4])| {
+        Ok(Coefficient { kx: wave_number(i + 1, kx)?, ky: wave_number(i + 1, ky)?, re, im })
+    };
+    rows.into_iter().enumerate().map(of_row).collect()
 }
 
 /// Lines of kx, ky, Re, Im with commas, semicolons or blanks between them; empty lines and those that start with `#` are passed over.
@@ -123,6 +132,24 @@ mod tests {
     }
 
     #[test]
+    fn hdf5_has_arrays_of_these_names_or_four_columns() {
+        let expected = [wave(1, -2, 0.5, -1e-7), wave(0, 3, 0.0, 2.0)];
+        let file = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/formats").join(name);
+        for name in ["h5py-waves.h5", "h5py-waves-columns.h5"] {
+            assert_eq!(read(&file(name)), Ok(expected.to_vec()), "{name}");
+            let bytes = std::fs::read(file(name)).expect("a file");
+            for part in 1..64 {
+                let cut = parse(&bytes[..bytes.len() * part / 64]);
+                assert!(cut.is_err() || cut == Ok(expected.to_vec()), "{name}, {part}/64: {cut:?}");
+            }
+        }
+        let error = read(&file("h5py-cycle.h5")).expect_err("no waves").to_string();
+        assert!(error.contains("h5py-cycle.h5: ") && !error.contains('\n'), "{error}");
+        let error = read(&file("h5py-contiguous.h5")).expect_err("no waves").to_string();
+        assert!(error.contains("neither arrays kx, ky, Re, Im of one length in one group"), "{error}");
+    }
+
+    #[test]
     fn written_coefficients_read_back_exactly() {
         let dir = tempfile::tempdir().expect("a temporary folder");
         let path = dir.path().join("waves.txt");
@@ -148,7 +175,7 @@ mod tests {
             (b"1 1e300 3 4\n", "line 1: wave number 1"),
             (b"\x93NUMPY\x01\x00v\x00{'descr': '<f8', }\n", "line 1"),
             (b"1,2,,4\n", "line 1, value 3"),
-            (b"\x89HDF\r\n\x1a\n\0\0", "h5dump"),
+            (b"\x89HDF\r\n\x1a\n\0\0", "not a valid HDF5 file"),
         ];
         for (bytes, expected) in cases {
             let error = parse(bytes).expect_err(expected).to_string();

@@ -150,7 +150,7 @@ impl Heading {
             return Err(refused(Format::Csv, "w x h", &format!("{w} x {h}, for {nx} x {ny} numbers"), expected));
         }
         let points = [nx as f64, ny as f64];
-        // Numbers of points are no lengths.
+        // Numbers of points are not lengths.
         let counts = |[x, y]: [Length; 2]| {
             let same = (x.0 - points[0]).abs() + (y.0 - points[1]).abs() < 1e-9;
             same && x.1.is_none() && y.1.is_none()

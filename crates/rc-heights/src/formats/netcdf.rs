@@ -56,6 +56,58 @@ struct Arrays {
 }
 
 pub(super) fn channels(bytes: &[u8], format: Format) -> Channels<'_> {
+    let arrays = Rc::new(open(bytes, format)?);
+    let mut listed = Vec::new();
+    list(arrays.root()?, "", &mut listed);
+    let (names, units): (Vec<String>, Vec<Unit>) = listed.into_iter().unzip();
+    let channel = |(name, is_height): (String, bool)| {
+        let (arrays, path) = (arrays.clone(), name.clone());
+        Channel { name, is_height, read: Box::new(move || arrays.map(&path)) }
+    };
+    Ok(names.into_iter().zip(unit::are_heights(&units)).map(channel).collect())
+}
+
+/// The rows of a table of four columns in an HDF5 file: of the first array of n × 4 numbers, or of the first four vectors of one length with
+/// these names in one group.
+///
+/// # Errors
+/// [`FormatError::NoTable`] when there is no such table.
+pub(crate) fn hdf5_table(bytes: &[u8], names: [&str; 4]) -> Result<Vec<[f64; 4]>, FormatError> {
+    let arrays = open(bytes, Format::Hdf5)?;
+    match table_in(arrays.root()?, "", names).ok_or(FormatError::NoTable { names: names.join(", ") })? {
+        Table::Array(path) => Ok(arrays.values(&path)?.as_chunks::<4>().0.to_vec()),
+        Table::Vectors(paths) => {
+            let [a, b, c, d] = paths.map(|path| arrays.values(&path));
+            let (a, b, c, d) = (a?, b?, c?, d?);
+            Ok((0..a.len().min(b.len()).min(c.len()).min(d.len())).map(|i| [a[i], b[i], c[i], d[i]]).collect())
+        }
+    }
+}
+
+/// Where a table of four columns is.
+enum Table {
+    Array(String),
+    Vectors([String; 4]),
+}
+
+fn table_in(group: &NcGroup, path: &str, names: [&str; 4]) -> Option<Table> {
+    let numbers = || group.variables.iter().filter(|variable| is_number(variable.dtype()));
+    let vector = |name: &str| {
+        numbers().find(|variable| variable.name().eq_ignore_ascii_case(name) && variable.shape().len() == 1)
+    };
+    let path_of = |variable: &NcVariable| format!("{path}{}", variable.name());
+    if let [Some(a), Some(b), Some(c), Some(d)] = names.map(vector)
+        && [b, c, d].iter().all(|other| other.shape() == a.shape())
+    {
+        return Some(Table::Vectors([a, b, c, d].map(path_of)));
+    }
+    let array = numbers().find(|variable| matches!(variable.shape()[..], [_, 4]));
+    let inner = || group.groups.iter().find_map(|inner| table_in(inner, &format!("{path}{}/", inner.name), names));
+    array.map(|array| Table::Array(path_of(array))).or_else(inner)
+}
+
+/// An open file, whose values are not read yet.
+fn open(bytes: &[u8], format: Format) -> Result<Arrays, FormatError> {
     let invalid = |cause: &netcdf_reader::Error| container(format, cause);
     let most = bytes.len().saturating_mul(MOST_INFLATION);
     let options = NcOpenOptions {
@@ -69,15 +121,7 @@ pub(super) fn channels(bytes: &[u8], format: Format) -> Channels<'_> {
         check_groups(bytes, most)?;
     }
     let file = NcFile::from_bytes_with_options(bytes, options).map_err(|cause| invalid(&cause))?;
-    let arrays = Rc::new(Arrays { file, format, bytes: bytes.len() as u64 });
-    let mut listed = Vec::new();
-    list(arrays.file.root_group().map_err(|cause| invalid(&cause))?, "", &mut listed);
-    let (names, units): (Vec<String>, Vec<Unit>) = listed.into_iter().unzip();
-    let channel = |(name, is_height): (String, bool)| {
-        let (arrays, path) = (arrays.clone(), name.clone());
-        Channel { name, is_height, read: Box::new(move || arrays.map(&path)) }
-    };
-    Ok(names.into_iter().zip(unit::are_heights(&units)).map(channel).collect())
+    Ok(Arrays { file, format, bytes: bytes.len() as u64 })
 }
 
 /// Refuses groups that contain themselves, which netcdf-reader would follow without an end.
@@ -169,6 +213,10 @@ fn container(format: Format, cause: &netcdf_reader::Error) -> FormatError {
 }
 
 impl Arrays {
+    fn root(&self) -> Result<&NcGroup, FormatError> {
+        self.file.root_group().map_err(|cause| container(self.format, &cause))
+    }
+
     fn map(&self, path: &str) -> Result<HeightMap, FormatError> {
         let variable = self.file.variable(path).map_err(|cause| container(self.format, &cause))?;
         let lengths: Vec<(usize, u64)> = variable.shape().into_iter().enumerate().filter(|(_, n)| *n != 1).collect();
