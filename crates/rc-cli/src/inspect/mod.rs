@@ -143,10 +143,9 @@ impl Inspected {
 fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
     let channels = rc_heights::channels(&args.file)?;
     let several = channels.len() > 1;
-    match statistics(args) {
+    match statistics(args, &channels) {
         Err(CliError::Input(message)) if several && args.channel.is_none() && channels.iter().any(|c| c.is_height) => {
-            let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
-            Err(CliError::input(format_args!("{message}; the file has the channels {}", names.join(", "))))
+            Err(CliError::input(format_args!("{message}; the file has the channels {}", text::names(&channels))))
         }
         Err(error) => Err(error),
         Ok((mut record, _)) if args.json => {
@@ -154,18 +153,26 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
             record.channels = if several { channels.into_iter().map(row).collect() } else { Vec::new() };
             Ok(to_json(&record))
         }
-        Ok((record, note)) => {
-            let list = if several { text::channels(&channels) } else { String::new() };
-            Ok(list + note + &text::heights(&record) + &written(args.out.as_deref()))
-        }
+        Ok((record, note)) => Ok(list(&channels) + note + &text::heights(&record) + &written(args.out.as_deref())),
     }
 }
 
-/// The record of a height map, whose pictures are written, and what is to be said of its cell.
-fn statistics(args: &InspectArgs) -> Result<(SurfaceRecord, &'static str), CliError> {
+/// The channels of a file that has several.
+fn list(channels: &[ChannelInfo]) -> String {
+    if channels.len() > 1 { text::channels(channels) } else { String::new() }
+}
+
+/// The record of a height map, whose pictures are written, and what is to be said of its cell. Of a map without statistics, what is known
+/// is printed.
+fn statistics(args: &InspectArgs, channels: &[ChannelInfo]) -> Result<(SurfaceRecord, &'static str), CliError> {
     let params = ReadParams { channel: args.channel.clone(), layout: args.layout };
     let map = heights::read(&args.file, &params, Scales { unit: args.unit, height_scale: args.height_scale })?;
-    let Inspected { heights, record, note } = Inspected::new(&args.file, map, [args.cell, args.cell_y])?;
+    let known = (map.missing() > 0 && !args.json).then(|| list(channels) + &text::known(&map));
+    let inspected = Inspected::new(&args.file, map, [args.cell, args.cell_y]);
+    if let (Err(_), Some(known)) = (&inspected, known) {
+        terminal::print(&known)?;
+    }
+    let Inspected { heights, record, note } = inspected?;
     draw(args, &heights, &record)?;
     Ok((record, note))
 }

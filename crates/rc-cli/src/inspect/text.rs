@@ -2,21 +2,50 @@
 
 use rc_core::Histogram;
 use rc_core::quantity::{digits, engineering};
-use rc_heights::{AreaParameters, ChannelInfo};
+use rc_heights::{AreaParameters, ChannelInfo, HeightMap};
 use rc_solver::PressureStatistics;
 
 use super::record::{SpectrumRow, SurfaceRecord, TreatmentRow};
 use crate::text::{aligned, cell};
 
+/// Most channels that are shown.
+const MOST: usize = 20;
+
 /// The channels of a file, a line each.
 pub(crate) fn channels(channels: &[ChannelInfo]) -> String {
     let read = channels.iter().position(|channel| channel.is_height);
-    let lines = channels.iter().enumerate().map(|(i, channel)| {
+    let lines = channels.iter().enumerate().filter(|(i, _)| *i < MOST || Some(*i) == read).map(|(i, channel)| {
         let kind = if channel.is_height { "heights" } else { "not heights" };
         let default = if Some(i) == read { ", read unless --channel says otherwise" } else { "" };
-        format!("  {kind:<13}{}{default}\n", channel.name)
+        format!("  {kind:<13}{}{default}\n", channel.shown_name())
     });
-    "  channel      name\n".to_owned() + &lines.collect::<String>() + "\n"
+    "  channel      name\n".to_owned() + &lines.collect::<String>() + &more("  ", channels, "\n") + "\n"
+}
+
+/// The names of channels in a line.
+pub(crate) fn names(channels: &[ChannelInfo]) -> String {
+    let names: Vec<String> = channels.iter().take(MOST).map(ChannelInfo::shown_name).collect();
+    names.join(", ") + &more(" ", channels, "")
+}
+
+/// How many channels are not shown.
+fn more(before: &str, channels: &[ChannelInfo], after: &str) -> String {
+    match channels.len().saturating_sub(MOST) {
+        0 => String::new(),
+        left => format!("{before}and {left} more{after}"),
+    }
+}
+
+/// What is known of a map that has no statistics.
+pub(crate) fn known(map: &HeightMap) -> String {
+    let grid = map.heights.grid();
+    let size = map.sides.map_or_else(|| "not in the file".to_owned(), cell);
+    let lines = [
+        ("points", format!("{} x {}", grid.nx(), grid.ny())),
+        ("size", size),
+        ("missing", format!("{} of {} points", map.missing(), grid.len())),
+    ];
+    aligned(&lines)
 }
 
 /// Statistics of a height map, with a short table of its spectrum and its distribution.
@@ -146,4 +175,21 @@ fn bars(histogram: &Histogram, unit: &'static str) -> String {
 fn mean_of(pairs: &[(f64, f64)]) -> (f64, f64) {
     let n = pairs.len() as f64;
     (pairs.iter().map(|pair| pair.0).sum::<f64>() / n, pairs.iter().map(|pair| pair.1).sum::<f64>() / n)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_channels_are_shown_in_a_line_and_not_all_of_many() {
+        let named = |name: &str| ChannelInfo { name: name.to_owned(), is_height: false };
+        let mut list: Vec<ChannelInfo> = (0..24).map(|i| named(&format!("c{i}"))).collect();
+        list[1] = named("\u{1b}[31m\nred");
+        list.push(ChannelInfo { name: "h".to_owned(), is_height: true });
+        let text = channels(&list);
+        assert!(!text.contains('\u{1b}') && text.contains("and 5 more"), "{text}");
+        assert!(text.contains("heights      h, read unless") && !text.contains("c21"), "{text}");
+        assert!(names(&list).ends_with("c19 and 5 more"), "{}", names(&list));
+    }
 }

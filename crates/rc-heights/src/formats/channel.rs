@@ -72,7 +72,7 @@ pub(super) fn is_topography(name: &str) -> bool {
 
 /// Channels whose headers were read one by one, each with its name: what is wrong with one is said when it is read, and it counts as
 /// heights only where no other channel does.
-pub(super) fn each<'a>(found: Vec<(String, Result<Channel<'a>, FormatError>)>) -> Vec<Channel<'a>> {
+pub(super) fn each(found: Vec<(String, Result<Channel<'_>, FormatError>)>) -> Vec<Channel<'_>> {
     let is_height = !found.iter().any(|(_, channel)| channel.as_ref().is_ok_and(|channel| channel.is_height));
     let damaged = |name, error| Channel { name, is_height, read: Box::new(move || Err(error)) };
     found.into_iter().map(|(name, channel)| channel.unwrap_or_else(|error| damaged(name, error))).collect()

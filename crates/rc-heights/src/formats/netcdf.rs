@@ -256,6 +256,7 @@ impl Arrays {
     }
 
     /// The values of a variable, unpacked; `NaN` where they are marked as missing.
+    #[expect(clippy::float_cmp, reason = "the mark of a missing value is one value of the stored type")]
     fn values(&self, path: &str) -> Result<Vec<f64>, FormatError> {
         let array = self.file.read_variable_unpacked_masked(path).map_err(|cause| container(self.format, &cause))?;
         let mut values: Vec<f64> = array.iter().copied().collect();
