@@ -93,6 +93,12 @@ class _Source(Protocol):
     def save(self, folder: str) -> None: ...
 
 
+def _locked(field: Floats) -> Floats:
+    """The field, not to be changed: spots and distributions are computed from it."""
+    field.flags.writeable = False
+    return field
+
+
 class _Stored:
     """The files of a result, byte by byte: what a pickle holds."""
 
@@ -288,18 +294,18 @@ class Result:
 
     @cached_property
     def pressure(self) -> Floats:
-        """Pressure (Pa), shape (ny, nx), ≥ 0."""
-        return self._source.pressure()
+        """Pressure (Pa), shape (ny, nx), ≥ 0; read-only."""
+        return _locked(self._source.pressure())
 
     @cached_property
     def gap(self) -> Floats:
-        """Gap (m), shape (ny, nx), with its pressure-weighted mean at zero; zero in contact within the tolerance."""
-        return self._source.gap()
+        """Gap (m), shape (ny, nx), with its pressure-weighted mean at zero; zero in contact within the tolerance; read-only."""
+        return _locked(self._source.gap())
 
     @cached_property
     def displacement(self) -> Floats:
-        """Displacement of the elastic surface (m), shape (ny, nx), of mean zero."""
-        return self._source.displacement()
+        """Displacement of the elastic surface (m), shape (ny, nx), of mean zero; read-only."""
+        return _locked(self._source.displacement())
 
     @property
     def contact(self) -> NDArray[np.bool_]:
@@ -326,14 +332,24 @@ class Result:
     def stress_distribution(self, bins: int | Sequence[float] | Floats = 50) -> StressDistribution:
         """The density P(σ) of the interfacial stress, resolved below the element at contact edges.
 
+        With a border level it is that of the mean pressures on the grid.
+
         Parameters
         ----------
         bins : int or sequence of float, default 50
             Number of equal bins from 0 to the maximum pressure, or the ends of the bins (Pa), increasing.
         """
-        edges = np.linspace(0.0, self.max_pressure, bins + 1) if isinstance(bins, int) else np.asarray(bins, float)
-        if edges.ndim != 1 or edges.size < 2 or not np.all(np.diff(edges) > 0) or edges[0] < 0:
-            raise ValueError("bins: must be a positive number, or increasing ends of bins (Pa) from 0 on")
+        wrong = ValueError("bins: must be a positive number, or increasing and finite ends of bins (Pa) from 0 on")
+        if isinstance(bins, (int, np.integer)):
+            if isinstance(bins, bool) or bins < 1:
+                raise wrong
+            edges = np.linspace(0.0, self.max_pressure, int(bins) + 1)
+        else:
+            edges = np.asarray(bins, float)
+        if edges.ndim != 1 or edges.size < 2 or not np.all(np.isfinite(edges)):
+            raise wrong
+        if not np.all(np.diff(edges) > 0) or edges[0] < 0:
+            raise wrong
         density, area = _core.stress_distribution(self.pressure, self.e_star, edges.tolist())
         return StressDistribution(edges, density, area)
 

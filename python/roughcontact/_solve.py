@@ -92,7 +92,8 @@ def solve(
         Mean pressure (Pa) or penetration (m): exactly one.
     kernel : {"love", "spectral"} or callable, default "love"
         Discretisation of the half-space. A function ``f(kx, ky)`` of two arrays of wavenumbers (rad/m) returns the
-        displacement (m) of a pressure wave of 1 Pa, ``2 / (E* |k|)`` for a half-space: it must be positive, and even in kx and ky. It
+        displacement (m) of a pressure wave of 1 Pa, ``2 / (E* |k|)`` for a half-space: it must be positive, and even in kx and ky; on
+        a square grid also that of kx and ky exchanged. E* must be that of its shortest waves, since contact edges are located with it. It
         is called once, with all waves of the grid but the zero wave.
     method : {"adaptive", "uniform", "gauss-seidel"}, optional
         Default: adaptive, or uniform where that is cheaper.
@@ -184,4 +185,7 @@ def _surface_of(heights: Any, keys: dict[str, Any]) -> tuple[dict[str, Any], Any
         return {**heights.keys(), **keys}, None, None
     if isinstance(heights, (str, os.PathLike)):
         return {**keys, "heights": os.fspath(heights)}, None, None
+    for name in ("unit", "height_scale", "channel", "layout", "spectrum"):
+        if name in keys:
+            raise ValueError(f"{name}: is for files; heights that are an array are in metres, so omit it")
     return keys, *map_parts(heights)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import html as text
 import os
+import operator
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Executor
@@ -204,8 +205,8 @@ def sweep(
                 if check:
                     raise _not_converged(failure, result)
                 failures.append(failure)
-    except (KeyboardInterrupt, ValueError) as error:
-        error.table = found  # type: ignore[union-attr]
+    except BaseException as error:
+        error.table = found  # type: ignore[attr-defined]
         raise
     if failures:
         message = f"{len(failures)} of {len(found)} rows did not converge: {failures[0]}"
@@ -234,7 +235,7 @@ def _seeds(seeds: Seeds | None, heights: Any) -> list[int | None]:
         return [None]
     if heights is not None and not isinstance(heights, Surface):
         raise ValueError("seeds: the height map has none; omit seeds")
-    return list(_core.seeds(seeds if isinstance(seeds, str) else ",".join(str(int(seed)) for seed in seeds)))
+    return list(_core.seeds(seeds if isinstance(seeds, str) else ",".join(str(operator.index(seed)) for seed in seeds)))
 
 
 def _solve_row(job: Any) -> tuple[dict[str, Any], Result | None, str | None]:

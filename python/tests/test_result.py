@@ -139,3 +139,20 @@ def test_a_table_has_columns_and_means():
         rc.sweep(waves=8, pressures=[1.0, 3.0, 2.0])
     with pytest.raises(ValueError, match="seeds: the height map has none"):
         rc.sweep(np.eye(4), cell=1.0, e_star=1.0, pressures=[1.0], seeds=[1])
+
+
+def test_fields_are_not_changed_by_accident(heights):
+    result = rc.solve(heights, cell=0.01, e_star=1e9, pressure=1e6)
+    for field in (result.pressure, result.gap):
+        with pytest.raises(ValueError, match="read-only"):
+            field *= 2
+    for bins in (0, -3, True, [0, 1e6, np.inf], [1, 0]):
+        with pytest.raises(ValueError, match="bins"):
+            result.stress_distribution(bins)
+    assert result.stress_distribution(np.int64(4)).density.shape == (4,)
+
+
+@pytest.mark.parametrize("name, value", [("unit", "um"), ("height_scale", 1e-6), ("channel", "x"), ("layout", "xyz"), ("spectrum", "w.txt")])
+def test_what_is_said_of_files_is_refused_with_arrays(heights, name, value):
+    with pytest.raises(ValueError, match=name):
+        rc.solve(heights, cell=0.01, e_star=1e9, pressure=1e6, **{name: value})

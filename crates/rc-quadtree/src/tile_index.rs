@@ -50,8 +50,16 @@ impl TileMarks {
         let n_tiles: u32 = self.blocks.iter().map(|bits| bits.count_ones()).sum();
         let mut places = Vec::with_capacity(n_tiles as usize);
         let mut blocks = vec![Block::default(); self.blocks.len()];
-        for code in 0..columns.max(rows).next_power_of_two().pow(2) as u64 {
-            let [column, row] = place_of(code);
+        // Along the longer side the curve goes through one square as wide as the shorter one after the other.
+        let side = columns.min(rows).next_power_of_two();
+        let squares = 0..columns.max(rows).div_ceil(side);
+        let places_of_blocks = squares.flat_map(|square| {
+            (0..side.pow(2) as u64).map(move |code| {
+                let ([x, y], shift) = (place_of(code), (square * side) as u32);
+                if columns < rows { [x, y + shift] } else { [x + shift, y] }
+            })
+        });
+        for [column, row] in places_of_blocks {
             if column as usize >= columns || row as usize >= rows {
                 continue;
             }
@@ -105,7 +113,7 @@ mod tests {
 
     #[test]
     fn marked_tiles_are_found_in_the_order_of_the_curve() {
-        for [columns, rows] in [[1, 1], [5, 5], [8, 8], [13, 40], [40, 9]] {
+        for [columns, rows] in [[1, 1], [5, 5], [8, 8], [13, 40], [40, 9], [200, 3], [3, 200]] {
             let chosen: Vec<[u32; 2]> = (0..columns * rows)
                 .filter(|&i| quasi_random(i) < 0.3)
                 .map(|i| [(i % columns) as u32, (i / columns) as u32])

@@ -115,7 +115,9 @@ impl fmt::Display for MethodReason {
             Self::OwnOperator => write!(f, "uniform: an operator of the caller"),
             Self::NoSplitOfKernel { kernel } => write!(f, "uniform: the kernel {kernel} has no adaptive form"),
             Self::ElementsNotSquare { grid } => write!(f, "uniform: {grid} elements are not square"),
-            Self::NoLevels { grid } => write!(f, "uniform: {grid} elements are too few for adaptive levels"),
+            Self::NoLevels { grid } => {
+                write!(f, "uniform: {grid} elements are too few, or have no base grid of squares")
+            }
             Self::Flat => write!(f, "uniform: a flat surface has nothing to adapt to"),
             Self::ToleranceTooSmall { tolerance } => {
                 write!(f, "uniform: the adaptive operator cannot certify a tolerance of {tolerance:e}")

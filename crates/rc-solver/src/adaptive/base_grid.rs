@@ -4,6 +4,7 @@ use rc_core::{Field, Grid, HeightField, HeightSource};
 use rc_quadtree::TILE;
 
 use super::AdaptiveError;
+use super::estimate::{BYTES_PER_SAMPLE, base_bytes};
 use super::ladder::sides_of;
 use crate::descent::BlockLayout;
 use crate::parallel;
@@ -54,10 +55,15 @@ pub(super) fn base_sides(source: &HeightSource<'_>, wanted: Option<usize>) -> Re
     let is_surface = waves.is_some() && source.grid().is_square();
     let mut halves = std::iter::successors(Some(n), |n| Some(n / 2)).take_while(|&n| n > 1);
     let even = if is_surface { halves.find_map(halved) } else { halves.next().and_then(halved) };
+    let others = halves.find_map(halved);
     let [nx, ny] = finest;
     let error = AdaptiveError::Grid { nx, ny, smallest: 2 * least };
     let mut all = std::iter::successors(Some(n), |n| Some(n / 2)).take_while(|&n| n > 1 && long >= SMALLEST_BASE);
-    even.or_else(|| all.find_map(|n| uneven_sides(source.grid(), n))).ok_or(error)
+    let uneven = all.find_map(|n| uneven_sides(source.grid(), n));
+    // Below uneven grids a surface is sampled on its whole grid, as a map is.
+    let samples = if is_surface { BYTES_PER_SAMPLE * source.grid().len() as f64 } else { 0.0 };
+    let is_larger = |even: &[usize; 2]| uneven.is_some_and(|other| base_bytes(*even) > base_bytes(other) + samples);
+    even.filter(|even| !is_larger(even)).or(uneven).or(others).ok_or(error)
 }
 
 /// How many more elements than the finest grid the base grid doubled may have along a side, in parts of the side. (Patches of the operator
@@ -156,7 +162,9 @@ mod tests {
     #[test]
     fn the_base_grid_follows_the_waves_and_the_divisors() {
         let base = |side, waves| base_sides(&Waves(waves).on(Grid::square(side).expect("a grid")), None);
-        for (side, waves, expected) in [(2048, 64, 256), (32768, 1024, 4096), (128, 8, 64), (1_000_000, 8, 125_000)] {
+        for (side, waves, expected) in
+            [(2048, 64, 256), (32768, 1024, 4096), (128, 8, 64), (1_000_000, 8, 125_000), (2032, 8, 128)]
+        {
             assert_eq!(base(side, waves).ok(), Some([expected; 2]), "{side}, {waves} waves");
         }
         // Sides that do not divide have a base grid of their own.

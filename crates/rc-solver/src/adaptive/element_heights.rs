@@ -6,11 +6,12 @@ use rc_quadtree::{CELLS, Elements, TileSet, means_of_quarter, quarters};
 use super::heights::Heights;
 use crate::problem::HeightStatistics;
 
-/// In units of the height range: displacements differ by no more than that.
+/// In units of the height range. Displacements there lack their smooth part, which differs by no more than the height range from that of
+/// elements, so that gaps are at least nine times it.
 const FAR_BELOW: f64 = 10.0;
 
 /// Heights of all elements, those of the elements of `known` taken from there. Values that have no element are never in contact: what fills
-/// up a vector has the minimum height, and what is beyond a level, where displacements are those of elements across the seam, is far below.
+/// up a vector has the minimum height, and what is beyond a level is far below.
 pub(super) fn element_heights(
     heights: &Heights<'_>,
     elements: &Elements,

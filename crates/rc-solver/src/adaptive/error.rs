@@ -14,7 +14,7 @@ pub enum AdaptiveError {
     #[error(transparent)]
     Problem(#[from] ProblemError),
     /// The elements of the mesh are squares.
-    #[error("the adaptive method needs square elements, but those of {grid} are {} times as long along y as along x", digits(*ratio, 4))]
+    #[error("the adaptive method needs square elements, but those of {grid} are {} % longer along {}", digits(100.0 * (ratio.max(ratio.recip()) - 1.0), 2), if *ratio > 1.0 { "y" } else { "x" })]
     Elements {
         /// The grid.
         grid: Grid,
@@ -22,9 +22,7 @@ pub enum AdaptiveError {
         ratio: f64,
     },
     /// The grid is too small for a base grid below it.
-    #[error(
-        "the adaptive method needs at least {smallest} elements along the longer side of the grid, not {nx} x {ny}"
-    )]
+    #[error("{}", no_base_grid([*nx, *ny], *smallest))]
     Grid {
         /// Elements along x.
         nx: usize,
@@ -100,5 +98,15 @@ fn needed_for(area_percent: Option<f64>) -> String {
     match area_percent {
         Some(percent) => format!("for an estimated contact area of {percent:.1} %"),
         None => "for its base grid alone".into(),
+    }
+}
+
+fn no_base_grid([nx, ny]: [usize; 2], smallest: usize) -> String {
+    if nx.max(ny) < smallest {
+        format!(
+            "the adaptive method needs at least {smallest} elements along the longer side of the grid, not {nx} x {ny}"
+        )
+    } else {
+        format!("the adaptive method has no base grid of nearly square elements for {nx} x {ny}; other sides have one")
     }
 }

@@ -17,6 +17,8 @@ use super::params::AdaptiveParams;
 pub(crate) struct Ground<'a> {
     pub(super) heights: Heights<'a>,
     pub(super) kernels: Kernels,
+    /// Of heights that are sampled on the whole grid.
+    pub(super) sampled_bytes: f64,
 }
 
 impl<'a> Ground<'a> {
@@ -30,20 +32,25 @@ impl<'a> Ground<'a> {
         // Before any work.
         first_split(params)?;
         let base = base_sides(&source, params.base_side)?;
-        check_memory(grid, params.memory_limit, estimate::base_bytes(base), None)?;
         let source = with_border_level(source, params.border_level)?;
-        if params.border_level > 0 && !Ladder::new(base, source.grid()).is_even() {
-            return Err(AdaptiveError::BorderOfGrid { grid: source.grid() });
+        let ladder = Ladder::new(base, source.grid());
+        if params.border_level > 0 && !ladder.is_even() {
+            return Err(AdaptiveError::BorderOfGrid { grid });
         }
+        let sampled_bytes = Heights::sampled_bytes(&source, ladder);
+        check_memory(grid, params.memory_limit, estimate::base_bytes(base) + sampled_bytes, None)?;
         let heights = Heights::new(source, base)?;
         let kernels = Kernels::new(heights.base().grid(), params.border_level);
-        Ok(Self { heights, kernels })
+        Ok(Self { heights, kernels, sampled_bytes })
     }
 
     /// The same without a borrow: a borrowed map is copied.
     pub(super) fn into_owned(shared: Arc<Self>) -> Ground<'static> {
-        let Self { heights, kernels } = Arc::try_unwrap(shared)
-            .unwrap_or_else(|shared| Self { heights: shared.heights.clone(), kernels: shared.kernels.empty() });
-        Ground { heights: heights.into_owned(), kernels }
+        let Self { heights, kernels, sampled_bytes } = Arc::try_unwrap(shared).unwrap_or_else(|shared| Self {
+            heights: shared.heights.clone(),
+            kernels: shared.kernels.empty(),
+            sampled_bytes: shared.sampled_bytes,
+        });
+        Ground { heights: heights.into_owned(), kernels, sampled_bytes }
     }
 }

@@ -33,28 +33,38 @@ impl Kernels {
 
     /// L, a few percent off on rough pressures, for corrections.
     pub(super) fn quick(&self) -> &Prepared<f32> {
-        self.quick.get_or_init(|| {
+        made(&self.quick, || {
             Prepared::displacement(&ScaleSplit::new(SplitParams::quick()), self.base, self.border_level)
         })
     }
 
     /// The approximate inverse of L.
     pub(super) fn preconditioner(&self) -> &Prepared<f32> {
-        self.preconditioner.get_or_init(|| Prepared::inverse(&ScaleSplit::new(SplitParams::quick()), self.base))
+        made(&self.preconditioner, || Prepared::inverse(&ScaleSplit::new(SplitParams::quick()), self.base))
     }
 
     /// L for fresh gaps.
     pub(super) fn gap(&self, split: GapSplit) -> &PreparedGap {
-        self.gaps[split.index()].get_or_init(|| PreparedGap::new(split, self.base, self.border_level))
+        made(&self.gaps[split.index()], || PreparedGap::new(split, self.base, self.border_level))
     }
 
     /// L in single precision, for the contact stiffness and for rows of displacements.
     pub(super) fn response(&self) -> &Prepared<f32> {
         let single = self.gaps.iter().filter_map(OnceLock::get).find_map(PreparedGap::single);
         single.unwrap_or_else(|| {
-            self.response.get_or_init(|| {
+            made(&self.response, || {
                 Prepared::displacement(&ScaleSplit::new(SplitParams::certified()), self.base, self.border_level)
             })
         })
     }
+}
+
+/// The value of `cell`, made when there is none yet. Not under a lock: threads that wait for each other inside `make` may take up another
+/// load, which wants the same value.
+fn made<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
+    if let Some(value) = cell.get() {
+        return value;
+    }
+    let value = make();
+    cell.get_or_init(|| value)
 }

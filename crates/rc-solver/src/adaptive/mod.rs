@@ -44,8 +44,8 @@ pub(crate) use self::ground::Ground;
 use self::ladder::sides_of;
 use self::level::SolvedLevel;
 pub use self::multilevel::MultilevelOperator;
-use self::nested_iteration::{BaseStart, NestedIteration, NestedSolution};
-use self::operator_error::{PressureScale, certifying_split};
+use self::nested_iteration::{LevelStart, NestedIteration, NestedSolution};
+use self::operator_error::{PressureScale, can_certify, certifying_split};
 pub(crate) use self::params::AdaptiveParams;
 use self::setup::Splits;
 pub(crate) use self::solution::AdaptiveSolution;
@@ -62,6 +62,18 @@ pub(crate) struct AdaptiveProblem<'a> {
     params: AdaptiveParams,
     /// For fresh gaps in descents.
     split: GapSplit,
+}
+
+/// Why the uniform grid is better than the adaptive method, which was chosen by an estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Unsuitable {
+    /// Contact is near so large a part of the tiles that the uniform grid is faster.
+    Scattered {
+        /// That part.
+        tile_fraction: f64,
+    },
+    /// Pressures are so rough that no operator can certify the tolerance.
+    Rough,
 }
 
 impl std::fmt::Debug for AdaptiveProblem<'_> {
@@ -108,7 +120,8 @@ impl<'a> AdaptiveProblem<'a> {
     /// What solving it will cost, from the surface and the load alone.
     #[must_use]
     pub(crate) fn estimate(&self) -> Estimate {
-        Estimate::new(&self.ground.heights, self.params.border_level, self.problem.control)
+        let estimate = Estimate::new(&self.ground.heights, self.params.border_level, self.problem.control);
+        Estimate { adaptive_bytes: estimate.adaptive_bytes + self.ground.sampled_bytes, ..estimate }
     }
 
     /// The grid that solutions are on.
@@ -123,6 +136,11 @@ impl<'a> AdaptiveProblem<'a> {
         AdaptiveProblem { ground: Arc::new(Ground::into_owned(ground)), problem, params, split }
     }
 
+    /// What the certificate has to meet.
+    pub(crate) fn bound(&self) -> crate::ErrorBound {
+        self.params.solve.bound
+    }
+
     /// The greatest height over the finest grid, in λ.
     #[must_use]
     pub(crate) fn h_max(&self) -> f64 {
@@ -135,32 +153,34 @@ impl<'a> AdaptiveProblem<'a> {
     /// covers every cell where a bound does not exclude contact. The result is bitwise the same for any number of threads.
     pub(crate) fn solve(&self, observer: &dyn Observer) -> AdaptiveSolution {
         let solver = self.first_solver();
-        let base = solver.begin(observer);
-        self.finish(self.solve_levels(&solver, base, observer))
+        let start = solver.prepare(solver.begin(observer), observer);
+        self.finish(self.solve_levels(&solver, start, observer))
     }
 
-    /// The same unless the uniform grid would be cheaper, which the contact on the base grid shows: then the part of the cell in tiles near
-    /// contact is returned.
+    /// The same unless the uniform grid is the better one, as the levels below the finest show.
     ///
     /// # Errors
-    /// That part.
-    pub(crate) fn solve_if_sparse(&self, observer: &dyn Observer) -> Result<AdaptiveSolution, f64> {
+    /// [`Unsuitable`].
+    pub(crate) fn solve_if_suitable(&self, observer: &dyn Observer) -> Result<AdaptiveSolution, Unsuitable> {
         let solver = self.first_solver();
         let base = solver.begin(observer);
         if base.tile_fraction > Estimate::GREATEST_TILE_FRACTION {
-            return Err(base.tile_fraction);
+            return Err(Unsuitable::Scattered { tile_fraction: base.tile_fraction });
         }
-        Ok(self.finish(self.solve_levels(&solver, base, observer)))
+        let start = solver.prepare(base, observer);
+        if !can_certify(&solver.scale(&start), self.params.solve.bound, &self.problem) {
+            return Err(Unsuitable::Rough);
+        }
+        Ok(self.finish(self.solve_levels(&solver, start, observer)))
     }
 
     fn first_solver(&self) -> NestedIteration<'_> {
         self.solver(Splits { fresh: self.split, certified: self.split })
     }
 
-    /// Solves all levels above the base grid, with operators as good as the bound needs.
-    fn solve_levels(&self, solver: &NestedIteration<'_>, base: BaseStart, observer: &dyn Observer) -> NestedSolution {
+    /// Solves the finest level, with operators as good as the bound needs.
+    fn solve_levels(&self, solver: &NestedIteration<'_>, start: LevelStart, observer: &dyn Observer) -> NestedSolution {
         let first = solver.splits();
-        let start = solver.prepare(base, observer);
         let certified = self.certifying_split(first.certified, &solver.scale(&start));
         let solved = if certified == first.certified {
             solver.finish(start, observer)

@@ -118,5 +118,14 @@ pub(super) fn certifying_split(
     candidates.find(is_small).unwrap_or_else(GapSplit::most_accurate)
 }
 
+/// Whether the error of the most accurate operator is a small part of the bound.
+pub(super) fn can_certify(scale: &PressureScale, bound: ErrorBound, problem: &Problem) -> bool {
+    let split = certifying_split(GapSplit::most_accurate(), scale, bound, problem);
+    // A coarser level that has lost its contact tells nothing.
+    scale.energy_length.is_nan()
+        || scale.energy_length <= 0.0
+        || OperatorError::of(split, scale, problem.control).is_small(bound, problem)
+}
+
 #[cfg(test)]
 mod tests;

@@ -47,7 +47,7 @@ pub(super) struct Setup<'a> {
 
 impl<'a> Setup<'a> {
     pub(super) fn new(ground: &'a Ground<'_>, problem: Problem, params: &AdaptiveParams, splits: Splits) -> Self {
-        let Ground { heights, kernels } = ground;
+        let Ground { heights, kernels, .. } = ground;
         let Splits { fresh, certified } = splits;
         Self {
             quick: kernels.quick(),

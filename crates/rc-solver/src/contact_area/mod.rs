@@ -150,8 +150,10 @@ impl ContactArea {
             area.perimeter += length(sums, sides.map(|side| side * f64::from(1_u32 << coarser)));
         }
         area.fraction = area.fraction.clamp(0.0, 1.0);
-        let of_term = ERROR_OF_TERM * (area.cells - area.fraction).powi(2) / area.fraction.max(f64::MIN_POSITIVE);
-        area.error = scatter.sqrt().hypot(of_term).hypot(ERROR_OF_DIRECTIONS * excess_diagonals);
+        // Contacts of single elements may be no area at all.
+        let divisor = area.fraction.max(0.1 * area.cells).max(f64::MIN_POSITIVE);
+        let of_term = ERROR_OF_TERM * (area.cells - area.fraction).powi(2) / divisor;
+        area.error = scatter.sqrt().hypot(of_term).hypot(ERROR_OF_DIRECTIONS * excess_diagonals).min(1.0);
         area
     }
 

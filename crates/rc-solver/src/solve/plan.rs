@@ -9,7 +9,7 @@ use super::memory::check_uniform;
 use super::shared::Shared;
 use super::solution::HowSolved;
 use super::{ContactProblem, Solution, SolveError, SolveParams};
-use crate::adaptive::{AdaptiveProblem, AdaptiveSolution};
+use crate::adaptive::{AdaptiveProblem, AdaptiveSolution, Unsuitable};
 use crate::gauss_seidel::{HalfSpace, solve_gauss_seidel};
 use crate::solution::{GridSolution, Status};
 use crate::uniform::solve_uniform;
@@ -102,13 +102,19 @@ fn by_adaptive(
 ) -> Result<Result<AdaptiveSolution, MethodReason>, SolveError> {
     let uniform_fits = check_uniform(problem.heights.grid(), params.memory_limit, Method::Uniform);
     let may_change = matches!(reason, MethodReason::SmallContact { .. });
+    // Where the method may not follow memory, a row is solved alike on every machine, or refused.
     if !may_change || uniform_fits.is_err() && params.method_follows_memory {
         return Ok(Ok(adaptive.solve(observer)));
     }
-    match adaptive.solve_if_sparse(observer) {
-        Ok(solution) => Ok(Ok(solution)),
-        Err(fraction) => uniform_fits.map(|()| Err(MethodReason::ScatteredContact { percent: 100.0 * fraction })),
-    }
+    let unsuitable = match adaptive.solve_if_suitable(observer) {
+        Ok(solution) => return Ok(Ok(solution)),
+        Err(unsuitable) => unsuitable,
+    };
+    uniform_fits?;
+    Ok(Err(match unsuitable {
+        Unsuitable::Scattered { tile_fraction } => MethodReason::ScatteredContact { percent: 100.0 * tile_fraction },
+        Unsuitable::Rough => MethodReason::ToleranceTooSmall { tolerance: adaptive.bound().value() },
+    }))
 }
 
 /// The solution, or the error that carries it.

@@ -40,7 +40,14 @@ impl<'a> Shared<'a> {
     pub(super) fn heights<'s>(&'s self, source: &'s HeightSource<'a>) -> &'s Field {
         match source.map() {
             Some(map) => map,
-            None => self.heights.get_or_init(|| source.heights().into_owned()),
+            None => match self.heights.get() {
+                Some(heights) => heights,
+                None => {
+                    // Not under the lock: a thread that waits for samples may take up another load.
+                    let heights = source.heights().into_owned();
+                    self.heights.get_or_init(|| heights)
+                }
+            },
         }
     }
 }

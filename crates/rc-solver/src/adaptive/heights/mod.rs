@@ -20,6 +20,7 @@ use rayon::prelude::*;
 use rc_core::{Field, Grid, HeightField, HeightSource};
 use rc_quadtree::{TILE, put_tile};
 
+use super::estimate::BYTES_PER_SAMPLE;
 use crate::ProblemError;
 use crate::adaptive::ladder::Ladder;
 use crate::problem::HeightStatistics;
@@ -58,17 +59,20 @@ impl<'a> Heights<'a> {
         }
     }
 
+    /// Bytes of a surface's samples on its whole grid, and on coarser ones, where they are needed: 0 for a map, whose own bytes are not counted.
+    pub(crate) fn sampled_bytes(source: &HeightSource<'_>, ladder: Ladder) -> f64 {
+        let Some(surface) = source.surface() else { return 0.0 };
+        if is_interpolated(surface, source.grid(), ladder).is_some() {
+            return 0.0;
+        }
+        BYTES_PER_SAMPLE * source.grid().len() as f64
+    }
+
     /// Of a surface, band-limited or not.
     fn of_waves(surface: &dyn HeightField, grid: Grid, ladder: Ladder) -> Result<Self, ProblemError> {
-        let is_square = grid.is_square() && ladder.is_even();
-        let level = surface.band_limit().filter(|_| is_square);
-        let level = level.map(|limit| (limit, interpolation_level(limit, ladder.grid(0).nx())));
-        match level {
-            // A level finer than the interpolation grid; whole tiles on it are what extremes are searched in.
-            Some((limit, level)) if (level as usize) < ladder.n_levels() && grid.nx().is_multiple_of(TILE) => {
-                Self::of_surface(surface, limit, level, ladder)
-            }
-            _ => Self::of_map(WholeGrid::new(surface.sample(grid)), ladder),
+        match is_interpolated(surface, grid, ladder) {
+            Some((limit, level)) => Self::of_surface(surface, limit, level, ladder),
+            None => Self::of_map(WholeGrid::new(surface.sample(grid)), ladder),
         }
     }
 
@@ -204,6 +208,14 @@ impl<'a> Heights<'a> {
     pub(crate) fn extremes(&self) -> HeightStatistics {
         self.extremes
     }
+}
+
+/// The band limit of a surface that is interpolated on the finest level, and the level of the grid that it is interpolated from.
+fn is_interpolated(surface: &dyn HeightField, grid: Grid, ladder: Ladder) -> Option<(usize, u32)> {
+    let limit = surface.band_limit().filter(|_| grid.is_square() && ladder.is_even())?;
+    let level = interpolation_level(limit, ladder.grid(0).nx());
+    // A level finer than the interpolation grid; whole tiles on it are what extremes are searched in.
+    ((level as usize) < ladder.n_levels() && grid.nx().is_multiple_of(TILE)).then_some((limit, level))
 }
 
 /// Heights on a whole grid.

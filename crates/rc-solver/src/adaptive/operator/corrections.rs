@@ -37,6 +37,10 @@ impl BlockOperator<f32> for TileResponse<'_> {
     fn read(&self, read: &(dyn Fn(usize, &[f32]) + Sync)) {
         self.operator.read(self.displacement, read);
     }
+
+    fn release(&mut self) {
+        self.operator.release();
+    }
 }
 
 /// L and its approximate inverse on the tiles of a mesh, in single precision.
@@ -73,6 +77,10 @@ impl BlockOperator<f32> for TileCorrections<'_> {
 
     fn read(&self, read: &(dyn Fn(usize, &[f32]) + Sync)) {
         self.response.read(read);
+    }
+
+    fn release(&mut self) {
+        self.response.release();
     }
 }
 

@@ -172,7 +172,7 @@ impl Scene<'_> {
         let source = HeightSource::Map(self.map);
         let problem = AdaptiveProblem::new(source, self.control, &params).expect("a problem");
         let solver = problem.first_solver();
-        let solved = problem.solve_levels(&solver, solver.begin(&Silent), &Silent);
+        let solved = problem.solve_levels(&solver, solver.prepare(solver.begin(&Silent), &Silent), &Silent);
         let grid = self.map.grid();
         let mut pressure = vec![0.0; grid.len()];
         for (p, place) in solved.level.pressure.iter().zip(places(&solved.level.elements)) {
