@@ -6,13 +6,17 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use crate::deal::Deal;
 use crate::error::SweepError;
 use crate::folder::JOURNAL_FILE;
 use crate::settings;
 use crate::shard::{MAX_ROWS, Shard, SweepShape};
 
-/// First key of the first line, by which a journal is recognised.
+/// First key of the first line, by which a journal is recognised: of a whole sweep, or of a shard that is dealt load by load.
 const FORMAT: u32 = 2;
+
+/// The same of a shard that is dealt by costs, which programs that deal load by load must not read.
+const DEALT_BY_COST: u32 = 3;
 
 /// The cells of a row by the names of their columns, in order.
 pub type Cells = Map<String, Value>;
@@ -26,6 +30,8 @@ pub(crate) struct Header {
     rc_sweep: u32,
     pub(crate) shape: SweepShape,
     pub(crate) shard: Shard,
+    #[serde(default, skip_serializing_if = "Deal::is_by_load")]
+    pub(crate) deal: Deal,
     pub(crate) settings: Value,
 }
 
@@ -45,8 +51,27 @@ impl Line {
 }
 
 impl Header {
-    pub(crate) fn new(shape: SweepShape, shard: Shard, settings: Value) -> Self {
-        Self { rc_sweep: FORMAT, shape, shard, settings }
+    /// Of a whole sweep.
+    pub(crate) fn whole(shape: SweepShape, settings: Value) -> Self {
+        Self { rc_sweep: FORMAT, shape, shard: Shard::WHOLE, deal: Deal::default(), settings }
+    }
+
+    /// Of a shard, dealt in this way.
+    pub(crate) fn of_shard(shape: SweepShape, shard: Shard, deal: Deal, settings: Value) -> Self {
+        let deal = if shard == Shard::WHOLE { Deal::default() } else { deal };
+        let rc_sweep = if deal.is_by_load() { FORMAT } else { DEALT_BY_COST };
+        Self { rc_sweep, shape, shard, deal, settings }
+    }
+
+    /// Whether it is one that this program understands.
+    fn is_sound(&self) -> bool {
+        let format = if self.deal.is_by_load() { FORMAT } else { DEALT_BY_COST };
+        self.rc_sweep == format && self.shape.rows() <= MAX_ROWS && self.deal.fits(self.shape)
+    }
+
+    /// The rows of the shard.
+    pub(crate) fn rows(&self) -> Vec<usize> {
+        self.deal.rows(self.shard, self.shape)
     }
 
     /// As a line of the journal.
@@ -132,7 +157,7 @@ impl Content {
         let mut lines = bytes.split_inclusive(|&byte| byte == b'\n').peekable();
         let first = lines.next().filter(|line| line.ends_with(b"\n"));
         let header: Option<Header> = first.and_then(|line| serde_json::from_slice(line).ok());
-        let header = header.filter(|header| header.rc_sweep == FORMAT && header.shape.rows() <= MAX_ROWS);
+        let header = header.filter(Header::is_sound);
         let header = header.ok_or_else(|| SweepError::NotAJournal { path: path.to_owned() })?;
         let mut content = Self { header, rows: SweepRows::new(), whole: first.map_or(0, <[u8]>::len) as u64 };
         let mut number = 1;

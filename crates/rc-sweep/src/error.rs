@@ -49,6 +49,24 @@ pub enum SweepError {
         /// Rows of the whole sweep.
         rows: usize,
     },
+    /// An ensemble has more loads than rows can be numbered for.
+    #[error("{loads} loads are too many for means with an error, at most {most}")]
+    TooManyMeans {
+        /// The loads.
+        loads: usize,
+        /// Most of them.
+        most: usize,
+    },
+    /// A row has no number for what is averaged.
+    #[error("{quantity} of seed {seed} on grid {grid} is not a number")]
+    NoNumber {
+        /// The cell.
+        quantity: String,
+        /// Seed of the row.
+        seed: u64,
+        /// Its elements per side.
+        grid: usize,
+    },
     /// Another process has the sweep.
     #[error("{}: another process is writing this sweep", folder.display())]
     AnotherProcess {
@@ -147,6 +165,14 @@ pub enum SweepError {
         first: PathBuf,
         /// The shard of that one.
         there: Shard,
+    },
+    /// The rows of two folders to be merged were not dealt in the same way.
+    #[error("{}: its rows were dealt otherwise than those of {}", folder.display(), first.display())]
+    OtherDeal {
+        /// The folder.
+        folder: PathBuf,
+        /// The folder before.
+        first: PathBuf,
     },
     /// A shard was given twice.
     #[error("{}: is shard {shard}, and so is {}", folder.display(), other.display())]

@@ -20,6 +20,8 @@ pub(crate) struct Journal {
     file: File,
     /// Bytes of whole lines.
     length: u64,
+    /// The first line.
+    pub(crate) header: Header,
     pub(crate) rows: SweepRows,
     /// Whether the folder was not there before.
     made_folder: bool,
@@ -34,10 +36,10 @@ impl Journal {
     ///
     /// # Errors
     /// When the folder holds something else, or cannot be written to.
-    pub(crate) fn start(folder: &Path, header: &Header, resume: bool) -> Result<Self, SweepError> {
+    pub(crate) fn start(folder: &Path, header: Header, resume: bool) -> Result<Self, SweepError> {
         let path = folder.join(JOURNAL_FILE);
         let journal = match (path.symlink_metadata().is_ok(), resume) {
-            (true, true) => Self::reopen(folder, header)?,
+            (true, true) => Self::reopen(folder, &header)?,
             (true, false) => return Err(SweepError::HoldsSweep { folder: folder.to_owned() }),
             (false, _) => {
                 check_unused(folder, resume)?;
@@ -50,7 +52,7 @@ impl Journal {
         Ok(journal)
     }
 
-    fn create(folder: &Path, header: &Header) -> Result<Self, SweepError> {
+    fn create(folder: &Path, header: Header) -> Result<Self, SweepError> {
         files::check_folder(folder)?;
         let path = folder.join(JOURNAL_FILE);
         let fail = |cause: io::Error| SweepError::from(FileError::write(&path, cause));
@@ -69,6 +71,7 @@ impl Journal {
             path,
             file,
             length: line.len() as u64,
+            header,
             rows: SweepRows::new(),
             made_folder,
             failure: None,
@@ -89,6 +92,7 @@ impl Journal {
             path,
             file,
             length: content.whole,
+            header: content.header,
             rows: content.rows,
             made_folder: false,
             failure: None,
@@ -153,7 +157,7 @@ mod tests {
     use crate::shard::{Shard, SweepShape};
 
     fn header(waves: usize) -> Header {
-        Header::new(SweepShape { surfaces: 2, loads: 3 }, Shard::WHOLE, json!({ "waves": waves }))
+        Header::whole(SweepShape { surfaces: 2, loads: 3 }, json!({ "waves": waves }))
     }
 
     fn cells(value: f64) -> Cells {
@@ -164,7 +168,7 @@ mod tests {
     fn a_line_cut_at_any_byte_costs_only_its_row() {
         let dir = tempfile::tempdir().expect("a temporary folder");
         let folder = dir.path().join("s");
-        let mut journal = Journal::start(&folder, &header(8), false).expect("a journal");
+        let mut journal = Journal::start(&folder, header(8), false).expect("a journal");
         for row in [0, 2, 1] {
             journal.append(row, cells(0.1 + row as f64)).expect("a row");
         }
@@ -175,7 +179,7 @@ mod tests {
         let last = row_line(1, &rows[&1]).len();
         for cut in 1..=last {
             std::fs::write(&path, &bytes[..bytes.len() - cut]).expect("a cut journal");
-            let mut journal = Journal::start(&folder, &header(8), true).expect("a journal");
+            let mut journal = Journal::start(&folder, header(8), true).expect("a journal");
             assert_eq!(journal.rows.keys().copied().collect::<Vec<_>>(), [0, 2], "{cut} bytes cut");
             journal.append(1, cells(1.1)).expect("a row");
             assert_eq!(journal.rows, rows);
@@ -187,7 +191,7 @@ mod tests {
     #[test]
     fn damage_before_the_last_line_is_named() {
         let dir = tempfile::tempdir().expect("a temporary folder");
-        let mut journal = Journal::start(dir.path(), &header(8), false).expect("a journal");
+        let mut journal = Journal::start(dir.path(), header(8), false).expect("a journal");
         journal.append(0, cells(0.5)).expect("a row");
         journal.append(1, cells(1.5)).expect("a row");
         drop(journal);
@@ -195,7 +199,7 @@ mod tests {
         let text = std::fs::read_to_string(&path).expect("the journal");
         for (from, to, expected) in [("0.5", "0.5x", "line 2 is damaged"), ("rc_sweep", "sweep", "not a journal")] {
             std::fs::write(&path, text.replace(from, to)).expect("a damaged journal");
-            let error = Journal::start(dir.path(), &header(8), true).expect_err("damaged").to_string();
+            let error = Journal::start(dir.path(), header(8), true).expect_err("damaged").to_string();
             assert!(error.contains(expected), "{error}");
         }
     }
@@ -203,15 +207,16 @@ mod tests {
     #[test]
     fn another_sweep_and_a_second_process_are_refused() {
         let dir = tempfile::tempdir().expect("a temporary folder");
-        let journal = Journal::start(dir.path(), &header(8), false).expect("a journal");
-        let refused = |header: &Header| Journal::start(dir.path(), header, true).expect_err("refused").to_string();
+        let journal = Journal::start(dir.path(), header(8), false).expect("a journal");
+        let refused = |header: Header| Journal::start(dir.path(), header, true).expect_err("refused").to_string();
         if cfg!(unix) {
-            assert!(refused(&header(8)).contains("another process"), "{}", refused(&header(8)));
+            assert!(refused(header(8)).contains("another process"), "{}", refused(header(8)));
         }
         drop(journal);
-        assert!(refused(&header(9)).contains("waves is 8 there and 9 here"), "{}", refused(&header(9)));
+        assert!(refused(header(9)).contains("waves is 8 there and 9 here"), "{}", refused(header(9)));
         let mut shard = header(8);
         shard.shard = Shard { index: 1, count: 2 };
-        assert!(refused(&shard).contains("shard 1/1, not 1/2"), "{}", refused(&shard));
+        let message = refused(shard);
+        assert!(message.contains("shard 1/1, not 1/2"), "{message}");
     }
 }

@@ -4,6 +4,8 @@
 //! depends on another one, so that resumed and sharded sweeps give the rows of an uninterrupted one. How a row is solved is
 //! handed in as a [`RowSolver`]; this crate prints nothing and knows no command line.
 //!
+//! An [`Ensemble`] is the mean over as many realisations, on as fine grids, as its error asks for, kept in the same way.
+//!
 //! [`Summary`] is what a row of a contact problem holds, in SI, and what `summary.json` holds. [`files`] writes files that
 //! are there whole or not at all, [`memory`] knows how many solves fit side by side.
 //!
@@ -34,10 +36,15 @@ pub mod files;
 pub mod memory;
 
 mod content;
+mod deal;
+mod ensemble;
 mod error;
 mod folder;
+mod job;
 mod journal;
+mod kept;
 mod latest;
+mod levels;
 mod lists;
 mod lock;
 mod merge;
@@ -52,9 +59,14 @@ mod table;
 mod workers;
 
 pub use content::{Cells, SweepRows, finished_rows, settings_in};
+pub use deal::Deal;
+pub use ensemble::{Ensemble, EnsembleLevel, EnsembleMean, EnsemblePlan, Realisation, WantedMean};
 pub use error::SweepError;
 pub use folder::{TABLE_FILE, replace_fields};
+pub use job::JobError;
+pub use kept::Kept;
 pub use latest::Latest;
+pub use levels::LevelMean;
 pub use lists::{Loads, Seeds};
 pub use merge::{Merged, merge};
 pub use number_or_text::number_or_text;
@@ -62,5 +74,5 @@ pub use plan::{ControlKind, FileMark, MAX_ROWS, PlannedSurface, SweepPlan, Sweep
 pub use row_solver::{RowError, RowSolver, RunError, Workers};
 pub use shard::{Shard, SweepShape};
 pub use summary::{SolveContext, Summary, to_json};
-pub use sweep::{Kept, Sweep};
+pub use sweep::Sweep;
 pub use table::n_not_converged;

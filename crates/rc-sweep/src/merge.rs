@@ -30,7 +30,7 @@ pub fn merge(folders: &[PathBuf], out: &Path) -> Result<Merged, SweepError> {
     files::check_folder(out)?;
     let shards = read(folders)?;
     let (_, first) = shards.first().ok_or(SweepError::NoShards)?;
-    let header = Header::new(first.header.shape, Shard::WHOLE, first.header.settings.clone());
+    let header = Header::whole(first.header.shape, first.header.settings.clone());
     if header.keeps_fields() {
         check_fields(&shards)?;
     }
@@ -51,7 +51,7 @@ fn read(folders: &[PathBuf]) -> Result<Vec<(&Path, Content)>, SweepError> {
             let (folder, other) = (folder.clone(), other.to_path_buf());
             return Err(SweepError::SameShard { folder, other, shard });
         }
-        let missing = shard.rows(content.header.shape).filter(|row| !content.rows.contains_key(row)).count();
+        let missing = content.header.rows().iter().filter(|row| !content.rows.contains_key(row)).count();
         if missing > 0 {
             return Err(SweepError::MissingRows { folder: folder.clone(), shard, missing });
         }
@@ -72,6 +72,9 @@ fn check_same_sweep(first: &Path, there: &Header, folder: &Path, here: &Header) 
     }
     if there.shard.count != here.shard.count {
         return Err(SweepError::OtherDivision { folder, here: here.shard, first, there: there.shard });
+    }
+    if there.deal != here.deal {
+        return Err(SweepError::OtherDeal { folder, first });
     }
     Ok(())
 }

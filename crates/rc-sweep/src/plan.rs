@@ -8,8 +8,9 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use crate::content::Cells;
+use crate::deal::Deal;
 use crate::error::SweepError;
-use crate::shard::SweepShape;
+use crate::shard::{Shard, SweepShape};
 
 pub use crate::shard::MAX_ROWS;
 
@@ -108,6 +109,8 @@ pub struct SweepPlan {
     pub names_scenes: bool,
     /// Whether each row keeps its fields, in a folder of its own.
     pub keeps_fields: bool,
+    /// How rows are dealt to shards.
+    pub deal: Deal,
 }
 
 /// One row of a sweep.
@@ -122,10 +125,36 @@ pub struct SweepRow {
 }
 
 impl SweepPlan {
-    /// These surfaces under their loads; rows neither say which scene they are of nor keep fields.
+    /// These surfaces under their loads; rows neither say which scene they are of nor keep fields, and
+    /// shards are dealt load by load.
     #[must_use]
     pub fn new(control: ControlKind, surfaces: Vec<PlannedSurface>) -> Self {
-        Self { control, surfaces, names_scenes: false, keeps_fields: false }
+        Self { control, surfaces, names_scenes: false, keeps_fields: false, deal: Deal::default() }
+    }
+
+    /// Deals the rows to shards by the processor seconds that they are expected to take: the longest first, each to the shard
+    /// with the least to do. `seconds` is asked for the loads of the first surface of each scene, and stands for all its
+    /// surfaces; what it does not know is taken as the mean.
+    #[must_use]
+    pub fn dealt_by(mut self, mut seconds: impl FnMut(&SweepRow) -> Option<f64>) -> Self {
+        let (mut scenes, mut first) = (Vec::new(), 0);
+        for surfaces in self.surfaces.chunk_by(|a, b| a.scene == b.scene) {
+            let loads = surfaces.first().map_or(&[][..], |surface| &surface.loads);
+            let row = |(i, &load)| SweepRow { index: first * loads.len() + i, surface: first, load };
+            scenes.push((surfaces.len(), loads.iter().enumerate().map(|row_at| seconds(&row(row_at))).collect()));
+            first += surfaces.len();
+        }
+        self.deal = Deal::by_cost(scenes);
+        self
+    }
+
+    /// Refuses a shard without rows.
+    ///
+    /// # Errors
+    /// [`SweepError::EmptyShard`].
+    pub fn check_shard(&self, shard: Shard) -> Result<(), SweepError> {
+        let rows = self.shape().rows();
+        if (1..=rows).contains(&shard.count) { Ok(()) } else { Err(SweepError::EmptyShard { shard, rows }) }
     }
 
     /// Number of surfaces and loads.

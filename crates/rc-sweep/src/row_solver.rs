@@ -6,8 +6,8 @@ use crate::content::Cells;
 use crate::error::SweepError;
 use crate::plan::SweepRow;
 
-/// What solves the rows of a sweep. Workers call it side by side.
-pub trait RowSolver: Sync {
+/// What solves the rows of a sweep, or those of an ensemble. Workers call it side by side.
+pub trait RowSolver<Row = SweepRow>: Sync {
     /// Why a row could not be solved.
     type Error: Send;
 
@@ -16,7 +16,7 @@ pub trait RowSolver: Sync {
     ///
     /// # Errors
     /// [`RowError`].
-    fn solve(&self, row: &SweepRow) -> Result<Cells, RowError<Self::Error>>;
+    fn solve(&self, row: &Row) -> Result<Cells, RowError<Self::Error>>;
 
     /// Called after each row that was solved and kept.
     fn row_kept(&self) {}

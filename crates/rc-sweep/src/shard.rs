@@ -1,4 +1,4 @@
-//! The rows of a sweep, and which of them a shard solves.
+//! The number of rows of a sweep, and the number of a shard.
 
 use std::fmt;
 use std::str::FromStr;
@@ -37,14 +37,6 @@ pub struct Shard {
 impl Shard {
     /// The whole sweep.
     pub const WHOLE: Self = Self { index: 1, count: 1 };
-
-    /// The rows of this shard, in order. Rows are dealt load by load, so that each shard gets its part of the heavy ones.
-    pub fn rows(self, shape: SweepShape) -> impl Iterator<Item = usize> {
-        (0..shape.rows()).filter(move |row| {
-            let (surface, load) = (row / shape.loads, row % shape.loads);
-            (load * shape.surfaces + surface) % self.count == self.index - 1
-        })
-    }
 }
 
 impl fmt::Display for Shard {
@@ -80,24 +72,6 @@ impl<'de> Deserialize<'de> for Shard {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn shards_share_the_rows_and_the_loads() {
-        for (surfaces, loads, count) in [(7, 8, 8), (1, 24, 4), (8, 8, 8), (3, 5, 15), (4, 1, 3), (2, 3, 1)] {
-            let shape = SweepShape { surfaces, loads };
-            let shards: Vec<Vec<usize>> =
-                (1..=count).map(|index| Shard { index, count }.rows(shape).collect()).collect();
-            let mut all: Vec<usize> = shards.concat();
-            all.sort_unstable();
-            assert!(all.into_iter().eq(0..shape.rows()), "{shape:?} in {count}: not each row once");
-            let sums = shards.iter().map(|rows| (rows.len(), rows.iter().map(|row| row % loads).sum::<usize>()));
-            let (sizes, weights): (Vec<usize>, Vec<usize>) = sums.unzip();
-            let spread = |values: &[usize]| values.iter().max().unwrap_or(&0) - values.iter().min().unwrap_or(&0);
-            assert!(spread(&sizes) <= 1, "{shape:?} in {count}: {sizes:?} rows");
-            // Unlike sizes, and the place in the deal, make up to one step of the load for each row.
-            assert!(spread(&weights) <= sizes[0] + loads, "{shape:?} in {count}: loads {weights:?}");
-        }
-    }
 
     #[test]
     fn a_shard_reads_back_as_it_is_written() {

@@ -3,43 +3,39 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use crate::content::{Cells, Header, SweepRows};
+use crate::content::{Cells, Header};
 use crate::error::SweepError;
 use crate::folder::{fields_folder, has_fields};
 use crate::journal::Journal;
+use crate::kept::Kept;
 use crate::plan::{SweepPlan, SweepRow};
 use crate::row_solver::{RowSolver, RunError, Workers};
 use crate::shard::Shard;
-use crate::{table, workers};
+use crate::workers;
 
 /// A sweep in its folder, which no other process may write to as long as this lives.
 #[derive(Debug)]
 pub struct Sweep {
     plan: SweepPlan,
-    shard: Shard,
+    /// Those of this shard.
+    rows: Vec<usize>,
     folder: PathBuf,
     journal: Mutex<Journal>,
 }
 
-/// The rows that are kept so far. No other row is kept as long as this lives.
-#[derive(Debug)]
-pub struct Kept<'a> {
-    folder: &'a Path,
-    journal: MutexGuard<'a, Journal>,
-}
-
 impl Sweep {
-    /// Starts the shard of a new sweep in `folder`, or with `resume` goes on with what is there of the same sweep.
+    /// Starts the shard of a new sweep in `folder`, or with `resume` goes on with what is there of the same sweep, whose rows are
+    /// those that were dealt to it when it was started.
     ///
     /// # Errors
     /// [`SweepError`] when the shard has no rows, when the folder holds something else, or when it cannot be written to.
     pub fn start(plan: SweepPlan, shard: Shard, folder: &Path, resume: bool) -> Result<Self, SweepError> {
         let shape = plan.shape();
-        if shard.count > shape.rows() {
-            return Err(SweepError::EmptyShard { shard, rows: shape.rows() });
-        }
-        let journal = Journal::start(folder, &Header::new(shape, shard, plan.settings()), resume)?;
-        Ok(Self { plan, shard, folder: folder.to_owned(), journal: Mutex::new(journal) })
+        plan.check_shard(shard)?;
+        let header = Header::of_shard(shape, shard, plan.deal.clone(), plan.settings());
+        let journal = Journal::start(folder, header, resume)?;
+        let rows = journal.header.rows();
+        Ok(Self { plan, rows, folder: folder.to_owned(), journal: Mutex::new(journal) })
     }
 
     /// What is to be solved.
@@ -51,7 +47,7 @@ impl Sweep {
     /// Number of rows of this shard, finished or not.
     #[must_use]
     pub fn n_rows(&self) -> usize {
-        self.shard.rows(self.plan.shape()).count()
+        self.rows.len()
     }
 
     /// The rows of this shard that are not finished, in the order in which they are solved.
@@ -60,7 +56,7 @@ impl Sweep {
         let journal = self.locked();
         let is_done =
             |row: &usize| journal.rows.contains_key(row) && (!self.plan.keeps_fields || has_fields(&self.folder, *row));
-        self.shard.rows(self.plan.shape()).filter(|row| !is_done(row)).collect()
+        self.rows.iter().copied().filter(|row| !is_done(row)).collect()
     }
 
     /// The folder for the fields of row `index`, if they are kept.
@@ -83,7 +79,7 @@ impl Sweep {
     /// The rows that are kept so far.
     #[must_use]
     pub fn kept(&self) -> Kept<'_> {
-        Kept { folder: &self.folder, journal: self.locked() }
+        Kept::new(&self.folder, self.locked())
     }
 
     /// Solves what is left to do and writes the table, whose path is returned. A sweep of which no row could be solved leaves
@@ -96,13 +92,14 @@ impl Sweep {
         if !todo.is_empty() {
             self.kept().write_table()?;
         }
+        let todo: Vec<SweepRow> = todo.into_iter().map(|index| self.plan.row(index)).collect();
         let keep = |row: &SweepRow, cells| self.keep(row, cells);
-        let solved = workers::run(&self.plan, &todo, solver, workers, &keep);
+        let solved = workers::run(&todo, solver, workers, &keep);
         let kept = self.kept();
         let written = kept.write_table();
         let Err(error) = solved else { return Ok(written?) };
         // What it says comes first: on a full disk, for one, the table fails as well.
-        kept.journal.discard_empty(&self.folder);
+        kept.discard_empty();
         Err(match error {
             RunError::Refused { error, .. } => {
                 let n_kept = kept.rows().len();
@@ -116,22 +113,6 @@ impl Sweep {
     /// leaves it usable.
     fn locked(&self) -> MutexGuard<'_, Journal> {
         self.journal.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl Kept<'_> {
-    /// The rows.
-    #[must_use]
-    pub fn rows(&self) -> &SweepRows {
-        &self.journal.rows
-    }
-
-    /// Writes the table of the rows, if there are any, and returns its path.
-    ///
-    /// # Errors
-    /// [`SweepError::File`]; an earlier table is left as it was.
-    pub fn write_table(&self) -> Result<PathBuf, SweepError> {
-        table::write(self.folder, &self.journal.rows)
     }
 }
 

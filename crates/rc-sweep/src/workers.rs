@@ -5,10 +5,12 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use crate::content::Cells;
 use crate::error::SweepError;
-use crate::plan::{SweepPlan, SweepRow};
 use crate::row_solver::{RowError, RowSolver, RunError, Workers};
 
-/// Solves the rows `todo` of `plan` and hands each to `keep` as it is done. After a failure no row is begun; a row that is
+/// What keeps a row that is done.
+type Keep<'a, R> = dyn Fn(&R, Cells) -> Result<(), SweepError> + Sync + 'a;
+
+/// Solves the rows `todo` and hands each to `keep` as it is done. After a failure no row is begun; a row that is
 /// refused is left out.
 ///
 /// Rows are solved side by side as far as memory allows. That is faster than all threads on one row for small surfaces, and
@@ -16,17 +18,16 @@ use crate::row_solver::{RowError, RowSolver, RunError, Workers};
 ///
 /// # Errors
 /// The first one of a row, failures first; the counts of [`RunError::Refused`] are those of the caller.
-pub(crate) fn run<S: RowSolver>(
-    plan: &SweepPlan,
-    todo: &[usize],
+pub(crate) fn run<R: Sync, S: RowSolver<R>>(
+    todo: &[R],
     solver: &S,
     workers: Workers,
-    keep: &(dyn Fn(&SweepRow, Cells) -> Result<(), SweepError> + Sync),
+    keep: &Keep<'_, R>,
 ) -> Result<(), RunError<S::Error>> {
     let n_workers = workers.at_once.min(workers.threads).min(todo.len()).max(1);
     let pools = share(workers.threads, n_workers).map(|n| pool(n.get()));
     let pools: Vec<rayon::ThreadPool> = pools.collect::<Result<_, SweepError>>()?;
-    let work = Work { plan, todo, solver, keep, next: AtomicUsize::new(0), stop: AtomicBool::new(false) };
+    let work = Work { todo, solver, keep, next: AtomicUsize::new(0), stop: AtomicBool::new(false) };
     let results: Vec<Result<(), RunError<S::Error>>> = std::thread::scope(|scope| {
         let work = &work;
         let running: Vec<_> = pools.iter().map(|pool| scope.spawn(move || pool.install(|| work.run()))).collect();
@@ -54,24 +55,22 @@ fn pool(threads: usize) -> Result<rayon::ThreadPool, SweepError> {
 }
 
 /// What the workers share.
-struct Work<'a, S> {
-    plan: &'a SweepPlan,
-    todo: &'a [usize],
+struct Work<'a, R, S> {
+    todo: &'a [R],
     solver: &'a S,
-    keep: &'a (dyn Fn(&SweepRow, Cells) -> Result<(), SweepError> + Sync),
+    keep: &'a Keep<'a, R>,
     next: AtomicUsize,
     stop: AtomicBool,
 }
 
-impl<S: RowSolver> Work<'_, S> {
+impl<R, S: RowSolver<R>> Work<'_, R, S> {
     /// Takes rows until there are none, or a row failed.
     fn run(&self) -> Result<(), RunError<S::Error>> {
         let mut refused = Ok(());
         while !self.stop.load(Ordering::Relaxed) && !self.solver.should_stop() {
-            let Some(&index) = self.todo.get(self.next.fetch_add(1, Ordering::Relaxed)) else { break };
-            let row = self.plan.row(index);
-            let result = match self.solver.solve(&row) {
-                Ok(cells) => (self.keep)(&row, cells).map_err(RunError::from),
+            let Some(row) = self.todo.get(self.next.fetch_add(1, Ordering::Relaxed)) else { break };
+            let result = match self.solver.solve(row) {
+                Ok(cells) => (self.keep)(row, cells).map_err(RunError::from),
                 Err(RowError::Refused(error)) => {
                     refused = refused.and(Err(RunError::Refused { error, missing: 0, kept: 0 }));
                     continue;

@@ -39,6 +39,9 @@ pub struct MemoryError {
 }
 
 impl Budget {
+    /// No limit: for estimates that must be the same on every machine.
+    pub const UNLIMITED: Self = Self { limit: None, machine: None };
+
     /// The memory of this machine, and the limit of the user, if there is one.
     #[must_use]
     pub fn new(limit: Option<ByteSize>) -> Self {

@@ -1,0 +1,307 @@
+//! A mean over realisations with an error that was asked for, kept row by row as a sweep is.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+use crate::content::{Cells, Header};
+use crate::error::SweepError;
+use crate::journal::Journal;
+use crate::kept::Kept;
+use crate::levels::{self, Estimate, LevelMean, MOST_REALISATIONS, Samples, Step};
+use crate::plan::{ControlKind, PlannedSurface};
+use crate::row_solver::{RowSolver, RunError, Workers};
+use crate::shard::{MAX_ROWS, SweepShape};
+use crate::workers;
+
+/// The surfaces and loads of an ensemble. Which realisations and grids are solved follows from the results.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EnsemblePlan {
+    /// What the loads are.
+    pub control: ControlKind,
+    /// The surface without seed and grid; each of its loads has a mean of its own.
+    pub surface: PlannedSurface,
+    /// Elements per side of the grids that there may be, coarsest first.
+    pub sides: Vec<usize>,
+    /// Seed of the first realisation. Level l has those from here + 10000 l on.
+    pub first_seed: u64,
+}
+
+/// One realisation on one grid under one load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Realisation {
+    /// Of its row.
+    pub index: usize,
+    /// Pressure (Pa) or penetration (m).
+    pub load: f64,
+    /// Elements per side.
+    pub side: usize,
+    /// Seed of the surface.
+    pub seed: u64,
+}
+
+/// What is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WantedMean {
+    /// A numeric cell of the rows, as `area_fraction`.
+    pub quantity: String,
+    /// Relative rms error: of statistics and grid together.
+    pub error: f64,
+}
+
+/// A mean over realisations under one load.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EnsembleMean {
+    /// `converged` or `not_converged`.
+    pub status: String,
+    /// The cell of the rows that was averaged.
+    pub mean_of: String,
+    /// `pressure` or `penetration`.
+    pub control: String,
+    /// Its value (Pa or m).
+    pub control_value: f64,
+    /// The mean.
+    pub mean: f64,
+    /// Its standard error, from the variances of the levels.
+    pub standard_error: f64,
+    /// Estimated error of the finest grid.
+    pub grid_error: f64,
+    /// Root of the sum of the squares of the two, relative to the mean.
+    pub relative_error: f64,
+    /// What this was to be at most.
+    pub wanted_error: f64,
+    /// Rows that did not converge among those that were used.
+    pub not_converged: usize,
+    /// Elements times applications of the operator, of all realisations.
+    pub cost: f64,
+    /// The same for this standard error on the finest grid alone, estimated.
+    pub cost_of_plain_mean: f64,
+    /// The levels, coarsest first.
+    pub levels: Vec<EnsembleLevel>,
+}
+
+/// One level of a mean.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EnsembleLevel {
+    /// Elements per side.
+    pub grid: usize,
+    /// Those of the grid whose results are subtracted; none on the coarsest.
+    pub coarser_grid: Option<usize>,
+    /// Seed of its first realisation; the others follow it.
+    pub first_seed: u64,
+    /// What was found.
+    #[serde(flatten)]
+    pub found: LevelMean,
+}
+
+/// An ensemble in its folder, which no other process may write to as long as this lives.
+#[derive(Debug)]
+pub struct Ensemble {
+    plan: EnsemblePlan,
+    folder: PathBuf,
+    journal: Mutex<Journal>,
+}
+
+impl EnsemblePlan {
+    /// Rows are numbered by load, level, realisation, and grid: the finer one first.
+    fn shape(&self) -> SweepShape {
+        SweepShape { surfaces: 2 * MOST_REALISATIONS * self.sides.len(), loads: self.surface.loads.len() }
+    }
+
+    fn settings(&self) -> Value {
+        json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "control": self.control.key(),
+            "ensemble": { "first_seed": self.first_seed, "grids": self.sides },
+            "surfaces": [self.surface],
+        })
+    }
+
+    /// Seed of the first realisation of a level.
+    fn first_seed(&self, level: usize) -> u64 {
+        self.first_seed.wrapping_add((level * MOST_REALISATIONS) as u64)
+    }
+
+    /// Greatest seed that there may be; `None` beyond all numbers.
+    #[must_use]
+    pub fn greatest_seed(&self) -> Option<u64> {
+        self.first_seed.checked_add((self.sides.len() * MOST_REALISATIONS) as u64)
+    }
+
+    /// Realisation `i` of a level on its grid, or on the `coarser` one.
+    fn realisation(&self, load: usize, level: usize, i: usize, coarser: usize) -> Realisation {
+        Realisation {
+            index: 2 * ((load * self.sides.len() + level) * MOST_REALISATIONS + i) + coarser,
+            load: self.surface.loads[load],
+            side: self.sides[level - coarser],
+            seed: self.first_seed(level) + i as u64,
+        }
+    }
+
+    /// The rows of so many realisations of each level, those of finer grids first.
+    fn rows(&self, load: usize, counts: &[usize]) -> Vec<Realisation> {
+        let of_level = |(level, &count): (usize, &usize)| {
+            let grids = if level > 0 { 2 } else { 1 };
+            (0..count).flat_map(move |i| (0..grids).map(move |coarser| self.realisation(load, level, i, coarser)))
+        };
+        let mut rows: Vec<Realisation> = counts.iter().enumerate().flat_map(of_level).collect();
+        rows.sort_by_key(|row| (std::cmp::Reverse(row.side), row.index));
+        rows
+    }
+}
+
+impl Ensemble {
+    /// Starts a new ensemble in `folder`, or with `resume` goes on with what is there of the same one.
+    ///
+    /// # Errors
+    /// [`SweepError`] when there are too many loads, when the folder holds something else, or when it cannot be written to.
+    pub fn start(plan: EnsemblePlan, folder: &Path, resume: bool) -> Result<Self, SweepError> {
+        let shape = plan.shape();
+        if shape.rows() > MAX_ROWS {
+            return Err(SweepError::TooManyMeans { loads: shape.loads, most: MAX_ROWS / shape.surfaces });
+        }
+        let journal = Journal::start(folder, Header::whole(shape, plan.settings()), resume)?;
+        Ok(Self { plan, folder: folder.to_owned(), journal: Mutex::new(journal) })
+    }
+
+    /// The rows that are kept so far.
+    #[must_use]
+    pub fn kept(&self) -> Kept<'_> {
+        Kept::new(&self.folder, self.locked())
+    }
+
+    /// Solves what the means of all loads need, writes the table of the rows, and returns the means; `None` when the solver
+    /// stopped before. `workers` are those for grids with this many elements.
+    ///
+    /// What is solved depends on results only, so a run that goes on after an interruption ends with the same digits.
+    ///
+    /// # Errors
+    /// [`RunError`]; the rows that were solved are kept, and in the table.
+    pub fn run<S: RowSolver<Realisation>>(
+        &self,
+        wanted: &WantedMean,
+        solver: &S,
+        workers: impl Fn(f64) -> Workers,
+    ) -> Result<Option<Vec<EnsembleMean>>, RunError<S::Error>> {
+        let means =
+            (0..self.plan.surface.loads.len()).map(|load| self.mean(load, wanted, solver, &workers).transpose());
+        let means = means.map_while(|mean| mean).collect::<Result<Vec<_>, _>>();
+        let kept = self.kept();
+        let written = kept.write_table();
+        let means = means.inspect_err(|_| kept.discard_empty())?;
+        written?;
+        Ok(Some(means).filter(|means| means.len() == self.plan.surface.loads.len()))
+    }
+
+    /// The mean under one load; `None` when the solver stopped before.
+    fn mean<S: RowSolver<Realisation>>(
+        &self,
+        load: usize,
+        wanted: &WantedMean,
+        solver: &S,
+        workers: &impl Fn(f64) -> Workers,
+    ) -> Result<Option<EnsembleMean>, RunError<S::Error>> {
+        let n_grids = self.plan.sides.len();
+        let mut counts = levels::pilot(n_grids);
+        loop {
+            let rows = self.plan.rows(load, &counts);
+            let missing = |rows: &[Realisation]| -> Vec<Realisation> {
+                let journal = self.locked();
+                rows.iter().filter(|row| !journal.rows.contains_key(&row.index)).copied().collect()
+            };
+            let todo = missing(&rows);
+            if let Some(finest) = todo.first() {
+                let keep = |row: &Realisation, cells| self.keep(row, cells);
+                workers::run(&todo, solver, workers((finest.side as f64).powi(2)), &keep)?;
+            }
+            if !missing(&rows).is_empty() {
+                return Ok(None);
+            }
+            match levels::next(&self.samples(load, &counts, &wanted.quantity)?, n_grids, wanted.error) {
+                Step::More(more) => counts = more,
+                Step::Done(estimate) => return Ok(Some(self.described(load, wanted, &rows, &estimate))),
+            }
+        }
+    }
+
+    /// The values of these realisations, from the rows that are kept.
+    fn samples(&self, load: usize, counts: &[usize], quantity: &str) -> Result<Vec<Samples>, SweepError> {
+        let journal = self.locked();
+        let number = |row: &Realisation, of: &dyn Fn(&Cells) -> Option<f64>, name: &str| {
+            let value = journal.rows.get(&row.index).and_then(of);
+            value.ok_or_else(|| SweepError::NoNumber { quantity: name.to_owned(), seed: row.seed, grid: row.side })
+        };
+        let value = |row: &Realisation| number(row, &|cells| cells.get(quantity)?.as_f64(), quantity);
+        let cost = |row: &Realisation| number(row, &cost_of, "operator_applications");
+        let level = |(level, &count): (usize, &usize)| {
+            let mut samples = Samples::default();
+            for i in 0..count {
+                let fine = self.plan.realisation(load, level, i, 0);
+                let [mut difference, fine_cost] = [value(&fine)?, cost(&fine)?];
+                let mut both = fine_cost;
+                if level > 0 {
+                    let coarse = self.plan.realisation(load, level, i, 1);
+                    difference -= value(&coarse)?;
+                    both += cost(&coarse)?;
+                }
+                samples.differences.push(difference);
+                samples.costs.push(both);
+                samples.fine_costs.push(fine_cost);
+            }
+            Ok(samples)
+        };
+        counts.iter().enumerate().map(level).collect()
+    }
+
+    fn described(&self, load: usize, wanted: &WantedMean, rows: &[Realisation], estimate: &Estimate) -> EnsembleMean {
+        let journal = self.locked();
+        let failed =
+            |row: &&Realisation| journal.rows.get(&row.index).is_some_and(|cells| cells["status"] == "not_converged");
+        let not_converged = rows.iter().filter(failed).count();
+        let level = |(level, &found): (usize, &LevelMean)| EnsembleLevel {
+            grid: self.plan.sides[level],
+            coarser_grid: level.checked_sub(1).map(|coarser| self.plan.sides[coarser]),
+            first_seed: self.plan.first_seed(level),
+            found,
+        };
+        let is_good = estimate.is_reached && not_converged == 0;
+        EnsembleMean {
+            status: if is_good { "converged" } else { "not_converged" }.to_owned(),
+            mean_of: wanted.quantity.clone(),
+            control: self.plan.control.key().to_owned(),
+            control_value: self.plan.surface.loads[load],
+            mean: estimate.mean,
+            standard_error: estimate.standard_error,
+            grid_error: estimate.bias,
+            relative_error: estimate.standard_error.hypot(estimate.bias) / estimate.mean.abs(),
+            wanted_error: wanted.error,
+            not_converged,
+            cost: estimate.cost(),
+            cost_of_plain_mean: estimate.cost_of_plain_mean(),
+            levels: estimate.levels.iter().enumerate().map(level).collect(),
+        }
+    }
+
+    fn keep(&self, row: &Realisation, cells: Cells) -> Result<(), SweepError> {
+        let mut all = Map::new();
+        all.insert("seed".into(), json!(row.seed));
+        all.insert("control_value".into(), json!(row.load));
+        all.extend(cells);
+        self.locked().append(row.index, all)
+    }
+
+    /// Every row in the journal is whole, so a worker that panicked leaves it usable.
+    fn locked(&self) -> MutexGuard<'_, Journal> {
+        self.journal.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// What a row took: elements of the finest level that were solved for, times applications of the operator to them. Unlike a
+/// time it is the same on every machine.
+fn cost_of(cells: &Cells) -> Option<f64> {
+    let grid = || Some(cells.get("grid")?.as_array()?.iter().filter_map(Value::as_f64).product());
+    let elements: f64 = cells.get("cells_evaluated").and_then(Value::as_f64).or_else(grid)?;
+    Some(elements * cells.get("operator_applications")?.as_f64()?.max(1.0))
+}
