@@ -24,6 +24,7 @@ pub(crate) const STEPS: &[Step] = &[
     Step { environment: &[], words: &["xtask", "test"] },
     Step { environment: &[], words: &["xtask", "swap"] },
     Step { environment: &[], words: &["xtask", "python"] },
+    Step { environment: &[], words: &["xtask", "slurm"] },
 ];
 
 pub(crate) fn run(_args: &Args) -> Result<()> {

@@ -9,6 +9,7 @@ mod figures;
 mod gfmd;
 mod process;
 mod python;
+mod slurm;
 mod stress;
 mod swap;
 mod test;
@@ -60,6 +61,7 @@ enum Command {
     /// Measures the error of area, rms pressure and mean gap on usual meshes, and how often their error bars hold it
     Accuracy(figures::Args),
     Bench(bench::Args),
+    Slurm(slurm::Args),
     Stress(stress::Args),
     Swap(swap::Args),
     Dist(dist::Args),
@@ -89,6 +91,7 @@ fn main() -> anyhow::Result<()> {
         Command::KernelError(args) => figures::run::<KernelErrors>(&args),
         Command::Accuracy(args) => figures::run::<Accuracy>(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Slurm(args) => slurm::run(&args),
         Command::Stress(args) => stress::run(&args),
         Command::Swap(args) => swap::run(&args),
         Command::Dist(args) => dist::run(&args),

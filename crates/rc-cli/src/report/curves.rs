@@ -68,6 +68,10 @@ pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
     let scenes: Vec<SceneCurves> = groups(&rows, |row| &row.scene).into_iter().map(SceneCurves::of).collect();
     let surfaces: usize = scenes.iter().map(|scene| scene.seeds.len()).sum();
     let settings = settings_in(folder);
+    if settings.as_ref().is_some_and(|settings| !settings["ensemble"].is_null()) {
+        let message = "holds solves on several grids for a mean, of which there is no page; the mean is in mean.json";
+        return Err(CliError::in_file(folder, message));
+    }
     let (status, good) = status(&rows, settings.as_ref());
     let text = settings.as_ref().and_then(|settings| serde_json::to_string_pretty(settings).ok());
     let files = text.map(|text| Text { title: "Settings of the sweep", text }).into_iter().collect();

@@ -3,9 +3,12 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use rc_sweep::{Loads, Seeds, Shard};
+use rc_sweep::{Loads, Seeds, WantedMean};
 
+use super::specs::{ListSpec, QUANTITIES, ShardSpec};
+use crate::error::CliError;
 use crate::scene::keys::Scene;
+use crate::scene::values::Fraction;
 
 /// Arguments of `rc sweep`.
 #[derive(Args, Clone, Debug)]
@@ -32,12 +35,41 @@ pub(crate) struct SweepArgs {
     /// Go on with the sweep in --out; start it, if there is none yet
     #[arg(long, help_heading = "Sweep")]
     pub(crate) resume: bool,
-    /// Solve part i of n, for job arrays; `rc sweep merge` puts the parts together
+    /// Solve part i of n, of about equal work; `rc sweep merge` puts the parts together. With auto, the part that the task of a
+    /// job array (Slurm, PBS) or the MPI rank says, in a folder of its own in --out; auto/N where only the task is known
     #[arg(long, value_name = "I/N", help_heading = "Sweep", allow_hyphen_values = true)]
-    pub(crate) shard: Option<Shard>,
+    pub(crate) shard: Option<ShardSpec>,
+    /// Print the commands of N parts, one a line, for HyperQueue or GNU parallel, and solve nothing [default: a part for each
+    /// row]
+    #[arg(long, value_name = "N", help_heading = "Sweep", num_args = 0..=1, default_missing_value = ListSpec::ROWS, require_equals = true, conflicts_with = "shard")]
+    pub(crate) list: Option<ListSpec>,
+    /// Solve as many realisations, on as coarse grids, as the mean of the contact area needs for this relative rms error, as 0.5%;
+    /// --seed is the first, --grid the finest
+    #[arg(long, value_name = "ERROR", help_heading = "Sweep", allow_hyphen_values = true)]
+    pub(crate) error_of_mean: Option<Fraction>,
+    /// What --error-of-mean is of, instead of area_fraction
+    #[arg(long, value_name = "KEY", help_heading = "Sweep", value_parser = QUANTITIES)]
+    pub(crate) mean_of: Option<String>,
     /// What is given here overrides the scene files.
     #[command(flatten)]
     pub(crate) scene: Scene,
+}
+
+impl SweepArgs {
+    /// The mean that is asked for, if any.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] for a quantity without an error.
+    pub(super) fn wanted_mean(&self) -> Result<Option<WantedMean>, CliError> {
+        match (self.error_of_mean, &self.mean_of) {
+            (Some(Fraction(error)), quantity) => {
+                let quantity = quantity.clone().unwrap_or_else(|| QUANTITIES[0].to_owned());
+                Ok(Some(WantedMean { quantity, error }))
+            }
+            (None, None) => Ok(None),
+            (None, Some(_)) => Err(CliError::input("mean_of: of which error? give --error-of-mean, as 0.5%")),
+        }
+    }
 }
 
 /// Commands of `rc sweep`.
@@ -69,6 +101,15 @@ goes on after them.
 
 --threads is the number of all threads. As many rows as fit into memory (--memory-limit, or half of the machine's) are \
 solved side by side; no result depends on it.
+
+Parts of a sweep are of about equal work, by the estimate of rc solve --dry-run. In a job array, rc sweep ... --shard auto \
+--resume --out DIR is the command of every task; a task that is run again goes on after its finished rows. Each has a folder \
+DIR/part-i-of-n, and rc sweep merge DIR/part-* --out ALL makes the sweep of them.
+
+--error-of-mean chooses realisations and grids by multilevel Monte Carlo: many realisations on a coarse grid, and few \
+differences to finer ones. DIR receives mean.json: mean, standard error and error of the grid for each load, and for each \
+level its grids, realisations, variance and cost; sweep.csv has the solves. Only results decide what is solved next, so it \
+can be interrupted, and resumed also with a smaller error.
 
 Without lists, a scene is solved for its own load and seed. Rows that did not converge are marked, and make exit code 3 at \
 the end; a row whose input is refused ends the sweep.";

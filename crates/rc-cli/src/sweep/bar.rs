@@ -26,6 +26,10 @@ impl RowBar {
 
     /// One more row is done.
     pub(super) fn one_more(&self) {
+        if self.0.length().is_some_and(|n| n <= self.0.position()) {
+            // How many there will be is not known.
+            self.0.inc_length(1);
+        }
         self.0.inc(1);
     }
 

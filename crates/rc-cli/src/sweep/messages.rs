@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use rc_sweep::{RunError, SweepError, SweepRows, TABLE_FILE};
+use rc_core::quantity::digits;
+use rc_sweep::{EnsembleMean, RunError, SweepError, SweepRows, TABLE_FILE};
 
 use crate::error::CliError;
 use crate::scene::time_limit::TimeLimit;
@@ -35,8 +36,10 @@ fn refused(error: &SweepError) -> CliError {
         SweepError::InTheWay { .. } | SweepError::OtherShard { .. } => "; give another --out",
         SweepError::OtherSettings { .. } => "; give its settings, or another --out",
         SweepError::DamagedLine { .. } => "; remove it",
+        SweepError::NoNumber { .. } => "; choose another --mean-of",
         SweepError::NoShards => "; give those of all shards",
         SweepError::MissingRows { .. } => "; finish it with --resume",
+        SweepError::OtherDeal { .. } => "; solve all shards with one version of rc",
         SweepError::MissingShard { .. } => "; give the folders of all shards",
         SweepError::MissingFields { .. } => "; --resume in the folder of the shard makes them again",
         SweepError::EmptyShard { shard, rows } => {
@@ -67,6 +70,35 @@ pub(super) fn out_of_time(limit: TimeLimit, missing: usize, n_rows: usize) -> Cl
     CliError::NotConverged(format!(
         "time_limit: after {limit} {missing} of {n_rows} rows are not solved; --resume goes on"
     ))
+}
+
+/// That the time was not enough for a mean.
+pub(super) fn mean_out_of_time(limit: Option<TimeLimit>, kept: usize) -> CliError {
+    let after = limit.map_or_else(String::new, |limit| format!("after {limit} "));
+    CliError::NotConverged(format!(
+        "time_limit: {after}the mean is not there yet; {kept} solves are kept, --resume goes on"
+    ))
+}
+
+/// An error when a mean does not have the error that was asked for.
+pub(super) fn check_means(means: &[EnsembleMean]) -> Result<(), CliError> {
+    let Some(mean) = means.iter().find(|mean| mean.status != "converged") else { return Ok(()) };
+    let percent = |value: f64| format!("{} %", digits(100.0 * value, 2));
+    let reached = format!("error_of_mean: {} at {} {:e}", mean.mean_of, mean.control, mean.control_value);
+    Err(CliError::NotConverged(match (mean.not_converged, mean.levels.last()) {
+        (0, Some(finest)) if mean.grid_error > mean.standard_error => format!(
+            "{reached} has the error {} on grid {}, wanted {}; give a finer --grid",
+            percent(mean.relative_error),
+            finest.grid,
+            percent(mean.wanted_error)
+        ),
+        (0, _) => format!(
+            "{reached} has the error {} with all realisations that there may be, wanted {}; give a larger error",
+            percent(mean.relative_error),
+            percent(mean.wanted_error)
+        ),
+        (n, _) => format!("{reached}: {n} solves did not converge; they are marked not_converged in {TABLE_FILE}"),
+    }))
 }
 
 /// An error when a row did not converge.

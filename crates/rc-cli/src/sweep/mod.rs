@@ -3,9 +3,14 @@
 pub(crate) mod args;
 mod bar;
 mod interrupt;
+mod list;
+mod mean;
 mod merge;
 mod messages;
+mod part;
+mod realisations;
 mod rows;
+mod specs;
 mod surfaces;
 
 use std::sync::Arc;
@@ -31,12 +36,22 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     if let Some(SweepCommand::Merge(args)) = args.command {
         return merge::run(&args);
     }
+    if let Some(wanted) = args.wanted_mean()? {
+        return mean::run(&args, &wanted);
+    }
     let surfaces = Surfaces::new(&args)?;
     let missing = || CliError::input("out: a sweep keeps its rows in a folder; give --out DIR");
     let folder = surfaces.run.out.clone().ok_or_else(missing)?;
     let plan = surfaces.plan()?;
+    if let Some(list) = args.list {
+        let shard = Shard { index: 1, count: list.count(plan.shape().rows()) };
+        plan.check_shard(shard)?;
+        return list::print(std::env::args_os(), shard.count, &folder);
+    }
+    let (shard, folder) = part::resolve(args.shard, &folder)?;
+    plan.check_shard(shard)?;
     let threads = threads::start(surfaces.run.threads)?;
-    let sweep = Sweep::start(plan, args.shard.unwrap_or(Shard::WHOLE), &folder, args.resume)?;
+    let sweep = Sweep::start(part::deal(plan, shard, &surfaces), shard, &folder, args.resume)?;
     execute(&surfaces, &Arc::new(sweep), threads)
 }
 
@@ -46,7 +61,8 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>, threads: usize) -> Result<()
     let n_rows = sweep.n_rows();
     let n_before = n_rows - sweep.todo().len();
     let bar = RowBar::new(n_before, n_rows, surfaces.run.quiet);
-    interrupt::install(Arc::clone(sweep), bar.clone());
+    let handled = (Arc::clone(sweep), bar.clone());
+    interrupt::install(move || interrupt::end(&handled.0.kept(), Some(n_rows), &handled.1));
     let rows = SceneRows::new(sweep, surfaces, threads, bar.clone());
     let at_once = Budget::new(surfaces.run.memory_limit).solves_at_once(surfaces.max_elements());
     let finished = sweep.run(&rows, Workers { threads, at_once });

@@ -18,7 +18,7 @@ pub(super) struct SweptSurface {
     scene: String,
     /// `None` for a surface from a file.
     seed: Option<u64>,
-    setup: SurfaceSetup,
+    pub(super) setup: SurfaceSetup,
     /// The keys as resolved, without a load.
     contact: ContactKeys,
     loads: Vec<f64>,
@@ -78,12 +78,23 @@ impl Surfaces {
     /// # Errors
     /// [`CliError::Input`] for keys of the contact, the same for all rows of a surface.
     pub(super) fn contact(&self, row: &SweepRow) -> Result<ContactSetup, CliError> {
-        let surface = &self.all[row.surface];
-        let keys = with_load(self.control, &surface.contact, Some(row.load));
-        let mut contact = resolve::contact(keys, surface.setup.cell)?;
-        // The memory of a machine must not decide on the digits of a row.
-        contact.params.method_follows_memory = false;
-        Ok(contact)
+        self.all[row.surface].contact(self.control, row.load)
+    }
+
+    /// What the loads are.
+    pub(super) fn control(&self) -> ControlKind {
+        self.control
+    }
+
+    /// The surface, where there is only one.
+    ///
+    /// # Errors
+    /// [`CliError::Input`].
+    pub(super) fn only(&self) -> Result<&SweptSurface, CliError> {
+        match &self.all[..] {
+            [surface] => Ok(surface),
+            _ => Err(CliError::input("scenes: give one")),
+        }
     }
 
     /// Elements of the largest surface.
@@ -104,8 +115,20 @@ impl SweptSurface {
         Ok(Self { scene: name.to_owned(), seed, setup, contact, loads: loads.to_vec() })
     }
 
+    /// The contact under `load`, ready to be solved.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] for keys of the contact.
+    pub(super) fn contact(&self, control: ControlKind, load: f64) -> Result<ContactSetup, CliError> {
+        let keys = with_load(control, &self.contact, Some(load));
+        let mut contact = resolve::contact(keys, self.setup.cell)?;
+        // The memory of a machine must not decide on the digits of a row.
+        contact.params.method_follows_memory = false;
+        Ok(contact)
+    }
+
     /// What determines its rows. Where a file lies does not, so its name and its content count.
-    fn planned(&self) -> Result<PlannedSurface, CliError> {
+    pub(super) fn planned(&self) -> Result<PlannedSurface, CliError> {
         let mut surface = self.setup.keys.clone();
         let map = match &self.setup.source {
             Source::Random { .. } => None,

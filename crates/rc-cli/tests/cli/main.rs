@@ -15,6 +15,8 @@ mod support;
 mod sweep;
 mod sweep_damaged;
 mod sweep_interrupted;
+mod sweep_mean;
 mod sweep_refused;
+mod sweep_shards;
 mod tools;
 mod watched;

@@ -1,0 +1,150 @@
+//! `rc sweep --error-of-mean`: a mean over realisations, of which as many are solved as its error asks for.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use rc_core::quantity::digits;
+use rc_sweep::files::{self, write_synced};
+use rc_sweep::memory::Budget;
+use rc_sweep::{ControlKind, Ensemble, EnsembleLevel, EnsembleMean, EnsemblePlan, WantedMean, Workers, to_json};
+
+use super::args::SweepArgs;
+use super::bar::RowBar;
+use super::interrupt;
+use super::messages;
+use super::realisations::Realisations;
+use super::surfaces::{Surfaces, SweptSurface};
+use crate::error::CliError;
+use crate::run::threads;
+use crate::scene::surface::Source;
+use crate::{terminal, text};
+
+/// The means in the folder of an ensemble.
+const MEAN_FILE: &str = "mean.json";
+
+/// Fewest elements per shortest wave, and per side.
+const COARSEST: [usize; 2] = [4, 64];
+
+/// Runs `rc sweep --error-of-mean`.
+///
+/// # Errors
+/// [`CliError`] of every kind.
+pub(super) fn run(args: &SweepArgs, wanted: &WantedMean) -> Result<(), CliError> {
+    check_alternatives(args)?;
+    let surfaces = Surfaces::new(args)?;
+    let run = &surfaces.run;
+    let missing = || CliError::input("out: the realisations of a mean are kept in a folder; give --out DIR");
+    let folder = run.out.clone().ok_or_else(missing)?;
+    let (surface, control) = (surfaces.only()?, surfaces.control());
+    let plan = plan(surface, control)?;
+    let threads = threads::start(run.threads)?;
+    let started = Instant::now();
+    let ensemble = Arc::new(Ensemble::start(plan, &folder, args.resume)?);
+    let n_before = ensemble.kept().rows().len();
+    let bar = RowBar::new(n_before, n_before, run.quiet);
+    let handled = (Arc::clone(&ensemble), bar.clone());
+    interrupt::install(move || interrupt::end(&handled.0.kept(), None, &handled.1));
+    let rows = Realisations::new(surface, control, (threads, run), bar.clone());
+    let budget = Budget::new(run.memory_limit);
+    let workers = |elements| Workers { threads, at_once: budget.solves_at_once(elements) };
+    let finished = ensemble.run(wanted, &rows, workers);
+    bar.clear();
+    let Some(means) = finished.map_err(messages::of_run)? else {
+        return Err(messages::mean_out_of_time(run.time_limit, ensemble.kept().rows().len()));
+    };
+    let path = folder.join(MEAN_FILE);
+    files::write_file(&path, |path| write_synced(path, to_json(&means).as_bytes()))?;
+    match (run.json, run.quiet) {
+        (true, _) => terminal::print(&to_json(&means))?,
+        (false, true) => {}
+        (false, false) => {
+            let seconds = digits(started.elapsed().as_secs_f64(), 3);
+            let before = if n_before > 0 { format!(" ({n_before} solves kept from before)") } else { String::new() };
+            let means: String = means.iter().map(lines).collect();
+            terminal::print(&format!(
+                "{means}{seconds} s, {threads} threads{before}\n\nwritten to {}\n",
+                path.display()
+            ))?;
+        }
+    }
+    messages::check_means(&means)
+}
+
+/// Flags that say otherwise which rows there are.
+fn check_alternatives(args: &SweepArgs) -> Result<(), CliError> {
+    let given = [
+        ("seeds", args.seeds.is_some(), "it chooses them; --seed says the first"),
+        ("shard", args.shard.is_some(), "what is solved follows from the results before"),
+        ("list", args.list.is_some(), "what is solved follows from the results before"),
+        ("fields", args.fields, "its rows have none"),
+        ("scenes", args.scene_files.len() > 1, "it is the mean of one scene"),
+    ];
+    match given.iter().find(|(_, given, _)| *given) {
+        None => Ok(()),
+        Some((name, _, why)) => Err(CliError::input(format_args!("{name}: does not go with --error-of-mean: {why}"))),
+    }
+}
+
+/// The grids that there may be: that of the scene, and all that halving it makes, as long as they resolve the waves.
+fn plan(surface: &SweptSurface, control: ControlKind) -> Result<EnsemblePlan, CliError> {
+    let Source::Random { spectrum, grid } = &surface.setup.source else {
+        return Err(CliError::input("error_of_mean: a height map has no other realisations; omit it"));
+    };
+    let mut planned = surface.planned()?;
+    if grid.nx() != grid.ny() {
+        return Err(CliError::input(format_args!("grid: a mean needs square grids, not {grid}")));
+    }
+    let coarsest = COARSEST[1].max(COARSEST[0] * spectrum.waves);
+    let halvings = (0..).map_while(|i| (grid.nx() % (1 << i) == 0 && i < 16).then(|| grid.nx() >> i));
+    let mut sides: Vec<usize> = halvings.take_while(|&side| side >= coarsest).collect();
+    sides.reverse();
+    if sides.len() < 2 {
+        return Err(CliError::input(format_args!(
+            "grid: the mean needs a grid that can be halved to at least {coarsest} elements per side, as {}, not {grid}",
+            2 * coarsest
+        )));
+    }
+    // Of the scene, these are not settings of all rows.
+    if let Some(keys) = planned.surface.as_object_mut() {
+        keys.remove("seed");
+        keys.remove("grid");
+    }
+    let plan = EnsemblePlan { control, surface: planned, sides, first_seed: spectrum.seed };
+    match plan.greatest_seed().and_then(|seed| i64::try_from(seed).ok()) {
+        Some(_) => Ok(plan),
+        None => Err(CliError::input(format_args!("seed: {} leaves no room for those that follow it", spectrum.seed))),
+    }
+}
+
+/// A mean for people.
+fn lines(mean: &EnsembleMean) -> String {
+    let percent = digits(100.0 * mean.relative_error, 2);
+    let value = text::with_error(mean.mean, mean.standard_error.hypot(mean.grid_error));
+    let state = if mean.status == "converged" { "" } else { "NOT CONVERGED: " };
+    let unit = if mean.control == "pressure" { "Pa" } else { "m" };
+    let head = format!(
+        "{state}mean {} at {} {} {unit}: {value} ({percent} %; statistics {}, grid {})\n",
+        mean.mean_of,
+        mean.control,
+        digits(mean.control_value, 6),
+        digits(mean.standard_error, 2),
+        digits(mean.grid_error, 2)
+    );
+    let names = ["grid", "realisations", "mean", "std deviation", "cost of each"].map(str::to_owned);
+    let levels: String = [names].into_iter().chain(mean.levels.iter().map(cells)).map(columns).collect();
+    let part = digits(mean.cost / mean.cost_of_plain_mean, 2);
+    format!("{head}{levels}  {part} of the estimated cost of the finest grid alone\n")
+}
+
+/// A level for people.
+fn cells(level: &EnsembleLevel) -> [String; 5] {
+    let found = &level.found;
+    let grid =
+        level.coarser_grid.map_or_else(|| level.grid.to_string(), |coarser| format!("{} - {coarser}", level.grid));
+    let [mean, deviation, cost] = [found.mean, found.variance.sqrt(), found.cost].map(|value| digits(value, 4));
+    [grid, found.realisations.to_string(), mean, deviation, cost]
+}
+
+fn columns([grid, realisations, mean, deviation, cost]: [String; 5]) -> String {
+    format!("  {grid:<12}{realisations:>13}{mean:>16}{deviation:>16}{cost:>14}\n")
+}

@@ -1,0 +1,91 @@
+//! Values of flags of `rc sweep`: a shard, a number of commands, a quantity.
+
+use std::num::NonZeroUsize;
+use std::str::FromStr;
+
+use rc_sweep::Shard;
+
+/// What can be averaged: numbers that every row has, and that converge as grids become finer.
+pub(crate) const QUANTITIES: [&str; 9] = [
+    "area_fraction",
+    "penetration",
+    "mean_pressure",
+    "mean_gap",
+    "rms_pressure_corrected",
+    "contact_perimeter",
+    "contact_stiffness",
+    "elastic_energy",
+    "h_max",
+];
+
+/// The shard, as written: `2/8`, `auto`, or `auto/8`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ShardSpec {
+    /// This one.
+    Given(Shard),
+    /// The one that job system or MPI launcher say, of so many if given.
+    Auto(Option<usize>),
+}
+
+impl FromStr for ShardSpec {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let Some(rest) = text.strip_prefix("auto") else {
+            return text.parse().map(Self::Given).map_err(|error| format!("{error}, nor auto or auto/8"));
+        };
+        let count = rest.strip_prefix('/').map(|count| count.trim().parse().ok().filter(|&count| count > 0));
+        match (rest, count) {
+            ("", _) => Ok(Self::Auto(None)),
+            (_, Some(Some(count))) => Ok(Self::Auto(Some(count))),
+            _ => Err(format!("auto may say of how many, as auto/8, not '{text}'")),
+        }
+    }
+}
+
+/// How many commands, as written: a number, or `rows`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ListSpec {
+    /// One for each row.
+    EachRow,
+    /// So many.
+    Parts(NonZeroUsize),
+}
+
+impl ListSpec {
+    /// What stands for no value.
+    pub(crate) const ROWS: &'static str = "rows";
+
+    /// The number of commands of a sweep of `rows`.
+    pub(super) fn count(self, rows: usize) -> usize {
+        match self {
+            Self::EachRow => rows,
+            Self::Parts(count) => count.get(),
+        }
+    }
+}
+
+impl FromStr for ListSpec {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let refuse = |_| format!("a list has from 1 part on, as 64, or rows, not '{text}'");
+        if text == Self::ROWS { Ok(Self::EachRow) } else { text.parse().map(Self::Parts).map_err(refuse) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_is_given_or_found_out() {
+        assert_eq!("2/8".parse(), Ok(ShardSpec::Given(Shard { index: 2, count: 8 })));
+        assert_eq!("auto".parse(), Ok(ShardSpec::Auto(None)));
+        assert_eq!("auto/8".parse(), Ok(ShardSpec::Auto(Some(8))));
+        for text in ["", "9/8", "auto/", "auto/0", "auto/x", "auto8", "automatic"] {
+            let error = text.parse::<ShardSpec>().expect_err(text);
+            assert!(error.contains("auto/8"), "'{text}': {error}");
+        }
+    }
+}
