@@ -65,7 +65,7 @@ impl Deal {
 
     /// The rows of `shard`, in order.
     pub(crate) fn rows(&self, shard: Shard, shape: SweepShape) -> Vec<usize> {
-        if shard.count == 1 {
+        if shard.count == 1 || shape.rows() == 0 {
             return (0..shape.rows()).collect();
         }
         if self.is_by_load() {
@@ -195,6 +195,9 @@ mod tests {
         assert!(!deal.fits(SweepShape { surfaces: 2, loads: 2 }));
         let deal = Deal { scenes: vec![SceneCosts { surfaces: 2, costs: vec![u64::MAX; 2] }] };
         let shape = SweepShape { surfaces: 2, loads: 2 };
+        let empty = Deal { scenes: vec![SceneCosts { surfaces: usize::MAX, costs: Vec::new() }] };
+        let shape_of_none = SweepShape { surfaces: usize::MAX, loads: 0 };
+        assert!(empty.fits(shape_of_none) && empty.rows(Shard { index: 1, count: 2 }, shape_of_none).is_empty());
         assert!(deal.fits(shape) && !deal.fits(SweepShape { surfaces: 2, loads: 1 }));
         dealt(&deal, shape, 3);
         assert!(deal.rows(Shard { index: usize::MAX, count: usize::MAX }, shape).is_empty());
