@@ -77,7 +77,7 @@ impl Estimated {
         let problem = ProblemSetup {
             surface: &self.loaded,
             contact: &contact,
-            kernel: contact.kernel()?,
+            kernel: contact.kernel().ok()?,
             budget: Budget::UNLIMITED,
         };
         let plan = match &self.first {
