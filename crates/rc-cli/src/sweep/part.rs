@@ -82,7 +82,7 @@ impl Estimated {
         };
         let plan = match &self.first {
             Some(first) => problem.plan_like(first).ok()?,
-            None => problem.plan().ok()?,
+            None => problem.first_plan().ok()?,
         };
         let seconds = plan.cost().cpu_seconds;
         self.first.get_or_insert(plan);

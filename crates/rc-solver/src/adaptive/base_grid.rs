@@ -4,8 +4,8 @@ use rc_core::{Field, Grid, HeightField, HeightSource};
 use rc_quadtree::TILE;
 
 use super::AdaptiveError;
-use super::estimate::{BYTES_PER_SAMPLE, base_bytes};
 use super::ladder::sides_of;
+use super::memory::{BYTES_PER_SAMPLE, base_bytes};
 use crate::descent::BlockLayout;
 use crate::parallel;
 

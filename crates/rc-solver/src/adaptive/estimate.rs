@@ -4,6 +4,7 @@ use rc_core::Field;
 
 use super::heights::Heights;
 use super::ladder::sides_of;
+use super::memory::base_bytes;
 use crate::Control;
 
 /// Contact area relative to σ0/(E* · rms slope) at low loads; the literature has 1.6 to 2.5, and this solver 2.0 to 2.2.
@@ -29,17 +30,6 @@ const GROWTH_PER_BORDER_LEVEL: f64 = 2.6;
 
 /// Bytes for each place of the smallest elements, used or not: the tables that find tiles, of a few meshes at a time.
 const BYTES_PER_PLACE: f64 = 0.02;
-
-/// Bytes for each element of the base grid.
-const BYTES_PER_BASE_ELEMENT: f64 = 130.0;
-
-/// Bytes for each sample of a surface on its whole grid, and for what coarser grids have of it.
-pub(super) const BYTES_PER_SAMPLE: f64 = 8.0 * 4.0 / 3.0;
-
-/// Memory of the base grid, in bytes: what the adaptive method needs at least.
-pub(super) fn base_bytes([nx, ny]: [usize; 2]) -> f64 {
-    BYTES_PER_BASE_ELEMENT * (nx as f64 * ny as f64)
-}
 
 /// An estimate of area, time and memory, from the surface and the load alone.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,10 +7,10 @@ use rc_core::HeightSource;
 use super::base_grid::base_sides;
 use super::checks::{check_elements, check_memory, first_split, with_border_level};
 use super::error::AdaptiveError;
-use super::estimate;
 use super::heights::Heights;
 use super::kernels::Kernels;
 use super::ladder::Ladder;
+use super::memory::base_bytes;
 use super::params::AdaptiveParams;
 
 /// Heights with their bounds, and the split kernels of the base grid.
@@ -38,7 +38,7 @@ impl<'a> Ground<'a> {
             return Err(AdaptiveError::BorderOfGrid { grid });
         }
         let sampled_bytes = Heights::sampled_bytes(&source, ladder);
-        check_memory(grid, params.memory_limit, estimate::base_bytes(base) + sampled_bytes, None)?;
+        check_memory(grid, params.memory_limit, base_bytes(base) + sampled_bytes, None)?;
         let heights = Heights::new(source, base)?;
         let kernels = Kernels::new(heights.base().grid(), params.border_level);
         Ok(Self { heights, kernels, sampled_bytes })

@@ -19,6 +19,7 @@ pub(crate) mod heights;
 mod kernels;
 pub(crate) mod ladder;
 mod level;
+mod memory;
 mod multilevel;
 mod nested_iteration;
 pub(crate) mod operator;

@@ -38,16 +38,13 @@ impl<'a> Shared<'a> {
 
     /// The heights of `source` on its whole grid.
     pub(super) fn heights<'s>(&'s self, source: &'s HeightSource<'a>) -> &'s Field {
-        match source.map() {
-            Some(map) => map,
-            None => match self.heights.get() {
-                Some(heights) => heights,
-                None => {
-                    // Not under the lock: a thread that waits for samples may take up another load.
-                    let heights = source.heights().into_owned();
-                    self.heights.get_or_init(|| heights)
-                }
-            },
+        if let Some(map) = source.map() {
+            return map;
         }
+        self.heights.get().unwrap_or_else(|| {
+            // Not under the lock: a thread that waits for samples may take up another load.
+            let heights = source.heights().into_owned();
+            self.heights.get_or_init(|| heights)
+        })
     }
 }

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use rc_core::{Field, Grid, HeightField, HeightSource};
 use rc_quadtree::{TILE, put_tile};
 
-use super::estimate::BYTES_PER_SAMPLE;
+use super::memory::BYTES_PER_SAMPLE;
 use crate::ProblemError;
 use crate::adaptive::ladder::Ladder;
 use crate::problem::HeightStatistics;
