@@ -143,7 +143,7 @@ impl Inspected {
 fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
     let channels = rc_heights::channels(&args.file)?;
     let several = channels.len() > 1;
-    match statistics(args, &channels) {
+    match statistics(args) {
         Err(CliError::Input(message)) if several && args.channel.is_none() && channels.iter().any(|c| c.is_height) => {
             Err(CliError::input(format_args!("{message}; the file has the channels {}", text::names(&channels))))
         }
@@ -162,17 +162,11 @@ fn list(channels: &[ChannelInfo]) -> String {
     if channels.len() > 1 { text::channels(channels) } else { String::new() }
 }
 
-/// The record of a height map, whose pictures are written, and what is to be said of its cell. Of a map without statistics, what is known
-/// is printed.
-fn statistics(args: &InspectArgs, channels: &[ChannelInfo]) -> Result<(SurfaceRecord, &'static str), CliError> {
+/// The record of a height map, whose pictures are written, and what is to be said of its cell.
+fn statistics(args: &InspectArgs) -> Result<(SurfaceRecord, &'static str), CliError> {
     let params = ReadParams { channel: args.channel.clone(), layout: args.layout };
     let map = heights::read(&args.file, &params, Scales { unit: args.unit, height_scale: args.height_scale })?;
-    let known = (map.missing() > 0 && !args.json).then(|| list(channels) + &text::known(&map));
-    let inspected = Inspected::new(&args.file, map, [args.cell, args.cell_y]);
-    if let (Err(_), Some(known)) = (&inspected, known) {
-        terminal::print(&known)?;
-    }
-    let Inspected { heights, record, note } = inspected?;
+    let Inspected { heights, record, note } = Inspected::new(&args.file, map, [args.cell, args.cell_y])?;
     draw(args, &heights, &record)?;
     Ok((record, note))
 }

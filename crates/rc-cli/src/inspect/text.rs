@@ -2,7 +2,7 @@
 
 use rc_core::Histogram;
 use rc_core::quantity::{digits, engineering};
-use rc_heights::{AreaParameters, ChannelInfo, HeightMap};
+use rc_heights::{AreaParameters, ChannelInfo};
 use rc_solver::PressureStatistics;
 
 use super::record::{SpectrumRow, SurfaceRecord, TreatmentRow};
@@ -34,18 +34,6 @@ fn more(before: &str, channels: &[ChannelInfo], after: &str) -> String {
         0 => String::new(),
         left => format!("{before}and {left} more{after}"),
     }
-}
-
-/// What is known of a map that has no statistics.
-pub(crate) fn known(map: &HeightMap) -> String {
-    let grid = map.heights.grid();
-    let size = map.sides.map_or_else(|| "not in the file".to_owned(), cell);
-    let lines = [
-        ("points", format!("{} x {}", grid.nx(), grid.ny())),
-        ("size", size),
-        ("missing", format!("{} of {} points", map.missing(), grid.len())),
-    ];
-    aligned(&lines)
 }
 
 /// Statistics of a height map, with a short table of its spectrum and its distribution.

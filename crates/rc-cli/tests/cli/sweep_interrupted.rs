@@ -114,10 +114,10 @@ fn a_torn_last_line_is_solved_again_and_the_others_are_not() {
 #[test]
 fn settings_that_differ_are_named() {
     let place = Place::new();
-    place.write("map.csv", "1e-6,2e-6\n3e-6,1e-6\n");
+    place.write("map.csv", "1e-6,2e-6,1e-6\n3e-6,1e-6,2e-6\n");
     let map = map("sweep", "map.csv", &["--pressures", "1e5,2e5", "--quiet", "--out", "m"]);
     assert_solved(&place.run(&map));
-    place.write("map.csv", "1e-6,2e-6\n3e-6,2e-6\n");
+    place.write("map.csv", "1e-6,2e-6,1e-6\n3e-6,2e-6,2e-6\n");
     assert_refused(&place.run(&[&map[..], &["--resume"]].concat()), "surfaces[0].map.crc32 is ");
 
     let run = |pressures: &str, more: &[&str]| {
