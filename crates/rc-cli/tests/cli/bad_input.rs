@@ -146,7 +146,7 @@ fn write_bad_maps(place: &Place) -> Vec<(&'static str, &'static str)> {
     place.write("not.npy", "1,2\n3,4\n");
     place.write("ragged.csv", "1,2,3\n4,5\n");
     place.write("text.csv", "1,2\n3,four\n");
-    place.write("nan.csv", "1,2\n3,nan\n");
+    place.write("nan.csv", "1,2,1\n3,nan,4\n");
     place.write("empty.csv", "");
     place.write("map.bin", "1,2\n3,4\n");
     vec![
