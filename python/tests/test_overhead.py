@@ -6,7 +6,6 @@ import sys
 import textwrap
 import time
 
-import numpy as np
 import pytest
 
 import roughcontact as rc
@@ -21,8 +20,8 @@ def test_a_small_solve_spends_little_outside_of_the_solver(method):
         started = time.perf_counter()
         result = rc.solve(heights, **keys)
         outside.append(time.perf_counter() - started - result._source.wall_seconds)
-    # The quicker calls: where others use the machine, waiting for a processor is no work.
-    seconds = np.quantile(outside, 0.25)
+    # The fastest call: where others use the machine, the rest is waiting for a processor.
+    seconds = min(outside)
     assert seconds < 0.3e-3, f"{1e3 * seconds:.3f} ms"
 
 
