@@ -3,6 +3,7 @@
 use std::convert::Infallible;
 use std::sync::Arc;
 
+use rayon::prelude::*;
 use rc_core::{Elasticity, Field, Grid, HeightField as _, HeightSource, PeriodicCell, Silent, Units};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Spectral;
@@ -204,6 +205,13 @@ fn loads_that_share_a_surface_have_the_digits_of_their_own_plans() {
         }
         assert!(methods.contains(&Method::Uniform) && methods.contains(&Method::Adaptive), "{methods:?}");
     }
+    // Side by side in one pool, where a thread that waits takes up another load.
+    let first = ContactProblem::new(HeightSource::shared(surface, square(256)), LOAD);
+    let first = first.plan(&SolveParams::default()).expect("a plan");
+    let area = |load: &Control| first.under(*load).expect("a plan").solve(&Silent).expect("solvable").area().fraction;
+    let together: Vec<f64> = loads.par_iter().map(area).collect();
+    let one_by_one: Vec<f64> = loads.iter().map(area).collect();
+    assert_eq!(together, one_by_one);
     let error = ContactProblem::new(&map, LOAD).plan(&SolveParams::default()).expect("a plan");
     assert!(error.under(Control::MeanPressure(-1.0)).is_err(), "a load is checked");
 }

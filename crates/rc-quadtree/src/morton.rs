@@ -22,8 +22,8 @@ const fn spread(v: u32) -> u64 {
     (v | (v << 1)) & 0x5555_5555_5555_5555
 }
 
-/// Moves bit 2i of `v` to bit i; odd bits are dropped.
-fn gather(v: u64) -> u32 {
+/// Moves bit 2i of `v` to bit i; odd bits are dropped. The inverse of the spreading in [`morton_code`].
+pub(crate) fn gather(v: u64) -> u32 {
     let mut v = v & 0x5555_5555_5555_5555;
     v = (v | (v >> 1)) & 0x3333_3333_3333_3333;
     v = (v | (v >> 2)) & 0x0F0F_0F0F_0F0F_0F0F;

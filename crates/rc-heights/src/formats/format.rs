@@ -49,6 +49,34 @@ pub enum Format {
     Vk4,
 }
 
+impl Format {
+    /// All of them.
+    pub const ALL: [Self; 22] = [
+        Self::Npy,
+        Self::Csv,
+        Self::Xyz,
+        Self::Surfer,
+        Self::Gsf,
+        Self::Gwy,
+        Self::Hdf5,
+        Self::Ibw,
+        Self::Mat,
+        Self::NetCdf,
+        Self::Sdf,
+        Self::X3p,
+        Self::Png,
+        Self::Tiff,
+        Self::Sur,
+        Self::Nanoscope,
+        Self::Opd,
+        Self::MetroPro,
+        Self::Al3d,
+        Self::Plu,
+        Self::Plux,
+        Self::Vk4,
+    ];
+}
+
 impl std::fmt::Display for Format {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {

@@ -1,6 +1,6 @@
 //! Keys: the place and size of one square, sorted along the Morton curve.
 
-use crate::morton::morton_code;
+use crate::morton::{gather, morton_code};
 
 /// Deepest level a key can hold: squares of side 2^-20 of a root square.
 pub const MAX_LEVEL: u32 = 20;
@@ -77,16 +77,6 @@ impl std::fmt::Debug for Key {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "Key(level {}, ix {}, iy {})", self.level(), self.ix(), self.iy())
     }
-}
-
-/// Moves bit 2i of `v` to bit i; the inverse of the spreading in [`morton_code`].
-fn gather(v: u64) -> u32 {
-    let mut v = v & 0x5555_5555_5555_5555;
-    v = (v | (v >> 1)) & 0x3333_3333_3333_3333;
-    v = (v | (v >> 2)) & 0x0F0F_0F0F_0F0F_0F0F;
-    v = (v | (v >> 4)) & 0x00FF_00FF_00FF_00FF;
-    v = (v | (v >> 8)) & 0x0000_FFFF_0000_FFFF;
-    (v | (v >> 16)) as u32
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use super::AdaptiveError;
 use super::ladder::sides_of;
 use super::memory::{BYTES_PER_SAMPLE, base_bytes};
 use crate::descent::BlockLayout;
+use crate::factors::has_small_factors;
 use crate::parallel;
 
 /// Elements of the base grid for the shortest wave: what interpolates heights to other levels needs no more.
@@ -82,7 +83,7 @@ fn uneven_sides(finest: Grid, n: usize) -> Option<[usize; 2]> {
     let candidates = |side: usize| -> Vec<usize> {
         let least = side.div_ceil(n).next_multiple_of(TILE).max(SMALLEST_WIDTH);
         let most = ((1.0 + MOST_ADDED) * side as f64 / n as f64) as usize;
-        (least..=most).step_by(TILE).filter(|&side| has_small_factors(side)).collect()
+        (least..=most).step_by(TILE).filter(|&side| has_small_factors(side, GREATEST_FACTOR)).collect()
     };
     let [along_x, along_y] = sides_of(finest).map(candidates);
     let oblong = |[nx, ny]: [usize; 2]| {
@@ -95,15 +96,6 @@ fn uneven_sides(finest: Grid, n: usize) -> Option<[usize; 2]> {
         let is_oblong = |sides| oblong(sides).max(OBLONG[0]);
         is_oblong(a).total_cmp(&is_oblong(b)).then((a[0] * a[1]).cmp(&(b[0] * b[1])))
     })
-}
-
-fn has_small_factors(mut side: usize) -> bool {
-    for factor in 2..=GREATEST_FACTOR {
-        while side.is_multiple_of(factor) {
-            side /= factor;
-        }
-    }
-    side == 1
 }
 
 /// The sides of a base grid of `base` elements along x, if they fit.

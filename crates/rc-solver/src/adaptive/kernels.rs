@@ -8,6 +8,7 @@ use rc_kernel::{ScaleSplit, SplitParams};
 use super::gap_operator::PreparedGap;
 use super::operator::Prepared;
 use super::split::{GapSplit, N_SPLITS};
+use crate::once::made;
 
 /// L and its approximate inverse by all splits, for one base grid and number of border levels.
 pub(super) struct Kernels {
@@ -15,15 +16,14 @@ pub(super) struct Kernels {
     border_level: usize,
     quick: OnceLock<Prepared<f32>>,
     preconditioner: OnceLock<Prepared<f32>>,
-    response: OnceLock<Prepared<f32>>,
     gaps: [OnceLock<PreparedGap>; N_SPLITS],
 }
 
 impl Kernels {
     /// Nothing is made yet.
     pub(super) fn new(base: Grid, border_level: usize) -> Self {
-        let (quick, preconditioner, response) = Default::default();
-        Self { base, border_level, quick, preconditioner, response, gaps: Default::default() }
+        let (quick, preconditioner, gaps) = Default::default();
+        Self { base, border_level, quick, preconditioner, gaps }
     }
 
     /// Kernels of the same base grid, none of which is made yet.
@@ -50,21 +50,6 @@ impl Kernels {
 
     /// L in single precision, for the contact stiffness and for rows of displacements.
     pub(super) fn response(&self) -> &Prepared<f32> {
-        let single = self.gaps.iter().filter_map(OnceLock::get).find_map(PreparedGap::single);
-        single.unwrap_or_else(|| {
-            made(&self.response, || {
-                Prepared::displacement(&ScaleSplit::new(SplitParams::certified()), self.base, self.border_level)
-            })
-        })
+        self.gap(GapSplit::fastest()).single().expect("the fastest split is in single precision")
     }
-}
-
-/// The value of `cell`, made when there is none yet. Not under a lock: threads that wait for each other inside `make` may take up another
-/// load, which wants the same value.
-fn made<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
-    if let Some(value) = cell.get() {
-        return value;
-    }
-    let value = make();
-    cell.get_or_init(|| value)
 }

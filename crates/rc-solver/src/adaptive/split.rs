@@ -38,6 +38,11 @@ impl GapSplit {
         self.index
     }
 
+    /// The fastest one, in single precision.
+    pub(super) fn fastest() -> Self {
+        Self::for_error(SPLITS[0].0).expect("a split for the largest error")
+    }
+
     /// The most accurate one.
     pub(super) fn most_accurate() -> Self {
         Self::for_error(SplitParams::SMALLEST_ERROR).expect("a split for the smallest error")

@@ -6,6 +6,7 @@ use rc_core::{Field, HeightSource};
 
 use crate::AdaptiveError;
 use crate::adaptive::{AdaptiveParams, Ground};
+use crate::once::made;
 
 /// Heights as the methods need them, evaluated when the first load needs them.
 #[derive(Default)]
@@ -41,10 +42,6 @@ impl<'a> Shared<'a> {
         if let Some(map) = source.map() {
             return map;
         }
-        self.heights.get().unwrap_or_else(|| {
-            // Not under the lock: a thread that waits for samples may take up another load.
-            let heights = source.heights().into_owned();
-            self.heights.get_or_init(|| heights)
-        })
+        made(&self.heights, || source.heights().into_owned())
     }
 }

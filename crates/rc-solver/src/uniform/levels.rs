@@ -3,6 +3,7 @@
 use rc_core::{Field, Grid};
 
 use super::interpolation::interpolate;
+use crate::factors::has_small_factors;
 
 /// Elements across a long cell on its coarsest grid, at least.
 const SMALLEST_WIDTH: usize = 8;
@@ -65,7 +66,7 @@ fn half(side: usize) -> Option<usize> {
 /// Half the side where that is a side to go on with, else a little more.
 fn about_half(side: usize) -> usize {
     match half(side) {
-        Some(half) if half.is_multiple_of(2) || has_small_factors(half) => half,
+        Some(half) if half.is_multiple_of(2) || has_small_factors(half, GREATEST_FACTOR) => half,
         _ => {
             let least = side.div_ceil(2);
             let k = (least / MULTIPLES[0]).max(1).ilog2();
@@ -73,15 +74,6 @@ fn about_half(side: usize) -> usize {
             sides.filter(|&side| side >= least).min().unwrap_or(least)
         }
     }
-}
-
-fn has_small_factors(mut side: usize) -> bool {
-    for factor in 2..=GREATEST_FACTOR {
-        while side.is_multiple_of(factor) {
-            side /= factor;
-        }
-    }
-    side == 1
 }
 
 /// Heights that are looked at for the quartile, at most.
