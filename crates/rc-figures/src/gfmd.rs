@@ -6,7 +6,8 @@
 
 mod beside;
 mod drawing;
-mod matlab;
+#[cfg(test)]
+mod mat_file;
 mod published;
 mod tables;
 

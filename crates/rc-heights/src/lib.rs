@@ -41,8 +41,8 @@ mod units;
 
 pub use error::{FormatError, ReadError};
 pub use formats::{
-    ChannelInfo, Format, Layout, LayoutError, ReadParams, channels, channels_of, format_of, may_have_sides, npy, parse,
-    parse_with, read, read_with, text,
+    ChannelInfo, Format, Layout, LayoutError, MatArray, ReadParams, channels, channels_of, format_of, mat_arrays,
+    may_have_sides, npy, parse, parse_with, read, read_with, text,
 };
 pub use map::{BorderStep, HeightMap};
 pub use parameters::AreaParameters;

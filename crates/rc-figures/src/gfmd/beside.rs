@@ -1,13 +1,12 @@
 //! Energy, mean gap and stress beside a copy of the files of the published reference.
 
-use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result};
+use rc_heights::{MatArray, mat_arrays};
 
-use super::matlab::{Array, arrays};
 use super::{Gfmd, Point};
 use crate::{Table, number};
 
@@ -26,7 +25,7 @@ pub fn beside(figure: &Gfmd, folder: &Path) -> Result<Vec<Table>> {
 }
 
 /// The arrays of one file.
-struct Data(BTreeMap<String, Array>);
+struct Data(Vec<MatArray>);
 
 impl Data {
     fn read(folder: &Path, name: &str) -> Result<Self> {
@@ -34,11 +33,11 @@ impl Data {
         let bytes = fs::read(&path).with_context(|| {
             format!("could not read {}; --data is the folder Data of the published files", path.display())
         })?;
-        Ok(Self(arrays(&bytes).with_context(|| path.display().to_string())?))
+        Ok(Self(mat_arrays(&bytes).with_context(|| path.display().to_string())?))
     }
 
-    fn array(&self, name: &str) -> Result<&Array> {
-        self.0.get(name).with_context(|| format!("no array {name}"))
+    fn array(&self, name: &str) -> Result<&MatArray> {
+        self.0.iter().find(|array| array.name == name).with_context(|| format!("no array {name}"))
     }
 }
 
@@ -124,7 +123,7 @@ fn density_at(edges: &[f64], density: &[f64], stress: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gfmd::matlab::tests::file;
+    use crate::gfmd::mat_file::file;
     use crate::{Figure as _, Preset};
 
     #[test]

@@ -46,14 +46,36 @@ enum Stored<'a> {
     Deflated(&'a [u8]),
 }
 
+/// An array of a MATLAB 5 file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MatArray {
+    /// Its name.
+    pub name: String,
+    /// Rows, at least 1.
+    pub rows: usize,
+    /// Values, column by column.
+    pub values: Vec<f64>,
+}
+
+impl MatArray {
+    /// The columns.
+    pub fn columns(&self) -> impl Iterator<Item = &[f64]> {
+        self.values.chunks(self.rows)
+    }
+}
+
+/// All real arrays of numbers with two dimensions in a MATLAB 5 file, vectors too. Arrays without a value are passed over.
+///
+/// # Errors
+/// [`FormatError`].
+pub fn mat_arrays(bytes: &[u8]) -> Result<Vec<MatArray>, FormatError> {
+    let found = arrays(bytes)?;
+    let whole = found.iter().filter(|array| array.rows > 0 && array.columns > 0);
+    whole.map(|array| Ok(MatArray { name: array.name.clone(), rows: array.rows, values: array.stored()?.1 })).collect()
+}
+
 pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
-    let order = match bytes.get(126..HEADER) {
-        Some(b"IM") => Endian::Little,
-        Some(b"MI") => Endian::Big,
-        Some(_) => return Err(refused(Format::Mat, "byte order", "another mark", "IM or MI")),
-        None => return Err(FormatError::HeaderCutShort { format: Format::Mat }),
-    };
-    let arrays = Rc::new(arrays(&bytes[HEADER..], order)?);
+    let arrays = Rc::new(arrays(bytes)?);
     let is_map = |array: &Array<'_>| array.rows > 1 && array.columns > 1 && array.coordinate().is_none();
     let maps = (0..arrays.len()).filter(|i| is_map(&arrays[*i]));
     let channel = |i: usize| {
@@ -64,9 +86,19 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
 }
 
 /// The elements of a file that are real arrays of numbers with two dimensions.
-fn arrays(mut bytes: &[u8], order: Endian) -> Result<Vec<Array<'_>>, FormatError> {
-    let mut arrays = Vec::new();
-    while bytes.len() >= 8 {
+fn arrays(file: &[u8]) -> Result<Vec<Array<'_>>, FormatError> {
+    let order = match file.get(126..HEADER) {
+        Some(b"IM") => Endian::Little,
+        Some(b"MI") => Endian::Big,
+        Some(_) => return Err(refused(Format::Mat, "byte order", "another mark", "IM or MI")),
+        None => return Err(FormatError::HeaderCutShort { format: Format::Mat }),
+    };
+    let (mut bytes, mut arrays) = (&file[HEADER..], Vec::new());
+    while !bytes.is_empty() {
+        if bytes.len() < 8 {
+            let reason = format!("{} bytes of an element, whose start has 8", bytes.len());
+            return Err(FormatError::Container { format: Format::Mat, reason });
+        }
         let (kind, size) = (order.u32_at(bytes, 0), order.u32_at(bytes, 4) as usize);
         let content = bytes.get(8..).and_then(|rest| rest.get(..size));
         let Some(content) = content else {
@@ -136,6 +168,12 @@ impl<'a> Array<'a> {
 
     /// The values, row by row.
     fn values(&self) -> Result<(Grid, Vec<f64>), FormatError> {
+        let (grid, stored) = self.stored()?;
+        Ok((grid, transposed(&stored, grid)))
+    }
+
+    /// The values as they are stored, column by column, and the grid of rows.
+    fn stored(&self) -> Result<(Grid, Vec<f64>), FormatError> {
         let grid = Grid::new(self.columns, self.rows)?;
         // Values may be stored in smaller types than the class says; a byte each is the least.
         let (needed, found) = (grid.len() as u64, self.stored.most());
@@ -153,7 +191,7 @@ impl<'a> Array<'a> {
             None if kind == 12 || kind == 13 => long_integers(data, kind == 12, self.order, grid)?,
             None => return Err(refused(Format::Mat, "type of values", &kind, "that of real numbers")),
         };
-        Ok((grid, transposed(&stored, grid)))
+        Ok((grid, stored))
     }
 
     /// Which axis the array has coordinates of, by its name.
@@ -237,4 +275,72 @@ fn long_integers(data: &[u8], signed: bool, order: Endian, grid: Grid) -> Result
     }
     let value = |at| if signed { order.i64_at(data, at) as f64 } else { order.i64_at(data, at).cast_unsigned() as f64 };
     Ok((0..grid.len()).map(|i| value(8 * i)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write as _;
+
+    use flate2::Compression;
+    use flate2::write::ZlibEncoder;
+
+    use super::*;
+
+    fn tagged(kind: u32, data: &[u8]) -> Vec<u8> {
+        let mut bytes = [kind.to_le_bytes(), (data.len() as u32).to_le_bytes()].concat();
+        bytes.extend(data);
+        bytes.resize(bytes.len().next_multiple_of(8), 0);
+        bytes
+    }
+
+    /// A file with one array of doubles, compressed.
+    fn file(arrays: &[(&str, usize, &[f64])]) -> Vec<u8> {
+        let mut bytes = vec![b' '; 124];
+        bytes.extend(b"\0\x01IM");
+        for (name, rows, values) in arrays {
+            let dimensions: Vec<u8> =
+                [*rows as i32, (values.len() / rows) as i32].iter().flat_map(|n| n.to_le_bytes()).collect();
+            let values: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+            let parts = [
+                tagged(6, &[6, 0, 0, 0, 0, 0, 0, 0]),
+                tagged(5, &dimensions),
+                tagged(1, name.as_bytes()),
+                tagged(9, &values),
+            ];
+            let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());
+            encoder.write_all(&tagged(MATRIX, &parts.concat())).expect("memory");
+            let packed = encoder.finish().expect("memory");
+            bytes.extend([COMPRESSED.to_le_bytes(), (packed.len() as u32).to_le_bytes()].concat());
+            bytes.extend(packed);
+        }
+        bytes
+    }
+
+    #[test]
+    fn arrays_are_read_by_name() {
+        let bytes = file(&[("p_bar", 2, &[1.0, 2.5]), ("table", 2, &[1.0, 2.0, 3.0, 4.0])]);
+        let [p_bar, table] = mat_arrays(&bytes).expect("a file").try_into().expect("two arrays");
+        assert_eq!((p_bar.name.as_str(), table.name.as_str()), ("p_bar", "table"));
+        assert_eq!(p_bar.values, [1.0, 2.5]);
+        assert_eq!(table.columns().collect::<Vec<_>>(), [&[1.0, 2.0], &[3.0, 4.0]]);
+    }
+
+    #[test]
+    fn small_elements_stand_in_their_tag() {
+        let mut parts = tagged(6, &[6, 0, 0, 0, 0, 0, 0, 0]);
+        parts.extend(tagged(5, &[3, 0, 0, 0, 1, 0, 0, 0]));
+        parts.extend([1, 0, 1, 0, b'x', 0, 0, 0]);
+        parts.extend([2, 0, 3, 0, 7, 8, 9, 0]);
+        let bytes = [vec![0; 126], b"IM".to_vec(), tagged(MATRIX, &parts)].concat();
+        let expected = MatArray { name: "x".into(), rows: 3, values: vec![7.0, 8.0, 9.0] };
+        assert_eq!(mat_arrays(&bytes), Ok(vec![expected]));
+    }
+
+    #[test]
+    fn what_is_cut_off_is_an_error() {
+        let whole = file(&[("p_bar", 2, &[1.0, 2.5])]);
+        for length in (0..whole.len()).filter(|length| *length != HEADER) {
+            assert!(mat_arrays(&whole[..length]).is_err(), "{length} of {} bytes", whole.len());
+        }
+    }
 }

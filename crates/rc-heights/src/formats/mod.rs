@@ -47,6 +47,7 @@ pub(crate) use fields::shown;
 pub use format::Format;
 pub use layout::{Layout, LayoutError};
 pub(crate) use lines::{data_lines, number, words};
+pub use mat::{MatArray, mat_arrays};
 pub(crate) use netcdf::hdf5_table;
 
 use self::channel::{Channels, chosen, named, only};
