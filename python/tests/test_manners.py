@@ -126,8 +126,10 @@ def test_an_interrupt_of_a_sweep_carries_its_rows():
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 def test_an_interrupt_ends_the_command(tmp_path):
-    line = [sys.executable, "-m", "roughcontact", "solve", "--waves", "64", "--method", "uniform", "--tolerance", "1e-12"]
-    process = subprocess.Popen([*line, "--pressure", "4e5", "--out", tmp_path / "r"], stderr=subprocess.PIPE, text=True)
+    # A sweep that takes minutes on any machine, so that the interrupt never comes after its end.
+    line = [sys.executable, "-m", "roughcontact", "sweep", "--waves", "16", "--grid", "128", "--method", "uniform"]
+    line += ["--pressures", "1e3:1e6:100000", "--out", tmp_path / "r"]
+    process = subprocess.Popen(line, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     time.sleep(1.0)
     process.send_signal(signal.SIGINT)
     _, errors = process.communicate(timeout=60)
