@@ -1,7 +1,11 @@
 //! Documents whose words are people's and whose numbers are a program's: blocks between `<!-- numbers: name -->` and
 //! `<!-- end of numbers -->`.
 
-use crate::repository::Sources;
+use std::fs;
+
+use anyhow::{Context, Result};
+
+use crate::repository::{self, Sources};
 
 /// Begins a block; the name and ` -->` follow.
 pub const BEGIN: &str = "<!-- numbers: ";
@@ -24,4 +28,32 @@ pub fn fill(path: &str, sources: &Sources, block: impl Fn(&str) -> Result<String
         rest = after;
     }
     Ok(text + rest)
+}
+
+/// Rewrites the documents at the paths `documents` of this repository by `render`, which is given a path and the sources.
+///
+/// # Errors
+/// With what `render` says, or when a document cannot be written.
+pub fn rewrite<'a>(
+    documents: impl IntoIterator<Item = &'a str>,
+    render: impl Fn(&str, &Sources) -> Result<String, String>,
+) -> Result<()> {
+    let sources = repository::read_sources(&repository::root())?;
+    for document in documents {
+        let text = render(document, &sources).map_err(anyhow::Error::msg)?;
+        let path = repository::root().join(document);
+        fs::write(&path, text).with_context(|| format!("could not write {}", path.display()))?;
+    }
+    Ok(())
+}
+
+/// The complaint about the document at `path` that differs from what `render` makes of it; `cure` says which run it
+/// shall agree with and which command rewrites it.
+#[must_use]
+pub fn complaint(path: &str, sources: &Sources, rendered: Result<String, String>, cure: &str) -> Option<String> {
+    match rendered {
+        Ok(text) if sources.get(path) == Some(&text) => None,
+        Ok(_) => Some(format!("{path} has other numbers than {cure}")),
+        Err(complaint) => Some(complaint),
+    }
 }

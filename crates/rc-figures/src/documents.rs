@@ -2,14 +2,12 @@
 //!
 //! Blocks as in [`crate::blocks`]. `cargo xtask gfmd --archive` and `cargo xtask challenge --archive` write them, `cargo xtask tidy` compares.
 
-use std::fs;
-
-use anyhow::{Context, Result};
+use anyhow::Result;
 use rc_core::quantity::digits;
 use toml::Table as Toml;
 
 use crate::blocks;
-use crate::repository::{self, Sources};
+use crate::repository::Sources;
 
 /// A document and the command that archives its run.
 const DOCUMENTS: [(&str, &str); 2] = [("docs/gfmd.md", "gfmd"), ("docs/challenge.md", "challenge")];
@@ -19,24 +17,15 @@ const DOCUMENTS: [(&str, &str); 2] = [("docs/gfmd.md", "gfmd"), ("docs/challenge
 /// # Errors
 /// When an archived run lacks a number, or a document cannot be written.
 pub(crate) fn update() -> Result<()> {
-    let sources = repository::read_sources(&repository::root())?;
-    for (document, _) in DOCUMENTS {
-        let text = render(document, &sources).map_err(anyhow::Error::msg)?;
-        let path = repository::root().join(document);
-        fs::write(&path, text).with_context(|| format!("could not write {}", path.display()))?;
-    }
-    Ok(())
+    blocks::rewrite(DOCUMENTS.map(|(document, _)| document), render)
 }
 
 /// Complains when a document has other numbers than its archived run.
 #[must_use]
 pub fn check(sources: &Sources) -> Vec<String> {
-    let complaint = |(document, command): (&str, &str)| match render(document, sources) {
-        Ok(text) if sources.get(document).is_some_and(|document| *document == text) => None,
-        Ok(_) => Some(format!(
-            "{document} has other numbers than data/runs/{command}/; run `cargo xtask {command} --archive`, and review what changed"
-        )),
-        Err(complaint) => Some(complaint),
+    let complaint = |(document, command): (&str, &str)| {
+        let cure = format!("data/runs/{command}/; run `cargo xtask {command} --archive`, and review what changed");
+        blocks::complaint(document, sources, render(document, sources), &cure)
     };
     DOCUMENTS.into_iter().filter_map(complaint).collect()
 }

@@ -6,7 +6,7 @@ use std::{fs, io};
 
 use anyhow::{Context, Result};
 
-/// Entries of the root that are not sources: history and results.
+/// Entries of the root that are not sources: history and results. Folders that a tool marks as its cache (`CACHEDIR.TAG`) are not sources either.
 const RESULTS: &[&str] = &[".git", "figures", "rc-result", "target"];
 
 /// The root of the repository.
@@ -42,7 +42,7 @@ pub fn read_sources(root: &Path) -> Result<Sources> {
         for entry in fs::read_dir(&folder).with_context(|| format!("could not list {}", folder.display()))? {
             let path = entry?.path();
             let relative = path.strip_prefix(root)?.to_string_lossy().replace('\\', "/");
-            if RESULTS.contains(&relative.as_str()) {
+            if RESULTS.contains(&relative.as_str()) || path.join("CACHEDIR.TAG").exists() {
                 continue;
             }
             if path.is_dir() {

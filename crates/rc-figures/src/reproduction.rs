@@ -6,15 +6,13 @@
 
 mod rows;
 
-use std::fs;
-
-use anyhow::{Context, Result};
+use anyhow::Result;
 use rc_core::quantity::digits;
 use rows::{FIG5, ROWS, Row};
 use toml::Table as Toml;
 
 use crate::blocks;
-use crate::repository::{self, Sources};
+use crate::repository::Sources;
 
 const DOCUMENT: &str = "docs/reproduction.md";
 const RUN: &str = "data/runs/paper/";
@@ -25,22 +23,14 @@ const PAPER: &str = "data/paper.csv";
 /// # Errors
 /// When the archived run lacks a number, or the document cannot be written.
 pub fn update() -> Result<()> {
-    let sources = repository::read_sources(&repository::root())?;
-    let text = render(&sources).map_err(anyhow::Error::msg)?;
-    let path = repository::root().join(DOCUMENT);
-    fs::write(&path, text).with_context(|| format!("could not write {}", path.display()))
+    blocks::rewrite([DOCUMENT], |_, sources| render(sources))
 }
 
 /// Complains when the document has other numbers than the archived run.
 #[must_use]
 pub fn check(sources: &Sources) -> Vec<String> {
-    match render(sources) {
-        Ok(text) if sources.get(DOCUMENT).is_some_and(|document| *document == text) => Vec::new(),
-        Ok(_) => vec![format!(
-            "{DOCUMENT} has other numbers than {RUN}; run `cargo xtask reproduction`, and review what changed"
-        )],
-        Err(complaint) => vec![complaint],
-    }
+    let cure = format!("{RUN}; run `cargo xtask reproduction`, and review what changed");
+    blocks::complaint(DOCUMENT, sources, render(sources), &cure).into_iter().collect()
 }
 
 /// The document with its blocks filled in.
@@ -147,6 +137,7 @@ fn ours(row: &Row, sources: &Sources) -> Result<(f64, Option<f64>), String> {
 mod tests {
     use super::*;
     use crate::blocks::{BEGIN, END};
+    use crate::repository;
 
     fn sources(document: &str) -> Sources {
         let files = [

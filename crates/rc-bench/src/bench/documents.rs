@@ -1,10 +1,8 @@
 //! The tables in README.md and docs/benchmarks.md, from `data/bench/`.
 
-use std::fs;
-
-use anyhow::{Context, Result};
+use anyhow::Result;
 use rc_figures::blocks;
-use rc_figures::repository::{self, Sources};
+use rc_figures::repository::Sources;
 use toml::Table as Toml;
 
 use super::behind;
@@ -31,23 +29,14 @@ pub(super) const SCALE_MACHINE: &str = "data/bench/scale.toml";
 /// # Errors
 /// When a file is missing or not as expected.
 pub fn update() -> Result<()> {
-    let sources = repository::read_sources(&repository::root())?;
-    for document in DOCUMENTS {
-        let text = render(document, &sources).map_err(anyhow::Error::msg)?;
-        let path = repository::root().join(document);
-        fs::write(&path, text).with_context(|| format!("could not write {}", path.display()))?;
-    }
-    Ok(())
+    blocks::rewrite(DOCUMENTS, render)
 }
 
 /// Complains when a document has other numbers than the archived run.
 #[must_use]
 pub fn check(sources: &Sources) -> Vec<String> {
-    let complaint = |document: &str| match render(document, sources) {
-        Ok(text) if sources.get(document) == Some(&text) => None,
-        Ok(_) => Some(format!("{document} has other numbers than {BENCH}; run `cargo xtask bench --tables`")),
-        Err(complaint) => Some(complaint),
-    };
+    let cure = format!("{BENCH}; run `cargo xtask bench --tables`");
+    let complaint = |document: &str| blocks::complaint(document, sources, render(document, sources), &cure);
     DOCUMENTS.into_iter().filter_map(complaint).collect()
 }
 
@@ -127,7 +116,10 @@ fn machine(text: &str, path: &str) -> Result<String, String> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use rc_figures::blocks::{BEGIN, END};
+    use rc_figures::repository;
 
     use super::*;
     use crate::bench::levels::tests::rows;

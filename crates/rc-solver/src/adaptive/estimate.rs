@@ -51,9 +51,8 @@ impl Estimate {
     /// uniform method 0.19 at 1 %, 0.29 at 7 %, 0.9 at 29 %, 1.3 at 61 % and 1.9 at 89 %.
     pub(crate) const GREATEST_ADAPTIVE_AREA: f64 = 0.35;
 
-    /// Above this part of the cell in tiles near contact, as the base grid finds it, the uniform grid is faster. Measured on 27 scenes, 1024² to 4096²,
-    /// H = 0.3 and 0.8, 5 to 32 elements for the shortest wave, 1 % to 25 % contact: ratio of the times of the adaptive to the uniform method 0.2 to 0.9 up to a
-    /// fraction of 0.23 (but for two: 1.0 and 1.3), 0.9 to 1.1 at 0.37 to 0.43, 1.3 to 2.1 above (docs/adaptive-solver.md).
+    /// Above this fraction of the cell in tiles near contact, as the base grid finds it, the uniform grid is faster: measured on 27 scenes
+    /// (docs/adaptive-solver.md).
     pub(crate) const GREATEST_TILE_FRACTION: f64 = 0.35;
 
     pub(super) fn new(heights: &Heights<'_>, border_level: usize, control: Control) -> Self {

@@ -14,7 +14,8 @@ pub struct SolveParams {
     pub method: Option<Method>,
     /// How often elements at contact edges are halved beyond the grid. Only the adaptive method does so, and only on a surface.
     pub border_level: usize,
-    /// Maximum memory, in bytes. A larger estimate is an error, before any work.
+    /// Maximum memory, in bytes. A larger estimate is an error before any work, or after the base grid where scattered contact turns out to need the
+    /// uniform grid.
     pub memory_limit: Option<u64>,
     /// Whether a method that does not fit into memory gives way to one that does. Their results differ within the error bars, so one of many
     /// solves, which may run on another machine, sets this to `false`.
