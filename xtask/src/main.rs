@@ -47,7 +47,7 @@ enum Command {
     Fig6(figures::Args),
     /// Draws Fig. 7: mean pressure against penetration, with exponential fits and Persson's decay length
     Fig7(figures::Args),
-    /// Draws Fig. 8: the stress distribution, the fit of Eq. (7), and the approach to zero
+    /// Draws Fig. 8: the stress distribution, the fit of Eq. 7, and the approach to zero
     Fig8(figures::Args),
     /// Computes what the paper says without a figure: energy and area against N, convergence, Gaussian heights
     Statements(figures::Args),

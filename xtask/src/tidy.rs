@@ -12,6 +12,7 @@ mod packages;
 mod paper_map;
 mod rust;
 mod snapshots;
+mod tags;
 
 use anyhow::{Result, bail};
 
@@ -31,6 +32,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("arrows", arrows::check),
     ("circles", circles::check),
     ("paper map", paper_map::check),
+    ("equations", tags::check),
     ("snapshots", snapshots::check),
     ("culture", culture::check),
     ("dependencies", dependencies::check),

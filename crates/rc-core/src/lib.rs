@@ -51,7 +51,8 @@
 //! Module [`testing`] has a check for each trait; `tests/examples/` of the repository goes on from here.
 //!
 //! The paper is Putignano, Afferrante, Carbone, Demelio, *A new efficient numerical method for contact mechanics of rough
-//! surfaces*, Int. J. Solids Struct. 49 (2012) 338-343; "Eq. (n)" without another source means its equations.
+//! surfaces*, Int. J. Solids Struct. 49 (2012) 338-343; "Eq. 4" without another source means its equation. The function that
+//! evaluates an equation has it in parentheses, so that a search for "Eq. (14" finds one place.
 
 #[cfg(feature = "ndarray")]
 mod array;

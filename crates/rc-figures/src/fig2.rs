@@ -75,10 +75,10 @@ impl Figure for Fig2 {
         let means: Vec<String> = self.cases.iter().map(|case| format!("{:.1e}", case.mean_response.abs())).collect();
         Some(format!(
             "**Fig. 2.** (a) The self-balanced load on the elementary cell along its centre line: σ on a square of \
-             half side d, less σ (2d/λ)² everywhere. (b) Its displacement v, the coefficient L_ij of Eq. (4)-(6) as a \
+             half side d, less σ (2d/λ)² everywhere. (b) Its displacement v, the coefficient L_ij of Eq. 4 to 6 as a \
              function of the distance from the square, summed over all images without truncation. Both have zero mean \
              over the cell; that of L is {} and {} of σ λ/E*, which is rounding. (c) The same per load F = σ (2d)²: \
-             away from the square the responses agree with the point response of Eq. (3) (dashed), and beneath it they \
+             away from the square the responses agree with the point response of Eq. 3 (dashed), and beneath it they \
              differ. The peak of the smaller square, outside the panel, is in the table `fig2-summary.csv`.\n",
             means.first().map_or("", String::as_str),
             means.last().map_or("", String::as_str),
@@ -145,7 +145,7 @@ fn mean_response(kernel: PeriodicLove, inverse_half_side: usize) -> f64 {
     sums.fold(0.0, |largest: f64, sum| if sum.abs() > largest.abs() { sum } else { largest })
 }
 
-/// The displacement of a point load of 1 in E* λ²: 𝓛 of Eq. (3).
+/// The displacement of a point load of 1 in E* λ²: 𝓛 of Eq. 3.
 fn point_response(x: f64) -> f64 {
     std::f64::consts::FRAC_1_PI * ewald_phi(DVec2::new(x, 0.0))
 }
@@ -231,7 +231,7 @@ impl Fig2 {
             let side = if at.0 > 0.0 { Side::Right } else { Side::Above };
             write(&mut chart, at, side, &case.name(), colour)?;
         }
-        write(&mut chart, (0.13, 1.9), Side::Right, "dashed: point load, Eq. (3)", BLACK)?;
+        write(&mut chart, (0.13, 1.9), Side::Right, "dashed: point load, Eq. 3", BLACK)?;
         write(&mut chart, (-0.5, 0.93 * SHOWN.1), Side::Right, "(c)", BLACK)
     }
 }

@@ -271,7 +271,7 @@ impl Fig3 {
             "**Fig. 3.** Elements of the three meshes against penetration Δ (left) and contact fraction (right), for \
              one realisation (seed {seed}) of the paper's surface: H = 0.8, rms height {rms:.0} µm, N = {waves}, λ = \
              {mm:.0} mm, from touch to full contact. The smallest element has side λ/{grid} = λ_min/{per_wave}; the \
-             step λ_min/32 in the text is its half side, as d in Eq. (5), for 4.2 million elements are 2048². At \
+             step λ_min/32 in the text is its half side, as d in Eq. 5, for 4.2 million elements are 2048². At \
              two-thirds contact the meshes adaptive : adaptive uniform : uniform have {ours} million elements; the \
              paper prints {theirs} (squares).\n\n\
              The paper prints these numbers at \"Δ = 400 µm\". No contact has that Δ: v has zero mean and equals h − \

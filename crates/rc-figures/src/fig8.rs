@@ -168,7 +168,7 @@ impl Figure for Fig8 {
         let first = self.curves.first()?;
         Some(format!(
             "**Fig. 8.** (a) Distribution of the interfacial stress at σ0/E* = {:.2e}, averages of {} realisations in bins of \
-             {:.0e} E*; lines: Eq. (7) with Λ fitted ({}). Inset: the same, semi-logarithmic. (b) The approach to zero on \
+             {:.0e} E*; lines: Eq. 7 with Λ fitted ({}). Inset: the same, semi-logarithmic. (b) The approach to zero on \
              logarithmic axes: p² is linear across a contact edge, and interpolated so, P falls linearly with σ (grey guide: slope \
              1), while a histogram of the same elements (thin lines) stays up.\n",
             self.load,

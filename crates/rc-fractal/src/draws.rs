@@ -12,7 +12,7 @@ use rc_fft::Complex64;
 
 use crate::Amplitudes;
 
-/// One complex number of mean square 1 for each of ky = -reach, …, reach: exp(iφ), times a Rayleigh-distributed factor for
+/// One complex number of mean square 1 for each of ky = -reach, …, reach: exp(iφ), Eq. (14), times a Rayleigh-distributed factor for
 /// [`Amplitudes::Random`]. In the column kx = 0 the waves ky and -ky are conjugate and the mean height is 0.
 pub(crate) fn draw_column(seed: u64, kx: usize, reach: usize, amplitudes: Amplitudes) -> Vec<Complex64> {
     let mut column = vec![Complex64::ZERO; 2 * reach + 1];

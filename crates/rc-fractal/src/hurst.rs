@@ -45,7 +45,7 @@ struct Point {
     tolerance: f64,
 }
 
-/// The longest part of `spectrum` that is straight in logarithms, within the scatter of its rings, and as steep as that of a self-affine
+/// H of Eq. (8), x → t x and h → t^H h, from the longest part of `spectrum` that is straight in logarithms, within the scatter of its rings, and as steep as that of a self-affine
 /// surface; `None` when less than a factor 4 in wavenumber is.
 ///
 /// A line through all bins of a candidate by least squares, bins of many waves with more weight; no bin further from it than 15 % and the
@@ -91,7 +91,7 @@ fn bins(spectrum: &[SpectrumBin]) -> Vec<Point> {
     points
 }
 
-/// The line through all points, if it is one.
+/// The power law of Eq. (9) through all points, ln C = ln c - 2(1+H) ln k, if they are on one.
 fn line(points: &[Point]) -> Option<HurstFit> {
     let (first, last) = (points.first()?, points.last()?);
     if last.ln_k - first.ln_k < LEAST_RATIO.ln() {

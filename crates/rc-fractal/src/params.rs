@@ -154,7 +154,7 @@ impl SpectrumParams {
         }
     }
 
-    /// Root mean square of |`a_k`| relative to the plateau: (max(|k|, `k_r`)/`k_r`)^(-(1+H)), and 0 below the low cut, with |k|² given.
+    /// √(C(q)/C0) of the power law, Eq. (1): (max(|k|, `k_r`)/`k_r`)^(-(1+H)), and 0 below the low cut, with |k|² given.
     pub(crate) fn relative_amplitude(&self, k_squared: f64) -> f64 {
         if k_squared < self.low_cut * self.low_cut {
             return 0.0;

@@ -33,7 +33,8 @@ pub fn radial_spectrum(heights: &Field) -> Vec<SpectrumBin> {
     binned_spectrum(heights, heights.grid().cell_ratio().max(1.0))
 }
 
-/// The same with `rings_per_wave` rings for each unit of |k|; every ring that holds a wave vector is returned.
+/// Means over rings of the spectrum of Eq. (11), with `rings_per_wave` rings for each unit of |k|; every ring that holds a wave vector is
+/// returned.
 fn binned_spectrum(heights: &Field, rings_per_wave: f64) -> Vec<SpectrumBin> {
     #[derive(Clone, Copy, Default)]
     struct Ring {

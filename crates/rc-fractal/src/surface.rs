@@ -47,7 +47,7 @@ pub enum SampleError {
 }
 
 impl Surface {
-    /// Realises a spectrum (Eq. 10-14). The same parameters give the same surface, bit by bit, for any number of threads.
+    /// The realisation of a spectrum (Eq. 10 to 14). The same parameters give the same surface, bit by bit, for any number of threads.
     ///
     /// A wave's phase depends on (seed, kx, ky) alone, and its Rayleigh factor too. So surfaces of one seed with different N,
     /// roll-off, truncation or kind of amplitude share the phases of their common waves.
@@ -61,7 +61,7 @@ impl Surface {
         let factor = match params.normalisation {
             Normalisation::RmsHeight(rms) => rms / surface.sums().height.sqrt(),
             Normalisation::RmsSlope(rms) => rms / surface.sums().slope.sqrt(),
-            Normalisation::C0(c0) => TAU * c0.sqrt(),
+            Normalisation::C0(c0) => rms_amplitude(c0),
         };
         surface.columns.par_iter_mut().flatten().for_each(|amplitude| *amplitude *= factor);
         Ok(surface)
@@ -145,6 +145,7 @@ impl Surface {
 }
 
 impl HeightField for Surface {
+    /// The direct sum over waves, Eq. (10).
     fn height(&self, at: DVec2) -> f64 {
         let along_y: Vec<Complex64> = (0..=self.waves()).map(|ky| wave(ky, at.y)).collect();
         let mut height = 0.0;
@@ -174,7 +175,12 @@ impl HeightField for Surface {
     }
 }
 
-/// Amplitudes of the waves with this kx, before normalisation.
+/// √⟨|`a_k`|²⟩ in λ where the spectral density is `density` in λ⁴, by Eq. (12) with δ(0) = (λ/2π)².
+fn rms_amplitude(density: f64) -> f64 {
+    TAU * density.sqrt()
+}
+
+/// Amplitudes of the waves with this kx, relative to the plateau: their mean squares are those of Eq. (13).
 fn relative_column(params: &SpectrumParams, kx: usize) -> Vec<Complex64> {
     let reach = params.reach(kx);
     let mut column = draw_column(params.seed, kx, reach, params.amplitudes);

@@ -18,7 +18,7 @@ const SHELLS: i32 = 3;
 /// parameters, 27 digits).
 pub const LATTICE_CONSTANT: f64 = -3.900_264_920_001_956;
 
-/// φ at `offset` from a source, in units of 1/λ; +∞ on the source and its images.
+/// φ at `offset` from a source, in units of 1/λ; +∞ on the source and its images. φ/(π E*) is the 𝓛 of Eq. (3).
 ///
 /// ```text
 /// φ(r) = Σ_R erfc(√π |r - R|)/|r - R| + Σ_{n≠0} erfc(√π |n|)/|n| cos(2π n·r) - 2

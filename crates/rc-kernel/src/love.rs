@@ -21,7 +21,7 @@ const FAR: f64 = 2.5;
 /// u = 1/(π E*) ∫∫ ds / |r - s|       over |s_x|, |s_y| ≤ d,  with E* = 1.
 /// ```
 ///
-/// At the centre 8 d ln(1 + √2)/π; far away 4 d²/(π R). Source: one term of Eq. 5, in free space.
+/// At the centre 8 d ln(1 + √2)/π; far away 4 d²/(π R). Source: one term of the sum in Eq. (5).
 ///
 /// *Accuracy*: relative error below 1e-15 at every distance, inside, on edges and on corners included (tests
 /// `matches_reference_values_everywhere`, `a_square_is_the_sum_of_its_quarters`). Exactly symmetric under x → -x, y → -y

@@ -15,6 +15,7 @@ impl Kernel for Spectral {
         "spectral"
     }
 
+    /// The Fourier transform of the Green function of Eq. (2), 2/(E* |q|).
     fn symbol(&self, grid: Grid) -> Symbol<'_> {
         // 2/|q| with q = 2πk.
         Box::new(move |kx, ky| {

@@ -31,6 +31,11 @@ impl LoadForm {
     fn pressure(self, half_side: f64) -> f64 {
         (half_side / self.half_side()).powi(2)
     }
+
+    /// The part of l_m that the image of the cell at `image` has, for a source of half side d: one term of the sum in Eq. (6).
+    fn displacement(self, image: DVec2, half_side: f64) -> f64 {
+        self.pressure(half_side) * love_displacement(image, self.half_side())
+    }
 }
 
 /// `L_ij = l_ij - l_m` (Eq. 4-6) with the images |h|, |k| ≤ K = `shells`, for a source of half-side `half_side` d at `offset`
@@ -52,10 +57,9 @@ pub fn truncated_coefficient(offset: DVec2, half_side: f64, shells: usize, form:
     check_half_side(half_side)?;
     check_shells(shells)?;
     let nearest = wrapped(offset);
-    let (load, pressure) = (form.half_side(), form.pressure(half_side));
     let image = |h: i32, k: i32| {
         let image = DVec2::new(f64::from(h), f64::from(k));
-        love_displacement(nearest + image, half_side) - pressure * love_displacement(image, load)
+        love_displacement(nearest + image, half_side) - form.displacement(image, half_side)
     };
     // Four at a time, a quarter turn apart: what falls as R⁻² cancels in each sum.
     let turned = |h: i32, k: i32| (image(h, k) + image(-h, -k)) + (image(-k, h) + image(k, -h));

@@ -72,7 +72,7 @@ impl Persson {
         of(0.5 * (low + high))
     }
 
-    /// P(σ) of Eq. 7, in 1/E*, for a stress in E*; 0 for σ ≤ 0, where non-contact is a separate peak of weight 1 - A/A0.
+    /// P(σ) of Eq. (7), in 1/E*, for a stress in E*; 0 for σ ≤ 0, where non-contact is a separate peak of weight 1 - A/A0.
     #[must_use]
     pub fn density(self, stress: f64) -> f64 {
         if stress <= 0.0 {

@@ -61,7 +61,7 @@ impl Fig8 {
             curve.style.line(&mut chart, curve.fitted(GREATEST_STRESS / HUNDREDTH))?;
             lines.push((Sample::Mark(curve.style), format!("N = {}", curve.waves)));
             let lambda = curve.fit.lambda * 1e5;
-            lines.push((Sample::Line(curve.style), format!("Eq. (7), Λ = {lambda:.2}·10⁻⁵")));
+            lines.push((Sample::Line(curve.style), format!("Eq. 7, Λ = {lambda:.2}·10⁻⁵")));
         }
         write(&mut chart, (0.02 * GREATEST_STRESS, 0.965 * top), Side::Right, "(a)", BLACK)?;
         legend(&mut chart, (0.08 * GREATEST_STRESS, 0.965 * top), 0.055 * top, &lines)

@@ -2,7 +2,7 @@
 
 use rc_core::{Grid, Kernel, Operator};
 
-/// `v_i = Σ_j L_ij p_j` (Eq. 4) on a uniform grid, with the coefficients from a plain trigonometric sum over the symbol and
+/// The operator L (Eq. 4) on a uniform grid, with the coefficients from a plain trigonometric sum over the symbol and
 /// the products added one by one. O(n²): for tests.
 pub struct DirectSum {
     grid: Grid,
@@ -60,6 +60,7 @@ impl Operator for DirectSum {
         0
     }
 
+    /// `v_i = Σ_j L_ij p_j`, Eq. (4).
     fn apply(&self, pressure: &[f64], displacement: &mut [f64], _scratch: &mut [f64]) {
         assert_eq!(pressure.len(), self.grid.len(), "length of the pressure");
         assert_eq!(displacement.len(), self.grid.len(), "length of the displacement");
