@@ -16,7 +16,7 @@ mod test;
 mod tidy;
 mod wheel;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 use rc_bench::{Accuracy, KernelErrors};
 use rc_figures::{Fig1, Fig2, Fig3, Fig4, Fig5, Fig6, Fig7, Fig8, Statements};
 
@@ -73,7 +73,7 @@ enum Command {
 fn main() -> anyhow::Result<()> {
     match Cli::parse().command {
         Command::Test(args) => test::run(&args),
-        Command::Tidy(args) => tidy::run(&args),
+        Command::Tidy(args) => tidy::run(&args, &Cli::command()),
         Command::Ci(args) => ci::run(&args),
         Command::Fig1(args) => figures::run::<Fig1>(&args),
         Command::Fig2(args) => figures::run::<Fig2>(&args),
@@ -103,10 +103,16 @@ fn main() -> anyhow::Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory as _;
+    use super::*;
+
+    #[test]
+    fn the_repository_is_tidy() {
+        let complaints = tidy::complaints(&Cli::command()).expect("the sources can be read");
+        assert!(complaints.is_empty(), "{} untidy:\n{}", complaints.len(), complaints.join("\n"));
+    }
 
     #[test]
     fn the_command_line_is_well_formed() {
-        super::Cli::command().debug_assert();
+        Cli::command().debug_assert();
     }
 }

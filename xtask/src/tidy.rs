@@ -8,6 +8,7 @@ mod complaint;
 mod culture;
 mod dependencies;
 mod guide;
+mod named;
 mod packages;
 mod paper_map;
 mod rust;
@@ -44,12 +45,12 @@ const CHECKS: &[(&str, Check)] = &[
 ];
 
 #[expect(clippy::print_stdout, reason = "the result of the command")]
-pub(crate) fn run(_args: &Args) -> Result<()> {
-    let complaints = check_all(&sources()?);
+pub(crate) fn run(_args: &Args, xtask: &clap::Command) -> Result<()> {
+    let complaints = complaints(xtask)?;
     if !complaints.is_empty() {
         bail!("{} untidy:\n{}", complaints.len(), complaints.join("\n"));
     }
-    println!("tidy: {}", CHECKS.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", "));
+    println!("tidy: {}, names", CHECKS.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", "));
     Ok(())
 }
 
@@ -64,20 +65,16 @@ fn sources() -> Result<Sources> {
     Ok(sources)
 }
 
-fn check_all(sources: &Sources) -> Vec<Complaint> {
-    let complaints = CHECKS
-        .iter()
-        .flat_map(|(name, check)| check(sources).into_iter().map(move |complaint| format!("{name}: {complaint}")));
-    complaints.collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_repository_is_tidy() {
-        let complaints = check_all(&sources().expect("the sources can be read"));
-        assert!(complaints.is_empty(), "{} untidy:\n{}", complaints.len(), complaints.join("\n"));
-    }
+/// What is untidy; `xtask` is the command line of `cargo xtask`, whose commands texts may name.
+///
+/// # Errors
+/// When a file cannot be read, or cargo fails.
+pub(crate) fn complaints(xtask: &clap::Command) -> Result<Vec<Complaint>> {
+    let sources = sources()?;
+    let named = |name: &str, complaints: Vec<Complaint>| -> Vec<Complaint> {
+        complaints.into_iter().map(|complaint| format!("{name}: {complaint}")).collect()
+    };
+    let mut all: Vec<Complaint> = CHECKS.iter().flat_map(|(name, check)| named(name, check(&sources))).collect();
+    all.extend(named("names", named::check(&sources, xtask)));
+    Ok(all)
 }
