@@ -1,6 +1,9 @@
 //! `cargo xtask docs`: the documentation of the crates, and the guide as a book.
 
-use std::path::PathBuf;
+mod links;
+
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail};
@@ -41,13 +44,44 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
     let folder = repository::target();
     println!("{}", folder.join("doc/rc_core/index.html").display());
     let book = folder.join("book");
+    let chapters = folder.join("guide");
+    write_chapters(&chapters)?;
     let mut build = Command::new(mdbook()?);
-    build.args(["build", "docs", "--dest-dir"]).arg(&book).current_dir(repository::root());
+    build.arg("build").arg(&chapters).arg("--dest-dir").arg(&book);
     let status = build.status().context("could not start mdbook")?;
     if !status.success() {
-        bail!("`mdbook build docs` failed");
+        bail!("`mdbook build {}` failed", chapters.display());
     }
     println!("{}", book.join("index.html").display());
+    Ok(())
+}
+
+/// Copies the guide into `folder`; the copy of the paper map has links to lines of code.
+fn write_chapters(folder: &Path) -> Result<()> {
+    let guide = repository::root().join("docs");
+    copy_folder(&guide, folder)
+        .with_context(|| format!("could not copy {} to {}", guide.display(), folder.display()))?;
+    let sources = repository::read_sources(&repository::root())?;
+    let map = sources.get("docs/paper-map.md").context("docs/paper-map.md is missing; restore it from history")?;
+    let path = folder.join("paper-map.md");
+    fs::write(&path, links::to_lines(map, &sources)).with_context(|| format!("could not write {}", path.display()))
+}
+
+/// Copies a folder with all that is in it; what is there before is replaced.
+fn copy_folder(from: &Path, to: &Path) -> std::io::Result<()> {
+    if to.exists() {
+        fs::remove_dir_all(to)?;
+    }
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let path = entry?.path();
+        let copy = to.join(path.file_name().unwrap_or_default());
+        if path.is_dir() {
+            copy_folder(&path, &copy)?;
+        } else {
+            fs::copy(&path, &copy)?;
+        }
+    }
     Ok(())
 }
 

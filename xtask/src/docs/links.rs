@@ -1,0 +1,56 @@
+//! Names of items in the paper map as links to their lines in the documentation of the crates.
+
+use rc_figures::repository::Sources;
+
+/// `page` with each item that follows the path of a library's file, as in `` `crates/rc-core/src/grid.rs`: `Grid` ``, linked to its line in
+/// the sources that rustdoc shows, which are in `doc` beside the book.
+pub(super) fn to_lines(page: &str, sources: &Sources) -> String {
+    let mut linked = String::new();
+    let mut file = None;
+    for (place, part) in page.split('`').enumerate() {
+        let quoted = place % 2 == 1;
+        if quoted && part.contains('/') {
+            file = sources.get(part).zip(shown(part));
+        }
+        let link = file.as_ref().filter(|_| quoted && !part.contains('/'));
+        let link = link.and_then(|(text, shown)| Some(format!("[`{part}`]({shown}#{})", line_of(text, part)?)));
+        match link {
+            Some(link) => linked.push_str(&link),
+            None if quoted => linked.extend(["`", part, "`"]),
+            None => linked.push_str(part),
+        }
+    }
+    linked
+}
+
+/// Where rustdoc shows the file at `path`, seen from the book: files of libraries alone.
+fn shown(path: &str) -> Option<String> {
+    let (name, file) = path.strip_prefix("crates/")?.split_once("/src/")?;
+    Some(format!("../doc/src/{}/{file}.html", name.replace('-', "_")))
+}
+
+/// The line on which `item` is defined, from 1.
+fn line_of(text: &str, item: &str) -> Option<usize> {
+    const KEYWORDS: &[&str] = &["fn", "struct", "enum", "trait", "const", "type", "mod"];
+    let defines = |line: &str| {
+        let mut words = line.split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|word| !word.is_empty());
+        let is_comment = line.trim_start().starts_with("//");
+        !is_comment && words.any(|word| KEYWORDS.contains(&word)) && words.next() == Some(item)
+    };
+    text.lines().position(defines).map(|line| line + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn items_of_libraries_lead_to_their_lines() {
+        let text = "//! fn love\n\n/// Love.\npub fn love(x: f64) {}\n".to_owned();
+        let sources: Sources =
+            ["crates/rc-a/src/b.rs", "crates/rc-a/tests/t.rs"].map(|path| (path.to_owned(), text.clone())).into();
+        let page = "| Eq. (5) | `crates/rc-a/src/b.rs`: `love`, `hate` | `crates/rc-a/tests/t.rs`: `love` |";
+        let expected = "| Eq. (5) | `crates/rc-a/src/b.rs`: [`love`](../doc/src/rc_a/b.rs.html#4), `hate` | `crates/rc-a/tests/t.rs`: `love` |";
+        assert_eq!(to_lines(page, &sources), expected);
+    }
+}
