@@ -135,7 +135,7 @@ def test_a_table_has_columns_and_means():
         table["area"]
     with pytest.raises(ValueError, match="exactly one of pressures"):
         rc.sweep(waves=8)
-    with pytest.raises(ValueError, match="must rise, or fall"):
+    with pytest.raises(ValueError, match="must all rise or all fall"):
         rc.sweep(waves=8, pressures=[1.0, 3.0, 2.0])
     with pytest.raises(ValueError, match="seeds: the height map has none"):
         rc.sweep(np.eye(4), cell=1.0, e_star=1.0, pressures=[1.0], seeds=[1])

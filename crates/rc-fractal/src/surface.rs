@@ -42,7 +42,7 @@ pub enum SampleError {
         smallest: usize,
     },
     /// The surface repeats itself in squares.
-    #[error("a surface made of waves is periodic on a square cell, not on one whose sides differ")]
+    #[error("a surface made of waves needs a square cell")]
     RectangularCell,
 }
 

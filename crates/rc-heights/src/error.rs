@@ -26,7 +26,7 @@ pub enum FormatError {
     Unreadable(String),
     /// Neither the first bytes nor the extension say what it is.
     #[error(
-        "neither its first bytes nor its name say what it is; a height map is a text (.csv, .txt, .dat, .asc, .xyz), an array (.npy, \
+        "its format is not known, neither from its first bytes nor from its name; a height map is a text (.csv, .txt, .dat, .asc, .xyz), an array (.npy, \
          .mat, .h5, .nc), a file of a program (.gwy, .gsf, .grd, .ibw, .sdf, .x3p) or of an instrument (.sur, .spm, .opd, .dat of \
          MetroPro, .al3d, .plu, .plux, .vk4), a .png or a .tif file"
     )]
@@ -38,10 +38,10 @@ pub enum FormatError {
         what: String,
     },
     /// A text by its name that is not one by its bytes.
-    #[error("it has zero bytes, as no text has; save it as UTF-8, or UTF-16 with a byte-order mark")]
+    #[error("it contains zero bytes, so it is not a text; save it as UTF-8, or UTF-16 with a byte-order mark")]
     ZeroBytes,
     /// A file that gzip has packed and that cannot be unpacked.
-    #[error("gzip cannot unpack it: {0}; the file is damaged or cut off")]
+    #[error("cannot be unpacked by gzip: {0}; the file is damaged or truncated")]
     Gzip(String),
     /// The extension promises a format that the first bytes are not of.
     #[error("not a valid {format} file: {expected}")]
@@ -72,7 +72,7 @@ pub enum FormatError {
         expected: &'static str,
     },
     /// A header without a field that it must have.
-    #[error("{format} header: {field} is missing; the header is cut off or of another kind")]
+    #[error("{format} header: {field} is missing; the header is truncated or of another kind")]
     Missing {
         /// The format.
         format: Format,
@@ -90,7 +90,9 @@ pub enum FormatError {
         cure: &'static str,
     },
     /// Fewer bytes than the header promises.
-    #[error("shorter than its header says: {grid} heights need {needed} bytes, {found} are there; the file is cut off")]
+    #[error(
+        "shorter than its header says: {grid} heights need {needed} bytes, {found} are there; the file is truncated"
+    )]
     CutShort {
         /// Points along x and y.
         grid: Grid,
@@ -112,7 +114,7 @@ pub enum FormatError {
         found: u64,
     },
     /// Fewer bytes than any header has.
-    #[error("shorter than the header of a {format} file; the file is cut off")]
+    #[error("shorter than the header of a {format} file; the file is truncated")]
     HeaderCutShort {
         /// The format.
         format: Format,

@@ -106,7 +106,7 @@ pub struct Scales {
 #[non_exhaustive]
 pub enum LengthUnitError {
     /// No such unit of length.
-    #[error("'{name}' is not a unit of length; m, cm, mm, um, nm, angstrom and pm are")]
+    #[error("'{name}' is not a unit of length; give m, cm, mm, um, nm, angstrom or pm")]
     Unknown {
         /// As written.
         name: String,
@@ -125,11 +125,11 @@ pub enum LengthUnitError {
         /// As given.
         value: f64,
     },
-    /// A scale for heights that are in metres already.
-    #[error("height_scale: the file has its heights in metres already; omit it")]
+    /// A scale for heights that are gives its heights in metres.
+    #[error("height_scale: the file gives its heights in metres; omit height_scale")]
     HeightsInMetres,
     /// A unit for levels of grey on a map without a size.
-    #[error("unit: levels of grey have none, and height_scale (m) is theirs; omit unit")]
+    #[error("unit: levels of grey have no unit, height_scale (m) gives their height; omit unit")]
     UnitOfLevels,
     /// A unit for values that are not lengths on a map without a size.
     #[error(
@@ -137,7 +137,7 @@ pub enum LengthUnitError {
     )]
     UnitOfNotLength,
     /// A unit for a file that names its own.
-    #[error("unit: the file names its units already; omit it")]
+    #[error("unit: the file names its units; omit unit")]
     UnitsNamed,
 }
 

@@ -22,7 +22,7 @@ pub enum KernelError {
     #[error("0 shells of images; at least 1 is needed")]
     NoShells,
     /// More shells than [`MAX_SHELLS`](crate::MAX_SHELLS).
-    #[error("{shells} shells of images are more than the {max} that are ever summed; use the exact coefficients", max = crate::shells::MAX_SHELLS)]
+    #[error("{shells} shells of images are more than the maximum of {max}; use the exact coefficients", max = crate::shells::MAX_SHELLS)]
     TooManyShells {
         /// The number of shells that was given.
         shells: usize,

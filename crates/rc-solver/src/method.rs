@@ -112,13 +112,13 @@ impl fmt::Display for MethodReason {
                 round(percent)
             ),
             Self::AdaptiveDoesNotFit => write!(f, "uniform: the adaptive method does not fit into memory"),
-            Self::OwnOperator => write!(f, "uniform: an operator of the caller"),
+            Self::OwnOperator => write!(f, "uniform: the operator is the caller's"),
             Self::NoSplitOfKernel { kernel } => write!(f, "uniform: the kernel {kernel} has no adaptive form"),
             Self::ElementsNotSquare { grid } => write!(f, "uniform: {grid} elements are not square"),
             Self::NoLevels { grid } => {
                 write!(f, "uniform: {grid} elements are too few, or have no base grid of squares")
             }
-            Self::Flat => write!(f, "uniform: a flat surface has nothing to adapt to"),
+            Self::Flat => write!(f, "uniform: a flat surface needs no adaptive mesh"),
             Self::ToleranceTooSmall { tolerance } => {
                 write!(f, "uniform: the adaptive operator cannot certify a tolerance of {tolerance:e}")
             }

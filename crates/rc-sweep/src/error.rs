@@ -145,7 +145,7 @@ pub enum SweepError {
     #[error("no folder to merge")]
     NoShards,
     /// Two folders to be merged are not of one sweep.
-    #[error("{}: not of the same sweep as {}: {difference}", folder.display(), first.display())]
+    #[error("{}: belongs to another sweep than {}: {difference}", folder.display(), first.display())]
     NotSameSweep {
         /// The folder.
         folder: PathBuf,
@@ -167,7 +167,7 @@ pub enum SweepError {
         there: Shard,
     },
     /// The rows of two folders to be merged were not dealt in the same way.
-    #[error("{}: its rows were dealt otherwise than those of {}", folder.display(), first.display())]
+    #[error("{}: its rows were dealt differently from those of {}", folder.display(), first.display())]
     OtherDeal {
         /// The folder.
         folder: PathBuf,
@@ -175,7 +175,7 @@ pub enum SweepError {
         first: PathBuf,
     },
     /// A shard was given twice.
-    #[error("{}: is shard {shard}, and so is {}", folder.display(), other.display())]
+    #[error("{}: is shard {shard}, as is {}", folder.display(), other.display())]
     SameShard {
         /// The folder.
         folder: PathBuf,

@@ -9,7 +9,7 @@ use crate::shard::Shard;
 #[non_exhaustive]
 pub enum JobError {
     /// Nothing started the process that numbers its tasks.
-    #[error("no job array and no MPI launcher here: none of {} is set", NUMBERS.join(", "))]
+    #[error("found neither a job array nor an MPI launcher: none of {} is set", NUMBERS.join(", "))]
     None,
     /// A variable does not have a number.
     #[error("{name} is '{value}', not a number")]
@@ -20,7 +20,7 @@ pub enum JobError {
         value: String,
     },
     /// It is known which task this is, not of how many.
-    #[error("{found} does not say of how many")]
+    #[error("{found} does not say how many tasks there are")]
     NoCount {
         /// The variables with their values.
         found: String,
@@ -297,9 +297,9 @@ mod tests {
         let uneven = "SLURM_ARRAY_TASK_ID=4, SLURM_ARRAY_TASK_MIN=1, SLURM_ARRAY_TASK_MAX=9, SLURM_ARRAY_TASK_COUNT=3";
         for (count, environment, expected) in [
             (None, String::new(), "none of SLURM_ARRAY_TASK_ID, "),
-            (None, "PBS_ARRAY_INDEX=3".to_owned(), "PBS_ARRAY_INDEX=3 does not say of how many"),
-            (None, "SLURM_ARRAY_TASK_ID=3".to_owned(), "SLURM_ARRAY_TASK_ID=3 does not say of how many"),
-            (None, "PMIX_RANK=3".to_owned(), "PMIX_RANK=3 does not say of how many"),
+            (None, "PBS_ARRAY_INDEX=3".to_owned(), "PBS_ARRAY_INDEX=3 does not say how many tasks there are"),
+            (None, "SLURM_ARRAY_TASK_ID=3".to_owned(), "SLURM_ARRAY_TASK_ID=3 does not say how many tasks there are"),
+            (None, "PMIX_RANK=3".to_owned(), "PMIX_RANK=3 does not say how many tasks there are"),
             (None, slurm(4, 1, 9, 3, 1), uneven),
             (None, slurm(9, 1, 8, 8, 1), "do not number the tasks evenly"),
             (None, "SLURM_ARRAY_TASK_ID=x".to_owned(), "SLURM_ARRAY_TASK_ID is 'x', not a number"),

@@ -28,14 +28,15 @@ impl FromStr for Loads {
         if rising || falling {
             Ok(Self(values))
         } else {
-            Err(format!("values must rise, or fall, from each to the next; '{text}' does not"))
+            Err(format!("values must all rise or all fall; those of '{text}' do not"))
         }
     }
 }
 
 fn range(text: &str) -> Result<Vec<f64>, String> {
-    let shape =
-        || format!("a range is first:last:count, with :linear if it is not geometric, as 1e4:1e6:8, not '{text}'");
+    let shape = || {
+        format!("a range is first:last:count, with :linear if it is not geometric, for example 1e4:1e6:8, not '{text}'")
+    };
     let parts: Vec<&str> = text.split(':').collect();
     let (first, last, count, spacing) = match parts[..] {
         [first, last, count] | [first, last, count, "geometric"] => (first, last, count, Spacing::Geometric),
@@ -105,7 +106,9 @@ impl FromStr for Seeds {
 }
 
 fn seed(text: &str, whole: &str) -> Result<u64, String> {
-    text.trim().parse().map_err(|_| format!("seeds are 1..7 (both included), 1,3,5, or both, not '{whole}'"))
+    text.trim()
+        .parse()
+        .map_err(|_| format!("seeds are a range 1..7 (both ends included), a list 1,3,5, or both, not '{whole}'"))
 }
 
 #[cfg(test)]
@@ -134,9 +137,9 @@ mod tests {
         let cases = [
             ("", "positive"),
             ("1,,2", "positive"),
-            ("1,2,2", "must rise, or fall"),
-            ("1,3,2", "must rise, or fall"),
-            ("5:5:3", "must rise, or fall"),
+            ("1,2,2", "must all rise or all fall"),
+            ("1,3,2", "must all rise or all fall"),
+            ("5:5:3", "must all rise or all fall"),
             ("1:2:0", "from 2 to"),
             ("1:2:1", "from 2 to"),
             ("1:2:9999999", "from 2 to"),
@@ -147,7 +150,7 @@ mod tests {
             ("-1:1:3:linear", "positive"),
             ("nan", "positive"),
             ("1,inf", "positive"),
-            ("1:1.0000000000000002:9", "must rise, or fall"),
+            ("1:1.0000000000000002:9", "must all rise or all fall"),
         ];
         for (text, expected) in cases {
             let error = text.parse::<Loads>().expect_err(text);

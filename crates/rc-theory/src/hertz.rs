@@ -308,6 +308,6 @@ mod tests {
             assert!(sphere.at_load(value).is_err(), "load {value}");
         }
         let error = sphere.at_contact_radius(0.5).expect_err("beyond the range");
-        assert_eq!(error.to_string(), "no answer for contact radius 5e-1: it must lie between 0 and 2.5e-1");
+        assert_eq!(error.to_string(), "contact radius 5e-1 is out of range: it must be between 0 and 2.5e-1");
     }
 }

@@ -52,7 +52,7 @@ mod testing;
 
 /// A question whose answer the formula does not know.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("no answer for {quantity} {value:e}: it must lie between 0 and {max:e}")]
+#[error("{quantity} {value:e} is out of range: it must be between 0 and {max:e}")]
 pub struct OutOfRange {
     /// Name of the quantity.
     pub quantity: &'static str,

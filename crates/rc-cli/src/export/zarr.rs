@@ -56,7 +56,7 @@ pub(super) fn check_place(path: &Path) -> Result<(), CliError> {
     if path.is_dir() && !path.join(GROUP_FILE).is_file() {
         return Err(CliError::in_file(
             path,
-            "a folder that is no Zarr group is in the way; move it, or choose another --out",
+            "this folder exists and is not a Zarr group; move it, or choose another --out",
         ));
     }
     Ok(())

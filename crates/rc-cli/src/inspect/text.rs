@@ -103,7 +103,7 @@ fn spectrum_lines(s: &SurfaceRecord) -> String {
     };
     let border = format!("{} times the step between neighbours: {state}", digits(s.border_step, 3));
     let law = match &s.hurst_fit {
-        None => "no part of the spectrum is a power law over a factor 4".to_owned(),
+        None => "no part of the spectrum follows a power law over a factor of 4 in wave number".to_owned(),
         Some(fit) => format!(
             "H = {} from {} to {} waves per cell ({} to {}), C0 = {} m^{}, {} off in ln C",
             digits(fit.hurst, 3),

@@ -69,7 +69,8 @@ pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
     let surfaces: usize = scenes.iter().map(|scene| scene.seeds.len()).sum();
     let settings = settings_in(folder);
     if settings.as_ref().is_some_and(|settings| !settings["ensemble"].is_null()) {
-        let message = "holds solves on several grids for a mean, of which there is no page; the mean is in mean.json";
+        let message =
+            "holds the solves of a mean on several grids; rc report has no page for a mean, read mean.json instead";
         return Err(CliError::in_file(folder, message));
     }
     let (status, good) = status(&rows, settings.as_ref());

@@ -44,7 +44,7 @@ pub(crate) fn listen() {
         if IS_INTERRUPTED.swap(true, Ordering::Relaxed) {
             std::process::exit(INTERRUPTED.into());
         }
-        terminal::tell("interrupted: ending with what there is; once more ends at once");
+        terminal::tell("interrupted: finishing with the results so far; press Ctrl-C again to stop at once");
     };
     // Without a handler an interrupt ends the process at once, with nothing half-written.
     let _ = ctrlc::set_handler(handler);

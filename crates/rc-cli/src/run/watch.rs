@@ -67,7 +67,7 @@ impl Watch {
                 State::Next(ended + self.interval.max(SPARING * (ended - started)))
             }
             Err(error) => {
-                terminal::tell(&format!("watch: {error}; the solve goes on without pictures"));
+                terminal::tell(&format!("watch: {error}; the solve continues without pictures"));
                 State::GaveUp
             }
         };

@@ -30,7 +30,7 @@ pub(crate) fn check_finite(path: &Path, field: &Field) -> Result<(), CliError> {
             let (row, column, value) = (i / nx, i % nx, field.values()[i]);
             let missing = field.values().iter().filter(|value| value.is_nan()).count();
             let cure = if missing > 0 {
-                format!("; {missing} of {} are missing, which rc surface --fill laplace fills", field.grid().len())
+                format!("; {missing} of {} are missing; rc surface --fill laplace fills them", field.grid().len())
             } else {
                 String::new()
             };

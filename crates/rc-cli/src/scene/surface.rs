@@ -96,7 +96,8 @@ impl SurfaceKeys {
     /// [`CliError::Input`] when keys of a random surface, or of a file, are given; or another size than that of the map.
     pub fn of_map(self, sides: Option<[f64; 2]>) -> Result<Self, CliError> {
         if self.heights.is_some() || self.generates() {
-            let message = "heights is a surface already; give no parameters of a random one (waves, hurst, rms, ...)";
+            let message =
+                "heights defines the surface; omit the parameters of a random surface (waves, hurst, rms, ...)";
             return Err(CliError::input(message));
         }
         let [cell, cell_y] = heights::sides(Path::new("heights"), sides, [self.cell, self.cell_y])?;

@@ -132,7 +132,7 @@ impl FromStr for Fraction {
     fn from_str(text: &str) -> Result<Self, String> {
         let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
         let value = number.trim().parse().map_or(f64::NAN, |value: f64| value * unit);
-        let expected = || format!("a part is a number above 0 and below 1, as 0.005 or 0.5%, not '{text}'");
+        let expected = || format!("a fraction is a number above 0 and below 1, as 0.005 or 0.5%, not '{text}'");
         (value > 0.0 && value < 1.0).then_some(Self(value)).ok_or_else(expected)
     }
 }

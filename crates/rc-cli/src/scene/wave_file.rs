@@ -38,7 +38,7 @@ impl WaveFile {
         let Moments { rms_height, rms_slope, .. } = surface.moments();
         if ![rms_height, rms_slope].iter().all(|moment| moment.is_finite() && *moment > 0.0) {
             let message =
-                format_args!("an rms height of {rms_height:e} cells is beyond all numbers; check cell and unit");
+                format_args!("an rms height of {rms_height:e} cell sides is out of range; check cell and unit");
             return Err(CliError::in_file(path, message));
         }
         Ok(Self { coefficients, surface: Arc::new(surface) })

@@ -82,7 +82,7 @@ impl Job {
         Err(match stopped {
             Some(Reason::Interrupted) => CliError::Interrupted(format!("interrupted: {message}{written}")),
             Some(Reason::TimeLimit(limit)) => {
-                CliError::NotConverged(format!("time_limit: {limit} were not enough: {message}{written}"))
+                CliError::NotConverged(format!("time_limit: {limit} was not enough: {message}{written}"))
             }
             None => CliError::NotConverged(format!("{message}{written}")),
         })

@@ -14,7 +14,7 @@ pub(super) fn in_si(error: &SolveError, surface: &LoadedSurface, contact: &Conta
     match error {
         SolveError::Problem(error) => of_problem(error, contact),
         SolveError::Adaptive(AdaptiveError::OperatorError { .. }) => CliError::input(format_args!(
-            "{}: {:e} is out of what the adaptive method can certify; give a larger one, or --method uniform",
+            "{}: {:e} is less than the adaptive method can certify; give a larger value, or --method uniform",
             tolerance_key(contact),
             contact.params.tolerance.bound(surface.source().elements_per_wave()).value()
         )),

@@ -33,14 +33,16 @@ const EXAMPLE_FOLDER: &str = "rc-result";
 pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
     let (dry_run, watch) = (args.dry_run, args.watch);
     if dry_run && watch {
-        return Err(CliError::input("watch: a dry run has nothing to be seen; omit one of the two"));
+        return Err(CliError::input("watch: a dry run has no contact to show; omit --watch or --dry-run"));
     }
     let scene = scene_of(args)?;
     if watch && scene.run.out.is_none() {
-        return Err(CliError::input("watch: the picture is in the folder of the results; name it with --out"));
+        return Err(CliError::input("watch: the picture is written to the folder of the results; give --out DIR"));
     }
     if dry_run && scene.contact.area_error.is_some() {
-        return Err(CliError::input("dry_run: what area_error will choose is not known before; give grid instead"));
+        return Err(CliError::input(
+            "dry_run: the grid that area_error chooses is not known before the solve; give grid instead",
+        ));
     }
     let job = Job::new(scene, watch)?;
     let threads = threads::start(job.run.threads)?;

@@ -67,7 +67,9 @@ impl SweepArgs {
                 Ok(Some(WantedMean { quantity, error }))
             }
             (None, None) => Ok(None),
-            (None, Some(_)) => Err(CliError::input("mean_of: of which error? give --error-of-mean, as 0.5%")),
+            (None, Some(_)) => {
+                Err(CliError::input("mean_of: the error is missing; give --error-of-mean, for example 0.5%"))
+            }
         }
     }
 }

@@ -73,15 +73,17 @@ pub(super) fn run(args: &SweepArgs, wanted: &WantedMean) -> Result<(), CliError>
 /// Flags that say otherwise which rows there are.
 fn check_alternatives(args: &SweepArgs) -> Result<(), CliError> {
     let given = [
-        ("seeds", args.seeds.is_some(), "it chooses them; --seed says the first"),
-        ("shard", args.shard.is_some(), "what is solved follows from the results before"),
-        ("list", args.list.is_some(), "what is solved follows from the results before"),
+        ("seeds", args.seeds.is_some(), "it chooses the seeds; --seed gives the first one"),
+        ("shard", args.shard.is_some(), "what is solved next depends on earlier results"),
+        ("list", args.list.is_some(), "what is solved next depends on earlier results"),
         ("fields", args.fields, "its rows have none"),
-        ("scenes", args.scene_files.len() > 1, "it is the mean of one scene"),
+        ("scenes", args.scene_files.len() > 1, "a mean has one scene"),
     ];
     match given.iter().find(|(_, given, _)| *given) {
         None => Ok(()),
-        Some((name, _, why)) => Err(CliError::input(format_args!("{name}: does not go with --error-of-mean: {why}"))),
+        Some((name, _, why)) => {
+            Err(CliError::input(format_args!("{name}: cannot be combined with --error-of-mean: {why}")))
+        }
     }
 }
 

@@ -76,7 +76,7 @@ pub(super) fn out_of_time(limit: TimeLimit, missing: usize, n_rows: usize) -> Cl
 pub(super) fn mean_out_of_time(limit: Option<TimeLimit>, kept: usize) -> CliError {
     let after = limit.map_or_else(String::new, |limit| format!("after {limit} "));
     CliError::NotConverged(format!(
-        "time_limit: {after}the mean is not there yet; {kept} solves are kept, --resume goes on"
+        "time_limit: {after}the mean is not reached yet; {kept} solves are kept, --resume goes on"
     ))
 }
 
@@ -87,13 +87,13 @@ pub(super) fn check_means(means: &[EnsembleMean]) -> Result<(), CliError> {
     let reached = format!("error_of_mean: {} at {} {:e}", mean.mean_of, mean.control, mean.control_value);
     Err(CliError::NotConverged(match (mean.not_converged, mean.levels.last()) {
         (0, Some(finest)) if mean.grid_error > mean.standard_error => format!(
-            "{reached} has the error {} on grid {}, wanted {}; give a finer --grid",
+            "{reached} has an error of {} on grid {}, not {};  give a finer --grid",
             percent(mean.relative_error),
             finest.grid,
             percent(mean.wanted_error)
         ),
         (0, _) => format!(
-            "{reached} has the error {} with all realisations that there may be, wanted {}; give a larger error",
+            "{reached} has the error {} with the maximum number of realisations, wanted {}; give a larger error",
             percent(mean.relative_error),
             percent(mean.wanted_error)
         ),

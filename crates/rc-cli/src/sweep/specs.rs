@@ -38,7 +38,7 @@ impl FromStr for ShardSpec {
         match (rest, count) {
             ("", _) => Ok(Self::Auto(None)),
             (_, Some(Some(count))) => Ok(Self::Auto(Some(count))),
-            _ => Err(format!("auto may say of how many, as auto/8, not '{text}'")),
+            _ => Err(format!("auto may be followed by the number of parts, as auto/8, not '{text}'")),
         }
     }
 }
@@ -69,7 +69,7 @@ impl FromStr for ListSpec {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let refuse = |_| format!("a list has from 1 part on, as 64, or rows, not '{text}'");
+        let refuse = |_| format!("a list has 1 part or more, as 64, or rows, not '{text}'");
         if text == Self::ROWS { Ok(Self::EachRow) } else { text.parse().map(Self::Parts).map_err(refuse) }
     }
 }

@@ -168,7 +168,7 @@ fn check_rows(args: &SweepArgs, n_scenes: usize, n_loads: usize) -> Result<(), C
         return Ok(());
     }
     Err(CliError::input(format_args!(
-        "{n_scenes} scenes x {n_seeds} seeds x {n_loads} loads are more than {MAX_ROWS} rows; give shorter lists"
+        "{n_scenes} scenes x {n_seeds} seeds x {n_loads} loads are more than {MAX_ROWS} rows; shorten the lists"
     )))
 }
 
@@ -200,7 +200,8 @@ fn scenes(args: &SweepArgs) -> Result<Vec<(String, Scene)>, CliError> {
     for file in files {
         let name = file.and_then(|path| path.file_stem()).unwrap_or_default().to_string_lossy().into_owned();
         if scenes.iter().any(|(other, _)| *other == name) {
-            let message = format_args!("scenes: two are called '{name}', which rows could not tell apart; rename one");
+            let message =
+                format_args!("scenes: two are called '{name}', so that their rows could not be told apart; rename one");
             return Err(CliError::input(message));
         }
         scenes.push((name, resolve::layers(file.map(Path::new), args.scene.clone())?));
@@ -260,7 +261,7 @@ fn seeded(seeds: Option<&Seeds>, name: &str, scene: &Scene) -> Result<Vec<Scene>
     if let Some((key, _)) = scene.surface.file() {
         let what = if key == "heights" { "height map" } else { "file of waves" };
         let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
-        return Err(CliError::input(format_args!("seeds: the {what}{of} has none; omit --seeds")));
+        return Err(CliError::input(format_args!("seeds: the {what}{of} has no seed; omit --seeds")));
     }
     let with = |seed: &u64| {
         let mut scene = scene.clone();

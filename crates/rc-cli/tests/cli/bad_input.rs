@@ -56,7 +56,7 @@ fn bad_values_of_the_contact_are_refused_with_their_key() {
         (&["--tolerance", "0"], "tolerance"),
         (&["--tolerance", "1e-30"], "tolerance"),
         (&["--tolerance", "small"], "tolerance"),
-        (&["--method", "adaptive", "--kernel", "spectral"], "kernel must be love"),
+        (&["--method", "adaptive", "--kernel", "spectral"], "needs kernel love"),
         (&["--method", "adaptive", "--grid", "128x64"], "square elements"),
         (&["--method", "adaptive", "--grid", "66"], "at least 128 elements"),
         (&["--border-level", "1", "--grid", "130"], "needs a grid that halves"),

@@ -149,7 +149,7 @@ fn an_export_replaces_an_earlier_one_as_a_whole_and_no_other_folder() {
     assert_eq!(place.names("z/fields.zarr/pressure"), [".zarray", ".zattrs", "0.0"]);
     std::fs::create_dir_all(place.path("other/fields.zarr")).expect("a folder");
     place.write("other/fields.zarr/mine", "mine");
-    assert_refused(&place.run(&["export", "r", "--zarr", "--out", "other"]), "no Zarr group");
+    assert_refused(&place.run(&["export", "r", "--zarr", "--out", "other"]), "not a Zarr group");
     assert_eq!(place.names("other/fields.zarr"), ["mine"]);
     place.write("z/file", "");
     assert_refused(&place.run(&["export", "r", "--zarr", "--out", "z/file"]), "not a folder");

@@ -82,7 +82,7 @@ fn contradictions_and_what_is_missing_are_refused() {
     let cases: [(&[&str], &str); 13] = [
         (&["surface", "--heights", &x3p, "--cell", "1e-3"], "24 µm wide, cell says 1 mm"),
         (&["surface", "--heights", &x3p, "--unit", "um"], "names its units"),
-        (&["surface", "--heights", &x3p, "--height-scale", "1e-9"], "in metres already"),
+        (&["surface", "--heights", &x3p, "--height-scale", "1e-9"], "gives its heights in metres"),
         (&["surface", "--heights", &png, "--cell", "1"], "height_scale"),
         (&["surface", "--heights", &png, "--cell", "1", "--unit", "um", "--height-scale", "1e-9"], "omit unit"),
         (&["surface", "--heights", "map.xyz", "--cell-y", "1"], "2 m high, cell_y says 1 m"),

@@ -75,7 +75,7 @@ fn what_does_not_go_with_a_rectangle_is_refused() {
     place.write("map.npy", map());
     let solve = [&["solve", "--pressure", "1e5", "--out", "r"], &MATERIAL[..]].concat();
     let refused = |args: &[&str], expected: &str| assert_refused(&place.run(&[&solve[..], args].concat()), expected);
-    refused(&["--waves", "8", "--cell-y", "1e-3"], "cell_y: is for height maps");
+    refused(&["--waves", "8", "--cell-y", "1e-3"], "cell_y: applies to height maps");
     let gauss_seidel = ["--heights", "map.npy", "--method", "gauss-seidel"];
     refused(&[&gauss_seidel[..], &CELL].concat(), "square cell");
     // A square cell of elements half as long along x as along y.

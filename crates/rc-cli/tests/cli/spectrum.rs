@@ -108,7 +108,7 @@ fn a_sweep_knows_its_file_of_waves_by_content() {
         let sweep = ["sweep", "--spectrum", waves, "--grid", "64", "--pressures", "1e5,3e5", "--quiet", "--out", "s"];
         place.run(&[&sweep, &CELL[..], &MATERIAL, more].concat())
     };
-    assert_refused(&sweep("waves.txt", &["--seeds", "1..3"]), "the file of waves has none; omit --seeds");
+    assert_refused(&sweep("waves.txt", &["--seeds", "1..3"]), "the file of waves has no seed; omit --seeds");
     assert_solved(&sweep("waves.txt", &["--fields"]));
     assert_eq!(text(&place.bytes("s/sweep.csv")).lines().count(), 3);
     assert_solved(&place.run(&["solve", "s/rows/0002/scene.toml", "--out", "again", "--quiet"]));
@@ -131,7 +131,7 @@ fn files_that_are_no_surface_are_refused_with_one_line() {
         ("flat.txt", "0 0 3 0\n", "flat.txt: all waves are zero"),
         ("far.txt", "5000 0 3 0\n", "far.txt: wave (5000, 0): kx and ky must be from -4096 to 4096"),
         ("nan.txt", "1 0 nan 0\n", "nan.txt: wave (1, 0): its amplitude is NaN"),
-        ("huge.txt", "1 0 1e308 1e308\n", "huge.txt: an rms height of inf cells"),
+        ("huge.txt", "1 0 1e308 1e308\n", "huge.txt: an rms height of inf cell sides"),
         ("h.h5", "\u{89}HDF", "h.h5: line 1"),
     ] {
         place.write(name, content);
@@ -139,10 +139,10 @@ fn files_that_are_no_surface_are_refused_with_one_line() {
         assert_refused(&place.run(&args), expected);
     }
     let cases: [(&[&str], &str); 8] = [
-        (&["--heights", "waves.txt"], "heights and spectrum are both a surface"),
-        (&["--waves", "8"], "spectrum is a surface already"),
-        (&["--low-cut", "8"], "spectrum is a surface already"),
-        (&["--cell-y", "0.02"], "cell_y: is for height maps; a surface of waves has a square cell"),
+        (&["--heights", "waves.txt"], "heights and spectrum both define the surface"),
+        (&["--waves", "8"], "spectrum defines the surface"),
+        (&["--low-cut", "8"], "spectrum defines the surface"),
+        (&["--cell-y", "0.02"], "cell_y: applies to height maps; a surface of waves has a square cell"),
         (&["--grid", "16"], "grid: 16 x 16 elements are too coarse for waves = 8; at least 17"),
         (&["--height-scale", "0"], "height_scale: must be finite and not 0"),
         (&["--level", "plane"], "are for height maps"),

@@ -14,7 +14,7 @@ fn a_solve_that_takes_too_long_is_written_and_marked() {
         let output = place.run(&[&LONG[..], &["--method", method, "--time-limit", "0.2s", "--out", method]].concat());
         let message = text(&output.stderr);
         assert_eq!(output.status.code(), Some(3), "{method}: {message}");
-        assert!(message.starts_with("error: time_limit: 200ms were not enough: "), "{method}: {message}");
+        assert!(message.starts_with("error: time_limit: 200ms was not enough: "), "{method}: {message}");
         assert_eq!(message.lines().count(), 1, "{message}");
         let summary = place.json(&format!("{method}/summary.json"));
         assert_eq!(summary["status"], "not_converged");

@@ -87,7 +87,7 @@ fn each_load_has_a_mean_and_the_text_has_every_level() {
     assert_eq!(printed.matches("mean penetration at pressure ").count(), 2, "{printed}");
     assert_eq!(printed.matches("128 - 64").count(), 2, "{printed}");
     assert!(printed.contains("written to m/mean.json"), "{printed}");
-    assert_refused(&place.run(&["report", "m"]), "the mean is in mean.json");
+    assert_refused(&place.run(&["report", "m"]), "read mean.json instead");
 }
 
 #[test]
@@ -96,10 +96,10 @@ fn what_does_not_go_with_a_mean_is_refused() {
     place.write("map.npy", npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
     let error = ["--error-of-mean", "1%"];
     let cases: &[(&[&str], &str)] = &[
-        (&["--seeds", "1..3"], "seeds: does not go with --error-of-mean"),
-        (&["--shard", "1/2"], "shard: does not go with --error-of-mean"),
-        (&["--list"], "list: does not go with --error-of-mean"),
-        (&["--fields"], "fields: does not go with --error-of-mean"),
+        (&["--seeds", "1..3"], "seeds: cannot be combined with --error-of-mean"),
+        (&["--shard", "1/2"], "shard: cannot be combined with --error-of-mean"),
+        (&["--list"], "list: cannot be combined with --error-of-mean"),
+        (&["--fields"], "fields: cannot be combined with --error-of-mean"),
         (&["--grid", "96"], "can be halved to at least 64 elements per side, as 128"),
         (&["--seed", "9223372036854775807"], "leaves no room"),
         (&["--mean-of", "seed"], "--mean-of"),

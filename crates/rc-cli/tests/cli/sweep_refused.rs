@@ -11,8 +11,8 @@ fn bad_lists_are_refused() {
         (&["--pressures", ""], "--pressures"),
         (&["--pressures", "1e5:1e6:0"], "from 2 to"),
         (&["--pressures", "1e5:1e6"], "first:last:count"),
-        (&["--pressures", "1e5,1e6,2e5"], "must rise, or fall"),
-        (&["--pressures", "1e5:1e5:4"], "must rise, or fall"),
+        (&["--pressures", "1e5,1e6,2e5"], "must all rise or all fall"),
+        (&["--pressures", "1e5:1e5:4"], "must all rise or all fall"),
         (&["--pressures", "-1e5:1e6:4"], "positive"),
         (&["--pressures", "nan"], "positive"),
         (&["--penetrations", "0,1e-6"], "positive"),
@@ -55,7 +55,7 @@ fn scenes_that_do_not_go_together_are_refused() {
         (&["a.toml", "c.toml"], "a sweep has one control"),
         (&["a.toml", "typo.toml"], "typo.toml: line 1"),
         (&["a.toml", "none.toml"], "none.toml"),
-        (&["map.toml", "--pressures", "1e5", "--seeds", "1..3"], "the height map of map has none"),
+        (&["map.toml", "--pressures", "1e5", "--seeds", "1..3"], "the height map of map has no seed"),
         (&["map.toml"], "give --pressures or --penetrations"),
     ];
     for (args, expected) in cases {

@@ -48,11 +48,10 @@ fn a_process_that_nobody_numbers_is_refused_with_what_was_found() {
     let auto = |count: &'static str| sweep("s", &["--shard", count]);
     assert_refused(
         &run_as(&place, &[], &auto("auto")),
-        "shard: no job array and no MPI launcher here: none of SLURM_ARRAY_TASK_ID",
+        "shard: found neither a job array nor an MPI launcher: none of SLURM_ARRAY_TASK_ID",
     );
     let pbs = [("PBS_ARRAY_INDEX", "2")];
-    let expected =
-        "shard: PBS_ARRAY_INDEX=2 does not say of how many; give --shard auto/N, with tasks numbered from 1 to N";
+    let expected = "shard: PBS_ARRAY_INDEX=2 does not say how many tasks there are; give --shard auto/N, with tasks numbered from 1 to N";
     assert_refused(&run_as(&place, &pbs, &auto("auto")), expected);
     let both = [("PMI_RANK", "1"), ("PMI_SIZE", "4"), ("OMPI_COMM_WORLD_RANK", "2"), ("OMPI_COMM_WORLD_SIZE", "4")];
     assert_refused(&run_as(&place, &both, &auto("auto")), "contradicts PMI_RANK=1, PMI_SIZE=4; give --shard i/n");
@@ -107,7 +106,8 @@ fn shards_of_before_are_resumed_and_merged_as_they_were_dealt() {
     // The heaviest row takes longer than both others.
     assert_solved(&run("new-2", &["--shard", "2/2"]));
     let merge = |folders: [&str; 2]| place.run(&[&["sweep", "merge"], &folders[..], &["--out", "merged"]].concat());
-    let expected = "new-2: its rows were dealt otherwise than those of old-1; solve all shards with one version of rc";
+    let expected =
+        "new-2: its rows were dealt differently from those of old-1; solve all shards with one version of rc";
     assert_refused(&merge(["old-1", "new-2"]), expected);
     assert_solved(&merge(["old-1", "old-2"]));
     assert_eq!(result(&place.path("merged")), result(&place.path("whole")));

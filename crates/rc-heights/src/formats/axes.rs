@@ -12,7 +12,7 @@ const EVEN: f64 = 0.1;
 pub(super) fn step(name: &str, coordinates: &[f64]) -> Result<f64, FormatError> {
     let (Some(first), Some(last), true) = (coordinates.first(), coordinates.last(), coordinates.len() > 1) else {
         return Err(FormatError::Irregular(format!(
-            "{name} has {} values; two at least make a grid",
+            "{name} has {} values; a grid needs at least two",
             coordinates.len()
         )));
     };

@@ -146,7 +146,7 @@ impl Heading {
         if let [Some(w), Some(h)] = self.counts
             && (w, h) != (nx, ny)
         {
-            let expected = "the numbers of columns and rows that are there; the file is cut off";
+            let expected = "the numbers of columns and rows that are there; the file is truncated";
             return Err(refused(Format::Csv, "w x h", &format!("{w} x {h}, for {nx} x {ny} numbers"), expected));
         }
         let points = [nx as f64, ny as f64];

@@ -46,7 +46,7 @@ impl<'a> Places<'a> {
         Ok(text(&self.array::<N>(at)?))
     }
 
-    /// The bytes from `at` on; none where the file is cut off.
+    /// The bytes from `at` on; none where the file is truncated.
     pub(super) fn rest(self, at: usize) -> &'a [u8] {
         self.bytes.get(at..).unwrap_or_default()
     }

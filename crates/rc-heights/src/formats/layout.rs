@@ -19,7 +19,7 @@ pub enum Layout {
 
 /// A layout that is not known.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("'{name}' is not a layout of text; matrix (a row of the map a line) and xyz (a point a line) are")]
+#[error("'{name}' is not a layout of text; give matrix (each line is a row of the map) or xyz (each line is a point)")]
 pub struct LayoutError {
     /// As written.
     pub name: String,

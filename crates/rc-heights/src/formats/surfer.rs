@@ -41,7 +41,7 @@ fn map(grid: Grid, spacing: [f64; 2], mut values: Vec<f64>, missing: impl Fn(f64
 /// Distance of `n` lines from `low` to `high`.
 fn spacing(field: &'static str, low: f64, high: f64, n: usize) -> Result<f64, FormatError> {
     if n < 2 {
-        return Err(refused(Format::Surfer, field, &format!("one line at {low}"), "two lines at least"));
+        return Err(refused(Format::Surfer, field, &format!("only one line, at {low}"), "two lines at least"));
     }
     positive(Format::Surfer, field, (high - low) / (n - 1) as f64)
 }

@@ -86,7 +86,7 @@ fn order(titles: &[String]) -> Result<[usize; 3], FormatError> {
 }
 
 fn irregular(message: String) -> FormatError {
-    FormatError::Irregular(message + "; layout = matrix reads a row of the map a line")
+    FormatError::Irregular(message + "; layout = matrix reads each line as a row of the map")
 }
 
 fn on_grid(points: Vec<[f64; 3]>) -> Result<HeightMap, FormatError> {
@@ -94,7 +94,7 @@ fn on_grid(points: Vec<[f64; 3]>) -> Result<HeightMap, FormatError> {
     let grid = Grid::new(axes[0].n, axes[1].n)?;
     if grid.len() > MOST_MISSING * points.len() {
         let message =
-            format!("{} points on {grid} grid lines; fewer than one in {MOST_MISSING} is there", points.len());
+            format!("{} points on {grid} grid lines; fewer than one in {MOST_MISSING} is present", points.len());
         return Err(irregular(message));
     }
     let mut values = vec![f64::NAN; grid.len()];
@@ -147,7 +147,7 @@ impl Axis {
         let n = 1 + all.windows(2).filter(|pair| pair[1] - pair[0] > same).count();
         let step = (last - first) / (n.max(2) - 1) as f64;
         if n < 2 || !step.is_finite() {
-            return Err(irregular(format!("{n} different values of {name}; two at least make a grid")));
+            return Err(irregular(format!("{n} different values of {name}; a grid needs at least two")));
         }
         Ok(Self { name, first, step, n })
     }
@@ -158,7 +158,8 @@ impl Axis {
         let line = at.round();
         if (at - line).abs() > 0.1 {
             let Self { name, first, step, n } = self;
-            let message = format!("{name} = {coordinate:e} is none of {n} values from {first:e} in steps of {step:e}");
+            let message =
+                format!("{name} = {coordinate:e} is not one of the {n} values from {first:e} in steps of {step:e}");
             return Err(irregular(message));
         }
         Ok((line as usize).min(self.n - 1))
@@ -196,7 +197,7 @@ mod tests {
             ("0 0 1\n1 x 2\n", "line 2, value 2"),
             ("0 0 1\nnan 1 2\n", "line 2, value 1"),
             ("0 0 1\n1 0 2\n0 0 3\n0 1 3\n", "two points"),
-            ("0 0 1\n1 0 2\n1.4 1 3\n", "none of 3 values"),
+            ("0 0 1\n1 0 2\n1.4 1 3\n", "not one of the 3 values"),
             ("0 0 1\n1 0 2\n", "of y"),
             ("", "of x"),
             (&scattered, "one in 16"),

@@ -25,7 +25,7 @@ impl FromStr for Level {
 
     fn from_str(text: &str) -> Result<Self, TreatError> {
         let form = [Self::Mean, Self::Plane, Self::Quadratic].into_iter().find(|form| form.to_string() == text);
-        let expected = "a form to take away: mean, plane or quadratic";
+        let expected = "a form to remove: mean, plane or quadratic";
         form.ok_or_else(|| TreatError::Unknown { found: text.to_owned(), expected })
     }
 }

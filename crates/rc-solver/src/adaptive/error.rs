@@ -69,7 +69,7 @@ pub enum AdaptiveError {
     )]
     BorderOfMap,
     /// The surface is flat, so there is nothing to adapt to.
-    #[error("a flat surface has nothing to adapt to; the uniform method solves it")]
+    #[error("a flat surface needs no adaptive mesh; use the uniform method")]
     Flat,
     /// The estimated memory is above the limit.
     #[error("the adaptive method needs about {needed} MB {}, more than the limit of {limit} MB", needed_for(*area_percent))]

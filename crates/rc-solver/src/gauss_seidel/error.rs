@@ -15,7 +15,7 @@ pub enum GaussSeidelError {
     Problem(#[from] ProblemError),
     /// The elements of the mesh must be squares, in a square cell.
     #[error(
-        "the mesh has square elements in a square cell, not {grid} in one of 1 by {ratio}",
+        "the mesh needs square elements in a square cell, not {grid} in one of 1 by {ratio}",
         ratio = grid.cell_ratio()
     )]
     NotSquare {

@@ -28,7 +28,7 @@ pub enum SolveError {
         kernel: &'static str,
     },
     /// A border level is asked of a method without one.
-    #[error("only the adaptive method divides elements at contact edges, not the {method} one")]
+    #[error("the {method} method does not divide elements at contact edges; only the adaptive method does")]
     BorderLevel {
         /// The method asked for.
         method: Method,
@@ -62,7 +62,9 @@ pub enum SolveError {
     )]
     NoWaves,
     /// The finest grid that is tried is not accurate enough.
-    #[error("an error of the area of {wanted} of it cannot be reached; with {side} elements per side it is {reached}")]
+    #[error(
+        "a relative error of the area of {wanted} cannot be reached; with {side} elements per side it is {reached}"
+    )]
     AreaError {
         /// Relative error that was wanted.
         wanted: f64,

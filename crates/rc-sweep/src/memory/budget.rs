@@ -24,7 +24,7 @@ pub enum Bound {
 
 /// Something needs more memory than there is.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{what} needs about {needed} of memory, there are {available}{remedy}")]
+#[error("{what} needs about {needed} of memory, but {available} is available{remedy}")]
 pub struct MemoryError {
     /// What needs it.
     pub what: String,
@@ -117,6 +117,6 @@ mod tests {
         assert_eq!((budget.available(), unlimited.available()), (Some(8_000_000), Some(800_000_000)));
         assert_eq!(error.bound, Bound::Machine);
         let text = error.to_string();
-        assert!(text.starts_with("it on 3163 x 3163") && text.contains("there are 800 MB"), "{text}");
+        assert!(text.starts_with("it on 3163 x 3163") && text.contains("800 MB is available"), "{text}");
     }
 }

@@ -23,5 +23,5 @@ pub(super) fn positive(key: &str, unit: &str, value: Option<f64>) -> Result<f64,
 
 /// A key that neither the user nor the example gives: only after an edit of the example.
 pub(super) fn missing(key: &str) -> CliError {
-    CliError::input(format_args!("{key}: must be given"))
+    CliError::input(format_args!("{key}: is missing; give it"))
 }

@@ -33,7 +33,7 @@ impl ContactSetup {
     pub fn kernel(&self) -> Result<&'static dyn Kernel, CliError> {
         kernel(self.kernel).ok_or_else(|| {
             CliError::input(
-                "kernel: 'own' is a function of a Python program, which alone can solve with it; give love or spectral",
+                "kernel: 'own' stands for a function of a Python program, and only that program can solve with it; give love or spectral",
             )
         })
     }
@@ -88,7 +88,7 @@ fn check_method(keys: &ContactKeys, kernel: KernelName) -> Result<(), CliError> 
         (keys.method, kernel)
     {
         return Err(CliError::input(format_args!(
-            "method: '{method}' has the paper's elements, so kernel must be love; uniform has spectral too"
+            "method: '{method}' needs kernel love; only the uniform method takes spectral"
         )));
     }
     match (keys.border_level, keys.method, kernel) {

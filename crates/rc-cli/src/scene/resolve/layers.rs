@@ -25,7 +25,7 @@ fn check_alternatives(scene: &Scene) -> Result<(), String> {
         return Err("both pressure and penetration are given; give exactly one".into());
     }
     if contact.e_star.is_some() && (contact.young.is_some() || contact.poisson.is_some()) {
-        return Err("e_star stands for young and poisson; give either e_star or the two".into());
+        return Err("e_star replaces young and poisson; give either e_star or both of them".into());
     }
     if [surface.rms, surface.rms_slope, surface.c0].iter().flatten().count() > 1 {
         return Err("rms, rms_slope and c0 are alternatives; give one".into());
@@ -34,10 +34,12 @@ fn check_alternatives(scene: &Scene) -> Result<(), String> {
         return Err("area_error chooses the grid; give either area_error or grid".into());
     }
     if surface.heights.is_some() && surface.spectrum.is_some() {
-        return Err("heights and spectrum are both a surface; give one of them".into());
+        return Err("heights and spectrum both define the surface; give one of them".into());
     }
     if let (Some((key, _)), true) = (surface.file(), surface.generates()) {
-        return Err(format!("{key} is a surface already; give no parameters of a random one (waves, hurst, rms, ...)"));
+        return Err(format!(
+            "{key} defines the surface; omit the parameters of a random surface (waves, hurst, rms, ...)"
+        ));
     }
     Ok(())
 }

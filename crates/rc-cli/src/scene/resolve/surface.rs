@@ -56,14 +56,14 @@ pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
 fn random(keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Result<SurfaceSetup, CliError> {
     if keys.scales() != Scales::default() {
         return Err(CliError::input(
-            "unit and height_scale: are for surfaces from files; give --heights FILE or --spectrum FILE, or omit them",
+            "unit and height_scale apply to surfaces from files; give --heights FILE or --spectrum FILE, or omit them",
         ));
     }
     if keys.read_params() != ReadParams::default() {
-        return Err(CliError::input("channel and layout: are for height maps; give --heights FILE, or omit them"));
+        return Err(CliError::input("channel and layout apply to height maps; give --heights FILE, or omit them"));
     }
     if keys.cell_y.is_some() {
-        return Err(CliError::input("cell_y: is for height maps; a random surface has a square cell, so omit it"));
+        return Err(CliError::input("cell_y: applies to height maps; a random surface has a square cell, so omit it"));
     }
     let spectrum = spectrum(&keys, cell.side())?;
     let grid = resolving_grid(grid, spectrum.waves)?;
@@ -74,7 +74,9 @@ fn random(keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Result<S
 /// The surface that a file has the waves of, on a grid that resolves them. The file is read here, since the grid depends on it.
 fn of_waves(keys: SurfaceKeys, path: &Path, cell: PeriodicCell, grid: Option<Grid>) -> Result<SurfaceSetup, CliError> {
     if keys.cell_y.is_some() {
-        return Err(CliError::input("cell_y: is for height maps; a surface of waves has a square cell, so omit it"));
+        return Err(CliError::input(
+            "cell_y: applies to height maps; a surface of waves has a square cell, so omit it",
+        ));
     }
     let waves = Arc::new(WaveFile::read(path, keys.scales(), cell.side())?);
     let grid = resolving_grid(grid, waves.surface().waves())?;
