@@ -236,7 +236,7 @@ impl<'a> AdaptiveProblem<'a> {
         solution: &AdaptiveSolution,
         take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        solution.displacement_rows(&self.ground.kernels, take)
+        solution.displacement_rows(&self.ground.kernels, false, take)
     }
 
     /// The contact stiffness of `solution`: see [`AdaptiveSolution::contact_stiffness`].
@@ -255,12 +255,37 @@ impl<'a> AdaptiveProblem<'a> {
     pub(crate) fn gap_rows<E>(
         &self,
         solution: &AdaptiveSolution,
+        take: impl FnMut(usize, &[f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        self.gap_rows_on(solution, false, take)
+    }
+
+    /// The same under the solution itself, on the grid of the smallest elements.
+    ///
+    /// # Errors
+    /// What `take` returns.
+    ///
+    /// # Panics
+    /// As [`AdaptiveProblem::gap_rows`].
+    pub(crate) fn finest_gap_rows<E>(
+        &self,
+        solution: &AdaptiveSolution,
+        take: impl FnMut(usize, &[f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        self.gap_rows_on(solution, true, take)
+    }
+
+    fn gap_rows_on<E>(
+        &self,
+        solution: &AdaptiveSolution,
+        finest: bool,
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
         assert_eq!(solution.finest_grid(), self.ground.heights.ladder().finest(), "not a solution of this problem");
         let offset = solution.gap_offset(self.h_max());
-        self.displacement_rows(solution, |first, displacement| {
-            let mut rows = self.ground.heights.row_of_tiles(sides_of(solution.grid()), first / TILE);
+        let grid = if finest { solution.finest_grid() } else { solution.grid() };
+        solution.displacement_rows(&self.ground.kernels, finest, |first, displacement| {
+            let mut rows = self.ground.heights.row_of_tiles(sides_of(grid), first / TILE);
             for (h, v) in rows.iter_mut().zip(displacement) {
                 *h = v - *h + offset;
             }

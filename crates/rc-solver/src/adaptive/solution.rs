@@ -9,6 +9,7 @@ use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, put_tile};
 
 use super::element_blocks::blocks_of;
 use super::kernels::Kernels;
+use super::ladder::sides_of;
 use super::operator::{Hierarchy, Prepared, Tables, TileCorrections, TileResponse};
 use super::scaled_operator::ScaledOperator;
 use crate::descent::{BlockOperator, read_blocks, write_blocks};
@@ -91,6 +92,30 @@ impl AdaptiveSolution {
         self.elements.on_coarsest(&self.pressure)
     }
 
+    /// Tiles of the smallest elements wherever there are elements, and the pressure on them: a larger element stands for its parts.
+    fn on_finest(&self) -> (TileSet, Vec<f64>) {
+        let levels = self.elements.levels();
+        let parts = |coarser: usize, tile: usize| {
+            let [column, row] = levels[coarser].places()[tile].map(|i| i << coarser);
+            let across = 1_u32 << coarser;
+            (0..across * across).map(move |i| [column + i % across, row + i / across])
+        };
+        let places = self.elements.tiles().flat_map(|(coarser, tile, _)| parts(coarser, tile)).collect();
+        let tiles = TileSet::new(sides_of(self.finest), places);
+        let mut values = vec![0.0; Elements::uniform(tiles.clone()).len()];
+        for (coarser, tile, start) in self.elements.tiles() {
+            for place in parts(coarser, tile) {
+                let Some(part) = tiles.find(place[0].into(), place[1].into()) else { continue };
+                // Which cell of the larger tile is over cell i of the part, along one side.
+                let over = |place: u32, i: usize| ((place as usize * TILE + i) >> coarser) % TILE;
+                for (cell, value) in values[part * CELLS..][..CELLS].iter_mut().enumerate() {
+                    *value = self.pressure[start + over(place[1], cell / TILE) * TILE + over(place[0], cell % TILE)];
+                }
+            }
+        }
+        (tiles, values)
+    }
+
     /// Hands out the pressure on the grid, in the mean over smaller elements, eight rows at a time, in order: the index of the
     /// first row, and the rows one after the other. Stops at the first error.
     ///
@@ -102,21 +127,27 @@ impl AdaptiveSolution {
     }
 
     /// Hands out the displacement v of the grid's pressure, rows of tiles at a time as [`AdaptiveSolution::pressure_rows`]
-    /// does, at about the cost of one application of L on the whole grid. The gap is `v - h + offset`: see
-    /// [`AdaptiveSolution::gap_offset`], and [`super::AdaptiveProblem::gap_rows`].
+    /// does, at about the cost of one application of L on the whole grid; with `finest` that of the pressure itself, on the grid of the
+    /// smallest elements. The gap is `v - h + offset`: see [`AdaptiveSolution::gap_offset`], and [`super::AdaptiveProblem::gap_rows`].
     ///
     /// # Errors
     /// What `take` returns.
     pub(super) fn displacement_rows<E>(
         &self,
         kernels: &Kernels,
+        finest: bool,
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        let (own_tiles, pressure) = self.on_grid();
+        let (own_tiles, pressure) = if finest {
+            let (tiles, pressure) = self.on_finest();
+            (tiles, Cow::Owned(pressure))
+        } else {
+            self.on_grid()
+        };
         let ([nx, ny], [columns, n_rows]) = (own_tiles.sides(), own_tiles.extent());
         let own = Elements::uniform(own_tiles);
         let prepared = kernels.response();
-        let tables = prepared.tables(self.grid);
+        let tables = prepared.tables(if finest { self.finest } else { self.grid });
         // As many rows of tiles at once as about a million cells hold.
         let at_once = (1_000_000 / (TILE * nx)).max(1);
         for first in (0..n_rows).step_by(at_once) {

@@ -270,7 +270,9 @@ impl<'a> Solution<'a> {
     pub fn pressure(&self) -> &Field {
         match &self.pressures {
             Pressures::Grid { solution, .. } => &solution.pressure,
-            Pressures::Tiles { .. } => self.pressure.get_or_init(|| self.collect(|take| self.pressure_rows(take))),
+            Pressures::Tiles { .. } => {
+                self.pressure.get_or_init(|| collect(self.grid(), |take| self.pressure_rows(take)))
+            }
         }
     }
 
@@ -279,7 +281,19 @@ impl<'a> Solution<'a> {
     pub fn gap(&self) -> &Field {
         match &self.pressures {
             Pressures::Grid { solution, .. } => &solution.gap,
-            Pressures::Tiles { .. } => self.gap.get_or_init(|| self.collect(|take| self.gap_rows(take))),
+            Pressures::Tiles { .. } => self.gap.get_or_init(|| collect(self.grid(), |take| self.gap_rows(take))),
+        }
+    }
+
+    /// The gap on the grid of the smallest elements, in λ, as [`Solution::gap`]; `None` where that is [`Solution::grid`], which it is without
+    /// a border level. Takes one application of L on that grid each time.
+    #[must_use]
+    pub fn finest_gap(&self) -> Option<Field> {
+        match &self.pressures {
+            Pressures::Tiles { solution, problem } if self.finest_grid() != self.grid() => {
+                Some(collect(self.finest_grid(), |take| problem.finest_gap_rows(solution, take)))
+            }
+            _ => None,
         }
     }
 
@@ -288,7 +302,9 @@ impl<'a> Solution<'a> {
     pub fn displacement(&self) -> &Field {
         self.displacement.get_or_init(|| match &self.pressures {
             Pressures::Grid { solution, response } => response.displacement(&solution.pressure),
-            Pressures::Tiles { solution, problem } => self.collect(|take| problem.displacement_rows(solution, take)),
+            Pressures::Tiles { solution, problem } => {
+                collect(self.grid(), |take| problem.displacement_rows(solution, take))
+            }
         })
     }
 
@@ -317,19 +333,19 @@ impl<'a> Solution<'a> {
             (Pressures::Tiles { solution, problem }, None) => problem.gap_rows(solution, take),
         }
     }
+}
 
-    /// A field on the grid from its rows, which `rows` hands out in order.
-    fn collect(
-        &self,
-        rows: impl FnOnce(&mut dyn FnMut(usize, &[f64]) -> Result<(), Infallible>) -> Result<(), Infallible>,
-    ) -> Field {
-        let mut values = Vec::with_capacity(self.grid().len());
-        let Ok(()) = rows(&mut |_, rows| {
-            values.extend_from_slice(rows);
-            Ok(())
-        });
-        Field::new(self.grid(), values).expect("as many values as the grid has elements")
-    }
+/// A field on `grid` from its rows, which `rows` hands out in order.
+fn collect(
+    grid: Grid,
+    rows: impl FnOnce(&mut dyn FnMut(usize, &[f64]) -> Result<(), Infallible>) -> Result<(), Infallible>,
+) -> Field {
+    let mut values = Vec::with_capacity(grid.len());
+    let Ok(()) = rows(&mut |_, rows| {
+        values.extend_from_slice(rows);
+        Ok(())
+    });
+    Field::new(grid, values).expect("as many values as the grid has elements")
 }
 
 impl std::fmt::Debug for Solution<'_> {
