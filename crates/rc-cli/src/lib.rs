@@ -37,7 +37,7 @@ mod report;
 pub mod run;
 pub mod solve;
 pub mod surface;
-mod sweep;
+pub mod sweep;
 mod terminal;
 mod text;
 

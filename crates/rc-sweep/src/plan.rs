@@ -84,6 +84,18 @@ impl FileMark {
     }
 }
 
+impl FileMark {
+    /// Of numbers that are in no file, as they are in memory.
+    #[must_use]
+    pub fn of_values(values: &[f64]) -> Self {
+        let mut checksum = crc32fast::Hasher::new();
+        for value in values {
+            checksum.update(&value.to_le_bytes());
+        }
+        Self { bytes: 8 * values.len() as u64, crc32: checksum.finalize() }
+    }
+}
+
 /// A checksum that is written to.
 struct Checksum(crc32fast::Hasher);
 

@@ -109,6 +109,18 @@ impl Sweep {
         })
     }
 
+    /// Ends a sweep whose rows a caller solved and kept: writes the table, whose path is returned. One of which no row is kept
+    /// leaves nothing behind.
+    ///
+    /// # Errors
+    /// [`SweepError::File`]; an earlier table is left as it was.
+    pub fn end(&self) -> Result<PathBuf, SweepError> {
+        let kept = self.kept();
+        let written = kept.write_table();
+        kept.discard_empty();
+        written
+    }
+
     /// The journal, which workers and a handler of interrupts share. Every row in it is whole, so a worker that panicked
     /// leaves it usable.
     fn locked(&self) -> MutexGuard<'_, Journal> {

@@ -8,10 +8,13 @@ mod mean;
 mod merge;
 mod messages;
 mod part;
+mod planned;
 mod realisations;
 mod rows;
 mod specs;
 mod surfaces;
+
+pub use planned::{MapMark, SweepLists, plan};
 
 use std::sync::Arc;
 use std::time::Instant;

@@ -22,6 +22,8 @@ pub(super) struct SweptSurface {
     /// The keys as resolved, without a load.
     contact: ContactKeys,
     loads: Vec<f64>,
+    /// By which a height map is recognised that a program holds.
+    held: Option<FileMark>,
 }
 
 /// What the scenes and lists of the command line say. Surfaces are ordered by scene, then seed, each as given.
@@ -46,7 +48,7 @@ impl Surfaces {
         let mut surfaces = Vec::new();
         for (name, scene) in &scenes {
             let loads = loads(args, control, &scene.contact)?;
-            check_rows(args, scenes.len(), loads.len())?;
+            check_rows(scenes.len(), args.seeds.as_ref(), loads.len())?;
             for keys in seeded(args.seeds.as_ref(), name, scene)? {
                 surfaces.push(SweptSurface::new(name, keys, control, &loads)?);
             }
@@ -105,14 +107,36 @@ impl Surfaces {
 
 impl SweptSurface {
     /// Checks the keys of `scene`, under the first load: everything but the load is the same for all of them.
-    fn new(name: &str, scene: Scene, control: ControlKind, loads: &[f64]) -> Result<Self, CliError> {
+    pub(super) fn new(name: &str, scene: Scene, control: ControlKind, loads: &[f64]) -> Result<Self, CliError> {
         resolve::check_size_and_material(&scene.surface, &scene.contact)?;
         let setup = resolve::surface(scene.surface)?;
+        Self::on(setup, name, &scene.contact, (control, loads))
+    }
+
+    /// The same of a height map that a program holds: the sides of its cell (m), where it knows them, and by what it is recognised.
+    pub(super) fn of_map(
+        name: &str,
+        scene: Scene,
+        loads: (ControlKind, &[f64]),
+        (sides, mark): (Option<[f64; 2]>, FileMark),
+    ) -> Result<Self, CliError> {
+        let keys = scene.surface.of_map(sides)?;
+        resolve::check_cell_and_material(&keys, &scene.contact)?;
+        let setup = resolve::surface_in_cell(keys)?;
+        Ok(Self { held: Some(mark), ..Self::on(setup, name, &scene.contact, loads)? })
+    }
+
+    fn on(
+        setup: SurfaceSetup,
+        name: &str,
+        contact: &ContactKeys,
+        (control, loads): (ControlKind, &[f64]),
+    ) -> Result<Self, CliError> {
         let seed = setup.keys.seed.filter(|_| matches!(setup.source, Source::Random { .. }));
-        let keys = with_load(control, &scene.contact, loads.first().copied());
+        let keys = with_load(control, contact, loads.first().copied());
         let contact = resolve::contact(keys, setup.cell)?;
         let contact = with_load(control, &contact.keys, None);
-        Ok(Self { scene: name.to_owned(), seed, setup, contact, loads: loads.to_vec() })
+        Ok(Self { scene: name.to_owned(), seed, setup, contact, loads: loads.to_vec(), held: None })
     }
 
     /// The contact under `load`, ready to be solved.
@@ -134,7 +158,7 @@ impl SweptSurface {
             Source::Random { .. } => None,
             Source::File { path, .. } => {
                 surface.heights = path.file_name().map(Into::into);
-                Some(FileMark::of(path)?)
+                Some(self.held.map_or_else(|| FileMark::of(path), Ok)?)
             }
             Source::Waves { path, .. } => {
                 surface.spectrum = path.file_name().map(Into::into);
@@ -162,8 +186,8 @@ fn with_load(control: ControlKind, keys: &ContactKeys, value: Option<f64>) -> Co
 }
 
 /// Refuses more rows than anyone means.
-fn check_rows(args: &SweepArgs, n_scenes: usize, n_loads: usize) -> Result<(), CliError> {
-    let n_seeds = args.seeds.as_ref().map_or(1, |Seeds(seeds)| seeds.len());
+pub(super) fn check_rows(n_scenes: usize, seeds: Option<&Seeds>, n_loads: usize) -> Result<(), CliError> {
+    let n_seeds = seeds.map_or(1, |Seeds(seeds)| seeds.len());
     if n_scenes.saturating_mul(n_seeds).saturating_mul(n_loads) <= MAX_ROWS {
         return Ok(());
     }
@@ -256,7 +280,7 @@ fn loads(args: &SweepArgs, control: ControlKind, keys: &ContactKeys) -> Result<V
 }
 
 /// The scene with each of the seeds; as it is when there are none.
-fn seeded(seeds: Option<&Seeds>, name: &str, scene: &Scene) -> Result<Vec<Scene>, CliError> {
+pub(super) fn seeded(seeds: Option<&Seeds>, name: &str, scene: &Scene) -> Result<Vec<Scene>, CliError> {
     let Some(Seeds(seeds)) = seeds else { return Ok(vec![scene.clone()]) };
     if let Some((key, _)) = scene.surface.file() {
         let what = if key == "heights" { "height map" } else { "file of waves" };

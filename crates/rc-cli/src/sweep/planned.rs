@@ -1,0 +1,43 @@
+//! The plan of a sweep whose rows a program solves: that of `rc sweep`, so that either goes on with the rows of the other.
+
+use rc_sweep::{ControlKind, FileMark, Loads, Seeds, SweepPlan};
+
+use super::surfaces::{SweptSurface, check_rows, seeded};
+use crate::error::CliError;
+use crate::scene::keys::Scene;
+
+/// What a sweep is over, besides its scene.
+#[derive(Clone, Debug)]
+pub struct SweepLists {
+    /// What the loads are.
+    pub control: ControlKind,
+    /// Pressures (Pa) or penetrations (m).
+    pub loads: Loads,
+    /// Seeds of a random surface, if there are several.
+    pub seeds: Option<Seeds>,
+}
+
+/// A height map that a program holds.
+#[derive(Clone, Copy, Debug)]
+pub struct MapMark {
+    /// Sides of its cell along x and y (m), where it knows them.
+    pub sides: Option<[f64; 2]>,
+    /// By which it is recognised.
+    pub mark: FileMark,
+}
+
+/// The plan of `rc sweep` for this scene, which is called `name`; of a map that a program holds, `map` says what is known.
+///
+/// # Errors
+/// [`CliError::Input`] for keys that cannot be solved, or a file that cannot be read.
+pub fn plan(name: &str, scene: &Scene, lists: &SweepLists, map: Option<MapMark>) -> Result<SweepPlan, CliError> {
+    let SweepLists { control, loads: Loads(loads), seeds } = lists;
+    check_rows(1, seeds.as_ref(), loads.len())?;
+    let surface = |scene: Scene| match map {
+        Some(MapMark { sides, mark }) => SweptSurface::of_map(name, scene, (*control, loads), (sides, mark)),
+        None => SweptSurface::new(name, scene, *control, loads),
+    };
+    let scenes = seeded(seeds.as_ref(), name, scene)?;
+    let surfaces = scenes.into_iter().map(|scene| surface(scene)?.planned()).collect::<Result<_, _>>()?;
+    Ok(SweepPlan::new(*control, surfaces))
+}
