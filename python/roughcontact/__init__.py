@@ -16,17 +16,22 @@ heights; :func:`read` reads a measured map, :func:`prepare` treats it and :func:
 
 from roughcontact._core import __version__
 from roughcontact._maps import HeightMap, channels, inspect, prepare, read
-from roughcontact._result import Certificate, ContactSpot, Elements, Result, StressDistribution, load
-from roughcontact._run import NotConvergedError, NotConvergedWarning, Progress
+from roughcontact._records import Certificate, ContactSpot, Elements, StressDistribution
+from roughcontact._result import Result, load
+from roughcontact._rows import FieldsAt
+from roughcontact._run import Interrupted, NotConvergedError, NotConvergedWarning, Progress
 from roughcontact._solve import solve
 from roughcontact._surface import Surface, surface
-from roughcontact._sweep import Table, sweep
+from roughcontact._sweep import sweep
+from roughcontact._table import Table
 
 __all__ = [
     "Certificate",
     "ContactSpot",
     "Elements",
+    "FieldsAt",
     "HeightMap",
+    "Interrupted",
     "NotConvergedError",
     "NotConvergedWarning",
     "Progress",

@@ -61,7 +61,9 @@ def figure(result: Result) -> Figure:
     except ImportError:
         raise ImportError("plot needs matplotlib: pip install roughcontact[plot]") from None
     drawing = Figure(figsize=(13.0, 3.6), layout="constrained")
-    axes: Any = drawing.subplots(1, 3)
+    # Means over blocks have no distribution of the stress.
+    stress = result.stress_distribution() if result.pressure.shape == tuple(result.grid[::-1]) else None
+    axes: Any = drawing.subplots(1, 2 if stress is None else 3)
     (length, metres), (stress_unit, pascals) = scale(max(result.sides), "m"), scale(result.max_pressure, "Pa")
     gap_unit, gap_metres = scale(float(result.gap.max()), "m")
     # The first row is at the bottom, as in the pictures of the command line.
@@ -74,7 +76,8 @@ def figure(result: Result) -> Figure:
         image = axis.imshow(field, cmap=colours, origin="lower", extent=extent, interpolation="nearest")
         axis.set(title=title, xlabel=f"x ({length})", ylabel=f"y ({length})")
         drawing.colorbar(image, ax=axis)
-    stress = result.stress_distribution()
+    if stress is None:
+        return drawing
     axes[2].stairs(stress.density * pascals, stress.edges / pascals, fill=True)
     labels = {"xlabel": f"σ ({stress_unit})", "ylabel": f"P(σ) (1/{stress_unit})"}
     axes[2].set(title="Stress distribution", xlim=(0.0, stress.edges[-1] / pascals), **labels)

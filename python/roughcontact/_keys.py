@@ -18,19 +18,34 @@ Path = Union[str, "os.PathLike[str]"]
 LengthUnit = Literal["m", "mm", "um", "nm"]
 
 
+#: Keys that are numbers along x and along y, and may be pairs.
+_PAIRS = frozenset({"grid", "output_grid", "--resample", "--crop", "--repeat"})
+
+
 def plain(keys: Mapping[str, Any]) -> dict[str, Any]:
     """The keys that have a value, with numbers of NumPy, paths and pairs as what they stand for."""
-    return {name: _plain(value) for name, value in keys.items() if value is not None}
+    return {name: _plain(name, value) for name, value in keys.items() if value is not None}
 
 
-def _plain(value: Any) -> Any:
+def _plain(name: str, value: Any) -> Any:
     if isinstance(value, (str, int, float)):
         # Numbers of NumPy that are floats too keep their value.
         return float(value) if type(value) is np.float64 else value
     if isinstance(value, (np.generic, np.ndarray)) and value.ndim == 0:
         return value.item()
-    if isinstance(value, (tuple, list)) and len(value) == 2:
+    if name in _PAIRS and isinstance(value, (tuple, list)) and len(value) == 2:
         return f"{value[0]}x{value[1]}"
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     return value
+
+
+def length(name: str, value: Any) -> float:
+    """A length (m), positive and finite."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: must be a number (m), not {value!r}") from None
+    if not (0.0 < number < np.inf):
+        raise ValueError(f"{name}: must be positive and finite (m), not {number:g}")
+    return number

@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import os
 import tempfile
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from roughcontact import _core
-from roughcontact._keys import Grid, LengthUnit, Path, plain
+from roughcontact._keys import Grid, LengthUnit, Path, length, plain
 
 if TYPE_CHECKING:
     from roughcontact._result import Result
@@ -31,7 +32,7 @@ class HeightMap:
     heights : array_like, shape (ny, nx)
         Heights (m), positive towards the half-space; NaN where nothing was measured.
     sides : (float, float), optional
-        Sides of the map along x and y (m).
+        Sides of the map along x and y (m), positive.
     """
 
     __slots__ = ("heights", "sides")
@@ -43,7 +44,7 @@ class HeightMap:
 
     def __init__(self, heights: ArrayLike, sides: Sides | None = None) -> None:
         self.heights = as_heights(heights)
-        self.sides = None if sides is None else (float(sides[0]), float(sides[1]))
+        self.sides = None if sides is None else _sides(sides)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -115,6 +116,39 @@ def _of_topography(topography: Any) -> tuple[Floats, Sides]:
     return as_heights(array.T), (float(x), float(y))
 
 
+def _sides(sides: Any) -> Sides:
+    """Two lengths."""
+    try:
+        x, y = sides
+    except (TypeError, ValueError):
+        raise ValueError(f"sides: must be two lengths (m), along x and y, not {sides!r}") from None
+    return length("sides", x), length("sides", y)
+
+
+#: Relative difference of lengths that are the same.
+_SAME_LENGTH = 1e-3
+
+
+def _sides_of(shape: tuple[int, ...], known: Sides | None, cell: float | None, cell_y: float | None) -> Sides | None:
+    """The size of a map: the one that it knows, which must not be contradicted, or the one that is given."""
+    given = [None if side is None else length(name, side) for name, side in (("cell", cell), ("cell_y", cell_y))]
+    if known is not None:
+        for name, extent, side, own in zip(("cell", "cell_y"), ("wide", "high"), given, known, strict=True):
+            if side is not None and abs(side / own - 1.0) > _SAME_LENGTH:
+                raise ValueError(f"heights: the map is {own:g} m {extent}, {name} says {side:g} m; omit {name}")
+        return known
+    side, side_y = given
+    if side is None:
+        if side_y is not None:
+            raise ValueError("cell: must be given (m) beside cell_y")
+        return None
+    ny, nx = shape
+    if side_y is None and nx != ny:
+        squares = f"{side * ny / nx:g} if its points are squares, {side:g} if it is one itself"
+        raise ValueError(f"cell_y: must be given (m) for a map of {nx} x {ny} points: {squares}")
+    return side, side if side_y is None else side_y
+
+
 def pair(sides: list[float] | None) -> Sides | None:
     """Sides as a tuple."""
     return None if sides is None else (sides[0], sides[1])
@@ -175,7 +209,7 @@ def prepare(
     cell: float | None = None,
     cell_y: float | None = None,
     crop: str | None = None,
-    flip: str | None = None,
+    flip: str | Sequence[str] | None = None,
     fill: Literal["laplace", "nearest", "lowest"] | None = None,
     level: Literal["mean", "plane", "quadratic"] | None = None,
     periodic: Literal["mirror", "window", "as-is"] | None = None,
@@ -193,11 +227,12 @@ def prepare(
     heights : array_like of shape (ny, nx), HeightMap or path
         The map (m).
     cell, cell_y : float, optional
-        Sides (m) along x and y, where the map does not know them. Default of ``cell_y``: points are squares.
+        Sides (m) along x and y, where the map does not know them. A map that has as many points along x as along y needs no
+        ``cell_y``; any other does.
     crop : str, optional
         ``"square"``, or points as ``"512"``, ``"512x256"``, ``"512x256+100+50"``.
-    flip : str, optional
-        Axes ``"x"``, ``"y"``, ``"z"``, with commas between them.
+    flip : str or sequence of str, optional
+        Axes ``"x"``, ``"y"``, ``"z"``: several as ``"x,y"`` or ``("x", "y")``.
     fill : {"laplace", "nearest", "lowest"}, optional
         Give missing points heights.
     level : {"mean", "plane", "quadratic"}, optional
@@ -219,9 +254,9 @@ def prepare(
         The map after all treatments.
     """
     array, sides = map_parts(read(heights) if isinstance(heights, (str, os.PathLike)) else heights)
-    if cell is not None:
-        ny, nx = array.shape
-        sides = (float(cell), float(cell * ny / nx if cell_y is None else cell_y))
+    sides = _sides_of(array.shape, sides, cell, cell_y)
+    if flip is not None and not isinstance(flip, str):
+        flip = ",".join(map(str, flip))
     flags = {
         "--crop": crop,
         "--flip": flip,
@@ -248,7 +283,7 @@ def inspect(
     what : array_like, HeightMap, Surface, Result or path
         Heights (m), a random surface, a result, or a file or result folder.
     cell, cell_y : float, optional
-        Sides (m) of a map that does not know them. Default: 0.01 for ``cell``, ``cell`` for ``cell_y``.
+        Sides (m) of a map that does not know them. Default of ``cell_y``: ``cell``, as for :func:`solve`.
 
     Returns
     -------
@@ -259,6 +294,9 @@ def inspect(
     from roughcontact._result import Result
     from roughcontact._surface import Surface
 
+    is_folder = isinstance(what, (str, os.PathLike)) and os.path.isdir(what)
+    if (isinstance(what, (Surface, Result)) or is_folder) and not (cell is None and cell_y is None):
+        raise ValueError("cell: a surface and a result have their own; omit cell and cell_y")
     found: dict[str, Any]
     if isinstance(what, Surface):
         found = json.loads(_core.inspect_surface(plain(what.keys())))
@@ -266,8 +304,8 @@ def inspect(
         with tempfile.TemporaryDirectory() as folder:
             what.save(folder)
             found = json.loads(_core.inspect_result(folder))
-    elif isinstance(what, (str, os.PathLike)) and os.path.isdir(what):
-        found = json.loads(_core.inspect_result(os.fspath(what)))
+    elif is_folder:
+        found = json.loads(_core.inspect_result(os.fspath(what)))  # type: ignore[arg-type]
     else:
         array, sides = map_parts(read(what) if isinstance(what, (str, os.PathLike)) else what)
         found = json.loads(_core.inspect_map(array, sides, plain({"cell": cell, "cell_y": cell_y})))

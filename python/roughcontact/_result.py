@@ -9,139 +9,23 @@ import pathlib
 import tempfile
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roughcontact import _core
 from roughcontact._keys import Path
+from roughcontact._records import Certificate, ContactSpot, Elements, Floats, StressDistribution
+from roughcontact._stored import FILES, Source, Stored, files_in
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-Floats = NDArray[np.float64]
-
-
-class Certificate(NamedTuple):
-    """How far the pressure is from solving the discrete problem, from a fresh application of the operator."""
-
-    #: Bound on the relative error of the pressure in the energy norm.
-    energy_error: float
-    #: Σ p (g - min g) / (H Σ p), with the height range H.
-    complementarity_error: float
-    #: max(-g) / H.
-    penetration_error: float
-    #: Relative deviation of the mean pressure, or of the penetration over H.
-    load_error: float
-    #: What ``energy_error`` was to reach, or None.
-    energy_tolerance: float | None
-    #: What ``complementarity_error`` and ``penetration_error`` were to reach, or None.
-    tolerance: float | None
-
-
-class ContactSpot(NamedTuple):
-    """One connected part of the contact."""
-
-    #: Elements of it.
-    elements: int
-    #: Its part of the nominal area.
-    area_fraction: float
-    #: Length of its edge (m).
-    perimeter: float
-    #: 1 minus the number of its holes.
-    euler_number: float
-    #: Its part of the mean pressure (Pa).
-    mean_pressure: float
-
-
-class StressDistribution(NamedTuple):
-    """The density of the interfacial stress over the nominal area."""
-
-    #: Ends of the bins (Pa), one more than bins.
-    edges: Floats
-    #: P(σ) (1/Pa), the mean over each bin.
-    density: Floats
-    #: Part of the nominal area under stress, the integral of P over all σ > 0.
-    area_fraction: float
-
-
-class Elements(NamedTuple):
-    """Elements in contact of a mesh that is not the grid."""
-
-    #: Centres (m).
-    x: Floats
-    #: Centres (m).
-    y: Floats
-    #: Sides (m).
-    size: Floats
-    #: Pressures (Pa).
-    pressure: Floats
-
-
-class _Source(Protocol):
-    """Where a result comes from: a solve, or the files of one."""
-
-    @property
-    def failure(self) -> str | None: ...
-    def summary_json(self) -> str: ...
-    def scene(self) -> str: ...
-    def pressure(self) -> Floats: ...
-    def gap(self) -> Floats: ...
-    def displacement(self) -> Floats: ...
-    def elements(self) -> list[Floats] | None: ...
-    def save(self, folder: str) -> None: ...
-
 
 def _locked(field: Floats) -> Floats:
     """The field, not to be changed: spots and distributions are computed from it."""
     field.flags.writeable = False
     return field
-
-
-class _Stored:
-    """The files of a result, byte by byte: what a pickle holds."""
-
-    def __init__(self, files: dict[str, bytes]) -> None:
-        self.files = files
-
-    @property
-    def failure(self) -> str | None:
-        status = json.loads(self.summary_json())["status"]
-        return "not converged" if status == "not_converged" else None
-
-    def summary_json(self) -> str:
-        return self.files["summary.json"].decode()
-
-    def scene(self) -> str:
-        return self.files["scene.toml"].decode()
-
-    def pressure(self) -> Floats:
-        return self._array("pressure.npy")
-
-    def gap(self) -> Floats:
-        return self._array("gap.npy")
-
-    def displacement(self) -> Floats:
-        raise ValueError("displacement: a result that was read or unpickled does not have it; solve again")
-
-    def elements(self) -> list[Floats] | None:
-        text = self.files.get("elements.csv")
-        if text is None:
-            return None
-        return list(np.loadtxt(io.BytesIO(text), delimiter=",", skiprows=1, ndmin=2).reshape(-1, 4).T)
-
-    def save(self, folder: str) -> None:
-        os.makedirs(folder, exist_ok=True)
-        for name, data in self.files.items():
-            final = pathlib.Path(folder, name)
-            partial = final.with_name(final.name + ".partial")
-            partial.write_bytes(data)
-            os.replace(partial, final)
-
-    def _array(self, name: str) -> Floats:
-        array: Floats = np.load(io.BytesIO(self.files[name]))
-        return array
 
 
 class Result:
@@ -236,7 +120,7 @@ class Result:
     #: Version of the package.
     version: str
 
-    def __init__(self, source: _Source) -> None:
+    def __init__(self, source: Source) -> None:
         self._source = source
 
     @cached_property
@@ -309,8 +193,29 @@ class Result:
 
     @property
     def contact(self) -> NDArray[np.bool_]:
-        """Where the surfaces touch, shape (ny, nx)."""
-        return self.pressure > 0.0
+        """Where the surfaces touch, shape (ny, nx); with a border level on the grid of the smallest elements, (ny 2ⁿ, nx 2ⁿ)."""
+        return self._finest_pressure("contact") > 0.0
+
+    def _finest_pressure(self, wanted: str) -> Floats:
+        """Pressure on the grid of the smallest elements; one of a larger element is that of all its parts."""
+        nx, ny = self.grid
+        finer = 2**self.border_level
+        if finer > 1 and self.mesh is not None:
+            x, y, size, pressure = self.mesh
+            side = self.sides[0] / (nx * finer)
+            field = np.zeros((ny * finer, nx * finer))
+            across = np.rint(size / side).astype(np.intp)
+            for n in np.unique(across):
+                of = across == n
+                ix, iy = (np.rint(centre[of] / side - n / 2).astype(np.intp) for centre in (x, y))
+                for dy, dx in np.ndindex(n, n):
+                    field[iy + dy, ix + dx] = pressure[of]
+            return field
+        if self.pressure.shape != (ny, nx):
+            height, width = self.pressure.shape
+            means = f"means over blocks (output_grid), {width} x {height} of {nx} x {ny} elements"
+            raise ValueError(f"{wanted}: needs the elements, and the folder has {means}; solve again, or give no output_grid")
+        return self.pressure
 
     @cached_property
     def mesh(self) -> Elements | None:
@@ -325,14 +230,18 @@ class Result:
 
     @cached_property
     def spots(self) -> list[ContactSpot]:
-        """Contact spots, largest first."""
-        found = _core.spots(self.pressure, self.gap, self.sides, self.e_star, self.kernel)
+        """Contact spots, largest first; with a border level those of the smallest elements."""
+        if isinstance(self._source, Stored) and self._source.spots is not None:
+            return self._source.spots
+        pressure = self._finest_pressure("spots")
+        gap = self._source.finest_gap() if self.border_level else None
+        found = _core.spots(pressure, self.gap if gap is None else gap, self.sides, self.e_star, self.kernel)
         return [ContactSpot(*spot) for spot in found]
 
     def stress_distribution(self, bins: int | Sequence[float] | Floats = 50) -> StressDistribution:
         """The density P(σ) of the interfacial stress, resolved below the element at contact edges.
 
-        With a border level it is that of the mean pressures on the grid.
+        With a border level it is that of the smallest elements.
 
         Parameters
         ----------
@@ -350,7 +259,8 @@ class Result:
             raise wrong
         if not np.all(np.diff(edges) > 0) or edges[0] < 0:
             raise wrong
-        density, area = _core.stress_distribution(self.pressure, self.e_star, edges.tolist())
+        pressure = self._finest_pressure("stress_distribution")
+        density, area = _core.stress_distribution(pressure, self.e_star, edges.tolist())
         return StressDistribution(edges, density, area)
 
     def save(self, folder: Path) -> None:
@@ -384,24 +294,27 @@ class Result:
             f"penetration={self.penetration:.6g} m)"
         )
 
+    def __copy__(self) -> Result:
+        # Nothing in it changes.
+        return Result(self._source)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Result:
+        return Result(self._source)
+
     def __reduce__(self) -> tuple[Any, ...]:
-        if isinstance(self._source, _Stored):
-            return _stored, (self._source.files,)
+        if isinstance(self._source, Stored):
+            return _stored, (self._source.files, self._source.fields, self._source.spots)
         with tempfile.TemporaryDirectory() as folder:
             self.save(folder)
-            return _stored, (_files_in(folder),)
+            files = files_in(folder)
+        # With an output grid, the files have means.
+        averaged = np.load(io.BytesIO(files["pressure.npy"])).shape != self.pressure.shape
+        fields = {"pressure": self.pressure, "gap": self.gap} if averaged else {}
+        return _stored, (files, fields, self.spots if self.border_level else None)
 
 
-def _stored(files: dict[str, bytes]) -> Result:
-    return Result(_Stored(files))
-
-
-def _files_in(folder: str) -> dict[str, bytes]:
-    return {path.name: path.read_bytes() for path in sorted(pathlib.Path(folder).iterdir()) if path.is_file()}
-
-
-#: Files of a result folder; the others there belong to somebody else.
-_FILES = ("summary.json", "scene.toml", "pressure.npy", "gap.npy", "contact.png", "elements.csv", "heights.npy")
+def _stored(files: dict[str, bytes], fields: dict[str, Floats], spots: list[ContactSpot] | None) -> Result:
+    return Result(Stored(files, fields, spots))
 
 
 def load(folder: Path) -> Result:
@@ -414,4 +327,4 @@ def load(folder: Path) -> Result:
     """
     folder = os.fspath(folder)
     _core.inspect_result(folder)
-    return _stored({name: data for name, data in _files_in(folder).items() if name in _FILES})
+    return _stored({name: data for name, data in files_in(folder).items() if name in FILES}, {}, None)

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, Union
+
+import numpy as np
 
 if TYPE_CHECKING:
     from roughcontact._result import Result
@@ -33,6 +36,23 @@ class NotConvergedError(RuntimeError):
         return NotConvergedError, (self.args[0], self.result)
 
 
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during a solve. It is raised within 0.2 s, also where the solve goes on for longer until it sees that it is to stop."""
+
+    def __init__(self, find: Callable[[], Result]) -> None:
+        super().__init__()
+        self._find = find
+
+    @cached_property
+    def result(self) -> Result:
+        """What was found so far, not converged; waits for it where the solve is between two looks, which Ctrl-C ends too."""
+        return self._find()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # What was found stays in the process that found it.
+        return KeyboardInterrupt, ()
+
+
 class Progress(NamedTuple):
     """Where a solve is."""
 
@@ -59,6 +79,15 @@ _Callback = Callable[[int, int, int, int, int, float, float, int], object]
 _STEPS = 1000
 
 
+def checked(progress: ProgressOption) -> ProgressOption:
+    """The option, if it is one."""
+    if isinstance(progress, np.bool_):
+        return bool(progress)
+    if isinstance(progress, bool) or callable(progress):
+        return progress
+    raise ValueError(f"progress: must be True, False or a function, not {progress!r}")
+
+
 class Bar:
     """A bar of tqdm; nothing where tqdm is not installed."""
 
@@ -78,6 +107,28 @@ class Bar:
         self._bar.set_postfix_str(f"error {progress.error:.0e} of {progress.tolerance:.0e}", refresh=False)
         self._bar.update(0)
         self._bar.refresh()
+
+    def close(self) -> None:
+        """Removes the bar."""
+        if self._bar is not None:
+            self._bar.close()
+
+
+class RowBar:
+    """A bar of tqdm over rows; nothing where tqdm is not installed."""
+
+    def __init__(self, done: int, rows: int) -> None:
+        try:
+            from tqdm.auto import tqdm
+        except ImportError:
+            self._bar = None
+        else:
+            self._bar = tqdm(total=rows, initial=done, leave=False, unit="row")
+
+    def one_more(self) -> None:
+        """A row is finished."""
+        if self._bar is not None:
+            self._bar.update(1)
 
     def close(self) -> None:
         """Removes the bar."""

@@ -14,7 +14,7 @@ from roughcontact import _core
 from roughcontact._keys import Grid, LengthUnit, Method, Path, plain
 from roughcontact._maps import Heights, map_parts
 from roughcontact._result import Result
-from roughcontact._run import Bar, NotConvergedError, NotConvergedWarning, ProgressOption, callback
+from roughcontact._run import Bar, Interrupted, NotConvergedError, NotConvergedWarning, ProgressOption, callback, checked
 from roughcontact._surface import Surface
 
 #: A discretisation by its name, or the symbol of a half-space as a function of arrays of wavenumbers (rad/m).
@@ -93,8 +93,8 @@ def solve(
     kernel : {"love", "spectral"} or callable, default "love"
         Discretisation of the half-space. A function ``f(kx, ky)`` of two arrays of wavenumbers (rad/m) returns the
         displacement (m) of a pressure wave of 1 Pa, ``2 / (E* |k|)`` for a half-space: it must be positive, and even in kx and ky; on
-        a square grid also that of kx and ky exchanged. E* must be that of its shortest waves, since contact edges are located with it. It
-        is called once, with all waves of the grid but the zero wave.
+        a square grid also that of kx and ky exchanged. E* must be that of its shortest waves, since contact edges are located with it; a warning names another one. It
+        is called once, with all waves of the grid but the zero wave, and with mirror images of some.
     method : {"adaptive", "uniform", "gauss-seidel"}, optional
         Default: adaptive, or uniform where that is cheaper.
     border_level : int, default 0
@@ -129,7 +129,7 @@ def solve(
     NotConvergedError
         With ``check=True``.
     KeyboardInterrupt
-        After Ctrl-C; its attribute ``result`` is what was found so far.
+        After Ctrl-C, within 0.2 s: an :class:`Interrupted`, whose attribute ``result`` is what was found so far.
     """
     given = locals()
     keys = plain({name: value for name, value in given.items() if name not in _OPTIONS})
@@ -151,10 +151,11 @@ def solve_keys(
     is_row: bool = False,
 ) -> Result:
     """Solves the problem of these keys, whether or not it converges."""
-    keys, array, sides = _surface_of(heights, keys)
+    keys, array, sides = surface_of(heights, keys)
     symbol = kernel if callable(kernel) else None
     if kernel is not None and symbol is None:
         keys["kernel"] = kernel
+    progress = checked(progress)
     bar = Bar() if progress is True else None
     function = bar or (progress if callable(progress) else None)
     given: _core.Given = {
@@ -166,18 +167,35 @@ def solve_keys(
         "is_row": is_row,
     }
     try:
-        solved, ended = _core.solve(keys, given)
+        solved, unfinished, ended = _core.solve(keys, given)
     finally:
         if bar is not None:
             bar.close()
-    result = Result(solved)
-    if ended is not None:
-        ended.result = result  # type: ignore[attr-defined]
-        raise ended
-    return result
+    if ended is None and solved is not None:
+        return Result(solved)
+    raise _early(ended, solved, unfinished)
 
 
-def _surface_of(heights: Any, keys: dict[str, Any]) -> tuple[dict[str, Any], Any, Any]:
+def _early(
+    ended: BaseException | None, solved: _core.Solved | None, unfinished: _core.Unfinished | None
+) -> BaseException:
+    """What ended a solve early, with what was found so far."""
+
+    def find() -> Result:
+        if unfinished is not None:
+            return Result(unfinished.wait())
+        if solved is None:
+            raise RuntimeError("the solve ended without a result")
+        return Result(solved)
+
+    if ended is None or type(ended) is KeyboardInterrupt:
+        return Interrupted(find)
+    if solved is not None:
+        ended.result = Result(solved)  # type: ignore[attr-defined]
+    return ended
+
+
+def surface_of(heights: Any, keys: dict[str, Any]) -> tuple[dict[str, Any], Any, Any]:
     """The keys with those of the surface, and array and size where heights are an array."""
     if heights is None:
         return keys, None, None

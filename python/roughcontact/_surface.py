@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from typing import Any, Literal
 
 import numpy as np
@@ -86,6 +87,9 @@ class Surface:
     ) -> None:
         given = locals()
         self._keys = plain({name: given[name] for name in _KEYS})
+        if spectrum is not None:
+            # The working directory may be another one when it is solved.
+            self._keys["spectrum"] = os.path.abspath(os.fspath(spectrum))
         # Refuses what is wrong now, not when it is solved.
         _core.resolved_surface(self._keys)
 

@@ -2,113 +2,38 @@
 
 from __future__ import annotations
 
-import csv
-import html as text
-import os
+import json
 import operator
+import os
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import Executor
-from typing import TYPE_CHECKING, Any, Literal, Union
+from collections.abc import Iterable, Sequence
+from typing import Any, Literal, NamedTuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roughcontact import _core
 from roughcontact._keys import Grid, Method, Path, plain
-from roughcontact._maps import Heights
+from roughcontact._maps import HeightMap, Heights
 from roughcontact._result import Result
-from roughcontact._run import NotConvergedError, NotConvergedWarning, ProgressOption
-from roughcontact._solve import Kernel, solve_keys
+from roughcontact._rows import FieldsAt, Found, Job, Workers, by_workers, here
+from roughcontact._run import NotConvergedError, NotConvergedWarning, ProgressOption, RowBar, checked
+from roughcontact._solve import Kernel, surface_of
 from roughcontact._surface import Surface
-
-if TYPE_CHECKING:
-    import pandas
+from roughcontact._table import Table
 
 #: Loads one by one, or text as on the command line: ``"1e4:1e6:8"`` (geometric), ``"1e-6:3e-5:8:linear"``.
 Loads = Union[Sequence[float], NDArray[np.float64], str]
 #: Seeds one by one, or text as ``"1..7"`` (both included).
 Seeds = Union[Iterable[int], str]
 
-_OPTIONS = ("heights", "scene", "kernel", "pressures", "penetrations", "seeds", "executor", "keep_results", "progress", "check")
-
-
-class Table:
-    """Rows of a sweep: seed, load (``control_value``, Pa or m), and the keys of the summary.
-
-    ``table["area_fraction"]`` is a column as an array, ``table[0]`` a row as a dict.
-    """
-
-    __slots__ = ("results", "rows")
-
-    #: A dict for each solve, by seed, then load.
-    rows: list[dict[str, Any]]
-    #: The results of the rows where ``keep_results=True``, else None.
-    results: list[Result] | None
-
-    def __init__(self, rows: list[dict[str, Any]], results: list[Result] | None = None) -> None:
-        self.rows = rows
-        self.results = results
-
-    @property
-    def columns(self) -> list[str]:
-        """Names of the columns."""
-        return list(self.rows[0]) if self.rows else []
-
-    def __len__(self) -> int:
-        return len(self.rows)
-
-    def __iter__(self) -> Iterator[dict[str, Any]]:
-        return iter(self.rows)
-
-    def __getitem__(self, key: Any) -> Any:
-        if isinstance(key, str):
-            if key not in self.columns:
-                raise KeyError(f"a Table has no column '{key}'; its columns are {', '.join(self.columns)}")
-            values = [row[key] for row in self.rows]
-            if any(isinstance(value, list) for value in values):
-                array = np.empty(len(values), object)
-                array[:] = values
-                return array
-            return np.array([np.nan if value is None else value for value in values])
-        return self.rows[key]
-
-    def mean(self, column: str) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """Loads, mean of a column over the seeds at each load, and its standard error (NaN for one seed)."""
-        loads, place = np.unique(self["control_value"], return_inverse=True)
-        groups = [self[column][place == k] for k in range(len(loads))]
-        means = np.array([group.mean() for group in groups])
-        errors = [group.std(ddof=1) / np.sqrt(len(group)) if len(group) > 1 else np.nan for group in groups]
-        return loads, means, np.array(errors)
-
-    def to_csv(self, path: Path) -> None:
-        """Write the table; numbers read back as they were."""
-        with open(os.fspath(path), "w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, self.columns)
-            writer.writeheader()
-            writer.writerows(self.rows)
-
-    def to_pandas(self) -> pandas.DataFrame:
-        """The table as a DataFrame of pandas."""
-        import pandas
-
-        return pandas.DataFrame(self.rows)
-
-    def __repr__(self) -> str:
-        return f"Table({len(self)} rows, {len(self.columns)} columns)"
-
-    def _repr_html_(self) -> str:
-        known = ("seed", "control_value", "area_fraction", "area_fraction_error", "penetration", "mean_gap", "status")
-        names = [name for name in known if name in self.columns]
-        head = "".join(f"<th>{name}</th>" for name in names)
-        body = "".join(
-            "<tr>" + "".join(f"<td>{text.escape(_short(row[name]))}</td>" for name in names) + "</tr>" for row in self.rows
-        )
-        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-
-
-def _short(value: Any) -> str:
-    return f"{value:.5g}" if isinstance(value, float) else str(value)
+#: Arguments that are no keys of a scene.
+_OPTIONS = frozenset(
+    {
+        *("heights", "scene", "kernel", "pressures", "penetrations", "seeds"),
+        *("out", "resume", "fields", "executor", "keep_results", "progress", "check"),
+    }
+)
 
 
 def sweep(
@@ -142,7 +67,10 @@ def sweep(
     threads: int | None = None,
     memory_limit: int | str | None = None,
     time_limit: float | str | None = None,
-    executor: Executor | None = None,
+    out: Path | None = None,
+    resume: bool = False,
+    fields: Path | bool = False,
+    executor: Workers | None = None,
     keep_results: bool = False,
     progress: ProgressOption = False,
     check: bool = False,
@@ -162,12 +90,22 @@ def sweep(
         Worker threads of each solve. Default: all cores; one with an executor.
     time_limit : float or str, optional
         Of each solve.
-    executor : concurrent.futures.Executor, optional
-        Solves rows side by side, in processes or threads. The digits do not depend on it.
+    out : path, optional
+        A folder that keeps each row as it is finished, as ``rc sweep --out`` does: journal and table are the same, and either program
+        goes on with the rows of the other.
+    resume : bool, default False
+        Go on with the sweep in ``out``; start it, if there is none yet.
+    fields : bool or path, default False
+        True keeps a result folder for each row in ``out``. A folder takes a Zarr group for each row, ``0001.zarr`` and so on, which
+        stays on the machine that solved it: :attr:`Table.fields` says where.
+    executor : concurrent.futures.Executor or callable, optional
+        Solves rows side by side: anything with ``submit``, as pools of processes or threads, ``Client.get_executor()`` of Dask, or
+        ``MPIPoolExecutor`` of mpi4py; or a function without arguments that makes one. The digits do not depend on it. Rows whose worker
+        was killed are solved again; a pool of processes, which does not outlive a worker, is made anew.
     keep_results : bool, default False
         Keep the :class:`Result` of each row in :attr:`Table.results`.
     progress : bool or callable, default False
-        As for :func:`solve`, for each row; not with an executor.
+        As for :func:`solve`, for each row; with an executor True is a bar over rows.
     check : bool, default False
         Raise :class:`NotConvergedError` at the first row that does not converge, instead of warning at the end.
 
@@ -178,44 +116,48 @@ def sweep(
     Raises
     ------
     KeyboardInterrupt
-        After Ctrl-C; its attribute ``table`` has the rows so far.
+        After Ctrl-C; its attribute ``table`` has the rows so far, as that of every exception once rows are solved.
+    ValueError
+        For input that cannot be used; for a load that a surface cannot carry after all others are solved.
+    RuntimeError
+        When workers of an executor end three times without a row.
     """
     given = locals()
     keys = plain({name: value for name, value in given.items() if name not in _OPTIONS})
     if executor is not None:
         keys.setdefault("threads", 1)
+    progress = _progress(progress, executor is not None)
     control, loads = _control(pressures, penetrations)
-    found: Table = Table([], [] if keep_results else None)
-    rows = [
-        (load, heights, {**keys, **({} if seed is None else {"seed": seed}), control: load})
-        for seed in _seeds(seeds, heights)
-        for load in loads
-    ]
-    options = {"scene": scene, "kernel": kernel, "progress": progress if executor is None else False}
-    jobs = [(job, options, keep_results) for job in rows]
-    solved: Iterable[tuple[dict[str, Any], Result | None, str | None]]
-    solved = map(_solve_row, jobs) if executor is None else executor.map(_solve_row, jobs)
-    failures = []
+    places = _places(out, fields, resume, kernel)
+    here_or_there = _anywhere(heights, keys, scene)
+    planned = _plan(here_or_there, kernel, (control, loads, _seeds(seeds, heights)), places)
+    kept = planned.kept()
+    if kept and keep_results:
+        planned.end()
+        raise ValueError(f"keep_results: {len(kept)} rows are kept from before, without results; omit keep_results")
+    collected = _Collected(planned, keep_results, places.groups is not None)
+    jobs = _jobs(planned, here_or_there, kernel, (control, progress if executor is None else False, keep_results, places))
+    bar = RowBar(len(collected), len(planned.rows())) if executor is not None and progress is True else None
     try:
-        for row, result, failure in solved:
-            found.rows.append(row)
-            if found.results is not None and result is not None:
-                found.results.append(result)
-            if failure is not None:
-                if check:
-                    raise _not_converged(failure, result)
-                failures.append(failure)
+        for index, found in here(jobs) if executor is None else by_workers(executor, jobs):
+            collected.add(index, found, check)
+            if bar is not None:
+                bar.one_more()
     except BaseException as error:
-        error.table = found  # type: ignore[attr-defined]
+        error.table = collected.table()  # type: ignore[attr-defined]
         raise
-    if failures:
-        message = f"{len(failures)} of {len(found)} rows did not converge: {failures[0]}"
-        warnings.warn(message, NotConvergedWarning, stacklevel=2)
-    return found
+    finally:
+        if bar is not None:
+            bar.close()
+        planned.end()
+    return collected.finish()
 
 
-def _not_converged(failure: str, result: Result | None) -> Exception:
-    return RuntimeError(failure) if result is None else NotConvergedError(failure, result)
+def _progress(progress: ProgressOption, has_workers: bool) -> ProgressOption:
+    progress = checked(progress)
+    if has_workers and not isinstance(progress, bool):
+        raise ValueError("progress: a function sees solves of this process alone; with an executor give True, for a bar over rows")
+    return progress
 
 
 def _control(pressures: Loads | None, penetrations: Loads | None) -> tuple[str, list[float]]:
@@ -230,18 +172,157 @@ def _control(pressures: Loads | None, penetrations: Loads | None) -> tuple[str, 
     return name, _core.loads(",".join(map(repr, values)))
 
 
-def _seeds(seeds: Seeds | None, heights: Any) -> list[int | None]:
+def _seeds(seeds: Seeds | None, heights: Any) -> list[int] | None:
     if seeds is None:
-        return [None]
+        return None
     if heights is not None and not isinstance(heights, Surface):
         raise ValueError("seeds: the height map has none; omit seeds")
-    return list(_core.seeds(seeds if isinstance(seeds, str) else ",".join(str(operator.index(seed)) for seed in seeds)))
+    if isinstance(seeds, str):
+        return list(_core.seeds(seeds))
+    numbers = [operator.index(seed) for seed in seeds]
+    if not numbers:
+        raise ValueError("seeds: none is given")
+    for seed in numbers:
+        if not 0 <= seed < 2**63:
+            raise ValueError(f"seeds: must be whole numbers from 0 to {2**63 - 1}, not {seed}")
+    return list(_core.seeds(",".join(map(str, numbers))))
 
 
-def _solve_row(job: Any) -> tuple[dict[str, Any], Result | None, str | None]:
-    (load, heights, keys), options, keeps = job
-    result = solve_keys(heights, keys, is_row=True, **options)
-    seed = result.seed
-    first = {} if seed is None else {"seed": seed}
-    row = {**first, "control_value": load, **result.summary}
-    return row, result if keeps or result.failure else None, result.failure
+class _Places(NamedTuple):
+    """Where a sweep writes, and whether it goes on with what is there."""
+
+    out: str | None
+    resume: bool
+    #: Whether each row has a result folder in ``out``.
+    in_out: bool
+    #: The folder for Zarr groups.
+    groups: str | None
+
+
+def _places(out: Path | None, fields: Path | bool, resume: bool, kernel: Any) -> _Places:
+    in_out = fields is True
+    groups = None if isinstance(fields, bool) else os.path.abspath(os.fspath(fields))
+    if out is None and (resume or in_out):
+        raise ValueError(f"{'resume' if resume else 'fields'}: the rows are kept in a folder; give out")
+    if out is not None and callable(kernel):
+        raise ValueError("out: a journal cannot tell one function for a kernel from another; omit out")
+    return _Places(None if out is None else os.path.abspath(os.fspath(out)), bool(resume), in_out, groups)
+
+
+class _Problem(NamedTuple):
+    """What is the same for all rows, wherever they are solved."""
+
+    #: A map, a surface, or the path of a map.
+    heights: Any
+    keys: dict[str, Any]
+    scene: str | None
+
+
+def _anywhere(heights: Any, keys: dict[str, Any], scene: Path | None) -> _Problem:
+    """Workers may have another working directory."""
+    if "spectrum" in keys:
+        keys["spectrum"] = os.path.abspath(keys["spectrum"])
+    scene = None if scene is None else os.path.abspath(os.fspath(scene))
+    if isinstance(heights, (str, os.PathLike)):
+        heights = os.path.abspath(os.fspath(heights))
+    elif heights is not None and not isinstance(heights, Surface):
+        keys, array, sides = surface_of(heights, keys)
+        heights = HeightMap(array, sides)
+    return _Problem(heights, keys, scene)
+
+
+def _plan(
+    problem: _Problem, kernel: Kernel | None, lists: tuple[str, list[float], list[int] | None], places: _Places
+) -> _core.Planned:
+    keys, array, sides = surface_of(problem.heights, problem.keys)
+    if isinstance(kernel, str):
+        keys = {**keys, "kernel": kernel}
+    control, loads, seeds = lists
+    wanted: _core.Wanted = {
+        "penetrations": control == "penetration",
+        "loads": loads,
+        "seeds": seeds,
+        "heights": array,
+        "sides": sides,
+        "scene": problem.scene,
+        "folder": places.out,
+        "resume": places.resume,
+        "fields": places.in_out,
+    }
+    return _core.plan_sweep(keys, wanted)
+
+
+def _jobs(
+    planned: _core.Planned,
+    problem: _Problem,
+    kernel: Kernel | None,
+    others: tuple[str, ProgressOption, bool, _Places],
+) -> list[Job]:
+    control, progress, keeps_result, places = others
+    options = {"scene": problem.scene, "kernel": kernel, "progress": progress}
+    rows, jobs = planned.rows(), []
+    for index in planned.todo():
+        seed, load = rows[index]
+        keys = {**problem.keys, **({} if seed is None else {"seed": seed}), control: load}
+        group = None if places.groups is None else os.path.join(places.groups, f"{index + 1:04}.zarr")
+        jobs.append(Job(index, problem.heights, keys, options, keeps_result, planned.fields_folder(index), group))
+    return jobs
+
+
+class _Collected:
+    """Rows as they finish, in the journal and here."""
+
+    def __init__(self, planned: _core.Planned, keeps_results: bool, names_fields: bool) -> None:
+        self._planned = planned
+        self._leading = planned.rows()
+        self._results: dict[int, Result] | None = {} if keeps_results else None
+        self._fields: dict[int, FieldsAt | None] | None = {} if names_fields else None
+        kept = [(index, json.loads(cells)) for index, cells in planned.kept()]
+        self._rows = {index: {key: cell for key, cell in row.items() if key != "seed" or cell is not None} for index, row in kept}
+        self._failures = {index: "kept from before" for index, row in kept if row["status"] == "not_converged"}
+        self._refused: dict[int, ValueError] = {}
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def add(self, index: int, found: Found, check: bool) -> None:
+        """Keeps a row, or why it cannot be solved."""
+        if isinstance(found, ValueError):
+            self._refused[index] = found
+            return
+        self._planned.keep(index, found.summary)
+        seed, load = self._leading[index]
+        first = {} if seed is None else {"seed": seed}
+        self._rows[index] = {**first, "control_value": load, **json.loads(found.summary)}
+        if self._results is not None and found.result is not None:
+            self._results[index] = found.result
+        if self._fields is not None:
+            self._fields[index] = found.fields
+        if found.failure is not None:
+            self._failures[index] = found.failure
+            if check and found.result is not None:
+                raise NotConvergedError(found.failure, found.result)
+
+    def table(self) -> Table:
+        """The rows so far."""
+        order = sorted(self._rows)
+        results = None if self._results is None else [self._results[index] for index in order]
+        fields = None if self._fields is None else [self._fields.get(index) for index in order]
+        return Table([self._rows[index] for index in order], results, fields)
+
+    def finish(self) -> Table:
+        """The whole table."""
+        table = self.table()
+        if self._refused:
+            index = min(self._refused)
+            message = f"{self._planned.describe(index)}: {self._refused[index]}"
+            if len(table):
+                message += f"; {len(self._refused)} rows cannot be solved, the other {len(table)} are in the table"
+            error = ValueError(message)
+            error.table = table  # type: ignore[attr-defined]
+            raise error
+        if self._failures:
+            first = self._failures[min(self._failures)]
+            message = f"{len(self._failures)} of {len(table)} rows did not converge: {first}"
+            warnings.warn(message, NotConvergedWarning, stacklevel=3)
+        return table

@@ -6,7 +6,7 @@ import re
 import pytest
 
 ROOT = pathlib.Path(__file__).parents[2]
-DOCUMENTS = ("README.md", "python/README.md", "docs/python.md")
+DOCUMENTS = ("README.md", "python/README.md", "docs/python.md", "docs/larger-than-your-laptop.md")
 
 
 def blocks(name):

@@ -115,7 +115,7 @@ def test_values_of_a_wrong_kind_are_refused():
         rc.solve(pressure={})
     with pytest.raises(TypeError, match="unexpected keyword argument 'presure'"):
         rc.solve(presure=1.0)
-    with pytest.raises(ValueError, match="^method: unknown variant"):
+    with pytest.raises(ValueError, match="^method: must be 'adaptive' or 'uniform' or 'gauss-seidel', not 'fft'$"):
         rc.solve(pressure=1.0, method="fft")
     with pytest.raises(ValueError, match="^hurst: must be above 0"):
         rc.Surface(hurst=2.0)
@@ -155,3 +155,91 @@ def test_a_file_of_waves_is_a_surface(tmp_path):
     solved[0].save(tmp_path / "out")
     again = rc.solve(scene=tmp_path / "out/scene.toml")
     assert np.array_equal(again.pressure, solved[0].pressure)
+
+
+def test_a_file_of_waves_is_found_from_everywhere(tmp_path, monkeypatch):
+    (tmp_path / "waves.txt").write_text("2 0 5e-7 0\n")
+    monkeypatch.chdir(tmp_path)
+    surface = rc.Surface(spectrum="waves.txt", cell=1e-3, grid=64)
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    assert surface.heights().shape == (64, 64)
+    assert rc.solve(surface, pressure=1e5, e_star=1e9).converged
+
+
+@pytest.mark.parametrize(
+    ("keys", "sentence"),
+    [
+        ({"cell": (1.0, 2.0)}, "^cell: must be a number or text, not tuple; the other side is cell_y$"),
+        ({"pressure": [1e5, 2e5]}, "^pressure: must be a number or text, not list; roughcontact.sweep solves for several$"),
+        ({"seed": range(3)}, "^seed: must be a number or text, not range; roughcontact.sweep solves for several$"),
+        ({"seed": -1}, "^seed: must be a whole number from 0 on, not -1$"),
+        ({"seed": 2**64}, "^seed: 18446744073709551616 is too large$"),
+        ({"threads": -1}, "^threads: must be a whole number from 0 on, not -1$"),
+        ({"threads": True}, "^threads: must be a whole number from 0 on, not True$"),
+        ({"waves": 8.5}, "^waves: must be a whole number from 0 on, not 8.5$"),
+        ({"pressure": "much"}, "^pressure: must be "),
+        ({"kernel": "foo"}, "^kernel: must be 'love' or 'spectral', not 'foo'$"),
+        ({"progress": 3}, "^progress: must be True, False or a function, not 3$"),
+        ({"unit": "um"}, "^unit and height_scale: are for surfaces from files; give heights or spectrum, or omit them$"),
+    ],
+)
+def test_values_are_refused_in_the_words_of_python(keys, sentence):
+    with pytest.raises((TypeError, ValueError), match=sentence):
+        rc.solve(**{"waves": 8, "grid": 64, "pressure": 1e5, **keys})
+
+
+def test_missing_points_are_filled_by_what_the_message_names(heights):
+    holes = heights.copy()
+    holes[3, 4] = np.nan
+    with pytest.raises(ValueError, match=r'roughcontact.prepare\(heights, fill="laplace"\) fills$'):
+        rc.solve(holes, **CONTACT)
+    assert rc.solve(rc.prepare(holes, fill="laplace"), **CONTACT).converged
+
+
+def test_no_size_is_invented(heights):
+    with pytest.raises(ValueError, match="^cell: must be given"):
+        rc.inspect(heights)
+    assert rc.inspect(rc.HeightMap(heights, (0.02, 0.02)))["rms_slope"] == pytest.approx(
+        0.5 * rc.inspect(heights, cell=0.01)["rms_slope"]
+    )
+    for what in (rc.Surface(waves=8, grid=64), rc.solve(heights, **CONTACT)):
+        with pytest.raises(ValueError, match="^cell: a surface and a result have their own"):
+            rc.inspect(what, cell=0.02)
+
+
+def test_sides_of_a_map_are_two_lengths_and_not_contradicted(heights):
+    for sides in ((0.0, 1.0), (1.0, -1.0), (np.nan, 1.0), (1.0, np.inf), (1.0,), 1.0, ("a", 1.0)):
+        with pytest.raises(ValueError, match="^sides: must be"):
+            rc.HeightMap(heights, sides)
+    part = heights[:48]
+    for keys, sentence in [
+        ({"cell": -1.0}, "^cell: must be positive"),
+        ({"cell": 1.0, "cell_y": 0.0}, "^cell_y: must be positive"),
+        ({"cell_y": 1.0}, r"^cell: must be given \(m\) beside cell_y"),
+        # solve takes its cell for a square, rc surface its points: so it is asked.
+        ({"cell": 0.01}, "^cell_y: must be given .* 64 x 48 points: 0.0075 if its points are squares, 0.01 if it is one itself"),
+    ]:
+        with pytest.raises(ValueError, match=sentence):
+            rc.prepare(part, level="plane", **keys)
+    assert rc.prepare(part, cell=0.01, cell_y=0.0075).sides == (0.01, 0.0075)
+    sized = rc.HeightMap(part, (0.01, 0.0075))
+    with pytest.raises(ValueError, match="^heights: the map is 0.0075 m high, cell_y says 0.01 m; omit cell_y"):
+        rc.prepare(sized, cell=0.01, cell_y=0.01)
+    assert rc.prepare(sized, cell=0.01).sides == sized.sides
+
+
+def test_axes_are_flipped_one_or_several(heights):
+    both = rc.prepare(heights, flip=("x", "y")).heights
+    assert np.array_equal(both, heights[::-1, ::-1]) and np.array_equal(rc.prepare(heights, flip="x,y").heights, both)
+    assert np.array_equal(rc.prepare(heights, crop=(32, 16)).heights, rc.prepare(heights, crop="32x16").heights)
+    with pytest.raises(ValueError, match="flip"):
+        rc.prepare(heights, flip=("x", "w"))
+
+
+def test_arrays_with_names_and_units_of_other_packages_are_heights(heights, result):
+    xarray = pytest.importorskip("xarray")
+    named = xarray.DataArray(heights, dims=("y", "x"), name="height")
+    assert rc.solve(named, **CONTACT).pressure.tobytes() == result.pressure.tobytes()
+    assert np.array_equal(rc.prepare(named.transpose("x", "y"), level="mean").heights, rc.prepare(heights, level="mean").heights)
+    assert rc.inspect(named, cell=0.01) == rc.inspect(heights, cell=0.01)

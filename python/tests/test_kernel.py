@@ -1,5 +1,7 @@
 """A half-space whose symbol is a function."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -30,8 +32,10 @@ def test_the_function_sees_wavenumbers_once(heights):
 
     rc.solve(np.ascontiguousarray(heights[:48]), **CONTACT, cell_y=0.0075, kernel=symbol)
     ((kx, ky),) = calls
-    # 33 by 25 waves without the zero wave, in rad/m.
-    assert kx.shape == ky.shape == (33 * 25 - 1,)
+    # 33 by 25 waves without the zero wave, in rad/m, then images of some.
+    own = 33 * 25 - 1
+    assert kx.shape == ky.shape and kx.min() < 0 and ky.min() < 0
+    assert kx[:own].min() == ky[:own].min() == 0 and np.unique(np.stack([kx, ky])[:, :own], axis=1).shape == (2, own)
     assert kx.max() == pytest.approx(2 * np.pi * 32 / 0.01) and ky.max() == pytest.approx(2 * np.pi * 24 / 0.0075)
 
 
@@ -71,3 +75,36 @@ def test_its_result_is_saved_and_said_to_be_its_own(heights, command, tmp_path):
     result.report(tmp_path / "page.html")
     done = command("solve", tmp_path / "result" / "scene.toml")
     assert done.returncode == 2 and "function of a Python program" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("factor", "sentence"),
+    [
+        (lambda kx, ky: 1.0 + 0.1 * (kx < 0), "differ; they must be even in kx and in ky"),
+        (lambda kx, ky: 1.0 + 0.1 * (kx * ky < 0), "differ; they must be even in kx and in ky"),
+        (lambda kx, ky: 1.0 + 0.1 * (abs(kx) > 2 * abs(ky)), "on a square grid they must be the same with kx and ky exchanged"),
+        # At one wave of a thousand.
+        (lambda kx, ky: 1.0 + 0.1 * ((kx > 6280) & (kx < 6290) & (ky == 0)), "exchanged"),
+    ],
+)
+def test_symmetry_is_checked_where_it_is_needed(heights, factor, sentence):
+    with pytest.raises(ValueError, match=f"^kernel: the values for .* rad/m {sentence}" if sentence[0] == "d" else sentence):
+        rc.solve(heights, **CONTACT, kernel=lambda kx, ky: factor(kx, ky) * half_space(kx, ky))
+
+
+def test_axes_may_differ_where_the_grid_does(heights):
+    stiffer = lambda kx, ky: half_space(kx, 1.2 * ky)  # noqa: E731
+    part = np.ascontiguousarray(heights[:48])
+    with pytest.warns(UserWarning, match="short waves"):
+        assert rc.solve(part, **{**CONTACT, "e_star": 2e9}, cell_y=0.0075, kernel=stiffer).converged
+
+
+def test_another_material_than_that_of_short_waves_is_named(heights):
+    for factor, named in ((2.0, "5.0000e8 Pa, but e_star is 1.0000e9 Pa"), (1 / 0.91, "9.1000e8 Pa")):
+        with pytest.warns(UserWarning, match=f"^kernel: its short waves are at best those of a half-space of {named}"):
+            rc.solve(heights, **CONTACT, kernel=lambda kx, ky: factor * half_space(kx, ky))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rc.solve(heights, **CONTACT, kernel=half_space)
+        # A layer on a stiffer base, which short waves do not see; and rounding.
+        rc.solve(heights, **CONTACT, kernel=lambda kx, ky: half_space(kx, ky) * np.tanh(np.hypot(kx, ky) * 5e-4) * (1 + 1e-12))

@@ -83,26 +83,23 @@ def test_other_threads_of_python_run_during_a_solve():
 
 def test_an_interrupt_stops_and_carries_the_partial_result():
     program = """
-        import os, signal, threading, time
+        import os, signal
         import roughcontact as rc
-        times = []
+        seen = []
         def see(progress):
             # In the middle of the work, whatever the machine does.
-            if progress.iteration == 4 and progress.grid[0] == 512 and not times:
-                times.append(time.monotonic())
+            if progress.iteration == 4 and progress.grid[0] == 512 and not seen:
+                seen.append(progress)
                 os.kill(os.getpid(), signal.SIGINT)
         try:
             rc.solve(waves=32, grid=512, pressure=2e5, method="uniform", tolerance=1e-12, progress=see)
         except KeyboardInterrupt as interrupt:
-            seconds = time.monotonic() - times[0]
             result = interrupt.result
-            print(seconds, result.status, result.pressure.shape, result.pressure.sum() > 0)
+            print(result.status, result.pressure.shape, result.pressure.sum() > 0, type(interrupt).__name__)
     """
     done = subprocess.run([sys.executable, "-c", textwrap.dedent(program)], capture_output=True, text=True, check=True)
-    seconds, status, *rest = done.stdout.split(maxsplit=2)
-    assert (status, rest) == ("not_converged", ["(512, 512) True\n"]), done
-    # 0.2 s on an idle machine; others may run here too.
-    assert float(seconds) < 1.0, done.stdout
+    # How soon it is raised: test_interrupts.py.
+    assert done.stdout == "not_converged (512, 512) True Interrupted\n", done
 
 
 def test_an_interrupt_of_a_sweep_carries_its_rows():

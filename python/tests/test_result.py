@@ -1,5 +1,6 @@
 """What a result says and writes."""
 
+import copy
 import pickle
 
 import numpy as np
@@ -79,6 +80,62 @@ def test_a_pickled_result_is_the_result(method, heights, tmp_path):
         assert (tmp_path / "copy" / path.name).read_bytes() == path.read_bytes(), path.name
     with pytest.raises(ValueError, match="^displacement: "):
         copy.displacement  # noqa: B018
+
+
+def assert_same_fields(one, other):
+    for name in ("pressure", "gap", "contact"):
+        assert getattr(one, name).tobytes() == getattr(other, name).tobytes(), name
+    assert one.spots == other.spots
+    assert np.array_equal(one.stress_distribution().density, other.stress_distribution().density)
+
+
+def test_a_pickle_has_the_fields_and_not_their_means_over_blocks(heights, tmp_path):
+    result = rc.solve(heights, cell=0.01, e_star=1e9, pressure=1e6, output_grid=16)
+    again = pickle.loads(pickle.dumps(pickle.loads(pickle.dumps(result))))
+    assert again.pressure.shape == (64, 64)
+    assert_same_fields(again, result)
+    # Files are those of the command line all the same.
+    again.save(tmp_path / "saved")
+    assert np.load(tmp_path / "saved/pressure.npy").shape == (16, 16)
+    means = rc.load(tmp_path / "saved")
+    assert means.pressure.mean() == pytest.approx(1e6)
+    for name in ("contact", "spots"):
+        with pytest.raises(ValueError, match=f"^{name}: needs the elements, .*16 x 16 of 64 x 64"):
+            getattr(means, name)
+    with pytest.raises(ValueError, match="^stress_distribution: needs the elements"):
+        means.stress_distribution()
+    assert "table" in means._repr_html_() and means.plot() is not None
+
+
+@pytest.mark.parametrize("output_grid", [None, 32])
+def test_with_border_levels_contact_spots_and_stress_are_those_of_the_smallest_elements(output_grid, tmp_path):
+    keys = {"waves": 8, "seed": 3, "pressure": 3e5, "method": "adaptive"}
+    result = rc.solve(**keys, grid=128, border_level=2, output_grid=output_grid)
+    assert result.pressure.shape == (128, 128) and result.contact.shape == (512, 512)
+    # As the summary counts them, in the area of elements and between their centres.
+    assert result.contact.mean() == pytest.approx(result.area_fraction_cells, rel=1e-12)
+    assert sum(spot.area_fraction for spot in result.spots) == pytest.approx(result.area_fraction, abs=result.area_fraction_error)
+    assert sum(spot.mean_pressure for spot in result.spots) == pytest.approx(result.mean_pressure, rel=1e-9)
+    stress = result.stress_distribution(20)
+    assert stress.area_fraction == pytest.approx(result.area_fraction, rel=0.01)
+    # A grid of such elements everywhere, in the same contact; means on the coarse grid have a tenth more of it.
+    fine = rc.solve(**keys, grid=512)
+    assert (result.contact == fine.contact).mean() > 0.998
+    assert np.abs(stress.density - fine.stress_distribution(stress.edges).density).max() < 0.1 * stress.density.max()
+    assert abs(len(result.spots) - len(fine.spots)) <= 0.05 * len(fine.spots)
+    for again in (pickle.loads(pickle.dumps(result)), copy.deepcopy(result)):
+        assert_same_fields(again, result)
+    result.save(tmp_path / "saved")
+    loaded = rc.load(tmp_path / "saved")
+    assert loaded.contact.tobytes() == result.contact.tobytes()
+    with pytest.raises(ValueError, match="^spots: a result folder has no gap on the smallest elements"):
+        loaded.spots  # noqa: B018
+
+
+def test_a_copy_is_the_result_with_everything(result):
+    for other in (copy.copy(result), copy.deepcopy(result)):
+        assert_same_fields(other, result)
+        assert other.displacement.tobytes() == result.displacement.tobytes()
 
 
 def test_surfaces_and_maps_are_pickled(heights):

@@ -10,6 +10,9 @@ use crate::errors::bad_input;
 /// Heights (m) of shape (ny, nx), row by row in memory: the package hands in nothing else.
 pub(crate) type Heights<'py> = PyReadonlyArray2<'py, f64>;
 
+/// Signals are looked at after so many values of a large array, a few milliseconds.
+const VALUES_BETWEEN_LOOKS: usize = 1 << 22;
+
 /// The grid of an array.
 pub(crate) fn grid_of(heights: &Heights<'_>) -> PyResult<Grid> {
     let [ny, nx] = [heights.shape()[0], heights.shape()[1]];
@@ -23,8 +26,19 @@ pub(crate) fn values_of<'a>(heights: &'a Heights<'_>) -> PyResult<&'a [f64]> {
 
 /// The heights as a map in metres, the only copy that is made of them: it becomes the heights in units of the cell.
 pub(crate) fn map_of(heights: &Heights<'_>, sides: Option<[f64; 2]>) -> PyResult<HeightMap> {
-    let field = Field::new(grid_of(heights)?, values_of(heights)?.to_vec()).map_err(bad_input)?;
+    let field = Field::new(grid_of(heights)?, divided(heights, 1.0)?).map_err(bad_input)?;
     Ok(HeightMap { heights: field, height_unit: Unit::Metre, sides, side_unit: Unit::Metre })
+}
+
+/// The values of an array, each divided by `unit`.
+pub(crate) fn divided(array: &Heights<'_>, unit: f64) -> PyResult<Vec<f64>> {
+    let values = values_of(array)?;
+    let mut copy = Vec::with_capacity(values.len());
+    for part in values.chunks(VALUES_BETWEEN_LOOKS) {
+        copy.extend(part.iter().map(|value| value / unit));
+        array.py().check_signals()?;
+    }
+    Ok(copy)
 }
 
 /// An array of shape (ny, nx) from values row by row, without a copy.
@@ -33,7 +47,13 @@ pub(crate) fn array_of(py: Python<'_>, grid: Grid, values: Vec<f64>) -> PyResult
 }
 
 /// What tells two arrays apart: it depends on each value and on its place.
-pub(crate) fn fingerprint(values: &[f64]) -> u64 {
-    let of = |(i, value): (usize, &f64)| value.to_bits().wrapping_mul(2 * i as u64 + 1);
-    values.iter().enumerate().map(of).fold(0, u64::wrapping_add)
+pub(crate) fn fingerprint(heights: &Heights<'_>) -> PyResult<u64> {
+    let mut sum = 0_u64;
+    for (part, values) in values_of(heights)?.chunks(VALUES_BETWEEN_LOOKS).enumerate() {
+        let first = part * VALUES_BETWEEN_LOOKS;
+        let of = |(i, value): (usize, &f64)| value.to_bits().wrapping_mul(2 * (first + i) as u64 + 1);
+        sum = values.iter().enumerate().map(of).fold(sum, u64::wrapping_add);
+        heights.py().check_signals()?;
+    }
+    Ok(sum)
 }

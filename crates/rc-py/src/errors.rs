@@ -1,4 +1,4 @@
-//! Errors of the command line as exceptions: the same sentences.
+//! Errors of the command line as exceptions: the same sentences, with keywords of Python for flags and types.
 
 use pyo3::PyErr;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
@@ -7,13 +7,72 @@ use rc_cli::error::CliError;
 /// Bad input is a `ValueError`, a file that could not be written an `OSError`.
 pub(crate) fn raised(error: CliError) -> PyErr {
     match error {
-        CliError::Input(message) => PyValueError::new_err(message),
-        CliError::Write(message) => PyOSError::new_err(message),
+        CliError::Input(message) => PyValueError::new_err(in_keywords(&message)),
+        CliError::Write(message) => PyOSError::new_err(in_keywords(&message)),
         other => PyRuntimeError::new_err(other.to_string()),
     }
 }
 
 /// Bad input.
 pub(crate) fn bad_input(message: impl std::fmt::Display) -> PyErr {
-    PyValueError::new_err(message.to_string())
+    PyValueError::new_err(in_keywords(&message.to_string()))
+}
+
+/// A key whose value has the wrong type, or is not among those that there are.
+pub(crate) fn wrong_value(error: CliError) -> PyErr {
+    match error {
+        CliError::Input(message) => bad_input(in_words(&message)),
+        other => raised(other),
+    }
+}
+
+/// What the command line says of its flags, and what stands for it here.
+const SAID_OF_FLAGS: [(&str, &str); 6] = [
+    ("rc surface --fill laplace fills", "roughcontact.prepare(heights, fill=\"laplace\") fills"),
+    ("give --heights FILE or --spectrum FILE", "give heights or spectrum"),
+    ("give --heights FILE", "give heights"),
+    ("the --out folder", "the folder"),
+    ("--method uniform", "method=\"uniform\""),
+    ("--resume", "resume=True"),
+];
+
+/// A message with keywords for flags.
+fn in_keywords(message: &str) -> String {
+    let message = SAID_OF_FLAGS.iter().fold(message.to_owned(), |text, (said, here)| text.replace(said, here));
+    let mut parts = message.split("--");
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let end = part.find(|c: char| !(c.is_ascii_lowercase() || c == '-')).unwrap_or(part.len());
+        let (flag, rest) = part.split_at(end);
+        text.push_str(&flag.replace('-', "_"));
+        text.push_str(rest);
+    }
+    text
+}
+
+/// What a reader of keys says of a value, without the names of its types: as `threads: invalid value: integer -1, expected usize`.
+fn in_words(message: &str) -> String {
+    let Some((key, said)) = message.split_once(": ") else { return message.to_owned() };
+    let Some((found, expected)) = said.split_once(", expected ") else { return message.to_owned() };
+    if let Some(name) = found.strip_prefix("unknown variant ") {
+        // The kernel of a function has its name in results only.
+        let names = expected.split('`').skip(1).step_by(2).filter(|name| *name != "own");
+        let names: Vec<String> = names.map(|name| format!("'{name}'")).collect();
+        return format!("{key}: must be {}, not {}", names.join(" or "), name.replace('`', "'"));
+    }
+    let value = found.trim_start_matches("invalid type: ").trim_start_matches("invalid value: ");
+    let kinds = ["integer ", "floating point ", "boolean ", "string "];
+    let value = kinds.iter().fold(value, |value, kind| value.trim_start_matches(kind)).replace('`', "");
+    let value = match &*value {
+        "true" => "True",
+        "false" => "False",
+        other => other,
+    };
+    let expected = match expected {
+        "usize" | "u64" | "u32" => "a whole number from 0 on",
+        "f64" => "a number",
+        "a string" => "text",
+        other => other,
+    };
+    format!("{key}: must be {expected}, not {value}")
 }

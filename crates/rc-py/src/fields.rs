@@ -8,7 +8,7 @@ use rc_solver::{ContactSpot, StressDistribution};
 
 use crate::arrays::{self, Heights};
 use crate::errors::{bad_input, raised};
-use crate::maps::on_threads;
+use crate::running::on_threads;
 
 /// A spot: elements, part of the cell, perimeter (m), Euler number, part of the mean pressure (Pa).
 type Spot = (usize, f64, f64, f64, f64);
@@ -17,8 +17,7 @@ type Spot = (usize, f64, f64, f64, f64);
 fn field_of(array: &Heights<'_>, sides: [f64; 2], unit: f64) -> PyResult<Field> {
     let grid = arrays::grid_of(array)?;
     let grid = Grid::in_cell(grid.nx(), grid.ny(), sides[1] / sides[0]).map_err(bad_input)?;
-    let values = arrays::values_of(array)?.iter().map(|value| value / unit).collect();
-    Field::new(grid, values).map_err(bad_input)
+    Field::new(grid, arrays::divided(array, unit)?).map_err(bad_input)
 }
 
 /// Of the text of `scene.toml`: sides of the cell along x and y (m), E* (Pa), and the seed of a random surface.
@@ -41,7 +40,7 @@ pub(crate) fn stress_distribution<'py>(
 ) -> PyResult<(Bound<'py, PyArray1<f64>>, f64)> {
     let pressure = field_of(&pressure, [1.0, 1.0], e_star)?;
     let edges: Vec<f64> = edges.into_iter().map(|edge| edge / e_star).collect();
-    let found = on_threads(py, 0, || StressDistribution::of(&pressure, &edges))?;
+    let found = on_threads(py, 0, move || StressDistribution::of(&pressure, &edges))?;
     let density = found.density.into_iter().map(|density| density / e_star).collect();
     Ok((PyArray1::from_vec(py, density), found.area_fraction))
 }
@@ -62,7 +61,7 @@ pub(crate) fn spots(
     if pressure.grid() != gap.grid() {
         return Err(bad_input(format_args!("gap: {} elements, but the pressure has {}", gap.grid(), pressure.grid())));
     }
-    let spots = on_threads(py, 0, || ContactSpot::all(&pressure, &gap, bias))?;
+    let spots = on_threads(py, 0, move || ContactSpot::all(&pressure, &gap, bias))?;
     let in_si = |spot: ContactSpot| {
         let ContactSpot { elements, area_fraction, perimeter, euler_number, mean_pressure } = spot;
         (elements, area_fraction, perimeter * sides[0], euler_number, mean_pressure * e_star)

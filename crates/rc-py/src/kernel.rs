@@ -1,12 +1,26 @@
 //! A half-space whose symbol is a function of the caller.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
+use std::ffi::CString;
 
 use numpy::{PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use rc_core::{Grid, Kernel, Symbol, Units};
 
 use crate::errors::bad_input;
+
+/// Waves whose mirror images the function is asked for too, at most.
+const MIRRORED: usize = 64;
+
+/// Difference between the values of a wave and of its mirror image, relative to them, that quadrature may leave.
+const MIRROR_ERROR: f64 = 1e-8;
+
+/// Difference of short waves to those of the half-space of E*, relative to them, that is not worth a warning.
+const HALF_SPACE_ERROR: f64 = 0.05;
+
+/// Calls between the warning and the caller: `solve_keys` and `solve`.
+const STACK_LEVEL: i32 = 3;
 
 /// The symbol on a grid and on all coarser ones, whose waves are among its own.
 pub(crate) struct OwnKernel {
@@ -16,32 +30,120 @@ pub(crate) struct OwnKernel {
     values: Vec<f64>,
 }
 
+/// Waves per cell, and the wavenumbers (rad/m) of one.
+struct Waves {
+    grid: Grid,
+    per_wave: [f64; 2],
+}
+
 impl OwnKernel {
-    /// Calls `symbol(kx, ky)` once with all waves of `grid` but the zero wave: two arrays of wavenumbers (rad/m). It returns as many
-    /// displacements (m) for a pressure of 1 Pa.
+    /// Calls `symbol(kx, ky)` once with all waves of `grid` but the zero wave, and mirror images of some: two arrays of wavenumbers
+    /// (rad/m). It returns as many displacements (m) for a pressure of 1 Pa.
     pub(crate) fn new(symbol: &Bound<'_, PyAny>, grid: Grid, units: Units) -> PyResult<Self> {
-        let py = symbol.py();
-        let (max_kx, max_ky) = (grid.nx() / 2, grid.ny() / 2);
-        let waves = (0..=max_kx).flat_map(|kx| (0..=max_ky).map(move |ky| (kx, ky))).skip(1);
-        let [side_x, side_y] = units.cell().sides();
-        let (kx, ky): (Vec<f64>, Vec<f64>) =
-            waves.map(|(kx, ky)| (TAU * kx as f64 / side_x, TAU * ky as f64 / side_y)).unzip();
-        let n_waves = kx.len();
-        let returned = symbol.call1((PyArray1::from_vec(py, kx), PyArray1::from_vec(py, ky)))?;
-        let as_array = py.import("numpy")?.call_method1("ascontiguousarray", (returned, "float64"))?;
-        let of_shape = || {
-            bad_input(format_args!("kernel: the function must return one number for each wave, an array of {n_waves}"))
-        };
-        let array: PyReadonlyArray1<'_, f64> = as_array.extract().map_err(|_| of_shape())?;
-        let array = array.as_array();
-        if array.len() != n_waves {
-            return Err(of_shape());
-        }
+        let waves = Waves { grid, per_wave: units.cell().sides().map(|side| TAU / side) };
+        let (own, mirrored) = (waves.all(), waves.mirrored());
+        let [kx, ky] = [0, 1].map(|axis| {
+            let number = |wave: &[i64; 2]| wave[axis] as f64 * waves.per_wave[axis];
+            own.iter().map(number).chain(mirrored.iter().map(|(_, wave)| number(wave))).collect::<Vec<f64>>()
+        });
+        let mut found = call(symbol, kx, ky)?;
         // One metre for one pascal, in units of the libraries.
         let unit = units.length(1.0) / units.pressure(1.0);
-        let values = std::iter::once(0.0).chain(array.iter().map(|value| value * unit)).collect();
-        Ok(Self { max_ky, values })
+        for value in &mut found {
+            *value *= unit;
+        }
+        let of_mirrored = found.split_off(own.len());
+        let values = std::iter::once(0.0).chain(found).collect();
+        let kernel = Self { max_ky: grid.ny() / 2, values };
+        kernel.check_symmetry(&waves, mirrored.iter().map(|(place, wave)| (*place, *wave)).zip(of_mirrored))?;
+        kernel.warn_of_another_material(symbol.py(), &waves, units.elasticity().e_star())?;
+        Ok(kernel)
     }
+
+    fn at(&self, kx: usize, ky: usize) -> f64 {
+        self.values[kx * (self.max_ky + 1) + ky]
+    }
+
+    /// Refuses values that differ for waves that are mirror images of each other: in kx, in ky, and on a square grid in their diagonal.
+    fn check_symmetry(
+        &self,
+        waves: &Waves,
+        mirrored: impl Iterator<Item = (([usize; 2], [i64; 2]), f64)>,
+    ) -> PyResult<()> {
+        // Values that are not numbers are for the solver to refuse.
+        let differ = |a: f64, b: f64| (a - b).abs() > MIRROR_ERROR * a.abs();
+        let refuse = |[a, b]: [[i64; 2]; 2], why: &str| {
+            let [a, b] = [a, b].map(|[kx, ky]| {
+                let [kx, ky] = [kx as f64 * waves.per_wave[0], ky as f64 * waves.per_wave[1]];
+                format!("({kx:.6e}, {ky:.6e})")
+            });
+            bad_input(format_args!("kernel: the values for (kx, ky) = {a} and {b} rad/m differ; {why}"))
+        };
+        for (([kx, ky], image), value) in mirrored {
+            if differ(self.at(kx, ky), value) {
+                return Err(refuse([[kx as i64, ky as i64], image], "they must be even in kx and in ky"));
+            }
+        }
+        if !waves.grid.is_square() {
+            return Ok(());
+        }
+        for (kx, ky) in (0..=self.max_ky).flat_map(|kx| (0..kx).map(move |ky| (kx, ky))) {
+            if differ(self.at(kx, ky), self.at(ky, kx)) {
+                let pair = [[kx as i64, ky as i64], [ky as i64, kx as i64]];
+                return Err(refuse(pair, "on a square grid they must be the same with kx and ky exchanged"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Warns where short waves, of the outer half of the grid's, are all of another half-space than that of E*: contact edges are located
+    /// with it.
+    fn warn_of_another_material(&self, py: Python<'_>, waves: &Waves, e_star: f64) -> PyResult<()> {
+        let number = |[kx, ky]: [i64; 2]| waves.grid.waves(kx as usize, ky as usize);
+        let (max_kx, max_ky) = (waves.grid.nx() as i64 / 2, waves.grid.ny() as i64 / 2);
+        let outer = 0.5 * number([max_kx, 0]).min(number([0, max_ky]));
+        let short = waves.all().into_iter().filter(|&wave| number(wave) >= outer);
+        let ratio = |wave: [i64; 2]| PI * number(wave) * self.at(wave[0] as usize, wave[1] as usize);
+        let nearest = short.map(ratio).min_by(|a, b| a.ln().abs().total_cmp(&b.ln().abs()));
+        let Some(nearest) = nearest.filter(|ratio| *ratio > 0.0 && (ratio - 1.0).abs() > HALF_SPACE_ERROR) else {
+            return Ok(());
+        };
+        let message = format!(
+            "kernel: its short waves are at best those of a half-space of {:.4e} Pa, but e_star is {e_star:.4e} Pa, with which the edges \
+             of contacts are located",
+            e_star / nearest
+        );
+        let message = CString::new(message).map_err(bad_input)?;
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, STACK_LEVEL)
+    }
+}
+
+impl Waves {
+    /// All but the zero wave, in the order of the values of a kernel.
+    fn all(&self) -> Vec<[i64; 2]> {
+        let [max_kx, max_ky] = [self.grid.nx() as i64 / 2, self.grid.ny() as i64 / 2];
+        (0..=max_kx).flat_map(|kx| (0..=max_ky).map(move |ky| [kx, ky])).skip(1).collect()
+    }
+
+    /// Some of them, each with its image in kx and with that in ky.
+    fn mirrored(&self) -> Vec<([usize; 2], [i64; 2])> {
+        let all = self.all();
+        let step = (all.len() / MIRRORED).max(1);
+        let images = |&[kx, ky]: &[i64; 2]| [[-kx, ky], [kx, -ky]].map(|image| ([kx as usize, ky as usize], image));
+        all.iter().rev().step_by(step).take(MIRRORED).flat_map(images).collect()
+    }
+}
+
+/// What the function returns for these wavenumbers.
+fn call(symbol: &Bound<'_, PyAny>, kx: Vec<f64>, ky: Vec<f64>) -> PyResult<Vec<f64>> {
+    let (py, n_waves) = (symbol.py(), kx.len());
+    let returned = symbol.call1((PyArray1::from_vec(py, kx), PyArray1::from_vec(py, ky)))?;
+    let as_array = py.import("numpy")?.call_method1("ascontiguousarray", (returned, "float64"))?;
+    let of_shape =
+        || bad_input(format_args!("kernel: the function must return one number for each wave, an array of {n_waves}"));
+    let array: PyReadonlyArray1<'_, f64> = as_array.extract().map_err(|_| of_shape())?;
+    let array = array.as_array();
+    if array.len() == n_waves { Ok(array.to_vec()) } else { Err(of_shape()) }
 }
 
 impl Kernel for OwnKernel {

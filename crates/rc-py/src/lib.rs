@@ -17,6 +17,7 @@ mod running;
 mod scene;
 mod solve;
 mod solved;
+mod sweep;
 
 /// Runs the command `rc` with these words, the name of the program first, and returns its exit code.
 #[pyfunction]
@@ -29,11 +30,14 @@ fn main(py: Python<'_>, words: Vec<String>) -> u8 {
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<solved::Solved>()?;
+    module.add_class::<solved::Unfinished>()?;
     module.add_function(wrap_pyfunction!(main, module)?)?;
     module.add_function(wrap_pyfunction!(scene::known_keys, module)?)?;
     module.add_function(wrap_pyfunction!(scene::loads, module)?)?;
     module.add_function(wrap_pyfunction!(scene::seeds, module)?)?;
     module.add_function(wrap_pyfunction!(solve::solve, module)?)?;
+    module.add_class::<sweep::Planned>()?;
+    module.add_function(wrap_pyfunction!(sweep::plan_sweep, module)?)?;
     module.add_function(wrap_pyfunction!(maps::channels, module)?)?;
     module.add_function(wrap_pyfunction!(maps::read, module)?)?;
     module.add_function(wrap_pyfunction!(maps::surface, module)?)?;

@@ -15,17 +15,11 @@ use rc_sweep::memory::Budget;
 
 use crate::arrays::{self, Heights};
 use crate::errors::{bad_input, raised};
-use crate::running::{self, Run};
+use crate::running::on_threads;
 use crate::scene::scene_of;
 
 /// An array (m) and the sides of its rectangle along x and y (m), where they are known.
 type MapParts<'py> = (Bound<'py, PyArray2<f64>>, Option<[f64; 2]>);
-
-/// Runs `work` on all cores, or on those of `RAYON_NUM_THREADS`.
-pub(crate) fn on_threads<T: Send>(py: Python<'_>, threads: usize, work: impl FnOnce() -> T + Send) -> PyResult<T> {
-    let (value, _, ended) = running::run(py, Run { threads, end: None, progress: None }, move |_| work())?;
-    ended.map_or(Ok(value), Err)
-}
 
 fn parts(py: Python<'_>, map: HeightMap) -> PyResult<MapParts<'_>> {
     let grid = map.heights.grid();
@@ -35,7 +29,7 @@ fn parts(py: Python<'_>, map: HeightMap) -> PyResult<MapParts<'_>> {
 /// Names of the channels of a file, and whether they are heights.
 #[pyfunction]
 pub(crate) fn channels(py: Python<'_>, path: PathBuf) -> PyResult<Vec<(String, bool)>> {
-    let channels = py.detach(|| rc_heights::channels(&path)).map_err(|error| raised(error.into()))?;
+    let channels = on_threads(py, 0, move || rc_heights::channels(&path))?.map_err(|error| raised(error.into()))?;
     Ok(channels.into_iter().map(|channel| (channel.name, channel.is_height)).collect())
 }
 
@@ -44,7 +38,7 @@ pub(crate) fn channels(py: Python<'_>, path: PathBuf) -> PyResult<Vec<(String, b
 pub(crate) fn read<'py>(py: Python<'py>, path: PathBuf, keys: &Bound<'py, PyDict>) -> PyResult<MapParts<'py>> {
     let surface = scene_of(keys, None)?.surface;
     let (params, scales) = (surface.read_params(), surface.scales());
-    let map = py.detach(|| heights::read(&path, &params, scales)).map_err(raised)?;
+    let map = on_threads(py, 0, move || heights::read(&path, &params, scales))?.map_err(raised)?;
     parts(py, map)
 }
 
@@ -61,13 +55,14 @@ fn checked(keys: &Bound<'_, PyDict>) -> PyResult<(SurfaceSetup, Budget, usize)> 
 #[pyfunction]
 pub(crate) fn surface<'py>(py: Python<'py>, keys: &Bound<'py, PyDict>) -> PyResult<MapParts<'py>> {
     let (setup, budget, threads) = checked(keys)?;
-    let heights = on_threads(py, threads, || {
+    let cell = setup.cell;
+    let heights = on_threads(py, threads, move || {
         let surface = setup.load()?;
         budget.check_grid("the surface", surface.grid)?;
-        in_metres(&surface, setup.cell.side())
+        in_metres(&surface, cell.side())
     })?;
     let heights = heights.map_err(raised)?;
-    Ok((arrays::array_of(py, heights.grid(), heights.into_values())?, Some(setup.cell.sides())))
+    Ok((arrays::array_of(py, heights.grid(), heights.into_values())?, Some(cell.sides())))
 }
 
 /// Heights in m, as `rc surface` writes them.
@@ -90,7 +85,7 @@ pub(crate) fn resolved_surface(keys: &Bound<'_, PyDict>) -> PyResult<String> {
 #[pyfunction]
 pub(crate) fn inspect_surface(py: Python<'_>, keys: &Bound<'_, PyDict>) -> PyResult<String> {
     let (setup, budget, threads) = checked(keys)?;
-    let record = on_threads(py, threads, || {
+    let record = on_threads(py, threads, move || {
         let surface = setup.load()?;
         budget.check_grid("the surface", surface.grid)?;
         inspect::surface(&surface, setup.cell.side())
@@ -107,14 +102,17 @@ pub(crate) fn inspect_map(
     keys: &Bound<'_, PyDict>,
 ) -> PyResult<String> {
     let SurfaceKeys { cell, cell_y, .. } = scene_of(keys, None)?.surface;
+    if sides.is_none() && cell.is_none() {
+        return Err(bad_input("cell: must be given (m), since the map does not know its size"));
+    }
     let map = arrays::map_of(&heights, sides)?;
-    on_threads(py, 0, || inspect::height_map(Path::new("heights"), map, [cell, cell_y]))?.map_err(raised)
+    on_threads(py, 0, move || inspect::height_map(Path::new("heights"), map, [cell, cell_y]))?.map_err(raised)
 }
 
 /// Summary and statistics of a result folder as JSON.
 #[pyfunction]
 pub(crate) fn inspect_result(py: Python<'_>, folder: PathBuf) -> PyResult<String> {
-    on_threads(py, 0, || inspect::result(&folder))?.map_err(raised)
+    on_threads(py, 0, move || inspect::result(&folder))?.map_err(raised)
 }
 
 /// A height map after treatments, which are named as the flags of `rc surface`.
@@ -127,7 +125,7 @@ pub(crate) fn treat<'py>(
 ) -> PyResult<MapParts<'py>> {
     let treatments = surfaces::treatments(&words).map_err(raised)?;
     let map = arrays::map_of(&heights, sides)?;
-    let treated = on_threads(py, 0, || {
+    let treated = on_threads(py, 0, move || {
         let grids =
             rc_heights::grids_after(&map, &treatments).map_err(|cause| bad_input(format!("heights: {cause}")))?;
         for (grid, treatment) in grids.into_iter().zip(&treatments) {

@@ -31,6 +31,11 @@ impl Pool {
     pub(crate) fn threads(&self) -> &ThreadPool {
         self.pool.as_ref().expect("it is there until it is dropped")
     }
+
+    /// Leaves the threads alone: they end when what they do is done.
+    pub(crate) fn leave(mut self) {
+        self.pool = None;
+    }
 }
 
 impl Drop for Pool {

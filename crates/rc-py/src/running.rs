@@ -1,18 +1,23 @@
 //! A running computation: without the lock of the interpreter, ended by Ctrl-C, seen by a function of the caller.
 
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::thread::Result as Outcome;
 use std::time::{Duration, Instant};
 
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
-use rayon::ThreadPool;
 use rc_core::{Event, Observer};
 
 use crate::pools::Pool;
 
 /// How often the calling thread looks for signals.
 const LOOK: Duration = Duration::from_millis(20);
+
+/// How long it waits, after a signal, for a computation that was told to stop.
+const GRACE: Duration = Duration::from_millis(100);
 
 /// How a computation is run.
 pub(crate) struct Run<'py> {
@@ -25,8 +30,8 @@ pub(crate) struct Run<'py> {
 }
 
 /// What ends a computation early, and where its events go.
-pub(crate) struct Watched<'a, T> {
-    stop: &'a AtomicBool,
+pub(crate) struct Watched<T> {
+    stop: Arc<AtomicBool>,
     end: Option<Instant>,
     events: Option<Sender<Message<T>>>,
 }
@@ -34,13 +39,13 @@ pub(crate) struct Watched<'a, T> {
 /// What comes from the threads of a computation.
 enum Message<T> {
     Event(Event),
-    Done(T),
+    Done(Outcome<T>),
 }
 
-impl<T: Send> Observer for Watched<'_, T> {
+impl<T: Send> Observer for Watched<T> {
     fn notify(&self, event: &Event) {
         if let Some(events) = &self.events {
-            // The receiver is there until the computation ends.
+            // Nobody listens any more to a computation that goes on alone.
             let _ = events.send(Message::Event(*event));
         }
     }
@@ -50,65 +55,123 @@ impl<T: Send> Observer for Watched<'_, T> {
     }
 }
 
-/// Runs `work` on its threads, without the lock of the interpreter. Returns what it returned, the number of threads, and what ended it early:
-/// the exception of a signal handler, as `KeyboardInterrupt`, or of the function that sees progress.
-pub(crate) fn run<T: Send>(
+/// How a computation ended.
+pub(crate) enum Ended<T> {
+    /// With a value. The exception is what ended it early: that of a signal handler, as `KeyboardInterrupt`, or of the function that
+    /// sees progress.
+    Done { value: T, early: Option<PyErr> },
+    /// A signal came, and the computation has not yet seen that it was told to stop. It goes on alone until it does.
+    Left { early: PyErr, rest: Rest<T> },
+}
+
+/// A computation that goes on alone.
+pub(crate) struct Rest<T>(Receiver<Message<T>>);
+
+impl<T: Send> Rest<T> {
+    /// Waits for it; another signal ends the wait.
+    pub(crate) fn wait(&mut self, py: Python<'_>) -> PyResult<T> {
+        let receiver = &mut self.0;
+        py.detach(move || {
+            loop {
+                match receiver.recv_timeout(LOOK) {
+                    Ok(Message::Done(outcome)) => return Ok(outcome.unwrap_or_else(|panic| resume_unwind(panic))),
+                    Ok(Message::Event(_)) => {}
+                    Err(RecvTimeoutError::Timeout) => Python::attach(look_for_signals)?,
+                    Err(RecvTimeoutError::Disconnected) => return Err(without_a_result()),
+                }
+            }
+        })
+    }
+}
+
+/// Runs `work` on its threads, without the lock of the interpreter, and tells it to stop when a signal comes or `progress` raises. Returns
+/// how it ended, and the number of threads.
+///
+/// # Errors
+/// When there are no threads to be had.
+pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
     run: Run<'_>,
-    work: impl FnOnce(&Watched<'_, T>) -> T + Send,
-) -> PyResult<(T, usize, Option<PyErr>)> {
+    work: impl FnOnce(&Watched<T>) -> T + Send + 'static,
+) -> PyResult<(Ended<T>, usize)> {
     let Run { threads, end, progress } = run;
     let progress = progress.map(Bound::unbind);
     py.detach(move || {
-        let pool = Pool::take(threads).map_err(|cause| PyRuntimeError::new_err(format!("threads: {cause}")))?;
-        let (value, ended) = on_pool(pool.threads(), end, progress.as_ref(), work);
-        let value = value.ok_or_else(|| PyRuntimeError::new_err("the computation ended without a result"))?;
-        Ok((value, pool.threads().current_num_threads(), ended))
+        let pool = take_pool(threads)?;
+        let threads = pool.threads().current_num_threads();
+        let stop = Arc::new(AtomicBool::new(false));
+        let (sender, receiver) = mpsc::channel();
+        let watched = Watched { stop: Arc::clone(&stop), end, events: progress.is_some().then(|| sender.clone()) };
+        pool.threads().spawn(move || {
+            // A panic is handed to the caller: here it would end the process.
+            let outcome = catch_unwind(AssertUnwindSafe(|| work(&watched)));
+            let _ = sender.send(Message::Done(outcome));
+        });
+        let ended = wait(receiver, &stop, progress.as_ref())?;
+        if matches!(ended, Ended::Left { .. }) {
+            pool.leave();
+        }
+        Ok((ended, threads))
     })
 }
 
-/// Runs `work` on a pool, while this thread hands events to `progress` and looks for signals.
-fn on_pool<T: Send>(
-    pool: &ThreadPool,
-    end: Option<Instant>,
-    progress: Option<&Py<PyAny>>,
-    work: impl FnOnce(&Watched<'_, T>) -> T + Send,
-) -> (Option<T>, Option<PyErr>) {
-    let stop = &AtomicBool::new(false);
-    let (sender, receiver) = mpsc::channel();
-    let events = progress.map(|_| sender.clone());
-    let mut ended = None;
-    let value = pool.in_place_scope(|scope| {
-        scope.spawn(move |_| {
-            let watched = Watched { stop, end, events };
-            let value = work(&watched);
-            let _ = sender.send(Message::Done(value));
-        });
-        let mut calls = Calls { progress, level: (0, 1), grid: (0, 0) };
-        loop {
-            let looked = match receiver.recv_timeout(LOOK) {
-                Ok(Message::Done(value)) => return Some(value),
-                // Only when the computation panics, which the scope passes on.
-                Err(RecvTimeoutError::Disconnected) => return None,
-                _ if ended.is_some() => Ok(()),
-                Ok(Message::Event(event)) => Python::attach(|py| {
-                    calls.tell(py, event)?;
-                    py.check_signals()
-                }),
-                Err(RecvTimeoutError::Timeout) => Python::attach(look_for_signals),
-            };
-            if let Err(error) = looked {
-                stop.store(true, Ordering::Relaxed);
-                ended = Some(error);
-            }
-        }
-    });
-    (value, ended)
+/// Runs `work` on `threads`, 0 for all cores, and returns its value, unless a signal comes first.
+pub(crate) fn on_threads<T: Send + 'static>(
+    py: Python<'_>,
+    threads: usize,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    match run(py, Run { threads, end: None, progress: None }, move |_| work())?.0 {
+        Ended::Done { value, early: None } => Ok(value),
+        Ended::Done { early: Some(early), .. } | Ended::Left { early, .. } => Err(early),
+    }
+}
+
+/// Runs `work`, which borrows, on `threads` to its end: signals are seen after it.
+pub(crate) fn to_end<T: Send>(py: Python<'_>, threads: usize, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    py.detach(|| Ok(take_pool(threads)?.threads().install(work)))
+}
+
+fn take_pool(threads: usize) -> PyResult<Pool> {
+    Pool::take(threads).map_err(|cause| PyRuntimeError::new_err(format!("threads: {cause}")))
+}
+
+fn without_a_result() -> PyErr {
+    PyRuntimeError::new_err("the computation ended without a result")
 }
 
 /// Runs the handlers of signals that have come; that of Ctrl-C raises an exception.
 fn look_for_signals(py: Python<'_>) -> PyResult<()> {
     py.check_signals()
+}
+
+/// Hands events to `progress` and looks for signals, until the computation ends or is left alone.
+fn wait<T>(receiver: Receiver<Message<T>>, stop: &AtomicBool, progress: Option<&Py<PyAny>>) -> PyResult<Ended<T>> {
+    let mut calls = Calls { progress, level: (0, 1), grid: (0, 0) };
+    let mut early: Option<PyErr> = None;
+    let mut leave_at: Option<Instant> = None;
+    loop {
+        let event = match receiver.recv_timeout(LOOK) {
+            Ok(Message::Done(Ok(value))) => return Ok(Ended::Done { value, early }),
+            Ok(Message::Done(Err(panic))) => resume_unwind(panic),
+            Err(RecvTimeoutError::Disconnected) => return Err(early.unwrap_or_else(without_a_result)),
+            Ok(Message::Event(event)) => Some(event),
+            Err(RecvTimeoutError::Timeout) => None,
+        };
+        let looked = Python::attach(|py| calls.look(py, event.filter(|_| early.is_none())));
+        if let Err((error, is_signal)) = looked {
+            stop.store(true, Ordering::Relaxed);
+            early = Some(error);
+            if is_signal {
+                leave_at.get_or_insert_with(|| Instant::now() + GRACE);
+            }
+        }
+        if leave_at.is_some_and(|at| Instant::now() >= at)
+            && let Some(early) = early.take()
+        {
+            return Ok(Ended::Left { early, rest: Rest(receiver) });
+        }
+    }
 }
 
 /// Calls of the function that sees progress; an iteration does not say on which level it is.
@@ -119,6 +182,18 @@ struct Calls<'a> {
 }
 
 impl Calls<'_> {
+    /// Tells of an event, and runs the handlers of signals that have come. The exception of either, and whether it is of a signal.
+    fn look(&mut self, py: Python<'_>, event: Option<Event>) -> Result<(), (PyErr, bool)> {
+        if let Some(event) = event {
+            self.tell(py, event).map_err(|error| {
+                // The signal may have come while the function ran.
+                let is_signal = error.is_instance_of::<PyKeyboardInterrupt>(py);
+                (error, is_signal)
+            })?;
+        }
+        py.check_signals().map_err(|error| (error, true))
+    }
+
     fn tell(&mut self, py: Python<'_>, event: Event) -> PyResult<()> {
         let Some(progress) = self.progress else { return Ok(()) };
         let (iteration, error, tolerance, n_contact) = match event {

@@ -5,12 +5,12 @@ use std::path::Path;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
-use rc_cli::scene::keys::Scene;
+use rc_cli::scene::keys::{Scene, SurfaceKeys};
 use rc_cli::scene::{file, resolve};
 use rc_sweep::{Loads, Seeds};
 use toml::{Table, Value};
 
-use crate::errors::{bad_input, raised};
+use crate::errors::{bad_input, raised, wrong_value};
 
 /// The keys of a scene file.
 #[pyfunction]
@@ -39,8 +39,22 @@ pub(crate) fn scene_of(keys: &Bound<'_, PyDict>, path: Option<&Path>) -> PyResul
             table.insert(key, value);
         }
     }
-    let scene = file::from_table(&table).map_err(raised)?;
+    let scene = file::from_table(&table).map_err(wrong_value)?;
     resolve::layers(path, scene).map_err(raised)
+}
+
+/// The same where the call may hold a height map: it takes the place of the surface in a scene file, as a file would. What else the call
+/// says of a surface is refused later.
+pub(crate) fn with_map(keys: &Bound<'_, PyDict>, path: Option<&Path>, holds_map: bool) -> PyResult<Scene> {
+    let mut scene = scene_of(keys, path)?;
+    if holds_map {
+        let call = scene_of(keys, None)?.surface;
+        let kept = &mut scene.surface;
+        if call.heights.is_none() && !call.generates() {
+            *kept = SurfaceKeys { cell: kept.cell, cell_y: kept.cell_y, grid: call.grid, ..call };
+        }
+    }
+    Ok(scene)
 }
 
 /// The value of a key; none for `None`.
@@ -55,10 +69,15 @@ fn value_of(key: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<Value>> {
     } else if let Ok(number) = value.cast::<PyFloat>() {
         Value::Float(number.value())
     } else if let Ok(number) = value.cast::<PyInt>() {
-        Value::Integer(number.extract().map_err(|_| bad_input(format_args!("{key}: {number} is out of range")))?)
+        Value::Integer(number.extract().map_err(|_| bad_input(format_args!("{key}: {number} is too large")))?)
     } else {
         let kind = value.get_type().name()?;
-        return Err(PyTypeError::new_err(format!("{key}: must be a number or text, not {kind}")));
+        let instead = match key {
+            "cell" => "; the other side is cell_y",
+            "pressure" | "penetration" | "seed" => "; roughcontact.sweep solves for several",
+            _ => "",
+        };
+        return Err(PyTypeError::new_err(format!("{key}: must be a number or text, not {kind}{instead}")));
     };
     Ok(Some(value))
 }

@@ -18,8 +18,9 @@ use rc_sweep::memory::Budget;
 use crate::arrays::{self, Heights};
 use crate::errors::{bad_input, raised};
 use crate::kernel::OwnKernel;
-use crate::running::{self, Run};
-use crate::solved::{HeldMap, Parts, Solved};
+use crate::running::{self, Ended, Run, on_threads};
+use crate::scene;
+use crate::solved::{HeldMap, Parts, Solved, Unfinished};
 
 /// Where heights come from that are not named by keys.
 #[derive(FromPyObject)]
@@ -53,13 +54,12 @@ struct Prepared {
     started: Instant,
 }
 
-/// Solves. Returns the solution, and the exception that ended it early.
+/// What a solve returns: the solution, or what waits for it, and the exception that ended it early.
+type Returned = (Option<Solved>, Option<Unfinished>, Option<Py<PyAny>>);
+
+/// Solves. There is no solution yet where a signal came and the solve goes on alone until it sees that it was told to stop.
 #[pyfunction]
-pub(crate) fn solve(
-    py: Python<'_>,
-    keys: &Bound<'_, PyDict>,
-    given: Given<'_>,
-) -> PyResult<(Solved, Option<Py<PyAny>>)> {
+pub(crate) fn solve(py: Python<'_>, keys: &Bound<'_, PyDict>, given: Given<'_>) -> PyResult<Returned> {
     let scene = scene_of(keys, &given)?;
     let run_keys = scene.run.clone();
     let prepared = Prepared::new(scene, &given)?;
@@ -69,22 +69,20 @@ pub(crate) fn solve(
         end: end(&run_keys, prepared.started),
         progress: given.progress,
     };
-    let (parts, threads, ended) = running::run(py, run, move |observer| prepared.solve(observer))?;
-    let solved = Solved::new(parts.map_err(raised)?, held, threads);
-    Ok((solved, ended.map(|error| error.into_value(py).into_any())))
+    let (ended, threads) = running::run(py, run, move |observer| prepared.solve(observer))?;
+    let value = |error: PyErr| error.into_value(py).into_any();
+    Ok(match ended {
+        Ended::Done { value: Err(_), early: Some(early) } => return Err(early),
+        Ended::Done { value: parts, early } => {
+            (Some(Solved::new(parts.map_err(raised)?, held, threads)), None, early.map(value))
+        }
+        Ended::Left { early, rest } => (None, Some(Unfinished::new(rest, held, threads)), Some(value(early))),
+    })
 }
 
 /// The scene of the keys. A function for a kernel has a name among them.
 fn scene_of(keys: &Bound<'_, PyDict>, given: &Given<'_>) -> PyResult<Scene> {
-    let mut scene = crate::scene::scene_of(keys, given.scene.as_deref())?;
-    if given.heights.is_some() {
-        // The array takes the place of the surface in a scene file, as a file would; what else the call says of a surface is refused later.
-        let call = crate::scene::scene_of(keys, None)?.surface;
-        let kept = &mut scene.surface;
-        if call.heights.is_none() && !call.generates() {
-            *kept = rc_cli::scene::keys::SurfaceKeys { cell: kept.cell, cell_y: kept.cell_y, grid: call.grid, ..call };
-        }
-    }
+    let mut scene = scene::with_map(keys, given.scene.as_deref(), given.heights.is_some())?;
     if given.kernel.is_some() {
         scene.contact.kernel = Some(KernelName::Own);
     }
@@ -159,7 +157,10 @@ fn own_kernel(symbol: &Bound<'_, PyAny>, scene: &CheckedScene, map: Option<&Heig
     let grid = match (&scene.surface.source, map) {
         (Source::Random { grid, .. } | Source::Waves { grid, .. }, _) => *grid,
         (_, Some(map)) => map.heights.grid(),
-        (Source::File { .. }, None) => scene.surface.load().map_err(raised)?.grid,
+        (Source::File { .. }, None) => {
+            let surface = scene.surface.clone();
+            on_threads(symbol.py(), 0, move || surface.load())?.map_err(raised)?.grid
+        }
     };
     OwnKernel::new(symbol, grid, scene.contact.units)
 }

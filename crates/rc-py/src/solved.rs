@@ -1,22 +1,23 @@
 //! A solution as Python sees it.
 
 use std::path::PathBuf;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods as _};
 use pyo3::prelude::*;
+use rc_cli::error::CliError;
 use rc_cli::scene::keys::SurfaceKeys;
 use rc_cli::scene::resolve::ContactSetup;
 use rc_cli::scene::wave_file::WaveFile;
 use rc_cli::solve::{MapHeights, ResultFiles};
-use rc_core::Field;
+use rc_core::{Field, Grid};
 use rc_solver::{Solution, Status};
 use rc_sweep::Summary;
 
 use crate::arrays::{self, Heights};
 use crate::errors::{bad_input, raised};
-use crate::running::{self, Run};
+use crate::running::{Rest, on_threads, to_end};
 
 /// What a solve leaves, without borrows.
 pub(crate) struct Parts {
@@ -41,7 +42,7 @@ pub(crate) struct HeldMap {
 
 impl HeldMap {
     pub(crate) fn new(heights: &Heights<'_>) -> PyResult<Self> {
-        let fingerprint = arrays::fingerprint(arrays::values_of(heights)?);
+        let fingerprint = arrays::fingerprint(heights)?;
         Ok(Self { array: (**heights).clone().unbind(), fingerprint })
     }
 }
@@ -49,42 +50,52 @@ impl HeldMap {
 /// A solved contact problem.
 #[pyclass(frozen, module = "roughcontact._core")]
 pub(crate) struct Solved {
-    parts: Parts,
+    found: Arc<Found>,
     map: Option<HeldMap>,
+}
+
+/// A solution and its summary, which threads share that go on alone.
+struct Found {
+    parts: Parts,
     threads: usize,
     summary: OnceLock<Summary>,
 }
 
-impl Solved {
-    pub(crate) fn new(parts: Parts, map: Option<HeldMap>, threads: usize) -> Self {
-        Self { parts, map, threads, summary: OnceLock::new() }
-    }
-
-    fn e_star(&self) -> f64 {
-        self.parts.contact.units.elasticity().e_star()
-    }
-
-    fn side(&self) -> f64 {
-        self.parts.contact.units.cell().side()
-    }
-
+impl Found {
     fn files<'a>(&'a self, map: Option<MapHeights<'a>>) -> ResultFiles<'a> {
         let Parts { surface, waves, contact, solution, .. } = &self.parts;
         ResultFiles { surface, map, waves: waves.as_deref(), contact, solution }
     }
 
-    fn summary_of(&self) -> &Summary {
+    fn summary(&self) -> &Summary {
         self.summary.get_or_init(|| {
             let Parts { height_and_slope, wall, .. } = self.parts;
             self.files(None).summary(height_and_slope, wall, self.threads)
         })
     }
+}
+
+impl Solved {
+    pub(crate) fn new(parts: Parts, map: Option<HeldMap>, threads: usize) -> Self {
+        Self { found: Arc::new(Found { parts, threads, summary: OnceLock::new() }), map }
+    }
+
+    fn e_star(&self) -> f64 {
+        self.found.parts.contact.units.elasticity().e_star()
+    }
+
+    fn side(&self) -> f64 {
+        self.found.parts.contact.units.cell().side()
+    }
 
     /// Computes something on the threads of the solve.
-    fn compute<T: Send>(&self, py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
-        let run = Run { threads: self.threads, end: None, progress: None };
-        let (value, _, ended) = running::run(py, run, move |_| work())?;
-        ended.map_or(Ok(value), Err)
+    fn compute<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&Found) -> T + Send + 'static,
+    ) -> PyResult<T> {
+        let found = Arc::clone(&self.found);
+        on_threads(py, found.threads, move || work(&found))
     }
 
     /// A field as an array, each value multiplied by `unit`, as it is written into files.
@@ -94,11 +105,14 @@ impl Solved {
         unit: f64,
         field: for<'a> fn(&'a Solution<'static>) -> &'a Field,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let solution = &self.parts.solution;
-        let values =
-            self.compute(py, || field(solution).values().iter().map(|value| value * unit).collect::<Vec<f64>>())?;
-        arrays::array_of(py, solution.grid(), values)
+        let values = self.compute(py, move |found| in_unit(field(&found.parts.solution), unit))?;
+        arrays::array_of(py, self.found.parts.solution.grid(), values)
     }
+}
+
+/// The values of a field, each multiplied by `unit`.
+fn in_unit(field: &Field, unit: f64) -> Vec<f64> {
+    field.values().iter().map(|value| value * unit).collect()
 }
 
 #[pymethods]
@@ -106,29 +120,29 @@ impl Solved {
     /// Whether the tolerance was reached.
     #[getter]
     fn converged(&self) -> bool {
-        self.parts.solution.status() != Status::NotConverged
+        self.found.parts.solution.status() != Status::NotConverged
     }
 
     /// What is said of a solution that did not reach the tolerance.
     #[getter]
     fn failure(&self) -> Option<&str> {
-        self.parts.failure.as_deref()
+        self.found.parts.failure.as_deref()
     }
 
     /// Seconds from the checked scene to the certified solution.
     #[getter]
     fn wall_seconds(&self) -> f64 {
-        self.parts.wall.as_secs_f64()
+        self.found.parts.wall.as_secs_f64()
     }
 
     /// The summary as JSON.
     fn summary_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.compute(py, || self.summary_of().to_json())
+        self.compute(py, |found| found.summary().to_json())
     }
 
     /// The scene as it was solved, as in `scene.toml`.
     fn scene(&self) -> String {
-        self.files(None).scene()
+        self.found.files(None).scene()
     }
 
     /// Pressure (Pa), shape (ny, nx).
@@ -141,6 +155,16 @@ impl Solved {
         self.array(py, self.side(), Solution::gap)
     }
 
+    /// Gap (m) on the grid of the smallest elements; none where that is the grid of the fields.
+    fn finest_gap<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let side = self.side();
+        let gap: Option<(Grid, Vec<f64>)> = self.compute(py, move |found| {
+            let gap = found.parts.solution.finest_gap()?;
+            Some((gap.grid(), in_unit(&gap, side)))
+        })?;
+        gap.map(|(grid, values)| arrays::array_of(py, grid, values)).transpose()
+    }
+
     /// Displacement (m) of mean zero, shape (ny, nx).
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.array(py, self.side(), Solution::displacement)
@@ -148,9 +172,9 @@ impl Solved {
 
     /// Columns of the elements that are not those of the grid: x, y, size (m), pressure (Pa).
     fn elements<'py>(&self, py: Python<'py>) -> Option<[Bound<'py, PyArray1<f64>>; 4]> {
-        let units = self.parts.contact.units;
+        let units = self.found.parts.contact.units;
         let mut columns: [Vec<f64>; 4] = Default::default();
-        for element in self.parts.solution.elements()? {
+        for element in self.found.parts.solution.elements()? {
             columns[0].push(units.metres(element.centre.x));
             columns[1].push(units.metres(element.centre.y));
             columns[2].push(units.metres(element.side));
@@ -164,9 +188,9 @@ impl Solved {
         let heights = self.map.as_ref().map(|map| map.array.bind(py).try_readonly()).transpose();
         let heights = heights.map_err(|cause| bad_input(format_args!("heights: {cause}")))?;
         let map = heights.as_ref().map(|heights| self.map_heights(heights)).transpose()?;
-        let written = self.compute(py, || {
+        let written = to_end(py, self.found.threads, || {
             rc_sweep::files::check_folder(&folder)?;
-            self.files(map).write(&folder, self.summary_of())
+            self.found.files(map).write(&folder, self.found.summary())
         })?;
         written.map_err(raised)
     }
@@ -176,11 +200,36 @@ impl Solved {
     /// The caller's heights, if they are still those that were solved.
     fn map_heights<'a>(&self, heights: &'a Heights<'_>) -> PyResult<MapHeights<'a>> {
         let values = arrays::values_of(heights)?;
-        if self.map.as_ref().is_some_and(|map| map.fingerprint != arrays::fingerprint(values)) {
+        if self.map.as_ref().map(|map| map.fingerprint) != Some(arrays::fingerprint(heights)?) {
             return Err(bad_input(
                 "heights: the array was changed after the solve, so it cannot be written; solve a copy",
             ));
         }
         Ok(MapHeights::InMetres { grid: arrays::grid_of(heights)?, values })
+    }
+}
+
+/// A solve that goes on alone after a signal.
+#[pyclass(frozen, module = "roughcontact._core")]
+pub(crate) struct Unfinished {
+    rest: Mutex<Rest<Result<Parts, CliError>>>,
+    map: Mutex<Option<HeldMap>>,
+    threads: usize,
+}
+
+impl Unfinished {
+    pub(crate) fn new(rest: Rest<Result<Parts, CliError>>, map: Option<HeldMap>, threads: usize) -> Self {
+        Self { rest: Mutex::new(rest), map: Mutex::new(map), threads }
+    }
+}
+
+#[pymethods]
+impl Unfinished {
+    /// Waits for its solution, of which there is one.
+    fn wait(&self, py: Python<'_>) -> PyResult<Solved> {
+        let mut rest = self.rest.try_lock().map_err(|_| bad_input("the solution is waited for already"))?;
+        let parts = rest.wait(py)?.map_err(raised)?;
+        let map = self.map.lock().unwrap_or_else(PoisonError::into_inner).take();
+        Ok(Solved::new(parts, map, self.threads))
     }
 }

@@ -1,0 +1,129 @@
+//! A sweep whose rows Python has solved somewhere: its plan, and its journal where it has a folder.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rc_cli::error::CliError;
+use rc_cli::sweep::{MapMark, SweepLists, plan};
+use rc_sweep::{Cells, ControlKind, FileMark, Loads, Seeds, Shard, SweepPlan};
+
+use crate::arrays::{self, Heights};
+use crate::errors::{bad_input, raised};
+use crate::running::{on_threads, to_end};
+use crate::scene;
+
+/// What a sweep is over, and where it goes.
+#[derive(FromPyObject)]
+pub(crate) struct Wanted<'py> {
+    /// Whether loads are penetrations (m), not pressures (Pa).
+    #[pyo3(item)]
+    penetrations: bool,
+    #[pyo3(item)]
+    loads: Vec<f64>,
+    #[pyo3(item)]
+    seeds: Option<Vec<u64>>,
+    /// Heights (m), row by row.
+    #[pyo3(item)]
+    heights: Option<Heights<'py>>,
+    /// Sides of their cell along x and y (m), where they know them.
+    #[pyo3(item)]
+    sides: Option<[f64; 2]>,
+    /// A scene file.
+    #[pyo3(item)]
+    scene: Option<PathBuf>,
+    /// The folder of the journal, if there is one.
+    #[pyo3(item)]
+    folder: Option<PathBuf>,
+    /// Whether it goes on with what is there.
+    #[pyo3(item)]
+    resume: bool,
+    /// Whether each row has a result folder there.
+    #[pyo3(item)]
+    fields: bool,
+}
+
+/// The rows of a sweep, and those that are kept.
+#[pyclass(frozen, module = "roughcontact._core")]
+pub(crate) struct Planned {
+    plan: SweepPlan,
+    /// Until the sweep ends; no other process may write to its folder as long as it is there.
+    journal: Mutex<Option<rc_sweep::Sweep>>,
+}
+
+/// Checks a sweep, and starts its journal or goes on with it.
+#[pyfunction]
+pub(crate) fn plan_sweep(py: Python<'_>, keys: &Bound<'_, PyDict>, wanted: Wanted<'_>) -> PyResult<Planned> {
+    let Wanted { penetrations, loads, seeds, heights, sides, scene: file, folder, resume, fields } = wanted;
+    let scene = scene::with_map(keys, file.as_deref(), heights.is_some())?;
+    let control = if penetrations { ControlKind::Penetration } else { ControlKind::Pressure };
+    let lists = SweepLists { control, loads: Loads(loads), seeds: seeds.map(Seeds) };
+    let mark = |heights: &Heights<'_>| Ok::<_, PyErr>(FileMark::of_values(arrays::values_of(heights)?));
+    let map = heights.as_ref().map(mark).transpose()?.map(|mark| MapMark { sides, mark });
+    let name = file.as_deref().and_then(Path::file_stem).unwrap_or_default().to_string_lossy().into_owned();
+    let planned = on_threads(py, 0, move || {
+        let plan = SweepPlan { keeps_fields: fields, ..plan(&name, &scene, &lists, map)? };
+        let start = |folder: PathBuf| rc_sweep::Sweep::start(plan.clone(), Shard::WHOLE, &folder, resume);
+        let journal = Mutex::new(folder.map(start).transpose()?);
+        Ok::<_, CliError>(Planned { plan, journal })
+    })?;
+    planned.map_err(raised)
+}
+
+impl Planned {
+    fn n_rows(&self) -> usize {
+        self.plan.shape().rows()
+    }
+
+    /// What a call that panicked leaves is whole.
+    fn journal(&self) -> MutexGuard<'_, Option<rc_sweep::Sweep>> {
+        self.journal.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl Planned {
+    /// Seed and load of each row.
+    fn rows(&self) -> Vec<(Option<u64>, f64)> {
+        let row = |index| self.plan.row(index);
+        (0..self.n_rows()).map(row).map(|row| (self.plan.surfaces[row.surface].seed, row.load)).collect()
+    }
+
+    /// A row as a message names it.
+    fn describe(&self, index: usize) -> String {
+        self.plan.describe(&self.plan.row(index))
+    }
+
+    /// Indices of the rows that are not kept, in order.
+    fn todo(&self) -> Vec<usize> {
+        self.journal().as_ref().map_or_else(|| (0..self.n_rows()).collect(), rc_sweep::Sweep::todo)
+    }
+
+    /// The rows that are kept: their indices and their cells as JSON.
+    fn kept(&self) -> Vec<(usize, String)> {
+        let journal = self.journal();
+        let kept = journal.as_ref().map(rc_sweep::Sweep::kept);
+        let json = |cells: &Cells| serde_json::Value::Object(cells.clone()).to_string();
+        kept.map_or_else(Vec::new, |kept| kept.rows().iter().map(|(index, cells)| (*index, json(cells))).collect())
+    }
+
+    /// Keeps a row, whose summary is given as JSON. It is on disk when this returns.
+    fn keep(&self, py: Python<'_>, index: usize, summary: &str) -> PyResult<()> {
+        let cells: Cells = serde_json::from_str(summary).map_err(bad_input)?;
+        let row = self.plan.row(index);
+        let kept = py.detach(|| self.journal().as_ref().map_or(Ok(()), |journal| journal.keep(&row, cells)));
+        kept.map_err(|error| raised(error.into()))
+    }
+
+    /// The folder for the result of a row, where each has one.
+    fn fields_folder(&self, index: usize) -> Option<PathBuf> {
+        self.journal().as_ref()?.fields_folder(index)
+    }
+
+    /// Ends the sweep: writes the table of the rows that are kept; one without any leaves nothing behind.
+    fn end(&self, py: Python<'_>) -> PyResult<()> {
+        let Some(journal) = self.journal().take() else { return Ok(()) };
+        to_end(py, 1, || journal.end())?.map(drop).map_err(|error| raised(error.into()))
+    }
+}

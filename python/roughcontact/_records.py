@@ -1,0 +1,66 @@
+"""Parts of what a result says."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+class Certificate(NamedTuple):
+    """How far the pressure is from solving the discrete problem, from a fresh application of the operator."""
+
+    #: Bound on the relative error of the pressure in the energy norm.
+    energy_error: float
+    #: Σ p (g - min g) / (H Σ p), with the height range H.
+    complementarity_error: float
+    #: max(-g) / H.
+    penetration_error: float
+    #: Relative deviation of the mean pressure, or of the penetration over H.
+    load_error: float
+    #: What ``energy_error`` was to reach, or None.
+    energy_tolerance: float | None
+    #: What ``complementarity_error`` and ``penetration_error`` were to reach, or None.
+    tolerance: float | None
+
+
+class ContactSpot(NamedTuple):
+    """One connected part of the contact."""
+
+    #: Elements of it.
+    elements: int
+    #: Its part of the nominal area.
+    area_fraction: float
+    #: Length of its edge (m).
+    perimeter: float
+    #: 1 minus the number of its holes.
+    euler_number: float
+    #: Its part of the mean pressure (Pa).
+    mean_pressure: float
+
+
+class StressDistribution(NamedTuple):
+    """The density of the interfacial stress over the nominal area."""
+
+    #: Ends of the bins (Pa), one more than bins.
+    edges: Floats
+    #: P(σ) (1/Pa), the mean over each bin.
+    density: Floats
+    #: Part of the nominal area under stress, the integral of P over all σ > 0.
+    area_fraction: float
+
+
+class Elements(NamedTuple):
+    """Elements in contact of a mesh that is not the grid."""
+
+    #: Centres (m).
+    x: Floats
+    #: Centres (m).
+    y: Floats
+    #: Sides (m).
+    size: Floats
+    #: Pressures (Pa).
+    pressure: Floats

@@ -1,0 +1,220 @@
+"""Rows of a sweep, solved here or in the workers of an executor."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import queue
+import shutil
+import socket
+import tempfile
+import uuid
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
+from typing import Any, NamedTuple, Union
+
+from roughcontact import _core
+from roughcontact._result import Result
+from roughcontact._solve import solve_keys
+
+#: What solves rows side by side, or a function that makes one: again, when a worker took the first one with it.
+Workers = Union[Executor, Callable[[], Executor]]
+
+
+class FieldsAt(NamedTuple):
+    """Where the fields of a row are."""
+
+    #: The machine that wrote them.
+    host: str
+    #: The Zarr group there.
+    path: str
+
+
+class Job(NamedTuple):
+    """A row that is to be solved."""
+
+    #: From 0.
+    row: int
+    heights: Any
+    keys: dict[str, Any]
+    options: dict[str, Any]
+    #: Whether the result is returned too.
+    keeps_result: bool
+    #: The folder for the files of the result.
+    folder: str | None
+    #: The Zarr group for its fields.
+    group: str | None
+    #: Another one each time that it is handed out: Dask takes equal calls for one, also after its failure.
+    attempt: str = ""
+
+
+class Row(NamedTuple):
+    """A row that was solved: small, so that it travels."""
+
+    summary: str
+    failure: str | None
+    result: Result | None
+    fields: FieldsAt | None
+
+
+#: A row, or why it cannot be solved, which says nothing about the others.
+Found = Union[Row, ValueError]
+
+
+def solve_row(job: Job) -> Row:
+    """Solves a row, in whatever process this is."""
+    result = solve_keys(job.heights, job.keys, is_row=True, **job.options)
+    if job.folder is not None:
+        _replace(job.folder, result.save)
+    fields = None
+    if job.group is not None:
+        _replace(job.group, lambda path: _write_group(result, path))
+        fields = FieldsAt(socket.gethostname(), job.group)
+    keeps = job.keeps_result or result.failure is not None
+    return Row(result._source.summary_json(), result.failure, result if keeps else None, fields)
+
+
+def _replace(final: str, write: Callable[[str], None]) -> None:
+    """Writes a folder beside its place, then puts it there: it is there whole or not at all."""
+    place = pathlib.Path(final)
+    place.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=".rc-partial-", dir=place.parent) as hidden:
+        partial = os.path.join(hidden, place.name)
+        write(partial)
+        if place.exists():
+            shutil.rmtree(place)
+        os.replace(partial, place)
+
+
+def _write_group(result: Result, path: str) -> None:
+    """The Zarr group of ``rc export --zarr``."""
+    with tempfile.TemporaryDirectory(dir=os.path.dirname(path)) as folder:
+        result.save(folder)
+        _core.run(["rc", "export", folder, "--zarr", "--quiet"])
+        os.replace(os.path.join(folder, "fields.zarr"), path)
+
+
+def here(jobs: list[Job]) -> Iterator[tuple[int, Found]]:
+    """Solves rows one after the other."""
+    for job in jobs:
+        try:
+            row: Found = solve_row(job)
+        except ValueError as error:
+            row = error
+        yield job.row, row
+
+
+#: Rounds in which workers end and no row does, before the sweep gives up.
+_ROUNDS = 3
+
+#: Names of exceptions of executors whose worker ended while it solved a row.
+_ENDED = frozenset({"KilledWorker", "WorkerCrashedError", "NodeDiedError", "RayActorError"})
+
+
+def by_workers(workers: Workers, jobs: list[Job]) -> Iterator[tuple[int, Found]]:
+    """Solves rows in the workers of an executor; yields them as they finish. Rows whose worker ended are solved again."""
+    pool = _Pool(workers)
+    waiting = {job.row: job for job in jobs}
+    rounds = 0
+    try:
+        while waiting:
+            unfinished, cause = dict(waiting), None
+            for index, found in _round(pool.executor, waiting):
+                if isinstance(found, (Row, ValueError)):
+                    del unfinished[index]
+                    yield index, found
+                else:
+                    cause = found
+            rounds = rounds + 1 if len(unfinished) == len(waiting) else 0
+            if cause is not None and (rounds == _ROUNDS or not pool.renew(cause)):
+                message = f"{len(unfinished)} rows are not solved, since workers ended while they solved them: {cause!r}"
+                raise RuntimeError(message) from cause
+            # What may have ended a worker comes last, so that it cannot keep the others from being solved.
+            suspects = min(pool.size, len(unfinished) - 1)
+            rows = list(unfinished.items())
+            waiting = dict(rows[suspects:] + rows[:suspects])
+    except BaseException:
+        pool.close(wait=False)
+        raise
+    pool.close(wait=True)
+
+
+def _round(executor: Executor, jobs: Mapping[int, Job]) -> Iterator[tuple[int, Found | Exception]]:
+    """Hands every row to the executor once; yields a row, why it cannot be solved, or how its worker ended."""
+    done: queue.SimpleQueue[Future[Row]] = queue.SimpleQueue()
+    places: dict[Future[Row], int] = {}
+    try:
+        for index, job in jobs.items():
+            try:
+                future = executor.submit(solve_row, job._replace(attempt=uuid.uuid4().hex))
+            except BrokenExecutor as error:
+                yield index, error
+                break
+            places[future] = index
+            future.add_done_callback(done.put)
+        for _ in range(len(places)):
+            future = _next(done)
+            yield places[future], _found(future)
+    finally:
+        for future in places:
+            future.cancel()
+
+
+def _next(done: queue.SimpleQueue[Future[Row]]) -> Future[Row]:
+    while True:
+        try:
+            # Not for ever: on some systems a wait without an end does not see Ctrl-C.
+            return done.get(timeout=0.1)
+        except queue.Empty:
+            continue
+
+
+def _found(future: Future[Row]) -> Found | Exception:
+    try:
+        return future.result()
+    except ValueError as error:
+        return error
+    except Exception as error:
+        if isinstance(error, BrokenExecutor) or _ENDED.intersection(kind.__name__ for kind in type(error).__mro__):
+            return error
+        raise
+
+
+class _Pool:
+    """An executor, and how to come by another one."""
+
+    def __init__(self, workers: Workers) -> None:
+        self._make = None if hasattr(workers, "submit") else workers
+        self._is_own = self._make is not None
+        self.executor: Executor = workers() if self._make is not None else workers  # type: ignore[operator, assignment]
+
+    @property
+    def size(self) -> int:
+        """Rows that are solved at once, as far as it is known."""
+        return int(getattr(self.executor, "_max_workers", None) or os.cpu_count() or 1)
+
+    def renew(self, cause: Exception) -> bool:
+        """Replaces an executor that takes no more work; whether there is one that does."""
+        if not isinstance(cause, BrokenExecutor):
+            return True
+        another = self._make() if self._make is not None else _like(self.executor)
+        if another is None:
+            return False
+        self.close(wait=True)
+        self.executor, self._is_own = another, True
+        return True
+
+    def close(self, *, wait: bool) -> None:
+        """Ends an executor that is not the caller's."""
+        if self._is_own:
+            self.executor.shutdown(wait=wait, cancel_futures=True)
+
+
+def _like(executor: Executor) -> Executor | None:
+    """A pool of processes like this one, as a broken one cannot be repaired."""
+    if type(executor) is not ProcessPoolExecutor:
+        return None
+    known = vars(executor)
+    return ProcessPoolExecutor(
+        known.get("_max_workers"), known.get("_mp_context"), known.get("_initializer"), known.get("_initargs", ())
+    )

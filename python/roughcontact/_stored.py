@@ -1,0 +1,89 @@
+"""Where a result comes from: a solve, or the files of one."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import pathlib
+from typing import Protocol
+
+import numpy as np
+
+from roughcontact._records import ContactSpot, Floats
+
+
+class Source(Protocol):
+    """Where a result comes from: a solve, or the files of one."""
+
+    @property
+    def failure(self) -> str | None: ...
+    def summary_json(self) -> str: ...
+    def scene(self) -> str: ...
+    def pressure(self) -> Floats: ...
+    def gap(self) -> Floats: ...
+    def displacement(self) -> Floats: ...
+    def finest_gap(self) -> Floats | None: ...
+    def elements(self) -> list[Floats] | None: ...
+    def save(self, folder: str) -> None: ...
+
+
+class Stored:
+    """The files of a result, byte by byte: what a pickle holds. Beside them what the files have averaged, and spots where they need more."""
+
+    def __init__(self, files: dict[str, bytes], fields: dict[str, Floats], spots: list[ContactSpot] | None) -> None:
+        self.files = files
+        self.fields = fields
+        self.spots = spots
+
+    @property
+    def failure(self) -> str | None:
+        status = json.loads(self.summary_json())["status"]
+        return "not converged" if status == "not_converged" else None
+
+    def summary_json(self) -> str:
+        return self.files["summary.json"].decode()
+
+    def scene(self) -> str:
+        return self.files["scene.toml"].decode()
+
+    def pressure(self) -> Floats:
+        return self._array("pressure")
+
+    def gap(self) -> Floats:
+        return self._array("gap")
+
+    def displacement(self) -> Floats:
+        raise ValueError("displacement: a result that was read or unpickled does not have it; solve again")
+
+    def finest_gap(self) -> Floats | None:
+        raise ValueError("spots: a result folder has no gap on the smallest elements (border_level); solve again")
+
+    def elements(self) -> list[Floats] | None:
+        text = self.files.get("elements.csv")
+        if text is None:
+            return None
+        return list(np.loadtxt(io.BytesIO(text), delimiter=",", skiprows=1, ndmin=2).reshape(-1, 4).T)
+
+    def save(self, folder: str) -> None:
+        os.makedirs(folder, exist_ok=True)
+        for name, data in self.files.items():
+            final = pathlib.Path(folder, name)
+            partial = final.with_name(final.name + ".partial")
+            partial.write_bytes(data)
+            os.replace(partial, final)
+
+    def _array(self, name: str) -> Floats:
+        if name in self.fields:
+            return self.fields[name]
+        array: Floats = np.load(io.BytesIO(self.files[name + ".npy"]))
+        return array
+
+
+def files_in(folder: str) -> dict[str, bytes]:
+    """The files in a folder by their names."""
+    return {path.name: path.read_bytes() for path in sorted(pathlib.Path(folder).iterdir()) if path.is_file()}
+
+
+#: Files of a result folder; the others there belong to somebody else.
+FILES = ("summary.json", "scene.toml", "pressure.npy", "gap.npy", "contact.png", "elements.csv", "heights.npy")
