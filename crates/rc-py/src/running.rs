@@ -16,8 +16,8 @@ use crate::pools::Pool;
 /// How often the calling thread looks for signals.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// How long it waits, after a signal, for a computation that was told to stop.
-const GRACE: Duration = Duration::from_millis(100);
+/// How long it waits, after a signal, for a solve that was told to stop.
+pub(crate) const GRACE: Duration = Duration::from_millis(100);
 
 /// How a computation is run.
 pub(crate) struct Run<'py> {
@@ -27,6 +27,8 @@ pub(crate) struct Run<'py> {
     pub(crate) end: Option<Instant>,
     /// Called with numbers of each event: level, levels, nx, ny, iteration, error, tolerance, elements in contact.
     pub(crate) progress: Option<Bound<'py, PyAny>>,
+    /// How long it may go on after a signal before it is left alone.
+    pub(crate) grace: Duration,
 }
 
 /// What ends a computation early, and where its events go.
@@ -94,7 +96,7 @@ pub(crate) fn run<T: Send + 'static>(
     run: Run<'_>,
     work: impl FnOnce(&Watched<T>) -> T + Send + 'static,
 ) -> PyResult<(Ended<T>, usize)> {
-    let Run { threads, end, progress } = run;
+    let Run { threads, end, progress, grace } = run;
     let progress = progress.map(Bound::unbind);
     py.detach(move || {
         let pool = take_pool(threads)?;
@@ -107,7 +109,7 @@ pub(crate) fn run<T: Send + 'static>(
             let outcome = catch_unwind(AssertUnwindSafe(|| work(&watched)));
             let _ = sender.send(Message::Done(outcome));
         });
-        let ended = wait(receiver, &stop, progress.as_ref())?;
+        let ended = wait(receiver, (&stop, grace), progress.as_ref())?;
         if matches!(ended, Ended::Left { .. }) {
             pool.leave();
         }
@@ -121,7 +123,7 @@ pub(crate) fn on_threads<T: Send + 'static>(
     threads: usize,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<T> {
-    match run(py, Run { threads, end: None, progress: None }, move |_| work())?.0 {
+    match run(py, Run { threads, end: None, progress: None, grace: Duration::ZERO }, move |_| work())?.0 {
         Ended::Done { value, early: None } => Ok(value),
         Ended::Done { early: Some(early), .. } | Ended::Left { early, .. } => Err(early),
     }
@@ -146,7 +148,11 @@ fn look_for_signals(py: Python<'_>) -> PyResult<()> {
 }
 
 /// Hands events to `progress` and looks for signals, until the computation ends or is left alone.
-fn wait<T>(receiver: Receiver<Message<T>>, stop: &AtomicBool, progress: Option<&Py<PyAny>>) -> PyResult<Ended<T>> {
+fn wait<T>(
+    receiver: Receiver<Message<T>>,
+    (stop, grace): (&AtomicBool, Duration),
+    progress: Option<&Py<PyAny>>,
+) -> PyResult<Ended<T>> {
     let mut calls = Calls { progress, level: (0, 1), grid: (0, 0) };
     let mut early: Option<PyErr> = None;
     let mut leave_at: Option<Instant> = None;
@@ -163,7 +169,7 @@ fn wait<T>(receiver: Receiver<Message<T>>, stop: &AtomicBool, progress: Option<&
             stop.store(true, Ordering::Relaxed);
             early = Some(error);
             if is_signal {
-                leave_at.get_or_insert_with(|| Instant::now() + GRACE);
+                leave_at.get_or_insert_with(|| Instant::now() + grace);
             }
         }
         if leave_at.is_some_and(|at| Instant::now() >= at)

@@ -68,6 +68,7 @@ pub(crate) fn solve(py: Python<'_>, keys: &Bound<'_, PyDict>, given: Given<'_>) 
         threads: threads::checked(run_keys.threads).map_err(raised)?.unwrap_or(0),
         end: end(&run_keys, prepared.started),
         progress: given.progress,
+        grace: running::GRACE,
     };
     let (ended, threads) = running::run(py, run, move |observer| prepared.solve(observer))?;
     let value = |error: PyErr| error.into_value(py).into_any();
