@@ -5,7 +5,6 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rc_cli::error::CliError;
 use rc_cli::sweep::{MapMark, SweepLists, plan};
 use rc_sweep::{Cells, ControlKind, FileMark, Loads, Seeds, Shard, SweepPlan};
 
@@ -59,16 +58,21 @@ pub(crate) fn plan_sweep(py: Python<'_>, keys: &Bound<'_, PyDict>, wanted: Wante
     let scene = scene::with_map(keys, file.as_deref(), heights.is_some())?;
     let control = if penetrations { ControlKind::Penetration } else { ControlKind::Pressure };
     let lists = SweepLists { control, loads: Loads(loads), seeds: seeds.map(Seeds) };
-    let mark = |heights: &Heights<'_>| Ok::<_, PyErr>(FileMark::of_values(arrays::values_of(heights)?));
-    let map = heights.as_ref().map(mark).transpose()?.map(|mark| MapMark { sides, mark });
+    let map = heights.as_ref().map(|heights| mark(py, heights, folder.is_some())).transpose()?;
+    let map = map.map(|mark| MapMark { sides, mark });
     let name = file.as_deref().and_then(Path::file_stem).unwrap_or_default().to_string_lossy().into_owned();
-    let planned = on_threads(py, 0, move || {
-        let plan = SweepPlan { keeps_fields: fields, ..plan(&name, &scene, &lists, map)? };
-        let start = |folder: PathBuf| rc_sweep::Sweep::start(plan.clone(), Shard::WHOLE, &folder, resume);
-        let journal = Mutex::new(folder.map(start).transpose()?);
-        Ok::<_, CliError>(Planned { plan, journal })
-    })?;
-    planned.map_err(raised)
+    let plan = on_threads(py, 0, move || plan(&name, &scene, &lists, map))?.map_err(raised)?;
+    let plan = SweepPlan { keeps_fields: fields, ..plan };
+    // Not among what a signal leaves alone: a journal would appear later.
+    let start = |folder: PathBuf| py.detach(|| rc_sweep::Sweep::start(plan.clone(), Shard::WHOLE, &folder, resume));
+    let journal = folder.map(start).transpose().map_err(|error| raised(error.into()))?;
+    Ok(Planned { plan, journal: Mutex::new(journal) })
+}
+
+/// By what a map is recognised, which matters to a journal alone.
+fn mark(py: Python<'_>, heights: &Heights<'_>, has_journal: bool) -> PyResult<FileMark> {
+    let values = if has_journal { arrays::values_of(heights)? } else { &[] };
+    to_end(py, 1, || FileMark::of_values(values))
 }
 
 impl Planned {
