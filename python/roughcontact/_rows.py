@@ -184,9 +184,15 @@ class _Pool:
     """An executor, and how to come by another one."""
 
     def __init__(self, workers: Workers) -> None:
-        self._make = None if hasattr(workers, "submit") else workers
+        self._make: Callable[[], Executor] | None = None
+        if hasattr(workers, "submit") and not isinstance(workers, type):
+            self.executor: Executor = workers  # type: ignore[assignment]
+        elif callable(workers):
+            self._make = workers
+            self.executor = workers()
+        else:
+            raise ValueError(f"executor: must have a method submit, or be a function that makes one that has, not {workers!r}")
         self._is_own = self._make is not None
-        self.executor: Executor = workers() if self._make is not None else workers  # type: ignore[operator, assignment]
 
     @property
     def size(self) -> int:
@@ -197,7 +203,7 @@ class _Pool:
         """Replaces an executor that takes no more work; whether there is one that does."""
         if not isinstance(cause, BrokenExecutor):
             return True
-        another = self._make() if self._make is not None else _like(self.executor)
+        another = _like(self.executor) if self._make is None else self._make()
         if another is None:
             return False
         self.close(wait=True)

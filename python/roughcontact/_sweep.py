@@ -129,14 +129,14 @@ def sweep(
     progress = _progress(progress, executor is not None)
     control, loads = _control(pressures, penetrations)
     places = _places(out, fields, resume, kernel)
-    here_or_there = _anywhere(heights, keys, scene)
-    planned = _plan(here_or_there, kernel, (control, loads, _seeds(seeds, heights)), places)
+    problem = _anywhere(heights, keys, scene)
+    planned = _plan(problem, kernel, (control, loads, _seeds(seeds, heights)), places)
     kept = planned.kept()
     if kept and keep_results:
         planned.end()
         raise ValueError(f"keep_results: {len(kept)} rows are kept from before, without results; omit keep_results")
     collected = _Collected(planned, keep_results, places.groups is not None)
-    jobs = _jobs(planned, here_or_there, kernel, (control, progress if executor is None else False, keep_results, places))
+    jobs = _jobs(planned, problem, kernel, (control, progress if executor is None else False, keep_results, places))
     bar = RowBar(len(collected), len(planned.rows())) if executor is not None and progress is True else None
     try:
         for index, found in here(jobs) if executor is None else by_workers(executor, jobs):
