@@ -179,7 +179,10 @@ def _seeds(seeds: Seeds | None, heights: Any) -> list[int] | None:
         raise ValueError("seeds: the height map has none; omit seeds")
     if isinstance(seeds, str):
         return list(_core.seeds(seeds))
-    numbers = [operator.index(seed) for seed in seeds]
+    try:
+        numbers = [operator.index(seed) for seed in seeds]
+    except TypeError:
+        raise ValueError(f"seeds: must be whole numbers, as range(1, 8), or text, as '1..7', not {seeds!r}") from None
     if not numbers:
         raise ValueError("seeds: none is given")
     for seed in numbers:

@@ -303,6 +303,8 @@ def test_result_folders_of_rows_are_those_of_the_command_line(command, tmp_path)
         ({"executor": Refusing(), "progress": print}, "^progress: a function sees solves of this process alone"),
         ({"executor": 3}, "^executor: must have a method submit, or be a function that makes one that has, not 3"),
         ({"progress": 3}, "^progress: must be True, False or a function, not 3"),
+        ({"seeds": 3}, "^seeds: must be whole numbers, as range"),
+        ({"seeds": [1.5]}, "^seeds: must be whole numbers, as range"),
         ({"seeds": []}, "^seeds: none is given"),
         ({"seeds": [-1]}, "^seeds: must be whole numbers from 0"),
         ({"seeds": [2**64]}, "^seeds: must be whole numbers from 0"),
