@@ -187,6 +187,32 @@ class Result:
         return _locked(self._source.gap())
 
     @cached_property
+    def plastic_gap(self) -> Floats | None:
+        """Overlap that plastic flow has removed (m), shape (ny, nx), ≥ 0; read-only. None without a hardness."""
+        field = self._source.plastic_gap()
+        return None if field is None else _locked(field)
+
+    @property
+    def hardness(self) -> float | None:
+        """Greatest pressure that the contact bears (Pa); None for an elastic contact."""
+        return self.summary.get("hardness")
+
+    @property
+    def plastic_area_fraction(self) -> float | None:
+        """Plastic area, where the pressure is the hardness, best estimate; None without a hardness."""
+        return self.summary.get("plastic_area_fraction")
+
+    @property
+    def plastic_area_fraction_error(self) -> float | None:
+        """Estimated error of ``plastic_area_fraction``."""
+        return self.summary.get("plastic_area_fraction_error")
+
+    @property
+    def mean_plastic_gap(self) -> float | None:
+        """Mean over the cell of the overlap that plastic flow has removed (m); None without a hardness."""
+        return self.summary.get("mean_plastic_gap")
+
+    @cached_property
     def displacement(self) -> Floats:
         """Displacement of the elastic surface (m), shape (ny, nx), of mean zero; read-only."""
         return _locked(self._source.displacement())
@@ -310,6 +336,8 @@ class Result:
         # With an output grid, the files have means.
         averaged = np.load(io.BytesIO(files["pressure.npy"])).shape != self.pressure.shape
         fields = {"pressure": self.pressure, "gap": self.gap} if averaged else {}
+        if averaged and (plastic := self.plastic_gap) is not None:
+            fields["plastic_gap"] = plastic
         return _stored, (files, fields, self.spots if self.border_level else None)
 
 

@@ -51,6 +51,7 @@ def solve(
     e_star: float | None = None,
     pressure: float | None = None,
     penetration: float | None = None,
+    hardness: float | None = None,
     kernel: Kernel | None = None,
     method: Method | None = None,
     border_level: int | None = None,
@@ -90,6 +91,8 @@ def solve(
         E* = E/(1-ν²) (Pa), instead of ``young`` and ``poisson``.
     pressure, penetration : float
         Mean pressure (Pa) or penetration (m): exactly one.
+    hardness : float, optional
+        No pressure (Pa) is greater, the usual first model of plastic contact. Default: none, an elastic contact.
     kernel : {"love", "spectral"} or callable, default "love"
         Discretisation of the half-space. A function ``f(kx, ky)`` of two arrays of wavenumbers (rad/m) returns the
         displacement (m) of a pressure wave of 1 Pa, ``2 / (E* |k|)`` for a half-space: it must be positive, and even in kx and ky; on

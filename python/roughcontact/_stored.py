@@ -24,6 +24,7 @@ class Source(Protocol):
     def gap(self) -> Floats: ...
     def displacement(self) -> Floats: ...
     def finest_gap(self) -> Floats | None: ...
+    def plastic_gap(self) -> Floats | None: ...
     def elements(self) -> list[Floats] | None: ...
     def save(self, folder: str) -> None: ...
 
@@ -52,6 +53,10 @@ class Stored:
 
     def gap(self) -> Floats:
         return self._array("gap")
+
+    def plastic_gap(self) -> Floats | None:
+        there = "plastic_gap" in self.fields or "plastic_gap.npy" in self.files
+        return self._array("plastic_gap") if there else None
 
     def displacement(self) -> Floats:
         raise ValueError("displacement: a result that was read or unpickled does not have it; solve again")
@@ -86,4 +91,7 @@ def files_in(folder: str) -> dict[str, bytes]:
 
 
 #: Files of a result folder; the others there belong to somebody else.
-FILES = ("summary.json", "scene.toml", "pressure.npy", "gap.npy", "contact.png", "elements.csv", "heights.npy")
+FILES = (
+    *("summary.json", "scene.toml", "pressure.npy", "gap.npy", "plastic_gap.npy"),
+    *("contact.png", "elements.csv", "heights.npy"),
+)

@@ -59,6 +59,7 @@ def sweep(
     young: float | None = None,
     poisson: float | None = None,
     e_star: float | None = None,
+    hardness: float | None = None,
     kernel: Kernel | None = None,
     method: Method | None = None,
     border_level: int | None = None,

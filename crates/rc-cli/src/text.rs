@@ -40,10 +40,23 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
         ("elastic energy", engineering(s.elastic_energy, "J")),
         ("certificate", certificate_line(s)),
     ];
+    if let Some(plastic) = plastic(s) {
+        lines.insert(4, ("plastic area", plastic));
+    }
     if let (Some(evaluated), Some(proven)) = (s.cells_evaluated, s.cells_proven) {
         lines.push(("cells", format!("{evaluated} evaluated, {proven} proven out of contact")));
     }
     lines
+}
+
+/// The plastic part of the contact; none without a hardness.
+pub(crate) fn plastic(s: &Summary) -> Option<String> {
+    let (fraction, error) = (s.plastic_area_fraction?, s.plastic_area_fraction_error?);
+    Some(format!(
+        "({}) % of the nominal area, at the hardness of {}",
+        with_error(100.0 * fraction, 100.0 * error),
+        engineering(s.hardness?, "Pa")
+    ))
 }
 
 fn surface_line(s: &Summary) -> String {

@@ -165,6 +165,14 @@ impl Solved {
         gap.map(|(grid, values)| arrays::array_of(py, grid, values)).transpose()
     }
 
+    /// The overlap that plastic flow has removed (m), shape (ny, nx); `None` without a hardness.
+    fn plastic_gap<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        if self.found.parts.contact.hardness.is_infinite() {
+            return Ok(None);
+        }
+        self.array(py, self.side(), Solution::plastic_gap).map(Some)
+    }
+
     /// Displacement (m) of mean zero, shape (ny, nx).
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.array(py, self.side(), Solution::displacement)

@@ -20,6 +20,8 @@ pub struct ContactFields<'a> {
     pub elements: &'a Elements,
     /// Pressure, in any unit: positive in contact.
     pub pressure: &'a [f64],
+    /// The pressure where no element is.
+    pub beyond: f64,
     /// Gap, in λ.
     pub gap: &'a [f64],
     /// The gap of elements in contact.
@@ -47,7 +49,7 @@ impl ContactFields<'_> {
 
     /// `bound` is that of second differences of the gap.
     fn is_too_coarse(&self, coarser: usize, place: [u32; 2], bound: f64) -> bool {
-        let pressure = self.elements.around(self.pressure, coarser, place, 0.0);
+        let pressure = self.elements.around(self.pressure, coarser, place, self.beyond);
         let near = TILE - RING..2 * TILE + RING;
         let (mut pressed, mut free) = (false, false);
         for &p in pressure[near.clone()].iter().flat_map(|row| &row[near.clone()]) {
@@ -116,8 +118,9 @@ mod tests {
                 })
                 .collect();
             assert!(gap.iter().all(|&g| g > 0.5), "no centre touches");
+            let pressure = vec![0.0; CELLS];
             let fields =
-                ContactFields { elements: &elements, pressure: &vec![0.0; CELLS], gap: &gap, contact_gap: 0.0 };
+                ContactFields { elements: &elements, pressure: &pressure, beyond: 0.0, gap: &gap, contact_gap: 0.0 };
             assert_eq!(fields.too_coarse(|_| curvature), [[found]], "minimum gap {minimum}");
         }
     }
@@ -130,7 +133,8 @@ mod tests {
             pressure[tile * CELLS..(tile + 1) * CELLS].fill(if column < 4 { 1.0 } else { 0.0 });
         }
         let gap: Vec<f64> = pressure.iter().map(|&p| if p > 0.0 { 0.0 } else { 1.0 }).collect();
-        let fields = ContactFields { elements: &elements, pressure: &pressure, gap: &gap, contact_gap: 0.0 };
+        let fields =
+            ContactFields { elements: &elements, pressure: &pressure, beyond: 0.0, gap: &gap, contact_gap: 0.0 };
         // Flat heights, and the displacement beside a pressure of 1 (E* = 1).
         let chosen = fields.too_coarse(|coarser| 4.0 / ((RING - 1) as f64 * elements.side(coarser)));
         for (&[column, _], &chosen) in elements.levels()[0].places().iter().zip(&chosen[0]) {
@@ -149,7 +153,8 @@ mod tests {
             let columns = places.flat_map(|&[column, _]| (0..CELLS).map(move |cell| column_of(cell, column)));
             let pressure: Vec<f64> = columns.map(|x| if x < 4 * TILE + n_pressed { 1.0 } else { 0.0 }).collect();
             let gap: Vec<f64> = pressure.iter().map(|&p| if p > 0.0 { 0.0 } else { 1.0 }).collect();
-            let fields = ContactFields { elements: &elements, pressure: &pressure, gap: &gap, contact_gap: 0.0 };
+            let fields =
+                ContactFields { elements: &elements, pressure: &pressure, beyond: 0.0, gap: &gap, contact_gap: 0.0 };
             let chosen = fields.too_coarse(|_| 0.0);
             for (&[column, _], &chosen) in elements.levels()[0].places().iter().zip(&chosen[0]) {
                 if column == 3 {

@@ -7,6 +7,10 @@ use crate::{Control, ErrorBound};
 /// adaptive method they include the error of its operator, which is measured with a margin.
 ///
 /// With g the gap shifted so that its pressure-weighted mean is 0, and H = h_max - h_min.
+///
+/// With a hardness the mean is over elements whose pressure is below it, and min g is the minimum over elements that could press more. Plastic
+/// elements may overlap as much as they do. Where their gap is above min g they could press less, and p (g - min g) counts the greatest of
+/// these gaps for all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certificate {
     /// Σ p (g - min g) / (H Σ p).
@@ -27,9 +31,11 @@ pub struct Certificate {
 /// Sums of a fresh gap, from which a certificate follows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Residuals {
-    /// min g, less the pressure-weighted mean of g.
+    /// min g over elements that could press more, less the gap of contact.
     pub(crate) least_gap: f64,
-    /// Pressure-weighted mean of g.
+    /// Pressure-weighted mean of g - min g, where no pressure is the hardness; a bound on G over the mean of p everywhere.
+    pub(crate) excess: f64,
+    /// The gap of contact: the pressure-weighted mean of g.
     pub(crate) mean_gap: f64,
     /// Mean of p.
     pub(crate) mean_pressure: f64,
@@ -58,22 +64,24 @@ impl Certificate {
 
     /// NaN stays, since it must not pass for a small error.
     pub(crate) fn new(problem: &Problem, residuals: &Residuals) -> Self {
-        let Residuals { least_gap, mean_gap, mean_pressure, elastic_energy } = *residuals;
-        let overlap = if least_gap > 0.0 { 0.0 } else { -least_gap + 0.0 };
+        let Residuals { least_gap, excess, mean_gap, mean_pressure, elastic_energy } = *residuals;
+        // NaN stays.
+        let positive = |value: f64| if value < 0.0 { 0.0 } else { value + 0.0 };
+        let (overlap, excess) = (positive(-least_gap), positive(excess));
         let is_flat = problem.h_range == 0.0 && !overlap.is_nan();
         let ratio = |numerator: f64, denominator: f64| match numerator {
             0.0 => 0.0,
             _ if is_flat => 0.0,
             _ => numerator / denominator,
         };
-        // Σ p (g - min g) / Σ p with the weighted mean of g at zero is -min g: the two errors coincide.
-        let error = ratio(overlap, problem.h_range);
+        // Σ p (g - min g) / Σ p with the weighted mean of g at zero is -min g: the two errors coincide, unless elements are plastic.
+        let [complementarity, penetration] = [excess, overlap].map(|error| ratio(error, problem.h_range));
         let (load, off) = match problem.control {
             Control::MeanPressure(wanted) => ((mean_pressure - wanted).abs() / wanted, 0.0),
             Control::Penetration(_) => (mean_gap.abs() / problem.h_range, mean_gap.abs()),
         };
-        let energy = ratio((overlap + off) * mean_pressure, elastic_energy).sqrt();
-        Self { complementarity: error, penetration: error, energy, load }
+        let energy = ratio((excess + off) * mean_pressure, elastic_energy).sqrt();
+        Self { complementarity, penetration, energy, load }
     }
 }
 

@@ -38,7 +38,7 @@ impl ContactSpot {
             for &element in &elements {
                 load += pressure.values()[element];
                 let at = [element % nx, element / nx];
-                sums.add(sides, &around((pressure.values(), gap.values()), [nx, ny], at, 0.0));
+                sums.add(sides, f64::INFINITY, &around((pressure.values(), gap.values()), [nx, ny], at, 0.0));
             }
             let area = ContactArea::from_sums(&[sums], grid, bias);
             Self {

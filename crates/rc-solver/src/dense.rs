@@ -3,7 +3,7 @@
 use rc_core::{Field, Kernel, Operator};
 
 use crate::operator::DirectSum;
-use crate::problem::Problem;
+use crate::problem::{Load, Problem};
 use crate::{Control, IterationParams, ProblemError};
 
 /// Pressures (in E*) on the grid of `heights` under a given penetration (in λ), by elimination on the elements in contact:
@@ -16,33 +16,65 @@ use crate::{Control, IterationParams, ProblemError};
 /// # Errors
 /// [`ProblemError`] for heights or a penetration out of range.
 pub fn solve_dense(heights: &Field, kernel: &dyn Kernel, penetration: f64) -> Result<Option<Field>, ProblemError> {
-    let problem = Problem::check(heights, Control::Penetration(penetration), &IterationParams::relative(1e-6))?;
+    solve_dense_with_hardness(heights, kernel, penetration, f64::INFINITY)
+}
+
+/// An element of the active set.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum State {
+    Free,
+    Elastic,
+    /// Its pressure is the hardness.
+    Plastic,
+}
+
+/// [`solve_dense`] with pressures of at most `hardness` (in E*): elements that would press more have that pressure, until they no longer
+/// overlap.
+///
+/// # Errors
+/// [`ProblemError`] for heights, a penetration or a hardness out of range.
+pub fn solve_dense_with_hardness(
+    heights: &Field,
+    kernel: &dyn Kernel,
+    penetration: f64,
+    hardness: f64,
+) -> Result<Option<Field>, ProblemError> {
+    let load = Load { control: Control::Penetration(penetration), hardness };
+    let problem = Problem::check(heights, load, &IterationParams::relative(1e-6))?;
     let grid = heights.grid();
     let operator = DirectSum::new(grid, kernel);
     let prescribed: Vec<f64> = heights.values().iter().map(|h| h - problem.offset()).collect();
     // Rounding of an elimination, relative to the heights.
     let rounding = 1e-13 * problem.h_range;
-    let mut contact: Vec<bool> = prescribed.iter().map(|&wanted| wanted > 0.0).collect();
+    let mut states: Vec<State> =
+        prescribed.iter().map(|&wanted| if wanted > 0.0 { State::Elastic } else { State::Free }).collect();
     for _ in 0..grid.len() {
-        let members: Vec<usize> = (0..grid.len()).filter(|&i| contact[i]).collect();
+        let mut pressure: Vec<f64> =
+            states.iter().map(|state| if *state == State::Plastic { hardness } else { 0.0 }).collect();
+        let mut displacement = vec![0.0; grid.len()];
+        operator.apply(&pressure, &mut displacement, &mut []);
+        let members: Vec<usize> = (0..grid.len()).filter(|&i| states[i] == State::Elastic).collect();
         let matrix = members.iter().map(|&i| members.iter().map(|&j| operator.coefficient(i, j)).collect()).collect();
-        let solved = eliminate(matrix, members.iter().map(|&i| prescribed[i]).collect());
-        let mut pressure = vec![0.0; grid.len()];
+        let solved = eliminate(matrix, members.iter().map(|&i| prescribed[i] - displacement[i]).collect());
         for (&i, p) in members.iter().zip(&solved) {
             pressure[i] = *p;
         }
-        let mut displacement = vec![0.0; grid.len()];
         operator.apply(&pressure, &mut displacement, &mut []);
-        let mut changed = false;
-        for i in 0..grid.len() {
-            let released = contact[i] && pressure[i] < 0.0;
-            let taken_in = !contact[i] && displacement[i] - prescribed[i] < -rounding;
-            contact[i] = (contact[i] && !released) || taken_in;
-            changed |= released || taken_in;
-        }
-        if !changed {
+        let next = |i: usize| {
+            let gap = displacement[i] - prescribed[i];
+            match states[i] {
+                State::Elastic if pressure[i] < 0.0 => State::Free,
+                State::Elastic if pressure[i] > hardness => State::Plastic,
+                State::Free if gap < -rounding => State::Elastic,
+                State::Plastic if gap > rounding => State::Elastic,
+                same => same,
+            }
+        };
+        let changed: Vec<State> = (0..grid.len()).map(next).collect();
+        if changed == states {
             return Ok(Field::new(grid, pressure).ok());
         }
+        states = changed;
     }
     Ok(None)
 }

@@ -64,6 +64,20 @@ pub enum ProblemError {
         /// Mean pressure given, in E*.
         value: f64,
     },
+    /// The hardness is not positive.
+    #[error("the hardness must be positive, not {value}")]
+    Hardness {
+        /// Hardness given, in E*.
+        value: f64,
+    },
+    /// A mean pressure that the hardness does not bear: no pressure is greater than it.
+    #[error("the mean pressure must be below the hardness, {hardness}, not {value} (in units of E*)")]
+    TooSoft {
+        /// Mean pressure given, in E*.
+        value: f64,
+        /// Hardness given, in E*.
+        hardness: f64,
+    },
     /// The penetration is outside (0, Δ_full]. Under penetration control no unique pressure exists beyond full contact: use
     /// pressure control there.
     #[error(
@@ -74,6 +88,16 @@ pub enum ProblemError {
         value: f64,
         /// h_max - mean(h), in λ.
         full_contact: f64,
+    },
+    /// The penetration is outside (0, h_max - h_min) of a surface with a hardness, whose pressure is the hardness everywhere beyond.
+    #[error(
+        "the penetration must be above 0 and below the height range, {deepest}, where all is plastic, not {value} (in units of the cell side)"
+    )]
+    FullyPlastic {
+        /// Penetration given, in λ.
+        value: f64,
+        /// h_max - h_min, in λ.
+        deepest: f64,
     },
     /// The tolerance is not in (0, 1), or below what rounding allows.
     #[error("the tolerance must be between {smallest:e} and 1, not {value:e}")]

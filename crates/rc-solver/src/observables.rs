@@ -2,8 +2,9 @@
 
 use rc_core::EdgeBias;
 
+use crate::contact_area::PlasticEdges;
 use crate::solution::GridSolution;
-use crate::{ContactArea, SolveInfo, parallel};
+use crate::{ContactArea, PlasticContact, SolveInfo, parallel};
 
 /// Observables of a solution, in units of λ and E*.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,33 +19,50 @@ pub struct Observables {
     pub rms_pressure_error: Option<f64>,
     /// Greatest pressure.
     pub max_pressure: f64,
-    /// Mean gap, h_max - mean(h) - Δ.
+    /// Mean gap, h_max - mean(h) - Δ; with a hardness, plus the overlap that plastic flow has removed.
     pub mean_gap: f64,
     /// Estimated discretisation error of `mean_gap`, and of the penetration.
     pub mean_gap_error: f64,
     /// Elastic energy per nominal area, ½ mean(p v).
     pub elastic_energy: f64,
+    /// The plastic part of the contact; none without a hardness.
+    pub plastic: Option<PlasticContact>,
 }
 
 impl Observables {
-    /// Evaluates the observables of a solution whose contact edges are shifted by `bias`: one pass over the fields.
-    pub(crate) fn of(solution: &GridSolution, bias: EdgeBias) -> Self {
-        let area = ContactArea::of(&solution.pressure, &solution.gap, bias);
-        let pressure = &solution.pressure;
-        Self::new(&solution.info, area, parallel::rms(pressure), parallel::maximum(pressure.values(), 0.0))
+    /// Evaluates the observables of a solution whose contact edges are shifted by `bias`, and whose pressure is at most the `hardness`: one pass
+    /// over the fields, or two with a hardness.
+    pub(crate) fn of(solution: &GridSolution, hardness: f64, bias: EdgeBias) -> Self {
+        let (pressure, gap) = (&solution.pressure, &solution.gap);
+        let area = ContactArea::of_hard(pressure, gap, hardness, bias);
+        let plastic = hardness.is_finite().then(|| PlasticEdges::of(pressure, gap, hardness, bias));
+        Self::new(&solution.info, (area, plastic), parallel::rms(pressure), parallel::maximum(pressure.values(), 0.0))
     }
 
     /// From the contact area and the pressures of the elements; the error bars have what the iteration has left.
-    pub(crate) fn new(info: &SolveInfo, area: ContactArea, rms_pressure: f64, max_pressure: f64) -> Self {
+    pub(crate) fn new(
+        info: &SolveInfo,
+        (area, plastic): (ContactArea, Option<PlasticEdges>),
+        rms_pressure: f64,
+        max_pressure: f64,
+    ) -> Self {
+        // At edges of the plastic part the pressure that is left to the hardness is what it is at other edges: p² = H² - 2 H q + q².
+        let rest = plastic.map(|edges| edges.rest);
+        let of_rest = |of_area: &dyn Fn(&ContactArea) -> f64| rest.as_ref().map_or(0.0, of_area);
+        let missing_square = area.missing_square + of_rest(&|rest| rest.missing_square);
+        let area = ContactArea { missing_square, ..area };
+        let flow = plastic.map_or(0.0, |edges| edges.contact.mean_gap);
         let observables = Self {
             area,
             rms_pressure,
             rms_pressure_corrected: corrected(rms_pressure, &area),
-            rms_pressure_error: rms_pressure_error(info, &area, rms_pressure),
+            rms_pressure_error: rms_pressure_error(info, (&area, rest.as_ref()), rms_pressure),
             max_pressure,
-            mean_gap: info.penetration_full_contact - info.penetration,
-            mean_gap_error: mean_gap_error(info, &area, rms_pressure),
+            mean_gap: info.penetration_full_contact - info.penetration + flow,
+            mean_gap_error: mean_gap_error(info, &area, rms_pressure)
+                .hypot(of_rest(&|rest| mean_gap_error(info, rest, rms_pressure))),
             elastic_energy: info.elastic_energy,
+            plastic: plastic.map(|edges| edges.contact),
         };
         observables.with_energy_error(info.iteration_error)
     }
@@ -59,6 +77,10 @@ impl Observables {
                 .rms_pressure_error
                 .map(|bar| with(bar, PRESSURE_OF_SOLVE * self.rms_pressure_corrected)),
             mean_gap_error: with(self.mean_gap_error, GAP_OF_SOLVE * self.mean_gap),
+            // Where the edge of the plastic part moves, that of the contact does.
+            plastic: self
+                .plastic
+                .map(|plastic| PlasticContact { error: with(plastic.error, self.area.fraction), ..plastic }),
             ..self
         }
     }
@@ -92,16 +114,26 @@ const SQUARE_OF_LARGER: f64 = 1.0 / 24.0;
 const OF_CHANGE: f64 = 0.4;
 
 /// Estimated error of the rms pressure; none in full contact without a coarser level to compare with.
-fn rms_pressure_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> Option<f64> {
-    if area.perimeter_edges == 0 {
+fn rms_pressure_error(
+    info: &SolveInfo,
+    (area, rest): (&ContactArea, Option<&ContactArea>),
+    rms_pressure: f64,
+) -> Option<f64> {
+    let rest = rest.filter(|rest| rest.perimeter_edges > 0);
+    if area.perimeter_edges == 0 && rest.is_none() {
         return info.coarser.map(|coarser| OF_CHANGE * (rms_pressure - coarser.rms_pressure).abs());
     }
+    let of_rest = rest.map_or(0.0, |rest| error_of_squares(rest, rms_pressure));
+    Some(0.5 * error_of_squares(area, rms_pressure).hypot(of_rest) / rms_pressure)
+}
+
+/// Estimated error of ⟨p²⟩.
+fn error_of_squares(area: &ContactArea, rms_pressure: f64) -> f64 {
     let (rim, squares) = (area.rim, rms_pressure * rms_pressure);
     let scatter = SQUARE_SCATTER * rim.squares / rim.independent_edges.max(1.0).sqrt();
     let larger = SQUARE_OF_LARGER * rim.squares * rim.larger;
     let inside = SQUARE_INSIDE * rim.kernel * squares * per_contact_area(rim.area, area);
-    let of_squares = scatter.hypot(ERROR_OF_SQUARES * area.missing_square).hypot(inside).hypot(larger);
-    Some(0.5 * of_squares / rms_pressure)
+    scatter.hypot(ERROR_OF_SQUARES * area.missing_square).hypot(inside).hypot(larger)
 }
 
 /// 95 % error of the mean gap, in ⟨p²⟩ over mean pressure and element side for each element at an edge per element in contact: its

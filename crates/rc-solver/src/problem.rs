@@ -52,10 +52,27 @@ pub(crate) fn power_of_two_near(value: f64) -> f64 {
     if exponent.is_finite() { 2.0_f64.powi(exponent.round() as i32) } else { 1.0 }
 }
 
+/// What presses, and the greatest pressure that the rough body bears.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Load {
+    pub(crate) control: Control,
+    /// H_p in 0 ≤ p ≤ H_p, in E*; infinite for an elastic contact.
+    pub(crate) hardness: f64,
+}
+
+impl From<Control> for Load {
+    /// Elastic.
+    fn from(control: Control) -> Self {
+        Self { control, hardness: f64::INFINITY }
+    }
+}
+
 /// A checked problem, in the quantities that every level shares.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Problem {
     pub(crate) control: Control,
+    /// The greatest pressure, in E*; infinite for an elastic contact.
+    pub(crate) hardness: f64,
     /// Greatest height, on the finest grid.
     pub(crate) h_max: f64,
     /// Mean height, on the finest grid.
@@ -67,15 +84,20 @@ pub(crate) struct Problem {
 }
 
 impl Problem {
-    pub(crate) fn check(heights: &Field, control: Control, params: &IterationParams) -> Result<Self, ProblemError> {
-        Self::of_statistics(HeightStatistics::of(heights)?, control, params)
+    pub(crate) fn check(
+        heights: &Field,
+        load: impl Into<Load>,
+        params: &IterationParams,
+    ) -> Result<Self, ProblemError> {
+        Self::of_statistics(HeightStatistics::of(heights)?, load.into(), params)
     }
 
     pub(crate) fn of_statistics(
         statistics: HeightStatistics,
-        control: Control,
+        load: Load,
         params: &IterationParams,
     ) -> Result<Self, ProblemError> {
+        let Load { control, hardness } = load;
         let HeightStatistics { greatest: h_max, least: h_min, mean: h_mean } = statistics;
         let h_range = h_max - h_min;
         let full_contact = h_max - h_mean;
@@ -83,15 +105,21 @@ impl Problem {
         if h_range != 0.0 && !(smallest..=greatest).contains(&h_range) {
             return Err(ProblemError::HeightRange { value: h_range, smallest, greatest });
         }
-        check_load(control)?;
+        check_load(load)?;
         match control {
+            // The hardness limits the mean pressure beyond full contact.
+            Control::Penetration(value) if hardness.is_finite() => {
+                if !(value > 0.0 && value < h_range) {
+                    return Err(ProblemError::FullyPlastic { value, deepest: h_range });
+                }
+            }
             // Also refuses every penetration into a flat surface, whose full contact is at zero.
             Control::Penetration(value) if !(value > 0.0 && value < full_contact) => {
                 return Err(ProblemError::Penetration { value, full_contact });
             }
             Control::MeanPressure(_) | Control::Penetration(_) => {}
         }
-        Ok(Self { control, h_max, h_mean, h_range, measure: params.bound.measure() })
+        Ok(Self { control, hardness, h_max, h_mean, h_range, measure: params.bound.measure() })
     }
 
     /// The length that overlaps are compared with, where the pressure does the `work` Σ p v and sums up to `pressure`: H, or
@@ -118,12 +146,17 @@ impl Problem {
     }
 }
 
-/// Refuses a mean pressure that is out of range whatever the heights are.
-pub(crate) fn check_load(control: Control) -> Result<(), ProblemError> {
+/// Refuses a mean pressure or a hardness that is out of range whatever the heights are.
+pub(crate) fn check_load(load: Load) -> Result<(), ProblemError> {
+    let Load { control, hardness } = load;
+    if hardness <= 0.0 || hardness.is_nan() {
+        return Err(ProblemError::Hardness { value: hardness });
+    }
     match control {
         Control::MeanPressure(value) if !(value > 0.0 && value.is_finite()) => {
             Err(ProblemError::MeanPressure { value })
         }
+        Control::MeanPressure(value) if value >= hardness => Err(ProblemError::TooSoft { value, hardness }),
         _ => Ok(()),
     }
 }

@@ -1,5 +1,7 @@
 //! The incremental contact stiffness.
 
+use std::borrow::Cow;
+
 use rc_core::{Field, Kernel};
 use rc_fft::SymbolTable;
 
@@ -16,14 +18,23 @@ const SMALLEST_GAIN: f64 = 3e-4;
 /// Enough for the worst scenes at [`SMALLEST_GAIN`]; reached only when rounding prevents progress.
 const MAX_STEPS: usize = 50;
 
+/// The pressure without that of plastic elements, which stays the `hardness` when the load grows.
+pub(crate) fn elastic_part(pressure: &[f64], hardness: f64) -> Cow<'_, [f64]> {
+    if hardness.is_infinite() {
+        return Cow::Borrowed(pressure);
+    }
+    pressure.iter().map(|&p| if p < hardness { p } else { 0.0 }).collect()
+}
+
 /// dσ0/dΔ, in E*/λ, on a uniform grid; see [`stiffness_of`].
-pub(crate) fn contact_stiffness(pressure: &Field, kernel: &dyn Kernel) -> f64 {
+pub(crate) fn contact_stiffness(pressure: &Field, hardness: f64, kernel: &dyn Kernel) -> f64 {
     let grid = pressure.grid();
-    if pressure.values().iter().all(|&p| p > 0.0) {
+    let pressure = elastic_part(pressure.values(), hardness);
+    if pressure.iter().all(|&p| p > 0.0) {
         return f64::INFINITY;
     }
     let mut operator = UniformCorrections::new(grid, &SymbolTable::new(grid, kernel.symbol(grid)));
-    stiffness_of(pressure.values(), grid.len() as f64, &mut operator)
+    stiffness_of(&pressure, grid.len() as f64, &mut operator)
 }
 
 /// dσ0/dΔ, in E*/λ, for the contact set {p > 0}: the mean over a cell of `n` of the smallest elements of the pressure x that displaces every
@@ -156,7 +167,7 @@ mod tests {
     fn the_stiffness_of_many_contacts_is_that_of_elimination_to_a_thousandth() {
         let grid = Grid::square(24).expect("a grid");
         let check = |pressure: &Field, what: &str| {
-            let (found, exact) = (contact_stiffness(pressure, &Love), eliminated(pressure));
+            let (found, exact) = (contact_stiffness(pressure, f64::INFINITY, &Love), eliminated(pressure));
             assert!((found / exact - 1.0).abs() < 1e-3, "{what}: {found} for {exact}");
         };
         // Contacts of several sizes, with pressures that are no multiple of those of a rigid punch.

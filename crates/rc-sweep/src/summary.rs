@@ -45,6 +45,18 @@ pub struct Summary {
     pub area_fraction_cells: f64,
     /// Estimated error of `area_fraction`.
     pub area_fraction_error: f64,
+    /// Greatest pressure that the contact bears (Pa); this key and the next three are there only with a hardness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hardness: Option<f64>,
+    /// Plastic area, where the pressure is the hardness, of the nominal area, best estimate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plastic_area_fraction: Option<f64>,
+    /// Estimated error of `plastic_area_fraction`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plastic_area_fraction_error: Option<f64>,
+    /// Mean over the cell of the overlap that plastic flow has removed (m).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mean_plastic_gap: Option<f64>,
     /// Length of the edges of all contacts (m).
     pub contact_perimeter: Option<f64>,
     /// Root mean square of the pressure over the cell (Pa), of the elements.
@@ -144,6 +156,10 @@ impl Summary {
             area_fraction: observables.area.fraction,
             area_fraction_cells: observables.area.cells,
             area_fraction_error: observables.area.error,
+            hardness: Some(solution.hardness()).filter(|hardness| hardness.is_finite()).map(|h| units.pascals(h)),
+            plastic_area_fraction: observables.plastic.map(|plastic| plastic.fraction),
+            plastic_area_fraction_error: observables.plastic.map(|plastic| plastic.error),
+            mean_plastic_gap: observables.plastic.map(|plastic| units.metres(plastic.mean_gap)),
             contact_perimeter: Some(units.metres(observables.area.perimeter)),
             rms_pressure: units.pascals(observables.rms_pressure),
             rms_pressure_corrected: Some(units.pascals(observables.rms_pressure_corrected)),

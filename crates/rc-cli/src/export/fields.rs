@@ -20,6 +20,8 @@ pub(super) struct Fields {
     pub(super) pressure: Field,
     /// m.
     pub(super) gap: Field,
+    /// m, with a hardness.
+    pub(super) plastic_gap: Option<Field>,
     /// m, of a height map.
     pub(super) height: Option<Field>,
     /// What 1 in [`Fields::contact`] says: `contact` of elements, `touched` of means over them, above 0 where any of them is in contact.
@@ -31,12 +33,12 @@ impl Fields {
     pub(super) fn read(folder: &Path) -> Result<Self, CliError> {
         let result = ResultFolder::read_finite(folder)?;
         let contact_name = if result.is_of_elements() { "contact" } else { "touched" };
-        let ResultFolder { summary, side, e_star, pressure, gap } = result;
+        let ResultFolder { summary, side, e_star, pressure, gap, plastic_gap } = result;
         let heights = folder.join(HEIGHTS_FILE);
         let height = heights.is_file().then(|| in_cell(&heights, pressure.grid().cell_ratio())).transpose()?;
         // With --output-grid, pressure and gap are coarser than the heights.
         let height = height.filter(|height| height.grid() == pressure.grid());
-        Ok(Self { status: summary.status, side, e_star, pressure, gap, height, contact_name })
+        Ok(Self { status: summary.status, side, e_star, pressure, gap, plastic_gap, height, contact_name })
     }
 
     /// 1 where the pressure is positive, else 0.

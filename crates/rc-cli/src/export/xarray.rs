@@ -13,7 +13,7 @@ const PLANE: &[&str] = &["y", "x"];
 
 /// Pressure, gap, contact, heights if there are any, and the coordinates of the centres of elements.
 pub(super) fn group(fields: &Fields) -> Group<'_> {
-    let Fields { status, side, e_star, pressure, gap, height, contact_name } = fields;
+    let Fields { status, side, e_star, pressure, gap, plastic_gap, height, contact_name } = fields;
     let grid = pressure.grid();
     let plane = |name, units, meaning, values| Array {
         name,
@@ -36,6 +36,10 @@ pub(super) fn group(fields: &Fields) -> Group<'_> {
         plane("gap", "m", "gap between the surfaces", Values::Float64(gap.values().into())),
         plane(contact_name, "1", "1 where the pressure is positive", Values::UInt8(fields.contact())),
     ];
+    arrays.extend(plastic_gap.iter().map(|plastic_gap| {
+        let meaning = "overlap that plastic flow has removed";
+        plane("plastic_gap", "m", meaning, Values::Float64(plastic_gap.values().into()))
+    }));
     arrays.extend(height.iter().map(|height| {
         let meaning = "height of the rigid surface, positive towards the half-space";
         plane("height", "m", meaning, Values::Float64(height.values().into()))

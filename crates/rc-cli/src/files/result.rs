@@ -11,6 +11,9 @@ use crate::scene::resolve;
 use rc_heights::npy;
 use rc_sweep::Summary;
 
+/// The file of the overlap that plastic flow has removed, with a hardness.
+pub const PLASTIC_GAP_FILE: &str = "plastic_gap.npy";
+
 /// What `rc solve --out` wrote.
 #[derive(Clone, Debug)]
 pub struct ResultFolder {
@@ -24,6 +27,8 @@ pub struct ResultFolder {
     pub pressure: Field,
     /// Gap (m).
     pub gap: Field,
+    /// The overlap that plastic flow has removed (m), with a hardness.
+    pub plastic_gap: Option<Field>,
 }
 
 impl ResultFolder {
@@ -50,11 +55,14 @@ impl ResultFolder {
         let e_star = resolve::contact(scene.contact, cell)?.units.elasticity().e_star();
         let field = |name: &str| in_cell(&folder.join(name), scene.surface.cell_y.map_or(1.0, |side_y| side_y / side));
         let (pressure, gap) = (field("pressure.npy")?, field("gap.npy")?);
-        if gap.grid() != pressure.grid() {
-            let message = format_args!("{} elements, but pressure.npy has {}", gap.grid(), pressure.grid());
-            return Err(CliError::in_file(&folder.join("gap.npy"), message));
+        let plastic_gap = folder.join(PLASTIC_GAP_FILE).is_file().then(|| field(PLASTIC_GAP_FILE)).transpose()?;
+        for (name, gap) in [("gap.npy", Some(&gap)), (PLASTIC_GAP_FILE, plastic_gap.as_ref())] {
+            if let Some(gap) = gap.filter(|gap| gap.grid() != pressure.grid()) {
+                let message = format_args!("{} elements, but pressure.npy has {}", gap.grid(), pressure.grid());
+                return Err(CliError::in_file(&folder.join(name), message));
+            }
         }
-        Ok(Self { summary, side, e_star, pressure, gap })
+        Ok(Self { summary, side, e_star, pressure, gap, plastic_gap })
     }
 
     /// Sides of the cell along x and y (m).
@@ -78,6 +86,9 @@ impl ResultFolder {
         let result = Self::read(folder)?;
         check_finite(&folder.join("pressure.npy"), &result.pressure)?;
         check_finite(&folder.join("gap.npy"), &result.gap)?;
+        if let Some(plastic_gap) = &result.plastic_gap {
+            check_finite(&folder.join(PLASTIC_GAP_FILE), plastic_gap)?;
+        }
         Ok(result)
     }
 }

@@ -151,14 +151,18 @@ fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
 fn tiles(s: &Summary) -> Vec<Tile> {
     let area = format!("{} %", text::with_error(100.0 * s.area_fraction, 100.0 * s.area_fraction_error));
     let tile = |name, value| Tile { name, value };
-    vec![
+    let mut tiles = vec![
         tile("contact area", area),
         tile("mean pressure", engineering(s.mean_pressure, "Pa")),
         tile("penetration", engineering(s.penetration, "m")),
         tile("mean gap", engineering(s.mean_gap, "m")),
         tile("greatest pressure", engineering(s.max_pressure, "Pa")),
         tile("stiffness", text::stiffness(s)),
-    ]
+    ];
+    if let (Some(fraction), Some(error)) = (s.plastic_area_fraction, s.plastic_area_fraction_error) {
+        tiles.insert(1, tile("plastic area", format!("{} %", text::with_error(100.0 * fraction, 100.0 * error))));
+    }
+    tiles
 }
 
 fn commands(folder: &Path, scene: &Scene) -> Vec<Command> {

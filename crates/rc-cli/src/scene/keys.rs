@@ -104,6 +104,10 @@ pub struct ContactKeys {
     /// Penetration Δ (m), instead of --pressure
     #[arg(long, allow_hyphen_values = true)]
     pub penetration: Option<f64>,
+    /// Hardness (Pa): no pressure is greater, the usual first model of plastic contact [default: none, an elastic contact]
+    #[arg(long, allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hardness: Option<f64>,
     /// Discretisation of the half-space: the paper's uniformly loaded square, or the Fourier symbol
     #[arg(long)]
     pub kernel: Option<KernelName>,
@@ -259,7 +263,7 @@ impl ContactKeys {
             (lower.tolerance, lower.energy_tolerance) = (None, None);
         }
         or_lower!(self, lower, {
-            young, poisson, e_star, pressure, penetration, kernel, method, border_level, energy_tolerance, tolerance, area_error, output_grid
+            young, poisson, e_star, pressure, penetration, hardness, kernel, method, border_level, energy_tolerance, tolerance, area_error, output_grid
         });
         self
     }

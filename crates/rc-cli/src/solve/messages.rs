@@ -49,6 +49,19 @@ fn of_problem(error: &ProblemError, contact: &ContactSetup) -> CliError {
             units.metres(*full_contact),
             units.metres(*value)
         )),
+        ProblemError::FullyPlastic { value, deepest } => CliError::input(format_args!(
+            "penetration: must be above 0 and below the range of the heights, {:.6e} m, where all is plastic, not {:.6e} m",
+            units.metres(*deepest),
+            units.metres(*value)
+        )),
+        ProblemError::TooSoft { value, hardness } => CliError::input(format_args!(
+            "hardness: {} Pa cannot bear a mean pressure of {} Pa; it must be above the pressure",
+            units.pascals(*hardness),
+            units.pascals(*value)
+        )),
+        ProblemError::Hardness { value } => {
+            CliError::input(format_args!("hardness: must be positive (Pa), not {}", units.pascals(*value)))
+        }
         ProblemError::HeightRange { value, smallest, greatest } => CliError::input(format_args!(
             "heights: their range must be 0 or from {:e} to {:e} m, not {:e} m",
             units.metres(*smallest),

@@ -14,6 +14,7 @@ use rc_sweep::{SolveContext, Summary};
 
 use crate::error::CliError;
 use crate::files::coarsen::BlockMean;
+use crate::files::result::PLASTIC_GAP_FILE;
 use crate::scene::as_read::AsRead;
 use crate::scene::file;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
@@ -125,7 +126,7 @@ impl MapHeights<'_> {
     }
 }
 
-/// Pressure, gap, elements and the picture of the contact.
+/// Pressure, gap, its plastic part, elements and the picture of the contact.
 fn add_fields(staged: &mut Staged, contact: &ContactSetup, solution: &Solution<'_>) -> Result<(), FileError> {
     let (units, grid) = (contact.units, solution.grid());
     let (side, e_star) = (units.cell().side(), units.elasticity().e_star());
@@ -140,6 +141,13 @@ fn add_fields(staged: &mut Staged, contact: &ContactSetup, solution: &Solution<'
         solution.gap_rows(|_, rows| file.take(rows))?;
         file.finish()
     })?;
+    if solution.hardness().is_finite() {
+        staged.add(PLASTIC_GAP_FILE, |path| {
+            let mut file = MapFile::create(path, grid, output_grid, side)?;
+            solution.plastic_gap_rows(|_, rows| file.take(rows))?;
+            file.finish()
+        })?;
+    }
     if let Some(elements) = solution.elements() {
         staged.add("elements.csv", |path| write_elements(path, elements, units))?;
     }

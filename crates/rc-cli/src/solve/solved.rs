@@ -72,6 +72,7 @@ impl<'a> ProblemSetup<'a> {
     pub(crate) fn first_plan(&self) -> Result<Plan<'static>, CliError> {
         self.check_output()?;
         let problem = ContactProblem::new(self.surface.source(), self.contact.control);
+        let problem = problem.with_hardness(self.contact.hardness);
         problem.with_kernel(self.contact.kernel()?).plan(&self.params()).map_err(|error| self.refuse(&error))
     }
 
@@ -112,7 +113,8 @@ impl<'a> ProblemSetup<'a> {
     }
 
     fn contact_problem(&self) -> ContactProblem<'a> {
-        ContactProblem::new(self.surface.source(), self.contact.control).with_kernel(self.kernel)
+        let problem = ContactProblem::new(self.surface.source(), self.contact.control);
+        problem.with_hardness(self.contact.hardness).with_kernel(self.kernel)
     }
 
     fn params(&self) -> SolveParams {

@@ -6,6 +6,7 @@ use super::heights::Heights;
 use super::ladder::sides_of;
 use super::memory::base_bytes;
 use crate::Control;
+use crate::problem::Problem;
 
 /// Contact area relative to σ0/(E* · rms slope) at low loads; the literature has 1.6 to 2.5, and this solver 2.0 to 2.2.
 const PROPORTIONALITY: f64 = 2.1;
@@ -55,10 +56,12 @@ impl Estimate {
     /// (docs/adaptive-solver.md).
     pub(crate) const GREATEST_TILE_FRACTION: f64 = 0.35;
 
-    pub(super) fn new(heights: &Heights<'_>, border_level: usize, control: Control) -> Self {
+    pub(super) fn new(heights: &Heights<'_>, border_level: usize, problem: &Problem) -> Self {
         let base = heights.base();
-        let area = match control {
-            Control::MeanPressure(pressure) => PROPORTIONALITY * pressure / rms_slope(base),
+        let area = match problem.control {
+            Control::MeanPressure(pressure) => {
+                (PROPORTIONALITY * pressure / rms_slope(base)).max(pressure / problem.hardness)
+            }
             // Where the undeformed surfaces overlap is more than where they touch.
             Control::Penetration(penetration) => overlap(base, heights.extremes().greatest - penetration),
         };

@@ -18,7 +18,7 @@ use super::prolongation::MeshStart;
 use super::setup::{Setup, maximum};
 use crate::descent::{
     BlockOperator, Descent, DescentObserver, ElementValues, GapSums, Goal, LevelOperators, Outcome, Start, fresh_gap,
-    rescale, scale_to_load, write_blocks,
+    limit_to_load, rescale, scale_to_load, write_blocks,
 };
 use crate::solution::LevelInfo;
 
@@ -126,7 +126,11 @@ struct FinestLevel<'s, 'a> {
 
 impl<'s, 'a> FinestLevel<'s, 'a> {
     fn new(setup: &'s Setup<'a>, grid: Grid, mut start: MeshStart, contact_gap: f64) -> Self {
-        scale_to_load(&setup.problem, grid.len() as f64, &blocks_of(&start.elements), &mut start.pressure);
+        let (n_cell, layout) = (grid.len() as f64, blocks_of(&start.elements));
+        match setup.problem.hardness.is_finite() {
+            false => scale_to_load(&setup.problem, n_cell, &layout, &mut start.pressure),
+            true => limit_to_load(&setup.problem, n_cell, &layout, &mut start.pressure, None),
+        }
         let tables = OperatorTables {
             quick: setup.quick.tables(grid),
             preconditioner: setup.preconditioner.tables(grid),
@@ -179,14 +183,19 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let (prepared, tables) = tables.gaps.choose(setup, certify);
         let mut pressure = current.elements.moved(elements, &current.pressure, 0.0);
         let mut gap = vec![0.0; pressure.len()];
+        if setup.problem.hardness.is_finite() {
+            // What single precision has changed the load by.
+            limit_to_load(&setup.problem, info.grid.len() as f64, &blocks_of(elements), &mut pressure, None);
+        }
         let hierarchy = setup.hierarchy(elements, prepared.reach());
         let mut operator = setup.operator(hierarchy, tables, current);
+        let empty = GapSums::empty(f64::INFINITY, setup.problem.hardness);
         let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
-        let mut sums = fresh_gap(&mut *operator, &setup.problem, values, GapSums::empty(f64::INFINITY));
+        let mut sums = fresh_gap(&mut *operator, &setup.problem, values, empty);
         let scaling = sums.scale_to_penetration(&setup.problem);
         if let Some(scale) = scaling {
             let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
-            sums = rescale(scale, &blocks_of(elements), &setup.problem, values, GapSums::empty(f64::INFINITY));
+            sums = rescale(scale, &blocks_of(elements), &setup.problem, values, empty);
         }
         let mut outcome = Outcome::new(&setup.problem, &sums, info.grid.len() as f64, true);
         let size = maximum_displacement(heights, &gap, setup.problem.offset());
@@ -236,7 +245,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         if elements.levels().len() == 1 {
             return elements.with(&places);
         }
-        let fields = ContactFields { elements, pressure, gap, contact_gap: outcome.contact_gap };
+        let fields = ContactFields { elements, pressure, beyond: 0.0, gap, contact_gap: outcome.contact_gap };
         setup.refined(&fields, false).with(&places)
     }
 

@@ -29,6 +29,7 @@ impl SolvedLevel {
         ContactFields {
             elements: &self.elements,
             pressure: &self.pressure,
+            beyond: 0.0,
             gap: &self.gap,
             contact_gap: self.outcome.contact_gap,
         }

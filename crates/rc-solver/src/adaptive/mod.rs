@@ -38,7 +38,7 @@ use rc_core::{Grid, Observer};
 use rc_quadtree::TILE;
 
 use self::checks::{check_memory, first_split};
-use self::contact_area::contact_area;
+use self::contact_area::Values;
 pub use self::error::AdaptiveError;
 pub(crate) use self::estimate::Estimate;
 pub(crate) use self::ground::Ground;
@@ -50,9 +50,12 @@ use self::operator_error::{PressureScale, can_certify, certifying_split};
 pub(crate) use self::params::AdaptiveParams;
 use self::setup::Splits;
 pub(crate) use self::solution::AdaptiveSolution;
+use self::solution::row_of_tiles;
 use self::split::GapSplit;
+#[cfg(test)]
 use crate::Control;
-use crate::problem::Problem;
+use crate::gap_part::GapPart;
+use crate::problem::{Load, Problem};
 
 /// A checked contact problem, ready for the adaptive method: heights are sampled, nothing is solved.
 ///
@@ -94,20 +97,16 @@ impl<'a> AdaptiveProblem<'a> {
         control: Control,
         params: &AdaptiveParams,
     ) -> Result<Self, AdaptiveError> {
-        Self::on(&Arc::new(Ground::new(source, params)?), control, params)
+        Self::on(&Arc::new(Ground::new(source, params)?), control.into(), params)
     }
 
     /// The problem of one load. `params` are those that `ground` was made with.
     ///
     /// # Errors
     /// [`AdaptiveError`].
-    pub(crate) fn on(
-        ground: &Arc<Ground<'a>>,
-        control: Control,
-        params: &AdaptiveParams,
-    ) -> Result<Self, AdaptiveError> {
+    pub(crate) fn on(ground: &Arc<Ground<'a>>, load: Load, params: &AdaptiveParams) -> Result<Self, AdaptiveError> {
         let split = first_split(params)?;
-        let problem = Problem::of_statistics(ground.heights.extremes(), control, &params.solve)?;
+        let problem = Problem::of_statistics(ground.heights.extremes(), load, &params.solve)?;
         if problem.h_range == 0.0 {
             return Err(AdaptiveError::Flat);
         }
@@ -121,7 +120,7 @@ impl<'a> AdaptiveProblem<'a> {
     /// What solving it will cost, from the surface and the load alone.
     #[must_use]
     pub(crate) fn estimate(&self) -> Estimate {
-        let estimate = Estimate::new(&self.ground.heights, self.params.border_level, self.problem.control);
+        let estimate = Estimate::new(&self.ground.heights, self.params.border_level, &self.problem);
         Estimate { adaptive_bytes: estimate.adaptive_bytes + self.ground.sampled_bytes, ..estimate }
     }
 
@@ -212,7 +211,9 @@ impl<'a> AdaptiveProblem<'a> {
     fn finish(&self, solved: NestedSolution) -> AdaptiveSolution {
         let NestedSolution { grid, level, levels, coarser, .. } = solved;
         let SolvedLevel { elements, pressure, gap, outcome, evaluated, .. } = level;
-        let area = contact_area(&elements, &pressure, (&gap, outcome.contact_gap), grid);
+        let (contact_gap, hardness) = (outcome.contact_gap, self.problem.hardness);
+        let values = Values { elements: &elements, pressure: &pressure, gap: &gap, contact_gap, hardness };
+        let (area, plastic) = (values.contact_area(grid), values.plastic_edges(grid));
         AdaptiveSolution {
             converged: outcome.certificate.meets(self.params.solve.bound),
             base: self.ground.heights.base().grid(),
@@ -221,6 +222,8 @@ impl<'a> AdaptiveProblem<'a> {
             elements,
             pressure,
             area,
+            hardness,
+            plastic,
             info: outcome.info(&self.problem, levels, coarser),
             evaluated,
             proven: grid.len() - evaluated,
@@ -244,7 +247,7 @@ impl<'a> AdaptiveProblem<'a> {
         solution.contact_stiffness(&self.ground.kernels)
     }
 
-    /// Hands out the gap under the mean `solution` on the grid, as [`AdaptiveSolution::displacement_rows`] does the
+    /// Hands out a part of the gap under the mean `solution` on the grid, as [`AdaptiveSolution::displacement_rows`] does the
     /// displacement. Neither it nor the heights are ever whole in memory.
     ///
     /// # Errors
@@ -255,12 +258,13 @@ impl<'a> AdaptiveProblem<'a> {
     pub(crate) fn gap_rows<E>(
         &self,
         solution: &AdaptiveSolution,
+        part: GapPart,
         take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        self.gap_rows_on(solution, false, take)
+        self.gap_rows_on(solution, false, part, take)
     }
 
-    /// The same under the solution itself, on the grid of the smallest elements.
+    /// The gap that is open under the solution itself, on the grid of the smallest elements.
     ///
     /// # Errors
     /// What `take` returns.
@@ -272,22 +276,35 @@ impl<'a> AdaptiveProblem<'a> {
         solution: &AdaptiveSolution,
         take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        self.gap_rows_on(solution, true, take)
+        self.gap_rows_on(solution, true, GapPart::Open, take)
     }
 
     fn gap_rows_on<E>(
         &self,
         solution: &AdaptiveSolution,
         finest: bool,
+        part: GapPart,
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
         assert_eq!(solution.finest_grid(), self.ground.heights.ladder().finest(), "not a solution of this problem");
         let offset = solution.gap_offset(self.h_max());
         let grid = if finest { solution.finest_grid() } else { solution.grid() };
+        let of_pressure = solution.hardness.is_finite().then(|| match finest {
+            true => solution.on_finest(),
+            false => {
+                let (tiles, pressure) = solution.on_grid();
+                (tiles, pressure.into_owned())
+            }
+        });
         solution.displacement_rows(&self.ground.kernels, finest, |first, displacement| {
             let mut rows = self.ground.heights.row_of_tiles(sides_of(grid), first / TILE);
             for (h, v) in rows.iter_mut().zip(displacement) {
                 *h = v - *h + offset;
+            }
+            if let Some((tiles, pressure)) = &of_pressure {
+                for (g, p) in rows.iter_mut().zip(row_of_tiles(tiles, pressure, first / TILE)) {
+                    *g = part.of(*g, p, solution.hardness);
+                }
             }
             take(first, &rows)
         })

@@ -128,9 +128,21 @@ impl<'a> Setup<'a> {
     /// too.
     pub(super) fn refined(&self, fields: &ContactFields<'_>, deepen: bool) -> Elements {
         let (heights, pressure) = (self.heights.curvature(), maximum(fields.pressure));
+        let hardness = self.problem.hardness;
         // No pressure is nearer than the ring: ∫ p |∂²(1/πr)/∂x²| dA ≤ max p ∫ 2/(π r³) dA.
         let of_displacement = |side: f64| 4.0 * pressure / ((RING - 1) as f64 * side);
-        let chosen = fields.too_coarse(|coarser| heights + of_displacement(fields.elements.side(coarser)));
+        let curvature = |coarser| heights + of_displacement(fields.elements.side(coarser));
+        let mut chosen = fields.too_coarse(curvature);
+        if pressure >= hardness {
+            // The edges of the plastic part are those of what is left to the hardness, of which plastic elements must hide nothing.
+            let rest: Vec<f64> = fields.pressure.iter().map(|p| hardness - p).collect();
+            let gap: Vec<f64> = fields.gap.iter().map(|g| -g).collect();
+            let (beyond, contact_gap) = (hardness, -fields.contact_gap);
+            let rest = ContactFields { pressure: &rest, beyond, gap: &gap, contact_gap, ..*fields };
+            for (chosen, of_rest) in chosen.iter_mut().flatten().zip(rest.too_coarse(curvature).into_iter().flatten()) {
+                *chosen |= of_rest;
+            }
+        }
         divide(fields.elements, chosen, deepen, self.certified().reach().stencil)
     }
 }

@@ -12,9 +12,10 @@ use super::kernels::Kernels;
 use super::ladder::sides_of;
 use super::operator::{Hierarchy, Prepared, Tables, TileCorrections, TileResponse};
 use super::scaled_operator::ScaledOperator;
+use crate::contact_area::PlasticEdges;
 use crate::descent::{BlockOperator, read_blocks, write_blocks};
 use crate::solution::Status;
-use crate::stiffness::{stiffness_pressure, stiffness_under};
+use crate::stiffness::{elastic_part, stiffness_pressure, stiffness_under};
 use crate::{ContactArea, ContactElement, Observables, SolveInfo};
 
 /// A contact problem solved on an adaptive mesh.
@@ -32,6 +33,9 @@ pub(crate) struct AdaptiveSolution {
     pub(super) elements: Elements,
     pub(super) pressure: Vec<f64>,
     pub(super) area: ContactArea,
+    /// The greatest pressure; infinite without a hardness.
+    pub(super) hardness: f64,
+    pub(super) plastic: Option<PlasticEdges>,
     /// How it was found and how good it is. The certificate holds for the whole cell.
     pub info: SolveInfo,
     /// Cells of the finest grid whose gap was computed for the certificate.
@@ -88,12 +92,12 @@ impl AdaptiveSolution {
     }
 
     /// Tiles of the grid, and the mean pressure on its cells.
-    fn on_grid(&self) -> (TileSet, Cow<'_, [f64]>) {
+    pub(super) fn on_grid(&self) -> (TileSet, Cow<'_, [f64]>) {
         self.elements.on_coarsest(&self.pressure)
     }
 
     /// Tiles of the smallest elements wherever there are elements, and the pressure on them: a larger element stands for its parts.
-    fn on_finest(&self) -> (TileSet, Vec<f64>) {
+    pub(super) fn on_finest(&self) -> (TileSet, Vec<f64>) {
         let levels = self.elements.levels();
         let parts = |coarser: usize, tile: usize| {
             let [column, row] = levels[coarser].places()[tile].map(|i| i << coarser);
@@ -164,13 +168,8 @@ impl AdaptiveSolution {
             write_blocks(&mut fresh, values.chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
             fresh.apply();
             read_blocks(&fresh, values.chunks_mut(BLOCK_CELLS), |v, cells| v.copy_from_slice(cells));
-            let mut rows = vec![0.0; TILE * nx];
             for row in band {
-                for column in 0..columns {
-                    let Some(tile) = tiles.find(column as i64, row as i64) else { continue };
-                    put_tile(&mut rows, nx, column, &values[tile * CELLS..][..CELLS]);
-                }
-                take(row * TILE, &rows[..TILE.min(ny - row * TILE) * nx])?;
+                take(row * TILE, &row_of_tiles(tiles, &values, row))?;
             }
         }
         Ok(())
@@ -186,14 +185,16 @@ impl AdaptiveSolution {
     #[must_use]
     pub(crate) fn observables(&self) -> Observables {
         let max_pressure = self.pressure.par_iter().copied().reduce(|| 0.0, f64::max);
-        Observables::new(&self.info, self.area, rms_pressure(&self.elements, &self.pressure), max_pressure)
+        let rms_pressure = rms_pressure(&self.elements, &self.pressure);
+        Observables::new(&self.info, (self.area, self.plastic), rms_pressure, max_pressure)
     }
 
     /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact. Takes a few
     /// applications of L.
     #[must_use]
     pub(super) fn contact_stiffness(&self, kernels: &Kernels) -> f64 {
-        if self.is_full_contact() {
+        let pressure = elastic_part(&self.pressure, self.hardness);
+        if self.is_full_contact() && self.plastic.is_none_or(|plastic| plastic.contact.cells <= 0.0) {
             return f64::INFINITY;
         }
         let n = self.finest.len() as f64;
@@ -202,7 +203,7 @@ impl AdaptiveSolution {
             let mut preconditioner = kernels.preconditioner().tables(self.finest);
             let (hierarchy, tables) = self.operator_of(kernels.quick());
             let mut corrections = TileCorrections::new(hierarchy, &tables, &mut preconditioner);
-            stiffness_pressure(&self.pressure, n, &mut corrections)
+            stiffness_pressure(&pressure, n, &mut corrections)
         };
         let (hierarchy, tables) = self.operator_of(kernels.response());
         stiffness_under(&x, n, &mut TileResponse::new(hierarchy, &tables))
@@ -213,6 +214,18 @@ impl AdaptiveSolution {
         let hierarchy = Hierarchy::new(self.base, self.elements.clone(), prepared.reach());
         (Arc::new(hierarchy), prepared.tables(self.finest))
     }
+}
+
+/// The values in a row of tiles, row by row; zero where there is no tile.
+pub(super) fn row_of_tiles(tiles: &TileSet, values: &[f64], row: usize) -> Vec<f64> {
+    let ([nx, ny], [columns, _]) = (tiles.sides(), tiles.extent());
+    let mut rows = vec![0.0; TILE * nx];
+    for column in 0..columns {
+        let Some(tile) = tiles.find(column as i64, row as i64) else { continue };
+        put_tile(&mut rows, nx, column, &values[tile * CELLS..][..CELLS]);
+    }
+    rows.truncate(TILE.min(ny - row * TILE) * nx);
+    rows
 }
 
 /// Root mean square over the whole cell.

@@ -24,7 +24,14 @@ pub(crate) struct EdgeSums {
     pub(crate) shift: f64,
     /// Σ of [`Edge::deviation`] over the second of these.
     pub(crate) deviation: f64,
-    /// Σ p² of the elements inside, over all edges.
+    /// Edges of plastic elements, where the pressure falls from the hardness to zero within an element. They are in none of the sums above but
+    /// `edges`, `along_x` and `diagonals`.
+    pub(crate) sharp: usize,
+    /// Those of them where the gap beside the contact is known.
+    pub(crate) known_sharp: usize,
+    /// Σ (s - ½) over these: the gap grows in proportion to the distance from a sharp edge, as far as its overlap does.
+    pub(crate) shift_of_sharp: f64,
+    /// Σ p² of the elements inside, over all edges that are not sharp.
     pub(crate) squares: f64,
     /// Corners where one of the four elements that meet is in contact, less those where three are: four times the number of
     /// contacts minus the number of holes in them.
@@ -32,15 +39,15 @@ pub(crate) struct EdgeSums {
 }
 
 impl EdgeSums {
-    /// Adds an element in contact. `at` gives pressure and gap at a place from it, in elements; the gap may be NaN where it is not
-    /// known. `sides` are those of the element.
-    pub(crate) fn add(&mut self, sides: [f64; 2], at: &impl Fn(isize, isize) -> [f64; 2]) {
+    /// Adds an element in contact, where no pressure is greater than the `hardness`. `at` gives pressure and gap at a place from it, in elements;
+    /// the gap may be NaN where it is not known. `sides` are those of the element.
+    pub(crate) fn add(&mut self, sides: [f64; 2], hardness: f64, at: &impl Fn(isize, isize) -> [f64; 2]) {
         self.n_contact += 1;
         let free = AROUND.map(|[dx, dy]| at(dx, dy)[0] <= 0.0);
         if free == [false; 8] {
             return;
         }
-        let pressure = at(0, 0)[0];
+        let [pressure, overlap] = at(0, 0);
         for ([dx, dy], _) in AROUND.into_iter().zip(free).filter(|&(_, free)| free) {
             if dx != 0 && dy != 0 {
                 self.diagonals += 1;
@@ -49,6 +56,10 @@ impl EdgeSums {
             self.edges += 1;
             self.along_x += usize::from(dy == 0);
             let side = if dy == 0 { sides[0] } else { sides[1] };
+            if pressure >= hardness {
+                self.add_sharp(overlap, at(dx, dy)[1]);
+                continue;
+            }
             self.squares += pressure * pressure;
             let gap_ratio = |steps: isize| at(steps * dx, steps * dy)[1] / (pressure * side);
             if let Some(edge) = Edge::new(gap_ratio(1)) {
@@ -76,10 +87,32 @@ impl EdgeSums {
 }
 
 impl EdgeSums {
-    /// Shift and deviation summed over all edges: where they are not known, they are the mean of the others.
+    /// Adds the edge between a plastic element and its neighbour out of contact, of which the gaps are these.
+    fn add_sharp(&mut self, inside: f64, outside: f64) {
+        self.sharp += 1;
+        if outside.is_nan() {
+            return;
+        }
+        let (overlap, gap) = ((-inside).max(0.0), outside.max(0.0));
+        let position = if overlap + gap > 0.0 { overlap / (overlap + gap) } else { 0.5 };
+        self.shift_of_sharp += position - 0.5;
+        self.known_sharp += 1;
+    }
+
+    /// Shift and deviation summed over all edges: where they are not known, they are the mean of the others of their kind.
     pub(crate) fn of_all(&self) -> [f64; 2] {
-        let all = |sum: f64, known: usize| if known == 0 { 0.0 } else { sum * (self.edges as f64 / known as f64) };
-        [all(self.shift, self.known[0]), all(self.deviation, self.known[1])]
+        let all = |sum: f64, edges: usize, known: usize| match known {
+            0 => 0.0,
+            known => sum * (edges as f64 / known as f64),
+        };
+        let shift = all(self.shift, self.smooth(), self.known[0]);
+        let of_sharp = all(self.shift_of_sharp, self.sharp, self.known_sharp);
+        [shift + of_sharp, all(self.deviation, self.smooth(), self.known[1])]
+    }
+
+    /// Edges that are not sharp.
+    pub(crate) fn smooth(&self) -> usize {
+        self.edges - self.sharp
     }
 }
 
@@ -95,6 +128,9 @@ impl Add for EdgeSums {
             known: [self.known[0] + other.known[0], self.known[1] + other.known[1]],
             shift: self.shift + other.shift,
             deviation: self.deviation + other.deviation,
+            sharp: self.sharp + other.sharp,
+            known_sharp: self.known_sharp + other.known_sharp,
+            shift_of_sharp: self.shift_of_sharp + other.shift_of_sharp,
             squares: self.squares + other.squares,
             turns: self.turns + other.turns,
         }

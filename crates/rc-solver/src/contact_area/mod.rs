@@ -6,6 +6,7 @@
 
 mod edge;
 mod edge_sums;
+mod plastic;
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2};
 
@@ -13,6 +14,8 @@ use rayon::prelude::*;
 use rc_core::{EdgeBias, Field, Grid};
 
 pub(crate) use self::edge_sums::EdgeSums;
+pub use self::plastic::PlasticContact;
+pub(crate) use self::plastic::{PlasticEdges, left};
 
 /// Contact area relative to the nominal area.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,27 +85,28 @@ impl ContactArea {
     #[must_use]
     pub fn of(pressure: &Field, gap: &Field, bias: EdgeBias) -> Self {
         assert_eq!(pressure.grid(), gap.grid(), "pressure and gap on the same grid");
-        Self::of_values(pressure.grid(), pressure.values(), (gap.values(), 0.0), bias)
+        Self::of_hard(pressure, gap, f64::INFINITY, bias)
     }
 
-    /// The same of values row by row; `contact_gap` is the gap of what is in contact.
-    pub(crate) fn of_values(grid: Grid, pressure: &[f64], (gap, contact_gap): (&[f64], f64), bias: EdgeBias) -> Self {
-        let (nx, ny, sides) = (grid.nx(), grid.ny(), grid.spacing().into());
-        let row_sums = |(iy, row): (usize, &[f64])| {
-            let mut sums = EdgeSums::default();
-            for ix in (0..nx).filter(|&ix| row[ix] > 0.0) {
-                sums.add(sides, &around((pressure, gap), [nx, ny], [ix, iy], contact_gap));
-            }
-            sums
-        };
-        let rows: Vec<EdgeSums> = pressure.par_chunks(nx).enumerate().map(row_sums).collect();
-        let sums = rows.into_iter().fold(EdgeSums::default(), |a, b| a + b);
+    /// The same where no pressure is greater than the `hardness`, and the gap of plastic elements is less than that of contact.
+    pub(crate) fn of_hard(pressure: &Field, gap: &Field, hardness: f64, bias: EdgeBias) -> Self {
+        let grid = pressure.grid();
+        let values = (pressure.values(), gap.values());
+        let at = |place: [usize; 2]| around(values, [grid.nx(), grid.ny()], place, 0.0);
+        let sums = sums_of_rows(grid, hardness, |i| values.0[i] > 0.0, at);
         Self::from_sums(&[sums], grid, bias)
     }
 
     /// From the sums over elements of one size each: the smallest ones, those of the grid `finest`, then those twice as large, and so
     /// on.
     pub(crate) fn from_sums(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> Self {
+        let (area, scatter) = Self::with_scatter(sums, finest, bias);
+        let error = scatter.error(area.cells - area.fraction, area.fraction.max(0.1 * area.cells));
+        Self { error, ..area }
+    }
+
+    /// The area without its error, and what the error follows from.
+    fn with_scatter(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> (Self, Scatter) {
         let (smallest, sides) = (1.0 / finest.len() as f64, finest.spacing().into());
         let [width, height]: [f64; 2] = sides;
         let rim = Rim {
@@ -130,8 +134,10 @@ impl ContactArea {
             let (edges, contacts) = (sums.edges as f64, 0.25 * sums.turns as f64);
             let counted = sums.n_contact as f64;
             let [shift, deviation] = sums.of_all();
+            // The biases are those of edges at which the pressure is a square root.
+            let (smooth, of_contacts) = (sums.smooth() as f64, contacts * sums.smooth() as f64 / edges.max(1.0));
             let shift =
-                0.5 * shift - bias.per_edge * edges - bias.per_contact * contacts - bias.per_deviation * deviation;
+                0.5 * shift - bias.per_edge * smooth - bias.per_contact * of_contacts - bias.per_deviation * deviation;
             area.cells += size * counted;
             area.fraction += size * (counted + shift);
             let together = edges_that_scatter_together(sums);
@@ -150,11 +156,7 @@ impl ContactArea {
             area.perimeter += length(sums, sides.map(|side| side * f64::from(1_u32 << coarser)));
         }
         area.fraction = area.fraction.clamp(0.0, 1.0);
-        // Contacts of single elements may be no area at all.
-        let divisor = area.fraction.max(0.1 * area.cells).max(f64::MIN_POSITIVE);
-        let of_term = ERROR_OF_TERM * (area.cells - area.fraction).powi(2) / divisor;
-        area.error = scatter.sqrt().hypot(of_term).hypot(ERROR_OF_DIRECTIONS * excess_diagonals).min(1.0);
-        area
+        (area, Scatter { of_edges: scatter.sqrt(), of_directions: ERROR_OF_DIRECTIONS * excess_diagonals })
     }
 
     /// With the error that the tolerance of the solve leaves; `energy_error` is √(G/U), the relative error of the pressure in the
@@ -167,6 +169,40 @@ impl ContactArea {
     #[must_use]
     pub fn relative_error(&self) -> f64 {
         if self.fraction > 0.0 { self.error / self.fraction } else { 0.0 }
+    }
+}
+
+/// Sums over the elements of a grid that are in contact, with pressure and gap, less that of contact, around each place.
+fn sums_of_rows<A: Fn(isize, isize) -> [f64; 2]>(
+    grid: Grid,
+    hardness: f64,
+    is_in_contact: impl Fn(usize) -> bool + Sync,
+    at: impl Fn([usize; 2]) -> A + Sync,
+) -> EdgeSums {
+    let (nx, sides) = (grid.nx(), grid.spacing().into());
+    let row_sums = |iy: usize| {
+        let mut sums = EdgeSums::default();
+        for ix in (0..nx).filter(|ix| is_in_contact(iy * nx + ix)) {
+            sums.add(sides, hardness, &at([ix, iy]));
+        }
+        sums
+    };
+    let rows: Vec<EdgeSums> = (0..grid.ny()).into_par_iter().map(row_sums).collect();
+    rows.into_iter().fold(EdgeSums::default(), |a, b| a + b)
+}
+
+/// What the error of an area follows from.
+struct Scatter {
+    of_edges: f64,
+    of_directions: f64,
+}
+
+impl Scatter {
+    /// The error of an area of which the count differs by `term`. Contacts of single elements may be no area at all: the `size` of the area is not
+    /// less than a part of the count.
+    fn error(&self, term: f64, size: f64) -> f64 {
+        let of_term = ERROR_OF_TERM * term.powi(2) / size.max(f64::MIN_POSITIVE);
+        self.of_edges.hypot(of_term).hypot(self.of_directions).min(1.0)
     }
 }
 
@@ -219,7 +255,7 @@ mod tests {
         for x in 0..64 {
             for y in -2..66 {
                 if at(x, y)[0] > 0.0 {
-                    sums.add([1.0 / 64.0; 2], &|dx, dy| at(x + dx, y + dy));
+                    sums.add([1.0 / 64.0; 2], f64::INFINITY, &|dx, dy| at(x + dx, y + dy));
                 }
             }
         }

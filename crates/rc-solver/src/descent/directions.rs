@@ -81,7 +81,12 @@ impl ConjugateDirections {
         })
     }
 
-    /// What clipping has added.
+    /// Room for displacements, in blocks, where nothing that clipping has added is needed any more.
+    pub(super) fn displacements_mut(&mut self, len: usize) -> impl Iterator<Item = &mut [f32]> {
+        self.preconditioned.chunks_mut(len)
+    }
+
+    /// What clipping has added, or the displacements that were put there.
     pub(super) fn added(&self) -> &[f32] {
         &self.preconditioned
     }

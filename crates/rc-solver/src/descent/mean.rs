@@ -20,11 +20,23 @@ impl Descent<'_> {
         match sums.scale_to_penetration(self.problem) {
             None => self.settle(sums),
             Some(_) if sums.n_contact >= self.n_cell() => {
-                let minimum = parallel::minimum(&self.pressure);
-                parallel::update(&mut self.pressure, |p| *p -= minimum);
-                self.rescale(1.0)
+                let less = self.too_much_everywhere();
+                parallel::update(&mut self.pressure, |p| *p -= less);
+                let sums = self.rescale(1.0);
+                self.limited(sums)
             }
             Some(scale) => self.rescale(scale),
+        }
+    }
+
+    /// What to take off the mean where all elements press: the minimum, or less than nothing where the penetration is beyond that of full contact
+    /// and the hardness limits the pressure.
+    fn too_much_everywhere(&self) -> f64 {
+        match self.problem.control {
+            Control::Penetration(penetration) if penetration >= self.problem.h_max - self.problem.h_mean => {
+                parallel::maximum(&self.pressure, 0.0) - self.problem.hardness
+            }
+            _ => parallel::minimum(&self.pressure),
         }
     }
 
@@ -33,6 +45,10 @@ impl Descent<'_> {
     /// one grows without bound; so does that of a uniform pressure, which displaces less the less is out of contact.
     pub(super) fn precondition_mean(&mut self, sums: &GapSums) {
         let Control::Penetration(_) = self.problem.control else { return };
+        // Where elements are plastic, their stiffness was found by the last projection.
+        if sums.has_plastic() {
+            return;
+        }
         let n_cell = self.n_cell();
         let secant = sums.pressure * sums.pressure / (n_cell * sums.work());
         let large = sums.n_contact > LARGE_CONTACT * n_cell;

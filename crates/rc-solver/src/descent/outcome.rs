@@ -25,10 +25,16 @@ pub(crate) struct Outcome {
 impl Outcome {
     /// From the sums over all elements that may be in contact, in a cell of `n_cell` elements.
     pub(crate) fn new(problem: &Problem, sums: &GapSums, n_cell: f64, converged: bool) -> Self {
-        let mean_pressure = sums.pressure / n_cell;
-        let mean_gap = sums.mean_gap();
+        let mean_pressure = sums.load() / n_cell;
+        let mean_gap = sums.reference_gap(problem);
         let elastic_energy = 0.5 * sums.work() / n_cell;
-        let residuals = Residuals { least_gap: sums.min_gap - mean_gap, mean_gap, mean_pressure, elastic_energy };
+        let residuals = Residuals {
+            least_gap: sums.min_gap - mean_gap,
+            excess: sums.excess() + (sums.mean_gap() - mean_gap).abs(),
+            mean_gap,
+            mean_pressure,
+            elastic_energy,
+        };
         let certificate = Certificate::new(problem, &residuals);
         Self {
             converged,

@@ -31,7 +31,7 @@ impl Descent<'_> {
     pub(super) fn round(&mut self, steps: usize, sums: &GapSums) -> GapSums {
         // Without a start, contact is at first too large at any load. Of operators of the caller nothing is known.
         let is_prepared = self.has_start && self.operators.corrections.extends();
-        let is_heavy = is_prepared && sums.n_contact > HEAVY_CONTACT * self.n_cell();
+        let is_heavy = is_prepared && sums.n_in_contact() > HEAVY_CONTACT * self.n_cell();
         let steps = if is_heavy { 1 } else { steps };
         self.precondition_mean(sums);
         let mut set = self.begin_round();
@@ -104,6 +104,10 @@ impl Descent<'_> {
     fn project(&mut self, length: f64, is_heavy: bool) -> GapSums {
         let gradient = self.gradient();
         let (n_clipped, loads) = self.clip(length, is_heavy, &gradient);
+        let shares = Shares::new(self.squares(), &loads);
+        if self.is_limited(&shares) {
+            return self.project_limited(n_clipped, (&loads, &shares), &gradient);
+        }
         let wanted = match self.problem.control {
             Control::MeanPressure(mean) => Some(mean * self.n_cell()),
             Control::Penetration(_) => None,
@@ -114,11 +118,11 @@ impl Descent<'_> {
         };
         if n_clipped == 0 {
             let sums = self.rescale(scale(loads.iter().map(|load| load.clipped).sum()));
+            let sums = self.limited(sums);
             return self.meet_penetration(sums);
         }
         // Loads are only moved between squares; that of the cell follows by scaling, which is exact.
         let (len, offset, range) = (self.layout.len(), self.problem.offset(), self.problem.h_range);
-        let shares = Shares::new(self.squares(), &loads);
         let blocks = self.pressure.chunks_mut(len).zip(self.directions.added().chunks(len)).enumerate();
         let layout = &self.layout;
         let sums = write_blocks(&mut *self.operators.corrections, blocks, |(i, (pressure, added)), written| {
@@ -132,13 +136,14 @@ impl Descent<'_> {
         let [pressure] = self.layout.total(sums);
         self.info.operator_applications += 1;
         self.operators.corrections.apply();
-        let (empty, scale) = (GapSums::empty(self.pressed), scale(pressure));
+        let (empty, scale) = (GapSums::empty(self.pressed, self.problem.hardness), scale(pressure));
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         let sums = read_blocks(&*self.operators.corrections, elements.blocks(len), |block, displacement| {
             block.add_clipped(displacement, range, scale, offset, empty)
         });
         let sums = GapSums::total(&self.layout, sums);
         self.pressed = sums.next_pressed();
+        let sums = self.limited(sums);
         self.meet_penetration(sums)
     }
 
@@ -179,11 +184,11 @@ impl Descent<'_> {
         (n_clipped, loads)
     }
 
-    fn squares(&self) -> Squares {
+    pub(super) fn squares(&self) -> Squares {
         Squares::new(self.layout.sides())
     }
 
     fn gradient(&self) -> Gradient {
-        Gradient { zero_gap: self.zero_gap, unit: self.problem.h_range.recip() }
+        Gradient { zero_gap: self.zero_gap, unit: self.problem.h_range.recip(), hardness: self.problem.hardness }
     }
 }

@@ -71,7 +71,8 @@ impl ElementValues<'_> {
         let (mut count, mut sum) = (0_u32, 0.0);
         let elements = self.pressure.iter().zip(self.gap.iter()).zip(direction);
         for (((&p, &g), &t), (active, residual)) in elements.zip(active.iter_mut().zip(residual)) {
-            *active = p > 0.0 || if chosen { *active } else { gradient.of_gap(g) < 0.0 };
+            let may_leave = if p >= gradient.hardness { gradient.of_gap(g) > 0.0 } else { gradient.of_gap(g) < 0.0 };
+            *active = p > 0.0 && p < gradient.hardness || if chosen { *active } else { may_leave };
             *residual = if *active { gradient.residual(g) } else { 0.0 };
             if *active {
                 count += 1;
@@ -98,11 +99,13 @@ impl ElementValues<'_> {
         }
     }
 
-    /// Takes the step `length` along a direction, clips tensile pressures, and writes what the clipping has added, in units of
-    /// `1 / unit`. Chooses the next active elements before clipping: those that press, and those outside that penetrate, which get
-    /// `joining` times their overlap for a pressure. Returns the number of pressures that changed so.
+    /// Takes the step `length` along a direction, clips tensile pressures and those above the hardness, and writes what the clipping has added, in
+    /// units of `1 / unit`. Chooses the next active elements before clipping: those between both bounds, those outside that penetrate, which get
+    /// `joining` times their overlap for a pressure, and plastic ones with a gap, which lose as much. Returns the number of pressures that changed
+    /// so.
     pub(super) fn clip(&mut self, length: f64, joining: f64, step: &mut ClippedStep<'_>, gradient: &Gradient) -> u32 {
         let ClippedStep { direction, displacement, active, added } = step;
+        let hardness = gradient.hardness;
         let mut clipped = 0;
         let along = direction.iter().zip(*displacement).zip(active.iter_mut());
         for ((p, g), (((&t, &u), active), added)) in
@@ -110,15 +113,17 @@ impl ElementValues<'_> {
         {
             let stepped = *p + length * f64::from(t);
             *g += length * f64::from(u);
-            *p = stepped.max(0.0);
+            *p = stepped.max(0.0).min(hardness);
+            let (gap, is_plastic) = (gradient.of_gap(*g), stepped >= hardness);
             // Without a step, what has just come stays.
-            let joins = (!*active || stepped == 0.0) && gradient.of_gap(*g) < 0.0;
-            if joining > 0.0 && joins && stepped == 0.0 {
-                *p = -joining * gradient.of_gap(*g);
+            let at_bound = stepped == 0.0 || stepped == hardness;
+            let joins = (!*active || at_bound) && if is_plastic { gap > 0.0 } else { gap < 0.0 };
+            if joining > 0.0 && joins && at_bound {
+                *p = (*p - joining * gap).max(0.0).min(hardness);
             }
-            *active = stepped > 0.0 || joins;
+            *active = stepped > 0.0 && !is_plastic || joins;
             *added = ((*p - stepped) * gradient.unit) as f32;
-            clipped += u32::from(*p > stepped);
+            clipped += u32::from(*p > stepped || *p < stepped);
         }
         clipped
     }
@@ -168,6 +173,8 @@ pub(super) struct Gradient {
     pub(super) zero_gap: f64,
     /// Residuals are multiples of its inverse: 1/H.
     pub(super) unit: f64,
+    /// The greatest pressure.
+    pub(super) hardness: f64,
 }
 
 impl Gradient {
@@ -215,6 +222,23 @@ pub(super) fn keep_displacement(
     sums
 }
 
+/// Σ d, Σ d g and Σ d u for the `direction` d of each pressure and its `displacement` u.
+pub(super) fn products(
+    pressure: &[f64],
+    gap: &[f64],
+    displacement: &[f32],
+    direction: impl Fn(f64) -> f64,
+) -> [f64; 3] {
+    let mut sums = [0.0; 3];
+    for ((&p, g), &u) in pressure.iter().zip(gap).zip(displacement) {
+        let d = direction(p);
+        sums[0] += d;
+        sums[1] += d * g;
+        sums[2] += d * f64::from(u);
+    }
+    sums
+}
+
 /// The next direction, `t = -z + β t + shift` on the active elements, zero elsewhere.
 pub(super) fn next_direction(
     preconditioned: &[f32],
@@ -235,7 +259,7 @@ mod tests {
 
     /// Pressures, active elements and what was added after a step of length 1 on five elements: one that stays, one that turns tensile, one
     /// that comes to penetrate, one that does not, and one that stopped penetrating.
-    fn clipped(joining: f64) -> ([f64; 5], [bool; 5], [f32; 5], u32) {
+    fn clipped(joining: f64, hardness: f64) -> ([f64; 5], [bool; 5], [f32; 5], u32) {
         let (mut pressure, mut gap) = ([2.0, 1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.5, 0.5, -0.5]);
         let (mut active, mut added) = ([true, true, false, false, true], [0.0; 5]);
         let direction = [1.0, -3.0, 0.0, 0.0, 0.0];
@@ -243,16 +267,16 @@ mod tests {
         let mut step =
             ClippedStep { direction: &direction, displacement: &displacement, active: &mut active, added: &mut added };
         let mut elements = ElementValues { heights: &[0.0; 5], pressure: &mut pressure, gap: &mut gap };
-        let changed = elements.clip(1.0, joining, &mut step, &Gradient { zero_gap: 0.0, unit: 1.0 });
+        let changed = elements.clip(1.0, joining, &mut step, &Gradient { zero_gap: 0.0, unit: 1.0, hardness });
         (pressure, active, added, changed)
     }
 
     #[test]
     fn what_joins_the_contact_gets_a_pressure_in_proportion_to_its_overlap() {
-        let (pressure, active, added, changed) = clipped(0.0);
+        let (pressure, active, added, changed) = clipped(0.0, f64::INFINITY);
         assert_eq!((pressure, active), ([3.0, 0.0, 0.0, 0.0, 0.0], [true, false, true, false, false]));
         assert_eq!((added, changed), ([0.0, 2.0, 0.0, 0.0, 0.0], 1));
-        let (pressure, active, added, changed) = clipped(4.0);
+        let (pressure, active, added, changed) = clipped(4.0, f64::INFINITY);
         assert_eq!((pressure, active), ([3.0, 0.0, 2.0, 0.0, 0.0], [true, false, true, false, false]));
         assert_eq!((added, changed), ([0.0, 2.0, 2.0, 0.0, 0.0], 2));
     }

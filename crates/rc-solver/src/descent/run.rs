@@ -101,13 +101,16 @@ impl Descent<'_> {
     /// The gap from a fresh application of L, in double precision, and the pressure at the prescribed load or penetration: the gap follows
     /// scaling to rounding, since v is linear in p.
     pub(crate) fn refresh(&mut self) -> GapSums {
+        if self.problem.hardness.is_finite() {
+            self.limit_pressure();
+        }
         let sums = self.fresh_gap();
         self.meet_penetration(sums)
     }
 
     fn tell(&self, watch: &DescentObserver<'_>, overlaps: [f64; 2], sums: &GapSums) {
         let [error, tolerance] = overlaps.map(|overlap| self.problem.measure.shown(overlap));
-        let (iteration, n_contact) = (self.info.iterations, sums.n_contact as usize);
+        let (iteration, n_contact) = (self.info.iterations, sums.n_in_contact() as usize);
         watch.observer.notify(&Event::Iteration { iteration, error, tolerance, n_contact });
         watch.mesh.show_pressure(&self.pressure, watch.observer);
     }

@@ -91,6 +91,18 @@ impl Shares {
         Self { squares, loads: wanted.into_iter().zip(loads).map(|(wanted, load)| [wanted, load.clipped]).collect() }
     }
 
+    /// The greatest factor.
+    pub(super) fn maximum(&self) -> f64 {
+        let factors = self.loads.iter().filter(|[_, clipped]| *clipped > 0.0).map(|[wanted, clipped]| wanted / clipped);
+        factors.fold(1.0, f64::max)
+    }
+
+    /// What squares are to gain, relative to the `rooms` that their pressures have.
+    pub(super) fn changes(&self, rooms: &[f64]) -> Self {
+        let loads = self.loads.iter().zip(rooms).map(|([wanted, clipped], room)| [wanted - clipped, *room]);
+        Self { squares: self.squares, loads: loads.collect() }
+    }
+
     /// The factor at a place, in parts of the cell.
     pub(super) fn at(&self, place: [f64; 2]) -> f64 {
         let n = self.squares.n;

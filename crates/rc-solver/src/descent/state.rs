@@ -119,7 +119,12 @@ impl<'a> Descent<'a> {
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         // Fresh gaps are rare: neither operator keeps memory for vectors while the other one works.
         self.operators.corrections.release();
-        let sums = fresh_gap(&mut *self.operators.fresh, self.problem, elements, GapSums::empty(self.pressed));
+        let sums = fresh_gap(
+            &mut *self.operators.fresh,
+            self.problem,
+            elements,
+            GapSums::empty(self.pressed, self.problem.hardness),
+        );
         self.operators.fresh.release();
         self.pressed = sums.next_pressed();
         sums
@@ -128,7 +133,7 @@ impl<'a> Descent<'a> {
     /// Multiplies the pressure.
     pub(super) fn rescale(&mut self, scale: f64) -> GapSums {
         let (layout, problem) = (self.layout.clone(), self.problem);
-        let empty = GapSums::empty(self.pressed);
+        let empty = GapSums::empty(self.pressed, problem.hardness);
         let sums = rescale(scale, &layout, problem, self.elements(), empty);
         self.pressed = sums.next_pressed();
         self.settle(sums)

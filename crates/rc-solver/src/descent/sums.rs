@@ -28,6 +28,43 @@ pub(crate) struct GapSums {
     pub(super) max_pressed_gap: f64,
     /// Elements of more pressure are well inside contact.
     pub(super) pressed: f64,
+    /// The greatest pressure. Elements that have it are in none of the sums above but `max_pressure` and `max_pressed_gap`.
+    pub(super) hardness: f64,
+    pub(super) plastic: PlasticSums,
+}
+
+/// Sums over plastic elements, whose pressure is the hardness. None of them may have a gap.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlasticSums {
+    /// Σ 1
+    pub(super) n: f64,
+    /// Σ g
+    pub(super) gap: f64,
+    /// Σ (h - c)
+    pub(super) overlap: f64,
+    /// max g
+    pub(super) max_gap: f64,
+}
+
+impl PlasticSums {
+    const NONE: Self = Self { n: 0.0, gap: 0.0, overlap: 0.0, max_gap: f64::NEG_INFINITY };
+
+    fn add(&mut self, g: f64, overlap: f64) {
+        self.n += 1.0;
+        self.gap += g;
+        self.overlap += overlap;
+        self.max_gap = -smaller(-self.max_gap, -g);
+    }
+
+    /// With those of a block of elements of this area.
+    fn plus(self, block: Self, area: f64) -> Self {
+        Self {
+            n: self.n + area * block.n,
+            gap: self.gap + area * block.gap,
+            overlap: self.overlap + area * block.overlap,
+            max_gap: -smaller(-self.max_gap, -block.max_gap),
+        }
+    }
 }
 
 /// Part of the maximum pressure from which elements are well inside contact, and part of their greatest gap that counts as an overlap.
@@ -35,8 +72,9 @@ const PRESSED: f64 = 0.1;
 const OPEN: f64 = 0.1;
 
 impl GapSums {
-    /// Of no element. What is `pressed` follows from other sums ([`GapSums::next_pressed`]); nothing is where it is infinite.
-    pub(crate) fn empty(pressed: f64) -> Self {
+    /// Of no element, where no pressure is greater than the `hardness`. What is `pressed` follows from other sums
+    /// ([`GapSums::next_pressed`]); nothing is where it is infinite.
+    pub(crate) fn empty(pressed: f64, hardness: f64) -> Self {
         Self {
             pressure: 0.0,
             pressure_gap: 0.0,
@@ -47,6 +85,8 @@ impl GapSums {
             max_pressure: 0.0,
             max_pressed_gap: f64::NEG_INFINITY,
             pressed,
+            hardness,
+            plastic: PlasticSums::NONE,
         }
     }
 
@@ -56,6 +96,11 @@ impl GapSums {
     }
 
     pub(super) fn add_element(&mut self, p: f64, g: f64, overlap: f64) {
+        if p >= self.hardness {
+            self.plastic.add(g, overlap);
+            self.max_pressure = self.max_pressure.max(p);
+            return;
+        }
         self.min_gap = smaller(self.min_gap, g);
         if p > 0.0 {
             self.pressure += p;
@@ -72,8 +117,10 @@ impl GapSums {
 
     /// Adds blocks in their order, weighted by the area of their elements.
     pub(super) fn total(layout: &BlockLayout, sums: Vec<Self>) -> Self {
-        let pressed = sums.first().map_or(f64::INFINITY, |block| block.pressed);
-        sums.into_iter().enumerate().fold(Self::empty(pressed), |sum, (i, block)| {
+        let empty = sums
+            .first()
+            .map_or(Self::empty(f64::INFINITY, f64::INFINITY), |block| Self::empty(block.pressed, block.hardness));
+        sums.into_iter().enumerate().fold(empty, |sum, (i, block)| {
             let area = layout.area(i);
             Self {
                 pressure: sum.pressure + area * block.pressure,
@@ -84,33 +131,108 @@ impl GapSums {
                 n_contact: sum.n_contact + area * block.n_contact,
                 max_pressure: sum.max_pressure.max(block.max_pressure),
                 max_pressed_gap: sum.max_pressed_gap.max(block.max_pressed_gap),
-                pressed,
+                plastic: sum.plastic.plus(block.plastic, area),
+                ..empty
             }
         })
     }
 
-    /// Pressure-weighted mean of the gap.
+    /// Pressure-weighted mean of the gap, over elements that are not plastic.
     pub(super) fn mean_gap(&self) -> f64 {
-        if self.pressure > 0.0 { self.pressure_gap / self.pressure } else { 0.0 }
+        if self.pressure > 0.0 { self.pressure_gap / self.pressure } else { self.gap_of_plastic() }
+    }
+
+    /// The gap of contact where nothing but plastic elements press: any between theirs and those of the others is.
+    fn gap_of_plastic(&self) -> f64 {
+        match self.plastic.n {
+            0.0 => 0.0,
+            _ if self.min_gap.is_finite() => 0.5 * (self.plastic.max_gap + self.min_gap),
+            _ => self.plastic.max_gap,
+        }
+    }
+
+    /// Whether any element is plastic.
+    pub(super) fn has_plastic(&self) -> bool {
+        self.plastic.n > 0.0
+    }
+
+    /// What plastic elements add to a sum over pressures, where `sum` is theirs without the pressure.
+    fn of_plastic(&self, sum: f64) -> f64 {
+        // The hardness may be infinite.
+        if self.has_plastic() { self.hardness * sum } else { 0.0 }
+    }
+
+    /// Σ p over all elements.
+    pub(super) fn load(&self) -> f64 {
+        self.pressure + self.of_plastic(self.plastic.n)
+    }
+
+    /// Elements in contact.
+    pub(super) fn n_in_contact(&self) -> f64 {
+        self.n_contact + self.plastic.n
     }
 
     /// Σ p v
     pub(super) fn work(&self) -> f64 {
-        self.pressure_gap + self.pressure_overlap
+        self.pressure_gap + self.pressure_overlap + self.of_plastic(self.plastic.gap + self.plastic.overlap)
+    }
+
+    /// What the plastic element of the greatest gap has more than contact; 0 where it has less.
+    pub(super) fn plastic_gap(&self, contact_gap: f64) -> f64 {
+        let gap = self.plastic.max_gap - contact_gap;
+        // NaN stays.
+        if gap < 0.0 { 0.0 } else { gap }
+    }
+
+    /// The gap of contact that certificates and penetrations are from: where the penetration is prescribed and elements are plastic, it is
+    /// exact, since no scaling of the pressure could close the mean gap of the others.
+    pub(super) fn reference_gap(&self, problem: &Problem) -> f64 {
+        match problem.control {
+            Control::Penetration(_) if !self.may_scale() => 0.0,
+            _ => self.mean_gap(),
+        }
+    }
+
+    /// Whether no pressure is the hardness, or would be if the mean gap were closed by scaling.
+    pub(super) fn may_scale(&self) -> bool {
+        // An infinite hardness allows everything.
+        !self.has_plastic() && self.scale_to_no_gap().is_none_or(|scale| scale * self.max_pressure <= self.hardness)
+    }
+
+    /// Bound on G over the mean pressure, where G = max ⟨g, p - p*⟩ over pressures p* that are possible and have the mean of p: the weighted mean
+    /// of g - min g, with min g over elements that could press more. Plastic elements below that minimum could press less, which adds
+    /// nothing; the others count with the greatest gap of them all.
+    pub(super) fn excess(&self) -> f64 {
+        let of_elastic = self.mean_gap() - self.min_gap;
+        if !self.has_plastic() {
+            return of_elastic;
+        }
+        // Where everything is plastic, no other pressure of the same mean is possible.
+        if self.min_gap == f64::INFINITY {
+            return 0.0;
+        }
+        let of_plastic = self.of_plastic(self.plastic.n) * self.plastic_gap(self.min_gap);
+        let of_elastic = if self.pressure > 0.0 { self.pressure * of_elastic } else { 0.0 };
+        (of_elastic + of_plastic) / self.load()
     }
 
     /// The gap of elements in contact: its mean, or zero where the penetration is prescribed.
     pub(super) fn zero_gap(&self, problem: &Problem) -> f64 {
         match problem.control {
             Control::MeanPressure(_) if self.n_contact > 0.0 => self.contact_gap / self.n_contact,
+            Control::MeanPressure(_) if self.has_plastic() => self.gap_of_plastic(),
             Control::MeanPressure(_) => self.min_gap,
             Control::Penetration(_) => 0.0,
         }
     }
 
-    /// The factor on the pressure that makes its weighted mean gap zero, under penetration control; within [`MAXIMUM_SCALING`].
+    /// The factor on the pressure that makes its weighted mean gap zero, under penetration control; within [`MAXIMUM_SCALING`]. None where
+    /// the hardness forbids it.
     pub(crate) fn scale_to_penetration(&self, problem: &Problem) -> Option<f64> {
         let Control::Penetration(_) = problem.control else { return None };
+        if !self.may_scale() {
+            return None;
+        }
         self.scale_to_no_gap().map(|scale| scale.clamp(MAXIMUM_SCALING.recip(), MAXIMUM_SCALING))
     }
 
@@ -120,11 +242,11 @@ impl GapSums {
         (scale.is_finite() && self.work() > 0.0).then_some(scale)
     }
 
-    /// The deepest overlap, a tenth of the greatest gap well inside contact, or the mean gap where there should be none, in units of the problem's
-    /// length.
+    /// The deepest overlap, a tenth of the greatest gap well inside contact, the greatest gap of a plastic element, or the mean gap where there
+    /// should be none, in units of the problem's length.
     pub(super) fn error(&self, problem: &Problem) -> f64 {
         let mean_gap = self.mean_gap();
-        let length = problem.reference_length(self.work(), self.pressure);
+        let length = problem.reference_length(self.work(), self.load());
         // What is exact is so in any unit, even where the pressure is uniform and U is zero.
         let ratio = |overlap: f64| match overlap {
             ..=0.0 => 0.0,
@@ -134,10 +256,11 @@ impl GapSums {
         };
         let penetration = ratio(mean_gap - self.min_gap);
         // NaN is in the penetration.
-        let penetration = if penetration.is_nan() {
-            penetration
+        let plastic = ratio(self.plastic_gap(mean_gap));
+        let penetration = if penetration.is_nan() || plastic.is_nan() {
+            f64::NAN
         } else {
-            penetration.max(ratio(OPEN * (self.max_pressed_gap - mean_gap)))
+            penetration.max(ratio(OPEN * (self.max_pressed_gap - mean_gap))).max(plastic)
         };
         positive_part(match problem.control {
             Control::MeanPressure(_) => penetration,
@@ -165,7 +288,7 @@ mod tests {
     #[test]
     fn a_gap_that_is_not_a_number_stays_one_in_every_order() {
         let block = |gaps: [f64; 2]| {
-            let mut sums = GapSums::empty(0.0);
+            let mut sums = GapSums::empty(0.0, f64::INFINITY);
             for gap in gaps {
                 sums.add_element(0.0, gap, 0.0);
             }

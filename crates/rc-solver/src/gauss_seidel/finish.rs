@@ -26,7 +26,7 @@ impl Procedure<'_> {
         let outside = self.displacement.values().iter().zip(&self.contact).filter(|&(_, &contact)| !contact);
         let inside = gap.iter().map(|g| g - mean_gap);
         let least_gap = inside.chain(outside.map(|(&g, _)| g)).fold(f64::INFINITY, f64::min);
-        let residuals = Residuals { least_gap, mean_gap, mean_pressure, elastic_energy };
+        let residuals = Residuals { least_gap, excess: -least_gap, mean_gap, mean_pressure, elastic_energy };
         let certificate = Certificate::new(self.problem, &residuals);
         let pressure = self.mesh.to_field(&self.pressure, self.info.grid)?;
         let converged = self.settled && certificate.meets(bound) && pressure.min() >= 0.0;

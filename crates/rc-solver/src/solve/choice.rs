@@ -20,7 +20,7 @@ pub(super) fn plan<'a>(
     shared: Arc<Shared<'a>>,
 ) -> Result<Plan<'a>, SolveError> {
     let bound = params.tolerance.bound(problem.heights.elements_per_wave());
-    check_load(problem.control)?;
+    check_load(problem.load())?;
     check_tolerance(bound)?;
     check_grid(&problem.heights)?;
     check_kernel(problem.kernel, problem.heights.grid())?;
@@ -53,6 +53,7 @@ impl<'a> Choice<'a, '_> {
     fn check_asked_for(&self, method: Method) -> Result<(), SolveError> {
         let kernel = self.problem.kernel;
         match method {
+            Method::GaussSeidel if self.problem.hardness.is_finite() => Err(SolveError::Hardness { method }),
             Method::Adaptive | Method::GaussSeidel if !kernel.is_split_by_scale() => {
                 Err(SolveError::Kernel { method, kernel: kernel.name() })
             }
@@ -97,7 +98,7 @@ impl<'a> Choice<'a, '_> {
     fn prepare(&self) -> Result<AdaptiveProblem<'a>, AdaptiveError> {
         let params = self.params.adaptive(self.bound);
         let ground = self.shared.ground(&self.problem.heights, &params)?;
-        AdaptiveProblem::on(ground, self.problem.control, &params)
+        AdaptiveProblem::on(ground, self.problem.load(), &params)
     }
 
     /// The uniform grid where the adaptive method does not fit, if that helps.

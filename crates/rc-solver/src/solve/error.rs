@@ -33,6 +33,12 @@ pub enum SolveError {
         /// The method asked for.
         method: Method,
     },
+    /// A hardness is asked of a method without one.
+    #[error("the {method} method has no hardness; the adaptive and the uniform ones do")]
+    Hardness {
+        /// The method asked for.
+        method: Method,
+    },
     /// A method that stores every element exceeds the memory limit.
     #[error("the {method} method on {grid} elements needs about {needed} bytes, more than the limit of {limit}")]
     Memory {

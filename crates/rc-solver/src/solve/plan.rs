@@ -67,7 +67,9 @@ impl<'a> Plan<'a> {
     /// [`SolveError::GaussSeidel`] for what the paper's procedure refuses.
     pub fn solve(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
         let Self { problem, params, bound, chosen, reason, mut shared } = self;
-        let how = |method, reason| HowSolved::new(method, reason, bound, problem.kernel.name());
+        let how = |method, reason| {
+            HowSolved::new(method, reason, bound, problem.kernel.name()).with_hardness(problem.hardness)
+        };
         let (chosen, reason) = match chosen {
             ChosenMethod::Adaptive(adaptive) => match by_adaptive(&problem, &params, (&adaptive, &reason), observer)? {
                 Ok(solution) => {
@@ -86,7 +88,7 @@ impl<'a> Plan<'a> {
             (Method::GaussSeidel, by_gauss_seidel(&problem, heights, params, observer)?)
         } else {
             let limits = params.iteration(bound);
-            (Method::Uniform, solve_uniform(heights, kernel, problem.control, &limits, observer)?)
+            (Method::Uniform, solve_uniform(heights, kernel, problem.load(), &limits, observer)?)
         };
         converged(Solution::on_grid(how(method, reason), kernel, solution, heights.max()))
     }

@@ -4,6 +4,7 @@ use rc_core::{HeightSource, Kernel};
 use rc_kernel::Love;
 
 use crate::Control;
+use crate::problem::Load;
 
 /// A contact problem: heights, half-space and load.
 ///
@@ -26,13 +27,39 @@ pub struct ContactProblem<'a> {
     pub(super) heights: HeightSource<'a>,
     pub(super) kernel: &'a dyn Kernel,
     pub(super) control: Control,
+    pub(super) hardness: f64,
 }
 
 impl<'a> ContactProblem<'a> {
     /// The contact of `heights` (in λ) with the elastic half-space under a load. The kernel is [`Love`].
     #[must_use]
     pub fn new(heights: impl Into<HeightSource<'a>>, control: Control) -> Self {
-        Self { heights: heights.into(), kernel: &Love, control }
+        Self { heights: heights.into(), kernel: &Love, control, hardness: f64::INFINITY }
+    }
+
+    /// The same problem with a hardness, in E*: no pressure is greater. It is the usual first model of plastic contact. Where the pressure is the
+    /// hardness, plastic flow removes the overlap of the surfaces ([`crate::Solution::plastic_gap`]).
+    ///
+    /// ```
+    /// use rc_core::{Field, Grid};
+    /// use rc_solver::{ContactProblem, Control, SolveParams};
+    ///
+    /// // Half of Westergaard's wave touches when the contact is elastic. The mean pressure in contact is then twice the load.
+    /// let wave = Field::from_fn(Grid::square(128)?, |at| 1e-3 * (std::f64::consts::TAU * at.x).cos());
+    /// let load = 0.5e-3 * std::f64::consts::PI;
+    /// let problem = ContactProblem::new(&wave, Control::MeanPressure(load)).with_hardness(2.5 * load);
+    /// let solution = problem.solve(&SolveParams::default(), &rc_core::Silent)?;
+    /// assert!(solution.pressure().max() <= 2.5 * load);
+    /// assert!(solution.area().fraction > 0.5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn with_hardness(self, hardness: f64) -> Self {
+        Self { hardness, ..self }
+    }
+
+    pub(super) fn load(&self) -> Load {
+        Load { control: self.control, hardness: self.hardness }
     }
 
     /// The same problem with another half-space, or another discretisation of it.
@@ -48,6 +75,7 @@ impl std::fmt::Debug for ContactProblem<'_> {
         out.field("heights", &self.heights)
             .field("kernel", &self.kernel.name())
             .field("control", &self.control)
+            .field("hardness", &self.hardness)
             .finish()
     }
 }

@@ -27,7 +27,8 @@ impl Response<'_> {
         match self {
             Self::Kernel(kernel) => Response::Kernel(kernel.into_owned(solution.pressure.grid())),
             Self::Operator(_) => Response::Outlived {
-                stiffness: self.stiffness(solution),
+                // Operators have no hardness.
+                stiffness: self.stiffness(solution, f64::INFINITY),
                 displacement: self.displacement(&solution.pressure),
             },
             Self::Outlived { stiffness, displacement } => Response::Outlived { stiffness, displacement },
@@ -43,9 +44,9 @@ impl Response<'_> {
     }
 
     /// dσ0/dΔ under the contact of `solution`, in E*/λ.
-    pub(super) fn stiffness(&self, solution: &GridSolution) -> f64 {
+    pub(super) fn stiffness(&self, solution: &GridSolution, hardness: f64) -> f64 {
         match self {
-            Self::Kernel(kernel) => contact_stiffness(&solution.pressure, kernel),
+            Self::Kernel(kernel) => contact_stiffness(&solution.pressure, hardness, kernel),
             Self::Operator(operator) => stiffness_with_operator(&solution.pressure, *operator),
             Self::Outlived { stiffness, .. } => *stiffness,
         }

@@ -7,6 +7,7 @@ use rc_core::{Field, Grid, Kernel, Operator};
 
 use super::response::{KernelOfGrid, Response};
 use crate::adaptive::{AdaptiveProblem, AdaptiveSolution};
+use crate::gap_part::GapPart;
 use crate::solution::{GridSolution, Status};
 use crate::{Certificate, ContactArea, ContactElement, ErrorBound, Method, MethodReason, Observables, SolveInfo};
 
@@ -21,6 +22,7 @@ pub struct Solution<'a> {
     pressures: Pressures<'a>,
     pressure: OnceLock<Field>,
     gap: OnceLock<Field>,
+    plastic_gap: OnceLock<Field>,
     displacement: OnceLock<Field>,
     observables: OnceLock<Observables>,
     stiffness: OnceLock<f64>,
@@ -33,11 +35,17 @@ pub(super) struct HowSolved {
     pub(super) reason: MethodReason,
     pub(super) bound: ErrorBound,
     pub(super) kernel: &'static str,
+    /// The greatest pressure; infinite for an elastic contact.
+    pub(super) hardness: f64,
 }
 
 impl HowSolved {
     pub(super) fn new(method: Method, reason: MethodReason, bound: ErrorBound, kernel: &'static str) -> Self {
-        Self { method, reason, bound, kernel }
+        Self { method, reason, bound, kernel, hardness: f64::INFINITY }
+    }
+
+    pub(super) fn with_hardness(self, hardness: f64) -> Self {
+        Self { hardness, ..self }
     }
 }
 
@@ -89,6 +97,7 @@ impl<'a> Solution<'a> {
             pressures,
             pressure: OnceLock::new(),
             gap: OnceLock::new(),
+            plastic_gap: OnceLock::new(),
             displacement: OnceLock::new(),
             observables: OnceLock::new(),
             stiffness: OnceLock::new(),
@@ -108,8 +117,8 @@ impl<'a> Solution<'a> {
                 Pressures::Tiles { solution, problem: Box::new(problem.into_owned()) }
             }
         };
-        let Self { how, status, h_max, pressure, gap, displacement, observables, stiffness, .. } = self;
-        Solution { how, status, h_max, pressures, pressure, gap, displacement, observables, stiffness }
+        let Self { how, status, h_max, pressure, gap, plastic_gap, displacement, observables, stiffness, .. } = self;
+        Solution { how, status, h_max, pressures, pressure, gap, plastic_gap, displacement, observables, stiffness }
     }
 
     /// The same solution without borrows, with the kernel that it was solved with. Nothing is tabulated then.
@@ -119,8 +128,21 @@ impl<'a> Solution<'a> {
             Pressures::Grid { solution, response: Response::Kernel(KernelOfGrid::Borrowed(_)) } => {
                 let pressures =
                     Pressures::Grid { solution, response: Response::Kernel(KernelOfGrid::Borrowed(kernel)) };
-                let Self { how, status, h_max, pressure, gap, displacement, observables, stiffness, .. } = self;
-                Solution { how, status, h_max, pressures, pressure, gap, displacement, observables, stiffness }
+                let Self {
+                    how, status, h_max, pressure, gap, plastic_gap, displacement, observables, stiffness, ..
+                } = self;
+                Solution {
+                    how,
+                    status,
+                    h_max,
+                    pressures,
+                    pressure,
+                    gap,
+                    plastic_gap,
+                    displacement,
+                    observables,
+                    stiffness,
+                }
             }
             pressures => Self { pressures, ..self }.into_owned(),
         }
@@ -204,18 +226,20 @@ impl<'a> Solution<'a> {
     #[must_use]
     pub fn observables(&self) -> &Observables {
         self.observables.get_or_init(|| match &self.pressures {
-            Pressures::Grid { solution, response } => Observables::of(solution, response.edge_bias()),
+            Pressures::Grid { solution, response } => {
+                Observables::of(solution, self.how.hardness, response.edge_bias())
+            }
             Pressures::Tiles { solution, .. } => solution.observables(),
         })
     }
 
-    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact. Takes a few applications of L
+    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact. What is plastic stays so, and adds nothing. Takes a few applications of L
     /// the first time.
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         *self.stiffness.get_or_init(|| match &self.pressures {
             Pressures::Grid { .. } if self.status == Status::FullContact => f64::INFINITY,
-            Pressures::Grid { solution, response } => response.stiffness(solution),
+            Pressures::Grid { solution, response } => response.stiffness(solution, self.how.hardness),
             Pressures::Tiles { solution, problem } => problem.contact_stiffness(solution),
         })
     }
@@ -276,12 +300,19 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// The gap on the grid, in λ, with its pressure-weighted mean at zero; zero in contact within the tolerance.
+    /// The greatest pressure, in E*; infinite for an elastic contact.
+    #[must_use]
+    pub fn hardness(&self) -> f64 {
+        self.how.hardness
+    }
+
+    /// The gap on the grid, in λ, with its pressure-weighted mean at zero; zero in contact within the tolerance. With a hardness it is that after
+    /// plastic flow.
     #[must_use]
     pub fn gap(&self) -> &Field {
         match &self.pressures {
-            Pressures::Grid { solution, .. } => &solution.gap,
-            Pressures::Tiles { .. } => self.gap.get_or_init(|| collect(self.grid(), |take| self.gap_rows(take))),
+            Pressures::Grid { solution, .. } if self.how.hardness.is_infinite() => &solution.gap,
+            _ => self.gap.get_or_init(|| collect(self.grid(), |take| self.gap_rows(take))),
         }
     }
 
@@ -295,6 +326,13 @@ impl<'a> Solution<'a> {
             }
             _ => None,
         }
+    }
+
+    /// The overlap that plastic flow has removed, on the grid, in λ, ≥ 0; zero where the pressure is below the hardness, and everywhere
+    /// without one.
+    #[must_use]
+    pub fn plastic_gap(&self) -> &Field {
+        self.plastic_gap.get_or_init(|| collect(self.grid(), |take| self.plastic_gap_rows(take)))
     }
 
     /// The displacement v on the grid, in λ, of mean zero. Takes one application of L the first time.
@@ -328,9 +366,38 @@ impl<'a> Solution<'a> {
     /// What `take` returns.
     pub fn gap_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         match (&self.pressures, self.gap.get()) {
-            (Pressures::Grid { solution, .. }, _) => take(0, solution.gap.values()),
+            (Pressures::Grid { solution, .. }, _) if self.how.hardness.is_infinite() => take(0, solution.gap.values()),
             (_, Some(gap)) => take(0, gap.values()),
-            (Pressures::Tiles { solution, problem }, None) => problem.gap_rows(solution, take),
+            _ => self.part_rows(GapPart::Open, take),
+        }
+    }
+
+    /// Hands out [`Solution::plastic_gap`] as [`Solution::gap_rows`] does the gap.
+    ///
+    /// # Errors
+    /// What `take` returns.
+    pub fn plastic_gap_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        match self.plastic_gap.get() {
+            Some(gap) => take(0, gap.values()),
+            None => self.part_rows(GapPart::Plastic, take),
+        }
+    }
+
+    /// Hands out a part of the gap.
+    fn part_rows<E>(&self, part: GapPart, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        match &self.pressures {
+            Pressures::Grid { solution, .. } => {
+                let (pressure, gap, nx) = (&solution.pressure, &solution.gap, solution.gap.grid().nx());
+                let mut values = vec![0.0; nx];
+                for iy in 0..gap.grid().ny() {
+                    for (value, (g, p)) in values.iter_mut().zip(gap.row(iy).iter().zip(pressure.row(iy))) {
+                        *value = part.of(*g, *p, self.how.hardness);
+                    }
+                    take(iy, &values)?;
+                }
+                Ok(())
+            }
+            Pressures::Tiles { solution, problem } => problem.gap_rows(solution, part, take),
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::problem::Problem;
 use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
 
 /// The solution when `mean_pressure` closes every gap: v = h - mean(h) and p = σ0 + L⁻¹ h, provided that is nowhere
-/// tensile. (For the spectral kernel p̂ = E*|q|ĥ/2.) `None` otherwise, and where rounding or a faulty kernel leave a larger error than
+/// tensile nor above the hardness. (For the spectral kernel p̂ = E*|q|ĥ/2.) `None` otherwise, and where rounding or a faulty kernel leave a larger error than
 /// `bound`. Coarser grids have the heights `coarser`, finest first.
 pub(super) fn solve(
     (heights, coarser): (&Field, &[Field]),
@@ -28,15 +28,15 @@ pub(super) fn solve(
     let mut inverse = fluctuation(heights, kernel, problem.h_mean);
     let block = inverse.layout().len();
     let mut pressure = Field::zeros(grid);
-    let least = read_blocks(&inverse, pressure.values_mut().chunks_mut(block), |p, rows| {
-        let mut least = f64::INFINITY;
+    let extremes = read_blocks(&inverse, pressure.values_mut().chunks_mut(block), |p, rows| {
+        let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
         for (p, row) in p.iter_mut().zip(rows) {
             *p = mean_pressure + row;
-            least = least.min(*p);
+            (least, greatest) = (least.min(*p), greatest.max(*p));
         }
-        least
+        [least, greatest]
     });
-    if least.into_iter().fold(f64::INFINITY, f64::min) < 0.0 {
+    if extremes.into_iter().any(|[least, greatest]| least < 0.0 || greatest > problem.hardness) {
         return None;
     }
     let solution = certified(heights, kernel, problem, (pressure, mean_pressure), &mut inverse);
@@ -135,7 +135,7 @@ fn certified(
     let least = if approach.is_finite() { gap.min() } else { f64::NAN };
     let mean = total / grid.len() as f64;
     let elastic_energy = 0.5 * work / grid.len() as f64;
-    let residuals = Residuals { least_gap: least, mean_gap: 0.0, mean_pressure: mean, elastic_energy };
+    let residuals = Residuals { least_gap: least, excess: -least, mean_gap: 0.0, mean_pressure: mean, elastic_energy };
     let mut certificate = Certificate::new(problem, &residuals);
     let of_residual = error_of_residual(&gap, elastic_energy, inverse);
     if of_residual < certificate.energy {

@@ -13,7 +13,7 @@ pub(crate) use self::levels::{coarsen, coarsen_to, coarsen_without_pits};
 use self::nested_grids::SMALLEST_SIDE;
 pub(crate) use self::nested_grids::{FinestGrid, NestedGrids};
 pub(crate) use self::prolongation::{edge_function, edge_function_outside};
-use crate::problem::Problem;
+use crate::problem::{Load, Problem};
 use crate::solution::GridSolution;
 use crate::{Control, IterationParams, ProblemError};
 
@@ -35,13 +35,13 @@ pub const UNIFORM_BYTES_PER_ELEMENT: u64 = 80;
 pub(crate) fn solve_uniform(
     heights: &Field,
     kernel: &dyn Kernel,
-    control: Control,
+    load: impl Into<Load>,
     params: &IterationParams,
     observer: &dyn Observer,
 ) -> Result<GridSolution, ProblemError> {
-    let problem = Problem::check(heights, control, params)?;
+    let problem = Problem::check(heights, load, params)?;
     let coarser = nest_without_pits(heights, SMALLEST_SIDE);
-    if let Control::MeanPressure(mean_pressure) = control
+    if let Control::MeanPressure(mean_pressure) = problem.control
         && let Some(solution) = full_contact::solve((heights, &coarser), kernel, mean_pressure, &problem, params.bound)
     {
         return Ok(solution);

@@ -2,6 +2,7 @@
 
 mod error_bars;
 mod gauss_seidel;
+mod hardness;
 mod observers;
 mod uniform;
 

@@ -17,6 +17,8 @@ pub struct ContactSetup {
     pub units: Units,
     /// Mean pressure in E*, or penetration in λ.
     pub control: Control,
+    /// Greatest pressure in E*; infinite for an elastic contact.
+    pub hardness: f64,
     /// Discretisation.
     pub kernel: KernelName,
     /// Method, tolerance and limits, but for the memory there is.
@@ -63,6 +65,7 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
     }
     let units = Units::new(cell, elasticity(&keys)?);
     let control = control(&keys, units)?;
+    let hardness = hardness(&keys, units)?;
     let kernel = keys.kernel.unwrap_or(KernelName::Love);
     check_method(&keys, kernel)?;
     let params = SolveParams {
@@ -71,7 +74,7 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
         border_level: keys.border_level.unwrap_or(0),
         ..SolveParams::certified()
     };
-    Ok(ContactSetup { units, control, kernel, params, keys })
+    Ok(ContactSetup { units, control, hardness, kernel, params, keys })
 }
 
 fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {
@@ -82,7 +85,23 @@ fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {
     }
 }
 
-/// Refuses a method that cannot solve with this kernel or border level.
+/// In E*, at most what is given when it is in Pa again; infinite where none is given.
+fn hardness(keys: &ContactKeys, units: Units) -> Result<f64, CliError> {
+    let Some(given) = keys.hardness else { return Ok(f64::INFINITY) };
+    let given = positive("hardness", "Pa", Some(given))?;
+    if let Some(pressure) = keys.pressure.filter(|pressure| *pressure >= given) {
+        return Err(CliError::input(format_args!(
+            "hardness: {given} Pa cannot bear a mean pressure of {pressure} Pa; it must be above the pressure"
+        )));
+    }
+    let mut hardness = units.pressure(given);
+    while units.pascals(hardness) > given {
+        hardness = hardness.next_down();
+    }
+    Ok(hardness)
+}
+
+/// Refuses a method that cannot solve with this kernel, border level or hardness.
 fn check_method(keys: &ContactKeys, kernel: KernelName) -> Result<(), CliError> {
     if let (Some(method @ (Method::Adaptive | Method::GaussSeidel)), KernelName::Spectral | KernelName::Own) =
         (keys.method, kernel)
@@ -90,6 +109,9 @@ fn check_method(keys: &ContactKeys, kernel: KernelName) -> Result<(), CliError> 
         return Err(CliError::input(format_args!(
             "method: '{method}' needs kernel love; only the uniform method takes spectral"
         )));
+    }
+    if let (Some(Method::GaussSeidel), Some(_)) = (keys.method, keys.hardness) {
+        return Err(CliError::input("hardness: the method 'gauss-seidel' has none; adaptive and uniform do"));
     }
     match (keys.border_level, keys.method, kernel) {
         (Some(1..), Some(Method::Uniform | Method::GaussSeidel), _)
@@ -164,6 +186,11 @@ mod tests {
             ("method = \"gauss-seidel\"\nkernel = \"spectral\"", "method"),
             ("tolerance = 1.0", "tolerance"),
             ("tolerance = 0.0", "tolerance"),
+            ("hardness = 0.0", "hardness"),
+            ("hardness = nan", "hardness"),
+            ("hardness = inf", "hardness"),
+            ("hardness = 1.0", "hardness"),
+            ("hardness = 2.0\nmethod = \"gauss-seidel\"", "hardness"),
             ("energy_tolerance = 1.0", "energy_tolerance"),
             ("energy_tolerance = nan", "energy_tolerance"),
             ("tolerance = 1e-6\nenergy_tolerance = 1e-3", "energy_tolerance"),
@@ -181,6 +208,17 @@ mod tests {
         let bound = setup.params.tolerance.bound(Some(8.0));
         assert_eq!(bound, ErrorBound::Energy(6e-2));
         assert_eq!(setup.keys.tolerance, Some(ToleranceSpec::Auto));
+    }
+
+    #[test]
+    fn a_hardness_is_never_more_than_given() {
+        for (e_star, given) in [(3.0, 0.7), (5.016e8, 1.1e7), (7e10, 1e9 / 3.0)] {
+            let setup = resolved(keys(&format!("e_star = {e_star:e}\npressure = 0.1\nhardness = {given:e}")));
+            let setup = setup.expect("a contact");
+            let found = setup.units.pascals(setup.hardness);
+            assert!(found <= given && found / given > 1.0 - 1e-15, "{found} for {given}");
+        }
+        assert!(resolved(keys("pressure = 1.0")).expect("a contact").hardness.is_infinite());
     }
 
     #[test]

@@ -1,0 +1,59 @@
+//! The plastic part of the contact, where the pressure is the hardness H.
+//!
+//! What is left to the hardness, q = H - p, is zero there and the square root of the distance beyond its edge, and the overlap that plastic flow removes
+//! grows inside as the gap does outside a contact. So the area where q > 0 is found as a contact area is, with -g for a gap, and has its error.
+
+use rc_core::{EdgeBias, Field, Grid};
+
+use super::{ContactArea, EdgeSums, around, sums_of_rows};
+
+/// The plastic part of a contact with a hardness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlasticContact {
+    /// Fraction of elements whose pressure is the hardness. Converges at first order in the element size only.
+    pub cells: f64,
+    /// Plastic area relative to the nominal area: the best estimate.
+    pub fraction: f64,
+    /// Estimated error of `fraction`, as that of [`ContactArea::error`].
+    pub error: f64,
+    /// Mean over the cell of the overlap that plastic flow has removed, in λ.
+    pub mean_gap: f64,
+}
+
+/// The edges of the plastic part of a contact.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlasticEdges {
+    pub(crate) contact: PlasticContact,
+    /// The rest of the cell, as the area of a contact.
+    pub(crate) rest: ContactArea,
+}
+
+impl PlasticEdges {
+    /// Of pressure and gap on a uniform grid, the gap zero in elastic contact.
+    pub(crate) fn of(pressure: &Field, gap: &Field, hardness: f64, bias: EdgeBias) -> Self {
+        let grid = pressure.grid();
+        let values = (pressure.values(), gap.values());
+        let at = |place: [usize; 2]| {
+            let at = around(values, [grid.nx(), grid.ny()], place, 0.0);
+            move |dx: isize, dy: isize| left(at(dx, dy), hardness)
+        };
+        let sums = sums_of_rows(grid, hardness, |i| values.0[i] < hardness, at);
+        let pairs = pressure.values().iter().zip(gap.values());
+        let flow: f64 = pairs.filter(|(p, _)| **p >= hardness).map(|(_, g)| (-g).max(0.0)).sum();
+        Self::from_sums(&[sums], grid, bias, flow / grid.len() as f64)
+    }
+
+    /// From the sums over elements of one size each, as [`ContactArea::from_sums`] takes them, of q and -g. What no element covers is in
+    /// the count of the smallest.
+    pub(crate) fn from_sums(sums: &[EdgeSums], finest: Grid, bias: EdgeBias, mean_gap: f64) -> Self {
+        let (rest, scatter) = ContactArea::with_scatter(sums, finest, bias);
+        let (cells, fraction) = (1.0 - rest.cells, 1.0 - rest.fraction);
+        let error = scatter.error(cells - fraction, fraction.max(0.1 * cells));
+        Self { contact: PlasticContact { cells, fraction, error, mean_gap }, rest: ContactArea { error, ..rest } }
+    }
+}
+
+/// What a pressure leaves to the hardness, and the gap that belongs to it.
+pub(crate) fn left([pressure, gap]: [f64; 2], hardness: f64) -> [f64; 2] {
+    [hardness - pressure, -gap]
+}

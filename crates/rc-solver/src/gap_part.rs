@@ -1,0 +1,22 @@
+//! The two parts of a gap where a hardness limits the pressure.
+
+/// What is asked for of the gap `v - h` of an element, from the gap of elastic contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum GapPart {
+    /// What is open: zero where plastic flow has removed the overlap.
+    Open,
+    /// The overlap that plastic flow has removed, positive.
+    Plastic,
+}
+
+impl GapPart {
+    /// This part of `gap` where the pressure is `pressure`, of at most the `hardness`.
+    pub(crate) fn of(self, gap: f64, pressure: f64, hardness: f64) -> f64 {
+        match (self, pressure >= hardness) {
+            (Self::Open, true) => gap.max(0.0),
+            (Self::Open, false) => gap,
+            (Self::Plastic, true) => (-gap).max(0.0),
+            (Self::Plastic, false) => 0.0,
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! Pressures between zero and a hardness: against elimination, a direct certificate, and limits that are known.
+
+use std::f64::consts::TAU;
+
+use rc_core::testing::quasi_random;
+use rc_core::{DVec2, Field, Grid, Operator, Silent};
+use rc_kernel::Love;
+use rc_solver::{
+    ContactProblem, Control, DirectSum, Method, ProblemError, Solution, SolveError, SolveParams,
+    solve_dense_with_hardness,
+};
+
+use crate::bumps;
+
+fn solve<'a>(
+    heights: &'a Field,
+    control: Control,
+    hardness: f64,
+    params: &SolveParams,
+) -> Result<Solution<'a>, SolveError> {
+    ContactProblem::new(heights, control).with_hardness(hardness).solve(params, &Silent)
+}
+
+/// Waves up to `n` per cell with the amplitudes of a self-affine surface.
+fn rough(seed: usize, side: usize, n: i32) -> Field {
+    let waves: Vec<(f64, f64, f64, f64)> = (-n..=n)
+        .flat_map(|ky| (0..=n).map(move |kx| (kx, ky)))
+        .filter(|&(kx, ky)| (kx, ky) != (0, 0) && kx * kx + ky * ky <= n * n)
+        .enumerate()
+        .map(|(i, (kx, ky))| {
+            let k = f64::from(kx).hypot(f64::from(ky));
+            (1e-3 * k.powf(-1.8), f64::from(kx), f64::from(ky), quasi_random(101 * seed + 37 * i * i))
+        })
+        .collect();
+    let height =
+        |at: DVec2| waves.iter().map(|(a, kx, ky, phase)| a * (TAU * (kx * at.x + ky * at.y + phase)).cos()).sum();
+    Field::from_fn(Grid::square(side).expect("a grid"), height)
+}
+
+/// What a hardness must not be broken by, from nothing but the pressure: greatest overlap of elements that could press more, and greatest gap of
+/// those that could press less, from the mean gap of those between the bounds, relative to the height range.
+fn violations(heights: &Field, pressure: &Field, hardness: f64) -> [f64; 2] {
+    let mut v = vec![0.0; heights.grid().len()];
+    DirectSum::new(heights.grid(), &Love).apply(pressure.values(), &mut v, &mut []);
+    let gaps: Vec<(f64, f64)> =
+        v.iter().zip(heights.values()).zip(pressure.values()).map(|((v, h), p)| (*p, v - h)).collect();
+    let between: Vec<f64> = gaps.iter().filter(|(p, _)| *p > 0.0 && *p < hardness).map(|(_, g)| *g).collect();
+    let contact = between.iter().sum::<f64>() / between.len().max(1) as f64;
+    let range = heights.max() - heights.min();
+    let overlap = gaps.iter().filter(|(p, _)| *p < hardness).map(|(_, g)| contact - g).fold(0.0, f64::max);
+    let gap = gaps.iter().filter(|(p, _)| *p > 0.0).map(|(_, g)| g - contact).fold(0.0, f64::max);
+    [overlap / range, gap / range]
+}
+
+#[test]
+fn a_hardness_that_nothing_reaches_changes_no_bit() {
+    let heights = rough(1, 256, 8);
+    for method in [Method::Uniform, Method::Adaptive] {
+        let params = SolveParams::default().by(method);
+        let depth = solve(&heights, Control::MeanPressure(1e-3), f64::INFINITY, &params).expect("solvable");
+        let depth = Control::Penetration(depth.info().penetration);
+        for control in [Control::MeanPressure(2e-4), Control::MeanPressure(6e-3), depth] {
+            let elastic = solve(&heights, control, f64::INFINITY, &params).expect("solvable");
+            let hard = solve(&heights, control, 1e3, &params).expect("solvable");
+            let what = format!("{method}, {control:?}");
+            assert_eq!(elastic.info(), hard.info(), "{what}");
+            assert!(elastic.pressure() == hard.pressure() && elastic.gap() == hard.gap(), "{what}");
+            assert_eq!(elastic.stiffness().to_bits(), hard.stiffness().to_bits(), "{what}");
+            let (a, b) = (elastic.observables(), hard.observables());
+            assert_eq!(
+                (a.area, a.rms_pressure_error, a.mean_gap),
+                (b.area, b.rms_pressure_error, b.mean_gap),
+                "{what}"
+            );
+            let plastic = b.plastic.expect("a hardness is given");
+            assert!(
+                plastic.fraction.abs() + plastic.mean_gap.abs() + plastic.cells.abs() < 1e-12,
+                "{what}: {plastic:?}"
+            );
+            assert!(a.plastic.is_none() && hard.plastic_gap().max() <= 0.0, "{what}");
+        }
+    }
+}
+
+#[test]
+fn pressures_are_those_of_elimination() {
+    for (nx, ny) in [(16, 16), (12, 20)] {
+        let heights = bumps(nx, ny);
+        let range = heights.max() - heights.min();
+        for depth in [0.2, 0.4, 0.55] {
+            let control = Control::Penetration(depth * range);
+            let params = SolveParams::to_tolerance(1e-10).by(Method::Uniform);
+            let elastic = solve(&heights, control, f64::INFINITY, &params);
+            let peak = elastic.map_or(0.05, |solution| solution.pressure().max());
+            for part in [0.9, 0.6, 0.3, 0.1, 0.02] {
+                let (hardness, what) = (part * peak, format!("{nx} x {ny}, depth {depth}, {part} of the peak"));
+                let exact = solve_dense_with_hardness(&heights, &Love, depth * range, hardness);
+                let exact = exact.expect("in range").expect("an active set");
+                let by_load = Control::MeanPressure(exact.mean());
+                for control in [control, by_load] {
+                    let found = solve(&heights, control, hardness, &params).expect(&what);
+                    let differences = found.pressure().values().iter().zip(exact.values()).map(|(a, b)| (a - b).abs());
+                    let error = differences.fold(0.0, f64::max) / hardness;
+                    assert!(error < 1e-6, "{what}, {control:?}: the pressure is off by {error:e} of the hardness");
+                    let penetration = found.info().penetration / (depth * range);
+                    assert!((penetration - 1.0).abs() < 1e-7, "{what}, {control:?}: penetration {penetration}");
+                }
+            }
+        }
+    }
+}
+
+/// Random scenes: heights, cell, load and hardness.
+#[test]
+fn bounds_are_kept_exactly_and_the_certificate_is_true() {
+    for seed in 0..40 {
+        let random = |i: usize| quasi_random(1000 * seed + i);
+        let (nx, ny) = (12 + (random(1) * 20.0) as usize, 12 + (random(2) * 20.0) as usize);
+        let grid = Grid::new(nx, ny).expect("a grid");
+        let smooth = bumps(nx, ny);
+        let noise = 10.0_f64.powf(-5.0 + 3.0 * random(3));
+        let heights = (0..grid.len()).map(|i| smooth.values()[i] + noise * quasi_random(77 * seed + 3 * i * i + i));
+        let heights = Field::new(grid, heights.collect()).expect("a value for each element");
+        let hardness = 10.0_f64.powf(-4.0 + 3.0 * random(4));
+        let mean = hardness * (0.01 + 0.98 * random(5));
+        let what = format!("seed {seed}: {nx} x {ny}, noise {noise:.1e}, hardness {hardness:.2e}, mean {mean:.2e}");
+        let params = SolveParams::to_tolerance(1e-8).by(Method::Uniform);
+        let by_load = solve(&heights, Control::MeanPressure(mean), hardness, &params).expect(&what);
+        let depth = Control::Penetration(by_load.info().penetration);
+        let by_depth = solve(&heights, depth, hardness, &params).expect(&what);
+        for found in [&by_load, &by_depth] {
+            let pressure = found.pressure();
+            assert!(pressure.min() >= 0.0 && pressure.max() <= hardness, "{what}: {}", pressure.max() / hardness);
+            let [overlap, gap] = violations(&heights, pressure, hardness);
+            // The mean gap is not weighted here.
+            assert!(overlap < 1e-7 && gap < 1e-6, "{what}: overlap {overlap:e}, gap {gap:e}");
+            assert!(found.certificate().meets(found.bound()), "{what}");
+            assert!(found.gap().min() > -1e-7 * (heights.max() - heights.min()), "{what}: {}", found.gap().min());
+        }
+        assert!((by_load.pressure().mean() / mean - 1.0).abs() < 1e-10, "{what}");
+        assert!(
+            (by_depth.pressure().mean() / mean - 1.0).abs() < 1e-4,
+            "{what}: {}",
+            by_depth.pressure().mean() / mean
+        );
+    }
+}
+
+#[test]
+fn tiles_find_what_the_grid_finds() {
+    let heights = rough(2, 512, 16);
+    let mean = 5e-4;
+    let on_grid = SolveParams::default().by(Method::Uniform);
+    let peak =
+        solve(&heights, Control::MeanPressure(mean), f64::INFINITY, &on_grid).expect("solvable").pressure().max();
+    for part in [0.9, 0.5, 0.15, 0.05] {
+        let hardness = part * peak;
+        let uniform = solve(&heights, Control::MeanPressure(mean), hardness, &on_grid).expect("solvable");
+        let depth = Control::Penetration(uniform.info().penetration);
+        for control in [Control::MeanPressure(mean), depth] {
+            let what = format!("{part} of the peak, {control:?}");
+            let tiles = solve(&heights, control, hardness, &on_grid.by(Method::Adaptive)).expect(&what);
+            assert!(tiles.pressure().max() <= hardness, "{what}");
+            let (a, b) = (tiles.observables(), uniform.observables());
+            let (p, q) = (a.plastic.expect("hard"), b.plastic.expect("hard"));
+            let pairs = [
+                ("mean pressure", tiles.info().mean_pressure, uniform.info().mean_pressure, 1e-3),
+                ("penetration", tiles.info().penetration, uniform.info().penetration, 2e-4),
+                ("area", a.area.fraction, b.area.fraction, 2e-3),
+                ("area by counting", a.area.cells, b.area.cells, 2e-3),
+                ("plastic area", p.fraction, q.fraction, 5e-3),
+                ("plastic area by counting", p.cells, q.cells, 5e-3),
+                ("plastic flow", p.mean_gap, q.mean_gap, 5e-3),
+                ("mean gap", a.mean_gap, b.mean_gap, 2e-3),
+                ("stiffness", tiles.stiffness(), uniform.stiffness(), 2e-2),
+            ];
+            for (name, found, expected, tolerance) in pairs {
+                assert!((found / expected - 1.0).abs() < tolerance, "{what}: {name} {found} for {expected}");
+            }
+            assert!(a.max_pressure <= hardness && p.error > 0.0, "{what}");
+            let [flow, gap] = [tiles.plastic_gap(), tiles.gap()];
+            assert!(flow.min() >= 0.0 && (flow.mean() / p.mean_gap - 1.0).abs() < 1e-3, "{what}: {}", flow.mean());
+            assert!((gap.mean() / a.mean_gap - 1.0).abs() < 1e-3, "{what}: mean gap {}", gap.mean());
+        }
+    }
+}
+
+#[test]
+fn the_softest_surface_is_plastic_wherever_it_touches() {
+    let heights = rough(3, 256, 8);
+    let params = SolveParams::default();
+    for mean in [2e-7, 2e-6] {
+        let elastic = solve(&heights, Control::MeanPressure(mean), f64::INFINITY, &params).expect("solvable");
+        // A thousandth of the pressures of an elastic contact.
+        let hardness = 1e-3 * elastic.pressure().max().max(2e-2);
+        let solution = solve(&heights, Control::MeanPressure(mean), hardness, &params).expect("solvable");
+        let (area, plastic) = (solution.area(), solution.observables().plastic.expect("hard"));
+        let limit = mean / hardness;
+        assert!((area.cells / limit - 1.0).abs() < 0.3 && area.cells >= limit, "{} for {limit}", area.cells);
+        assert!((area.fraction - limit).abs() < 2.0 * area.error + 0.1 * limit, "{area:?} for {limit}");
+        assert!(plastic.fraction <= area.fraction + area.error, "{plastic:?}, {area:?}");
+    }
+}
+
+#[test]
+fn every_load_below_the_hardness_is_borne() {
+    let heights = rough(4, 128, 8);
+    let params = SolveParams::default().by(Method::Uniform);
+    let hardness = 5e-3;
+    let mut last = 0.0;
+    for part in [0.1, 0.5, 0.9, 0.99, 0.9999] {
+        let mean = part * hardness;
+        let solution = solve(&heights, Control::MeanPressure(mean), hardness, &params).expect("solvable");
+        let (area, plastic) = (solution.area().cells, solution.observables().plastic.expect("hard"));
+        assert!(area > last && area >= part, "{part}: area {area} after {last}");
+        assert!(plastic.cells <= part, "{part}: {plastic:?}");
+        last = area;
+        let depth = Control::Penetration(solution.info().penetration);
+        let again = solve(&heights, depth, hardness, &params).expect("solvable");
+        let found = again.info().mean_pressure;
+        assert!((found / mean - 1.0).abs() < 1e-3, "{part}: {found} for {mean}");
+    }
+}
+
+#[test]
+fn what_a_hardness_cannot_bear_is_refused() {
+    let heights = bumps(16, 16);
+    let params = SolveParams::default();
+    let error = |control, hardness, params: &SolveParams| match solve(&heights, control, hardness, params) {
+        Err(SolveError::Problem(error)) => error,
+        other => panic!("{other:?}"),
+    };
+    for mean in [1e-3, 2e-3] {
+        let found = error(Control::MeanPressure(mean), 1e-3, &params);
+        assert_eq!(found, ProblemError::TooSoft { value: mean, hardness: 1e-3 });
+    }
+    for hardness in [0.0, -1.0, f64::NAN] {
+        let found = error(Control::MeanPressure(1e-3), hardness, &params);
+        assert!(matches!(found, ProblemError::Hardness { .. }), "{found:?}");
+    }
+    let found = error(Control::Penetration(1.0), 1e-3, &params);
+    assert!(matches!(found, ProblemError::FullyPlastic { .. }), "{found:?}");
+    let procedure = solve(&heights, Control::MeanPressure(1e-4), 1e-3, &params.by(Method::GaussSeidel));
+    assert!(matches!(procedure, Err(SolveError::Hardness { method: Method::GaussSeidel })), "{procedure:?}");
+}
+
+#[test]
+fn a_flat_surface_bears_what_is_below_its_hardness() {
+    let heights = Field::from_fn(Grid::square(32).expect("a grid"), |_| 0.3);
+    let solution = solve(&heights, Control::MeanPressure(1e-3), 1.1e-3, &SolveParams::default()).expect("solvable");
+    assert!(solution.pressure().values().iter().all(|p| (p - 1e-3).abs() < 1e-15));
+    assert!(solution.observables().plastic.expect("hard").fraction <= 0.0);
+}
