@@ -127,9 +127,10 @@ struct FinestLevel<'s, 'a> {
 impl<'s, 'a> FinestLevel<'s, 'a> {
     fn new(setup: &'s Setup<'a>, grid: Grid, mut start: MeshStart, contact_gap: f64) -> Self {
         let (n_cell, layout) = (grid.len() as f64, blocks_of(&start.elements));
-        match setup.problem.hardness.is_finite() {
-            false => scale_to_load(&setup.problem, n_cell, &layout, &mut start.pressure),
-            true => limit_to_load(&setup.problem, n_cell, &layout, &mut start.pressure, None),
+        if setup.is_plastic(&start.pressure) {
+            limit_to_load(&setup.problem, n_cell, &layout, &mut start.pressure, None);
+        } else {
+            scale_to_load(&setup.problem, n_cell, &layout, &mut start.pressure);
         }
         let tables = OperatorTables {
             quick: setup.quick.tables(grid),

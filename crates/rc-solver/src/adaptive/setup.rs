@@ -16,7 +16,7 @@ use super::operator::{Hierarchy, Prepared, Reach, Tables};
 use super::prolongation::MeshStart;
 use super::scaled_operator::ScaledOperator;
 use super::split::GapSplit;
-use crate::descent::mean_pressure;
+use crate::descent::{is_plastic, mean_pressure};
 use crate::parallel;
 use crate::problem::Problem;
 use crate::{Control, IterationParams};
@@ -122,6 +122,11 @@ impl<'a> Setup<'a> {
         gap: f64,
     ) -> Vec<[u32; 2]> {
         possible_contact(smooth, self.heights, gap - self.problem.offset(), extent)
+    }
+
+    /// Whether a pressure has reached the hardness.
+    pub(super) fn is_plastic(&self, pressure: &[f64]) -> bool {
+        is_plastic(pressure, self.problem.hardness)
     }
 
     /// The mesh with elements divided wherever they are too coarse for the pressure and the gap on them; with `deepen` the smallest

@@ -16,6 +16,9 @@ use crate::problem::Problem;
 /// Pressures that are nearer to the hardness than this part of it are the hardness: prolongation rounds.
 const SNAP: f64 = 1e-12;
 
+/// Pressures from this part of the hardness on are plastic in a start.
+const NEARLY: f64 = 1.0 - 1e-9;
+
 /// What a mean pressure may be off by: rounding of its sum.
 const ROUNDING: f64 = 1e-12;
 
@@ -33,6 +36,11 @@ const MAX_HALVINGS: usize = 40;
 
 /// Multiplying pressures by this much more than the present projection does is safe without a look at the hardness.
 const MARGIN: f64 = 2.0;
+
+/// Whether a start has reached the hardness.
+pub(crate) fn is_plastic(pressure: &[f64], hardness: f64) -> bool {
+    hardness.is_finite() && parallel::maximum(pressure, 0.0) >= NEARLY * hardness
+}
 
 /// Limits the pressure by the hardness and, under load control, restores the load in a cell of `n_cell` of the smallest elements. Where
 /// elements between the bounds cannot, those of least `order`, a gap, take what is missing, or those of greatest order lose what is too much.

@@ -31,7 +31,7 @@ pub(crate) use directions::{ConjugateDirections, Slope};
 pub(crate) use extension::{Pyramid, set_shares};
 pub(crate) use gap::{fresh_gap, mean_pressure, rescale, scale_to_load};
 pub(crate) use layout::BlockLayout;
-pub(crate) use limited::limit_to_load;
+pub(crate) use limited::{is_plastic, limit_to_load};
 pub(crate) use observed::ObservedMesh;
 pub(crate) use operators::{BlockOperator, LevelOperators, PreconditionedOperator, read_blocks, write_blocks};
 pub(crate) use outcome::Outcome;

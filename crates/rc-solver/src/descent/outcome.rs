@@ -30,7 +30,7 @@ impl Outcome {
         let elastic_energy = 0.5 * sums.work() / n_cell;
         let residuals = Residuals {
             least_gap: sums.min_gap - mean_gap,
-            excess: sums.excess() + (sums.mean_gap() - mean_gap).abs(),
+            excess: sums.excess(problem) + (sums.mean_gap(problem) - mean_gap).abs(),
             mean_gap,
             mean_pressure,
             elastic_energy,

@@ -35,6 +35,11 @@ impl Descent<'_> {
         let steps = if is_heavy { 1 } else { steps };
         self.precondition_mean(sums);
         let mut set = self.begin_round();
+        if set.n == 0.0 && sums.has_plastic() {
+            // The last projection has left every element at one of both bounds, and then changed the gaps that it had chosen by.
+            self.is_chosen = false;
+            set = self.begin_round();
+        }
         if set.n == 0.0 {
             return *sums;
         }

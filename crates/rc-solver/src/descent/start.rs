@@ -1,6 +1,7 @@
 //! The first pressure and gap of a descent.
 
 use super::gap::{mean_pressure, scale_to_load};
+use super::limited::is_plastic;
 use super::state::Descent;
 use super::sums::GapSums;
 use crate::Control;
@@ -17,9 +18,6 @@ const MAX_OVERLAPS: usize = 3;
 /// The first overlap, as a part of the range of depths ([`Problem::depth_range`]), and the exponent of the load over the overlap until two are known.
 const FIRST_OVERLAP: f64 = 0.25;
 const FIRST_EXPONENT: f64 = 1.5;
-
-/// Pressures from this part of the hardness on are plastic in a start.
-const NEARLY: f64 = 1.0 - 1e-9;
 
 /// The exponent of the load over the overlap is kept between these.
 const EXPONENTS: [f64; 2] = [0.5, 4.0];
@@ -54,17 +52,11 @@ impl Descent<'_> {
         let n_cell = self.n_cell();
         let present = mean_pressure(n_cell, &self.layout, &self.pressure);
         let usable = self.has_start && present > 0.0;
-        if usable && self.is_plastic() {
+        if usable && is_plastic(&self.pressure, self.problem.hardness) {
             return if self.has_gap { self.rescale(1.0) } else { self.limit_start() };
         }
         let sums = self.elastic_start(present, usable);
         self.limited(sums)
-    }
-
-    /// Whether a start has reached the hardness.
-    fn is_plastic(&self) -> bool {
-        let hardness = self.problem.hardness;
-        hardness.is_finite() && parallel::maximum(&self.pressure, 0.0) >= NEARLY * hardness
     }
 
     /// First pressure and gap, as if there were no hardness.

@@ -138,16 +138,19 @@ impl GapSums {
     }
 
     /// Pressure-weighted mean of the gap, over elements that are not plastic.
-    pub(super) fn mean_gap(&self) -> f64 {
-        if self.pressure > 0.0 { self.pressure_gap / self.pressure } else { self.gap_of_plastic() }
+    pub(super) fn mean_gap(&self, problem: &Problem) -> f64 {
+        if self.pressure > 0.0 { self.pressure_gap / self.pressure } else { self.gap_of_plastic(problem) }
     }
 
-    /// The gap of contact where nothing but plastic elements press: any between theirs and those of the others is.
-    fn gap_of_plastic(&self) -> f64 {
-        match self.plastic.n {
-            0.0 => 0.0,
-            _ if self.min_gap.is_finite() => 0.5 * (self.plastic.max_gap + self.min_gap),
-            _ => self.plastic.max_gap,
+    /// The gap of contact where nothing but plastic elements press: any between theirs and those of the others is. Where the penetration is
+    /// prescribed it should be zero.
+    fn gap_of_plastic(&self, problem: &Problem) -> f64 {
+        let [inside, outside] = [self.plastic.max_gap, self.min_gap];
+        match problem.control {
+            _ if !self.has_plastic() => 0.0,
+            Control::Penetration(_) if inside <= outside => inside.max(0.0).min(outside),
+            _ if outside.is_finite() => 0.5 * (inside + outside),
+            _ => inside,
         }
     }
 
@@ -189,7 +192,7 @@ impl GapSums {
     pub(super) fn reference_gap(&self, problem: &Problem) -> f64 {
         match problem.control {
             Control::Penetration(_) if !self.may_scale() => 0.0,
-            _ => self.mean_gap(),
+            _ => self.mean_gap(problem),
         }
     }
 
@@ -202,8 +205,8 @@ impl GapSums {
     /// Bound on G over the mean pressure, where G = max ⟨g, p - p*⟩ over pressures p* that are possible and have the mean of p: the weighted mean
     /// of g - min g, with min g over elements that could press more. Plastic elements below that minimum could press less, which adds
     /// nothing; the others count with the greatest gap of them all.
-    pub(super) fn excess(&self) -> f64 {
-        let of_elastic = self.mean_gap() - self.min_gap;
+    pub(super) fn excess(&self, problem: &Problem) -> f64 {
+        let of_elastic = self.mean_gap(problem) - self.min_gap;
         if !self.has_plastic() {
             return of_elastic;
         }
@@ -220,7 +223,7 @@ impl GapSums {
     pub(super) fn zero_gap(&self, problem: &Problem) -> f64 {
         match problem.control {
             Control::MeanPressure(_) if self.n_contact > 0.0 => self.contact_gap / self.n_contact,
-            Control::MeanPressure(_) if self.has_plastic() => self.gap_of_plastic(),
+            Control::MeanPressure(_) if self.has_plastic() => self.gap_of_plastic(problem),
             Control::MeanPressure(_) => self.min_gap,
             Control::Penetration(_) => 0.0,
         }
@@ -245,7 +248,7 @@ impl GapSums {
     /// The deepest overlap, a tenth of the greatest gap well inside contact, the greatest gap of a plastic element, or the mean gap where there
     /// should be none, in units of the problem's length.
     pub(super) fn error(&self, problem: &Problem) -> f64 {
-        let mean_gap = self.mean_gap();
+        let mean_gap = self.mean_gap(problem);
         let length = problem.reference_length(self.work(), self.load());
         // What is exact is so in any unit, even where the pressure is uniform and U is zero.
         let ratio = |overlap: f64| match overlap {
