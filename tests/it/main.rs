@@ -7,6 +7,7 @@ mod examples;
 mod front_door;
 mod full_contact;
 mod gauss_seidel;
+mod hardness;
 mod hertz;
 mod interchange;
 mod messages;

@@ -5,6 +5,7 @@ mod audit;
 mod commands;
 mod extremes;
 mod faults;
+mod hardness;
 mod heights;
 mod invariances;
 mod kernels;
@@ -54,6 +55,7 @@ const GROUPS: &[(&str, MakeRows)] = &[
     ("light contacts", |params| light::rows(params.preset)),
     ("meshes", |params| meshes::rows(params.preset)),
     ("invariances", |params| invariances::rows(params.preset)),
+    ("hardness", |params| hardness::rows(params.preset)),
     ("agreement", |params| agreement::rows(params.preset)),
     ("kernels", |params| kernels::rows(params.preset)),
     ("faults", |params| faults::rows(params.preset)),

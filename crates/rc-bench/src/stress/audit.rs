@@ -106,7 +106,7 @@ pub(crate) fn load_of_one_element(heights: &Field, method: Method, penetration: 
 
 /// L p by another way than the method's own: the multilevel operator for the uniform grid where it can be, a direct sum for
 /// small grids, a Fourier transform for the others.
-fn displacement(pressure: &Field, method: Method) -> Result<Vec<f64>> {
+pub(crate) fn displacement(pressure: &Field, method: Method) -> Result<Vec<f64>> {
     // A constant displaces nothing, and its rounding would be all that is left of a large one.
     let (grid, mean) = (pressure.grid(), pressure.mean());
     let p: Vec<f64> = pressure.values().iter().map(|p| p - mean).collect();

@@ -78,16 +78,30 @@ pub(crate) fn solve_by_default(heights: &Field, method: Method, control: Control
     solve_to(heights, method, control, SolveParams::default().tolerance)
 }
 
+/// Solves to `tolerance` with a hardness.
+pub(crate) fn solve_hard(
+    heights: &Field,
+    method: Method,
+    (control, hardness): (Control, f64),
+    tolerance: f64,
+) -> Result<Solved> {
+    let problem = ContactProblem::new(heights, control).with_hardness(hardness);
+    solve_problem(problem, method, Tolerance::Relative(tolerance))
+}
+
 fn solve_to(heights: &Field, method: Method, control: Control, tolerance: Tolerance) -> Result<Solved> {
+    solve_problem(ContactProblem::new(heights, control), method, tolerance)
+        .with_context(|| format!("{} {control:?} to {tolerance:?}", method.name()))
+}
+
+fn solve_problem(problem: ContactProblem<'_>, method: Method, tolerance: Tolerance) -> Result<Solved> {
     let params = SolveParams {
         tolerance,
         method: Some(method.of_solver()),
         gauss_seidel: GaussSeidelParams { uniform_elements: true, ..GaussSeidelParams::paper() },
         ..SolveParams::default()
     };
-    let problem = ContactProblem::new(heights, control).with_kernel(method.kernel());
-    let solution =
-        problem.solve(&params, &Silent).with_context(|| format!("{} {control:?} to {tolerance:?}", method.name()))?;
+    let solution = problem.with_kernel(method.kernel()).solve(&params, &Silent)?;
     Ok(Solved {
         pressure: solution.pressure().clone(),
         info: solution.info().clone(),

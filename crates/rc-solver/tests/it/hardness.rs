@@ -256,3 +256,23 @@ fn a_flat_surface_bears_what_is_below_its_hardness() {
     assert!(solution.pressure().values().iter().all(|p| (p - 1e-3).abs() < 1e-15));
     assert!(solution.observables().plastic.expect("hard").fraction <= 0.0);
 }
+
+/// Heights, load and hardness times any factor are one problem. Another program does not converge from a load of 0.07 E* on.
+#[test]
+fn pressures_of_the_order_of_e_star_take_no_more_iterations() {
+    let gentle = rough(5, 128, 8);
+    let params = SolveParams::default().by(Method::Uniform);
+    for (mean, hardness) in [(2e-3, 4e-3), (4e-3, 8e-3), (8e-3, 1.6e-2)] {
+        let small = solve(&gentle, Control::MeanPressure(mean), hardness, &params).expect("solvable");
+        for factor in [35.0, 350.0] {
+            let steep = gentle.values().iter().map(|h| factor * h).collect();
+            let steep = Field::new(gentle.grid(), steep).expect("a value for each element");
+            let control = Control::MeanPressure(factor * mean);
+            let large = solve(&steep, control, factor * hardness, &params).expect("solvable");
+            let [a, b] = [&small, &large].map(|solution| solution.info().fine_iterations());
+            assert!(b <= a + 2 && b <= 20, "{b} iterations at a load of {} E*, {a} at {mean} E*", factor * mean);
+            let [a, b] = [&small, &large].map(|solution| solution.observables().plastic.expect("hard").cells);
+            assert!((a - b).abs() < 1e-3 * a, "{b} for {a}");
+        }
+    }
+}

@@ -1,0 +1,41 @@
+"""A hardness: pressures between zero and a greatest one."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import roughcontact as rc
+
+SCENE = {"waves": 8, "grid": 128, "e_star": 1e9, "pressure": 1e6}
+
+
+def test_a_hardness_bounds_the_pressure_and_is_said():
+    result = rc.solve(**SCENE, hardness=5e6)
+    assert result.pressure.max() <= result.hardness * (1 + 1e-15) and result.hardness == pytest.approx(5e6, rel=1e-15)
+    assert 0.0 < result.plastic_area_fraction < result.area_fraction
+    assert result.plastic_area_fraction_error > 0.0
+    plastic = result.plastic_gap
+    assert plastic.shape == result.gap.shape and plastic.min() >= 0.0 and not plastic.flags.writeable
+    assert plastic.mean() == pytest.approx(result.mean_plastic_gap, rel=1e-3)
+    assert not plastic[result.pressure < 0.99 * result.hardness].any()
+    # Before plastic flow the gap is displacement minus heights, up to a constant.
+    copy = pickle.loads(pickle.dumps(result))
+    assert copy.plastic_gap.tobytes() == plastic.tobytes() and copy.hardness == result.hardness
+
+
+def test_without_a_hardness_there_is_nothing_plastic():
+    result = rc.solve(**SCENE)
+    assert result.hardness is None and result.plastic_area_fraction is None and result.plastic_gap is None
+    assert result.plastic_area_fraction_error is None and result.mean_plastic_gap is None
+
+
+def test_what_it_cannot_bear_is_refused():
+    with pytest.raises(ValueError, match="hardness: .* cannot bear"):
+        rc.solve(**SCENE, hardness=1e6)
+
+
+def test_a_sweep_has_it_in_every_row():
+    table = rc.sweep(waves=8, grid=64, e_star=1e9, pressures=[1e5, 1e6], hardness=5e6)
+    fractions = np.array([row["plastic_area_fraction"] for row in table])
+    assert fractions.shape == (2,) and fractions[0] < fractions[1]
