@@ -7,6 +7,7 @@ mod dist;
 mod docs;
 mod figures;
 mod gfmd;
+mod guide_figures;
 mod process;
 mod python;
 mod slurm;
@@ -55,6 +56,7 @@ enum Command {
     Figures(figures::AllArgs),
     Reproduction(figures::ReproductionArgs),
     Gfmd(gfmd::Args),
+    GuideFigures(guide_figures::Args),
     Challenge(challenge::Args),
     /// Tabulates and draws the truncation error of the image sums against shells and time, beside the exact coefficients
     KernelError(figures::Args),
@@ -87,6 +89,7 @@ fn main() -> anyhow::Result<()> {
         Command::Figures(args) => figures::run_all(&args),
         Command::Reproduction(args) => figures::run_reproduction(&args),
         Command::Gfmd(args) => gfmd::run(&args),
+        Command::GuideFigures(args) => guide_figures::run(&args),
         Command::Challenge(args) => challenge::run(&args),
         Command::KernelError(args) => figures::run::<KernelErrors>(&args),
         Command::Accuracy(args) => figures::run::<Accuracy>(&args),

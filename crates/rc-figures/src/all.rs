@@ -104,7 +104,7 @@ mod tests {
             let Output { status, stdout, .. } = reviewed_with(instructions);
             let report = String::from_utf8_lossy(&stdout);
             assert!(status.success(), "RC_SIMD={instructions}:\n{report}");
-            assert_eq!(report.matches("... ok").count(), 11, "RC_SIMD={instructions}:\n{report}");
+            assert_eq!(report.matches("... ok").count(), 15, "RC_SIMD={instructions}:\n{report}");
         }
         // And the variable is what decides.
         let Output { status, stdout, .. } = reviewed_with("mmx");

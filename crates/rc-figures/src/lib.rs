@@ -11,6 +11,7 @@ pub mod blocks;
 pub mod challenge;
 pub mod comparison;
 pub mod documents;
+pub mod guide;
 pub mod numeric;
 pub mod repository;
 pub mod reproduction;

@@ -1,6 +1,6 @@
 //! Pictures: maps of fields and line plots, as PNG or SVG, with an embedded font.
 //!
-//! A [`Picture`] draws itself on any backend; [`save_png`] and [`save_svg`] write it. [`draw_map`] and [`draw_lines`] fill an
+//! A [`Picture`] draws itself on any backend; [`save_png`], [`save_small_png`] and [`save_svg`] write it. [`draw_map`] and [`draw_lines`] fill an
 //! area of a larger picture, so figures are put together from them.
 
 mod colour;
@@ -16,7 +16,7 @@ use plotters::prelude::{DrawingArea, DrawingBackend};
 use thiserror::Error;
 
 pub use colour::Palette;
-pub use file::{save_png, save_svg};
+pub use file::{save_png, save_small_png, save_svg};
 pub use font::{FONT, register_font};
 pub use lines::{LinePlot, LineStyle, Series, draw_lines};
 pub use map::{Map, Shade, bitmap_size, draw_map, map_extent};
