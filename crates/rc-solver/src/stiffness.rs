@@ -106,7 +106,7 @@ fn search(
     stiffness
 }
 
-/// The part of the cell in contact from which the first direction is the preconditioned residual. `docs/uniform-solver.md` compares both.
+/// The part of the cell in contact from which the first direction is the preconditioned residual. `docs/measurements-uniform.md` compares both.
 const HEAVY_CONTACT: f64 = 0.5;
 
 /// Directions that are along the first one: the pressure itself, whose best multiple has the secant stiffness σ0²/mean(p v), or, in heavy

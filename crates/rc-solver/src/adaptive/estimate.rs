@@ -53,7 +53,7 @@ impl Estimate {
     pub(crate) const GREATEST_ADAPTIVE_AREA: f64 = 0.35;
 
     /// Above this fraction of the cell in tiles near contact, as the base grid finds it, the uniform grid is faster: measured on 27 scenes
-    /// (docs/adaptive-solver.md).
+    /// (docs/measurements-adaptive.md).
     pub(crate) const GREATEST_TILE_FRACTION: f64 = 0.35;
 
     pub(super) fn new(heights: &Heights<'_>, border_level: usize, problem: &Problem) -> Self {

@@ -20,7 +20,7 @@ struct ActiveSet {
 }
 
 /// The part of the cell in contact above which each step is clipped, and what joins the contact gets a pressure at once.
-/// `docs/uniform-solver.md` compares both rules.
+/// `docs/measurements-uniform.md` compares both rules.
 const HEAVY_CONTACT: f64 = 0.5;
 
 /// What displaces a square of side 1 by 1 at its centre when it presses on it alone, π / (4 ln(1 + √2)) E*.

@@ -77,7 +77,7 @@ fn energy_error(split: GapSplit, base_grid: Grid, grid: Grid, rng: &mut impl Rng
 }
 
 #[test]
-#[expect(clippy::print_stdout, reason = "docs/adaptive-solver.md has the numbers")]
+#[expect(clippy::print_stdout, reason = "docs/measurements-adaptive.md has the numbers")]
 fn the_error_in_the_energy_norm_does_not_grow_with_the_levels() {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     for (error, bound) in [(1e-6, 4.5e-5), (2e-9, 4e-7), (1e-10, 4e-9)] {
@@ -94,7 +94,7 @@ fn the_error_in_the_energy_norm_does_not_grow_with_the_levels() {
 
 /// The error in the energy norm does not depend on whether sides are halves of each other, nor on the shape of the cell.
 #[test]
-#[expect(clippy::print_stdout, reason = "docs/adaptive-solver.md has the numbers")]
+#[expect(clippy::print_stdout, reason = "docs/measurements-adaptive.md has the numbers")]
 fn the_error_in_the_energy_norm_is_the_same_on_any_grid() {
     let mut rng = ChaCha8Rng::seed_from_u64(4);
     for (error, bound) in [(1e-6, 4.5e-5), (2e-9, 4e-7), (1e-10, 4e-9)] {
@@ -279,13 +279,13 @@ const ENERGY: [ErrorBound; 2] = [ErrorBound::Energy(1e-2), ErrorBound::Energy(2e
 const RELATIVE: [ErrorBound; 2] = [ErrorBound::Relative(1e-6), ErrorBound::Relative(1e-8)];
 
 #[test]
-#[expect(clippy::print_stdout, reason = "docs/adaptive-solver.md has the numbers")]
+#[expect(clippy::print_stdout, reason = "docs/measurements-adaptive.md has the numbers")]
 fn an_audit_by_fourier_transform_finds_no_more_than_is_claimed() {
     for_each_scene(&[ENERGY, RELATIVE].concat(), |name, scene, audited| println!("{}", audit(name, scene, audited)));
 }
 
 #[test]
-#[expect(clippy::print_stdout, reason = "docs/adaptive-solver.md has the numbers")]
+#[expect(clippy::print_stdout, reason = "docs/measurements-adaptive.md has the numbers")]
 fn an_audit_on_any_grid_finds_no_more_than_is_claimed() {
     let bounds = [ENERGY[0], RELATIVE[0], RELATIVE[1]];
     for_any_grid(&bounds, |name, scene, audited| println!("{}", audit(name, scene, audited)));

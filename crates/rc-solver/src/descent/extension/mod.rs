@@ -7,7 +7,7 @@
 //! iterations grow with the number of scales. Here u between contacts is interpolated from means over squares of 2, 4, 8, … elements,
 //! each as far as its elements are active.
 //!
-//! `docs/uniform-solver.md` has what it gives.
+//! `docs/measurements-uniform.md` has what it gives.
 
 mod finest;
 mod pyramid;
