@@ -1,4 +1,4 @@
-//! The tables in README.md and docs/benchmarks.md, from `data/bench/`.
+//! The tables in README.md and the guide, from `data/bench/`.
 
 use anyhow::Result;
 use rc_figures::blocks;
@@ -12,10 +12,10 @@ use super::reference::{REFERENCE, References};
 use super::scale::row::ScaleRow;
 use super::scale::tables as scale;
 use super::scenes::SCENES;
-use super::tables::{EQUAL_MESHES, equal_meshes, scene, scenes, spreads, statements, times};
+use super::tables::{EQUAL_MESHES, equal_meshes, scene, scenes, short, spreads, statements, times};
 
 /// The documents with blocks of ours.
-const DOCUMENTS: [&str; 4] = ["README.md", "docs/adaptive-solver.md", "docs/benchmarks.md", "docs/faq.md"];
+const DOCUMENTS: [&str; 4] = ["README.md", "docs/benchmarks.md", "docs/faq.md", "docs/measurements-adaptive.md"];
 /// The lines of the archived run.
 pub(super) const BENCH: &str = "data/bench/bench.csv";
 /// Its machine.
@@ -62,11 +62,13 @@ fn bench_block(name: &str, sources: &Sources) -> Result<String, String> {
     let results = Results { rows: &rows, references: &references };
     let first = SCENES[0].name;
     match name {
+        "bench-short" => Ok(short(&results)),
         "bench-stated" => Ok(times(&results, Choice::Stated)),
         "bench-hindsight" => Ok(times(&results, Choice::Hindsight)),
         "bench-statements" => Ok(statements(&results)),
         "bench-behind" => Ok(behind::list(&results)),
         "bench-behind-summary" => Ok(behind::summary(&results)),
+        "bench-behind-count" => Ok(behind::count(&results)),
         "bench-machine" => Ok(format!("{}\n{}", machine(source(MACHINE)?, MACHINE)?, spreads(&results))),
         "bench-scenes" => scenes(&references),
         "bench-scene-stated" => Ok(scene(&results, first, Choice::Stated)),
@@ -90,8 +92,8 @@ fn scale_block(name: &str, sources: &Sources) -> Result<String, String> {
     }
 }
 
-const BENCH_BLOCKS: &str = "bench-stated, bench-hindsight, bench-statements, bench-behind, bench-behind-summary, bench-machine, \
-                            bench-scenes, bench-scene-stated, bench-scene-hindsight, bench-equal";
+const BENCH_BLOCKS: &str = "bench-short, bench-stated, bench-hindsight, bench-statements, bench-behind, bench-behind-summary, \
+                            bench-behind-count, bench-machine, bench-scenes, bench-scene-stated, bench-scene-hindsight, bench-equal";
 const SCALE_BLOCKS: &str = "scale-grids, scale-sentence, scale-threads, scale-contact, scale-machine";
 
 /// One line about the machine and the programs.

@@ -120,7 +120,7 @@ impl<'a> Results<'a> {
         }
     }
 
-    /// The fastest peer's time to an error over ours, both in the best of their settings.
+    /// The ratio of the fastest peer's time to an error to ours, both in the best of their settings.
     pub(super) fn compare(&self, scene: &str, asked: Asked, reading: Reading) -> Comparison {
         let (ours, peer) = (self.ours(scene, asked), self.peers(scene, asked, reading));
         // A finer mesh than the finest that ran would have taken longer than that.
