@@ -3,7 +3,7 @@
 use rc_core::Grid;
 
 use crate::multigrid::Multigrid;
-use crate::network::{Axis, Network};
+use crate::network::{Axis, Network, Potential};
 use crate::parallel;
 
 /// What is solved for: the flow along an axis, and how exactly.
@@ -19,10 +19,35 @@ pub(crate) struct Target {
 #[derive(Debug)]
 pub(crate) struct Pressure {
     /// What is added to the mean fall, of 1 per element along the axis.
-    pub(crate) values: Vec<f64>,
+    values: Vec<f64>,
+    /// What is added to them, where their own digits are not enough.
+    rest: Option<Vec<f32>>,
     pub(crate) iterations: usize,
     /// Largest difference of the flow through a section from the mean over all, relative to the latter.
     pub(crate) conservation: f64,
+}
+
+impl Pressure {
+    pub(crate) fn potential(&self) -> Potential<'_> {
+        Potential { values: &self.values, rest: self.rest.as_deref() }
+    }
+
+    /// Adds `values`, and keeps what is rounded away.
+    fn add(&mut self, values: &mut [f64], block: usize) {
+        let rest = self.rest.get_or_insert_with(|| vec![0.0; values.len()]);
+        let sums = self.values.chunks_mut(block).zip(rest.chunks_mut(block));
+        let blocks = sums.zip(values.chunks_mut(block)).collect();
+        parallel::for_each(blocks, |((sums, rest), values): ((&mut [f64], &mut [f32]), &mut [f64])| {
+            for ((sum, rest), value) in sums.iter_mut().zip(rest).zip(values) {
+                let first = *sum + *value;
+                let back = first - *sum;
+                let lost = (*sum - (first - back)) + (*value - back) + f64::from(*rest);
+                *sum = first + lost;
+                *rest = (lost - (*sum - first)) as f32;
+                *value = 0.0;
+            }
+        });
+    }
 }
 
 impl Target {
@@ -52,47 +77,125 @@ struct Vectors {
 }
 
 /// Solves for the pressure that conserves the flow.
+///
+/// Where the film is much wider in some places than in others, the pressure in wide places differs by less than its last digit. Iterations
+/// then go on with what is missing, added to the pressure in twice the precision.
 pub(crate) fn solve(network: &Network, multigrid: &mut Multigrid, target: Target) -> Pressure {
-    let n = network.grid().len();
-    let block = parallel::rows_per_block(network.grid().nx()) * network.grid().nx();
-    let mut vectors =
-        Vectors { values: vec![0.0; n], residual: vec![0.0; n], direction: vec![0.0; n], applied: vec![0.0; n], block };
-    vectors.start(network, target);
+    let mut iteration = Iteration::new(network, target);
+    let mut pressure = Pressure { values: Vec::new(), rest: None, iterations: 0, conservation: f64::INFINITY };
+    let mut norm = iteration.vectors.write_residual(multigrid.right_mut());
+    let mut expected = f64::INFINITY;
     let mut next_check = f64::INFINITY;
-    let (mut iterations, mut conservation) = (0, f64::INFINITY);
-    let mut work_before = 0.0;
-    let mut norm = vectors.write_residual(multigrid.right_mut());
-    let enough = (norm * 1e-14).max(f64::MIN_POSITIVE);
-    while iterations <= target.max_iterations {
+    loop {
         // Checks cost a pass; the residual says when another makes sense.
-        if norm < next_check {
-            conservation = deviation(&network.sections(&vectors.values, target.fall(), target.axis));
-            if iterations > 0 && conservation <= target.conservation {
+        if norm <= next_check || pressure.iterations >= target.max_iterations {
+            let conservation = iteration.check(&mut pressure);
+            if conservation <= target.conservation || pressure.iterations >= target.max_iterations {
                 break;
             }
-            let ratio = 0.5 * target.conservation / conservation;
-            next_check = norm * ratio.clamp(1e-3, 0.5);
+            if conservation > STAGNATION * expected {
+                iteration.refine(&mut pressure);
+                norm = iteration.vectors.write_residual(multigrid.right_mut());
+            }
+            let ratio = (SAFETY * target.conservation / conservation).clamp(1e-4, SAFETY);
+            (next_check, expected) = (norm * ratio, conservation * ratio);
         }
-        if norm <= enough {
-            break;
+        match iteration.advance(multigrid) {
+            Some(next) => norm = next,
+            None => break,
         }
-        let step = multigrid.cycle();
-        let work = vectors.dot_residual(step);
-        if !(work > 0.0 && work.is_finite()) {
-            break;
-        }
-        let beta = if work_before > 0.0 { work / work_before } else { 0.0 };
-        work_before = work;
-        vectors.turn(step, beta);
-        let curvature = vectors.apply(network);
-        if !(curvature > 0.0 && curvature.is_finite()) {
-            break;
-        }
-        norm = vectors.step(work / curvature, multigrid.right_mut());
-        iterations += 1;
+        pressure.iterations += 1;
     }
-    conservation = deviation(&network.sections(&vectors.values, target.fall(), target.axis)).min(conservation);
-    Pressure { values: vectors.values, iterations, conservation }
+    iteration.finish(pressure)
+}
+
+/// Part of the tolerance that the next check is to find.
+const SAFETY: f64 = 0.4;
+
+/// A check that finds this much more than expected says that the pressure has run out of digits.
+const STAGNATION: f64 = 10.0;
+
+/// Conjugate gradients under way.
+struct Iteration<'a> {
+    network: &'a Network,
+    target: Target,
+    vectors: Vectors,
+    /// ⟨residual, step⟩ of the last iteration; 0 before the first.
+    work: f64,
+}
+
+impl<'a> Iteration<'a> {
+    fn new(network: &'a Network, target: Target) -> Self {
+        let (n, nx) = (network.grid().len(), network.grid().nx());
+        let [values, residual, direction, applied] = [(); 4].map(|()| vec![0.0; n]);
+        let mut vectors = Vectors { values, residual, direction, applied, block: parallel::rows_per_block(nx) * nx };
+        let mut fluxes = std::mem::take(&mut vectors.residual);
+        let start = Potential { values: &vectors.values, rest: None };
+        write_residual_of(network, start, target.fall(), (&mut fluxes, vectors.block));
+        vectors.residual = fluxes;
+        Self { network, target, vectors, work: 0.0 }
+    }
+
+    /// Measures how well the flow so far is conserved.
+    fn check(&mut self, pressure: &mut Pressure) -> f64 {
+        if !pressure.values.is_empty() {
+            pressure.add(&mut self.vectors.values, self.vectors.block);
+        }
+        let so_far = Potential { values: &self.vectors.values, rest: None };
+        let so_far = if pressure.values.is_empty() { so_far } else { pressure.potential() };
+        let sections = self.network.sections(so_far, self.target.fall(), self.target.axis);
+        pressure.conservation = deviation(&sections);
+        pressure.conservation
+    }
+
+    /// Starts anew with what is missing of the pressure.
+    fn refine(&mut self, pressure: &mut Pressure) {
+        if pressure.values.is_empty() {
+            pressure.values = std::mem::replace(&mut self.vectors.values, vec![0.0; self.network.grid().len()]);
+        }
+        let out = (&mut self.vectors.residual[..], self.vectors.block);
+        write_residual_of(self.network, pressure.potential(), self.target.fall(), out);
+        self.work = 0.0;
+    }
+
+    /// One iteration; the norm of the residual after it, or `None` where none is left to descend along.
+    fn advance(&mut self, multigrid: &mut Multigrid) -> Option<f64> {
+        let step = multigrid.cycle();
+        let work = self.vectors.dot_residual(step);
+        if !(work > 0.0 && work.is_finite()) {
+            return None;
+        }
+        let beta = if self.work > 0.0 { work / self.work } else { 0.0 };
+        self.work = work;
+        self.vectors.turn(step, beta);
+        let curvature = self.vectors.apply(self.network);
+        if !(curvature > 0.0 && curvature.is_finite()) {
+            return None;
+        }
+        Some(self.vectors.step(work / curvature, multigrid.right_mut()))
+    }
+
+    /// The pressure, with how well it conserves the flow.
+    fn finish(mut self, mut pressure: Pressure) -> Pressure {
+        self.check(&mut pressure);
+        if pressure.values.is_empty() {
+            pressure.values = self.vectors.values;
+        }
+        pressure
+    }
+}
+
+/// Writes what flows into elements in excess of what flows out, in blocks of `block` elements.
+fn write_residual_of(network: &Network, pressure: Potential<'_>, fall: [f64; 2], (out, block): (&mut [f64], usize)) {
+    let nx = network.grid().nx();
+    let blocks = out.chunks_mut(block).zip(network.blocks()).collect();
+    parallel::for_each(blocks, |(residual, rows): (&mut [f64], [usize; 2])| {
+        network.visit_fluxes(rows, pressure, fall, &mut |row| {
+            let out = &mut residual[(row.iy - rows[0]) * nx..][..nx];
+            row.write_outflow(out);
+            out.iter_mut().for_each(|out| *out = -*out);
+        });
+    });
 }
 
 /// Largest difference from the mean, relative to it.
@@ -103,19 +206,6 @@ fn deviation(sections: &[f64]) -> f64 {
 }
 
 impl Vectors {
-    /// The residual of no added pressure.
-    fn start(&mut self, network: &Network, target: Target) {
-        let (nx, values) = (network.grid().nx(), &self.values);
-        let blocks = self.residual.chunks_mut(self.block).zip(network.blocks()).collect();
-        parallel::for_each(blocks, |(residual, rows): (&mut [f64], [usize; 2])| {
-            network.visit_fluxes(rows, values, target.fall(), &mut |row| {
-                let out = &mut residual[(row.iy - rows[0]) * nx..][..nx];
-                row.write_outflow(out);
-                out.iter_mut().for_each(|out| *out = -*out);
-            });
-        });
-    }
-
     /// Writes the residual in single precision, and gives its norm.
     fn write_residual(&self, right: &mut [f32]) -> f64 {
         let blocks = self.residual.chunks(self.block).zip(right.chunks_mut(self.block)).collect();
@@ -147,7 +237,7 @@ impl Vectors {
         let blocks = self.applied.chunks_mut(self.block).zip(network.blocks()).collect();
         parallel::sum(blocks, |(applied, rows): (&mut [f64], [usize; 2])| {
             let mut curvature = 0.0;
-            network.visit_fluxes(rows, direction, [0.0; 2], &mut |row| {
+            network.visit_fluxes(rows, Potential { values: direction, rest: None }, [0.0; 2], &mut |row| {
                 let out = &mut applied[(row.iy - rows[0]) * nx..][..nx];
                 row.write_outflow(out);
                 let direction = &direction[row.iy * nx..(row.iy + 1) * nx];

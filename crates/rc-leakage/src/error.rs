@@ -16,7 +16,9 @@ pub enum LeakageError {
         value: f64,
     },
     /// The flow through sections still differs after the most iterations.
-    #[error("the flow along {axis} through two sections of {grid} elements differs by {conservation:.1e} of it after {iterations} iterations")]
+    #[error(
+        "the flow along {axis} through two sections of {grid} elements differs by {conservation:.1e} of it after {iterations} iterations"
+    )]
     NotConverged {
         /// Direction of the flow.
         axis: &'static str,

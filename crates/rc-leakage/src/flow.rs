@@ -4,7 +4,7 @@ use rc_core::{Field, Grid};
 
 use crate::clusters::Clusters;
 use crate::constriction::{Constriction, Thresholds};
-use crate::descent::{self, Target, elements_along};
+use crate::descent::{self, Pressure, Target, elements_along};
 use crate::error::LeakageError;
 use crate::flux::Flux;
 use crate::multigrid::Multigrid;
@@ -127,16 +127,12 @@ struct Solved {
 }
 
 /// Permeances along both axes, and the flux along that of the larger one.
-fn flows(
-    gap: &Field,
-    params: &LeakageParams,
-    with_flux: bool,
-) -> Result<([(f64, FlowInfo); 2], Solved), LeakageError> {
+fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<([(f64, FlowInfo); 2], Solved), LeakageError> {
     let mut clusters = Clusters::above(gap, 0.0, false);
     let percolates = clusters.percolates();
     let masks = Axis::BOTH.map(|axis| clusters.winding(axis));
     let mut results = [(0.0, FlowInfo::default()); 2];
-    let mut kept: Option<(Target, Vec<f64>)> = None;
+    let mut kept: Option<(Target, Pressure)> = None;
     let mut prepared: Option<(usize, Network, Multigrid)> = None;
     for axis in Axis::BOTH.into_iter().filter(|axis| percolates[axis.index()]) {
         let i = axis.index();
@@ -160,7 +156,7 @@ fn flows(
     let flux = kept.map(|(target, pressure)| {
         let network = network_of(gap, &clusters, &masks[target.axis.index()]);
         let factor = network.unscaled(1.0) / elements_along(gap.grid(), target.axis) as f64;
-        Flux::of(&network, &pressure, target, factor)
+        Flux::of(&network, pressure.potential(), target, factor)
     });
     Ok((results, Solved { percolates, flux }))
 }
@@ -180,7 +176,7 @@ fn one_flow(
     network: &Network,
     multigrid: &mut Multigrid,
     target: Target,
-) -> Result<((f64, FlowInfo), Vec<f64>), LeakageError> {
+) -> Result<((f64, FlowInfo), Pressure), LeakageError> {
     let grid: Grid = network.grid();
     let pressure = descent::solve(network, multigrid, target);
     let info = FlowInfo { iterations: pressure.iterations, conservation: pressure.conservation };
@@ -193,6 +189,6 @@ fn one_flow(
         });
     }
     let n = elements_along(grid, target.axis) as f64;
-    let permeance = network.unscaled(network.power(&pressure.values, target.fall())) / (n * n);
-    Ok(((permeance, info), pressure.values))
+    let permeance = network.unscaled(network.power(pressure.potential(), target.fall())) / (n * n);
+    Ok(((permeance, info), pressure))
 }

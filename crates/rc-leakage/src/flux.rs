@@ -3,7 +3,7 @@
 use rc_core::Field;
 
 use crate::descent::Target;
-use crate::network::Network;
+use crate::network::{Network, Potential};
 use crate::parallel;
 
 /// The flux at the centres of elements: the volume that flows across a unit of length, for a pressure that falls by one across the cell and
@@ -18,7 +18,7 @@ pub struct Flux {
 
 impl Flux {
     /// Mean of the fluxes through opposite faces of each element; `factor` is that of a unit fall per element.
-    pub(crate) fn of(network: &Network, pressure: &[f64], target: Target, factor: f64) -> Self {
+    pub(crate) fn of(network: &Network, pressure: Potential<'_>, target: Target, factor: f64) -> Self {
         let grid = network.grid();
         let (nx, spacing) = (grid.nx(), grid.spacing());
         let [per_x, per_y] = [0.5 * factor / spacing.y, 0.5 * factor / spacing.x];

@@ -13,6 +13,14 @@ pub enum Axis {
     Y,
 }
 
+/// A pressure at elements, to more digits than one number holds: fluxes in wide places come from its last ones.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Potential<'a> {
+    pub(crate) values: &'a [f64],
+    /// What is added to them.
+    pub(crate) rest: Option<&'a [f32]>,
+}
+
 impl Axis {
     /// Both, x first.
     pub const BOTH: [Self; 2] = [Self::X, Self::Y];
@@ -130,15 +138,16 @@ impl Network {
     pub(crate) fn visit_fluxes(
         &self,
         [first, end]: [usize; 2],
-        pressure: &[f64],
+        pressure: Potential<'_>,
         fall: [f64; 2],
         visit: &mut dyn FnMut(RowFluxes<'_>),
     ) {
         let (nx, ny) = (self.grid.nx(), self.grid.ny());
         let row_of = |iy: usize| {
             let range = (iy % ny) * nx..(iy % ny + 1) * nx;
-            (&pressure[range.clone()], &self.resistances[range])
+            (&pressure.values[range.clone()], &self.resistances[range])
         };
+        let rest_of = |iy: usize| pressure.rest.map(|rest| &rest[(iy % ny) * nx..(iy % ny + 1) * nx]);
         let across_y = |out: &mut [f64], below: (&[f64], &[f64]), above: (&[f64], &[f64])| {
             let (below, above) = (below.0.iter().zip(below.1), above.0.iter().zip(above.1));
             for (out, ((p, r), (q, s))) in out.iter_mut().zip(below.zip(above)) {
@@ -148,9 +157,11 @@ impl Network {
         let mut rows = [vec![0.0; nx], vec![0.0; nx], vec![0.0; nx]];
         let [east, north, south] = &mut rows;
         across_y(south, row_of(first + ny - 1), row_of(first));
+        self.add_rest(south, first + ny - 1, [rest_of(first + ny - 1), rest_of(first)]);
         for iy in first..end {
             let (row, resistances) = row_of(iy);
             across_y(north, (row, resistances), row_of(iy + 1));
+            self.add_rest(north, iy, [rest_of(iy), rest_of(iy + 1)]);
             let aspect = self.aspects[0];
             let pairs = row.windows(2).zip(resistances.windows(2));
             for (out, (p, r)) in east.iter_mut().zip(pairs) {
@@ -158,8 +169,25 @@ impl Network {
             }
             let last = nx - 1;
             east[last] = aspect / (resistances[last] + resistances[0]) * (row[last] - row[0] + fall[0]);
+            if let Some(rest) = rest_of(iy) {
+                for ix in 0..nx {
+                    let next = if ix < last { ix + 1 } else { 0 };
+                    let conductance = aspect / (resistances[ix] + resistances[next]);
+                    east[ix] += conductance * (f64::from(rest[ix]) - f64::from(rest[next]));
+                }
+            }
             visit(RowFluxes { iy, east, north, south });
             std::mem::swap(north, south);
+        }
+    }
+
+    /// Adds to the fluxes from row `iy` to the next what the rest of the pressure drives.
+    fn add_rest(&self, fluxes: &mut [f64], iy: usize, rest: [Option<&[f32]>; 2]) {
+        let (nx, ny) = (self.grid.nx(), self.grid.ny());
+        let [Some(below), Some(above)] = rest else { return };
+        let [r, s] = [iy, iy + 1].map(|iy| &self.resistances[(iy % ny) * nx..(iy % ny + 1) * nx]);
+        for (ix, flux) in fluxes.iter_mut().enumerate() {
+            *flux += self.aspects[1] / (r[ix] + s[ix]) * (f64::from(below[ix]) - f64::from(above[ix]));
         }
     }
 
@@ -171,7 +199,7 @@ impl Network {
 
     /// Power of the flow, Σ conductance · fall²: the permeance for a unit fall across the cell, where the pressure is exact, and an upper
     /// bound of it for any pressure.
-    pub(crate) fn power(&self, pressure: &[f64], fall: [f64; 2]) -> f64 {
+    pub(crate) fn power(&self, pressure: Potential<'_>, fall: [f64; 2]) -> f64 {
         let nx = self.grid.nx();
         parallel::sum(self.blocks(), |block| {
             let mut power = 0.0;
@@ -187,7 +215,7 @@ impl Network {
     }
 
     /// Flow through each section across `axis`, summed over the section in its order.
-    pub(crate) fn sections(&self, pressure: &[f64], fall: [f64; 2], axis: Axis) -> Vec<f64> {
+    pub(crate) fn sections(&self, pressure: Potential<'_>, fall: [f64; 2], axis: Axis) -> Vec<f64> {
         let blocks = parallel::map(self.blocks(), |block| {
             let mut sums = match axis {
                 Axis::X => vec![0.0; self.grid.nx()],

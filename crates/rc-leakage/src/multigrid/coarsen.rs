@@ -35,10 +35,12 @@ pub(super) fn coarsen(fine: &Stencil, interpolation: &Interpolation) -> Stencil 
     };
     let at = |column: usize, row: usize| &squares[row * nx + column];
     // A bond of an element to itself carries nothing.
-    let east =
-        |column: usize, row: usize| if nx > 1 { at(column, row).bottom + at(column, (row + ny - 1) % ny).top } else { 0.0 };
-    let north =
-        |column: usize, row: usize| if ny > 1 { at(column, row).left + at((column + nx - 1) % nx, row).right } else { 0.0 };
+    let east = |column: usize, row: usize| {
+        if nx > 1 { at(column, row).bottom + at(column, (row + ny - 1) % ny).top } else { 0.0 }
+    };
+    let north = |column: usize, row: usize| {
+        if ny > 1 { at(column, row).left + at((column + nx - 1) % nx, row).right } else { 0.0 }
+    };
     let corner = |value: f32| if nx > 1 || ny > 1 { value } else { 0.0 };
     let corners = Corners {
         rising: of(&|column, row| corner(at(column, row).rising)),

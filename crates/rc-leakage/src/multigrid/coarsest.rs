@@ -71,7 +71,7 @@ fn factorise(mut a: Vec<f64>, n: usize) -> Vec<f64> {
             let factor = if pivot > 0.0 { entry / pivot } else { 0.0 };
             if factor != 0.0 {
                 for k in j + 1..=i {
-                    a[i * n + k] -= factor * a[k * n + j] ;
+                    a[i * n + k] -= factor * a[k * n + j];
                 }
             }
         }

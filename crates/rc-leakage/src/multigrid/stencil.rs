@@ -51,28 +51,54 @@ struct RowCorners<'a> {
     falling_below: &'a [f32],
 }
 
-/// Values of a row and of its neighbours.
-struct RowValues<'a> {
-    below: &'a [f32],
-    above: &'a [f32],
-}
-
 impl RowBonds<'_> {
-    /// Σ conductance · value of the neighbours of element `i`, whose neighbours along x are `before` and `after`.
+    /// Adds to `out` Σ conductance · `pull`(neighbour, element) over the neighbours in the rows below and above.
     #[inline(always)]
-    fn pull(&self, row: &[f32], values: &RowValues<'_>, [before, i, after]: [usize; 3]) -> f32 {
-        let RowValues { below, above } = values;
-        let mut pull = self.east[i] * row[after] + self.east[before] * row[before];
-        pull += self.north[i] * above[i] + self.south[i] * below[i];
-        if let Some(corners) = &self.corners {
-            pull += corners.rising[i] * above[after] + corners.rising_below[before] * below[before];
-            pull += corners.falling[before] * above[before] + corners.falling_below[i] * below[after];
+    fn add_across(&self, [below, row, above]: [&[f32]; 3], out: &mut [f32], pull: impl Fn(f32, f32) -> f32) {
+        let last = out.len() - 1;
+        let vertical = self.north.iter().zip(above).zip(self.south.iter().zip(below));
+        for ((out, &own), ((north, &above), (south, &below))) in out.iter_mut().zip(row).zip(vertical) {
+            *out += north * pull(above, own) + south * pull(below, own);
         }
-        pull
+        let Some(corners) = &self.corners else { return };
+        // From the elements before to those after, and the reverse; around the cell by themselves.
+        let to_after = corners.rising.iter().zip(&above[1..]).zip(corners.falling_below.iter().zip(&below[1..]));
+        for ((out, &own), ((rising, &above), (falling, &below))) in out.iter_mut().zip(row).zip(to_after) {
+            *out += rising * pull(above, own) + falling * pull(below, own);
+        }
+        let to_before = corners.falling.iter().zip(above).zip(corners.rising_below.iter().zip(below));
+        for ((out, &own), ((falling, &above), (rising, &below))) in out[1..].iter_mut().zip(&row[1..]).zip(to_before) {
+            *out += falling * pull(above, own) + rising * pull(below, own);
+        }
+        out[last] += corners.rising[last] * pull(above[0], row[last]);
+        out[last] += corners.falling_below[last] * pull(below[0], row[last]);
+        out[0] += corners.falling[last] * pull(above[last], row[0]);
+        out[0] += corners.rising_below[last] * pull(below[last], row[0]);
+    }
+
+    /// Relaxes every second element from `first` on; `pull` is the right side and what the rows below and above add to it.
+    fn relax_along(&self, row: &mut [f32], pull: &[f32], inverse: &[f32], first: usize) {
+        let (n, east) = (row.len(), self.east);
+        for_ring(n, first, 2, |[before, i, after]| {
+            row[i] = (pull[i] + east[i] * row[after] + east[before] * row[before]) * inverse[i];
+        });
+    }
+
+    /// Adds to `out` Σ conductance · (neighbour - element) over the neighbours along x.
+    fn add_along(&self, row: &[f32], out: &mut [f32]) {
+        let last = row.len() - 1;
+        for ((out, pair), east) in out.iter_mut().zip(row.windows(2)).zip(self.east) {
+            *out += east * (pair[1] - pair[0]);
+        }
+        for ((out, pair), east) in out[1..].iter_mut().zip(row.windows(2)).zip(self.east) {
+            *out += east * (pair[0] - pair[1]);
+        }
+        let around = self.east[last] * (row[0] - row[last]);
+        out[last] += around;
+        out[0] -= around;
     }
 
     /// Σ conductance of the bonds of element `i`.
-    #[inline(always)]
     fn total(&self, [before, i, _]: [usize; 3]) -> f32 {
         let mut total = self.east[i] + self.east[before] + self.north[i] + self.south[i];
         if let Some(corners) = &self.corners {
@@ -137,7 +163,7 @@ impl Stencil {
         self.inverse = inverse;
     }
 
-    /// One sweep of Gauss and Seidel in colours over blocks of rows; two colours with bonds across faces only, four with corners.
+    /// One sweep of Gauss and Seidel in four colours over blocks of rows: every second row, and in it every second element.
     pub(super) fn relax(&self, x: &mut [f32], right: &[f32], order: Order) {
         let nx = self.nx;
         let borders: Vec<[Vec<f32>; 2]> = (0..self.ny)
@@ -149,68 +175,54 @@ impl Stencil {
             .collect();
         let blocks = x.chunks_mut(BLOCK_ROWS * nx).zip(borders).enumerate().collect();
         parallel::for_each(blocks, |(block, (x, borders)): (usize, (&mut [f32], [Vec<f32>; 2]))| {
-            self.relax_block(block * BLOCK_ROWS, x, &borders, right, order);
+            let (rows, mut pull) = (x.len() / nx, vec![0.0; nx]);
+            let mut block = RowBlock { first: block * BLOCK_ROWS, x, borders };
+            let parity = match order {
+                Order::Forward => 0,
+                Order::Backward => 1,
+            };
+            for row in 0..=rows {
+                if row < rows && row % 2 == parity {
+                    self.relax_row(&mut block, row, right, (order, &mut pull));
+                }
+                if row > 0 && (row - 1) % 2 != parity {
+                    self.relax_row(&mut block, row - 1, right, (order, &mut pull));
+                }
+            }
         });
     }
 
-    /// Relaxes some rows from `first` on. The first half of the colours of a row goes before the second half of its neighbours.
-    fn relax_block(&self, first: usize, x: &mut [f32], borders: &[Vec<f32>; 2], right: &[f32], order: Order) {
-        let rows = x.len() / self.nx;
-        for row in 0..=rows {
-            if row < rows {
-                self.relax_row(first, (row, x), borders, right, (order, 0));
-            }
-            if row > 0 {
-                self.relax_row(first, (row - 1, x), borders, right, (order, 1));
-            }
-        }
-    }
-
-    /// Relaxes what of row `row` of a block is in the first or in the second half of the colours.
-    fn relax_row(
-        &self,
-        first: usize,
-        (row, x): (usize, &mut [f32]),
-        borders: &[Vec<f32>; 2],
-        right: &[f32],
-        (order, half): (Order, usize),
-    ) {
-        let (nx, iy) = (self.nx, first + row);
-        let second = match order {
-            Order::Forward => half,
-            Order::Backward => 1 - half,
-        };
-        let (before, rest) = x.split_at_mut(row * nx);
+    fn relax_row(&self, block: &mut RowBlock<'_>, row: usize, right: &[f32], (order, pull): (Order, &mut [f32])) {
+        let (nx, iy) = (self.nx, block.first + row);
+        let (before, rest) = block.x.split_at_mut(row * nx);
         let (values, after) = rest.split_at_mut(nx);
-        let neighbours = RowValues {
-            below: if before.is_empty() { &borders[0] } else { &before[before.len() - nx..] },
-            above: if after.is_empty() { &borders[1] } else { &after[..nx] },
-        };
+        let below = if before.is_empty() { &block.borders[0] } else { &before[before.len() - nx..] };
+        let above = if after.is_empty() { &block.borders[1] } else { &after[..nx] };
         let bonds = self.bonds(iy);
-        let (right, inverse) = (&right[iy * nx..(iy + 1) * nx], &self.inverse[iy * nx..(iy + 1) * nx]);
-        let mut relax = |first: usize| {
-            for_ring(nx, first, 2, |at| {
-                values[at[1]] = (right[at[1]] + bonds.pull(values, &neighbours, at)) * inverse[at[1]];
-            });
+        pull.copy_from_slice(&right[iy * nx..(iy + 1) * nx]);
+        bonds.add_across([below, values, above], pull, |neighbour, _| neighbour);
+        let inverse = &self.inverse[iy * nx..(iy + 1) * nx];
+        let columns = match order {
+            Order::Forward => [0, 1],
+            Order::Backward => [1, 0],
         };
-        if self.corners.is_none() {
-            relax((iy + second) % 2);
-        } else if iy % 2 == second {
-            match order {
-                Order::Forward => [0, 1].into_iter().for_each(&mut relax),
-                Order::Backward => [1, 0].into_iter().for_each(&mut relax),
-            }
-        }
+        columns.into_iter().for_each(|first| bonds.relax_along(values, pull, inverse, first));
     }
 
     /// Writes `right` less what the network draws under `x`, of row `iy`.
     pub(super) fn residual(&self, x: &[f32], right: &[f32], iy: usize, out: &mut [f32]) {
-        let nx = self.nx;
-        let row = |iy: usize| &x[iy * nx..(iy + 1) * nx];
-        let values = RowValues { below: row((iy + self.ny - 1) % self.ny), above: row((iy + 1) % self.ny) };
-        let (bonds, values_here, right) = (self.bonds(iy), row(iy), &right[iy * nx..(iy + 1) * nx]);
-        for_ring(nx, 0, 1, |at| {
-            out[at[1]] = right[at[1]] + bonds.pull(values_here, &values, at) - bonds.total(at) * values_here[at[1]];
-        });
+        let row = |iy: usize| &x[iy * self.nx..(iy + 1) * self.nx];
+        let rows = [row((iy + self.ny - 1) % self.ny), row(iy), row((iy + 1) % self.ny)];
+        let bonds = self.bonds(iy);
+        out.copy_from_slice(&right[iy * self.nx..(iy + 1) * self.nx]);
+        bonds.add_across(rows, out, |neighbour, own| neighbour - own);
+        bonds.add_along(rows[1], out);
     }
+}
+
+/// Rows that are relaxed together, from row `first` on, and the rows before and after them as they were before the sweep.
+struct RowBlock<'a> {
+    first: usize,
+    x: &'a mut [f32],
+    borders: [Vec<f32>; 2],
 }
