@@ -12,6 +12,7 @@ mod curves;
 mod document;
 mod embedded;
 mod page;
+mod percolation;
 mod spot_sizes;
 
 use std::path::Path;

@@ -8,6 +8,7 @@ use rc_solver::{ContactProblem, Plan, Solution, SolveError, SolveParams};
 use rc_sweep::Summary;
 use rc_sweep::memory::Budget;
 
+use super::leakage::SolvedFlow;
 use super::messages;
 use super::result_files::{MapHeights, ResultFiles};
 use crate::error::CliError;
@@ -35,7 +36,22 @@ pub struct Solved<'a> {
     solution: Solution<'a>,
     /// What is said of a solution that did not reach the tolerance.
     failure: Option<String>,
+    /// The flow through the gap, where it is asked for.
+    flow: Option<SolvedFlow>,
     wall: Duration,
+}
+
+/// A solved problem without its surface and contact.
+#[derive(Debug)]
+pub struct SolvedParts<'a> {
+    /// The solution.
+    pub solution: Solution<'a>,
+    /// What is said of a solution that did not reach the tolerance, or of a flow that did not converge.
+    pub failure: Option<String>,
+    /// The flow through the gap, where it is asked for and converged.
+    pub flow: Option<SolvedFlow>,
+    /// Time to the certified solution.
+    pub wall: Duration,
 }
 
 impl<'a> ProblemSetup<'a> {
@@ -128,7 +144,13 @@ impl<'a> ProblemSetup<'a> {
             }
             Err(error) => return Err(self.refuse(&error)),
         };
-        Ok(Solved { problem: self, solution, failure, wall: started.elapsed() })
+        let wall = started.elapsed();
+        let (flow, failure) = match self.contact.keys.leakage.then(|| SolvedFlow::of(&solution, self.contact.units)) {
+            Some(Ok(flow)) => (Some(flow), failure),
+            Some(Err(error)) => (None, failure.or_else(|| Some(format!("leakage: {error}")))),
+            None => (None, failure),
+        };
+        Ok(Solved { problem: self, solution, failure, flow, wall })
     }
 
     fn refuse(&self, error: &SolveError) -> CliError {
@@ -137,10 +159,11 @@ impl<'a> ProblemSetup<'a> {
 }
 
 impl<'a> Solved<'a> {
-    /// The solution, what is said of it if it did not reach the tolerance, and the time that it took.
+    /// What it is made of, without the problem.
     #[must_use]
-    pub fn into_parts(self) -> (Solution<'a>, Option<String>, Duration) {
-        (self.solution, self.failure, self.wall)
+    pub fn into_parts(self) -> SolvedParts<'a> {
+        let Self { solution, failure, flow, wall, .. } = self;
+        SolvedParts { solution, failure, flow, wall }
     }
 
     /// What is to be said of a solution that did not reach the tolerance.
@@ -168,7 +191,7 @@ impl<'a> Solved<'a> {
         let ProblemSetup { surface, contact, .. } = self.problem;
         let map = surface.map().map(|(heights, as_read)| MapHeights::InCell { heights, as_read });
         let waves = surface.wave_file().map(AsRef::as_ref);
-        ResultFiles { surface: &surface.keys, map, waves, contact, solution: &self.solution }
+        ResultFiles { surface: &surface.keys, map, waves, contact, solution: &self.solution, flow: self.flow.as_ref() }
     }
 }
 

@@ -9,6 +9,8 @@ use rc_solver::Plan;
 use rc_sweep::memory::Budget;
 use rc_sweep::{Cells, Latest, RowError, RowSolver, Summary, Sweep, SweepRow, replace_fields};
 
+use serde_json::Value;
+
 use super::bar::RowBar;
 use super::surfaces::Surfaces;
 use crate::error::CliError;
@@ -70,7 +72,14 @@ impl<'a> SceneRows<'a> {
         if let Some(folder) = folder {
             write_fields(&folder, &solved, &summary)?;
         }
-        Ok(summary.cells())
+        let mut cells = summary.cells();
+        if contact.keys.leakage {
+            // Of a flow that did not converge: every row has the same columns.
+            for column in ["permeance_x", "permeance_y", "percolates"] {
+                cells.entry(column).or_insert(Value::Null);
+            }
+        }
+        Ok(cells)
     }
 }
 

@@ -31,6 +31,7 @@ pub(crate) const KEYS: [&str; 42] = [
     "mean_gap",
     "mean_gap_error",
     "contact_stiffness",
+    "contact_conductance",
     "elastic_energy",
     "rms_height",
     "rms_slope",

@@ -1,0 +1,26 @@
+//! The flow through the gap, as a summary has it.
+
+use serde::{Deserialize, Serialize};
+
+/// Flow of a thin film along x and along y under a pressure that falls by ΔP across the cell. Lists are of these two.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LeakageSummary {
+    /// K of the flow Q = K ΔP/(12 η) with the viscosity η (m³): 0 where nothing percolates.
+    pub permeance: [f64; 2],
+    /// Estimated error of the grid (m³): the difference from the permeance of every second element.
+    pub permeance_error: [Option<f64>; 2],
+    /// Axis with the larger permeance, whose flow is drawn and written: `x` or `y`; null where nothing flows.
+    pub flow_direction: Option<String>,
+    /// Whether the film winds around the cell.
+    pub percolates: [bool; 2],
+    /// Gap of the narrowest place of the widest path (m).
+    pub critical_gap: [Option<f64>; 2],
+    /// Where it is (m).
+    pub critical_place: [Option<[f64; 2]>; 2],
+    /// Largest difference of the flow through a section from the mean over all, relative to it.
+    pub conservation_error: [f64; 2],
+    /// Iterations.
+    pub iterations: [usize; 2],
+    /// Seconds for both flows.
+    pub wall_seconds: f64,
+}
