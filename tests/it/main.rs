@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod bisinusoidal;
+mod conductance;
 mod contact_area;
 mod examples;
 mod front_door;

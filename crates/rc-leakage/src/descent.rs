@@ -2,7 +2,7 @@
 
 use rc_core::Grid;
 
-use crate::multigrid::Multigrid;
+use crate::multigrid::{Multigrid, Real};
 use crate::network::{Axis, Network, Potential};
 use crate::parallel;
 
@@ -80,10 +80,11 @@ struct Vectors {
 ///
 /// Where the film is much wider in some places than in others, the pressure in wide places differs by less than its last digit. Iterations
 /// then go on with what is missing, added to the pressure in twice the precision.
-pub(crate) fn solve(network: &Network, multigrid: &mut Multigrid, target: Target) -> Pressure {
+pub(crate) fn solve<T: Real>(network: &Network, multigrid: &mut Multigrid<T>, target: Target) -> Pressure {
     let mut iteration = Iteration::new(network, target);
     let mut pressure = Pressure { values: Vec::new(), rest: None, iterations: 0, conservation: f64::INFINITY };
     let mut norm = iteration.vectors.write_residual(multigrid.right_mut());
+    let largest = GROWTH * norm;
     let mut expected = f64::INFINITY;
     let mut next_check = f64::INFINITY;
     loop {
@@ -101,8 +102,8 @@ pub(crate) fn solve(network: &Network, multigrid: &mut Multigrid, target: Target
             (next_check, expected) = (norm * ratio, conservation * ratio);
         }
         match iteration.advance(multigrid) {
-            Some(next) => norm = next,
-            None => break,
+            Some(next) if next <= largest => norm = next,
+            _ => break,
         }
         pressure.iterations += 1;
     }
@@ -111,6 +112,9 @@ pub(crate) fn solve(network: &Network, multigrid: &mut Multigrid, target: Target
 
 /// Part of the tolerance that the next check is to find.
 const SAFETY: f64 = 0.4;
+
+/// A residual that has grown by this factor is that of rounding.
+const GROWTH: f64 = 1e10;
 
 /// A check that finds this much more than expected says that the pressure has run out of digits.
 const STAGNATION: f64 = 10.0;
@@ -159,7 +163,7 @@ impl<'a> Iteration<'a> {
     }
 
     /// One iteration; the norm of the residual after it, or `None` where none is left to descend along.
-    fn advance(&mut self, multigrid: &mut Multigrid) -> Option<f64> {
+    fn advance<T: Real>(&mut self, multigrid: &mut Multigrid<T>) -> Option<f64> {
         let step = multigrid.cycle();
         let work = self.vectors.dot_residual(step);
         if !(work > 0.0 && work.is_finite()) {
@@ -207,27 +211,27 @@ fn deviation(sections: &[f64]) -> f64 {
 
 impl Vectors {
     /// Writes the residual in single precision, and gives its norm.
-    fn write_residual(&self, right: &mut [f32]) -> f64 {
+    fn write_residual<T: Real>(&self, right: &mut [T]) -> f64 {
         let blocks = self.residual.chunks(self.block).zip(right.chunks_mut(self.block)).collect();
-        parallel::sum(blocks, |(residual, right): (&[f64], &mut [f32])| {
-            right.iter_mut().zip(residual).for_each(|(right, residual)| *right = *residual as f32);
+        parallel::sum(blocks, |(residual, right): (&[f64], &mut [T])| {
+            right.iter_mut().zip(residual).for_each(|(right, residual)| *right = T::of(*residual));
             residual.iter().map(|r| r * r).sum()
         })
         .sqrt()
     }
 
-    fn dot_residual(&self, step: &[f32]) -> f64 {
+    fn dot_residual<T: Real>(&self, step: &[T]) -> f64 {
         let blocks = self.residual.chunks(self.block).zip(step.chunks(self.block)).collect();
-        parallel::sum(blocks, |(residual, step): (&[f64], &[f32])| {
-            residual.iter().zip(step).map(|(r, z)| r * f64::from(*z)).sum()
+        parallel::sum(blocks, |(residual, step): (&[f64], &[T])| {
+            residual.iter().zip(step).map(|(r, z)| r * z.to_f64()).sum()
         })
     }
 
     /// The next direction, conjugate to the last.
-    fn turn(&mut self, step: &[f32], beta: f64) {
+    fn turn<T: Real>(&mut self, step: &[T], beta: f64) {
         let blocks = self.direction.chunks_mut(self.block).zip(step.chunks(self.block)).collect();
-        parallel::for_each(blocks, |(direction, step): (&mut [f64], &[f32])| {
-            direction.iter_mut().zip(step).for_each(|(p, z)| *p = f64::from(*z) + beta * *p);
+        parallel::for_each(blocks, |(direction, step): (&mut [f64], &[T])| {
+            direction.iter_mut().zip(step).for_each(|(p, z)| *p = z.to_f64() + beta * *p);
         });
     }
 
@@ -247,18 +251,18 @@ impl Vectors {
         })
     }
 
-    /// A step of `length` along the direction; writes the residual in single precision, and gives its norm.
-    fn step(&mut self, length: f64, right: &mut [f32]) -> f64 {
+    /// A step of `length` along the direction; writes the residual in the precision of the cycle, and gives its norm.
+    fn step<T: Real>(&mut self, length: f64, right: &mut [T]) -> f64 {
         let block = self.block;
         let moved = self.values.chunks_mut(block).zip(self.direction.chunks(block));
         let left = self.residual.chunks_mut(block).zip(self.applied.chunks(block));
         let blocks = moved.zip(left).zip(right.chunks_mut(block)).collect();
-        parallel::sum(blocks, |(((values, direction), (residual, applied)), right): StepBlock<'_>| {
+        parallel::sum(blocks, |(((values, direction), (residual, applied)), right): StepBlock<'_, T>| {
             values.iter_mut().zip(direction).for_each(|(u, p)| *u += length * p);
             let mut sum = 0.0;
             for ((r, a), right) in residual.iter_mut().zip(applied).zip(right) {
                 *r -= length * a;
-                *right = *r as f32;
+                *right = T::of(*r);
                 sum += *r * *r;
             }
             sum
@@ -267,4 +271,4 @@ impl Vectors {
     }
 }
 
-type StepBlock<'a> = (((&'a mut [f64], &'a [f64]), (&'a mut [f64], &'a [f64])), &'a mut [f32]);
+type StepBlock<'a, T> = (((&'a mut [f64], &'a [f64]), (&'a mut [f64], &'a [f64])), &'a mut [T]);

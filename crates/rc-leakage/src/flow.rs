@@ -1,6 +1,6 @@
 //! The front door: permeances, percolation and constrictions of a gap.
 
-use rc_core::{Field, Grid};
+use rc_core::Field;
 
 use crate::clusters::Clusters;
 use crate::constriction::{Constriction, Thresholds};
@@ -23,7 +23,7 @@ pub struct LeakageParams {
 
 impl Default for LeakageParams {
     fn default() -> Self {
-        Self { conservation: 1e-10, max_iterations: 500, half_grid: true }
+        Self { conservation: 1e-10, max_iterations: 1000, half_grid: true }
     }
 }
 
@@ -37,7 +37,7 @@ pub struct Leakage {
 }
 
 /// The flow along one axis.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flow {
     /// Flow for a pressure that falls by one across the cell and 12 η = 1, in λ³: 0 where nothing percolates. An upper bound of the
     /// permeance of the network, by the principle of Dirichlet.
@@ -81,21 +81,19 @@ impl Leakage {
 /// [`LeakageError::Gap`] for a gap that is negative or not finite, [`LeakageError::NotConverged`].
 pub fn leakage(gap: &Field, params: &LeakageParams) -> Result<Leakage, LeakageError> {
     check(gap)?;
-    let (permeances, solved) = flows(gap, params, true)?;
-    let halves = match half(gap).filter(|_| params.half_grid && solved.percolates != [false; 2]) {
-        Some(half) => Some(flows(&half, params, false)?.0),
-        None => None,
-    };
-    let mut thresholds = Thresholds::new(gap);
+    let solved = flows(gap, params, true)?;
+    let half = half(gap).filter(|_| params.half_grid && solved.percolates != [false; 2]);
+    let half = half.and_then(|half| flows(&half, params, false).ok());
     let flows = Axis::BOTH.map(|axis| {
         let i = axis.index();
-        let (permeance, info) = permeances[i];
+        let (permeance, info) = solved.results[i];
         let percolates = solved.percolates[i];
+        let of_half = half.as_ref().filter(|_| percolates).map(|half| half.results[i].0);
         Flow {
             permeance,
-            permeance_error: halves.filter(|_| percolates).map(|halves| (permeance - halves[i].0).abs()),
+            permeance_error: of_half.map(|of_half| (permeance - of_half).abs()),
             percolates,
-            constriction: if percolates { thresholds.constriction(axis) } else { None },
+            constriction: solved.constrictions[i],
             info,
         }
     });
@@ -121,36 +119,44 @@ fn half(gap: &Field) -> Option<Field> {
     Field::new(grid.with_elements(nx / 2, ny / 2).ok()?, rows.collect()).ok()
 }
 
+/// What is known of one grid.
 struct Solved {
+    /// Permeances along both axes.
+    results: [(f64, FlowInfo); 2],
     percolates: [bool; 2],
+    constrictions: [Option<Constriction>; 2],
     flux: Option<Flux>,
 }
 
+/// Gaps below this part of the smaller critical gap are taken as closed: such an element conducts 1e-12 of a constriction. A pool that only
+/// they join to the rest has a pressure that rounding decides.
+const CLOSED: f64 = 1e-4;
+
 /// Permeances along both axes, and the flux along that of the larger one.
-fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<([(f64, FlowInfo); 2], Solved), LeakageError> {
-    let mut clusters = Clusters::above(gap, 0.0, false);
-    let percolates = clusters.percolates();
+fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<Solved, LeakageError> {
+    let percolates = Clusters::above(gap, 0.0, false).percolates();
+    let mut thresholds = Thresholds::new(gap);
+    let constrictions =
+        Axis::BOTH.map(|axis| if percolates[axis.index()] { thresholds.constriction(axis) } else { None });
+    let critical = constrictions.iter().flatten().map(|place| place.gap).fold(f64::INFINITY, f64::min);
+    let mut clusters = Clusters::above(gap, CLOSED * critical, true);
     let masks = Axis::BOTH.map(|axis| clusters.winding(axis));
     let mut results = [(0.0, FlowInfo::default()); 2];
     let mut kept: Option<(Target, Pressure)> = None;
-    let mut prepared: Option<(usize, Network, Multigrid)> = None;
+    let mut prepared: Option<(usize, Prepared)> = None;
     for axis in Axis::BOTH.into_iter().filter(|axis| percolates[axis.index()]) {
         let i = axis.index();
-        let (of, network, mut multigrid) = match prepared.take() {
-            Some((of, network, multigrid)) if masks[of] == masks[i] => (of, network, multigrid),
-            _ => {
-                let network = network_of(gap, &clusters, &masks[i]);
-                let multigrid = Multigrid::new(&network);
-                (i, network, multigrid)
-            }
+        let (of, mut network) = match prepared.take() {
+            Some((of, network)) if masks[of] == masks[i] => (of, network),
+            _ => (i, Prepared::new(network_of(gap, &clusters, &masks[i]))),
         };
         let target = Target { axis, conservation: params.conservation, max_iterations: params.max_iterations };
-        let (result, pressure) = one_flow(&network, &mut multigrid, target)?;
+        let (result, pressure) = network.flow(target)?;
         results[i] = result;
         if with_flux && (kept.is_none() || results[1].0 > results[0].0) {
             kept = Some((target, pressure));
         }
-        prepared = Some((of, network, multigrid));
+        prepared = Some((of, network));
     }
     drop(prepared);
     let flux = kept.map(|(target, pressure)| {
@@ -158,7 +164,7 @@ fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<([(f64,
         let factor = network.unscaled(1.0) / elements_along(gap.grid(), target.axis) as f64;
         Flux::of(&network, pressure.potential(), target, factor)
     });
-    Ok((results, Solved { percolates, flux }))
+    Ok(Solved { results, percolates, constrictions, flux })
 }
 
 /// The network of the runs that `carries` says carry a flow.
@@ -171,24 +177,59 @@ fn network_of(gap: &Field, clusters: &Clusters, carries: &[bool]) -> Network {
     })
 }
 
-/// Permeance and pressure of the flow along one axis.
-fn one_flow(
-    network: &Network,
-    multigrid: &mut Multigrid,
-    target: Target,
-) -> Result<((f64, FlowInfo), Pressure), LeakageError> {
-    let grid: Grid = network.grid();
-    let pressure = descent::solve(network, multigrid, target);
-    let info = FlowInfo { iterations: pressure.iterations, conservation: pressure.conservation };
-    if !(pressure.conservation <= target.conservation) {
-        return Err(LeakageError::NotConverged {
-            axis: target.axis.name(),
-            grid,
-            conservation: info.conservation,
-            iterations: info.iterations,
-        });
+/// Iterations after which single precision has had its chance.
+const SINGLE_ITERATIONS: usize = 80;
+
+/// A network with the hierarchy that solves it.
+struct Prepared {
+    network: Network,
+    hierarchy: Hierarchy,
+}
+
+/// In single precision until a flow asks for more: it takes half of the memory, and cannot tell a bond from the rounding of another one that is
+/// ten million times as strong.
+enum Hierarchy {
+    Single(Multigrid<f32>),
+    Double(Multigrid<f64>),
+}
+
+impl Prepared {
+    fn new(network: Network) -> Self {
+        let hierarchy = Hierarchy::Single(Multigrid::new(&network));
+        Self { network, hierarchy }
     }
-    let n = elements_along(grid, target.axis) as f64;
-    let permeance = network.unscaled(network.power(pressure.potential(), target.fall())) / (n * n);
-    Ok(((permeance, info), pressure))
+
+    /// Permeance and pressure of the flow along one axis.
+    fn flow(&mut self, target: Target) -> Result<((f64, FlowInfo), Pressure), LeakageError> {
+        let pressure = self.solve(target);
+        let info = FlowInfo { iterations: pressure.iterations, conservation: pressure.conservation };
+        let grid = self.network.grid();
+        if pressure.conservation > target.conservation {
+            return Err(LeakageError::NotConverged {
+                axis: target.axis.name(),
+                grid,
+                conservation: info.conservation,
+                iterations: info.iterations,
+            });
+        }
+        let n = elements_along(grid, target.axis) as f64;
+        let power = self.network.power(pressure.potential(), target.fall());
+        Ok(((self.network.unscaled(power) / (n * n), info), pressure))
+    }
+
+    fn solve(&mut self, target: Target) -> Pressure {
+        if let Hierarchy::Single(multigrid) = &mut self.hierarchy {
+            let first = Target { max_iterations: target.max_iterations.min(SINGLE_ITERATIONS), ..target };
+            let pressure = descent::solve(&self.network, multigrid, first);
+            if pressure.conservation <= target.conservation {
+                return pressure;
+            }
+            drop(pressure);
+            self.hierarchy = Hierarchy::Double(Multigrid::new(&self.network));
+        }
+        match &mut self.hierarchy {
+            Hierarchy::Single(multigrid) => descent::solve(&self.network, multigrid, target),
+            Hierarchy::Double(multigrid) => descent::solve(&self.network, multigrid, target),
+        }
+    }
 }

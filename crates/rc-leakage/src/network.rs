@@ -2,6 +2,7 @@
 
 use rc_core::{Field, Grid};
 
+use crate::multigrid::Real;
 use crate::parallel;
 
 /// Axis of a flow, or of a fall of the pressure.
@@ -120,16 +121,16 @@ impl Network {
 
     /// Writes the conductances of the faces of row `iy`: of each element to the next along x, and along y. The face of an element to
     /// itself, where there is only one, has none.
-    pub(crate) fn write_conductances(&self, iy: usize, east: &mut [f32], north: &mut [f32]) {
+    pub(crate) fn write_conductances<T: Real>(&self, iy: usize, east: &mut [T], north: &mut [T]) {
         let (nx, ny) = (self.grid.nx(), self.grid.ny());
         let [row, above] = [iy, (iy + 1) % ny].map(|iy| &self.resistances[iy * nx..(iy + 1) * nx]);
         let [x, y] = self.aspects;
         for (out, pair) in east.iter_mut().zip(row.windows(2)) {
-            *out = (x / (pair[0] + pair[1])) as f32;
+            *out = T::of(x / (pair[0] + pair[1]));
         }
-        east[nx - 1] = if nx > 1 { (x / (row[nx - 1] + row[0])) as f32 } else { 0.0 };
+        east[nx - 1] = if nx > 1 { T::of(x / (row[nx - 1] + row[0])) } else { T::ZERO };
         for (out, (r, s)) in north.iter_mut().zip(row.iter().zip(above)) {
-            *out = if ny > 1 { (y / (r + s)) as f32 } else { 0.0 };
+            *out = if ny > 1 { T::of(y / (r + s)) } else { T::ZERO };
         }
     }
 

@@ -1,34 +1,35 @@
 //! The network of a coarser level: that of the finer one under interpolated pressures (Galerkin).
 
 use super::interpolation::{Bonds, Interpolation};
+use super::real::Real;
 use super::stencil::{Corners, Stencil};
 use crate::parallel;
 
 /// Bonds between the four corners of a coarse square.
 #[derive(Clone, Copy, Default)]
-struct Square {
-    bottom: f32,
-    left: f32,
-    rising: f32,
-    falling: f32,
-    right: f32,
-    top: f32,
+struct Square<T> {
+    bottom: T,
+    left: T,
+    rising: T,
+    falling: T,
+    right: T,
+    top: T,
 }
 
 /// The coarser level.
-pub(super) fn coarsen(fine: &Stencil, interpolation: &Interpolation) -> Stencil {
+pub(super) fn coarsen<T: Real>(fine: &Stencil<T>, interpolation: &Interpolation<T>) -> Stencil<T> {
     let [nx, ny] = interpolation.coarse;
     let mut squares = vec![Square::default(); nx * ny];
     let rows = squares.chunks_mut(nx).enumerate().collect();
-    parallel::for_each(rows, |(row, squares): (usize, &mut [Square])| {
+    parallel::for_each(rows, |(row, squares): (usize, &mut [Square<T>])| {
         for (column, out) in squares.iter_mut().enumerate() {
             *out = square(fine, interpolation, [column, row]);
         }
     });
-    let of = |part: &(dyn Fn(usize, usize) -> f32 + Sync)| {
-        let mut values = vec![0.0; nx * ny];
+    let of = |part: &(dyn Fn(usize, usize) -> T + Sync)| {
+        let mut values = vec![T::ZERO; nx * ny];
         let rows = values.chunks_mut(nx).enumerate().collect();
-        parallel::for_each(rows, |(row, values): (usize, &mut [f32])| {
+        parallel::for_each(rows, |(row, values): (usize, &mut [T])| {
             values.iter_mut().enumerate().for_each(|(column, value)| *value = part(column, row));
         });
         values
@@ -36,12 +37,12 @@ pub(super) fn coarsen(fine: &Stencil, interpolation: &Interpolation) -> Stencil 
     let at = |column: usize, row: usize| &squares[row * nx + column];
     // A bond of an element to itself carries nothing.
     let east = |column: usize, row: usize| {
-        if nx > 1 { at(column, row).bottom + at(column, (row + ny - 1) % ny).top } else { 0.0 }
+        if nx > 1 { at(column, row).bottom + at(column, (row + ny - 1) % ny).top } else { T::ZERO }
     };
     let north = |column: usize, row: usize| {
-        if ny > 1 { at(column, row).left + at((column + nx - 1) % nx, row).right } else { 0.0 }
+        if ny > 1 { at(column, row).left + at((column + nx - 1) % nx, row).right } else { T::ZERO }
     };
-    let corner = |value: f32| if nx > 1 || ny > 1 { value } else { 0.0 };
+    let corner = |value: T| if nx > 1 || ny > 1 { value } else { T::ZERO };
     let corners = Corners {
         rising: of(&|column, row| corner(at(column, row).rising)),
         falling: of(&|column, row| corner(at(column, row).falling)),
@@ -53,19 +54,19 @@ pub(super) fn coarsen(fine: &Stencil, interpolation: &Interpolation) -> Stencil 
 }
 
 /// The bonds that the fine bonds of the coarse square at `at` make: those within, at its left and at its bottom.
-fn square(fine: &Stencil, interpolation: &Interpolation, at: [usize; 2]) -> Square {
+fn square<T: Real>(fine: &Stencil<T>, interpolation: &Interpolation<T>, at: [usize; 2]) -> Square<T> {
     let bonds = Bonds(fine);
     let widths = interpolation.widths(at);
     let start = [0, 1].map(|axis| interpolation.factor[axis] * at[axis]);
-    let mut weights = [[[0.0_f32; 4]; 3]; 3];
+    let mut weights = [[[T::ZERO; 4]; 3]; 3];
     for (y, row) in weights.iter_mut().enumerate().take(widths[1] + 1) {
         for (x, weights) in row.iter_mut().enumerate().take(widths[0] + 1) {
             *weights = interpolation.corner_weights(at, [x, y]);
         }
     }
-    let mut sums = [0.0_f32; 6];
-    let mut add = |bond: f32, a: &[f32; 4], b: &[f32; 4]| {
-        if bond == 0.0 {
+    let mut sums = [T::ZERO; 6];
+    let mut add = |bond: T, a: &[T; 4], b: &[T; 4]| {
+        if bond == T::ZERO {
             return;
         }
         let d = [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]];

@@ -1,28 +1,29 @@
 //! The coarsest level, by elimination.
 
 use super::interpolation::Bonds;
+use super::real::Real;
 use super::stencil::Stencil;
 
-/// Pivots below this part of their diagonal are rounding: the element closes a cluster, whose level is free.
-const FREE: f64 = 1e-10;
-
-/// The factors L D Lᵀ of the coarsest network.
+/// The coarsest network with its elements eliminated one after the other.
+///
+/// A bond that elimination makes is a sum of products of bonds, and a pivot the sum of the bonds that are left (Grassmann, Taksar and Heyman, Oper. Res. 33,
+/// 1985): nothing cancels, so that weak bonds keep their digits beside strong ones, and the last element of a cluster is left without a bond exactly.
 #[derive(Debug)]
 pub(super) struct Coarsest {
     n: usize,
-    /// Rows of L below the diagonal, and the pivots on it; 0 for a level that is free.
-    factors: Vec<f64>,
+    /// In row i, the part of its pivot that each later element has.
+    shares: Vec<f64>,
+    pivots: Vec<f64>,
 }
 
 impl Coarsest {
-    pub(super) fn new(stencil: &Stencil) -> Self {
+    pub(super) fn new<T: Real>(stencil: &Stencil<T>) -> Self {
         let n = stencil.nx * stencil.ny;
-        let mut matrix = vec![0.0_f64; n * n];
+        let mut network = vec![0.0_f64; n * n];
         let bonds = Bonds(stencil);
-        let mut add = |a: usize, b: usize, bond: f32| {
-            let bond = f64::from(bond);
-            for (i, j, value) in [(a, a, bond), (b, b, bond), (a, b, -bond), (b, a, -bond)] {
-                matrix[i * n + j] += value;
+        let mut add = |a: usize, b: usize, bond: T| {
+            if a != b {
+                network[a.min(b) * n + a.max(b)] += bond.to_f64();
             }
         };
         for y in 0..stencil.ny {
@@ -35,49 +36,42 @@ impl Coarsest {
                 add(next, above, bonds.falling(x, y));
             }
         }
-        Self { n, factors: factorise(matrix, n) }
+        Self::eliminate(network, n)
     }
 
-    /// Writes the solution for `right` to `x`; clusters have a level of their own.
-    pub(super) fn solve(&self, right: &[f32], x: &mut [f32]) {
-        let n = self.n;
-        let mut y: Vec<f64> = right.iter().copied().map(f64::from).collect();
+    fn eliminate(mut network: Vec<f64>, n: usize) -> Self {
+        let mut pivots = vec![0.0; n];
         for i in 0..n {
-            let (done, rest) = y.split_at_mut(i);
-            rest[0] -= done.iter().zip(&self.factors[i * n..]).map(|(y, l)| y * l).sum::<f64>();
+            let (done, rest) = network.split_at_mut((i + 1) * n);
+            let row = &mut done[i * n + i + 1..];
+            let pivot: f64 = row.iter().sum();
+            if pivot <= 0.0 {
+                row.fill(0.0);
+                continue;
+            }
+            pivots[i] = pivot;
+            for (k, bond) in row.iter().enumerate().filter(|(_, bond)| **bond != 0.0) {
+                let share = bond / pivot;
+                let to_later = &mut rest[k * n + i + 1 + k + 1..(k + 1) * n];
+                to_later.iter_mut().zip(&row[k + 1..]).for_each(|(made, other)| *made += share * other);
+            }
+            row.iter_mut().for_each(|bond| *bond /= pivot);
         }
-        for (i, y) in y.iter_mut().enumerate() {
-            let pivot = self.factors[i * n + i];
-            *y = if pivot > 0.0 { *y / pivot } else { 0.0 };
+        Self { n, shares: network, pivots }
+    }
+
+    /// Writes the solution for `right` to `x`; the last element of each cluster is at level 0.
+    pub(super) fn solve<T: Real>(&self, right: &[T], x: &mut [T]) {
+        let n = self.n;
+        let mut y: Vec<f64> = right.iter().copied().map(T::to_f64).collect();
+        for i in 0..n {
+            let (value, later) = (y[i], &self.shares[i * n + i + 1..(i + 1) * n]);
+            y[i + 1..].iter_mut().zip(later).for_each(|(y, share)| *y += share * value);
         }
         for i in (0..n).rev() {
-            let (earlier, value) = (&mut y[..=i]).split_at_mut(i);
-            earlier.iter_mut().zip(&self.factors[i * n..]).for_each(|(y, l)| *y -= value[0] * l);
+            let later: f64 = self.shares[i * n + i + 1..(i + 1) * n].iter().zip(&y[i + 1..]).map(|(s, x)| s * x).sum();
+            y[i] = if self.pivots[i] > 0.0 { y[i] / self.pivots[i] + later } else { 0.0 };
         }
-        x.iter_mut().zip(y).for_each(|(x, y)| *x = y as f32);
+        x.iter_mut().zip(y).for_each(|(x, y)| *x = T::of(y));
     }
-}
-
-fn factorise(mut a: Vec<f64>, n: usize) -> Vec<f64> {
-    let diagonal: Vec<f64> = (0..n).map(|i| a[i * n + i]).collect();
-    for j in 0..n {
-        let mut pivot = a[j * n + j];
-        if pivot <= FREE * diagonal[j] {
-            pivot = 0.0;
-        }
-        a[j * n + j] = pivot;
-        for i in j + 1..n {
-            let entry = a[i * n + j];
-            let factor = if pivot > 0.0 { entry / pivot } else { 0.0 };
-            if factor != 0.0 {
-                for k in j + 1..=i {
-                    a[i * n + k] -= factor * a[k * n + j];
-                }
-            }
-        }
-        for i in j + 1..n {
-            a[i * n + j] = if pivot > 0.0 { a[i * n + j] / pivot } else { 0.0 };
-        }
-    }
-    a
 }

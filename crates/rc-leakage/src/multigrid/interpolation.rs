@@ -1,11 +1,12 @@
 //! Interpolation from a coarser level, with weights from the bonds of the finer one (black box multigrid: Dendy, J. Comput. Phys. 48, 1982).
 
+use super::real::Real;
 use super::stencil::Stencil;
 use crate::parallel;
 
 /// Every second element along the axes that are coarsened is one of the coarser level; the weights of those between.
 #[derive(Debug)]
-pub(super) struct Interpolation {
+pub(super) struct Interpolation<T> {
     /// Elements of the finer level.
     pub(super) fine: [usize; 2],
     /// Elements of the coarser level.
@@ -13,31 +14,41 @@ pub(super) struct Interpolation {
     /// 2 along an axis that is coarsened, else 1.
     pub(super) factor: [usize; 2],
     /// Of the element after a coarse one along x: weights of this one, and of the next.
-    along_x: Vec<[f32; 2]>,
+    along_x: Vec<[T; 2]>,
     /// The same along y.
-    along_y: Vec<[f32; 2]>,
+    along_y: Vec<[T; 2]>,
     /// Of the element after it along both: of this one, the next along x, along y, along both.
-    centre: Vec<[f32; 4]>,
+    centre: Vec<[T; 4]>,
 }
 
 /// Weights of an element between two coarse ones, from what binds it to both sides. One that is bound to neither is given to a
 /// side that is a wall, so that no element that flows is without a coarse one.
-fn weights(towards: [f32; 2], is_wall: [bool; 2]) -> [f32; 2] {
-    let [first, second] = towards.map(|bond| bond.max(0.0));
+fn weights<T: Real>(towards: [T; 2], is_wall: [bool; 2]) -> [T; 2] {
+    let [first, second] = towards.map(|bond| if bond > T::ZERO { bond } else { T::ZERO });
     let total = first + second;
-    if total > f32::MIN_POSITIVE {
-        return [first / total, second / total];
+    if total > T::TINY {
+        return truncated([first / total, second / total]);
     }
     match is_wall {
-        [true, _] => [1.0, 0.0],
-        [false, true] => [0.0, 1.0],
-        [false, false] => [0.5, 0.5],
+        [true, _] => [T::ONE, T::ZERO],
+        [false, true] => [T::ZERO, T::ONE],
+        [false, false] => [T::of(0.5); 2],
     }
 }
 
-impl Interpolation {
+/// Weights below this are none: the network of the coarser level would consist of what rounding leaves of them.
+const SMALLEST: f64 = 1e-3;
+
+/// Weights without those that are too small, of sum 1.
+fn truncated<T: Real, const N: usize>(weights: [T; N]) -> [T; N] {
+    let kept = weights.map(|weight| if weight.abs() < T::of(SMALLEST) { T::ZERO } else { weight });
+    let total: T = kept.into_iter().sum();
+    kept.map(|weight| weight / total)
+}
+
+impl<T: Real> Interpolation<T> {
     /// Of the elements of `fine`, coarsened by `factor` along x and y.
-    pub(super) fn new(fine: &Stencil, factor: [usize; 2]) -> Self {
+    pub(super) fn new(fine: &Stencil<T>, factor: [usize; 2]) -> Self {
         let sides = [fine.nx, fine.ny];
         let coarse = [0, 1].map(|axis| sides[axis].div_ceil(factor[axis]));
         let n = coarse[0] * coarse[1];
@@ -45,13 +56,13 @@ impl Interpolation {
             fine: sides,
             coarse,
             factor,
-            along_x: vec![[0.0; 2]; n],
-            along_y: vec![[0.0; 2]; n],
-            centre: vec![[0.0; 4]; n],
+            along_x: vec![[T::ZERO; 2]; n],
+            along_y: vec![[T::ZERO; 2]; n],
+            centre: vec![[T::ZERO; 4]; n],
         };
         let mut edges = (std::mem::take(&mut this.along_x), std::mem::take(&mut this.along_y));
         let rows = edges.0.chunks_mut(coarse[0]).zip(edges.1.chunks_mut(coarse[0])).enumerate().collect();
-        parallel::for_each(rows, |(row, (along_x, along_y)): (usize, (&mut [[f32; 2]], &mut [[f32; 2]]))| {
+        parallel::for_each(rows, |(row, (along_x, along_y)): (usize, (&mut [[T; 2]], &mut [[T; 2]]))| {
             for column in 0..coarse[0] {
                 (along_x[column], along_y[column]) = this.edge_weights(fine, [column, row]);
             }
@@ -59,7 +70,7 @@ impl Interpolation {
         (this.along_x, this.along_y) = edges;
         let mut centre = std::mem::take(&mut this.centre);
         let rows = centre.chunks_mut(coarse[0]).enumerate().collect();
-        parallel::for_each(rows, |(row, centre): (usize, &mut [[f32; 4]])| {
+        parallel::for_each(rows, |(row, centre): (usize, &mut [[T; 4]])| {
             for (column, weights) in centre.iter_mut().enumerate() {
                 *weights = this.centre_weights(fine, [column, row]);
             }
@@ -77,12 +88,12 @@ impl Interpolation {
         (at[1] % self.coarse[1]) * self.coarse[0] + at[0] % self.coarse[0]
     }
 
-    fn edge_weights(&self, fine: &Stencil, at: [usize; 2]) -> ([f32; 2], [f32; 2]) {
+    fn edge_weights(&self, fine: &Stencil<T>, at: [usize; 2]) -> ([T; 2], [T; 2]) {
         let bonds = Bonds(fine);
         let [x, y] = [self.factor[0] * at[0], self.factor[1] * at[1]];
         let widths = self.widths(at);
-        let (mut along_x, mut along_y) = ([0.0; 2], [0.0; 2]);
-        let is_wall = |x: usize, y: usize| fine.inverse[bonds.index(x, y)] == 0.0;
+        let (mut along_x, mut along_y) = ([T::ZERO; 2], [T::ZERO; 2]);
+        let is_wall = |x: usize, y: usize| fine.inverse[bonds.index(x, y)] == T::ZERO;
         if widths[0] == 2 && !is_wall(x + 1, y) {
             // Bonds are summed along the other axis.
             let sum = |x: usize, rising: usize, falling: usize| {
@@ -101,11 +112,11 @@ impl Interpolation {
         (along_x, along_y)
     }
 
-    fn centre_weights(&self, fine: &Stencil, at: [usize; 2]) -> [f32; 4] {
+    fn centre_weights(&self, fine: &Stencil<T>, at: [usize; 2]) -> [T; 4] {
         let bonds = Bonds(fine);
         let [x, y] = [self.factor[0] * at[0] + 1, self.factor[1] * at[1] + 1];
-        if self.widths(at) != [2, 2] || fine.inverse[bonds.index(x, y)] == 0.0 {
-            return [0.0; 4];
+        if self.widths(at) != [2, 2] || fine.inverse[bonds.index(x, y)] == T::ZERO {
+            return [T::ZERO; 4];
         }
         let [west, east] = [at, [at[0] + 1, at[1]]].map(|at| self.along_y[self.index(at)]);
         let [south, north] = [at, [at[0], at[1] + 1]].map(|at| self.along_x[self.index(at)]);
@@ -119,18 +130,18 @@ impl Interpolation {
             corners[2] + w * west[1] + n * north[0],
             corners[3] + e * east[1] + n * north[1],
         ];
-        let total: f32 = sums.iter().sum();
-        if total > f32::MIN_POSITIVE { sums.map(|sum| sum / total) } else { [0.25; 4] }
+        let total: T = sums.into_iter().sum();
+        if total > T::TINY { truncated(sums.map(|sum| sum / total)) } else { [T::of(0.25); 4] }
     }
 
     /// Weights of the fine element `offset` after coarse element `at`, of this one, the next along x, along y, along both.
-    pub(super) fn corner_weights(&self, at: [usize; 2], offset: [usize; 2]) -> [f32; 4] {
+    pub(super) fn corner_weights(&self, at: [usize; 2], offset: [usize; 2]) -> [T; 4] {
         let widths = self.widths(at);
         let ends = [0, 1].map(|axis| offset[axis] == widths[axis]);
         let between = [0, 1].map(|axis| offset[axis] > 0 && !ends[axis]);
         let next = [at[0] + usize::from(ends[0]), at[1] + usize::from(ends[1])];
         let corner = usize::from(ends[0]) + 2 * usize::from(ends[1]);
-        let mut out = [0.0; 4];
+        let mut out = [T::ZERO; 4];
         match between {
             [true, true] => return self.centre[self.index(at)],
             [true, false] => {
@@ -141,16 +152,16 @@ impl Interpolation {
                 let [first, second] = self.along_y[self.index(next)];
                 (out[corner], out[corner + 2]) = (first, second);
             }
-            [false, false] => out[corner] = 1.0,
+            [false, false] => out[corner] = T::ONE,
         }
         out
     }
 
     /// Adds what is interpolated from `coarse` to `fine`.
-    pub(super) fn prolong(&self, coarse: &[f32], fine: &mut [f32]) {
+    pub(super) fn prolong(&self, coarse: &[T], fine: &mut [T]) {
         let nx = self.fine[0];
         let rows = fine.chunks_mut(nx).enumerate().collect();
-        parallel::for_each(rows, |(iy, fine): (usize, &mut [f32])| {
+        parallel::for_each(rows, |(iy, fine): (usize, &mut [T])| {
             let (row, is_between) = (iy / self.factor[1], iy % self.factor[1] == 1);
             let [here, above] = [row, row + 1].map(|row| &coarse[self.index([0, row])..][..self.coarse[0]]);
             for column in 0..self.coarse[0] {
@@ -177,11 +188,11 @@ impl Interpolation {
     }
 
     /// Writes into `coarse` what the adjoint of the interpolation makes of the fine residual, of which `residual` writes a row.
-    pub(super) fn restrict(&self, residual: &(dyn Fn(usize, &mut [f32]) + Sync), coarse: &mut [f32]) {
+    pub(super) fn restrict(&self, residual: &(dyn Fn(usize, &mut [T]) + Sync), coarse: &mut [T]) {
         let (nc, rows_per_block) = (self.coarse[0], (parallel::rows_per_block(self.fine[0]) / 2).max(4));
         let blocks = coarse.chunks_mut(rows_per_block * nc).enumerate().collect();
-        parallel::for_each(blocks, |(block, coarse): (usize, &mut [f32])| {
-            let mut rows = [(); 3].map(|()| vec![0.0_f32; self.fine[0]]);
+        parallel::for_each(blocks, |(block, coarse): (usize, &mut [T])| {
+            let mut rows = [(); 3].map(|()| vec![T::ZERO; self.fine[0]]);
             let first = block * rows_per_block;
             let before = (first + self.coarse[1] - 1) % self.coarse[1];
             let mut has_below = self.between(before).is_some_and(|iy| {
@@ -210,7 +221,7 @@ impl Interpolation {
     }
 
     /// Restricts the fine rows below, at and above coarse row `row`.
-    fn restrict_row(&self, row: usize, [below, here, above]: [Option<&[f32]>; 3], out: &mut [f32]) {
+    fn restrict_row(&self, row: usize, [below, here, above]: [Option<&[T]>; 3], out: &mut [T]) {
         let (nx, nc) = (self.fine[0], self.coarse[0]);
         let before_row = (row + self.coarse[1] - 1) % self.coarse[1];
         for (column, out) in out.iter_mut().enumerate() {
@@ -220,7 +231,7 @@ impl Interpolation {
             let between = |column: usize| (self.factor[0] * column + 1).min(nx - 1);
             let (after, earlier) = (between(column), between(before));
             let [at, at_before] = [self.index([column, row]), self.index([before, row])];
-            let mut sum = 0.0;
+            let mut sum = T::ZERO;
             if let Some(here) = here {
                 sum += here[x] + self.along_x[at][0] * here[after] + self.along_x[at_before][1] * here[earlier];
             }
@@ -239,27 +250,27 @@ impl Interpolation {
 }
 
 /// Bonds by place, on the periodic grid.
-pub(super) struct Bonds<'a>(pub(super) &'a Stencil);
+pub(super) struct Bonds<'a, T>(pub(super) &'a Stencil<T>);
 
-impl Bonds<'_> {
+impl<T: Real> Bonds<'_, T> {
     pub(super) fn index(&self, x: usize, y: usize) -> usize {
         let wrap = |i: usize, n: usize| if i < n { i } else { i % n };
         wrap(y, self.0.ny) * self.0.nx + wrap(x, self.0.nx)
     }
 
-    pub(super) fn east(&self, x: usize, y: usize) -> f32 {
+    pub(super) fn east(&self, x: usize, y: usize) -> T {
         self.0.east[self.index(x, y)]
     }
 
-    pub(super) fn north(&self, x: usize, y: usize) -> f32 {
+    pub(super) fn north(&self, x: usize, y: usize) -> T {
         self.0.north[self.index(x, y)]
     }
 
-    pub(super) fn rising(&self, x: usize, y: usize) -> f32 {
-        self.0.corners.as_ref().map_or(0.0, |corners| corners.rising[self.index(x, y)])
+    pub(super) fn rising(&self, x: usize, y: usize) -> T {
+        self.0.corners.as_ref().map_or(T::ZERO, |corners| corners.rising[self.index(x, y)])
     }
 
-    pub(super) fn falling(&self, x: usize, y: usize) -> f32 {
-        self.0.corners.as_ref().map_or(0.0, |corners| corners.falling[self.index(x, y)])
+    pub(super) fn falling(&self, x: usize, y: usize) -> T {
+        self.0.corners.as_ref().map_or(T::ZERO, |corners| corners.falling[self.index(x, y)])
     }
 }

@@ -1,13 +1,15 @@
-//! A multigrid cycle in single precision, which approximates the inverse of the network.
+//! A multigrid cycle, which approximates the inverse of the network.
 
 mod coarsen;
 mod coarsest;
 mod interpolation;
+mod real;
 mod stencil;
 
 use self::coarsen::coarsen;
 use self::coarsest::Coarsest;
 use self::interpolation::Interpolation;
+pub(crate) use self::real::Real;
 use self::stencil::{Order, Stencil};
 use crate::network::Network;
 use crate::parallel;
@@ -20,29 +22,29 @@ const LONGEST: f64 = 2.0;
 
 /// All levels of a network.
 #[derive(Debug)]
-pub(crate) struct Multigrid {
+pub(crate) struct Multigrid<T> {
     /// Finest first.
-    levels: Vec<Level>,
+    levels: Vec<Level<T>>,
     coarsest: Coarsest,
 }
 
 #[derive(Debug)]
-struct Level {
-    stencil: Stencil,
+struct Level<T> {
+    stencil: Stencil<T>,
     /// To the next coarser level; `None` on the coarsest.
-    interpolation: Option<Interpolation>,
-    x: Vec<f32>,
-    right: Vec<f32>,
+    interpolation: Option<Interpolation<T>>,
+    x: Vec<T>,
+    right: Vec<T>,
 }
 
-impl Level {
-    fn new(stencil: Stencil) -> Self {
+impl<T: Real> Level<T> {
+    fn new(stencil: Stencil<T>) -> Self {
         let n = stencil.nx * stencil.ny;
-        Self { stencil, interpolation: None, x: vec![0.0; n], right: vec![0.0; n] }
+        Self { stencil, interpolation: None, x: vec![T::ZERO; n], right: vec![T::ZERO; n] }
     }
 }
 
-impl Multigrid {
+impl<T: Real> Multigrid<T> {
     pub(crate) fn new(network: &Network) -> Self {
         let mut sides = network.grid().spacing();
         let mut levels = vec![Level::new(finest(network))];
@@ -67,23 +69,23 @@ impl Multigrid {
     }
 
     /// The right side, to be written.
-    pub(crate) fn right_mut(&mut self) -> &mut [f32] {
+    pub(crate) fn right_mut(&mut self) -> &mut [T] {
         &mut self.levels[0].right
     }
 
     /// Applies the cycle to the right side.
-    pub(crate) fn cycle(&mut self) -> &[f32] {
+    pub(crate) fn cycle(&mut self) -> &[T] {
         cycle(&mut self.levels, &self.coarsest);
         &self.levels[0].x
     }
 }
 
 /// The finest level: the network itself, with bonds across faces.
-fn finest(network: &Network) -> Stencil {
+fn finest<T: Real>(network: &Network) -> Stencil<T> {
     let (nx, ny) = (network.grid().nx(), network.grid().ny());
-    let (mut east, mut north) = (vec![0.0; nx * ny], vec![0.0; nx * ny]);
+    let (mut east, mut north) = (vec![T::ZERO; nx * ny], vec![T::ZERO; nx * ny]);
     let rows = east.chunks_mut(nx).zip(north.chunks_mut(nx)).enumerate().collect();
-    parallel::for_each(rows, |(iy, (east, north)): (usize, (&mut [f32], &mut [f32]))| {
+    parallel::for_each(rows, |(iy, (east, north)): (usize, (&mut [T], &mut [T]))| {
         network.write_conductances(iy, east, north);
     });
     let mut stencil = Stencil { nx, ny, east, north, corners: None, inverse: Vec::new() };
@@ -91,17 +93,66 @@ fn finest(network: &Network) -> Stencil {
     stencil
 }
 
-fn cycle(levels: &mut [Level], coarsest: &Coarsest) {
+fn cycle<T: Real>(levels: &mut [Level<T>], coarsest: &Coarsest) {
     let Some((level, coarser)) = levels.split_first_mut() else { return };
     let Level { stencil, interpolation, x, right } = level;
     let Some(interpolation) = interpolation else {
         coarsest.solve(right, x);
         return;
     };
-    x.fill(0.0);
+    x.fill(T::ZERO);
     stencil.relax(x, right, Order::Forward);
     interpolation.restrict(&|iy, out| stencil.residual(x, right, iy, out), &mut coarser[0].right);
     cycle(coarser, coarsest);
     interpolation.prolong(&coarser[0].x, x);
     stencil.relax(x, right, Order::Backward);
+}
+
+#[cfg(test)]
+mod tests {
+    use rc_core::testing::quasi_random;
+    use rc_core::{Field, Grid};
+
+    use super::*;
+
+    /// The cycle as a matrix, column by column.
+    fn columns(nx: usize, ny: usize, walls: f64, decades: f64) -> Vec<Vec<f64>> {
+        let grid = Grid::new(nx, ny).expect("a grid");
+        let random = |i: usize| quasi_random(7919 * (i + 1));
+        let gap = (0..grid.len())
+            .map(|i| if random(i) < walls { 0.0 } else { 10.0_f64.powf(-decades / 3.0 * random(i + grid.len())) });
+        let gap = Field::new(grid, gap.collect()).expect("a value for each element");
+        let network = Network::new(&gap, &|iy, open: &mut [bool]| {
+            open.iter_mut().zip(gap.row(iy)).for_each(|(open, gap)| *open = *gap > 0.0);
+        });
+        let mut multigrid = Multigrid::<f64>::new(&network);
+        let unit = |i: usize| {
+            multigrid.right_mut().fill(0.0);
+            multigrid.right_mut()[i] = 1.0;
+            multigrid.cycle().to_vec()
+        };
+        // Walls have no residual.
+        let (is_open, columns) = (|i: usize| gap.values()[i] > 0.0, (0..grid.len()).map(unit));
+        let open = |column: Vec<f64>| (0..grid.len()).filter(|&i| is_open(i)).map(|i| column[i]).collect();
+        let columns: Vec<Vec<f64>> = columns.map(open).collect();
+        columns.into_iter().enumerate().filter(|(i, _)| is_open(*i)).map(|(_, column)| column).collect()
+    }
+
+    /// Conjugate gradients need both. Odd sides have neighbours of one colour.
+    #[test]
+    fn the_cycle_is_symmetric_and_positive() {
+        for (nx, ny, walls, decades) in
+            [(40, 41, 0.3, 1.0), (24, 24, 0.3, 9.0), (25, 19, 0.3, 1.0), (70, 8, 0.1, 2.0), (3, 150, 0.0, 1.0)]
+        {
+            let columns = columns(nx, ny, walls, decades);
+            let largest = (0..columns.len()).map(|i| columns[i][i]).fold(0.0, f64::max);
+            for (i, column) in columns.iter().enumerate() {
+                assert!(column[i] >= 0.0, "{nx} x {ny}: {} on the diagonal", column[i]);
+                for (j, value) in column.iter().enumerate().take(i) {
+                    let off = (value - columns[j][i]).abs();
+                    assert!(off <= 1e-12 * largest, "{nx} x {ny}, elements {i} and {j}: {off:e} of {largest:e}");
+                }
+            }
+        }
+    }
 }
