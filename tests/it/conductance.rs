@@ -34,21 +34,24 @@ fn one_round_spot_has_the_resistance_of_holm() {
     }
 }
 
-/// Greenwood (Br. J. Appl. Phys. 17, 1966): spots side by side conduct less than the sum of them all, as the currents are in each other's way, and more
-/// than one round spot of the same area (Pólya and Szegő: of all shapes of an area the disc has the least capacity).
+/// Greenwood (Br. J. Appl. Phys. 17, 1966): spots side by side conduct less than the sum of them all, as the currents are in each other's way; in a periodic
+/// cell, the background of the images takes something off the resistance. They conduct more than one round spot of the same area (Pólya and Szegő: of all shapes of an area the disc has the least capacity).
 #[test]
-fn a_rough_contact_conducts_less_than_its_spots_alone_and_more_than_one_spot_of_their_area() {
+fn a_light_rough_contact_conducts_less_than_its_spots_alone_and_more_than_one_spot_of_their_area() {
     let params = SpectrumParams { roll_off: 4.0, ..SpectrumParams::paper(16, 3) };
     let surface = Surface::new(&params).expect("a surface");
     let heights = surface.sample_on(Grid::square(512).expect("a grid")).expect("heights");
-    for load in [2e-4, 1e-3, 4e-3] {
+    for load in [5e-5, 1e-4, 2e-4] {
         let solution = solved(&heights, &Love, Control::MeanPressure(load), 1e-8);
         let radii = radii(solution.pressure(), solution.gap());
         let (sum, squares) = (radii.iter().sum::<f64>(), radii.iter().map(|a| a * a).sum::<f64>());
         let (alone, together) = (2.0 * sum, 2.0 * squares.sqrt());
         let conductance = solution.stiffness();
-        assert!(radii.len() > 5, "only {} spots", radii.len());
-        assert!(conductance < alone, "{load}: {conductance} is not below {alone} of {} spots", radii.len());
+        assert!(1.0 / alone > -SQUARE_LATTICE / PI, "the bound says nothing");
+        assert!(radii.len() > 2, "only {} spots", radii.len());
+        // Images of the whole contact help: their background is drawn from the cell. By no more than those of one spot with all of the current.
+        let least = 1.0 / alone + SQUARE_LATTICE / PI;
+        assert!(1.0 / conductance > least, "{load}: 1/{conductance} is not above {least} of {} spots", radii.len());
         assert!(conductance > together, "{load}: {conductance} is not above {together}");
     }
 }

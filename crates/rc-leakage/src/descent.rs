@@ -197,7 +197,9 @@ fn write_residual_of(network: &Network, pressure: Potential<'_>, fall: [f64; 2],
         network.visit_fluxes(rows, pressure, fall, &mut |row| {
             let out = &mut residual[(row.iy - rows[0]) * nx..][..nx];
             row.write_outflow(out);
-            out.iter_mut().for_each(|out| *out = -*out);
+            for out in out {
+                *out = -*out;
+            }
         });
     });
 }

@@ -55,7 +55,9 @@ impl Coarsest {
                 let to_later = &mut rest[k * n + i + 1 + k + 1..(k + 1) * n];
                 to_later.iter_mut().zip(&row[k + 1..]).for_each(|(made, other)| *made += share * other);
             }
-            row.iter_mut().for_each(|bond| *bond /= pivot);
+            for bond in row {
+                *bond /= pivot;
+            }
         }
         Self { n, shares: network, pivots }
     }

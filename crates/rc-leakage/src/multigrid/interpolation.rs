@@ -4,6 +4,9 @@ use super::real::Real;
 use super::stencil::Stencil;
 use crate::parallel;
 
+/// A row of weights of elements after coarse ones along x and along y.
+type EdgeRows<'a, T> = (usize, (&'a mut [[T; 2]], &'a mut [[T; 2]]));
+
 /// Every second element along the axes that are coarsened is one of the coarser level; the weights of those between.
 #[derive(Debug)]
 pub(super) struct Interpolation<T> {
@@ -62,7 +65,7 @@ impl<T: Real> Interpolation<T> {
         };
         let mut edges = (std::mem::take(&mut this.along_x), std::mem::take(&mut this.along_y));
         let rows = edges.0.chunks_mut(coarse[0]).zip(edges.1.chunks_mut(coarse[0])).enumerate().collect();
-        parallel::for_each(rows, |(row, (along_x, along_y)): (usize, (&mut [[T; 2]], &mut [[T; 2]]))| {
+        parallel::for_each(rows, |(row, (along_x, along_y)): EdgeRows<'_, T>| {
             for column in 0..coarse[0] {
                 (along_x[column], along_y[column]) = this.edge_weights(fine, [column, row]);
             }

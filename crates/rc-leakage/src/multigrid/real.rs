@@ -36,17 +36,17 @@ macro_rules! real {
             const ONE: Self = 1.0;
             const TINY: Self = $real::MIN_POSITIVE;
 
-            #[inline(always)]
+            #[inline]
             fn of(value: f64) -> Self {
                 value as Self
             }
 
-            #[inline(always)]
+            #[inline]
             fn to_f64(self) -> f64 {
                 f64::from(self)
             }
 
-            #[inline(always)]
+            #[inline]
             fn abs(self) -> Self {
                 $real::abs(self)
             }

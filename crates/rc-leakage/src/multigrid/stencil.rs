@@ -54,7 +54,7 @@ struct RowCorners<'a, T> {
 
 impl<T: Real> RowBonds<'_, T> {
     /// Adds to `out` Σ conductance · `pull`(neighbour, element) over the neighbours in the rows below and above.
-    #[inline(always)]
+    #[inline]
     fn add_across(&self, [below, row, above]: [&[T]; 3], out: &mut [T], pull: impl Fn(T, T) -> T) {
         let last = out.len() - 1;
         let vertical = self.north.iter().zip(above).zip(self.south.iter().zip(below));
@@ -81,7 +81,7 @@ impl<T: Real> RowBonds<'_, T> {
     /// elements the first and the last are neighbours: the later one goes first on the way back.
     fn relax_along(&self, row: &mut [T], pull: &[T], inverse: &[T], (order, first): (Order, usize)) {
         let (n, east) = (row.len(), self.east);
-        let mut relax = |row: &mut [T], [before, i, after]: [usize; 3]| {
+        let relax = |row: &mut [T], [before, i, after]: [usize; 3]| {
             row[i] = (pull[i] + east[i] * row[after] + east[before] * row[before]) * inverse[i];
         };
         let seam = (first == 0 && n % 2 == 1 && n > 1 && order == Order::Backward).then_some([n - 2, n - 1, 0]);
@@ -122,7 +122,7 @@ impl<T: Real> RowBonds<'_, T> {
 }
 
 /// Calls `visit` with each index from `first` in steps of `step`, and with those of its neighbours on a ring of `n`.
-#[inline(always)]
+#[inline]
 fn for_ring(n: usize, first: usize, step: usize, mut visit: impl FnMut([usize; 3])) {
     if first >= n {
         return;
@@ -218,7 +218,9 @@ impl<T: Real> Stencil<T> {
             Order::Forward => [0, 1],
             Order::Backward => [1, 0],
         };
-        columns.into_iter().for_each(|first| bonds.relax_along(values, pull, inverse, (order, first)));
+        for first in columns {
+            bonds.relax_along(values, pull, inverse, (order, first));
+        }
     }
 
     /// Writes `right` less what the network draws under `x`, of row `iy`.

@@ -30,7 +30,7 @@ fn a_channel_with_a_step_adds_resistances_and_channels_side_by_side_add_conducta
     let step = Field::from_fn(grid, |at| if at.x < 0.25 { 0.01 } else { 0.03 });
     let [along, across] = permeances(&step);
     check(along, 2.0 / (0.25 / 0.01_f64.powi(3) + 0.75 / 0.03_f64.powi(3)), "in series");
-    check(across, (0.25 * 0.01_f64.powi(3) + 0.75 * 0.03_f64.powi(3)) / 2.0, "side by side");
+    check(across, 0.125 * 0.01_f64.powi(3) + 0.375 * 0.03_f64.powi(3), "side by side");
     // A step inside a channel between walls.
     let channel = Field::from_fn(grid, |at| match (at.y < 0.5, at.x < 0.5) {
         (true, true) => 0.01,
