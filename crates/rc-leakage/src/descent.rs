@@ -1,275 +1,224 @@
-//! Conjugate gradients for the pressure, preconditioned with a multigrid cycle.
+//! Conjugate gradients for the pressure, until the bounds of the permeance are close enough.
 
-use rc_core::Grid;
-
-use crate::multigrid::{Multigrid, Real};
-use crate::network::{Axis, Network, Potential};
+use crate::bounds::Bounds;
+use crate::flow_state::FlowState;
+use crate::network::{Axis, Network};
 use crate::parallel;
+use crate::preconditioner::Preconditioner;
+use crate::real::Real;
+use crate::tree::SpanningTree;
 
 /// What is solved for: the flow along an axis, and how exactly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Target {
     pub(crate) axis: Axis,
+    /// Largest relative difference of the bounds.
+    pub(crate) error: f64,
     /// Largest difference of the flow through two sections, relative to the flow.
     pub(crate) conservation: f64,
-    pub(crate) max_iterations: usize,
 }
 
-/// The pressure of the solved flow.
+/// A pressure with its flow, and what is known of it.
 #[derive(Debug)]
-pub(crate) struct Pressure {
+pub(crate) struct Solved {
     /// What is added to the mean fall, of 1 per element along the axis.
-    values: Vec<f64>,
-    /// What is added to them, where their own digits are not enough.
-    rest: Option<Vec<f32>>,
+    pub(crate) pressure: Vec<f64>,
+    /// Flow from each element along the tree, which makes the flow conserved.
+    pub(crate) correction: Vec<f64>,
+    pub(crate) bounds: Bounds,
     pub(crate) iterations: usize,
-    /// Largest difference of the flow through a section from the mean over all, relative to the latter.
-    pub(crate) conservation: f64,
 }
 
-impl Pressure {
-    pub(crate) fn potential(&self) -> Potential<'_> {
-        Potential { values: &self.values, rest: self.rest.as_deref() }
-    }
-
-    /// Adds `values`, and keeps what is rounded away.
-    fn add(&mut self, values: &mut [f64], block: usize) {
-        let rest = self.rest.get_or_insert_with(|| vec![0.0; values.len()]);
-        let sums = self.values.chunks_mut(block).zip(rest.chunks_mut(block));
-        let blocks = sums.zip(values.chunks_mut(block)).collect();
-        parallel::for_each(blocks, |((sums, rest), values): ((&mut [f64], &mut [f32]), &mut [f64])| {
-            for ((sum, rest), value) in sums.iter_mut().zip(rest).zip(values) {
-                let first = *sum + *value;
-                let back = first - *sum;
-                let lost = (*sum - (first - back)) + (*value - back) + f64::from(*rest);
-                *sum = first + lost;
-                *rest = (lost - (*sum - first)) as f32;
-                *value = 0.0;
-            }
-        });
+impl Solved {
+    /// No pressure but the mean fall, on `n` elements.
+    pub(crate) fn start(n: usize) -> Self {
+        let bounds = Bounds { upper: f64::INFINITY, lower: 0.0, conservation: f64::INFINITY };
+        Self { pressure: vec![0.0; n], correction: vec![0.0; n], bounds, iterations: 0 }
     }
 }
 
 impl Target {
-    /// Fall of the pressure per element.
-    pub(crate) fn fall(self) -> [f64; 2] {
-        match self.axis {
-            Axis::X => [1.0, 0.0],
-            Axis::Y => [0.0, 1.0],
-        }
+    pub(crate) fn is_met(self, bounds: &Bounds) -> bool {
+        bounds.relative() <= self.error && bounds.conservation <= self.conservation
     }
 }
 
-/// Elements along `axis`.
-pub(crate) fn elements_along(grid: Grid, axis: Axis) -> usize {
-    match axis {
-        Axis::X => grid.nx(),
-        Axis::Y => grid.ny(),
-    }
-}
+/// A gain of the last iteration below this part of the wanted error makes a look at the bounds worth its time.
+const FIRST_LOOK: f64 = 0.1;
 
-struct Vectors {
-    values: Vec<f64>,
-    residual: Vec<f64>,
-    direction: Vec<f64>,
-    applied: Vec<f64>,
-    block: usize,
-}
+/// What the gain is to fall to after a look, as a part of what the difference of the bounds has to.
+const NEXT_LOOK: f64 = 0.1;
 
-/// Solves for the pressure that conserves the flow.
-///
-/// Where the film is much wider in some places than in others, the pressure in wide places differs by less than its last digit. Iterations
-/// then go on with what is missing, added to the pressure in twice the precision.
-pub(crate) fn solve<T: Real>(network: &Network, multigrid: &mut Multigrid<T>, target: Target) -> Pressure {
-    let mut iteration = Iteration::new(network, target);
-    let mut pressure = Pressure { values: Vec::new(), rest: None, iterations: 0, conservation: f64::INFINITY };
-    let mut norm = iteration.vectors.write_residual(multigrid.right_mut());
-    let largest = GROWTH * norm;
-    let mut expected = f64::INFINITY;
-    let mut next_check = f64::INFINITY;
+/// A recurrence that differs from the true residual by more than this part of it begins anew.
+const DRIFT: f64 = 0.1;
+
+/// Part of the power at the start below which what is left of it is summed anew.
+const CANCELLED: f64 = 1e-6;
+
+/// Solves from the pressure of `solved` on, in at most `iterations`.
+pub(crate) fn solve<P: Preconditioner>(
+    (network, tree): (&Network, &SpanningTree),
+    solved: Solved,
+    preconditioner: &mut P,
+    target: Target,
+    most: usize,
+) -> Solved {
+    let mut iteration = Iteration::new(network, solved, target, preconditioner);
+    let mut look = FIRST_LOOK * target.error;
+    let end = iteration.solved.iterations + most;
     loop {
-        // Checks cost a pass; the residual says when another makes sense.
-        if norm <= next_check || pressure.iterations >= target.max_iterations {
-            let conservation = iteration.check(&mut pressure);
-            if conservation <= target.conservation || pressure.iterations >= target.max_iterations {
-                break;
+        let gain = iteration.advance(preconditioner);
+        let is_last = gain.is_none() || iteration.solved.iterations >= end;
+        if is_last || gain.is_some_and(|gain| gain <= look) {
+            let bounds = iteration.look(tree, preconditioner);
+            if is_last || target.is_met(&bounds) {
+                return iteration.solved;
             }
-            if conservation > STAGNATION * expected {
-                iteration.refine(&mut pressure);
-                norm = iteration.vectors.write_residual(multigrid.right_mut());
-            }
-            let ratio = (SAFETY * target.conservation / conservation).clamp(1e-4, SAFETY);
-            (next_check, expected) = (norm * ratio, conservation * ratio);
+            // The look took the place of what the direction was applied to.
+            iteration.apply();
+            look = gain.unwrap_or(0.0).min(look) * (NEXT_LOOK * target.error / bounds.relative()).clamp(1e-6, 0.3);
         }
-        match iteration.advance(multigrid) {
-            Some(next) if next <= largest => norm = next,
-            _ => break,
-        }
-        pressure.iterations += 1;
     }
-    iteration.finish(pressure)
 }
-
-/// Part of the tolerance that the next check is to find.
-const SAFETY: f64 = 0.4;
-
-/// A residual that has grown by this factor is that of rounding.
-const GROWTH: f64 = 1e10;
-
-/// A check that finds this much more than expected says that the pressure has run out of digits.
-const STAGNATION: f64 = 10.0;
 
 /// Conjugate gradients under way.
 struct Iteration<'a> {
     network: &'a Network,
     target: Target,
-    vectors: Vectors,
-    /// ⟨residual, step⟩ of the last iteration; 0 before the first.
-    work: f64,
+    /// Its `correction` is scratch between looks.
+    solved: Solved,
+    residual: Vec<f64>,
+    direction: Vec<f64>,
+    /// Power at the start, or when it was last summed, and what was gained since.
+    power: [f64; 2],
+    /// Product of the direction and of what it was applied to; 0 before the first iteration.
+    curvature: f64,
+    block: usize,
 }
 
 impl<'a> Iteration<'a> {
-    fn new(network: &'a Network, target: Target) -> Self {
+    fn new<P: Preconditioner>(network: &'a Network, solved: Solved, target: Target, preconditioner: &mut P) -> Self {
         let (n, nx) = (network.grid().len(), network.grid().nx());
-        let [values, residual, direction, applied] = [(); 4].map(|()| vec![0.0; n]);
-        let mut vectors = Vectors { values, residual, direction, applied, block: parallel::rows_per_block(nx) * nx };
-        let mut fluxes = std::mem::take(&mut vectors.residual);
-        let start = Potential { values: &vectors.values, rest: None };
-        write_residual_of(network, start, target.fall(), (&mut fluxes, vectors.block));
-        vectors.residual = fluxes;
-        Self { network, target, vectors, work: 0.0 }
+        let block = parallel::rows_per_block(nx) * nx;
+        let [residual, direction] = [(); 2].map(|()| vec![0.0; n]);
+        let mut this = Self { network, target, solved, residual, direction, power: [0.0; 2], curvature: 0.0, block };
+        FlowState::of(network, &this.solved.pressure, target.axis.unit()).write_excess(&mut this.residual);
+        this.write_right(preconditioner.right_mut());
+        this.power = [this.summed_power(), 0.0];
+        this
     }
 
-    /// Measures how well the flow so far is conserved.
-    fn check(&mut self, pressure: &mut Pressure) -> f64 {
-        if !pressure.values.is_empty() {
-            pressure.add(&mut self.vectors.values, self.vectors.block);
-        }
-        let so_far = Potential { values: &self.vectors.values, rest: None };
-        let so_far = if pressure.values.is_empty() { so_far } else { pressure.potential() };
-        let sections = self.network.sections(so_far, self.target.fall(), self.target.axis);
-        pressure.conservation = deviation(&sections);
-        pressure.conservation
+    fn state(&self) -> FlowState<'_> {
+        FlowState::of(self.network, &self.solved.pressure, self.target.axis.unit())
     }
 
-    /// Starts anew with what is missing of the pressure.
-    fn refine(&mut self, pressure: &mut Pressure) {
-        if pressure.values.is_empty() {
-            pressure.values = std::mem::replace(&mut self.vectors.values, vec![0.0; self.network.grid().len()]);
-        }
-        let out = (&mut self.vectors.residual[..], self.vectors.block);
-        write_residual_of(self.network, pressure.potential(), self.target.fall(), out);
-        self.work = 0.0;
+    fn summed_power(&self) -> f64 {
+        self.state().power_and_sections(self.target.axis).0
     }
 
-    /// One iteration; the norm of the residual after it, or `None` where none is left to descend along.
-    fn advance<T: Real>(&mut self, multigrid: &mut Multigrid<T>) -> Option<f64> {
-        let step = multigrid.cycle();
-        let work = self.vectors.dot_residual(step);
-        if !(work > 0.0 && work.is_finite()) {
-            return None;
+    /// Bounds of the pressure so far.
+    fn look<P: Preconditioner>(&mut self, tree: &SpanningTree, preconditioner: &mut P) -> Bounds {
+        let mut excess = std::mem::take(&mut self.solved.correction);
+        self.state().write_excess(&mut excess);
+        if self.drift(&excess) > DRIFT {
+            self.residual.copy_from_slice(&excess);
+            self.write_right(preconditioner.right_mut());
+            self.curvature = 0.0;
         }
-        let beta = if self.work > 0.0 { work / self.work } else { 0.0 };
-        self.work = work;
-        self.vectors.turn(step, beta);
-        let curvature = self.vectors.apply(self.network);
-        if !(curvature > 0.0 && curvature.is_finite()) {
-            return None;
-        }
-        Some(self.vectors.step(work / curvature, multigrid.right_mut()))
+        self.solved.bounds = Bounds::of(self.state(), tree, self.target.axis, &mut excess);
+        self.solved.correction = excess;
+        self.power = [self.solved.bounds.upper, 0.0];
+        self.solved.bounds
     }
 
-    /// The pressure, with how well it conserves the flow.
-    fn finish(mut self, mut pressure: Pressure) -> Pressure {
-        self.check(&mut pressure);
-        if pressure.values.is_empty() {
-            pressure.values = self.vectors.values;
-        }
-        pressure
-    }
-}
-
-/// Writes what flows into elements in excess of what flows out, in blocks of `block` elements.
-fn write_residual_of(network: &Network, pressure: Potential<'_>, fall: [f64; 2], (out, block): (&mut [f64], usize)) {
-    let nx = network.grid().nx();
-    let blocks = out.chunks_mut(block).zip(network.blocks()).collect();
-    parallel::for_each(blocks, |(residual, rows): (&mut [f64], [usize; 2])| {
-        network.visit_fluxes(rows, pressure, fall, &mut |row| {
-            let out = &mut residual[(row.iy - rows[0]) * nx..][..nx];
-            row.write_outflow(out);
-            for out in out {
-                *out = -*out;
-            }
+    /// Difference of the residual from `excess`, the true one, relative to it.
+    fn drift(&self, excess: &[f64]) -> f64 {
+        let blocks = self.residual.chunks(self.block).zip(excess.chunks(self.block)).collect();
+        let sums = parallel::map(blocks, |(residual, excess): (&[f64], &[f64])| {
+            let pairs = residual.iter().zip(excess);
+            pairs.fold([0.0; 2], |[off, all], (r, e)| [off + (r - e) * (r - e), all + e * e])
         });
-    });
-}
+        let [off, all] = sums.into_iter().fold([0.0; 2], |[a, b], [off, all]| [a + off, b + all]);
+        if all > 0.0 { (off / all).sqrt() } else { 0.0 }
+    }
 
-/// Largest difference from the mean, relative to it.
-fn deviation(sections: &[f64]) -> f64 {
-    let mean = sections.iter().sum::<f64>() / sections.len() as f64;
-    let largest = sections.iter().map(|flow| (flow - mean).abs()).fold(0.0, f64::max);
-    if mean > 0.0 { largest / mean } else { f64::INFINITY }
-}
+    /// One iteration; what it gained of the power, relative to it, or `None` where nothing is left to descend along.
+    fn advance<P: Preconditioner>(&mut self, preconditioner: &mut P) -> Option<f64> {
+        let step = preconditioner.apply();
+        self.turn(step);
+        let [slope, curvature] = self.apply();
+        self.curvature = curvature;
+        if !(slope > 0.0 && curvature > 0.0 && curvature.is_finite()) {
+            return None;
+        }
+        let length = slope / curvature;
+        self.step(length, preconditioner.right_mut());
+        self.solved.iterations += 1;
+        self.power[1] += length * slope;
+        if self.power[0] - self.power[1] < CANCELLED * self.power[0] {
+            self.power = [self.summed_power(), 0.0];
+        }
+        Some(length * slope / (self.power[0] - self.power[1]))
+    }
 
-impl Vectors {
-    /// Writes the residual in single precision, and gives its norm.
-    fn write_residual<T: Real>(&self, right: &mut [T]) -> f64 {
+    /// Writes the residual as the right side of the preconditioner.
+    fn write_right<T: Real>(&self, right: &mut [T]) {
         let blocks = self.residual.chunks(self.block).zip(right.chunks_mut(self.block)).collect();
-        parallel::sum(blocks, |(residual, right): (&[f64], &mut [T])| {
+        parallel::for_each(blocks, |(residual, right): (&[f64], &mut [T])| {
             right.iter_mut().zip(residual).for_each(|(right, residual)| *right = T::of(*residual));
-            residual.iter().map(|r| r * r).sum()
-        })
-        .sqrt()
-    }
-
-    fn dot_residual<T: Real>(&self, step: &[T]) -> f64 {
-        let blocks = self.residual.chunks(self.block).zip(step.chunks(self.block)).collect();
-        parallel::sum(blocks, |(residual, step): (&[f64], &[T])| {
-            residual.iter().zip(step).map(|(r, z)| r * z.to_f64()).sum()
-        })
-    }
-
-    /// The next direction, conjugate to the last.
-    fn turn<T: Real>(&mut self, step: &[T], beta: f64) {
-        let blocks = self.direction.chunks_mut(self.block).zip(step.chunks(self.block)).collect();
-        parallel::for_each(blocks, |(direction, step): (&mut [f64], &[T])| {
-            direction.iter_mut().zip(step).for_each(|(p, z)| *p = z.to_f64() + beta * *p);
         });
     }
 
-    /// Applies the network to the direction, and gives its curvature.
-    fn apply(&mut self, network: &Network) -> f64 {
-        let (nx, direction) = (network.grid().nx(), &self.direction);
-        let blocks = self.applied.chunks_mut(self.block).zip(network.blocks()).collect();
-        parallel::sum(blocks, |(applied, rows): (&mut [f64], [usize; 2])| {
-            let mut curvature = 0.0;
-            network.visit_fluxes(rows, Potential { values: direction, rest: None }, [0.0; 2], &mut |row| {
+    /// The next direction: what the preconditioner found, made conjugate to the last. It need not be linear for that.
+    fn turn<T: Real>(&mut self, step: &[T]) {
+        let block = self.block;
+        let mut along = 0.0;
+        if self.curvature > 0.0 {
+            let blocks = self.solved.correction.chunks(block).zip(step.chunks(block)).collect();
+            let dot = parallel::sum(blocks, |(applied, step): (&[f64], &[T])| {
+                applied.iter().zip(step).map(|(a, z)| a * z.to_f64()).sum()
+            });
+            along = -dot / self.curvature;
+        }
+        let blocks = self.direction.chunks_mut(block).zip(step.chunks(block)).collect();
+        parallel::for_each(blocks, |(direction, step): (&mut [f64], &[T])| {
+            direction.iter_mut().zip(step).for_each(|(p, z)| *p = z.to_f64() + along * *p);
+        });
+    }
+
+    /// Applies the network to the direction: products of it with the residual and with what it was applied to.
+    fn apply(&mut self) -> [f64; 2] {
+        let (nx, direction, residual) = (self.network.grid().nx(), &self.direction, &self.residual);
+        let state = FlowState::of(self.network, direction, [0.0; 2]);
+        let blocks = self.solved.correction.chunks_mut(self.block).zip(self.network.blocks()).collect();
+        let sums = parallel::map(blocks, |(applied, rows): (&mut [f64], [usize; 2])| {
+            let mut sums = [0.0; 2];
+            state.visit(rows, &mut |row| {
                 let out = &mut applied[(row.iy - rows[0]) * nx..][..nx];
                 row.write_outflow(out);
-                let direction = &direction[row.iy * nx..(row.iy + 1) * nx];
-                curvature += out.iter().zip(direction).map(|(a, p)| a * p).sum::<f64>();
+                let range = row.iy * nx..(row.iy + 1) * nx;
+                sums[0] +=
+                    residual[range.clone()].iter().zip(&direction[range.clone()]).map(|(r, p)| r * p).sum::<f64>();
+                sums[1] += out.iter().zip(&direction[range]).map(|(a, p)| a * p).sum::<f64>();
             });
-            curvature
-        })
+            sums
+        });
+        sums.into_iter().fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y])
     }
 
-    /// A step of `length` along the direction; writes the residual in the precision of the cycle, and gives its norm.
-    fn step<T: Real>(&mut self, length: f64, right: &mut [T]) -> f64 {
+    /// A step of `length` along the direction; writes the residual as the right side of the preconditioner.
+    fn step<T: Real>(&mut self, length: f64, right: &mut [T]) {
         let block = self.block;
-        let moved = self.values.chunks_mut(block).zip(self.direction.chunks(block));
-        let left = self.residual.chunks_mut(block).zip(self.applied.chunks(block));
+        let moved = self.solved.pressure.chunks_mut(block).zip(self.direction.chunks(block));
+        let left = self.residual.chunks_mut(block).zip(self.solved.correction.chunks(block));
         let blocks = moved.zip(left).zip(right.chunks_mut(block)).collect();
-        parallel::sum(blocks, |(((values, direction), (residual, applied)), right): StepBlock<'_, T>| {
+        parallel::for_each(blocks, |(((values, direction), (residual, applied)), right): StepBlock<'_, T>| {
             values.iter_mut().zip(direction).for_each(|(u, p)| *u += length * p);
-            let mut sum = 0.0;
             for ((r, a), right) in residual.iter_mut().zip(applied).zip(right) {
                 *r -= length * a;
                 *right = T::of(*r);
-                sum += *r * *r;
             }
-            sum
-        })
-        .sqrt()
+        });
     }
 }
 

@@ -15,16 +15,19 @@ pub enum LeakageError {
         /// The value.
         value: f64,
     },
-    /// The flow through sections still differs after the most iterations.
+    /// The bounds of the permeance, or the flow through sections, still differ after the most iterations.
     #[error(
-        "the flow along {axis} through two sections of {grid} elements differs by {conservation:.1e} of it after {iterations} iterations"
+        "the bounds of the permeance along {axis} on {grid} elements differ by {error:.1e} of it after {iterations} iterations, and the flow through two \
+         sections by {conservation:.1e}"
     )]
     NotConverged {
         /// Direction of the flow.
         axis: &'static str,
         /// Elements.
         grid: Grid,
-        /// Largest relative difference.
+        /// Largest relative error of the permeance.
+        error: f64,
+        /// Largest relative difference of the flow.
         conservation: f64,
         /// Iterations done.
         iterations: usize,

@@ -1,18 +1,24 @@
 //! The front door: permeances, percolation and constrictions of a gap.
 
-use rc_core::Field;
+use rc_core::{Field, Grid};
 
+use crate::aggregation::{Aggregation, Graph};
+use crate::bounds::Bounds;
 use crate::clusters::Clusters;
 use crate::constriction::{Constriction, Thresholds};
-use crate::descent::{self, Pressure, Target, elements_along};
+use crate::descent::{self, Solved, Target};
 use crate::error::LeakageError;
+use crate::flow_state::{Correction, FlowState};
 use crate::flux::Flux;
 use crate::multigrid::Multigrid;
 use crate::network::{Axis, Network};
+use crate::tree::SpanningTree;
 
 /// How the flow is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeakageParams {
+    /// Largest difference of the upper and the lower bound of the permeance, relative to the permeance.
+    pub error: f64,
     /// Largest difference of the flow through two sections of the cell, relative to the flow.
     pub conservation: f64,
     /// Most iterations of one flow.
@@ -23,7 +29,7 @@ pub struct LeakageParams {
 
 impl Default for LeakageParams {
     fn default() -> Self {
-        Self { conservation: 1e-10, max_iterations: 1000, half_grid: true }
+        Self { error: 1e-9, conservation: 1e-10, max_iterations: 500, half_grid: true }
     }
 }
 
@@ -40,7 +46,7 @@ pub struct Leakage {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flow {
     /// Flow for a pressure that falls by one across the cell and 12 η = 1, in λ³: 0 where nothing percolates. An upper bound of the
-    /// permeance of the network, by the principle of Dirichlet.
+    /// permeance of the network, by the principle of Dirichlet; see [`FlowInfo::error`].
     pub permeance: f64,
     /// Estimated error of the grid: the difference from the permeance of every second element; `None` where it was not computed, or the
     /// sides are odd.
@@ -58,6 +64,8 @@ pub struct Flow {
 pub struct FlowInfo {
     /// Iterations.
     pub iterations: usize,
+    /// Largest error of the permeance of the network, relative to it: the difference of the lower bound, by the principle of Thomson.
+    pub error: f64,
     /// Largest difference of the flow through a section from the mean of all, relative to it.
     pub conservation: f64,
 }
@@ -120,7 +128,7 @@ fn half(gap: &Field) -> Option<Field> {
 }
 
 /// What is known of one grid.
-struct Solved {
+struct OfGrid {
     /// Permeances along both axes.
     results: [(f64, FlowInfo); 2],
     percolates: [bool; 2],
@@ -128,12 +136,12 @@ struct Solved {
     flux: Option<Flux>,
 }
 
-/// Gaps below this part of the smaller critical gap are taken as closed: such an element conducts 1e-12 of a constriction. A pool that only
+/// Gaps below this part of the smaller critical gap are taken as closed: such an element conducts 1e-15 of a constriction. A pool that only
 /// they join to the rest has a pressure that rounding decides.
-const CLOSED: f64 = 1e-4;
+const CLOSED: f64 = 1e-5;
 
 /// Permeances along both axes, and the flux along that of the larger one.
-fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<Solved, LeakageError> {
+fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<OfGrid, LeakageError> {
     let percolates = Clusters::above(gap, 0.0, false).percolates();
     let mut thresholds = Thresholds::new(gap);
     let constrictions =
@@ -142,7 +150,7 @@ fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<Solved,
     let mut clusters = Clusters::above(gap, CLOSED * critical, true);
     let masks = Axis::BOTH.map(|axis| clusters.winding(axis));
     let mut results = [(0.0, FlowInfo::default()); 2];
-    let mut kept: Option<(Target, Pressure)> = None;
+    let mut kept: Option<(Axis, Kept)> = None;
     let mut prepared: Option<(usize, Prepared)> = None;
     for axis in Axis::BOTH.into_iter().filter(|axis| percolates[axis.index()]) {
         let i = axis.index();
@@ -150,21 +158,16 @@ fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<Solved,
             Some((of, network)) if masks[of] == masks[i] => (of, network),
             _ => (i, Prepared::new(network_of(gap, &clusters, &masks[i]))),
         };
-        let target = Target { axis, conservation: params.conservation, max_iterations: params.max_iterations };
-        let (result, pressure) = network.flow(target)?;
-        results[i] = result;
+        let solved = network.solved(axis, params)?;
+        results[i] = network.result(axis, &solved);
         if with_flux && (kept.is_none() || results[1].0 > results[0].0) {
-            kept = Some((target, pressure));
+            kept = Some((axis, Kept { pressure: solved.pressure, correction: solved.correction }));
         }
         prepared = Some((of, network));
     }
     drop(prepared);
-    let flux = kept.map(|(target, pressure)| {
-        let network = network_of(gap, &clusters, &masks[target.axis.index()]);
-        let factor = network.unscaled(1.0) / elements_along(gap.grid(), target.axis) as f64;
-        Flux::of(&network, pressure.potential(), target, factor)
-    });
-    Ok(Solved { results, percolates, constrictions, flux })
+    let flux = kept.map(|(axis, kept)| kept.flux(&network_of(gap, &clusters, &masks[axis.index()]), axis));
+    Ok(OfGrid { results, percolates, constrictions, flux })
 }
 
 /// The network of the runs that `carries` says carry a flow.
@@ -177,59 +180,94 @@ fn network_of(gap: &Field, clusters: &Clusters, carries: &[bool]) -> Network {
     })
 }
 
-/// Iterations after which single precision has had its chance.
-const SINGLE_ITERATIONS: usize = 80;
-
-/// A network with the hierarchy that solves it.
-struct Prepared {
-    network: Network,
-    hierarchy: Hierarchy,
+/// What is left of a solved flow.
+struct Kept {
+    pressure: Vec<f64>,
+    correction: Vec<f64>,
 }
 
-/// In single precision until a flow asks for more: it takes half of the memory, and cannot tell a bond from the rounding of another one that is
-/// ten million times as strong.
-enum Hierarchy {
-    Single(Multigrid<f32>),
-    Double(Multigrid<f64>),
+impl Kept {
+    fn flux(&self, network: &Network, axis: Axis) -> Flux {
+        let tree = SpanningTree::new(network);
+        let correction = Some(Correction { tree: &tree, flow: &self.correction });
+        let state = FlowState { correction, ..FlowState::of(network, &self.pressure, axis.unit()) };
+        Flux::of(state, network.unscaled(1.0) / elements_along(network.grid(), axis) as f64)
+    }
+}
+
+/// Elements along `axis`.
+fn elements_along(grid: Grid, axis: Axis) -> usize {
+    match axis {
+        Axis::X => grid.nx(),
+        Axis::Y => grid.ny(),
+    }
+}
+
+/// Iterations that grids have before aggregates alone take over: films that are resolved take six to ten.
+const ON_GRIDS: usize = 20;
+
+/// A network with what solves it.
+struct Prepared {
+    network: Network,
+    tree: SpanningTree,
+    preconditioner: Precondition,
+}
+
+/// Coarser grids until a flow shows that they do not represent the network.
+enum Precondition {
+    Grids(Multigrid<f32>),
+    Aggregates(Aggregation),
 }
 
 impl Prepared {
     fn new(network: Network) -> Self {
-        let hierarchy = Hierarchy::Single(Multigrid::new(&network));
-        Self { network, hierarchy }
+        let preconditioner = Precondition::Grids(Multigrid::new(&network));
+        Self { tree: SpanningTree::new(&network), network, preconditioner }
     }
 
-    /// Permeance and pressure of the flow along one axis.
-    fn flow(&mut self, target: Target) -> Result<((f64, FlowInfo), Pressure), LeakageError> {
-        let pressure = self.solve(target);
-        let info = FlowInfo { iterations: pressure.iterations, conservation: pressure.conservation };
-        let grid = self.network.grid();
-        if pressure.conservation > target.conservation {
-            return Err(LeakageError::NotConverged {
-                axis: target.axis.name(),
-                grid,
-                conservation: info.conservation,
-                iterations: info.iterations,
-            });
-        }
-        let n = elements_along(grid, target.axis) as f64;
-        let power = self.network.power(pressure.potential(), target.fall());
-        Ok(((self.network.unscaled(power) / (n * n), info), pressure))
-    }
-
-    fn solve(&mut self, target: Target) -> Pressure {
-        if let Hierarchy::Single(multigrid) = &mut self.hierarchy {
-            let first = Target { max_iterations: target.max_iterations.min(SINGLE_ITERATIONS), ..target };
-            let pressure = descent::solve(&self.network, multigrid, first);
-            if pressure.conservation <= target.conservation {
-                return pressure;
+    /// The flow along one axis.
+    fn solved(&mut self, axis: Axis, params: &LeakageParams) -> Result<Solved, LeakageError> {
+        let target = Target { axis, error: params.error, conservation: params.conservation };
+        let of = (&self.network, &self.tree);
+        let mut solved = Solved::start(self.network.grid().len());
+        if let Precondition::Grids(multigrid) = &mut self.preconditioner {
+            solved = descent::solve(of, solved, multigrid, target, params.max_iterations.min(ON_GRIDS));
+            if !target.is_met(&solved.bounds) {
+                self.preconditioner = Precondition::Aggregates(Aggregation::new(graph_of(&self.network)));
             }
-            drop(pressure);
-            self.hierarchy = Hierarchy::Double(Multigrid::new(&self.network));
         }
-        match &mut self.hierarchy {
-            Hierarchy::Single(multigrid) => descent::solve(&self.network, multigrid, target),
-            Hierarchy::Double(multigrid) => descent::solve(&self.network, multigrid, target),
+        if let Precondition::Aggregates(aggregation) = &mut self.preconditioner
+            && !target.is_met(&solved.bounds)
+        {
+            let rest = params.max_iterations.saturating_sub(solved.iterations);
+            solved = descent::solve(of, solved, aggregation, target, rest);
         }
+        if target.is_met(&solved.bounds) {
+            return Ok(solved);
+        }
+        let Bounds { conservation, .. } = solved.bounds;
+        Err(LeakageError::NotConverged {
+            axis: axis.name(),
+            grid: self.network.grid(),
+            error: solved.bounds.relative(),
+            conservation,
+            iterations: solved.iterations,
+        })
     }
+
+    /// Permeance, and what was done.
+    fn result(&self, axis: Axis, solved: &Solved) -> (f64, FlowInfo) {
+        let bounds = &solved.bounds;
+        let info =
+            FlowInfo { iterations: solved.iterations, error: bounds.relative(), conservation: bounds.conservation };
+        let n = elements_along(self.network.grid(), axis) as f64;
+        (self.network.unscaled(bounds.upper) / (n * n), info)
+    }
+}
+
+fn graph_of(network: &Network) -> Graph {
+    Graph::new(network.grid().len(), &|element, bonds| {
+        let all = network.bonds_of(element).into_iter().filter(|(_, bond)| *bond > 0.0);
+        bonds.extend(all.map(|(other, bond)| (other as u32, bond)));
+    })
 }

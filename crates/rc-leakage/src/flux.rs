@@ -2,8 +2,7 @@
 
 use rc_core::Field;
 
-use crate::descent::Target;
-use crate::network::{Network, Potential};
+use crate::flow_state::FlowState;
 use crate::parallel;
 
 /// The flux at the centres of elements: the volume that flows across a unit of length, for a pressure that falls by one across the cell and
@@ -18,15 +17,15 @@ pub struct Flux {
 
 impl Flux {
     /// Mean of the fluxes through opposite faces of each element; `factor` is that of a unit fall per element.
-    pub(crate) fn of(network: &Network, pressure: Potential<'_>, target: Target, factor: f64) -> Self {
-        let grid = network.grid();
+    pub(crate) fn of(state: FlowState<'_>, factor: f64) -> Self {
+        let grid = state.network.grid();
         let (nx, spacing) = (grid.nx(), grid.spacing());
         let [per_x, per_y] = [0.5 * factor / spacing.y, 0.5 * factor / spacing.x];
         let (mut x, mut y) = (Field::zeros(grid), Field::zeros(grid));
         let block = parallel::rows_per_block(nx) * nx;
-        let blocks = x.values_mut().chunks_mut(block).zip(y.values_mut().chunks_mut(block)).zip(network.blocks());
+        let blocks = x.values_mut().chunks_mut(block).zip(y.values_mut().chunks_mut(block)).zip(state.network.blocks());
         parallel::for_each(blocks.collect(), |((x, y), rows): ((&mut [f64], &mut [f64]), [usize; 2])| {
-            network.visit_fluxes(rows, pressure, target.fall(), &mut |row| {
+            state.visit(rows, &mut |row| {
                 let start = (row.iy - rows[0]) * nx;
                 for ix in 0..nx {
                     x[start + ix] = per_x * (row.east[ix] + row.west(ix));

@@ -18,15 +18,24 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod aggregation;
+mod bounds;
 mod clusters;
 mod constriction;
 mod descent;
+mod elimination;
 mod error;
 mod flow;
+mod flow_state;
 mod flux;
 mod multigrid;
 mod network;
 mod parallel;
+mod pools;
+mod preconditioner;
+mod real;
+mod step;
+mod tree;
 
 pub use constriction::Constriction;
 pub use error::LeakageError;

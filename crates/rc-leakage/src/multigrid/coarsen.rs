@@ -1,9 +1,9 @@
 //! The network of a coarser level: that of the finer one under interpolated pressures (Galerkin).
 
 use super::interpolation::{Bonds, Interpolation};
-use super::real::Real;
 use super::stencil::{Corners, Stencil};
 use crate::parallel;
+use crate::real::Real;
 
 /// Bonds between the four corners of a coarse square.
 #[derive(Clone, Copy, Default)]

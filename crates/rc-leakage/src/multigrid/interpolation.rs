@@ -1,8 +1,8 @@
 //! Interpolation from a coarser level, with weights from the bonds of the finer one (black box multigrid: Dendy, J. Comput. Phys. 48, 1982).
 
-use super::real::Real;
 use super::stencil::Stencil;
 use crate::parallel;
+use crate::real::Real;
 
 /// A row of weights of elements after coarse ones along x and along y.
 type EdgeRows<'a, T> = (usize, (&'a mut [[T; 2]], &'a mut [[T; 2]]));

@@ -1,21 +1,23 @@
 //! A multigrid cycle, which approximates the inverse of the network.
 
 mod coarsen;
-mod coarsest;
 mod interpolation;
-mod real;
 mod stencil;
 
 use self::coarsen::coarsen;
-use self::coarsest::Coarsest;
-use self::interpolation::Interpolation;
-pub(crate) use self::real::Real;
+use self::interpolation::{Bonds, Interpolation};
 use self::stencil::{Order, Stencil};
+use crate::aggregation::{Aggregation, Graph};
 use crate::network::Network;
 use crate::parallel;
+use crate::preconditioner::Preconditioner;
+use crate::real::Real;
 
 /// Elements that are few enough for elimination.
 const COARSEST: usize = 256;
+
+/// Coarser grids; what they no longer resolve is left to aggregates.
+const GRIDS: usize = 3;
 
 /// Elements with sides of more than this ratio are coarsened along the shorter one only.
 const LONGEST: f64 = 2.0;
@@ -25,7 +27,7 @@ const LONGEST: f64 = 2.0;
 pub(crate) struct Multigrid<T> {
     /// Finest first.
     levels: Vec<Level<T>>,
-    coarsest: Coarsest,
+    coarsest: Aggregation,
 }
 
 #[derive(Debug)]
@@ -49,9 +51,10 @@ impl<T: Real> Multigrid<T> {
         let mut sides = network.grid().spacing();
         let mut levels = vec![Level::new(finest(network))];
         loop {
+            let is_last = levels.len() > GRIDS;
             let Some(level) = levels.last_mut() else { unreachable!("there is a finest level") };
             let (nx, ny) = (level.stencil.nx, level.stencil.ny);
-            if nx * ny <= COARSEST {
+            if nx * ny <= COARSEST || is_last {
                 break;
             }
             let halve_x = nx > 2 && (sides.x <= LONGEST * sides.y || ny <= 2);
@@ -64,18 +67,20 @@ impl<T: Real> Multigrid<T> {
             level.interpolation = Some(interpolation);
             levels.push(Level::new(coarse));
         }
-        let coarsest = Coarsest::new(&levels[levels.len() - 1].stencil);
+        let coarsest = Aggregation::new(graph_of(&levels[levels.len() - 1].stencil));
         Self { levels, coarsest }
     }
+}
 
-    /// The right side, to be written.
-    pub(crate) fn right_mut(&mut self) -> &mut [T] {
+impl<T: Real> Preconditioner for Multigrid<T> {
+    type Value = T;
+
+    fn right_mut(&mut self) -> &mut [T] {
         &mut self.levels[0].right
     }
 
-    /// Applies the cycle to the right side.
-    pub(crate) fn cycle(&mut self) -> &[T] {
-        cycle(&mut self.levels, &self.coarsest);
+    fn apply(&mut self) -> &[T] {
+        cycle(&mut self.levels, &mut self.coarsest);
         &self.levels[0].x
     }
 }
@@ -93,11 +98,34 @@ fn finest<T: Real>(network: &Network) -> Stencil<T> {
     stencil
 }
 
-fn cycle<T: Real>(levels: &mut [Level<T>], coarsest: &Coarsest) {
+fn graph_of<T: Real>(stencil: &Stencil<T>) -> Graph {
+    let bonds = Bonds(stencil);
+    let (nx, ny) = (stencil.nx, stencil.ny);
+    Graph::new(nx * ny, &|element, out| {
+        let (x, y) = (element % nx, element / nx);
+        let (before, below) = (x + nx - 1, y + ny - 1);
+        let all = [
+            ([x + 1, y], bonds.east(x, y)),
+            ([before, y], bonds.east(before, y)),
+            ([x, y + 1], bonds.north(x, y)),
+            ([x, below], bonds.north(x, below)),
+            ([x + 1, y + 1], bonds.rising(x, y)),
+            ([before, below], bonds.rising(before, below)),
+            ([before, y + 1], bonds.falling(before, y)),
+            ([x + 1, below], bonds.falling(x, below)),
+        ];
+        let all = all.map(|([x, y], bond)| (bonds.index(x, y), bond.to_f64()));
+        let others = all.into_iter().filter(|(other, bond)| *other != element && *bond != 0.0);
+        out.extend(others.map(|(other, bond)| (other as u32, bond)));
+    })
+}
+
+fn cycle<T: Real>(levels: &mut [Level<T>], coarsest: &mut Aggregation) {
     let Some((level, coarser)) = levels.split_first_mut() else { return };
     let Level { stencil, interpolation, x, right } = level;
     let Some(interpolation) = interpolation else {
-        coarsest.solve(right, x);
+        coarsest.right_mut().iter_mut().zip(right).for_each(|(out, right)| *out = right.to_f64());
+        x.iter_mut().zip(coarsest.solve()).for_each(|(x, value)| *x = T::of(*value));
         return;
     };
     x.fill(T::ZERO);
@@ -129,7 +157,7 @@ mod tests {
         let unit = |i: usize| {
             multigrid.right_mut().fill(0.0);
             multigrid.right_mut()[i] = 1.0;
-            multigrid.cycle().to_vec()
+            multigrid.apply().to_vec()
         };
         // Walls have no residual.
         let (is_open, columns) = (|i: usize| gap.values()[i] > 0.0, (0..grid.len()).map(unit));

@@ -1,7 +1,7 @@
 //! A level: bonds of each element to its neighbours, and sweeps of relaxation over them.
 
-use super::real::Real;
 use crate::parallel;
+use crate::real::Real;
 
 /// Rows that are relaxed one after the other; the next block sees their values from before the sweep.
 const BLOCK_ROWS: usize = 32;

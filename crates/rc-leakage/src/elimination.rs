@@ -1,40 +1,23 @@
-//! The coarsest level, by elimination.
+//! A small network with its elements eliminated one after the other.
 
-use super::interpolation::Bonds;
-use super::real::Real;
-use super::stencil::Stencil;
+use crate::real::Real;
 
-/// The coarsest network with its elements eliminated one after the other.
-///
 /// A bond that elimination makes is a sum of products of bonds, and a pivot the sum of the bonds that are left (Grassmann, Taksar and Heyman, Oper. Res. 33,
 /// 1985): nothing cancels, so that weak bonds keep their digits beside strong ones, and the last element of a cluster is left without a bond exactly.
 #[derive(Debug)]
-pub(super) struct Coarsest {
+pub(crate) struct Elimination {
     n: usize,
     /// In row i, the part of its pivot that each later element has.
     shares: Vec<f64>,
     pivots: Vec<f64>,
 }
 
-impl Coarsest {
-    pub(super) fn new<T: Real>(stencil: &Stencil<T>) -> Self {
-        let n = stencil.nx * stencil.ny;
+impl Elimination {
+    /// Of `n` elements with these bonds: two elements and a conductance.
+    pub(crate) fn new(n: usize, bonds: impl Iterator<Item = (usize, usize, f64)>) -> Self {
         let mut network = vec![0.0_f64; n * n];
-        let bonds = Bonds(stencil);
-        let mut add = |a: usize, b: usize, bond: T| {
-            if a != b {
-                network[a.min(b) * n + a.max(b)] += bond.to_f64();
-            }
-        };
-        for y in 0..stencil.ny {
-            for x in 0..stencil.nx {
-                let here = bonds.index(x, y);
-                let [next, above, both] = [[x + 1, y], [x, y + 1], [x + 1, y + 1]].map(|[x, y]| bonds.index(x, y));
-                add(here, next, bonds.east(x, y));
-                add(here, above, bonds.north(x, y));
-                add(here, both, bonds.rising(x, y));
-                add(next, above, bonds.falling(x, y));
-            }
+        for (a, b, bond) in bonds.filter(|(a, b, _)| a != b) {
+            network[a.min(b) * n + a.max(b)] += bond;
         }
         Self::eliminate(network, n)
     }
@@ -63,7 +46,7 @@ impl Coarsest {
     }
 
     /// Writes the solution for `right` to `x`; the last element of each cluster is at level 0.
-    pub(super) fn solve<T: Real>(&self, right: &[T], x: &mut [T]) {
+    pub(crate) fn solve<T: Real>(&self, right: &[T], x: &mut [T]) {
         let n = self.n;
         let mut y: Vec<f64> = right.iter().copied().map(T::to_f64).collect();
         for i in 0..n {
