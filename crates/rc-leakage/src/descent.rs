@@ -52,8 +52,8 @@ const NEXT_LOOK: f64 = 0.1;
 /// A recurrence that differs from the true residual by more than this part of it begins anew.
 const DRIFT: f64 = 0.1;
 
-/// Part of the power at the start below which what is left of it is summed anew.
-const CANCELLED: f64 = 1e-6;
+/// Part of the power below which what is left of it, and of the residual, is rounding of what was there before: both are computed anew.
+const CANCELLED: f64 = 1e-4;
 
 /// Solves from the pressure of `solved` on, in at most `iterations`.
 pub(crate) fn solve<P: Preconditioner>(
@@ -102,18 +102,21 @@ impl<'a> Iteration<'a> {
         let block = parallel::rows_per_block(nx) * nx;
         let [residual, direction] = [(); 2].map(|()| vec![0.0; n]);
         let mut this = Self { network, target, solved, residual, direction, power: [0.0; 2], curvature: 0.0, block };
-        FlowState::of(network, &this.solved.pressure, target.axis.unit()).write_excess(&mut this.residual);
-        this.write_right(preconditioner.right_mut());
-        this.power = [this.summed_power(), 0.0];
+        this.renew(preconditioner);
         this
+    }
+
+    /// Computes the residual and the power of the pressure so far, and begins anew from there.
+    fn renew<P: Preconditioner>(&mut self, preconditioner: &mut P) {
+        let state = FlowState::of(self.network, &self.solved.pressure, self.target.axis.unit());
+        state.write_excess(&mut self.residual);
+        self.power = [state.power_and_sections(self.target.axis).0, 0.0];
+        self.write_right(preconditioner.right_mut());
+        self.curvature = 0.0;
     }
 
     fn state(&self) -> FlowState<'_> {
         FlowState::of(self.network, &self.solved.pressure, self.target.axis.unit())
-    }
-
-    fn summed_power(&self) -> f64 {
-        self.state().power_and_sections(self.target.axis).0
     }
 
     /// Bounds of the pressure so far.
@@ -156,7 +159,7 @@ impl<'a> Iteration<'a> {
         self.solved.iterations += 1;
         self.power[1] += length * slope;
         if self.power[0] - self.power[1] < CANCELLED * self.power[0] {
-            self.power = [self.summed_power(), 0.0];
+            self.renew(preconditioner);
         }
         Some(length * slope / (self.power[0] - self.power[1]))
     }

@@ -140,6 +140,10 @@ struct OfGrid {
 /// they join to the rest has a pressure that rounding decides.
 const CLOSED: f64 = 1e-5;
 
+/// Gaps above this multiple of the critical gap of an axis are taken as this wide: such an element resists 1e-14 of a constriction. What drives the flow
+/// through a wider one would be lost in the rounding of its pressure.
+const WIDE: f64 = 5e4;
+
 /// Permeances along both axes, and the flux along that of the larger one.
 fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<OfGrid, LeakageError> {
     let percolates = Clusters::above(gap, 0.0, false).percolates();
@@ -149,14 +153,19 @@ fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<OfGrid,
     let critical = constrictions.iter().flatten().map(|place| place.gap).fold(f64::INFINITY, f64::min);
     let mut clusters = Clusters::above(gap, CLOSED * critical, true);
     let masks = Axis::BOTH.map(|axis| clusters.winding(axis));
+    let largest = gap.max();
+    let widest = constrictions.map(|place| place.map_or(largest, |place| largest.min(WIDE * place.gap)));
+    let network = |i: usize| network_of((gap, widest[i]), &clusters, &masks[i]);
     let mut results = [(0.0, FlowInfo::default()); 2];
     let mut kept: Option<(Axis, Kept)> = None;
     let mut prepared: Option<(usize, Prepared)> = None;
     for axis in Axis::BOTH.into_iter().filter(|axis| percolates[axis.index()]) {
         let i = axis.index();
         let (of, mut network) = match prepared.take() {
-            Some((of, network)) if masks[of] == masks[i] => (of, network),
-            _ => (i, Prepared::new(network_of(gap, &clusters, &masks[i]))),
+            Some((of, network)) if masks[of] == masks[i] && widest[of] >= widest[i] && widest[of] <= widest[i] => {
+                (of, network)
+            }
+            _ => (i, Prepared::new(network(i))),
         };
         let solved = network.solved(axis, params)?;
         results[i] = network.result(axis, &solved);
@@ -166,13 +175,13 @@ fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<OfGrid,
         prepared = Some((of, network));
     }
     drop(prepared);
-    let flux = kept.map(|(axis, kept)| kept.flux(&network_of(gap, &clusters, &masks[axis.index()]), axis));
+    let flux = kept.map(|(axis, kept)| kept.flux(&network(axis.index()), axis));
     Ok(OfGrid { results, percolates, constrictions, flux })
 }
 
 /// The network of the runs that `carries` says carry a flow.
-fn network_of(gap: &Field, clusters: &Clusters, carries: &[bool]) -> Network {
-    Network::new(gap, &|iy, open: &mut [bool]| {
+fn network_of((gap, widest): (&Field, f64), clusters: &Clusters, carries: &[bool]) -> Network {
+    Network::new(gap, widest, &|iy, open: &mut [bool]| {
         let range = clusters.first_of_row[iy]..clusters.first_of_row[iy + 1];
         for (run, _) in clusters.runs[range.clone()].iter().zip(&carries[range]).filter(|(_, carries)| **carries) {
             open[run.start as usize..run.end as usize].fill(true);
@@ -204,7 +213,7 @@ fn elements_along(grid: Grid, axis: Axis) -> usize {
 }
 
 /// Iterations that grids have before aggregates alone take over: films that are resolved take six to ten.
-const ON_GRIDS: usize = 20;
+const ON_GRIDS: usize = 12;
 
 /// A network with what solves it.
 struct Prepared {
@@ -234,6 +243,8 @@ impl Prepared {
             solved = descent::solve(of, solved, multigrid, target, params.max_iterations.min(ON_GRIDS));
             if !target.is_met(&solved.bounds) {
                 self.preconditioner = Precondition::Aggregates(Aggregation::new(graph_of(&self.network)));
+                // From no pressure again: single precision may have left pools that hardly anything holds at a level that takes all digits.
+                solved = Solved { iterations: solved.iterations, ..Solved::start(self.network.grid().len()) };
             }
         }
         if let Precondition::Aggregates(aggregation) = &mut self.preconditioner

@@ -22,6 +22,7 @@ mod aggregation;
 mod bounds;
 mod clusters;
 mod constriction;
+mod cost;
 mod descent;
 mod elimination;
 mod error;
@@ -38,6 +39,7 @@ mod step;
 mod tree;
 
 pub use constriction::Constriction;
+pub use cost::{BYTES_PER_ELEMENT, SECONDS_PER_ELEMENT};
 pub use error::LeakageError;
 pub use flow::{Flow, FlowInfo, Leakage, LeakageParams, leakage};
 pub use flux::Flux;

@@ -61,12 +61,12 @@ pub(crate) struct Network {
 }
 
 impl Network {
-    /// The network of `gap`, of the elements that `is_open` says carry flow (from row and column).
-    pub(crate) fn new(gap: &Field, is_open: &(dyn Fn(usize, &mut [bool]) + Sync)) -> Self {
+    /// The network of `gap`, of at most `widest`, of the elements of a row that `is_open` says carry flow.
+    pub(crate) fn new(gap: &Field, widest: f64, is_open: &(dyn Fn(usize, &mut [bool]) + Sync)) -> Self {
         let grid = gap.grid();
         let (nx, spacing) = (grid.nx(), grid.spacing());
         // A power of two: scaled gaps keep their digits.
-        let unit = 2.0_f64.powi(30 - gap.max().log2().ceil().clamp(-900.0, 900.0) as i32);
+        let unit = 2.0_f64.powi(30 - gap.max().min(widest).log2().ceil().clamp(-900.0, 900.0) as i32);
         let mut resistances = vec![f64::INFINITY; grid.len()];
         let rows = resistances.chunks_mut(nx).enumerate().collect();
         parallel::for_each(rows, |(iy, row): (usize, &mut [f64])| {
@@ -74,7 +74,7 @@ impl Network {
             is_open(iy, &mut open);
             for ((resistance, &gap), open) in row.iter_mut().zip(gap.row(iy)).zip(open) {
                 if open {
-                    *resistance = 0.5 / (gap * unit).powi(3);
+                    *resistance = 0.5 / (gap.min(widest) * unit).powi(3);
                 }
             }
         });

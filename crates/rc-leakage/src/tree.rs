@@ -117,3 +117,73 @@ fn strongest(network: &Network) -> Vec<Step> {
     });
     steps
 }
+
+#[cfg(test)]
+mod tests {
+    use rc_core::testing::quasi_random;
+    use rc_core::{Field, Grid};
+
+    use super::*;
+
+    fn network(nx: usize, ny: usize, walls: f64) -> Network {
+        let grid = Grid::new(nx, ny).expect("a grid");
+        let of =
+            |i: usize| if quasi_random(7919 * (i + 1)) < walls { 0.0 } else { 0.1 + quasi_random(104_729 * (i + 1)) };
+        let gap = Field::new(grid, (0..grid.len()).map(of).collect()).expect("a field");
+        Network::new(&gap, f64::INFINITY, &|iy, open: &mut [bool]| {
+            open.iter_mut().zip(gap.row(iy)).for_each(|(open, gap)| *open = *gap > 0.0);
+        })
+    }
+
+    /// Bonds and their product, of Kruskal's algorithm with labels that are written anew at each bond.
+    fn kruskal(network: &Network) -> (usize, f64) {
+        let n = network.grid().len();
+        let of = |a: usize| network.bonds_of(a).into_iter().map(move |(b, bond)| (a, b, bond));
+        let mut bonds: Vec<_> = (0..n).flat_map(of).filter(|(_, _, bond)| *bond > 0.0).collect();
+        bonds.sort_by(|a, b| b.2.total_cmp(&a.2));
+        let mut labels: Vec<usize> = (0..n).collect();
+        bonds.into_iter().fold((0, 0.0), |(number, sum), (a, b, bond)| {
+            let [from, to] = [labels[a], labels[b]];
+            if from == to {
+                return (number, sum);
+            }
+            labels.iter_mut().filter(|label| **label == from).for_each(|label| *label = to);
+            (number + 1, sum + bond.ln())
+        })
+    }
+
+    #[test]
+    fn the_tree_is_that_of_kruskal() {
+        for (nx, ny, walls) in [(17, 13, 0.0), (17, 13, 0.35), (24, 2, 0.1), (1, 9, 0.0), (40, 31, 0.5)] {
+            let network = network(nx, ny, walls);
+            let tree = SpanningTree::new(&network);
+            let bonds: Vec<f64> = (0..nx * ny)
+                .filter(|&i| tree.steps[i] != Step::None)
+                .map(|i| {
+                    let all = [Step::East, Step::West, Step::North, Step::South];
+                    let which = all.iter().position(|step| *step == tree.steps[i]).expect("a direction");
+                    network.bonds_of(i)[which].1.ln()
+                })
+                .collect();
+            let (number, sum) = kruskal(&network);
+            assert_eq!(bonds.len(), number, "{nx} x {ny}");
+            assert!((bonds.iter().sum::<f64>() - sum).abs() < 1e-9, "{nx} x {ny}: {bonds:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_routed_balances_every_element_but_the_roots() {
+        let network = network(23, 19, 0.3);
+        let tree = SpanningTree::new(&network);
+        let excess: Vec<f64> = (0..23 * 19).map(|i| quasi_random(31 * i) - 0.5).collect();
+        let mut flow = excess.clone();
+        tree.route(&mut flow);
+        let mut left = excess;
+        for (i, step) in tree.steps.iter().enumerate().filter(|(_, step)| **step != Step::None) {
+            left[i] -= flow[i];
+            left[step.from(i, tree.grid)] += flow[i];
+        }
+        let unbalanced = left.iter().zip(&tree.steps).filter(|(left, step)| **step != Step::None && left.abs() > 1e-12);
+        assert_eq!(unbalanced.count(), 0);
+    }
+}

@@ -12,6 +12,9 @@ use super::row::{Row, Rows, guarded};
 /// Largest difference of the flow through two sections.
 const CONSERVATION: f64 = 1e-10;
 
+/// Difference of the bounds of the permeance, relative to it.
+const BOUNDS: f64 = 1e-9;
+
 /// Two ways to the same flow.
 const SAME: f64 = 1e-8;
 
@@ -27,6 +30,18 @@ pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     let grid = Grid::square(side)?;
     let noise = Field::new(grid, (0..grid.len()).map(|i| if quasi_random(i) < 0.2 { 0.0 } else { 1.0 }).collect())?;
     check(&mut rows, "walls at random", &noise);
+    let hard = (0..grid.len()).map(|i| {
+        if quasi_random(7919 * (i + 1)) < 0.38 {
+            0.0
+        } else {
+            10.0_f64.powf(-4.0 * quasi_random(7919 * (i + 1_000_003)))
+        }
+    });
+    check(
+        &mut rows,
+        "walls at random close to the threshold, gaps over four decades",
+        &Field::new(grid, hard.collect())?,
+    );
     check(&mut rows, "plates", &Field::from_fn(grid, |_| 1.0));
     check(&mut rows, "a slot along x", &Field::from_fn(grid, |at| if at.y < 0.5 { 1.0 } else { 0.0 }));
     Ok(rows.finish())
@@ -45,8 +60,10 @@ fn check(rows: &mut Rows, scene: &str, gap: &Field) {
         Ok([flow, turned]) => {
             for axis in [0, 1] {
                 let (flow, turned) = (&flow.flows[axis], &turned.flows[1 - axis]);
-                let name = if axis == 0 { "flow along x" } else { "flow along y" };
+                let [name, bounds] =
+                    [["flow along x", "flow along y"], ["bounds along x", "bounds along y"]].map(|names| names[axis]);
                 rows.at_most(scene, name, flow.info.conservation, CONSERVATION);
+                rows.at_most(scene, bounds, flow.info.error, BOUNDS);
                 let agrees = flow.percolates == turned.percolates && flow.percolates == (flow.permeance > 0.0);
                 rows.holds(scene, "percolation", "that of the transposed gap", flow.percolates.to_string(), agrees);
                 let scale = flow.permeance.max(f64::MIN_POSITIVE);

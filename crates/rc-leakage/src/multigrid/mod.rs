@@ -150,7 +150,7 @@ mod tests {
         let gap = (0..grid.len())
             .map(|i| if random(i) < walls { 0.0 } else { 10.0_f64.powf(-decades / 3.0 * random(i + grid.len())) });
         let gap = Field::new(grid, gap.collect()).expect("a value for each element");
-        let network = Network::new(&gap, &|iy, open: &mut [bool]| {
+        let network = Network::new(&gap, f64::INFINITY, &|iy, open: &mut [bool]| {
             open.iter_mut().zip(gap.row(iy)).for_each(|(open, gap)| *open = *gap > 0.0);
         });
         let mut multigrid = Multigrid::<f64>::new(&network);

@@ -87,3 +87,26 @@ fn permeances_are_those_of_elimination() {
         }
     }
 }
+
+/// The bounds hold for any pressure, long before it has converged.
+#[test]
+fn the_permeance_of_elimination_is_between_the_bounds() {
+    let mut widest = 0.0_f64;
+    for (seed, error) in [(0, 0.9), (1, 0.1), (2, 1e-2), (3, 1e-4), (4, 1e-6)] {
+        let (nx, ny) = (26, 22);
+        let gap = (0..nx * ny).map(|i| {
+            let random = |salt: usize| quasi_random(7919 * (i + 1) + 104_729 * (4 * seed + salt));
+            if random(1) < 0.3 { 0.0 } else { 10.0_f64.powf(-3.0 * random(2)) }
+        });
+        let gap = Field::new(Grid::in_cell(nx, ny, 0.8).expect("a grid"), gap.collect()).expect("a field");
+        let leakage = leakage(&gap, &LeakageParams { error, ..LeakageParams::default() }).expect("a flow");
+        for (axis, flow) in leakage.flows.iter().enumerate().filter(|(_, flow)| flow.percolates) {
+            let exact = eliminated(&gap, axis);
+            let lower = flow.permeance * (1.0 - flow.info.error);
+            let is_between = lower <= exact * (1.0 + 1e-12) && exact <= flow.permeance * (1.0 + 1e-12);
+            assert!(is_between, "seed {seed}, axis {axis}: {exact} is not from {lower} to {}", flow.permeance);
+            widest = widest.max(flow.info.error);
+        }
+    }
+    assert!(widest > 1e-4, "the bounds were never apart: {widest:e}");
+}
