@@ -63,7 +63,7 @@ fn leakage_lines(leakage: &LeakageSummary) -> [(&'static str, String); 2] {
             return "0 (does not percolate)".to_owned();
         }
         let error = leakage.permeance_error[axis].map_or_else(String::new, |error| format!(" ± {error:.1e}"));
-        format!("{:.4e}{error} m³", leakage.permeance[axis])
+        format!("{:.4e}{error} m³ (solved to {:.0e})", leakage.permeance[axis], leakage.relative_error[axis].max(1e-16))
     });
     let [gap_x, gap_y] =
         leakage.critical_gap.map(|gap| gap.map_or_else(|| "none".to_owned(), |gap| engineering(gap, "m")));

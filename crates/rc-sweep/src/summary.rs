@@ -5,7 +5,7 @@ use std::time::Duration;
 use rc_core::Units;
 use rc_solver::{ErrorBound, Solution};
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::content::Cells;
 use crate::leakage::LeakageSummary;
@@ -193,10 +193,7 @@ impl Summary {
     pub fn cells(&self) -> Cells {
         let Ok(Value::Object(mut cells)) = serde_json::to_value(self) else { unreachable!("a record is an object") };
         if let (Some(leakage), Some(_)) = (&self.leakage, cells.shift_remove("leakage")) {
-            let [x, y] = leakage.permeance;
-            cells.insert("permeance_x".into(), json!(x));
-            cells.insert("permeance_y".into(), json!(y));
-            cells.insert("percolates".into(), json!(leakage.percolates));
+            cells.extend(leakage.cells().map(|(column, value)| (column.to_owned(), value)));
         }
         cells
     }

@@ -5,8 +5,10 @@ use std::time::Instant;
 
 use rc_core::{Field, Units};
 use rc_leakage::{Leakage, LeakageError, LeakageParams};
-use rc_solver::Solution;
+use rc_solver::{Solution, UNIFORM_BYTES_PER_ELEMENT};
 use rc_sweep::LeakageSummary;
+
+use crate::scene::keys::ContactKeys;
 
 /// A flow with what its summary says.
 #[derive(Debug)]
@@ -28,6 +30,11 @@ impl SolvedFlow {
         let summary = summary(&leakage, units, started.elapsed().as_secs_f64());
         Ok(Self { leakage, summary })
     }
+}
+
+/// Memory of a solve with its flow, relative to that of a contact on as many elements.
+pub(crate) fn memory_factor(keys: &ContactKeys) -> f64 {
+    if keys.leakage { 1.0 + rc_leakage::BYTES_PER_ELEMENT / UNIFORM_BYTES_PER_ELEMENT as f64 } else { 1.0 }
 }
 
 /// The gap, zero in contact. What a solver leaves of it below zero is rounding.
@@ -54,6 +61,7 @@ fn summary(leakage: &Leakage, units: Units, wall_seconds: f64) -> LeakageSummary
     let place = |at: rc_core::DVec2| [units.metres(at.x), units.metres(at.y)];
     LeakageSummary {
         permeance: flows.map(|flow| flow.permeance * cube),
+        relative_error: flows.map(|flow| flow.info.error),
         permeance_error: flows.map(|flow| flow.permeance_error.map(|error| error * cube)),
         flow_direction: leakage.flow_axis().map(|axis| axis.name().to_owned()),
         percolates: flows.map(|flow| flow.percolates),

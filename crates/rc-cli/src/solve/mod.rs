@@ -14,6 +14,7 @@ mod result_files;
 
 pub use checked::CheckedScene;
 pub use leakage::SolvedFlow;
+pub(crate) use leakage::memory_factor;
 pub use result_files::{MapHeights, ResultFiles};
 pub use solved::{ProblemSetup, Solved, SolvedParts};
 

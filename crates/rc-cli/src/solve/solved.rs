@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use rc_core::{Kernel, Observer};
-use rc_solver::{ContactProblem, Plan, Solution, SolveError, SolveParams};
+use rc_solver::{ContactProblem, Cost, Plan, Solution, SolveError, SolveParams};
 use rc_sweep::Summary;
 use rc_sweep::memory::Budget;
 
@@ -61,7 +61,9 @@ impl<'a> ProblemSetup<'a> {
     /// [`CliError::Input`] when the scene, the method asked for, or the memory there is do not allow it.
     pub(crate) fn plan(&self) -> Result<Plan<'a>, CliError> {
         self.check_output()?;
-        self.contact_problem().plan(&self.params()).map_err(|error| self.refuse(&error))
+        let plan = self.contact_problem().plan(&self.params()).map_err(|error| self.refuse(&error))?;
+        self.check_flow(&plan)?;
+        Ok(plan)
     }
 
     /// The same with what `other`, a plan on the same surface with the same parameters, has prepared.
@@ -88,7 +90,10 @@ impl<'a> ProblemSetup<'a> {
     pub(crate) fn first_plan(&self) -> Result<Plan<'static>, CliError> {
         self.check_output()?;
         let problem = ContactProblem::new(self.surface.source(), self.contact.control);
-        problem.with_kernel(self.contact.kernel()?).plan(&self.params()).map_err(|error| self.refuse(&error))
+        let plan = problem.with_kernel(self.contact.kernel()?).plan(&self.params());
+        let plan = plan.map_err(|error| self.refuse(&error))?;
+        self.check_flow(&plan)?;
+        Ok(plan)
     }
 
     /// Solves by a plan of this problem.
@@ -121,6 +126,29 @@ impl<'a> ProblemSetup<'a> {
         }
         let result = problem.solve_to_area_error(wanted, &self.params(), observer);
         self.solved(result, started)
+    }
+
+    /// What the solve by `plan` takes, with the flow where it is asked for.
+    pub(crate) fn cost(&self, plan: &Plan<'_>) -> Cost {
+        let cost = plan.cost();
+        if !self.contact.keys.leakage {
+            return cost;
+        }
+        let elements = self.surface.grid.len() as f64;
+        Cost {
+            bytes: cost.bytes.map(|bytes| bytes + rc_leakage::BYTES_PER_ELEMENT * elements),
+            cpu_seconds: cost.cpu_seconds.map(|seconds| seconds + rc_leakage::SECONDS_PER_ELEMENT * elements),
+            ..cost
+        }
+    }
+
+    /// Refuses a flow that does not fit into memory.
+    fn check_flow(&self, plan: &Plan<'_>) -> Result<(), CliError> {
+        if !self.contact.keys.leakage {
+            return Ok(());
+        }
+        let what = format!("leakage on {} elements, with the contact,", self.surface.grid);
+        Ok(self.budget.check(&what, self.cost(plan).bytes.unwrap_or(0.0), |_| String::new())?)
     }
 
     fn check_output(&self) -> Result<(), CliError> {

@@ -7,9 +7,7 @@ use std::time::{Duration, Instant};
 use rc_core::Silent;
 use rc_solver::Plan;
 use rc_sweep::memory::Budget;
-use rc_sweep::{Cells, Latest, RowError, RowSolver, Summary, Sweep, SweepRow, replace_fields};
-
-use serde_json::Value;
+use rc_sweep::{Cells, Latest, LeakageSummary, RowError, RowSolver, Summary, Sweep, SweepRow, replace_fields};
 
 use super::bar::RowBar;
 use super::surfaces::Surfaces;
@@ -74,10 +72,7 @@ impl<'a> SceneRows<'a> {
         }
         let mut cells = summary.cells();
         if contact.keys.leakage {
-            // Of a flow that did not converge: every row has the same columns.
-            for column in ["permeance_x", "permeance_y", "percolates"] {
-                cells.entry(column).or_insert(Value::Null);
-            }
+            LeakageSummary::complete(&mut cells);
         }
         Ok(cells)
     }
