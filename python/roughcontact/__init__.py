@@ -16,7 +16,7 @@ heights; :func:`read` reads a measured map, :func:`prepare` treats it and :func:
 
 from roughcontact._core import __version__
 from roughcontact._maps import HeightMap, channels, inspect, prepare, read
-from roughcontact._result import Certificate, ContactSpot, Elements, Result, StressDistribution, load
+from roughcontact._result import Certificate, ContactSpot, Elements, Leakage, Result, StressDistribution, load
 from roughcontact._run import NotConvergedError, NotConvergedWarning, Progress
 from roughcontact._solve import solve
 from roughcontact._surface import Surface, surface
@@ -27,6 +27,7 @@ __all__ = [
     "ContactSpot",
     "Elements",
     "HeightMap",
+    "Leakage",
     "NotConvergedError",
     "NotConvergedWarning",
     "Progress",

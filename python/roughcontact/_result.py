@@ -40,6 +40,31 @@ class Certificate(NamedTuple):
     tolerance: float | None
 
 
+class Leakage(NamedTuple):
+    """Flow of a thin film through the gap; lists are of the axes x and y."""
+
+    #: K of the flow Q = K ΔP/(12 η) (m³): 0 where nothing percolates.
+    permeance: list[float]
+    #: Certified relative error of the solver: K of the network is at most ``permeance``, and at least this part below it.
+    relative_error: list[float]
+    #: Estimated error of the grid (m³).
+    permeance_error: list[float | None]
+    #: Axis with the larger permeance, ``x`` or ``y``, of which :attr:`Result.flux` is; None where nothing flows.
+    flow_direction: str | None
+    #: Whether the film winds around the cell.
+    percolates: list[bool]
+    #: Gap of the narrowest place of the widest path (m).
+    critical_gap: list[float | None]
+    #: Where it is (m).
+    critical_place: list[list[float] | None]
+    #: Largest relative difference of the flow through a section of the cell.
+    conservation_error: list[float]
+    #: Iterations.
+    iterations: list[int]
+    #: Seconds for both flows.
+    wall_seconds: float
+
+
 class ContactSpot(NamedTuple):
     """One connected part of the contact."""
 
@@ -89,8 +114,13 @@ class _Source(Protocol):
     def pressure(self) -> Floats: ...
     def gap(self) -> Floats: ...
     def displacement(self) -> Floats: ...
+    def flux(self) -> list[Floats] | None: ...
     def elements(self) -> list[Floats] | None: ...
     def save(self, folder: str) -> None: ...
+
+
+#: Fluxes along x and y.
+FLUX_FILES = ("flow_x.npy", "flow_y.npy")
 
 
 def _locked(field: Floats) -> Floats:
@@ -124,6 +154,11 @@ class _Stored:
 
     def displacement(self) -> Floats:
         raise ValueError("displacement: a result that was read or unpickled does not have it; solve again")
+
+    def flux(self) -> list[Floats] | None:
+        if FLUX_FILES[0] not in self.files:
+            return None
+        return [self._array(name) for name in FLUX_FILES]
 
     def elements(self) -> list[Floats] | None:
         text = self.files.get("elements.csv")
@@ -197,6 +232,8 @@ class Result:
     mean_gap_error: float
     #: dσ0/dΔ (Pa/m); None in full contact.
     contact_stiffness: float | None
+    #: Electrical and thermal conductance of the nominal area for bodies of conductivity 1 (1/m); None in full contact.
+    contact_conductance: float | None
     #: Elastic energy of the cell (J).
     elastic_energy: float
     #: Rms height about the mean (m).
@@ -244,6 +281,12 @@ class Result:
         """All numbers, as in ``summary.json``."""
         summary: dict[str, Any] = json.loads(self._source.summary_json())
         return summary
+
+    @property
+    def cells(self) -> dict[str, Any]:
+        """The summary as the cells of a row of a sweep: what is known of a flow is in columns of its own."""
+        cells: dict[str, Any] = json.loads(_core.cells(self._source.summary_json(), self.scene))
+        return cells
 
     def __getattr__(self, name: str) -> Any:
         # Only for what is not found otherwise: the keys of the summary.
@@ -306,6 +349,24 @@ class Result:
     def displacement(self) -> Floats:
         """Displacement of the elastic surface (m), shape (ny, nx), of mean zero; read-only."""
         return _locked(self._source.displacement())
+
+    @property
+    def leakage(self) -> Leakage | None:
+        """Flow through the gap; None where it was not asked for (``leakage=True``) or did not converge."""
+        flow = self.summary.get("leakage")
+        return None if flow is None else Leakage(**flow)
+
+    @cached_property
+    def flux(self) -> tuple[Floats, Floats] | None:
+        """Fluxes along x and y (m²), shape (ny, nx), for ΔP = 1 across the cell along ``leakage.flow_direction`` and 12 η = 1; read-only.
+
+        None where nothing flows, or no flow was asked for.
+        """
+        fields = self._source.flux()
+        if fields is None:
+            return None
+        x, y = fields
+        return _locked(x), _locked(y)
 
     @property
     def contact(self) -> NDArray[np.bool_]:
@@ -401,7 +462,7 @@ def _files_in(folder: str) -> dict[str, bytes]:
 
 
 #: Files of a result folder; the others there belong to somebody else.
-_FILES = ("summary.json", "scene.toml", "pressure.npy", "gap.npy", "contact.png", "elements.csv", "heights.npy")
+_FILES = ("summary.json", "scene.toml", "pressure.npy", "gap.npy", "contact.png", "elements.csv", "heights.npy", "leakage.png", *FLUX_FILES)
 
 
 def load(folder: Path) -> Result:

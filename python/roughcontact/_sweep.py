@@ -139,6 +139,7 @@ def sweep(
     border_level: int | None = None,
     energy_tolerance: float | None = None,
     tolerance: float | Literal["auto"] | None = None,
+    leakage: bool | None = None,
     threads: int | None = None,
     memory_limit: int | str | None = None,
     time_limit: float | str | None = None,
@@ -243,5 +244,5 @@ def _solve_row(job: Any) -> tuple[dict[str, Any], Result | None, str | None]:
     result = solve_keys(heights, keys, is_row=True, **options)
     seed = result.seed
     first = {} if seed is None else {"seed": seed}
-    row = {**first, "control_value": load, **result.summary}
+    row = {**first, "control_value": load, **result.cells}
     return row, result if keeps or result.failure else None, result.failure

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use rc_cli::scene::keys::SurfaceKeys;
 use rc_cli::scene::resolve::ContactSetup;
 use rc_cli::scene::wave_file::WaveFile;
-use rc_cli::solve::{MapHeights, ResultFiles};
+use rc_cli::solve::{MapHeights, ResultFiles, SolvedFlow};
 use rc_core::Field;
 use rc_solver::{Solution, Status};
 use rc_sweep::Summary;
@@ -27,6 +27,8 @@ pub(crate) struct Parts {
     pub(crate) solution: Solution<'static>,
     /// What is said of a solution that did not reach the tolerance.
     pub(crate) failure: Option<String>,
+    /// The flow through the gap, where it was asked for and converged.
+    pub(crate) flow: Option<SolvedFlow>,
     pub(crate) wall: Duration,
     /// Rms height (λ) and rms slope.
     pub(crate) height_and_slope: [f64; 2],
@@ -69,8 +71,8 @@ impl Solved {
     }
 
     fn files<'a>(&'a self, map: Option<MapHeights<'a>>) -> ResultFiles<'a> {
-        let Parts { surface, waves, contact, solution, .. } = &self.parts;
-        ResultFiles { surface, map, waves: waves.as_deref(), contact, solution }
+        let Parts { surface, waves, contact, solution, flow, .. } = &self.parts;
+        ResultFiles { surface, map, waves: waves.as_deref(), contact, solution, flow: flow.as_ref() }
     }
 
     fn summary_of(&self) -> &Summary {
@@ -144,6 +146,15 @@ impl Solved {
     /// Displacement (m) of mean zero, shape (ny, nx).
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.array(py, self.side(), Solution::displacement)
+    }
+
+    /// Fluxes along x and y (m²), shape (ny, nx); `None` where nothing flows, or no flow was asked for.
+    fn flux<'py>(&self, py: Python<'py>) -> PyResult<Option<[Bound<'py, PyArray2<f64>>; 2]>> {
+        let Some(flux) = self.parts.flow.as_ref().and_then(|flow| flow.leakage.flux.as_ref()) else { return Ok(None) };
+        let (grid, area) = (self.parts.solution.grid(), self.side() * self.side());
+        let in_metres = |field: &Field| field.values().iter().map(|value| value * area).collect::<Vec<f64>>();
+        let [x, y] = self.compute(py, || [&flux.x, &flux.y].map(in_metres))?;
+        Ok(Some([arrays::array_of(py, grid, x)?, arrays::array_of(py, grid, y)?]))
     }
 
     /// Columns of the elements that are not those of the grid: x, y, size (m), pressure (Pa).
