@@ -10,6 +10,7 @@ mod full_contact;
 mod gauss_seidel;
 mod hertz;
 mod interchange;
+mod leakage;
 mod messages;
 mod pits;
 mod reference;

@@ -5,7 +5,7 @@ use crate::parallel;
 use super::aggregates::{ALONE, Aggregates};
 
 /// Elements that are relaxed one after the other, and whose products are summed together.
-pub(super) const BLOCK: usize = 1 << 14;
+pub(super) const BLOCK: usize = 1 << 16;
 
 /// Bonds of each element to its neighbours, in the order of these.
 #[derive(Debug, Default)]
