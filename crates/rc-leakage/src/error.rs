@@ -1,3 +1,5 @@
+//! What a gap is refused for, and flows that do not converge.
+
 use rc_core::Grid;
 use thiserror::Error;
 

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use base64::Engine as _;
 use rc_core::{EdgeBias, Field, Kernel};
 use rc_solver::{ContactSpot, StressDistribution};
 use rc_theory::persson::Persson;
@@ -10,10 +9,10 @@ use serde::Serialize;
 
 use super::command::{flags, quoted};
 use super::embedded::{Bits, EmbeddedField, MOST_PIXELS, pixel_means};
+use super::flow_picture::FlowPicture;
 use super::page::{Command, Page, Text, Tile, made};
 use super::spot_sizes::SpotSizes;
 use crate::error::CliError;
-use crate::files::flow::PICTURE_FILE;
 use crate::files::result::ResultFolder;
 use crate::scene::file;
 use crate::scene::keys::{KernelName, Scene};
@@ -42,13 +41,6 @@ pub(super) struct Contact {
     lines: Vec<(&'static str, String)>,
     spots: Option<SpotSizes>,
     leakage: Option<FlowPicture>,
-}
-
-/// The picture of the flow, as a PNG in base64.
-#[derive(Clone, Debug, Serialize)]
-struct FlowPicture {
-    png: String,
-    note: &'static str,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -130,21 +122,11 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
             stress: stress(&result),
             certificate: certificate(summary),
             lines: text::solved_lines(summary, result.sides(), result.e_star),
-            leakage: flow_picture(folder, summary),
+            leakage: FlowPicture::of(folder, summary),
             // Last: it takes the fields.
             spots: spots(result, bias),
         },
     })
-}
-
-/// The picture of the flow that `rc solve --leakage` drew.
-fn flow_picture(folder: &Path, summary: &Summary) -> Option<FlowPicture> {
-    summary.leakage.as_ref()?;
-    let png = std::fs::read(folder.join(PICTURE_FILE)).ok()?;
-    let png = base64::engine::general_purpose::STANDARD.encode(png);
-    let note = "The flux of a film whose pressure falls across the cell, relative to its mean. Nothing flows where it is black: in contact, and in \
-                pockets that it closes.";
-    Some(FlowPicture { png, note })
 }
 
 fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
@@ -402,6 +384,7 @@ mod tests {
         };
         let numbers = |result: &ResultFolder| serde_json::to_value(&maps(result).gap).expect("JSON")["data"].clone();
         let encoded = |numbers: [u16; 4]| {
+            use base64::Engine as _;
             let bytes: Vec<u8> = numbers.into_iter().flat_map(u16::to_le_bytes).collect();
             serde_json::Value::from(base64::engine::general_purpose::STANDARD.encode(bytes))
         };

@@ -11,6 +11,7 @@ mod contact;
 mod curves;
 mod document;
 mod embedded;
+mod flow_picture;
 mod page;
 mod percolation;
 mod spot_sizes;
