@@ -148,7 +148,8 @@ impl<'a> ProblemSetup<'a> {
             return Ok(());
         }
         let what = format!("leakage on {} elements, with the contact,", self.surface.grid);
-        Ok(self.budget.check(&what, self.cost(plan).bytes.unwrap_or(0.0), |_| String::new())?)
+        let flow = rc_leakage::BYTES_PER_ELEMENT * self.surface.grid.len() as f64;
+        Ok(self.budget.check(&what, self.cost(plan).bytes.unwrap_or(flow), |_| String::new())?)
     }
 
     fn check_output(&self) -> Result<(), CliError> {

@@ -4,6 +4,7 @@ mod adaptive;
 mod bad_input;
 mod export;
 mod guide;
+mod leakage;
 mod measured;
 mod rectangles;
 mod report;
