@@ -86,9 +86,9 @@ def test_a_sweep_has_the_rows_of_the_command_line(control, command, tmp_path):
             assert float(one[key]) == float(other[key]), key
 
 
-def test_a_sweep_of_flows_has_the_rows_of_the_command_line(command):
+def test_a_sweep_of_flows_has_the_rows_of_the_command_line(command, tmp_path):
     line = ("sweep", "--waves", 8, "--grid", 64, "--pressures", "1e5,2e8", "--leakage", "--quiet", "--json")
-    done = command(*line)
+    done = command(*line, "--out", tmp_path / "sweep")
     assert done.returncode == 0, done.stderr
     table = rc.sweep(waves=8, grid=64, pressures=[1e5, 2e8], leakage=True)
     assert [of_the_contact(row) for row in table] == [of_the_contact(row) for row in json.loads(done.stdout)]
