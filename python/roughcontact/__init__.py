@@ -16,7 +16,7 @@ heights; :func:`read` reads a measured map, :func:`prepare` treats it and :func:
 
 from roughcontact._core import __version__
 from roughcontact._maps import HeightMap, channels, inspect, prepare, read
-from roughcontact._records import Certificate, ContactSpot, Elements, StressDistribution
+from roughcontact._records import Certificate, ContactSpot, Elements, Leakage, StressDistribution
 from roughcontact._result import Result, load
 from roughcontact._rows import FieldsAt
 from roughcontact._run import Interrupted, NotConvergedError, NotConvergedWarning, Progress
@@ -32,6 +32,7 @@ __all__ = [
     "FieldsAt",
     "HeightMap",
     "Interrupted",
+    "Leakage",
     "NotConvergedError",
     "NotConvergedWarning",
     "Progress",

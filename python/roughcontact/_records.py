@@ -27,6 +27,31 @@ class Certificate(NamedTuple):
     tolerance: float | None
 
 
+class Leakage(NamedTuple):
+    """Flow of a thin film through the gap; lists are of the axes x and y."""
+
+    #: K of the flow Q = K ΔP/(12 η) (m³): 0 where nothing percolates.
+    permeance: list[float]
+    #: Certified relative error of the solver: K of the network is at most ``permeance``, and at least this part below it.
+    relative_error: list[float]
+    #: Estimated error of the grid (m³).
+    permeance_error: list[float | None]
+    #: Axis with the larger permeance, ``x`` or ``y``, of which :attr:`Result.flux` is; None where nothing flows.
+    flow_direction: str | None
+    #: Whether the film winds around the cell.
+    percolates: list[bool]
+    #: Gap of the narrowest place of the widest path (m).
+    critical_gap: list[float | None]
+    #: Where it is (m).
+    critical_place: list[list[float] | None]
+    #: Largest relative difference of the flow through a section of the cell.
+    conservation_error: list[float]
+    #: Iterations.
+    iterations: list[int]
+    #: Seconds for both flows.
+    wall_seconds: float
+
+
 class ContactSpot(NamedTuple):
     """One connected part of the contact."""
 

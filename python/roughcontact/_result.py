@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from roughcontact import _core
 from roughcontact._keys import Path
-from roughcontact._records import Certificate, ContactSpot, Elements, Floats, StressDistribution
+from roughcontact._records import Certificate, ContactSpot, Elements, Floats, Leakage, StressDistribution
 from roughcontact._stored import FILES, Source, Stored, files_in
 
 if TYPE_CHECKING:
@@ -81,6 +81,8 @@ class Result:
     mean_gap_error: float
     #: dσ0/dΔ (Pa/m); None in full contact.
     contact_stiffness: float | None
+    #: Electrical and thermal conductance of the nominal area for bodies of conductivity 1 (1/m); None in full contact.
+    contact_conductance: float | None
     #: Elastic energy of the cell (J).
     elastic_energy: float
     #: Rms height about the mean (m).
@@ -128,6 +130,12 @@ class Result:
         """All numbers, as in ``summary.json``."""
         summary: dict[str, Any] = json.loads(self._source.summary_json())
         return summary
+
+    @property
+    def cells(self) -> dict[str, Any]:
+        """The summary as the cells of a row of a sweep: what is known of a flow is in columns of its own."""
+        cells: dict[str, Any] = json.loads(_core.cells(self._source.summary_json(), self.scene))
+        return cells
 
     def __getattr__(self, name: str) -> Any:
         # Only for what is not found otherwise: the keys of the summary.
@@ -216,6 +224,24 @@ class Result:
     def displacement(self) -> Floats:
         """Displacement of the elastic surface (m), shape (ny, nx), of mean zero; read-only."""
         return _locked(self._source.displacement())
+
+    @property
+    def leakage(self) -> Leakage | None:
+        """Flow through the gap; None where it was not asked for (``leakage=True``) or did not converge."""
+        flow = self.summary.get("leakage")
+        return None if flow is None else Leakage(**flow)
+
+    @cached_property
+    def flux(self) -> tuple[Floats, Floats] | None:
+        """Fluxes along x and y (m²), shape (ny, nx), for ΔP = 1 across the cell along ``leakage.flow_direction`` and 12 η = 1; read-only.
+
+        None where nothing flows, or no flow was asked for.
+        """
+        fields = self._source.flux()
+        if fields is None:
+            return None
+        x, y = fields
+        return _locked(x), _locked(y)
 
     @property
     def contact(self) -> NDArray[np.bool_]:

@@ -51,7 +51,8 @@ class Job(NamedTuple):
 class Row(NamedTuple):
     """A row that was solved: small, so that it travels."""
 
-    summary: str
+    #: The cells of the row, as JSON.
+    cells: str
     failure: str | None
     result: Result | None
     fields: FieldsAt | None
@@ -71,7 +72,7 @@ def solve_row(job: Job) -> Row:
         _replace(job.group, lambda path: _write_group(result, path))
         fields = FieldsAt(socket.gethostname(), job.group)
     keeps = job.keeps_result or result.failure is not None
-    return Row(result._source.summary_json(), result.failure, result if keeps else None, fields)
+    return Row(_core.cells(result._source.summary_json(), result.scene), result.failure, result if keeps else None, fields)
 
 
 def _replace(final: str, write: Callable[[str], None]) -> None:

@@ -57,6 +57,7 @@ def solve(
     border_level: int | None = None,
     energy_tolerance: float | None = None,
     tolerance: float | Literal["auto"] | None = None,
+    leakage: bool | None = None,
     area_error: float | str | None = None,
     output_grid: Grid | None = None,
     threads: int | None = None,
@@ -106,6 +107,8 @@ def solve(
         Certified relative error of the pressure in the energy norm.
     tolerance : float or "auto", optional
         Instead: relative to the peak-to-valley height; or an energy error well below the error of the grid.
+    leakage : bool, optional
+        Compute the flow of a thin film through the gap too: :attr:`Result.leakage` and :attr:`Result.flux`.
     area_error : float or str, optional
         Choose the grid so that the relative error of the contact area is at most this (random surfaces).
     output_grid : int, (int, int) or str, optional

@@ -13,6 +13,10 @@ import numpy as np
 from roughcontact._records import ContactSpot, Floats
 
 
+#: Fluxes along x and y.
+FLUX_FILES = ("flow_x.npy", "flow_y.npy")
+
+
 class Source(Protocol):
     """Where a result comes from: a solve, or the files of one."""
 
@@ -25,6 +29,7 @@ class Source(Protocol):
     def displacement(self) -> Floats: ...
     def finest_gap(self) -> Floats | None: ...
     def plastic_gap(self) -> Floats | None: ...
+    def flux(self) -> list[Floats] | None: ...
     def elements(self) -> list[Floats] | None: ...
     def save(self, folder: str) -> None: ...
 
@@ -57,6 +62,11 @@ class Stored:
     def plastic_gap(self) -> Floats | None:
         there = "plastic_gap" in self.fields or "plastic_gap.npy" in self.files
         return self._array("plastic_gap") if there else None
+
+    def flux(self) -> list[Floats] | None:
+        if FLUX_FILES[0] not in self.files:
+            return None
+        return [np.load(io.BytesIO(self.files[name])) for name in FLUX_FILES]
 
     def displacement(self) -> Floats:
         raise ValueError("displacement: a result that was read or unpickled does not have it; solve again")
@@ -93,5 +103,6 @@ def files_in(folder: str) -> dict[str, bytes]:
 #: Files of a result folder; the others there belong to somebody else.
 FILES = (
     *("summary.json", "scene.toml", "pressure.npy", "gap.npy", "plastic_gap.npy"),
-    *("contact.png", "elements.csv", "heights.npy"),
+    *("contact.png", "elements.csv", "heights.npy", "leakage.png"),
+    *FLUX_FILES,
 )

@@ -65,6 +65,7 @@ def sweep(
     border_level: int | None = None,
     energy_tolerance: float | None = None,
     tolerance: float | Literal["auto"] | None = None,
+    leakage: bool | None = None,
     threads: int | None = None,
     memory_limit: int | str | None = None,
     time_limit: float | str | None = None,
@@ -294,10 +295,10 @@ class _Collected:
         if isinstance(found, ValueError):
             self._refused[index] = found
             return
-        self._planned.keep(index, found.summary)
+        self._planned.keep(index, found.cells)
         seed, load = self._leading[index]
         first = {} if seed is None else {"seed": seed}
-        self._rows[index] = {**first, "control_value": load, **json.loads(found.summary)}
+        self._rows[index] = {**first, "control_value": load, **json.loads(found.cells)}
         if self._results is not None and found.result is not None:
             self._results[index] = found.result
         if self._fields is not None:

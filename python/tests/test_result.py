@@ -213,3 +213,25 @@ def test_fields_are_not_changed_by_accident(heights):
 def test_what_is_said_of_files_is_refused_with_arrays(heights, name, value):
     with pytest.raises(ValueError, match=name):
         rc.solve(heights, cell=0.01, e_star=1e9, pressure=1e6, **{name: value})
+
+
+def test_a_flow_is_conserved_and_comes_back_from_its_files(heights, tmp_path):
+    result = rc.solve(heights, cell=0.01, e_star=1e9, pressure=1e6, leakage=True)
+    leakage = result.leakage
+    assert leakage.percolates == [True, True] and max(leakage.relative_error) <= 1e-9
+    assert max(leakage.conservation_error) <= 1e-10
+    axis = ["x", "y"].index(leakage.flow_direction)
+    assert leakage.permeance[axis] == max(leakage.permeance)
+    flux = result.flux[axis]
+    # The flow through every section across the axis, for a fall of the pressure by 1: flux times width of elements.
+    sections = flux.sum(axis=1 if axis == 1 else 0) * result.sides[1 - axis] / flux.shape[1 - axis]
+    assert np.allclose(sections, leakage.permeance[axis], rtol=1e-8)
+    assert not flux[result.contact].any()
+    result.save(tmp_path / "flow")
+    stored = rc.load(tmp_path / "flow")
+    assert stored.leakage == leakage and np.array_equal(stored.flux, result.flux)
+    assert np.array_equal(pickle.loads(pickle.dumps(result)).flux, result.flux)
+
+
+def test_without_the_option_there_is_no_flow(result):
+    assert result.leakage is None and result.flux is None

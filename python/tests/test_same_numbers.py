@@ -15,13 +15,14 @@ CASES = {
     "penetration": {"penetration": 1.2e-5},
     "gauss-seidel": {"method": "gauss-seidel", "grid": 32, "waves": 4, "pressure": 1e5, "tolerance": 1e-3},
     "spectral": {"kernel": "spectral", "pressure": 1e6, "tolerance": 1e-8},
+    "leakage": {"pressure": 2e5, "leakage": True},
     "chosen grid": {"area_error": 0.05, "grid": None, "pressure": 1e6},
 }
 
 
 def words(keys):
-    pairs = ((f"--{key.replace('_', '-')}", str(value)) for key, value in keys.items() if value is not None)
-    return [word for pair in pairs for word in pair]
+    given = {f"--{key.replace('_', '-')}": value for key, value in keys.items() if value is not None}
+    return [word for key, value in given.items() for word in ([key] if value is True else [key, str(value)])]
 
 
 def assert_same_files(result, folder, tmp_path):
@@ -83,6 +84,15 @@ def test_a_sweep_has_the_rows_of_the_command_line(control, command, tmp_path):
     for one, other in zip(ours, theirs, strict=True):
         for key in ("seed", "control_value", "area_fraction", "mean_gap", "contact_stiffness"):
             assert float(one[key]) == float(other[key]), key
+
+
+def test_a_sweep_of_flows_has_the_rows_of_the_command_line(command, tmp_path):
+    line = ("sweep", "--waves", 8, "--grid", 64, "--pressures", "1e5,2e8", "--leakage", "--quiet", "--json")
+    done = command(*line, "--out", tmp_path / "sweep")
+    assert done.returncode == 0, done.stderr
+    table = rc.sweep(waves=8, grid=64, pressures=[1e5, 2e8], leakage=True)
+    assert [of_the_contact(row) for row in table] == [of_the_contact(row) for row in json.loads(done.stdout)]
+    assert table["permeance_x"][0] > 0.0 and table["permeance_x"][1] == 0.0
 
 
 def test_a_surface_is_that_of_the_command_line(command, tmp_path):

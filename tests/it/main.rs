@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod bisinusoidal;
+mod conductance;
 mod contact_area;
 mod examples;
 mod front_door;
@@ -10,6 +11,7 @@ mod gauss_seidel;
 mod hardness;
 mod hertz;
 mod interchange;
+mod leakage;
 mod messages;
 mod pits;
 mod reference;

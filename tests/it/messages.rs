@@ -17,12 +17,13 @@ const MOST_WORDS: usize = 80;
 const CERTAIN: [&str; 5] = ["expect", "assert", "assert_eq", "debug_assert", "unreachable"];
 
 /// The snapshots of the crates whose sentences users read.
-const SNAPSHOTS: [&str; 9] = [
+const SNAPSHOTS: [&str; 10] = [
     "sentences-rc-cli",
     "sentences-rc-core",
     "sentences-rc-fractal",
     "sentences-rc-heights",
     "sentences-rc-kernel",
+    "sentences-rc-leakage",
     "sentences-rc-plot",
     "sentences-rc-solver",
     "sentences-rc-sweep",

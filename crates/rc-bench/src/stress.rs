@@ -5,6 +5,7 @@ mod audit;
 mod commands;
 mod extremes;
 mod faults;
+mod flows;
 mod hardness;
 mod heights;
 mod invariances;
@@ -59,6 +60,7 @@ const GROUPS: &[(&str, MakeRows)] = &[
     ("agreement", |params| agreement::rows(params.preset)),
     ("kernels", |params| kernels::rows(params.preset)),
     ("faults", |params| faults::rows(params.preset)),
+    ("flows", |params| flows::rows(params.preset)),
     ("rc solve", |params| params.rc.map_or_else(|| Ok(Vec::new()), |rc| commands::rows(params.preset, rc))),
     ("long runs", |params| long_runs::rows(params.preset)),
 ];

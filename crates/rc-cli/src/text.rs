@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rc_core::quantity::{digits, engineering};
-use rc_sweep::Summary;
+use rc_sweep::{LeakageSummary, Summary};
 
 /// A few aligned lines about a solved problem; `side` is λ in m, `e_star` E* in Pa.
 #[must_use]
@@ -37,11 +37,15 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
         ("penetration", penetration),
         ("mean gap", metres(s.mean_gap)),
         ("stiffness", stiffness(s)),
+        ("conductance", conductance(s)),
         ("elastic energy", engineering(s.elastic_energy, "J")),
         ("certificate", certificate_line(s)),
     ];
     if let Some(plastic) = plastic(s) {
         lines.insert(4, ("plastic area", plastic));
+    }
+    if let Some(leakage) = &s.leakage {
+        lines.extend(leakage_lines(leakage));
     }
     if let (Some(evaluated), Some(proven)) = (s.cells_evaluated, s.cells_proven) {
         lines.push(("cells", format!("{evaluated} evaluated, {proven} proven out of contact")));
@@ -57,6 +61,26 @@ pub(crate) fn plastic(s: &Summary) -> Option<String> {
         with_error(100.0 * fraction, 100.0 * error),
         engineering(s.hardness?, "Pa")
     ))
+}
+
+/// The electrical and thermal conductance.
+fn conductance(s: &Summary) -> String {
+    s.contact_conductance
+        .map_or_else(|| "infinite".into(), |value| format!("{} 1/m per conductivity", digits(value, 4)))
+}
+
+/// Permeances and constrictions of a flow.
+fn leakage_lines(leakage: &LeakageSummary) -> [(&'static str, String); 2] {
+    let [x, y] = [0, 1].map(|axis| {
+        if !leakage.percolates[axis] {
+            return "0 (does not percolate)".to_owned();
+        }
+        let error = leakage.permeance_error[axis].map_or_else(String::new, |error| format!(" ± {error:.1e}"));
+        format!("{:.4e}{error} m³ (solved to {:.0e})", leakage.permeance[axis], leakage.relative_error[axis].max(1e-16))
+    });
+    let [gap_x, gap_y] =
+        leakage.critical_gap.map(|gap| gap.map_or_else(|| "none".to_owned(), |gap| engineering(gap, "m")));
+    [("permeance", format!("{x} along x, {y} along y")), ("critical gap", format!("{gap_x} along x, {gap_y} along y"))]
 }
 
 fn surface_line(s: &Summary) -> String {

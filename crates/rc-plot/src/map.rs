@@ -29,6 +29,15 @@ pub enum Shade {
     Contact,
     /// Values are parts of contact already, from 0 (light) to 1 (dark).
     PartOfContact,
+    /// A colour for each power of ten, from black for zero, with a colour bar of logarithms.
+    Decades {
+        /// log10 of value over `unit` at the ends of the colour bar.
+        range: (f64, f64),
+        /// Colours.
+        palette: Palette,
+        /// The value whose logarithm is 0.
+        unit: f64,
+    },
     /// A colour for each value, with a colour bar.
     Values {
         /// Values (of the field) at the ends of the colour bar.
@@ -40,6 +49,14 @@ pub enum Shade {
         /// SI unit of the colour bar; it gets a prefix.
         unit: &'static str,
     },
+}
+
+impl Shade {
+    /// Whether a colour bar stands beside the map.
+    #[must_use]
+    pub fn has_colour_bar(&self) -> bool {
+        matches!(self, Self::Values { .. } | Self::Decades { .. })
+    }
 }
 
 /// Sizes, in units of the font size.
@@ -75,7 +92,7 @@ pub fn bitmap_size(grid: Grid, most: (u32, u32)) -> (u32, u32) {
 /// [`PictureError`] of the backend.
 pub fn draw_map<B: DrawingBackend>(area: &Area<B>, map: &Map<'_>, font: f64) -> Result<(), PictureError> {
     let (width, height) = area.dim_in_pixel();
-    let (bar_width, text_height) = map_extent((0, 0), font, matches!(map.shade, Shade::Values { .. }));
+    let (bar_width, text_height) = map_extent((0, 0), font, map.shade.has_colour_bar());
     let most = (width.saturating_sub(bar_width), height.saturating_sub(text_height));
     let size = bitmap_size(map.field.grid(), most);
     let top = (TITLE * font) as i32;
@@ -92,6 +109,10 @@ pub fn draw_map<B: DrawingBackend>(area: &Area<B>, map: &Map<'_>, font: f64) -> 
     scale_bar(area, map.side, size.0, bottom, font)?;
     match map.shade {
         Shade::Contact | Shade::PartOfContact => Ok(()),
+        Shade::Decades { range: (low, high), palette, .. } => {
+            let bar = ColourBar { low, high, palette, unit: "" };
+            bar.draw(area, (right + (BAR_GAP * font) as i32, top), size.1, font)
+        }
         Shade::Values { range, palette, factor, unit } => {
             let left = right + (BAR_GAP * font) as i32;
             let bar = ColourBar { low: range.0 * factor, high: range.1 * factor, palette, unit };
@@ -105,6 +126,13 @@ fn rasterise(map: &Map<'_>, size: (u32, u32)) -> Raster {
         Shade::Contact => {
             let inside = |value: f64| if value > 0.0 { 1.0 } else { 0.0 };
             Raster::of(map.field, size, inside, |part| Palette::Ink.colour(part))
+        }
+        Shade::Decades { range: (low, high), palette, unit } => {
+            let span = if high > low { high - low } else { 1.0 };
+            let colour = |value: f64| {
+                if value > 0.0 { palette.colour(((value / unit).log10() - low) / span) } else { BLACK }
+            };
+            Raster::of(map.field, size, |value| value, colour)
         }
         Shade::PartOfContact => Raster::of(map.field, size, |part| part, |part| Palette::Ink.colour(part)),
         Shade::Values { range: (low, high), palette, .. } => {

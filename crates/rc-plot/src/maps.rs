@@ -131,7 +131,7 @@ pub struct MapPicture<'a>(pub Map<'a>);
 impl Picture for MapPicture<'_> {
     fn size(&self) -> (u32, u32) {
         let bitmap = bitmap_size(self.0.field.grid(), (SIDE, SIDE));
-        let (width, height) = map_extent(bitmap, TEXT, matches!(self.0.shade, Shade::Values { .. }));
+        let (width, height) = map_extent(bitmap, TEXT, self.0.shade.has_colour_bar());
         (width + 2 * MARGIN, height + MARGIN)
     }
 

@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use rc_cli::scene::resolve;
 use rc_core::{EdgeBias, Field, Grid, Kernel, PeriodicCell};
 use rc_solver::{ContactSpot, StressDistribution};
+use rc_sweep::{LeakageSummary, Summary, to_json};
 
 use crate::arrays::{self, Heights};
 use crate::errors::{bad_input, raised};
@@ -73,4 +74,17 @@ pub(crate) fn spots(
 #[pyfunction]
 pub(crate) fn run(py: Python<'_>, words: Vec<String>) -> PyResult<()> {
     py.detach(|| rc_cli::run_words(words.into_iter().map(Into::into))).map_err(raised)
+}
+
+/// A summary as the cells of a row of a sweep, both as JSON, with the columns that the scene asks for.
+#[pyfunction]
+pub(crate) fn cells(summary: &str, scene: &str) -> PyResult<String> {
+    let scene = rc_cli::scene::file::parse(scene).map_err(|cause| bad_input(format!("scene.toml: {cause}")))?;
+    let summary: Summary =
+        serde_json::from_str(summary).map_err(|cause| bad_input(format!("summary.json: {cause}")))?;
+    let mut cells = summary.cells();
+    if scene.contact.leakage {
+        LeakageSummary::complete(&mut cells);
+    }
+    Ok(to_json(&cells))
 }

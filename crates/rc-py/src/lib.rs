@@ -49,6 +49,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(fields::stress_distribution, module)?)?;
     module.add_function(wrap_pyfunction!(fields::spots, module)?)?;
     module.add_function(wrap_pyfunction!(fields::scene_numbers, module)?)?;
+    module.add_function(wrap_pyfunction!(fields::cells, module)?)?;
     module.add_function(wrap_pyfunction!(fields::run, module)?)?;
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! `solve`: keys and heights in, a solution out.
 
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -9,10 +9,9 @@ use rc_cli::error::CliError;
 use rc_cli::run::threads;
 use rc_cli::scene::keys::{KernelName, RunKeys, Scene};
 use rc_cli::scene::surface::{LoadedSurface, Source};
-use rc_cli::solve::{CheckedScene, Solved as SolvedScene};
+use rc_cli::solve::{CheckedScene, SolvedParts};
 use rc_core::{Kernel, Observer};
 use rc_heights::HeightMap;
-use rc_solver::Solution;
 use rc_sweep::memory::Budget;
 
 use crate::arrays::{self, Heights};
@@ -122,23 +121,15 @@ impl Prepared {
             None => scene.contact.kernel()?,
         };
         let solved = scene.solve(scene.problem(&surface, chosen, budget), started, observer)?;
-        let (solution, failure, wall) = owned(solved, &scene, own.is_some())?;
+        let SolvedParts { solution, failure, flow, wall } = solved.into_parts();
+        let solution =
+            if own.is_some() { solution.into_owned() } else { solution.into_owned_with(scene.contact.kernel()?) };
         // Of a map only this is kept: the heights are those of the caller.
         let height_and_slope = surface.height_and_slope();
         let waves = surface.wave_file().cloned();
-        Ok(Parts { surface: surface.keys, waves, contact: scene.contact, solution, failure, wall, height_and_slope })
+        let contact = scene.contact;
+        Ok(Parts { surface: surface.keys, waves, contact, solution, failure, flow, wall, height_and_slope })
     }
-}
-
-/// The solution without borrows.
-fn owned(
-    solved: SolvedScene<'_>,
-    scene: &CheckedScene,
-    is_own: bool,
-) -> Result<(Solution<'static>, Option<String>, Duration), CliError> {
-    let (solution, failure, wall) = solved.into_parts();
-    let solution = if is_own { solution.into_owned() } else { solution.into_owned_with(scene.contact.kernel()?) };
-    Ok((solution, failure, wall))
 }
 
 /// Reads or realises the surface; heights of the caller become those in units of the cell.

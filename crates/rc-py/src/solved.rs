@@ -10,7 +10,7 @@ use rc_cli::error::CliError;
 use rc_cli::scene::keys::SurfaceKeys;
 use rc_cli::scene::resolve::ContactSetup;
 use rc_cli::scene::wave_file::WaveFile;
-use rc_cli::solve::{MapHeights, ResultFiles};
+use rc_cli::solve::{MapHeights, ResultFiles, SolvedFlow};
 use rc_core::{Field, Grid};
 use rc_solver::{Solution, Status};
 use rc_sweep::Summary;
@@ -28,6 +28,8 @@ pub(crate) struct Parts {
     pub(crate) solution: Solution<'static>,
     /// What is said of a solution that did not reach the tolerance.
     pub(crate) failure: Option<String>,
+    /// The flow through the gap, where it was asked for and converged.
+    pub(crate) flow: Option<SolvedFlow>,
     pub(crate) wall: Duration,
     /// Rms height (λ) and rms slope.
     pub(crate) height_and_slope: [f64; 2],
@@ -63,8 +65,8 @@ struct Found {
 
 impl Found {
     fn files<'a>(&'a self, map: Option<MapHeights<'a>>) -> ResultFiles<'a> {
-        let Parts { surface, waves, contact, solution, .. } = &self.parts;
-        ResultFiles { surface, map, waves: waves.as_deref(), contact, solution }
+        let Parts { surface, waves, contact, solution, flow, .. } = &self.parts;
+        ResultFiles { surface, map, waves: waves.as_deref(), contact, solution, flow: flow.as_ref() }
     }
 
     fn summary(&self) -> &Summary {
@@ -176,6 +178,17 @@ impl Solved {
     /// Displacement (m) of mean zero, shape (ny, nx).
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.array(py, self.side(), Solution::displacement)
+    }
+
+    /// Fluxes along x and y (m²), shape (ny, nx); `None` where nothing flows, or no flow was asked for.
+    fn flux<'py>(&self, py: Python<'py>) -> PyResult<Option<[Bound<'py, PyArray2<f64>>; 2]>> {
+        let (grid, area) = (self.found.parts.solution.grid(), self.side() * self.side());
+        let flux: Option<[Vec<f64>; 2]> = self.compute(py, move |found| {
+            let flux = found.parts.flow.as_ref()?.leakage.flux.as_ref()?;
+            Some([&flux.x, &flux.y].map(|field| in_unit(field, area)))
+        })?;
+        let Some([x, y]) = flux else { return Ok(None) };
+        Ok(Some([arrays::array_of(py, grid, x)?, arrays::array_of(py, grid, y)?]))
     }
 
     /// Columns of the elements that are not those of the grid: x, y, size (m), pressure (Pa).

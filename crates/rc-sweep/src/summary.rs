@@ -5,8 +5,10 @@ use std::time::Duration;
 use rc_core::Units;
 use rc_solver::{ErrorBound, Solution};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::content::Cells;
+use crate::leakage::LeakageSummary;
 use crate::memory;
 use crate::plan::ControlKind;
 
@@ -73,6 +75,10 @@ pub struct Summary {
     pub mean_gap_error: Option<f64>,
     /// dσ0/dΔ (Pa/m); null where it is infinite, in full contact.
     pub contact_stiffness: Option<f64>,
+    /// Electrical and thermal contact conductance of the nominal area for a conductivity of 1 (1/m): dσ0/dΔ / E*, to be multiplied with the
+    /// harmonic mean 2 k1 k2/(k1 + k2) of the conductivities of the bodies (Barber, Proc. R. Soc. A 459, 2003); null in full contact,
+    /// where it is infinite.
+    pub contact_conductance: Option<f64>,
     /// Elastic energy of the cell (J).
     pub elastic_energy: f64,
     /// Rms height about the mean (m).
@@ -103,6 +109,9 @@ pub struct Summary {
     pub iterations: usize,
     /// Applications of L on the finest level, the certificate's included.
     pub operator_applications: usize,
+    /// Flow through the gap, where it was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub leakage: Option<LeakageSummary>,
     /// Seconds from the parsed scene to the certified solution, evaluation of heights included.
     pub wall_seconds: f64,
     /// Peak resident memory of the process; null where the system does not say.
@@ -168,6 +177,7 @@ impl Summary {
             mean_gap: units.metres(observables.mean_gap),
             mean_gap_error: Some(units.metres(observables.mean_gap_error)),
             contact_stiffness: Some(stiffness).filter(|value| value.is_finite()),
+            contact_conductance: Some(stiffness / units.elasticity().e_star()).filter(|value| value.is_finite()),
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),
             rms_slope: context.rms_slope,
@@ -183,6 +193,7 @@ impl Summary {
             level_iterations: Some(info.levels.iter().map(|level| level.iterations).collect()),
             iterations: info.fine_iterations(),
             operator_applications: info.fine_operator_applications(),
+            leakage: None,
             wall_seconds: context.wall.as_secs_f64(),
             peak_memory_bytes: memory::peak(),
             threads: context.threads,
@@ -190,16 +201,17 @@ impl Summary {
         }
     }
 
-    /// The summary as the cells of a row.
+    /// The summary as the cells of a row. Of a flow, those are `permeance_x`, `permeance_y` (m³) and `percolates` (along x and along y).
     ///
     /// # Panics
     /// Never: a record of numbers and text is an object.
     #[must_use]
     pub fn cells(&self) -> Cells {
-        match serde_json::to_value(self) {
-            Ok(serde_json::Value::Object(cells)) => cells,
-            other => unreachable!("a record is an object, not {other:?}"),
+        let Ok(Value::Object(mut cells)) = serde_json::to_value(self) else { unreachable!("a record is an object") };
+        if let (Some(leakage), Some(_)) = (&self.leakage, cells.shift_remove("leakage")) {
+            cells.extend(leakage.cells().map(|(column, value)| (column.to_owned(), value)));
         }
+        cells
     }
 
     /// The summary as JSON, one key a line, with a line break at the end.

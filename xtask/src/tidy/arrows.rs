@@ -12,6 +12,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("rc-fractal", &["rc-core", "rc-fft"]),
     ("rc-heights", &["rc-core"]),
     ("rc-kernel", &["rc-core"]),
+    ("rc-leakage", &["rc-core"]),
     ("rc-quadtree", &["rc-core"]),
     ("rc-theory", &["rc-core"]),
     ("rc-solver", &["rc-core", "rc-fft", "rc-kernel", "rc-quadtree"]),

@@ -106,11 +106,18 @@ function certificate({ rows, note }) {
   return make("section", {}, make("h2", {}, "Certificate"), table(rows.map(line), ["", "error", "may be", ""]), make("p", { class: "quiet" }, note));
 }
 
+/** The picture of the flow through the gap. */
+function leakagePicture({ png, note }) {
+  const picture = make("img", { src: `data:image/png;base64,${png}`, alt: "flow through the gap", style: "max-width: 100%" });
+  return make("section", {}, make("h2", {}, "Leakage"), picture, make("p", { class: "quiet" }, note));
+}
+
 function resultPage(data) {
   const half = (...children) => make("div", { class: "columns wide" }, ...children);
   return [
     ...mapsAndSections(data.maps),
     half(...[data.stress && stressDistribution(data.stress), data.spots && contactSpots(data.spots)].filter(Boolean)),
+    ...[data.leakage && half(leakagePicture(data.leakage))].filter(Boolean),
     half(certificate(data.certificate), make("section", {}, make("h2", {}, "Result"), table(data.lines))),
   ];
 }

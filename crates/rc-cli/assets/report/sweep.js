@@ -21,14 +21,22 @@ function sweepPage(data) {
   const penetration = { key: "penetration", label: "penetration Δ", unit: "m" };
   const gap = { key: "gap", label: "mean gap", unit: "m" };
   const stiffness = { key: "stiffness", label: "stiffness", unit: "Pa/m" };
+  const conductance = { key: "conductance", label: "conductance per conductivity (1/m)" };
+  const permeance = { key: "permeance", label: "permeance (m³), mean of x and y" };
   const both = ["x", "y"];
+  const has = (key) => data.scenes.some(({ seeds }) => seeds.some((rows) => rows.some((row) => row[key] !== null)));
+  const more = [
+    has("conductance") && sweepChart("Contact conductance against load", data, { ...pressure, log: true }, { ...conductance, log: true }, both),
+    has("permeance") && sweepChart("Leakage against contact area", data, area, { ...permeance, log: true }, both),
+  ].filter(Boolean);
   return [
     make("h2", {}, "Curves"),
     make("div", { class: "columns wide" },
       sweepChart("Contact area against load", data, pressure, area, both),
       sweepChart("Load against penetration", data, penetration, pressure, both),
       sweepChart("Load against mean gap", data, gap, { ...pressure, log: true }, both),
-      sweepChart("Stiffness against load", data, { ...pressure, log: true }, { ...stiffness, log: true }, both)),
+      sweepChart("Stiffness against load", data, { ...pressure, log: true }, { ...stiffness, log: true }, both), ...more),
+    ...(data.percolation ? [make("p", {}, data.percolation)] : []),
     make("p", { class: "quiet" }, data.note),
     make("h2", {}, "Rows"),
     make("div", { class: "scroll" }, table(data.rows, data.heads)),

@@ -26,7 +26,8 @@ pub(crate) struct ExportArgs {
 }
 
 const EXPORT_HELP: &str = "\
---vtk writes fields.vti: pressure (Pa), gap (m), contact (0 or 1) and, of a height map, height (m), as values of the cells of an \
+--vtk writes fields.vti: pressure (Pa), gap (m), contact (0 or 1), of a height map height (m), and of a solve with \
+--leakage flow_x and flow_y (m²), as values of the cells of an \
 image; and elements.vtu, if the result has elements.csv: the elements of the adaptive mesh as quadrilaterals, with pressure (Pa) and \
 size (m). Lengths in m. In ParaView: open, Apply, colour by pressure; fields above the plane: Cell Data to Point Data, Warp By Scalar.
 

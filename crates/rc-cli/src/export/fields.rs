@@ -5,7 +5,9 @@ use std::path::Path;
 use rc_core::Field;
 
 use crate::error::CliError;
+use crate::files::flow::FLUX_FILES;
 use crate::files::result::{ResultFolder, in_cell};
+use crate::scene::heights::check_finite;
 use crate::scene::surface::HEIGHTS_FILE;
 
 /// The fields of a result, all on one grid.
@@ -24,6 +26,8 @@ pub(super) struct Fields {
     pub(super) plastic_gap: Option<Field>,
     /// m, of a height map.
     pub(super) height: Option<Field>,
+    /// Fluxes of a flow along x and y, with their names (m²).
+    pub(super) flow: Vec<(&'static str, Field)>,
     /// What 1 in [`Fields::contact`] says: `contact` of elements, `touched` of means over them, above 0 where any of them is in contact.
     pub(super) contact_name: &'static str,
 }
@@ -38,13 +42,29 @@ impl Fields {
         let height = heights.is_file().then(|| in_cell(&heights, pressure.grid().cell_ratio())).transpose()?;
         // With --output-grid, pressure and gap are coarser than the heights.
         let height = height.filter(|height| height.grid() == pressure.grid());
-        Ok(Self { status: summary.status, side, e_star, pressure, gap, plastic_gap, height, contact_name })
+        let flow = read_flow(folder, &pressure)?;
+        Ok(Self { status: summary.status, side, e_star, pressure, gap, plastic_gap, height, flow, contact_name })
     }
 
     /// 1 where the pressure is positive, else 0.
     pub(super) fn contact(&self) -> Vec<u8> {
         self.pressure.values().iter().map(|p| u8::from(*p > 0.0)).collect()
     }
+}
+
+/// The fluxes in the folder of a result, where there are any on the grid of its `pressure`.
+fn read_flow(folder: &Path, pressure: &Field) -> Result<Vec<(&'static str, Field)>, CliError> {
+    let mut flow = Vec::new();
+    for (file, name) in FLUX_FILES.into_iter().zip(["flow_x", "flow_y"]) {
+        let path = folder.join(file);
+        if path.is_file() {
+            let field = in_cell(&path, pressure.grid().cell_ratio())?;
+            check_finite(&path, &field)?;
+            flow.push((name, field));
+        }
+    }
+    flow.retain(|(_, field)| field.grid() == pressure.grid());
+    Ok(flow)
 }
 
 /// An element as its file has it.

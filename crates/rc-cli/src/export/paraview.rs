@@ -8,7 +8,7 @@ const VTK_QUAD: u8 = 9;
 
 /// The fields as values of the cells of an image: a value belongs to the element, not to its corners.
 pub(super) fn image(fields: &Fields) -> Dataset<'_> {
-    let Fields { side, pressure, gap, plastic_gap, height, .. } = fields;
+    let Fields { side, pressure, gap, plastic_gap, height, flow, .. } = fields;
     let grid = pressure.grid();
     let mut cells = vec![
         Array::new(fields.contact_name, 1, Values::UInt8(fields.contact())),
@@ -18,6 +18,7 @@ pub(super) fn image(fields: &Fields) -> Dataset<'_> {
     for (name, field) in [("plastic_gap", plastic_gap), ("height", height)] {
         cells.extend(field.iter().map(|field| Array::new(name, 1, Values::Float64(field.values().into()))));
     }
+    cells.extend(flow.iter().map(|(name, flux)| Array::new(name, 1, Values::Float64(flux.values().into()))));
     let (dx, dy) = (side / grid.nx() as f64, side * grid.cell_ratio() / grid.ny() as f64);
     let extent = format!("0 {} 0 {} 0 0", grid.nx(), grid.ny());
     let whole = vec![

@@ -13,7 +13,7 @@ const PLANE: &[&str] = &["y", "x"];
 
 /// Pressure, gap, contact, heights if there are any, and the coordinates of the centres of elements.
 pub(super) fn group(fields: &Fields) -> Group<'_> {
-    let Fields { status, side, e_star, pressure, gap, plastic_gap, height, contact_name } = fields;
+    let Fields { status, side, e_star, pressure, gap, plastic_gap, height, flow, contact_name } = fields;
     let grid = pressure.grid();
     let plane = |name, units, meaning, values| Array {
         name,
@@ -43,6 +43,11 @@ pub(super) fn group(fields: &Fields) -> Group<'_> {
     arrays.extend(height.iter().map(|height| {
         let meaning = "height of the rigid surface, positive towards the half-space";
         plane("height", "m", meaning, Values::Float64(height.values().into()))
+    }));
+    arrays.extend(flow.iter().map(|(name, flux)| {
+        let meaning =
+            "flux of the film for a pressure drop of 1 Pa across the cell and 12 times the viscosity of 1 Pa s";
+        plane(name, "m2", meaning, Values::Float64(flux.values().into()))
     }));
     arrays.push(axis("y", &["y"], (0..grid.ny()).map(|iy| grid.centre(0, iy).y * side).collect()));
     arrays.push(axis("x", &["x"], (0..grid.nx()).map(|ix| grid.centre(ix, 0).x * side).collect()));

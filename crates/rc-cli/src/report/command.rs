@@ -3,11 +3,15 @@
 use serde::Serialize;
 use serde_json::Value;
 
-/// ` --key value` for each key that has a value.
+/// ` --key value` for each key that has a value, ` --key` for one that is true.
 pub(super) fn flags(keys: &impl Serialize) -> String {
     let keys = serde_json::to_value(keys).unwrap_or(Value::Null);
     let keys = keys.as_object().cloned().unwrap_or_default();
-    keys.iter().filter_map(|(key, value)| Some(format!(" --{} {}", key.replace('_', "-"), word(value)?))).collect()
+    let flag = |(key, value): (&String, &Value)| match value {
+        Value::Bool(given) => given.then(|| format!(" --{}", key.replace('_', "-"))),
+        value => Some(format!(" --{} {}", key.replace('_', "-"), word(value)?)),
+    };
+    keys.iter().filter_map(flag).collect()
 }
 
 /// A value as one word of a shell; `None` where there is none.
@@ -42,7 +46,7 @@ mod tests {
     fn the_flags_of_a_scene_are_that_scene() {
         let scene = file::parse(
             "cell = 0.012345678901234567\nwaves = 8\nhurst = 0.7000000000000001\ntruncation = \"square\"\ngrid = \"64x32\"\n\
-             e_star = 1e9\npressure = 446394.9843260188\nkernel = \"spectral\"\nmethod = \"gauss-seidel\"\ntolerance = \"auto\"\n",
+             e_star = 1e9\npressure = 446394.9843260188\nkernel = \"spectral\"\nmethod = \"gauss-seidel\"\ntolerance = \"auto\"\nleakage = true\n",
         );
         let scene = scene.expect("a scene");
         let line = format!("solve{}{}", flags(&scene.surface), flags(&scene.contact));

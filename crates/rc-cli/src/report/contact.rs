@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::command::{flags, quoted};
 use super::embedded::{Bits, EmbeddedField, MOST_PIXELS, pixel_means};
+use super::flow_picture::FlowPicture;
 use super::page::{Command, Page, Text, Tile, made};
 use super::spot_sizes::SpotSizes;
 use crate::error::CliError;
@@ -39,6 +40,7 @@ pub(super) struct Contact {
     /// Names and values, as `rc solve` prints them.
     lines: Vec<(&'static str, String)>,
     spots: Option<SpotSizes>,
+    leakage: Option<FlowPicture>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -120,6 +122,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
             stress: stress(&result),
             certificate: certificate(summary),
             lines: text::solved_lines(summary, result.sides(), result.e_star),
+            leakage: FlowPicture::of(folder, summary),
             // Last: it takes the fields.
             spots: spots(result, bias),
         },
@@ -355,7 +358,7 @@ mod tests {
             let gap = Field::zeros(grid);
             // Of this slope, spread² is the variance of full contact.
             let summary = summary(grid, mean_pressure, 2.0 * spread, None);
-            let result = ResultFolder { summary, side: 1.0, e_star: 1.0, pressure, gap };
+            let result = ResultFolder { summary, side: 1.0, e_star: 1.0, pressure, gap, plastic_gap: None };
             let stress = stress(&result).expect("contact");
             let note = &stress.notes[1];
             let (_, part) = note.split_once("E*², ").expect("the part of the theory");
@@ -381,7 +384,14 @@ mod tests {
         let gap = Field::new(grid, vec![1e-14, 1e-15, 1.0, 1e-2]).expect("a field");
         let result = |n| {
             let summary = summary(Grid::square(n).expect("a grid"), 1.0, 0.1, None);
-            ResultFolder { summary, side: 1.0, e_star: 1.0, pressure: pressure.clone(), gap: gap.clone() }
+            ResultFolder {
+                summary,
+                side: 1.0,
+                e_star: 1.0,
+                pressure: pressure.clone(),
+                gap: gap.clone(),
+                plastic_gap: None,
+            }
         };
         let numbers = |result: &ResultFolder| serde_json::to_value(&maps(result).gap).expect("JSON")["data"].clone();
         let encoded = |numbers: [u16; 4]| {

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use super::command::{flags, quoted};
 use super::page::{Command, Page, Text, Tile, made};
+use super::percolation;
 use crate::error::CliError;
 use rc_core::quantity::{Scale, digits, engineering};
 use rc_sweep::{TABLE_FILE, settings_in};
@@ -26,6 +27,12 @@ struct Row {
     area_fraction_error: f64,
     mean_gap: f64,
     contact_stiffness: Option<f64>,
+    #[serde(default)]
+    contact_conductance: Option<f64>,
+    #[serde(default)]
+    permeance_x: Option<f64>,
+    #[serde(default)]
+    permeance_y: Option<f64>,
     wall_seconds: f64,
 }
 
@@ -36,6 +43,8 @@ pub(super) struct Curves {
     heads: Vec<&'static str>,
     rows: Vec<Vec<String>>,
     note: &'static str,
+    /// Where percolation is lost, of a sweep with flows.
+    percolation: Option<String>,
 }
 
 /// The curves of one scene.
@@ -57,6 +66,10 @@ struct Point {
     gap: f64,
     /// Not finite in full contact.
     stiffness: Option<f64>,
+    /// 1/m; not finite in full contact.
+    conductance: Option<f64>,
+    /// Mean of both axes (m³), where flows were computed.
+    permeance: Option<f64>,
 }
 
 /// The page of the sweep in `folder`.
@@ -143,18 +156,24 @@ impl Point {
             penetration: row.penetration,
             gap: row.mean_gap,
             stiffness: row.contact_stiffness,
+            conductance: row.contact_conductance,
+            permeance: row.permeance_x.zip(row.permeance_y).map(|(x, y)| 0.5 * (x + y)),
         }
     }
 
     fn mean(points: &[Self]) -> Self {
         let mean = |of: &dyn Fn(&Self) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
-        let stiffness = mean(&|point| point.stiffness.unwrap_or(f64::INFINITY));
+        let finite = |of: &dyn Fn(&Self) -> Option<f64>| {
+            Some(mean(&|point| of(point).unwrap_or(f64::INFINITY))).filter(|value| value.is_finite())
+        };
         Self {
             pressure: mean(&|point| point.pressure),
             area: mean(&|point| point.area),
             penetration: mean(&|point| point.penetration),
             gap: mean(&|point| point.gap),
-            stiffness: Some(stiffness).filter(|value| value.is_finite()),
+            stiffness: finite(&|point| point.stiffness),
+            conductance: finite(&|point| point.conductance),
+            permeance: finite(&|point| point.permeance),
         }
     }
 }
@@ -196,7 +215,12 @@ fn table(scenes: Vec<SceneCurves>, rows: &[Row]) -> Curves {
     };
     let mut heads = if several { vec!["scene"] } else { Vec::new() };
     heads.extend(["seed", "mean pressure", "penetration", "contact area (%)", "mean gap", "stiffness", "status"]);
+    let flows = rows.iter().filter_map(|row| {
+        let key = (row.scene.clone(), row.seed);
+        Some((key, row.area_fraction, [row.permeance_x?, row.permeance_y?]))
+    });
     Curves {
+        percolation: percolation::note(flows.collect()),
         scenes,
         heads,
         rows: rows.iter().map(cells).collect(),
@@ -256,6 +280,9 @@ mod tests {
             area_fraction_error: 0.0,
             mean_gap: 1.0,
             contact_stiffness: (seed == 1).then_some(3.0),
+            contact_conductance: Some(load),
+            permeance_x: Some(4.0 - load),
+            permeance_y: None,
             wall_seconds: 0.0,
         };
         let rows = [row(1, 1.0, 0.1), row(1, 2.0, 0.2), row(2, 1.0, 0.3), row(2, 2.0, 0.6)];

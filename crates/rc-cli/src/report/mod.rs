@@ -11,7 +11,9 @@ mod contact;
 mod curves;
 mod document;
 mod embedded;
+mod flow_picture;
 mod page;
+mod percolation;
 mod spot_sizes;
 
 use std::path::Path;

@@ -128,6 +128,10 @@ pub struct ContactKeys {
     /// the tolerance is auto then, unless it is given (random surfaces, instead of --grid)
     #[arg(long, value_name = "ERROR", allow_hyphen_values = true)]
     pub area_error: Option<Fraction>,
+    /// Compute the flow of a thin film through the gap too: permeance, percolation, critical constriction
+    #[arg(long)]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub leakage: bool,
     /// Write pressure and gap averaged to this many elements per side
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub output_grid: Option<GridSpec>,
@@ -265,6 +269,7 @@ impl ContactKeys {
         or_lower!(self, lower, {
             young, poisson, e_star, pressure, penetration, hardness, kernel, method, border_level, energy_tolerance, tolerance, area_error, output_grid
         });
+        self.leakage |= lower.leakage;
         self
     }
 }

@@ -38,6 +38,9 @@ DIR receives summary.json, pressure.npy (Pa), gap.npy (m), contact.png and scene
 elements.csv (m, m, m, Pa) from the methods with elements of their own, adaptive and gauss-seidel; and heights.npy, if the \
 heights came from a file. In the summary, iterations and operator_applications are those of the finest level.
 
+--leakage adds to the summary the flow of a thin film through the gap, Q = permeance ΔP/(12 viscosity), along x and along y, and to DIR \
+leakage.png, and flow_x.npy and flow_y.npy (flux in m² for ΔP = 1 across the cell and 12 viscosity = 1) of the axis flow_direction.
+
 rc solve --waves 256 --pressure 446395 --out result --watch shows the contact as it emerges, from coarse grids to fine ones: open \
 result/watch.png in a viewer that reloads. The picture looks as contact.png does, is replaced as a whole, and is removed when the \
 result is there, which does not depend on it.";

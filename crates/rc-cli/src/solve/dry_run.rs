@@ -35,8 +35,7 @@ struct Expected {
 /// # Errors
 /// [`CliError::Input`] for whatever a solve would refuse before its first iteration.
 pub(super) fn run(problem: &ProblemSetup<'_>, threads: usize, run: &RunKeys) -> Result<(), CliError> {
-    let grid = problem.surface.grid;
-    let expected = Expected::of(&problem.plan()?, [grid.nx(), grid.ny()], threads);
+    let expected = Expected::of(problem, &problem.plan()?, threads);
     match (run.json, run.quiet) {
         (true, _) => terminal::print(&to_json(&expected)),
         (false, true) => Ok(()),
@@ -45,12 +44,12 @@ pub(super) fn run(problem: &ProblemSetup<'_>, threads: usize, run: &RunKeys) -> 
 }
 
 impl Expected {
-    fn of(plan: &Plan<'_>, grid: [usize; 2], threads: usize) -> Self {
-        let cost = plan.cost();
+    fn of(problem: &ProblemSetup<'_>, plan: &Plan<'_>, threads: usize) -> Self {
+        let (cost, grid) = (problem.cost(plan), problem.surface.grid);
         Self {
             status: "dry_run",
             method: plan.reason().to_string(),
-            grid,
+            grid: [grid.nx(), grid.ny()],
             area_fraction: cost.area_fraction,
             elements: cost.elements,
             memory_bytes: cost.bytes.map(|bytes| bytes + PROCESS_BYTES),

@@ -5,13 +5,18 @@ pub(crate) mod solved;
 
 mod checked;
 mod dry_run;
+mod flow_files;
 mod job;
+mod leakage;
+mod map_file;
 mod messages;
 mod result_files;
 
 pub use checked::CheckedScene;
+pub use leakage::SolvedFlow;
+pub(crate) use leakage::memory_factor;
 pub use result_files::{MapHeights, ResultFiles};
-pub use solved::{ProblemSetup, Solved};
+pub use solved::{ProblemSetup, Solved, SolvedParts};
 
 use std::path::PathBuf;
 

@@ -5,15 +5,17 @@ use std::path::Path;
 use std::time::Duration;
 
 use rc_core::{DVec2, Field, Grid, Units};
-use rc_heights::npy::{self, RowWriter};
+use rc_heights::npy::RowWriter;
 use rc_heights::spectrum;
 use rc_plot::{ContactRows, save_png};
 use rc_solver::{ContactElement, Solution};
 use rc_sweep::files::{FileError, Staged};
 use rc_sweep::{SolveContext, Summary};
 
+use super::flow_files;
+use super::leakage::SolvedFlow;
+use super::map_file::MapFile;
 use crate::error::CliError;
-use crate::files::coarsen::BlockMean;
 use crate::files::result::PLASTIC_GAP_FILE;
 use crate::scene::as_read::AsRead;
 use crate::scene::file;
@@ -36,6 +38,8 @@ pub struct ResultFiles<'a> {
     pub contact: &'a ContactSetup,
     /// The solution.
     pub solution: &'a Solution<'a>,
+    /// The flow through its gap, where it was asked for.
+    pub flow: Option<&'a SolvedFlow>,
 }
 
 /// The heights of a map.
@@ -69,7 +73,8 @@ impl ResultFiles<'_> {
             wall,
             threads,
         };
-        Summary::of(self.solution, self.contact.units, &context)
+        let leakage = self.flow.map(|flow| flow.summary.clone());
+        Summary { leakage, ..Summary::of(self.solution, self.contact.units, &context) }
     }
 
     /// Writes the result folder. The method decides whether pressure and gap are ever whole in memory: they are handed out some
@@ -90,6 +95,9 @@ impl ResultFiles<'_> {
     fn stage(&self, folder: &Path, summary: &Summary) -> Result<(), FileError> {
         let mut staged = Staged::new(folder)?;
         add_fields(&mut staged, self.contact, self.solution)?;
+        if let Some(flow) = self.flow {
+            flow_files::add(&mut staged, self.contact, &flow.leakage, self.solution.grid())?;
+        }
         if let Some(map) = self.map {
             staged.add(HEIGHTS_FILE, |path| map.write(path))?;
         }
@@ -158,40 +166,6 @@ fn add_fields(staged: &mut Staged, contact: &ContactSetup, solution: &Solution<'
     });
     let picture = picture.finish(e_star, side);
     staged.add("contact.png", |path| save_png(&picture, path))
-}
-
-/// An npy file from rows of the finest grid, on that grid or averaged to a coarser one.
-enum MapFile<'a> {
-    Full(RowWriter),
-    Averaged { path: &'a Path, mean: BlockMean, factor: f64 },
-}
-
-impl<'a> MapFile<'a> {
-    /// A file for rows of `grid`, on `output_grid` if there is one, values multiplied by `factor`.
-    fn create(path: &'a Path, grid: Grid, output_grid: Option<GridSpec>, factor: f64) -> io::Result<Self> {
-        Ok(match output_grid {
-            None => Self::Full(RowWriter::create(path, grid, factor)?),
-            Some(spec) => Self::Averaged { path, mean: BlockMean::new(grid, spec), factor },
-        })
-    }
-
-    /// Takes the next rows.
-    fn take(&mut self, rows: &[f64]) -> io::Result<()> {
-        match self {
-            Self::Full(file) => file.write(rows),
-            Self::Averaged { mean, .. } => {
-                mean.take(rows);
-                Ok(())
-            }
-        }
-    }
-
-    fn finish(self) -> io::Result<()> {
-        match self {
-            Self::Full(file) => file.finish(),
-            Self::Averaged { path, mean, factor } => npy::write(path, &mean.finish(), factor),
-        }
-    }
 }
 
 /// Centre (m), side (m) and pressure (Pa) of each element, as `elements.csv`; given in λ and E*.

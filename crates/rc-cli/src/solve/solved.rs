@@ -4,10 +4,11 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use rc_core::{Kernel, Observer};
-use rc_solver::{ContactProblem, Plan, Solution, SolveError, SolveParams};
+use rc_solver::{ContactProblem, Cost, Plan, Solution, SolveError, SolveParams};
 use rc_sweep::Summary;
 use rc_sweep::memory::Budget;
 
+use super::leakage::SolvedFlow;
 use super::messages;
 use super::result_files::{MapHeights, ResultFiles};
 use crate::error::CliError;
@@ -35,7 +36,22 @@ pub struct Solved<'a> {
     solution: Solution<'a>,
     /// What is said of a solution that did not reach the tolerance.
     failure: Option<String>,
+    /// The flow through the gap, where it is asked for.
+    flow: Option<SolvedFlow>,
     wall: Duration,
+}
+
+/// A solved problem without its surface and contact.
+#[derive(Debug)]
+pub struct SolvedParts<'a> {
+    /// The solution.
+    pub solution: Solution<'a>,
+    /// What is said of a solution that did not reach the tolerance, or of a flow that did not converge.
+    pub failure: Option<String>,
+    /// The flow through the gap, where it is asked for and converged.
+    pub flow: Option<SolvedFlow>,
+    /// Time to the certified solution.
+    pub wall: Duration,
 }
 
 impl<'a> ProblemSetup<'a> {
@@ -45,7 +61,9 @@ impl<'a> ProblemSetup<'a> {
     /// [`CliError::Input`] when the scene, the method asked for, or the memory there is do not allow it.
     pub(crate) fn plan(&self) -> Result<Plan<'a>, CliError> {
         self.check_output()?;
-        self.contact_problem().plan(&self.params()).map_err(|error| self.refuse(&error))
+        let plan = self.contact_problem().plan(&self.params()).map_err(|error| self.refuse(&error))?;
+        self.check_flow(&plan)?;
+        Ok(plan)
     }
 
     /// The same with what `other`, a plan on the same surface with the same parameters, has prepared.
@@ -73,7 +91,10 @@ impl<'a> ProblemSetup<'a> {
         self.check_output()?;
         let problem = ContactProblem::new(self.surface.source(), self.contact.control);
         let problem = problem.with_hardness(self.contact.hardness);
-        problem.with_kernel(self.contact.kernel()?).plan(&self.params()).map_err(|error| self.refuse(&error))
+        let plan = problem.with_kernel(self.contact.kernel()?).plan(&self.params());
+        let plan = plan.map_err(|error| self.refuse(&error))?;
+        self.check_flow(&plan)?;
+        Ok(plan)
     }
 
     /// Solves by a plan of this problem.
@@ -108,6 +129,30 @@ impl<'a> ProblemSetup<'a> {
         self.solved(result, started)
     }
 
+    /// What the solve by `plan` takes, with the flow where it is asked for.
+    pub(crate) fn cost(&self, plan: &Plan<'_>) -> Cost {
+        let cost = plan.cost();
+        if !self.contact.keys.leakage {
+            return cost;
+        }
+        let elements = self.surface.grid.len() as f64;
+        Cost {
+            bytes: cost.bytes.map(|bytes| bytes + rc_leakage::BYTES_PER_ELEMENT * elements),
+            cpu_seconds: cost.cpu_seconds.map(|seconds| seconds + rc_leakage::SECONDS_PER_ELEMENT * elements),
+            ..cost
+        }
+    }
+
+    /// Refuses a flow that does not fit into memory.
+    fn check_flow(&self, plan: &Plan<'_>) -> Result<(), CliError> {
+        if !self.contact.keys.leakage {
+            return Ok(());
+        }
+        let what = format!("leakage on {} elements, with the contact,", self.surface.grid);
+        let flow = rc_leakage::BYTES_PER_ELEMENT * self.surface.grid.len() as f64;
+        Ok(self.budget.check(&what, self.cost(plan).bytes.unwrap_or(flow), |_| String::new())?)
+    }
+
     fn check_output(&self) -> Result<(), CliError> {
         self.contact.keys.output_grid.map_or(Ok(()), |spec| check_factor(self.surface.grid, spec))
     }
@@ -130,7 +175,13 @@ impl<'a> ProblemSetup<'a> {
             }
             Err(error) => return Err(self.refuse(&error)),
         };
-        Ok(Solved { problem: self, solution, failure, wall: started.elapsed() })
+        let wall = started.elapsed();
+        let (flow, failure) = match self.contact.keys.leakage.then(|| SolvedFlow::of(&solution, self.contact.units)) {
+            Some(Ok(flow)) => (Some(flow), failure),
+            Some(Err(error)) => (None, failure.or_else(|| Some(format!("leakage: {error}")))),
+            None => (None, failure),
+        };
+        Ok(Solved { problem: self, solution, failure, flow, wall })
     }
 
     fn refuse(&self, error: &SolveError) -> CliError {
@@ -139,10 +190,11 @@ impl<'a> ProblemSetup<'a> {
 }
 
 impl<'a> Solved<'a> {
-    /// The solution, what is said of it if it did not reach the tolerance, and the time that it took.
+    /// What it is made of, without the problem.
     #[must_use]
-    pub fn into_parts(self) -> (Solution<'a>, Option<String>, Duration) {
-        (self.solution, self.failure, self.wall)
+    pub fn into_parts(self) -> SolvedParts<'a> {
+        let Self { solution, failure, flow, wall, .. } = self;
+        SolvedParts { solution, failure, flow, wall }
     }
 
     /// What is to be said of a solution that did not reach the tolerance.
@@ -170,7 +222,7 @@ impl<'a> Solved<'a> {
         let ProblemSetup { surface, contact, .. } = self.problem;
         let map = surface.map().map(|(heights, as_read)| MapHeights::InCell { heights, as_read });
         let waves = surface.wave_file().map(AsRef::as_ref);
-        ResultFiles { surface: &surface.keys, map, waves, contact, solution: &self.solution }
+        ResultFiles { surface: &surface.keys, map, waves, contact, solution: &self.solution, flow: self.flow.as_ref() }
     }
 }
 

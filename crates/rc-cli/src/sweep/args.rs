@@ -97,7 +97,8 @@ pub(crate) struct MergeArgs {
 
 const SWEEP_HELP: &str = "\
 DIR (--out) receives sweep.csv: a line for each solve, by scene, seed, load; its columns are scene (of more than one), seed, \
-control_value (Pa or m), and the keys of the summary of rc solve. In it, threads are those of the whole sweep, and \
+control_value (Pa or m), and the keys of the summary of rc solve; --leakage \
+adds permeance_x, permeance_y (m³) and percolates (along x, along y). In it, threads are those of the whole sweep, and \
 peak_memory_bytes that of its process. Finished rows are kept in sweep.jsonl at once: whatever ends the sweep, --resume \
 goes on after them.
 

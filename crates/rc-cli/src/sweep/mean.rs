@@ -46,7 +46,8 @@ pub(super) fn run(args: &SweepArgs, wanted: &WantedMean) -> Result<(), CliError>
     interrupt::install(move || interrupt::end(&handled.0.kept(), None, &handled.1));
     let rows = Realisations::new(surface, control, (threads, run), bar.clone());
     let budget = Budget::new(run.memory_limit);
-    let workers = |elements| Workers { threads, at_once: budget.solves_at_once(elements) };
+    let factor = surface.memory_factor();
+    let workers = |elements: f64| Workers { threads, at_once: budget.solves_at_once(factor * elements) };
     let finished = ensemble.run(wanted, &rows, workers);
     bar.clear();
     let Some(means) = finished.map_err(messages::of_run)? else {

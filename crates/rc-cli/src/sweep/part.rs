@@ -84,7 +84,7 @@ impl Estimated {
             Some(first) => problem.plan_like(first).ok()?,
             None => problem.first_plan().ok()?,
         };
-        let seconds = plan.cost().cpu_seconds;
+        let seconds = problem.cost(&plan).cpu_seconds;
         self.first.get_or_insert(plan);
         seconds
     }

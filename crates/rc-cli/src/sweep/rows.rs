@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use rc_core::Silent;
 use rc_solver::Plan;
 use rc_sweep::memory::Budget;
-use rc_sweep::{Cells, Latest, RowError, RowSolver, Summary, Sweep, SweepRow, replace_fields};
+use rc_sweep::{Cells, Latest, LeakageSummary, RowError, RowSolver, Summary, Sweep, SweepRow, replace_fields};
 
 use super::bar::RowBar;
 use super::surfaces::Surfaces;
@@ -70,7 +70,11 @@ impl<'a> SceneRows<'a> {
         if let Some(folder) = folder {
             write_fields(&folder, &solved, &summary)?;
         }
-        Ok(summary.cells())
+        let mut cells = summary.cells();
+        if contact.keys.leakage {
+            LeakageSummary::complete(&mut cells);
+        }
+        Ok(cells)
     }
 }
 

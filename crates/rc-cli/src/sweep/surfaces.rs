@@ -10,6 +10,7 @@ use crate::error::CliError;
 use crate::scene::keys::{ContactKeys, RunKeys, Scene};
 use crate::scene::resolve::{self, ContactSetup};
 use crate::scene::surface::{Source, SurfaceSetup};
+use crate::solve::memory_factor;
 
 /// One surface with its loads.
 #[derive(Clone, Debug)]
@@ -99,13 +100,19 @@ impl Surfaces {
         }
     }
 
-    /// Elements of the largest surface.
+    /// Elements of the largest surface; with a flow, as many as take the same memory without it.
     pub(super) fn max_elements(&self) -> f64 {
-        self.all.iter().map(|surface| surface.setup.max_elements()).fold(0.0, f64::max)
+        let elements = |surface: &SweptSurface| surface.setup.max_elements() * surface.memory_factor();
+        self.all.iter().map(elements).fold(0.0, f64::max)
     }
 }
 
 impl SweptSurface {
+    /// Memory of a row, relative to that of a contact alone.
+    pub(super) fn memory_factor(&self) -> f64 {
+        memory_factor(&self.contact)
+    }
+
     /// Checks the keys of `scene`, under the first load: everything but the load is the same for all of them.
     pub(super) fn new(name: &str, scene: Scene, control: ControlKind, loads: &[f64]) -> Result<Self, CliError> {
         resolve::check_size_and_material(&scene.surface, &scene.contact)?;

@@ -5,6 +5,7 @@ mod bad_input;
 mod export;
 mod guide;
 mod hardness;
+mod leakage;
 mod measured;
 mod rectangles;
 mod report;

@@ -7,7 +7,7 @@ use std::time::Duration;
 use crate::support::{MATERIAL, Place, assert_refused, assert_solved, bumps, f8, map, npy, small, text};
 
 /// Keys of `summary.json`, in their order.
-pub(crate) const KEYS: [&str; 42] = [
+pub(crate) const KEYS: [&str; 43] = [
     "status",
     "control",
     "kernel",
@@ -31,6 +31,7 @@ pub(crate) const KEYS: [&str; 42] = [
     "mean_gap",
     "mean_gap_error",
     "contact_stiffness",
+    "contact_conductance",
     "elastic_energy",
     "rms_height",
     "rms_slope",

@@ -1,0 +1,74 @@
+//! The flow through the gap of a solved contact.
+
+use std::convert::Infallible;
+use std::time::Instant;
+
+use rc_core::{Field, Units};
+use rc_leakage::{Leakage, LeakageError, LeakageParams};
+use rc_solver::{Solution, UNIFORM_BYTES_PER_ELEMENT};
+use rc_sweep::LeakageSummary;
+
+use crate::scene::keys::ContactKeys;
+
+/// A flow with what its summary says.
+#[derive(Debug)]
+pub struct SolvedFlow {
+    /// In λ.
+    pub leakage: Leakage,
+    /// As the summary of a solve has it.
+    pub summary: LeakageSummary,
+}
+
+impl SolvedFlow {
+    /// The flow through the gap of `solution`; contact is where the pressure is positive.
+    ///
+    /// # Errors
+    /// [`LeakageError`].
+    pub(super) fn of(solution: &Solution<'_>, units: Units) -> Result<Self, LeakageError> {
+        let started = Instant::now();
+        let leakage = rc_leakage::leakage(&open_gap(solution), &LeakageParams::default())?;
+        let summary = summary(&leakage, units, started.elapsed().as_secs_f64());
+        Ok(Self { leakage, summary })
+    }
+}
+
+/// Memory of a solve with its flow, relative to that of a contact on as many elements.
+pub(crate) fn memory_factor(keys: &ContactKeys) -> f64 {
+    if keys.leakage { 1.0 + rc_leakage::BYTES_PER_ELEMENT / UNIFORM_BYTES_PER_ELEMENT as f64 } else { 1.0 }
+}
+
+/// The gap, zero in contact. What a solver leaves of it below zero is rounding.
+fn open_gap(solution: &Solution<'_>) -> Field {
+    let mut gap = Field::zeros(solution.grid());
+    let nx = solution.grid().nx();
+    let values = gap.values_mut();
+    let Ok(()) = solution.gap_rows(|first, rows| {
+        let out = &mut values[first * nx..first * nx + rows.len()];
+        out.iter_mut().zip(rows).for_each(|(out, gap)| *out = gap.max(0.0));
+        Ok::<_, Infallible>(())
+    });
+    let Ok(()) = solution.pressure_rows(|first, rows| {
+        let out = &mut values[first * nx..first * nx + rows.len()];
+        out.iter_mut().zip(rows).filter(|(_, pressure)| **pressure > 0.0).for_each(|(out, _)| *out = 0.0);
+        Ok::<_, Infallible>(())
+    });
+    gap
+}
+
+fn summary(leakage: &Leakage, units: Units, wall_seconds: f64) -> LeakageSummary {
+    let flows = leakage.flows.each_ref();
+    let cube = units.metres(1.0).powi(3);
+    let place = |at: rc_core::DVec2| [units.metres(at.x), units.metres(at.y)];
+    LeakageSummary {
+        permeance: flows.map(|flow| flow.permeance * cube),
+        relative_error: flows.map(|flow| flow.info.error),
+        permeance_error: flows.map(|flow| flow.permeance_error.map(|error| error * cube)),
+        flow_direction: leakage.flow_axis().map(|axis| axis.name().to_owned()),
+        percolates: flows.map(|flow| flow.percolates),
+        critical_gap: flows.map(|flow| flow.constriction.map(|place| units.metres(place.gap))),
+        critical_place: flows.map(|flow| flow.constriction.map(|constriction| place(constriction.at))),
+        conservation_error: flows.map(|flow| flow.info.conservation),
+        iterations: flows.map(|flow| flow.info.iterations),
+        wall_seconds,
+    }
+}

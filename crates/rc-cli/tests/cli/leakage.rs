@@ -1,0 +1,80 @@
+//! `--leakage`: the flow of a contact in files, tables and estimates.
+
+use serde_json::Value;
+
+use crate::support::{Place, assert_refused, assert_solved, small, text};
+
+fn pair(summary: &Value, key: &str) -> [f64; 2] {
+    [0, 1].map(|axis| summary["leakage"][key][axis].as_f64().unwrap_or_else(|| panic!("no {key} of axis {axis}")))
+}
+
+#[test]
+fn a_flow_is_certified_conserved_and_written() {
+    let place = Place::new();
+    assert_solved(&place.run(&small("1e5", &["--leakage", "--out", "r"])));
+    let summary = place.json("r/summary.json");
+    let [x, y] = pair(&summary, "permeance");
+    assert!(x > 0.0 && y > 0.0, "{summary}");
+    assert!(pair(&summary, "relative_error").iter().all(|error| *error <= 1e-9), "{summary}");
+    assert!(pair(&summary, "conservation_error").iter().all(|error| *error <= 1e-10), "{summary}");
+    assert!(place.bytes("r/leakage.png").starts_with(b"\x89PNG"));
+    // Every section across the flow carries it: the flux times the width of an element, for a fall of 1.
+    let name = if y > x { "r/flow_y.npy" } else { "r/flow_x.npy" };
+    let flux = rc_heights::npy::read(&place.path(name)).expect("a field");
+    let (side, n) = (0.01, flux.grid().nx());
+    let index = |section: usize, i: usize| if y > x { (i, section) } else { (section, i) };
+    for section in [0, n / 3] {
+        let at = |i: usize| flux.at(index(section, i).0, index(section, i).1);
+        let flow = (0..n).map(at).sum::<f64>() * side / n as f64;
+        assert!((flow / x.max(y) - 1.0).abs() < 1e-8, "{flow} for {x}, {y}");
+    }
+    // The same contact without the flow has the same numbers and files, but for those of the flow.
+    assert_solved(&place.run(&small("1e5", &["--out", "plain"])));
+    assert_eq!(place.bytes("r/pressure.npy"), place.bytes("plain/pressure.npy"));
+    assert!(place.json("plain/summary.json").get("leakage").is_none());
+    assert!(!place.names("plain").iter().any(|name| name.contains("flow") || name.contains("leakage")));
+    assert_solved(&place.run(&["solve", "r/scene.toml", "--quiet", "--out", "again"]));
+    assert_eq!(place.json("again/summary.json")["leakage"]["permeance"], summary["leakage"]["permeance"]);
+    assert_solved(&place.run(&["report", "r", "--quiet"]));
+    assert!(text(&place.bytes("r/report.html")).contains("The flux of a film"));
+}
+
+#[test]
+fn where_nothing_percolates_permeances_are_zero() {
+    let place = Place::new();
+    let line =
+        ["sweep", "--waves", "8", "--grid", "64", "--pressures", "1e5,2e8", "--leakage", "--quiet", "--out", "s"];
+    assert_solved(&place.run(&line));
+    let table = text(&place.bytes("s/sweep.csv"));
+    let mut rows = csv_rows(&table).into_iter();
+    let (open, closed) = (rows.next().expect("a row"), rows.next().expect("a row"));
+    assert!(open["permeance_x"].parse::<f64>().is_ok_and(|value| value > 0.0), "{open:?}");
+    assert_eq!(closed["permeance_x"].parse::<f64>().ok(), Some(0.0), "{closed:?}");
+    assert_eq!((&*open["percolates"], &*closed["percolates"]), ("true true", "false false"));
+    assert_eq!(closed["permeance_error_x"], "");
+}
+
+fn csv_rows(table: &str) -> Vec<std::collections::BTreeMap<String, String>> {
+    let mut lines = table.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+    let names = lines.next().unwrap_or_default();
+    // The reason of the method may have commas in quotes; columns of the flow are the last.
+    let last = |cells: Vec<String>| names.iter().rev().cloned().zip(cells.into_iter().rev()).take(5).collect();
+    lines.map(last).collect()
+}
+
+#[test]
+fn memory_of_a_flow_is_estimated_and_refused() {
+    let place = Place::new();
+    let scene = ["--waves", "32", "--grid", "1024", "--pressure", "446395"];
+    let bytes = |more: &[&str]| {
+        let output = place.run(&[&["solve", "--dry-run", "--json"], &scene[..], more].concat());
+        assert_solved(&output);
+        let expected: Value = serde_json::from_slice(&output.stdout).expect("valid JSON");
+        expected["memory_bytes"].as_f64().expect("bytes")
+    };
+    let (plain, flow) = (bytes(&[]), bytes(&["--leakage"]));
+    assert!(flow - plain > 80.0 * 1024.0 * 1024.0, "{flow} with a flow, {plain} without");
+    let limit = [&["solve", "--quiet", "--memory-limit", "100MB"], &scene[..]].concat();
+    assert_solved(&place.run(&limit));
+    assert_refused(&place.run(&[&limit[..], &["--leakage"]].concat()), "leakage on 1024 x 1024 elements");
+}

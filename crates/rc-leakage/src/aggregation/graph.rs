@@ -1,0 +1,172 @@
+//! A network without a grid.
+
+use crate::parallel;
+
+use super::aggregates::{ALONE, Aggregates};
+
+/// Elements that are relaxed one after the other, and whose products are summed together.
+pub(super) const BLOCK: usize = 1 << 16;
+
+/// Bonds of each element to its neighbours, in the order of these.
+#[derive(Debug, Default)]
+pub(crate) struct Graph {
+    /// First bond of each element, and their number at the end.
+    first: Vec<u32>,
+    neighbours: Vec<u32>,
+    conductances: Vec<f64>,
+    /// Sum of the conductances of each element.
+    pub(super) totals: Vec<f64>,
+}
+
+/// Adds the bonds of an element, with its neighbours, to a list.
+type WriteBonds<'a> = &'a (dyn Fn(usize, &mut Vec<(u32, f64)>) + Sync);
+
+/// Bonds of the elements of a block, which make a graph one after the other.
+#[derive(Default)]
+struct Rows {
+    lengths: Vec<u32>,
+    bonds: Vec<(u32, f64)>,
+}
+
+impl Rows {
+    /// Adds an element with these bonds; several to one neighbour are summed.
+    fn push(&mut self, bonds: &mut Vec<(u32, f64)>) {
+        // Stable, so that sums have one order.
+        bonds.sort_by_key(|(neighbour, _)| *neighbour);
+        let start = self.bonds.len();
+        for (neighbour, bond) in bonds.drain(..) {
+            match self.bonds[start..].last_mut() {
+                Some((last, sum)) if *last == neighbour => *sum += bond,
+                _ => self.bonds.push((neighbour, bond)),
+            }
+        }
+        self.lengths.push((self.bonds.len() - start) as u32);
+    }
+}
+
+impl Graph {
+    /// Of `n` elements; `write` adds the bonds of an element, with its neighbours, to an empty list.
+    pub(crate) fn new(n: usize, write: WriteBonds<'_>) -> Self {
+        let blocks = parallel::map((0..n).step_by(BLOCK).collect(), |first| {
+            let (mut rows, mut bonds) = (Rows::default(), Vec::new());
+            for element in first..(first + BLOCK).min(n) {
+                write(element, &mut bonds);
+                rows.push(&mut bonds);
+            }
+            rows
+        });
+        Self::of_rows(blocks)
+    }
+
+    /// The network of the aggregates under pressures that are constant on each.
+    pub(super) fn coarse(&self, aggregates: &Aggregates) -> Self {
+        let (first, members) = aggregates.members();
+        Self::new(aggregates.number, &|aggregate, bonds| {
+            for &member in &members[first[aggregate] as usize..first[aggregate + 1] as usize] {
+                let all = self.bonds_of(member as usize).map(|(other, bond)| (aggregates.of[other], bond));
+                bonds.extend(all.filter(|(other, _)| *other as usize != aggregate && *other != ALONE));
+            }
+        })
+    }
+
+    fn of_rows(blocks: Vec<Rows>) -> Self {
+        let elements = blocks.iter().map(|rows| rows.lengths.len()).sum::<usize>();
+        let bonds = blocks.iter().map(|rows| rows.bonds.len()).sum();
+        let mut graph = Self {
+            first: Vec::with_capacity(elements + 1),
+            neighbours: Vec::with_capacity(bonds),
+            conductances: Vec::with_capacity(bonds),
+            totals: Vec::with_capacity(elements),
+        };
+        graph.first.push(0);
+        for rows in blocks {
+            let mut at = 0;
+            for length in rows.lengths {
+                let bonds = &rows.bonds[at..at + length as usize];
+                at += length as usize;
+                graph.neighbours.extend(bonds.iter().map(|(neighbour, _)| *neighbour));
+                graph.conductances.extend(bonds.iter().map(|(_, bond)| *bond));
+                graph.totals.push(bonds.iter().map(|(_, bond)| bond).sum());
+                graph.first.push(graph.neighbours.len() as u32);
+            }
+        }
+        graph
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.totals.len()
+    }
+
+    /// Neighbours of an element, with the conductances to them.
+    #[inline]
+    pub(super) fn bonds_of(&self, element: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let range = self.first[element] as usize..self.first[element + 1] as usize;
+        let neighbours = self.neighbours[range.clone()].iter().map(|neighbour| *neighbour as usize);
+        neighbours.zip(self.conductances[range].iter().copied())
+    }
+
+    /// Each bond once: two elements and the conductance.
+    pub(super) fn bonds(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let of = |a: usize| self.bonds_of(a).filter(move |(b, _)| a < *b).map(move |(b, bond)| (a, b, bond));
+        (0..self.len()).flat_map(of)
+    }
+
+    /// Writes `right` less what the network draws under `x`.
+    pub(super) fn residual(&self, x: &[f64], right: &[f64], out: &mut [f64]) {
+        let blocks = out.chunks_mut(BLOCK).enumerate().collect();
+        parallel::for_each(blocks, |(block, out): (usize, &mut [f64])| {
+            for (i, out) in out.iter_mut().enumerate().map(|(i, out)| (block * BLOCK + i, out)) {
+                *out = right[i] + self.bonds_of(i).map(|(j, bond)| bond * (x[j] - x[i])).sum::<f64>();
+            }
+        });
+    }
+
+    /// Writes what the network draws under `x`.
+    pub(super) fn draw(&self, x: &[f64], out: &mut [f64]) {
+        let blocks = out.chunks_mut(BLOCK).enumerate().collect();
+        parallel::for_each(blocks, |(block, out): (usize, &mut [f64])| {
+            for (i, out) in out.iter_mut().enumerate().map(|(i, out)| (block * BLOCK + i, out)) {
+                *out = self.bonds_of(i).map(|(j, bond)| bond * (x[i] - x[j])).sum();
+            }
+        });
+    }
+
+    /// Relaxes each element once in its order from zero, in blocks that do not see each other.
+    pub(super) fn relax(&self, right: &[f64], x: &mut [f64]) {
+        relax_blocks(x, &|start, x| {
+            for k in 0..x.len() {
+                x[k] = self.relaxed(right, (start, &*x), k, |j| j < k);
+            }
+        });
+    }
+
+    /// The adjoint of [`Graph::relax`].
+    pub(super) fn relax_back(&self, right: &[f64], x: &mut [f64]) {
+        relax_blocks(x, &|start, x| {
+            for k in (0..x.len()).rev() {
+                x[k] = self.relaxed(right, (start, &*x), k, |j| j > k);
+            }
+        });
+    }
+
+    /// Element `k` of the block from `start` on, from the neighbours in it that are relaxed already. Bonds to other blocks count twice: two
+    /// elements that are strongly bound across a border would otherwise change places (Baker, Falgout, Kolev and Yang, SIAM J. Sci. Comput. 33, 2011).
+    #[inline]
+    fn relaxed(&self, right: &[f64], (start, x): (usize, &[f64]), k: usize, is_done: impl Fn(usize) -> bool) -> f64 {
+        let (mut flow, mut total) = (right[start + k], self.totals[start + k]);
+        for (j, bond) in self.bonds_of(start + k) {
+            let j = j.wrapping_sub(start);
+            if j >= x.len() {
+                total += bond;
+            } else if is_done(j) {
+                flow += bond * x[j];
+            }
+        }
+        if total > 0.0 { flow / total } else { 0.0 }
+    }
+}
+
+fn relax_blocks(x: &mut [f64], relax: &(dyn Fn(usize, &mut [f64]) + Sync)) {
+    let blocks = x.chunks_mut(BLOCK).enumerate().collect();
+    parallel::for_each(blocks, |(block, x): (usize, &mut [f64])| relax(block * BLOCK, x));
+}

@@ -1,0 +1,172 @@
+//! Multigrid on aggregates of strongly bound elements, for networks that coarser grids do not represent: films that hang together by a few elements.
+//!
+//! An aggregate is a pair of pairs (Notay, Electron. Trans. Numer. Anal. 37, 2010; Napov and Notay, SIAM J. Sci. Comput. 34, 2012). The coarser
+//! network is that of pressures that are constant on each. It is solved by two steps of conjugate gradients with its own cycle as
+//! preconditioner. Bonds of coarser levels are sums of bonds: nothing cancels, whatever the ratio of their conductances.
+
+mod aggregates;
+mod graph;
+mod pairs;
+
+use self::aggregates::ALONE;
+use self::graph::BLOCK;
+pub(crate) use self::graph::Graph;
+use crate::elimination::Elimination;
+use crate::parallel;
+use crate::preconditioner::Preconditioner;
+
+/// Elements that are few enough for elimination.
+const COARSEST: usize = 256;
+
+/// Most elements of a last level that is eliminated.
+const ELIMINATED: usize = 4096;
+
+/// Where aggregates are more than this part of the elements, coarsening has come to its end.
+const STALLED: f64 = 0.9;
+
+/// All levels of a network.
+#[derive(Debug)]
+pub(crate) struct Aggregation {
+    /// Finest first.
+    levels: Vec<Level>,
+    /// Of the last level; `None` where it has too many elements, and is relaxed.
+    last: Option<Elimination>,
+}
+
+#[derive(Debug)]
+struct Level {
+    graph: Graph,
+    /// Aggregate of each element, or [`ALONE`]; empty on the last level.
+    aggregates: Vec<u32>,
+    right: Vec<f64>,
+    x: Vec<f64>,
+    residual: Vec<f64>,
+    /// The first of two steps, and what the network draws under it; the latter is scratch of the cycle.
+    first: Vec<f64>,
+    drawn: Vec<f64>,
+}
+
+impl Level {
+    fn new(graph: Graph) -> Self {
+        let [right, x, residual, first, drawn] = [(); 5].map(|()| vec![0.0; graph.len()]);
+        Self { graph, aggregates: Vec::new(), right, x, residual, first, drawn }
+    }
+}
+
+impl Aggregation {
+    pub(crate) fn new(network: Graph) -> Self {
+        let mut levels = vec![Level::new(network)];
+        loop {
+            let Some(level) = levels.last_mut() else { unreachable!("there is a finest level") };
+            if level.graph.len() <= COARSEST {
+                break;
+            }
+            let first = pairs::matched(&level.graph, &level.graph.totals);
+            let middle = level.graph.coarse(&first);
+            let second = pairs::matched(&middle, &first.sums(&level.graph.totals));
+            let coarse = middle.coarse(&second);
+            if coarse.len() as f64 > STALLED * first.of.iter().filter(|aggregate| **aggregate != ALONE).count() as f64 {
+                break;
+            }
+            let of = |first: &u32| second.of.get(*first as usize).copied().unwrap_or(ALONE);
+            level.aggregates = first.of.iter().map(of).collect();
+            levels.push(Level::new(coarse));
+        }
+        let graph = &levels[levels.len() - 1].graph;
+        let last = (graph.len() <= ELIMINATED).then(|| Elimination::new(graph.len(), graph.bonds()));
+        Self { levels, last }
+    }
+}
+
+impl Aggregation {
+    /// Approximates the solution for the right side better than one application does.
+    pub(crate) fn solve(&mut self) -> &[f64] {
+        solve(&mut self.levels, self.last.as_ref());
+        &self.levels[0].x
+    }
+}
+
+impl Preconditioner for Aggregation {
+    type Value = f64;
+
+    fn right_mut(&mut self) -> &mut [f64] {
+        &mut self.levels[0].right
+    }
+
+    fn apply(&mut self) -> &[f64] {
+        cycle(&mut self.levels, self.last.as_ref());
+        &self.levels[0].x
+    }
+}
+
+/// Approximates the solution for the right side of the first level.
+fn cycle(levels: &mut [Level], last: Option<&Elimination>) {
+    let Some((level, coarser)) = levels.split_first_mut() else { return };
+    let Level { graph, aggregates, right, x, residual, drawn, .. } = level;
+    let Some(next) = coarser.first_mut() else {
+        match last {
+            Some(last) => last.solve(right, x),
+            None => graph.relax(right, x),
+        }
+        return;
+    };
+    graph.relax(right, x);
+    graph.residual(x, right, residual);
+    next.right.fill(0.0);
+    for (residual, aggregate) in residual.iter().zip(aggregates.iter()).filter(|(_, aggregate)| **aggregate != ALONE) {
+        next.right[*aggregate as usize] += residual;
+    }
+    solve(coarser, last);
+    let coarse = &coarser[0].x;
+    let blocks = x.chunks_mut(BLOCK).zip(aggregates.chunks(BLOCK)).collect();
+    parallel::for_each(blocks, |(x, aggregates): (&mut [f64], &[u32])| {
+        let pairs = x.iter_mut().zip(aggregates).filter(|(_, aggregate)| **aggregate != ALONE);
+        pairs.for_each(|(x, aggregate)| *x += coarse[*aggregate as usize]);
+    });
+    graph.residual(x, right, residual);
+    graph.relax_back(residual, drawn);
+    add(x, 1.0, drawn);
+}
+
+/// Two steps of conjugate gradients on the first level; the last is solved.
+fn solve(levels: &mut [Level], last: Option<&Elimination>) {
+    cycle(levels, last);
+    if levels.len() == 1 {
+        return;
+    }
+    let level = &mut levels[0];
+    std::mem::swap(&mut level.x, &mut level.first);
+    level.graph.draw(&level.first, &mut level.residual);
+    let (slope, curvature) = (dot(&level.first, &level.right), dot(&level.first, &level.residual));
+    if !(slope > 0.0 && curvature > 0.0) {
+        level.x.copy_from_slice(&level.first);
+        return;
+    }
+    let length = slope / curvature;
+    scale(&mut level.first, length);
+    add(&mut level.right, -length, &level.residual);
+    cycle(levels, last);
+    let Level { graph, right, x, residual, first, .. } = &mut levels[0];
+    // The second direction, made conjugate to the first.
+    graph.draw(x, residual);
+    let along = dot(first, residual) / (length * slope);
+    let (slope, curvature) = (dot(x, right), dot(x, residual) - along * dot(first, residual));
+    let length = if slope > 0.0 && curvature > 0.0 { slope / curvature } else { 0.0 };
+    scale(x, length);
+    add(x, 1.0 - along * length, first);
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let blocks = a.chunks(BLOCK).zip(b.chunks(BLOCK)).collect();
+    parallel::sum(blocks, |(a, b): (&[f64], &[f64])| a.iter().zip(b).map(|(a, b)| a * b).sum())
+}
+
+/// Adds `factor` times `b` to `a`.
+fn add(a: &mut [f64], factor: f64, b: &[f64]) {
+    let blocks = a.chunks_mut(BLOCK).zip(b.chunks(BLOCK)).collect();
+    parallel::for_each(blocks, |(a, b): (&mut [f64], &[f64])| a.iter_mut().zip(b).for_each(|(a, b)| *a += factor * b));
+}
+
+fn scale(a: &mut [f64], factor: f64) {
+    parallel::for_each(a.chunks_mut(BLOCK).collect(), |a: &mut [f64]| a.iter_mut().for_each(|a| *a *= factor));
+}

@@ -1,0 +1,40 @@
+//! Bounds of the permeance, from any pressure and any flow that is conserved.
+//!
+//! The pressure gives an upper bound (Dirichlet's principle): its power is at least that of the solution. The fluxes that it drives, made conserved along
+//! a spanning tree, give a lower bound (Thomson's principle): their power for a given flow is at least that of the solution.
+
+use crate::flow_state::{Correction, FlowState};
+use crate::network::Axis;
+use crate::tree::SpanningTree;
+
+/// What is certain of a flow, for a fall of 1 per element along its axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bounds {
+    /// Upper bound of the power of the flow.
+    pub(crate) upper: f64,
+    /// Lower bound.
+    pub(crate) lower: f64,
+    /// Largest difference of the conserved flow through a section from the mean over all, relative to it.
+    pub(crate) conservation: f64,
+}
+
+impl Bounds {
+    /// Of the pressure in `state`, and of its flow with the excess of each element in `excess`, which becomes the flow along the tree.
+    pub(crate) fn of(state: FlowState<'_>, tree: &SpanningTree, axis: Axis, excess: &mut [f64]) -> Self {
+        tree.route(excess);
+        let (upper, _) = state.power_and_sections(axis);
+        let conserved = FlowState { correction: Some(Correction { tree, flow: excess }), ..state };
+        let (dissipation, sections) = conserved.power_and_sections(axis);
+        let n = sections.len() as f64;
+        let flow = sections.iter().sum::<f64>() / n;
+        let lower = if flow > 0.0 { (n * flow).powi(2) / dissipation } else { 0.0 };
+        let largest = sections.iter().map(|section| (section - flow).abs()).fold(0.0, f64::max);
+        Self { upper, lower, conservation: if flow > 0.0 { largest / flow } else { f64::INFINITY } }
+    }
+
+    /// Largest relative error of the upper bound.
+    pub(crate) fn relative(&self) -> f64 {
+        // Not below zero by rounding.
+        if self.upper > 0.0 { (1.0 - self.lower / self.upper).abs() } else { f64::INFINITY }
+    }
+}

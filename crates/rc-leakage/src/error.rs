@@ -1,0 +1,37 @@
+//! What a gap is refused for, and flows that do not converge.
+
+use rc_core::Grid;
+use thiserror::Error;
+
+/// A gap without a flow that can be computed.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum LeakageError {
+    /// A gap is negative or not finite.
+    #[error("the gap of element ({ix}, {iy}) is {value}, not a finite number of at least 0")]
+    Gap {
+        /// Column.
+        ix: usize,
+        /// Row.
+        iy: usize,
+        /// The value.
+        value: f64,
+    },
+    /// The bounds of the permeance, or the flow through sections, still differ after the most iterations.
+    #[error(
+        "the bounds of the permeance along {axis} on {grid} elements differ by {error:.1e} of it after {iterations} iterations, and the flow through two \
+         sections by {conservation:.1e}"
+    )]
+    NotConverged {
+        /// Direction of the flow.
+        axis: &'static str,
+        /// Elements.
+        grid: Grid,
+        /// Largest relative error of the permeance.
+        error: f64,
+        /// Largest relative difference of the flow.
+        conservation: f64,
+        /// Iterations done.
+        iterations: usize,
+    },
+}

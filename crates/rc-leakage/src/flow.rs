@@ -1,0 +1,284 @@
+//! The front door: permeances, percolation and constrictions of a gap.
+
+use rc_core::{Field, Grid};
+
+use crate::aggregation::{Aggregation, Graph};
+use crate::bounds::Bounds;
+use crate::clusters::Clusters;
+use crate::constriction::{Constriction, Thresholds};
+use crate::descent::{self, Solved, Target};
+use crate::error::LeakageError;
+use crate::flow_state::{Correction, FlowState};
+use crate::flux::Flux;
+use crate::multigrid::Multigrid;
+use crate::network::{Axis, Network};
+use crate::tree::SpanningTree;
+
+/// How the flow is computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeakageParams {
+    /// Largest difference of the upper and the lower bound of the permeance, relative to the permeance.
+    pub error: f64,
+    /// Largest difference of the flow through two sections of the cell, relative to the flow.
+    pub conservation: f64,
+    /// Most iterations of one flow.
+    pub max_iterations: usize,
+    /// Whether the flow is computed on every second element along both axes too, which gives the error bar of the grid.
+    pub half_grid: bool,
+}
+
+impl Default for LeakageParams {
+    fn default() -> Self {
+        Self { error: 1e-9, conservation: 1e-10, max_iterations: 500, half_grid: true }
+    }
+}
+
+/// The flow along both axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Leakage {
+    /// Along x, and along y.
+    pub flows: [Flow; 2],
+    /// The flux of the axis [`Leakage::flow_axis`]; `None` where nothing flows.
+    pub flux: Option<Flux>,
+}
+
+/// The flow along one axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flow {
+    /// Flow for a pressure that falls by one across the cell and 12 η = 1, in λ³: 0 where nothing percolates. An upper bound of the
+    /// permeance of the network, by the principle of Dirichlet; see [`FlowInfo::error`].
+    pub permeance: f64,
+    /// Estimated error of the grid: the difference from the permeance of every second element; `None` where it was not computed, or the
+    /// sides are odd.
+    pub permeance_error: Option<f64>,
+    /// Whether a cluster of elements out of contact winds around the cell along this axis.
+    pub percolates: bool,
+    /// The narrowest place of the widest path, where the film percolates.
+    pub constriction: Option<Constriction>,
+    /// What was done.
+    pub info: FlowInfo,
+}
+
+/// What was done to compute a flow.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FlowInfo {
+    /// Iterations.
+    pub iterations: usize,
+    /// Largest error of the permeance of the network, relative to it: the difference of the lower bound, by the principle of Thomson.
+    pub error: f64,
+    /// Largest difference of the flow through a section from the mean of all, relative to it.
+    pub conservation: f64,
+}
+
+impl Leakage {
+    /// The axis with the larger permeance, x if they are equal; `None` where nothing flows.
+    #[must_use]
+    pub fn flow_axis(&self) -> Option<Axis> {
+        let [x, y] = self.flows.each_ref().map(|flow| flow.permeance);
+        match (x > 0.0 || y > 0.0, y > x) {
+            (false, _) => None,
+            (true, false) => Some(Axis::X),
+            (true, true) => Some(Axis::Y),
+        }
+    }
+}
+
+/// The flow through `gap` (in λ; 0 in contact), periodic along both axes.
+///
+/// # Errors
+/// [`LeakageError::Gap`] for a gap that is negative or not finite, [`LeakageError::NotConverged`].
+pub fn leakage(gap: &Field, params: &LeakageParams) -> Result<Leakage, LeakageError> {
+    check(gap)?;
+    let solved = flows(gap, params, true)?;
+    let half = half(gap).filter(|_| params.half_grid && solved.percolates != [false; 2]);
+    let half = half.and_then(|half| flows(&half, params, false).ok());
+    let flows = Axis::BOTH.map(|axis| {
+        let i = axis.index();
+        let (permeance, info) = solved.results[i];
+        let percolates = solved.percolates[i];
+        let of_half = half.as_ref().filter(|_| percolates).map(|half| half.results[i].0);
+        Flow {
+            permeance,
+            permeance_error: of_half.map(|of_half| (permeance - of_half).abs()),
+            percolates,
+            constriction: solved.constrictions[i],
+            info,
+        }
+    });
+    Ok(Leakage { flows, flux: solved.flux })
+}
+
+fn check(gap: &Field) -> Result<(), LeakageError> {
+    let nx = gap.grid().nx();
+    match gap.values().iter().position(|gap| !(gap.is_finite() && *gap >= 0.0)) {
+        None => Ok(()),
+        Some(index) => Err(LeakageError::Gap { ix: index % nx, iy: index / nx, value: gap.values()[index] }),
+    }
+}
+
+/// Every second element along both axes, where the sides are even.
+fn half(gap: &Field) -> Option<Field> {
+    let grid = gap.grid();
+    let (nx, ny) = (grid.nx(), grid.ny());
+    if !(nx.is_multiple_of(2) && ny.is_multiple_of(2) && nx.min(ny) >= 4) {
+        return None;
+    }
+    let rows = (0..ny).step_by(2).flat_map(|iy| gap.row(iy).iter().copied().step_by(2));
+    Field::new(grid.with_elements(nx / 2, ny / 2).ok()?, rows.collect()).ok()
+}
+
+/// What is known of one grid.
+struct OfGrid {
+    /// Permeances along both axes.
+    results: [(f64, FlowInfo); 2],
+    percolates: [bool; 2],
+    constrictions: [Option<Constriction>; 2],
+    flux: Option<Flux>,
+}
+
+/// Gaps below this part of the smaller critical gap are taken as closed: such an element conducts 1e-15 of a constriction. A pool that only
+/// they join to the rest has a pressure that rounding decides.
+const CLOSED: f64 = 1e-5;
+
+/// Gaps above this multiple of the critical gap of an axis are taken as this wide: such an element resists 1e-14 of a constriction. What drives the flow
+/// through a wider one would be lost in the rounding of its pressure.
+const WIDE: f64 = 5e4;
+
+/// Permeances along both axes, and the flux along that of the larger one.
+fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<OfGrid, LeakageError> {
+    let percolates = Clusters::above(gap, 0.0, false).percolates();
+    let mut thresholds = Thresholds::new(gap);
+    let constrictions =
+        Axis::BOTH.map(|axis| if percolates[axis.index()] { thresholds.constriction(axis) } else { None });
+    let critical = constrictions.iter().flatten().map(|place| place.gap).fold(f64::INFINITY, f64::min);
+    let mut clusters = Clusters::above(gap, CLOSED * critical, true);
+    let masks = Axis::BOTH.map(|axis| clusters.winding(axis));
+    let largest = gap.max();
+    let widest = constrictions.map(|place| place.map_or(largest, |place| largest.min(WIDE * place.gap)));
+    let network = |i: usize| network_of((gap, widest[i]), &clusters, &masks[i]);
+    let mut results = [(0.0, FlowInfo::default()); 2];
+    let mut kept: Option<(Axis, Kept)> = None;
+    let mut prepared: Option<(usize, Prepared)> = None;
+    for axis in Axis::BOTH.into_iter().filter(|axis| percolates[axis.index()]) {
+        let i = axis.index();
+        let (of, mut network) = match prepared.take() {
+            Some((of, network)) if masks[of] == masks[i] && widest[of] >= widest[i] && widest[of] <= widest[i] => {
+                (of, network)
+            }
+            _ => (i, Prepared::new(network(i))),
+        };
+        let solved = network.solved(axis, params)?;
+        results[i] = network.result(axis, &solved);
+        if with_flux && (kept.is_none() || results[1].0 > results[0].0) {
+            kept = Some((axis, Kept { pressure: solved.pressure, correction: solved.correction }));
+        }
+        prepared = Some((of, network));
+    }
+    drop(prepared);
+    let flux = kept.map(|(axis, kept)| kept.flux(&network(axis.index()), axis));
+    Ok(OfGrid { results, percolates, constrictions, flux })
+}
+
+/// The network of the runs that `carries` says carry a flow.
+fn network_of((gap, widest): (&Field, f64), clusters: &Clusters, carries: &[bool]) -> Network {
+    Network::new(gap, widest, &|iy, open: &mut [bool]| {
+        let range = clusters.first_of_row[iy]..clusters.first_of_row[iy + 1];
+        for (run, _) in clusters.runs[range.clone()].iter().zip(&carries[range]).filter(|(_, carries)| **carries) {
+            open[run.start as usize..run.end as usize].fill(true);
+        }
+    })
+}
+
+/// What is left of a solved flow.
+struct Kept {
+    pressure: Vec<f64>,
+    correction: Vec<f64>,
+}
+
+impl Kept {
+    fn flux(&self, network: &Network, axis: Axis) -> Flux {
+        let tree = SpanningTree::new(network);
+        let correction = Some(Correction { tree: &tree, flow: &self.correction });
+        let state = FlowState { correction, ..FlowState::of(network, &self.pressure, axis.unit()) };
+        Flux::of(state, network.unscaled(1.0) / elements_along(network.grid(), axis) as f64)
+    }
+}
+
+/// Elements along `axis`.
+fn elements_along(grid: Grid, axis: Axis) -> usize {
+    match axis {
+        Axis::X => grid.nx(),
+        Axis::Y => grid.ny(),
+    }
+}
+
+/// Iterations that grids have before aggregates alone take over: films that are resolved take six to ten.
+const ON_GRIDS: usize = 12;
+
+/// A network with what solves it.
+struct Prepared {
+    network: Network,
+    tree: SpanningTree,
+    preconditioner: Precondition,
+}
+
+/// Coarser grids until a flow shows that they do not represent the network.
+enum Precondition {
+    Grids(Multigrid<f32>),
+    Aggregates(Aggregation),
+}
+
+impl Prepared {
+    fn new(network: Network) -> Self {
+        let preconditioner = Precondition::Grids(Multigrid::new(&network));
+        Self { tree: SpanningTree::new(&network), network, preconditioner }
+    }
+
+    /// The flow along one axis.
+    fn solved(&mut self, axis: Axis, params: &LeakageParams) -> Result<Solved, LeakageError> {
+        let target = Target { axis, error: params.error, conservation: params.conservation };
+        let of = (&self.network, &self.tree);
+        let mut solved = Solved::start(self.network.grid().len());
+        if let Precondition::Grids(multigrid) = &mut self.preconditioner {
+            solved = descent::solve(of, solved, multigrid, target, params.max_iterations.min(ON_GRIDS));
+            if !target.is_met(&solved.bounds) {
+                self.preconditioner = Precondition::Aggregates(Aggregation::new(graph_of(&self.network)));
+                // From no pressure again: single precision may have left pools that hardly anything holds at a level that takes all digits.
+                solved = Solved { iterations: solved.iterations, ..Solved::start(self.network.grid().len()) };
+            }
+        }
+        if let Precondition::Aggregates(aggregation) = &mut self.preconditioner
+            && !target.is_met(&solved.bounds)
+        {
+            let rest = params.max_iterations.saturating_sub(solved.iterations);
+            solved = descent::solve(of, solved, aggregation, target, rest);
+        }
+        if target.is_met(&solved.bounds) {
+            return Ok(solved);
+        }
+        let Bounds { conservation, .. } = solved.bounds;
+        Err(LeakageError::NotConverged {
+            axis: axis.name(),
+            grid: self.network.grid(),
+            error: solved.bounds.relative(),
+            conservation,
+            iterations: solved.iterations,
+        })
+    }
+
+    /// Permeance, and what was done.
+    fn result(&self, axis: Axis, solved: &Solved) -> (f64, FlowInfo) {
+        let bounds = &solved.bounds;
+        let info =
+            FlowInfo { iterations: solved.iterations, error: bounds.relative(), conservation: bounds.conservation };
+        let n = elements_along(self.network.grid(), axis) as f64;
+        (self.network.unscaled(bounds.upper) / (n * n), info)
+    }
+}
+
+fn graph_of(network: &Network) -> Graph {
+    Graph::new(network.grid().len(), &|element, bonds| {
+        let all = network.bonds_of(element).into_iter().filter(|(_, bond)| *bond > 0.0);
+        bonds.extend(all.map(|(other, bond)| (other as u32, bond)));
+    })
+}

@@ -1,0 +1,279 @@
+//! Interpolation from a coarser level, with weights from the bonds of the finer one (black box multigrid: Dendy, J. Comput. Phys. 48, 1982).
+
+use super::stencil::Stencil;
+use crate::parallel;
+use crate::real::Real;
+
+/// A row of weights of elements after coarse ones along x and along y.
+type EdgeRows<'a, T> = (usize, (&'a mut [[T; 2]], &'a mut [[T; 2]]));
+
+/// Every second element along the axes that are coarsened is one of the coarser level; the weights of those between.
+#[derive(Debug)]
+pub(super) struct Interpolation<T> {
+    /// Elements of the finer level.
+    pub(super) fine: [usize; 2],
+    /// Elements of the coarser level.
+    pub(super) coarse: [usize; 2],
+    /// 2 along an axis that is coarsened, else 1.
+    pub(super) factor: [usize; 2],
+    /// Of the element after a coarse one along x: weights of this one, and of the next.
+    along_x: Vec<[T; 2]>,
+    /// The same along y.
+    along_y: Vec<[T; 2]>,
+    /// Of the element after it along both: of this one, the next along x, along y, along both.
+    centre: Vec<[T; 4]>,
+}
+
+/// Weights of an element between two coarse ones, from what binds it to both sides. One that is bound to neither is given to a
+/// side that is a wall, so that no element that flows is without a coarse one.
+fn weights<T: Real>(towards: [T; 2], is_wall: [bool; 2]) -> [T; 2] {
+    let [first, second] = towards.map(|bond| if bond > T::ZERO { bond } else { T::ZERO });
+    let total = first + second;
+    if total > T::TINY {
+        return truncated([first / total, second / total]);
+    }
+    match is_wall {
+        [true, _] => [T::ONE, T::ZERO],
+        [false, true] => [T::ZERO, T::ONE],
+        [false, false] => [T::of(0.5); 2],
+    }
+}
+
+/// Weights below this are none: the network of the coarser level would consist of what rounding leaves of them.
+const SMALLEST: f64 = 1e-3;
+
+/// Weights without those that are too small, of sum 1.
+fn truncated<T: Real, const N: usize>(weights: [T; N]) -> [T; N] {
+    let kept = weights.map(|weight| if weight.abs() < T::of(SMALLEST) { T::ZERO } else { weight });
+    let total: T = kept.into_iter().sum();
+    kept.map(|weight| weight / total)
+}
+
+impl<T: Real> Interpolation<T> {
+    /// Of the elements of `fine`, coarsened by `factor` along x and y.
+    pub(super) fn new(fine: &Stencil<T>, factor: [usize; 2]) -> Self {
+        let sides = [fine.nx, fine.ny];
+        let coarse = [0, 1].map(|axis| sides[axis].div_ceil(factor[axis]));
+        let n = coarse[0] * coarse[1];
+        let mut this = Self {
+            fine: sides,
+            coarse,
+            factor,
+            along_x: vec![[T::ZERO; 2]; n],
+            along_y: vec![[T::ZERO; 2]; n],
+            centre: vec![[T::ZERO; 4]; n],
+        };
+        let mut edges = (std::mem::take(&mut this.along_x), std::mem::take(&mut this.along_y));
+        let rows = edges.0.chunks_mut(coarse[0]).zip(edges.1.chunks_mut(coarse[0])).enumerate().collect();
+        parallel::for_each(rows, |(row, (along_x, along_y)): EdgeRows<'_, T>| {
+            for column in 0..coarse[0] {
+                (along_x[column], along_y[column]) = this.edge_weights(fine, [column, row]);
+            }
+        });
+        (this.along_x, this.along_y) = edges;
+        let mut centre = std::mem::take(&mut this.centre);
+        let rows = centre.chunks_mut(coarse[0]).enumerate().collect();
+        parallel::for_each(rows, |(row, centre): (usize, &mut [[T; 4]])| {
+            for (column, weights) in centre.iter_mut().enumerate() {
+                *weights = this.centre_weights(fine, [column, row]);
+            }
+        });
+        this.centre = centre;
+        this
+    }
+
+    /// Elements from coarse element `at` to the next along x and y: 2, or 1 where none is between.
+    pub(super) fn widths(&self, at: [usize; 2]) -> [usize; 2] {
+        [0, 1].map(|axis| if self.factor[axis] * at[axis] + 1 < self.fine[axis] { self.factor[axis] } else { 1 })
+    }
+
+    pub(super) fn index(&self, at: [usize; 2]) -> usize {
+        (at[1] % self.coarse[1]) * self.coarse[0] + at[0] % self.coarse[0]
+    }
+
+    fn edge_weights(&self, fine: &Stencil<T>, at: [usize; 2]) -> ([T; 2], [T; 2]) {
+        let bonds = Bonds(fine);
+        let [x, y] = [self.factor[0] * at[0], self.factor[1] * at[1]];
+        let widths = self.widths(at);
+        let (mut along_x, mut along_y) = ([T::ZERO; 2], [T::ZERO; 2]);
+        let is_wall = |x: usize, y: usize| fine.inverse[bonds.index(x, y)] == T::ZERO;
+        if widths[0] == 2 && !is_wall(x + 1, y) {
+            // Bonds are summed along the other axis.
+            let sum = |x: usize, rising: usize, falling: usize| {
+                bonds.east(x, y) + bonds.rising(x, rising) + bonds.falling(x, falling)
+            };
+            let below = y + fine.ny - 1;
+            along_x = weights([sum(x, below, y), sum(x + 1, y, below)], [is_wall(x, y), is_wall(x + 2, y)]);
+        }
+        if widths[1] == 2 && !is_wall(x, y + 1) {
+            let before = x + fine.nx - 1;
+            let sum = |y: usize, rising: usize, falling: usize| {
+                bonds.north(x, y) + bonds.rising(rising, y) + bonds.falling(falling, y)
+            };
+            along_y = weights([sum(y, before, x), sum(y + 1, x, before)], [is_wall(x, y), is_wall(x, y + 2)]);
+        }
+        (along_x, along_y)
+    }
+
+    fn centre_weights(&self, fine: &Stencil<T>, at: [usize; 2]) -> [T; 4] {
+        let bonds = Bonds(fine);
+        let [x, y] = [self.factor[0] * at[0] + 1, self.factor[1] * at[1] + 1];
+        if self.widths(at) != [2, 2] || fine.inverse[bonds.index(x, y)] == T::ZERO {
+            return [T::ZERO; 4];
+        }
+        let [west, east] = [at, [at[0] + 1, at[1]]].map(|at| self.along_y[self.index(at)]);
+        let [south, north] = [at, [at[0], at[1] + 1]].map(|at| self.along_x[self.index(at)]);
+        let faces = [bonds.east(x - 1, y), bonds.east(x, y), bonds.north(x, y - 1), bonds.north(x, y)];
+        let corners =
+            [bonds.rising(x - 1, y - 1), bonds.falling(x, y - 1), bonds.falling(x - 1, y), bonds.rising(x, y)];
+        let [w, e, s, n] = faces;
+        let sums = [
+            corners[0] + w * west[0] + s * south[0],
+            corners[1] + e * east[0] + s * south[1],
+            corners[2] + w * west[1] + n * north[0],
+            corners[3] + e * east[1] + n * north[1],
+        ];
+        let total: T = sums.into_iter().sum();
+        if total > T::TINY { truncated(sums.map(|sum| sum / total)) } else { [T::of(0.25); 4] }
+    }
+
+    /// Weights of the fine element `offset` after coarse element `at`, of this one, the next along x, along y, along both.
+    pub(super) fn corner_weights(&self, at: [usize; 2], offset: [usize; 2]) -> [T; 4] {
+        let widths = self.widths(at);
+        let ends = [0, 1].map(|axis| offset[axis] == widths[axis]);
+        let between = [0, 1].map(|axis| offset[axis] > 0 && !ends[axis]);
+        let next = [at[0] + usize::from(ends[0]), at[1] + usize::from(ends[1])];
+        let corner = usize::from(ends[0]) + 2 * usize::from(ends[1]);
+        let mut out = [T::ZERO; 4];
+        match between {
+            [true, true] => return self.centre[self.index(at)],
+            [true, false] => {
+                let [first, second] = self.along_x[self.index(next)];
+                (out[corner], out[corner + 1]) = (first, second);
+            }
+            [false, true] => {
+                let [first, second] = self.along_y[self.index(next)];
+                (out[corner], out[corner + 2]) = (first, second);
+            }
+            [false, false] => out[corner] = T::ONE,
+        }
+        out
+    }
+
+    /// Adds what is interpolated from `coarse` to `fine`.
+    pub(super) fn prolong(&self, coarse: &[T], fine: &mut [T]) {
+        let nx = self.fine[0];
+        let rows = fine.chunks_mut(nx).enumerate().collect();
+        parallel::for_each(rows, |(iy, fine): (usize, &mut [T])| {
+            let (row, is_between) = (iy / self.factor[1], iy % self.factor[1] == 1);
+            let [here, above] = [row, row + 1].map(|row| &coarse[self.index([0, row])..][..self.coarse[0]]);
+            for column in 0..self.coarse[0] {
+                let at = self.index([column, row]);
+                let next = if column + 1 < self.coarse[0] { column + 1 } else { 0 };
+                let x = self.factor[0] * column;
+                let has_next = self.factor[0] == 2 && x + 1 < nx;
+                if is_between {
+                    let [first, second] = self.along_y[at];
+                    fine[x] += first * here[column] + second * above[column];
+                    if has_next {
+                        let [a, b, c, d] = self.centre[at];
+                        fine[x + 1] += a * here[column] + b * here[next] + c * above[column] + d * above[next];
+                    }
+                } else {
+                    fine[x] += here[column];
+                    if has_next {
+                        let [first, second] = self.along_x[at];
+                        fine[x + 1] += first * here[column] + second * here[next];
+                    }
+                }
+            }
+        });
+    }
+
+    /// Writes into `coarse` what the adjoint of the interpolation makes of the fine residual, of which `residual` writes a row.
+    pub(super) fn restrict(&self, residual: &(dyn Fn(usize, &mut [T]) + Sync), coarse: &mut [T]) {
+        let (nc, rows_per_block) = (self.coarse[0], (parallel::rows_per_block(self.fine[0]) / 2).max(4));
+        let blocks = coarse.chunks_mut(rows_per_block * nc).enumerate().collect();
+        parallel::for_each(blocks, |(block, coarse): (usize, &mut [T])| {
+            let mut rows = [(); 3].map(|()| vec![T::ZERO; self.fine[0]]);
+            let first = block * rows_per_block;
+            let before = (first + self.coarse[1] - 1) % self.coarse[1];
+            let mut has_below = self.between(before).is_some_and(|iy| {
+                residual(iy, &mut rows[0]);
+                true
+            });
+            for (row, out) in coarse.chunks_mut(nc).enumerate() {
+                let row = first + row;
+                residual(self.factor[1] * row, &mut rows[1]);
+                let between = self.between(row);
+                if let Some(iy) = between {
+                    residual(iy, &mut rows[2]);
+                }
+                let [below, here, above] = &rows;
+                let below = has_below.then_some(&below[..]);
+                self.restrict_row(row, [below, Some(here), between.map(|_| &above[..])], out);
+                rows.swap(0, 2);
+                has_below = between.is_some();
+            }
+        });
+    }
+
+    /// The fine row between the coarse row `row` and the next.
+    fn between(&self, row: usize) -> Option<usize> {
+        (self.widths([0, row])[1] == 2).then(|| self.factor[1] * row + 1)
+    }
+
+    /// Restricts the fine rows below, at and above coarse row `row`.
+    fn restrict_row(&self, row: usize, [below, here, above]: [Option<&[T]>; 3], out: &mut [T]) {
+        let (nx, nc) = (self.fine[0], self.coarse[0]);
+        let before_row = (row + self.coarse[1] - 1) % self.coarse[1];
+        for (column, out) in out.iter_mut().enumerate() {
+            let before = if column == 0 { nc - 1 } else { column - 1 };
+            let x = self.factor[0] * column;
+            // Where no element is between, its weights are zero.
+            let between = |column: usize| (self.factor[0] * column + 1).min(nx - 1);
+            let (after, earlier) = (between(column), between(before));
+            let [at, at_before] = [self.index([column, row]), self.index([before, row])];
+            let mut sum = T::ZERO;
+            if let Some(here) = here {
+                sum += here[x] + self.along_x[at][0] * here[after] + self.along_x[at_before][1] * here[earlier];
+            }
+            if let Some(above) = above {
+                sum += self.along_y[at][0] * above[x];
+                sum += self.centre[at][0] * above[after] + self.centre[at_before][1] * above[earlier];
+            }
+            if let Some(below) = below {
+                let [at, at_before] = [self.index([column, before_row]), self.index([before, before_row])];
+                sum += self.along_y[at][1] * below[x];
+                sum += self.centre[at][2] * below[after] + self.centre[at_before][3] * below[earlier];
+            }
+            *out = sum;
+        }
+    }
+}
+
+/// Bonds by place, on the periodic grid.
+pub(super) struct Bonds<'a, T>(pub(super) &'a Stencil<T>);
+
+impl<T: Real> Bonds<'_, T> {
+    pub(super) fn index(&self, x: usize, y: usize) -> usize {
+        let wrap = |i: usize, n: usize| if i < n { i } else { i % n };
+        wrap(y, self.0.ny) * self.0.nx + wrap(x, self.0.nx)
+    }
+
+    pub(super) fn east(&self, x: usize, y: usize) -> T {
+        self.0.east[self.index(x, y)]
+    }
+
+    pub(super) fn north(&self, x: usize, y: usize) -> T {
+        self.0.north[self.index(x, y)]
+    }
+
+    pub(super) fn rising(&self, x: usize, y: usize) -> T {
+        self.0.corners.as_ref().map_or(T::ZERO, |corners| corners.rising[self.index(x, y)])
+    }
+
+    pub(super) fn falling(&self, x: usize, y: usize) -> T {
+        self.0.corners.as_ref().map_or(T::ZERO, |corners| corners.falling[self.index(x, y)])
+    }
+}
