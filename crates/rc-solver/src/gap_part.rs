@@ -1,5 +1,7 @@
 //! The two parts of a gap where a hardness limits the pressure.
 
+use rc_core::Field;
+
 /// What is asked for of the gap `v - h` of an element, from the gap of elastic contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum GapPart {
@@ -18,5 +20,20 @@ impl GapPart {
             (Self::Plastic, true) => (-gap).max(0.0),
             (Self::Plastic, false) => 0.0,
         }
+    }
+
+    /// Hands out this part of a gap under a pressure of at most the `hardness`, row by row. Stops at the first error.
+    pub(crate) fn rows<E>(
+        self,
+        (gap, pressure): (&Field, &Field),
+        hardness: f64,
+        mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        for iy in 0..gap.grid().ny() {
+            let pairs = gap.row(iy).iter().zip(pressure.row(iy));
+            let values: Vec<f64> = pairs.map(|(g, p)| self.of(*g, *p, hardness)).collect();
+            take(iy, &values)?;
+        }
+        Ok(())
     }
 }

@@ -116,14 +116,14 @@ impl ElementValues<'_> {
             *p = stepped.max(0.0).min(hardness);
             let (gap, is_plastic) = (gradient.of_gap(*g), stepped >= hardness);
             // Without a step, what has just come stays.
-            let at_bound = stepped == 0.0 || stepped == hardness;
+            let at_bound = stepped == 0.0 || is_plastic && stepped <= hardness;
             let joins = (!*active || at_bound) && if is_plastic { gap > 0.0 } else { gap < 0.0 };
             if joining > 0.0 && joins && at_bound {
                 *p = (*p - joining * gap).max(0.0).min(hardness);
             }
             *active = stepped > 0.0 && !is_plastic || joins;
             *added = ((*p - stepped) * gradient.unit) as f32;
-            clipped += u32::from(*p > stepped || *p < stepped);
+            clipped += u32::from((*p - stepped).abs() > 0.0);
         }
         clipped
     }

@@ -384,19 +384,9 @@ impl<'a> Solution<'a> {
     }
 
     /// Hands out a part of the gap.
-    fn part_rows<E>(&self, part: GapPart, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+    fn part_rows<E>(&self, part: GapPart, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         match &self.pressures {
-            Pressures::Grid { solution, .. } => {
-                let (pressure, gap, nx) = (&solution.pressure, &solution.gap, solution.gap.grid().nx());
-                let mut values = vec![0.0; nx];
-                for iy in 0..gap.grid().ny() {
-                    for (value, (g, p)) in values.iter_mut().zip(gap.row(iy).iter().zip(pressure.row(iy))) {
-                        *value = part.of(*g, *p, self.how.hardness);
-                    }
-                    take(iy, &values)?;
-                }
-                Ok(())
-            }
+            Pressures::Grid { solution, .. } => part.rows((&solution.gap, &solution.pressure), self.how.hardness, take),
             Pressures::Tiles { solution, problem } => problem.gap_rows(solution, part, take),
         }
     }
