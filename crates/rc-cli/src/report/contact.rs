@@ -384,14 +384,8 @@ mod tests {
         let gap = Field::new(grid, vec![1e-14, 1e-15, 1.0, 1e-2]).expect("a field");
         let result = |n| {
             let summary = summary(Grid::square(n).expect("a grid"), 1.0, 0.1, None);
-            ResultFolder {
-                summary,
-                side: 1.0,
-                e_star: 1.0,
-                pressure: pressure.clone(),
-                gap: gap.clone(),
-                plastic_gap: None,
-            }
+            let (pressure, gap) = (pressure.clone(), gap.clone());
+            ResultFolder { summary, side: 1.0, e_star: 1.0, pressure, gap, plastic_gap: None }
         };
         let numbers = |result: &ResultFolder| serde_json::to_value(&maps(result).gap).expect("JSON")["data"].clone();
         let encoded = |numbers: [u16; 4]| {
