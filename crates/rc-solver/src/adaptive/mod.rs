@@ -289,13 +289,8 @@ impl<'a> AdaptiveProblem<'a> {
         assert_eq!(solution.finest_grid(), self.ground.heights.ladder().finest(), "not a solution of this problem");
         let offset = solution.gap_offset(self.h_max());
         let grid = if finest { solution.finest_grid() } else { solution.grid() };
-        let of_pressure = solution.hardness.is_finite().then(|| match finest {
-            true => solution.on_finest(),
-            false => {
-                let (tiles, pressure) = solution.on_grid();
-                (tiles, pressure.into_owned())
-            }
-        });
+        let pressure_on = || if finest { solution.on_finest() } else { solution.on_grid() };
+        let of_pressure = solution.hardness.is_finite().then(pressure_on);
         solution.displacement_rows(&self.ground.kernels, finest, |first, displacement| {
             let mut rows = self.ground.heights.row_of_tiles(sides_of(grid), first / TILE);
             for (h, v) in rows.iter_mut().zip(displacement) {

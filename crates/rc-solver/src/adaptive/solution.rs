@@ -97,7 +97,7 @@ impl AdaptiveSolution {
     }
 
     /// Tiles of the smallest elements wherever there are elements, and the pressure on them: a larger element stands for its parts.
-    pub(super) fn on_finest(&self) -> (TileSet, Vec<f64>) {
+    pub(super) fn on_finest(&self) -> (TileSet, Cow<'_, [f64]>) {
         let levels = self.elements.levels();
         let parts = |coarser: usize, tile: usize| {
             let [column, row] = levels[coarser].places()[tile].map(|i| i << coarser);
@@ -117,7 +117,7 @@ impl AdaptiveSolution {
                 }
             }
         }
-        (tiles, values)
+        (tiles, Cow::Owned(values))
     }
 
     /// Hands out the pressure on the grid, in the mean over smaller elements, eight rows at a time, in order: the index of the
@@ -142,12 +142,7 @@ impl AdaptiveSolution {
         finest: bool,
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        let (own_tiles, pressure) = if finest {
-            let (tiles, pressure) = self.on_finest();
-            (tiles, Cow::Owned(pressure))
-        } else {
-            self.on_grid()
-        };
+        let (own_tiles, pressure) = if finest { self.on_finest() } else { self.on_grid() };
         let ([nx, ny], [columns, n_rows]) = (own_tiles.sides(), own_tiles.extent());
         let own = Elements::uniform(own_tiles);
         let prepared = kernels.response();
