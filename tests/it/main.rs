@@ -10,6 +10,7 @@ mod gauss_seidel;
 mod hertz;
 mod interchange;
 mod pits;
+mod ranks;
 mod reference;
 mod rough;
 mod stress_distribution;

@@ -1,34 +1,37 @@
 //! The contact area on a mesh.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use rc_core::{Grid, Kernel};
 use rc_kernel::Love;
-use rc_quadtree::{CELLS, Elements, TILE};
+use rc_quadtree::{CELLS, TILE};
 
+use super::mesh::Mesh;
 use crate::ContactArea;
 use crate::contact_area::EdgeSums;
 
 /// Tiles that are summed together; sums have this order for any number of threads.
 const TILES_AT_ONCE: usize = 64;
 
-/// From pressure and gap on `elements`, the smallest of which are those of `finest`; `contact_gap` is the gap of what is in contact.
+/// From pressure and gap on `mesh`, the smallest elements of which are those of `finest`; `contact_gap` is the gap of what is in contact.
 pub(super) fn contact_area(
-    elements: &Elements,
+    mesh: &Mesh,
     pressure: &[f64],
     (gap, contact_gap): (&[f64], f64),
     finest: Grid,
 ) -> ContactArea {
-    let of_level = |coarser: usize| {
-        let (side, first) = (elements.side(coarser), elements.cells(coarser).start);
-        let tiles = &elements.levels()[coarser];
+    let (pressures, gaps) = (mesh.surroundings(pressure), mesh.surroundings(gap));
+    let of_level = |(coarser, places, values): (usize, &[[u32; 2]], Range<usize>)| {
+        let (side, tiles) = (mesh.side(coarser), &mesh.levels()[coarser]);
         let of_tile = |(tile, &place): (usize, &[u32; 2])| {
-            let start = first + tile * CELLS;
+            let start = values.start + tile * CELLS;
             if pressure[start..start + CELLS].iter().all(|&p| p <= 0.0) {
                 return EdgeSums::default();
             }
-            let pressure = elements.around(pressure, coarser, place, 0.0);
+            let pressure = pressures.elements.around(&pressures.values, coarser, place, 0.0);
             // Where no element is the gap is not known.
-            let gap = elements.around(gap, coarser, place, f64::NAN);
+            let gap = gaps.elements.around(&gaps.values, coarser, place, f64::NAN);
             let mut sums = EdgeSums::default();
             // What reaches beyond the grid is across the seam.
             let [width, height] = tiles.inside(place);
@@ -43,7 +46,7 @@ pub(super) fn contact_area(
             }
             sums
         };
-        let chunks = tiles.places().par_chunks(TILES_AT_ONCE).enumerate();
+        let chunks = places.par_chunks(TILES_AT_ONCE).enumerate();
         let chunks: Vec<EdgeSums> = chunks
             .map(|(chunk, places)| {
                 let tiles = places.iter().enumerate();
@@ -51,8 +54,11 @@ pub(super) fn contact_area(
                 sums.fold(EdgeSums::default(), |a, b| a + b)
             })
             .collect();
-        chunks.into_iter().fold(EdgeSums::default(), |a, b| a + b)
+        let total = mesh.ranks().fold(EdgeSums::default().to_values(), |sum| {
+            chunks.into_iter().fold(EdgeSums::from_values(sum), |a, b| a + b).to_values()
+        });
+        EdgeSums::from_values(total)
     };
-    let sums: Vec<EdgeSums> = (0..elements.levels().len()).map(of_level).collect();
+    let sums: Vec<EdgeSums> = mesh.own_levels().map(of_level).collect();
     ContactArea::from_sums(&sums, finest, Love.edge_bias())
 }

@@ -4,9 +4,11 @@
 //! cells that contact touches or nearly does, with the multilevel operator. What is not stored is out of contact, and the
 //! exclusion proves it.
 
+mod agreed_stop;
 mod base_grid;
 mod checks;
 mod contact_area;
+mod deal;
 mod element_blocks;
 mod element_heights;
 mod error;
@@ -20,11 +22,13 @@ mod kernels;
 pub(crate) mod ladder;
 mod level;
 mod memory;
+mod mesh;
 mod multilevel;
 mod nested_iteration;
 pub(crate) mod operator;
 mod operator_error;
 mod params;
+mod part;
 mod prolongation;
 mod roughness;
 mod scaled_operator;
@@ -34,9 +38,11 @@ mod split;
 
 use std::sync::Arc;
 
+use rc_comm::Ranks;
 use rc_core::{Grid, Observer};
 use rc_quadtree::TILE;
 
+use self::agreed_stop::AgreedStop;
 use self::checks::{check_memory, first_split};
 use self::contact_area::contact_area;
 pub use self::error::AdaptiveError;
@@ -63,6 +69,8 @@ pub(crate) struct AdaptiveProblem<'a> {
     params: AdaptiveParams,
     /// For fresh gaps in descents.
     split: GapSplit,
+    /// Among which the mesh is dealt.
+    ranks: Ranks,
 }
 
 /// Why the uniform grid is better than the adaptive method, which was chosen by an estimate.
@@ -111,11 +119,25 @@ impl<'a> AdaptiveProblem<'a> {
         if problem.h_range == 0.0 {
             return Err(AdaptiveError::Flat);
         }
-        let prepared = Self { ground: Arc::clone(ground), problem, params: *params, split };
+        let prepared = Self { ground: Arc::clone(ground), problem, params: *params, split, ranks: Ranks::alone() };
         let grid = prepared.grid();
         let Estimate { area_fraction, adaptive_bytes, .. } = prepared.estimate();
         check_memory(grid, params.memory_limit, adaptive_bytes, Some(100.0 * area_fraction))?;
         Ok(prepared)
+    }
+
+    /// The same problem over ranks, all of which solve it together.
+    ///
+    /// # Errors
+    /// [`AdaptiveError::OverRanks`].
+    pub(crate) fn over(self, ranks: &Ranks) -> Result<Self, AdaptiveError> {
+        if !ranks.are_alone() && self.params.border_level > 0 {
+            return Err(AdaptiveError::OverRanks { needs: "elements of one size, without a border level" });
+        }
+        if !ranks.are_alone() && !self.ground.heights.ladder().is_even() {
+            return Err(AdaptiveError::OverRanks { needs: "a grid that halves down to its base grid" });
+        }
+        Ok(Self { ranks: ranks.clone(), ..self })
     }
 
     /// What solving it will cost, from the surface and the load alone.
@@ -133,8 +155,8 @@ impl<'a> AdaptiveProblem<'a> {
 
     /// The same problem without a borrow: a borrowed map of heights is copied.
     pub(crate) fn into_owned(self) -> AdaptiveProblem<'static> {
-        let Self { ground, problem, params, split } = self;
-        AdaptiveProblem { ground: Arc::new(Ground::into_owned(ground)), problem, params, split }
+        let Self { ground, problem, params, split, ranks } = self;
+        AdaptiveProblem { ground: Arc::new(Ground::into_owned(ground)), problem, params, split, ranks }
     }
 
     /// What the certificate has to meet.
@@ -153,6 +175,7 @@ impl<'a> AdaptiveProblem<'a> {
     /// The certificate comes from a fresh application of L on the returned pressure, with bounds on the error of that operator added; it
     /// covers every cell where a bound does not exclude contact. The result is bitwise the same for any number of threads.
     pub(crate) fn solve(&self, observer: &dyn Observer) -> AdaptiveSolution {
+        let observer = &AgreedStop { observer, ranks: &self.ranks };
         let solver = self.first_solver();
         let start = solver.prepare(solver.begin(observer), observer);
         self.finish(self.solve_levels(&solver, start, observer))
@@ -163,6 +186,7 @@ impl<'a> AdaptiveProblem<'a> {
     /// # Errors
     /// [`Unsuitable`].
     pub(crate) fn solve_if_suitable(&self, observer: &dyn Observer) -> Result<AdaptiveSolution, Unsuitable> {
+        let observer = &AgreedStop { observer, ranks: &self.ranks };
         let solver = self.first_solver();
         let base = solver.begin(observer);
         if base.tile_fraction > Estimate::GREATEST_TILE_FRACTION {
@@ -200,7 +224,7 @@ impl<'a> AdaptiveProblem<'a> {
     }
 
     fn solver(&self, splits: Splits) -> NestedIteration<'_> {
-        NestedIteration::new(&self.ground, self.problem, &self.params, splits)
+        NestedIteration::new((&self.ground, &self.ranks), self.problem, &self.params, splits)
     }
 
     /// The split, from `split` on, that can certify a pressure like this one.

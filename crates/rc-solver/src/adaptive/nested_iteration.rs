@@ -1,6 +1,7 @@
 //! Nested iteration from the base grid to the finest level: each level prepares the start on the next.
 
 use rayon::prelude::*;
+use rc_comm::Ranks;
 use rc_core::{Event, Grid, Observer};
 use rc_kernel::Love;
 use rc_quadtree::{TILE, TileSet};
@@ -61,7 +62,12 @@ pub(super) struct NestedIteration<'a> {
 }
 
 impl<'a> NestedIteration<'a> {
-    pub(super) fn new(ground: &'a Ground<'_>, problem: Problem, params: &AdaptiveParams, splits: Splits) -> Self {
+    pub(super) fn new(
+        ground: (&'a Ground<'_>, &'a Ranks),
+        problem: Problem,
+        params: &AdaptiveParams,
+        splits: Splits,
+    ) -> Self {
         Self { setup: Setup::new(ground, problem, params, splits), splits }
     }
 
@@ -136,7 +142,7 @@ impl<'a> NestedIteration<'a> {
         let (tiles, grid) = (TileSet::full(sides_of(base.grid())), self.ladder().grid(1));
         let start = LevelStart {
             grid,
-            mesh: prolongation::refine_all(&tiles, &function, grid),
+            mesh: prolongation::refine_base(&tiles, &function, grid, self.setup.ranks),
             contact_gap: outcome.contact_gap,
             energy_length: outcome.energy_length(),
             levels,
@@ -171,7 +177,7 @@ impl<'a> NestedIteration<'a> {
             let refined = self.setup.refined(&level.fields(), true);
             prolongation::refine_some(elements, pressure, &function, refined)
         } else {
-            prolongation::refine_all(elements.finest(), &function, grid)
+            prolongation::refine_all(elements, &function, grid)
         }
     }
 

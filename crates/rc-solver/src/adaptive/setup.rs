@@ -2,16 +2,17 @@
 
 use std::sync::Arc;
 
+use rc_comm::Ranks;
 use rc_core::Grid;
 use rc_quadtree::{ContactFields, Elements, RING, divide};
 
 use super::AdaptiveParams;
-use super::element_blocks::blocks_of;
 use super::exclusion::{SmoothDisplacement, possible_contact};
 use super::gap_operator::{GapOperator, GapTables, PreparedGap};
 use super::ground::Ground;
 use super::heights::Heights;
 use super::ladder;
+use super::mesh::Mesh;
 use super::operator::{Hierarchy, Prepared, Reach, Tables};
 use super::prolongation::MeshStart;
 use super::scaled_operator::ScaledOperator;
@@ -36,6 +37,8 @@ pub(super) struct Setup<'a> {
     pub(super) problem: Problem,
     pub(super) params: IterationParams,
     pub(super) border_level: usize,
+    /// Among which elements are dealt.
+    pub(super) ranks: &'a Ranks,
     /// L, a few percent off on rough pressures, and its approximate inverse, for corrections.
     pub(super) quick: &'a Prepared<f32>,
     pub(super) preconditioner: &'a Prepared<f32>,
@@ -46,7 +49,12 @@ pub(super) struct Setup<'a> {
 }
 
 impl<'a> Setup<'a> {
-    pub(super) fn new(ground: &'a Ground<'_>, problem: Problem, params: &AdaptiveParams, splits: Splits) -> Self {
+    pub(super) fn new(
+        (ground, ranks): (&'a Ground<'_>, &'a Ranks),
+        problem: Problem,
+        params: &AdaptiveParams,
+        splits: Splits,
+    ) -> Self {
         let Ground { heights, kernels, .. } = ground;
         let Splits { fresh, certified } = splits;
         Self {
@@ -58,6 +66,7 @@ impl<'a> Setup<'a> {
             problem,
             params: params.solve,
             border_level: params.border_level,
+            ranks,
         }
     }
 
@@ -76,8 +85,8 @@ impl<'a> Setup<'a> {
         ladder::n_levels(self.base(), grid)
     }
 
-    pub(super) fn hierarchy(&self, elements: &Elements, reach: Reach) -> Arc<Hierarchy> {
-        Arc::new(Hierarchy::new(self.base(), elements.clone(), reach))
+    pub(super) fn hierarchy(&self, mesh: &Mesh, reach: Reach) -> Arc<Hierarchy> {
+        Arc::new(Hierarchy::new(self.base(), mesh.clone(), reach))
     }
 
     /// About what pressures like that of `start` have for a mean.
@@ -85,7 +94,7 @@ impl<'a> Setup<'a> {
         let n_cell = start.elements.finest().sides().into_iter().product::<usize>() as f64;
         match self.problem.control {
             Control::MeanPressure(mean) => mean,
-            Control::Penetration(_) => mean_pressure(n_cell, &blocks_of(&start.elements), &start.pressure),
+            Control::Penetration(_) => mean_pressure(n_cell, &start.elements.layout(), &start.pressure),
         }
     }
 
@@ -121,21 +130,16 @@ impl<'a> Setup<'a> {
         extent: [usize; 2],
         gap: f64,
     ) -> Vec<[u32; 2]> {
-        possible_contact(smooth, self.heights, gap - self.problem.offset(), extent)
+        possible_contact(smooth, self.heights, gap - self.problem.offset(), (extent, self.ranks))
     }
 
     /// The mesh with elements divided wherever they are too coarse for the pressure and the gap on them; with `deepen` the smallest
     /// too.
     pub(super) fn refined(&self, fields: &ContactFields<'_>, deepen: bool) -> Elements {
-        let (heights, pressure) = (self.heights.curvature(), maximum(fields.pressure));
+        let (heights, pressure) = (self.heights.curvature(), parallel::maximum(fields.pressure, 0.0));
         // No pressure is nearer than the ring: ∫ p |∂²(1/πr)/∂x²| dA ≤ max p ∫ 2/(π r³) dA.
         let of_displacement = |side: f64| 4.0 * pressure / ((RING - 1) as f64 * side);
         let chosen = fields.too_coarse(|coarser| heights + of_displacement(fields.elements.side(coarser)));
         divide(fields.elements, chosen, deepen, self.certified().reach().stencil)
     }
-}
-
-/// Largest of the values; zero at least.
-pub(super) fn maximum(values: &[f64]) -> f64 {
-    parallel::maximum(values, 0.0)
 }

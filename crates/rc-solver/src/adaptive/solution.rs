@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use rc_core::{DVec2, Grid};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, put_tile};
 
-use super::element_blocks::blocks_of;
 use super::kernels::Kernels;
+use super::mesh::Mesh;
 use super::operator::{Hierarchy, Prepared, Tables, TileCorrections, TileResponse};
 use super::scaled_operator::ScaledOperator;
 use crate::descent::{BlockOperator, read_blocks, write_blocks};
@@ -28,7 +28,7 @@ pub(crate) struct AdaptiveSolution {
     pub(super) grid: Grid,
     /// The grid of the smallest elements.
     pub(super) finest: Grid,
-    pub(super) elements: Elements,
+    pub(super) elements: Mesh,
     pub(super) pressure: Vec<f64>,
     pub(super) area: ContactArea,
     /// How it was found and how good it is. The certificate holds for the whole cell.
@@ -46,11 +46,14 @@ impl AdaptiveSolution {
         self.grid
     }
 
-    /// Elements in contact.
+    /// Elements in contact; over ranks those of this one.
     pub(crate) fn elements(&self) -> impl Iterator<Item = ContactElement> + '_ {
-        self.elements.tiles().flat_map(move |(coarser, tile, start)| {
+        let tiles = self.elements.own_levels().flat_map(|(coarser, places, values)| {
+            places.iter().enumerate().map(move |(tile, place)| (coarser, place, values.start + tile * CELLS))
+        });
+        tiles.flat_map(move |(coarser, place, start)| {
             let side = self.elements.side(coarser);
-            let [column, row] = self.elements.levels()[coarser].places()[tile].map(|i| f64::from(i) * TILE as f64);
+            let [column, row] = place.map(|i| f64::from(i) * TILE as f64);
             let cells = self.pressure[start..start + CELLS].iter().enumerate();
             cells.filter(|&(_, &pressure)| pressure > 0.0).map(move |(cell, &pressure)| {
                 let x = (column + (cell % TILE) as f64 + 0.5) * side;
@@ -63,7 +66,7 @@ impl AdaptiveSolution {
     /// Number of elements in contact.
     #[must_use]
     pub(crate) fn n_elements(&self) -> usize {
-        self.pressure.par_iter().filter(|&&p| p > 0.0).count()
+        self.elements.ranks().count(self.pressure.par_iter().filter(|&&p| p > 0.0).count())
     }
 
     /// Whether every element is in contact, and elements are everywhere.
@@ -154,7 +157,8 @@ impl AdaptiveSolution {
     /// Evaluates the observables, as [`Observables::of`] does for a solution on a uniform grid.
     #[must_use]
     pub(crate) fn observables(&self) -> Observables {
-        let max_pressure = self.pressure.par_iter().copied().reduce(|| 0.0, f64::max);
+        let own = self.pressure.par_iter().copied().reduce(|| 0.0, f64::max);
+        let max_pressure = self.elements.ranks().maximum(own, 0.0);
         Observables::new(&self.info, self.area, rms_pressure(&self.elements, &self.pressure), max_pressure)
     }
 
@@ -185,9 +189,9 @@ impl AdaptiveSolution {
 }
 
 /// Root mean square over the whole cell.
-pub(super) fn rms_pressure(elements: &Elements, pressure: &[f64]) -> f64 {
+pub(super) fn rms_pressure(elements: &Mesh, pressure: &[f64]) -> f64 {
     let squares = pressure.par_chunks(BLOCK_CELLS).map(|p| [p.iter().map(|p| p * p).sum()]).collect();
-    let [squares] = blocks_of(elements).total(squares);
+    let [squares] = elements.layout().total(squares);
     let n_cell: usize = elements.finest().sides().into_iter().product();
     (squares / n_cell as f64).sqrt()
 }

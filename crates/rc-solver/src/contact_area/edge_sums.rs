@@ -76,6 +76,24 @@ impl EdgeSums {
 }
 
 impl EdgeSums {
+    /// The sums as ranks exchange them: counts are exact.
+    pub(crate) fn to_values(self) -> [f64; 10] {
+        let Self { n_contact, edges, along_x, diagonals, known, shift, deviation, squares, turns } = self;
+        let [n_contact, edges, along_x, diagonals] = [n_contact, edges, along_x, diagonals].map(|n| n as f64);
+        let [first, second] = known.map(|n| n as f64);
+        [n_contact, edges, along_x, diagonals, first, second, shift, deviation, squares, turns as f64]
+    }
+
+    /// The reverse of [`EdgeSums::to_values`].
+    pub(crate) fn from_values(values: [f64; 10]) -> Self {
+        let [n_contact, edges, along_x, diagonals, first, second, shift, deviation, squares, turns] = values;
+        let [n_contact, edges, along_x, diagonals] = [n_contact, edges, along_x, diagonals].map(|n| n as usize);
+        let known = [first, second].map(|n| n as usize);
+        Self { n_contact, edges, along_x, diagonals, known, shift, deviation, squares, turns: turns as isize }
+    }
+}
+
+impl EdgeSums {
     /// Shift and deviation summed over all edges: where they are not known, they are the mean of the others.
     pub(crate) fn of_all(&self) -> [f64; 2] {
         let all = |sum: f64, known: usize| if known == 0 { 0.0 } else { sum * (self.edges as f64 / known as f64) };

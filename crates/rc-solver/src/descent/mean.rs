@@ -20,7 +20,7 @@ impl Descent<'_> {
         match sums.scale_to_penetration(self.problem) {
             None => self.settle(sums),
             Some(_) if sums.n_contact >= self.n_cell() => {
-                let minimum = parallel::minimum(&self.pressure);
+                let minimum = self.layout.minimum(&self.pressure);
                 parallel::update(&mut self.pressure, |p| *p -= minimum);
                 self.rescale(1.0)
             }

@@ -73,20 +73,50 @@ impl GapSums {
     /// Adds blocks in their order, weighted by the area of their elements.
     pub(super) fn total(layout: &BlockLayout, sums: Vec<Self>) -> Self {
         let pressed = sums.first().map_or(f64::INFINITY, |block| block.pressed);
-        sums.into_iter().enumerate().fold(Self::empty(pressed), |sum, (i, block)| {
-            let area = layout.area(i);
-            Self {
-                pressure: sum.pressure + area * block.pressure,
-                pressure_gap: sum.pressure_gap + area * block.pressure_gap,
-                pressure_overlap: sum.pressure_overlap + area * block.pressure_overlap,
-                min_gap: smaller(sum.min_gap, block.min_gap),
-                contact_gap: sum.contact_gap + area * block.contact_gap,
-                n_contact: sum.n_contact + area * block.n_contact,
-                max_pressure: sum.max_pressure.max(block.max_pressure),
-                max_pressed_gap: sum.max_pressed_gap.max(block.max_pressed_gap),
-                pressed,
-            }
-        })
+        let total = layout.ranks().fold(Self::empty(pressed).to_values(), |so_far| {
+            let first = Self::from_values(so_far, pressed);
+            sums.into_iter().enumerate().fold(first, |sum, (i, block)| sum.plus(&block, layout.area(i))).to_values()
+        });
+        Self::from_values(total, pressed)
+    }
+
+    /// With a block whose elements have this area.
+    fn plus(self, block: &Self, area: f64) -> Self {
+        Self {
+            pressure: self.pressure + area * block.pressure,
+            pressure_gap: self.pressure_gap + area * block.pressure_gap,
+            pressure_overlap: self.pressure_overlap + area * block.pressure_overlap,
+            min_gap: smaller(self.min_gap, block.min_gap),
+            contact_gap: self.contact_gap + area * block.contact_gap,
+            n_contact: self.n_contact + area * block.n_contact,
+            max_pressure: self.max_pressure.max(block.max_pressure),
+            max_pressed_gap: self.max_pressed_gap.max(block.max_pressed_gap),
+            pressed: self.pressed,
+        }
+    }
+
+    /// The sums as ranks exchange them.
+    fn to_values(self) -> [f64; 8] {
+        let Self { pressure, pressure_gap, pressure_overlap, min_gap, contact_gap, n_contact, .. } = self;
+        let Self { max_pressure, max_pressed_gap, .. } = self;
+        [pressure, pressure_gap, pressure_overlap, min_gap, contact_gap, n_contact, max_pressure, max_pressed_gap]
+    }
+
+    /// The reverse of [`GapSums::to_values`].
+    fn from_values(values: [f64; 8], pressed: f64) -> Self {
+        let [pressure, pressure_gap, pressure_overlap, min_gap, contact_gap, n_contact, max_pressure, max_pressed_gap] =
+            values;
+        Self {
+            pressure,
+            pressure_gap,
+            pressure_overlap,
+            min_gap,
+            contact_gap,
+            n_contact,
+            max_pressure,
+            max_pressed_gap,
+            pressed,
+        }
     }
 
     /// Pressure-weighted mean of the gap.

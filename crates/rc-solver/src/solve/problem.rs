@@ -1,5 +1,6 @@
 //! A contact problem: heights, half-space and load.
 
+use rc_comm::Ranks;
 use rc_core::{HeightSource, Kernel};
 use rc_kernel::Love;
 
@@ -26,19 +27,46 @@ pub struct ContactProblem<'a> {
     pub(super) heights: HeightSource<'a>,
     pub(super) kernel: &'a dyn Kernel,
     pub(super) control: Control,
+    pub(super) ranks: Ranks,
 }
 
 impl<'a> ContactProblem<'a> {
     /// The contact of `heights` (in λ) with the elastic half-space under a load. The kernel is [`Love`].
     #[must_use]
     pub fn new(heights: impl Into<HeightSource<'a>>, control: Control) -> Self {
-        Self { heights: heights.into(), kernel: &Love, control }
+        Self { heights: heights.into(), kernel: &Love, control, ranks: Ranks::alone() }
     }
 
     /// The same problem with another half-space, or another discretisation of it.
     #[must_use]
     pub fn with_kernel(self, kernel: &'a dyn Kernel) -> Self {
         Self { kernel, ..self }
+    }
+
+    /// The same problem over ranks, which all solve it together: each has a part of the mesh, and calls the same functions in the same order, those of
+    /// the solution included. Only the adaptive method does so, with elements of one size on grids that halve. Digits do not depend on the
+    /// number of ranks.
+    ///
+    /// ```
+    /// use rc_comm::run_threads;
+    /// use rc_core::{Field, Grid, Silent};
+    /// use rc_solver::{ContactProblem, Control, Method, SolveParams};
+    ///
+    /// let wave = Field::from_fn(Grid::square(256)?, |at| 1e-3 * (std::f64::consts::TAU * at.x).cos());
+    /// let params = SolveParams::default().by(Method::Adaptive);
+    /// let area = |ranks| {
+    ///     let problem = ContactProblem::new(&wave, Control::MeanPressure(2e-4)).over(ranks);
+    ///     problem.solve(&params, &Silent).map(|solution| solution.area().fraction)
+    /// };
+    /// let alone = area(rc_comm::Ranks::alone())?;
+    /// for of_rank in run_threads(2, area)? {
+    ///     assert_eq!(of_rank?.to_bits(), alone.to_bits());
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn over(self, ranks: Ranks) -> Self {
+        Self { ranks, ..self }
     }
 }
 
@@ -48,6 +76,7 @@ impl std::fmt::Debug for ContactProblem<'_> {
         out.field("heights", &self.heights)
             .field("kernel", &self.kernel.name())
             .field("control", &self.control)
+            .field("ranks", &self.ranks)
             .finish()
     }
 }
