@@ -167,6 +167,15 @@ impl Ranks {
         self.all_gather(&[mine as u64]).concat().into_iter().sum::<u64>() as usize
     }
 
+    /// Smallest of the numbers of all ranks.
+    #[must_use]
+    pub fn minimum(&self, mine: u64) -> u64 {
+        if self.are_alone() {
+            return mine;
+        }
+        self.all_gather(&[mine]).concat().into_iter().fold(mine, u64::min)
+    }
+
     /// Whether it is so on any rank.
     #[must_use]
     pub fn any(&self, mine: bool) -> bool {

@@ -1,4 +1,5 @@
 //! Files of results: fields averaged for them, and the folder read back.
 
+pub mod checkpoint;
 pub(crate) mod coarsen;
 pub mod result;

@@ -1,5 +1,6 @@
 //! The files of a result.
 
+use std::convert::Infallible;
 use std::io;
 use std::path::Path;
 use std::time::Duration;
@@ -77,6 +78,10 @@ impl ResultFiles<'_> {
     /// # Errors
     /// [`CliError::Write`].
     pub fn write(&self, folder: &Path, summary: &Summary) -> Result<(), CliError> {
+        if self.solution.ranks().rank() > 0 {
+            hand_over(self.solution);
+            return Ok(());
+        }
         Ok(self.stage(folder, summary)?)
     }
 
@@ -125,6 +130,15 @@ impl MapHeights<'_> {
     }
 }
 
+/// What the first rank writes in [`add_fields`], as far as this one has it.
+fn hand_over(solution: &Solution<'_>) {
+    let nothing = |_: usize, _: &[f64]| Ok::<_, Infallible>(());
+    let Ok(()) = solution.pressure_rows(nothing);
+    let Ok(()) = solution.gap_rows(nothing);
+    let Ok(()) = solution.each_element(|_| Ok::<_, Infallible>(()));
+    let Ok(()) = solution.pressure_rows(nothing);
+}
+
 /// Pressure, gap, elements and the picture of the contact.
 fn add_fields(staged: &mut Staged, contact: &ContactSetup, solution: &Solution<'_>) -> Result<(), FileError> {
     let (units, grid) = (contact.units, solution.grid());
@@ -140,13 +154,13 @@ fn add_fields(staged: &mut Staged, contact: &ContactSetup, solution: &Solution<'
         solution.gap_rows(|_, rows| file.take(rows))?;
         file.finish()
     })?;
-    if let Some(elements) = solution.elements() {
-        staged.add("elements.csv", |path| write_elements(path, elements, units))?;
+    if solution.elements().is_some() {
+        staged.add("elements.csv", |path| write_elements(path, solution, units))?;
     }
     let mut picture = ContactRows::new(grid);
     let Ok(()) = solution.pressure_rows(|_, rows| {
         picture.take(rows);
-        Ok::<_, std::convert::Infallible>(())
+        Ok::<_, Infallible>(())
     });
     let picture = picture.finish(e_star, side);
     staged.add("contact.png", |path| save_png(&picture, path))
@@ -187,12 +201,12 @@ impl<'a> MapFile<'a> {
 }
 
 /// Centre (m), side (m) and pressure (Pa) of each element, as `elements.csv`; given in λ and E*.
-fn write_elements(path: &Path, elements: impl Iterator<Item = ContactElement>, units: Units) -> Result<(), csv::Error> {
+fn write_elements(path: &Path, solution: &Solution<'_>, units: Units) -> Result<(), csv::Error> {
     let mut out = csv::Writer::from_path(path)?;
     out.write_record(["x", "y", "size", "pressure"])?;
-    for ContactElement { centre: DVec2 { x, y }, side, pressure } in elements {
-        out.serialize((units.metres(x), units.metres(y), units.metres(side), units.pascals(pressure)))?;
-    }
+    solution.each_element(|ContactElement { centre: DVec2 { x, y }, side, pressure }| {
+        out.serialize((units.metres(x), units.metres(y), units.metres(side), units.pascals(pressure)))
+    })?;
     out.flush()?;
     Ok(())
 }

@@ -5,7 +5,9 @@
 //! exclusion proves it.
 
 mod agreed_stop;
+mod bands;
 mod base_grid;
+mod checkpoint;
 mod checks;
 mod contact_area;
 mod deal;
@@ -43,6 +45,9 @@ use rc_core::{Grid, Observer};
 use rc_quadtree::TILE;
 
 use self::agreed_stop::AgreedStop;
+pub(crate) use self::bands::Receiver;
+pub use self::checkpoint::Checkpoint;
+use self::checkpoint::LevelStart;
 use self::checks::{check_memory, first_split};
 use self::contact_area::contact_area;
 pub use self::error::AdaptiveError;
@@ -50,10 +55,12 @@ pub(crate) use self::estimate::Estimate;
 pub(crate) use self::ground::Ground;
 use self::ladder::sides_of;
 use self::level::SolvedLevel;
+use self::memory::base_bytes;
 pub use self::multilevel::MultilevelOperator;
-use self::nested_iteration::{LevelStart, NestedIteration, NestedSolution};
+use self::nested_iteration::{NestedIteration, NestedSolution};
 use self::operator_error::{PressureScale, can_certify, certifying_split};
 pub(crate) use self::params::AdaptiveParams;
+pub(crate) use self::setup::Place;
 use self::setup::Splits;
 pub(crate) use self::solution::AdaptiveSolution;
 use self::split::GapSplit;
@@ -69,8 +76,7 @@ pub(crate) struct AdaptiveProblem<'a> {
     params: AdaptiveParams,
     /// For fresh gaps in descents.
     split: GapSplit,
-    /// Among which the mesh is dealt.
-    ranks: Ranks,
+    place: Place,
 }
 
 /// Why the uniform grid is better than the adaptive method, which was chosen by an estimate.
@@ -102,10 +108,10 @@ impl<'a> AdaptiveProblem<'a> {
         control: Control,
         params: &AdaptiveParams,
     ) -> Result<Self, AdaptiveError> {
-        Self::on(&Arc::new(Ground::new(source, params)?), control, params)
+        Self::on(&Arc::new(Ground::new(source, params)?), control, params, &Place::default())
     }
 
-    /// The problem of one load. `params` are those that `ground` was made with.
+    /// The problem of one load, solved in this place. `params` are those that `ground` was made with.
     ///
     /// # Errors
     /// [`AdaptiveError`].
@@ -113,31 +119,27 @@ impl<'a> AdaptiveProblem<'a> {
         ground: &Arc<Ground<'a>>,
         control: Control,
         params: &AdaptiveParams,
+        place: &Place,
     ) -> Result<Self, AdaptiveError> {
+        if !place.ranks.are_alone() && params.border_level > 0 {
+            return Err(AdaptiveError::OverRanks { needs: "elements of one size, without a border level" });
+        }
+        if !place.ranks.are_alone() && !ground.heights.ladder().is_even() {
+            return Err(AdaptiveError::OverRanks { needs: "a grid that halves down to its base grid" });
+        }
         let split = first_split(params)?;
         let problem = Problem::of_statistics(ground.heights.extremes(), control, &params.solve)?;
         if problem.h_range == 0.0 {
             return Err(AdaptiveError::Flat);
         }
-        let prepared = Self { ground: Arc::clone(ground), problem, params: *params, split, ranks: Ranks::alone() };
+        let prepared = Self { ground: Arc::clone(ground), problem, params: *params, split, place: place.clone() };
         let grid = prepared.grid();
         let Estimate { area_fraction, adaptive_bytes, .. } = prepared.estimate();
-        check_memory(grid, params.memory_limit, adaptive_bytes, Some(100.0 * area_fraction))?;
+        // Ranks share all but the base grid.
+        let base_bytes = base_bytes(sides_of(ground.heights.base().grid())) + ground.sampled_bytes;
+        let bytes = base_bytes + (adaptive_bytes - base_bytes) / place.ranks.size() as f64;
+        check_memory(grid, params.memory_limit, bytes, Some(100.0 * area_fraction))?;
         Ok(prepared)
-    }
-
-    /// The same problem over ranks, all of which solve it together.
-    ///
-    /// # Errors
-    /// [`AdaptiveError::OverRanks`].
-    pub(crate) fn over(self, ranks: &Ranks) -> Result<Self, AdaptiveError> {
-        if !ranks.are_alone() && self.params.border_level > 0 {
-            return Err(AdaptiveError::OverRanks { needs: "elements of one size, without a border level" });
-        }
-        if !ranks.are_alone() && !self.ground.heights.ladder().is_even() {
-            return Err(AdaptiveError::OverRanks { needs: "a grid that halves down to its base grid" });
-        }
-        Ok(Self { ranks: ranks.clone(), ..self })
     }
 
     /// What solving it will cost, from the surface and the load alone.
@@ -155,8 +157,8 @@ impl<'a> AdaptiveProblem<'a> {
 
     /// The same problem without a borrow: a borrowed map of heights is copied.
     pub(crate) fn into_owned(self) -> AdaptiveProblem<'static> {
-        let Self { ground, problem, params, split, ranks } = self;
-        AdaptiveProblem { ground: Arc::new(Ground::into_owned(ground)), problem, params, split, ranks }
+        let Self { ground, problem, params, split, place } = self;
+        AdaptiveProblem { ground: Arc::new(Ground::into_owned(ground)), problem, params, split, place }
     }
 
     /// What the certificate has to meet.
@@ -175,7 +177,7 @@ impl<'a> AdaptiveProblem<'a> {
     /// The certificate comes from a fresh application of L on the returned pressure, with bounds on the error of that operator added; it
     /// covers every cell where a bound does not exclude contact. The result is bitwise the same for any number of threads.
     pub(crate) fn solve(&self, observer: &dyn Observer) -> AdaptiveSolution {
-        let observer = &AgreedStop { observer, ranks: &self.ranks };
+        let observer = &AgreedStop { observer, ranks: &self.place.ranks };
         let solver = self.first_solver();
         let start = solver.prepare(solver.begin(observer), observer);
         self.finish(self.solve_levels(&solver, start, observer))
@@ -186,7 +188,7 @@ impl<'a> AdaptiveProblem<'a> {
     /// # Errors
     /// [`Unsuitable`].
     pub(crate) fn solve_if_suitable(&self, observer: &dyn Observer) -> Result<AdaptiveSolution, Unsuitable> {
-        let observer = &AgreedStop { observer, ranks: &self.ranks };
+        let observer = &AgreedStop { observer, ranks: &self.place.ranks };
         let solver = self.first_solver();
         let base = solver.begin(observer);
         if base.tile_fraction > Estimate::GREATEST_TILE_FRACTION {
@@ -224,7 +226,7 @@ impl<'a> AdaptiveProblem<'a> {
     }
 
     fn solver(&self, splits: Splits) -> NestedIteration<'_> {
-        NestedIteration::new((&self.ground, &self.ranks), self.problem, &self.params, splits)
+        NestedIteration::new((&self.ground, &self.place), self.problem, &self.params, splits)
     }
 
     /// The split, from `split` on, that can certify a pressure like this one.
@@ -258,9 +260,15 @@ impl<'a> AdaptiveProblem<'a> {
     pub(crate) fn displacement_rows<E>(
         &self,
         solution: &AdaptiveSolution,
+        receiver: Receiver,
         take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        solution.displacement_rows(&self.ground.kernels, take)
+        solution.displacement_rows(&self.ground.kernels, receiver, take)
+    }
+
+    /// The ranks that solve it.
+    pub(crate) fn ranks(&self) -> &Ranks {
+        &self.place.ranks
     }
 
     /// The contact stiffness of `solution`: see [`AdaptiveSolution::contact_stiffness`].
@@ -279,11 +287,12 @@ impl<'a> AdaptiveProblem<'a> {
     pub(crate) fn gap_rows<E>(
         &self,
         solution: &AdaptiveSolution,
+        receiver: Receiver,
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
         assert_eq!(solution.finest_grid(), self.ground.heights.ladder().finest(), "not a solution of this problem");
         let offset = solution.gap_offset(self.h_max());
-        self.displacement_rows(solution, |first, displacement| {
+        self.displacement_rows(solution, receiver, |first, displacement| {
             let mut rows = self.ground.heights.row_of_tiles(sides_of(solution.grid()), first / TILE);
             for (h, v) in rows.iter_mut().zip(displacement) {
                 *h = v - *h + offset;

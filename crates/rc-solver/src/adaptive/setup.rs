@@ -7,6 +7,7 @@ use rc_core::Grid;
 use rc_quadtree::{ContactFields, Elements, RING, divide};
 
 use super::AdaptiveParams;
+use super::checkpoint::Checkpoint;
 use super::exclusion::{SmoothDisplacement, possible_contact};
 use super::gap_operator::{GapOperator, GapTables, PreparedGap};
 use super::ground::Ground;
@@ -31,6 +32,15 @@ pub(super) struct Splits {
     pub(super) certified: GapSplit,
 }
 
+/// Where a problem is solved.
+#[derive(Clone, Default)]
+pub(crate) struct Place {
+    /// Among which the mesh is dealt.
+    pub(crate) ranks: Ranks,
+    /// Keeps what each level leaves for the next.
+    pub(crate) checkpoint: Option<Arc<dyn Checkpoint>>,
+}
+
 /// Heights, load and operators of a problem.
 pub(super) struct Setup<'a> {
     pub(super) heights: &'a Heights<'a>,
@@ -39,6 +49,8 @@ pub(super) struct Setup<'a> {
     pub(super) border_level: usize,
     /// Among which elements are dealt.
     pub(super) ranks: &'a Ranks,
+    /// Keeps what each level leaves for the next.
+    pub(super) checkpoint: Option<&'a dyn Checkpoint>,
     /// L, a few percent off on rough pressures, and its approximate inverse, for corrections.
     pub(super) quick: &'a Prepared<f32>,
     pub(super) preconditioner: &'a Prepared<f32>,
@@ -50,7 +62,7 @@ pub(super) struct Setup<'a> {
 
 impl<'a> Setup<'a> {
     pub(super) fn new(
-        (ground, ranks): (&'a Ground<'_>, &'a Ranks),
+        (ground, place): (&'a Ground<'_>, &'a Place),
         problem: Problem,
         params: &AdaptiveParams,
         splits: Splits,
@@ -66,7 +78,8 @@ impl<'a> Setup<'a> {
             problem,
             params: params.solve,
             border_level: params.border_level,
-            ranks,
+            ranks: &place.ranks,
+            checkpoint: place.checkpoint.as_deref(),
         }
     }
 

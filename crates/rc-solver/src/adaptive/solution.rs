@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use rc_core::{DVec2, Grid};
-use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, put_tile};
+use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet};
 
+use super::bands::{Receiver, TilesByRow, bands, hand_out};
 use super::kernels::Kernels;
 use super::mesh::Mesh;
 use super::operator::{Hierarchy, Prepared, Tables, TileCorrections, TileResponse};
@@ -18,7 +19,7 @@ use crate::{ContactArea, ContactElement, Observables, SolveInfo};
 
 /// A contact problem solved on an adaptive mesh.
 ///
-/// Only what contact touches is stored; [`AdaptiveSolution::pressure_rows`] gives the rows of the finest grid one tile high at
+/// Only what contact touches is stored, over ranks by the one that has it; [`AdaptiveSolution::pressure_rows`] gives the rows of the finest grid one tile high at
 /// a time, for files and pictures.
 #[derive(Clone, Debug)]
 pub(crate) struct AdaptiveSolution {
@@ -90,8 +91,12 @@ impl AdaptiveSolution {
     }
 
     /// Tiles of the grid, and the mean pressure on its cells.
-    fn on_grid(&self) -> (TileSet, Cow<'_, [f64]>) {
-        self.elements.on_coarsest(&self.pressure)
+    fn on_grid(&self) -> (Mesh, Cow<'_, [f64]>) {
+        if !self.elements.ranks().are_alone() {
+            return (self.elements.clone(), Cow::Borrowed(&self.pressure));
+        }
+        let (tiles, pressure) = self.elements.on_coarsest(&self.pressure);
+        (Elements::uniform(tiles).into(), pressure)
     }
 
     /// Hands out the pressure on the grid, in the mean over smaller elements, eight rows at a time, in order: the index of the
@@ -99,9 +104,20 @@ impl AdaptiveSolution {
     ///
     /// # Errors
     /// What `take` returns.
-    pub(crate) fn pressure_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
-        let (tiles, pressure) = self.on_grid();
-        tiles.rows(&pressure, take)
+    pub(crate) fn pressure_rows<E>(
+        &self,
+        receiver: Receiver,
+        mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let (mesh, pressure) = self.on_grid();
+        let (tiles, ranks) = (mesh.finest(), mesh.ranks());
+        let own = &tiles.places()[mesh.own_tiles()];
+        let by_row = TilesByRow::new(own);
+        for (band, to) in bands(tiles, ranks, receiver) {
+            let of_band = by_row.of(&band).map(|tile| (own[tile], &pressure[tile * CELLS..][..CELLS]));
+            hand_out((tiles, ranks), (band.clone(), to), of_band, &mut take)?;
+        }
+        Ok(())
     }
 
     /// Hands out the displacement v of the grid's pressure, rows of tiles at a time as [`AdaptiveSolution::pressure_rows`]
@@ -113,37 +129,31 @@ impl AdaptiveSolution {
     pub(super) fn displacement_rows<E>(
         &self,
         kernels: &Kernels,
+        receiver: Receiver,
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        let (own_tiles, pressure) = self.on_grid();
-        let ([nx, ny], [columns, n_rows]) = (own_tiles.sides(), own_tiles.extent());
-        let own = Elements::uniform(own_tiles);
+        let (own, pressure) = self.on_grid();
+        let (own_tiles, ranks) = (own.finest(), own.ranks());
+        let ([nx, ny], [columns, _]) = (own_tiles.sides(), own_tiles.extent());
         let prepared = kernels.response();
         let tables = prepared.tables(self.grid);
-        // As many rows of tiles at once as about a million cells hold.
-        let at_once = (1_000_000 / (TILE * nx)).max(1);
-        for first in (0..n_rows).step_by(at_once) {
-            let band = first..(first + at_once).min(n_rows);
+        for (band, to) in bands(own_tiles, ranks, receiver) {
             let more = band.clone().flat_map(|row| (0..columns).map(move |column| [column as u32, row as u32]));
-            let tiles = TileSet::new([nx, ny], own.finest().places().iter().copied().chain(more).collect());
-            let hierarchy = Arc::new(Hierarchy::new(self.base, Elements::uniform(tiles), prepared.reach()));
-            let mut values = own.moved(hierarchy.elements(), &pressure, 0.0);
-            let tiles = hierarchy.elements().finest();
+            let tiles = TileSet::new([nx, ny], own_tiles.places().iter().copied().chain(more).collect());
+            let mesh = Mesh::new(Elements::uniform(tiles), ranks);
+            let hierarchy = Arc::new(Hierarchy::new(self.base, mesh.clone(), prepared.reach()));
+            let mut values = own.moved(&mesh, &pressure, 0.0);
             // Where the pressure is on part of the cell, the mean over all of it says nothing of its size.
             let mean = if own.cover_cell() { self.info.mean_pressure } else { 0.0 };
             let size = self.info.penetration_full_contact;
-            let mut fresh = ScaledOperator::new(Arc::clone(&hierarchy), &tables, mean, size);
+            let mut fresh = ScaledOperator::new(hierarchy, &tables, mean, size);
             write_blocks(&mut fresh, values.chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
             fresh.apply();
             read_blocks(&fresh, values.chunks_mut(BLOCK_CELLS), |v, cells| v.copy_from_slice(cells));
-            let mut rows = vec![0.0; TILE * nx];
-            for row in band {
-                for column in 0..columns {
-                    let Some(tile) = tiles.find(column as i64, row as i64) else { continue };
-                    put_tile(&mut rows, nx, column, &values[tile * CELLS..][..CELLS]);
-                }
-                take(row * TILE, &rows[..TILE.min(ny - row * TILE) * nx])?;
-            }
+            let places = &mesh.finest().places()[mesh.own_tiles()];
+            let by_row = TilesByRow::new(places);
+            let of_band = by_row.of(&band).map(|tile| (places[tile], &values[tile * CELLS..][..CELLS]));
+            hand_out((own_tiles, ranks), (band.clone(), to), of_band, &mut take)?;
         }
         Ok(())
     }

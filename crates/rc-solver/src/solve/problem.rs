@@ -1,10 +1,13 @@
 //! A contact problem: heights, half-space and load.
 
+use std::sync::Arc;
+
 use rc_comm::Ranks;
 use rc_core::{HeightSource, Kernel};
 use rc_kernel::Love;
 
 use crate::Control;
+use crate::adaptive::{Checkpoint, Place};
 
 /// A contact problem: heights, half-space and load.
 ///
@@ -27,14 +30,14 @@ pub struct ContactProblem<'a> {
     pub(super) heights: HeightSource<'a>,
     pub(super) kernel: &'a dyn Kernel,
     pub(super) control: Control,
-    pub(super) ranks: Ranks,
+    pub(super) place: Place,
 }
 
 impl<'a> ContactProblem<'a> {
     /// The contact of `heights` (in λ) with the elastic half-space under a load. The kernel is [`Love`].
     #[must_use]
     pub fn new(heights: impl Into<HeightSource<'a>>, control: Control) -> Self {
-        Self { heights: heights.into(), kernel: &Love, control, ranks: Ranks::alone() }
+        Self { heights: heights.into(), kernel: &Love, control, place: Place::default() }
     }
 
     /// The same problem with another half-space, or another discretisation of it.
@@ -66,7 +69,15 @@ impl<'a> ContactProblem<'a> {
     /// ```
     #[must_use]
     pub fn over(self, ranks: Ranks) -> Self {
-        Self { ranks, ..self }
+        Self { place: Place { ranks, ..self.place }, ..self }
+    }
+
+    /// The same problem with a place for what each level leaves for the next. A solve of the same problem goes on from the last level that was
+    /// kept there, on any number of ranks, to the same digits. What is kept is of this problem alone: the caller sees to that. Only
+    /// the adaptive method without a border level keeps anything.
+    #[must_use]
+    pub fn kept_in(self, checkpoint: Arc<dyn Checkpoint>) -> Self {
+        Self { place: Place { checkpoint: Some(checkpoint), ..self.place }, ..self }
     }
 }
 
@@ -76,7 +87,7 @@ impl std::fmt::Debug for ContactProblem<'_> {
         out.field("heights", &self.heights)
             .field("kernel", &self.kernel.name())
             .field("control", &self.control)
-            .field("ranks", &self.ranks)
+            .field("ranks", &self.place.ranks)
             .finish()
     }
 }

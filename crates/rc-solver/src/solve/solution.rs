@@ -3,10 +3,12 @@
 use std::convert::Infallible;
 use std::sync::OnceLock;
 
+use rc_comm::Ranks;
 use rc_core::{Field, Grid, Kernel, Operator};
 
+use super::elements;
 use super::response::{KernelOfGrid, Response};
-use crate::adaptive::{AdaptiveProblem, AdaptiveSolution};
+use crate::adaptive::{AdaptiveProblem, AdaptiveSolution, Receiver};
 use crate::solution::{GridSolution, Status};
 use crate::{Certificate, ContactArea, ContactElement, ErrorBound, Method, MethodReason, Observables, SolveInfo};
 
@@ -14,6 +16,9 @@ use crate::{Certificate, ContactArea, ContactElement, ErrorBound, Method, Method
 ///
 /// Pressures are in E*, lengths in λ, areas relative to the nominal area. Fields are on [`Solution::grid`]. Those of the adaptive method
 /// are made when they are first asked for; [`Solution::pressure_rows`] and [`Solution::gap_rows`] never hold them whole.
+///
+/// Over ranks ([`crate::ContactProblem::over`]) each has a part. All of them call the functions of a solution together; each gets the same numbers, rows go to
+/// the first of them, and elements are those of the rank.
 pub struct Solution<'a> {
     how: HowSolved,
     status: Status,
@@ -220,6 +225,15 @@ impl<'a> Solution<'a> {
         })
     }
 
+    /// Hands out the elements of [`Solution::elements`], over ranks those of all of them to the first, in order. Stops at the first error.
+    ///
+    /// # Errors
+    /// What `take` returns.
+    pub fn each_element<E>(&self, take: impl FnMut(ContactElement) -> Result<(), E>) -> Result<(), E> {
+        let elements = self.elements().into_iter().flatten();
+        elements::each_of_ranks(elements, &self.ranks(), take)
+    }
+
     /// Number of elements that carry unknowns: those in contact on an adaptive mesh, all of a uniform grid.
     #[must_use]
     pub fn n_elements(&self) -> usize {
@@ -288,7 +302,9 @@ impl<'a> Solution<'a> {
     pub fn displacement(&self) -> &Field {
         self.displacement.get_or_init(|| match &self.pressures {
             Pressures::Grid { solution, response } => response.displacement(&solution.pressure),
-            Pressures::Tiles { solution, problem } => self.collect(|take| problem.displacement_rows(solution, take)),
+            Pressures::Tiles { solution, problem } => {
+                self.collect(|take| problem.displacement_rows(solution, Receiver::First, take))
+            }
         })
     }
 
@@ -301,7 +317,18 @@ impl<'a> Solution<'a> {
         match (&self.pressures, self.pressure.get()) {
             (Pressures::Grid { solution, .. }, _) => take(0, solution.pressure.values()),
             (_, Some(pressure)) => take(0, pressure.values()),
-            (Pressures::Tiles { solution, .. }, None) => solution.pressure_rows(take),
+            (Pressures::Tiles { solution, .. }, None) => solution.pressure_rows(Receiver::First, take),
+        }
+    }
+
+    /// The same over ranks, with some rows for each rank: those that it takes follow each other, and those of the next rank follow them.
+    ///
+    /// # Errors
+    /// What `take` returns.
+    pub fn own_pressure_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        match &self.pressures {
+            Pressures::Grid { .. } => self.pressure_rows(take),
+            Pressures::Tiles { solution, .. } => solution.pressure_rows(Receiver::Each, take),
         }
     }
 
@@ -314,7 +341,27 @@ impl<'a> Solution<'a> {
         match (&self.pressures, self.gap.get()) {
             (Pressures::Grid { solution, .. }, _) => take(0, solution.gap.values()),
             (_, Some(gap)) => take(0, gap.values()),
-            (Pressures::Tiles { solution, problem }, None) => problem.gap_rows(solution, take),
+            (Pressures::Tiles { solution, problem }, None) => problem.gap_rows(solution, Receiver::First, take),
+        }
+    }
+
+    /// The same over ranks, as [`Solution::own_pressure_rows`] does it.
+    ///
+    /// # Errors
+    /// What `take` returns.
+    pub fn own_gap_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        match &self.pressures {
+            Pressures::Grid { .. } => self.gap_rows(take),
+            Pressures::Tiles { solution, problem } => problem.gap_rows(solution, Receiver::Each, take),
+        }
+    }
+
+    /// The ranks that have solved it, all of which call its functions together.
+    #[must_use]
+    pub fn ranks(&self) -> Ranks {
+        match &self.pressures {
+            Pressures::Grid { .. } => Ranks::alone(),
+            Pressures::Tiles { problem, .. } => problem.ranks().clone(),
         }
     }
 
@@ -328,6 +375,8 @@ impl<'a> Solution<'a> {
             values.extend_from_slice(rows);
             Ok(())
         });
+        // Rows go to the first rank, fields to all.
+        let values = self.ranks().concatenate(values);
         Field::new(self.grid(), values).expect("as many values as the grid has elements")
     }
 }
