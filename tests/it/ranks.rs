@@ -28,9 +28,12 @@ impl Told {
         let text = format!("{:?} {counts:?} {observables:?}", solution.info());
         let mut rows = [Vec::new(), Vec::new()];
         let [pressure, gap] = &mut rows;
-        let put = |all: &mut Vec<u64>, rows: &[f64]| all.extend(rows.iter().map(|value| value.to_bits()));
-        let Ok(()) = solution.own_pressure_rows(|_, rows| Ok::<_, Infallible>(put(pressure, rows)));
-        let Ok(()) = solution.own_gap_rows(|_, rows| Ok::<_, Infallible>(put(gap, rows)));
+        let put = |all: &mut Vec<u64>, rows: &[f64]| {
+            all.extend(rows.iter().map(|value| value.to_bits()));
+            Ok::<_, Infallible>(())
+        };
+        let Ok(()) = solution.own_pressure_rows(|_, rows| put(pressure, rows));
+        let Ok(()) = solution.own_gap_rows(|_, rows| put(gap, rows));
         Self { elements, rows, text }
     }
 
@@ -154,7 +157,7 @@ fn a_run_whose_rank_has_ended_goes_on_from_the_last_level_on_other_ranks() {
         });
         let parts = parts.expect("all ranks end");
         if size == 1 {
-            assert_eq!(parts, [alone.clone()]);
+            assert_eq!(parts, std::slice::from_ref(&alone));
         } else {
             alone.assert_is_of(&parts);
         }

@@ -10,6 +10,7 @@ use super::checked::CheckedScene;
 use super::dry_run;
 use super::solved::Solved;
 use crate::error::CliError;
+use crate::export::{xarray, zarr};
 use crate::run::progress::Progress;
 use crate::run::stop::{Reason, Stop};
 use crate::run::together::together;
@@ -24,6 +25,8 @@ pub(super) struct Job {
     pub(super) run: RunKeys,
     /// Whether the solve is drawn while it runs.
     watch: bool,
+    /// Whether ranks write the fields together, as a Zarr group.
+    zarr: bool,
     /// The moment from which `wall_seconds` counts.
     started: Instant,
 }
@@ -37,7 +40,7 @@ impl Job {
         let Scene { surface, contact, run } = scene;
         let started = Instant::now();
         let scene = CheckedScene::new(surface, contact)?;
-        Ok(Self { scene, run, watch, started })
+        Ok(Self { scene, run, watch, zarr: false, started })
     }
 
     /// Prints what solving it will take.
@@ -48,6 +51,21 @@ impl Job {
         let (kernel, surface) = (self.scene.contact.kernel()?, self.scene.surface.load()?);
         let problem = self.scene.problem(&surface, kernel, self.budget());
         dry_run::run(&problem, threads, &self.run)
+    }
+
+    /// The same with fields that ranks write together, as a Zarr group.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] without a folder, with a coarser grid for the output, and where a folder is in the way.
+    pub(super) fn with_zarr(self) -> Result<Self, CliError> {
+        let Some(folder) = &self.run.out else {
+            return Err(CliError::input("zarr: the group is in the folder of the results; name it with --out"));
+        };
+        if self.scene.contact.keys.output_grid.is_some() {
+            return Err(CliError::input("output_grid: the group of --zarr has the whole grid; omit one of the two"));
+        }
+        zarr::check_place(&folder.join(xarray::GROUP))?;
+        Ok(Self { zarr: true, ..self })
     }
 
     /// Memory that there is.
@@ -94,7 +112,11 @@ impl Job {
         let stopped = progress.stopped();
         let summary = solved.summary(threads);
         if let Some(folder) = &self.run.out {
-            solved.write(folder, &summary)?;
+            if self.zarr {
+                solved.write_shared(folder, &summary)?;
+            } else {
+                solved.write(folder, &summary)?;
+            }
         }
         // The bar goes before anything is printed, the picture of --watch not before the result is there.
         drop(progress);

@@ -9,6 +9,7 @@ mod job;
 mod messages;
 mod over_ranks;
 mod result_files;
+mod shared_fields;
 
 pub use checked::CheckedScene;
 pub use over_ranks::main_over_ranks;

@@ -44,6 +44,10 @@ struct RanksArgs {
     /// digits. It is removed when the result is there
     #[arg(long, value_name = "FILE", help_heading = "Run")]
     checkpoint: Option<PathBuf>,
+    /// Write pressure and gap as the Zarr group DIR/fields.zarr, all ranks at once, in place of pressure.npy, gap.npy, elements.csv and contact.png,
+    /// which one rank writes
+    #[arg(long, help_heading = "Run")]
+    zarr: bool,
 }
 
 /// Runs a command line of `rc-mpi`, the name of the program first, and returns the exit code. All ranks call this together; the first of
@@ -70,14 +74,14 @@ pub fn main_over_ranks(words: impl IntoIterator<Item = OsString>, ranks: &Ranks)
 }
 
 fn run(args: RanksArgs, ranks: &Ranks) -> Result<(), CliError> {
-    let RanksArgs { solve, checkpoint } = args;
+    let RanksArgs { solve, checkpoint, zarr } = args;
     if solve.watch {
         return Err(CliError::input(
             "watch: no rank has the whole contact while it is solved; omit it, or use rc solve",
         ));
     }
     let dry_run = solve.dry_run;
-    let job = together(ranks, prepare(solve, checkpoint.as_deref(), ranks))?;
+    let job = together(ranks, prepare(solve, (checkpoint.as_deref(), zarr), ranks))?;
     let threads = together(ranks, threads::start(job.run.threads))?;
     stop::listen();
     if dry_run {
@@ -94,11 +98,14 @@ fn run(args: RanksArgs, ranks: &Ranks) -> Result<(), CliError> {
 }
 
 /// The checked scene, in its place.
-fn prepare(args: SolveArgs, checkpoint: Option<&Path>, ranks: &Ranks) -> Result<Job, CliError> {
+fn prepare(args: SolveArgs, (checkpoint, zarr): (Option<&Path>, bool), ranks: &Ranks) -> Result<Job, CliError> {
     let dry_run = args.dry_run;
     let scene = scene_of(args)?;
     let text = scene_text(&scene);
     let mut job = Job::new(scene, false)?;
+    if zarr {
+        job = job.with_zarr()?;
+    }
     if dry_run {
         return Ok(job);
     }

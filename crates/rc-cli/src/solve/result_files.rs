@@ -13,7 +13,9 @@ use rc_solver::{ContactElement, Solution};
 use rc_sweep::files::{FileError, Staged};
 use rc_sweep::{SolveContext, Summary};
 
+use super::shared_fields;
 use crate::error::CliError;
+use crate::export::xarray;
 use crate::files::coarsen::BlockMean;
 use crate::scene::as_read::AsRead;
 use crate::scene::file;
@@ -85,6 +87,21 @@ impl ResultFiles<'_> {
         Ok(self.stage(folder, summary)?)
     }
 
+    /// Writes the result folder with pressure and gap as a Zarr group, which ranks write in parallel, in place of the files that one rank
+    /// writes: pressure.npy, gap.npy, elements.csv and contact.png.
+    ///
+    /// # Errors
+    /// [`CliError::Write`], [`CliError::Input`].
+    pub(super) fn write_shared(&self, folder: &Path, summary: &Summary) -> Result<(), CliError> {
+        let units = self.contact.units;
+        if self.solution.ranks().rank() > 0 {
+            return shared_fields::write(None, self.solution, units);
+        }
+        let mut staged = Staged::new(folder)?;
+        staged.add(xarray::GROUP, |path| shared_fields::write(Some(path), self.solution, units))?;
+        Ok(self.finish(staged, summary)?)
+    }
+
     /// The scene as it was solved, as the file `scene.toml`.
     #[must_use]
     pub fn scene(&self) -> String {
@@ -94,6 +111,11 @@ impl ResultFiles<'_> {
     fn stage(&self, folder: &Path, summary: &Summary) -> Result<(), FileError> {
         let mut staged = Staged::new(folder)?;
         add_fields(&mut staged, self.contact, self.solution)?;
+        self.finish(staged, summary)
+    }
+
+    /// Adds what is small, and gives all files their names.
+    fn finish(&self, mut staged: Staged, summary: &Summary) -> Result<(), FileError> {
         if let Some(map) = self.map {
             staged.add(HEIGHTS_FILE, |path| map.write(path))?;
         }

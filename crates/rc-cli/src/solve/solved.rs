@@ -174,6 +174,14 @@ impl<'a> Solved<'a> {
         self.files().write(folder, summary)
     }
 
+    /// The same with pressure and gap as a Zarr group that all ranks write.
+    ///
+    /// # Errors
+    /// [`CliError::Write`].
+    pub(crate) fn write_shared(&self, folder: &Path, summary: &Summary) -> Result<(), CliError> {
+        self.files().write_shared(folder, summary)
+    }
+
     fn files(&self) -> ResultFiles<'_> {
         let ProblemSetup { surface, contact, .. } = self.problem;
         let map = surface.map().map(|(heights, as_read)| MapHeights::InCell { heights, as_read });

@@ -5,6 +5,7 @@ mod bad_input;
 mod export;
 mod guide;
 mod measured;
+mod over_ranks;
 mod rectangles;
 mod report;
 mod robustness;

@@ -16,10 +16,15 @@ const FAR_BELOW: f64 = 10.0;
 pub(super) fn element_heights(heights: &Heights<'_>, mesh: &Mesh, known: Option<(&Mesh, &[f64])>) -> Vec<f64> {
     let HeightStatistics { greatest, least, .. } = heights.extremes();
     let none = if mesh.finest().is_whole() { least } else { least - FAR_BELOW * (greatest - least) };
-    let mut result = vec![none; mesh.n_own()];
+    let over_ranks = known.filter(|(known, _)| !known.ranks().are_alone());
+    // Known heights of other ranks come first; no height is NaN.
+    let mut result = match over_ranks {
+        Some((known, values)) => known.moved(mesh, values, f64::NAN),
+        None => vec![none; mesh.n_own()],
+    };
     for (coarser, places, values) in mesh.own_levels() {
         let tiles = &mesh.levels()[coarser];
-        let known = known.filter(|(known, _)| known.ranks().are_alone());
+        let known = known.filter(|_| over_ranks.is_none());
         let known = known.map(|(known, values)| (&known.levels()[coarser], &values[known.cells(coarser)]));
         let (cells, _) = result[values].as_chunks_mut::<CELLS>();
         cells.par_iter_mut().zip(places).with_min_len(16).for_each(|(cells, &place)| {
@@ -29,6 +34,9 @@ pub(super) fn element_heights(heights: &Heights<'_>, mesh: &Mesh, known: Option<
             });
             if let Some(known) = known {
                 cells.copy_from_slice(known);
+                return;
+            }
+            if over_ranks.is_some() && !cells[0].is_nan() {
                 return;
             }
             heights.tile(tiles.sides(), place.map(|i| i as usize), cells);

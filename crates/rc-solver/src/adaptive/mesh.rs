@@ -86,9 +86,12 @@ impl Mesh {
     /// their values in its vectors.
     pub(super) fn own_levels(&self) -> impl Iterator<Item = (usize, &[[u32; 2]], Range<usize>)> {
         let levels = self.levels().iter().enumerate();
-        levels.map(|(coarser, tiles)| match self.ranks.are_alone() {
-            true => (coarser, tiles.places(), self.cells(coarser)),
-            false => (coarser, &tiles.places()[self.own_tiles()], 0..self.n_own()),
+        levels.map(|(coarser, tiles)| {
+            if self.ranks.are_alone() {
+                (coarser, tiles.places(), self.cells(coarser))
+            } else {
+                (coarser, &tiles.places()[self.own_tiles()], 0..self.n_own())
+            }
         })
     }
 

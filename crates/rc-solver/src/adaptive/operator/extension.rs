@@ -116,7 +116,7 @@ impl TileExtension {
             part.exchange(values);
         }
         let means = Means::new(&hierarchy, 0, self.levels.first().map(|finer| &*finer.values), of_element);
-        set_base(&hierarchy, &mut self.base, &|places, cells| means.set(places, cells));
+        set_base(&hierarchy, &mut self.base, |places, cells| means.set(places, cells));
         let side = self.hierarchy.base().nx();
         let rows = self.pyramid.values_mut().chunks_mut(TILE * side).zip(self.base.chunks(TILE * side));
         parallel::for_each(rows, |(rows, cells)| tiles_to_rows(cells, rows, side));
@@ -230,7 +230,7 @@ impl TileExtension {
         }
         let finer = self.levels.first().map_or(&*finest, |finer| &finer.detail);
         let finer = TileValues::new(finer, tiles[1].tiles());
-        set_base(&hierarchy, &mut self.base, &|places, cells| collect(finer, places, cells));
+        set_base(&hierarchy, &mut self.base, |places, cells| collect(finer, places, cells));
         let side = hierarchy.base().nx();
         let rows = self.pyramid.values_mut().chunks_mut(TILE * side).zip(self.base.chunks(TILE * side));
         parallel::for_each(rows, |(rows, cells)| {

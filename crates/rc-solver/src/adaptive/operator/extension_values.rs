@@ -25,7 +25,7 @@ pub(super) fn own_blocks<'a>(
 }
 
 /// Sets the values of the base grid, each rank those of its tiles.
-pub(super) fn set_base(hierarchy: &Hierarchy, base: &mut [f32], set: &(dyn Fn(&[[u32; 2]], &mut [f32]) + Sync)) {
+pub(super) fn set_base(hierarchy: &Hierarchy, base: &mut [f32], set: impl Fn(&[[u32; 2]], &mut [f32]) + Sync) {
     let places = hierarchy.levels[0].tiles().places();
     let Some(part) = &hierarchy.base_part else {
         parallel::for_each(blocks(places, base), |(places, cells)| set(places, cells));
