@@ -102,6 +102,9 @@ fn prepare(args: SolveArgs, (checkpoint, zarr): (Option<&Path>, bool), ranks: &R
     let dry_run = args.dry_run;
     let scene = scene_of(args)?;
     let text = scene_text(&scene);
+    if checkpoint.is_some() && scene.contact.area_error.is_some() {
+        return Err(CliError::input("checkpoint: area_error solves on several grids; give grid instead"));
+    }
     let mut job = Job::new(scene, false)?;
     if zarr {
         job = job.with_zarr()?;

@@ -1,7 +1,7 @@
 //! `rc export`: what other programs read.
 
 use rc_core::Field;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::support::{Place, array, assert_refused, assert_solved, bumps, f8, npy, small, text};
 

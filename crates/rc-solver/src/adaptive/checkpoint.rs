@@ -2,7 +2,7 @@
 
 use rc_comm::{Packed, Ranks};
 use rc_core::Grid;
-use rc_quadtree::{CELLS, Elements, TileSet};
+use rc_quadtree::{CELLS, Elements, TILE, TileSet};
 
 use super::mesh::Mesh;
 use super::prolongation::MeshStart;
@@ -34,6 +34,10 @@ pub(super) struct LevelStart {
 /// Numbers about a start before those of its levels, and numbers of a level.
 const N_NUMBERS: usize = 10;
 const N_OF_LEVEL: usize = 5;
+
+/// More than any solve has: other numbers are not of a start.
+const MOST_LEVELS: f64 = 64.0;
+const MOST_TILES: f64 = 1e12;
 
 /// Tiles in a piece.
 const AT_ONCE: usize = 1 << 14;
@@ -76,13 +80,14 @@ fn read(checkpoint: &dyn Checkpoint, grid: Grid, ranks: &Ranks) -> Option<(Level
     else {
         return None;
     };
+    let is_possible = (0.0..=MOST_LEVELS).contains(&n_levels) && (0.0..=MOST_TILES).contains(&n_tiles);
     let mut offset = (N_NUMBERS * f64::BYTES) as u64;
     let mut next = |len: usize| {
         let bytes = checkpoint.read(offset, len);
         offset += len as u64;
         bytes
     };
-    let levels = f64::unpack_all(&next(n_levels as usize * N_OF_LEVEL * f64::BYTES)?);
+    let levels = f64::unpack_all(&next(is_possible.then_some(n_levels as usize)? * N_OF_LEVEL * f64::BYTES)?);
     let level = |&[nx, ny, iterations, operators, preconditioners]: &[f64; N_OF_LEVEL]| {
         Some(LevelInfo {
             grid: grid.with_elements(nx as usize, ny as usize).ok()?,
@@ -94,7 +99,12 @@ fn read(checkpoint: &dyn Checkpoint, grid: Grid, ranks: &Ranks) -> Option<(Level
     let levels = levels.as_chunks::<N_OF_LEVEL>().0.iter().map(level).collect::<Option<Vec<_>>>()?;
     let places = u32::unpack_all(&next(n_tiles as usize * 2 * u32::BYTES)?);
     let grid = grid.with_elements(nx as usize, ny as usize).ok()?;
-    let tiles = TileSet::new([grid.nx(), grid.ny()], places.as_chunks::<2>().0.to_vec());
+    let extent = [grid.nx(), grid.ny()].map(|side| side.div_ceil(TILE));
+    let places = places.as_chunks::<2>().0;
+    if places.iter().any(|place| (0..2).any(|axis| place[axis] as usize >= extent[axis])) {
+        return None;
+    }
+    let tiles = TileSet::new([grid.nx(), grid.ny()], places.to_vec());
     let elements = Mesh::new(Elements::uniform(tiles), ranks);
     let own = elements.own();
     offset += (own.start * f64::BYTES) as u64;

@@ -166,7 +166,17 @@ impl Mesh {
         Part::new(&self.ranks, finest, &self.deal(), around)
     }
 
-    /// The tiles that this rank has of the finest level, as a set.
+    /// [`TileSet::on_coarser`] of tiles that all ranks have. Each looks at some of them; all ranks call this together.
+    pub(super) fn on_coarser(&self, tiles: &TileSet, sides: [usize; 2], halo: usize) -> TileSet {
+        if self.ranks.are_alone() {
+            return tiles.on_coarser(sides, halo);
+        }
+        let own = Deal::equal(tiles.len(), &self.ranks).range(self.ranks.rank());
+        let own = TileSet::new(tiles.sides(), tiles.places()[own].to_vec());
+        Self::tiles_of_places(sides, own.on_coarser(sides, halo).places().to_vec(), &self.ranks)
+    }
+
+    /// The tiles of all ranks, from those of each. All ranks call this together.
     pub(super) fn tiles_of_places(sides: [usize; 2], mine: Vec<[u32; 2]>, ranks: &Ranks) -> TileSet {
         let flat = ranks.concatenate(mine.into_iter().flatten().collect());
         TileSet::new(sides, flat.as_chunks::<2>().0.to_vec())

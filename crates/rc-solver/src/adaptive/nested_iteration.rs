@@ -66,6 +66,7 @@ impl<'a> NestedIteration<'a> {
     pub(super) fn begin(&self, observer: &dyn Observer) -> BaseStart {
         if let Some(checkpoint) = self.setup.checkpoint
             && let Some((start, tile_fraction)) = kept(checkpoint, self.ladder().finest(), self.setup.ranks)
+            && self.ladder().grid(self.setup.n_levels(start.grid)) == start.grid
         {
             return BaseStart { start, tile_fraction };
         }

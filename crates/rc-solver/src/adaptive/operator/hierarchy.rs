@@ -48,7 +48,7 @@ impl Hierarchy {
         let finest = base.with_elements(nx, ny).expect("a level of a checked grid");
         for level in (1..ladder::n_levels(base, finest)).rev() {
             let sides = sides_of(ladder::doubled(base, level));
-            let parents = levels[levels.len() - 1].on_coarser(sides, reach.filter);
+            let parents = mesh.on_coarser(&levels[levels.len() - 1], sides, reach.filter);
             levels.push(match elements.levels().get(levels.len()) {
                 Some(leaves) => parents.with(&leaves.around(reach.filter)),
                 None => parents,
@@ -134,7 +134,7 @@ fn dealt(levels: Vec<TileSet>, mesh: &Mesh, reach: Reach) -> (Vec<Part>, Option<
     let near = reach.filter.max(reach.stencil).div_ceil(TILE);
     let under = (2 * reach.filter).div_ceil(TILE);
     // The tiles of the base grid that have a density.
-    let active = levels[1].parents(under * TILE / 2);
+    let active = mesh.on_coarser(&levels[1], levels[0].sides(), under * TILE / 2);
     let mut deals = vec![mesh.deal()];
     for finer in (1..levels.len()).rev() {
         let coarser = if finer == 1 { &active } else { &levels[finer - 1] };
