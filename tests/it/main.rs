@@ -14,6 +14,7 @@ mod interchange;
 mod leakage;
 mod messages;
 mod pits;
+mod ranks;
 mod reference;
 mod rough;
 mod stress_distribution;

@@ -25,6 +25,7 @@ pub(crate) const STEPS: &[Step] = &[
     Step { environment: &[], words: &["xtask", "swap"] },
     Step { environment: &[], words: &["xtask", "python"] },
     Step { environment: &[], words: &["xtask", "slurm"] },
+    Step { environment: &[], words: &["xtask", "mpi"] },
 ];
 
 pub(crate) fn run(_args: &Args) -> Result<()> {

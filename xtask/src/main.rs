@@ -8,6 +8,7 @@ mod docs;
 mod figures;
 mod gfmd;
 mod guide_figures;
+mod mpi;
 mod process;
 mod python;
 mod slurm;
@@ -63,6 +64,7 @@ enum Command {
     /// Measures the error of area, rms pressure and mean gap on usual meshes, and how often their error bars hold it
     Accuracy(figures::Args),
     Bench(bench::Args),
+    Mpi(mpi::Args),
     Slurm(slurm::Args),
     Stress(stress::Args),
     Swap(swap::Args),
@@ -94,6 +96,7 @@ fn main() -> anyhow::Result<()> {
         Command::KernelError(args) => figures::run::<KernelErrors>(&args),
         Command::Accuracy(args) => figures::run::<Accuracy>(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Mpi(args) => mpi::run(&args),
         Command::Slurm(args) => slurm::run(&args),
         Command::Stress(args) => stress::run(&args),
         Command::Swap(args) => swap::run(&args),

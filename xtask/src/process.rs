@@ -1,7 +1,7 @@
 //! Steps that run cargo or another program, announced before they run.
 
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
@@ -98,6 +98,13 @@ impl Program {
         eprintln!("  done in {:.0} s", start.elapsed().as_secs_f64());
         Ok(())
     }
+}
+
+/// Where a program is, among the folders of programs and those of the system.
+pub(crate) fn path_of(program: &str) -> Option<PathBuf> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let folders = std::env::split_paths(&path).chain(["/usr/sbin".into(), "/sbin".into()]);
+    folders.map(|folder| folder.join(program)).find(|path| path.is_file())
 }
 
 #[cfg(test)]

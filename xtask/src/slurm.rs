@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail, ensure};
 use rc_figures::repository;
 
-use crate::process::Step;
+use crate::process::{Step, path_of};
 
 /// Runs a job array on a Slurm of its own, kills a task, requeues it, merges, and compares with one process.
 ///
@@ -205,13 +205,6 @@ fn configuration(folder: &Path, host: &str, user: &str, [controller, node]: [u16
 /// A port that is free now.
 fn free_port() -> Result<u16> {
     Ok(std::net::TcpListener::bind(("127.0.0.1", 0))?.local_addr()?.port())
-}
-
-/// The path of a program; daemons are not on every user's path.
-fn path_of(program: &str) -> Option<PathBuf> {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let folders = std::env::split_paths(&path).chain(["/usr/sbin".into(), "/sbin".into()]);
-    folders.map(|folder| folder.join(program)).find(|path| path.is_file())
 }
 
 fn text_of(command: &mut Command) -> Result<String> {

@@ -38,6 +38,16 @@ impl CliError {
         }
     }
 
+    /// The error of another rank, from its exit code.
+    pub(crate) fn of_code(code: u8, message: String) -> Self {
+        match code {
+            3 => Self::NotConverged(message),
+            4 => Self::Write(message),
+            INTERRUPTED => Self::Interrupted(message),
+            _ => Self::Input(message),
+        }
+    }
+
     /// Bad input. Line breaks, which messages of parsers may bring along, become "; ".
     pub(crate) fn input(message: impl std::fmt::Display) -> Self {
         let message = message.to_string();

@@ -41,7 +41,7 @@ pub mod sweep;
 mod terminal;
 mod text;
 
-pub use files::result;
+pub use files::{checkpoint, result};
 
 use args::{Cli, Command};
 use error::CliError;

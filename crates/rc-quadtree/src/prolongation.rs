@@ -3,6 +3,8 @@
 //! Interpolation is bilinear between centres. The function should be nearly linear across the edges of contacts; the edges are then
 //! kept to a fraction of an element.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::elements::Elements;
@@ -24,11 +26,7 @@ use near_contact::{MARGIN, PART_KEPT_OF_SINGLE_CELL, SIDE, is_near_contact, is_s
 #[must_use]
 pub fn prolong(tiles: &TileSet, function: &[f64], elsewhere: f64, sides: [usize; 2]) -> (TileSet, Vec<f64>) {
     let children: Vec<([u32; 2], Box<[f64; CELLS]>)> = if sides == tiles.sides().map(|side| 2 * side) {
-        let of_tile = |&place: &[u32; 2]| {
-            let children = quarters(place).into_iter().zip(quarters_in_contact(tiles, function, elsewhere, place));
-            children.filter_map(|(place, values)| values.map(|values| (place, values))).collect()
-        };
-        tiles.places().par_iter().map(of_tile).collect::<Vec<Vec<_>>>().into_iter().flatten().collect()
+        prolong_some(tiles, 0..tiles.len(), function, elsewhere)
     } else {
         uneven::prolong(tiles, function, elsewhere, sides)
     };
@@ -39,6 +37,24 @@ pub fn prolong(tiles: &TileSet, function: &[f64], elsewhere: f64, sides: [usize;
         result[at * CELLS..][..CELLS].copy_from_slice(values.as_slice());
     }
     (fine, result)
+}
+
+/// The tiles that [`prolong`] gives under some of `tiles`, with their values, for a level of twice as many cells along both sides.
+///
+/// # Panics
+/// When there are fewer values than cells, or fewer tiles.
+#[must_use]
+pub fn prolong_some(
+    tiles: &TileSet,
+    which: Range<usize>,
+    function: &[f64],
+    elsewhere: f64,
+) -> Vec<([u32; 2], Box<[f64; CELLS]>)> {
+    let of_tile = |&place: &[u32; 2]| {
+        let children = quarters(place).into_iter().zip(quarters_in_contact(tiles, function, elsewhere, place));
+        children.filter_map(|(place, values)| values.map(|values| (place, values))).collect()
+    };
+    tiles.places()[which].par_iter().map(of_tile).collect::<Vec<Vec<_>>>().into_iter().flatten().collect()
 }
 
 /// Fills `values` on the smallest elements of `refined`, which are quarters of the smallest of `elements`, with the positive part of

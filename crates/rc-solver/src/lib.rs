@@ -55,7 +55,7 @@ mod tolerance;
 mod uniform;
 
 use adaptive::Estimate;
-pub use adaptive::{AdaptiveError, MultilevelOperator};
+pub use adaptive::{AdaptiveError, Checkpoint, MultilevelOperator};
 pub use certificate::Certificate;
 pub use contact_area::{ContactArea, PlasticContact};
 pub use contact_element::ContactElement;

@@ -123,7 +123,7 @@ fn first_direction(
         parallel::map(active.chunks(layout.len()), |active| [active.iter().filter(|&&active| active).count() as f64]);
     let [n_contact] = layout.total(counts);
     if n_contact <= HEAVY_CONTACT * n {
-        return ConjugateDirections::along(active, against(pressure));
+        return ConjugateDirections::along(active, against(pressure, &layout));
     }
     let mut directions = ConjugateDirections::along(active, residual.to_vec());
     operator.set_mean(1.0);
@@ -132,8 +132,8 @@ fn first_direction(
 }
 
 /// Minus the pressure, in units of about its maximum: no multiple of it underflows.
-fn against(pressure: &[f64]) -> Vec<f32> {
-    let size = power_of_two_near(parallel::maximum(pressure, 0.0));
+fn against(pressure: &[f64], layout: &BlockLayout) -> Vec<f32> {
+    let size = power_of_two_near(layout.maximum(pressure, 0.0));
     pressure.iter().map(|&p| -((p / size) as f32)).collect()
 }
 

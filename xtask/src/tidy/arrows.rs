@@ -8,6 +8,7 @@ use super::complaint::Complaint;
 /// What each crate may use; crates that are not listed here may use nothing until ARCHITECTURE.md gives them an arrow.
 const ARROWS: &[(&str, &[&str])] = &[
     ("rc-core", &[]),
+    ("rc-comm", &[]),
     ("rc-fft", &["rc-core"]),
     ("rc-fractal", &["rc-core", "rc-fft"]),
     ("rc-heights", &["rc-core"]),
@@ -15,7 +16,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("rc-leakage", &["rc-core"]),
     ("rc-quadtree", &["rc-core"]),
     ("rc-theory", &["rc-core"]),
-    ("rc-solver", &["rc-core", "rc-fft", "rc-kernel", "rc-quadtree"]),
+    ("rc-solver", &["rc-comm", "rc-core", "rc-fft", "rc-kernel", "rc-quadtree"]),
     ("rc-plot", &["rc-core"]),
     ("rc-sweep", &["rc-core", "rc-solver"]),
 ];

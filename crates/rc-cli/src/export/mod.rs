@@ -5,8 +5,8 @@ pub(crate) mod args;
 mod fields;
 mod paraview;
 mod vtk;
-mod xarray;
-mod zarr;
+pub(crate) mod xarray;
+pub(crate) mod zarr;
 
 use std::path::Path;
 

@@ -6,7 +6,7 @@ use super::fields::Fields;
 use super::zarr::{Array, Group, Values};
 
 /// Name of the group in the folder of the result.
-pub(super) const GROUP: &str = "fields.zarr";
+pub(crate) const GROUP: &str = "fields.zarr";
 
 /// Dimensions of a field: rows, columns.
 const PLANE: &[&str] = &["y", "x"];

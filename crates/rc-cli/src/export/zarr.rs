@@ -52,7 +52,7 @@ pub(super) enum Values<'a> {
 ///
 /// # Errors
 /// [`CliError::Input`].
-pub(super) fn check_place(path: &Path) -> Result<(), CliError> {
+pub(crate) fn check_place(path: &Path) -> Result<(), CliError> {
     if path.is_dir() && !path.join(GROUP_FILE).is_file() {
         return Err(CliError::in_file(
             path,
@@ -67,6 +67,20 @@ pub(super) fn check_place(path: &Path) -> Result<(), CliError> {
 /// # Errors
 /// Those of the file system.
 pub(super) fn write(path: &Path, group: &Group<'_>) -> io::Result<()> {
+    let arrays = group.arrays.iter().map(|array| (array.name, array.description(), array.attributes()));
+    write_metadata(path, &group.attributes, arrays)?;
+    group.arrays.iter().try_for_each(|array| array.write_chunks(&path.join(array.name)))
+}
+
+/// Makes the folder of a group and of its arrays, each given by its name, its description and its attributes. Chunks are to follow.
+///
+/// # Errors
+/// Those of the file system.
+pub(crate) fn write_metadata<'a>(
+    path: &Path,
+    attributes: &Value,
+    arrays: impl Iterator<Item = (&'a str, Value, Value)>,
+) -> io::Result<()> {
     fs::create_dir(path)?;
     // All metadata once more in one file: readers need not look for arrays, which they cannot over a network.
     let mut all = serde_json::Map::new();
@@ -76,15 +90,44 @@ pub(super) fn write(path: &Path, group: &Group<'_>) -> io::Result<()> {
         Ok::<_, io::Error>(())
     };
     describe(GROUP_FILE.to_owned(), json!({ "zarr_format": 2 }))?;
-    describe(".zattrs".to_owned(), group.attributes.clone())?;
-    for array in &group.arrays {
-        fs::create_dir(path.join(array.name))?;
-        describe(format!("{}/.zarray", array.name), array.description())?;
-        describe(format!("{}/.zattrs", array.name), array.attributes())?;
-        array.write_chunks(&path.join(array.name))?;
+    describe(".zattrs".to_owned(), attributes.clone())?;
+    for (name, description, attributes) in arrays {
+        fs::create_dir(path.join(name))?;
+        describe(format!("{name}/.zarray"), description)?;
+        describe(format!("{name}/.zattrs"), attributes)?;
     }
     let consolidated = json!({ "zarr_consolidated_format": 1, "metadata": all });
     write_synced(&path.join(".zmetadata"), format!("{consolidated:#}\n").as_bytes())
+}
+
+/// The description of an array of this type, shape and shape of chunks.
+pub(crate) fn description(kind: &str, shape: &[usize], chunks: &[usize]) -> Value {
+    json!({
+        "zarr_format": 2,
+        "shape": shape,
+        "chunks": chunks,
+        "dtype": kind,
+        "compressor": { "id": "zlib", "level": LEVEL },
+        // No value stands for a missing one: xarray would take a zero here for it, and zero pressure for nothing.
+        "fill_value": null,
+        "order": "C",
+        "filters": null,
+    })
+}
+
+/// The attributes of an array with these dimensions.
+pub(crate) fn attributes(dimensions: &[&str], units: &str, meaning: &str) -> Value {
+    json!({ "_ARRAY_DIMENSIONS": dimensions, "units": units, "long_name": meaning })
+}
+
+/// Writes the bytes of a chunk.
+///
+/// # Errors
+/// Those of the file system.
+pub(crate) fn write_chunk(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut chunk = ZlibEncoder::new(Vec::new(), Compression::new(LEVEL));
+    chunk.write_all(bytes)?;
+    write_synced(path, &chunk.finish()?)
 }
 
 impl Array<'_> {
@@ -93,21 +136,11 @@ impl Array<'_> {
             Values::Float64(_) => "<f8",
             Values::UInt8(_) => "|u1",
         };
-        json!({
-            "zarr_format": 2,
-            "shape": self.shape,
-            "chunks": self.chunk_shape(),
-            "dtype": kind,
-            "compressor": { "id": "zlib", "level": LEVEL },
-            // No value stands for a missing one: xarray would take a zero here for it, and zero pressure for nothing.
-            "fill_value": null,
-            "order": "C",
-            "filters": null,
-        })
+        description(kind, &self.shape, &self.chunk_shape())
     }
 
     fn attributes(&self) -> Value {
-        json!({ "_ARRAY_DIMENSIONS": self.dimensions, "units": self.units, "long_name": self.meaning })
+        attributes(self.dimensions, self.units, self.meaning)
     }
 
     fn chunk_shape(&self) -> Vec<usize> {
@@ -122,9 +155,7 @@ impl Array<'_> {
         (0..down * across).into_par_iter().try_for_each(|i| {
             let (row, column) = (i / across, i % across);
             let name = if self.shape.len() == 1 { column.to_string() } else { format!("{row}.{column}") };
-            let mut chunk = ZlibEncoder::new(Vec::new(), Compression::new(LEVEL));
-            chunk.write_all(&self.chunk([row * height, column * width], [height, width]))?;
-            write_synced(&folder.join(name), &chunk.finish()?)
+            write_chunk(&folder.join(name), &self.chunk([row * height, column * width], [height, width]))
         })
     }
 

@@ -3,4 +3,5 @@
 pub(crate) mod progress;
 pub(crate) mod stop;
 pub mod threads;
+pub(crate) mod together;
 pub(crate) mod watch;

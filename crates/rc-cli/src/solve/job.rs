@@ -2,14 +2,18 @@
 
 use std::time::Instant;
 
+use rc_comm::Ranks;
 use rc_sweep::memory::Budget;
 use rc_sweep::{Summary, files};
 
 use super::checked::CheckedScene;
+use super::dry_run;
 use super::solved::Solved;
 use crate::error::CliError;
+use crate::export::{xarray, zarr};
 use crate::run::progress::Progress;
 use crate::run::stop::{Reason, Stop};
+use crate::run::together::together;
 use crate::run::watch::Watch;
 use crate::scene::keys::{RunKeys, Scene};
 use crate::{terminal, text};
@@ -21,6 +25,8 @@ pub(super) struct Job {
     pub(super) run: RunKeys,
     /// Whether the solve is drawn while it runs.
     watch: bool,
+    /// Whether ranks write the fields together, as a Zarr group.
+    zarr: bool,
     /// The moment from which `wall_seconds` counts.
     started: Instant,
 }
@@ -34,11 +40,36 @@ impl Job {
         let Scene { surface, contact, run } = scene;
         let started = Instant::now();
         let scene = CheckedScene::new(surface, contact)?;
-        Ok(Self { scene, run, watch, started })
+        Ok(Self { scene, run, watch, zarr: false, started })
+    }
+
+    /// Prints what solving it will take.
+    ///
+    /// # Errors
+    /// [`CliError::Input`].
+    pub(super) fn dry_run(&self, threads: usize) -> Result<(), CliError> {
+        let (kernel, surface) = (self.scene.contact.kernel()?, self.scene.surface.load()?);
+        let problem = self.scene.problem(&surface, kernel, self.budget());
+        dry_run::run(&problem, threads, &self.run)
+    }
+
+    /// The same with fields that ranks write together, as a Zarr group.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] without a folder, with a coarser grid for the output, and where a folder is in the way.
+    pub(super) fn with_zarr(self) -> Result<Self, CliError> {
+        let Some(folder) = &self.run.out else {
+            return Err(CliError::input("zarr: the group is in the folder of the results; name it with --out"));
+        };
+        if self.scene.contact.keys.output_grid.is_some() {
+            return Err(CliError::input("output_grid: the group of --zarr has the whole grid; omit one of the two"));
+        }
+        zarr::check_place(&folder.join(xarray::GROUP))?;
+        Ok(Self { zarr: true, ..self })
     }
 
     /// Memory that there is.
-    pub(super) fn budget(&self) -> Budget {
+    fn budget(&self) -> Budget {
         Budget::new(self.run.memory_limit)
     }
 
@@ -47,16 +78,23 @@ impl Job {
     /// # Errors
     /// [`CliError`] of every kind.
     pub(super) fn execute(&self, threads: usize) -> Result<(), CliError> {
+        let ranks = self.ranks();
         if let Some(folder) = &self.run.out {
-            files::check_folder(folder)?;
+            let checked = if ranks.rank() == 0 { files::check_folder(folder).map_err(Into::into) } else { Ok(()) };
+            together(ranks, checked)?;
         }
         let progress = self.progress();
         progress.say("heights");
         let kernel = self.scene.contact.kernel()?;
-        let surface = self.scene.surface.load()?;
+        let surface = together(ranks, self.scene.surface.load())?;
         let problem = self.scene.problem(&surface, kernel, self.budget());
         let solved = self.scene.solve(problem, self.started, &progress)?;
         self.finish(&solved, threads, progress)
+    }
+
+    /// The ranks that solve it together.
+    fn ranks(&self) -> &Ranks {
+        &self.scene.contact.place.ranks
     }
 
     /// What tells of the solve, draws it, and ends it early.
@@ -64,7 +102,9 @@ impl Job {
         let folder = self.run.out.as_deref().filter(|_| self.watch);
         let units = self.scene.contact.units;
         let watch = folder.map(|folder| Watch::new(folder, units.elasticity().e_star(), units.cell().side()));
-        Progress::new(self.run.quiet).until(Stop::at(self.started, self.run.time_limit)).watched_by(watch)
+        Progress::new(self.run.quiet || self.ranks().rank() > 0)
+            .until(Stop::at(self.started, self.run.time_limit))
+            .watched_by(watch)
     }
 
     /// Writes and prints.
@@ -72,7 +112,11 @@ impl Job {
         let stopped = progress.stopped();
         let summary = solved.summary(threads);
         if let Some(folder) = &self.run.out {
-            solved.write(folder, &summary)?;
+            if self.zarr {
+                solved.write_shared(folder, &summary)?;
+            } else {
+                solved.write(folder, &summary)?;
+            }
         }
         // The bar goes before anything is printed, the picture of --watch not before the result is there.
         drop(progress);
@@ -88,7 +132,11 @@ impl Job {
         })
     }
 
+    /// Prints the summary, over ranks on the first of them.
     fn print(&self, summary: &Summary) -> Result<(), CliError> {
+        if self.ranks().rank() > 0 {
+            return Ok(());
+        }
         match (self.run.json, self.run.quiet) {
             (true, _) => terminal::print(&summary.to_json()),
             (false, true) => Ok(()),

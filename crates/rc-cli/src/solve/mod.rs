@@ -10,11 +10,14 @@ mod job;
 mod leakage;
 mod map_file;
 mod messages;
+mod over_ranks;
 mod result_files;
+mod shared_fields;
 
 pub use checked::CheckedScene;
 pub use leakage::SolvedFlow;
 pub(crate) use leakage::memory_factor;
+pub use over_ranks::main_over_ranks;
 pub use result_files::{MapHeights, ResultFiles};
 pub use solved::{ProblemSetup, Solved, SolvedParts};
 
@@ -53,9 +56,7 @@ pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
     let threads = threads::start(job.run.threads)?;
     stop::listen();
     if dry_run {
-        let (kernel, surface) = (job.scene.contact.kernel()?, job.scene.surface.load()?);
-        let problem = job.scene.problem(&surface, kernel, job.budget());
-        return dry_run::run(&problem, threads, &job.run);
+        return job.dry_run(threads);
     }
     job.execute(threads)
 }

@@ -1,5 +1,6 @@
 //! The files of a result.
 
+use std::convert::Infallible;
 use std::io;
 use std::path::Path;
 use std::time::Duration;
@@ -12,10 +13,11 @@ use rc_solver::{ContactElement, Solution};
 use rc_sweep::files::{FileError, Staged};
 use rc_sweep::{SolveContext, Summary};
 
-use super::flow_files;
 use super::leakage::SolvedFlow;
 use super::map_file::MapFile;
+use super::{flow_files, shared_fields};
 use crate::error::CliError;
+use crate::export::xarray;
 use crate::files::result::PLASTIC_GAP_FILE;
 use crate::scene::as_read::AsRead;
 use crate::scene::file;
@@ -83,7 +85,26 @@ impl ResultFiles<'_> {
     /// # Errors
     /// [`CliError::Write`].
     pub fn write(&self, folder: &Path, summary: &Summary) -> Result<(), CliError> {
+        if self.solution.ranks().rank() > 0 {
+            hand_over(self.solution);
+            return Ok(());
+        }
         Ok(self.stage(folder, summary)?)
+    }
+
+    /// Writes the result folder with pressure and gap as a Zarr group, which ranks write in parallel, in place of the files that one rank
+    /// writes: pressure.npy, gap.npy, elements.csv and contact.png.
+    ///
+    /// # Errors
+    /// [`CliError::Write`], [`CliError::Input`].
+    pub(super) fn write_shared(&self, folder: &Path, summary: &Summary) -> Result<(), CliError> {
+        let units = self.contact.units;
+        if self.solution.ranks().rank() > 0 {
+            return shared_fields::write(None, self.solution, units);
+        }
+        let mut staged = Staged::new(folder)?;
+        staged.add(xarray::GROUP, |path| shared_fields::write(Some(path), self.solution, units))?;
+        Ok(self.finish(staged, summary)?)
     }
 
     /// The scene as it was solved, as the file `scene.toml`.
@@ -98,6 +119,11 @@ impl ResultFiles<'_> {
         if let Some(flow) = self.flow {
             flow_files::add(&mut staged, self.contact, &flow.leakage, self.solution.grid())?;
         }
+        self.finish(staged, summary)
+    }
+
+    /// Adds what is small, and gives all files their names.
+    fn finish(&self, mut staged: Staged, summary: &Summary) -> Result<(), FileError> {
         if let Some(map) = self.map {
             staged.add(HEIGHTS_FILE, |path| map.write(path))?;
         }
@@ -134,6 +160,15 @@ impl MapHeights<'_> {
     }
 }
 
+/// What the first rank writes in [`add_fields`], as far as this one has it.
+fn hand_over(solution: &Solution<'_>) {
+    let nothing = |_: usize, _: &[f64]| Ok::<_, Infallible>(());
+    let Ok(()) = solution.pressure_rows(nothing);
+    let Ok(()) = solution.gap_rows(nothing);
+    let Ok(()) = solution.each_element(|_| Ok::<_, Infallible>(()));
+    let Ok(()) = solution.pressure_rows(nothing);
+}
+
 /// Pressure, gap, its plastic part, elements and the picture of the contact.
 fn add_fields(staged: &mut Staged, contact: &ContactSetup, solution: &Solution<'_>) -> Result<(), FileError> {
     let (units, grid) = (contact.units, solution.grid());
@@ -156,25 +191,25 @@ fn add_fields(staged: &mut Staged, contact: &ContactSetup, solution: &Solution<'
             file.finish()
         })?;
     }
-    if let Some(elements) = solution.elements() {
-        staged.add("elements.csv", |path| write_elements(path, elements, units))?;
+    if solution.elements().is_some() {
+        staged.add("elements.csv", |path| write_elements(path, solution, units))?;
     }
     let mut picture = ContactRows::new(grid);
     let Ok(()) = solution.pressure_rows(|_, rows| {
         picture.take(rows);
-        Ok::<_, std::convert::Infallible>(())
+        Ok::<_, Infallible>(())
     });
     let picture = picture.finish(e_star, side);
     staged.add("contact.png", |path| save_png(&picture, path))
 }
 
 /// Centre (m), side (m) and pressure (Pa) of each element, as `elements.csv`; given in λ and E*.
-fn write_elements(path: &Path, elements: impl Iterator<Item = ContactElement>, units: Units) -> Result<(), csv::Error> {
+fn write_elements(path: &Path, solution: &Solution<'_>, units: Units) -> Result<(), csv::Error> {
     let mut out = csv::Writer::from_path(path)?;
     out.write_record(["x", "y", "size", "pressure"])?;
-    for ContactElement { centre: DVec2 { x, y }, side, pressure } in elements {
-        out.serialize((units.metres(x), units.metres(y), units.metres(side), units.pascals(pressure)))?;
-    }
+    solution.each_element(|ContactElement { centre: DVec2 { x, y }, side, pressure }| {
+        out.serialize((units.metres(x), units.metres(y), units.metres(side), units.pascals(pressure)))
+    })?;
     out.flush()?;
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! A solved scene with what its files and its summary need.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use rc_core::{Kernel, Observer};
@@ -12,8 +13,9 @@ use super::leakage::SolvedFlow;
 use super::messages;
 use super::result_files::{MapHeights, ResultFiles};
 use crate::error::CliError;
+use crate::files::checkpoint::CheckpointFile;
 use crate::files::coarsen::check_factor;
-use crate::scene::resolve::ContactSetup;
+use crate::scene::resolve::{ContactSetup, Place};
 use crate::scene::surface::LoadedSurface;
 use crate::scene::values::Fraction;
 
@@ -159,11 +161,19 @@ impl<'a> ProblemSetup<'a> {
 
     fn contact_problem(&self) -> ContactProblem<'a> {
         let problem = ContactProblem::new(self.surface.source(), self.contact.control);
-        problem.with_hardness(self.contact.hardness).with_kernel(self.kernel)
+        let problem = problem.with_hardness(self.contact.hardness).with_kernel(self.kernel);
+        let Place { ranks, checkpoint } = &self.contact.place;
+        let problem = problem.over(ranks.clone());
+        match checkpoint {
+            Some(file) => problem.kept_in(Arc::<CheckpointFile>::clone(file)),
+            None => problem,
+        }
     }
 
     fn params(&self) -> SolveParams {
-        SolveParams { memory_limit: self.budget.available(), ..self.contact.params }
+        // Ranks on several machines refuse together what one of them has no memory for.
+        let available = self.budget.available().map(|bytes| self.contact.place.ranks.minimum(bytes));
+        SolveParams { memory_limit: available, ..self.contact.params }
     }
 
     fn solved(self, result: Result<Solution<'a>, SolveError>, started: Instant) -> Result<Solved<'a>, CliError> {
@@ -210,12 +220,20 @@ impl<'a> Solved<'a> {
         self.files().summary(height_and_slope, self.wall, threads)
     }
 
-    /// Writes the result folder.
+    /// Writes the result folder; over ranks the first of them does, and all call this together.
     ///
     /// # Errors
     /// [`CliError::Write`].
     pub(crate) fn write(&self, folder: &Path, summary: &Summary) -> Result<(), CliError> {
         self.files().write(folder, summary)
+    }
+
+    /// The same with pressure and gap as a Zarr group that all ranks write.
+    ///
+    /// # Errors
+    /// [`CliError::Write`].
+    pub(crate) fn write_shared(&self, folder: &Path, summary: &Summary) -> Result<(), CliError> {
+        self.files().write_shared(folder, summary)
     }
 
     fn files(&self) -> ResultFiles<'_> {

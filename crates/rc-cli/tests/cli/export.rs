@@ -1,40 +1,9 @@
 //! `rc export`: what other programs read.
 
-use std::io::Read as _;
-
 use rc_core::Field;
-use serde_json::{Value, json};
+use serde_json::json;
 
-use crate::support::{Place, assert_refused, assert_solved, bumps, f8, npy, small, text};
-
-/// An array of a Zarr group, version 2, put together from its chunks: description, attributes and bytes, row by row.
-fn array(place: &Place, folder: &str) -> (Value, Value, Vec<u8>) {
-    let description = place.json(&format!("{folder}/.zarray"));
-    let numbers = |key: &str| -> Vec<usize> { serde_json::from_value(description[key].clone()).expect("lengths") };
-    let (shape, chunks) = (numbers("shape"), numbers("chunks"));
-    let size = if description["dtype"] == "|u1" { 1 } else { 8 };
-    let (nx, width) = (shape[shape.len() - 1], chunks[chunks.len() - 1]);
-    let (ny, height) = if shape.len() == 1 { (1, 1) } else { (shape[0], chunks[0]) };
-    let mut bytes = vec![0; nx * ny * size];
-    let mut n_chunks = 0;
-    for row in 0..ny.div_ceil(height) {
-        for column in 0..nx.div_ceil(width) {
-            let name = if shape.len() == 1 { column.to_string() } else { format!("{row}.{column}") };
-            let file = place.bytes(&format!("{folder}/{name}"));
-            let mut chunk = Vec::new();
-            flate2::read::ZlibDecoder::new(&file[..]).read_to_end(&mut chunk).expect("a zlib stream");
-            assert_eq!(chunk.len(), height * width * size, "{folder}/{name}: all chunks are equally large");
-            let columns = width.min(nx - column * width);
-            for line in 0..height.min(ny - row * height) {
-                let at = ((row * height + line) * nx + column * width) * size;
-                bytes[at..at + columns * size].copy_from_slice(&chunk[line * width * size..][..columns * size]);
-            }
-            n_chunks += 1;
-        }
-    }
-    assert_eq!(place.names(folder).len(), n_chunks + 2, "{folder}: files that are no chunks");
-    (description, place.json(&format!("{folder}/.zattrs")), bytes)
-}
+use crate::support::{Place, array, assert_refused, assert_solved, bumps, f8, npy, small, text};
 
 fn bytes_of(field: &Field) -> Vec<u8> {
     field.values().iter().flat_map(|value| value.to_le_bytes()).collect()

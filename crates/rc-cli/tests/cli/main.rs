@@ -7,6 +7,7 @@ mod guide;
 mod hardness;
 mod leakage;
 mod measured;
+mod over_ranks;
 mod rectangles;
 mod report;
 mod robustness;

@@ -1,11 +1,13 @@
 //! The contact area on a mesh.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use rc_core::{Grid, Kernel};
 use rc_kernel::Love;
-use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet};
+use rc_quadtree::{BLOCK_CELLS, CELLS, TILE, TileSet};
 
-use super::element_blocks::blocks_of;
+use super::mesh::{Mesh, Surroundings};
 use crate::ContactArea;
 use crate::contact_area::{EdgeSums, PlasticEdges, left};
 
@@ -15,7 +17,7 @@ const TILES_AT_ONCE: usize = 64;
 /// Pressure and gap on elements.
 #[derive(Clone, Copy)]
 pub(super) struct Values<'a> {
-    pub(super) elements: &'a Elements,
+    pub(super) mesh: &'a Mesh,
     pub(super) pressure: &'a [f64],
     pub(super) gap: &'a [f64],
     /// The gap of what is in contact.
@@ -32,40 +34,46 @@ impl Values<'_> {
 
     /// The plastic part of it; none without a hardness.
     pub(super) fn plastic_edges(&self, finest: Grid) -> Option<PlasticEdges> {
-        let Self { elements, pressure, gap, contact_gap, hardness } = *self;
+        let Self { mesh, pressure, gap, contact_gap, hardness } = *self;
         if hardness.is_infinite() {
             return None;
         }
         let mut sums = self.edge_sums(|at| left(at, hardness));
         // Where no element is, nothing presses.
         let covered = |(coarser, tiles): (usize, &TileSet)| tiles.n_inside() << (2 * coarser);
-        let covered: usize = elements.levels().iter().enumerate().map(covered).sum();
+        let covered: usize = mesh.levels().iter().enumerate().map(covered).sum();
         sums[0].n_contact += finest.len() - covered;
         let blocks = pressure.par_chunks(BLOCK_CELLS).zip(gap.par_chunks(BLOCK_CELLS)).map(|(pressure, gap)| {
             let pairs = pressure.iter().zip(gap).filter(|(p, _)| **p >= hardness);
             [pairs.map(|(_, g)| (contact_gap - g).max(0.0)).sum()]
         });
-        let [flow] = blocks_of(elements).total(blocks.collect());
+        let [flow] = mesh.layout().total(blocks.collect());
         Some(PlasticEdges::from_sums(&sums, finest, Love.edge_bias(), flow / finest.len() as f64))
     }
 
     /// Sums over the elements of each size, of pressure and gap as `seen`.
     fn edge_sums(&self, seen: impl Fn([f64; 2]) -> [f64; 2] + Sync) -> Vec<EdgeSums> {
-        (0..self.elements.levels().len()).map(|coarser| self.sums_of_level(coarser, &seen)).collect()
+        let around = [self.pressure, self.gap].map(|values| self.mesh.surroundings(values));
+        self.mesh.own_levels().map(|level| self.sums_of_level(level, &around, &seen)).collect()
     }
 
-    fn sums_of_level(&self, coarser: usize, seen: &(impl Fn([f64; 2]) -> [f64; 2] + Sync)) -> EdgeSums {
-        let Self { elements, pressure, gap, contact_gap, hardness } = *self;
-        let (side, first) = (elements.side(coarser), elements.cells(coarser).start);
-        let tiles = &elements.levels()[coarser];
+    /// The sums of one level, with the pressures and gaps around its tiles.
+    fn sums_of_level(
+        &self,
+        (coarser, places, values): (usize, &[[u32; 2]], Range<usize>),
+        [pressures, gaps]: &[Surroundings<'_>; 2],
+        seen: &(impl Fn([f64; 2]) -> [f64; 2] + Sync),
+    ) -> EdgeSums {
+        let Self { mesh, pressure, contact_gap, hardness, .. } = *self;
+        let (side, tiles) = (mesh.side(coarser), &mesh.levels()[coarser]);
         let of_tile = |(tile, &place): (usize, &[u32; 2])| {
-            let start = first + tile * CELLS;
+            let start = values.start + tile * CELLS;
             if pressure[start..start + CELLS].iter().all(|&p| seen([p, 0.0])[0] <= 0.0) {
                 return EdgeSums::default();
             }
-            let pressure = elements.around(pressure, coarser, place, 0.0);
+            let pressure = pressures.elements.around(&pressures.values, coarser, place, 0.0);
             // Where no element is the gap is not known.
-            let gap = elements.around(gap, coarser, place, f64::NAN);
+            let gap = gaps.elements.around(&gaps.values, coarser, place, f64::NAN);
             let mut sums = EdgeSums::default();
             // What reaches beyond the grid is across the seam.
             let [width, height] = tiles.inside(place);
@@ -80,7 +88,7 @@ impl Values<'_> {
             }
             sums
         };
-        let chunks = tiles.places().par_chunks(TILES_AT_ONCE).enumerate();
+        let chunks = places.par_chunks(TILES_AT_ONCE).enumerate();
         let chunks: Vec<EdgeSums> = chunks
             .map(|(chunk, places)| {
                 let tiles = places.iter().enumerate();
@@ -88,6 +96,9 @@ impl Values<'_> {
                 sums.fold(EdgeSums::default(), |a, b| a + b)
             })
             .collect();
-        chunks.into_iter().fold(EdgeSums::default(), |a, b| a + b)
+        let total = self.mesh.ranks().fold(EdgeSums::default().to_values(), |sum| {
+            chunks.into_iter().fold(EdgeSums::from_values(sum), |a, b| a + b).to_values()
+        });
+        EdgeSums::from_values(total)
     }
 }

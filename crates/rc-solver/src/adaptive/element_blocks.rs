@@ -5,28 +5,35 @@ use std::convert::Infallible;
 use rc_core::{Grid, Observer, Snapshot};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE};
 
+use super::mesh::Mesh;
 use crate::descent::{BlockLayout, ObservedMesh};
 
-/// How vectors on `elements` are divided.
-pub(crate) fn blocks_of(elements: &Elements) -> BlockLayout {
-    let mut centres = Vec::with_capacity(elements.len().div_ceil(CELLS));
-    for (coarser, tiles) in elements.levels().iter().enumerate() {
-        // Levels begin at whole blocks.
-        centres.resize(elements.cells(coarser).start / CELLS, [0.0; 2]);
-        let per_side = tiles.sides().map(|side| side as f32 / TILE as f32);
-        let centre = |place: &[u32; 2]| [0, 1].map(|axis| (place[axis] as f32 + 0.5) / per_side[axis]);
-        centres.extend(tiles.places().iter().map(centre));
+impl Mesh {
+    /// How vectors are divided.
+    pub(crate) fn layout(&self) -> BlockLayout {
+        let mut centres = Vec::with_capacity(self.n_own().div_ceil(CELLS));
+        for (coarser, places, values) in self.own_levels() {
+            // Levels begin at whole blocks.
+            centres.resize(values.start / CELLS, [0.0; 2]);
+            let per_side = self.levels()[coarser].sides().map(|side| side as f32 / TILE as f32);
+            let centre = |place: &[u32; 2]| [0, 1].map(|axis| (place[axis] as f32 + 0.5) / per_side[axis]);
+            centres.extend(places.iter().map(centre));
+        }
+        let layout = BlockLayout::of(BLOCK_CELLS).with_runs(CELLS, centres, self.coarsest().sides()).over(self.ranks());
+        if self.levels().len() == 1 {
+            return layout;
+        }
+        let areas = self.blocks().into_iter().map(|(coarser, _)| Elements::area(coarser));
+        layout.with_areas(areas.collect())
     }
-    let layout = BlockLayout::of(BLOCK_CELLS).with_runs(CELLS, centres, elements.coarsest().sides());
-    if elements.levels().len() == 1 {
-        return layout;
-    }
-    let areas = elements.blocks().into_iter().map(|(coarser, _)| Elements::area(coarser));
-    layout.with_areas(areas.collect())
 }
 
-impl ObservedMesh for Elements {
+impl ObservedMesh for Mesh {
+    /// Over ranks no one has the whole pressure, and nothing is shown.
     fn show_pressure(&self, pressure: &[f64], observer: &dyn Observer) {
+        if !self.ranks().are_alone() {
+            return;
+        }
         let [nx, ny] = self.coarsest().sides();
         // Elements are squares.
         let grid = Grid::in_cell(nx, ny, ny as f64 / nx as f64).expect("a level of a checked grid");
@@ -52,7 +59,8 @@ mod tests {
         let fine: Vec<[u32; 2]> = (0..40).map(|i| [i % 8 + 4, i / 8 + 1]).collect();
         let coarse: Vec<[u32; 2]> = vec![[0, 5], [7, 7], [1, 6]];
         let elements = Elements::new(vec![TileSet::new([128, 128], fine), TileSet::new([64, 64], coarse)]);
-        let layout = blocks_of(&elements);
+        let elements = Mesh::from(elements);
+        let layout = elements.layout();
         for (coarser, tiles) in elements.levels().iter().enumerate() {
             for (tile, place) in tiles.places().iter().enumerate() {
                 let cell = elements.cells(coarser).start + tile * CELLS;

@@ -4,32 +4,39 @@ use rayon::prelude::*;
 use rc_quadtree::{CELLS, Elements, TileSet, means_of_quarter, quarters};
 
 use super::heights::Heights;
+use super::mesh::Mesh;
 use crate::problem::HeightStatistics;
 
 /// In units of the height range. Displacements there lack their smooth part, which differs by no more than the height range from that of
 /// elements, so that gaps are at least nine times it.
 const FAR_BELOW: f64 = 10.0;
 
-/// Heights of all elements, those of the elements of `known` taken from there. Values that have no element are never in contact: what fills
-/// up a vector has the minimum height, and what is beyond a level is far below.
-pub(super) fn element_heights(
-    heights: &Heights<'_>,
-    elements: &Elements,
-    known: Option<(&Elements, &[f64])>,
-) -> Vec<f64> {
+/// Heights of the elements that this rank has, those of the elements of `known` taken from there. Values that have no element are never in
+/// contact: what fills up a vector has the minimum height, and what is beyond a level is far below.
+pub(super) fn element_heights(heights: &Heights<'_>, mesh: &Mesh, known: Option<(&Mesh, &[f64])>) -> Vec<f64> {
     let HeightStatistics { greatest, least, .. } = heights.extremes();
-    let none = if elements.finest().is_whole() { least } else { least - FAR_BELOW * (greatest - least) };
-    let mut result = vec![none; elements.len()];
-    for (coarser, tiles) in elements.levels().iter().enumerate() {
+    let none = if mesh.finest().is_whole() { least } else { least - FAR_BELOW * (greatest - least) };
+    let over_ranks = known.filter(|(known, _)| !known.ranks().are_alone());
+    // Known heights of other ranks come first; no height is NaN.
+    let mut result = match over_ranks {
+        Some((known, values)) => known.moved(mesh, values, f64::NAN),
+        None => vec![none; mesh.n_own()],
+    };
+    for (coarser, places, values) in mesh.own_levels() {
+        let tiles = &mesh.levels()[coarser];
+        let known = known.filter(|_| over_ranks.is_none());
         let known = known.map(|(known, values)| (&known.levels()[coarser], &values[known.cells(coarser)]));
-        let (cells, _) = result[elements.cells(coarser)].as_chunks_mut::<CELLS>();
-        cells.par_iter_mut().zip(tiles.places()).with_min_len(16).for_each(|(cells, &place)| {
+        let (cells, _) = result[values].as_chunks_mut::<CELLS>();
+        cells.par_iter_mut().zip(places).with_min_len(16).for_each(|(cells, &place)| {
             let known = known.and_then(|(tiles, values)| {
                 let tile = tiles.find(i64::from(place[0]), i64::from(place[1]))?;
                 Some(&values[tile * CELLS..][..CELLS])
             });
             if let Some(known) = known {
                 cells.copy_from_slice(known);
+                return;
+            }
+            if over_ranks.is_some() && !cells[0].is_nan() {
                 return;
             }
             heights.tile(tiles.sides(), place.map(|i| i as usize), cells);
@@ -82,7 +89,7 @@ mod tests {
         let tiles = [(32, [16, 16]), (16, [4, 4]), (8, [0, 0])];
         let elements =
             Elements::new(tiles.map(|(per_side, place)| TileSet::new([8 * per_side; 2], vec![place])).to_vec());
-        let values = element_heights(&heights, &elements, None);
+        let values = element_heights(&heights, &Mesh::from(elements.clone()), None);
         for (coarser, (_, [column, row])) in tiles.into_iter().enumerate() {
             let (n, start) = (1 << coarser, elements.cells(coarser).start);
             for cell in 0..CELLS {

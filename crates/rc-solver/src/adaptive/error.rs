@@ -71,6 +71,12 @@ pub enum AdaptiveError {
     /// The surface is flat, so there is nothing to adapt to.
     #[error("a flat surface needs no adaptive mesh; use the uniform method")]
     Flat,
+    /// What only one rank solves.
+    #[error("over several ranks the adaptive method needs {needs}; solve it on one rank")]
+    OverRanks {
+        /// What it needs.
+        needs: &'static str,
+    },
     /// The estimated memory is above the limit.
     #[error("the adaptive method needs about {needed} MB {}, more than the limit of {limit} MB", needed_for(*area_percent))]
     Memory {

@@ -5,8 +5,10 @@
 //! gap. Fine cells are looked at only where this bound admits contact.
 
 use rayon::prelude::*;
+use rc_comm::Ranks;
 use rc_quadtree::{CELLS, Patch, TILE, TileSet, gather};
 
+use super::deal::Deal;
 use super::heights::Heights;
 use super::ladder::sides_of;
 
@@ -37,7 +39,7 @@ pub(super) fn possible_contact(
     smooth: &SmoothDisplacement<'_>,
     heights: &Heights<'_>,
     contact_gap: f64,
-    extent: [usize; 2],
+    (extent, ranks): ([usize; 2], &Ranks),
 ) -> Vec<[u32; 2]> {
     let ladder = heights.ladder();
     let base = TileSet::full(sides_of(ladder.base()));
@@ -63,8 +65,11 @@ pub(super) fn possible_contact(
         tiles.dedup();
         tiles
     };
-    let tiles: Vec<Vec<[u32; 2]>> = base.places().par_iter().map(of_tile).collect();
-    tiles.into_iter().flatten().collect()
+    // Each rank looks at some tiles of the base grid.
+    let own = Deal::equal(base.len(), ranks).range(ranks.rank());
+    let tiles: Vec<Vec<[u32; 2]>> = base.places()[own].par_iter().map(of_tile).collect();
+    let tiles = ranks.concatenate(tiles.into_iter().flatten().flatten().collect());
+    tiles.as_chunks::<2>().0.to_vec()
 }
 
 /// The cells of the base grid over tiles of a level.
@@ -143,11 +148,12 @@ mod tests {
         let values: Vec<f64> = base.places().iter().flat_map(of_tile).collect();
         let smooth = SmoothDisplacement { values: &values, curvature: TAU * TAU, error };
         let minimum = -2.0;
-        let touched = possible_contact(&smooth, &heights, minimum + 0.01 * sagitta, extent);
+        let touched = possible_contact(&smooth, &heights, minimum + 0.01 * sagitta, (extent, &Ranks::alone()));
         for place in [[3, 3], [4, 3], [3, 4], [4, 4]] {
             assert!(touched.contains(&place), "{place:?} is not among {touched:?}");
         }
         assert!(!touched.contains(&[0, 0]), "{touched:?}");
-        assert!(possible_contact(&smooth, &heights, minimum - 0.01 * sagitta - 2.0 * error, extent).is_empty());
+        let below = minimum - 0.01 * sagitta - 2.0 * error;
+        assert!(possible_contact(&smooth, &heights, below, (extent, &Ranks::alone())).is_empty());
     }
 }

@@ -3,19 +3,21 @@
 //! Rounds of two steps. A descent improves the pressure on the elements that press, or nearly do. An evaluation then computes the gap
 //! afresh wherever contact is possible, which gives the certificate, and adds elements until bounds exclude contact everywhere else.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use rc_core::{Grid, Observer};
-use rc_quadtree::{BLOCK_CELLS, ContactFields, Elements};
+use rc_quadtree::{BLOCK_CELLS, ContactFields};
 
-use super::element_blocks::blocks_of;
 use super::element_heights::element_heights;
 use super::exclusion::SmoothDisplacement;
 use super::gap_operator::{GapOperator, GapTables, PreparedGap};
 use super::level::{SolvedLevel, add_work};
+use super::mesh::Mesh;
 use super::operator::{Tables, TileCorrections};
 use super::operator_error::{OperatorError, PressureScale};
 use super::prolongation::MeshStart;
-use super::setup::{Setup, maximum};
+use super::setup::Setup;
 use crate::descent::{
     BlockOperator, Descent, DescentObserver, ElementValues, GapSums, Goal, LevelOperators, Outcome, Start, fresh_gap,
     limit_to_load, rescale, scale_to_load, write_blocks,
@@ -69,7 +71,7 @@ pub(super) fn solve_finest_level(
 
 /// Elements where contact is possible, with their heights.
 struct Candidates {
-    elements: Elements,
+    elements: Mesh,
     heights: Vec<f64>,
 }
 
@@ -110,9 +112,10 @@ impl TablesForGaps {
 }
 
 /// The maximum |v| of elements with these heights and gaps, c in `g = v - h + c` being `offset`.
-fn maximum_displacement(heights: &[f64], gap: &[f64], offset: f64) -> f64 {
+fn maximum_displacement(mesh: &Mesh, heights: &[f64], gap: &[f64], offset: f64) -> f64 {
     let pairs = heights.par_iter().zip(gap);
-    pairs.map(|(h, g)| (g + (h - offset)).abs()).reduce(|| 0.0, f64::max)
+    let own = pairs.map(|(h, g)| (g + (h - offset)).abs()).reduce(|| 0.0, f64::max);
+    mesh.ranks().maximum(own, 0.0)
 }
 
 struct FinestLevel<'s, 'a> {
@@ -126,7 +129,7 @@ struct FinestLevel<'s, 'a> {
 
 impl<'s, 'a> FinestLevel<'s, 'a> {
     fn new(setup: &'s Setup<'a>, grid: Grid, mut start: MeshStart, contact_gap: f64) -> Self {
-        let (n_cell, layout) = (grid.len() as f64, blocks_of(&start.elements));
+        let (n_cell, layout) = (grid.len() as f64, start.elements.layout());
         if setup.is_plastic(&start.pressure) {
             limit_to_load(&setup.problem, n_cell, &layout, &mut start.pressure, None);
         } else {
@@ -186,7 +189,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let mut gap = vec![0.0; pressure.len()];
         if setup.problem.hardness.is_finite() {
             // What single precision has changed the load by.
-            limit_to_load(&setup.problem, info.grid.len() as f64, &blocks_of(elements), &mut pressure, None);
+            limit_to_load(&setup.problem, info.grid.len() as f64, &elements.layout(), &mut pressure, None);
         }
         let hierarchy = setup.hierarchy(elements, prepared.reach());
         let mut operator = setup.operator(hierarchy, tables, current);
@@ -196,10 +199,10 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let scaling = sums.scale_to_penetration(&setup.problem);
         if let Some(scale) = scaling {
             let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
-            sums = rescale(scale, &blocks_of(elements), &setup.problem, values, empty);
+            sums = rescale(scale, &elements.layout(), &setup.problem, values, empty);
         }
         let mut outcome = Outcome::new(&setup.problem, &sums, info.grid.len() as f64, true);
-        let size = maximum_displacement(heights, &gap, setup.problem.offset());
+        let size = maximum_displacement(elements, heights, &gap, setup.problem.offset());
         let n_levels = setup.n_levels(info.grid);
         let scale = PressureScale::new((elements, &pressure), n_levels, size, outcome.energy_length());
         // Descents leave room for the error of the operator that certifies.
@@ -230,7 +233,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
     }
 
     /// The elements of the candidates, divided where they are too coarse, and tiles of the coarsest level wherever contact is possible.
-    fn with_more_candidates(&self, evaluation: &Evaluation, operator: &dyn GapOperator) -> Elements {
+    fn with_more_candidates(&self, evaluation: &Evaluation, operator: &dyn GapOperator) -> Mesh {
         let (setup, elements) = (self.setup, &self.candidates.elements);
         let Evaluation { pressure, gap, outcome, error, scaling, .. } = evaluation;
         let mut values = operator.base_displacement();
@@ -239,15 +242,16 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         }
         let smooth = SmoothDisplacement {
             values: &values,
-            curvature: setup.certified().remainder_curvature() * maximum(pressure),
+            curvature: setup.certified().remainder_curvature() * elements.layout().maximum(pressure, 0.0),
             error: EXCLUSION_MARGIN * error.displacement,
         };
         let places = setup.possible_contact(&smooth, elements.coarsest().extent(), outcome.contact_gap);
         if elements.levels().len() == 1 {
-            return elements.with(&places);
+            return Mesh::new(elements.with(&places), setup.ranks);
         }
+        let elements = elements.elements();
         let fields = ContactFields { elements, pressure, beyond: 0.0, gap, contact_gap: outcome.contact_gap };
-        setup.refined(&fields, false).with(&places)
+        setup.refined(&fields, false).with(&places).into()
     }
 
     fn into_solved(self, evaluation: Evaluation) -> (SolvedLevel, PressureScale) {
@@ -258,7 +262,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
 }
 
 impl Candidates {
-    fn new(setup: &Setup<'_>, elements: Elements) -> Self {
+    fn new(setup: &Setup<'_>, elements: Mesh) -> Self {
         Self { heights: element_heights(setup.heights, &elements, None), elements }
     }
 }
@@ -273,15 +277,15 @@ fn first_candidates(setup: &Setup<'_>, start: &MeshStart, tables: &Tables<f32>, 
     let first_touch = setup.problem.offset() - setup.problem.h_max;
     // This is not a proof yet: the margin stands for the quick operator's error too.
     let gap = contact_gap.max(first_touch) + CANDIDATE_MARGIN * setup.penetration(contact_gap).abs();
-    let curvature = setup.quick.remainder_curvature() * maximum(pressure);
+    let curvature = setup.quick.remainder_curvature() * elements.layout().maximum(pressure, 0.0);
     let smooth = SmoothDisplacement { values: &quick.base_displacement(), curvature, error: 0.0 };
     let places = setup.possible_contact(&smooth, elements.coarsest().extent(), gap);
-    Candidates::new(setup, elements.with(&places))
+    Candidates::new(setup, Mesh::new(elements.with(&places), setup.ranks))
 }
 
 /// The candidates that a descent works on: those that press somewhere, or nearly do, or did when the round began.
 struct NearContact {
-    elements: Elements,
+    elements: Mesh,
     heights: Vec<f64>,
     pressure: Vec<f64>,
     gap: Vec<f64>,
@@ -289,7 +293,7 @@ struct NearContact {
 
 impl NearContact {
     /// `before` are the elements of the last descent. Descents need the memory: the candidates are left without heights.
-    fn choose(candidates: &mut Candidates, before: &Elements, evaluation: Evaluation, setup: &Setup<'_>) -> Self {
+    fn choose(candidates: &mut Candidates, before: &Mesh, evaluation: Evaluation, setup: &Setup<'_>) -> Self {
         let Evaluation { pressure, gap, outcome, .. } = evaluation;
         // Elements that are nearer to contact than the error may come into it yet.
         let error = match outcome.mean_pressure {
@@ -298,9 +302,10 @@ impl NearContact {
             _ => outcome.certificate.penetration * setup.problem.h_range,
         };
         let near = outcome.contact_gap + error;
-        let elements = candidates.elements.filtered(|sides, place, cells| {
-            before.has(sides, place) || cells.into_iter().any(|i| pressure[i] > 0.0 || gap[i] < near)
-        });
+        let is_near = |sides: [usize; 2], place: [u32; 2], mut cells: Range<usize>| {
+            before.has(sides, place) || cells.any(|i| pressure[i] > 0.0 || gap[i] < near)
+        };
+        let elements = candidates.elements.chosen(is_near);
         // One vector after the other. Values that fill up a level are as far from contact as can be.
         let chosen = |values: Vec<f64>, elsewhere: f64| candidates.elements.moved(&elements, &values, elsewhere);
         let heights = chosen(std::mem::take(&mut candidates.heights), f64::MIN);

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use rc_core::{Grid, Observer};
-use rc_quadtree::{ContactFields, Elements};
+use rc_quadtree::ContactFields;
 
 use super::element_heights::element_heights;
+use super::mesh::Mesh;
 use super::operator::TileCorrections;
 use super::prolongation::MeshStart;
 use super::setup::Setup;
@@ -14,7 +15,7 @@ use crate::solution::LevelInfo;
 
 /// A solved level.
 pub(super) struct SolvedLevel {
-    pub(super) elements: Elements,
+    pub(super) elements: Mesh,
     pub(super) pressure: Vec<f64>,
     pub(super) gap: Vec<f64>,
     pub(super) outcome: Outcome,
@@ -27,7 +28,7 @@ impl SolvedLevel {
     /// What the refinement rule needs.
     pub(super) fn fields(&self) -> ContactFields<'_> {
         ContactFields {
-            elements: &self.elements,
+            elements: self.elements.elements(),
             pressure: &self.pressure,
             beyond: 0.0,
             gap: &self.gap,
@@ -65,5 +66,5 @@ pub(super) fn solve_coarse_level(
     let outcome = descent.run(goal, &DescentObserver { observer, mesh: &elements });
     let info = descent.info();
     let (pressure, gap) = descent.into_vectors(0.0);
-    SolvedLevel { evaluated: gap.len(), elements, pressure, gap, outcome, info }
+    SolvedLevel { evaluated: elements.len(), elements, pressure, gap, outcome, info }
 }

@@ -4,9 +4,13 @@
 //! cells that contact touches or nearly does, with the multilevel operator. What is not stored is out of contact, and the
 //! exclusion proves it.
 
+mod agreed_stop;
+mod bands;
 mod base_grid;
+mod checkpoint;
 mod checks;
 mod contact_area;
+mod deal;
 mod element_blocks;
 mod element_heights;
 mod error;
@@ -20,11 +24,13 @@ mod kernels;
 pub(crate) mod ladder;
 mod level;
 mod memory;
+mod mesh;
 mod multilevel;
 mod nested_iteration;
 pub(crate) mod operator;
 mod operator_error;
 mod params;
+mod part;
 mod prolongation;
 mod roughness;
 mod scaled_operator;
@@ -34,9 +40,14 @@ mod split;
 
 use std::sync::Arc;
 
+use rc_comm::Ranks;
 use rc_core::{Grid, Observer};
 use rc_quadtree::TILE;
 
+use self::agreed_stop::AgreedStop;
+pub(crate) use self::bands::{Receiver, Rows};
+pub use self::checkpoint::Checkpoint;
+use self::checkpoint::LevelStart;
 use self::checks::{check_memory, first_split};
 use self::contact_area::Values;
 pub use self::error::AdaptiveError;
@@ -44,10 +55,12 @@ pub(crate) use self::estimate::Estimate;
 pub(crate) use self::ground::Ground;
 use self::ladder::sides_of;
 use self::level::SolvedLevel;
+use self::memory::base_bytes;
 pub use self::multilevel::MultilevelOperator;
-use self::nested_iteration::{LevelStart, NestedIteration, NestedSolution};
+use self::nested_iteration::{NestedIteration, NestedSolution};
 use self::operator_error::{PressureScale, can_certify, certifying_split};
 pub(crate) use self::params::AdaptiveParams;
+pub(crate) use self::setup::Place;
 use self::setup::Splits;
 pub(crate) use self::solution::AdaptiveSolution;
 use self::solution::row_of_tiles;
@@ -66,6 +79,7 @@ pub(crate) struct AdaptiveProblem<'a> {
     params: AdaptiveParams,
     /// For fresh gaps in descents.
     split: GapSplit,
+    place: Place,
 }
 
 /// Why the uniform grid is better than the adaptive method, which was chosen by an estimate.
@@ -97,23 +111,40 @@ impl<'a> AdaptiveProblem<'a> {
         control: Control,
         params: &AdaptiveParams,
     ) -> Result<Self, AdaptiveError> {
-        Self::on(&Arc::new(Ground::new(source, params)?), control.into(), params)
+        Self::on(&Arc::new(Ground::new(source, params)?), control.into(), params, &Place::default())
     }
 
-    /// The problem of one load. `params` are those that `ground` was made with.
+    /// The problem of one load, solved in this place. `params` are those that `ground` was made with.
     ///
     /// # Errors
     /// [`AdaptiveError`].
-    pub(crate) fn on(ground: &Arc<Ground<'a>>, load: Load, params: &AdaptiveParams) -> Result<Self, AdaptiveError> {
+    pub(crate) fn on(
+        ground: &Arc<Ground<'a>>,
+        load: Load,
+        params: &AdaptiveParams,
+        place: &Place,
+    ) -> Result<Self, AdaptiveError> {
+        if !place.ranks.are_alone() && params.border_level > 0 {
+            return Err(AdaptiveError::OverRanks { needs: "elements of one size, without a border level" });
+        }
+        if !place.ranks.are_alone() && load.hardness.is_finite() {
+            return Err(AdaptiveError::OverRanks { needs: "a problem without a hardness" });
+        }
+        if !place.ranks.are_alone() && !ground.heights.ladder().is_even() {
+            return Err(AdaptiveError::OverRanks { needs: "a grid that halves down to its base grid" });
+        }
         let split = first_split(params)?;
         let problem = Problem::of_statistics(ground.heights.extremes(), load, &params.solve)?;
         if problem.h_range == 0.0 {
             return Err(AdaptiveError::Flat);
         }
-        let prepared = Self { ground: Arc::clone(ground), problem, params: *params, split };
+        let prepared = Self { ground: Arc::clone(ground), problem, params: *params, split, place: place.clone() };
         let grid = prepared.grid();
         let Estimate { area_fraction, adaptive_bytes, .. } = prepared.estimate();
-        check_memory(grid, params.memory_limit, adaptive_bytes, Some(100.0 * area_fraction))?;
+        // Ranks share all but the base grid.
+        let base_bytes = base_bytes(sides_of(ground.heights.base().grid())) + ground.sampled_bytes;
+        let bytes = base_bytes + (adaptive_bytes - base_bytes) / place.ranks.size() as f64;
+        check_memory(grid, params.memory_limit, bytes, Some(100.0 * area_fraction))?;
         Ok(prepared)
     }
 
@@ -132,8 +163,8 @@ impl<'a> AdaptiveProblem<'a> {
 
     /// The same problem without a borrow: a borrowed map of heights is copied.
     pub(crate) fn into_owned(self) -> AdaptiveProblem<'static> {
-        let Self { ground, problem, params, split } = self;
-        AdaptiveProblem { ground: Arc::new(Ground::into_owned(ground)), problem, params, split }
+        let Self { ground, problem, params, split, place } = self;
+        AdaptiveProblem { ground: Arc::new(Ground::into_owned(ground)), problem, params, split, place }
     }
 
     /// What the certificate has to meet.
@@ -152,6 +183,7 @@ impl<'a> AdaptiveProblem<'a> {
     /// The certificate comes from a fresh application of L on the returned pressure, with bounds on the error of that operator added; it
     /// covers every cell where a bound does not exclude contact. The result is bitwise the same for any number of threads.
     pub(crate) fn solve(&self, observer: &dyn Observer) -> AdaptiveSolution {
+        let observer = &AgreedStop { observer, ranks: &self.place.ranks };
         let solver = self.first_solver();
         let start = solver.prepare(solver.begin(observer), observer);
         self.finish(self.solve_levels(&solver, start, observer))
@@ -162,6 +194,7 @@ impl<'a> AdaptiveProblem<'a> {
     /// # Errors
     /// [`Unsuitable`].
     pub(crate) fn solve_if_suitable(&self, observer: &dyn Observer) -> Result<AdaptiveSolution, Unsuitable> {
+        let observer = &AgreedStop { observer, ranks: &self.place.ranks };
         let solver = self.first_solver();
         let base = solver.begin(observer);
         if base.tile_fraction > Estimate::GREATEST_TILE_FRACTION {
@@ -199,7 +232,7 @@ impl<'a> AdaptiveProblem<'a> {
     }
 
     fn solver(&self, splits: Splits) -> NestedIteration<'_> {
-        NestedIteration::new(&self.ground, self.problem, &self.params, splits)
+        NestedIteration::new((&self.ground, &self.place), self.problem, &self.params, splits)
     }
 
     /// The split, from `split` on, that can certify a pressure like this one.
@@ -212,7 +245,7 @@ impl<'a> AdaptiveProblem<'a> {
         let NestedSolution { grid, level, levels, coarser, .. } = solved;
         let SolvedLevel { elements, pressure, gap, outcome, evaluated, .. } = level;
         let (contact_gap, hardness) = (outcome.contact_gap, self.problem.hardness);
-        let values = Values { elements: &elements, pressure: &pressure, gap: &gap, contact_gap, hardness };
+        let values = Values { mesh: &elements, pressure: &pressure, gap: &gap, contact_gap, hardness };
         let (area, plastic) = (values.contact_area(grid), values.plastic_edges(grid));
         AdaptiveSolution {
             converged: outcome.certificate.meets(self.params.solve.bound),
@@ -237,9 +270,15 @@ impl<'a> AdaptiveProblem<'a> {
     pub(crate) fn displacement_rows<E>(
         &self,
         solution: &AdaptiveSolution,
+        receiver: Receiver,
         take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        solution.displacement_rows(&self.ground.kernels, false, take)
+        solution.displacement_rows(&self.ground.kernels, Rows::on_grid(receiver), take)
+    }
+
+    /// The ranks that solve it.
+    pub(crate) fn ranks(&self) -> &Ranks {
+        &self.place.ranks
     }
 
     /// The contact stiffness of `solution`: see [`AdaptiveSolution::contact_stiffness`].
@@ -259,45 +298,21 @@ impl<'a> AdaptiveProblem<'a> {
         &self,
         solution: &AdaptiveSolution,
         part: GapPart,
-        take: impl FnMut(usize, &[f64]) -> Result<(), E>,
-    ) -> Result<(), E> {
-        self.gap_rows_on(solution, false, part, take)
-    }
-
-    /// The gap that is open under the solution itself, on the grid of the smallest elements.
-    ///
-    /// # Errors
-    /// What `take` returns.
-    ///
-    /// # Panics
-    /// As [`AdaptiveProblem::gap_rows`].
-    pub(crate) fn finest_gap_rows<E>(
-        &self,
-        solution: &AdaptiveSolution,
-        take: impl FnMut(usize, &[f64]) -> Result<(), E>,
-    ) -> Result<(), E> {
-        self.gap_rows_on(solution, true, GapPart::Open, take)
-    }
-
-    fn gap_rows_on<E>(
-        &self,
-        solution: &AdaptiveSolution,
-        finest: bool,
-        part: GapPart,
+        rows: Rows,
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
         assert_eq!(solution.finest_grid(), self.ground.heights.ladder().finest(), "not a solution of this problem");
         let offset = solution.gap_offset(self.h_max());
-        let grid = if finest { solution.finest_grid() } else { solution.grid() };
-        let pressure_on = || if finest { solution.on_finest() } else { solution.on_grid() };
+        let grid = if rows.finest { solution.finest_grid() } else { solution.grid() };
+        let pressure_on = || if rows.finest { solution.on_finest() } else { solution.on_grid() };
         let of_pressure = solution.hardness.is_finite().then(pressure_on);
-        solution.displacement_rows(&self.ground.kernels, finest, |first, displacement| {
+        solution.displacement_rows(&self.ground.kernels, rows, |first, displacement| {
             let mut rows = self.ground.heights.row_of_tiles(sides_of(grid), first / TILE);
             for (h, v) in rows.iter_mut().zip(displacement) {
                 *h = v - *h + offset;
             }
-            if let Some((tiles, pressure)) = &of_pressure {
-                for (g, p) in rows.iter_mut().zip(row_of_tiles(tiles, pressure, first / TILE)) {
+            if let Some((mesh, pressure)) = &of_pressure {
+                for (g, p) in rows.iter_mut().zip(row_of_tiles(mesh.finest(), pressure, first / TILE)) {
                     *g = part.of(*g, p, solution.hardness);
                 }
             }

@@ -6,13 +6,14 @@ use rc_kernel::Love;
 use rc_quadtree::{TILE, TileSet};
 
 use super::AdaptiveParams;
+use super::checkpoint::{LevelStart, keep, kept};
 use super::finest_level::solve_finest_level;
 use super::ground::Ground;
 use super::ladder::{Ladder, sides_of};
 use super::level::{SolvedLevel, add_work, solve_coarse_level};
 use super::operator_error::PressureScale;
 use super::prolongation::{self, MeshStart};
-use super::setup::{Setup, Splits};
+use super::setup::{Place, Setup, Splits};
 use super::solution;
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues};
@@ -33,21 +34,7 @@ pub(super) struct NestedSolution {
     pub(super) coarser: Option<LevelValues>,
 }
 
-/// What a level above the base grid begins with.
-pub(super) struct LevelStart {
-    /// The whole grid of the level's smallest elements.
-    grid: Grid,
-    pub(super) mesh: MeshStart,
-    contact_gap: f64,
-    /// U/σ0 of the level before, in λ.
-    energy_length: f64,
-    /// The work on coarser levels, coarsest first.
-    levels: Vec<LevelInfo>,
-    /// Values of the level before, when this is the finest one.
-    coarser: Option<LevelValues>,
-}
-
-/// What the base grid found.
+/// What the base grid found, or a finer level that was kept.
 pub(super) struct BaseStart {
     start: LevelStart,
     /// Part of the cell in tiles of the finest level that contact touches or is next to.
@@ -61,7 +48,12 @@ pub(super) struct NestedIteration<'a> {
 }
 
 impl<'a> NestedIteration<'a> {
-    pub(super) fn new(ground: &'a Ground<'_>, problem: Problem, params: &AdaptiveParams, splits: Splits) -> Self {
+    pub(super) fn new(
+        ground: (&'a Ground<'_>, &'a Place),
+        problem: Problem,
+        params: &AdaptiveParams,
+        splits: Splits,
+    ) -> Self {
         Self { setup: Setup::new(ground, problem, params, splits), splits }
     }
 
@@ -70,9 +62,23 @@ impl<'a> NestedIteration<'a> {
         self.splits
     }
 
-    /// Solves the base grid, and the coarser ones that it starts from.
+    /// Solves the base grid, and the coarser ones that it starts from, or goes on from what was kept.
     pub(super) fn begin(&self, observer: &dyn Observer) -> BaseStart {
-        self.solve_base(self.n_above(), observer)
+        if let Some(checkpoint) = self.setup.checkpoint
+            && let Some((start, tile_fraction)) = kept(checkpoint, self.ladder().finest(), self.setup.ranks)
+            && self.ladder().grid(self.setup.n_levels(start.grid)) == start.grid
+        {
+            return BaseStart { start, tile_fraction };
+        }
+        let base = self.solve_base(self.n_above(), observer);
+        self.keep(&base.start, base.tile_fraction);
+        base
+    }
+
+    fn keep(&self, start: &LevelStart, tile_fraction: f64) {
+        if let Some(checkpoint) = self.setup.checkpoint {
+            keep(checkpoint, start, tile_fraction);
+        }
     }
 
     fn n_above(&self) -> usize {
@@ -85,12 +91,13 @@ impl<'a> NestedIteration<'a> {
 
     /// Solves all levels but the finest, which starts from them.
     pub(super) fn prepare(&self, base: BaseStart, observer: &dyn Observer) -> LevelStart {
-        let mut start = base.start;
-        for finer in (1..self.n_above()).rev() {
-            start.announce(finer, observer);
+        let BaseStart { mut start, tile_fraction } = base;
+        for finer in (1..=self.n_above() - self.setup.n_levels(start.grid)).rev() {
+            announce(&start, finer, observer);
             start = self.solve_level(start, finer, observer);
+            self.keep(&start, tile_fraction);
         }
-        start.announce(0, observer);
+        announce(&start, 0, observer);
         start
     }
 
@@ -136,7 +143,7 @@ impl<'a> NestedIteration<'a> {
         let (tiles, grid) = (TileSet::full(sides_of(base.grid())), self.ladder().grid(1));
         let start = LevelStart {
             grid,
-            mesh: prolongation::refine_all(&tiles, &function, grid),
+            mesh: prolongation::refine_base(&tiles, &function, grid, self.setup.ranks),
             contact_gap: outcome.contact_gap,
             energy_length: outcome.energy_length(),
             levels,
@@ -171,7 +178,7 @@ impl<'a> NestedIteration<'a> {
             let refined = self.setup.refined(&level.fields(), true);
             prolongation::refine_some(elements, pressure, &function, refined)
         } else {
-            prolongation::refine_all(elements.finest(), &function, grid)
+            prolongation::refine_all(elements, &function, grid)
         }
     }
 
@@ -190,12 +197,10 @@ impl<'a> NestedIteration<'a> {
     }
 }
 
-impl LevelStart {
-    /// Tells the observer that the level begins; there are `finer` levels above it.
-    fn announce(&self, finer: usize, observer: &dyn Observer) {
-        let level = self.levels.len();
-        observer.notify(&Event::Level { grid: self.grid, level, n_levels: level + 1 + finer });
-    }
+/// Tells the observer that a level begins; there are `finer` levels above it.
+fn announce(start: &LevelStart, finer: usize, observer: &dyn Observer) {
+    let level = start.levels.len();
+    observer.notify(&Event::Level { grid: start.grid, level, n_levels: level + 1 + finer });
 }
 
 /// Part of the squares of `side` × `side` elements in which the edge function of a contact is not zero.

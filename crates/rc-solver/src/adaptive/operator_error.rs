@@ -1,7 +1,6 @@
 //! What the error of the split kernel does to a certificate.
 
-use rc_quadtree::Elements;
-
+use super::mesh::Mesh;
 use super::roughness::roughness;
 use super::split::GapSplit;
 use crate::problem::Problem;
@@ -26,7 +25,7 @@ pub(super) struct PressureScale {
 
 impl PressureScale {
     pub(super) fn new(
-        (elements, pressure): (&Elements, &[f64]),
+        (elements, pressure): (&Mesh, &[f64]),
         n_levels: usize,
         displacement: f64,
         energy_length: f64,

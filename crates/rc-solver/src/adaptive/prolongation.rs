@@ -3,28 +3,34 @@
 //! The edge function φ of [`crate::uniform`]'s prolongation is interpolated: p² inside, and -c² times the distance to the edge
 //! outside, which is linear across the edge of a contact.
 
-use rayon::prelude::*;
-use rc_core::Grid;
-use rc_quadtree::{CELLS, Elements, TILE, TileSet, prolong, prolong_onto};
+use std::ops::Range;
 
+use rayon::prelude::*;
+use rc_comm::Ranks;
+use rc_core::Grid;
+use rc_quadtree::{CELLS, Elements, TILE, TileSet, prolong, prolong_onto, prolong_some};
+
+use super::deal::Deal;
 use super::ladder::sides_of;
+use super::mesh::Mesh;
 use crate::uniform::edge_function_outside;
 
 /// Elements, and the pressure that an iteration on them starts from; the pressure is zero everywhere else.
 pub(super) struct MeshStart {
-    pub(super) elements: Elements,
+    pub(super) elements: Mesh,
     pub(super) pressure: Vec<f64>,
 }
 
 /// φ on the elements, from pressure and gap there.
-pub(super) fn edge_function(elements: &Elements, pressure: &[f64], gap: &[f64], contact_gap: f64) -> Vec<f64> {
+pub(super) fn edge_function(mesh: &Mesh, pressure: &[f64], gap: &[f64], contact_gap: f64) -> Vec<f64> {
     let mut function = vec![0.0; pressure.len()];
-    for (coarser, tiles) in elements.levels().iter().enumerate() {
-        let (cells, spacing) = (elements.cells(coarser), elements.side(coarser));
+    let around = mesh.surroundings(pressure);
+    for (coarser, places, cells) in mesh.own_levels() {
+        let spacing = mesh.side(coarser);
         let gaps = gap[cells.clone()].par_chunks(CELLS);
-        let sinks = function[cells].par_chunks_mut(CELLS).zip(gaps).zip(tiles.places());
+        let sinks = function[cells].par_chunks_mut(CELLS).zip(gaps).zip(places);
         sinks.for_each(|((values, gaps), &place)| {
-            let patch = elements.around(pressure, coarser, place, 0.0);
+            let patch = around.elements.around(&around.values, coarser, place, 0.0);
             for (cell, (value, gap)) in values.iter_mut().zip(gaps).enumerate() {
                 let (x, y) = (TILE + cell % TILE, TILE + cell / TILE);
                 let here = patch[y][x];
@@ -40,26 +46,62 @@ pub(super) fn edge_function(elements: &Elements, pressure: &[f64], gap: &[f64], 
     function
 }
 
-/// The start on the elements of the next finer `grid`, where there is contact or nearly, from φ on tiles of one size.
-pub(super) fn refine_all(tiles: &TileSet, function: &[f64], grid: Grid) -> MeshStart {
-    let (fine, mut pressure) = prolong(tiles, function, far_from_contact(function), sides_of(grid));
+/// The start on the elements of the next finer `grid`, where there is contact or nearly, from φ on all tiles of the base grid, which all ranks
+/// have.
+pub(super) fn refine_base(tiles: &TileSet, function: &[f64], grid: Grid, ranks: &Ranks) -> MeshStart {
+    let elsewhere = far_from_contact(function, &Ranks::alone());
+    let own = Deal::equal(tiles.len(), ranks).range(ranks.rank());
+    refined(tiles, own, (function, elsewhere), grid, ranks)
+}
+
+/// The same from φ on elements of one size.
+pub(super) fn refine_all(mesh: &Mesh, function: &[f64], grid: Grid) -> MeshStart {
+    let elsewhere = far_from_contact(function, mesh.ranks());
+    let around = mesh.surroundings(function);
+    let tiles = around.elements.finest();
+    let own = around.own_tiles(mesh);
+    refined(tiles, own, (&around.values, elsewhere), grid, mesh.ranks())
+}
+
+/// The start under the `own` ones of some tiles.
+fn refined(
+    tiles: &TileSet,
+    own: Range<usize>,
+    (function, elsewhere): (&[f64], f64),
+    grid: Grid,
+    ranks: &Ranks,
+) -> MeshStart {
+    let sides = sides_of(grid);
+    if ranks.are_alone() {
+        let (fine, mut pressure) = prolong(tiles, function, elsewhere, sides);
+        to_pressure(&mut pressure);
+        return MeshStart { elements: Elements::uniform(fine).into(), pressure };
+    }
+    let children = prolong_some(tiles, own, function, elsewhere);
+    let places = children.iter().map(|(place, _)| *place).collect();
+    let elements = Mesh::new(Elements::uniform(Mesh::tiles_of_places(sides, places, ranks)), ranks);
+    let tiles = children.iter().map(|(place, values)| (*place, values.as_slice()));
+    let mut pressure = elements.delivered(tiles, 0.0);
     to_pressure(&mut pressure);
-    MeshStart { elements: Elements::uniform(fine), pressure }
+    MeshStart { elements, pressure }
 }
 
 /// The start on `refined`, whose smallest elements are quarters of those of `elements`. Elements that stay keep their `pressure`;
-/// that of new ones comes from φ.
+/// that of new ones comes from φ. Elements are of several sizes, so that this rank is alone.
 pub(super) fn refine_some(elements: &Elements, pressure: &[f64], function: &[f64], refined: Elements) -> MeshStart {
     let mut start = elements.moved(&refined, pressure, 0.0);
-    prolong_onto(elements, function, far_from_contact(function), &refined, &mut start);
+    prolong_onto(elements, function, far_from_contact(function, &Ranks::alone()), &refined, &mut start);
     to_pressure(&mut start[refined.cells(0)]);
-    MeshStart { elements: refined, pressure: start }
+    MeshStart { elements: refined.into(), pressure: start }
 }
 
 /// φ where no element is: there is no contact for a long way.
-fn far_from_contact(function: &[f64]) -> f64 {
-    let contact: Vec<f64> = function.iter().copied().filter(|&value| value > 0.0).collect();
-    -contact.iter().sum::<f64>() / contact.len().max(1) as f64
+fn far_from_contact(function: &[f64], ranks: &Ranks) -> f64 {
+    let [sum, n] = ranks.fold([-0.0, 0.0], |sums| {
+        let contact = function.iter().copied().filter(|&value| value > 0.0);
+        contact.fold(sums, |[sum, n], value| [sum + value, n + 1.0])
+    });
+    -sum / n.max(1.0)
 }
 
 /// Inside contact φ is the square of the pressure.

@@ -2,16 +2,18 @@
 
 use std::sync::Arc;
 
+use rc_comm::Ranks;
 use rc_core::Grid;
 use rc_quadtree::{ContactFields, Elements, RING, divide};
 
 use super::AdaptiveParams;
-use super::element_blocks::blocks_of;
+use super::checkpoint::Checkpoint;
 use super::exclusion::{SmoothDisplacement, possible_contact};
 use super::gap_operator::{GapOperator, GapTables, PreparedGap};
 use super::ground::Ground;
 use super::heights::Heights;
 use super::ladder;
+use super::mesh::Mesh;
 use super::operator::{Hierarchy, Prepared, Reach, Tables};
 use super::prolongation::MeshStart;
 use super::scaled_operator::ScaledOperator;
@@ -30,12 +32,25 @@ pub(super) struct Splits {
     pub(super) certified: GapSplit,
 }
 
+/// Where a problem is solved.
+#[derive(Clone, Default)]
+pub(crate) struct Place {
+    /// Among which the mesh is dealt.
+    pub(crate) ranks: Ranks,
+    /// Keeps what each level leaves for the next.
+    pub(crate) checkpoint: Option<Arc<dyn Checkpoint>>,
+}
+
 /// Heights, load and operators of a problem.
 pub(super) struct Setup<'a> {
     pub(super) heights: &'a Heights<'a>,
     pub(super) problem: Problem,
     pub(super) params: IterationParams,
     pub(super) border_level: usize,
+    /// Among which elements are dealt.
+    pub(super) ranks: &'a Ranks,
+    /// Keeps what each level leaves for the next.
+    pub(super) checkpoint: Option<&'a dyn Checkpoint>,
     /// L, a few percent off on rough pressures, and its approximate inverse, for corrections.
     pub(super) quick: &'a Prepared<f32>,
     pub(super) preconditioner: &'a Prepared<f32>,
@@ -46,7 +61,12 @@ pub(super) struct Setup<'a> {
 }
 
 impl<'a> Setup<'a> {
-    pub(super) fn new(ground: &'a Ground<'_>, problem: Problem, params: &AdaptiveParams, splits: Splits) -> Self {
+    pub(super) fn new(
+        (ground, place): (&'a Ground<'_>, &'a Place),
+        problem: Problem,
+        params: &AdaptiveParams,
+        splits: Splits,
+    ) -> Self {
         let Ground { heights, kernels, .. } = ground;
         let Splits { fresh, certified } = splits;
         Self {
@@ -58,6 +78,8 @@ impl<'a> Setup<'a> {
             problem,
             params: params.solve,
             border_level: params.border_level,
+            ranks: &place.ranks,
+            checkpoint: place.checkpoint.as_deref(),
         }
     }
 
@@ -76,8 +98,8 @@ impl<'a> Setup<'a> {
         ladder::n_levels(self.base(), grid)
     }
 
-    pub(super) fn hierarchy(&self, elements: &Elements, reach: Reach) -> Arc<Hierarchy> {
-        Arc::new(Hierarchy::new(self.base(), elements.clone(), reach))
+    pub(super) fn hierarchy(&self, mesh: &Mesh, reach: Reach) -> Arc<Hierarchy> {
+        Arc::new(Hierarchy::new(self.base(), mesh.clone(), reach))
     }
 
     /// About what pressures like that of `start` have for a mean.
@@ -85,7 +107,7 @@ impl<'a> Setup<'a> {
         let n_cell = start.elements.finest().sides().into_iter().product::<usize>() as f64;
         match self.problem.control {
             Control::MeanPressure(mean) => mean,
-            Control::Penetration(_) => mean_pressure(n_cell, &blocks_of(&start.elements), &start.pressure),
+            Control::Penetration(_) => mean_pressure(n_cell, &start.elements.layout(), &start.pressure),
         }
     }
 
@@ -121,7 +143,7 @@ impl<'a> Setup<'a> {
         extent: [usize; 2],
         gap: f64,
     ) -> Vec<[u32; 2]> {
-        possible_contact(smooth, self.heights, gap - self.problem.offset(), extent)
+        possible_contact(smooth, self.heights, gap - self.problem.offset(), (extent, self.ranks))
     }
 
     /// Whether a pressure has reached the hardness.
@@ -132,7 +154,7 @@ impl<'a> Setup<'a> {
     /// The mesh with elements divided wherever they are too coarse for the pressure and the gap on them; with `deepen` the smallest
     /// too.
     pub(super) fn refined(&self, fields: &ContactFields<'_>, deepen: bool) -> Elements {
-        let (heights, pressure) = (self.heights.curvature(), maximum(fields.pressure));
+        let (heights, pressure) = (self.heights.curvature(), parallel::maximum(fields.pressure, 0.0));
         let hardness = self.problem.hardness;
         // No pressure is nearer than the ring: ∫ p |∂²(1/πr)/∂x²| dA ≤ max p ∫ 2/(π r³) dA.
         let of_displacement = |side: f64| 4.0 * pressure / ((RING - 1) as f64 * side);
@@ -150,9 +172,4 @@ impl<'a> Setup<'a> {
         }
         divide(fields.elements, chosen, deepen, self.certified().reach().stencil)
     }
-}
-
-/// Largest of the values; zero at least.
-pub(super) fn maximum(values: &[f64]) -> f64 {
-    parallel::maximum(values, 0.0)
 }

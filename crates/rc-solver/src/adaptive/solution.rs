@@ -7,9 +7,10 @@ use rayon::prelude::*;
 use rc_core::{DVec2, Grid};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, put_tile};
 
-use super::element_blocks::blocks_of;
+use super::bands::{Receiver, Rows, TilesByRow, bands, hand_out};
 use super::kernels::Kernels;
 use super::ladder::sides_of;
+use super::mesh::Mesh;
 use super::operator::{Hierarchy, Prepared, Tables, TileCorrections, TileResponse};
 use super::scaled_operator::ScaledOperator;
 use crate::contact_area::PlasticEdges;
@@ -20,7 +21,7 @@ use crate::{ContactArea, ContactElement, Observables, SolveInfo};
 
 /// A contact problem solved on an adaptive mesh.
 ///
-/// Only what contact touches is stored; [`AdaptiveSolution::pressure_rows`] gives the rows of the finest grid one tile high at
+/// Only what contact touches is stored, over ranks by the one that has it; [`AdaptiveSolution::pressure_rows`] gives the rows of the finest grid one tile high at
 /// a time, for files and pictures.
 #[derive(Clone, Debug)]
 pub(crate) struct AdaptiveSolution {
@@ -30,7 +31,7 @@ pub(crate) struct AdaptiveSolution {
     pub(super) grid: Grid,
     /// The grid of the smallest elements.
     pub(super) finest: Grid,
-    pub(super) elements: Elements,
+    pub(super) elements: Mesh,
     pub(super) pressure: Vec<f64>,
     pub(super) area: ContactArea,
     /// The greatest pressure; infinite without a hardness.
@@ -51,11 +52,14 @@ impl AdaptiveSolution {
         self.grid
     }
 
-    /// Elements in contact.
+    /// Elements in contact; over ranks those of this one.
     pub(crate) fn elements(&self) -> impl Iterator<Item = ContactElement> + '_ {
-        self.elements.tiles().flat_map(move |(coarser, tile, start)| {
+        let tiles = self.elements.own_levels().flat_map(|(coarser, places, values)| {
+            places.iter().enumerate().map(move |(tile, place)| (coarser, place, values.start + tile * CELLS))
+        });
+        tiles.flat_map(move |(coarser, place, start)| {
             let side = self.elements.side(coarser);
-            let [column, row] = self.elements.levels()[coarser].places()[tile].map(|i| f64::from(i) * TILE as f64);
+            let [column, row] = place.map(|i| f64::from(i) * TILE as f64);
             let cells = self.pressure[start..start + CELLS].iter().enumerate();
             cells.filter(|&(_, &pressure)| pressure > 0.0).map(move |(cell, &pressure)| {
                 let x = (column + (cell % TILE) as f64 + 0.5) * side;
@@ -68,7 +72,7 @@ impl AdaptiveSolution {
     /// Number of elements in contact.
     #[must_use]
     pub(crate) fn n_elements(&self) -> usize {
-        self.pressure.par_iter().filter(|&&p| p > 0.0).count()
+        self.elements.ranks().count(self.pressure.par_iter().filter(|&&p| p > 0.0).count())
     }
 
     /// Whether every element is in contact, and elements are everywhere.
@@ -92,12 +96,16 @@ impl AdaptiveSolution {
     }
 
     /// Tiles of the grid, and the mean pressure on its cells.
-    pub(super) fn on_grid(&self) -> (TileSet, Cow<'_, [f64]>) {
-        self.elements.on_coarsest(&self.pressure)
+    pub(super) fn on_grid(&self) -> (Mesh, Cow<'_, [f64]>) {
+        if !self.elements.ranks().are_alone() {
+            return (self.elements.clone(), Cow::Borrowed(&self.pressure));
+        }
+        let (tiles, pressure) = self.elements.on_coarsest(&self.pressure);
+        (Elements::uniform(tiles).into(), pressure)
     }
 
     /// Tiles of the smallest elements wherever there are elements, and the pressure on them: a larger element stands for its parts.
-    pub(super) fn on_finest(&self) -> (TileSet, Cow<'_, [f64]>) {
+    pub(super) fn on_finest(&self) -> (Mesh, Cow<'_, [f64]>) {
         let levels = self.elements.levels();
         let parts = |coarser: usize, tile: usize| {
             let [column, row] = levels[coarser].places()[tile].map(|i| i << coarser);
@@ -117,7 +125,7 @@ impl AdaptiveSolution {
                 }
             }
         }
-        (tiles, Cow::Owned(values))
+        (Elements::uniform(tiles).into(), Cow::Owned(values))
     }
 
     /// Hands out the pressure on the grid, in the mean over smaller elements, eight rows at a time, in order: the index of the
@@ -125,9 +133,20 @@ impl AdaptiveSolution {
     ///
     /// # Errors
     /// What `take` returns.
-    pub(crate) fn pressure_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
-        let (tiles, pressure) = self.on_grid();
-        tiles.rows(&pressure, take)
+    pub(crate) fn pressure_rows<E>(
+        &self,
+        receiver: Receiver,
+        mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let (mesh, pressure) = self.on_grid();
+        let (tiles, ranks) = (mesh.finest(), mesh.ranks());
+        let own = &tiles.places()[mesh.own_tiles()];
+        let by_row = TilesByRow::new(own);
+        for (band, to) in bands(tiles, ranks, receiver) {
+            let of_band = by_row.of(&band).map(|tile| (own[tile], &pressure[tile * CELLS..][..CELLS]));
+            hand_out((tiles, ranks), (band.clone(), to), of_band, &mut take)?;
+        }
+        Ok(())
     }
 
     /// Hands out the displacement v of the grid's pressure, rows of tiles at a time as [`AdaptiveSolution::pressure_rows`]
@@ -139,33 +158,31 @@ impl AdaptiveSolution {
     pub(super) fn displacement_rows<E>(
         &self,
         kernels: &Kernels,
-        finest: bool,
+        rows: Rows,
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        let (own_tiles, pressure) = if finest { self.on_finest() } else { self.on_grid() };
-        let ([nx, ny], [columns, n_rows]) = (own_tiles.sides(), own_tiles.extent());
-        let own = Elements::uniform(own_tiles);
+        let (own, pressure) = if rows.finest { self.on_finest() } else { self.on_grid() };
+        let (own_tiles, ranks) = (own.finest(), own.ranks());
+        let ([nx, ny], [columns, _]) = (own_tiles.sides(), own_tiles.extent());
         let prepared = kernels.response();
-        let tables = prepared.tables(if finest { self.finest } else { self.grid });
-        // As many rows of tiles at once as about a million cells hold.
-        let at_once = (1_000_000 / (TILE * nx)).max(1);
-        for first in (0..n_rows).step_by(at_once) {
-            let band = first..(first + at_once).min(n_rows);
+        let tables = prepared.tables(if rows.finest { self.finest } else { self.grid });
+        for (band, to) in bands(own_tiles, ranks, rows.receiver) {
             let more = band.clone().flat_map(|row| (0..columns).map(move |column| [column as u32, row as u32]));
-            let tiles = TileSet::new([nx, ny], own.finest().places().iter().copied().chain(more).collect());
-            let hierarchy = Arc::new(Hierarchy::new(self.base, Elements::uniform(tiles), prepared.reach()));
-            let mut values = own.moved(hierarchy.elements(), &pressure, 0.0);
-            let tiles = hierarchy.elements().finest();
+            let tiles = TileSet::new([nx, ny], own_tiles.places().iter().copied().chain(more).collect());
+            let mesh = Mesh::new(Elements::uniform(tiles), ranks);
+            let hierarchy = Arc::new(Hierarchy::new(self.base, mesh.clone(), prepared.reach()));
+            let mut values = own.moved(&mesh, &pressure, 0.0);
             // Where the pressure is on part of the cell, the mean over all of it says nothing of its size.
             let mean = if own.cover_cell() { self.info.mean_pressure } else { 0.0 };
             let size = self.info.penetration_full_contact;
-            let mut fresh = ScaledOperator::new(Arc::clone(&hierarchy), &tables, mean, size);
+            let mut fresh = ScaledOperator::new(hierarchy, &tables, mean, size);
             write_blocks(&mut fresh, values.chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
             fresh.apply();
             read_blocks(&fresh, values.chunks_mut(BLOCK_CELLS), |v, cells| v.copy_from_slice(cells));
-            for row in band {
-                take(row * TILE, &row_of_tiles(tiles, &values, row))?;
-            }
+            let places = &mesh.finest().places()[mesh.own_tiles()];
+            let by_row = TilesByRow::new(places);
+            let of_band = by_row.of(&band).map(|tile| (places[tile], &values[tile * CELLS..][..CELLS]));
+            hand_out((own_tiles, ranks), (band.clone(), to), of_band, &mut take)?;
         }
         Ok(())
     }
@@ -179,7 +196,8 @@ impl AdaptiveSolution {
     /// Evaluates the observables, as [`Observables::of`] does for a solution on a uniform grid.
     #[must_use]
     pub(crate) fn observables(&self) -> Observables {
-        let max_pressure = self.pressure.par_iter().copied().reduce(|| 0.0, f64::max);
+        let own = self.pressure.par_iter().copied().reduce(|| 0.0, f64::max);
+        let max_pressure = self.elements.ranks().maximum(own, 0.0);
         let rms_pressure = rms_pressure(&self.elements, &self.pressure);
         Observables::new(&self.info, (self.area, self.plastic), rms_pressure, max_pressure)
     }
@@ -224,9 +242,9 @@ pub(super) fn row_of_tiles(tiles: &TileSet, values: &[f64], row: usize) -> Vec<f
 }
 
 /// Root mean square over the whole cell.
-pub(super) fn rms_pressure(elements: &Elements, pressure: &[f64]) -> f64 {
+pub(super) fn rms_pressure(elements: &Mesh, pressure: &[f64]) -> f64 {
     let squares = pressure.par_chunks(BLOCK_CELLS).map(|p| [p.iter().map(|p| p * p).sum()]).collect();
-    let [squares] = blocks_of(elements).total(squares);
+    let [squares] = elements.layout().total(squares);
     let n_cell: usize = elements.finest().sides().into_iter().product();
     (squares / n_cell as f64).sqrt()
 }

@@ -87,6 +87,43 @@ impl EdgeSums {
 }
 
 impl EdgeSums {
+    /// The sums as ranks exchange them: counts are exact.
+    pub(crate) fn to_values(self) -> [f64; 13] {
+        let Self { n_contact, edges, along_x, diagonals, known, shift, deviation, squares, turns, .. } = self;
+        let Self { sharp, known_sharp, shift_of_sharp, .. } = self;
+        let [n_contact, edges, along_x, diagonals] = [n_contact, edges, along_x, diagonals].map(|n| n as f64);
+        let [first, second, sharp, known_sharp] = [known[0], known[1], sharp, known_sharp].map(|n| n as f64);
+        let counts = [n_contact, edges, along_x, diagonals, first, second, sharp, known_sharp, turns as f64];
+        let mut values = [0.0; 13];
+        values[..9].copy_from_slice(&counts);
+        values[9..].copy_from_slice(&[shift, deviation, squares, shift_of_sharp]);
+        values
+    }
+
+    /// The reverse of [`EdgeSums::to_values`].
+    pub(crate) fn from_values(values: [f64; 13]) -> Self {
+        let [n_contact, edges, along_x, diagonals, first, second, sharp, known_sharp] =
+            std::array::from_fn(|i| values[i] as usize);
+        let (known, turns) = ([first, second], values[8] as isize);
+        let [shift, deviation, squares, shift_of_sharp] = std::array::from_fn(|i| values[9 + i]);
+        Self {
+            n_contact,
+            edges,
+            along_x,
+            diagonals,
+            known,
+            shift,
+            deviation,
+            squares,
+            turns,
+            sharp,
+            known_sharp,
+            shift_of_sharp,
+        }
+    }
+}
+
+impl EdgeSums {
     /// Adds the edge between a plastic element and its neighbour out of contact, of which the gaps are these.
     fn add_sharp(&mut self, inside: f64, outside: f64) {
         self.sharp += 1;

@@ -3,13 +3,19 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Blocks of so many values; the last may be shorter. All elements of a block are of one size.
+use rc_comm::Ranks;
+
+use crate::parallel;
+
+/// Blocks of so many values; the last may be shorter. All elements of a block are of one size. Over ranks the blocks are those of this rank, which
+/// follow those of the ranks before it.
 #[derive(Clone, Debug)]
 pub(crate) struct BlockLayout {
     len: usize,
     /// Area of an element of each block, in units of the smallest; empty when all are of that size.
     areas: Arc<[f64]>,
     places: Places,
+    ranks: Ranks,
 }
 
 /// Where elements are.
@@ -29,7 +35,7 @@ const RUN: usize = 8;
 impl BlockLayout {
     /// Of elements of one size that may be anywhere.
     pub(crate) fn of(len: usize) -> Self {
-        Self { len, areas: Arc::default(), places: Places::Anywhere }
+        Self { len, areas: Arc::default(), places: Places::Anywhere, ranks: Ranks::alone() }
     }
 
     /// Whole rows of a grid of `nx` × `ny` elements.
@@ -47,6 +53,16 @@ impl BlockLayout {
     pub(crate) fn with_runs(self, run: usize, centres: Vec<[f32; 2]>, sides: [usize; 2]) -> Self {
         debug_assert!(self.len.is_multiple_of(run), "blocks of whole runs");
         Self { places: Places::Runs { run, centres: centres.into(), sides }, ..self }
+    }
+
+    /// Dealt among these ranks.
+    pub(crate) fn over(self, ranks: &Ranks) -> Self {
+        Self { ranks: ranks.clone(), ..self }
+    }
+
+    /// The ranks that blocks are dealt among.
+    pub(crate) fn ranks(&self) -> &Ranks {
+        &self.ranks
     }
 
     /// The largest elements along both axes of the cell, as far as anybody knows.
@@ -91,14 +107,25 @@ impl BlockLayout {
 
     /// Area-weighted sums from those of each block, added in the order of blocks.
     pub(crate) fn total<const N: usize>(&self, blocks: Vec<[f64; N]>) -> [f64; N] {
-        let mut sum = [0.0; N];
-        for (i, block) in blocks.into_iter().enumerate() {
-            let area = self.area(i);
-            for (sum, value) in sum.iter_mut().zip(block) {
-                *sum += area * value;
+        self.ranks.fold([0.0; N], |mut sum| {
+            for (i, block) in blocks.into_iter().enumerate() {
+                let area = self.area(i);
+                for (sum, value) in sum.iter_mut().zip(block) {
+                    *sum += area * value;
+                }
             }
-        }
-        sum
+            sum
+        })
+    }
+
+    /// Largest of the values of a vector, but not less than `at_least`; NaN is passed over.
+    pub(crate) fn maximum(&self, values: &[f64], at_least: f64) -> f64 {
+        self.ranks.maximum(parallel::maximum(values, at_least), at_least)
+    }
+
+    /// Smallest of the values of a vector; NaN is passed over.
+    pub(crate) fn minimum(&self, values: &[f64]) -> f64 {
+        -self.ranks.maximum(-parallel::minimum(values), f64::NEG_INFINITY)
     }
 }
 

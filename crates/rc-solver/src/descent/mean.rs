@@ -36,7 +36,7 @@ impl Descent<'_> {
             Control::Penetration(penetration) if penetration >= self.problem.h_max - self.problem.h_mean => {
                 parallel::maximum(&self.pressure, 0.0) - self.problem.hardness
             }
-            _ => parallel::minimum(&self.pressure),
+            _ => self.layout.minimum(&self.pressure),
         }
     }
 

@@ -178,15 +178,29 @@ impl Descent<'_> {
             });
             (n_clipped, loads)
         });
-        let mut loads = vec![Load::default(); squares.len()];
-        let mut n_clipped = 0;
-        for (i, (n, of_block)) in of_blocks.into_iter().enumerate() {
-            n_clipped += u64::from(n);
-            for (square, load) in of_block {
-                loads[square] = loads[square].plus(load, self.layout.area(i));
+        self.add_loads(of_blocks)
+    }
+
+    /// How many pressures were changed, and the load of each square, from those of blocks.
+    fn add_loads(&self, of_blocks: Vec<(u32, Vec<(usize, Load)>)>) -> (u64, Vec<Load>) {
+        let (layout, ranks) = (&self.layout, self.layout.ranks());
+        let mut loads = vec![Load::default(); self.squares().len()];
+        let n_clipped = ranks.count(of_blocks.iter().map(|(n, _)| *n as usize).sum());
+        let of_blocks = of_blocks.into_iter().map(|(_, of_block)| of_block).enumerate();
+        let all = of_blocks.flat_map(|(i, of_block)| of_block.into_iter().map(move |load| (i, load)));
+        if ranks.are_alone() {
+            for (i, (square, load)) in all {
+                loads[square] = loads[square].plus(load, layout.area(i));
+            }
+        } else {
+            // In the order of blocks, those of other ranks included. All areas are 1.
+            let mine = all.flat_map(|(_, (square, load))| [square as f64, load.clipped, load.added]).collect();
+            for &[square, clipped, added] in ranks.concatenate(mine).as_chunks::<3>().0 {
+                let square = &mut loads[square as usize];
+                *square = square.plus(Load { clipped, added }, 1.0);
             }
         }
-        (n_clipped, loads)
+        (n_clipped as u64, loads)
     }
 
     pub(super) fn squares(&self) -> Squares {

@@ -100,7 +100,7 @@ impl Descent<'_> {
     fn overlap_of_load(&mut self, wanted: f64) -> GapSums {
         let n_cell = self.n_cell();
         // A coarse level may not reach as high as the finest.
-        let highest = parallel::maximum(self.heights, f64::NEG_INFINITY);
+        let highest = self.layout.maximum(self.heights, f64::NEG_INFINITY);
         let range = self.problem.depth_range();
         let mut search = DepthSearch::new(range);
         for attempt in 1..=MAX_OVERLAPS {

@@ -120,21 +120,55 @@ impl GapSums {
         let empty = sums
             .first()
             .map_or(Self::empty(f64::INFINITY, f64::INFINITY), |block| Self::empty(block.pressed, block.hardness));
-        sums.into_iter().enumerate().fold(empty, |sum, (i, block)| {
-            let area = layout.area(i);
-            Self {
-                pressure: sum.pressure + area * block.pressure,
-                pressure_gap: sum.pressure_gap + area * block.pressure_gap,
-                pressure_overlap: sum.pressure_overlap + area * block.pressure_overlap,
-                min_gap: smaller(sum.min_gap, block.min_gap),
-                contact_gap: sum.contact_gap + area * block.contact_gap,
-                n_contact: sum.n_contact + area * block.n_contact,
-                max_pressure: sum.max_pressure.max(block.max_pressure),
-                max_pressed_gap: sum.max_pressed_gap.max(block.max_pressed_gap),
-                plastic: sum.plastic.plus(block.plastic, area),
-                ..empty
-            }
-        })
+        let total = layout.ranks().fold(empty.to_values(), |so_far| {
+            let first = empty.with_values(so_far);
+            sums.into_iter().enumerate().fold(first, |sum, (i, block)| sum.plus(&block, layout.area(i))).to_values()
+        });
+        empty.with_values(total)
+    }
+
+    /// With a block whose elements have this area.
+    fn plus(self, block: &Self, area: f64) -> Self {
+        Self {
+            pressure: self.pressure + area * block.pressure,
+            pressure_gap: self.pressure_gap + area * block.pressure_gap,
+            pressure_overlap: self.pressure_overlap + area * block.pressure_overlap,
+            min_gap: smaller(self.min_gap, block.min_gap),
+            contact_gap: self.contact_gap + area * block.contact_gap,
+            n_contact: self.n_contact + area * block.n_contact,
+            max_pressure: self.max_pressure.max(block.max_pressure),
+            max_pressed_gap: self.max_pressed_gap.max(block.max_pressed_gap),
+            plastic: self.plastic.plus(block.plastic, area),
+            ..self
+        }
+    }
+
+    /// The sums as ranks exchange them.
+    fn to_values(self) -> [f64; 12] {
+        let Self { pressure, pressure_gap, pressure_overlap, min_gap, contact_gap, n_contact, .. } = self;
+        let Self { max_pressure, max_pressed_gap, plastic, .. } = self;
+        let PlasticSums { n, gap, overlap, max_gap } = plastic;
+        let first = [pressure, pressure_gap, pressure_overlap, min_gap, contact_gap, n_contact];
+        let rest = [max_pressure, max_pressed_gap, n, gap, overlap, max_gap];
+        std::array::from_fn(|i| if i < 6 { first[i] } else { rest[i - 6] })
+    }
+
+    /// These sums from [`GapSums::to_values`].
+    fn with_values(self, values: [f64; 12]) -> Self {
+        let [pressure, pressure_gap, pressure_overlap, min_gap, contact_gap, n_contact, rest @ ..] = values;
+        let [max_pressure, max_pressed_gap, n, gap, overlap, max_gap] = rest;
+        Self {
+            pressure,
+            pressure_gap,
+            pressure_overlap,
+            min_gap,
+            contact_gap,
+            n_contact,
+            max_pressure,
+            max_pressed_gap,
+            plastic: PlasticSums { n, gap, overlap, max_gap },
+            ..self
+        }
     }
 
     /// Pressure-weighted mean of the gap, over elements that are not plastic.

@@ -36,6 +36,9 @@ pub(super) fn plan<'a>(
             Ok((chosen, MethodReason::AskedFor(method)))
         }
     }?;
+    if !problem.place.ranks.are_alone() && !matches!(chosen, ChosenMethod::Adaptive(_)) {
+        return Err(SolveError::OneRank { reason });
+    }
     Ok(Plan { problem, params: *params, bound, chosen, reason, shared })
 }
 
@@ -98,7 +101,7 @@ impl<'a> Choice<'a, '_> {
     fn prepare(&self) -> Result<AdaptiveProblem<'a>, AdaptiveError> {
         let params = self.params.adaptive(self.bound);
         let ground = self.shared.ground(&self.problem.heights, &params)?;
-        AdaptiveProblem::on(ground, self.problem.load(), &params)
+        AdaptiveProblem::on(ground, self.problem.load(), &params, &self.problem.place)
     }
 
     /// The uniform grid where the adaptive method does not fit, if that helps.

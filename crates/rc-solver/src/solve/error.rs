@@ -4,7 +4,7 @@ use rc_core::{Grid, GridError};
 use thiserror::Error;
 
 use super::Solution;
-use crate::{AdaptiveError, Certificate, GaussSeidelError, Method, ProblemError};
+use crate::{AdaptiveError, Certificate, GaussSeidelError, Method, MethodReason, ProblemError};
 
 /// A contact problem that was not solved.
 #[derive(Debug, Error)]
@@ -26,6 +26,12 @@ pub enum SolveError {
         method: Method,
         /// Name of the kernel.
         kernel: &'static str,
+    },
+    /// A method that does not share its work with other ranks.
+    #[error("over several ranks only the adaptive method solves, not {reason}; give the method adaptive, or one rank")]
+    OneRank {
+        /// The method, and why it would be chosen.
+        reason: MethodReason,
     },
     /// A border level is asked of a method without one.
     #[error("the {method} method does not divide elements at contact edges; only the adaptive method does")]

@@ -4,6 +4,7 @@ mod area_error;
 mod choice;
 mod cost;
 mod door;
+mod elements;
 mod error;
 mod memory;
 mod params;

@@ -75,6 +75,7 @@ impl<'a> Plan<'a> {
                 Ok(solution) => {
                     return converged(Solution::on_tiles(how(Method::Adaptive, reason), solution, adaptive));
                 }
+                Err(reason) if !problem.place.ranks.are_alone() => return Err(SolveError::OneRank { reason }),
                 Err(scattered) => (ChosenMethod::Uniform, scattered),
             },
             on_grid => (on_grid, reason),

@@ -1,9 +1,13 @@
 //! A contact problem: heights, half-space and load.
 
+use std::sync::Arc;
+
+use rc_comm::Ranks;
 use rc_core::{HeightSource, Kernel};
 use rc_kernel::Love;
 
 use crate::Control;
+use crate::adaptive::{Checkpoint, Place};
 use crate::problem::Load;
 
 /// A contact problem: heights, half-space and load.
@@ -28,13 +32,14 @@ pub struct ContactProblem<'a> {
     pub(super) kernel: &'a dyn Kernel,
     pub(super) control: Control,
     pub(super) hardness: f64,
+    pub(super) place: Place,
 }
 
 impl<'a> ContactProblem<'a> {
     /// The contact of `heights` (in λ) with the elastic half-space under a load. The kernel is [`Love`].
     #[must_use]
     pub fn new(heights: impl Into<HeightSource<'a>>, control: Control) -> Self {
-        Self { heights: heights.into(), kernel: &Love, control, hardness: f64::INFINITY }
+        Self { heights: heights.into(), kernel: &Love, control, hardness: f64::INFINITY, place: Place::default() }
     }
 
     /// The same problem with a hardness, in E*: no pressure is greater. It is the usual first model of plastic contact. Where the pressure is the
@@ -67,6 +72,40 @@ impl<'a> ContactProblem<'a> {
     pub fn with_kernel(self, kernel: &'a dyn Kernel) -> Self {
         Self { kernel, ..self }
     }
+
+    /// The same problem over ranks, which all solve it together: each has a part of the mesh, and calls the same functions in the same order, those of
+    /// the solution included. Only the adaptive method does so, with elements of one size on grids that halve. Digits do not depend on the
+    /// number of ranks.
+    ///
+    /// ```
+    /// use rc_comm::run_threads;
+    /// use rc_core::{Field, Grid, Silent};
+    /// use rc_solver::{ContactProblem, Control, Method, SolveParams};
+    ///
+    /// let wave = Field::from_fn(Grid::square(256)?, |at| 1e-3 * (std::f64::consts::TAU * at.x).cos());
+    /// let params = SolveParams::default().by(Method::Adaptive);
+    /// let area = |ranks| {
+    ///     let problem = ContactProblem::new(&wave, Control::MeanPressure(2e-4)).over(ranks);
+    ///     problem.solve(&params, &Silent).map(|solution| solution.area().fraction)
+    /// };
+    /// let alone = area(rc_comm::Ranks::alone())?;
+    /// for of_rank in run_threads(2, area)? {
+    ///     assert_eq!(of_rank?.to_bits(), alone.to_bits());
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn over(self, ranks: Ranks) -> Self {
+        Self { place: Place { ranks, ..self.place }, ..self }
+    }
+
+    /// The same problem with a place for what each level leaves for the next. A solve of the same problem goes on from the last level that was
+    /// kept there, on any number of ranks, to the same digits. What is kept is of this problem alone: the caller sees to that. Only
+    /// the adaptive method without a border level keeps anything.
+    #[must_use]
+    pub fn kept_in(self, checkpoint: Arc<dyn Checkpoint>) -> Self {
+        Self { place: Place { checkpoint: Some(checkpoint), ..self.place }, ..self }
+    }
 }
 
 impl std::fmt::Debug for ContactProblem<'_> {
@@ -76,6 +115,7 @@ impl std::fmt::Debug for ContactProblem<'_> {
             .field("kernel", &self.kernel.name())
             .field("control", &self.control)
             .field("hardness", &self.hardness)
+            .field("ranks", &self.place.ranks)
             .finish()
     }
 }

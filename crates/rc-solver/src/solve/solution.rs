@@ -3,10 +3,12 @@
 use std::convert::Infallible;
 use std::sync::OnceLock;
 
+use rc_comm::Ranks;
 use rc_core::{Field, Grid, Kernel, Operator};
 
+use super::elements;
 use super::response::{KernelOfGrid, Response};
-use crate::adaptive::{AdaptiveProblem, AdaptiveSolution};
+use crate::adaptive::{AdaptiveProblem, AdaptiveSolution, Receiver, Rows};
 use crate::gap_part::GapPart;
 use crate::solution::{GridSolution, Status};
 use crate::{Certificate, ContactArea, ContactElement, ErrorBound, Method, MethodReason, Observables, SolveInfo};
@@ -15,6 +17,9 @@ use crate::{Certificate, ContactArea, ContactElement, ErrorBound, Method, Method
 ///
 /// Pressures are in E*, lengths in λ, areas relative to the nominal area. Fields are on [`Solution::grid`]. Those of the adaptive method
 /// are made when they are first asked for; [`Solution::pressure_rows`] and [`Solution::gap_rows`] never hold them whole.
+///
+/// Over ranks ([`crate::ContactProblem::over`]) each has a part. All of them call the functions of a solution together; each gets the same numbers, rows go to
+/// the first of them, and elements are those of the rank.
 pub struct Solution<'a> {
     how: HowSolved,
     status: Status,
@@ -244,6 +249,15 @@ impl<'a> Solution<'a> {
         })
     }
 
+    /// Hands out the elements of [`Solution::elements`], over ranks those of all of them to the first, in order. Stops at the first error.
+    ///
+    /// # Errors
+    /// What `take` returns.
+    pub fn each_element<E>(&self, take: impl FnMut(ContactElement) -> Result<(), E>) -> Result<(), E> {
+        let elements = self.elements().into_iter().flatten();
+        elements::each_of_ranks(elements, &self.ranks(), take)
+    }
+
     /// Number of elements that carry unknowns: those in contact on an adaptive mesh, all of a uniform grid.
     #[must_use]
     pub fn n_elements(&self) -> usize {
@@ -295,7 +309,7 @@ impl<'a> Solution<'a> {
         match &self.pressures {
             Pressures::Grid { solution, .. } => &solution.pressure,
             Pressures::Tiles { .. } => {
-                self.pressure.get_or_init(|| collect(self.grid(), |take| self.pressure_rows(take)))
+                self.pressure.get_or_init(|| self.collect(self.grid(), |take| self.pressure_rows(take)))
             }
         }
     }
@@ -312,7 +326,7 @@ impl<'a> Solution<'a> {
     pub fn gap(&self) -> &Field {
         match &self.pressures {
             Pressures::Grid { solution, .. } if self.how.hardness.is_infinite() => &solution.gap,
-            _ => self.gap.get_or_init(|| collect(self.grid(), |take| self.gap_rows(take))),
+            _ => self.gap.get_or_init(|| self.collect(self.grid(), |take| self.gap_rows(take))),
         }
     }
 
@@ -322,7 +336,9 @@ impl<'a> Solution<'a> {
     pub fn finest_gap(&self) -> Option<Field> {
         match &self.pressures {
             Pressures::Tiles { solution, problem } if self.finest_grid() != self.grid() => {
-                Some(collect(self.finest_grid(), |take| problem.finest_gap_rows(solution, take)))
+                Some(self.collect(self.finest_grid(), |take| {
+                    problem.gap_rows(solution, GapPart::Open, Rows::finest(), take)
+                }))
             }
             _ => None,
         }
@@ -332,7 +348,7 @@ impl<'a> Solution<'a> {
     /// without one.
     #[must_use]
     pub fn plastic_gap(&self) -> &Field {
-        self.plastic_gap.get_or_init(|| collect(self.grid(), |take| self.plastic_gap_rows(take)))
+        self.plastic_gap.get_or_init(|| self.collect(self.grid(), |take| self.plastic_gap_rows(take)))
     }
 
     /// The displacement v on the grid, in λ, of mean zero. Takes one application of L the first time.
@@ -341,7 +357,7 @@ impl<'a> Solution<'a> {
         self.displacement.get_or_init(|| match &self.pressures {
             Pressures::Grid { solution, response } => response.displacement(&solution.pressure),
             Pressures::Tiles { solution, problem } => {
-                collect(self.grid(), |take| problem.displacement_rows(solution, take))
+                self.collect(self.grid(), |take| problem.displacement_rows(solution, Receiver::First, take))
             }
         })
     }
@@ -355,7 +371,18 @@ impl<'a> Solution<'a> {
         match (&self.pressures, self.pressure.get()) {
             (Pressures::Grid { solution, .. }, _) => take(0, solution.pressure.values()),
             (_, Some(pressure)) => take(0, pressure.values()),
-            (Pressures::Tiles { solution, .. }, None) => solution.pressure_rows(take),
+            (Pressures::Tiles { solution, .. }, None) => solution.pressure_rows(Receiver::First, take),
+        }
+    }
+
+    /// The same over ranks, with some rows for each rank: those that it takes follow each other, and those of the next rank follow them.
+    ///
+    /// # Errors
+    /// What `take` returns.
+    pub fn own_pressure_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        match &self.pressures {
+            Pressures::Grid { .. } => self.pressure_rows(take),
+            Pressures::Tiles { solution, .. } => solution.pressure_rows(Receiver::Each, take),
         }
     }
 
@@ -368,7 +395,7 @@ impl<'a> Solution<'a> {
         match (&self.pressures, self.gap.get()) {
             (Pressures::Grid { solution, .. }, _) if self.how.hardness.is_infinite() => take(0, solution.gap.values()),
             (_, Some(gap)) => take(0, gap.values()),
-            _ => self.part_rows(GapPart::Open, take),
+            _ => self.part_rows(GapPart::Open, Receiver::First, take),
         }
     }
 
@@ -379,30 +406,55 @@ impl<'a> Solution<'a> {
     pub fn plastic_gap_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         match self.plastic_gap.get() {
             Some(gap) => take(0, gap.values()),
-            None => self.part_rows(GapPart::Plastic, take),
+            None => self.part_rows(GapPart::Plastic, Receiver::First, take),
         }
+    }
+
+    /// The same over ranks, as [`Solution::own_pressure_rows`] does it.
+    ///
+    /// # Errors
+    /// What `take` returns.
+    pub fn own_gap_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        self.part_rows(GapPart::Open, Receiver::Each, take)
+    }
+
+    /// The ranks that have solved it, all of which call its functions together.
+    #[must_use]
+    pub fn ranks(&self) -> Ranks {
+        match &self.pressures {
+            Pressures::Grid { .. } => Ranks::alone(),
+            Pressures::Tiles { problem, .. } => problem.ranks().clone(),
+        }
+    }
+
+    /// A field on `grid` from its rows, which `rows` hands out in order.
+    fn collect(
+        &self,
+        grid: Grid,
+        rows: impl FnOnce(&mut dyn FnMut(usize, &[f64]) -> Result<(), Infallible>) -> Result<(), Infallible>,
+    ) -> Field {
+        let mut values = Vec::with_capacity(grid.len());
+        let Ok(()) = rows(&mut |_, rows| {
+            values.extend_from_slice(rows);
+            Ok(())
+        });
+        // Rows go to the first rank, fields to all.
+        let values = self.ranks().concatenate(values);
+        Field::new(grid, values).expect("as many values as the grid has elements")
     }
 
     /// Hands out a part of the gap.
-    fn part_rows<E>(&self, part: GapPart, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+    fn part_rows<E>(
+        &self,
+        part: GapPart,
+        receiver: Receiver,
+        take: impl FnMut(usize, &[f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
         match &self.pressures {
             Pressures::Grid { solution, .. } => part.rows((&solution.gap, &solution.pressure), self.how.hardness, take),
-            Pressures::Tiles { solution, problem } => problem.gap_rows(solution, part, take),
+            Pressures::Tiles { solution, problem } => problem.gap_rows(solution, part, Rows::on_grid(receiver), take),
         }
     }
-}
-
-/// A field on `grid` from its rows, which `rows` hands out in order.
-fn collect(
-    grid: Grid,
-    rows: impl FnOnce(&mut dyn FnMut(usize, &[f64]) -> Result<(), Infallible>) -> Result<(), Infallible>,
-) -> Field {
-    let mut values = Vec::with_capacity(grid.len());
-    let Ok(()) = rows(&mut |_, rows| {
-        values.extend_from_slice(rows);
-        Ok(())
-    });
-    Field::new(grid, values).expect("as many values as the grid has elements")
 }
 
 impl std::fmt::Debug for Solution<'_> {

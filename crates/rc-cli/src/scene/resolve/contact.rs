@@ -1,11 +1,15 @@
 //! From keys to a checked contact.
 
+use std::sync::Arc;
+
+use rc_comm::Ranks;
 use rc_core::{Elasticity, Kernel, PeriodicCell, UnitError, Units};
 use rc_kernel::{Love, Spectral};
 use rc_solver::{Control, Method, SolveParams, Tolerance};
 
 use super::checks::{missing, positive};
 use crate::error::CliError;
+use crate::files::checkpoint::CheckpointFile;
 use crate::scene::file;
 use crate::scene::keys::{ContactKeys, KernelName};
 use crate::scene::values::ToleranceSpec;
@@ -25,6 +29,17 @@ pub struct ContactSetup {
     pub params: SolveParams,
     /// The keys as resolved, for `scene.toml`.
     pub keys: ContactKeys,
+    /// The ranks that solve it together, and what keeps its levels.
+    pub place: Place,
+}
+
+/// Where a problem is solved.
+#[derive(Clone, Debug, Default)]
+pub struct Place {
+    /// The ranks that solve it together.
+    pub ranks: Ranks,
+    /// The file that keeps what each level leaves for the next.
+    pub checkpoint: Option<Arc<CheckpointFile>>,
 }
 
 impl ContactSetup {
@@ -74,7 +89,7 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
         border_level: keys.border_level.unwrap_or(0),
         ..SolveParams::certified()
     };
-    Ok(ContactSetup { units, control, hardness, kernel, params, keys })
+    Ok(ContactSetup { units, control, hardness, kernel, params, keys, place: Place::default() })
 }
 
 fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {

@@ -7,7 +7,7 @@ mod map;
 mod surface;
 
 pub use checks::checked_grid;
-pub use contact::{ContactSetup, contact, kernel};
+pub use contact::{ContactSetup, Place, contact, kernel};
 pub use layers::layers;
 pub use map::{check_cell_and_material, check_size, check_size_and_material};
 pub use surface::{surface, surface_in_cell};

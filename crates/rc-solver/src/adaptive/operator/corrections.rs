@@ -86,7 +86,8 @@ impl BlockOperator<f32> for TileCorrections<'_> {
 
 impl PreconditionedOperator for TileCorrections<'_> {
     fn set_active(&mut self, active: &[bool]) {
-        self.extension.set_active(active);
+        let (_, _, room) = self.response.operator.buffers();
+        self.extension.set_active(active, room);
     }
 
     fn precondition(&mut self, active: &[bool], values: &mut [f32]) {

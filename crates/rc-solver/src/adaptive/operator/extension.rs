@@ -10,20 +10,22 @@ use std::sync::Arc;
 
 use pulp::{Arch, Simd, WithSimd};
 use rc_fft::Convolution;
-use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE, TileSet, cell_over, gather, means_of_quarter, quarters};
+use rc_quadtree::{BLOCK_CELLS, CELLS, TILE};
 
+use super::extension_values::{Means, blocks, own_blocks, set_base};
 use super::hierarchy::Hierarchy;
+use super::interpolation::{cells_over, collect, interpolate};
 use super::stencil::{Taps, add_short_range};
 use super::tables::Tables;
 use super::tile_operator::{rows_to_tiles, tiles_to_rows};
 use super::tile_values::TileValues;
 use crate::adaptive::ladder::sides_of;
+use crate::adaptive::part::Part;
 use crate::descent::{Pyramid, read_rows, set_shares, write_rows};
 use crate::parallel::{self, Tasks};
 
-/// Sides of the patches around one tile, and around the four tiles under one.
+/// Side of the patch around a tile.
 const AROUND: usize = 3 * TILE;
-const UNDER: usize = 4 * TILE;
 
 /// Cells of a level between the base grid and the finest.
 struct Level {
@@ -52,25 +54,25 @@ pub(super) struct TileExtension {
 impl TileExtension {
     pub(super) fn new(hierarchy: Arc<Hierarchy>) -> Self {
         let [nx, ny] = sides_of(hierarchy.base());
-        let level = |tiles: &TileSet| {
-            let zeros = || vec![0.0; tiles.n_cells()];
+        let level = |part: &Part| {
+            let zeros = || vec![0.0; part.n_cells()];
             Level { own: zeros(), rest: zeros(), values: zeros(), detail: zeros(), pressure: zeros() }
         };
         let levels = hierarchy.levels[1..hierarchy.n_levels()].iter().map(level).collect();
         Self { levels, pyramid: Pyramid::new(nx, ny), base: vec![0.0; nx * ny], hierarchy }
     }
 
-    /// Prepares for these active elements.
-    pub(super) fn set_active(&mut self, active: &[bool]) {
-        self.take_means(&|cell| if active[cell] { 1.0 } else { 0.0 });
+    /// Prepares for these active elements. `finest` is as for [`TileExtension::precondition`].
+    pub(super) fn set_active(&mut self, active: &[bool], finest: &mut [f32]) {
+        self.take_means(&|cell| if active[cell] { 1.0 } else { 0.0 }, finest);
         for level in &mut self.levels {
             set_shares(&mut level.own, &mut level.rest, &level.values);
         }
         self.pyramid.set_active();
     }
 
-    /// z = Fᵀ |q|/2 F r: `values` has r on the active elements and zeros elsewhere, and is left with z. `finest` has room for the finest
-    /// elements.
+    /// z = Fᵀ |q|/2 F r: `values` has r on the active elements and zeros elsewhere, and is left with z. `finest` has room for the values of
+    /// the finest elements, those of other ranks that this one reads included.
     pub(super) fn precondition(
         &mut self,
         arch: Arch,
@@ -86,39 +88,35 @@ impl TileExtension {
         self.gather(active, values, finest);
     }
 
-    /// Means over the cells of all levels, from the values of elements; those of the base grid are left to the pyramid.
-    fn take_means(&mut self, of_element: &(dyn Fn(usize) -> f32 + Sync)) {
-        let (n_levels, hierarchy) = (self.hierarchy.n_levels(), &self.hierarchy);
-        for level in (0..n_levels).rev() {
-            let (coarser, finer) = self.levels.split_at_mut(level);
-            let (values, finer) = match coarser.last_mut() {
-                Some(here) => (&mut here.values, finer.first()),
-                None => (&mut self.base, finer.first()),
-            };
-            let elements = hierarchy.elements_of(level);
-            let tiles = &hierarchy.levels[level + 1];
-            let child = |tile: usize, cell: usize| match finer {
-                Some(finer) => finer.values[tile * CELLS + cell],
-                None => of_element(tile * CELLS + cell),
-            };
-            parallel::for_each(blocks(&hierarchy.levels[level], values), |(places, cells)| {
-                for (&place, cells) in places.iter().zip(cells.as_chunks_mut::<CELLS>().0) {
-                    // Finer levels reach beyond their elements, over larger ones.
-                    if let Some((range, leaves)) = &elements
-                        && let Some(tile) = leaves.find(place[0].into(), place[1].into())
-                    {
-                        *cells = std::array::from_fn(|i| of_element(range.start + tile * CELLS + i));
-                        continue;
-                    }
-                    *cells = [0.0; CELLS];
-                    for quarter in quarters(place) {
-                        let Some(tile) = tiles.find(quarter[0].into(), quarter[1].into()) else { continue };
-                        let fine: [f32; CELLS] = std::array::from_fn(|cell| child(tile, cell));
-                        means_of_quarter(quarter, &fine, |cell, mean| cells[cell] = mean);
-                    }
-                }
-            });
+    /// Means over the cells of all levels, from the values of own elements; those of the base grid are left to the pyramid.
+    fn take_means(&mut self, of_element: &(dyn Fn(usize) -> f32 + Sync), finest: &mut [f32]) {
+        if self.hierarchy.base_part.is_none() {
+            return self.take_means_of(of_element);
         }
+        let own = self.hierarchy.own_values();
+        parallel::for_each(finest[own].chunks_mut(BLOCK_CELLS).enumerate(), |(i, cells)| {
+            for (cell, value) in cells.iter_mut().enumerate() {
+                *value = of_element(i * BLOCK_CELLS + cell);
+            }
+        });
+        self.hierarchy.finest().exchange(finest);
+        let finest = &*finest;
+        self.take_means_of(&|cell| finest[cell]);
+    }
+
+    /// The same from the values of all elements that are read.
+    fn take_means_of(&mut self, of_element: &(dyn Fn(usize) -> f32 + Sync)) {
+        let hierarchy = Arc::clone(&self.hierarchy);
+        for level in (1..hierarchy.n_levels()).rev() {
+            let (coarser, finer) = self.levels.split_at_mut(level);
+            let values = &mut coarser[level - 1].values;
+            let means = Means::new(&hierarchy, level, finer.first().map(|finer| &*finer.values), of_element);
+            let part = &hierarchy.levels[level];
+            parallel::for_each(own_blocks(part, values), |(places, cells)| means.set(places, cells));
+            part.exchange(values);
+        }
+        let means = Means::new(&hierarchy, 0, self.levels.first().map(|finer| &*finer.values), of_element);
+        set_base(&hierarchy, &mut self.base, |places, cells| means.set(places, cells));
         let side = self.hierarchy.base().nx();
         let rows = self.pyramid.values_mut().chunks_mut(TILE * side).zip(self.base.chunks(TILE * side));
         parallel::for_each(rows, |(rows, cells)| tiles_to_rows(cells, rows, side));
@@ -126,17 +124,19 @@ impl TileExtension {
 
     /// u and w on all levels; `finest` gets w.
     fn extend(&mut self, active: &[bool], values: &[f32], finest: &mut [f32]) {
-        self.take_means(&|cell| values[cell]);
+        self.take_means(&|cell| values[cell], finest);
         self.pyramid.extend();
         self.base_to_tiles();
         let tiles = &self.hierarchy.levels;
         for level in 0..self.levels.len() {
             let (coarser, here) = self.levels.split_at_mut(level);
             let coarser = coarser.last().map_or(&self.base, |coarser| &coarser.values);
-            let coarser = TileValues::new(coarser, &tiles[level]);
+            let coarser = TileValues::new(coarser, tiles[level].tiles());
+            let part = &tiles[level + 1];
             let Level { own, rest, values, detail, .. } = &mut here[0];
-            let shares = own.chunks(BLOCK_CELLS).zip(rest.chunks(BLOCK_CELLS));
-            let blocks = blocks(&tiles[level + 1], values).zip(detail.chunks_mut(BLOCK_CELLS)).zip(shares);
+            let own_cells = part.own_cells();
+            let shares = own[own_cells.clone()].chunks(BLOCK_CELLS).zip(rest[own_cells.clone()].chunks(BLOCK_CELLS));
+            let blocks = own_blocks(part, values).zip(detail[own_cells].chunks_mut(BLOCK_CELLS)).zip(shares);
             parallel::for_each(blocks, |(((places, values), detail), (own, rest))| {
                 let mut around = [0.0; CELLS];
                 for (tile, &place) in places.iter().enumerate() {
@@ -148,11 +148,14 @@ impl TileExtension {
                     }
                 }
             });
+            part.exchange(values);
+            part.exchange(detail);
         }
         let coarser = self.levels.last().map_or(&self.base, |coarser| &coarser.values);
-        let coarser = TileValues::new(coarser, &tiles[self.levels.len()]);
+        let coarser = TileValues::new(coarser, tiles[self.levels.len()].tiles());
         let elements = active.chunks(BLOCK_CELLS).zip(values.chunks(BLOCK_CELLS));
-        parallel::for_each(blocks(self.finest(), finest).zip(elements), |((places, finest), (active, values))| {
+        let part = self.hierarchy.finest();
+        parallel::for_each(own_blocks(part, finest).zip(elements), |((places, finest), (active, values))| {
             let mut around = [0.0; CELLS];
             for (tile, &place) in places.iter().enumerate() {
                 let here = tile * CELLS..(tile + 1) * CELLS;
@@ -164,6 +167,7 @@ impl TileExtension {
                 }
             }
         });
+        part.exchange(finest);
     }
 
     /// The stencils of w; `values` gets that of the finest elements.
@@ -171,14 +175,16 @@ impl TileExtension {
         let tiles = &self.hierarchy.levels;
         for (level, here) in self.levels.iter_mut().enumerate() {
             let taps = &tables.levels[level].0;
-            let around = TileValues::new(&here.detail, &tiles[level + 1]);
-            parallel::for_each(blocks(&tiles[level + 1], &mut here.pressure), |(places, cells)| {
+            let part = &tiles[level + 1];
+            let around = TileValues::new(&here.detail, part.tiles());
+            parallel::for_each(own_blocks(part, &mut here.pressure), |(places, cells)| {
                 arch.dispatch(StencilPass { taps, around, places, cells });
             });
         }
         let taps = &tables.levels[self.levels.len()].0;
-        let around = TileValues::new(finest, self.finest());
-        parallel::for_each(blocks(self.finest(), values), |(places, cells)| {
+        let part = self.hierarchy.finest();
+        let around = TileValues::new(finest, part.tiles());
+        parallel::for_each(blocks(part.own_places(), values), |(places, cells)| {
             arch.dispatch(StencilPass { taps, around, places, cells });
         });
     }
@@ -195,31 +201,37 @@ impl TileExtension {
 
     /// Fᵀ and the transpose of u - P u; `values` has the stencils of the finest elements, and gets z.
     fn gather(&mut self, active: &[bool], values: &mut [f32], finest: &mut [f32]) {
+        let hierarchy = Arc::clone(&self.hierarchy);
         let elements = active.chunks(BLOCK_CELLS).zip(values.chunks(BLOCK_CELLS));
-        parallel::for_each(finest.chunks_mut(BLOCK_CELLS).zip(elements), |(given, (active, pressure))| {
+        let given = finest[hierarchy.own_values()].chunks_mut(BLOCK_CELLS);
+        parallel::for_each(given.zip(elements), |(given, (active, pressure))| {
             for ((given, &active), pressure) in given.iter_mut().zip(active).zip(pressure) {
                 *given = if active { -pressure } else { 0.0 };
             }
         });
-        let tiles = &self.hierarchy.levels;
+        hierarchy.finest().exchange(finest);
+        let tiles = &hierarchy.levels;
         for level in (0..self.levels.len()).rev() {
             let (here, finer) = self.levels.split_at_mut(level + 1);
             let finer = finer.first().map_or(&*finest, |finer| &finer.detail);
-            let finer = TileValues::new(finer, &tiles[level + 2]);
+            let finer = TileValues::new(finer, tiles[level + 2].tiles());
+            let part = &tiles[level + 1];
             let Level { rest, values, detail, pressure, .. } = &mut here[level];
-            let others = rest.chunks(BLOCK_CELLS).zip(pressure.chunks(BLOCK_CELLS));
-            let blocks = blocks(&tiles[level + 1], values).zip(detail.chunks_mut(BLOCK_CELLS)).zip(others);
+            let own = part.own_cells();
+            let others = rest[own.clone()].chunks(BLOCK_CELLS).zip(pressure[own.clone()].chunks(BLOCK_CELLS));
+            let blocks = own_blocks(part, values).zip(detail[own].chunks_mut(BLOCK_CELLS)).zip(others);
             parallel::for_each(blocks, |(((places, values), given), (rest, pressure))| {
                 collect(finer, places, values);
                 for (cell, given) in given.iter_mut().enumerate() {
                     *given = rest[cell] * (values[cell] + pressure[cell]) - pressure[cell];
                 }
             });
+            part.exchange(detail);
         }
         let finer = self.levels.first().map_or(&*finest, |finer| &finer.detail);
-        let finer = TileValues::new(finer, &tiles[1]);
-        parallel::for_each(blocks(&tiles[0], &mut self.base), |(places, cells)| collect(finer, places, cells));
-        let side = self.hierarchy.base().nx();
+        let finer = TileValues::new(finer, tiles[1].tiles());
+        set_base(&hierarchy, &mut self.base, |places, cells| collect(finer, places, cells));
+        let side = hierarchy.base().nx();
         let rows = self.pyramid.values_mut().chunks_mut(TILE * side).zip(self.base.chunks(TILE * side));
         parallel::for_each(rows, |(rows, cells)| {
             let mut collected = vec![0.0; rows.len()];
@@ -239,10 +251,12 @@ impl TileExtension {
         for level in 0..self.levels.len() {
             let (coarser, here) = self.levels.split_at_mut(level);
             let coarser = coarser.last().map_or(&self.base, |coarser| &coarser.values);
-            let coarser = TileValues::new(coarser, &tiles[level]);
+            let coarser = TileValues::new(coarser, tiles[level].tiles());
+            let part = &tiles[level + 1];
             let Level { own, values, pressure, .. } = &mut here[0];
-            let others = own.chunks(BLOCK_CELLS).zip(pressure.chunks(BLOCK_CELLS));
-            parallel::for_each(blocks(&tiles[level + 1], values).zip(others), |((places, values), (own, pressure))| {
+            let own_cells = part.own_cells();
+            let others = own[own_cells.clone()].chunks(BLOCK_CELLS).zip(pressure[own_cells].chunks(BLOCK_CELLS));
+            parallel::for_each(own_blocks(part, values).zip(others), |((places, values), (own, pressure))| {
                 for (tile, &place) in places.iter().enumerate() {
                     let over = cells_over(coarser, place);
                     for (cell, over) in (tile * CELLS..).zip(over) {
@@ -250,10 +264,11 @@ impl TileExtension {
                     }
                 }
             });
+            part.exchange(values);
         }
         let coarser = self.levels.last().map_or(&self.base, |coarser| &coarser.values);
-        let coarser = TileValues::new(coarser, &tiles[self.levels.len()]);
-        let elements = blocks(self.finest(), values).zip(active.chunks(BLOCK_CELLS));
+        let coarser = TileValues::new(coarser, tiles[self.levels.len()].tiles());
+        let elements = blocks(self.hierarchy.finest().own_places(), values).zip(active.chunks(BLOCK_CELLS));
         parallel::for_each(elements, |((places, values), active)| {
             for (tile, &place) in places.iter().enumerate() {
                 let over = cells_over(coarser, place);
@@ -264,10 +279,10 @@ impl TileExtension {
         });
         for (level, here) in self.levels.iter().enumerate() {
             let Some((range, leaves)) = self.hierarchy.elements_of(level + 1) else { continue };
-            let blocks = blocks(leaves, &mut values[range.clone()]).zip(active[range].chunks(BLOCK_CELLS));
+            let blocks = blocks(leaves.places(), &mut values[range.clone()]).zip(active[range].chunks(BLOCK_CELLS));
             parallel::for_each(blocks, |((places, values), active)| {
                 for (tile, place) in places.iter().enumerate() {
-                    let found = tiles[level + 1].find(place[0].into(), place[1].into());
+                    let found = tiles[level + 1].tiles().find(place[0].into(), place[1].into());
                     let first = found.expect("levels have the tiles of their elements") * CELLS;
                     for (i, cell) in (tile * CELLS..(tile + 1) * CELLS).enumerate() {
                         values[cell] = if active[cell] { here.values[first + i] } else { 0.0 };
@@ -277,75 +292,11 @@ impl TileExtension {
         }
     }
 
-    fn finest(&self) -> &TileSet {
-        &self.hierarchy.levels[self.hierarchy.n_levels()]
-    }
-
     fn base_to_tiles(&mut self) {
         let side = self.hierarchy.base().nx();
         let rows = self.base.chunks_mut(TILE * side).zip(self.pyramid.values().chunks(TILE * side));
         parallel::for_each(rows, |(cells, rows)| rows_to_tiles(rows, cells, side));
     }
-}
-
-/// The tiles of a level, block by block. There may be more values than tiles.
-fn blocks<'a>(tiles: &'a TileSet, cells: &'a mut [f32]) -> impl Iterator<Item = (&'a [[u32; 2]], &'a mut [f32])> {
-    tiles.places().chunks(BLOCK_TILES).zip(cells.chunks_mut(BLOCK_CELLS))
-}
-
-/// P: values at the centres of the cells of a tile.
-fn interpolate(coarser: TileValues<'_, f32>, [column, row]: [u32; 2], out: &mut [f32; CELLS]) {
-    let [half_x, half_y] = [column, row].map(|i| i as usize % 2 * (TILE / 2));
-    let corner = (i64::from(column / 2) - 1, i64::from(row / 2) - 1);
-    let mut patch = [[0.0; AROUND]; AROUND];
-    let first = TILE + half_y - 1;
-    if !gather(coarser.values, coarser.tiles, corner, first..first + TILE / 2 + 2, &mut patch) {
-        *out = [0.0; CELLS];
-        return;
-    }
-    for (iy, out) in out.as_chunks_mut::<TILE>().0.iter_mut().enumerate() {
-        let near = TILE + half_y + iy / 2;
-        let far = if iy % 2 == 0 { near - 1 } else { near + 1 };
-        let line: [f32; TILE / 2 + 2] = std::array::from_fn(|i| {
-            let x = TILE + half_x - 1 + i;
-            0.75 * patch[near][x] + 0.25 * patch[far][x]
-        });
-        for (x, pair) in out.as_chunks_mut::<2>().0.iter_mut().enumerate() {
-            let [before, here, after] = [line[x], line[x + 1], line[x + 2]];
-            *pair = [0.75 * here + 0.25 * before, 0.75 * here + 0.25 * after];
-        }
-    }
-}
-
-/// A quarter of the transpose of P: values of tiles from those of the finer level.
-fn collect(finer: TileValues<'_, f32>, places: &[[u32; 2]], cells: &mut [f32]) {
-    let mut patch = [[0.0; UNDER]; UNDER];
-    for (&[column, row], out) in places.iter().zip(cells.as_chunks_mut::<CELLS>().0) {
-        let corner = (2 * i64::from(column) - 1, 2 * i64::from(row) - 1);
-        if !gather(finer.values, finer.tiles, corner, TILE - 1..3 * TILE + 1, &mut patch) {
-            *out = [0.0; CELLS];
-            continue;
-        }
-        for (iy, out) in out.as_chunks_mut::<TILE>().0.iter_mut().enumerate() {
-            let rows = &patch[TILE + 2 * iy - 1..][..4];
-            let line: [f32; 2 * TILE + 2] = std::array::from_fn(|i| {
-                let x = TILE - 1 + i;
-                0.75 * (rows[1][x] + rows[2][x]) + 0.25 * (rows[0][x] + rows[3][x])
-            });
-            for (x, value) in out.iter_mut().enumerate() {
-                let parts = &line[2 * x..][..4];
-                *value = 0.0625 * (3.0 * (parts[1] + parts[2]) + parts[0] + parts[3]);
-            }
-        }
-    }
-}
-
-/// The values of the coarser cells that the cells of a tile are in; zeros where there is none.
-fn cells_over(coarser: TileValues<'_, f32>, place: [u32; 2]) -> [f32; CELLS] {
-    let [column, row] = place.map(|i| i64::from(i / 2));
-    let Some(tile) = coarser.tiles.find(column, row) else { return [0.0; CELLS] };
-    let values = &coarser.values[tile * CELLS..][..CELLS];
-    std::array::from_fn(|cell| values[cell_over(place, cell % TILE, cell / TILE)])
 }
 
 /// The stencil of a level on some of its tiles.

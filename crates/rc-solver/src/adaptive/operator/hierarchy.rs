@@ -4,20 +4,25 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use rc_core::Grid;
-use rc_quadtree::{Elements, TileSet};
+use rc_quadtree::{BLOCK_TILES, Elements, TILE, TileSet};
 
+use super::base_part::BasePart;
 use super::coarse::Leaves;
 use crate::adaptive::ladder::{self, sides_of};
+use crate::adaptive::mesh::Mesh;
+use crate::adaptive::part::{Part, append_around};
 
 /// The tiles of all levels, coarsest first: the first is the whole base grid, the last has the finest elements.
 pub(crate) struct Hierarchy {
     base: Grid,
     reach: Reach,
-    elements: Elements,
+    mesh: Mesh,
     /// The blocks of a vector: how much coarser than the finest level, and which of its tiles.
     pub(super) blocks: Vec<(usize, Range<usize>)>,
     /// The densities of each level, coarser elements included; on the finest level, its elements.
-    pub(super) levels: Vec<TileSet>,
+    pub(super) levels: Vec<Part>,
+    /// What this rank computes of the base grid, if it is not alone.
+    pub(super) base_part: Option<BasePart>,
     /// The elements that are 2, 4, … times as large as the finest.
     pub(super) leaves: Vec<Leaves>,
 }
@@ -35,13 +40,15 @@ impl Hierarchy {
     /// The levels over `elements` down to the base grid, whose sides are multiples of 8, each with the tiles
     /// that filters need. The coarsest elements are finer than the base grid's, and elements whose sizes differ by more than
     /// a factor of 2 are farther from each other than stencils of the level between them reach.
-    pub(crate) fn new(base: Grid, elements: Elements, reach: Reach) -> Self {
+    pub(crate) fn new(base: Grid, mesh: impl Into<Mesh>, reach: Reach) -> Self {
+        let mesh = mesh.into();
+        let elements = mesh.elements();
         let mut levels = vec![elements.finest().clone()];
         let [nx, ny] = elements.finest().sides();
         let finest = base.with_elements(nx, ny).expect("a level of a checked grid");
         for level in (1..ladder::n_levels(base, finest)).rev() {
             let sides = sides_of(ladder::doubled(base, level));
-            let parents = levels[levels.len() - 1].on_coarser(sides, reach.filter);
+            let parents = mesh.on_coarser(&levels[levels.len() - 1], sides, reach.filter);
             levels.push(match elements.levels().get(levels.len()) {
                 Some(leaves) => parents.with(&leaves.around(reach.filter)),
                 None => parents,
@@ -52,12 +59,38 @@ impl Hierarchy {
         debug_assert!(elements.levels().len() < levels.len(), "no elements are on the base grid");
         let pairs = elements.levels().windows(2);
         let leaves = pairs.map(|pair| Leaves::new(pair[1].clone(), &pair[0], reach.stencil)).collect();
-        Self { base, reach, blocks: elements.blocks(), elements, levels, leaves }
+        let (levels, base_part) = dealt(levels, &mesh, reach);
+        Self { base, reach, blocks: blocks(&mesh, &levels), mesh, levels, base_part, leaves }
     }
 
     /// The elements.
     pub(crate) fn elements(&self) -> &Elements {
-        &self.elements
+        self.mesh.elements()
+    }
+
+    /// The elements, and which of them this rank has.
+    pub(crate) fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Number of values that operators keep for elements: those of other ranks that this one reads are among them.
+    pub(super) fn n_values(&self) -> usize {
+        if self.mesh.ranks().are_alone() { self.elements().len() } else { self.finest().n_cells() }
+    }
+
+    /// The own ones of these values.
+    pub(super) fn own_values(&self) -> Range<usize> {
+        if self.mesh.ranks().are_alone() { 0..self.elements().len() } else { self.finest().own_cells() }
+    }
+
+    /// The tiles of the finest level.
+    pub(super) fn finest(&self) -> &Part {
+        &self.levels[self.n_levels()]
+    }
+
+    /// Their values among those of elements.
+    pub(super) fn finest_values(&self) -> Range<usize> {
+        0..self.finest().n_cells()
     }
 
     /// The base grid.
@@ -69,10 +102,10 @@ impl Hierarchy {
     /// it, a strip without elements takes the place of what is missing, along the seam.
     pub(super) fn halved(self: &Arc<Self>) -> Arc<Self> {
         let sides = sides_of(ladder::doubled(self.base, self.n_levels()));
-        if self.elements.finest().sides() == sides {
+        if self.elements().finest().sides() == sides {
             return Arc::clone(self);
         }
-        let tiles = TileSet::new(sides, self.elements.finest().places().to_vec());
+        let tiles = TileSet::new(sides, self.elements().finest().places().to_vec());
         Arc::new(Self::new(self.base, Elements::uniform(tiles), self.reach))
     }
 
@@ -84,6 +117,58 @@ impl Hierarchy {
     /// The elements of a level: where they are in a vector, and their tiles.
     pub(super) fn elements_of(&self, level: usize) -> Option<(Range<usize>, &TileSet)> {
         let coarser = self.n_levels() - level;
-        self.elements.levels().get(coarser).map(|tiles| (self.elements.cells(coarser), tiles))
+        if coarser == 0 && !self.mesh.ranks().are_alone() {
+            return Some((self.finest_values(), self.finest().tiles()));
+        }
+        self.elements().levels().get(coarser).map(|tiles| (self.elements().cells(coarser), tiles))
     }
+}
+
+/// What this rank has of all levels, coarsest first, and of the base grid.
+fn dealt(levels: Vec<TileSet>, mesh: &Mesh, reach: Reach) -> (Vec<Part>, Option<BasePart>) {
+    let ranks = mesh.ranks();
+    if ranks.are_alone() {
+        return (levels.into_iter().map(Part::whole).collect(), None);
+    }
+    // Tiles around one, on its level or a coarser one, and around the four under one.
+    let near = reach.filter.max(reach.stencil).div_ceil(TILE);
+    let under = (2 * reach.filter).div_ceil(TILE);
+    // The tiles of the base grid that have a density.
+    let active = mesh.on_coarser(&levels[1], levels[0].sides(), under * TILE / 2);
+    let mut deals = vec![mesh.deal()];
+    for finer in (1..levels.len()).rev() {
+        let coarser = if finer == 1 { &active } else { &levels[finer - 1] };
+        deals.push(deals[deals.len() - 1].of_coarser(&levels[finer], coarser));
+    }
+    deals.reverse();
+    let own = |level: usize| {
+        let tiles = if level == 0 { &active } else { &levels[level] };
+        &tiles.places()[deals[level].range(ranks.rank())]
+    };
+    let mut parts = vec![Part::whole(levels[0].clone())];
+    for level in 1..levels.len() {
+        let (extent, mut read) = (levels[level].extent(), Vec::new());
+        for &place in own(level) {
+            append_around(&mut read, (place, place), near, extent);
+        }
+        for &place in if level + 1 < levels.len() { own(level + 1) } else { &[] } {
+            let over = place.map(|i| i / 2);
+            append_around(&mut read, (over, over), near, extent);
+        }
+        for &place in own(level - 1) {
+            append_around(&mut read, (place.map(|i| 2 * i), place.map(|i| 2 * i + 1)), under, extent);
+        }
+        parts.push(Part::new(ranks, &levels[level], &deals[level], read));
+    }
+    let own = deals[0].range(ranks.rank());
+    (parts, Some(BasePart::new(ranks, active, own)))
+}
+
+/// The blocks of this rank's vectors.
+fn blocks(mesh: &Mesh, levels: &[Part]) -> Vec<(usize, Range<usize>)> {
+    if mesh.ranks().are_alone() {
+        return mesh.blocks();
+    }
+    let own = levels[levels.len() - 1].own();
+    own.clone().step_by(BLOCK_TILES).map(|first| (0, first..(first + BLOCK_TILES).min(own.end))).collect()
 }

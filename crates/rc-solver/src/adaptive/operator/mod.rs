@@ -10,10 +10,13 @@
     reason = "what is not inlined into the dispatched function is compiled for the least of machines: seven times slower"
 )]
 
+mod base_part;
 mod coarse;
 mod corrections;
 mod extension;
+mod extension_values;
 mod hierarchy;
+mod interpolation;
 mod passes;
 mod real;
 mod sizes;

@@ -1,10 +1,11 @@
 //! The arithmetic of the inner loops, in single or double precision, with or without fused multiply-add.
 
 use pulp::Simd;
+use rc_comm::Packed;
 use rc_fft::TransformReal;
 
 /// `f32` or `f64`.
-pub(crate) trait Arithmetic: TransformReal + Default + From<f32> {
+pub(crate) trait Arithmetic: TransformReal + Packed + Default + From<f32> {
     /// Rounded from double precision.
     fn rounded(value: f64) -> Self;
 

@@ -292,7 +292,7 @@ fn on_rough_pressures_the_error_is_in_proportion_to_the_roughness() {
                     apply::<f64>(&split, base, elements.clone(), &p)
                 };
                 let greatest = v.iter().zip(&better).fold(0.0_f64, |greatest, (a, b)| greatest.max((a - b).abs()));
-                let allowed = gap_split.error_of_roughness * roughness(&elements, &p);
+                let allowed = gap_split.error_of_roughness * roughness(&elements.clone().into(), &p);
                 assert!(greatest < allowed, "{bound:e}, {base} to {side}: {greatest:e} for {allowed:e}");
             }
         }

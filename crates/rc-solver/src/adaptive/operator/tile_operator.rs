@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pulp::Arch;
 use rc_core::Grid;
 use rc_fft::{BLOCK_ROWS, Convolution, Instructions};
-use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE, TileSet};
+use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE};
 
 use super::coarse::Leaves;
 use super::hierarchy::Hierarchy;
@@ -17,7 +17,7 @@ use super::passes::{
 use super::sizes::Real;
 use super::tables::Tables;
 use super::tile_values::TileValues;
-use crate::adaptive::element_blocks::blocks_of;
+use crate::adaptive::part::Part;
 use crate::descent::{BlockLayout, read_rows, write_rows};
 use crate::parallel::{self, Tasks};
 
@@ -54,12 +54,12 @@ impl<T: Real> TileOperator<T> {
     fn reserve(&mut self) {
         let hierarchy = &self.hierarchy;
         if self.source.is_empty() {
-            let zeros = |tiles: &TileSet| vec![T::default(); tiles.n_cells()];
+            let zeros = |part: &Part| vec![T::default(); part.n_cells()];
             let below_finest = &hierarchy.levels[..hierarchy.n_levels()];
             self.densities = below_finest.iter().map(zeros).collect();
             self.displacements = below_finest.iter().map(zeros).collect();
-            self.ghosts = hierarchy.leaves.iter().map(|leaves| zeros(&leaves.ghosts)).collect();
-            self.source = vec![T::default(); hierarchy.elements().len()];
+            self.ghosts = hierarchy.leaves.iter().map(|leaves| vec![T::default(); leaves.ghosts.n_cells()]).collect();
+            self.source = vec![T::default(); hierarchy.n_values()];
         }
     }
 
@@ -76,7 +76,7 @@ impl<T: Real> TileOperator<T> {
 
     /// How vectors are divided.
     pub(crate) fn layout(&self) -> BlockLayout {
-        blocks_of(self.hierarchy.elements())
+        self.hierarchy.mesh().layout()
     }
 
     /// The base grid.
@@ -92,11 +92,13 @@ impl<T: Real> TileOperator<T> {
     /// Calls `write` once for each block, with its index and the values to be filled in.
     pub(crate) fn write(&mut self, write: &(dyn Fn(usize, &mut [T]) + Sync)) {
         self.reserve();
-        parallel::for_each(self.source.chunks_mut(BLOCK_CELLS).enumerate(), |(i, cells)| write(i, cells));
+        let own = &mut self.source[self.hierarchy.own_values()];
+        parallel::for_each(own.chunks_mut(BLOCK_CELLS).enumerate(), |(i, cells)| write(i, cells));
     }
 
     /// Applies a table, except for the part of the elements' own level, which [`TileOperator::read`] adds.
     pub(crate) fn apply(&mut self, tables: &Tables<T>) {
+        self.hierarchy.finest().exchange(&mut self.source);
         self.set_ghosts();
         self.restrict(tables);
         self.convolve_base(tables);
@@ -105,7 +107,7 @@ impl<T: Real> TileOperator<T> {
 
     /// Calls `read` once for each block, with its index and the result of the last [`TileOperator::apply`], which was of the same table.
     pub(crate) fn read(&self, tables: &Tables<T>, read: &(dyn Fn(usize, &[T]) + Sync)) {
-        let blocks = &self.hierarchy.blocks;
+        let (blocks, n_own) = (&self.hierarchy.blocks, self.hierarchy.own_values().len());
         parallel::for_each_index(blocks.len(), &|i| {
             let mut block = [T::default(); BLOCK_CELLS];
             let (coarser, tiles) = &blocks[i];
@@ -117,7 +119,7 @@ impl<T: Real> TileOperator<T> {
             }
             self.add_ghosts(tables, *coarser, tiles.clone(), cells);
             // What fills up the last block of a level has no displacement.
-            read(i, &block[..(self.source.len() - i * BLOCK_CELLS).min(BLOCK_CELLS)]);
+            read(i, &block[..(n_own - i * BLOCK_CELLS).min(BLOCK_CELLS)]);
         });
     }
 
@@ -137,30 +139,43 @@ impl<T: Real> TileOperator<T> {
         let levels = &self.hierarchy.levels;
         for level in (1..n_levels).rev() {
             let (coarser, finer) = self.densities.split_at_mut(level + 1);
-            let finer = TileValues::new(finer.first().unwrap_or(&self.source), &levels[level + 1]);
+            let finer = TileValues::new(finer.first().unwrap_or(&self.source), levels[level + 1].tiles());
             let density = &mut coarser[level];
-            parallel::for_each(blocks(levels[level].places(), density), |targets| {
+            parallel::for_each(own_blocks(&levels[level], density), |targets| {
                 restrict(tables, (level, n_levels), finer, (arch, targets));
             });
-            let Some((cells, tiles)) = self.hierarchy.elements_of(level) else { continue };
-            let elements = TileValues::new(&self.source[cells], tiles);
-            let pass = CoarseDensity { table: tables.coarse_table(n_levels - level), elements };
-            parallel::for_each(blocks(levels[level].places(), density), |targets| {
-                (tables.sizes.passes.add_coarse)(arch, &pass, targets);
-            });
+            if let Some((cells, tiles)) = self.hierarchy.elements_of(level) {
+                let elements = TileValues::new(&self.source[cells], tiles);
+                let pass = CoarseDensity { table: tables.coarse_table(n_levels - level), elements };
+                parallel::for_each(own_blocks(&levels[level], density), |targets| {
+                    (tables.sizes.passes.add_coarse)(arch, &pass, targets);
+                });
+            }
+            levels[level].exchange(density);
         }
     }
 
     /// The base grid: its density from level 1, its convolution, its displacement as tiles.
     fn convolve_base(&mut self, tables: &Tables<T>) {
         let (side, arch, levels) = (self.hierarchy.base().nx(), self.arch, &self.hierarchy.levels);
-        let finer = TileValues::new(self.densities.get(1).unwrap_or(&self.source), &levels[1]);
+        let finer = TileValues::new(self.densities.get(1).unwrap_or(&self.source), levels[1].tiles());
         let n_levels = self.hierarchy.n_levels();
         let tiles_per_block = BLOCK_ROWS / TILE * (side / TILE);
+        let over_ranks = self.hierarchy.base_part.as_ref().map(|part| {
+            let places = part.own_places();
+            let mut own = vec![T::default(); places.len() * CELLS];
+            parallel::for_each(blocks(places, &mut own), |targets| {
+                restrict(tables, (0, n_levels), finer, (arch, targets));
+            });
+            (part, part.gathered(own))
+        });
         write_rows(&mut self.convolution, &|i, rows| {
             let mut cells = vec![T::default(); rows.len()];
-            let places = &levels[0].places()[i * tiles_per_block..][..rows.len() / CELLS];
-            restrict(tables, (0, n_levels), finer, (arch, Targets { places, cells: &mut cells }));
+            let places = &levels[0].tiles().places()[i * tiles_per_block..][..rows.len() / CELLS];
+            match &over_ranks {
+                None => restrict(tables, (0, n_levels), finer, (arch, Targets { places, cells: &mut cells })),
+                Some((part, gathered)) => part.copy(gathered, places, &mut cells),
+            }
             tiles_to_rows(&cells, rows, side);
         });
         self.convolution.apply_symbol(&tables.base);
@@ -175,23 +190,24 @@ impl<T: Real> TileOperator<T> {
             let (coarser, finer) = self.displacements.split_at_mut(level);
             let pass = Displacement {
                 table: &tables.levels[level - 1],
-                density: TileValues::new(&self.densities[level], &levels[level]),
-                coarser: TileValues::new(&coarser[level - 1], &levels[level - 1]),
+                density: TileValues::new(&self.densities[level], levels[level].tiles()),
+                coarser: TileValues::new(&coarser[level - 1], levels[level - 1].tiles()),
             };
-            parallel::for_each(blocks(levels[level].places(), &mut finer[0]), |targets| {
+            parallel::for_each(own_blocks(&levels[level], &mut finer[0]), |targets| {
                 (tables.sizes.passes.displace)(arch, &pass, targets);
             });
+            levels[level].exchange(&mut finer[0]);
         }
     }
 
     /// The displacement of some tiles of the finest elements.
     fn displace_finest(&self, tables: &Tables<T>, tiles: Range<usize>, cells: &mut [T]) {
         let (levels, level) = (&self.hierarchy.levels, self.hierarchy.n_levels());
-        let finest = self.hierarchy.elements().cells(0);
+        let finest = self.hierarchy.finest_values();
         let table = &tables.levels[level - 1];
-        let density = TileValues::new(&self.source[finest], &levels[level]);
-        let coarser = TileValues::new(&self.displacements[level - 1], &levels[level - 1]);
-        let targets = Targets { places: &levels[level].places()[tiles], cells };
+        let density = TileValues::new(&self.source[finest], levels[level].tiles());
+        let coarser = TileValues::new(&self.displacements[level - 1], levels[level - 1].tiles());
+        let targets = Targets { places: &levels[level].tiles().places()[tiles], cells };
         if let Some(uneven) = &tables.uneven {
             let pass = UnevenDisplacement { taps: &table.0, uneven, density, coarser };
             (tables.sizes.passes.displace_uneven)(self.arch, &pass, targets);
@@ -212,7 +228,7 @@ impl<T: Real> TileOperator<T> {
             elements: TileValues::new(&self.source[elements.cells(coarser)], here),
             finer: TileValues::new(finer, &elements.levels()[coarser - 1]),
             ghosts,
-            level: TileValues::new(&self.displacements[level], &levels[level]),
+            level: TileValues::new(&self.displacements[level], levels[level].tiles()),
         };
         (tables.sizes.passes.displace_coarse)(self.arch, &pass, Targets { places: &here.places()[tiles], cells });
     }
@@ -248,6 +264,11 @@ fn restrict<T: Real>(
 fn blocks<'a, T>(places: &'a [[u32; 2]], cells: &'a mut [T]) -> impl Iterator<Item = Targets<'a, T>> {
     let blocks = cells.chunks_mut(BLOCK_CELLS).zip(places.chunks(BLOCK_TILES));
     blocks.map(|(cells, places)| Targets { places, cells })
+}
+
+/// The own tiles of a level, block by block, from the values of all.
+fn own_blocks<'a, T>(part: &'a Part, cells: &'a mut [T]) -> impl Iterator<Item = Targets<'a, T>> {
+    blocks(part.own_places(), &mut cells[part.own_cells()])
 }
 
 /// Whole rows of tiles as rows of `side` cells.

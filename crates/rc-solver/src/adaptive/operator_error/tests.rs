@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use rc_core::{DVec2, Field, Grid, HeightSource, Kernel, Operator, Silent};
 use rc_fft::SymbolTable;
 use rc_kernel::{Love, PeriodicLove};
-use rc_quadtree::{BLOCK_CELLS, CELLS, TILE, TileSet};
+use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet};
 
 use super::*;
 use crate::Control;

@@ -1,0 +1,132 @@
+//! `rc-mpi solve`: one contact problem over ranks, all of which run this together.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::{Args, Parser, Subcommand};
+use rc_comm::Ranks;
+
+use super::args::SolveArgs;
+use super::job::Job;
+use super::scene_of;
+use crate::error::CliError;
+use crate::files::checkpoint::CheckpointFile;
+use crate::run::together::together;
+use crate::run::{stop, threads};
+use crate::scene::file;
+use crate::scene::keys::Scene;
+use crate::scene::resolve::Place;
+use crate::terminal;
+
+/// One contact problem over the ranks of MPI: mpirun -n 4 rc-mpi solve ...
+///
+/// Flags and files are those of rc solve, and the digits do not depend on the number of ranks. Each rank has a part of the mesh; all of them have
+/// the base grid. Exit codes: 0 solved, 2 bad input, 3 not converged, 4 could not write.
+#[derive(Parser, Clone, Debug)]
+#[command(name = "rc-mpi", version, max_term_width = 120, disable_help_subcommand = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand, Clone, Debug)]
+enum Command {
+    /// Solve one contact problem
+    Solve(Box<RanksArgs>),
+}
+
+#[derive(Args, Clone, Debug)]
+struct RanksArgs {
+    #[command(flatten)]
+    solve: SolveArgs,
+    /// File that keeps what the last level has left for the next one: a run that was ended goes on from there, on any number of ranks, to the same
+    /// digits. It is removed when the result is there
+    #[arg(long, value_name = "FILE", help_heading = "Run")]
+    checkpoint: Option<PathBuf>,
+    /// Write pressure and gap as the Zarr group DIR/fields.zarr, all ranks at once, in place of pressure.npy, gap.npy, elements.csv and contact.png,
+    /// which one rank writes
+    #[arg(long, help_heading = "Run")]
+    zarr: bool,
+}
+
+/// Runs a command line of `rc-mpi`, the name of the program first, and returns the exit code. All ranks call this together; the first of
+/// them prints and writes.
+#[must_use]
+pub fn main_over_ranks(words: impl IntoIterator<Item = OsString>, ranks: &Ranks) -> u8 {
+    let is_first = ranks.rank() == 0;
+    let result = match Cli::try_parse_from(words) {
+        Ok(Cli { command: Command::Solve(args) }) => run(*args, ranks),
+        Err(error) if !error.use_stderr() => {
+            if is_first {
+                // There is nowhere left to report that the output is closed.
+                let _ = error.print();
+            }
+            return 0;
+        }
+        Err(error) => Err(CliError::from(&error)),
+    };
+    let Err(error) = result else { return 0 };
+    if is_first {
+        terminal::tell(&format!("error: {error}"));
+    }
+    error.exit_code()
+}
+
+fn run(args: RanksArgs, ranks: &Ranks) -> Result<(), CliError> {
+    let RanksArgs { solve, checkpoint, zarr } = args;
+    if solve.watch {
+        return Err(CliError::input(
+            "watch: no rank has the whole contact while it is solved; omit it, or use rc solve",
+        ));
+    }
+    let dry_run = solve.dry_run;
+    let job = together(ranks, prepare(solve, (checkpoint.as_deref(), zarr), ranks))?;
+    let threads = together(ranks, threads::start(job.run.threads))?;
+    stop::listen();
+    if dry_run {
+        return if ranks.rank() == 0 { job.dry_run(threads) } else { Ok(()) };
+    }
+    job.execute(threads)?;
+    if let (Some(file), 0) = (&job.scene.contact.place.checkpoint, ranks.rank()) {
+        if let Some(failure) = file.failure() {
+            terminal::tell(&format!("checkpoint: {failure}; the result does not need it"));
+        }
+        file.remove();
+    }
+    Ok(())
+}
+
+/// The checked scene, in its place.
+fn prepare(args: SolveArgs, (checkpoint, zarr): (Option<&Path>, bool), ranks: &Ranks) -> Result<Job, CliError> {
+    let dry_run = args.dry_run;
+    let scene = scene_of(args)?;
+    let text = scene_text(&scene);
+    if checkpoint.is_some() && scene.contact.area_error.is_some() {
+        return Err(CliError::input("checkpoint: area_error solves on several grids; give grid instead"));
+    }
+    if scene.contact.leakage {
+        return Err(CliError::input("leakage: the flow is not solved over ranks; omit leakage, or use rc solve"));
+    }
+    let mut job = Job::new(scene, false)?;
+    if zarr {
+        job = job.with_zarr()?;
+    }
+    if dry_run {
+        return Ok(job);
+    }
+    let checkpoint = match checkpoint {
+        Some(path) => Some(Arc::new(CheckpointFile::new(path, &text)?)),
+        None => None,
+    };
+    job.scene.contact.place = Place { ranks: ranks.clone(), checkpoint };
+    Ok(job)
+}
+
+/// The keys that determine what is solved, with the size and the time of a file of heights.
+fn scene_text(scene: &Scene) -> String {
+    let Scene { surface, contact, .. } = scene;
+    let files = surface.heights.iter().chain(&surface.spectrum);
+    let files = files.map(|path| format!("{:?}", path.metadata().ok().map(|data| (data.len(), data.modified().ok()))));
+    [file::to_toml(surface), file::to_toml(contact)].into_iter().chain(files).collect::<Vec<_>>().join("\n")
+}

@@ -1,0 +1,191 @@
+//! A mesh whose vectors are dealt among ranks.
+
+use std::borrow::Cow;
+use std::ops::{Deref, Range};
+
+use rc_comm::{Packed, Ranks};
+use rc_quadtree::{CELLS, Elements, TileSet};
+
+use super::deal::Deal;
+use super::part::{Part, append_around};
+
+/// The elements of a mesh, which all ranks know, and which of them this rank has.
+///
+/// A vector has a value for each element that this rank has: all of them if it is alone. Over ranks all elements are of one size.
+#[derive(Clone, Debug)]
+pub(crate) struct Mesh {
+    elements: Elements,
+    ranks: Ranks,
+}
+
+/// The elements that a rank has with those around them, and values.
+pub(super) struct Surroundings<'a> {
+    pub(super) elements: Cow<'a, Elements>,
+    pub(super) values: Cow<'a, [f64]>,
+    /// The first own tile of the finest level.
+    first: usize,
+}
+
+impl From<Elements> for Mesh {
+    /// All of them are of this rank.
+    fn from(elements: Elements) -> Self {
+        Self { elements, ranks: Ranks::alone() }
+    }
+}
+
+impl Deref for Mesh {
+    type Target = Elements;
+
+    fn deref(&self) -> &Elements {
+        &self.elements
+    }
+}
+
+impl Mesh {
+    /// Elements that are dealt anew.
+    pub(super) fn new(elements: Elements, ranks: &Ranks) -> Self {
+        debug_assert!(ranks.are_alone() || elements.levels().len() == 1, "elements of one size");
+        Self { elements, ranks: ranks.clone() }
+    }
+
+    /// The ranks.
+    pub(super) fn ranks(&self) -> &Ranks {
+        &self.ranks
+    }
+
+    /// All elements.
+    pub(super) fn elements(&self) -> &Elements {
+        &self.elements
+    }
+
+    /// How the tiles of the finest level are dealt.
+    pub(super) fn deal(&self) -> Deal {
+        Deal::equal(self.finest().len(), &self.ranks)
+    }
+
+    /// The tiles of the finest level that this rank has.
+    pub(super) fn own_tiles(&self) -> Range<usize> {
+        self.deal().range(self.ranks.rank())
+    }
+
+    /// The values that this rank has, among those of the whole mesh.
+    pub(super) fn own(&self) -> Range<usize> {
+        if self.ranks.are_alone() {
+            return 0..self.elements.len();
+        }
+        let tiles = self.own_tiles();
+        tiles.start * CELLS..tiles.end * CELLS
+    }
+
+    /// Number of values that this rank has.
+    pub(super) fn n_own(&self) -> usize {
+        self.own().len()
+    }
+
+    /// The levels, finest first, of which this rank has something: how much coarser they are than the finest, the places of its tiles, and
+    /// their values in its vectors.
+    pub(super) fn own_levels(&self) -> impl Iterator<Item = (usize, &[[u32; 2]], Range<usize>)> {
+        let levels = self.levels().iter().enumerate();
+        levels.map(|(coarser, tiles)| {
+            if self.ranks.are_alone() {
+                (coarser, tiles.places(), self.cells(coarser))
+            } else {
+                (coarser, &tiles.places()[self.own_tiles()], 0..self.n_own())
+            }
+        })
+    }
+
+    /// Values on the elements of `to`, as [`Elements::moved`] gives them. Over ranks they go to those that have the tiles there.
+    pub(super) fn moved(&self, to: &Self, values: &[f64], elsewhere: f64) -> Vec<f64> {
+        if self.ranks.are_alone() {
+            return self.elements.moved(&to.elements, values, elsewhere);
+        }
+        let places = &self.finest().places()[self.own_tiles()];
+        to.delivered(places.iter().copied().zip(values.chunks_exact(CELLS)), elsewhere)
+    }
+
+    /// The mesh of the tiles for which `wanted` is true; it gets the sides of the level in cells, the place, and where the values are.
+    pub(super) fn chosen(&self, wanted: impl Fn([usize; 2], [u32; 2], Range<usize>) -> bool) -> Self {
+        if self.ranks.are_alone() {
+            return self.elements.filtered(wanted).into();
+        }
+        let (sides, own) = (self.finest().sides(), self.own_tiles());
+        let tiles = self.finest().places()[own].iter().enumerate();
+        let chosen = tiles.filter(|&(tile, &place)| wanted(sides, place, tile * CELLS..(tile + 1) * CELLS));
+        let places = chosen.map(|(_, &place)| place).collect();
+        Self::new(Elements::uniform(Self::tiles_of_places(sides, places, &self.ranks)), &self.ranks)
+    }
+
+    /// A vector from tiles of any rank, and `elsewhere` on all others; tiles that the mesh does not have are dropped. All ranks call this
+    /// together.
+    pub(super) fn delivered<'v>(&self, tiles: impl Iterator<Item = ([u32; 2], &'v [f64])>, elsewhere: f64) -> Vec<f64> {
+        let (deal, own) = (self.deal(), self.own_tiles());
+        let mut result = vec![elsewhere; self.n_own()];
+        let mut outgoing = vec![Vec::new(); self.ranks.size()];
+        for ([column, row], values) in tiles {
+            let Some(tile) = self.finest().find(column.into(), row.into()) else { continue };
+            if own.contains(&tile) {
+                result[(tile - own.start) * CELLS..][..CELLS].copy_from_slice(values);
+            } else {
+                let message = &mut outgoing[deal.owner(tile)];
+                u64::pack(&[tile as u64], message);
+                f64::pack(values, message);
+            }
+        }
+        for bytes in self.ranks.exchange_all(outgoing) {
+            for message in bytes.chunks_exact(u64::BYTES + CELLS * f64::BYTES) {
+                let mut tile = [0];
+                u64::unpack(message, &mut tile);
+                f64::unpack(&message[u64::BYTES..], &mut result[(tile[0] as usize - own.start) * CELLS..][..CELLS]);
+            }
+        }
+        result
+    }
+
+    /// A vector with the values of the neighbours of all own tiles. All ranks call this together.
+    pub(super) fn surroundings<'a>(&'a self, values: &'a [f64]) -> Surroundings<'a> {
+        if self.ranks.are_alone() {
+            let (elements, values) = (Cow::Borrowed(&self.elements), Cow::Borrowed(values));
+            return Surroundings { elements, values, first: 0 };
+        }
+        let part = self.part();
+        let mut all = vec![0.0; part.n_cells()];
+        all[part.own_cells()].copy_from_slice(values);
+        part.exchange(&mut all);
+        let elements = Elements::uniform(part.tiles().clone());
+        Surroundings { elements: Cow::Owned(elements), values: Cow::Owned(all), first: part.own().start }
+    }
+
+    /// The own tiles with their neighbours.
+    fn part(&self) -> Part {
+        let finest = self.finest();
+        let mut around = Vec::new();
+        for &place in &finest.places()[self.own_tiles()] {
+            append_around(&mut around, (place, place), 1, finest.extent());
+        }
+        Part::new(&self.ranks, finest, &self.deal(), around)
+    }
+
+    /// [`TileSet::on_coarser`] of tiles that all ranks have. Each looks at some of them; all ranks call this together.
+    pub(super) fn on_coarser(&self, tiles: &TileSet, sides: [usize; 2], halo: usize) -> TileSet {
+        if self.ranks.are_alone() {
+            return tiles.on_coarser(sides, halo);
+        }
+        let own = Deal::equal(tiles.len(), &self.ranks).range(self.ranks.rank());
+        let own = TileSet::new(tiles.sides(), tiles.places()[own].to_vec());
+        Self::tiles_of_places(sides, own.on_coarser(sides, halo).places().to_vec(), &self.ranks)
+    }
+
+    /// The tiles of all ranks, from those of each. All ranks call this together.
+    pub(super) fn tiles_of_places(sides: [usize; 2], mine: Vec<[u32; 2]>, ranks: &Ranks) -> TileSet {
+        let flat = ranks.concatenate(mine.into_iter().flatten().collect());
+        TileSet::new(sides, flat.as_chunks::<2>().0.to_vec())
+    }
+}
+
+impl Surroundings<'_> {
+    /// The own tiles of the finest level.
+    pub(super) fn own_tiles(&self, mesh: &Mesh) -> Range<usize> {
+        self.first..self.first + mesh.own_tiles().len()
+    }
+}

@@ -1,0 +1,125 @@
+//! The tiles of a level that a rank has, with those of other ranks that it reads.
+
+use std::ops::Range;
+
+use rc_comm::{Packed, Ranks};
+use rc_quadtree::{CELLS, TileSet};
+
+use super::deal::Deal;
+
+/// The tiles of a level that a rank has, and those of other ranks that it reads. Alone it has all of them.
+///
+/// Values are those of [`Part::tiles`]. The own ones are in one piece, since a rank has a range of the curve that tiles are sorted along.
+#[derive(Debug)]
+pub(super) struct Part {
+    ranks: Ranks,
+    tiles: TileSet,
+    own: Range<usize>,
+    /// What other ranks read: which tiles, by rank.
+    sent: Vec<(usize, Vec<usize>)>,
+    /// What this one reads.
+    received: Vec<(usize, Vec<usize>)>,
+}
+
+impl Part {
+    /// All tiles of a level: of the only rank, or of each of them.
+    pub(super) fn whole(tiles: TileSet) -> Self {
+        Self { ranks: Ranks::alone(), own: 0..tiles.len(), tiles, sent: Vec::new(), received: Vec::new() }
+    }
+
+    /// The tiles of `level` that this rank has, and those at the `read` places that there are. All ranks call this together.
+    pub(super) fn new(ranks: &Ranks, level: &TileSet, deal: &Deal, read: Vec<[u32; 2]>) -> Self {
+        let own = deal.range(ranks.rank());
+        let find = |place: [u32; 2]| level.find(place[0].into(), place[1].into());
+        let mut places = read;
+        places.retain(|&place| find(place).is_some());
+        places.extend_from_slice(&level.places()[own.clone()]);
+        let tiles = TileSet::new(level.sides(), places);
+        let first = level.places().get(own.start).filter(|_| !own.is_empty());
+        let first = first.and_then(|place| tiles.find(place[0].into(), place[1].into())).unwrap_or(0);
+        let mut received: Vec<(usize, Vec<usize>)> = Vec::new();
+        let mut wanted = vec![Vec::new(); ranks.size()];
+        for (here, tile) in tiles.places().iter().enumerate().filter_map(|(here, &place)| Some((here, find(place)?))) {
+            if own.contains(&tile) {
+                continue;
+            }
+            let owner = deal.owner(tile);
+            u64::pack(&[tile as u64], &mut wanted[owner]);
+            // Owners follow each other as tiles do.
+            match received.last_mut().filter(|(rank, _)| *rank == owner) {
+                Some((_, tiles)) => tiles.push(here),
+                None => received.push((owner, vec![here])),
+            }
+        }
+        let asked = ranks.exchange_all(wanted).into_iter().map(|bytes| u64::unpack_all(&bytes));
+        let here = |tile: u64| first + (tile as usize - own.start);
+        let sent = asked.map(|tiles| tiles.into_iter().map(here).collect::<Vec<_>>()).enumerate();
+        let sent = sent.filter(|(_, tiles)| !tiles.is_empty()).collect();
+        Self { ranks: ranks.clone(), tiles, own: first..first + own.len(), sent, received }
+    }
+
+    /// The tiles that values are of.
+    pub(super) fn tiles(&self) -> &TileSet {
+        &self.tiles
+    }
+
+    /// The own ones among them.
+    pub(super) fn own(&self) -> Range<usize> {
+        self.own.clone()
+    }
+
+    /// The places of the own ones.
+    pub(super) fn own_places(&self) -> &[[u32; 2]] {
+        &self.tiles.places()[self.own()]
+    }
+
+    /// Their values, among those of all.
+    pub(super) fn own_cells(&self) -> Range<usize> {
+        self.own.start * CELLS..self.own.end * CELLS
+    }
+
+    /// Number of values.
+    pub(super) fn n_cells(&self) -> usize {
+        self.tiles.n_cells()
+    }
+
+    /// Fills the values of what is not own from the ranks that have it. All ranks call this together.
+    pub(super) fn exchange<T: Packed>(&self, values: &mut [T]) {
+        if self.ranks.are_alone() {
+            return;
+        }
+        let message = |(rank, tiles): &(usize, Vec<usize>)| {
+            let mut bytes = Vec::with_capacity(tiles.len() * CELLS * T::BYTES);
+            for tile in tiles {
+                T::pack(&values[tile * CELLS..][..CELLS], &mut bytes);
+            }
+            (*rank, bytes)
+        };
+        let outgoing = self.sent.iter().map(message).collect();
+        let from: Vec<usize> = self.received.iter().map(|(rank, _)| *rank).collect();
+        for ((_, tiles), bytes) in self.received.iter().zip(self.ranks.exchange(outgoing, &from)) {
+            for (tile, bytes) in tiles.iter().zip(bytes.chunks_exact(CELLS * T::BYTES)) {
+                T::unpack(bytes, &mut values[tile * CELLS..][..CELLS]);
+            }
+        }
+    }
+}
+
+/// Appends the places that are at most `margin` tiles from the square of tiles between two places, both included, of a periodic level of
+/// so many tiles.
+pub(super) fn append_around(
+    places: &mut Vec<[u32; 2]>,
+    (first, last): ([u32; 2], [u32; 2]),
+    margin: usize,
+    extent: [usize; 2],
+) {
+    let margin = margin as i64;
+    let along = |axis: usize| {
+        let n = extent[axis] as i64;
+        let range = i64::from(first[axis]) - margin..=i64::from(last[axis]) + margin;
+        range.take(extent[axis]).map(move |i| i.rem_euclid(n) as u32)
+    };
+    for row in along(1) {
+        places.extend(along(0).map(|column| [column, row]));
+    }
+}

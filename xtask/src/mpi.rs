@@ -1,0 +1,180 @@
+//! `cargo xtask mpi`: solves over the ranks of MPI, compared with `rc solve` digit by digit; one of them loses a rank and goes on.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, bail, ensure};
+use rc_figures::repository;
+use serde_json::{Map, Value};
+
+use crate::process::{Step, path_of};
+
+/// Builds rc-mpi, solves over 1, 2 and 4 ranks, compares the files with those of `rc solve`, and kills a rank of three.
+///
+/// Without MPI and clang (Debian: libopenmpi-dev openmpi-bin clang libclang-dev) this says so, and ends well.
+#[derive(clap::Args)]
+pub(crate) struct Args {}
+
+/// What is needed.
+const PROGRAMS: [&str; 3] = ["mpirun", "mpicc", "clang"];
+
+/// The scenes: both controls, a second or so each.
+const SCENES: [[&str; 8]; 2] = [
+    [
+        "solve",
+        "--waves=64",
+        "--grid=1024",
+        "--pressure=446395",
+        "--method=adaptive",
+        "--tolerance=1e-6",
+        "--quiet",
+        "--threads=1",
+    ],
+    [
+        "solve",
+        "--waves=64",
+        "--grid=1024",
+        "--penetration=14e-6",
+        "--method=adaptive",
+        "--tolerance=1e-6",
+        "--quiet",
+        "--threads=1",
+    ],
+];
+
+/// The scene that loses a rank: its last level takes some seconds.
+const LONG: [&str; 8] = [
+    "solve",
+    "--waves=64",
+    "--grid=4096",
+    "--pressure=446395",
+    "--method=adaptive",
+    "--tolerance=1e-6",
+    "--quiet",
+    "--threads=1",
+];
+
+/// Files that are compared byte by byte.
+const FILES: [&str; 5] = ["pressure.npy", "gap.npy", "elements.csv", "contact.png", "scene.toml"];
+
+/// Keys of the summary that say how it was computed.
+const OF_THE_RUN: [&str; 3] = ["wall_seconds", "peak_memory_bytes", "threads"];
+
+/// Open MPI 4 and 5: more ranks than cores, also as root in a container. Other libraries do not look at these.
+const ENVIRONMENT: [(&str, &str); 4] = [
+    ("OMPI_MCA_rmaps_base_oversubscribe", "1"),
+    ("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe"),
+    ("OMPI_ALLOW_RUN_AS_ROOT", "1"),
+    ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"),
+];
+
+/// After this long something has gone wrong.
+const PATIENCE: Duration = Duration::from_secs(300);
+
+#[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
+pub(crate) fn run(_args: &Args) -> Result<()> {
+    if let Some(missing) = PROGRAMS.iter().find(|program| path_of(program).is_none()) {
+        eprintln!(
+            "mpi: skipped, there is no {missing} here (Debian: apt-get install libopenmpi-dev openmpi-bin clang libclang-dev)"
+        );
+        return Ok(());
+    }
+    let root = repository::root();
+    Step { environment: &[], words: &["build", "--release", "--package", "rc-cli"] }.run(&[])?;
+    // What both share is built once.
+    let target = format!("--target-dir={}", root.join("target").display());
+    Step { environment: &[], words: &["build", "--release"] }.run_in(&root.join("mpi"), &[target])?;
+    let folder = tempfile::tempdir()?;
+    let programs = Programs { target: root.join("target/release"), folder: folder.path().to_owned() };
+    for scene in SCENES {
+        programs.solve(&scene, "alone")?;
+        for ranks in [1, 2, 4] {
+            let out = format!("ranks-{ranks}");
+            ensure!(programs.mpirun(ranks, &scene, &["--out", &out]).status()?.success(), "{ranks} ranks failed");
+            programs.compare("alone", &out)?;
+        }
+        eprintln!("mpi: {}: 1, 2 and 4 ranks give the files of one process, byte by byte", scene[3]);
+    }
+    lose_a_rank(&programs)?;
+    eprintln!("mpi: 3 ranks of which one was killed, then 2 ranks from the last level, give the files of one process");
+    Ok(())
+}
+
+/// Kills one of three ranks when the finest level has begun, and goes on with two.
+fn lose_a_rank(programs: &Programs) -> Result<()> {
+    let words = ["--out", "resumed", "--checkpoint", "levels"];
+    programs.solve(&LONG, "alone")?;
+    let mut run = programs.mpirun(3, &LONG, &words).stderr(Stdio::null()).spawn()?;
+    let checkpoint = programs.folder.join("levels");
+    let started = Instant::now();
+    // The base grid has 256 elements per side: four levels are kept before the finest.
+    let mut kept = 0;
+    let mut last = None;
+    while kept < 3 {
+        ensure!(started.elapsed() < PATIENCE, "no checkpoint after {} s", PATIENCE.as_secs());
+        ensure!(run.try_wait()?.is_none(), "the run has ended before its checkpoint");
+        let written = checkpoint.metadata().and_then(|file| file.modified()).ok();
+        if written.is_some() && written != last {
+            (kept, last) = (kept + 1, written);
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let pid = std::fs::read_to_string(programs.folder.join("pid-1"))?;
+    let killed = Command::new("kill").args(["-KILL", pid.trim()]).status()?;
+    ensure!(killed.success(), "rank 1 was faster than the kill");
+    ensure!(!run.wait()?.success(), "a run that has lost a rank does not end well");
+    ensure!(!programs.folder.join("resumed/summary.json").exists(), "a run that has lost a rank has no result");
+    ensure!(programs.mpirun(2, &LONG, &words).status()?.success(), "the run does not go on");
+    ensure!(!checkpoint.exists(), "the checkpoint is removed when the result is there");
+    programs.compare("alone", "resumed")
+}
+
+/// The programs, and the folder that they work in.
+struct Programs {
+    target: PathBuf,
+    folder: PathBuf,
+}
+
+impl Programs {
+    fn solve(&self, scene: &[&str], out: &str) -> Result<()> {
+        let status =
+            Command::new(self.target.join("rc")).args(scene).args(["--out", out]).current_dir(&self.folder).status()?;
+        ensure!(status.success(), "rc {} failed", scene.join(" "));
+        Ok(())
+    }
+
+    /// The scene over so many ranks, each of which notes its process.
+    fn mpirun(&self, ranks: usize, scene: &[&str], more: &[&str]) -> Command {
+        let mut command = Command::new("mpirun");
+        let note = "echo $$ > pid-${OMPI_COMM_WORLD_RANK:-${PMI_RANK:-0}}; exec \"$0\" \"$@\"";
+        command.args(["-n", &ranks.to_string(), "sh", "-c", note]).arg(self.target.join("rc-mpi"));
+        command.args(scene).args(more).envs(ENVIRONMENT).current_dir(&self.folder);
+        command
+    }
+
+    /// Fails unless two results are the same.
+    fn compare(&self, one: &str, other: &str) -> Result<()> {
+        for name in FILES {
+            let [a, b] = [one, other].map(|folder| self.folder.join(folder).join(name));
+            if read(&a)? != read(&b)? {
+                bail!("{name} of {other} is not that of {one}");
+            }
+        }
+        let [a, b] = [one, other].map(|folder| self.summary(folder));
+        ensure!(a? == b?, "the summary of {other} is not that of {one}");
+        Ok(())
+    }
+
+    /// The summary of a result but for what depends on the run.
+    fn summary(&self, folder: &str) -> Result<Map<String, Value>> {
+        let text = read(&self.folder.join(folder).join("summary.json"))?;
+        let mut summary: Map<String, Value> = serde_json::from_slice(&text)?;
+        summary.retain(|key, _| !OF_THE_RUN.contains(&key.as_str()));
+        Ok(summary)
+    }
+}
+
+fn read(path: &Path) -> Result<Vec<u8>> {
+    std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))
+}
