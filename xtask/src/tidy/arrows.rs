@@ -29,6 +29,7 @@ const ABOVE_THE_LIBRARIES: &[(&str, &[&str])] = &[
     ("rc-py", &["rc-cli"]),
     ("xtask", &["rc-figures", "rc-bench", "rc-cli"]),
     ("rc-tests", &["rc-figures", "rc-bench", "rc-cli"]),
+    ("rc-mpi", &["rc-cli"]),
     ("rc-fuzz", &["rc-figures", "rc-bench", "rc-cli"]),
 ];
 

@@ -13,8 +13,8 @@ use super::complaint::Complaint;
 const FOLDERS: &[&str] = &["crates/", "data/", "docs/", "fuzz/", "python/", "tests/", "xtask/"];
 /// History names what is gone.
 const HISTORY: &str = "CHANGELOG.md";
-/// Flags of other programs (cargo, mpirun, pip, sbatch) that the guide names by themselves.
-const FOREIGN: &[&str] = &["all-features", "features", "help", "locked", "release"];
+/// Flags of other programs (cargo, rc-mpi) that the guide names by themselves.
+const FOREIGN: &[&str] = &["all-features", "checkpoint", "features", "help", "locked", "release"];
 
 /// Checks guide, front pages and the comments in code; `xtask` is the command line of `cargo xtask`.
 pub(super) fn check(sources: &Sources, xtask: &clap::Command) -> Vec<Complaint> {

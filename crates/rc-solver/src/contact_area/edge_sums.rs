@@ -114,11 +114,11 @@ impl EdgeSums {
             known,
             shift,
             deviation,
-            squares,
-            turns,
             sharp,
             known_sharp,
             shift_of_sharp,
+            squares,
+            turns,
         }
     }
 }
