@@ -1,7 +1,5 @@
 //! Flow through solved rough contacts against effective medium theories, and the contact area at which it ends against published values.
 
-use std::collections::BTreeMap;
-
 use rc_core::{Field, Grid};
 
 use rc_fractal::{SpectrumParams, Surface, height_and_slope_of_grid};
@@ -14,7 +12,7 @@ use crate::solved;
 /// Elements per shortest wave.
 const ELEMENTS_PER_WAVE: usize = 8;
 
-/// The gap of a rough contact under a mean pressure in units of E* times the rms slope, 0 where they touch; and the part of elements that do. Wavelengths are from
+/// The gap of a rough contact under a mean pressure in units of E* times the rms slope, 0 where they touch; and the contact area. Wavelengths are from
 /// the cell over `waves` to `range` times this.
 fn contact(seed: u64, waves: usize, range: f64, pressure: f64) -> (Field, f64) {
     let params = SpectrumParams { roll_off: waves as f64 / range, ..SpectrumParams::paper(waves, seed) };
@@ -28,9 +26,7 @@ fn contact(seed: u64, waves: usize, range: f64, pressure: f64) -> (Field, f64) {
     for (gap, touches) in gap.values_mut().iter_mut().zip(touching) {
         *gap = if touches { 0.0 } else { gap.max(0.0) };
     }
-    let closed = gap.values().iter().filter(|gap| **gap <= 0.0).count();
-    let part = closed as f64 / gap.values().len() as f64;
-    (gap, part)
+    (gap, solution.area().fraction)
 }
 
 /// The conductivity s of a medium in which elements of conductivity g³ are on average no disturbance: Σ (g³ - s)/(g³ + (D - 1) s) = 0. D = 2 is the theory of Bruggeman
@@ -57,8 +53,8 @@ fn effective_medium(gap: &Field, d: f64) -> f64 {
 fn the_flow_through_rough_contacts_is_between_effective_medium_theories() {
     for (pressure, area, apart) in [(0.03, 0.08, 1.6), (0.08, 0.19, 2.5)] {
         for seed in [1, 2] {
-            let (gap, part) = contact(seed, 48, 2.0, pressure);
-            assert!((part - area).abs() < 0.02, "{part} is in contact");
+            let (gap, found) = contact(seed, 48, 2.0, pressure);
+            assert!((found - area).abs() < 0.02, "{found} is in contact");
             let params = LeakageParams { half_grid: false, ..LeakageParams::default() };
             let [x, y] = leakage(&gap, &params).expect("a flow").flows.map(|flow| flow.permeance);
             let [most, least] = [2.0, 1.0 / 0.58].map(|d| effective_medium(&gap, d));
@@ -70,23 +66,32 @@ fn the_flow_through_rough_contacts_is_between_effective_medium_theories() {
 }
 
 /// Dapp, Lücke, Persson and Müser, Phys. Rev. Lett. 108, 2012: the film of self-affine contacts is cut near A/A0 = 0.42. A cell of a few long
-/// waves scatters about it.
+/// waves scatters about it by 0.03; the mean over six of them and both axes is 0.42 to 0.01.
 #[test]
 fn the_film_is_cut_near_the_published_contact_area() {
     let params = LeakageParams { half_grid: false, ..LeakageParams::default() };
-    let mut lost = BTreeMap::new();
-    for seed in 1..=5 {
-        for step in 0..8 {
+    let mut lost = Vec::new();
+    for seed in 1..=6 {
+        let mut before: [Option<f64>; 2] = [None; 2];
+        for step in 0..9 {
             let (gap, area) = contact(seed, 32, 8.0, 0.18 + 0.015 * f64::from(step));
             let flows = leakage(&gap, &params).expect("a flow").flows;
-            // One axis that percolates is a film.
-            if flows.iter().all(|flow| !flow.percolates) {
-                lost.insert(seed, area);
+            for (flow, before) in flows.iter().zip(&mut before) {
+                match (flow.percolates, *before) {
+                    (true, _) => *before = Some(area),
+                    (false, Some(open)) => {
+                        lost.push(0.5 * (open + area));
+                        *before = None;
+                    }
+                    (false, None) => {}
+                }
+            }
+            if before == [None; 2] {
                 break;
             }
         }
     }
-    let mean = lost.values().sum::<f64>() / lost.len() as f64;
-    assert!(lost.len() >= 4, "{lost:?}");
-    assert!((mean - 0.42).abs() < 0.04, "{mean} is the mean of {lost:?}");
+    let mean = lost.iter().sum::<f64>() / lost.len() as f64;
+    assert!(lost.len() >= 11, "{lost:?}");
+    assert!((mean - 0.42).abs() < 0.03, "{mean} is the mean of {lost:?}");
 }
