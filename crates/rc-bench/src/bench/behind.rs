@@ -113,7 +113,7 @@ pub(super) fn summary(results: &Results<'_>) -> String {
     let most = if kinds.is_empty() {
         String::new()
     } else {
-        format!(" It is faster most often in these:\n\n{}\n", kinds.join("\n"))
+        format!(" It is faster most often in these:\n\n{}", kinds.join("\n"))
     };
     format!(
         "A comparison is one error, on one scene or mesh, in one reading of the peers' results. In {slower} of {n} comparisons the \
@@ -143,7 +143,7 @@ mod tests {
         let expected = "- area to 1 %, by hindsight, beside peers as they report: slower in paper (0.1).";
         assert!(text.contains(expected), "{text}");
         let summary = summary(&Results { rows: &rows, references: &references });
-        assert!(summary.contains("fastest peer is faster.") && summary.contains("- area to"), "{summary}");
+        assert!(summary.contains("fastest peer is faster.") && summary.contains("\n- rms pressure to"), "{summary}");
     }
 
     #[test]
