@@ -68,7 +68,7 @@ impl Figure for Start {
             .map(|i| [self.x[i], self.pressure[i], self.gap[i], self.edge_function[i]].map(number).into());
         let columns = Table::new("elements", &header, rows).rest(Rule::of_scale(1e-6));
         let header = ["edge", "by_edge_function", "by_pressure"];
-        let edges = [self.exact_edge(), self.edge_of(&self.edge_function), self.edge_of(&self.pressure)];
+        let edges = [self.exact_edge(), edge_of(&self.edge_function), edge_of(&self.pressure)];
         vec![columns, Table::new("edges", &header, [edges.map(number).into()])]
     }
 }
@@ -94,32 +94,32 @@ fn edge_function(pressure: &[f64], gap: f64, i: usize, spacing: f64) -> f64 {
     -c_squared * (0.75 * gap / c_squared.sqrt()).powf(2.0 / 3.0)
 }
 
+/// `values` at `x`, linear between the centres of elements.
+fn at(values: &[f64], x: f64) -> f64 {
+    let n = values.len();
+    let place = x * n as f64 - 0.5;
+    let (below, part) = (place.floor(), place - place.floor());
+    let value = |i: f64| values[(i as isize).rem_euclid(n as isize) as usize];
+    value(below) + part * (value(below + 1.0) - value(below))
+}
+
+/// Where `values`, linear between centres, stop being positive.
+fn edge_of(values: &[f64]) -> f64 {
+    let points = (0..=50_000).map(|i| 1e-5 * f64::from(i));
+    points.take_while(|x| at(values, *x) > 0.0).last().unwrap_or(0.0)
+}
+
 impl Start {
     fn exact_edge(&self) -> f64 {
         self.params.wave.half_width(self.params.mean_pressure())
-    }
-
-    /// `values` at `x`, linear between the centres of elements.
-    fn at(&self, values: &[f64], x: f64) -> f64 {
-        let n = values.len();
-        let place = x * n as f64 - 0.5;
-        let (below, part) = (place.floor(), place - place.floor());
-        let value = |i: f64| values[(i as isize).rem_euclid(n as isize) as usize];
-        value(below) + part * (value(below + 1.0) - value(below))
-    }
-
-    /// Where `values`, linear between centres, stop being positive.
-    fn edge_of(&self, values: &[f64]) -> f64 {
-        let points = (0..=50_000).map(|i| 1e-5 * f64::from(i));
-        points.take_while(|x| self.at(values, *x) > 0.0).last().unwrap_or(0.0)
     }
 
     fn draw_pressure<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
         let unit = self.params.wave.full_contact_pressure();
         let mut chart = axes("p / p of full contact", (0.0, 1.4)).on(area)?;
         let (wave, mean) = (self.params.wave, self.params.mean_pressure());
-        self.line(&mut chart, &|x| self.at(&self.pressure, x) / unit, RED)?;
-        self.line(&mut chart, &|x| self.at(&self.edge_function, x).max(0.0).sqrt() / unit, BLUE)?;
+        self.line(&mut chart, &|x| at(&self.pressure, x) / unit, RED)?;
+        self.line(&mut chart, &|x| at(&self.edge_function, x).max(0.0).sqrt() / unit, BLUE)?;
         let exact = self.points().map(|x| (x, wave.pressure(x, mean) / unit));
         chart.draw_series(DashedLineSeries::new(exact, 8, 6, BLACK.stroke_width(2)))?;
         self.dots(&mut chart, &self.pressure, unit)?;
@@ -136,7 +136,7 @@ impl Start {
         chart.draw_series([PathElement::new([(SHOWN.0, 0.0), (SHOWN.1, 0.0)], GREY.stroke_width(1))])?;
         let edge = self.exact_edge();
         chart.draw_series(DashedLineSeries::new([(edge, -0.8), (edge, 1.6)], 8, 6, BLACK.stroke_width(2)))?;
-        self.line(&mut chart, &|x| self.at(&self.edge_function, x) / unit, BLUE)?;
+        self.line(&mut chart, &|x| at(&self.edge_function, x) / unit, BLUE)?;
         self.dots(&mut chart, &self.edge_function, unit)?;
         write(&mut chart, (edge, 1.3), Side::Right, "exact edge", BLACK)?;
         write(&mut chart, (0.01, -0.66), Side::Right, "(b)", BLACK)
@@ -195,7 +195,7 @@ mod tests {
     fn the_edge_function_finds_the_edge_and_the_pressure_does_not() {
         let (figure, params) = quick();
         let elements = |edge: f64| (edge - figure.exact_edge()) * params.grid as f64;
-        let (good, bad) = (elements(figure.edge_of(&figure.edge_function)), elements(figure.edge_of(&figure.pressure)));
+        let (good, bad) = (elements(edge_of(&figure.edge_function)), elements(edge_of(&figure.pressure)));
         assert!(good.abs() < 0.2 && bad > 0.4, "off by {good} and {bad} elements");
     }
 
