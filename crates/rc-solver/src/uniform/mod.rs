@@ -23,10 +23,11 @@ pub const UNIFORM_BYTES_PER_ELEMENT: u64 = 80;
 
 /// Solves the contact problem on the grid of `heights` (in λ, any mean).
 ///
-/// Full contact is returned exactly and without iteration. Otherwise coarser grids, each with about half the elements per side,
-/// prepare the start on the next; on each the pressure is found by conjugate gradients preconditioned by the inverse
-/// symbol between two extensions of residuals (see `docs/uniform-solver.md` and, for measurements, `docs/measurements-uniform.md`). The certificate is
-/// computed from a fresh application of L, in double precision, on the pressure that is returned.
+/// Full contact is returned exactly and without iteration. Otherwise coarser grids, each with about half the elements
+/// per side, prepare the start on the next; on each the pressure is found by conjugate gradients preconditioned by the
+/// inverse symbol between two extensions of residuals (see `docs/uniform-solver.md` and, for measurements,
+/// `docs/measurements-uniform.md`). The certificate is computed from a fresh application of L, in double precision, on
+/// the pressure that is returned.
 ///
 /// The result is bitwise the same for any number of threads.
 ///
