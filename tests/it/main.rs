@@ -9,6 +9,7 @@ mod full_contact;
 mod gauss_seidel;
 mod hertz;
 mod interchange;
+mod layer;
 mod pits;
 mod reference;
 mod rough;

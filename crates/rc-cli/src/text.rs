@@ -26,7 +26,7 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
     let area = with_error(100.0 * s.area_fraction, 100.0 * s.area_fraction_error);
     let counted = digits(100.0 * s.area_fraction_cells, 4);
     let mean_pressure = format!("{} ({} E*)", pascals(s.mean_pressure), digits(s.mean_pressure / e_star, 4));
-    let penetration = format!("{} of {} at full contact", metres(s.penetration), metres(s.penetration_full_contact));
+    let penetration = penetration(s);
     let mut lines = vec![
         ("method", method),
         ("cell", cell),
@@ -45,6 +45,20 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
     }
     lines
 }
+
+fn penetration(s: &Summary) -> String {
+    let [penetration, full] = [s.penetration, s.penetration_full_contact].map(|length| engineering(length, "m"));
+    // A layer and a patch with free borders are displaced as a whole too; full contact is at no certain depth then.
+    let displacement = s.mean_gap - (s.penetration_full_contact - s.penetration);
+    if displacement > ROUNDING * s.penetration_full_contact.max(s.penetration) {
+        format!("{penetration}, mean displacement {}", engineering(displacement, "m"))
+    } else {
+        format!("{penetration} of {full} at full contact")
+    }
+}
+
+/// Part of lengths that is rounding.
+const ROUNDING: f64 = 1e-12;
 
 fn surface_line(s: &Summary) -> String {
     let (rms, max) = (engineering(s.rms_height, "m"), engineering(s.h_max, "m"));

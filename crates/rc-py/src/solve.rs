@@ -118,10 +118,9 @@ impl Prepared {
         let Self { scene, kernel, map, budget, started } = self;
         let surface = load(&scene, map)?;
         let own = kernel.as_ref().map(|kernel| kernel as &dyn Kernel);
-        let chosen = match own {
-            Some(kernel) => kernel,
-            None => scene.contact.kernel()?,
-        };
+        let named = if own.is_none() { Some(scene.contact.kernel()?) } else { None };
+        let named = named.as_ref().map(|kernel| &**kernel as &dyn Kernel);
+        let chosen = own.or(named).expect("a kernel is the caller's or has a name");
         let solved = scene.solve(scene.problem(&surface, chosen, budget), started, observer)?;
         let (solution, failure, wall) = owned(solved, &scene, own.is_some())?;
         // Of a map only this is kept: the heights are those of the caller.

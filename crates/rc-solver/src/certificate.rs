@@ -13,7 +13,8 @@ pub struct Certificate {
     pub complementarity: f64,
     /// max(-g) / H.
     pub penetration: f64,
-    /// √(G/U), a bound on the relative error of the pressure in the energy norm; G = mean p (g - min g), U = mean p v / 2.
+    /// √(G/U), a bound on the relative error of the pressure in the energy norm; G = mean p (g - min g), U = mean p v / 2. The energy of a
+    /// layer under the mean pressure alone is not part of U.
     ///
     /// Under penetration control G has the pressure-weighted mean of |g| times the mean of p besides. With p* the exact pressure of the same mean and ⟨ ⟩ the mean over the cell, ⟨p - p*, L (p - p*)⟩ ≤ ⟨g, p - p*⟩, because p* is the
     /// optimum. ⟨g - min g, p*⟩ is not negative, so the right side is at most G. The pits, the offset and the range of the heights are not
@@ -70,7 +71,7 @@ impl Certificate {
         let error = ratio(overlap, problem.h_range);
         let (load, off) = match problem.control {
             Control::MeanPressure(wanted) => ((mean_pressure - wanted).abs() / wanted, 0.0),
-            Control::Penetration(_) => (mean_gap.abs() / problem.h_range, mean_gap.abs()),
+            Control::Penetration(_) => (ratio(mean_gap.abs(), problem.h_range), mean_gap.abs()),
         };
         let energy = ratio((overlap + off) * mean_pressure, elastic_energy).sqrt();
         Self { complementarity: error, penetration: error, energy, load }

@@ -29,6 +29,11 @@ pub(crate) fn check_kernel(kernel: &dyn Kernel, grid: Grid) -> Result<(), Proble
     let (symbol, again) = (kernel.symbol(grid), kernel.symbol(grid));
     let fault =
         |kx, ky, value, wanted| Err(ProblemError::Symbol { kernel: kernel.name(), grid, kx, ky, value, wanted });
+    if let Some(value) = kernel.uniform_displacement()
+        && !(value >= 0.0 && value.is_finite())
+    {
+        return fault(0, 0, value, "zero or positive, and finite, for a solid on a base");
+    }
     for (kx, ky) in waves(grid) {
         let value = symbol(kx, ky);
         match (kx, ky) {

@@ -4,6 +4,7 @@ use rc_core::{Field, Kernel, Operator};
 
 use crate::operator::DirectSum;
 use crate::problem::Problem;
+use crate::support::Support;
 use crate::{Control, IterationParams, ProblemError};
 
 /// Pressures (in E*) on the grid of `heights` under a given penetration (in λ), by elimination on the elements in contact:
@@ -16,8 +17,9 @@ use crate::{Control, IterationParams, ProblemError};
 /// # Errors
 /// [`ProblemError`] for heights or a penetration out of range.
 pub fn solve_dense(heights: &Field, kernel: &dyn Kernel, penetration: f64) -> Result<Option<Field>, ProblemError> {
-    let problem = Problem::check(heights, Control::Penetration(penetration), &IterationParams::relative(1e-6))?;
     let grid = heights.grid();
+    let (support, params) = (Support::of(kernel, grid), IterationParams::relative(1e-6));
+    let problem = Problem::check_on(support, heights, Control::Penetration(penetration), &params)?;
     let operator = DirectSum::new(grid, kernel);
     let prescribed: Vec<f64> = heights.values().iter().map(|h| h - problem.offset()).collect();
     // Rounding of an elimination, relative to the heights.

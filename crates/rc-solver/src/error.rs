@@ -75,6 +75,12 @@ pub enum ProblemError {
         /// h_max - mean(h), in λ.
         full_contact: f64,
     },
+    /// The penetration is not positive and finite, on a solid that carries a uniform pressure.
+    #[error("the penetration must be positive and finite, not {value} (in units of the cell side)")]
+    Depth {
+        /// Penetration given, in λ.
+        value: f64,
+    },
     /// The tolerance is not in (0, 1), or below what rounding allows.
     #[error("the tolerance must be between {smallest:e} and 1, not {value:e}")]
     Tolerance {

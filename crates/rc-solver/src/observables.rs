@@ -42,7 +42,7 @@ impl Observables {
             rms_pressure_corrected: corrected(rms_pressure, &area),
             rms_pressure_error: rms_pressure_error(info, &area, rms_pressure),
             max_pressure,
-            mean_gap: info.penetration_full_contact - info.penetration,
+            mean_gap: info.mean_gap(),
             mean_gap_error: mean_gap_error(info, &area, rms_pressure),
             elastic_energy: info.elastic_energy,
         };
@@ -114,7 +114,7 @@ const GAP_OVER_AREA: f64 = 0.025;
 
 /// Estimated error of the mean gap; 0 in full contact, and without contact.
 fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f64 {
-    let (rim, mean_gap) = (area.rim, info.penetration_full_contact - info.penetration);
+    let (rim, mean_gap) = (area.rim, info.mean_gap());
     let of_element = rim.side * rms_pressure * rms_pressure / info.mean_pressure.max(f64::MIN_POSITIVE);
     let at_edges = of_element * per_contact_area(rim.area, area);
     let scatter = GAP_SCATTER / rim.independent_edges.max(1.0).sqrt();

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use rc_core::Field;
 
+use crate::support::Support;
 use crate::tolerance::{ErrorBound, Measure};
 use crate::{Control, IterationParams, ProblemError};
 
@@ -64,17 +65,30 @@ pub(crate) struct Problem {
     pub(crate) h_range: f64,
     /// What an overlap is measured by.
     pub(crate) measure: Measure,
+    /// What holds the solid under a uniform pressure.
+    pub(crate) support: Support,
 }
 
 impl Problem {
     pub(crate) fn check(heights: &Field, control: Control, params: &IterationParams) -> Result<Self, ProblemError> {
-        Self::of_statistics(HeightStatistics::of(heights)?, control, params)
+        Self::check_on(Support::default(), heights, control, params)
+    }
+
+    /// The same for a solid that something may hold.
+    pub(crate) fn check_on(
+        support: Support,
+        heights: &Field,
+        control: Control,
+        params: &IterationParams,
+    ) -> Result<Self, ProblemError> {
+        Self::of_statistics(HeightStatistics::of(heights)?, control, params, support)
     }
 
     pub(crate) fn of_statistics(
         statistics: HeightStatistics,
         control: Control,
         params: &IterationParams,
+        support: Support,
     ) -> Result<Self, ProblemError> {
         let HeightStatistics { greatest: h_max, least: h_min, mean: h_mean } = statistics;
         let h_range = h_max - h_min;
@@ -86,21 +100,29 @@ impl Problem {
         check_load(control)?;
         match control {
             // Also refuses every penetration into a flat surface, whose full contact is at zero.
-            Control::Penetration(value) if !(value > 0.0 && value < full_contact) => {
+            Control::Penetration(value) if support.is_none() && !(value > 0.0 && value < full_contact) => {
                 return Err(ProblemError::Penetration { value, full_contact });
+            }
+            Control::Penetration(value) if !(value > 0.0 && value.is_finite()) => {
+                return Err(ProblemError::Depth { value });
             }
             Control::MeanPressure(_) | Control::Penetration(_) => {}
         }
-        Ok(Self { control, h_max, h_mean, h_range, measure: params.bound.measure() })
+        Ok(Self { control, h_max, h_mean, h_range, measure: params.bound.measure(), support })
     }
 
     /// The length that overlaps are compared with, where the pressure does the `work` Σ p v and sums up to `pressure`: H, or
-    /// U/σ0 = Σ p v / 2 Σ p.
-    pub(crate) fn reference_length(&self, work: f64, pressure: f64) -> f64 {
+    /// U/σ0 = Σ p v / 2 Σ p, without what a uniform pressure does; over `n_cell` elements.
+    pub(crate) fn reference_length(&self, work: f64, pressure: f64, n_cell: f64) -> f64 {
         match self.measure {
             Measure::HeightRange => self.h_range,
-            Measure::Energy => 0.5 * work / pressure,
+            Measure::Energy => 0.5 * (work / pressure - self.support.compliance * (pressure / n_cell)),
         }
+    }
+
+    /// Elastic energy of a uniform pressure.
+    pub(crate) fn uniform_energy(&self, mean_pressure: f64) -> f64 {
+        0.5 * self.support.compliance * mean_pressure * mean_pressure
     }
 
     /// How deep a rigid plane may have to go into the surface: the height range, unless that is the depth of a pit.

@@ -1,14 +1,14 @@
 //! The incremental contact stiffness.
 
 use rc_core::{Field, Kernel};
-use rc_fft::SymbolTable;
 
 use crate::descent::{
     BlockLayout, BlockOperator, ConjugateDirections, PreconditionedOperator, Slope, UniformCorrections, read_blocks,
-    write_blocks,
+    symbol_table, write_blocks,
 };
 use crate::parallel;
 use crate::problem::power_of_two_near;
+use crate::support::Support;
 
 /// The iteration ends when a step adds less than this fraction; what later steps would add is of the same order.
 const SMALLEST_GAIN: f64 = 3e-4;
@@ -20,9 +20,9 @@ const MAX_STEPS: usize = 50;
 pub(crate) fn contact_stiffness(pressure: &Field, kernel: &dyn Kernel) -> f64 {
     let grid = pressure.grid();
     if pressure.values().iter().all(|&p| p > 0.0) {
-        return f64::INFINITY;
+        return Support::of(kernel, grid).compliance.recip();
     }
-    let mut operator = UniformCorrections::new(grid, &SymbolTable::new(grid, kernel.symbol(grid)));
+    let mut operator = UniformCorrections::new(grid, &symbol_table(grid, kernel));
     stiffness_of(pressure.values(), grid.len() as f64, &mut operator)
 }
 

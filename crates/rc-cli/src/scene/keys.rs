@@ -107,6 +107,14 @@ pub struct ContactKeys {
     /// Discretisation of the half-space: the paper's uniformly loaded square, or the Fourier symbol
     #[arg(long)]
     pub kernel: Option<KernelName>,
+    /// Thickness (m) of an elastic layer on a rigid base to which it sticks, instead of the half-space
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layer_thickness: Option<f64>,
+    /// Poisson's ratio of the layer [default: --poisson]
+    #[arg(long, value_name = "NU", allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layer_poisson: Option<f64>,
     /// How the problem is solved [default: adaptive, or uniform where that is cheaper; the summary says which and why]
     #[arg(long, value_parser = methods())]
     pub method: Option<Method>,
@@ -259,7 +267,7 @@ impl ContactKeys {
             (lower.tolerance, lower.energy_tolerance) = (None, None);
         }
         or_lower!(self, lower, {
-            young, poisson, e_star, pressure, penetration, kernel, method, border_level, energy_tolerance, tolerance, area_error, output_grid
+            young, poisson, e_star, pressure, penetration, kernel, layer_thickness, layer_poisson, method, border_level, energy_tolerance, tolerance, area_error, output_grid
         });
         self
     }

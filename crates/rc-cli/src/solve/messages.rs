@@ -49,6 +49,9 @@ fn of_problem(error: &ProblemError, contact: &ContactSetup) -> CliError {
             units.metres(*full_contact),
             units.metres(*value)
         )),
+        ProblemError::Depth { value } => {
+            CliError::input(format_args!("penetration: must be positive and finite (m), not {}", units.metres(*value)))
+        }
         ProblemError::HeightRange { value, smallest, greatest } => CliError::input(format_args!(
             "heights: their range must be 0 or from {:e} to {:e} m, not {:e} m",
             units.metres(*smallest),

@@ -12,7 +12,7 @@ use super::messages;
 use super::result_files::{MapHeights, ResultFiles};
 use crate::error::CliError;
 use crate::files::coarsen::check_factor;
-use crate::scene::resolve::ContactSetup;
+use crate::scene::resolve::{self, ContactSetup};
 use crate::scene::surface::LoadedSurface;
 use crate::scene::values::Fraction;
 
@@ -44,7 +44,7 @@ impl<'a> ProblemSetup<'a> {
     /// # Errors
     /// [`CliError::Input`] when the scene, the method asked for, or the memory there is do not allow it.
     pub(crate) fn plan(&self) -> Result<Plan<'a>, CliError> {
-        self.check_output()?;
+        self.check_grid()?;
         self.contact_problem().plan(&self.params()).map_err(|error| self.refuse(&error))
     }
 
@@ -70,9 +70,9 @@ impl<'a> ProblemSetup<'a> {
     /// # Errors
     /// As of [`ProblemSetup::plan`].
     pub(crate) fn first_plan(&self) -> Result<Plan<'static>, CliError> {
-        self.check_output()?;
+        self.check_grid()?;
         let problem = ContactProblem::new(self.surface.source(), self.contact.control);
-        problem.with_kernel(self.contact.kernel()?).plan(&self.params()).map_err(|error| self.refuse(&error))
+        problem.with_shared_kernel(self.contact.kernel()?).plan(&self.params()).map_err(|error| self.refuse(&error))
     }
 
     /// Solves by a plan of this problem.
@@ -107,7 +107,9 @@ impl<'a> ProblemSetup<'a> {
         self.solved(result, started)
     }
 
-    fn check_output(&self) -> Result<(), CliError> {
+    /// Checks what the grid of the surface decides.
+    fn check_grid(&self) -> Result<(), CliError> {
+        resolve::check_thickness(self.contact, self.surface.grid)?;
         self.contact.keys.output_grid.map_or(Ok(()), |spec| check_factor(self.surface.grid, spec))
     }
 

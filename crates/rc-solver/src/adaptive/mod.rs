@@ -53,6 +53,7 @@ pub(crate) use self::solution::AdaptiveSolution;
 use self::split::GapSplit;
 use crate::Control;
 use crate::problem::Problem;
+use crate::support::Support;
 
 /// A checked contact problem, ready for the adaptive method: heights are sampled, nothing is solved.
 ///
@@ -107,7 +108,7 @@ impl<'a> AdaptiveProblem<'a> {
         params: &AdaptiveParams,
     ) -> Result<Self, AdaptiveError> {
         let split = first_split(params)?;
-        let problem = Problem::of_statistics(ground.heights.extremes(), control, &params.solve)?;
+        let problem = Problem::of_statistics(ground.heights.extremes(), control, &params.solve, Support::default())?;
         if problem.h_range == 0.0 {
             return Err(AdaptiveError::Flat);
         }

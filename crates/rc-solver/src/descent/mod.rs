@@ -37,4 +37,4 @@ pub(crate) use rows::ElementValues;
 pub(crate) use run::{DescentObserver, Goal};
 pub(crate) use state::{Descent, Start};
 pub(crate) use sums::GapSums;
-pub(crate) use uniform::{SymbolOperator, UniformCorrections, read_rows, uniform_operators, write_rows};
+pub(crate) use uniform::{SymbolOperator, UniformCorrections, read_rows, symbol_table, uniform_operators, write_rows};

@@ -28,7 +28,12 @@ impl Outcome {
         let mean_pressure = sums.pressure / n_cell;
         let mean_gap = sums.mean_gap();
         let elastic_energy = 0.5 * sums.work() / n_cell;
-        let residuals = Residuals { least_gap: sums.min_gap - mean_gap, mean_gap, mean_pressure, elastic_energy };
+        let residuals = Residuals {
+            least_gap: sums.min_gap - mean_gap,
+            mean_gap,
+            mean_pressure,
+            elastic_energy: elastic_energy - problem.uniform_energy(mean_pressure),
+        };
         let certificate = Certificate::new(problem, &residuals);
         Self {
             converged,
@@ -55,6 +60,7 @@ impl Outcome {
             mean_pressure: self.mean_pressure,
             penetration: problem.h_max + self.approach,
             penetration_full_contact: problem.h_max - problem.h_mean,
+            mean_displacement: problem.support.compliance * self.mean_pressure,
             elastic_energy: self.elastic_energy,
             levels,
             coarser,

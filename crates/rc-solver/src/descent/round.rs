@@ -64,8 +64,9 @@ impl Descent<'_> {
         let [n, direction] = self.layout.total(sums);
         self.operators.corrections.set_active(&self.directions.active);
         let fixed_load = matches!(self.problem.control, Control::MeanPressure(_));
-        // A uniform pressure on the whole cell displaces nothing: no step along it is long enough, and others would be scaled with it.
-        ActiveSet { n, fixed_mean: fixed_load || n >= self.n_cell(), direction_mean: direction / n }
+        // Where a uniform pressure on the whole cell displaces nothing, no step along it is long enough, and others would be scaled with it.
+        let is_free = self.problem.support.is_none() && n >= self.n_cell();
+        ActiveSet { n, fixed_mean: fixed_load || is_free, direction_mean: direction / n }
     }
 
     /// The next direction, and the length of the step along it.

@@ -121,10 +121,10 @@ impl GapSums {
     }
 
     /// The deepest overlap, a tenth of the greatest gap well inside contact, or the mean gap where there should be none, in units of the problem's
-    /// length.
-    pub(super) fn error(&self, problem: &Problem) -> f64 {
+    /// length, in a cell of `n_cell` elements.
+    pub(super) fn error(&self, problem: &Problem, n_cell: f64) -> f64 {
         let mean_gap = self.mean_gap();
-        let length = problem.reference_length(self.work(), self.pressure);
+        let length = problem.reference_length(self.work(), self.pressure, n_cell);
         // What is exact is so in any unit, even where the pressure is uniform and U is zero.
         let ratio = |overlap: f64| match overlap {
             ..=0.0 => 0.0,

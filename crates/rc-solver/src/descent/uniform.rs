@@ -9,9 +9,18 @@ use super::layout::BlockLayout;
 use super::operators::{BlockOperator, LevelOperators, PreconditionedOperator};
 use crate::parallel::Tasks;
 
+/// The symbol of `kernel` on `grid`, with what a uniform pressure displaces.
+pub(crate) fn symbol_table(grid: Grid, kernel: &dyn Kernel) -> SymbolTable<f64> {
+    let mut table = SymbolTable::new(grid, kernel.symbol(grid));
+    if let Some(displacement) = kernel.uniform_displacement() {
+        table.set_mean(displacement / grid.len() as f64);
+    }
+    table
+}
+
 /// L of `kernel` on `grid`.
 pub(crate) fn uniform_operators(grid: Grid, kernel: &dyn Kernel) -> LevelOperators<'static> {
-    let displacement = SymbolTable::new(grid, kernel.symbol(grid));
+    let displacement = symbol_table(grid, kernel);
     LevelOperators {
         corrections: Box::new(UniformCorrections::new(grid, &displacement)),
         fresh: Box::new(SymbolOperator::new(grid, displacement)),

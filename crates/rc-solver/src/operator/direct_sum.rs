@@ -22,10 +22,11 @@ impl DirectSum {
     pub fn new(grid: Grid, kernel: &dyn Kernel) -> Self {
         let (nx, ny) = (grid.nx(), grid.ny());
         let symbol = kernel.symbol(grid);
+        let uniform = kernel.uniform_displacement().unwrap_or(0.0);
         let turns = |n: usize| (0..n).map(|i| (std::f64::consts::TAU * i as f64 / n as f64).cos()).collect::<Vec<_>>();
         let (cos_x, cos_y) = (turns(nx), turns(ny));
         let coefficient = |ix: usize, iy: usize| {
-            let mut sum = 0.0;
+            let mut sum = uniform;
             for ky in 0..ny {
                 for kx in 0..nx {
                     // The symbol is even in kx and in ky, so sines cancel.

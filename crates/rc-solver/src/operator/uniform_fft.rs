@@ -3,9 +3,8 @@
 use std::sync::Mutex;
 
 use rc_core::{Grid, Kernel, Operator};
-use rc_fft::SymbolTable;
 
-use crate::descent::{BlockOperator, SymbolOperator, read_blocks, write_blocks};
+use crate::descent::{BlockOperator, SymbolOperator, read_blocks, symbol_table, write_blocks};
 
 /// `v = L p` (Eq. 4) on a uniform grid: diagonal in Fourier space, in double precision.
 pub struct UniformOperator {
@@ -24,7 +23,7 @@ impl UniformOperator {
     /// The operator of `kernel` on `grid`.
     #[must_use]
     pub fn new(grid: Grid, kernel: &dyn Kernel) -> Self {
-        let symbol = SymbolTable::new(grid, kernel.symbol(grid));
+        let symbol = symbol_table(grid, kernel);
         Self { grid, operator: Mutex::new(SymbolOperator::new(grid, symbol)) }
     }
 }

@@ -23,7 +23,7 @@ pub(super) fn plan<'a>(
     check_load(problem.control)?;
     check_tolerance(bound)?;
     check_grid(&problem.heights)?;
-    check_kernel(problem.kernel, problem.heights.grid())?;
+    check_kernel(problem.kernel.get(), problem.heights.grid())?;
     let choice = Choice { problem: &problem, params, bound, shared: &shared };
     let (chosen, reason) = match params.method {
         None => choice.automatic(),
@@ -51,7 +51,7 @@ type Chosen<'a> = Result<(ChosenMethod<'a>, MethodReason), SolveError>;
 impl<'a> Choice<'a, '_> {
     /// Refuses a method that cannot solve with this kernel or border level.
     fn check_asked_for(&self, method: Method) -> Result<(), SolveError> {
-        let kernel = self.problem.kernel;
+        let kernel = self.problem.kernel.get();
         match method {
             Method::Adaptive | Method::GaussSeidel if !kernel.is_split_by_scale() => {
                 Err(SolveError::Kernel { method, kernel: kernel.name() })
@@ -64,13 +64,13 @@ impl<'a> Choice<'a, '_> {
     }
 
     fn automatic(&self) -> Chosen<'a> {
-        let kernel = self.problem.kernel;
+        let kernel = self.problem.kernel.get();
         let has_border = self.params.border_level > 0;
         if !kernel.is_split_by_scale() {
             if has_border {
                 return Err(SolveError::Kernel { method: Method::Adaptive, kernel: kernel.name() });
             }
-            return Ok((self.on_grid(Method::Uniform)?, MethodReason::NoSplitOfKernel { kernel: kernel.name() }));
+            return Ok((self.on_grid(Method::Uniform)?, self.without_split()));
         }
         let adaptive = match self.prepare() {
             Ok(adaptive) => adaptive,
@@ -90,6 +90,15 @@ impl<'a> Choice<'a, '_> {
             // The adaptive method fits, or it would not be chosen.
             Err(_) if self.params.method_follows_memory => Ok((adaptive, MethodReason::UniformDoesNotFit { percent })),
             Err(error) => Err(error),
+        }
+    }
+
+    /// Why a kernel that is not split by scale is solved on the uniform grid.
+    fn without_split(&self) -> MethodReason {
+        let kernel = self.problem.kernel.get();
+        match kernel.uniform_displacement() {
+            Some(_) => MethodReason::Layer,
+            None => MethodReason::NoSplitOfKernel { kernel: kernel.name() },
         }
     }
 

@@ -5,6 +5,7 @@ mod choice;
 mod cost;
 mod door;
 mod error;
+mod kernel;
 mod memory;
 mod params;
 mod plan;

@@ -67,7 +67,8 @@ impl<'a> Plan<'a> {
     /// [`SolveError::GaussSeidel`] for what the paper's procedure refuses.
     pub fn solve(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
         let Self { problem, params, bound, chosen, reason, mut shared } = self;
-        let how = |method, reason| HowSolved::new(method, reason, bound, problem.kernel.name());
+        let name = problem.kernel.get().name();
+        let how = |method, reason| HowSolved::new(method, reason, bound, name);
         let (chosen, reason) = match chosen {
             ChosenMethod::Adaptive(adaptive) => match by_adaptive(&problem, &params, (&adaptive, &reason), observer)? {
                 Ok(solution) => {
@@ -80,7 +81,7 @@ impl<'a> Plan<'a> {
         if let Some(shared) = Arc::get_mut(&mut shared) {
             shared.forget_ground();
         }
-        let (heights, kernel) = (shared.heights(&problem.heights), problem.kernel);
+        let (heights, kernel) = (shared.heights(&problem.heights), problem.kernel.get());
         let (method, solution) = if matches!(chosen, ChosenMethod::GaussSeidel) {
             let params = (bound, &params.gauss_seidel);
             (Method::GaussSeidel, by_gauss_seidel(&problem, heights, params, observer)?)
@@ -88,7 +89,9 @@ impl<'a> Plan<'a> {
             let limits = params.iteration(bound);
             (Method::Uniform, solve_uniform(heights, kernel, problem.control, &limits, observer)?)
         };
-        converged(Solution::on_grid(how(method, reason), kernel, solution, heights.max()))
+        let how = how(method, reason);
+        let h_max = heights.max();
+        converged(Solution::on_grid(how, problem.kernel, solution, h_max))
     }
 }
 
@@ -140,8 +143,10 @@ fn by_gauss_seidel(
     observer: &dyn Observer,
 ) -> Result<GridSolution, GaussSeidelError> {
     let periodic = PeriodicLove::new();
-    let half_space =
-        HalfSpace { kernel: problem.kernel, coefficient: &|offset, half_side| periodic.coefficient(offset, half_side) };
+    let half_space = HalfSpace {
+        kernel: problem.kernel.get(),
+        coefficient: &|offset, half_side| periodic.coefficient(offset, half_side),
+    };
     solve_gauss_seidel(heights, half_space, problem.control, (bound, params), observer)
 }
 

@@ -1,8 +1,11 @@
 //! A contact problem: heights, half-space and load.
 
+use std::sync::Arc;
+
 use rc_core::{HeightSource, Kernel};
 use rc_kernel::Love;
 
+use super::kernel::OwnedKernel;
 use crate::Control;
 
 /// A contact problem: heights, half-space and load.
@@ -24,7 +27,7 @@ use crate::Control;
 #[derive(Clone)]
 pub struct ContactProblem<'a> {
     pub(super) heights: HeightSource<'a>,
-    pub(super) kernel: &'a dyn Kernel,
+    pub(super) kernel: OwnedKernel<'a>,
     pub(super) control: Control,
 }
 
@@ -32,13 +35,19 @@ impl<'a> ContactProblem<'a> {
     /// The contact of `heights` (in λ) with the elastic half-space under a load. The kernel is [`Love`].
     #[must_use]
     pub fn new(heights: impl Into<HeightSource<'a>>, control: Control) -> Self {
-        Self { heights: heights.into(), kernel: &Love, control }
+        Self { heights: heights.into(), kernel: OwnedKernel::Borrowed(&Love), control }
     }
 
     /// The same problem with another half-space, or another discretisation of it.
     #[must_use]
     pub fn with_kernel(self, kernel: &'a dyn Kernel) -> Self {
-        Self { kernel, ..self }
+        Self { kernel: OwnedKernel::Borrowed(kernel), ..self }
+    }
+
+    /// The same with a kernel that the problem, its plans and its solutions share, and do not borrow.
+    #[must_use]
+    pub fn with_shared_kernel(self, kernel: Arc<dyn Kernel + Send + Sync>) -> Self {
+        Self { kernel: OwnedKernel::Shared(kernel), ..self }
     }
 }
 
@@ -46,7 +55,7 @@ impl std::fmt::Debug for ContactProblem<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut out = f.debug_struct("ContactProblem");
         out.field("heights", &self.heights)
-            .field("kernel", &self.kernel.name())
+            .field("kernel", &self.kernel.get().name())
             .field("control", &self.control)
             .finish()
     }

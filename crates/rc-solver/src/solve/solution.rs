@@ -1,11 +1,12 @@
 //! What a solve returns, whatever the method.
 
 use std::convert::Infallible;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use rc_core::{Field, Grid, Kernel, Operator};
 
-use super::response::{KernelOfGrid, Response};
+use super::kernel::OwnedKernel;
+use super::response::Response;
 use crate::adaptive::{AdaptiveProblem, AdaptiveSolution};
 use crate::solution::{GridSolution, Status};
 use crate::{Certificate, ContactArea, ContactElement, ErrorBound, Method, MethodReason, Observables, SolveInfo};
@@ -56,8 +57,8 @@ enum Pressures<'a> {
 
 impl<'a> Solution<'a> {
     /// Of a method that stores every element of the grid.
-    pub(super) fn on_grid(how: HowSolved, kernel: &'a dyn Kernel, solution: GridSolution, h_max: f64) -> Self {
-        Self::of_grid(how, Response::Kernel(KernelOfGrid::Borrowed(kernel)), solution, h_max)
+    pub(super) fn on_grid(how: HowSolved, kernel: OwnedKernel<'a>, solution: GridSolution, h_max: f64) -> Self {
+        Self::of_grid(how, Response::Kernel(kernel), solution, h_max)
     }
 
     /// Of an operator of the caller.
@@ -114,11 +115,10 @@ impl<'a> Solution<'a> {
 
     /// The same solution without borrows, with the kernel that it was solved with. Nothing is tabulated then.
     #[must_use]
-    pub fn into_owned_with(self, kernel: &'static dyn Kernel) -> Solution<'static> {
+    pub fn into_owned_with(self, kernel: Arc<dyn Kernel + Send + Sync>) -> Solution<'static> {
         match self.pressures {
-            Pressures::Grid { solution, response: Response::Kernel(KernelOfGrid::Borrowed(_)) } => {
-                let pressures =
-                    Pressures::Grid { solution, response: Response::Kernel(KernelOfGrid::Borrowed(kernel)) };
+            Pressures::Grid { solution, response: Response::Kernel(OwnedKernel::Borrowed(_)) } => {
+                let pressures = Pressures::Grid { solution, response: Response::Kernel(OwnedKernel::Shared(kernel)) };
                 let Self { how, status, h_max, pressure, gap, displacement, observables, stiffness, .. } = self;
                 Solution { how, status, h_max, pressures, pressure, gap, displacement, observables, stiffness }
             }
@@ -209,12 +209,12 @@ impl<'a> Solution<'a> {
         })
     }
 
-    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact. Takes a few applications of L
+    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact with the half-space. Takes a few applications of L
     /// the first time.
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         *self.stiffness.get_or_init(|| match &self.pressures {
-            Pressures::Grid { .. } if self.status == Status::FullContact => f64::INFINITY,
+            Pressures::Grid { response, .. } if self.status == Status::FullContact => response.full_contact_stiffness(),
             Pressures::Grid { solution, response } => response.stiffness(solution),
             Pressures::Tiles { solution, problem } => problem.contact_stiffness(solution),
         })
@@ -283,7 +283,7 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// The displacement v on the grid, in λ, of mean zero. Takes one application of L the first time.
+    /// The displacement v on the grid, in λ, of mean zero on the periodic half-space. Takes one application of L the first time.
     #[must_use]
     pub fn displacement(&self) -> &Field {
         self.displacement.get_or_init(|| match &self.pressures {

@@ -15,6 +15,7 @@ pub(crate) use self::nested_grids::{FinestGrid, NestedGrids};
 pub(crate) use self::prolongation::{edge_function, edge_function_outside};
 use crate::problem::Problem;
 use crate::solution::GridSolution;
+use crate::support::Support;
 use crate::{Control, IterationParams, ProblemError};
 
 /// Bytes for each element that the uniform method is assumed to need at its peak, heights included; 58 to 60 were measured at
@@ -39,9 +40,9 @@ pub(crate) fn solve_uniform(
     params: &IterationParams,
     observer: &dyn Observer,
 ) -> Result<GridSolution, ProblemError> {
-    let problem = Problem::check(heights, control, params)?;
+    let problem = Problem::check_on(Support::of(kernel, heights.grid()), heights, control, params)?;
     let coarser = nest_without_pits(heights, SMALLEST_SIDE);
-    if let Control::MeanPressure(mean_pressure) = control
+    if let Some(mean_pressure) = full_contact::mean_pressure(&problem)
         && let Some(solution) = full_contact::solve((heights, &coarser), kernel, mean_pressure, &problem, params.bound)
     {
         return Ok(solution);

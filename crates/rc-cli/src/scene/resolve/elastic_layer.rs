@@ -1,0 +1,65 @@
+//! The keys of an elastic layer.
+
+use rc_core::Grid;
+use rc_kernel::{Layer, THINNEST_LAYER};
+use rc_solver::Method;
+
+use super::checks::positive;
+use super::contact::ContactSetup;
+use crate::error::CliError;
+use crate::scene::keys::{ContactKeys, KernelName};
+
+/// The keys with one Poisson's ratio: that of the layer is that of the material.
+pub(super) fn with_poisson(keys: ContactKeys) -> Result<ContactKeys, CliError> {
+    match (keys.poisson, keys.layer_poisson) {
+        (_, Some(ratio)) if keys.layer_thickness.is_none() => Err(CliError::input(format_args!(
+            "layer_poisson: {ratio} is of a layer; give layer_thickness (m) too, or poisson for a half-space"
+        ))),
+        (Some(poisson), Some(ratio)) if (poisson - ratio).abs() > 0.0 => Err(CliError::input(format_args!(
+            "layer_poisson: {ratio} and poisson {poisson} are of the same material; give one of them"
+        ))),
+        (None, Some(_)) if keys.e_star.is_none() => Ok(ContactKeys { poisson: keys.layer_poisson, ..keys }),
+        _ => Ok(keys),
+    }
+}
+
+/// The layer, in units of the cell side; `None` for a half-space.
+pub(super) fn layer(keys: &ContactKeys, kernel: KernelName, side: f64) -> Result<Option<Layer>, CliError> {
+    let Some(thickness) = keys.layer_thickness else { return Ok(None) };
+    let thickness = positive("layer_thickness", "m", Some(thickness))? / side;
+    let poisson = keys.layer_poisson.or(keys.poisson).ok_or_else(|| {
+        CliError::input("layer_poisson: must be given with e_star, which does not say Poisson's ratio of the layer")
+    })?;
+    if !(poisson > -1.0 && poisson <= 0.5) {
+        return Err(CliError::input(format_args!("layer_poisson: must be above -1 and at most 0.5, not {poisson}")));
+    }
+    if kernel == KernelName::Own {
+        return Err(CliError::input(
+            "layer_thickness: a function for a kernel is a solid already; omit one of the two",
+        ));
+    }
+    if let Some(method @ (Method::Adaptive | Method::GaussSeidel)) = keys.method {
+        return Err(CliError::input(format_args!(
+            "method: '{method}' is made of the half-space; give uniform for a layer, or omit it"
+        )));
+    }
+    if keys.border_level.is_some_and(|level| level > 0) {
+        return Err(CliError::input("border_level: only the adaptive method, on a half-space, has it; omit it"));
+    }
+    Ok(Some(Layer { thickness, poisson }))
+}
+
+/// Refuses a layer that is thinner than elements, of kernel love: it is a bed of springs for them, at a high cost.
+pub(crate) fn check_thickness(contact: &ContactSetup, grid: Grid) -> Result<(), CliError> {
+    let (spacing, side) = (grid.spacing().max_element(), contact.units.cell().side());
+    match (contact.layer, contact.kernel) {
+        (Some(layer), KernelName::Love) if layer.thickness < THINNEST_LAYER * spacing => {
+            Err(CliError::input(format_args!(
+                "layer_thickness: {:e} m is below {THINNEST_LAYER} of an element of {grid} ({:e} m); give a finer grid",
+                layer.thickness * side,
+                spacing * side
+            )))
+        }
+        _ => Ok(()),
+    }
+}
