@@ -326,7 +326,7 @@ class Result:
     @cached_property
     def spots(self) -> list[ContactSpot]:
         """Contact spots, largest first."""
-        found = _core.spots(self.pressure, self.gap, self.sides, self.e_star, self.kernel)
+        found = _core.spots(self.pressure, self.gap, self.sides, self.e_star, self.scene)
         return [ContactSpot(*spot) for spot in found]
 
     def stress_distribution(self, bins: int | Sequence[float] | Floats = 50) -> StressDistribution:

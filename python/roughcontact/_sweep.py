@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughcontact import _core
-from roughcontact._keys import Grid, Method, Path, plain
+from roughcontact._keys import Boundary, Grid, Method, Path, plain
 from roughcontact._maps import Heights
 from roughcontact._result import Result
 from roughcontact._run import NotConvergedError, NotConvergedWarning, ProgressOption
@@ -135,6 +135,9 @@ def sweep(
     poisson: float | None = None,
     e_star: float | None = None,
     kernel: Kernel | None = None,
+    boundary: Boundary | None = None,
+    layer_thickness: float | None = None,
+    layer_poisson: float | None = None,
     method: Method | None = None,
     border_level: int | None = None,
     energy_tolerance: float | None = None,

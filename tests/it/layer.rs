@@ -87,7 +87,7 @@ fn a_dense_solver_finds_the_same_pressure() {
     for (thickness, poisson) in [(0.3, 0.3), (0.06, 0.5)] {
         let kernel = LoveLayer(layer(thickness, poisson));
         let range = heights.max() - heights.min();
-        for depth in [0.2 * range, 0.5 * range, 0.9 * range] {
+        for depth in [0.2 * range, 0.5 * range, 0.8 * range] {
             let exact = solve_dense(&heights, &kernel, depth).expect("valid").expect("a contact that settles");
             let found = solved(&heights, &kernel, Control::Penetration(depth), 1e-11);
             let off = found.pressure().values().iter().zip(exact.values()).map(|(a, b)| (a - b).abs());
@@ -111,9 +111,13 @@ fn full_contact_is_exact_at_any_depth() {
     assert_close("penetration", by_depth.info().penetration, depth, 1e-12);
     assert_close("stiffness", by_depth.stiffness(), solid.uniform_displacement().recip(), 1e-12);
     assert!(by_depth.observables().mean_gap.abs() < 1e-15, "{}", by_depth.observables().mean_gap);
-    // Each wave q of the heights has the amplitude of its displacement over 2/q M(q d).
-    let amplitude: f64 = [TAU, TAU * 5.0_f64.sqrt()].iter().map(|q| 1e-3 * 0.5 * q / solid.factor(q * 0.05)).sum();
-    assert_close("max pressure", by_depth.pressure().max(), expected + amplitude, 1e-9);
+    // Each wave q of the heights is that of its pressure times 2/q M(q d).
+    let stiffness = [TAU, TAU * 5.0_f64.sqrt()].map(|q| 0.5 * q / solid.factor(q * 0.05));
+    let wave =
+        |at: DVec2| 1e-3 * (stiffness[0] * (TAU * at.x).cos() + stiffness[1] * (TAU * (2.0 * at.y - at.x)).cos());
+    let pressure = Field::from_fn(heights.grid(), |at| expected + wave(at));
+    let off = pressure.values().iter().zip(by_depth.pressure().values()).map(|(a, b)| (a - b).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-12 * expected, "the pressure is not that of its waves");
 }
 
 #[test]
@@ -155,7 +159,7 @@ fn the_uniform_method_solves_a_layer_and_says_why() {
     let plan = problem.clone().plan(&SolveParams::default()).expect("a plan");
     assert_eq!((plan.method(), plan.reason()), (Method::Uniform, &MethodReason::Layer));
     let error = problem.plan(&SolveParams::default().by(Method::Adaptive)).err();
-    assert!(matches!(error, Some(SolveError::Kernel { method: Method::Adaptive, .. })), "{error:?}");
+    assert!(matches!(error, Some(SolveError::Solid { method: Method::Adaptive })), "{error:?}");
     let stiff = solved(&heights, &kernel, Control::MeanPressure(1e-3), 1e-8);
     let half_space = solved(&heights, &Love, Control::MeanPressure(1e-3), 1e-8);
     assert!(stiff.area().fraction < half_space.area().fraction, "a layer is stiffer than the half-space");

@@ -4,6 +4,7 @@ mod adaptive;
 mod bisinusoidal;
 mod contact_area;
 mod examples;
+mod free;
 mod front_door;
 mod full_contact;
 mod gauss_seidel;

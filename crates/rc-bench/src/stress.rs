@@ -15,6 +15,7 @@ mod mutate;
 mod picture;
 mod row;
 mod scene;
+mod solids;
 mod solved;
 
 use std::path::Path;
@@ -56,6 +57,7 @@ const GROUPS: &[(&str, MakeRows)] = &[
     ("invariances", |params| invariances::rows(params.preset)),
     ("agreement", |params| agreement::rows(params.preset)),
     ("kernels", |params| kernels::rows(params.preset)),
+    ("layers and patches", |params| solids::rows(params.preset)),
     ("faults", |params| faults::rows(params.preset)),
     ("rc solve", |params| params.rc.map_or_else(|| Ok(Vec::new()), |rc| commands::rows(params.preset, rc))),
     ("long runs", |params| long_runs::rows(params.preset)),

@@ -124,7 +124,7 @@ impl Prepared {
         let solved = scene.solve(scene.problem(&surface, chosen, budget), started, observer)?;
         let (solution, failure, wall) = owned(solved, &scene, own.is_some())?;
         // Of a map only this is kept: the heights are those of the caller.
-        let height_and_slope = surface.height_and_slope();
+        let height_and_slope = surface.height_and_slope(scene.contact.boundary);
         let waves = surface.wave_file().cloned();
         Ok(Parts { surface: surface.keys, waves, contact: scene.contact, solution, failure, wall, height_and_slope })
     }

@@ -1,12 +1,15 @@
 //! The certificate: how far a pressure is from solving the contact problem.
 
+use rc_core::Boundary;
+
 use crate::problem::Problem;
 use crate::{Control, ErrorBound};
 
 /// Bounds on how far a pressure is from solving the discrete contact problem, from a fresh application of L on the returned pressure. For the
 /// adaptive method they include the error of its operator, which is measured with a margin.
 ///
-/// With g the gap shifted so that its pressure-weighted mean is 0, and H = h_max - h_min.
+/// With g the gap shifted so that its pressure-weighted mean is 0, and H = h_max - h_min; on a flat patch with free borders, whose H is 0, the
+/// penetration instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certificate {
     /// Σ p (g - min g) / (H Σ p).
@@ -61,17 +64,21 @@ impl Certificate {
     pub(crate) fn new(problem: &Problem, residuals: &Residuals) -> Self {
         let Residuals { least_gap, mean_gap, mean_pressure, elastic_energy } = *residuals;
         let overlap = if least_gap > 0.0 { 0.0 } else { -least_gap + 0.0 };
-        let is_flat = problem.h_range == 0.0 && !overlap.is_nan();
+        let is_periodic = problem.support.boundary == Boundary::Periodic;
+        let is_flat = is_periodic && problem.h_range == 0.0 && !overlap.is_nan();
+        // A flat patch with free borders has no height range, and 2U/σ0 is its penetration.
+        let range =
+            if is_periodic || problem.h_range > 0.0 { problem.h_range } else { 2.0 * elastic_energy / mean_pressure };
         let ratio = |numerator: f64, denominator: f64| match numerator {
             0.0 => 0.0,
             _ if is_flat => 0.0,
             _ => numerator / denominator,
         };
         // Σ p (g - min g) / Σ p with the weighted mean of g at zero is -min g: the two errors coincide.
-        let error = ratio(overlap, problem.h_range);
+        let error = ratio(overlap, range);
         let (load, off) = match problem.control {
             Control::MeanPressure(wanted) => ((mean_pressure - wanted).abs() / wanted, 0.0),
-            Control::Penetration(_) => (ratio(mean_gap.abs(), problem.h_range), mean_gap.abs()),
+            Control::Penetration(_) => (ratio(mean_gap.abs(), range), mean_gap.abs()),
         };
         let energy = ratio((overlap + off) * mean_pressure, elastic_energy).sqrt();
         Self { complementarity: error, penetration: error, energy, load }

@@ -1,6 +1,6 @@
 //! What users compute from a solution: area, pressure, gap, energy.
 
-use rc_core::EdgeBias;
+use rc_core::{Boundary, EdgeBias};
 
 use crate::solution::GridSolution;
 use crate::{ContactArea, SolveInfo, parallel};
@@ -28,8 +28,8 @@ pub struct Observables {
 
 impl Observables {
     /// Evaluates the observables of a solution whose contact edges are shifted by `bias`: one pass over the fields.
-    pub(crate) fn of(solution: &GridSolution, bias: EdgeBias) -> Self {
-        let area = ContactArea::of(&solution.pressure, &solution.gap, bias);
+    pub(crate) fn of(solution: &GridSolution, bias: EdgeBias, boundary: Boundary) -> Self {
+        let area = ContactArea::with_boundary(&solution.pressure, &solution.gap, bias, boundary);
         let pressure = &solution.pressure;
         Self::new(&solution.info, area, parallel::rms(pressure), parallel::maximum(pressure.values(), 0.0))
     }

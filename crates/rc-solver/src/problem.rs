@@ -115,8 +115,17 @@ impl Problem {
     /// U/σ0 = Σ p v / 2 Σ p, without what a uniform pressure does; over `n_cell` elements.
     pub(crate) fn reference_length(&self, work: f64, pressure: f64, n_cell: f64) -> f64 {
         match self.measure {
-            Measure::HeightRange => self.h_range,
+            Measure::HeightRange if self.h_range > 0.0 => self.h_range,
+            Measure::HeightRange => work / pressure,
             Measure::Energy => 0.5 * (work / pressure - self.support.compliance * (pressure / n_cell)),
+        }
+    }
+
+    /// The length that corrections are multiples of: H, or about what the load displaces on a flat patch.
+    pub(crate) fn unit(&self) -> f64 {
+        match self.control {
+            _ if self.h_range > 0.0 => self.h_range,
+            Control::MeanPressure(value) | Control::Penetration(value) => value,
         }
     }
 

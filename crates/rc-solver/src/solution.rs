@@ -64,7 +64,8 @@ pub struct SolveInfo {
     pub penetration: f64,
     /// Penetration of full contact, h_max - mean(h), in λ.
     pub penetration_full_contact: f64,
-    /// Mean displacement over the nominal area, in λ: zero on the periodic half-space (Eq. 3), that of the mean pressure on a layer.
+    /// Mean displacement over the nominal area, in λ: zero on the periodic half-space (Eq. 3), that of the mean pressure on a layer, that of
+    /// the whole patch where borders are free.
     pub mean_displacement: f64,
     /// Elastic energy per nominal area, ½ mean(p v), in E* λ.
     pub elastic_energy: f64,

@@ -1,10 +1,10 @@
 //! The incremental contact stiffness.
 
-use rc_core::{Field, Kernel};
+use rc_core::{Boundary, Field, Kernel};
 
 use crate::descent::{
-    BlockLayout, BlockOperator, ConjugateDirections, PreconditionedOperator, Slope, UniformCorrections, read_blocks,
-    symbol_table, write_blocks,
+    BlockLayout, BlockOperator, ConjugateDirections, GridResponse, PreconditionedOperator, Slope, UniformCorrections,
+    read_blocks, write_blocks,
 };
 use crate::parallel;
 use crate::problem::power_of_two_near;
@@ -19,10 +19,11 @@ const MAX_STEPS: usize = 50;
 /// dσ0/dΔ, in E*/λ, on a uniform grid; see [`stiffness_of`].
 pub(crate) fn contact_stiffness(pressure: &Field, kernel: &dyn Kernel) -> f64 {
     let grid = pressure.grid();
-    if pressure.values().iter().all(|&p| p > 0.0) {
-        return Support::of(kernel, grid).compliance.recip();
+    let support = Support::of(kernel, grid);
+    if support.boundary == Boundary::Periodic && pressure.values().iter().all(|&p| p > 0.0) {
+        return support.compliance.recip();
     }
-    let mut operator = UniformCorrections::new(grid, &symbol_table(grid, kernel));
+    let mut operator = UniformCorrections::new(grid, kernel, &GridResponse::of(grid, kernel));
     stiffness_of(pressure.values(), grid.len() as f64, &mut operator)
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rc_core::{EdgeBias, Field, Kernel};
+use rc_core::{Boundary, EdgeBias, Field, Kernel};
 use rc_solver::{ContactSpot, StressDistribution};
 use rc_theory::persson::Persson;
 use serde::Serialize;
@@ -121,7 +121,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
             certificate: certificate(summary),
             lines: text::solved_lines(summary, result.sides(), result.e_star),
             // Last: it takes the fields.
-            spots: spots(result, bias),
+            spots: spots(result, bias, scene.contact.boundary.unwrap_or_default()),
         },
     })
 }
@@ -135,8 +135,13 @@ fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
         _ => "a random surface".to_owned(),
     };
     let s = &result.summary;
+    let place = match (scene.contact.boundary, scene.contact.layer_thickness) {
+        (Some(Boundary::Free), _) => "on a free patch of".to_owned(),
+        (_, Some(thickness)) => format!("on a layer of {}, in a cell of", engineering(thickness, "m")),
+        _ => "in a cell of".to_owned(),
+    };
     format!(
-        "{surface}: rms height {}, rms slope {}, in a cell of {}; E* = {}; {} x {} elements, kernel {}, method {}",
+        "{surface}: rms height {}, rms slope {}, {place} {}; E* = {}; {} x {} elements, kernel {}, method {}",
         engineering(s.rms_height, "m"),
         digits(s.rms_slope, 4),
         text::cell(result.sides()),
@@ -250,7 +255,7 @@ fn stress(result: &ResultFolder) -> Option<Stress> {
 }
 
 /// Spots of the stored fields, in the units in which their edges are located; `None` without contact, and without the elements.
-fn spots(result: ResultFolder, bias: EdgeBias) -> Option<SpotSizes> {
+fn spots(result: ResultFolder, bias: EdgeBias, boundary: Boundary) -> Option<SpotSizes> {
     if !result.is_of_elements() {
         return None;
     }
@@ -260,7 +265,7 @@ fn spots(result: ResultFolder, bias: EdgeBias) -> Option<SpotSizes> {
         field
     };
     let (pressure, gap) = (over(pressure, e_star), over(gap, side));
-    let spots = ContactSpot::all(&pressure, &gap, bias);
+    let spots = ContactSpot::with_boundary(&pressure, &gap, bias, boundary);
     SpotSizes::of(&spots, pressure.grid(), side)
 }
 

@@ -154,7 +154,7 @@ impl<'a> Solved<'a> {
     /// The summary in SI; `threads` is what it says of them.
     pub(crate) fn summary(&self, threads: usize) -> Summary {
         // Not before: the time to the certified solution does not include what the solution does not need.
-        let height_and_slope = self.problem.surface.height_and_slope();
+        let height_and_slope = self.problem.surface.height_and_slope(self.problem.contact.boundary);
         self.files().summary(height_and_slope, self.wall, threads)
     }
 

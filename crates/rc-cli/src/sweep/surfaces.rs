@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use rc_core::Boundary;
 use rc_sweep::{ControlKind, FileMark, Loads, MAX_ROWS, PlannedSurface, Seeds, SweepPlan, SweepRow};
 use serde_json::json;
 
@@ -107,10 +108,11 @@ impl SweptSurface {
     /// Checks the keys of `scene`, under the first load: everything but the load is the same for all of them.
     fn new(name: &str, scene: Scene, control: ControlKind, loads: &[f64]) -> Result<Self, CliError> {
         resolve::check_size_and_material(&scene.surface, &scene.contact)?;
-        let setup = resolve::surface(scene.surface)?;
+        let mut setup = resolve::surface(scene.surface)?;
         let seed = setup.keys.seed.filter(|_| matches!(setup.source, Source::Random { .. }));
         let keys = with_load(control, &scene.contact, loads.first().copied());
         let contact = resolve::contact(keys, setup.cell)?;
+        setup.may_be_flat = contact.boundary == Boundary::Free;
         let contact = with_load(control, &contact.keys, None);
         Ok(Self { scene: name.to_owned(), seed, setup, contact, loads: loads.to_vec() })
     }

@@ -8,6 +8,7 @@ mod measured;
 mod rectangles;
 mod report;
 mod robustness;
+mod solids;
 mod solve;
 mod spectrum;
 mod stopped;

@@ -10,7 +10,7 @@ mod edge_sums;
 use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2};
 
 use rayon::prelude::*;
-use rc_core::{EdgeBias, Field, Grid};
+use rc_core::{Boundary, EdgeBias, Field, Grid};
 
 pub(crate) use self::edge_sums::EdgeSums;
 
@@ -82,16 +82,27 @@ impl ContactArea {
     #[must_use]
     pub fn of(pressure: &Field, gap: &Field, bias: EdgeBias) -> Self {
         assert_eq!(pressure.grid(), gap.grid(), "pressure and gap on the same grid");
-        Self::of_values(pressure.grid(), pressure.values(), (gap.values(), 0.0), bias)
+        Self::of_fields([pressure, gap], bias, Boundary::Periodic)
     }
 
-    /// The same of values row by row; `contact_gap` is the gap of what is in contact.
-    pub(crate) fn of_values(grid: Grid, pressure: &[f64], (gap, contact_gap): (&[f64], f64), bias: EdgeBias) -> Self {
+    /// The same on heights with this `boundary`. A free border that contact reaches is no edge of it: there the heights end.
+    ///
+    /// # Panics
+    /// As [`ContactArea::of`].
+    #[must_use]
+    pub fn with_boundary(pressure: &Field, gap: &Field, bias: EdgeBias, boundary: Boundary) -> Self {
+        assert_eq!(pressure.grid(), gap.grid(), "pressure and gap on the same grid");
+        Self::of_fields([pressure, gap], bias, boundary)
+    }
+
+    /// The same row by row.
+    fn of_fields([pressure, gap]: [&Field; 2], bias: EdgeBias, boundary: Boundary) -> Self {
+        let (grid, pressure, gap) = (pressure.grid(), pressure.values(), gap.values());
         let (nx, ny, sides) = (grid.nx(), grid.ny(), grid.spacing().into());
         let row_sums = |(iy, row): (usize, &[f64])| {
             let mut sums = EdgeSums::default();
             for ix in (0..nx).filter(|&ix| row[ix] > 0.0) {
-                sums.add(sides, &around((pressure, gap), [nx, ny], [ix, iy], contact_gap));
+                sums.add(sides, &around([pressure, gap], [nx, ny], [ix, iy], boundary));
             }
             sums
         };
@@ -194,17 +205,20 @@ fn are_squares([x, y]: [f64; 2]) -> bool {
     (x / y - 1.0).abs() < 1e-6
 }
 
-/// Pressure, and gap minus that of contact, at places around an element of a periodic grid.
+/// Pressure and gap at places around an element of a grid; beyond a free border they are those beside it.
 pub(crate) fn around<'a>(
-    (pressure, gap): (&'a [f64], &'a [f64]),
+    [pressure, gap]: [&'a [f64]; 2],
     [nx, ny]: [usize; 2],
     [ix, iy]: [usize; 2],
-    contact_gap: f64,
+    boundary: Boundary,
 ) -> impl Fn(isize, isize) -> [f64; 2] + 'a {
-    let wrap = |i: usize, d: isize, n: usize| (i + n).wrapping_add_signed(d) % n;
+    let place = move |i: usize, d: isize, n: usize| match boundary {
+        Boundary::Periodic => (i + n).wrapping_add_signed(d) % n,
+        Boundary::Free => i.saturating_add_signed(d).min(n - 1),
+    };
     move |dx, dy| {
-        let place = wrap(iy, dy, ny) * nx + wrap(ix, dx, nx);
-        [pressure[place], gap[place] - contact_gap]
+        let place = place(iy, dy, ny) * nx + place(ix, dx, nx);
+        [pressure[place], gap[place]]
     }
 }
 

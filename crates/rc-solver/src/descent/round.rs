@@ -6,6 +6,8 @@ use super::rows::{self, ElementValues, Gradient};
 use super::shares::{Load, Shares, Squares};
 use super::state::Descent;
 use super::sums::GapSums;
+use rc_core::Boundary;
+
 use crate::Control;
 use crate::parallel;
 
@@ -30,7 +32,9 @@ impl Descent<'_> {
     /// Takes so many steps, clips tensile pressures and restores the load.
     pub(super) fn round(&mut self, steps: usize, sums: &GapSums) -> GapSums {
         // Without a start, contact is at first too large at any load. Of operators of the caller nothing is known.
-        let is_prepared = self.has_start && self.operators.corrections.extends();
+        // Free borders bend the gap of a start over long distances, and what joins there would press on a whole region.
+        let is_periodic = self.boundary() == Boundary::Periodic;
+        let is_prepared = is_periodic && self.has_start && self.operators.corrections.extends();
         let is_heavy = is_prepared && sums.n_contact > HEAVY_CONTACT * self.n_cell();
         let steps = if is_heavy { 1 } else { steps };
         self.precondition_mean(sums);
@@ -118,7 +122,7 @@ impl Descent<'_> {
             return self.meet_penetration(sums);
         }
         // Loads are only moved between squares; that of the cell follows by scaling, which is exact.
-        let (len, offset, range) = (self.layout.len(), self.problem.offset(), self.problem.h_range);
+        let (len, offset, range) = (self.layout.len(), self.problem.offset(), self.problem.unit());
         let shares = Shares::new(self.squares(), &loads);
         let blocks = self.pressure.chunks_mut(len).zip(self.directions.added().chunks(len)).enumerate();
         let layout = &self.layout;
@@ -185,6 +189,6 @@ impl Descent<'_> {
     }
 
     fn gradient(&self) -> Gradient {
-        Gradient { zero_gap: self.zero_gap, unit: self.problem.h_range.recip() }
+        Gradient { zero_gap: self.zero_gap, unit: self.problem.unit().recip() }
     }
 }

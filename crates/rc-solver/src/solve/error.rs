@@ -27,6 +27,12 @@ pub enum SolveError {
         /// Name of the kernel.
         kernel: &'static str,
     },
+    /// The method is made for the periodic half-space.
+    #[error("the {method} method is made of the periodic half-space, not of a layer or a patch with free borders")]
+    Solid {
+        /// The method asked for.
+        method: Method,
+    },
     /// A border level is asked of a method without one.
     #[error("only the adaptive method divides elements at contact edges, not the {method} one")]
     BorderLevel {

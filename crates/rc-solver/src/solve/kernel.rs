@@ -23,6 +23,8 @@ pub(super) struct TabulatedKernel {
     grid: Grid,
     /// Eigenvalues for 0 ≤ kx ≤ nx/2, then 0 ≤ ky ≤ ny/2, columns of constant kx contiguous.
     values: Vec<f64>,
+    /// Displacements of elements by one, row by row, where borders are free.
+    free: Option<Vec<f64>>,
 }
 
 impl OwnedKernel<'_> {
@@ -51,7 +53,9 @@ impl TabulatedKernel {
         let columns = 0..=grid.nx() / 2;
         let values = columns.flat_map(|kx| (0..=grid.ny() / 2).map(move |ky| (kx, ky))).map(|(kx, ky)| symbol(kx, ky));
         let (name, bias, uniform) = (kernel.name(), kernel.edge_bias(), kernel.uniform_displacement());
-        Self { name, bias, uniform, grid, values: values.collect() }
+        let elements = (0..grid.len()).map(|i| (i % grid.nx(), i / grid.nx()));
+        let free = kernel.free_response(grid).map(|response| elements.map(|(ix, iy)| response(ix, iy)).collect());
+        Self { name, bias, uniform, grid, values: values.collect(), free }
     }
 }
 
@@ -67,6 +71,11 @@ impl Kernel for TabulatedKernel {
 
     fn uniform_displacement(&self) -> Option<f64> {
         self.uniform
+    }
+
+    fn free_response(&self, grid: Grid) -> Option<Symbol<'_>> {
+        let values = self.free.as_ref()?;
+        Some(Box::new(move |ix, iy| values[iy * grid.nx() + ix]))
     }
 
     fn edge_bias(&self) -> EdgeBias {

@@ -1,11 +1,12 @@
 //! What a solution on a grid needs of its half-space after the solve. It may outlive the caller's.
 
-use rc_core::{EdgeBias, Field, Operator};
+use rc_core::{Boundary, EdgeBias, Field, Grid, Operator};
 
 use super::kernel::OwnedKernel;
 use crate::operator::{UniformOperator, stiffness_with_operator};
 use crate::solution::GridSolution;
 use crate::stiffness::contact_stiffness;
+use crate::support::Support;
 
 /// The half-space that a solution on a grid was found with.
 pub(super) enum Response<'a> {
@@ -40,6 +41,14 @@ impl Response<'_> {
         match self {
             Self::Kernel(kernel) => kernel.get().edge_bias(),
             Self::Operator(_) | Self::Outlived { .. } => EdgeBias::default(),
+        }
+    }
+
+    /// What is beyond the heights on `grid`.
+    pub(super) fn boundary(&self, grid: Grid) -> Boundary {
+        match self {
+            Self::Kernel(kernel) => Support::of(kernel.get(), grid).boundary,
+            Self::Operator(_) | Self::Outlived { .. } => Boundary::Periodic,
         }
     }
 

@@ -204,7 +204,9 @@ impl<'a> Solution<'a> {
     #[must_use]
     pub fn observables(&self) -> &Observables {
         self.observables.get_or_init(|| match &self.pressures {
-            Pressures::Grid { solution, response } => Observables::of(solution, response.edge_bias()),
+            Pressures::Grid { solution, response } => {
+                Observables::of(solution, response.edge_bias(), response.boundary(solution.pressure.grid()))
+            }
             Pressures::Tiles { solution, .. } => solution.observables(),
         })
     }

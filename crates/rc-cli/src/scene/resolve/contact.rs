@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use rc_core::{Elasticity, Kernel, PeriodicCell, UnitError, Units};
-use rc_kernel::{Layer, Love, LoveLayer, Spectral, SpectralLayer};
+use rc_core::{Boundary, Elasticity, Kernel, PeriodicCell, UnitError, Units};
+use rc_kernel::{FreeLove, Layer, Love, LoveLayer, Spectral, SpectralLayer};
 use rc_solver::{Control, Method, SolveParams, Tolerance};
 
 use super::checks::{missing, positive};
-use super::elastic_layer;
+use super::{elastic_layer, free_borders};
 use crate::error::CliError;
 use crate::scene::file;
 use crate::scene::keys::{ContactKeys, KernelName};
@@ -22,6 +22,8 @@ pub struct ContactSetup {
     pub control: Control,
     /// Discretisation.
     pub kernel: KernelName,
+    /// What is beyond the heights.
+    pub boundary: Boundary,
     /// The layer that takes the place of the half-space, if one does.
     pub layer: Option<Layer>,
     /// Method, tolerance and limits, but for the memory there is.
@@ -37,6 +39,7 @@ impl ContactSetup {
     /// [`CliError::Input`] for a kernel that only a program knows.
     pub fn kernel(&self) -> Result<Arc<dyn Kernel + Send + Sync>, CliError> {
         Ok(match (self.kernel, self.layer) {
+            (KernelName::Love, None) if self.boundary == Boundary::Free => Arc::new(FreeLove),
             (KernelName::Love, None) => Arc::new(Love),
             (KernelName::Spectral, None) => Arc::new(Spectral),
             (KernelName::Love, Some(layer)) => Arc::new(LoveLayer(layer)),
@@ -77,6 +80,7 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
     let control = control(&keys, units)?;
     let kernel = keys.kernel.unwrap_or(KernelName::Love);
     check_method(&keys, kernel)?;
+    let boundary = free_borders::boundary(&keys, kernel)?;
     let layer = elastic_layer::layer(&keys, kernel, cell.side())?;
     let params = SolveParams {
         tolerance: tolerance(&keys)?,
@@ -84,7 +88,7 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
         border_level: keys.border_level.unwrap_or(0),
         ..SolveParams::certified()
     };
-    Ok(ContactSetup { units, control, kernel, layer, params, keys })
+    Ok(ContactSetup { units, control, kernel, boundary, layer, params, keys })
 }
 
 fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {
@@ -180,6 +184,11 @@ mod tests {
             ("energy_tolerance = 1.0", "energy_tolerance"),
             ("energy_tolerance = nan", "energy_tolerance"),
             ("tolerance = 1e-6\nenergy_tolerance = 1e-3", "energy_tolerance"),
+            ("boundary = \"free\"\nkernel = \"spectral\"", "kernel"),
+            ("boundary = \"free\"\nkernel = \"own\"", "boundary"),
+            ("boundary = \"free\"\nlayer_thickness = 1e-3", "boundary"),
+            ("boundary = \"free\"\nmethod = \"adaptive\"", "method"),
+            ("boundary = \"free\"\nborder_level = 1", "border_level"),
             ("layer_thickness = 0.0", "layer_thickness"),
             ("layer_thickness = inf", "layer_thickness"),
             ("layer_thickness = 1e-3\ne_star = 1e9", "layer_poisson"),
