@@ -87,7 +87,7 @@ fn a_dense_solver_finds_the_same_pressure() {
     for (thickness, poisson) in [(0.3, 0.3), (0.06, 0.5)] {
         let kernel = LoveLayer(layer(thickness, poisson));
         let range = heights.max() - heights.min();
-        for depth in [0.2 * range, 0.5 * range, 0.8 * range] {
+        for depth in [0.2 * range, 0.5 * range, 0.7 * range] {
             let exact = solve_dense(&heights, &kernel, depth).expect("valid").expect("a contact that settles");
             let found = solved(&heights, &kernel, Control::Penetration(depth), 1e-11);
             let off = found.pressure().values().iter().zip(exact.values()).map(|(a, b)| (a - b).abs());

@@ -121,7 +121,8 @@ fn sweeps_solve_layers_and_patches() {
     }
     let single = summary(&place, &[&MAP[..], &["--pressure", "1e6"]].concat());
     let table = text(&place.bytes("patches/sweep.csv"));
-    assert!(table.contains(&number(&single, "penetration").to_string()), "{table}");
+    let penetration = format!(",{:e},", number(&single, "penetration"));
+    assert!(table.contains(&penetration), "{penetration} is not in {table}");
 }
 
 #[test]

@@ -8,6 +8,7 @@ use rc_fft::{Convolution, SymbolTable};
 
 use super::inverse::Inverse;
 use crate::factors::has_small_factors;
+use crate::parallel;
 
 /// The margin, in parts of a side of the heights.
 const MARGIN: f64 = 0.25;
@@ -52,9 +53,9 @@ impl Margin {
     /// The active elements, with those of the margin.
     pub(super) fn set_active(&mut self, active: &[bool]) -> &[bool] {
         let [from, to] = [self.inner.nx(), self.grid().nx()];
-        for (row, active) in self.active.chunks_mut(to).zip(active.chunks(from)) {
+        parallel::for_each(self.active.chunks_mut(to).zip(active.chunks(from)), |(row, active)| {
             row[..from].copy_from_slice(active);
-        }
+        });
         &self.active
     }
 
@@ -62,13 +63,13 @@ impl Margin {
     pub(super) fn apply(&mut self, inverse: &mut Inverse, values: &mut [f32]) {
         let [from, to] = [self.inner.nx(), self.grid().nx()];
         // The inverse leaves zeros in the margin.
-        for (row, values) in self.values.chunks_mut(to).zip(values.chunks(from)) {
+        parallel::for_each(self.values.chunks_mut(to).zip(values.chunks(from)), |(row, values)| {
             row[..from].copy_from_slice(values);
-        }
+        });
         inverse.apply(&mut self.convolution, &self.active, &mut self.values);
-        for (row, values) in self.values.chunks(to).zip(values.chunks_mut(from)) {
+        parallel::for_each(self.values.chunks(to).zip(values.chunks_mut(from)), |(row, values)| {
             values.copy_from_slice(&row[..from]);
-        }
+        });
     }
 }
 
