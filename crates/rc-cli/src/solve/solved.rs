@@ -109,7 +109,8 @@ impl<'a> ProblemSetup<'a> {
 
     /// Checks what the grid of the surface decides.
     fn check_grid(&self) -> Result<(), CliError> {
-        resolve::check_thickness(self.contact, self.surface.grid)?;
+        let ContactSetup { layer, kernel, units, .. } = self.contact;
+        resolve::check_thickness(*layer, *kernel, self.surface.grid, units.cell().side())?;
         self.contact.keys.output_grid.map_or(Ok(()), |spec| check_factor(self.surface.grid, spec))
     }
 

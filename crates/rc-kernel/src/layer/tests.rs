@@ -76,7 +76,7 @@ fn the_factor_is_that_of_columns_and_of_the_half_space_in_its_limits() {
         let bent = 2.0 / 3.0 * xi.powi(3);
         let expected = if poisson < 0.5 { column } else { bent };
         assert!((thin / expected - 1.0).abs() < 2e-5, "ν = {poisson}: {thin:e} for {expected:e}");
-        assert!((layer.factor(20.0) - 1.0).abs() < 1e-13 && layer.factor(1e4) == 1.0, "ν = {poisson}");
+        assert!((layer.factor(20.0) - 1.0).abs() < 1e-13 && (layer.factor(1e4) - 1.0).abs() < 1e-15, "ν = {poisson}");
         for xi in [0.1, 0.5, 0.7, 3.0, 9.0] {
             let (excess, difference) = (layer.excess(xi), layer.factor(xi) - 1.0);
             assert!((excess - difference).abs() < 1e-15, "ν = {poisson}, ξ = {xi}: {excess} and {difference}");

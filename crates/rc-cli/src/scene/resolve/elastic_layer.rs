@@ -5,7 +5,6 @@ use rc_kernel::{Layer, THINNEST_LAYER};
 use rc_solver::Method;
 
 use super::checks::positive;
-use super::contact::ContactSetup;
 use crate::error::CliError;
 use crate::scene::keys::{ContactKeys, KernelName};
 
@@ -49,10 +48,10 @@ pub(super) fn layer(keys: &ContactKeys, kernel: KernelName, side: f64) -> Result
     Ok(Some(Layer { thickness, poisson }))
 }
 
-/// Refuses a layer that is thinner than elements, of kernel love: it is a bed of springs for them, at a high cost.
-pub(crate) fn check_thickness(contact: &ContactSetup, grid: Grid) -> Result<(), CliError> {
-    let (spacing, side) = (grid.spacing().max_element(), contact.units.cell().side());
-    match (contact.layer, contact.kernel) {
+/// Refuses a layer that is thinner than elements, of kernel love: it is a bed of springs for them, at a high cost. `side` is λ in m.
+pub(crate) fn check_thickness(layer: Option<Layer>, kernel: KernelName, grid: Grid, side: f64) -> Result<(), CliError> {
+    let spacing = grid.spacing().max_element();
+    match (layer, kernel) {
         (Some(layer), KernelName::Love) if layer.thickness < THINNEST_LAYER * spacing => {
             Err(CliError::input(format_args!(
                 "layer_thickness: {:e} m is below {THINNEST_LAYER} of an element of {grid} ({:e} m); give a finer grid",
