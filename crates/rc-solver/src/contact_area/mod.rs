@@ -206,12 +206,12 @@ fn are_squares([x, y]: [f64; 2]) -> bool {
 }
 
 /// Pressure and gap at places around an element of a grid; beyond a free border they are those beside it.
-pub(crate) fn around<'a>(
-    [pressure, gap]: [&'a [f64]; 2],
+pub(crate) fn around(
+    [pressure, gap]: [&[f64]; 2],
     [nx, ny]: [usize; 2],
     [ix, iy]: [usize; 2],
     boundary: Boundary,
-) -> impl Fn(isize, isize) -> [f64; 2] + 'a {
+) -> impl Fn(isize, isize) -> [f64; 2] {
     let place = move |i: usize, d: isize, n: usize| match boundary {
         Boundary::Periodic => (i + n).wrapping_add_signed(d) % n,
         Boundary::Free => i.saturating_add_signed(d).min(n - 1),
