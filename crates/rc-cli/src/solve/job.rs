@@ -54,7 +54,7 @@ impl Job {
         progress.say("heights");
         let kernel = self.scene.contact.kernel()?;
         let surface = self.scene.surface.load()?;
-        let problem = self.scene.problem(&surface, kernel, self.budget());
+        let problem = self.scene.problem(&surface, &*kernel, self.budget());
         let solved = self.scene.solve(problem, self.started, &progress)?;
         self.finish(&solved, threads, progress)
     }

@@ -54,7 +54,7 @@ pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
     stop::listen();
     if dry_run {
         let (kernel, surface) = (job.scene.contact.kernel()?, job.scene.surface.load()?);
-        let problem = job.scene.problem(&surface, kernel, job.budget());
+        let problem = job.scene.problem(&surface, &*kernel, job.budget());
         return dry_run::run(&problem, threads, &job.run);
     }
     job.execute(threads)

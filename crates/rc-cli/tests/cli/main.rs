@@ -10,6 +10,7 @@ mod measured;
 mod rectangles;
 mod report;
 mod robustness;
+mod solids;
 mod solve;
 mod spectrum;
 mod stopped;

@@ -56,6 +56,7 @@ use self::split::GapSplit;
 use crate::Control;
 use crate::gap_part::GapPart;
 use crate::problem::{Load, Problem};
+use crate::support::Support;
 
 /// A checked contact problem, ready for the adaptive method: heights are sampled, nothing is solved.
 ///
@@ -106,7 +107,7 @@ impl<'a> AdaptiveProblem<'a> {
     /// [`AdaptiveError`].
     pub(crate) fn on(ground: &Arc<Ground<'a>>, load: Load, params: &AdaptiveParams) -> Result<Self, AdaptiveError> {
         let split = first_split(params)?;
-        let problem = Problem::of_statistics(ground.heights.extremes(), load, &params.solve)?;
+        let problem = Problem::of_statistics(ground.heights.extremes(), load, &params.solve, Support::default())?;
         if problem.h_range == 0.0 {
             return Err(AdaptiveError::Flat);
         }

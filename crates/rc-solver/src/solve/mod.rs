@@ -5,6 +5,8 @@ mod choice;
 mod cost;
 mod door;
 mod error;
+mod fields;
+mod kernel;
 mod memory;
 mod params;
 mod plan;

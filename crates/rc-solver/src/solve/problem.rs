@@ -1,8 +1,11 @@
 //! A contact problem: heights, half-space and load.
 
+use std::sync::Arc;
+
 use rc_core::{HeightSource, Kernel};
 use rc_kernel::Love;
 
+use super::kernel::OwnedKernel;
 use crate::Control;
 use crate::problem::Load;
 
@@ -25,7 +28,7 @@ use crate::problem::Load;
 #[derive(Clone)]
 pub struct ContactProblem<'a> {
     pub(super) heights: HeightSource<'a>,
-    pub(super) kernel: &'a dyn Kernel,
+    pub(super) kernel: OwnedKernel<'a>,
     pub(super) control: Control,
     pub(super) hardness: f64,
 }
@@ -34,7 +37,7 @@ impl<'a> ContactProblem<'a> {
     /// The contact of `heights` (in λ) with the elastic half-space under a load. The kernel is [`Love`].
     #[must_use]
     pub fn new(heights: impl Into<HeightSource<'a>>, control: Control) -> Self {
-        Self { heights: heights.into(), kernel: &Love, control, hardness: f64::INFINITY }
+        Self { heights: heights.into(), kernel: OwnedKernel::Borrowed(&Love), control, hardness: f64::INFINITY }
     }
 
     /// The same problem with a hardness, in E*: no pressure is greater. It is the usual first model of plastic contact. Where the pressure is the
@@ -65,7 +68,13 @@ impl<'a> ContactProblem<'a> {
     /// The same problem with another half-space, or another discretisation of it.
     #[must_use]
     pub fn with_kernel(self, kernel: &'a dyn Kernel) -> Self {
-        Self { kernel, ..self }
+        Self { kernel: OwnedKernel::Borrowed(kernel), ..self }
+    }
+
+    /// The same with a kernel that the problem, its plans and its solutions share, and do not borrow.
+    #[must_use]
+    pub fn with_shared_kernel(self, kernel: Arc<dyn Kernel + Send + Sync>) -> Self {
+        Self { kernel: OwnedKernel::Shared(kernel), ..self }
     }
 }
 
@@ -73,7 +82,7 @@ impl std::fmt::Debug for ContactProblem<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut out = f.debug_struct("ContactProblem");
         out.field("heights", &self.heights)
-            .field("kernel", &self.kernel.name())
+            .field("kernel", &self.kernel.get().name())
             .field("control", &self.control)
             .field("hardness", &self.hardness)
             .finish()
