@@ -189,14 +189,14 @@ fn tiles(pressures: &[Field], split: &ScaleSplit) -> Result<Vec<Vec<bool>>> {
 
 impl Levels {
     /// Upper left corners of the two maps of a level.
-    fn corners(&self, depth: usize) -> [(i32, i32); 2] {
+    fn corners(depth: usize) -> [(i32, i32); 2] {
         let (indent, top) = (20 + INDENT * depth as i32, 56 + ROW * depth as i32);
         [(indent, top), (WIDTH - indent - PANEL, top)]
     }
 
     fn draw_level<B: DrawingBackend>(&self, area: &Area<B>, depth: usize) -> Result<(), PictureError> {
         let level = &self.levels[depth];
-        let [left, right] = self.corners(depth);
+        let [left, right] = Self::corners(depth);
         let is_base = depth + 1 == self.levels.len();
         let whole = vec![true; level.tiles.len()];
         let displaced_tiles = if is_base { &whole } else { &level.tiles };
@@ -212,7 +212,7 @@ impl Levels {
         let what = if is_base { "transform" } else { "stencil" };
         label(area, (WIDTH / 2, level_y - TEXT), what)?;
         if !is_base {
-            let [below_left, below_right] = self.corners(depth + 1);
+            let [below_left, below_right] = Self::corners(depth + 1);
             let (x, y) = (below_left.0 - 20, left.1 + PANEL + 8);
             arrow(area, (x, y), (x, y + ROW - PANEL / 2 - 40))?;
             label(area, (x - 58, y + 50), "restrict")?;

@@ -29,7 +29,7 @@ pub struct Params {
 /// The parts of the kernel, in units of the finest element's side and E*.
 #[derive(Clone, Debug)]
 pub struct Split {
-    split: ScaleSplit,
+    kernel: ScaleSplit,
     params: Params,
     /// Angular wavenumbers, and the transform of each level's part at them, finest level first; the remainder last.
     waves: Vec<f64>,
@@ -61,7 +61,7 @@ impl Figure for Split {
         let last = cutoff(params.n_levels - 1);
         let remainder = waves.iter().map(|&q| split.remainder_symbol(q, last)).collect();
         let transforms = (0..params.n_levels).map(part).chain([remainder]).collect();
-        Ok(Self { split, params: params.clone(), waves, transforms })
+        Ok(Self { kernel: split, params: params.clone(), waves, transforms })
     }
 
     fn tables(&self) -> Vec<Table> {
@@ -76,7 +76,7 @@ fn side(level: usize) -> f64 {
 
 impl Split {
     fn stencil(&self, level: usize) -> Stencil {
-        if level == 0 { self.split.love_stencil() } else { self.split.level_stencil() }
+        if level == 0 { self.kernel.love_stencil() } else { self.kernel.level_stencil() }
     }
 
     /// What a level adds to the displacement of the point at `r` along x; `None` where it has no point, zero beyond its stencil.
@@ -96,7 +96,7 @@ impl Split {
 
     /// Points from which the tables and pictures are made: those of the finest stencil, then the points of every level.
     fn distances(&self) -> Vec<usize> {
-        let reach = 2 * self.params.split.cutoff << (self.params.n_levels - 1);
+        let reach = (2 * self.params.split.cutoff) << (self.params.n_levels - 1);
         let last = 1 << (self.params.n_levels - 1);
         (0..=reach).filter(|r| *r <= self.params.split.cutoff || r % last == 0).collect()
     }
@@ -143,7 +143,7 @@ impl Split {
         };
         let mut chart = axes.on(area)?;
         let line = |value: &dyn Fn(usize) -> Option<f64>| -> Vec<(f64, f64)> {
-            let reach = 2 * self.params.split.cutoff << (self.params.n_levels - 1);
+            let reach = (2 * self.params.split.cutoff) << (self.params.n_levels - 1);
             let points = (1..=reach.min(70)).filter_map(|r| Some((r, value(r)?)));
             logarithms(points.map(|(r, v)| (r as f64, v)), FLOOR[0])
         };

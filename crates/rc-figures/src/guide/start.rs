@@ -100,7 +100,7 @@ impl Start {
     }
 
     /// `values` at `x`, linear between the centres of elements.
-    fn at(&self, values: &[f64], x: f64) -> f64 {
+    fn at(values: &[f64], x: f64) -> f64 {
         let n = values.len();
         let place = x * n as f64 - 0.5;
         let (below, part) = (place.floor(), place - place.floor());
@@ -111,15 +111,15 @@ impl Start {
     /// Where `values`, linear between centres, stop being positive.
     fn edge_of(&self, values: &[f64]) -> f64 {
         let points = (0..=50_000).map(|i| 1e-5 * f64::from(i));
-        points.take_while(|x| self.at(values, *x) > 0.0).last().unwrap_or(0.0)
+        points.take_while(|x| Self::at(values, *x) > 0.0).last().unwrap_or(0.0)
     }
 
     fn draw_pressure<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
         let unit = self.params.wave.full_contact_pressure();
         let mut chart = axes("p / p of full contact", (0.0, 1.4)).on(area)?;
         let (wave, mean) = (self.params.wave, self.params.mean_pressure());
-        self.line(&mut chart, &|x| self.at(&self.pressure, x) / unit, RED)?;
-        self.line(&mut chart, &|x| self.at(&self.edge_function, x).max(0.0).sqrt() / unit, BLUE)?;
+        self.line(&mut chart, &|x| Self::at(&self.pressure, x) / unit, RED)?;
+        self.line(&mut chart, &|x| Self::at(&self.edge_function, x).max(0.0).sqrt() / unit, BLUE)?;
         let exact = self.points().map(|x| (x, wave.pressure(x, mean) / unit));
         chart.draw_series(DashedLineSeries::new(exact, 8, 6, BLACK.stroke_width(2)))?;
         self.dots(&mut chart, &self.pressure, unit)?;
@@ -136,7 +136,7 @@ impl Start {
         chart.draw_series([PathElement::new([(SHOWN.0, 0.0), (SHOWN.1, 0.0)], GREY.stroke_width(1))])?;
         let edge = self.exact_edge();
         chart.draw_series(DashedLineSeries::new([(edge, -0.8), (edge, 1.6)], 8, 6, BLACK.stroke_width(2)))?;
-        self.line(&mut chart, &|x| self.at(&self.edge_function, x) / unit, BLUE)?;
+        self.line(&mut chart, &|x| Self::at(&self.edge_function, x) / unit, BLUE)?;
         self.dots(&mut chart, &self.edge_function, unit)?;
         write(&mut chart, (edge, 1.3), Side::Right, "exact edge", BLACK)?;
         write(&mut chart, (0.01, -0.66), Side::Right, "(b)", BLACK)
