@@ -1,4 +1,4 @@
-"""A soft layer on a rigid base: the symbol of the solid as a function."""
+"""A soft layer on a rigid base: by its keywords, and by the symbol of the solid as a function."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,5 +22,12 @@ def layer(kx: NDArray[np.float64], ky: NDArray[np.float64]) -> NDArray[np.float6
 surface = rc.Surface(cell=0.01, waves=16, rms=13e-6, grid=128)
 on_layer = rc.solve(surface, e_star=E_STAR, pressure=2e4, kernel=layer)
 alone = rc.solve(surface, e_star=E_STAR, pressure=2e4, kernel="spectral")
+# The same by keywords, with the compression under the mean pressure.
+named = rc.solve(
+    surface, e_star=E_STAR, pressure=2e4, kernel="spectral", layer_thickness=THICKNESS, layer_poisson=POISSON
+)
+compressed = 2e4 * THICKNESS * (1 - 2 * POISSON) / (E_STAR * (1 - POISSON) ** 2)
 print(f"contact area {on_layer.area_fraction:.4f} on the layer, {alone.area_fraction:.4f} on a half-space")
 assert on_layer.area_fraction < alone.area_fraction
+assert abs(named.area_fraction / on_layer.area_fraction - 1) < 1e-9
+assert abs(named.penetration / (on_layer.penetration + compressed) - 1) < 1e-9

@@ -10,6 +10,8 @@ import numpy as np
 
 #: Elements per side: a number, ``(nx, ny)``, or text as ``"512x256"``.
 Grid = Union[int, tuple[int, int], str]
+#: What is beyond the heights.
+Boundary = Literal["periodic", "free"]
 #: How the problem is solved.
 Method = Literal["adaptive", "uniform", "gauss-seidel"]
 #: A file or a folder.

@@ -287,7 +287,7 @@ class Result:
             return self._source.spots
         pressure = self._finest_pressure("spots")
         gap = self._source.finest_gap() if self.border_level else None
-        found = _core.spots(pressure, self.gap if gap is None else gap, self.sides, self.e_star, self.kernel)
+        found = _core.spots(pressure, self.gap if gap is None else gap, self.sides, self.e_star, self.scene)
         return [ContactSpot(*spot) for spot in found]
 
     def stress_distribution(self, bins: int | Sequence[float] | Floats = 50) -> StressDistribution:

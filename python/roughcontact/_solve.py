@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughcontact import _core
-from roughcontact._keys import Grid, LengthUnit, Method, Path, plain
+from roughcontact._keys import Boundary, Grid, LengthUnit, Method, Path, plain
 from roughcontact._maps import Heights, map_parts
 from roughcontact._result import Result
 from roughcontact._run import Bar, Interrupted, NotConvergedError, NotConvergedWarning, ProgressOption, callback, checked
@@ -53,6 +53,9 @@ def solve(
     penetration: float | None = None,
     hardness: float | None = None,
     kernel: Kernel | None = None,
+    boundary: Boundary | None = None,
+    layer_thickness: float | None = None,
+    layer_poisson: float | None = None,
     method: Method | None = None,
     border_level: int | None = None,
     energy_tolerance: float | None = None,
@@ -99,6 +102,13 @@ def solve(
         displacement (m) of a pressure wave of 1 Pa, ``2 / (E* |k|)`` for a half-space: it must be positive, and even in kx and ky; on
         a square grid also that of kx and ky exchanged. E* must be that of its shortest waves, since contact edges are located with it; a warning names another one. It
         is called once, with all waves of the grid but the zero wave, and with mirror images of some.
+    boundary : {"periodic", "free"}, default "periodic"
+        What is beyond the heights: the same heights again, or the free surface of the half-space. With "free" the heights are a patch
+        of sides ``cell`` and ``cell_y``, ``pressure`` is the load over its area, and the penetration is the displacement of a rigid
+        body since first touch (kernel love, uniform method).
+    layer_thickness, layer_poisson : float, optional
+        An elastic layer of this thickness (m) on a rigid base to which it sticks, instead of the half-space. Its Poisson's ratio is
+        ``poisson``; with ``e_star`` it must be given (uniform method).
     method : {"adaptive", "uniform", "gauss-seidel"}, optional
         Default: adaptive, or uniform where that is cheaper.
     border_level : int, default 0

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughcontact import _core
-from roughcontact._keys import Grid, Method, Path, plain
+from roughcontact._keys import Boundary, Grid, Method, Path, plain
 from roughcontact._maps import HeightMap, Heights
 from roughcontact._result import Result
 from roughcontact._rows import FieldsAt, Found, Job, Workers, by_workers, here
@@ -61,6 +61,9 @@ def sweep(
     e_star: float | None = None,
     hardness: float | None = None,
     kernel: Kernel | None = None,
+    boundary: Boundary | None = None,
+    layer_thickness: float | None = None,
+    layer_poisson: float | None = None,
     method: Method | None = None,
     border_level: int | None = None,
     energy_tolerance: float | None = None,

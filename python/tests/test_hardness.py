@@ -39,3 +39,13 @@ def test_a_sweep_has_it_in_every_row():
     table = rc.sweep(waves=8, grid=64, e_star=1e9, pressures=[1e5, 1e6], hardness=5e6)
     fractions = np.array([row["plastic_area_fraction"] for row in table])
     assert fractions.shape == (2,) and fractions[0] < fractions[1]
+
+
+@pytest.mark.parametrize("solid", [{"boundary": "free"}, {"layer_thickness": 4e-4, "layer_poisson": 0.3}])
+def test_layers_and_patches_have_it(solid):
+    elastic = rc.solve(**SCENE, **solid)
+    result = rc.solve(**SCENE, **solid, hardness=0.5 * elastic.max_pressure)
+    assert 0.0 < result.plastic_area_fraction < result.area_fraction
+    assert result.area_fraction > elastic.area_fraction
+    assert result.gap.mean() == pytest.approx(result.mean_gap, rel=1e-6)
+    assert sum(spot.area_fraction for spot in result.spots) == pytest.approx(result.area_fraction, rel=0.1)

@@ -108,3 +108,40 @@ def test_another_material_than_that_of_short_waves_is_named(heights):
         rc.solve(heights, **CONTACT, kernel=half_space)
         # A layer on a stiffer base, which short waves do not see; and rounding.
         rc.solve(heights, **CONTACT, kernel=lambda kx, ky: half_space(kx, ky) * np.tanh(np.hypot(kx, ky) * 5e-4) * (1 + 1e-12))
+
+
+def test_the_layer_as_a_function_is_the_layer_by_its_keywords(heights):
+    poisson, thickness = 0.3, 4e-4
+
+    def layer(kx, ky):
+        k = np.hypot(kx, ky)
+        x, kappa = np.minimum(2 * k * thickness, 300), 3 - 4 * poisson
+        factor = (kappa * np.sinh(x) - x) / (kappa * np.cosh(x) + (1 + kappa**2) / 2 + x**2 / 2)
+        return 2 * factor / (1e9 * k)
+
+    own = rc.solve(heights, **CONTACT, kernel=layer, tolerance=1e-9)
+    keywords = {"layer_thickness": thickness, "layer_poisson": poisson}
+    named = rc.solve(heights, **CONTACT, kernel="spectral", tolerance=1e-9, **keywords)
+    assert np.abs(own.pressure - named.pressure).max() < 1e-6 * named.max_pressure
+    compressed = 1e6 * thickness * (1 - 2 * poisson) / (1e9 * (1 - poisson) ** 2)
+    assert named.penetration == pytest.approx(own.penetration + compressed, rel=1e-9)
+    assert named.mean_gap == pytest.approx(own.mean_gap, rel=1e-6)
+    # Two springs in series.
+    soft = 1 / (1 / own.contact_stiffness + compressed / 1e6)
+    assert named.contact_stiffness == pytest.approx(soft, rel=3e-3)
+    with pytest.raises(ValueError, match="layer_thickness: a function"):
+        rc.solve(heights, **CONTACT, kernel=layer, **keywords)
+
+
+def test_a_patch_does_not_meet_itself(heights):
+    patch = rc.solve(heights, **CONTACT, boundary="free")
+    assert patch.mean_gap == pytest.approx(patch.gap.mean(), rel=1e-9)
+    assert patch.penetration > rc.solve(heights, **CONTACT).penetration
+    # Contact at both ends of a row is one spot in a cell, and two on a patch.
+    trough = np.tile((np.arange(64) - 31.5) ** 2 * 1e-8, (64, 1))
+    in_cell, alone = (rc.solve(trough, **CONTACT, boundary=boundary) for boundary in ("periodic", "free"))
+    assert len(in_cell.spots) == 1 and len(alone.spots) == 2
+    with pytest.raises(ValueError, match="boundary: a function"):
+        rc.solve(heights, **CONTACT, kernel=half_space, boundary="free")
+    with pytest.raises(ValueError, match="leakage: the flow is computed on a periodic cell only"):
+        rc.solve(heights, **CONTACT, leakage=True, boundary="free")

@@ -16,6 +16,8 @@ CASES = {
     "gauss-seidel": {"method": "gauss-seidel", "grid": 32, "waves": 4, "pressure": 1e5, "tolerance": 1e-3},
     "spectral": {"kernel": "spectral", "pressure": 1e6, "tolerance": 1e-8},
     "leakage": {"pressure": 2e5, "leakage": True},
+    "layer": {"pressure": 4e5, "layer_thickness": 3e-4, "layer_poisson": 0.3},
+    "patch": {"pressure": 1e5, "boundary": "free"},
     "chosen grid": {"area_error": 0.05, "grid": None, "pressure": 1e6},
 }
 

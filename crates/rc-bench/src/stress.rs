@@ -17,6 +17,7 @@ mod mutate;
 mod picture;
 mod row;
 mod scene;
+mod solids;
 mod solved;
 
 use std::path::Path;
@@ -59,6 +60,7 @@ const GROUPS: &[(&str, MakeRows)] = &[
     ("hardness", |params| hardness::rows(params.preset)),
     ("agreement", |params| agreement::rows(params.preset)),
     ("kernels", |params| kernels::rows(params.preset)),
+    ("layers and patches", |params| solids::rows(params.preset)),
     ("faults", |params| faults::rows(params.preset)),
     ("flows", |params| flows::rows(params.preset)),
     ("rc solve", |params| params.rc.map_or_else(|| Ok(Vec::new()), |rc| commands::rows(params.preset, rc))),

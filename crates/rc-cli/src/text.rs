@@ -26,7 +26,7 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
     let area = with_error(100.0 * s.area_fraction, 100.0 * s.area_fraction_error);
     let counted = digits(100.0 * s.area_fraction_cells, 4);
     let mean_pressure = format!("{} ({} E*)", pascals(s.mean_pressure), digits(s.mean_pressure / e_star, 4));
-    let penetration = format!("{} of {} at full contact", metres(s.penetration), metres(s.penetration_full_contact));
+    let penetration = penetration(s);
     let mut lines = vec![
         ("method", method),
         ("cell", cell),
@@ -37,10 +37,12 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
         ("penetration", penetration),
         ("mean gap", metres(s.mean_gap)),
         ("stiffness", stiffness(s)),
-        ("conductance", conductance(s)),
         ("elastic energy", engineering(s.elastic_energy, "J")),
         ("certificate", certificate_line(s)),
     ];
+    if let Some(conductance) = conductance(s) {
+        lines.insert(9, ("conductance", conductance));
+    }
     if let Some(plastic) = plastic(s) {
         lines.insert(4, ("plastic area", plastic));
     }
@@ -63,10 +65,13 @@ pub(crate) fn plastic(s: &Summary) -> Option<String> {
     ))
 }
 
-/// The electrical and thermal conductance.
-fn conductance(s: &Summary) -> String {
-    s.contact_conductance
-        .map_or_else(|| "infinite".into(), |value| format!("{} 1/m per conductivity", digits(value, 4)))
+/// The electrical and thermal conductance; none on a layer, whose stiffness does not say it.
+fn conductance(s: &Summary) -> Option<String> {
+    match (s.contact_conductance, s.contact_stiffness) {
+        (Some(value), _) => Some(format!("{} 1/m per conductivity", digits(value, 4))),
+        (None, Some(_)) => None,
+        (None, None) => Some("infinite".into()),
+    }
 }
 
 /// Permeances and constrictions of a flow.
@@ -82,6 +87,21 @@ fn leakage_lines(leakage: &LeakageSummary) -> [(&'static str, String); 2] {
         leakage.critical_gap.map(|gap| gap.map_or_else(|| "none".to_owned(), |gap| engineering(gap, "m")));
     [("permeance", format!("{x} along x, {y} along y")), ("critical gap", format!("{gap_x} along x, {gap_y} along y"))]
 }
+
+fn penetration(s: &Summary) -> String {
+    let [penetration, full] = [s.penetration, s.penetration_full_contact].map(|length| engineering(length, "m"));
+    // A layer and a patch with free borders are displaced as a whole too; full contact is at no certain depth then.
+    let open = s.mean_gap - s.mean_plastic_gap.unwrap_or(0.0);
+    let displacement = open - (s.penetration_full_contact - s.penetration);
+    if displacement > ROUNDING * s.penetration_full_contact.max(s.penetration) {
+        format!("{penetration}, mean displacement {}", engineering(displacement, "m"))
+    } else {
+        format!("{penetration} of {full} at full contact")
+    }
+}
+
+/// Part of lengths that is rounding.
+const ROUNDING: f64 = 1e-12;
 
 fn surface_line(s: &Summary) -> String {
     let (rms, max) = (engineering(s.rms_height, "m"), engineering(s.h_max, "m"));

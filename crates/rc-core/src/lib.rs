@@ -75,5 +75,5 @@ pub use grid::{Grid, GridError};
 pub use heights::{HeightField, HeightSource};
 pub use histogram::Histogram;
 pub use progress::{Event, Observer, Rows, Silent, Snapshot};
-pub use traits::{EdgeBias, Kernel, Operator, Symbol};
+pub use traits::{Boundary, EdgeBias, Kernel, Operator, Symbol};
 pub use units::{Elasticity, PeriodicCell, UnitError, Units};

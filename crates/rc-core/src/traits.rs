@@ -5,6 +5,17 @@ use crate::Grid;
 /// Eigenvalues of an elastic operator on one grid: maps (|kx|, |ky|), up to half the grid, to the eigenvalue.
 pub type Symbol<'a> = Box<dyn Fn(usize, usize) -> f64 + Send + Sync + 'a>;
 
+/// What is beyond the borders of the heights.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum Boundary {
+    /// The same heights again: a periodic cell.
+    #[default]
+    Periodic,
+    /// The free surface of the solid, which nothing presses on.
+    Free,
+}
+
 /// The first-order error of a discretisation at the edges of contacts, per edge: the first three terms are subtracted from a contact area
 /// whose edges are located between elements, in areas of an element; the last is added to Σ p².
 ///
@@ -60,6 +71,20 @@ pub trait Kernel: Sync {
     /// centres and its displacement. Even in kx and in ky, so it is asked for 0 ≤ kx ≤ nx/2, 0 ≤ ky ≤ ny/2 only; on a
     /// [square](Grid::is_square) grid symmetric in kx and ky, so it may be asked for ky ≥ kx only. Zero at k = 0 (Eq. 3: the displacement has zero mean) and positive elsewhere.
     fn symbol(&self, grid: Grid) -> Symbol<'_>;
+
+    /// Displacement of the cell under a uniform pressure of E*, in λ: that of a solid on a base, added to [`Kernel::symbol`], which is zero at
+    /// k = 0. `None` for the half-space, whose mean displacement is not finite and left out (Eq. 3).
+    fn uniform_displacement(&self) -> Option<f64> {
+        None
+    }
+
+    /// For heights with [`Boundary::Free`]: displacement, in λ, of the element that is (ix, iy) elements away from one under a pressure of
+    /// E*, for 0 ≤ ix < nx and 0 ≤ iy < ny. The solver then uses it instead of [`Kernel::symbol`], which only preconditions the iteration.
+    /// `None` for the periodic cell.
+    fn free_response(&self, grid: Grid) -> Option<Symbol<'_>> {
+        let _ = grid;
+        None
+    }
 
     /// The shift of the edges of contacts by the discretisation, first order in the element size. It only corrects observables; the
     /// pressure does not depend on it. At an edge short waves matter, and to these most solids are half-spaces, so the default fits

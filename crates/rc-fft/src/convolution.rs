@@ -1,4 +1,5 @@
-//! Periodic convolutions of real fields: `field → inverse FFT( symbol · FFT(field) )`.
+//! Convolutions of real fields: `field → inverse FFT( symbol · FFT(field) )`, periodic on the grid of the field, or on a larger one on which the
+//! field is zero elsewhere.
 //!
 //! There are three passes over memory. Rows are transformed block by block and left in tiles. Panels of a few columns are gathered
 //! from the tiles, transformed, multiplied by the symbol, transformed back and scattered. Rows are transformed back. The caller
@@ -52,6 +53,8 @@ const PANEL_PADDING: usize = 16;
 /// ```
 pub struct Convolution<T> {
     grid: Grid,
+    /// Elements of the transforms along both axes: those of the grid, or more.
+    period: [usize; 2],
     row_forward: Arc<dyn RealToComplex<T>>,
     row_inverse: Arc<dyn ComplexToReal<T>>,
     column_forward: Arc<dyn Fft<T>>,
@@ -65,6 +68,8 @@ pub struct Convolution<T> {
 struct Workspace<T> {
     /// One block of rows.
     rows: Vec<T>,
+    /// A row with the zeros behind it; empty where there are none.
+    padded: Vec<T>,
     /// One spectrum of a row.
     row_spectrum: Vec<Complex<T>>,
     /// One panel, columns contiguous.
@@ -76,8 +81,22 @@ impl<T: TransformReal> Convolution<T> {
     /// Plans for `grid`, and a workspace for each thread of the present rayon pool. *Memory*: nx·ny complex numbers of `T`.
     #[must_use]
     pub fn new(grid: Grid) -> Self {
-        let (row_forward, row_inverse) = (T::real_forward(grid.nx()), T::real_inverse(grid.nx()));
-        let (column_forward, column_inverse) = (T::complex_forward(grid.ny()), T::complex_inverse(grid.ny()));
+        Self::padded(grid, [grid.nx(), grid.ny()])
+    }
+
+    /// Plans for fields on `grid` that are zero on the rest of a larger one, of `period` elements along both axes, whose table the symbol is
+    /// then; only the result on `grid` is kept. Transforms of rows that are zero are left out. *Memory*: about period\[0\] · ny / 2 complex numbers.
+    ///
+    /// With a period of at least 2n - 1 elements along a side of n, no element acts on another around the border.
+    ///
+    /// # Panics
+    /// When the period is shorter than the grid.
+    #[must_use]
+    pub fn padded(grid: Grid, period: [usize; 2]) -> Self {
+        let [nx, ny] = period;
+        assert!(nx >= grid.nx() && ny >= grid.ny(), "a period of {nx} x {ny} elements for {grid}");
+        let (row_forward, row_inverse) = (T::real_forward(nx), T::real_inverse(nx));
+        let (column_forward, column_inverse) = (T::complex_forward(ny), T::complex_inverse(ny));
         let scratch_len = [
             row_forward.get_scratch_len(),
             row_inverse.get_scratch_len(),
@@ -85,18 +104,19 @@ impl<T: TransformReal> Convolution<T> {
             column_inverse.get_inplace_scratch_len(),
         ];
         let scratch_len = scratch_len.into_iter().max().unwrap_or(0);
-        let n_columns = grid.nx() / 2 + 1;
+        let n_columns = nx / 2 + 1;
         let zero = Complex::new(T::zero(), T::zero());
         let workspace = || Workspace {
             rows: vec![T::zero(); BLOCK_ROWS * grid.nx()],
+            padded: if nx > grid.nx() { vec![T::zero(); nx] } else { Vec::new() },
             row_spectrum: vec![zero; n_columns],
-            panel: vec![zero; PANEL_COLUMNS * (grid.ny() + PANEL_PADDING)],
+            panel: vec![zero; PANEL_COLUMNS * (ny + PANEL_PADDING)],
             scratch: vec![zero; scratch_len],
         };
         let workspaces = (0..rayon::current_num_threads()).map(|_| Mutex::new(workspace())).collect();
         // Written by all threads: a large one is new memory.
         let spectrum = rayon::iter::repeat_n(zero, n_columns * grid.ny()).collect();
-        Self { grid, row_forward, row_inverse, column_forward, column_inverse, spectrum, workspaces }
+        Self { grid, period, row_forward, row_inverse, column_forward, column_inverse, spectrum, workspaces }
     }
 
     /// The grid.
@@ -141,7 +161,7 @@ impl<T: TransformReal> Convolution<T> {
         S: IndexedParallelIterator,
         R: Send,
     {
-        let (nx, n_columns) = (self.grid.nx(), self.grid.nx() / 2 + 1);
+        let (nx, n_columns) = (self.grid.nx(), self.period[0] / 2 + 1);
         let (row_forward, workspaces) = (&self.row_forward, &self.workspaces);
         let blocks = self.spectrum.par_chunks_mut(BLOCK_ROWS * n_columns);
         blocks
@@ -149,10 +169,11 @@ impl<T: TransformReal> Convolution<T> {
             .map(|(block, source)| {
                 let n_rows = block.len() / n_columns;
                 let mut workspace = lock(workspaces);
-                let Workspace { rows, row_spectrum, scratch, .. } = &mut *workspace;
+                let Workspace { rows, padded, row_spectrum, scratch, .. } = &mut *workspace;
                 let rows = &mut rows[..n_rows * nx];
                 let written = write(source, rows);
                 for (iy, row) in rows.chunks_exact_mut(nx).enumerate() {
+                    let row = with_zeros(row, padded);
                     let transformed = row_forward.process_with_scratch(row, row_spectrum, scratch);
                     transformed.expect("buffers have the lengths of the plan");
                     to_tiles(row_spectrum, block, iy);
@@ -164,10 +185,11 @@ impl<T: TransformReal> Convolution<T> {
 
     /// Second pass: columns are transformed, multiplied by the symbol, the table of the same grid, and transformed back.
     pub fn apply_symbol(&mut self, symbol: &SymbolTable<T>) {
-        let (ny, n_columns) = (self.grid.ny(), self.grid.nx() / 2 + 1);
+        let (n_rows, [nx, ny]) = (self.grid.ny(), self.period);
+        let n_columns = nx / 2 + 1;
         let (forward, inverse, workspaces) = (&self.column_forward, &self.column_inverse, &self.workspaces);
         let mut panels: Vec<Vec<&mut [Complex<T>]>> = Vec::new();
-        panels.resize_with(n_columns.div_ceil(PANEL_COLUMNS), || Vec::with_capacity(ny.div_ceil(BLOCK_ROWS)));
+        panels.resize_with(n_columns.div_ceil(PANEL_COLUMNS), || Vec::with_capacity(n_rows.div_ceil(BLOCK_ROWS)));
         for block in self.spectrum.chunks_mut(BLOCK_ROWS * n_columns) {
             let n_rows = block.len() / n_columns;
             for (tile, panel) in block.chunks_mut(PANEL_COLUMNS * n_rows).zip(&mut panels) {
@@ -183,6 +205,7 @@ impl<T: TransformReal> Convolution<T> {
             gather(tiles, panel, width);
             for (column_idx, column) in panel.chunks_exact_mut(ny + PANEL_PADDING).enumerate() {
                 let column = &mut column[..ny];
+                column[n_rows..].fill(Complex::new(T::zero(), T::zero()));
                 forward.process_with_scratch(column, scratch);
                 scale_column(column, symbol.column(first_column + column_idx));
                 inverse.process_with_scratch(column, scratch);
@@ -200,24 +223,29 @@ impl<T: TransformReal> Convolution<T> {
         K: IndexedParallelIterator,
         R: Send,
     {
-        let (nx, n_columns) = (self.grid.nx(), self.grid.nx() / 2 + 1);
+        let (nx, n_columns) = (self.grid.nx(), self.period[0] / 2 + 1);
+        let is_even = self.period[0].is_multiple_of(2);
         let blocks = self.spectrum.par_chunks(BLOCK_ROWS * n_columns);
         blocks
             .zip_eq(sinks)
             .map(|(block, sink)| {
                 let n_rows = block.len() / n_columns;
                 let mut workspace = lock(&self.workspaces);
-                let Workspace { rows, row_spectrum, scratch, .. } = &mut *workspace;
+                let Workspace { rows, padded, row_spectrum, scratch, .. } = &mut *workspace;
                 let rows = &mut rows[..n_rows * nx];
                 for (iy, row) in rows.chunks_exact_mut(nx).enumerate() {
                     from_tiles(block, iy, row_spectrum);
                     // These are real up to rounding; the plan insists on exact zeros.
                     row_spectrum[0].im = T::zero();
-                    if nx.is_multiple_of(2) {
+                    if is_even {
                         row_spectrum[n_columns - 1].im = T::zero();
                     }
-                    let transformed = self.row_inverse.process_with_scratch(row_spectrum, row, scratch);
+                    let whole = if padded.is_empty() { &mut *row } else { &mut padded[..] };
+                    let transformed = self.row_inverse.process_with_scratch(row_spectrum, whole, scratch);
                     transformed.expect("buffers have the lengths of the plan");
+                    if !padded.is_empty() {
+                        row.copy_from_slice(&padded[..nx]);
+                    }
                 }
                 read(sink, rows)
             })
@@ -235,6 +263,17 @@ impl<T> std::fmt::Debug for Convolution<T> {
 fn lock<T>(workspaces: &[Mutex<Workspace<T>>]) -> std::sync::MutexGuard<'_, Workspace<T>> {
     let thread = rayon::current_thread_index().unwrap_or(0) % workspaces.len();
     workspaces[thread].lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+/// A row with zeros behind it, in `padded`; the row itself where that is empty.
+fn with_zeros<'a, T: TransformReal>(row: &'a mut [T], padded: &'a mut [T]) -> &'a mut [T] {
+    if padded.is_empty() {
+        return row;
+    }
+    let (values, zeros) = padded.split_at_mut(row.len());
+    values.copy_from_slice(row);
+    zeros.fill(T::zero());
+    padded
 }
 
 /// Writes row `iy` of a block to the block's tiles, one for each panel of columns.
@@ -299,4 +338,43 @@ fn scale_column<T: TransformReal>(column: &mut [Complex<T>], symbol: &[T]) {
         *value = value.scale(factor);
     }
     debug_assert_eq!(low.len() + high.len(), ny);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A kernel without a period, summed one by one.
+    #[test]
+    fn a_padded_convolution_is_the_sum_without_images() {
+        for (nx, ny, px, py) in [(12, 10, 24, 20), (5, 33, 9, 65), (16, 16, 32, 31), (1, 7, 1, 16), (40, 3, 81, 6)] {
+            let grid = Grid::new(nx, ny).expect("a grid");
+            let around = Grid::in_cell(px, py, 1.0).expect("a grid");
+            let kernel = |dx: usize, dy: usize| 1.0 / (1.0 + (dx * dx) as f64 + (dy * dy) as f64);
+            let nearest = |d: usize, n: usize| d.min(n - d);
+            let values = (0..around.len()).map(|i| kernel(nearest(i % px, px), nearest(i / px, py))).collect();
+            let response = rc_core::Field::new(around, values).expect("a value for each element");
+            let waves = crate::half_plane_values(&response, 0.0, |wave| wave.re);
+            let table = SymbolTable::<f64>::new(around, |kx, ky| waves[kx * py + ky]);
+            let source: Vec<f64> = (0..grid.len()).map(rc_core::testing::quasi_random).collect();
+            let mut found = vec![0.0; grid.len()];
+            let block = BLOCK_ROWS * nx;
+            let mut convolution = Convolution::<f64>::padded(grid, [px, py]);
+            // Twice: nothing is left of what was there before.
+            for _ in 0..2 {
+                convolution.apply(
+                    &table,
+                    source.par_chunks(block),
+                    |source, rows| rows.copy_from_slice(source),
+                    found.par_chunks_mut(block),
+                    |found, rows| found.copy_from_slice(rows),
+                );
+            }
+            for (i, found) in found.iter().enumerate() {
+                let of = |(j, p): (usize, &f64)| p * kernel((i % nx).abs_diff(j % nx), (i / nx).abs_diff(j / nx));
+                let expected: f64 = source.iter().enumerate().map(of).sum();
+                assert!((found - expected).abs() < 1e-12 * expected, "{grid} in {px} x {py}: {found} for {expected}");
+            }
+        }
+    }
 }

@@ -36,7 +36,7 @@ mod surface;
 mod waves;
 
 pub use hurst::{HurstFit, fit_hurst};
-pub use moments::{Moments, height_and_slope_of_grid, moments_of_grid};
+pub use moments::{Moments, height_and_slope_of_grid, height_and_slope_of_patch, moments_of_grid};
 pub use params::{Amplitudes, MAX_WAVES, Normalisation, SpectrumError, SpectrumParams, Truncation};
 pub use radial::{SpectrumBin, radial_spectrum};
 pub use rc_fft::Complex64;

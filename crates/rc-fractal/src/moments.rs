@@ -104,3 +104,23 @@ pub fn height_and_slope_of_grid(heights: &Field) -> [f64; 2] {
     let [along_x, along_y] = powers_of_lines(heights, mean, [&of_rows, &of_columns]);
     [squares / n, (along_x + along_y) / n].map(f64::sqrt)
 }
+
+/// rms height (λ) and rms slope of a map whose borders do not meet: slopes are differences of neighbours inside. Those of a wave of eight elements are 5 %
+/// too small, of 32 elements 0.3 %.
+#[must_use]
+pub fn height_and_slope_of_patch(heights: &Field) -> [f64; 2] {
+    let (grid, spacing) = (heights.grid(), heights.grid().spacing());
+    let (nx, ny) = (grid.nx(), grid.ny());
+    let mean = heights.mean();
+    let sums = |iy: usize| {
+        let row = heights.row(iy);
+        let squares = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        let below = if iy + 1 < ny { squares(row, heights.row(iy + 1)) } else { 0.0 };
+        [row.iter().map(|h| (h - mean).powi(2)).sum::<f64>(), squares(&row[..nx - 1], &row[1..]), below]
+    };
+    let rows: Vec<[f64; 3]> = (0..ny).into_par_iter().map(sums).collect();
+    let [height, along_x, along_y] = rows.into_iter().fold([0.0; 3], |a, b| std::array::from_fn(|i| a[i] + b[i]));
+    let per = |sum: f64, pairs: usize, side: f64| if pairs > 0 { sum / (pairs as f64 * side * side) } else { 0.0 };
+    let slope = per(along_x, (nx - 1) * ny, spacing.x) + per(along_y, nx * (ny - 1), spacing.y);
+    [height / grid.len() as f64, slope].map(f64::sqrt)
+}

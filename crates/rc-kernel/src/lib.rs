@@ -14,6 +14,8 @@
 //! | [`truncated_coefficient`] | Eq. 4-6 as the paper sums them, K shells of images, with a proven bound | `truncated.rs` |
 //! | [`ScaleSplit`] | Eq. 4-6 split by scale, for meshes of many levels: short-range stencils, filters between levels, a smooth remainder | `split/` |
 //! | [`Spectral`] | Eq. 2-3 for waves instead of elements: the half-space without aliases | `spectral.rs` |
+//! | [`FreeLove`] | Eq. 4-5 on an infinite half-space, without images | `free_love.rs`, rectangles in `love.rs` |
+//! | [`LoveLayer`], [`SpectralLayer`] | both for a layer on a rigid base ([`Layer`]) | `layer.rs` |
 //!
 //! d_j of Eq. 5 and 6 is the half side of an element, `half_side` here.
 //!
@@ -35,8 +37,10 @@ mod averages;
 mod bessel;
 mod chebyshev;
 mod error;
+mod free_love;
 mod gauss_legendre;
 mod lattice;
+mod layer;
 mod love;
 mod love_symbol;
 mod multipoles;
@@ -50,9 +54,11 @@ mod truncated;
 pub use alias_sum::love_alias_sum;
 pub use bessel::bessel_series;
 pub use error::KernelError;
+pub use free_love::FreeLove;
 pub use lattice::{LATTICE_CONSTANT, ewald_coefficient, ewald_phi};
 
-pub use love::love_displacement;
+pub use layer::{Layer, LoveLayer, SpectralLayer, THINNEST_LAYER};
+pub use love::{love_displacement, love_rectangle_displacement};
 pub use periodic::{PeriodicLove, PeriodicSource};
 pub use shells::MAX_SHELLS;
 pub use spectral::Spectral;

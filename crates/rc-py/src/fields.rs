@@ -46,7 +46,7 @@ pub(crate) fn stress_distribution<'py>(
     Ok((PyArray1::from_vec(py, density), found.area_fraction))
 }
 
-/// Contact spots of a pressure (Pa) and a gap (m), largest first.
+/// Contact spots of a pressure (Pa) and a gap (m), largest first; `scene` is the text of their `scene.toml`.
 #[pyfunction]
 pub(crate) fn spots(
     py: Python<'_>,
@@ -54,15 +54,16 @@ pub(crate) fn spots(
     gap: Heights<'_>,
     sides: [f64; 2],
     e_star: f64,
-    kernel: &str,
+    scene: &str,
 ) -> PyResult<Vec<Spot>> {
-    let name = rc_cli::scene::file::parse(&format!("kernel = {kernel:?}")).map_err(bad_input)?.contact.kernel;
-    let bias = name.and_then(resolve::kernel).map_or_else(EdgeBias::default, Kernel::edge_bias);
+    let keys = rc_cli::scene::file::parse(scene).map_err(bad_input)?.contact;
+    let bias = keys.kernel.and_then(resolve::kernel).map_or_else(EdgeBias::default, Kernel::edge_bias);
     let (pressure, gap) = (field_of(&pressure, sides, e_star)?, field_of(&gap, sides, sides[0])?);
     if pressure.grid() != gap.grid() {
         return Err(bad_input(format_args!("gap: {} elements, but the pressure has {}", gap.grid(), pressure.grid())));
     }
-    let spots = on_threads(py, 0, move || ContactSpot::all(&pressure, &gap, bias))?;
+    let boundary = keys.boundary.unwrap_or_default();
+    let spots = on_threads(py, 0, move || ContactSpot::with_boundary(&pressure, &gap, bias, boundary))?;
     let in_si = |spot: ContactSpot| {
         let ContactSpot { elements, area_fraction, perimeter, euler_number, mean_pressure } = spot;
         (elements, area_fraction, perimeter * sides[0], euler_number, mean_pressure * e_star)

@@ -116,16 +116,15 @@ impl Prepared {
         let Self { scene, kernel, map, budget, started } = self;
         let surface = load(&scene, map)?;
         let own = kernel.as_ref().map(|kernel| kernel as &dyn Kernel);
-        let chosen = match own {
-            Some(kernel) => kernel,
-            None => scene.contact.kernel()?,
-        };
+        let named = if own.is_none() { Some(scene.contact.kernel()?) } else { None };
+        let named = named.as_ref().map(|kernel| &**kernel as &dyn Kernel);
+        let chosen = own.or(named).expect("a kernel is the caller's or has a name");
         let solved = scene.solve(scene.problem(&surface, chosen, budget), started, observer)?;
         let SolvedParts { solution, failure, flow, wall } = solved.into_parts();
         let solution =
             if own.is_some() { solution.into_owned() } else { solution.into_owned_with(scene.contact.kernel()?) };
         // Of a map only this is kept: the heights are those of the caller.
-        let height_and_slope = surface.height_and_slope();
+        let height_and_slope = surface.height_and_slope(scene.contact.boundary);
         let waves = surface.wave_file().cloned();
         let contact = scene.contact;
         Ok(Parts { surface: surface.keys, waves, contact, solution, failure, flow, wall, height_and_slope })

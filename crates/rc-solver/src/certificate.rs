@@ -1,12 +1,15 @@
 //! The certificate: how far a pressure is from solving the contact problem.
 
+use rc_core::Boundary;
+
 use crate::problem::Problem;
 use crate::{Control, ErrorBound};
 
 /// Bounds on how far a pressure is from solving the discrete contact problem, from a fresh application of L on the returned pressure. For the
 /// adaptive method they include the error of its operator, which is measured with a margin.
 ///
-/// With g the gap shifted so that its pressure-weighted mean is 0, and H = h_max - h_min.
+/// With g the gap shifted so that its pressure-weighted mean is 0, and H = h_max - h_min; on a flat patch with free borders, whose H is 0, the
+/// penetration instead.
 ///
 /// With a hardness the mean is over elements whose pressure is below it, and min g is the minimum over elements that could press more. Plastic
 /// elements may overlap as much as they do. Where their gap is above min g they could press less, and p (g - min g) counts the greatest of
@@ -17,7 +20,8 @@ pub struct Certificate {
     pub complementarity: f64,
     /// max(-g) / H.
     pub penetration: f64,
-    /// √(G/U), a bound on the relative error of the pressure in the energy norm; G = mean p (g - min g), U = mean p v / 2.
+    /// √(G/U), a bound on the relative error of the pressure in the energy norm; G = mean p (g - min g), U = mean p v / 2. The energy of a
+    /// layer under the mean pressure alone is not part of U.
     ///
     /// Under penetration control G has the pressure-weighted mean of |g| times the mean of p besides. With p* the exact pressure of the same mean and ⟨ ⟩ the mean over the cell, ⟨p - p*, L (p - p*)⟩ ≤ ⟨g, p - p*⟩, because p* is the
     /// optimum. ⟨g - min g, p*⟩ is not negative, so the right side is at most G. The pits, the offset and the range of the heights are not
@@ -68,17 +72,21 @@ impl Certificate {
         // NaN stays.
         let positive = |value: f64| if value < 0.0 { 0.0 } else { value + 0.0 };
         let (overlap, excess) = (positive(-least_gap), positive(excess));
-        let is_flat = problem.h_range == 0.0 && !overlap.is_nan();
+        let is_periodic = problem.support.boundary == Boundary::Periodic;
+        let is_flat = is_periodic && problem.h_range == 0.0 && !overlap.is_nan();
+        // A flat patch with free borders has no height range, and 2U/σ0 is its penetration.
+        let range =
+            if is_periodic || problem.h_range > 0.0 { problem.h_range } else { 2.0 * elastic_energy / mean_pressure };
         let ratio = |numerator: f64, denominator: f64| match numerator {
             0.0 => 0.0,
             _ if is_flat => 0.0,
             _ => numerator / denominator,
         };
         // Σ p (g - min g) / Σ p with the weighted mean of g at zero is -min g: the two errors coincide, unless elements are plastic.
-        let [complementarity, penetration] = [excess, overlap].map(|error| ratio(error, problem.h_range));
+        let [complementarity, penetration] = [excess, overlap].map(|error| ratio(error, range));
         let (load, off) = match problem.control {
             Control::MeanPressure(wanted) => ((mean_pressure - wanted).abs() / wanted, 0.0),
-            Control::Penetration(_) => (mean_gap.abs() / problem.h_range, mean_gap.abs()),
+            Control::Penetration(_) => (ratio(mean_gap.abs(), range), mean_gap.abs()),
         };
         let energy = ratio((excess + off) * mean_pressure, elastic_energy).sqrt();
         Self { complementarity, penetration, energy, load }

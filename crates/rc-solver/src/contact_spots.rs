@@ -1,11 +1,11 @@
 //! Contact spots: the connected parts of the contact, with their areas located below the element.
 
-use rc_core::{EdgeBias, Field, Grid};
+use rc_core::{Boundary, EdgeBias, Field, Grid};
 
 use crate::ContactArea;
 use crate::contact_area::{EdgeSums, around};
 
-/// One connected part of the contact, across edges of elements and the sides of the periodic cell.
+/// One connected part of the contact, across edges of elements and the sides of a periodic cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSpot {
     /// Elements of it.
@@ -29,6 +29,15 @@ impl ContactSpot {
     /// When the two are not on the same grid.
     #[must_use]
     pub fn all(pressure: &Field, gap: &Field, bias: EdgeBias) -> Vec<Self> {
+        Self::with_boundary(pressure, gap, bias, Boundary::Periodic)
+    }
+
+    /// The same on heights with this `boundary`: spots are not connected across free borders.
+    ///
+    /// # Panics
+    /// As [`ContactSpot::all`].
+    #[must_use]
+    pub fn with_boundary(pressure: &Field, gap: &Field, bias: EdgeBias, boundary: Boundary) -> Vec<Self> {
         assert_eq!(pressure.grid(), gap.grid(), "pressure and gap on the same grid");
         let grid = pressure.grid();
         let (nx, ny) = (grid.nx(), grid.ny());
@@ -38,7 +47,8 @@ impl ContactSpot {
             for &element in &elements {
                 load += pressure.values()[element];
                 let at = [element % nx, element / nx];
-                sums.add(sides, f64::INFINITY, &around((pressure.values(), gap.values()), [nx, ny], at, 0.0));
+                let around = around([pressure.values(), gap.values()], [nx, ny], at, boundary);
+                sums.add(sides, f64::INFINITY, &around);
             }
             let area = ContactArea::from_sums(&[sums], grid, bias);
             Self {
@@ -49,7 +59,7 @@ impl ContactSpot {
                 mean_pressure: load / grid.len() as f64,
             }
         };
-        let mut spots: Vec<Self> = connected_elements(pressure).into_iter().map(spot).collect();
+        let mut spots: Vec<Self> = connected(pressure, boundary).into_iter().map(spot).collect();
         spots.sort_by(|a, b| b.area_fraction.total_cmp(&a.area_fraction));
         spots
     }
@@ -58,6 +68,11 @@ impl ContactSpot {
 /// The elements in contact of each spot, connected across their edges and the sides of the cell; in the order in which spots begin.
 #[must_use]
 pub fn connected_elements(pressure: &Field) -> Vec<Vec<usize>> {
+    connected(pressure, Boundary::Periodic)
+}
+
+/// The same on heights with this boundary.
+fn connected(pressure: &Field, boundary: Boundary) -> Vec<Vec<usize>> {
     let grid = pressure.grid();
     let mut waiting: Vec<bool> = pressure.values().iter().map(|p| *p > 0.0).collect();
     let mut spots = Vec::new();
@@ -68,7 +83,7 @@ pub fn connected_elements(pressure: &Field) -> Vec<Vec<usize>> {
         let (mut spot, mut next) = (vec![start], 0);
         while let Some(&element) = spot.get(next) {
             next += 1;
-            let beside = neighbours(grid, element % grid.nx(), element / grid.nx());
+            let beside = neighbours(grid, [element % grid.nx(), element / grid.nx()], boundary);
             spot.extend(beside.into_iter().filter(|&place| std::mem::take(&mut waiting[place])));
         }
         spots.push(spot);
@@ -76,15 +91,14 @@ pub fn connected_elements(pressure: &Field) -> Vec<Vec<usize>> {
     spots
 }
 
-/// The elements across the four edges of one, around the periodic cell.
-fn neighbours(grid: Grid, ix: usize, iy: usize) -> [usize; 4] {
-    let (nx, ny) = (grid.nx(), grid.ny());
-    [
-        grid.index((ix + 1) % nx, iy),
-        grid.index((ix + nx - 1) % nx, iy),
-        grid.index(ix, (iy + 1) % ny),
-        grid.index(ix, (iy + ny - 1) % ny),
-    ]
+/// The elements across the four edges of one, around the periodic cell; across a free border it is the element itself.
+fn neighbours(grid: Grid, [ix, iy]: [usize; 2], boundary: Boundary) -> [usize; 4] {
+    let beside = |i: usize, n: usize| match boundary {
+        Boundary::Periodic => [(i + 1) % n, (i + n - 1) % n],
+        Boundary::Free => [(i + 1).min(n - 1), i.saturating_sub(1)],
+    };
+    let ([right, left], [above, below]) = (beside(ix, grid.nx()), beside(iy, grid.ny()));
+    [grid.index(right, iy), grid.index(left, iy), grid.index(ix, above), grid.index(ix, below)]
 }
 
 #[cfg(test)]

@@ -29,6 +29,20 @@ pub(crate) fn check_kernel(kernel: &dyn Kernel, grid: Grid) -> Result<(), Proble
     let (symbol, again) = (kernel.symbol(grid), kernel.symbol(grid));
     let fault =
         |kx, ky, value, wanted| Err(ProblemError::Symbol { kernel: kernel.name(), grid, kx, ky, value, wanted });
+    if let Some(response) = kernel.free_response(grid) {
+        for (kx, ky) in [(0, 0), (grid.nx() - 1, 0), (0, grid.ny() - 1), (grid.nx() - 1, grid.ny() - 1)] {
+            let value = response(kx, ky);
+            if !(value > 0.0 && value <= response(0, 0)) {
+                let wanted = "positive, and at most that of the element itself, for a response with free borders";
+                return fault(kx, ky, value, wanted);
+            }
+        }
+    }
+    if let Some(value) = kernel.uniform_displacement()
+        && !(value >= 0.0 && value.is_finite())
+    {
+        return fault(0, 0, value, "zero or positive, and finite, for a solid on a base");
+    }
     for (kx, ky) in waves(grid) {
         let value = symbol(kx, ky);
         match (kx, ky) {
@@ -40,8 +54,9 @@ pub(crate) fn check_kernel(kernel: &dyn Kernel, grid: Grid) -> Result<(), Proble
         if again(kx, ky).to_bits() != value.to_bits() {
             return fault(kx, ky, again(kx, ky), "the same each time it is asked");
         }
-        let is_mirrored = (symbol(ky, kx) - value).abs() <= MIRROR_ERROR * value;
-        if grid.is_square() && kx.max(ky) > 0 && !is_mirrored {
+        // On other grids the mirrored wave may be none of the grid.
+        let is_mirrored = || (symbol(ky, kx) - value).abs() <= MIRROR_ERROR * value;
+        if grid.is_square() && kx.max(ky) > 0 && !is_mirrored() {
             return fault(ky, kx, symbol(ky, kx), "that of kx and ky exchanged, since the grid is square");
         }
     }

@@ -4,6 +4,7 @@ use rc_core::{Field, Kernel, Operator};
 
 use crate::operator::DirectSum;
 use crate::problem::{Load, Problem};
+use crate::support::Support;
 use crate::{Control, IterationParams, ProblemError};
 
 /// Pressures (in E*) on the grid of `heights` under a given penetration (in λ), by elimination on the elements in contact:
@@ -40,12 +41,13 @@ pub fn solve_dense_with_hardness(
     hardness: f64,
 ) -> Result<Option<Field>, ProblemError> {
     let load = Load { control: Control::Penetration(penetration), hardness };
-    let problem = Problem::check(heights, load, &IterationParams::relative(1e-6))?;
+    let (support, params) = (Support::of(kernel, heights.grid()), IterationParams::relative(1e-6));
+    let problem = Problem::check_on(support, heights, load, &params)?;
     let grid = heights.grid();
     let operator = DirectSum::new(grid, kernel);
     let prescribed: Vec<f64> = heights.values().iter().map(|h| h - problem.offset()).collect();
     // Rounding of an elimination, relative to the heights.
-    let rounding = 1e-13 * problem.h_range;
+    let rounding = 1e-13 * problem.unit();
     let mut states: Vec<State> =
         prescribed.iter().map(|&wanted| if wanted > 0.0 { State::Elastic } else { State::Free }).collect();
     for _ in 0..grid.len() {

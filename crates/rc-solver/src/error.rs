@@ -89,15 +89,22 @@ pub enum ProblemError {
         /// h_max - mean(h), in λ.
         full_contact: f64,
     },
-    /// The penetration is outside (0, h_max - h_min) of a surface with a hardness, whose pressure is the hardness everywhere beyond.
+    /// The penetration is outside (0, h_max - h_min) of a surface with a hardness, whose pressure is the hardness everywhere beyond. What the
+    /// hardness compresses a layer by is added.
     #[error(
-        "the penetration must be above 0 and below the height range, {deepest}, where all is plastic, not {value} (in units of the cell side)"
+        "the penetration must be above 0 and below {deepest}, where all is plastic, not {value} (in units of the cell side)"
     )]
     FullyPlastic {
         /// Penetration given, in λ.
         value: f64,
-        /// h_max - h_min, in λ.
+        /// h_max - h_min and the compression, in λ.
         deepest: f64,
+    },
+    /// The penetration is not positive and finite, on a solid that carries a uniform pressure.
+    #[error("the penetration must be positive and finite, not {value} (in units of the cell side)")]
+    Depth {
+        /// Penetration given, in λ.
+        value: f64,
     },
     /// The tolerance is not in (0, 1), or below what rounding allows.
     #[error("the tolerance must be between {smallest:e} and 1, not {value:e}")]

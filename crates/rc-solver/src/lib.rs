@@ -51,6 +51,7 @@ mod solution;
 mod solve;
 mod stiffness;
 mod stress_distribution;
+mod support;
 mod tolerance;
 mod uniform;
 

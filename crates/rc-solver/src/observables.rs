@@ -1,6 +1,6 @@
 //! What users compute from a solution: area, pressure, gap, energy.
 
-use rc_core::EdgeBias;
+use rc_core::{Boundary, EdgeBias};
 
 use crate::contact_area::PlasticEdges;
 use crate::solution::GridSolution;
@@ -32,10 +32,11 @@ pub struct Observables {
 impl Observables {
     /// Evaluates the observables of a solution whose contact edges are shifted by `bias`, and whose pressure is at most the `hardness`: one pass
     /// over the fields, or two with a hardness.
-    pub(crate) fn of(solution: &GridSolution, hardness: f64, bias: EdgeBias) -> Self {
-        let (pressure, gap) = (&solution.pressure, &solution.gap);
-        let area = ContactArea::of_hard(pressure, gap, hardness, bias);
-        let plastic = hardness.is_finite().then(|| PlasticEdges::of(pressure, gap, hardness, bias));
+    pub(crate) fn of(solution: &GridSolution, hardness: f64, bias: EdgeBias, boundary: Boundary) -> Self {
+        let fields = [&solution.pressure, &solution.gap];
+        let area = ContactArea::of_hard(fields, hardness, bias, boundary);
+        let plastic = hardness.is_finite().then(|| PlasticEdges::of(fields, hardness, bias, boundary));
+        let pressure = &solution.pressure;
         Self::new(&solution.info, (area, plastic), parallel::rms(pressure), parallel::maximum(pressure.values(), 0.0))
     }
 
@@ -58,7 +59,7 @@ impl Observables {
             rms_pressure_corrected: corrected(rms_pressure, &area),
             rms_pressure_error: rms_pressure_error(info, (&area, rest.as_ref()), rms_pressure),
             max_pressure,
-            mean_gap: info.penetration_full_contact - info.penetration + flow,
+            mean_gap: info.mean_gap() + flow,
             mean_gap_error: mean_gap_error(info, &area, rms_pressure)
                 .hypot(of_rest(&|rest| mean_gap_error(info, rest, rms_pressure))),
             elastic_energy: info.elastic_energy,
@@ -146,7 +147,7 @@ const GAP_OVER_AREA: f64 = 0.025;
 
 /// Estimated error of the mean gap; 0 in full contact, and without contact.
 fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f64 {
-    let (rim, mean_gap) = (area.rim, info.penetration_full_contact - info.penetration);
+    let (rim, mean_gap) = (area.rim, info.mean_gap());
     let of_element = rim.side * rms_pressure * rms_pressure / info.mean_pressure.max(f64::MIN_POSITIVE);
     let at_edges = of_element * per_contact_area(rim.area, area);
     let scatter = GAP_SCATTER / rim.independent_edges.max(1.0).sqrt();

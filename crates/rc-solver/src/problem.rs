@@ -1,8 +1,9 @@
 //! A checked contact problem, in what every level shares.
 
 use rayon::prelude::*;
-use rc_core::Field;
+use rc_core::{Boundary, Field};
 
+use crate::support::Support;
 use crate::tolerance::{ErrorBound, Measure};
 use crate::{Control, IterationParams, ProblemError};
 
@@ -81,6 +82,8 @@ pub(crate) struct Problem {
     pub(crate) h_range: f64,
     /// What an overlap is measured by.
     pub(crate) measure: Measure,
+    /// What holds the solid under a uniform pressure.
+    pub(crate) support: Support,
 }
 
 impl Problem {
@@ -89,13 +92,24 @@ impl Problem {
         load: impl Into<Load>,
         params: &IterationParams,
     ) -> Result<Self, ProblemError> {
-        Self::of_statistics(HeightStatistics::of(heights)?, load.into(), params)
+        Self::check_on(Support::default(), heights, load, params)
+    }
+
+    /// The same for a solid that something may hold.
+    pub(crate) fn check_on(
+        support: Support,
+        heights: &Field,
+        load: impl Into<Load>,
+        params: &IterationParams,
+    ) -> Result<Self, ProblemError> {
+        Self::of_statistics(HeightStatistics::of(heights)?, load.into(), params, support)
     }
 
     pub(crate) fn of_statistics(
         statistics: HeightStatistics,
         load: Load,
         params: &IterationParams,
+        support: Support,
     ) -> Result<Self, ProblemError> {
         let Load { control, hardness } = load;
         let HeightStatistics { greatest: h_max, least: h_min, mean: h_mean } = statistics;
@@ -107,28 +121,47 @@ impl Problem {
         }
         check_load(load)?;
         match control {
-            // The hardness limits the mean pressure beyond full contact.
-            Control::Penetration(value) if hardness.is_finite() => {
-                if !(value > 0.0 && value < h_range) {
-                    return Err(ProblemError::FullyPlastic { value, deepest: h_range });
+            // The hardness limits the mean pressure beyond full contact. How deep a patch with free borders is when all is plastic depends
+            // on its heights, and any depth is a problem.
+            Control::Penetration(value) if hardness.is_finite() && support.boundary == Boundary::Periodic => {
+                let deepest = h_range + support.compliance * hardness;
+                if !(value > 0.0 && value < deepest) {
+                    return Err(ProblemError::FullyPlastic { value, deepest });
                 }
             }
             // Also refuses every penetration into a flat surface, whose full contact is at zero.
-            Control::Penetration(value) if !(value > 0.0 && value < full_contact) => {
+            Control::Penetration(value) if support.is_none() && !(value > 0.0 && value < full_contact) => {
                 return Err(ProblemError::Penetration { value, full_contact });
+            }
+            Control::Penetration(value) if !(value > 0.0 && value.is_finite()) => {
+                return Err(ProblemError::Depth { value });
             }
             Control::MeanPressure(_) | Control::Penetration(_) => {}
         }
-        Ok(Self { control, hardness, h_max, h_mean, h_range, measure: params.bound.measure() })
+        Ok(Self { control, hardness, h_max, h_mean, h_range, measure: params.bound.measure(), support })
     }
 
     /// The length that overlaps are compared with, where the pressure does the `work` Σ p v and sums up to `pressure`: H, or
-    /// U/σ0 = Σ p v / 2 Σ p.
-    pub(crate) fn reference_length(&self, work: f64, pressure: f64) -> f64 {
+    /// U/σ0 = Σ p v / 2 Σ p, without what a uniform pressure does; over `n_cell` elements.
+    pub(crate) fn reference_length(&self, work: f64, pressure: f64, n_cell: f64) -> f64 {
         match self.measure {
-            Measure::HeightRange => self.h_range,
-            Measure::Energy => 0.5 * work / pressure,
+            Measure::HeightRange if self.h_range > 0.0 => self.h_range,
+            Measure::HeightRange => work / pressure,
+            Measure::Energy => 0.5 * (work / pressure - self.support.compliance * (pressure / n_cell)),
         }
+    }
+
+    /// The length that corrections are multiples of: H, or about what the load displaces on a flat patch.
+    pub(crate) fn unit(&self) -> f64 {
+        match self.control {
+            _ if self.h_range > 0.0 => self.h_range,
+            Control::MeanPressure(value) | Control::Penetration(value) => value,
+        }
+    }
+
+    /// Elastic energy of a uniform pressure.
+    pub(crate) fn uniform_energy(&self, mean_pressure: f64) -> f64 {
+        0.5 * self.support.compliance * mean_pressure * mean_pressure
     }
 
     /// How deep a rigid plane may have to go into the surface: the height range, unless that is the depth of a pit.

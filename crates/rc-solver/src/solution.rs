@@ -64,6 +64,9 @@ pub struct SolveInfo {
     pub penetration: f64,
     /// Penetration of full contact, h_max - mean(h), in λ.
     pub penetration_full_contact: f64,
+    /// Mean displacement over the nominal area, in λ: zero on the periodic half-space (Eq. 3), that of the mean pressure on a layer, that of
+    /// the whole patch where borders are free.
+    pub mean_displacement: f64,
     /// Elastic energy per nominal area, ½ mean(p v), in E* λ.
     pub elastic_energy: f64,
     /// The work, coarsest level first; empty in full contact.
@@ -73,6 +76,12 @@ pub struct SolveInfo {
 }
 
 impl SolveInfo {
+    /// Mean gap, in λ: h_max - mean(h) - Δ and the mean displacement.
+    #[must_use]
+    pub fn mean_gap(&self) -> f64 {
+        self.penetration_full_contact + self.mean_displacement - self.penetration
+    }
+
     /// Iterations on the finest level.
     #[must_use]
     pub fn fine_iterations(&self) -> usize {

@@ -2,15 +2,15 @@
 
 use std::borrow::Cow;
 
-use rc_core::{Field, Kernel};
-use rc_fft::SymbolTable;
+use rc_core::{Boundary, Field, Kernel};
 
 use crate::descent::{
-    BlockLayout, BlockOperator, ConjugateDirections, PreconditionedOperator, Slope, UniformCorrections, read_blocks,
-    write_blocks,
+    BlockLayout, BlockOperator, ConjugateDirections, GridResponse, PreconditionedOperator, Slope, UniformCorrections,
+    read_blocks, write_blocks,
 };
 use crate::parallel;
 use crate::problem::power_of_two_near;
+use crate::support::Support;
 
 /// The iteration ends when a step adds less than this fraction; what later steps would add is of the same order.
 const SMALLEST_GAIN: f64 = 3e-4;
@@ -29,11 +29,11 @@ pub(crate) fn elastic_part(pressure: &[f64], hardness: f64) -> Cow<'_, [f64]> {
 /// dσ0/dΔ, in E*/λ, on a uniform grid; see [`stiffness_of`].
 pub(crate) fn contact_stiffness(pressure: &Field, hardness: f64, kernel: &dyn Kernel) -> f64 {
     let grid = pressure.grid();
-    let pressure = elastic_part(pressure.values(), hardness);
-    if pressure.iter().all(|&p| p > 0.0) {
-        return f64::INFINITY;
+    let (pressure, support) = (elastic_part(pressure.values(), hardness), Support::of(kernel, grid));
+    if support.boundary == Boundary::Periodic && pressure.iter().all(|&p| p > 0.0) {
+        return support.compliance.recip();
     }
-    let mut operator = UniformCorrections::new(grid, &SymbolTable::new(grid, kernel.symbol(grid)));
+    let mut operator = UniformCorrections::new(grid, kernel, &GridResponse::of(grid, kernel));
     stiffness_of(&pressure, grid.len() as f64, &mut operator)
 }
 

@@ -77,7 +77,7 @@ pub struct Summary {
     pub contact_stiffness: Option<f64>,
     /// Electrical and thermal contact conductance of the nominal area for a conductivity of 1 (1/m): dσ0/dΔ / E*, to be multiplied with the
     /// harmonic mean 2 k1 k2/(k1 + k2) of the conductivities of the bodies (Barber, Proc. R. Soc. A 459, 2003); null in full contact,
-    /// where it is infinite.
+    /// where it is infinite, and on a layer, whose stiffness does not say it.
     pub contact_conductance: Option<f64>,
     /// Elastic energy of the cell (J).
     pub elastic_energy: f64,

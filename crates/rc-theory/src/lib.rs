@@ -9,6 +9,7 @@
 //! | [`hertz`] | sphere, on an infinite half-space and in the periodic cell | exact; contact radius up to 0.25 λ |
 //! | [`elliptic`] | ellipsoidal peak on an infinite half-space | exact |
 //! | [`cone`] | cone on an infinite half-space | exact |
+//! | [`thin_layer`] | sphere on a layer bonded to a rigid base | layer thin against the contact |
 //! | [`westergaard`] | one-dimensional wave | exact at every load |
 //! | [`bisinusoidal`] | two-dimensional wave | both ends of the load range |
 //! | [`full_contact`] | any band-limited surface | exact, above a load |
@@ -43,6 +44,7 @@ pub mod hertz;
 pub mod lattice;
 pub mod persson;
 pub mod persson_gap;
+pub mod thin_layer;
 pub mod westergaard;
 
 mod root;

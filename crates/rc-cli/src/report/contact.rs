@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use rc_core::{EdgeBias, Field, Kernel};
-use rc_solver::{ContactSpot, StressDistribution};
+use rc_core::{Boundary, EdgeBias, Kernel};
+use rc_solver::StressDistribution;
 use rc_theory::persson::Persson;
 use serde::Serialize;
 
@@ -124,7 +124,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
             lines: text::solved_lines(summary, result.sides(), result.e_star),
             leakage: FlowPicture::of(folder, summary),
             // Last: it takes the fields.
-            spots: spots(result, bias),
+            spots: SpotSizes::of_result(result, bias, scene.contact.boundary.unwrap_or_default()),
         },
     })
 }
@@ -138,8 +138,13 @@ fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
         _ => "a random surface".to_owned(),
     };
     let s = &result.summary;
+    let place = match (scene.contact.boundary, scene.contact.layer_thickness) {
+        (Some(Boundary::Free), _) => "on a free patch of".to_owned(),
+        (_, Some(thickness)) => format!("on a layer of {}, in a cell of", engineering(thickness, "m")),
+        _ => "in a cell of".to_owned(),
+    };
     format!(
-        "{surface}: rms height {}, rms slope {}, in a cell of {}; E* = {}; {} x {} elements, kernel {}, method {}",
+        "{surface}: rms height {}, rms slope {}, {place} {}; E* = {}; {} x {} elements, kernel {}, method {}",
         engineering(s.rms_height, "m"),
         digits(s.rms_slope, 4),
         text::cell(result.sides()),
@@ -256,21 +261,6 @@ fn stress(result: &ResultFolder) -> Option<Stress> {
     Some(Stress { values: stress, density: distribution.density, fit: fitted, notes })
 }
 
-/// Spots of the stored fields, in the units in which their edges are located; `None` without contact, and without the elements.
-fn spots(result: ResultFolder, bias: EdgeBias) -> Option<SpotSizes> {
-    if !result.is_of_elements() {
-        return None;
-    }
-    let ResultFolder { side, e_star, pressure, gap, .. } = result;
-    let over = |mut field: Field, unit: f64| {
-        field.values_mut().iter_mut().for_each(|value| *value /= unit);
-        field
-    };
-    let (pressure, gap) = (over(pressure, e_star), over(gap, side));
-    let spots = ContactSpot::all(&pressure, &gap, bias);
-    SpotSizes::of(&spots, pressure.grid(), side)
-}
-
 fn certificate(s: &Summary) -> Certificate {
     let row = |name, value: f64, limit: Option<f64>| CertificateRow {
         name,
@@ -298,7 +288,7 @@ fn certificate(s: &Summary) -> Certificate {
 
 #[cfg(test)]
 mod tests {
-    use rc_core::Grid;
+    use rc_core::{Field, Grid};
 
     use super::*;
 

@@ -2,10 +2,11 @@
 
 use std::f64::consts::PI;
 
-use rc_core::Grid;
+use rc_core::{Boundary, EdgeBias, Field, Grid};
 use rc_solver::ContactSpot;
 use serde::Serialize;
 
+use crate::files::result::ResultFolder;
 use rc_core::quantity::{digits, engineering};
 
 /// Bins for each factor of ten in the diameter.
@@ -25,6 +26,21 @@ pub(super) struct SpotSizes {
 }
 
 impl SpotSizes {
+    /// Spots of the stored fields, in the units in which their edges are located; `None` without contact, and without the elements.
+    pub(super) fn of_result(result: ResultFolder, bias: EdgeBias, boundary: Boundary) -> Option<Self> {
+        if !result.is_of_elements() {
+            return None;
+        }
+        let ResultFolder { side, e_star, pressure, gap, .. } = result;
+        let over = |mut field: Field, unit: f64| {
+            field.values_mut().iter_mut().for_each(|value| *value /= unit);
+            field
+        };
+        let (pressure, gap) = (over(pressure, e_star), over(gap, side));
+        let spots = ContactSpot::with_boundary(&pressure, &gap, bias, boundary);
+        Self::of(&spots, pressure.grid(), side)
+    }
+
     /// Of spots, largest first, that were found on `grid` in a cell of this side along x (m); `None` without contact.
     pub(super) fn of(spots: &[ContactSpot], grid: Grid, side: f64) -> Option<Self> {
         let (largest, smallest) = (spots.first()?, spots.last()?);
@@ -45,7 +61,7 @@ impl SpotSizes {
             diameters: (0..=counts.len()).map(|k| low * 10_f64.powf(k as f64 / BINS_PER_DECADE)).collect(),
             counts,
             note: format!(
-                "Spots are joined across edges of elements, and across the sides of the cell; their edges are located between \
+                "Spots are joined across edges of elements, and across the sides of a periodic cell; their edges are located between \
                  elements. The smallest are about as large as the elements, {} wide: how many there are depends on the grid.",
                 engineering(root_of_cell * element.sqrt(), "m")
             ),

@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use rc_core::Boundary;
 use rc_fractal::{Amplitudes, Truncation};
 use rc_heights::{Layout, LengthUnit, ReadParams, Scales};
 use rc_solver::Method;
 use rc_sweep::memory::ByteSize;
 use serde::{Deserialize, Serialize};
 
-use super::names::{amplitudes, methods, truncations};
+use super::names::{amplitudes, boundaries, methods, truncations};
 use super::time_limit::TimeLimit;
 use super::values::{Fraction, GridSpec, ToleranceSpec};
 
@@ -111,6 +112,18 @@ pub struct ContactKeys {
     /// Discretisation of the half-space: the paper's uniformly loaded square, or the Fourier symbol
     #[arg(long)]
     pub kernel: Option<KernelName>,
+    /// What is beyond the heights: the same heights again, or the free surface of the half-space, for a patch
+    #[arg(long, value_parser = boundaries())]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub boundary: Option<Boundary>,
+    /// Thickness (m) of an elastic layer on a rigid base to which it sticks, instead of the half-space
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layer_thickness: Option<f64>,
+    /// Poisson's ratio of the layer [default: --poisson]
+    #[arg(long, value_name = "NU", allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layer_poisson: Option<f64>,
     /// How the problem is solved [default: adaptive, or uniform where that is cheaper; the summary says which and why]
     #[arg(long, value_parser = methods())]
     pub method: Option<Method>,
@@ -267,7 +280,8 @@ impl ContactKeys {
             (lower.tolerance, lower.energy_tolerance) = (None, None);
         }
         or_lower!(self, lower, {
-            young, poisson, e_star, pressure, penetration, hardness, kernel, method, border_level, energy_tolerance, tolerance, area_error, output_grid
+            young, poisson, e_star, pressure, penetration, hardness, kernel, boundary, layer_thickness, layer_poisson, method, border_level,
+            energy_tolerance, tolerance, area_error, output_grid
         });
         self.leakage |= lower.leakage;
         self

@@ -1,6 +1,7 @@
 //! Names of choices that the libraries offer, as the command line reads them.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use rc_core::Boundary;
 use rc_fractal::{Amplitudes, Truncation};
 use rc_solver::Method;
 
@@ -24,6 +25,16 @@ const METHODS: [Named<Method>; 3] = [
     ("uniform", Method::Uniform, "FFT on the whole grid"),
     ("gauss-seidel", Method::GaussSeidel, "The procedure of the paper"),
 ];
+
+const BOUNDARIES: [Named<Boundary>; 2] = [
+    ("periodic", Boundary::Periodic, "The heights repeat: a periodic cell"),
+    ("free", Boundary::Free, "A patch on an infinite half-space, which nothing presses on beyond it"),
+];
+
+/// Reads a [`Boundary`].
+pub(crate) fn boundaries() -> impl TypedValueParser<Value = Boundary> {
+    parser(&BOUNDARIES)
+}
 
 /// Reads a [`Truncation`].
 pub(crate) fn truncations() -> impl TypedValueParser<Value = Truncation> {
@@ -63,5 +74,6 @@ mod tests {
         check(&TRUNCATIONS);
         check(&AMPLITUDES);
         check(&METHODS);
+        check(&BOUNDARIES);
     }
 }

@@ -4,8 +4,10 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use rc_core::{Field, Grid, HeightSource, PeriodicCell};
-use rc_fractal::{Moments, SpectrumParams, Surface, height_and_slope_of_grid, moments_of_grid};
+use rc_core::{Boundary, Field, Grid, HeightSource, PeriodicCell};
+use rc_fractal::{
+    Moments, SpectrumParams, Surface, height_and_slope_of_grid, height_and_slope_of_patch, moments_of_grid,
+};
 use rc_heights::{HeightMap, ReadParams, Scales};
 
 use super::as_read::AsRead;
@@ -22,6 +24,8 @@ pub struct SurfaceSetup {
     pub cell: PeriodicCell,
     /// Where the heights come from.
     pub source: Source,
+    /// Whether a map whose heights are all the same is a surface: a flat punch, with free borders.
+    pub may_be_flat: bool,
     /// The keys as resolved, for `scene.toml`.
     pub keys: SurfaceKeys,
 }
@@ -151,7 +155,7 @@ impl SurfaceSetup {
             let message = format_args!("the map has {grid} elements, grid says {expected}; omit grid");
             return Err(CliError::in_file(path, message));
         }
-        if range[1] <= range[0] {
+        if range[1] <= range[0] && !self.may_be_flat {
             let message = format_args!("all heights are {:e}; a flat surface has no contact problem", range[1]);
             return Err(CliError::in_file(path, message));
         }
@@ -207,14 +211,16 @@ impl LoadedSurface {
         }
     }
 
-    /// rms height (λ) and rms slope: exact ones of a sum of waves, those of its grid for a height map.
+    /// rms height (λ) and rms slope: exact ones of a sum of waves, those of its grid for a height map, which meets itself across its borders
+    /// unless they are free.
     #[must_use]
-    pub fn height_and_slope(&self) -> [f64; 2] {
+    pub fn height_and_slope(&self, boundary: Boundary) -> [f64; 2] {
         match self.shape.waves_or_map() {
             Ok(waves) => {
                 let Moments { rms_height, rms_slope, .. } = waves.moments();
                 [rms_height, rms_slope]
             }
+            Err(map) if boundary == Boundary::Free => height_and_slope_of_patch(map),
             Err(map) => height_and_slope_of_grid(map),
         }
     }

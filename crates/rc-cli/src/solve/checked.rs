@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use rc_core::{Kernel, Observer};
+use rc_core::{Boundary, Kernel, Observer};
 use rc_sweep::memory::Budget;
 
 use super::solved::{ProblemSetup, Solved};
@@ -62,8 +62,9 @@ impl CheckedScene {
                 ContactKeys { area_error: None, tolerance, ..contact }
             }
         };
-        let surface = surface()?;
+        let mut surface = surface()?;
         let contact = resolve::contact(contact, surface.cell)?;
+        surface.may_be_flat = contact.boundary == Boundary::Free;
         Ok(Self { surface, contact, area_error })
     }
 

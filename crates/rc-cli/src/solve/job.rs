@@ -49,7 +49,7 @@ impl Job {
     /// [`CliError::Input`].
     pub(super) fn dry_run(&self, threads: usize) -> Result<(), CliError> {
         let (kernel, surface) = (self.scene.contact.kernel()?, self.scene.surface.load()?);
-        let problem = self.scene.problem(&surface, kernel, self.budget());
+        let problem = self.scene.problem(&surface, &*kernel, self.budget());
         dry_run::run(&problem, threads, &self.run)
     }
 
@@ -87,7 +87,7 @@ impl Job {
         progress.say("heights");
         let kernel = self.scene.contact.kernel()?;
         let surface = together(ranks, self.scene.surface.load())?;
-        let problem = self.scene.problem(&surface, kernel, self.budget());
+        let problem = self.scene.problem(&surface, &*kernel, self.budget());
         let solved = self.scene.solve(problem, self.started, &progress)?;
         self.finish(&solved, threads, progress)
     }

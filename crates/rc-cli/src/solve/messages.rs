@@ -50,7 +50,7 @@ fn of_problem(error: &ProblemError, contact: &ContactSetup) -> CliError {
             units.metres(*value)
         )),
         ProblemError::FullyPlastic { value, deepest } => CliError::input(format_args!(
-            "penetration: must be above 0 and below the range of the heights, {:.6e} m, where all is plastic, not {:.6e} m",
+            "penetration: must be above 0 and below {:.6e} m, where all is plastic, not {:.6e} m",
             units.metres(*deepest),
             units.metres(*value)
         )),
@@ -61,6 +61,9 @@ fn of_problem(error: &ProblemError, contact: &ContactSetup) -> CliError {
         )),
         ProblemError::Hardness { value } => {
             CliError::input(format_args!("hardness: must be positive (Pa), not {}", units.pascals(*value)))
+        }
+        ProblemError::Depth { value } => {
+            CliError::input(format_args!("penetration: must be positive and finite (m), not {}", units.metres(*value)))
         }
         ProblemError::HeightRange { value, smallest, greatest } => CliError::input(format_args!(
             "heights: their range must be 0 or from {:e} to {:e} m, not {:e} m",

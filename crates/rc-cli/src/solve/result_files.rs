@@ -76,7 +76,10 @@ impl ResultFiles<'_> {
             threads,
         };
         let leakage = self.flow.map(|flow| flow.summary.clone());
-        Summary { leakage, ..Summary::of(self.solution, self.contact.units, &context) }
+        let summary = Summary::of(self.solution, self.contact.units, &context);
+        // Conduction and stiffness are the same problem on a half-space only.
+        let contact_conductance = summary.contact_conductance.filter(|_| self.contact.layer.is_none());
+        Summary { leakage, contact_conductance, ..summary }
     }
 
     /// Writes the result folder. The method decides whether pressure and gap are ever whole in memory: they are handed out some

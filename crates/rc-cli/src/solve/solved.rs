@@ -15,7 +15,7 @@ use super::result_files::{MapHeights, ResultFiles};
 use crate::error::CliError;
 use crate::files::checkpoint::CheckpointFile;
 use crate::files::coarsen::check_factor;
-use crate::scene::resolve::{ContactSetup, Place};
+use crate::scene::resolve::{self, ContactSetup, Place};
 use crate::scene::surface::LoadedSurface;
 use crate::scene::values::Fraction;
 
@@ -62,7 +62,7 @@ impl<'a> ProblemSetup<'a> {
     /// # Errors
     /// [`CliError::Input`] when the scene, the method asked for, or the memory there is do not allow it.
     pub(crate) fn plan(&self) -> Result<Plan<'a>, CliError> {
-        self.check_output()?;
+        self.check_grid()?;
         let plan = self.contact_problem().plan(&self.params()).map_err(|error| self.refuse(&error))?;
         self.check_flow(&plan)?;
         Ok(plan)
@@ -90,10 +90,10 @@ impl<'a> ProblemSetup<'a> {
     /// # Errors
     /// As of [`ProblemSetup::plan`].
     pub(crate) fn first_plan(&self) -> Result<Plan<'static>, CliError> {
-        self.check_output()?;
+        self.check_grid()?;
         let problem = ContactProblem::new(self.surface.source(), self.contact.control);
         let problem = problem.with_hardness(self.contact.hardness);
-        let plan = problem.with_kernel(self.contact.kernel()?).plan(&self.params());
+        let plan = problem.with_shared_kernel(self.contact.kernel()?).plan(&self.params());
         let plan = plan.map_err(|error| self.refuse(&error))?;
         self.check_flow(&plan)?;
         Ok(plan)
@@ -155,7 +155,10 @@ impl<'a> ProblemSetup<'a> {
         Ok(self.budget.check(&what, self.cost(plan).bytes.unwrap_or(flow), |_| String::new())?)
     }
 
-    fn check_output(&self) -> Result<(), CliError> {
+    /// Checks what the grid of the surface decides.
+    fn check_grid(&self) -> Result<(), CliError> {
+        let ContactSetup { layer, kernel, units, .. } = self.contact;
+        resolve::check_thickness(*layer, *kernel, self.surface.grid, units.cell().side())?;
         self.contact.keys.output_grid.map_or(Ok(()), |spec| check_factor(self.surface.grid, spec))
     }
 
@@ -216,7 +219,7 @@ impl<'a> Solved<'a> {
     /// The summary in SI; `threads` is what it says of them.
     pub(crate) fn summary(&self, threads: usize) -> Summary {
         // Not before: the time to the certified solution does not include what the solution does not need.
-        let height_and_slope = self.problem.surface.height_and_slope();
+        let height_and_slope = self.problem.surface.height_and_slope(self.problem.contact.boundary);
         self.files().summary(height_and_slope, self.wall, threads)
     }
 

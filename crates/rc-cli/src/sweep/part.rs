@@ -73,13 +73,10 @@ impl Estimated {
     /// Processor seconds of `row`; `None` where they are not known, or where the row will be refused.
     fn seconds(&mut self, surfaces: &Surfaces, row: &SweepRow) -> Option<f64> {
         let contact = surfaces.contact(row).ok()?;
+        let kernel = contact.kernel().ok()?;
         // All machines must come to the same estimate, whatever memory they have.
-        let problem = ProblemSetup {
-            surface: &self.loaded,
-            contact: &contact,
-            kernel: contact.kernel().ok()?,
-            budget: Budget::UNLIMITED,
-        };
+        let problem =
+            ProblemSetup { surface: &self.loaded, contact: &contact, kernel: &*kernel, budget: Budget::UNLIMITED };
         let plan = match &self.first {
             Some(first) => problem.plan_like(first).ok()?,
             None => problem.first_plan().ok()?,

@@ -43,10 +43,11 @@ impl<'a> Realisations<'a> {
         let keys = SurfaceKeys { seed: Some(row.seed), grid, ..self.surface.setup.keys.clone() };
         let surface = resolve::surface(keys)?.load()?;
         let contact = self.surface.contact(self.control, row.load)?;
+        let kernel = contact.kernel()?;
         let problem = ProblemSetup {
             surface: &surface,
             contact: &contact,
-            kernel: contact.kernel()?,
+            kernel: &*kernel,
             budget: Budget::new(self.run.memory_limit),
         };
         Ok(problem.solve(started, &Silent)?.summary(self.threads).cells())

@@ -64,7 +64,8 @@ impl<'a> SceneRows<'a> {
         let started = Instant::now().checked_sub(time).unwrap_or_else(Instant::now);
         let folder = self.sweep.fields_folder(row.index);
         let budget = Budget::new(self.surfaces.run.memory_limit);
-        let problem = ProblemSetup { surface: &loaded.surface, contact, kernel: contact.kernel()?, budget };
+        let kernel = contact.kernel()?;
+        let problem = ProblemSetup { surface: &loaded.surface, contact, kernel: &*kernel, budget };
         let solved = problem.solve_planned(loaded.plan(&problem)?, started, &Silent)?;
         let summary = solved.summary(self.threads);
         if let Some(folder) = folder {

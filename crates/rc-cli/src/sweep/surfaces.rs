@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use rc_core::Boundary;
 use rc_sweep::{ControlKind, FileMark, Loads, MAX_ROWS, PlannedSurface, Seeds, SweepPlan, SweepRow};
 use serde_json::json;
 
@@ -134,7 +135,7 @@ impl SweptSurface {
     }
 
     fn on(
-        setup: SurfaceSetup,
+        mut setup: SurfaceSetup,
         name: &str,
         contact: &ContactKeys,
         (control, loads): (ControlKind, &[f64]),
@@ -142,6 +143,7 @@ impl SweptSurface {
         let seed = setup.keys.seed.filter(|_| matches!(setup.source, Source::Random { .. }));
         let keys = with_load(control, contact, loads.first().copied());
         let contact = resolve::contact(keys, setup.cell)?;
+        setup.may_be_flat = contact.boundary == Boundary::Free;
         let contact = with_load(control, &contact.keys, None);
         Ok(Self { scene: name.to_owned(), seed, setup, contact, loads: loads.to_vec(), held: None })
     }

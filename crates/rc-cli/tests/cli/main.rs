@@ -11,6 +11,7 @@ mod over_ranks;
 mod rectangles;
 mod report;
 mod robustness;
+mod solids;
 mod solve;
 mod spectrum;
 mod stopped;

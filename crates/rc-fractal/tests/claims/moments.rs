@@ -2,7 +2,8 @@
 
 use rc_core::{DVec2, Field, Grid, HeightField};
 use rc_fractal::{
-    Amplitudes, Moments, Normalisation, SpectrumParams, Truncation, height_and_slope_of_grid, moments_of_grid,
+    Amplitudes, Moments, Normalisation, SpectrumParams, Truncation, height_and_slope_of_grid,
+    height_and_slope_of_patch, moments_of_grid,
 };
 
 use crate::{assert_close, surface};
@@ -104,4 +105,16 @@ fn assert_same(what: &str, actual: Moments, expected: Moments) {
     for (name, actual, expected) in pairs {
         assert_close(&format!("{what}, {name}"), actual, expected, 1e-10);
     }
+}
+
+/// A tilted plane has its slope, and no cliff across the border.
+#[test]
+fn the_slope_of_a_patch_is_that_inside() {
+    let grid = rc_core::Grid::in_cell(40, 30, 0.75).expect("a grid");
+    let plane = rc_core::Field::from_fn(grid, |at| 0.3 * at.x - 0.4 * at.y);
+    let [height, slope] = height_and_slope_of_patch(&plane);
+    assert!((slope / 0.5 - 1.0).abs() < 1e-12, "slope {slope}");
+    let uniform = |side: f64, n: f64| side * side / 12.0 * (1.0 - (n * n).recip());
+    let expected = (0.09 * uniform(1.0, 40.0) + 0.16 * uniform(0.75, 30.0)).sqrt();
+    assert!((height / expected - 1.0).abs() < 1e-12, "height {height} for {expected}");
 }

@@ -69,6 +69,7 @@ use self::split::GapSplit;
 use crate::Control;
 use crate::gap_part::GapPart;
 use crate::problem::{Load, Problem};
+use crate::support::Support;
 
 /// A checked contact problem, ready for the adaptive method: heights are sampled, nothing is solved.
 ///
@@ -134,7 +135,7 @@ impl<'a> AdaptiveProblem<'a> {
             return Err(AdaptiveError::OverRanks { needs: "a grid that halves down to its base grid" });
         }
         let split = first_split(params)?;
-        let problem = Problem::of_statistics(ground.heights.extremes(), load, &params.solve)?;
+        let problem = Problem::of_statistics(ground.heights.extremes(), load, &params.solve, Support::default())?;
         if problem.h_range == 0.0 {
             return Err(AdaptiveError::Flat);
         }

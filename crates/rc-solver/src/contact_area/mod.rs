@@ -11,7 +11,7 @@ mod plastic;
 use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2};
 
 use rayon::prelude::*;
-use rc_core::{EdgeBias, Field, Grid};
+use rc_core::{Boundary, EdgeBias, Field, Grid};
 
 pub(crate) use self::edge_sums::EdgeSums;
 pub use self::plastic::PlasticContact;
@@ -85,15 +85,25 @@ impl ContactArea {
     #[must_use]
     pub fn of(pressure: &Field, gap: &Field, bias: EdgeBias) -> Self {
         assert_eq!(pressure.grid(), gap.grid(), "pressure and gap on the same grid");
-        Self::of_hard(pressure, gap, f64::INFINITY, bias)
+        Self::with_boundary(pressure, gap, bias, Boundary::Periodic)
+    }
+
+    /// The same on heights with this `boundary`. A free border that contact reaches is no edge of it: there the heights end.
+    ///
+    /// # Panics
+    /// As [`ContactArea::of`].
+    #[must_use]
+    pub fn with_boundary(pressure: &Field, gap: &Field, bias: EdgeBias, boundary: Boundary) -> Self {
+        assert_eq!(pressure.grid(), gap.grid(), "pressure and gap on the same grid");
+        Self::of_hard([pressure, gap], f64::INFINITY, bias, boundary)
     }
 
     /// The same where no pressure is greater than the `hardness`, and the gap of plastic elements is less than that of contact.
-    pub(crate) fn of_hard(pressure: &Field, gap: &Field, hardness: f64, bias: EdgeBias) -> Self {
+    pub(crate) fn of_hard([pressure, gap]: [&Field; 2], hardness: f64, bias: EdgeBias, boundary: Boundary) -> Self {
         let grid = pressure.grid();
-        let values = (pressure.values(), gap.values());
-        let at = |place: [usize; 2]| around(values, [grid.nx(), grid.ny()], place, 0.0);
-        let sums = sums_of_rows(grid, hardness, |i| values.0[i] > 0.0, at);
+        let values = [pressure.values(), gap.values()];
+        let at = |place: [usize; 2]| around(values, [grid.nx(), grid.ny()], place, boundary);
+        let sums = sums_of_rows(grid, hardness, |i| values[0][i] > 0.0, at);
         Self::from_sums(&[sums], grid, bias)
     }
 
@@ -230,17 +240,20 @@ fn are_squares([x, y]: [f64; 2]) -> bool {
     (x / y - 1.0).abs() < 1e-6
 }
 
-/// Pressure, and gap minus that of contact, at places around an element of a periodic grid.
-pub(crate) fn around<'a>(
-    (pressure, gap): (&'a [f64], &'a [f64]),
+/// Pressure and gap at places around an element of a grid; beyond a free border they are those beside it.
+pub(crate) fn around(
+    [pressure, gap]: [&[f64]; 2],
     [nx, ny]: [usize; 2],
     [ix, iy]: [usize; 2],
-    contact_gap: f64,
-) -> impl Fn(isize, isize) -> [f64; 2] + 'a {
-    let wrap = |i: usize, d: isize, n: usize| (i + n).wrapping_add_signed(d) % n;
+    boundary: Boundary,
+) -> impl Fn(isize, isize) -> [f64; 2] {
+    let place = move |i: usize, d: isize, n: usize| match boundary {
+        Boundary::Periodic => (i + n).wrapping_add_signed(d) % n,
+        Boundary::Free => i.saturating_add_signed(d).min(n - 1),
+    };
     move |dx, dy| {
-        let place = wrap(iy, dy, ny) * nx + wrap(ix, dx, nx);
-        [pressure[place], gap[place] - contact_gap]
+        let place = place(iy, dy, ny) * nx + place(ix, dx, nx);
+        [pressure[place], gap[place]]
     }
 }
 

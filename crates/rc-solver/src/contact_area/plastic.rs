@@ -3,7 +3,7 @@
 //! What is left to the hardness, q = H - p, is zero there and the square root of the distance beyond its edge, and the overlap that plastic flow removes
 //! grows inside as the gap does outside a contact. So the area where q > 0 is found as a contact area is, with -g for a gap, and has its error.
 
-use rc_core::{EdgeBias, Field, Grid};
+use rc_core::{Boundary, EdgeBias, Field, Grid};
 
 use super::{ContactArea, EdgeSums, around, sums_of_rows};
 
@@ -30,14 +30,14 @@ pub(crate) struct PlasticEdges {
 
 impl PlasticEdges {
     /// Of pressure and gap on a uniform grid, the gap zero in elastic contact.
-    pub(crate) fn of(pressure: &Field, gap: &Field, hardness: f64, bias: EdgeBias) -> Self {
+    pub(crate) fn of([pressure, gap]: [&Field; 2], hardness: f64, bias: EdgeBias, boundary: Boundary) -> Self {
         let grid = pressure.grid();
-        let values = (pressure.values(), gap.values());
+        let values = [pressure.values(), gap.values()];
         let at = |place: [usize; 2]| {
-            let at = around(values, [grid.nx(), grid.ny()], place, 0.0);
+            let at = around(values, [grid.nx(), grid.ny()], place, boundary);
             move |dx: isize, dy: isize| left(at(dx, dy), hardness)
         };
-        let sums = sums_of_rows(grid, hardness, |i| values.0[i] < hardness, at);
+        let sums = sums_of_rows(grid, hardness, |i| values[0][i] < hardness, at);
         let pairs = pressure.values().iter().zip(gap.values());
         let flow: f64 = pairs.filter(|(p, _)| **p >= hardness).map(|(_, g)| (-g).max(0.0)).sum();
         Self::from_sums(&[sums], grid, bias, flow / grid.len() as f64)

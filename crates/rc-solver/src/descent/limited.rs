@@ -117,7 +117,9 @@ fn fill(problem: &Problem, missing: f64, layout: &BlockLayout, (pressure, order)
         return;
     }
     let wanted = missing.abs();
-    let mut width = FIRST_RANGE * problem.depth_range();
+    // A flat patch has no range of depths.
+    let depths = if problem.h_range > 0.0 { problem.depth_range() } else { problem.unit() };
+    let mut width = FIRST_RANGE * depths;
     for _ in 0..MAX_DOUBLINGS {
         if rooms(least + width) >= wanted {
             break;
@@ -192,7 +194,7 @@ impl Descent<'_> {
         let before = self.pressure.clone();
         self.share_limited(loads, shares);
         self.limit_pressure();
-        let (len, offset, range) = (self.layout.len(), self.problem.offset(), self.problem.h_range);
+        let (len, offset, range) = (self.layout.len(), self.problem.offset(), self.problem.unit());
         let blocks = self.pressure.chunks(len).zip(before.chunks(len)).zip(self.directions.added().chunks(len));
         write_blocks(&mut *self.operators.corrections, blocks, |((pressure, before), added), written| {
             for (((p, before), added), written) in pressure.iter().zip(before).zip(added).zip(written) {
@@ -248,7 +250,7 @@ impl Descent<'_> {
             return self.meet_penetration(sums);
         }
         let (len, hardness) = (self.layout.len(), self.problem.hardness);
-        let (unit, range) = (self.problem.h_range.recip(), self.problem.h_range);
+        let (unit, range) = (self.problem.unit().recip(), self.problem.unit());
         self.info.operator_applications += 1;
         let corrections = &mut *self.operators.corrections;
         write_blocks(corrections, self.pressure.chunks(len), |pressure, values| {

@@ -13,13 +13,13 @@ const LARGE_CONTACT: f64 = 0.7;
 impl Descent<'_> {
     /// Brings the pressure to the prescribed penetration, if one is: scales it, so that its weighted mean gap is zero, or nearer to it.
     ///
-    /// Where all elements press although the penetration is less than that of full contact, the mean pressure is too large by the
+    /// Where nothing holds the solid and all elements press although the penetration is less than that of full contact, the mean pressure is too large by the
     /// minimum, at least. Taken off all of them it displaces nothing and lowers the energy, while scaling would undo what already
     /// fits the heights.
     pub(super) fn meet_penetration(&mut self, sums: GapSums) -> GapSums {
         match sums.scale_to_penetration(self.problem) {
             None => self.settle(sums),
-            Some(_) if sums.n_contact >= self.n_cell() => {
+            Some(_) if self.problem.support.is_none() && sums.n_contact >= self.n_cell() => {
                 let less = self.too_much_everywhere();
                 parallel::update(&mut self.pressure, |p| *p -= less);
                 let sums = self.rescale(1.0);

@@ -33,7 +33,7 @@ impl Outcome {
             excess: sums.excess(problem) + (sums.mean_gap(problem) - mean_gap).abs(),
             mean_gap,
             mean_pressure,
-            elastic_energy,
+            elastic_energy: elastic_energy - problem.uniform_energy(mean_pressure),
         };
         let certificate = Certificate::new(problem, &residuals);
         Self {
@@ -61,6 +61,7 @@ impl Outcome {
             mean_pressure: self.mean_pressure,
             penetration: problem.h_max + self.approach,
             penetration_full_contact: problem.h_max - problem.h_mean,
+            mean_displacement: problem.support.compliance * self.mean_pressure,
             elastic_energy: self.elastic_energy,
             levels,
             coarser,

@@ -6,6 +6,8 @@ use super::rows::{self, ElementValues, Gradient};
 use super::shares::{Load, Shares, Squares};
 use super::state::Descent;
 use super::sums::GapSums;
+use rc_core::Boundary;
+
 use crate::Control;
 use crate::parallel;
 
@@ -30,7 +32,9 @@ impl Descent<'_> {
     /// Takes so many steps, clips tensile pressures and restores the load.
     pub(super) fn round(&mut self, steps: usize, sums: &GapSums) -> GapSums {
         // Without a start, contact is at first too large at any load. Of operators of the caller nothing is known.
-        let is_prepared = self.has_start && self.operators.corrections.extends();
+        // Free borders bend the gap of a start over long distances, and what joins there would press on a whole region.
+        let is_periodic = self.boundary() == Boundary::Periodic;
+        let is_prepared = is_periodic && self.has_start && self.operators.corrections.extends();
         let is_heavy = is_prepared && sums.n_in_contact() > HEAVY_CONTACT * self.n_cell();
         let steps = if is_heavy { 1 } else { steps };
         self.precondition_mean(sums);
@@ -69,8 +73,9 @@ impl Descent<'_> {
         let [n, direction] = self.layout.total(sums);
         self.operators.corrections.set_active(&self.directions.active);
         let fixed_load = matches!(self.problem.control, Control::MeanPressure(_));
-        // A uniform pressure on the whole cell displaces nothing: no step along it is long enough, and others would be scaled with it.
-        ActiveSet { n, fixed_mean: fixed_load || n >= self.n_cell(), direction_mean: direction / n }
+        // Where a uniform pressure on the whole cell displaces nothing, no step along it is long enough, and others would be scaled with it.
+        let is_free = self.problem.support.is_none() && n >= self.n_cell();
+        ActiveSet { n, fixed_mean: fixed_load || is_free, direction_mean: direction / n }
     }
 
     /// The next direction, and the length of the step along it.
@@ -127,7 +132,7 @@ impl Descent<'_> {
             return self.meet_penetration(sums);
         }
         // Loads are only moved between squares; that of the cell follows by scaling, which is exact.
-        let (len, offset, range) = (self.layout.len(), self.problem.offset(), self.problem.h_range);
+        let (len, offset, range) = (self.layout.len(), self.problem.offset(), self.problem.unit());
         let blocks = self.pressure.chunks_mut(len).zip(self.directions.added().chunks(len)).enumerate();
         let layout = &self.layout;
         let sums = write_blocks(&mut *self.operators.corrections, blocks, |(i, (pressure, added)), written| {
@@ -208,6 +213,6 @@ impl Descent<'_> {
     }
 
     fn gradient(&self) -> Gradient {
-        Gradient { zero_gap: self.zero_gap, unit: self.problem.h_range.recip(), hardness: self.problem.hardness }
+        Gradient { zero_gap: self.zero_gap, unit: self.problem.unit().recip(), hardness: self.problem.hardness }
     }
 }

@@ -68,14 +68,14 @@ impl Descent<'_> {
         let mut sums = self.start();
         let mut history = ErrorHistory::new();
         loop {
-            let mut error = sums.error(self.problem);
+            let mut error = sums.error(self.problem, self.n_cell());
             self.tell(watch, [error, goal.tolerance], &sums);
             if error <= goal.tolerance {
                 if goal.certify.is_none() {
                     return self.outcome(&sums, true);
                 }
                 sums = self.refresh();
-                error = sums.error(self.problem);
+                error = sums.error(self.problem, self.n_cell());
                 let outcome = self.outcome(&sums, true);
                 let is_certified = goal.certify.is_some_and(|bound| outcome.certificate.meets(bound));
                 if error <= goal.tolerance && is_certified {

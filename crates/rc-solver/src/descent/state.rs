@@ -1,6 +1,6 @@
 //! Pressure and gap on one level, and what improves them.
 
-use rc_core::{Field, Grid};
+use rc_core::{Boundary, Field, Grid};
 
 use super::directions::ConjugateDirections;
 use super::gap::{fresh_gap, rescale};
@@ -86,6 +86,11 @@ impl<'a> Descent<'a> {
         self.info.grid
     }
 
+    /// What is beyond the heights.
+    pub(crate) fn boundary(&self) -> Boundary {
+        self.problem.support.boundary
+    }
+
     pub(crate) fn info(&self) -> LevelInfo {
         self.info
     }
@@ -157,11 +162,16 @@ impl<'a> Descent<'a> {
         coarser: Option<LevelValues>,
     ) -> GridSolution {
         let (grid, problem) = (self.grid(), self.problem);
-        let info = outcome.info(problem, levels, coarser);
+        let mut info = outcome.info(problem, levels, coarser);
+        let boundary = self.boundary();
         let (pressure, gap) = self.into_vectors(outcome.approach + problem.offset());
         let field = |values| Field::new(grid, values).expect("a value for each element");
+        let gap = field(gap);
+        if boundary == Boundary::Free {
+            info.mean_displacement += gap.mean() - info.mean_gap();
+        }
         let status = if outcome.converged { Status::Converged } else { Status::NotConverged };
-        GridSolution { pressure: field(pressure), gap: field(gap), status, elements: None, info }
+        GridSolution { pressure: field(pressure), gap, status, elements: None, info }
     }
 
     /// The pressure.

@@ -280,10 +280,10 @@ impl GapSums {
     }
 
     /// The deepest overlap, a tenth of the greatest gap well inside contact, the greatest gap of a plastic element, or the mean gap where there
-    /// should be none, in units of the problem's length.
-    pub(super) fn error(&self, problem: &Problem) -> f64 {
+    /// should be none, in units of the problem's length, in a cell of `n_cell` elements.
+    pub(super) fn error(&self, problem: &Problem, n_cell: f64) -> f64 {
         let mean_gap = self.mean_gap(problem);
-        let length = problem.reference_length(self.work(), self.load());
+        let length = problem.reference_length(self.work(), self.load(), n_cell);
         // What is exact is so in any unit, even where the pressure is uniform and U is zero.
         let ratio = |overlap: f64| match overlap {
             ..=0.0 => 0.0,

@@ -1,40 +1,44 @@
 //! L on a uniform grid, by Fourier transforms.
 
-use rayon::prelude::*;
-use rc_core::{Grid, Kernel};
-use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable, TransformReal};
+use rc_core::{Boundary, Grid, Kernel};
+use rc_fft::{Convolution, SymbolTable};
 
-use super::extension::GridExtension;
+use super::inverse::Inverse;
 use super::layout::BlockLayout;
+use super::margin::Margin;
 use super::operators::{BlockOperator, LevelOperators, PreconditionedOperator};
-use crate::parallel::Tasks;
+use super::passes::{layout, read_rows, write_rows};
+use super::response::GridResponse;
 
 /// L of `kernel` on `grid`.
 pub(crate) fn uniform_operators(grid: Grid, kernel: &dyn Kernel) -> LevelOperators<'static> {
-    let displacement = SymbolTable::new(grid, kernel.symbol(grid));
+    let response = GridResponse::of(grid, kernel);
     LevelOperators {
-        corrections: Box::new(UniformCorrections::new(grid, &displacement)),
-        fresh: Box::new(SymbolOperator::new(grid, displacement)),
+        corrections: Box::new(UniformCorrections::new(grid, kernel, &response)),
+        fresh: Box::new(SymbolOperator::of(response)),
     }
 }
 
 /// For corrections.
 pub(crate) struct UniformCorrections {
+    /// Of displacements; where they are periodic, of the approximate inverse too.
     convolution: Convolution<f32>,
     displacement: SymbolTable<f32>,
-    preconditioner: SymbolTable<f32>,
-    extension: GridExtension,
+    inverse: Inverse,
+    /// Where borders are free.
+    margin: Option<Margin>,
 }
 
 impl UniformCorrections {
-    /// From the symbol of L.
-    pub(crate) fn new(grid: Grid, displacement: &SymbolTable<f64>) -> Self {
-        Self {
-            convolution: Convolution::new(grid),
-            extension: GridExtension::new(grid),
-            preconditioner: displacement.inverse(grid),
-            displacement: displacement.map(|value| value as f32),
-        }
+    /// Of `kernel` with its `response` on `grid`.
+    pub(crate) fn new(grid: Grid, kernel: &dyn Kernel, response: &GridResponse) -> Self {
+        let margin = (response.boundary == Boundary::Free).then(|| Margin::around(grid));
+        let inverse = match &margin {
+            None => Inverse::new(grid, response.table.inverse(grid)),
+            Some(margin) => Inverse::new(margin.grid(), margin.inverse(kernel)),
+        };
+        let displacement = response.table.map(|value| value as f32);
+        Self { convolution: response.convolution(), displacement, inverse, margin }
     }
 }
 
@@ -58,27 +62,23 @@ impl BlockOperator<f32> for UniformCorrections {
 
 impl PreconditionedOperator for UniformCorrections {
     fn set_active(&mut self, active: &[bool]) {
-        self.extension.set_active(active);
+        let active = self.margin.as_mut().map_or(active, |margin| margin.set_active(active));
+        self.inverse.extension.set_active(active);
     }
 
     fn precondition(&mut self, active: &[bool], values: &mut [f32]) {
-        let Self { convolution, preconditioner, extension, .. } = self;
-        extension.extend(values);
-        let len = BLOCK_ROWS * convolution.grid().nx();
-        let filled = &*extension;
-        write_rows(convolution, &|i, rows| {
-            let here = i * len..i * len + rows.len();
-            rows.copy_from_slice(&values[here.clone()]);
-            filled.fill(i * BLOCK_ROWS, &active[here], rows);
-        });
-        convolution.apply_symbol(preconditioner);
-        let tasks = Tasks::new(values.chunks_mut(len));
-        read_rows(convolution, &|i, rows| tasks.run(i, |to: &mut [f32]| to.copy_from_slice(rows)));
-        extension.gather(active, values);
+        match &mut self.margin {
+            None => self.inverse.apply(&mut self.convolution, active, values),
+            Some(margin) => margin.apply(&mut self.inverse, values),
+        }
     }
 
     fn set_mean(&mut self, eigenvalue: f64) {
-        self.preconditioner.set_mean((eigenvalue / self.convolution.grid().len() as f64) as f32);
+        let grid = self.convolution.grid();
+        let around = self.margin.as_ref().map_or(grid, Margin::grid);
+        // The load on the larger grid is what the grid gets.
+        let part = grid.len() as f64 / around.len() as f64;
+        self.inverse.symbol.set_mean((part * eigenvalue / around.len() as f64) as f32);
     }
 }
 
@@ -92,6 +92,11 @@ impl SymbolOperator {
     /// On `grid`, which `symbol` is the table of.
     pub(crate) fn new(grid: Grid, symbol: SymbolTable<f64>) -> Self {
         Self { convolution: Convolution::new(grid), symbol }
+    }
+
+    /// L itself.
+    pub(crate) fn of(response: GridResponse) -> Self {
+        Self { convolution: response.convolution(), symbol: response.table }
     }
 }
 
@@ -111,26 +116,4 @@ impl BlockOperator<f64> for SymbolOperator {
     fn read(&self, read: &(dyn Fn(usize, &[f64]) + Sync)) {
         read_rows(&self.convolution, read);
     }
-}
-
-/// Blocks of rows, as they are transformed.
-fn layout(grid: Grid) -> BlockLayout {
-    BlockLayout::of_rows(BLOCK_ROWS, [grid.nx(), grid.ny()])
-}
-
-fn n_blocks(grid: Grid) -> usize {
-    grid.ny().div_ceil(BLOCK_ROWS)
-}
-
-/// Calls `write` once for each block of rows, with its index and the rows to be filled in. (All callers pass closures in this form, for
-/// which the transforms are compiled once.)
-pub(crate) fn write_rows<T: TransformReal>(convolution: &mut Convolution<T>, write: &(dyn Fn(usize, &mut [T]) + Sync)) {
-    let blocks = (0..n_blocks(convolution.grid())).into_par_iter();
-    convolution.transform_rows(blocks, write);
-}
-
-/// Calls `read` once for each block of rows, with its index and the rows.
-pub(crate) fn read_rows<T: TransformReal>(convolution: &Convolution<T>, read: &(dyn Fn(usize, &[T]) + Sync)) {
-    let blocks = (0..n_blocks(convolution.grid())).into_par_iter();
-    convolution.read_rows(blocks, read);
 }

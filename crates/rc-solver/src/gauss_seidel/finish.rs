@@ -41,6 +41,7 @@ impl Procedure<'_> {
                 mean_pressure,
                 penetration: self.penetration + mean_gap,
                 penetration_full_contact: self.problem.h_max - self.problem.h_mean,
+                mean_displacement: 0.0,
                 elastic_energy,
                 levels: vec![self.info],
                 coarser: None,

@@ -1,11 +1,12 @@
 //! L on a uniform grid, by direct summation: the slow truth.
 
-use rc_core::{Grid, Kernel, Operator};
+use rc_core::{Boundary, Grid, Kernel, Operator};
 
 /// The operator L (Eq. 4) on a uniform grid, with the coefficients from a plain trigonometric sum over the symbol and
 /// the products added one by one. O(n²): for tests.
 pub struct DirectSum {
     grid: Grid,
+    boundary: Boundary,
     /// L between element (0, 0) and element (ix, iy).
     coefficients: Vec<f64>,
 }
@@ -21,11 +22,16 @@ impl DirectSum {
     #[must_use]
     pub fn new(grid: Grid, kernel: &dyn Kernel) -> Self {
         let (nx, ny) = (grid.nx(), grid.ny());
+        if let Some(response) = kernel.free_response(grid) {
+            let coefficients = (0..grid.len()).map(|i| response(i % nx, i / nx)).collect();
+            return Self { grid, boundary: Boundary::Free, coefficients };
+        }
         let symbol = kernel.symbol(grid);
+        let uniform = kernel.uniform_displacement().unwrap_or(0.0);
         let turns = |n: usize| (0..n).map(|i| (std::f64::consts::TAU * i as f64 / n as f64).cos()).collect::<Vec<_>>();
         let (cos_x, cos_y) = (turns(nx), turns(ny));
         let coefficient = |ix: usize, iy: usize| {
-            let mut sum = 0.0;
+            let mut sum = uniform;
             for ky in 0..ny {
                 for kx in 0..nx {
                     // The symbol is even in kx and in ky, so sines cancel.
@@ -36,7 +42,7 @@ impl DirectSum {
             sum / grid.len() as f64
         };
         let coefficients = (0..grid.len()).map(|i| coefficient(i % nx, i / nx)).collect();
-        Self { grid, coefficients }
+        Self { grid, boundary: Boundary::Periodic, coefficients }
     }
 
     /// `L_ij` between target `i` and source `j`, indices of elements.
@@ -47,7 +53,11 @@ impl DirectSum {
     pub fn coefficient(&self, i: usize, j: usize) -> f64 {
         let (nx, ny) = (self.grid.nx(), self.grid.ny());
         let (ix, iy, jx, jy) = (i % nx, i / nx, j % nx, j / nx);
-        self.coefficients[self.grid.index((ix + nx - jx) % nx, (iy + ny - jy) % ny)]
+        let [dx, dy] = match self.boundary {
+            Boundary::Periodic => [(ix + nx - jx) % nx, (iy + ny - jy) % ny],
+            Boundary::Free => [ix.abs_diff(jx), iy.abs_diff(jy)],
+        };
+        self.coefficients[self.grid.index(dx, dy)]
     }
 }
 

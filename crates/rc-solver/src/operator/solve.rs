@@ -73,6 +73,7 @@ fn flat(grid: Grid, mean_pressure: f64) -> GridSolution {
         mean_pressure,
         penetration: 0.0,
         penetration_full_contact: 0.0,
+        mean_displacement: 0.0,
         elastic_energy: 0.0,
         levels: vec![level],
         coarser: None,

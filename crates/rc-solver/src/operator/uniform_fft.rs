@@ -3,11 +3,10 @@
 use std::sync::Mutex;
 
 use rc_core::{Grid, Kernel, Operator};
-use rc_fft::SymbolTable;
 
-use crate::descent::{BlockOperator, SymbolOperator, read_blocks, write_blocks};
+use crate::descent::{BlockOperator, GridResponse, SymbolOperator, read_blocks, write_blocks};
 
-/// `v = L p` (Eq. 4) on a uniform grid: diagonal in Fourier space, in double precision.
+/// `v = L p` (Eq. 4) on a uniform grid: a convolution in Fourier space, in double precision.
 pub struct UniformOperator {
     grid: Grid,
     /// Has plans and the buffer of spectra, so `apply` needs no scratch of the caller; one application at a time.
@@ -24,8 +23,7 @@ impl UniformOperator {
     /// The operator of `kernel` on `grid`.
     #[must_use]
     pub fn new(grid: Grid, kernel: &dyn Kernel) -> Self {
-        let symbol = SymbolTable::new(grid, kernel.symbol(grid));
-        Self { grid, operator: Mutex::new(SymbolOperator::new(grid, symbol)) }
+        Self { grid, operator: Mutex::new(SymbolOperator::of(GridResponse::of(grid, kernel))) }
     }
 }
 

@@ -2,16 +2,20 @@
 
 use std::sync::Arc;
 
-use rc_core::{HeightField, HeightSource};
+use rc_core::{Boundary, Grid, HeightField, HeightSource};
 
+use super::kernel::OwnedKernel;
 use super::memory::check_uniform;
 use super::plan::ChosenMethod;
 use super::shared::Shared;
 use super::{ContactProblem, Plan, SolveError, SolveParams};
 use crate::adaptive::AdaptiveProblem;
 use crate::contract::check_kernel;
+use crate::descent::padded_side;
 use crate::problem::{check_load, check_tolerance};
-use crate::{AdaptiveError, ErrorBound, Estimate, Method, MethodReason};
+use crate::support::Support;
+use crate::uniform::FREE_BYTES_PER_ELEMENT;
+use crate::{AdaptiveError, ErrorBound, Estimate, Method, MethodReason, UNIFORM_BYTES_PER_ELEMENT};
 
 /// Checks the problem and chooses its method.
 pub(super) fn plan<'a>(
@@ -23,7 +27,10 @@ pub(super) fn plan<'a>(
     check_load(problem.load())?;
     check_tolerance(bound)?;
     check_grid(&problem.heights)?;
-    check_kernel(problem.kernel, problem.heights.grid())?;
+    check_kernel(problem.kernel.get(), problem.heights.grid())?;
+    if is_free(&problem.kernel, problem.heights.grid()) {
+        check_padded(problem.heights.grid())?;
+    }
     let choice = Choice { problem: &problem, params, bound, shared: &shared };
     let (chosen, reason) = match params.method {
         None => choice.automatic(),
@@ -54,11 +61,11 @@ type Chosen<'a> = Result<(ChosenMethod<'a>, MethodReason), SolveError>;
 impl<'a> Choice<'a, '_> {
     /// Refuses a method that cannot solve with this kernel or border level.
     fn check_asked_for(&self, method: Method) -> Result<(), SolveError> {
-        let kernel = self.problem.kernel;
+        let kernel = self.problem.kernel.get();
         match method {
             Method::GaussSeidel if self.problem.hardness.is_finite() => Err(SolveError::Hardness { method }),
             Method::Adaptive | Method::GaussSeidel if !kernel.is_split_by_scale() => {
-                Err(SolveError::Kernel { method, kernel: kernel.name() })
+                Err(self.not_the_half_space(method))
             }
             Method::Uniform | Method::GaussSeidel if self.params.border_level > 0 => {
                 Err(SolveError::BorderLevel { method })
@@ -68,13 +75,13 @@ impl<'a> Choice<'a, '_> {
     }
 
     fn automatic(&self) -> Chosen<'a> {
-        let kernel = self.problem.kernel;
+        let kernel = self.problem.kernel.get();
         let has_border = self.params.border_level > 0;
         if !kernel.is_split_by_scale() {
             if has_border {
-                return Err(SolveError::Kernel { method: Method::Adaptive, kernel: kernel.name() });
+                return Err(self.not_the_half_space(Method::Adaptive));
             }
-            return Ok((self.on_grid(Method::Uniform)?, MethodReason::NoSplitOfKernel { kernel: kernel.name() }));
+            return Ok((self.on_grid(Method::Uniform)?, self.without_split()));
         }
         let adaptive = match self.prepare() {
             Ok(adaptive) => adaptive,
@@ -94,6 +101,30 @@ impl<'a> Choice<'a, '_> {
             // The adaptive method fits, or it would not be chosen.
             Err(_) if self.params.method_follows_memory => Ok((adaptive, MethodReason::UniformDoesNotFit { percent })),
             Err(error) => Err(error),
+        }
+    }
+
+    fn is_free(&self) -> bool {
+        is_free(&self.problem.kernel, self.problem.heights.grid())
+    }
+
+    /// What to say of a method that the solid has none of.
+    fn not_the_half_space(&self, method: Method) -> SolveError {
+        let kernel = self.problem.kernel.get();
+        if self.is_free() || kernel.uniform_displacement().is_some() {
+            SolveError::Solid { method }
+        } else {
+            SolveError::Kernel { method, kernel: kernel.name() }
+        }
+    }
+
+    /// Why a kernel that is not split by scale is solved on the uniform grid.
+    fn without_split(&self) -> MethodReason {
+        let kernel = self.problem.kernel.get();
+        match kernel.uniform_displacement() {
+            _ if self.is_free() => MethodReason::FreeBorders,
+            Some(_) => MethodReason::Layer,
+            None => MethodReason::NoSplitOfKernel { kernel: kernel.name() },
         }
     }
 
@@ -136,9 +167,22 @@ impl<'a> Choice<'a, '_> {
 
     /// A method that stores every element of the grid, if it fits into memory.
     fn on_grid(&self, method: Method) -> Result<ChosenMethod<'a>, SolveError> {
-        check_uniform(self.problem.heights.grid(), self.params.memory_limit, method)?;
+        let bytes = if self.is_free() { FREE_BYTES_PER_ELEMENT } else { UNIFORM_BYTES_PER_ELEMENT };
+        check_uniform(self.problem.heights.grid(), bytes, self.params.memory_limit, method)?;
         Ok(if method == Method::GaussSeidel { ChosenMethod::GaussSeidel } else { ChosenMethod::Uniform })
     }
+}
+
+/// Whether the borders of the heights are free.
+fn is_free(kernel: &OwnedKernel<'_>, grid: Grid) -> bool {
+    Support::of(kernel.get(), grid).boundary == Boundary::Free
+}
+
+/// Refuses a grid whose padded one cannot be counted.
+fn check_padded(grid: Grid) -> Result<(), SolveError> {
+    let [px, py] = [grid.nx(), grid.ny()].map(padded_side);
+    Grid::in_cell(px, py, grid.cell_ratio() * (py * grid.nx()) as f64 / (px * grid.ny()) as f64)?;
+    Ok(())
 }
 
 /// Refuses a grid that does not resolve the waves of its surface.

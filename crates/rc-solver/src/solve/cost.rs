@@ -1,8 +1,12 @@
 //! What a plan will cost.
 
+use rc_core::Boundary;
+
 use super::memory::uniform_bytes;
 use super::plan::{ChosenMethod, Plan};
 use crate::ErrorBound;
+use crate::support::Support;
+use crate::uniform::FREE_BYTES_PER_ELEMENT;
 
 /// Processor seconds for each cell of the adaptive method at the default tolerance: measured 1.1e-6 to 1.5e-6 for cells that are
 /// evaluated, of which the estimate counts 0.55 to 0.9 (512² to 4096², 0.9 % to 20 % contact, H = 0.3 and 0.8).
@@ -10,6 +14,9 @@ const SECONDS_PER_ADAPTIVE_CELL: f64 = 1.7e-6;
 
 /// The same for each element of the uniform grid: measured 0.6e-6 to 1.0e-6 (512² and 2048², 7 % to 71 % contact).
 const SECONDS_PER_UNIFORM_ELEMENT: f64 = 0.85e-6;
+
+/// The same with free borders: measured two to four times that of a cell at 512² and 2048².
+const SECONDS_PER_FREE_ELEMENT: f64 = 2.5e-6;
 
 /// Work added by each factor of ten in a relative tolerance below 1e-6: measured a factor 2.9 for 1e-9.
 const WORK_PER_DECADE: f64 = 0.63;
@@ -57,11 +64,17 @@ impl Cost {
             ChosenMethod::Uniform => {
                 let grid = plan.problem.heights.grid();
                 let elements = grid.len() as f64;
+                let is_free = Support::of(plan.problem.kernel.get(), grid).boundary == Boundary::Free;
+                let (bytes, per_element) = if is_free {
+                    (elements * FREE_BYTES_PER_ELEMENT as f64, SECONDS_PER_FREE_ELEMENT)
+                } else {
+                    (uniform_bytes(grid), SECONDS_PER_UNIFORM_ELEMENT)
+                };
                 Self {
                     area_fraction: None,
                     elements: Some(elements),
-                    bytes: Some(uniform_bytes(grid)),
-                    cpu_seconds: Some(seconds(SECONDS_PER_UNIFORM_ELEMENT * elements)),
+                    bytes: Some(bytes),
+                    cpu_seconds: Some(seconds(per_element * elements)),
                 }
             }
             ChosenMethod::GaussSeidel => Self { area_fraction: None, elements: None, bytes: None, cpu_seconds: None },

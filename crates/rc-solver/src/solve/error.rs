@@ -33,6 +33,12 @@ pub enum SolveError {
         /// The method, and why it would be chosen.
         reason: MethodReason,
     },
+    /// The method is made for the periodic half-space.
+    #[error("the {method} method solves on the periodic half-space only, not on a layer or a patch with free borders")]
+    Solid {
+        /// The method asked for.
+        method: Method,
+    },
     /// A border level is asked of a method without one.
     #[error("the {method} method does not divide elements at contact edges; only the adaptive method does")]
     BorderLevel {

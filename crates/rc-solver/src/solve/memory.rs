@@ -11,8 +11,13 @@ pub(super) fn uniform_bytes(grid: Grid) -> f64 {
 }
 
 /// Refuses a method that stores every element of the grid where it does not fit into memory.
-pub(super) fn check_uniform(grid: Grid, limit: Option<u64>, method: Method) -> Result<(), SolveError> {
-    let needed = uniform_bytes(grid);
+pub(super) fn check_uniform(
+    grid: Grid,
+    bytes_per_element: u64,
+    limit: Option<u64>,
+    method: Method,
+) -> Result<(), SolveError> {
+    let needed = grid.len() as f64 * bytes_per_element as f64;
     match limit {
         Some(limit) if needed > limit as f64 => Err(SolveError::Memory { method, grid, needed: needed as u64, limit }),
         _ => Ok(()),

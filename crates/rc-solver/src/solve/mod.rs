@@ -6,6 +6,8 @@ mod cost;
 mod door;
 mod elements;
 mod error;
+mod fields;
+mod kernel;
 mod memory;
 mod params;
 mod plan;

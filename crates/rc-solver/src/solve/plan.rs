@@ -13,7 +13,7 @@ use crate::adaptive::{AdaptiveProblem, AdaptiveSolution, Unsuitable};
 use crate::gauss_seidel::{HalfSpace, solve_gauss_seidel};
 use crate::solution::{GridSolution, Status};
 use crate::uniform::solve_uniform;
-use crate::{ErrorBound, GaussSeidelError, GaussSeidelParams, Method, MethodReason};
+use crate::{ErrorBound, GaussSeidelError, GaussSeidelParams, Method, MethodReason, UNIFORM_BYTES_PER_ELEMENT};
 
 /// A contact problem that has been checked and has its method. Nothing is solved yet.
 pub struct Plan<'a> {
@@ -67,9 +67,8 @@ impl<'a> Plan<'a> {
     /// [`SolveError::GaussSeidel`] for what the paper's procedure refuses.
     pub fn solve(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
         let Self { problem, params, bound, chosen, reason, mut shared } = self;
-        let how = |method, reason| {
-            HowSolved::new(method, reason, bound, problem.kernel.name()).with_hardness(problem.hardness)
-        };
+        let name = problem.kernel.get().name();
+        let how = |method, reason| HowSolved::new(method, reason, bound, name).with_hardness(problem.hardness);
         let (chosen, reason) = match chosen {
             ChosenMethod::Adaptive(adaptive) => match by_adaptive(&problem, &params, (&adaptive, &reason), observer)? {
                 Ok(solution) => {
@@ -83,7 +82,7 @@ impl<'a> Plan<'a> {
         if let Some(shared) = Arc::get_mut(&mut shared) {
             shared.forget_ground();
         }
-        let (heights, kernel) = (shared.heights(&problem.heights), problem.kernel);
+        let (heights, kernel) = (shared.heights(&problem.heights), problem.kernel.get());
         let (method, solution) = if matches!(chosen, ChosenMethod::GaussSeidel) {
             let params = (bound, &params.gauss_seidel);
             (Method::GaussSeidel, by_gauss_seidel(&problem, heights, params, observer)?)
@@ -91,7 +90,9 @@ impl<'a> Plan<'a> {
             let limits = params.iteration(bound);
             (Method::Uniform, solve_uniform(heights, kernel, problem.load(), &limits, observer)?)
         };
-        converged(Solution::on_grid(how(method, reason), kernel, solution, heights.max()))
+        let how = how(method, reason);
+        let h_max = heights.max();
+        converged(Solution::on_grid(how, problem.kernel, solution, h_max))
     }
 }
 
@@ -103,7 +104,8 @@ fn by_adaptive(
     (adaptive, reason): (&AdaptiveProblem<'_>, &MethodReason),
     observer: &dyn Observer,
 ) -> Result<Result<AdaptiveSolution, MethodReason>, SolveError> {
-    let uniform_fits = check_uniform(problem.heights.grid(), params.memory_limit, Method::Uniform);
+    let uniform_fits =
+        check_uniform(problem.heights.grid(), UNIFORM_BYTES_PER_ELEMENT, params.memory_limit, Method::Uniform);
     let may_change = matches!(reason, MethodReason::SmallContact { .. });
     // Where the method may not follow memory, a row is solved alike on every machine, or refused.
     if !may_change || uniform_fits.is_err() && params.method_follows_memory {
@@ -143,8 +145,10 @@ fn by_gauss_seidel(
     observer: &dyn Observer,
 ) -> Result<GridSolution, GaussSeidelError> {
     let periodic = PeriodicLove::new();
-    let half_space =
-        HalfSpace { kernel: problem.kernel, coefficient: &|offset, half_side| periodic.coefficient(offset, half_side) };
+    let half_space = HalfSpace {
+        kernel: problem.kernel.get(),
+        coefficient: &|offset, half_side| periodic.coefficient(offset, half_side),
+    };
     solve_gauss_seidel(heights, half_space, problem.control, (bound, params), observer)
 }
 

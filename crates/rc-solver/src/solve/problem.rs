@@ -6,6 +6,7 @@ use rc_comm::Ranks;
 use rc_core::{HeightSource, Kernel};
 use rc_kernel::Love;
 
+use super::kernel::OwnedKernel;
 use crate::Control;
 use crate::adaptive::{Checkpoint, Place};
 use crate::problem::Load;
@@ -29,7 +30,7 @@ use crate::problem::Load;
 #[derive(Clone)]
 pub struct ContactProblem<'a> {
     pub(super) heights: HeightSource<'a>,
-    pub(super) kernel: &'a dyn Kernel,
+    pub(super) kernel: OwnedKernel<'a>,
     pub(super) control: Control,
     pub(super) hardness: f64,
     pub(super) place: Place,
@@ -39,7 +40,8 @@ impl<'a> ContactProblem<'a> {
     /// The contact of `heights` (in λ) with the elastic half-space under a load. The kernel is [`Love`].
     #[must_use]
     pub fn new(heights: impl Into<HeightSource<'a>>, control: Control) -> Self {
-        Self { heights: heights.into(), kernel: &Love, control, hardness: f64::INFINITY, place: Place::default() }
+        let (kernel, place) = (OwnedKernel::Borrowed(&Love), Place::default());
+        Self { heights: heights.into(), kernel, control, hardness: f64::INFINITY, place }
     }
 
     /// The same problem with a hardness, in E*: no pressure is greater. It is the usual first model of plastic contact. Where the pressure is the
@@ -70,7 +72,13 @@ impl<'a> ContactProblem<'a> {
     /// The same problem with another half-space, or another discretisation of it.
     #[must_use]
     pub fn with_kernel(self, kernel: &'a dyn Kernel) -> Self {
-        Self { kernel, ..self }
+        Self { kernel: OwnedKernel::Borrowed(kernel), ..self }
+    }
+
+    /// The same with a kernel that the problem, its plans and its solutions share, and do not borrow.
+    #[must_use]
+    pub fn with_shared_kernel(self, kernel: Arc<dyn Kernel + Send + Sync>) -> Self {
+        Self { kernel: OwnedKernel::Shared(kernel), ..self }
     }
 
     /// The same problem over ranks, which all solve it together: each has a part of the mesh, and calls the same functions in the same order, those of
@@ -112,7 +120,7 @@ impl std::fmt::Debug for ContactProblem<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut out = f.debug_struct("ContactProblem");
         out.field("heights", &self.heights)
-            .field("kernel", &self.kernel.name())
+            .field("kernel", &self.kernel.get().name())
             .field("control", &self.control)
             .field("hardness", &self.hardness)
             .field("ranks", &self.place.ranks)

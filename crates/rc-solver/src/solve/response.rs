@@ -1,15 +1,17 @@
 //! What a solution on a grid needs of its half-space after the solve. It may outlive the caller's.
 
-use rc_core::{EdgeBias, Field, Grid, Kernel, Operator, Symbol};
+use rc_core::{Boundary, EdgeBias, Field, Grid, Operator};
 
+use super::kernel::OwnedKernel;
 use crate::operator::{UniformOperator, stiffness_with_operator};
 use crate::solution::GridSolution;
 use crate::stiffness::contact_stiffness;
+use crate::support::Support;
 
 /// The half-space that a solution on a grid was found with.
 pub(super) enum Response<'a> {
     /// A kernel.
-    Kernel(KernelOfGrid<'a>),
+    Kernel(OwnedKernel<'a>),
     /// The caller's operator.
     Operator(&'a dyn Operator),
     /// An operator that the solution has outlived, and what it was needed for.
@@ -38,17 +40,33 @@ impl Response<'_> {
     /// The shift of contact edges; for an operator the default one.
     pub(super) fn edge_bias(&self) -> EdgeBias {
         match self {
-            Self::Kernel(kernel) => kernel.edge_bias(),
+            Self::Kernel(kernel) => kernel.get().edge_bias(),
             Self::Operator(_) | Self::Outlived { .. } => EdgeBias::default(),
+        }
+    }
+
+    /// What is beyond the heights on `grid`.
+    pub(super) fn boundary(&self, grid: Grid) -> Boundary {
+        match self {
+            Self::Kernel(kernel) => Support::of(kernel.get(), grid).boundary,
+            Self::Operator(_) | Self::Outlived { .. } => Boundary::Periodic,
         }
     }
 
     /// dσ0/dΔ under the contact of `solution`, in E*/λ.
     pub(super) fn stiffness(&self, solution: &GridSolution, hardness: f64) -> f64 {
         match self {
-            Self::Kernel(kernel) => contact_stiffness(&solution.pressure, hardness, kernel),
+            Self::Kernel(kernel) => contact_stiffness(&solution.pressure, hardness, kernel.get()),
             Self::Operator(operator) => stiffness_with_operator(&solution.pressure, *operator),
             Self::Outlived { stiffness, .. } => *stiffness,
+        }
+    }
+
+    /// dσ0/dΔ in full contact, in E*/λ: infinite but for a solid on a base.
+    pub(super) fn full_contact_stiffness(&self) -> f64 {
+        match self {
+            Self::Kernel(kernel) => kernel.get().uniform_displacement().unwrap_or(0.0).recip(),
+            Self::Operator(_) | Self::Outlived { .. } => f64::INFINITY,
         }
     }
 
@@ -60,81 +78,9 @@ impl Response<'_> {
             displacement
         };
         match self {
-            Self::Kernel(kernel) => apply(&UniformOperator::new(pressure.grid(), kernel)),
+            Self::Kernel(kernel) => apply(&UniformOperator::new(pressure.grid(), kernel.get())),
             Self::Operator(operator) => apply(*operator),
             Self::Outlived { displacement, .. } => displacement.clone(),
         }
-    }
-}
-
-/// The kernel that a solution on a uniform grid was found with.
-pub(super) enum KernelOfGrid<'a> {
-    /// The caller's.
-    Borrowed(&'a dyn Kernel),
-    /// Its symbol on the grid of the solution.
-    Tabulated(TabulatedKernel),
-}
-
-/// A kernel that is known on one grid.
-pub(super) struct TabulatedKernel {
-    name: &'static str,
-    bias: EdgeBias,
-    grid: Grid,
-    /// Eigenvalues for 0 ≤ kx ≤ nx/2, then 0 ≤ ky ≤ ny/2, columns of constant kx contiguous.
-    values: Vec<f64>,
-}
-
-impl KernelOfGrid<'_> {
-    /// The kernel without a borrow, for `grid` alone.
-    pub(super) fn into_owned(self, grid: Grid) -> KernelOfGrid<'static> {
-        KernelOfGrid::Tabulated(match self {
-            Self::Borrowed(kernel) => TabulatedKernel::new(kernel, grid),
-            Self::Tabulated(kernel) => kernel,
-        })
-    }
-
-    fn get(&self) -> &dyn Kernel {
-        match self {
-            Self::Borrowed(kernel) => *kernel,
-            Self::Tabulated(kernel) => kernel,
-        }
-    }
-}
-
-impl TabulatedKernel {
-    fn new(kernel: &dyn Kernel, grid: Grid) -> Self {
-        let symbol = kernel.symbol(grid);
-        let columns = 0..=grid.nx() / 2;
-        let values = columns.flat_map(|kx| (0..=grid.ny() / 2).map(move |ky| (kx, ky))).map(|(kx, ky)| symbol(kx, ky));
-        Self { name: kernel.name(), bias: kernel.edge_bias(), grid, values: values.collect() }
-    }
-}
-
-impl Kernel for TabulatedKernel {
-    fn name(&self) -> &'static str {
-        self.name
-    }
-
-    fn symbol(&self, grid: Grid) -> Symbol<'_> {
-        assert_eq!(grid, self.grid, "a tabulated kernel is asked for the grid of its solution only");
-        Box::new(|kx, ky| self.values[kx * (self.grid.ny() / 2 + 1) + ky])
-    }
-
-    fn edge_bias(&self) -> EdgeBias {
-        self.bias
-    }
-}
-
-impl Kernel for KernelOfGrid<'_> {
-    fn name(&self) -> &'static str {
-        self.get().name()
-    }
-
-    fn symbol(&self, grid: Grid) -> Symbol<'_> {
-        self.get().symbol(grid)
-    }
-
-    fn edge_bias(&self) -> EdgeBias {
-        self.get().edge_bias()
     }
 }

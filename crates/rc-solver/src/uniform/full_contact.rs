@@ -4,12 +4,24 @@ use rayon::prelude::*;
 use rc_core::{Field, Kernel};
 use rc_fft::SymbolTable;
 
-use crate::ErrorBound;
 use crate::certificate::{Certificate, Residuals};
 use crate::descent::{BlockOperator, SymbolOperator, read_blocks, write_blocks};
 use crate::operator::UniformOperator;
 use crate::problem::Problem;
 use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
+use crate::{Control, ErrorBound};
+
+/// The mean pressure that closes every gap at the load of `problem`, if any does: that of the load, or on a layer what a penetration beyond
+/// that of the half-space's full contact compresses it by.
+pub(super) fn mean_pressure(problem: &Problem) -> Option<f64> {
+    match problem.control {
+        Control::MeanPressure(value) => Some(value),
+        Control::Penetration(depth) => {
+            let pressure = (depth - (problem.h_max - problem.h_mean)) / problem.support.compliance;
+            (pressure > 0.0 && pressure.is_finite()).then_some(pressure)
+        }
+    }
+}
 
 /// The solution when `mean_pressure` closes every gap: v = h - mean(h) and p = σ0 + L⁻¹ h, provided that is nowhere
 /// tensile nor above the hardness. (For the spectral kernel p̂ = E*|q|ĥ/2.) `None` otherwise, and where rounding or a faulty kernel leave a larger error than
@@ -135,7 +147,11 @@ fn certified(
     let least = if approach.is_finite() { gap.min() } else { f64::NAN };
     let mean = total / grid.len() as f64;
     let elastic_energy = 0.5 * work / grid.len() as f64;
-    let residuals = Residuals { least_gap: least, excess: -least, mean_gap: 0.0, mean_pressure: mean, elastic_energy };
+    let mean_gap = match problem.control {
+        Control::MeanPressure(_) => 0.0,
+        Control::Penetration(_) => approach + problem.offset(),
+    };
+    let residuals = Residuals { least_gap: least, excess: -least, mean_gap, mean_pressure: mean, elastic_energy };
     let mut certificate = Certificate::new(problem, &residuals);
     let of_residual = error_of_residual(&gap, elastic_energy, inverse);
     if of_residual < certificate.energy {
@@ -147,7 +163,8 @@ fn certified(
         mean_pressure: mean,
         penetration: problem.h_max + approach,
         penetration_full_contact: problem.h_max - problem.h_mean,
-        elastic_energy,
+        mean_displacement: problem.support.compliance * mean,
+        elastic_energy: elastic_energy + problem.uniform_energy(mean),
         levels: vec![LevelInfo { grid, iterations: 0, operator_applications: 1, preconditioner_applications: 0 }],
         coarser: None,
     };

@@ -1,17 +1,19 @@
 //! Values on one grid of a cell from those on another, which is finer or coarser by any ratio.
 
 use rayon::prelude::*;
-use rc_core::Grid;
+use rc_core::{Boundary, Grid};
 
-/// Interpolates between `N` neighbours along each axis (Lagrange): each value is `read` before and `written` after.
+/// Interpolates between `N` neighbours along each axis (Lagrange): each value is `read` before and `written` after. At free borders the neighbours
+/// are the outermost ones, and beyond the last centre a value is that of its centre.
 pub(super) fn interpolate<const N: usize>(
     values: &[f64],
-    [from, to]: [Grid; 2],
+    ([from, to], boundary): ([Grid; 2], Boundary),
     read: impl Fn(f64) -> f64 + Sync,
     written: impl Fn(f64) -> f64 + Sync,
 ) -> Vec<f64> {
     let nx = from.nx();
-    let (along_x, along_y) = (Taps::<N>::of_centres(nx, to.nx()), Taps::<N>::of_centres(from.ny(), to.ny()));
+    let (along_x, along_y) =
+        (Taps::<N>::of_centres(nx, to.nx(), boundary), Taps::<N>::of_centres(from.ny(), to.ny(), boundary));
     let mut result = vec![0.0; to.len()];
     result.par_chunks_mut(to.nx()).zip(&along_y).for_each_init(
         || vec![0.0; nx],
@@ -38,13 +40,19 @@ struct Taps<const N: usize> {
 
 impl<const N: usize> Taps<N> {
     /// For each centre of `to` elements on a side that has `from` elements.
-    fn of_centres(from: usize, to: usize) -> Vec<Self> {
+    fn of_centres(from: usize, to: usize, boundary: Boundary) -> Vec<Self> {
         let ratio = from as f64 / to as f64;
         // Places of neighbours, in elements from the last one before the centre.
         let place_of = |tap: usize| tap as f64 - (N / 2 - 1) as f64;
+        let is_free = boundary == Boundary::Free;
         let of_centre = |i: usize| {
-            let place = (i as f64 + 0.5) * ratio - 0.5;
-            let before = place.floor();
+            let mut place = (i as f64 + 0.5) * ratio - 0.5;
+            let mut before = place.floor();
+            if is_free {
+                place = place.clamp(0.0, (from - 1) as f64);
+                let inner = (N / 2 - 1) as f64;
+                before = place.floor().min(from as f64 - 1.0 - (N / 2) as f64).max(inner);
+            }
             let at = place - before;
             let weights = std::array::from_fn(|tap| {
                 let others = (0..N).filter(|&other| other != tap).map(place_of);
@@ -55,7 +63,12 @@ impl<const N: usize> Taps<N> {
                 }
                 product / divisor
             });
-            let neighbour = |tap: usize| (before + place_of(tap)).rem_euclid(from as f64) as usize;
+            let neighbour = |tap: usize| {
+                let index = before + place_of(tap);
+                // A side of fewer than N elements has some neighbours twice.
+                let index = if is_free { index.clamp(0.0, (from - 1) as f64) } else { index.rem_euclid(from as f64) };
+                index as usize
+            };
             Self { neighbours: std::array::from_fn(neighbour), weights }
         };
         (0..to).map(of_centre).collect()

@@ -6,7 +6,7 @@ mod levels;
 mod nested_grids;
 mod prolongation;
 
-use rc_core::{Field, Kernel, Observer};
+use rc_core::{Boundary, Field, Kernel, Observer};
 
 use self::levels::nest_without_pits;
 pub(crate) use self::levels::{coarsen, coarsen_to, coarsen_without_pits};
@@ -15,15 +15,19 @@ pub(crate) use self::nested_grids::{FinestGrid, NestedGrids};
 pub(crate) use self::prolongation::{edge_function, edge_function_outside};
 use crate::problem::{Load, Problem};
 use crate::solution::GridSolution;
-use crate::{Control, IterationParams, ProblemError};
+use crate::support::Support;
+use crate::{IterationParams, ProblemError};
 
 /// Bytes for each element that the uniform method is assumed to need at its peak, heights included; 58 to 60 were measured at
 /// 2048² and 4096², generated heights.
 pub const UNIFORM_BYTES_PER_ELEMENT: u64 = 80;
 
+/// The same for heights with free borders, whose transforms are padded to twice as many elements along both axes, or a few more.
+pub(crate) const FREE_BYTES_PER_ELEMENT: u64 = 180;
+
 /// Solves the contact problem on the grid of `heights` (in λ, any mean).
 ///
-/// Full contact is returned exactly and without iteration. Otherwise coarser grids, each with about half the elements
+/// Full contact of a periodic cell is returned exactly and without iteration. Otherwise coarser grids, each with about half the elements
 /// per side, prepare the start on the next; on each the pressure is found by conjugate gradients preconditioned by the
 /// inverse symbol between two extensions of residuals (see `docs/uniform-solver.md` and, for measurements,
 /// `docs/measurements-uniform.md`). The certificate is computed from a fresh application of L, in double precision, on
@@ -40,9 +44,11 @@ pub(crate) fn solve_uniform(
     params: &IterationParams,
     observer: &dyn Observer,
 ) -> Result<GridSolution, ProblemError> {
-    let problem = Problem::check(heights, load, params)?;
-    let coarser = nest_without_pits(heights, SMALLEST_SIDE);
-    if let Control::MeanPressure(mean_pressure) = problem.control
+    let problem = Problem::check_on(Support::of(kernel, heights.grid()), heights, load, params)?;
+    let boundary = problem.support.boundary;
+    let coarser = nest_without_pits(heights, SMALLEST_SIDE, boundary);
+    if boundary == Boundary::Periodic
+        && let Some(mean_pressure) = full_contact::mean_pressure(&problem)
         && let Some(solution) = full_contact::solve((heights, &coarser), kernel, mean_pressure, &problem, params.bound)
     {
         return Ok(solution);

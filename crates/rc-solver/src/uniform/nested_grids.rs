@@ -36,7 +36,7 @@ pub(crate) struct FinestGrid<'a> {
 impl<'a> NestedGrids<'a> {
     /// Solves on coarser grids and then on that of `heights`.
     pub(crate) fn solve(&self, heights: &'a Field) -> FinestGrid<'a> {
-        self.solve_from(&nest_without_pits(heights, SMALLEST_SIDE), heights)
+        self.solve_from(&nest_without_pits(heights, SMALLEST_SIDE, self.problem.support.boundary), heights)
     }
 
     /// Solves on coarser grids with these heights, finest first, and then on that of `heights`.

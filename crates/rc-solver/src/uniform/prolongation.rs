@@ -6,19 +6,20 @@
 //! interpolation puts the edge where it belongs.
 
 use rayon::prelude::*;
-use rc_core::Grid;
+use rc_core::{Boundary, Grid};
 
 use super::interpolation::interpolate;
 use crate::descent::Descent;
 
 /// The start on a `finer` grid of the same cell.
 pub(crate) fn prolong(coarse: &Descent<'_>, finer: Grid) -> Vec<f64> {
-    pressure_from(&edge_function(coarse), coarse.grid(), finer)
+    let boundary = coarse.boundary();
+    pressure_from(&edge_function(coarse), ([coarse.grid(), finer], boundary))
 }
 
 /// The pressure on a finer grid from φ, which is interpolated linearly.
-fn pressure_from(function: &[f64], coarse: Grid, finer: Grid) -> Vec<f64> {
-    interpolate::<2>(function, [coarse, finer], |value| value, |value| value.max(0.0).sqrt())
+fn pressure_from(function: &[f64], grids: ([Grid; 2], Boundary)) -> Vec<f64> {
+    interpolate::<2>(function, grids, |value| value, |value| value.max(0.0).sqrt())
 }
 
 /// φ at the coarse centres.
@@ -27,30 +28,40 @@ pub(crate) fn edge_function(coarse: &Descent<'_>) -> Vec<f64> {
     let (pressure, gap) = (coarse.pressure(), coarse.gap());
     let zero_gap = coarse.contact_gap();
     let spacing = coarse.grid().spacing().min_element();
+    let neighbours = Neighbours(coarse.boundary());
     let mut function = vec![0.0; nx * ny];
     function.par_chunks_mut(nx).enumerate().for_each(|(iy, row)| {
-        let rows = [(iy + ny - 1) % ny, iy, (iy + 1) % ny].map(|y| &pressure[y * nx..(y + 1) * nx]);
+        let rows = neighbours.of(iy, ny).map(|y| &pressure[y * nx..(y + 1) * nx]);
         for (ix, value) in row.iter_mut().enumerate() {
             let here = rows[1][ix];
             *value = if here > 0.0 {
                 here * here
             } else {
-                outside(&rows, ix, (gap[iy * nx + ix] - zero_gap).max(0.0), spacing)
+                let columns = neighbours.of(ix, nx);
+                let near = rows.iter().flat_map(|row| columns.iter().map(|&column| &row[column]));
+                edge_function_outside(near, (gap[iy * nx + ix] - zero_gap).max(0.0), spacing)
             };
         }
     });
     function
 }
 
-/// φ of an element out of contact. c² is estimated from its neighbours in contact, whose centres are about 0.7 elements
-/// inside the edge; without any the value has no influence.
-fn outside(rows: &[&[f64]; 3], ix: usize, gap: f64, spacing: f64) -> f64 {
-    let nx = rows[0].len();
-    let columns = [(ix + nx - 1) % nx, ix, (ix + 1) % nx];
-    edge_function_outside(rows.iter().flat_map(|row| columns.iter().map(|&column| &row[column])), gap, spacing)
+/// Who is beside whom.
+#[derive(Clone, Copy)]
+struct Neighbours(Boundary);
+
+impl Neighbours {
+    /// The element and those on both sides of it; beyond a free border it is the element itself.
+    fn of(self, i: usize, n: usize) -> [usize; 3] {
+        match self.0 {
+            Boundary::Periodic => [(i + n - 1) % n, i, (i + 1) % n],
+            Boundary::Free => [i.saturating_sub(1), i, (i + 1).min(n - 1)],
+        }
+    }
 }
 
-/// φ of an element out of contact with these pressures around it.
+/// φ of an element out of contact with these pressures around it. c² is estimated from its neighbours in contact, whose centres are about 0.7
+/// elements inside the edge; without any the value has no influence.
 pub(crate) fn edge_function_outside<'a>(near: impl Iterator<Item = &'a f64>, gap: f64, spacing: f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for p in near {
@@ -87,7 +98,7 @@ mod tests {
             let grid = |nx, ny| Grid::new(nx, ny).expect("a grid");
             let finer = [[2 * nx, 2 * ny], [27, 15], [31, 17]];
             let all = finer.into_iter().flat_map(|[fx, fy]| {
-                let fine = pressure_from(&coarse, grid(nx, ny), grid(fx, fy));
+                let fine = pressure_from(&coarse, ([grid(nx, ny), grid(fx, fy)], Boundary::Periodic));
                 let at =
                     move |i: usize| [centre(i % fx) * nx as f64 / fx as f64, centre(i / fx) * ny as f64 / fy as f64];
                 fine.into_iter().enumerate().map(move |(i, p)| (at(i), p))

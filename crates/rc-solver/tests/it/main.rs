@@ -3,6 +3,7 @@
 mod error_bars;
 mod gauss_seidel;
 mod hardness;
+mod hardness_of_solids;
 mod observers;
 mod uniform;
 

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use rc_comm::Ranks;
-use rc_core::{Elasticity, Kernel, PeriodicCell, UnitError, Units};
-use rc_kernel::{Love, Spectral};
+use rc_core::{Boundary, Elasticity, Kernel, PeriodicCell, UnitError, Units};
+use rc_kernel::{FreeLove, Layer, Love, LoveLayer, Spectral, SpectralLayer};
 use rc_solver::{Control, Method, SolveParams, Tolerance};
 
 use super::checks::{missing, positive};
+use super::{elastic_layer, free_borders};
 use crate::error::CliError;
 use crate::files::checkpoint::CheckpointFile;
 use crate::scene::file;
@@ -25,6 +26,10 @@ pub struct ContactSetup {
     pub hardness: f64,
     /// Discretisation.
     pub kernel: KernelName,
+    /// What is beyond the heights.
+    pub boundary: Boundary,
+    /// The layer that takes the place of the half-space, if one does.
+    pub layer: Option<Layer>,
     /// Method, tolerance and limits, but for the memory there is.
     pub params: SolveParams,
     /// The keys as resolved, for `scene.toml`.
@@ -47,11 +52,18 @@ impl ContactSetup {
     ///
     /// # Errors
     /// [`CliError::Input`] for a kernel that only a program knows.
-    pub fn kernel(&self) -> Result<&'static dyn Kernel, CliError> {
-        kernel(self.kernel).ok_or_else(|| {
-            CliError::input(
-                "kernel: 'own' stands for a function of a Python program, and only that program can solve with it; give love or spectral",
-            )
+    pub fn kernel(&self) -> Result<Arc<dyn Kernel + Send + Sync>, CliError> {
+        Ok(match (self.kernel, self.layer) {
+            (KernelName::Love, None) if self.boundary == Boundary::Free => Arc::new(FreeLove),
+            (KernelName::Love, None) => Arc::new(Love),
+            (KernelName::Spectral, None) => Arc::new(Spectral),
+            (KernelName::Love, Some(layer)) => Arc::new(LoveLayer(layer)),
+            (KernelName::Spectral, Some(layer)) => Arc::new(SpectralLayer(layer)),
+            (KernelName::Own, _) => {
+                return Err(CliError::input(
+                    "kernel: 'own' stands for a function of a Python program, and only that program can solve with it; give love or spectral",
+                ));
+            }
         })
     }
 }
@@ -71,6 +83,7 @@ pub fn kernel(name: KernelName) -> Option<&'static dyn Kernel> {
 /// # Errors
 /// [`CliError::Input`].
 pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, CliError> {
+    let keys = elastic_layer::with_poisson(keys)?;
     let defaults = ContactKeys { pressure: None, penetration: None, method: None, ..file::example().contact };
     let keys = keys.over(defaults);
     if keys.area_error.is_some() {
@@ -83,13 +96,16 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
     let hardness = hardness(&keys, units)?;
     let kernel = keys.kernel.unwrap_or(KernelName::Love);
     check_method(&keys, kernel)?;
+    let boundary = free_borders::boundary(&keys, kernel)?;
+    let layer = elastic_layer::layer(&keys, kernel, cell.side())?;
     let params = SolveParams {
         tolerance: tolerance(&keys)?,
         method: keys.method,
         border_level: keys.border_level.unwrap_or(0),
         ..SolveParams::certified()
     };
-    Ok(ContactSetup { units, control, hardness, kernel, params, keys, place: Place::default() })
+    let place = Place::default();
+    Ok(ContactSetup { units, control, hardness, kernel, boundary, layer, params, keys, place })
 }
 
 fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {
@@ -209,6 +225,22 @@ mod tests {
             ("energy_tolerance = 1.0", "energy_tolerance"),
             ("energy_tolerance = nan", "energy_tolerance"),
             ("tolerance = 1e-6\nenergy_tolerance = 1e-3", "energy_tolerance"),
+            ("boundary = \"free\"\nkernel = \"spectral\"", "kernel"),
+            ("boundary = \"free\"\nkernel = \"own\"", "boundary"),
+            ("boundary = \"free\"\nlayer_thickness = 1e-3", "boundary"),
+            ("boundary = \"free\"\nmethod = \"adaptive\"", "method"),
+            ("boundary = \"free\"\nborder_level = 1", "border_level"),
+            ("boundary = \"free\"\nleakage = true", "leakage"),
+            ("layer_thickness = 0.0", "layer_thickness"),
+            ("layer_thickness = inf", "layer_thickness"),
+            ("layer_thickness = 1e-3\ne_star = 1e9", "layer_poisson"),
+            ("layer_thickness = 1e-3\nlayer_poisson = 0.51", "layer_poisson"),
+            ("layer_thickness = 1e-3\ne_star = 1e9\nlayer_poisson = -1.0", "layer_poisson"),
+            ("layer_thickness = 1e-3\npoisson = 0.4\nlayer_poisson = 0.3", "layer_poisson"),
+            ("layer_poisson = 0.3", "layer_poisson"),
+            ("layer_thickness = 1e-3\nmethod = \"adaptive\"", "method"),
+            ("layer_thickness = 1e-3\nborder_level = 1", "border_level"),
+            ("layer_thickness = 1e-3\nkernel = \"own\"", "layer_thickness"),
         ];
         for (text, key) in cases {
             let keys = ContactKeys { pressure: Some(1.0), ..keys(text) };

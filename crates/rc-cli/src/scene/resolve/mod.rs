@@ -2,12 +2,15 @@
 
 mod checks;
 mod contact;
+mod elastic_layer;
+mod free_borders;
 mod layers;
 mod map;
 mod surface;
 
 pub use checks::checked_grid;
 pub use contact::{ContactSetup, Place, contact, kernel};
+pub(crate) use elastic_layer::check_thickness;
 pub use layers::layers;
 pub use map::{check_cell_and_material, check_size, check_size_and_material};
 pub use surface::{surface, surface_in_cell};

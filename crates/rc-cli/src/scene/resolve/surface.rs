@@ -45,7 +45,7 @@ pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
     match (keys.heights.clone(), keys.spectrum.clone()) {
         (Some(path), _) => {
             let source = Source::File { path, expected: grid, params: keys.read_params(), scales: keys.scales() };
-            Ok(SurfaceSetup { cell, source, keys })
+            Ok(SurfaceSetup { cell, source, may_be_flat: false, keys })
         }
         (None, Some(path)) => of_waves(keys, &path, cell, grid),
         (None, None) => random(keys, cell, grid),
@@ -68,7 +68,7 @@ fn random(keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Result<S
     let spectrum = spectrum(&keys, cell.side())?;
     let grid = resolving_grid(grid, spectrum.waves)?;
     let keys = SurfaceKeys { grid: Some(GridSpec { nx: grid.nx(), ny: grid.ny() }), ..keys };
-    Ok(SurfaceSetup { cell, source: Source::Random { spectrum, grid }, keys })
+    Ok(SurfaceSetup { cell, source: Source::Random { spectrum, grid }, may_be_flat: false, keys })
 }
 
 /// The surface that a file has the waves of, on a grid that resolves them. The file is read here, since the grid depends on it.
@@ -81,7 +81,7 @@ fn of_waves(keys: SurfaceKeys, path: &Path, cell: PeriodicCell, grid: Option<Gri
     let waves = Arc::new(WaveFile::read(path, keys.scales(), cell.side())?);
     let grid = resolving_grid(grid, waves.surface().waves())?;
     let keys = SurfaceKeys { grid: Some(GridSpec { nx: grid.nx(), ny: grid.ny() }), ..keys };
-    Ok(SurfaceSetup { cell, source: Source::Waves { path: path.to_owned(), waves, grid }, keys })
+    Ok(SurfaceSetup { cell, source: Source::Waves { path: path.to_owned(), waves, grid }, may_be_flat: false, keys })
 }
 
 /// The grid that is given, or one that resolves `waves` per cell well.

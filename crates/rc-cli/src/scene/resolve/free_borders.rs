@@ -1,0 +1,39 @@
+//! What goes with free borders.
+
+use rc_core::Boundary;
+use rc_solver::Method;
+
+use crate::error::CliError;
+use crate::scene::keys::{ContactKeys, KernelName};
+
+/// The boundary; refuses what is for a periodic cell only where borders are free.
+pub(super) fn boundary(keys: &ContactKeys, kernel: KernelName) -> Result<Boundary, CliError> {
+    let boundary = keys.boundary.unwrap_or_default();
+    if boundary == Boundary::Periodic {
+        return Ok(boundary);
+    }
+    let refuse = |message: &str| Err(CliError::input(message));
+    if keys.leakage {
+        return refuse("leakage: the flow is computed on a periodic cell only; omit leakage or boundary");
+    }
+    match (kernel, keys.layer_thickness) {
+        (KernelName::Spectral, _) => {
+            refuse("kernel: spectral waves are periodic; give love for free borders, or omit it")
+        }
+        (KernelName::Own, _) => {
+            refuse("boundary: a function as the kernel describes a periodic cell; omit one of the two")
+        }
+        (KernelName::Love, Some(_)) => {
+            refuse("boundary: a layer has no free borders; omit boundary, or layer_thickness")
+        }
+        (KernelName::Love, None) => match keys.method {
+            Some(method @ (Method::Adaptive | Method::GaussSeidel)) => Err(CliError::input(format_args!(
+                "method: '{method}' solves on a periodic cell only; give uniform for free borders, or omit it"
+            ))),
+            _ if keys.border_level.is_some_and(|level| level > 0) => {
+                refuse("border_level: only the adaptive method, on a periodic cell, has it; omit it")
+            }
+            _ => Ok(boundary),
+        },
+    }
+}

@@ -1,0 +1,186 @@
+//! Layers and patches: keys, files, sweeps, pages, refusals.
+
+use serde_json::Value;
+
+use crate::solve::assert_close;
+use crate::support::{Place, assert_refused, assert_solved, bumps, f8, npy, text};
+
+const LAYER: [&str; 2] = ["--layer-thickness", "3e-4"];
+const MAP: [&str; 8] = ["--heights", "map.npy", "--cell", "1e-3", "--e-star", "1e9", "--boundary", "free"];
+
+/// A folder with a map.
+fn place() -> Place {
+    let place = Place::new();
+    place.write("map.npy", npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
+    place.write("flat.npy", npy("<f8", false, "(32, 32)", &f8(&[0.5; 1024])));
+    place
+}
+
+/// The summary of `rc solve` with these words.
+fn summary(place: &Place, words: &[&str]) -> Value {
+    let solved = place.run(&[&["solve", "--quiet", "--json"], words].concat());
+    assert_solved(&solved);
+    serde_json::from_slice(&solved.stdout).expect("a summary")
+}
+
+fn number(summary: &Value, key: &str) -> f64 {
+    summary[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", summary[key]))
+}
+
+#[test]
+fn a_layer_is_compressed_by_the_mean_pressure() {
+    let place = place();
+    let small = ["--waves", "8", "--grid", "128", "--pressure", "4e5"];
+    let on_half_space = summary(&place, &[&small[..], &["--method", "uniform"]].concat());
+    let on_layer = summary(&place, &[&small[..], &LAYER, &["--out", "layer"]].concat());
+    assert_eq!(on_layer["method_reason"], "uniform: a layer has no adaptive form");
+    assert!(number(&on_layer, "area_fraction") < number(&on_half_space, "area_fraction"), "a layer is stiffer");
+    // Uniaxial compression with the example's 0.4 GPa and 0.45.
+    let compressed = 4e5 * 3e-4 * (1.45 * 0.1) / (0.55 * 0.4e9);
+    let gap = number(&on_layer, "penetration_full_contact") - number(&on_layer, "penetration") + compressed;
+    assert_close("mean gap", number(&on_layer, "mean_gap"), gap, 1e-9);
+    let field = rc_heights::npy::read(&place.path("layer/gap.npy")).expect("a field");
+    assert_close("mean of gap.npy", field.mean(), gap, 1e-9);
+    let scene = text(&place.bytes("layer/scene.toml"));
+    assert!(scene.contains("layer_thickness = 0.0003") && !scene.contains("boundary"), "{scene}");
+    assert_solved(&place.run(&["solve", "layer/scene.toml", "--out", "again", "--quiet"]));
+    assert!(place.bytes("layer/pressure.npy") == place.bytes("again/pressure.npy"));
+    let thick = summary(&place, &[&small[..], &["--layer-thickness", "1"]].concat());
+    assert_close("a thick layer", number(&thick, "area_fraction"), number(&on_half_space, "area_fraction"), 1e-4);
+}
+
+#[test]
+fn poissons_ratio_of_a_layer_is_that_of_its_material() {
+    let place = place();
+    let small = ["--waves", "8", "--grid", "128", "--pressure", "4e5", "--layer-thickness", "3e-4"];
+    let with = |more: &[&str]| summary(&place, &[&small[..], more].concat());
+    let [by_material, by_layer] = [with(&["--poisson", "0.3"]), with(&["--layer-poisson", "0.3"])];
+    assert_eq!(by_material["area_fraction"], by_layer["area_fraction"]);
+    assert_eq!(by_material["penetration"], by_layer["penetration"]);
+    let e_star = format!("{}", 0.4e9 / (1.0 - 0.09));
+    let by_e_star = with(&["--e-star", &e_star, "--layer-poisson", "0.3"]);
+    assert_close("area", number(&by_e_star, "area_fraction"), number(&by_layer, "area_fraction"), 1e-9);
+    let refused = place.run(&[&["solve"], &small[..], &["--e-star", "1e9"]].concat());
+    assert_refused(&refused, "layer_poisson: must be given with e_star");
+    let thin = ["solve", "--waves", "8", "--grid", "128", "--pressure", "1e5", "--layer-thickness", "1e-5"];
+    assert_refused(&place.run(&thin), "layer_thickness: 1e-5 m is below 0.25 of an element of 128 x 128");
+}
+
+#[test]
+fn a_patch_has_a_result_like_any_other() {
+    let place = place();
+    let solved = place.run(&[&["solve"], &MAP[..], &["--pressure", "2e6", "--out", "patch"]].concat());
+    assert_solved(&solved);
+    assert!(text(&solved.stdout).contains("mean displacement"), "{}", text(&solved.stdout));
+    let found = place.json("patch/summary.json");
+    assert_eq!(found["method_reason"], "uniform: free borders have no adaptive form");
+    let [pressure, gap] = ["pressure", "gap"]
+        .map(|name| rc_heights::npy::read(&place.path(&format!("patch/{name}.npy"))).expect("a field"));
+    assert_close("load", pressure.mean(), 2e6, 1e-10);
+    assert_close("mean gap", gap.mean(), number(&found, "mean_gap"), 1e-9);
+    let scene = text(&place.bytes("patch/scene.toml"));
+    assert!(scene.contains("boundary = \"free\""), "{scene}");
+    assert_solved(&place.run(&["solve", "patch/scene.toml", "--out", "again", "--quiet", "--threads", "1"]));
+    assert!(place.bytes("patch/pressure.npy") == place.bytes("again/pressure.npy"));
+    for words in [&["report", "patch"][..], &["export", "patch", "--vtk"], &["plot", "patch"], &["inspect", "patch"]] {
+        assert_solved(&place.run(words));
+    }
+    let periodic = summary(&place, &[&MAP[..6], &["--pressure", "2e6", "--boundary", "periodic"]].concat());
+    assert!(number(&periodic, "penetration") < number(&found, "penetration"), "a patch sinks as a whole");
+    let by_depth = format!("{}", number(&found, "penetration"));
+    let by_depth = summary(&place, &[&MAP[..], &["--penetration", &by_depth]].concat());
+    assert_close("load", number(&by_depth, "mean_pressure"), 2e6, 1e-3);
+}
+
+/// Nothing closes the full contact of a patch: the flat punch, F = 1.1523 E* δ side.
+#[test]
+fn a_flat_patch_is_a_punch() {
+    let place = place();
+    let flat = ["--heights", "flat.npy", "--cell", "1e-3", "--e-star", "1e9"];
+    let found =
+        summary(&place, &[&flat[..], &["--boundary", "free", "--penetration", "1e-6", "--out", "punch"]].concat());
+    assert_close("load", number(&found, "mean_pressure"), 1.1523e6, 1.5e-2);
+    assert_close("stiffness", number(&found, "contact_stiffness"), 1.1523e12, 1.5e-2);
+    assert_close("area", number(&found, "area_fraction"), 1.0, 1e-12);
+    assert_solved(&place.run(&["report", "punch"]));
+    assert_refused(&place.run(&[&["solve"], &flat[..], &["--pressure", "1e6"]].concat()), "a flat surface");
+}
+
+#[test]
+fn sweeps_solve_layers_and_patches() {
+    let place = place();
+    let loads = ["--pressures", "1e5,1e6", "--quiet"];
+    let patch = [&["sweep"], &MAP[..], &loads, &["--out", "patches"]].concat();
+    assert_solved(&place.run(&patch));
+    let layers = ["sweep", "--waves", "8", "--grid", "128", "--seeds", "1..2", "--out", "layers"];
+    assert_solved(&place.run(&[&layers[..], &loads, &LAYER].concat()));
+    for (folder, rows) in [("patches", 2), ("layers", 4)] {
+        let table = text(&place.bytes(&format!("{folder}/sweep.csv")));
+        assert_eq!(table.lines().count(), 1 + rows, "{table}");
+        assert_eq!(table.matches("converged").count(), rows, "{table}");
+    }
+    let single = summary(&place, &[&MAP[..], &["--pressure", "1e6"]].concat());
+    let table = text(&place.bytes("patches/sweep.csv"));
+    let penetration = format!(",{:e},", number(&single, "penetration"));
+    assert!(table.contains(&penetration), "{penetration} is not in {table}");
+}
+
+#[test]
+fn layers_and_patches_have_a_hardness() {
+    let place = place();
+    let layer = ["--waves", "8", "--grid", "128", "--pressure", "4e5", "--layer-thickness", "3e-4"];
+    let patch = [&MAP[..], &["--pressure", "2e6"]].concat();
+    for (folder, words) in [("layer", &layer[..]), ("patch", &patch)] {
+        let elastic = summary(&place, words);
+        let hardness = format!("{:e}", 0.5 * number(&elastic, "max_pressure"));
+        let solved = place.run(&[&["solve"], words, &["--hardness", &hardness, "--out", folder]].concat());
+        assert_solved(&solved);
+        let found = place.json(&format!("{folder}/summary.json"));
+        assert!(number(&found, "plastic_area_fraction") > 0.0, "{folder}: {found}");
+        assert!(number(&found, "area_fraction") > number(&elastic, "area_fraction"), "{folder}: {found}");
+        let gap = rc_heights::npy::read(&place.path(&format!("{folder}/gap.npy"))).expect("a field");
+        assert_close("mean gap", gap.mean(), number(&found, "mean_gap"), 1e-6);
+        let displacement = number(&found, "mean_gap") - number(&found, "mean_plastic_gap")
+            + number(&found, "penetration")
+            - number(&found, "penetration_full_contact");
+        let said = format!("mean displacement {}", rc_core::quantity::engineering(displacement, "m"));
+        assert!(text(&solved.stdout).contains(&said), "{folder}: {said} is not in {}", text(&solved.stdout));
+        assert_solved(&place.run(&["report", folder]));
+    }
+    let soft = place.run(&[&["solve"], &patch[..], &["--hardness", "1e6"]].concat());
+    assert_refused(&soft, "hardness: 1000000 Pa cannot bear a mean pressure of 2000000 Pa");
+}
+
+/// The stiffness of a layer says nothing of conduction; a film flows over it as over a half-space.
+#[test]
+fn a_layer_leaks_and_has_no_conductance() {
+    let place = place();
+    let small = ["--waves", "8", "--grid", "128", "--pressure", "4e5", "--leakage"];
+    let on_half_space = summary(&place, &[&small[..], &["--method", "uniform"]].concat());
+    let solved = place.run(&[&["solve"], &small[..], &LAYER, &["--out", "layer"]].concat());
+    assert_solved(&solved);
+    assert!(!text(&solved.stdout).contains("conductance"), "{}", text(&solved.stdout));
+    let on_layer = place.json("layer/summary.json");
+    assert!(on_layer["contact_conductance"].is_null() && on_half_space["contact_conductance"].is_f64());
+    let permeance = |summary: &Value| summary["leakage"]["permeance"][0].as_f64().expect("a permeance");
+    assert!(permeance(&on_layer) > permeance(&on_half_space), "less contact, and a wider gap");
+}
+
+#[test]
+fn what_does_not_go_with_a_patch_is_refused() {
+    let place = place();
+    for (more, expected) in [
+        (&["--kernel", "spectral"][..], "kernel: spectral waves are periodic"),
+        (&["--method", "adaptive"], "method: 'adaptive' solves on a periodic cell only"),
+        (&["--layer-thickness", "1e-3", "--layer-poisson", "0.3"], "boundary: a layer has no free borders"),
+        (&["--leakage"], "leakage: the flow is computed on a periodic cell only; omit leakage or boundary"),
+        (&["--penetration", "-1"], "penetration"),
+        (&["--boundary", "open"], "boundary"),
+    ] {
+        let load = if more[0] == "--penetration" { &[][..] } else { &["--pressure", "1e6"] };
+        let map = if more[0] == "--boundary" { &MAP[..6] } else { &MAP[..] };
+        let refused = place.run(&[&["solve"], map, load, more].concat());
+        assert_eq!(refused.status.code(), Some(2), "{more:?}: {}", text(&refused.stderr));
+        assert!(text(&refused.stderr).contains(expected), "{more:?}: {}", text(&refused.stderr));
+    }
+}

@@ -1,0 +1,34 @@
+//! The paper's element on an infinite half-space, whose surface is free beyond the heights.
+
+use rc_core::{DVec2, Grid, Kernel, Symbol};
+
+use crate::{Love, love_rectangle_displacement};
+
+/// [`Love`] without periodic images: uniform pressure on each element of a finite patch, displacement at element centres, zero far away.
+///
+/// The response of element to element is [`love_displacement`](crate::love_displacement), and that of rectangles, each evaluated once; the
+/// solver sums them by a transform on a padded grid.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FreeLove;
+
+impl Kernel for FreeLove {
+    fn name(&self) -> &'static str {
+        "love"
+    }
+
+    /// That of the periodic cell, for preconditioning.
+    fn symbol(&self, grid: Grid) -> Symbol<'_> {
+        Love.symbol(grid)
+    }
+
+    fn free_response(&self, grid: Grid) -> Option<Symbol<'_>> {
+        let spacing = grid.spacing();
+        // The sides of a square may differ by a rounding.
+        let is_square = (spacing.x - spacing.y).abs() <= 4.0 * f64::EPSILON * spacing.x;
+        let half_sides = 0.5 * if is_square { DVec2::splat(spacing.x) } else { spacing };
+        let distance = 2.0 * half_sides;
+        Some(Box::new(move |ix, iy| {
+            love_rectangle_displacement(distance * DVec2::new(ix as f64, iy as f64), half_sides)
+        }))
+    }
+}

@@ -1,0 +1,195 @@
+//! Elastic layers on a rigid base: exact limits, the published kernel, and a dense solver.
+
+use std::f64::consts::{PI, TAU};
+
+use rc_core::{DVec2, Field, Grid, Kernel, Silent};
+use rc_fractal::{SpectrumParams, Surface};
+use rc_kernel::{Layer, Love, LoveLayer, SpectralLayer};
+use rc_solver::{ContactProblem, Control, Method, MethodReason, SolveError, SolveParams, Status, solve_dense};
+use rc_theory::hertz::PeriodicHertz;
+use rc_theory::thin_layer::ThinLayer;
+
+use crate::examples::own_kernel::BondedLayer;
+use crate::{assert_close, solved};
+
+fn layer(thickness: f64, poisson: f64) -> Layer {
+    Layer { thickness, poisson }
+}
+
+/// Paraboloid of radius `radius` with its apex at the centre of an element.
+fn sphere(n: usize, radius: f64) -> Field {
+    let grid = Grid::square(n).expect("a grid");
+    let centre = grid.centre(n / 2, n / 2);
+    Field::from_fn(grid, |at| -(at - centre).length_squared() / (2.0 * radius))
+}
+
+fn rough(n: usize, waves: usize) -> Field {
+    let surface = Surface::new(&SpectrumParams::paper(waves, 3)).expect("a surface");
+    surface.sample_on(Grid::square(n).expect("a grid")).expect("heights")
+}
+
+/// The example is the published formula, written by itself; both solve to the same digits, but for the mean displacement.
+#[test]
+fn the_own_kernel_of_the_example_is_this_layer() {
+    let heights = rough(128, 8);
+    for (thickness, poisson) in [(0.5, 0.3), (0.05, 0.45), (0.02, 0.5)] {
+        let own = BondedLayer { thickness, poisson };
+        for xi in [1e-3, 0.1, 0.7, 3.0, 40.0] {
+            assert_close("factor", layer(thickness, poisson).factor(xi), own.factor(xi), 1e-7);
+        }
+        let control = Control::MeanPressure(2e-3);
+        let [by_own, by_layer] = [&own as &dyn Kernel, &SpectralLayer(layer(thickness, poisson))]
+            .map(|kernel| solved(&heights, kernel, control, 1e-10));
+        let compressed = layer(thickness, poisson).uniform_displacement() * 2e-3;
+        assert_close("max pressure", by_layer.pressure().max(), by_own.pressure().max(), 1e-6);
+        let penetration = by_own.info().penetration + compressed;
+        assert_close("penetration", by_layer.info().penetration, penetration, 1e-7);
+        assert_close("mean gap", by_layer.observables().mean_gap, by_own.observables().mean_gap, 1e-6);
+        assert_close("mean gap", by_layer.gap().mean(), by_layer.observables().mean_gap, 1e-6);
+        let energy = by_own.info().elastic_energy + 0.5 * compressed * 2e-3;
+        assert_close("energy", by_layer.info().elastic_energy, energy, 1e-6);
+    }
+}
+
+#[test]
+fn load_and_penetration_are_two_ways_to_one_contact() {
+    let heights = rough(128, 8);
+    for (thickness, poisson) in [(2.0, 0.3), (0.1, 0.0), (0.03, 0.45), (0.05, 0.5)] {
+        for kernel in [&LoveLayer(layer(thickness, poisson)) as &dyn Kernel, &SpectralLayer(layer(thickness, poisson))]
+        {
+            for load in [2e-4, 5e-3, 5e-2] {
+                let by_load = solved(&heights, kernel, Control::MeanPressure(load), 1e-9);
+                let depth = Control::Penetration(by_load.info().penetration);
+                let by_depth = solved(&heights, kernel, depth, 1e-9);
+                assert_close("load", by_depth.info().mean_pressure, load, 1e-5);
+                assert_close("area", by_depth.area().fraction, by_load.area().fraction, 1e-3);
+                assert_close("stiffness", by_depth.stiffness(), by_load.stiffness(), 5e-3);
+            }
+        }
+    }
+}
+
+/// The displacement is v of gap = v - h + h_max - Δ, with the compression under the mean pressure.
+#[test]
+fn displacement_and_gap_belong_together() {
+    let heights = rough(64, 6);
+    let solution = solved(&heights, &LoveLayer(layer(0.1, 0.2)), Control::MeanPressure(4e-3), 1e-10);
+    let offset = heights.max() - solution.info().penetration;
+    let fields = solution.displacement().values().iter().zip(heights.values()).zip(solution.gap().values());
+    for ((v, h), gap) in fields {
+        assert!((v - h + offset - gap).abs() < 1e-12, "{v} - {h} + {offset} for {gap}");
+    }
+}
+
+#[test]
+fn a_dense_solver_finds_the_same_pressure() {
+    let heights = rough(24, 4);
+    for (thickness, poisson) in [(0.3, 0.3), (0.06, 0.5)] {
+        let kernel = LoveLayer(layer(thickness, poisson));
+        let range = heights.max() - heights.min();
+        for depth in [0.2 * range, 0.3 * range, 0.45 * range] {
+            let exact = solve_dense(&heights, &kernel, depth).expect("valid").expect("a contact that settles");
+            let found = solved(&heights, &kernel, Control::Penetration(depth), 1e-11);
+            let off = found.pressure().values().iter().zip(exact.values()).map(|(a, b)| (a - b).abs());
+            assert!(off.fold(0.0, f64::max) < 1e-6 * exact.max(), "thickness {thickness}, ν = {poisson}, {depth}");
+        }
+    }
+}
+
+/// A penetration beyond what the half-space takes compresses the layer.
+#[test]
+fn full_contact_is_exact_at_any_depth() {
+    let waves = |at: DVec2| 1e-3 * ((TAU * at.x).cos() + (TAU * (2.0 * at.y - at.x)).cos());
+    let heights = Field::from_fn(Grid::square(64).expect("a grid"), waves);
+    let solid = layer(0.05, 0.3);
+    let kernel = SpectralLayer(solid);
+    let depth = heights.max() - heights.mean() + 2e-3;
+    let by_depth = solved(&heights, &kernel, Control::Penetration(depth), 1e-10);
+    assert_eq!(by_depth.status(), Status::FullContact);
+    let expected = 2e-3 / solid.uniform_displacement();
+    assert_close("load", by_depth.info().mean_pressure, expected, 1e-12);
+    assert_close("penetration", by_depth.info().penetration, depth, 1e-12);
+    assert_close("stiffness", by_depth.stiffness(), solid.uniform_displacement().recip(), 1e-12);
+    assert!(by_depth.observables().mean_gap.abs() < 1e-15, "{}", by_depth.observables().mean_gap);
+    // Each wave q of the heights is that of its pressure times 2/q M(q d).
+    let stiffness = [TAU, TAU * 5.0_f64.sqrt()].map(|q| 0.5 * q / solid.factor(q * 0.05));
+    let wave =
+        |at: DVec2| 1e-3 * (stiffness[0] * (TAU * at.x).cos() + stiffness[1] * (TAU * (2.0 * at.y - at.x)).cos());
+    let pressure = Field::from_fn(heights.grid(), |at| expected + wave(at));
+    let off = pressure.values().iter().zip(by_depth.pressure().values()).map(|(a, b)| (a - b).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-12 * expected, "the pressure is not that of its waves");
+}
+
+#[test]
+fn a_sphere_on_a_thick_layer_is_that_of_hertz() {
+    let expected = PeriodicHertz { radius: 1.0 }.at_contact_radius(0.1).expect("a small contact");
+    let heights = sphere(256, 1.0);
+    let thick = layer(3.0, 0.3);
+    let solution = solved(&heights, &LoveLayer(thick), Control::MeanPressure(expected.load), 1e-9);
+    let compressed = thick.uniform_displacement() * expected.load;
+    assert_close("peak pressure", solution.pressure().max(), expected.peak_pressure, 2e-3);
+    assert_close("penetration", solution.info().penetration, expected.penetration + compressed, 2e-3);
+    assert_close("radius", (solution.area().fraction / PI).sqrt(), 0.1, 5e-3);
+}
+
+/// Johnson's columns, and his incompressible layer; corrections are of first order in the thickness over the contact radius.
+#[test]
+fn a_sphere_on_a_thin_layer_is_on_springs_or_squeezes_it_out() {
+    for (poisson, thickness, allowed) in [(0.3, 0.004, 0.06), (0.0, 0.004, 0.06), (0.5, 0.02, 0.3)] {
+        let theory = ThinLayer { radius: 2.0, thickness, poisson };
+        let radius = 0.3;
+        let errors = [thickness, 0.5 * thickness].map(|thickness| {
+            let theory = ThinLayer { thickness, ..theory };
+            let load = theory.load(radius);
+            let kernel = LoveLayer(layer(thickness, poisson));
+            let solution = solved(&sphere(512, 2.0), &kernel, Control::MeanPressure(load), 1e-8);
+            assert_close("radius", (solution.area().fraction / PI).sqrt(), radius, 0.5 * allowed);
+            assert_close("penetration", solution.info().penetration, theory.penetration(radius), allowed);
+            solution.pressure().max() / theory.pressure(0.0, radius) - 1.0
+        });
+        assert!(errors[0].abs() < allowed && errors[1].abs() < 0.7 * errors[0].abs(), "ν = {poisson}: {errors:?}");
+    }
+}
+
+#[test]
+fn the_uniform_method_solves_a_layer_and_says_why() {
+    let heights = rough(128, 8);
+    let kernel = LoveLayer(layer(0.1, 0.3));
+    let problem = ContactProblem::new(&heights, Control::MeanPressure(1e-4)).with_kernel(&kernel);
+    let plan = problem.clone().plan(&SolveParams::default()).expect("a plan");
+    assert_eq!((plan.method(), plan.reason()), (Method::Uniform, &MethodReason::Layer));
+    let error = problem.plan(&SolveParams::default().by(Method::Adaptive)).err();
+    assert!(matches!(error, Some(SolveError::Solid { method: Method::Adaptive })), "{error:?}");
+    let stiff = solved(&heights, &kernel, Control::MeanPressure(1e-3), 1e-8);
+    let half_space = solved(&heights, &Love, Control::MeanPressure(1e-3), 1e-8);
+    assert!(stiff.area().fraction < half_space.area().fraction, "a layer is stiffer than the half-space");
+}
+
+/// √(G/U) bounds the distance to the solution in the energy norm, at loose tolerances too; U has no uniform compression.
+#[test]
+fn the_certificate_bounds_the_error_on_a_layer() {
+    let heights = rough(96, 6);
+    let kernel = LoveLayer(layer(0.2, 0.3));
+    for control in [Control::MeanPressure(3e-3), Control::Penetration(0.7 * (heights.max() - heights.mean()))] {
+        let exact = solved(&heights, &kernel, control, 1e-12);
+        for tolerance in [1e-2, 1e-3, 1e-4] {
+            let params = SolveParams::to_tolerance(tolerance).by(Method::Uniform);
+            let problem = ContactProblem::new(&heights, control).with_kernel(&kernel);
+            let loose = problem.solve(&params, &Silent).expect("a solution");
+            let difference: Vec<f64> =
+                loose.pressure().values().iter().zip(exact.pressure().values()).map(|(a, b)| a - b).collect();
+            let difference = Field::new(heights.grid(), difference).expect("a field");
+            let work = |a: &Field, b: &Field| {
+                a.values().iter().zip(b.values()).map(|(a, b)| a * b).sum::<f64>() / heights.grid().len() as f64
+            };
+            let operator = rc_solver::UniformOperator::new(heights.grid(), &kernel);
+            let mut displaced = Field::zeros(heights.grid());
+            rc_core::Operator::apply(&operator, difference.values(), displaced.values_mut(), &mut []);
+            let uniform = layer(0.2, 0.3).uniform_displacement() * exact.info().mean_pressure.powi(2);
+            let energy = exact.info().elastic_energy - 0.5 * uniform;
+            let error = (work(&difference, &displaced) / energy).sqrt();
+            let bound = loose.certificate().energy;
+            assert!(error <= bound * (1.0 + 1e-6), "{control:?}, {tolerance:e}: {error:e}, bound {bound:e}");
+        }
+    }
+}
