@@ -5,7 +5,7 @@ use std::panic;
 use std::sync::{Arc, Mutex};
 
 use rc_comm::{LostRank, Ranks, run_threads};
-use rc_core::{Event, Grid, HeightField, Observer, Silent};
+use rc_core::{Event, Field, Grid, HeightField, Observer, Silent};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_solver::{
     AdaptiveError, Checkpoint, ContactElement, ContactProblem, Control, Method, Solution, SolveError, SolveParams,
@@ -181,4 +181,19 @@ fn what_only_one_rank_solves_is_refused_over_several() {
     refused(scene.params.by(Method::Uniform), 256, |error| matches!(error, SolveError::OneRank { .. }));
     refused(SolveParams { border_level: 1, ..scene.params }, 256, over_ranks);
     refused(scene.params, 251, over_ranks);
+}
+
+#[test]
+fn digits_of_a_map_in_a_long_cell_do_not_depend_on_the_number_of_ranks() {
+    let rough = Surface::new(&SpectrumParams::paper(32, 2)).expect("a surface");
+    let rough = rough.sample(Grid::square(1024).expect("a grid"));
+    let [nx, ny] = [1024, 256];
+    let grid = Grid::in_cell(nx, ny, 0.25).expect("a grid");
+    let map = Field::new(grid, rough.values()[..nx * ny].to_vec()).expect("a value for each element");
+    let params = SolveParams::to_tolerance(1e-6).by(Method::Adaptive);
+    let solve = |ranks: Ranks| {
+        let problem = ContactProblem::new(&map, Control::MeanPressure(8.9e-4)).over(ranks);
+        Told::of(&problem.solve(&params, &Silent).expect("a solution"))
+    };
+    solve(Ranks::alone()).assert_is_of(&run_threads(3, solve).expect("all ranks end"));
 }

@@ -31,6 +31,7 @@ const ABOVE_THE_LIBRARIES: &[(&str, &[&str])] = &[
     ("rc-tests", &["rc-figures", "rc-bench", "rc-cli"]),
     ("rc-mpi", &["rc-cli"]),
     ("rc-fuzz", &["rc-figures", "rc-bench", "rc-cli"]),
+    ("rc-mpi", &["rc-cli"]),
 ];
 
 /// Whether `name` may use `dependency`; nothing where `name` is not listed.

@@ -189,3 +189,53 @@ impl Surroundings<'_> {
         self.first..self.first + mesh.own_tiles().len()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rc_comm::run_threads;
+    use rc_core::testing::quasi_random;
+
+    use super::*;
+
+    /// A mesh with about this part of the tiles of a level of 512² cells.
+    fn mesh(part: f64, seed: usize, ranks: &Ranks) -> Mesh {
+        let chosen = (0..64 * 64).filter(|i| quasi_random(7 * i + seed) < part);
+        let tiles = TileSet::new([512, 512], chosen.map(|i| [(i % 64) as u32, (i / 64) as u32]).collect());
+        Mesh::new(Elements::uniform(tiles), ranks)
+    }
+
+    fn values(n: usize) -> Vec<f64> {
+        (0..n).map(|i| quasi_random(i) - 0.5).collect()
+    }
+
+    #[test]
+    fn values_that_move_between_meshes_are_those_of_one_rank() {
+        let all = values(64 * 64 * CELLS);
+        let moved = |ranks: Ranks| {
+            let (from, to) = (mesh(0.5, 1, &ranks), mesh(0.3, 2, &ranks));
+            from.moved(&to, &all[from.own()], -1.0)
+        };
+        let alone = moved(Ranks::alone());
+        assert!(alone.contains(&-1.0) && alone.iter().any(|&value| value > -0.6), "some tiles are new, others are not");
+        for size in [2, 5] {
+            let parts = run_threads(size, moved).expect("all ranks end");
+            assert!(parts.iter().all(|part| part.len() < alone.len()));
+            assert_eq!(parts.concat(), alone, "{size} ranks");
+        }
+    }
+
+    #[test]
+    fn the_neighbours_of_own_tiles_have_the_values_of_other_ranks() {
+        let all = values(64 * 64 * CELLS);
+        let patches = |ranks: Ranks| {
+            let mesh = mesh(0.5, 3, &ranks);
+            let around = mesh.surroundings(&all[mesh.own()]);
+            let of_tile = |&place: &[u32; 2]| around.elements.around(&around.values, 0, place, -1.0);
+            mesh.finest().places()[mesh.own_tiles()].iter().map(of_tile).collect::<Vec<_>>()
+        };
+        let alone = patches(Ranks::alone());
+        for size in [2, 5] {
+            assert_eq!(run_threads(size, patches).expect("all ranks end").concat(), alone, "{size} ranks");
+        }
+    }
+}
