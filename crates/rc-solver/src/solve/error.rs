@@ -28,7 +28,7 @@ pub enum SolveError {
         kernel: &'static str,
     },
     /// A method that does not share its work with other ranks.
-    #[error("over several ranks only the adaptive method solves, not {reason}; give the method adaptive, or one rank")]
+    #[error("over several ranks only the adaptive method solves ({reason}); give the method adaptive, or one rank")]
     OneRank {
         /// The method, and why it would be chosen.
         reason: MethodReason,
