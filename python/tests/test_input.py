@@ -181,7 +181,7 @@ def test_a_file_of_waves_is_found_from_everywhere(tmp_path, monkeypatch):
         ({"pressure": "much"}, "^pressure: must be "),
         ({"kernel": "foo"}, "^kernel: must be 'love' or 'spectral', not 'foo'$"),
         ({"progress": 3}, "^progress: must be True, False or a function, not 3$"),
-        ({"unit": "um"}, "^unit and height_scale: are for surfaces from files; give heights or spectrum, or omit them$"),
+        ({"unit": "um"}, "^unit and height_scale apply to surfaces from files; give heights or spectrum, or omit them$"),
     ],
 )
 def test_values_are_refused_in_the_words_of_python(keys, sentence):
@@ -192,7 +192,7 @@ def test_values_are_refused_in_the_words_of_python(keys, sentence):
 def test_missing_points_are_filled_by_what_the_message_names(heights):
     holes = heights.copy()
     holes[3, 4] = np.nan
-    with pytest.raises(ValueError, match=r'roughcontact.prepare\(heights, fill="laplace"\) fills$'):
+    with pytest.raises(ValueError, match=r'roughcontact.prepare\(heights, fill="laplace"\) fills them$'):
         rc.solve(holes, **CONTACT)
     assert rc.solve(rc.prepare(holes, fill="laplace"), **CONTACT).converged
 

@@ -53,8 +53,9 @@ impl Observables {
         let missing_square = area.missing_square + of_rest(&|rest| rest.missing_square);
         let area = ContactArea { missing_square, ..area };
         let flow = plastic.map_or(0.0, |edges| edges.contact.mean_gap);
+        let bars = plastic.map(|edges| edges.contact.with_wider_bars(area));
         let observables = Self {
-            area,
+            area: bars.map_or(area, |(area, _)| area),
             rms_pressure,
             rms_pressure_corrected: corrected(rms_pressure, &area),
             rms_pressure_error: rms_pressure_error(info, (&area, rest.as_ref()), rms_pressure),
@@ -63,7 +64,7 @@ impl Observables {
             mean_gap_error: mean_gap_error(info, &area, rms_pressure)
                 .hypot(of_rest(&|rest| mean_gap_error(info, rest, rms_pressure))),
             elastic_energy: info.elastic_energy,
-            plastic: plastic.map(|edges| edges.contact),
+            plastic: bars.map(|(_, plastic)| plastic),
         };
         observables.with_energy_error(info.iteration_error)
     }

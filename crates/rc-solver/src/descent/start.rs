@@ -85,7 +85,8 @@ impl Descent<'_> {
         self.refresh()
     }
 
-    /// Sets the pressure to the overlap of the heights with a rigid plane at `floor`, in units of length.
+    /// Sets the pressure to the overlap of the heights with a rigid plane at `floor`, in units of length, or to a multiple of it that is below the
+    /// hardness: it is scaled in any case, and what has the hardness would have no part in that.
     fn overlap(&mut self, floor: f64) {
         let len = self.layout.len();
         parallel::for_each(self.elements().blocks(len), |block| {
@@ -93,6 +94,11 @@ impl Descent<'_> {
                 *p = (h - floor).max(0.0);
             }
         });
+        let (greatest, hardness) = (self.layout.maximum(&self.pressure, 0.0), self.problem.hardness);
+        if greatest >= hardness {
+            let factor = 0.5 * hardness / greatest;
+            parallel::update(&mut self.pressure, |p| *p *= factor);
+        }
     }
 
     /// The overlap with a rigid plane that carries the mean pressure `wanted`, nearly, when it is scaled so that its weighted mean gap
