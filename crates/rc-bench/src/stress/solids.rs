@@ -44,7 +44,8 @@ fn common(rows: &mut Rows, scene: &str, kernel: &dyn Kernel, side: usize) -> Res
     let small = rough(4, 0.8, 4, 20)?;
     let range = small.max() - small.min();
     let [mut worst, mut round_trip, mut gaps, mut bounds] = [0.0_f64; 4];
-    for depth in [0.1 * range, 0.3 * range, 0.5 * range] {
+    // Below the depth of full contact, beyond which an incompressible layer has no answer.
+    for depth in [0.1 * range, 0.2 * range, 0.3 * range] {
         let exact = solve_dense(&small, kernel, depth)?.context("elimination found no contact")?;
         let found = solve(&small, kernel, Control::Penetration(depth), 1e-5)?;
         let differences = found.pressure().values().iter().zip(exact.values()).map(|(a, b)| (a - b).powi(2));
