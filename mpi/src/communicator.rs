@@ -9,7 +9,8 @@ use rc_comm::Communicator;
 /// Bytes of one message at most: counts of MPI are numbers of 31 bits.
 const LARGEST: usize = 1 << 30;
 
-/// All processes of the run. An error of MPI ends all of them, with a message: that is how MPI treats errors unless it is told otherwise.
+/// All processes of the run. An error of MPI ends all of them, with a message: that is how MPI treats errors unless it
+/// is told otherwise.
 pub(crate) struct World {
     rank: usize,
     size: usize,

@@ -1,6 +1,7 @@
 //! `rc-mpi`: one contact problem over the ranks of MPI.
 //!
-//! `mpirun -n 4 rc-mpi solve …` takes the flags of `rc solve` and writes the same files; the digits do not depend on the number of ranks.
+//! `mpirun -n 4 rc-mpi solve …` takes the flags of `rc solve` and writes the same files; the digits do not depend on
+//! the number of ranks.
 
 mod alike;
 mod communicator;

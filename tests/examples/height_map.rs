@@ -1,6 +1,7 @@
 //! A measured height map: read, made periodic, solved.
 //!
-//! `cargo run -p rc-tests --example height_map`, with your file for FILE. Files have metres, solvers have λ = 1 and E* = 1.
+//! `cargo run -p rc-tests --example height_map`, with your file for FILE. Files have metres, solvers have λ = 1 and
+//! E* = 1.
 #![expect(clippy::print_stdout, reason = "what an example is for")]
 
 use std::error::Error;

@@ -19,10 +19,11 @@ use rc_solver::{ContactProblem, Control, SolveParams};
 /// M(ξ) = [(3-4ν) sinh 2ξ - 2ξ] / [(3-4ν) cosh 2ξ + 2ξ² + 5 - 12ν + 8ν²]
 /// ```
 ///
-/// (R. H. Bentall, K. L. Johnson, *An elastic strip in plane rolling contact*, Int. J. Mech. Sci. 10 (1968) 637-663; in this
-/// form G. Carbone, L. Mangialardi, J. Mech. Phys. Solids 56 (2008) 684-706.) M → 1 for short waves, the half-space, and
-/// M → ξ (1-2ν)/(2(1-ν)²) for long ones: there each column of the layer is a spring. The mean displacement is not part of v
-/// (Eq. 3); under a mean pressure σ0 the layer yields by that of these springs in addition.
+/// (R. H. Bentall, K. L. Johnson, *An elastic strip in plane rolling contact*, Int. J. Mech. Sci. 10 (1968) 637-663; in
+/// this form G. Carbone, L. Mangialardi, J. Mech. Phys. Solids 56 (2008) 684-706.) M → 1 for short waves, the
+/// half-space, and M → ξ (1-2ν)/(2(1-ν)²) for long ones: there each column of the layer is a spring. The mean
+/// displacement is not part of v (Eq. 3); under a mean pressure σ0 the layer yields by that of these springs in
+/// addition.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BondedLayer {
     /// d, in λ.
@@ -42,7 +43,8 @@ impl BondedLayer {
     }
 }
 
-/// Two methods; `edge_bias` has a default. At the edge of a contact short waves matter, and to these the layer is a half-space.
+/// Two methods; `edge_bias` has a default. At the edge of a contact short waves matter, and to these the layer is a
+/// half-space.
 impl Kernel for BondedLayer {
     fn name(&self) -> &'static str {
         "bonded-layer"

@@ -36,8 +36,9 @@ fn on_uniform_grid(heights: &Field, control: Control, tolerance: f64) -> Solutio
     solve(heights, control, &SolveParams::to_tolerance(tolerance).by(Method::Uniform)).expect("a solvable scene")
 }
 
-/// Area and pressure to the squares of the energy errors of both iterations, which is what they may be off by: both methods solve the same
-/// discrete problem. Counts may differ by the elements at edges that press by less than that, and stiffnesses are exact to 1e-3.
+/// Area and pressure to the squares of the energy errors of both iterations, which is what they may be off by: both
+/// methods solve the same discrete problem. Counts may differ by the elements at edges that press by less than that,
+/// and stiffnesses are exact to 1e-3.
 fn assert_agrees_with_uniform(heights: &Field, solution: &Solution<'_>, control: Control) {
     let uniform = on_uniform_grid(heights, control, 1e-6);
     let (of_uniform, of_adaptive) = (uniform.observables(), solution.observables());
@@ -100,8 +101,8 @@ fn a_map_of_heights_goes_the_same_way() {
     assert_agrees_with_uniform(&heights, &of_map, control);
 }
 
-/// The certificate of the adaptive method, checked on every cell of the finest grid by the uniform operator: what was proven
-/// to be out of contact is.
+/// The certificate of the adaptive method, checked on every cell of the finest grid by the uniform operator: what was
+/// proven to be out of contact is.
 #[test]
 fn nothing_penetrates_where_nothing_was_evaluated() {
     for (seed, pressure) in [(1, 1e-4), (2, MEAN_PRESSURE), (3, 4e-3)] {
@@ -255,8 +256,8 @@ fn a_pressure_that_is_not_positive_is_refused() {
     }
 }
 
-/// Halving the elements at edges again and again, those inside kept: the area converges as on uniform grids of the smallest
-/// element, with far fewer of them.
+/// Halving the elements at edges again and again, those inside kept: the area converges as on uniform grids of the
+/// smallest element, with far fewer of them.
 #[test]
 fn border_levels_refine_edges_only() {
     let surface = surface(8, 0.8, 1);

@@ -26,8 +26,9 @@ fn errors(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64, exact: f64) 
     [area.fraction / exact - 1.0, area.cells / exact - 1.0, area.relative_error()]
 }
 
-/// Of a single contact the bar may be passed now and then: it is for 95 of 100. The first place is a corner of elements, about which the
-/// eight octants of the circle are alike: only an eighth of the edges is independent, and the scatter √8 times larger.
+/// Of a single contact the bar may be passed now and then: it is for 95 of 100. The first place is a corner of
+/// elements, about which the eight octants of the circle are alike: only an eighth of the edges is independent, and the
+/// scatter √8 times larger.
 #[test]
 fn circles_are_found_within_their_bars_and_better_than_by_counting() {
     let theory = PeriodicHertz { radius: 1.0 };
@@ -67,9 +68,10 @@ fn ellipses_are_found_at_every_angle() {
     }
 }
 
-/// Strips whose edges are straight and all along the elements: there are edges across the rows only, so that the mean of rows and
-/// columns takes half of what the count is off; the bias is for edges in all directions, up to a hundredth of these strips. All edges
-/// of a strip are off alike: the bar is of their number then, not of its root, and mostly holds.
+/// Strips whose edges are straight and all along the elements: there are edges across the rows only, so that the mean
+/// of rows and columns takes half of what the count is off; the bias is for edges in all directions, up to a hundredth
+/// of these strips. All edges of a strip are off alike: the bar is of their number then, not of its root, and mostly
+/// holds.
 #[test]
 fn of_strips_along_the_elements_half_the_count_s_error_is_left() {
     let n = 256;

@@ -127,7 +127,8 @@ fn a_dense_solver_finds_the_same_pressure() {
     }
 }
 
-/// The same contact in periodic cells of 1, 2 and 4 patches a side: images and the missing mean fall with the third power.
+/// The same contact in periodic cells of 1, 2 and 4 patches a side: images and the missing mean fall with the third
+/// power.
 #[test]
 fn a_growing_cell_becomes_the_half_space() {
     let patch = rough(64, 6);

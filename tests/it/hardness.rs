@@ -30,7 +30,8 @@ fn a_sphere_yields_at_the_peak_pressure_of_hertz_and_at_its_centre() {
     let centre = heights.grid().centre(256, 256);
     let farthest = above.pressure().values().iter().enumerate().filter(|(_, p)| **p >= above.hardness());
     let farthest = farthest.map(|(i, _)| (heights.grid().centre(i % 512, i / 512) - centre).length());
-    // Without the plastic part p = 0.99 p0 at r = a √(1 - 0.99²) = 0.14 a; what it does not bear widens it by about half.
+    // Without the plastic part p = 0.99 p0 at r = a √(1 - 0.99²) = 0.14 a; what it does not bear widens it by about
+    // half.
     let farthest = farthest.fold(0.0, f64::max) / elastic.contact_radius;
     assert!((0.14..0.3).contains(&farthest), "plastic up to {farthest} a");
 }
@@ -46,12 +47,6 @@ fn a_sphere_far_beyond_first_yield_is_plastic_all_over() {
         let solution = solve(&heights, elastic.load, hardness);
         let (area, plastic) = (solution.area(), solution.observables().plastic.expect("hard"));
         let excess = area.fraction * hardness / elastic.load - 1.0;
-        eprintln!(
-            "{factor}: excess {excess:e} bar {:e} cells {} plastic {:?}",
-            area.relative_error(),
-            area.cells,
-            plastic
-        );
         assert!(
             excess > -area.relative_error() && excess < last,
             "area {excess} more than load over hardness at {factor}"

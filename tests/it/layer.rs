@@ -28,7 +28,8 @@ fn rough(n: usize, waves: usize) -> Field {
     surface.sample_on(Grid::square(n).expect("a grid")).expect("heights")
 }
 
-/// The example is the published formula, written by itself; both solve to the same digits, but for the mean displacement.
+/// The example is the published formula, written by itself; both solve to the same digits, but for the mean
+/// displacement.
 #[test]
 fn the_own_kernel_of_the_example_is_this_layer() {
     let heights = rough(128, 8);
@@ -132,7 +133,8 @@ fn a_sphere_on_a_thick_layer_is_that_of_hertz() {
     assert_close("radius", (solution.area().fraction / PI).sqrt(), 0.1, 5e-3);
 }
 
-/// Johnson's columns, and his incompressible layer; corrections are of first order in the thickness over the contact radius.
+/// Johnson's columns, and his incompressible layer; corrections are of first order in the thickness over the contact
+/// radius.
 #[test]
 fn a_sphere_on_a_thin_layer_is_on_springs_or_squeezes_it_out() {
     for (poisson, thickness, allowed) in [(0.3, 0.004, 0.06), (0.0, 0.004, 0.06), (0.5, 0.02, 0.3)] {
@@ -165,7 +167,8 @@ fn the_uniform_method_solves_a_layer_and_says_why() {
     assert!(stiff.area().fraction < half_space.area().fraction, "a layer is stiffer than the half-space");
 }
 
-/// √(G/U) bounds the distance to the solution in the energy norm, at loose tolerances too; U has no uniform compression.
+/// √(G/U) bounds the distance to the solution in the energy norm, at loose tolerances too; U has no uniform
+/// compression.
 #[test]
 fn the_certificate_bounds_the_error_on_a_layer() {
     let heights = rough(96, 6);

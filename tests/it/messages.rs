@@ -1,7 +1,7 @@
 //! Every sentence that a library or the command line can say, read from the sources and reviewed as a snapshot.
 //!
-//! A sentence is a string of four to eighty words outside tests and documentation. So each error and each warning is here, beside titles and
-//! hints; a new or changed one is read in the snapshot before it is accepted.
+//! A sentence is a string of four to eighty words outside tests and documentation. So each error and each warning is
+//! here, beside titles and hints; a new or changed one is read in the snapshot before it is accepted.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -52,7 +52,8 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Adds the sentences of `tokens` to `found`. Documentation, tests, and what an impossible failure would say are left out.
+/// Adds the sentences of `tokens` to `found`. Documentation, tests, and what an impossible failure would say are left
+/// out.
 fn collect(tokens: TokenStream, found: &mut Vec<String>) {
     let tokens: Vec<TokenTree> = tokens.into_iter().collect();
     let mut at = 0;
@@ -68,8 +69,8 @@ fn collect(tokens: TokenStream, found: &mut Vec<String>) {
     }
 }
 
-/// The place of the last token of the attribute at `at`, `#[…]` or `#![…]`, or of the test that it begins. Messages of errors and help
-/// texts are attributes, too.
+/// The place of the last token of the attribute at `at`, `#[…]` or `#![…]`, or of the test that it begins. Messages of
+/// errors and help texts are attributes, too.
 fn after_attribute(tokens: &[TokenTree], at: usize, found: &mut Vec<String>) -> usize {
     let group = |token: &TokenTree, delimiter| match token {
         TokenTree::Group(group) if group.delimiter() == delimiter => Some(group.stream()),

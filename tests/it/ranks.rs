@@ -11,7 +11,8 @@ use rc_solver::{
     AdaptiveError, Checkpoint, ContactElement, ContactProblem, Control, Method, Solution, SolveError, SolveParams,
 };
 
-/// What a rank has of a solution: its elements, its rows of pressure and gap, and everything else as text with all digits.
+/// What a rank has of a solution: its elements, its rows of pressure and gap, and everything else as text with all
+/// digits.
 #[derive(Clone, Debug, PartialEq)]
 struct Told {
     elements: Vec<[u64; 4]>,

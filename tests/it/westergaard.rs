@@ -26,9 +26,9 @@ fn pressure_error(solution: &Solution<'_>, theory: Westergaard, mean_pressure: f
     Field::new(exact.grid(), difference).expect("same grid").rms() / exact.rms()
 }
 
-/// Contact width with the edges located between centres. Counting elements leaves an uncertainty of an element. At an edge
-/// p = c √s inside and g = (4c/3) s^{3/2} outside, with s the distance and the same c, so the last pressure inside and the
-/// first gap outside, one element apart, determine both.
+/// Contact width with the edges located between centres. Counting elements leaves an uncertainty of an element. At an
+/// edge p = c √s inside and g = (4c/3) s^{3/2} outside, with s the distance and the same c, so the last pressure inside
+/// and the first gap outside, one element apart, determine both.
 fn contact_width(solution: &Solution<'_>, along_x: bool) -> f64 {
     let n = solution.pressure().grid().nx();
     let line =

@@ -21,7 +21,8 @@ pub(crate) struct Args {
     /// Only these scenes, separated by commas.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     scenes: Vec<String>,
-    /// Also ASPHER, Tamaas and ContactMechanics, in a Python environment under `target/` that is made from PyPI when needed.
+    /// Also ASPHER, Tamaas and ContactMechanics, in a Python environment under `target/` that is made from PyPI when
+    /// needed.
     #[arg(long)]
     peers: bool,
     /// A Python that has the peers, instead of that environment.
@@ -42,7 +43,8 @@ pub(crate) struct Args {
     /// Goes on where a run into the same folder was interrupted: its finished scenes are not measured again.
     #[arg(long, conflicts_with = "scale")]
     resume: bool,
-    /// Instead of errors: time, memory and iterations on grids up to 32768² (6 GB), by threads, and by contact area; with --peers beside ASPHER.
+    /// Instead of errors: time, memory and iterations on grids up to 32768² (6 GB), by threads, and by contact area;
+    /// with --peers beside ASPHER.
     #[arg(long, conflicts_with = "scenes", group = "instead")]
     scale: bool,
     /// Instead of measuring: rewrites the tables in the documents from the archived run.
@@ -57,7 +59,8 @@ pub(crate) struct Args {
     /// Instead of measuring: computes the reference values again.
     #[arg(long, group = "instead")]
     make_reference: bool,
-    /// Instead of measuring: saves the heights of each scene here, as paper-2048.npy for instance (cell side 1), for other programs.
+    /// Instead of measuring: saves the heights of each scene here, as paper-2048.npy for instance (cell side 1), for
+    /// other programs.
     #[arg(long, value_name = "DIR", group = "instead")]
     peer_heights: Option<PathBuf>,
     /// Work for a process that the benchmark starts itself.

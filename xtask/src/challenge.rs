@@ -8,7 +8,8 @@ use rc_figures::{Challenge, run_one};
 
 use crate::figures;
 
-/// Computes area, gap, stiffness and patches of the Contact-Mechanics Challenge's surface, without adhesion; docs/challenge.md
+/// Computes area, gap, stiffness and patches of the Contact-Mechanics Challenge's surface, without adhesion;
+/// docs/challenge.md
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -19,7 +20,8 @@ pub(crate) struct Args {
     /// High and low of the distributed surface change places: what touches first must be high.
     #[arg(long, requires = "spectrum")]
     flip: bool,
-    /// One load on this many elements per side instead of the curve: 65536, the published reference's, takes minutes and 12 GB.
+    /// One load on this many elements per side instead of the curve: 65536, the published reference's, takes minutes
+    /// and 12 GB.
     #[arg(long, value_name = "SIDE", num_args = 0..=1, default_missing_value = "65536", conflicts_with = "quick")]
     large: Option<usize>,
     /// Makes this run the archived one: tables to `data/runs/challenge/`, the picture to `docs/images/`, numbers into

@@ -4,7 +4,8 @@ use anyhow::Result;
 
 use crate::process::Step;
 
-/// Checks format, lints and documentation, then runs every test, swaps crates for forks, and tries the Python package; stops at the first failure.
+/// Checks format, lints and documentation, then runs every test, swaps crates for forks, and tries the Python package;
+/// stops at the first failure.
 ///
 /// The same steps as the script `.ci/run`.
 #[derive(clap::Args)]

@@ -8,8 +8,8 @@ use rc_figures::repository;
 
 use crate::process::Step;
 
-/// Builds the stripped binary `rc`, static where the musl target of this machine is installed, and says where it is and how
-/// large.
+/// Builds the stripped binary `rc`, static where the musl target of this machine is installed, and says where it is and
+/// how large.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Another profile of cargo, as dev, to try this command quickly

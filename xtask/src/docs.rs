@@ -11,8 +11,8 @@ use rc_figures::repository;
 
 use crate::process::Step;
 
-/// Builds the documentation of all crates, and the guide into target/book, with the mdbook that is installed or else one of its
-/// own in target/tools.
+/// Builds the documentation of all crates, and the guide into target/book, with the mdbook that is installed or else
+/// one of its own in target/tools.
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 

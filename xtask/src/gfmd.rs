@@ -7,12 +7,14 @@ use rc_figures::{Figure as _, Gfmd, beside, run_one};
 
 use crate::figures;
 
-/// Compares area, stress, mean gap and energy with the published GFMD reference; docs/gfmd.md. Minutes and 2 GB, or --quick
+/// Compares area, stress, mean gap and energy with the published GFMD reference; docs/gfmd.md. Minutes and 2 GB,
+/// or --quick
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
     figure: figures::Args,
-    /// Makes this run the archived one: tables to `data/runs/gfmd/`, the picture to `docs/images/`, numbers into `docs/gfmd.md`.
+    /// Makes this run the archived one: tables to `data/runs/gfmd/`, the picture to `docs/images/`, numbers into
+    /// `docs/gfmd.md`.
     #[arg(long, conflicts_with = "quick")]
     archive: bool,
     /// The folder Data of the published files: tables of energy, mean gap and stress beside them.

@@ -5,7 +5,8 @@ use rc_figures::guide;
 
 use crate::figures;
 
-/// Draws the figures of the guide: the mesh of a solved contact, the kernel split, one V of levels, the start of a level; also into docs/images/
+/// Draws the figures of the guide: the mesh of a solved contact, the kernel split, one V of levels, the start of a
+/// level; also into docs/images/
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]

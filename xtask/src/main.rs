@@ -59,7 +59,8 @@ enum Command {
     Gfmd(gfmd::Args),
     GuideFigures(guide_figures::Args),
     Challenge(challenge::Args),
-    /// Tabulates and draws the truncation error of the image sums against shells and time, beside the exact coefficients
+    /// Tabulates and draws the truncation error of the image sums against shells and time, beside the exact
+    /// coefficients
     KernelError(figures::Args),
     /// Measures the error of area, rms pressure and mean gap on usual meshes, and how often their error bars hold it
     Accuracy(figures::Args),

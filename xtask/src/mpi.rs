@@ -1,4 +1,5 @@
-//! `cargo xtask mpi`: solves over the ranks of MPI, compared with `rc solve` digit by digit; one of them loses a rank and goes on.
+//! `cargo xtask mpi`: solves over the ranks of MPI, compared with `rc solve` digit by digit; one of them loses a rank
+//! and goes on.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

@@ -8,8 +8,8 @@ use rc_figures::repository;
 
 use crate::process::Program;
 
-/// Builds the wheel of the Python package, installs it into an environment of its own in target/python, and runs its tests, type checks,
-/// examples and notebooks.
+/// Builds the wheel of the Python package, installs it into an environment of its own in target/python, and runs its
+/// tests, type checks, examples and notebooks.
 ///
 /// Needs a Python from 3.10 on: `python3`, or what the variable PYTHON names.
 #[derive(clap::Args)]

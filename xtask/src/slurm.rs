@@ -11,8 +11,8 @@ use crate::process::{Step, path_of};
 
 /// Runs a job array on a Slurm of its own, kills a task, requeues it, merges, and compares with one process.
 ///
-/// Slurm needs no set-up: controller and node run in a folder that is removed, with other ports than those of the system's.
-/// Without Slurm (Debian: slurm-wlm) this says so, and ends well.
+/// Slurm needs no set-up: controller and node run in a folder that is removed, with other ports than those of the
+/// system's. Without Slurm (Debian: slurm-wlm) this says so, and ends well.
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
@@ -50,7 +50,8 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
     let rows = kill_amid(&rc)?;
     eprintln!("slurm: task {KILLED} killed after {rows} rows");
     let task = format!("{job}_{KILLED}");
-    // Slurm takes a moment to see that the task has ended, and starts what is requeued after two minutes if nobody asks.
+    // Slurm takes a moment to see that the task has ended, and starts what is requeued after two minutes if nobody
+    // asks.
     wait("task is requeued", || Ok(slurm.ask("scontrol", &["requeue", &task]).is_ok()))?;
     slurm.ask("scontrol", &["update", &format!("JobId={task}"), "StartTime=now"])?;
     wait("job ends", || Ok(slurm.ask("squeue", &["--noheader"])?.is_empty()))?;

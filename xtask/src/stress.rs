@@ -6,8 +6,8 @@ use rc_bench::stress::{self, Params};
 
 use crate::figures;
 
-/// Stresses the solvers, kernels and operators on purpose: one line for each scene and property, a picture of all, and an
-/// error when a line fails.
+/// Stresses the solvers, kernels and operators on purpose: one line for each scene and property, a picture of all, and
+/// an error when a line fails.
 #[derive(clap::Args)]
 // Its own name beside that of the arguments it flattens.
 #[group(id = "stress")]
@@ -17,8 +17,8 @@ pub(crate) struct Args {
     /// Only groups whose name contains this.
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
-    /// Puts faults into a copy of the sources, one at a time, and counts the rows of the reduced set that fail (with --only, the
-    /// faults whose name contains it). Hours.
+    /// Puts faults into a copy of the sources, one at a time, and counts the rows of the reduced set that fail
+    /// (with --only, the faults whose name contains it). Hours.
     #[arg(long)]
     mutate: bool,
     /// Prints a number that depends on every bit of one solution, for comparison between processes.

@@ -1,8 +1,8 @@
 //! `cargo xtask swap`: crates replaced whole by forks, for real.
 //!
-//! A copy of the libraries has forks of three crates in place of the originals, as the guide tells how to. Each fork is its
-//! original with one place that can go wrong on demand. A contact that is solved with sound forks must have the numbers of the
-//! originals, and with each wrong one must not: so the solver really uses each of them.
+//! A copy of the libraries has forks of three crates in place of the originals, as the guide tells how to. Each fork is
+//! its original with one place that can go wrong on demand. A contact that is solved with sound forks must have the
+//! numbers of the originals, and with each wrong one must not: so the solver really uses each of them.
 
 mod scene;
 
@@ -16,8 +16,8 @@ use toml::{Table, Value};
 
 use crate::process::Step;
 
-/// Replaces rc-fractal, rc-kernel and rc-quadtree by forks, in a workspace in target/swap, and shows for each that the solver uses
-/// the fork: wrong ones change the result, sound ones do not.
+/// Replaces rc-fractal, rc-kernel and rc-quadtree by forks, in a workspace in target/swap, and shows for each that the
+/// solver uses the fork: wrong ones change the result, sound ones do not.
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
@@ -171,8 +171,8 @@ fn workspace_manifest(mut manifest: Table) -> Result<String> {
     Ok(toml::to_string(&manifest)?)
 }
 
-/// The manifest of the program. It names the libraries of others that the crates of the repository use, so that their features, and with
-/// these their builds, are those of the repository.
+/// The manifest of the program. It names the libraries of others that the crates of the repository use, so that their
+/// features, and with these their builds, are those of the repository.
 fn program_manifest(root: &Path) -> Result<String> {
     let mut dependencies = Table::new();
     for name in ["rc-cli", "rc-heights", "rc-plot", "rc-solver", "rc-sweep"] {

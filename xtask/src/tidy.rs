@@ -1,6 +1,7 @@
 //! `cargo xtask tidy`: the rules of this repository that the compiler does not know.
 //!
-//! Each check is a pure function from file texts to complaints. A complaint says what is wrong, where, and what fixes it.
+//! Each check is a pure function from file texts to complaints. A complaint says what is wrong, where, and what fixes
+//! it.
 
 mod arrows;
 mod circles;
@@ -20,8 +21,9 @@ use anyhow::{Result, bail};
 use complaint::Complaint;
 use rc_figures::repository::{self, Sources};
 
-/// Checks dependency arrows, circles between modules, licences and versions of dependencies, paper map, guide, snapshots, house rules and the numbers of
-/// docs/reproduction.md, docs/gfmd.md, docs/challenge.md, docs/benchmarks.md and README.md (also a test, so `cargo xtask test` runs it).
+/// Checks dependency arrows, circles between modules, licences and versions of dependencies, paper map, guide,
+/// snapshots, house rules and the numbers of docs/reproduction.md, docs/gfmd.md, docs/challenge.md, docs/benchmarks.md
+/// and README.md (also a test, so `cargo xtask test` runs it).
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 

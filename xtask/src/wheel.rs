@@ -9,11 +9,11 @@ use rc_figures::repository;
 use crate::process::Program;
 use crate::python::{folder, in_environment, only_wheel, path_text};
 
-/// Builds a manylinux wheel of the Python package into target/python/dist, and tests it in a new virtual environment whose programs
-/// have no compiler among them.
+/// Builds a manylinux wheel of the Python package into target/python/dist, and tests it in a new virtual environment
+/// whose programs have no compiler among them.
 ///
-/// maturin links with zig, which it brings along, against the C library of manylinux 2014. Needs a Python from 3.10 on, and rustup or
-/// a Rust for this target.
+/// maturin links with zig, which it brings along, against the C library of manylinux 2014. Needs a Python from 3.10 on,
+/// and rustup or a Rust for this target.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Platform tag of the wheel

@@ -1,5 +1,5 @@
-//! `cargo xtask accuracy`: how far the contact area, rms pressure and mean gap of usual meshes are from the limit of fine
-//! ones, and how often the error bars hold that.
+//! `cargo xtask accuracy`: how far the contact area, rms pressure and mean gap of usual meshes are from the limit of
+//! fine ones, and how often the error bars hold that.
 
 mod case;
 mod coverage;

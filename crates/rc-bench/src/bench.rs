@@ -119,7 +119,8 @@ pub fn measure(params: &Params) -> Result<()> {
     if params.archive { archive(&params.out) } else { Ok(()) }
 }
 
-/// Measures time and memory on large grids, by threads and by contact area, prints and saves. `quick` has small scenes only.
+/// Measures time and memory on large grids, by threads and by contact area, prints and saves. `quick` has small scenes
+/// only.
 ///
 /// # Errors
 /// When a solve fails, after the others are saved, or a file cannot be written.

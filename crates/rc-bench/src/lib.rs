@@ -1,4 +1,5 @@
-//! Measurements and hard tests of rc: time against error, accuracy of usual meshes, truncation error of the kernels, stress.
+//! Measurements and hard tests of rc: time against error, accuracy of usual meshes, truncation error of the kernels,
+//! stress.
 
 pub mod bench;
 pub mod stress;

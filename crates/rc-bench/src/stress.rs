@@ -67,7 +67,8 @@ const GROUPS: &[(&str, MakeRows)] = &[
     ("long runs", |params| long_runs::rows(params.preset)),
 ];
 
-/// Prints a number that depends on every bit of the solution of a scene of the long runs, for comparison between processes.
+/// Prints a number that depends on every bit of the solution of a scene of the long runs, for comparison between
+/// processes.
 ///
 /// # Errors
 /// When there is no such scene.

@@ -36,7 +36,8 @@ pub(crate) enum Command {
     Inspect(InspectArgs),
     /// Pictures of a result
     Plot(PlotArgs),
-    /// A result or a sweep as one HTML page that needs no network: maps to zoom, sections, curves, certificate, parameters
+    /// A result or a sweep as one HTML page that needs no network: maps to zoom, sections, curves, certificate,
+    /// parameters
     Report(ReportArgs),
     /// A result as files of other programs: VTK for ParaView, PyVista and VisIt, Zarr for Python
     Export(ExportArgs),

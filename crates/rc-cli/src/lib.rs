@@ -1,8 +1,8 @@
 //! The command line of rc: scenes, files in SI units, summaries and pictures.
 //!
-//! The way of a solve: arguments and file give a [`scene`], [`scene::resolve`] checks it and turns it into a problem in units of
-//! λ and E*, `rc_solver` solves it, [`rc_sweep::Summary`] is the result in SI, [`rc_sweep::files`] writes files that are there
-//! whole or not at all.
+//! The way of a solve: arguments and file give a [`scene`], [`scene::resolve`] checks it and turns it into a problem in
+//! units of λ and E*, `rc_solver` solves it, [`rc_sweep::Summary`] is the result in SI, [`rc_sweep::files`] writes
+//! files that are there whole or not at all.
 //!
 //! ```
 //! use clap::Parser as _;

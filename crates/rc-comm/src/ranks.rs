@@ -97,7 +97,8 @@ impl Ranks {
         if self.are_alone() { mine } else { self.all_gather(&mine).concat() }
     }
 
-    /// Sends bytes to some ranks, not to itself, and receives from those in `from`, in their order. They send to this rank in the same call.
+    /// Sends bytes to some ranks, not to itself, and receives from those in `from`, in their order. They send to this
+    /// rank in the same call.
     #[must_use]
     pub fn exchange(&self, outgoing: Vec<(usize, Vec<u8>)>, from: &[usize]) -> Vec<Vec<u8>> {
         match &self.0 {
@@ -109,7 +110,8 @@ impl Ranks {
         }
     }
 
-    /// Sends bytes to every rank, as many as there are in `outgoing`, and gives what each has sent to this one, itself included.
+    /// Sends bytes to every rank, as many as there are in `outgoing`, and gives what each has sent to this one, itself
+    /// included.
     #[must_use]
     pub fn exchange_all(&self, mut outgoing: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
         if self.are_alone() {
@@ -125,8 +127,8 @@ impl Ranks {
         received
     }
 
-    /// Continues a sum from rank to rank: rank 0 begins with `start`, `add` adds what a rank has, and all get the result. The order of the
-    /// summands is that of ranks, as if one rank had them all.
+    /// Continues a sum from rank to rank: rank 0 begins with `start`, `add` adds what a rank has, and all get the
+    /// result. The order of the summands is that of ranks, as if one rank had them all.
     #[must_use]
     pub fn fold<const N: usize>(&self, start: [f64; N], add: impl FnOnce([f64; N]) -> [f64; N]) -> [f64; N] {
         if self.are_alone() {

@@ -5,7 +5,8 @@ use ndarray::{Array2, ArrayView2};
 use crate::{Field, Grid, GridError};
 
 impl Field {
-    /// A field from an array of shape (ny, nx), row iy and column ix, on a cell whose side along y is `cell_ratio` times that along x.
+    /// A field from an array of shape (ny, nx), row iy and column ix, on a cell whose side along y is `cell_ratio`
+    /// times that along x.
     ///
     /// Nothing is copied where the array is contiguous, row by row.
     ///

@@ -5,7 +5,8 @@ use thiserror::Error;
 
 /// A uniform grid of `nx` × `ny` elements on the periodic cell, whose side along x is 1.
 ///
-/// The cell is a square unless [`Grid::in_cell`] says otherwise, so elements are squares when `nx == ny`, rectangles otherwise.
+/// The cell is a square unless [`Grid::in_cell`] says otherwise, so elements are squares when `nx == ny`, rectangles
+/// otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "GridData"))]
 pub struct Grid {
@@ -104,8 +105,8 @@ impl Grid {
         self.ny
     }
 
-    /// Side of the cell along y relative to the side along x: 1 for a square. The side along x is the unit of length, so this is also
-    /// the area of the cell.
+    /// Side of the cell along y relative to the side along x: 1 for a square. The side along x is the unit of length,
+    /// so this is also the area of the cell.
     #[must_use]
     pub fn cell_ratio(self) -> f64 {
         self.cell_ratio
@@ -169,8 +170,8 @@ impl Grid {
         (kx as f64).powi(2) + (ky as f64 / self.cell_ratio).powi(2)
     }
 
-    /// Largest number of waves per side of the cell that the grid resolves along both: strictly below half its smaller number of
-    /// elements.
+    /// Largest number of waves per side of the cell that the grid resolves along both: strictly below half its smaller
+    /// number of elements.
     #[must_use]
     pub fn resolved_wavenumber(self) -> usize {
         (self.nx.min(self.ny) - 1) / 2

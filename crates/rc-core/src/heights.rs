@@ -16,8 +16,8 @@ pub trait HeightField: Sync {
     /// The largest wavenumber (waves per cell) in any direction, or `None` when the surface is not band-limited.
     fn band_limit(&self) -> Option<usize>;
 
-    /// Heights at the element centres of `grid`. Equal to [`HeightField::height`] there up to rounding, so they are periodic on a square
-    /// cell only; implementations that have a fast transform override it.
+    /// Heights at the element centres of `grid`. Equal to [`HeightField::height`] there up to rounding, so they are
+    /// periodic on a square cell only; implementations that have a fast transform override it.
     fn sample(&self, grid: Grid) -> Field {
         Field::from_fn(grid, |at| self.height(at))
     }
@@ -33,8 +33,9 @@ pub trait HeightField: Sync {
 
 /// The heights of a contact problem on its grid.
 ///
-/// A surface is evaluated where a solver needs it, which is a small part of the grid for the adaptive method. A map is used as it is.
-/// [`HeightField::on`] and `From<&Field>` make sources that borrow, [`HeightSource::shared`] and `From<Arc<Field>>` sources without a lifetime.
+/// A surface is evaluated where a solver needs it, which is a small part of the grid for the adaptive method. A map is
+/// used as it is. [`HeightField::on`] and `From<&Field>` make sources that borrow, [`HeightSource::shared`] and
+/// `From<Arc<Field>>` sources without a lifetime.
 #[derive(Clone)]
 pub enum HeightSource<'a> {
     /// A surface, evaluated at the centres of elements.

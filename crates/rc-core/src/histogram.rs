@@ -13,8 +13,8 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// The density, in `n_bins` bins, of the values in [`low`, `high`]; values outside are passed over. Zero everywhere when
-    /// there are none.
+    /// The density, in `n_bins` bins, of the values in [`low`, `high`]; values outside are passed over. Zero everywhere
+    /// when there are none.
     #[must_use]
     pub fn of(values: impl Iterator<Item = f64>, low: f64, high: f64, n_bins: usize) -> Self {
         let mut counts = vec![0_u64; n_bins];

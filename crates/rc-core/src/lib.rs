@@ -2,15 +2,18 @@
 //!
 //! # Conventions (of every crate of this workspace)
 //!
-//! - **Units.** Libraries compute with cell side λ = 1 (along x, where a cell is a rectangle) and E* = E/(1-ν²) = 1 in `f64`. Lengths are
-//!   multiples of λ, pressures multiples of E*. Only `rc-cli` knows metres and pascals; [`PeriodicCell`] and [`Elasticity`] convert.
-//! - **Signs.** Pressure p ≥ 0 is compression. Heights h are those of the rigid surface, positive towards the half-space.
-//!   Gap g ≥ 0. The interface displacement v has zero mean over the cell, and `g = v - (h - h_max + Δ)` with penetration Δ.
+//! - **Units.** Libraries compute with cell side λ = 1 (along x, where a cell is a rectangle) and E* = E/(1-ν²) = 1 in
+//!   `f64`. Lengths are multiples of λ, pressures multiples of E*. Only `rc-cli` knows metres and pascals;
+//!   [`PeriodicCell`] and [`Elasticity`] convert.
+//! - **Signs.** Pressure p ≥ 0 is compression. Heights h are those of the rigid surface, positive towards the
+//!   half-space. Gap g ≥ 0. The interface displacement v has zero mean over the cell, and `g = v - (h - h_max + Δ)`
+//!   with penetration Δ.
 //! - **Points**, offsets and wave vectors of floats are [`DVec2`], that of `glam`.
-//! - **Layout.** Fields are row-major, `index = iy * nx + ix`. The origin of the cell is its corner; point (ix, iy) is the
-//!   **centre** of its element, ((ix + ½)/nx, (iy + ½)/ny) on a square cell ([`Grid::centre`]).
-//! - **Fourier.** Wavenumbers k are integers, waves per cell; q = 2πk on a square cell ([`Grid::waves`]). A forward transform carries no
-//!   factor, the inverse carries 1/(nx·ny). The symbol of an operator is its eigenvalue for the wave exp(2πi k·x).
+//! - **Layout.** Fields are row-major, `index = iy * nx + ix`. The origin of the cell is its corner; point (ix, iy) is
+//!   the **centre** of its element, ((ix + ½)/nx, (iy + ½)/ny) on a square cell ([`Grid::centre`]).
+//! - **Fourier.** Wavenumbers k are integers, waves per cell; q = 2πk on a square cell ([`Grid::waves`]). A forward
+//!   transform carries no factor, the inverse carries 1/(nx·ny). The symbol of an operator is its eigenvalue for the
+//!   wave exp(2πi k·x).
 //! - **Means** are over the whole cell (nominal area A0) unless a name says "contact".
 //! - **rms slope** is the isotropic one, √⟨|∇h|²⟩.
 //!
@@ -45,14 +48,14 @@
 //!
 //! # Features
 //!
-//! `serde`: plain data (grids, cells, elasticity) serialises, and is checked when it is read. `ndarray`: a [`Field`] to and from
-//! `ndarray::Array2<f64>` without a copy.
+//! `serde`: plain data (grids, cells, elasticity) serialises, and is checked when it is read. `ndarray`: a [`Field`] to
+//! and from `ndarray::Array2<f64>` without a copy.
 //!
 //! Module [`testing`] has a check for each trait; `tests/examples/` of the repository goes on from here.
 //!
-//! The paper is Putignano, Afferrante, Carbone, Demelio, *A new efficient numerical method for contact mechanics of rough
-//! surfaces*, Int. J. Solids Struct. 49 (2012) 338-343; "Eq. 4" without another source means its equation. The function that
-//! evaluates an equation has it in parentheses, so that a search for "Eq. (14" finds one place.
+//! The paper is Putignano, Afferrante, Carbone, Demelio, *A new efficient numerical method for contact mechanics of
+//! rough surfaces*, Int. J. Solids Struct. 49 (2012) 338-343; "Eq. 4" without another source means its equation. The
+//! function that evaluates an equation has it in parentheses, so that a search for "Eq. (14" finds one place.
 
 #[cfg(feature = "ndarray")]
 mod array;

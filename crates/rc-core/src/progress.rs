@@ -31,8 +31,8 @@ pub enum Event {
 /// Hands out the rows of a field in order, any number of whole ones at a time.
 pub type Rows<'a> = dyn Fn(&mut dyn FnMut(&[f64])) + 'a;
 
-/// The pressure of a running solve, between two iterations. Rows are made when they are asked for, so that it costs nothing
-/// where nobody looks.
+/// The pressure of a running solve, between two iterations. Rows are made when they are asked for, so that it costs
+/// nothing where nobody looks.
 #[derive(Clone, Copy)]
 pub struct Snapshot<'a> {
     grid: Grid,
@@ -52,8 +52,8 @@ impl<'a> Snapshot<'a> {
         self.grid
     }
 
-    /// Hands out the pressure (in E*) row by row from iy = 0, one row or some of them at a time. It is not a solution yet: Gauss-Seidel
-    /// may have tension in it.
+    /// Hands out the pressure (in E*) row by row from iy = 0, one row or some of them at a time. It is not a solution
+    /// yet: Gauss-Seidel may have tension in it.
     pub fn pressure_rows(&self, mut take: impl FnMut(&[f64])) {
         (self.rows)(&mut take);
     }

@@ -38,8 +38,8 @@ pub fn check_height_field(surface: &dyn HeightField) {
     }
 }
 
-/// Checks a [`Kernel`]: zero at k = 0, positive and finite elsewhere, symmetric under x ↔ y on a square grid; the same on a
-/// rectangular cell as on the square of its copies.
+/// Checks a [`Kernel`]: zero at k = 0, positive and finite elsewhere, symmetric under x ↔ y on a square grid; the same
+/// on a rectangular cell as on the square of its copies.
 ///
 /// # Panics
 /// When the contract is broken.
@@ -78,8 +78,8 @@ pub fn check_kernel(kernel: &dyn Kernel) {
     }
 }
 
-/// Checks a symmetric [`Operator`]: linear, symmetric, positive on neutral loads, zero for a uniform load, indifferent to
-/// dirty scratch.
+/// Checks a symmetric [`Operator`]: linear, symmetric, positive on neutral loads, zero for a uniform load, indifferent
+/// to dirty scratch.
 ///
 /// # Panics
 /// When the contract is broken.

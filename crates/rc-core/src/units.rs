@@ -238,7 +238,8 @@ impl Units {
 mod tests {
     use super::*;
 
-    /// A spring of pressures and lengths is the same in SI: its stiffness is their ratio, its energy half their product times the area.
+    /// A spring of pressures and lengths is the same in SI: its stiffness is their ratio, its energy half their product
+    /// times the area.
     #[test]
     fn stiffness_and_energy_follow_from_pressure_and_length() {
         let cell = PeriodicCell::rectangle(2e-3, 5e-3).expect("a cell");

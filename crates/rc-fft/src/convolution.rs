@@ -1,10 +1,11 @@
-//! Convolutions of real fields: `field → inverse FFT( symbol · FFT(field) )`, periodic on the grid of the field, or on a larger one on which the
-//! field is zero elsewhere.
+//! Convolutions of real fields: `field → inverse FFT( symbol · FFT(field) )`, periodic on the grid of the field, or on
+//! a larger one on which the field is zero elsewhere.
 //!
-//! There are three passes over memory. Rows are transformed block by block and left in tiles. Panels of a few columns are gathered
-//! from the tiles, transformed, multiplied by the symbol, transformed back and scattered. Rows are transformed back. The caller
-//! writes the rows and reads them block by block, so that its own vector work is done while they are in cache. Work is parallel
-//! over blocks and panels, never inside one transform, so results do not depend on the number of threads.
+//! There are three passes over memory. Rows are transformed block by block and left in tiles. Panels of a few columns
+//! are gathered from the tiles, transformed, multiplied by the symbol, transformed back and scattered. Rows are
+//! transformed back. The caller writes the rows and reads them block by block, so that its own vector work is done
+//! while they are in cache. Work is parallel over blocks and panels, never inside one transform, so results do not
+//! depend on the number of threads.
 
 use std::sync::{Arc, Mutex};
 
@@ -16,7 +17,8 @@ use rustfft::num_complex::Complex;
 
 use crate::{SymbolTable, TransformReal};
 
-/// Rows per block of a [`Convolution`]: what it asks for and hands out at a time. The last block of a grid may have fewer.
+/// Rows per block of a [`Convolution`]: what it asks for and hands out at a time. The last block of a grid may have
+/// fewer.
 pub const BLOCK_ROWS: usize = 16;
 
 /// Columns per panel: sixteen f32 complex values are two cache lines.
@@ -28,7 +30,8 @@ const PANEL_PADDING: usize = 16;
 
 /// Plans and buffers for convolutions on one grid.
 ///
-/// [`Convolution::apply`] is the whole; its three passes are there one by one for callers that do something else between them.
+/// [`Convolution::apply`] is the whole; its three passes are there one by one for callers that do something else
+/// between them.
 ///
 /// ```
 /// use rayon::prelude::*;
@@ -78,14 +81,16 @@ struct Workspace<T> {
 }
 
 impl<T: TransformReal> Convolution<T> {
-    /// Plans for `grid`, and a workspace for each thread of the present rayon pool. *Memory*: nx·ny complex numbers of `T`.
+    /// Plans for `grid`, and a workspace for each thread of the present rayon pool. *Memory*: nx·ny complex numbers of
+    /// `T`.
     #[must_use]
     pub fn new(grid: Grid) -> Self {
         Self::padded(grid, [grid.nx(), grid.ny()])
     }
 
-    /// Plans for fields on `grid` that are zero on the rest of a larger one, of `period` elements along both axes, whose table the symbol is
-    /// then; only the result on `grid` is kept. Transforms of rows that are zero are left out. *Memory*: about period\[0\] · ny / 2 complex numbers.
+    /// Plans for fields on `grid` that are zero on the rest of a larger one, of `period` elements along both axes,
+    /// whose table the symbol is then; only the result on `grid` is kept. Transforms of rows that are zero are left
+    /// out. *Memory*: about period\[0\] · ny / 2 complex numbers.
     ///
     /// With a period of at least 2n - 1 elements along a side of n, no element acts on another around the border.
     ///
@@ -127,9 +132,9 @@ impl<T: TransformReal> Convolution<T> {
 
     /// Convolves with `symbol`, the table of the same grid.
     ///
-    /// `sources` and `sinks` have one item for each [`BLOCK_ROWS`] rows of the grid, in order. `write` writes the field's
-    /// rows of its block; it is called once for each block before `read` is called at all. `read` receives the rows of the
-    /// result; its return values are collected in the order of blocks, for the caller to sum.
+    /// `sources` and `sinks` have one item for each [`BLOCK_ROWS`] rows of the grid, in order. `write` writes the
+    /// field's rows of its block; it is called once for each block before `read` is called at all. `read` receives the
+    /// rows of the result; its return values are collected in the order of blocks, for the caller to sum.
     ///
     /// # Panics
     /// When `sources` or `sinks` have another length than there are blocks.
@@ -183,7 +188,8 @@ impl<T: TransformReal> Convolution<T> {
             .collect()
     }
 
-    /// Second pass: columns are transformed, multiplied by the symbol, the table of the same grid, and transformed back.
+    /// Second pass: columns are transformed, multiplied by the symbol, the table of the same grid, and transformed
+    /// back.
     pub fn apply_symbol(&mut self, symbol: &SymbolTable<T>) {
         let (n_rows, [nx, ny]) = (self.grid.ny(), self.period);
         let n_columns = nx / 2 + 1;
@@ -214,7 +220,8 @@ impl<T: TransformReal> Convolution<T> {
         });
     }
 
-    /// Third pass: rows are transformed back and handed to `read`, whose return values are collected in the order of blocks.
+    /// Third pass: rows are transformed back and handed to `read`, whose return values are collected in the order of
+    /// blocks.
     ///
     /// # Panics
     /// As [`Convolution::apply`].
@@ -259,7 +266,8 @@ impl<T> std::fmt::Debug for Convolution<T> {
     }
 }
 
-/// The workspace of the calling thread. A lock is only ever waited for when more threads run than when the plan was made.
+/// The workspace of the calling thread. A lock is only ever waited for when more threads run than when the plan was
+/// made.
 fn lock<T>(workspaces: &[Mutex<Workspace<T>>]) -> std::sync::MutexGuard<'_, Workspace<T>> {
     let thread = rayon::current_thread_index().unwrap_or(0) % workspaces.len();
     workspaces[thread].lock().unwrap_or_else(std::sync::PoisonError::into_inner)

@@ -8,11 +8,12 @@ use rustfft::num_complex::Complex64;
 
 use crate::TransformReal;
 
-/// Columns, or rows, that a second pass gathers at once, so that every cache line of the first pass's result is read once.
+/// Columns, or rows, that a second pass gathers at once, so that every cache line of the first pass's result is read
+/// once.
 const PANEL: usize = 8;
 
-/// `value(w)` of every wave w = Σ f exp(-2πi k·x) of a real field minus `offset`, for the half plane 0 ≤ kx ≤ nx/2, column by column:
-/// `values[kx * ny + (ky mod ny)]`.
+/// `value(w)` of every wave w = Σ f exp(-2πi k·x) of a real field minus `offset`, for the half plane 0 ≤ kx ≤ nx/2,
+/// column by column: `values[kx * ny + (ky mod ny)]`.
 ///
 /// Phases are those of a field whose first value is at x = 0, not at the centre of an element.
 #[must_use]
@@ -55,12 +56,12 @@ fn transformed_rows(field: &Field, offset: f64) -> Vec<Complex64> {
     rows
 }
 
-/// The field Σ a_k exp(2πi k·x) at the element centres of `grid`, for waves in the columns kx = 0, 1, …; those of -kx are their
-/// conjugates, and the column kx = 0 must be its own.
+/// The field Σ a_k exp(2πi k·x) at the element centres of `grid`, for waves in the columns kx = 0, 1, …; those of -kx
+/// are their conjugates, and the column kx = 0 must be its own.
 ///
-/// `columns[kx][reach + ky]` is a_k, with 2·reach + 1 entries in that column. Waves too short for the grid are folded onto those with
-/// the same values at its centres, so the result is the direct sum on any grid. Besides the result, as many complex numbers are
-/// stored as there are columns times ny.
+/// `columns[kx][reach + ky]` is a_k, with 2·reach + 1 entries in that column. Waves too short for the grid are folded
+/// onto those with the same values at its centres, so the result is the direct sum on any grid. Besides the result, as
+/// many complex numbers are stored as there are columns times ny.
 #[must_use]
 pub fn field_of_columns(columns: &[Vec<Complex64>], grid: Grid) -> Field {
     let waves_by_row = transformed_columns(columns, grid);
@@ -69,8 +70,8 @@ pub fn field_of_columns(columns: &[Vec<Complex64>], grid: Grid) -> Field {
     field
 }
 
-/// First pass. Column by column: Σ `a_k` exp(2πi (ky y + kx/(2 nx))) over ky, for the ny centres y; the last factor is the half
-/// element by which the first centre is off the corner.
+/// First pass. Column by column: Σ `a_k` exp(2πi (ky y + kx/(2 nx))) over ky, for the ny centres y; the last factor is
+/// the half element by which the first centre is off the corner.
 fn transformed_columns(columns: &[Vec<Complex64>], grid: Grid) -> Vec<Complex64> {
     let ny = grid.ny();
     let fft = f64::complex_inverse(ny);
@@ -124,8 +125,8 @@ struct Fold {
 }
 
 impl Fold {
-    /// The complex-to-real transform adds the conjugate of every wave by itself, except of its first (0) and, for even `nx`, last
-    /// (nx/2) one: these are real, and a wave folded onto them brings its conjugate along.
+    /// The complex-to-real transform adds the conjugate of every wave by itself, except of its first (0) and, for even
+    /// `nx`, last (nx/2) one: these are real, and a wave folded onto them brings its conjugate along.
     fn of(kx: usize, nx: usize) -> Self {
         let alias = kx % nx;
         if kx == 0 {

@@ -17,9 +17,11 @@ pub enum Instructions {
 }
 
 impl Instructions {
-    /// What this process uses: [`Instructions::Best`], unless the environment variable `RC_SIMD` is `scalar` or `sse`. It is read once.
+    /// What this process uses: [`Instructions::Best`], unless the environment variable `RC_SIMD` is `scalar` or `sse`.
+    /// It is read once.
     ///
-    /// Sums are rounded in another order by other instructions, so results differ in their last digits, as on other processors.
+    /// Sums are rounded in another order by other instructions, so results differ in their last digits, as on other
+    /// processors.
     ///
     /// # Panics
     /// When the variable has another value than `scalar`, `sse` or `best`.

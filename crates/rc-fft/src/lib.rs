@@ -1,7 +1,7 @@
 //! Fourier transforms of real fields on a grid: plans, row and column passes, scratch.
 //!
-//! A transform of two dimensions is a pass over rows and a pass over columns, each parallel over blocks that stay in cache. This crate is
-//! the only place that such passes are written:
+//! A transform of two dimensions is a pass over rows and a pass over columns, each parallel over blocks that stay in
+//! cache. This crate is the only place that such passes are written:
 //!
 //! | item | what |
 //! |---|---|
@@ -13,10 +13,12 @@
 //! | [`TransformReal`] | transforms of one dimension |
 //! | [`Instructions`] | the vector instructions that are used, which `RC_SIMD` in the environment can lower |
 //!
-//! Results are bitwise the same for any number of threads: work is divided over rows and columns, never inside one transform.
+//! Results are bitwise the same for any number of threads: work is divided over rows and columns, never inside one
+//! transform.
 //!
-//! `rustfft` is generic over the number type, so every crate that makes a plan compiles all of its algorithms, for each instruction set
-//! and precision: a million lines of LLVM code. Here they are compiled once; other crates get a plan as a trait object.
+//! `rustfft` is generic over the number type, so every crate that makes a plan compiles all of its algorithms, for each
+//! instruction set and precision: a million lines of LLVM code. Here they are compiled once; other crates get a plan as
+//! a trait object.
 //!
 //! ```
 //! use rc_fft::{Complex, TransformReal};

@@ -8,8 +8,8 @@ use crate::TransformReal;
 /// Columns that are gathered at once: with fewer, rows far apart are read for little.
 const PANEL: usize = 32;
 
-/// For the rows of a field minus `offset`, and for its columns: Σ over all of them of `Σ weights[k] |w_k|²`, with the waves
-/// w_k = Σ f exp(-2πi jk/n), k = 0, …, n/2, of one line.
+/// For the rows of a field minus `offset`, and for its columns: Σ over all of them of `Σ weights[k] |w_k|²`, with the
+/// waves w_k = Σ f exp(-2πi jk/n), k = 0, …, n/2, of one line.
 ///
 /// Bitwise the same for any number of threads. Besides the field only a few lines are in memory.
 ///

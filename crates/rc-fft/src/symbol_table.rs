@@ -8,8 +8,8 @@ use crate::TransformReal;
 /// Columns that are filled at once, so that each cache line of those before the diagonal is read once.
 const COLUMNS: usize = 16;
 
-/// Eigenvalues of a [`Convolution`](crate::Convolution) for 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2, even in kx and in ky; columns of constant
-/// kx are contiguous, and the 1/(nx·ny) of the inverse transform is a factor of the entries.
+/// Eigenvalues of a [`Convolution`](crate::Convolution) for 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2, even in kx and in ky;
+/// columns of constant kx are contiguous, and the 1/(nx·ny) of the inverse transform is a factor of the entries.
 #[derive(Clone, Debug)]
 pub struct SymbolTable<T> {
     column_len: usize,
@@ -17,7 +17,8 @@ pub struct SymbolTable<T> {
 }
 
 impl<T: TransformReal> SymbolTable<T> {
-    /// Tabulates `eigenvalue(kx, ky)`. On a square grid of a square cell, where it is symmetric, it is asked for ky ≥ kx only.
+    /// Tabulates `eigenvalue(kx, ky)`. On a square grid of a square cell, where it is symmetric, it is asked for ky ≥
+    /// kx only.
     ///
     /// # Panics
     /// When `T` cannot hold an `f64`, rounded: `f32` and `f64` can.

@@ -96,8 +96,8 @@ mod tests {
         command.output().expect("the tests are run")
     }
 
-    /// Stands in for other processors: every reduced figure is solved, compared and drawn with fewer vector instructions. The tests of the
-    /// figures themselves use the widest of this one.
+    /// Stands in for other processors: every reduced figure is solved, compared and drawn with fewer vector
+    /// instructions. The tests of the figures themselves use the widest of this one.
     #[test]
     fn figures_are_the_same_with_fewer_vector_instructions() {
         for instructions in ["scalar", "sse"] {

@@ -30,7 +30,8 @@ pub fn fill(path: &str, sources: &Sources, block: impl Fn(&str) -> Result<String
     Ok(text + rest)
 }
 
-/// Rewrites the documents at the paths `documents` of this repository by `render`, which is given a path and the sources.
+/// Rewrites the documents at the paths `documents` of this repository by `render`, which is given a path and the
+/// sources.
 ///
 /// # Errors
 /// With what `render` says, or when a document cannot be written.

@@ -1,7 +1,8 @@
 //! The surface of the Contact-Mechanics Challenge without adhesion: area, gap, stiffness and patches against the load.
 //!
-//! Problem: M. H. Müser, W. B. Dapp, *The contact mechanics challenge: problem definition*, arXiv:1512.02403 (2015); M. H. Müser et al.,
-//! *Meeting the contact-mechanics challenge*, Tribol. Lett. 65 (2017) 118. The published problem is adhesive, this one is not.
+//! Problem: M. H. Müser, W. B. Dapp, *The contact mechanics challenge: problem definition*, arXiv:1512.02403 (2015); M.
+//! H. Müser et al., *Meeting the contact-mechanics challenge*, Tribol. Lett. 65 (2017) 118. The published problem is
+//! adhesive, this one is not.
 
 mod drawing;
 mod large;
@@ -228,7 +229,8 @@ mod tests {
         let source = Challenge::params(Preset::Full).expect("parameters").source;
         let moments = source.surface().expect("a surface").moments();
         assert!((moments.rms_slope - 1.0).abs() < 1e-12, "{moments:?}");
-        // The integral over the plateau and the power law gives 0.7765 µm, the sum over a lattice of waves a little more.
+        // The integral over the plateau and the power law gives 0.7765 µm, the sum over a lattice of waves a little
+        // more.
         assert!((moments.rms_height * CELL_UM / 0.7765 - 1.0).abs() < 0.01, "{moments:?}");
     }
 

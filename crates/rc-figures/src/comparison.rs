@@ -1,11 +1,12 @@
 //! How a table is compared with an earlier one: what may differ is said beside what writes the table, column by column.
 //!
-//! Processors have different vector instructions, which round sums in another order, so a solve to the same tolerance ends at a slightly
-//! other solution. What that changes is known by the scale of a column, and not by a number itself: a pressure beside a contact edge moves
-//! by a small part of the peak pressure, which may be all of it. Text and the numbers of cells and rows must agree.
+//! Processors have different vector instructions, which round sums in another order, so a solve to the same tolerance
+//! ends at a slightly other solution. What that changes is known by the scale of a column, and not by a number itself:
+//! a pressure beside a contact edge moves by a small part of the peak pressure, which may be all of it. Text and the
+//! numbers of cells and rows must agree.
 
-/// A number `b` agrees with the reference `a` when |a - b| ≤ absolute + relative·|a| + of_scale·s, with s the largest magnitude of its
-/// column.
+/// A number `b` agrees with the reference `a` when |a - b| ≤ absolute + relative·|a| + of_scale·s, with s the largest
+/// magnitude of its column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rule {
     absolute: f64,
@@ -53,7 +54,8 @@ impl Rule {
         Self { of_value: part, ..Self::NOTHING }
     }
 
-    /// A count n of elements, within 1 + `part`·√n: a few of them cross the ends of a bin or the edge of a contact, at random.
+    /// A count n of elements, within 1 + `part`·√n: a few of them cross the ends of a bin or the edge of a contact, at
+    /// random.
     #[must_use]
     pub const fn count(part: f64) -> Self {
         Self { count: Some((None, part)), ..Self::NOTHING }
@@ -173,9 +175,9 @@ pub(crate) mod tests {
 
     const REAL: f64 = 1e-3;
 
-    /// What the rules of `table` do not notice, though it is no matter of rounding: a change by a thousandth of the largest number of a
-    /// column, or, where that is less than a rule resolves in a count or in the unit of the number, by twice as much; a sign swapped; a
-    /// row left out.
+    /// What the rules of `table` do not notice, though it is no matter of rounding: a change by a thousandth of the
+    /// largest number of a column, or, where that is less than a rule resolves in a count or in the unit of the number,
+    /// by twice as much; a sign swapped; a row left out.
     pub(crate) fn unnoticed(table: &Table) -> Option<String> {
         let cells = Cells::of(&table.csv);
         let text = |cells: &[Vec<&str>]| cells.iter().map(|row| row.join(",") + "\n").collect::<String>();
@@ -202,8 +204,8 @@ pub(crate) mod tests {
         })
     }
 
-    /// Row, column and value of the largest number of each column; in a summary, which has a column `value`, of every number, since its
-    /// rows are different quantities.
+    /// Row, column and value of the largest number of each column; in a summary, which has a column `value`, of every
+    /// number, since its rows are different quantities.
     fn scales(cells: &Cells<'_>) -> Vec<(usize, usize, f64)> {
         let is_summary = cells.column("value").is_some();
         let of_column = |column: usize| {

@@ -1,6 +1,7 @@
 //! docs/gfmd.md and docs/challenge.md: words by people, numbers from the archived runs.
 //!
-//! Blocks as in [`crate::blocks`]. `cargo xtask gfmd --archive` and `cargo xtask challenge --archive` write them, `cargo xtask tidy` compares.
+//! Blocks as in [`crate::blocks`]. `cargo xtask gfmd --archive` and `cargo xtask challenge --archive` write them,
+//! `cargo xtask tidy` compares.
 
 use anyhow::Result;
 use rc_core::quantity::digits;
@@ -51,7 +52,8 @@ fn render(document: &str, sources: &Sources) -> Result<String, String> {
     })
 }
 
-/// A column of a table in a document: its name in the archived table, its title, a factor, and its digits (0: as it is).
+/// A column of a table in a document: its name in the archived table, its title, a factor, and its digits (0: as it
+/// is).
 type Column = (&'static str, &'static str, f64, usize);
 
 /// A table of a document that is an archived one with other titles.

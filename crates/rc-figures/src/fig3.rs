@@ -1,9 +1,9 @@
 //! Fig. 3: elements against penetration for the three meshes, from touch to full contact.
 //!
-//! The meshes are counted on contact sets of elements that are the smallest of all three meshes. A
-//! tolerance of 1e-5 of the height of the surface is enough for the picture: only elements at borders of contact can still change, and
-//! `a_tolerance_of_1e_5_is_enough_for_counts` asserts on the quick figure that nobody would see it. Counts on another processor are the same
-//! within [`NOISE`].
+//! The meshes are counted on contact sets of elements that are the smallest of all three meshes. A tolerance of 1e-5 of
+//! the height of the surface is enough for the picture: only elements at borders of contact can still change, and
+//! `a_tolerance_of_1e_5_is_enough_for_counts` asserts on the quick figure that nobody would see it. Counts on another
+//! processor are the same within [`NOISE`].
 
 use std::f64::consts::TAU;
 
@@ -150,8 +150,8 @@ fn partial_contact(params: &Params, surface: &Surface, mean_pressure: f64) -> Re
     State::of(params, solution.pressure(), solution.info().penetration, mean_pressure)
 }
 
-/// The smallest load of full contact. A larger load only shifts the pressure, so the smallest one is that of any full contact
-/// minus the minimum of its pressure.
+/// The smallest load of full contact. A larger load only shifts the pressure, so the smallest one is that of any full
+/// contact minus the minimum of its pressure.
 fn full_contact(params: &Params, heights: &Field) -> Result<State> {
     let control = Control::MeanPressure(CRUSHING);
     let solution = solve(heights, control, &SolveParams::default().by(Method::Uniform))?;

@@ -1,8 +1,8 @@
 //! Fig. 4: a rigid sphere on the half-space, its contact circle and three pressure sections against Hertz.
 //!
-//! The paper gives the penetration Δ = 25 µm but no cell. In a periodic cell, where displacements have zero mean, the same Δ is another
-//! contact than on an infinite half-space (4.6 % in radius at λ = 1 cm), so the comparison is with Hertz's solution in
-//! the periodic cell; the infinite half-space is in the table too.
+//! The paper gives the penetration Δ = 25 µm but no cell. In a periodic cell, where displacements have zero mean, the
+//! same Δ is another contact than on an infinite half-space (4.6 % in radius at λ = 1 cm), so the comparison is with
+//! Hertz's solution in the periodic cell; the infinite half-space is in the table too.
 
 use anyhow::Result;
 use plotters::coord::types::RangedCoordf64;
@@ -85,7 +85,8 @@ impl Figure for Fig4 {
     const NAME: &'static str = "fig4";
     type Params = Params;
 
-    /// 107 elements per contact radius (full) and 13 (quick), in a cell of 1 cm, the side of the paper's rough surfaces.
+    /// 107 elements per contact radius (full) and 13 (quick), in a cell of 1 cm, the side of the paper's rough
+    /// surfaces.
     fn params(preset: Preset) -> Result<Params> {
         let elasticity = Elasticity::from_young_poisson(paper::value("young")?, paper::value("poisson")?)?;
         Ok(Params {
@@ -138,8 +139,9 @@ impl Picture for Fig4 {
     }
 }
 
-/// The sphere as Hertz takes it, h = -r²/2R in units of λ, and the element (the same in x and y) whose centre is its apex: then the
-/// maximum of the sampled heights is the apex, and Δ is counted from there. r is the distance to the nearest image.
+/// The sphere as Hertz takes it, h = -r²/2R in units of λ, and the element (the same in x and y) whose centre is its
+/// apex: then the maximum of the sampled heights is the apex, and Δ is counted from there. r is the distance to the
+/// nearest image.
 fn sphere(params: &Params) -> Result<(Field, usize)> {
     let grid = Grid::square(params.grid)?;
     let apex = params.grid / 2;

@@ -227,7 +227,8 @@ impl Fig5 {
             .row("R squared up to 4e-3", Rule::absolute(1e-5))
     }
 
-    /// The areas of both surfaces compared realisation by realisation, and the largest difference that the paper's procedure makes.
+    /// The areas of both surfaces compared realisation by realisation, and the largest difference that the paper's
+    /// procedure makes.
     fn ratio_rows(&self) -> Vec<Vec<String>> {
         let [first, second] = &self.curves[..] else { return Vec::new() };
         let ratio = self.sweep.area_ratio(second.waves, first.waves, self.printed.load);

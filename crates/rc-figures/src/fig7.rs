@@ -1,9 +1,9 @@
-//! Fig. 7: the logarithm of the mean pressure against Δ/h_max for both surfaces, with exponential fits where they hold, and
-//! Persson's decay length.
+//! Fig. 7: the logarithm of the mean pressure against Δ/h_max for both surfaces, with exponential fits where they hold,
+//! and Persson's decay length.
 //!
-//! h_max has a standard deviation of 10 % between realisations, so averages need a rule. Here the load is given and Δ/h_max, with the h_max
-//! of its own realisation, is averaged over realisations at each load. The decay length u0 of σ0 ∝ exp(-ū/u0), with the mean gap
-//! ū = h_max - Δ, is fitted to each realisation and then averaged.
+//! h_max has a standard deviation of 10 % between realisations, so averages need a rule. Here the load is given and
+//! Δ/h_max, with the h_max of its own realisation, is averaged over realisations at each load. The decay length u0 of
+//! σ0 ∝ exp(-ū/u0), with the mean gap ū = h_max - Δ, is fitted to each realisation and then averaged.
 
 use anyhow::Result;
 use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, RGBColor, Rectangle};

@@ -1,7 +1,7 @@
 //! Fig. 8: the distribution of the interfacial stress for both surfaces, the fit of Eq. 7, and the approach to zero.
 //!
-//! The distribution is resolved below the element at contact edges ([`StressDistribution`]); what a histogram of the same
-//! elements shows is drawn beside it. Realisations are averaged bin by bin.
+//! The distribution is resolved below the element at contact edges ([`StressDistribution`]); what a histogram of the
+//! same elements shows is drawn beside it. Realisations are averaged bin by bin.
 
 use anyhow::Result;
 use rc_core::{Field, Grid, HeightField as _};

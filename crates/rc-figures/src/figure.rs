@@ -97,8 +97,8 @@ pub(crate) mod tests {
     use crate::comparison::tests::unnoticed;
     use crate::snapshot;
 
-    /// Asserts that the tables of `figure` have these names, that each is as in the snapshot of its name, and that its rules would notice
-    /// if it were not.
+    /// Asserts that the tables of `figure` have these names, that each is as in the snapshot of its name, and that its
+    /// rules would notice if it were not.
     pub(crate) fn assert_reviewed<F: Figure>(figure: &F, params: &F::Params, names: &[&str]) {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/snapshots");
         let tables = figure.tables();

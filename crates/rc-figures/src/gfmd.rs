@@ -1,8 +1,9 @@
-//! A published reference with many longest waves in the cell: area, stress, gap and energy against pressure, ours beside theirs.
+//! A published reference with many longest waves in the cell: area, stress, gap and energy against pressure, ours
+//! beside theirs.
 //!
-//! The reference is Green's function molecular dynamics by Y. Zhou and M. H. Müser, published with the comparison of Persson's theories of
-//! Y. Xu (`PerssonModelFudgeFactor`). Numbers of it that this project quotes are in `data/gfmd.csv`; [`beside`] reads the others from a
-//! copy of its files.
+//! The reference is Green's function molecular dynamics by Y. Zhou and M. H. Müser, published with the comparison of
+//! Persson's theories of Y. Xu (`PerssonModelFudgeFactor`). Numbers of it that this project quotes are in
+//! `data/gfmd.csv`; [`beside`] reads the others from a copy of its files.
 
 mod beside;
 mod drawing;
@@ -25,8 +26,9 @@ use published::Published;
 
 pub use beside::beside;
 
-/// Elastic energy of full contact per nominal area, over E* and the longest wavelength: 2.2349e-7 m for 2π/1e4 m. The one number of the
-/// reference that says how large its heights are on its own lattice of waves; its rms slope is not given.
+/// Elastic energy of full contact per nominal area, over E* and the longest wavelength: 2.2349e-7 m for 2π/1e4 m. The
+/// one number of the reference that says how large its heights are on its own lattice of waves; its rms slope is not
+/// given.
 const FULL_ENERGY: f64 = 2.2349e-7 * 1e4 / std::f64::consts::TAU;
 const HURST: f64 = 0.8;
 

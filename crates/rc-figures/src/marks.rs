@@ -94,7 +94,8 @@ pub(crate) enum Sample {
     Square(RGBColor),
 }
 
-/// Writes a legend, its first line at `corner`, in the coordinates of the chart; each line is `step` below the one before.
+/// Writes a legend, its first line at `corner`, in the coordinates of the chart; each line is `step` below the one
+/// before.
 pub(crate) fn legend<B: DrawingBackend>(
     chart: &mut Chart<'_, B>,
     corner: (f64, f64),

@@ -6,7 +6,8 @@ use std::{fs, io};
 
 use anyhow::{Context, Result};
 
-/// Entries of the root that are not sources: history and results. Folders that a tool marks as its cache (`CACHEDIR.TAG`) are not sources either.
+/// Entries of the root that are not sources: history and results. Folders that a tool marks as its cache
+/// (`CACHEDIR.TAG`) are not sources either.
 const RESULTS: &[&str] = &[".git", "figures", "rc-result", "target"];
 
 /// The root of the repository.
@@ -21,8 +22,8 @@ pub fn target() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |folder| root().join(folder))
 }
 
-/// Text files by path from the root, with `/` between folders. Files that are not UTF-8 (arrays, pictures, fonts) are left
-/// out.
+/// Text files by path from the root, with `/` between folders. Files that are not UTF-8 (arrays, pictures, fonts) are
+/// left out.
 pub type Sources = BTreeMap<String, String>;
 
 /// Whether the file at `path` has the extension `extension`.

@@ -1,8 +1,8 @@
 //! docs/reproduction.md: words by people, numbers from the archived run.
 //!
-//! The document has blocks between `<!-- numbers: fig5 -->` and `<!-- end of numbers -->`; what stands between them is made
-//! here from `data/runs/paper/` and `data/paper.csv`. `cargo xtask figures --archive` and `cargo xtask reproduction` write it,
-//! `cargo xtask tidy` compares.
+//! The document has blocks between `<!-- numbers: fig5 -->` and `<!-- end of numbers -->`; what stands between them is
+//! made here from `data/runs/paper/` and `data/paper.csv`. `cargo xtask figures --archive` and `cargo xtask
+//! reproduction` write it, `cargo xtask tidy` compares.
 
 mod rows;
 

@@ -1,4 +1,5 @@
-//! Statements of the paper that have no figure: energy and area against the number of waves, convergence, Gaussian heights.
+//! Statements of the paper that have no figure: energy and area against the number of waves, convergence, Gaussian
+//! heights.
 
 use anyhow::Result;
 use plotters::prelude::{DrawingBackend, LineSeries};

@@ -1,7 +1,7 @@
 //! Loads times realisations of the paper's surfaces: what Fig. 5 and Fig. 7 are drawn from.
 //!
-//! Realisation s of each N has seed s, so those of N = 64 and N = 128 share their long waves, and their difference is that of
-//! the short ones.
+//! Realisation s of each N has seed s, so those of N = 64 and N = 128 share their long waves, and their difference is
+//! that of the short ones.
 
 use anyhow::{Context, Result};
 use rc_core::{Grid, HeightField as _};
@@ -34,8 +34,8 @@ pub(crate) struct Params {
 }
 
 impl Params {
-    /// The paper's surfaces and its number of realisations, loads from first touches to nearly full contact (full); 8 and
-    /// 16 waves, three realisations, fewer loads (quick).
+    /// The paper's surfaces and its number of realisations, loads from first touches to nearly full contact (full); 8
+    /// and 16 waves, three realisations, fewer loads (quick).
     pub(crate) fn of(preset: Preset) -> Result<Self> {
         let load = paper::value("load")?;
         let realisations = paper::value("realisations")? as u64;

@@ -1,8 +1,9 @@
 //! Random numbers that belong to wave vectors: the same for every N, grid, truncation and kind of amplitude.
 //!
-//! `ChaCha8` is a function of key, stream and position, and portable by its definition. The key is the seed (little-endian,
-//! then zeros). Stream 2kx holds the phases and stream 2kx + 1 the sizes of the waves with this kx ≥ 0; the wave (kx, ky)
-//! has the 64-bit word at place 0, 1, 2, 3, 4, … for ky = 0, 1, -1, 2, -2, …, so a column is read front to back however long it is.
+//! `ChaCha8` is a function of key, stream and position, and portable by its definition. The key is the seed
+//! (little-endian, then zeros). Stream 2kx holds the phases and stream 2kx + 1 the sizes of the waves with this kx ≥ 0;
+//! the wave (kx, ky) has the 64-bit word at place 0, 1, 2, 3, 4, … for ky = 0, 1, -1, 2, -2, …, so a column is read
+//! front to back however long it is.
 
 use std::f64::consts::TAU;
 
@@ -12,8 +13,9 @@ use rc_fft::Complex64;
 
 use crate::Amplitudes;
 
-/// One complex number of mean square 1 for each of ky = -reach, …, reach: exp(iφ), Eq. (14), times a Rayleigh-distributed factor for
-/// [`Amplitudes::Random`]. In the column kx = 0 the waves ky and -ky are conjugate and the mean height is 0.
+/// One complex number of mean square 1 for each of ky = -reach, …, reach: exp(iφ), Eq. (14), times a
+/// Rayleigh-distributed factor for [`Amplitudes::Random`]. In the column kx = 0 the waves ky and -ky are conjugate and
+/// the mean height is 0.
 pub(crate) fn draw_column(seed: u64, kx: usize, reach: usize, amplitudes: Amplitudes) -> Vec<Complex64> {
     let mut column = vec![Complex64::ZERO; 2 * reach + 1];
     let mut phases = stream(seed, 2 * kx as u64);

@@ -15,7 +15,8 @@ const STRAIGHT: f64 = 0.15;
 /// Deviations of that many standard deviations are scatter.
 const SCATTER: f64 = 2.5;
 
-/// Exponents that make a range: those of self-affine surfaces, and a little more. A roll-off is straight too, with H = -1.
+/// Exponents that make a range: those of self-affine surfaces, and a little more. A roll-off is straight too, with
+/// H = -1.
 const SELF_AFFINE: std::ops::RangeInclusive<f64> = 0.0..=1.2;
 
 /// Part of the maximum C below which there is only rounding.
@@ -25,7 +26,8 @@ const ROUNDING: f64 = 1e-20;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct HurstFit {
-    /// Hurst exponent H, from 0 to 1.2. Above 1 the surface is smoother than a self-affine one, though its spectrum is a power law.
+    /// Hurst exponent H, from 0 to 1.2. Above 1 the surface is smoother than a self-affine one, though its spectrum is
+    /// a power law.
     pub hurst: f64,
     /// ln C at one wave per cell on the line, C in λ⁴.
     pub ln_c: f64,
@@ -45,11 +47,12 @@ struct Point {
     tolerance: f64,
 }
 
-/// H of Eq. (8), x → t x and h → t^H h, from the longest part of `spectrum` that is straight in logarithms, within the scatter of its rings, and as steep as that of a self-affine
-/// surface; `None` when less than a factor 4 in wavenumber is.
+/// H of Eq. (8), x → t x and h → t^H h, from the longest part of `spectrum` that is straight in logarithms, within the
+/// scatter of its rings, and as steep as that of a self-affine surface; `None` when less than a factor 4 in wavenumber
+/// is.
 ///
-/// A line through all bins of a candidate by least squares, bins of many waves with more weight; no bin further from it than 15 % and the
-/// scatter of a mean over so many random waves. Of equally long candidates the straighter one. Tests
+/// A line through all bins of a candidate by least squares, bins of many waves with more weight; no bin further from it
+/// than 15 % and the scatter of a mean over so many random waves. Of equally long candidates the straighter one. Tests
 /// `the_exponent_of_a_generated_surface_and_its_range_are_found` and `roll_off_and_truncation_are_left_out`.
 #[must_use]
 pub fn fit_hurst(spectrum: &[SpectrumBin]) -> Option<HurstFit> {

@@ -7,13 +7,14 @@
 //! ⟨|a_k|²⟩ = (2π)² C(q),          C(q) = C0 (max(|k|, k_r) / k_r)^(-2(1+H)),   q = 2πk        (Eq. 1, 9, 12, 13)
 //! ```
 //!
-//! with integer wave vectors k = (kx, ky) (waves per cell), Hurst exponent H, roll-off wavenumber `k_r` (the paper: 1, no
-//! plateau) and N = [`SpectrumParams::waves`] the largest wavenumber. In a periodic cell of side λ the δ(0) of Eq. 12 is
-//! 1/q0² with q0 = 2π/λ, which gives the factor (2π)² for λ = 1; C is in λ⁴, a in λ.
+//! with integer wave vectors k = (kx, ky) (waves per cell), Hurst exponent H, roll-off wavenumber `k_r` (the paper: 1,
+//! no plateau) and N = [`SpectrumParams::waves`] the largest wavenumber. In a periodic cell of side λ the δ(0) of Eq.
+//! 12 is 1/q0² with q0 = 2π/λ, which gives the factor (2π)² for λ = 1; C is in λ⁴, a in λ.
 //!
-//! [`Surface`] realises such a spectrum, or is the sum of given waves ([`Surface::from_waves`]). The phase of a wave depends on the seed and on k alone, so one seed means one surface:
-//! on every grid, and, for its long waves, for every N. Everything else here measures surfaces: [`Surface::moments`]
-//! without a grid, [`moments_of_grid`] and [`radial_spectrum`] for any height map.
+//! [`Surface`] realises such a spectrum, or is the sum of given waves ([`Surface::from_waves`]). The phase of a wave
+//! depends on the seed and on k alone, so one seed means one surface: on every grid, and, for its long waves, for every
+//! N. Everything else here measures surfaces: [`Surface::moments`] without a grid, [`moments_of_grid`] and
+//! [`radial_spectrum`] for any height map.
 //!
 //! ```
 //! use rc_core::Grid;

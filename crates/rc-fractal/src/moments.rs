@@ -19,9 +19,9 @@ pub struct Moments {
     pub rms_slope: f64,
     /// rms of the mean curvature, half the Laplacian: ½ √⟨(∇²h)²⟩, in 1/λ.
     pub rms_curvature: f64,
-    /// Nayak's bandwidth parameter α = m0 m4 / m2² = 1.5 ⟨h²⟩ ⟨(∇²h)²⟩ / ⟨|∇h|²⟩², with the profile moments m2 = ⟨|∇h|²⟩/2 and
-    /// m4 = (3/8) ⟨(∇²h)²⟩ of an isotropic surface (P. R. Nayak, *Random process model of rough surfaces*, J. Lubr. Technol. 93
-    /// (1971) 398-407). `NaN` for a flat surface.
+    /// Nayak's bandwidth parameter α = m0 m4 / m2² = 1.5 ⟨h²⟩ ⟨(∇²h)²⟩ / ⟨|∇h|²⟩², with the profile moments m2 =
+    /// ⟨|∇h|²⟩/2 and m4 = (3/8) ⟨(∇²h)²⟩ of an isotropic surface (P. R. Nayak, *Random process model of rough
+    /// surfaces*, J. Lubr. Technol. 93 (1971) 398-407). `NaN` for a flat surface.
     pub nayak: f64,
 }
 
@@ -66,8 +66,9 @@ impl SpectralSums {
 
 /// Moments of a height map, with spectral derivatives through one Fourier transform; the mean height is removed first.
 ///
-/// Exact for a surface whose waves the grid resolves (|kx| < nx/2, |ky| < ny/2), whatever the sides of the grid and of the cell; test
-/// `moments_of_a_resolved_grid_equal_the_exact_sums` shows 1e-10. A wave of exactly half a side counts with that wavenumber.
+/// Exact for a surface whose waves the grid resolves (|kx| < nx/2, |ky| < ny/2), whatever the sides of the grid and of
+/// the cell; test `moments_of_a_resolved_grid_equal_the_exact_sums` shows 1e-10. A wave of exactly half a side counts
+/// with that wavenumber.
 #[must_use]
 pub fn moments_of_grid(heights: &Field) -> Moments {
     let spectrum = PowerSpectrum::of(heights);
@@ -84,8 +85,8 @@ pub fn moments_of_grid(heights: &Field) -> Moments {
 
 /// rms height (λ) and rms slope of a height map, the same as those of [`moments_of_grid`] to rounding.
 ///
-/// ⟨|∂h/∂x|²⟩ is the mean over rows of Σ q² |a|² of their own waves (Parseval along one axis), and in the same way for columns; so no
-/// memory is needed, unlike for the curvature.
+/// ⟨|∂h/∂x|²⟩ is the mean over rows of Σ q² |a|² of their own waves (Parseval along one axis), and in the same way for
+/// columns; so no memory is needed, unlike for the curvature.
 #[must_use]
 pub fn height_and_slope_of_grid(heights: &Field) -> [f64; 2] {
     let (grid, n) = (heights.grid(), heights.grid().len() as f64);
@@ -105,8 +106,8 @@ pub fn height_and_slope_of_grid(heights: &Field) -> [f64; 2] {
     [squares / n, (along_x + along_y) / n].map(f64::sqrt)
 }
 
-/// rms height (λ) and rms slope of a map whose borders do not meet: slopes are differences of neighbours inside. Those of a wave of eight elements are 5 %
-/// too small, of 32 elements 0.3 %.
+/// rms height (λ) and rms slope of a map whose borders do not meet: slopes are differences of neighbours inside. Those
+/// of a wave of eight elements are 5 % too small, of 32 elements 0.3 %.
 #[must_use]
 pub fn height_and_slope_of_patch(heights: &Field) -> [f64; 2] {
     let (grid, spacing) = (heights.grid(), heights.grid().spacing());

@@ -2,8 +2,8 @@
 
 use thiserror::Error;
 
-/// Largest accepted [`SpectrumParams::waves`]: 4096, where a surface holds 26 million (disc) or 34 million (square) complex
-/// amplitudes, about half a gigabyte.
+/// Largest accepted [`SpectrumParams::waves`]: 4096, where a surface holds 26 million (disc) or 34 million (square)
+/// complex amplitudes, about half a gigabyte.
 pub const MAX_WAVES: usize = 4096;
 
 /// Which wave vectors belong to a spectrum with N waves.
@@ -22,8 +22,8 @@ pub enum Truncation {
 pub enum Amplitudes {
     /// |`a_k`| is its root mean square in every realisation (Eq. 14, Dirac's delta): all realisations share their moments.
     Fixed,
-    /// `a_k` is complex Gaussian, so |`a_k`| follows Rayleigh's distribution: a truly Gaussian surface. Phases are those of
-    /// [`Amplitudes::Fixed`] with the same seed.
+    /// `a_k` is complex Gaussian, so |`a_k`| follows Rayleigh's distribution: a truly Gaussian surface. Phases are
+    /// those of [`Amplitudes::Fixed`] with the same seed.
     Random,
 }
 
@@ -35,8 +35,8 @@ pub enum Normalisation {
     RmsHeight(f64),
     /// √⟨|∇h|²⟩ of this realisation.
     RmsSlope(f64),
-    /// Prefactor C0 of Eq. 1 and 9, in λ⁴: the ensemble's ⟨|`a_k`|²⟩ is (2π)² C0 up to the roll-off wavenumber (at |k| = 1
-    /// without roll-off). With [`Amplitudes::Random`] a realisation scatters about it.
+    /// Prefactor C0 of Eq. 1 and 9, in λ⁴: the ensemble's ⟨|`a_k`|²⟩ is (2π)² C0 up to the roll-off wavenumber
+    /// (at |k| = 1 without roll-off). With [`Amplitudes::Random`] a realisation scatters about it.
     C0(f64),
 }
 
@@ -50,8 +50,8 @@ pub struct SpectrumParams {
     pub hurst: f64,
     /// Wavenumber `k_r` in [1, N] (waves per cell) below which the spectrum is flat; 1 means no plateau.
     pub roll_off: f64,
-    /// Wavenumber in [1, N] (waves per cell) below which there are no waves; 1 means all are there. The plateau of the roll-off, if there
-    /// is one, lies between the two.
+    /// Wavenumber in [1, N] (waves per cell) below which there are no waves; 1 means all are there. The plateau of the
+    /// roll-off, if there is one, lies between the two.
     #[cfg_attr(feature = "serde", serde(default = "no_cut"))]
     pub low_cut: f64,
     /// Which wave vectors take part.
@@ -107,8 +107,8 @@ pub enum SpectrumError {
 }
 
 impl SpectrumParams {
-    /// The paper's surface with `waves` waves (64 or 128 there): H = 0.8, no roll-off, disc, fixed amplitudes, rms height
-    /// 13 µm in a cell of 1 cm, that is 1.3e-3 λ.
+    /// The paper's surface with `waves` waves (64 or 128 there): H = 0.8, no roll-off, disc, fixed amplitudes, rms
+    /// height 13 µm in a cell of 1 cm, that is 1.3e-3 λ.
     #[must_use]
     pub fn paper(waves: usize, seed: u64) -> Self {
         Self {
@@ -154,7 +154,8 @@ impl SpectrumParams {
         }
     }
 
-    /// √(C(q)/C0) of the power law, Eq. (1): (max(|k|, `k_r`)/`k_r`)^(-(1+H)), and 0 below the low cut, with |k|² given.
+    /// √(C(q)/C0) of the power law, Eq. (1): (max(|k|, `k_r`)/`k_r`)^(-(1+H)), and 0 below the low cut, with |k|²
+    /// given.
     pub(crate) fn relative_amplitude(&self, k_squared: f64) -> f64 {
         if k_squared < self.low_cut * self.low_cut {
             return 0.0;

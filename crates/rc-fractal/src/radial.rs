@@ -21,20 +21,21 @@ pub struct SpectrumBin {
 /// Radially averaged C(q) of a height map: rings of width 1 about |k| = 1, 2, 3, …, shortest wavenumber first; in
 /// waves per longer side of a rectangular cell.
 ///
-/// Every wave vector of the grid except k = 0 is in one ring, hence Σ (2π)² `psd` · `n_modes` / A0 = ⟨h²⟩ about the mean, exactly
-/// (Parseval; the sum is ∫ C d²q). Rings beyond half the shorter side of the grid reach into the corners of its wave vectors only.
-/// A ring averages over |k| ± ½, so C of a power law comes out high where the ring is wide against |k|, and low in the ring at the
-/// truncation, half of which is empty. Source: T. D. B. Jacobs, T. Junge, L. Pastewka, *Quantitative characterization of surface
-/// topography using spectral analysis*, Surf. Topogr.: Metrol. Prop. 5 (2017) 013001. Tests `thin_rings_recover_the_power_law_to_rounding`
-/// and `rings_add_up_to_the_mean_square_height`.
+/// Every wave vector of the grid except k = 0 is in one ring, hence Σ (2π)² `psd` · `n_modes` / A0 = ⟨h²⟩ about the
+/// mean, exactly (Parseval; the sum is ∫ C d²q). Rings beyond half the shorter side of the grid reach into the corners
+/// of its wave vectors only. A ring averages over |k| ± ½, so C of a power law comes out high where the ring is wide
+/// against |k|, and low in the ring at the truncation, half of which is empty. Source: T. D. B. Jacobs, T. Junge, L.
+/// Pastewka, *Quantitative characterization of surface topography using spectral analysis*, Surf. Topogr.: Metrol.
+/// Prop. 5 (2017) 013001. Tests `thin_rings_recover_the_power_law_to_rounding` and
+/// `rings_add_up_to_the_mean_square_height`.
 #[must_use]
 pub fn radial_spectrum(heights: &Field) -> Vec<SpectrumBin> {
     // The longest waves of a cell that is longer along y are shorter than one per side along x.
     binned_spectrum(heights, heights.grid().cell_ratio().max(1.0))
 }
 
-/// Means over rings of the spectrum of Eq. (11), with `rings_per_wave` rings for each unit of |k|; every ring that holds a wave vector is
-/// returned.
+/// Means over rings of the spectrum of Eq. (11), with `rings_per_wave` rings for each unit of |k|; every ring that
+/// holds a wave vector is returned.
 fn binned_spectrum(heights: &Field, rings_per_wave: f64) -> Vec<SpectrumBin> {
     #[derive(Clone, Copy, Default)]
     struct Ring {

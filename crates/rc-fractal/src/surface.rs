@@ -12,11 +12,12 @@ use crate::moments::SpectralSums;
 use crate::waves::{Wave, WaveError, columns_of_waves};
 use crate::{Moments, Normalisation, SpectrumError, SpectrumParams};
 
-/// A band-limited surface of zero mean height on the unit cell: one realisation of a [`SpectrumParams`], or a sum of given waves.
+/// A band-limited surface of zero mean height on the unit cell: one realisation of a [`SpectrumParams`], or a sum of
+/// given waves.
 ///
 /// Holds one complex amplitude (16 bytes) for each wave vector of the half plane kx ≥ 0; the others are conjugates.
-/// [`HeightField::height`] is the direct sum of Eq. 10 and costs one multiplication per wave; [`HeightField::sample`] is the
-/// Fourier synthesis, equal to it at every element centre of any grid up to rounding.
+/// [`HeightField::height`] is the direct sum of Eq. 10 and costs one multiplication per wave; [`HeightField::sample`]
+/// is the Fourier synthesis, equal to it at every element centre of any grid up to rounding.
 #[derive(Clone, Debug)]
 pub struct Surface {
     /// `None` of a surface that was not generated.
@@ -47,10 +48,11 @@ pub enum SampleError {
 }
 
 impl Surface {
-    /// The realisation of a spectrum (Eq. 10 to 14). The same parameters give the same surface, bit by bit, for any number of threads.
+    /// The realisation of a spectrum (Eq. 10 to 14). The same parameters give the same surface, bit by bit, for any
+    /// number of threads.
     ///
-    /// A wave's phase depends on (seed, kx, ky) alone, and its Rayleigh factor too. So surfaces of one seed with different N,
-    /// roll-off, truncation or kind of amplitude share the phases of their common waves.
+    /// A wave's phase depends on (seed, kx, ky) alone, and its Rayleigh factor too. So surfaces of one seed with
+    /// different N, roll-off, truncation or kind of amplitude share the phases of their common waves.
     ///
     /// # Errors
     /// [`SpectrumError`] when a parameter is out of its range.
@@ -69,11 +71,12 @@ impl Surface {
 
     /// The surface that has these waves and no others (Eq. 10), in any order, its amplitudes in λ.
     ///
-    /// A wave is given by k, by -k, whose amplitude is the conjugate, or by both if these agree to 1e-6; zeros may be left out. The mean
-    /// height, k = 0, is not part of a surface and is dropped.
+    /// A wave is given by k, by -k, whose amplitude is the conjugate, or by both if these agree to 1e-6; zeros may be
+    /// left out. The mean height, k = 0, is not part of a surface and is dropped.
     ///
     /// # Errors
-    /// [`WaveError`] when a wave is given twice, is not the conjugate of its opposite, is too short or not finite, or when all are zero.
+    /// [`WaveError`] when a wave is given twice, is not the conjugate of its opposite, is too short or not finite, or
+    /// when all are zero.
     pub fn from_waves(waves: Vec<Wave>) -> Result<Self, WaveError> {
         let (columns, waves) = columns_of_waves(waves)?;
         Ok(Self { params: None, waves, columns })
@@ -92,14 +95,15 @@ impl Surface {
         self.params.as_ref()
     }
 
-    /// N, in waves per cell: the largest wavenumber of a generated surface, the largest component of a wave vector in one of given waves.
+    /// N, in waves per cell: the largest wavenumber of a generated surface, the largest component of a wave vector in
+    /// one of given waves.
     #[must_use]
     pub fn waves(&self) -> usize {
         self.waves
     }
 
-    /// Moments from exact sums over the waves, without any grid. Test `moments_are_those_of_the_paper` compares them with
-    /// independently computed values to ten digits.
+    /// Moments from exact sums over the waves, without any grid. Test `moments_are_those_of_the_paper` compares them
+    /// with independently computed values to ten digits.
     #[must_use]
     pub fn moments(&self) -> Moments {
         self.sums().moments()

@@ -1,19 +1,21 @@
 //! Measured height maps: what instruments and other programs write, read into a [`HeightMap`], treated and described.
 //!
-//! [`read`] knows a file by its first bytes, or by its extension where the format has no mark: text as instruments and Gwyddion
-//! export it, lists of `x y z`, arrays (`.npy`, `.mat`, `.h5`, `.nc`), Gwyddion `.gwy` and `.gsf`, Surfer `.grd`, Igor `.ibw`,
-//! ISO 25178-71 `.sdf`, ISO 5436-2 `.x3p`, files of instruments (Digital Surf `.sur`, Nanoscope `.spm`, Wyko `.opd`, MetroPro
-//! `.dat`, Alicona `.al3d`, Sensofar `.plu` and `.plux`, Keyence `.vk4`), grayscale PNG and TIFF, and any of them packed with gzip.
-//! Of several [`channels`] it reads the first with heights; [`read_with`] reads another. [`Treatment`]s level, fill, crop, flip,
-//! filter and resample it and make it periodic; [`AreaParameters`] are those of ISO 25178-2.
+//! [`read`] knows a file by its first bytes, or by its extension where the format has no mark: text as instruments and
+//! Gwyddion export it, lists of `x y z`, arrays (`.npy`, `.mat`, `.h5`, `.nc`), Gwyddion `.gwy` and `.gsf`, Surfer
+//! `.grd`, Igor `.ibw`, ISO 25178-71 `.sdf`, ISO 5436-2 `.x3p`, files of instruments (Digital Surf `.sur`, Nanoscope
+//! `.spm`, Wyko `.opd`, MetroPro `.dat`, Alicona `.al3d`, Sensofar `.plu` and `.plux`, Keyence `.vk4`), grayscale PNG
+//! and TIFF, and any of them packed with gzip. Of several [`channels`] it reads the first with heights; [`read_with`]
+//! reads another. [`Treatment`]s level, fill, crop, flip, filter and resample it and make it periodic;
+//! [`AreaParameters`] are those of ISO 25178-2.
 //!
 //! [`spectrum`] reads surfaces that are given by their Fourier coefficients instead.
 //!
-//! Besides the command line, this is the only crate that knows metres: a file carries units, and [`HeightMap::in_metres`]
-//! applies them once. Row `iy` of a file is row `iy` of the field; a missing point is `NaN`.
+//! Besides the command line, this is the only crate that knows metres: a file carries units, and
+//! [`HeightMap::in_metres`] applies them once. Row `iy` of a file is row `iy` of the field; a missing point is `NaN`.
 //!
-//! No input makes a reader panic or take more memory than the file accounts for: what a header promises is compared with
-//! the bytes that are there before memory is taken. `tests/it/robustness.rs` shows it on arbitrary and on mutated files.
+//! No input makes a reader panic or take more memory than the file accounts for: what a header promises is compared
+//! with the bytes that are there before memory is taken. `tests/it/robustness.rs` shows it on arbitrary and on mutated
+//! files.
 //!
 //! ```
 //! use rc_heights::{AreaParameters, Format, Level, Scales, Treatment, apply, parse};

@@ -69,14 +69,16 @@ impl HeightMap {
         self.heights.values().iter().filter(|height| height.is_nan()).count()
     }
 
-    /// Sides of the rectangle along x and y if that along x is `width` and points are equally far apart along both, as of an image.
+    /// Sides of the rectangle along x and y if that along x is `width` and points are equally far apart along both, as
+    /// of an image.
     #[must_use]
     pub fn sides_of_width(&self, width: f64) -> [f64; 2] {
         let grid = self.heights.grid();
         [width, width * (grid.ny() as f64 / grid.nx() as f64)]
     }
 
-    /// Distances of points along x and y, in the unit of the sides; with no sides, those of [`HeightMap::sides_of_width`] 1.
+    /// Distances of points along x and y, in the unit of the sides; with no sides, those of
+    /// [`HeightMap::sides_of_width`] 1.
     #[must_use]
     pub fn spacing(&self) -> [f64; 2] {
         let (grid, sides) = (self.heights.grid(), self.sides.unwrap_or_else(|| self.sides_of_width(1.0)));
@@ -130,8 +132,8 @@ impl BorderStep {
         self.ratio() <= 3.0
     }
 
-    /// Border over inside: about 1 for a periodic map, far more for one that was cut out of a larger surface. 1 where both are
-    /// zero.
+    /// Border over inside: about 1 for a periodic map, far more for one that was cut out of a larger surface. 1 where
+    /// both are zero.
     #[must_use]
     pub fn ratio(self) -> f64 {
         if self.border == 0.0 && self.inside == 0.0 { 1.0 } else { self.border / self.inside }

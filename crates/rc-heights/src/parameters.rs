@@ -5,12 +5,12 @@ use serde::Serialize;
 
 use crate::treat::rms_slope;
 
-/// Height and hybrid parameters of ISO 25178-2 of a whole map, without a filter of its own: level and filter before, as the
-/// measurement asks for.
+/// Height and hybrid parameters of ISO 25178-2 of a whole map, without a filter of its own: level and filter before, as
+/// the measurement asks for.
 ///
-/// Heights are counted from their mean. Gradients are differences of neighbours inside the map, never across its border, so
-/// Sdq and Sdr depend on the distance of points, as they do in the standard. Test `parameters_of_a_wave_are_those_of_a_wave`;
-/// an independent program agrees, `tests/it/`.
+/// Heights are counted from their mean. Gradients are differences of neighbours inside the map, never across its
+/// border, so Sdq and Sdr depend on the distance of points, as they do in the standard. Test
+/// `parameters_of_a_wave_are_those_of_a_wave`; an independent program agrees, `tests/it/`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AreaParameters {
     /// Mean height, from which the others count.
@@ -117,8 +117,8 @@ mod tests {
             ("Sdr", p.sdr, slope * slope / 4.0 * (1.0 - 3.0 / 16.0 * slope * slope)),
         ];
         for (name, value, reference) in exact {
-            // 256 points a wave: differences are low by (2π/256)²/24 = 2.5e-5, their squares by twice that; the border is left
-            // out, where a wave is steepest: 1 of 1023.
+            // 256 points a wave: differences are low by (2π/256)²/24 = 2.5e-5, their squares by twice that; the border
+            // is left out, where a wave is steepest: 1 of 1023.
             assert!((value / reference - 1.0).abs() < 1.1e-3, "{name}: {value}, reference {reference}");
         }
         assert!(p.ssk.abs() < 1e-9, "Ssk {}", p.ssk);

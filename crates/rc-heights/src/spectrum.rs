@@ -1,8 +1,9 @@
 //! Surfaces as their Fourier coefficients: what a file of waves holds, read and written.
 //!
-//! A surface is h(x) = Σ c exp(2πi (kx x/λ + ky y/λ)) with integer kx and ky, in waves per cell. A text has a line of `kx ky Re(c) Im(c)` for
-//! each wave whose coefficient is not zero, an HDF5 file arrays of these names or one array of four columns. Since heights are real, c of -k is the conjugate of c of k, so a file may have
-//! either of them or both. What of that is wrong is found by who makes a surface of the coefficients.
+//! A surface is h(x) = Σ c exp(2πi (kx x/λ + ky y/λ)) with integer kx and ky, in waves per cell. A text has a line of
+//! `kx ky Re(c) Im(c)` for each wave whose coefficient is not zero, an HDF5 file arrays of these names or one array of
+//! four columns. Since heights are real, c of -k is the conjugate of c of k, so a file may have either of them or both.
+//! What of that is wrong is found by who makes a surface of the coefficients.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Read as _, Write as _};
@@ -63,7 +64,8 @@ fn parse_hdf5(bytes: &[u8]) -> Result<Vec<Coefficient>, FormatError> {
     rows.into_iter().enumerate().map(of_row).collect()
 }
 
-/// Lines of kx, ky, Re, Im with commas, semicolons or blanks between them; empty lines and those that start with `#` are passed over.
+/// Lines of kx, ky, Re, Im with commas, semicolons or blanks between them; empty lines and those that start with `#`
+/// are passed over.
 fn parse_text(bytes: &[u8]) -> Result<Vec<Coefficient>, FormatError> {
     data_lines(&decoded(bytes), 1).map(|(line, row)| coefficient(line, row)).collect()
 }

@@ -1,7 +1,7 @@
 //! The symbol of the paper's element as a sum over aliases: the slow reference of this crate.
 //!
-//! On a grid of spacing (hx, hy) the wave k looks the same as its aliases k + (m nx, n ny). A pressure that is constant on
-//! each element contains all of them, each damped by the transform of the element, so the symbol is
+//! On a grid of spacing (hx, hy) the wave k looks the same as its aliases k + (m nx, n ny). A pressure that is constant
+//! on each element contains all of them, each damped by the transform of the element, so the symbol is
 //!
 //! ```text
 //! λ(k) = Σ_mn 2/|q| sinc(q_x hx/2) sinc(q_y hy/2),     q = 2π (kx + m nx, ky + n ny),     sinc z = sin z / z.
@@ -15,8 +15,8 @@
 //!
 //! Such a sum converges like 1/m² if added up. With the weights of Cohen, Rodriguez Villegas and Zagier (*Convergence
 //! acceleration of alternating series*, Experimental Math. 9 (2000) 3-12) its error falls like 5.8^-terms: they ask for
-//! terms that are moments of a positive measure, which 1/(t √(t² + b²)) is at equidistant t, being the Laplace transform of
-//! the positive function ∫ J0(b s) ds.
+//! terms that are moments of a positive measure, which 1/(t √(t² + b²)) is at equidistant t, being the Laplace
+//! transform of the positive function ∫ J0(b s) ds.
 
 use std::f64::consts::PI;
 
@@ -130,8 +130,8 @@ impl Damping {
     }
 }
 
-/// Weights w_i, falling from 1 to 0, with which Σ w_i a_i, i < N, replaces Σ a_i, i < ∞, of alternating a_i (algorithm 1 of
-/// the paper cited above; its weights of |a_i| carry the signs that ours leave to a_i).
+/// Weights w_i, falling from 1 to 0, with which Σ w_i a_i, i < N, replaces Σ a_i, i < ∞, of alternating a_i (algorithm
+/// 1 of the paper cited above; its weights of |a_i| carry the signs that ours leave to a_i).
 pub(crate) fn alternating_weights<const N: usize>() -> [f64; N] {
     let n = N as f64;
     let d = (3.0 + 8.0_f64.sqrt()).powi(N as i32);
@@ -167,8 +167,8 @@ mod tests {
     /// Sides of elements: squares and rectangles up to slivers.
     const SPACINGS: [(f64, f64); 6] = [(1.0, 1.0), (0.25, 0.25), (1.0, 0.7), (0.1, 0.4), (1.0, 0.05), (0.02, 1.0)];
 
-    /// The double sum over |m|, |n| ≤ 100, tapered to 0 over ten more terms by repeated averaging of the last partial sums:
-    /// slow, and without anything of the accelerated sum.
+    /// The double sum over |m|, |n| ≤ 100, tapered to 0 over ten more terms by repeated averaging of the last partial
+    /// sums: slow, and without anything of the accelerated sum.
     fn brute_force(spacing: (f64, f64), theta: (f64, f64)) -> f64 {
         const KEPT: usize = 100;
         const AVERAGED: i32 = 10;

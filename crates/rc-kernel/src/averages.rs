@@ -1,4 +1,5 @@
-//! The part of the mean of φ over a square that is due to the background and to all images but the nearest: smooth, and tabulated.
+//! The part of the mean of φ over a square that is due to the background and to all images but the nearest: smooth, and
+//! tabulated.
 //!
 //! `ψ = φ - 1/r` is smooth on the whole cell. It is fitted once to Ewald's sum, in the squares of the coordinates. The
 //! mean of the fit over a square is exact: along each axis it is the mean of Chebyshev polynomials over an interval.
@@ -11,8 +12,8 @@ use crate::chebyshev::{coefficients_in_two, node, polynomials, to_powers};
 use crate::gauss_legendre::gauss_legendre;
 use crate::lattice::ewald_remainder;
 
-/// Largest half side of a square that is averaged over: ψ is fitted on the cell with a margin as wide. Beyond the margin
-/// are the nearest images, where ψ is singular; with 1/8, [`TERMS`] are enough for 1e-14.
+/// Largest half side of a square that is averaged over: ψ is fitted on the cell with a margin as wide. Beyond the
+/// margin are the nearest images, where ψ is singular; with 1/8, [`TERMS`] are enough for 1e-14.
 pub(crate) const MAX_HALF_SIDE: f64 = 0.125;
 
 /// Half the side of the square on which ψ is fitted.
@@ -27,8 +28,8 @@ const GAUSS: usize = 12;
 /// Patches along half a side of the cell.
 const PATCHES: usize = 12;
 
-/// Coefficients per direction on one patch: error 3e-13 (test `tables_agree_with_the_means`). With eight, one row of them
-/// fills four registers of two.
+/// Coefficients per direction on one patch: error 3e-13 (test `tables_agree_with_the_means`). With eight, one row of
+/// them fills four registers of two.
 const DEGREES: usize = 8;
 
 /// ψ in Chebyshev polynomials of (x/REACH)² and (y/REACH)².

@@ -91,8 +91,8 @@ impl Series {
         Self { coefficients }
     }
 
-    /// The value at `x` in [0, 1], by Clenshaw's recurrence. The coefficient is added last, in [`sum`] it is added first: tables made
-    /// from either keep their last digit.
+    /// The value at `x` in [0, 1], by Clenshaw's recurrence. The coefficient is added last, in [`sum`] it is added
+    /// first: tables made from either keep their last digit.
     pub(crate) fn at(&self, x: f64) -> f64 {
         let t = 2.0 * x - 1.0;
         let (mut b1, mut b2) = (0.0, 0.0);

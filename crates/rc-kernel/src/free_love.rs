@@ -4,10 +4,11 @@ use rc_core::{DVec2, Grid, Kernel, Symbol};
 
 use crate::{Love, love_rectangle_displacement};
 
-/// [`Love`] without periodic images: uniform pressure on each element of a finite patch, displacement at element centres, zero far away.
+/// [`Love`] without periodic images: uniform pressure on each element of a finite patch, displacement at element
+/// centres, zero far away.
 ///
-/// The response of element to element is [`love_displacement`](crate::love_displacement), and that of rectangles, each evaluated once; the
-/// solver sums them by a transform on a padded grid.
+/// The response of element to element is [`love_displacement`](crate::love_displacement), and that of rectangles, each
+/// evaluated once; the solver sums them by a transform on a padded grid.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FreeLove;
 

@@ -1,4 +1,5 @@
-//! The lattice function φ: potential of unit charges on all images with a uniform neutralising background, by Ewald's sum.
+//! The lattice function φ: potential of unit charges on all images with a uniform neutralising background, by Ewald's
+//! sum.
 //!
 //! A point load on the unit cell and all its images, with the uniform counter-load of Eq. 3, displaces the surface by
 //! φ(r)/(π E*), `φ(r) = Σ_{q≠0} (2π/|q|) exp(iq·r)`, which has zero mean. It is the slow reference that the fast
@@ -14,8 +15,8 @@ use crate::love_displacement;
 /// Images and waves per direction. Both sums end below 1e-17 of φ.
 const SHELLS: i32 = 3;
 
-/// φ(0) - 1/r: `-C = 4 ζ(1/2) β(1/2)`, β being Dirichlet's; the lattice sum of 1/R minus its background (Ewald, two splitting
-/// parameters, 27 digits).
+/// φ(0) - 1/r: `-C = 4 ζ(1/2) β(1/2)`, β being Dirichlet's; the lattice sum of 1/R minus its background (Ewald, two
+/// splitting parameters, 27 digits).
 pub const LATTICE_CONSTANT: f64 = -3.900_264_920_001_956;
 
 /// φ at `offset` from a source, in units of 1/λ; +∞ on the source and its images. φ/(π E*) is the 𝓛 of Eq. (3).
@@ -51,7 +52,8 @@ pub(crate) fn wrapped(offset: DVec2) -> DVec2 {
 /// One coordinate of [`wrapped`].
 #[inline]
 pub(crate) fn wrap(x: f64) -> f64 {
-    // Adding 3 · 2^51 leaves no digits after the point. Faster than `round`, which older processors have no instruction for.
+    // Adding 3 · 2^51 leaves no digits after the point. Faster than `round`, which older processors have no instruction
+    // for.
     const SHIFT: f64 = 6_755_399_441_055_744.0;
     let nearest = if x.abs() < 1e15 { (x + SHIFT) - SHIFT } else { x.round() };
     x - nearest
@@ -79,7 +81,8 @@ fn images_and_waves(DVec2 { x, y }: DVec2) -> f64 {
     images + waves - 2.0
 }
 
-/// `L_ij` by quadrature of Ewald's sum: the slow reference of [`PeriodicLove`](crate::PeriodicLove), a millisecond each.
+/// `L_ij` by quadrature of Ewald's sum: the slow reference of [`PeriodicLove`](crate::PeriodicLove), a millisecond
+/// each.
 ///
 /// Arguments as there. The nearest image is [`love_displacement`], the others and the background are averaged over the
 /// source by 24 × 24 Gauss-Legendre points; squares above λ/4 are cut into quarters first.

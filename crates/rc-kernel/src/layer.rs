@@ -14,12 +14,14 @@ use crate::{Love, Spectral};
 /// M(ξ) = [(3-4ν) sinh 2ξ - 2ξ] / [(3-4ν) cosh 2ξ + 2ξ² + 5 - 12ν + 8ν²]
 /// ```
 ///
-/// (R. H. Bentall, K. L. Johnson, *Int. J. Mech. Sci.* 10 (1968) 637-663; with any layer and substrate T. C. O'Sullivan, R. B. King,
-/// *J. Tribol.* 110 (1988) 235-240; in this form G. Carbone, L. Mangialardi, *J. Mech. Phys. Solids* 56 (2008) 684-706.) M → 1 for short
-/// waves, the half-space. M → ξ (1-2ν)/(2(1-ν)²) for long ones: there each column of the layer is a spring, with
-/// [`Layer::uniform_displacement`] for a pressure of E*. An incompressible layer (ν = 1/2) has M → 2ξ³/3, and a uniform pressure does not displace it.
+/// (R. H. Bentall, K. L. Johnson, *Int. J. Mech. Sci.* 10 (1968) 637-663; with any layer and substrate T. C.
+/// O'Sullivan, R. B. King, *J. Tribol.* 110 (1988) 235-240; in this form G. Carbone, L. Mangialardi, *J. Mech. Phys.
+/// Solids* 56 (2008) 684-706.) M → 1 for short waves, the half-space. M → ξ (1-2ν)/(2(1-ν)²) for long ones: there each
+/// column of the layer is a spring, with [`Layer::uniform_displacement`] for a pressure of E*. An incompressible layer
+/// (ν = 1/2) has M → 2ξ³/3, and a uniform pressure does not displace it.
 ///
-/// The factor is the solution of the equations of elasticity in the layer (test `the_factor_solves_the_equations_of_the_layer`).
+/// The factor is the solution of the equations of elasticity in the layer (test
+/// `the_factor_solves_the_equations_of_the_layer`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layer {
     /// Thickness d > 0, in λ.
@@ -54,8 +56,8 @@ impl Layer {
         above / (kappa * (1.0 + decay * decay) + (4.0 * xi * xi + constant) * decay)
     }
 
-    /// Displacement of the surface under a uniform pressure of E*, in λ: d (1-2ν)/(1-ν)². With E* = E/(1-ν²) that is the uniaxial compression
-    /// d (1+ν)(1-2ν)/((1-ν) E) for a pressure of 1.
+    /// Displacement of the surface under a uniform pressure of E*, in λ: d (1-2ν)/(1-ν)². With E* = E/(1-ν²) that is
+    /// the uniaxial compression d (1+ν)(1-2ν)/((1-ν) E) for a pressure of 1.
     #[must_use]
     pub fn uniform_displacement(self) -> f64 {
         self.thickness * (1.0 - 2.0 * self.poisson) / (1.0 - self.poisson).powi(2)
@@ -78,10 +80,10 @@ pub const THINNEST_LAYER: f64 = 0.25;
 
 /// [`Layer`] under pressures that are constant on elements, displacements at their centres: [`Love`] on a layer.
 ///
-/// Its symbol is that of [`Love`] plus Σ 2/|q| (M(|q|d) - 1) sinc(q_x hx/2) sinc(q_y hy/2) over the aliases q of the wave. These terms fall as
-/// exp(-2|q|d), so that few aliases count. *Accuracy*: every value within 1e-13 of the half-space's (test
-/// `the_symbol_is_the_sum_over_aliases`). *Cost*: that of [`Love`] and about 10 ns a term; a layer of 4 elements has 1 to 4 terms, one of
-/// [`THINNEST_LAYER`] 800.
+/// Its symbol is that of [`Love`] plus Σ 2/|q| (M(|q|d) - 1) sinc(q_x hx/2) sinc(q_y hy/2) over the aliases q of the
+/// wave. These terms fall as exp(-2|q|d), so that few aliases count. *Accuracy*: every value within 1e-13 of the
+/// half-space's (test `the_symbol_is_the_sum_over_aliases`). *Cost*: that of [`Love`] and about 10 ns a term; a layer
+/// of 4 elements has 1 to 4 terms, one of [`THINNEST_LAYER`] 800.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoveLayer(pub Layer);
 

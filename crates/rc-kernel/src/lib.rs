@@ -1,8 +1,8 @@
 //! Elastic half-space kernels on the periodic cell (Eq. 2-6), in units of λ and E*.
 //!
 //! The paper's operator is `v_i = Σ_j L_ij p_j` (Eq. 4): element j under uniform pressure and all its periodic images
-//! (Eq. 5), minus the mean displacement (Eq. 6). Both sums diverge and their difference converges like 1/(number of images),
-//! so the paper's truncated sums are here to compare with. All other sums are over all images:
+//! (Eq. 5), minus the mean displacement (Eq. 6). Both sums diverge and their difference converges like 1/(number of
+//! images), so the paper's truncated sums are here to compare with. All other sums are over all images:
 //!
 //! | item | what | where |
 //! |---|---|---|
@@ -74,8 +74,8 @@ use rc_core::{Grid, Kernel, Symbol};
 /// Its symbol is `Σ 2/|q| sinc(q_x hx/2) sinc(q_y hy/2)` over the aliases q of the wave, for elements of hx × hy.
 ///
 /// *Accuracy*: every value within 4e-15 relative of [`love_alias_sum`] (test `fast_symbol_matches_the_alias_sum`); the
-/// coefficients L_ij to 1e-12 (test `love_symbol_reproduces_the_periodic_coefficients`). *Cost*: 2 ms to make; a value 25 ns
-/// on square elements, up to 70 ns on others.
+/// coefficients L_ij to 1e-12 (test `love_symbol_reproduces_the_periodic_coefficients`). *Cost*: 2 ms to make; a value
+/// 25 ns on square elements, up to 70 ns on others.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Love;
 

@@ -10,8 +10,8 @@ use rc_core::DVec2;
 
 use crate::multipoles::multipole_series;
 
-/// Distance, in half-sides and along the farther axis, from which the multipole series is used. Measured on 15 500 points:
-/// from here on the logarithms lose digits (2e-15 at 4), and the series does not (6e-16 at most).
+/// Distance, in half-sides and along the farther axis, from which the multipole series is used. Measured on 15 500
+/// points: from here on the logarithms lose digits (2e-15 at 4), and the series does not (6e-16 at most).
 const FAR: f64 = 2.5;
 
 /// Displacement at `offset` from the centre of a square of half-side `half_side` d under unit pressure, in units
@@ -24,8 +24,8 @@ const FAR: f64 = 2.5;
 /// At the centre 8 d ln(1 + √2)/π; far away 4 d²/(π R). Source: one term of the sum in Eq. (5).
 ///
 /// *Accuracy*: relative error below 1e-15 at every distance, inside, on edges and on corners included (tests
-/// `matches_reference_values_everywhere`, `a_square_is_the_sum_of_its_quarters`). Exactly symmetric under x → -x, y → -y
-/// and x ↔ y. *Cost*: 60 ns near the square, 95 ns at 2.5 half-sides, 40 ns at 8, 25 ns at 50.
+/// `matches_reference_values_everywhere`, `a_square_is_the_sum_of_its_quarters`). Exactly symmetric under x → -x, y
+/// → -y and x ↔ y. *Cost*: 60 ns near the square, 95 ns at 2.5 half-sides, 40 ns at 8, 25 ns at 50.
 ///
 /// `half_side` must be positive, and the rest finite; NaN otherwise, or what the formula gives.
 #[inline]
@@ -50,8 +50,9 @@ fn displacement_at(x: f64, y: f64, half_side: f64) -> f64 {
     half_side * (FRAC_1_PI * integral)
 }
 
-/// The same for a rectangle with these half-sides, in relative accuracy of about 1e-16 of the distance over the shorter side, by the
-/// logarithms at every distance (test `rectangles_are_sums_of_squares`). Squares are as accurate as [`love_displacement`].
+/// The same for a rectangle with these half-sides, in relative accuracy of about 1e-16 of the distance over the shorter
+/// side, by the logarithms at every distance (test `rectangles_are_sums_of_squares`). Squares are as accurate as
+/// [`love_displacement`].
 #[must_use]
 #[expect(clippy::float_cmp, reason = "the sides of a square are the same number")]
 pub fn love_rectangle_displacement(offset: DVec2, half_sides: DVec2) -> f64 {
@@ -65,8 +66,8 @@ pub fn love_rectangle_displacement(offset: DVec2, half_sides: DVec2) -> f64 {
 /// ∫∫ 1/r over a rectangle, from the offsets [a, b] and [c, e] to its sides, [x + 1, x - 1] and
 /// [y + 1, y - 1] for the square of half-side 1.
 ///
-/// By the divergence of r/|r|, the integral is Σ (distance to a side, positive inwards) · ∫ 1/r along the side: Johnson's
-/// four logarithms. Inside the square all four are positive.
+/// By the divergence of r/|r|, the integral is Σ (distance to a side, positive inwards) · ∫ 1/r along the side:
+/// Johnson's four logarithms. Inside the square all four are positive.
 fn near([[a, b], [c, e]]: [[f64; 2]; 2], [width, height]: [f64; 2]) -> f64 {
     let corner = |x: f64, y: f64| (x * x + y * y).sqrt();
     let [ac, ae, bc, be] = [corner(a, c), corner(a, e), corner(b, c), corner(b, e)];
@@ -75,8 +76,8 @@ fn near([[a, b], [c, e]]: [[f64; 2]; 2], [width, height]: [f64; 2]) -> f64 {
     along_y + along_x
 }
 
-/// `distance` · ∫ dt/√(distance² + t²) along a side of `length`, from t = `from` to `to` > 0, whose ends are at the radii
-/// `r_from` and `r_to`. Every branch is accurate to rounding.
+/// `distance` · ∫ dt/√(distance² + t²) along a side of `length`, from t = `from` to `to` > 0, whose ends are at the
+/// radii `r_from` and `r_to`. Every branch is accurate to rounding.
 fn side(distance: f64, length: f64, [to, from]: [f64; 2], [r_to, r_from]: [f64; 2]) -> f64 {
     if distance == 0.0 {
         // In line with the side; also the limit at its ends, where the integral diverges logarithmically.

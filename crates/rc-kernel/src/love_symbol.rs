@@ -1,16 +1,17 @@
 //! The symbol of the paper's element on a uniform grid, fast: a few aliases and a smooth rest.
 //!
-//! The aliases nearest to the wave are summed as they are. The rest of the alias sum ([`crate::alias_sum`]) is a smooth and
-//! even function of θx and θy, singular only at the nearest alias that is left out. It is a Chebyshev interpolant in θx² and θy², fitted
-//! to the alias sum, and as accurate as that sum. But for the unit of length it depends on the shape of elements alone, so all grids of a
-//! process whose elements are alike have one fit: fitted for each grid, it took a quarter of a solve on 256² elements.
+//! The aliases nearest to the wave are summed as they are. The rest of the alias sum ([`crate::alias_sum`]) is a smooth
+//! and even function of θx and θy, singular only at the nearest alias that is left out. It is a Chebyshev interpolant
+//! in θx² and θy², fitted to the alias sum, and as accurate as that sum. But for the unit of length it depends on the
+//! shape of elements alone, so all grids of a process whose elements are alike have one fit: fitted for each grid, it
+//! took a quarter of a solve on 256² elements.
 //!
 //! Which aliases are near depends on the shape of the elements. Let r ≥ 1 be long side over short side, m count aliases
 //! along the long side and n along the short one.
 //!
 //! - Up to r = 2, a block of 3, 5 or 7 aliases along by 3 across is enough.
-//! - Beyond, the row n = 0 is singular at distances of order 1/r from real θ, for ever more m. This row is summed whole,
-//!   with the weights of the alternating sum, and all other rows are smooth.
+//! - Beyond, the row n = 0 is singular at distances of order 1/r from real θ, for ever more m. This row is summed
+//!   whole, with the weights of the alternating sum, and all other rows are smooth.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -41,8 +42,8 @@ pub(crate) struct LoveSymbol {
 }
 
 impl LoveSymbol {
-    /// Fits the rest, if no fit for elements of this shape is kept, in 1.6 ms, and tabulates what depends on one component of the wave: 0.3 µs
-    /// for each element of a side.
+    /// Fits the rest, if no fit for elements of this shape is kept, in 1.6 ms, and tabulates what depends on one
+    /// component of the wave: 0.3 µs for each element of a side.
     pub(crate) fn new(grid: Grid) -> Self {
         // Number of elements, and how many of them are as long as the unit.
         let [x, y] = [(grid.nx(), grid.nx() as f64), (grid.ny(), grid.ny() as f64 / grid.cell_ratio())];
@@ -176,8 +177,8 @@ fn weighted_row() -> Vec<(f64, f64)> {
     std::iter::once((0.0, 1.0)).chain(both_sides).collect()
 }
 
-/// Chebyshev coefficients in (θ² of the short side, θ² of the long side) of the interpolant of `value((θ long, θ short))`
-/// on [0, π/2]².
+/// Chebyshev coefficients in (θ² of the short side, θ² of the long side) of the interpolant of `value((θ long, θ
+/// short))` on [0, π/2]².
 fn interpolate(value: impl Fn((f64, f64)) -> f64) -> Table {
     let theta = |node: usize| FRAC_PI_2 * f64::midpoint(1.0, chebyshev::node(node, NODES)).sqrt();
     let over_short: Table = std::array::from_fn(|i| coefficients(std::array::from_fn(|j| value((theta(i), theta(j))))));

@@ -1,7 +1,8 @@
 //! The multipole series of a uniformly loaded square: ∫∫ 1/r far from it.
 //!
 //! With R, φ the polar coordinates of the point and s, ψ those of a point of the square, 1/|r - s| is the sum of
-//! `s^l/R^(l+1) P_l(cos(φ - ψ))`. Averaged over the square, only even l and angular orders that are multiples of 4 remain:
+//! `s^l/R^(l+1) P_l(cos(φ - ψ))`. Averaged over the square, only even l and angular orders that are multiples of 4
+//! remain:
 //!
 //! ```text
 //! ⟨1/|r - s|⟩ = 1/R Σ_j (d/R)^2j Σ_a M_ja cos(4aφ),      a ≤ j/2.
@@ -55,8 +56,8 @@ fn powers_of_cosine(i: usize) -> [[f64; 2]; PAIRS] {
 
 /// M of degree l and angular order m.
 ///
-/// `P_l(cos γ) = Σ_k p_k p_(l-k) cos((l-2k)γ)` with `p_k = (2k-1)!!/(2k)!!`, so order m comes twice (once when m = 0), at
-/// k = (l-m)/2.
+/// `P_l(cos γ) = Σ_k p_k p_(l-k) cos((l-2k)γ)` with `p_k = (2k-1)!!/(2k)!!`, so order m comes twice (once when m = 0),
+/// at k = (l-m)/2.
 fn multipole(l: usize, m: usize) -> f64 {
     let p = |k: usize| (1..=k).map(|i| (2 * i - 1) as f64 / (2 * i) as f64).product::<f64>();
     let k = (l - m) / 2;
@@ -64,7 +65,8 @@ fn multipole(l: usize, m: usize) -> f64 {
     times * p(k) * p(l - k) * mean_over_square(l, m)
 }
 
-/// Mean of `s^l cos mψ` over |s_x|, |s_y| ≤ 1: the real part of (s_x + i s_y)^m times (s_x² + s_y²)^((l-m)/2), expanded.
+/// Mean of `s^l cos mψ` over |s_x|, |s_y| ≤ 1: the real part of (s_x + i s_y)^m times (s_x² + s_y²)^((l-m)/2),
+/// expanded.
 ///
 /// High orders cancel (to 1e-16 4^j at order j = l/2), less than their factor (d/R)^2j makes up for.
 fn mean_over_square(l: usize, m: usize) -> f64 {
@@ -92,7 +94,8 @@ mod tests {
 
     #[test]
     fn low_multipoles_are_those_of_a_square() {
-        // By hand: M_00 = 1; M_10 = ⟨s²⟩/4 = 1/6; M_20 = 9/64 ⟨s⁴⟩ = 9/64 · 28/45; M_21 = 35/64 ⟨s⁴ cos 4ψ⟩, = -35/64 · 4/15.
+        // By hand: M_00 = 1; M_10 = ⟨s²⟩/4 = 1/6; M_20 = 9/64 ⟨s⁴⟩ = 9/64 · 28/45; M_21 = 35/64 ⟨s⁴ cos 4ψ⟩, = -35/64 ·
+        // 4/15.
         for ((l, m), expected) in [((0, 0), 1.0), ((2, 0), 1.0 / 6.0), ((4, 0), 7.0 / 80.0), ((4, 4), -7.0 / 48.0)] {
             let value = multipole(l, m);
             assert!((value - expected).abs() <= 1e-15, "degree {l}, order {m}: {value}, expected {expected}");

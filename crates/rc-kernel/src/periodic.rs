@@ -1,7 +1,7 @@
 //! `L_ij = l_ij - l_m` of Eq. 4-6, over all images, between any two elements of the cell.
 //!
-//! The nearest image of the source is a square in free space ([`crate::square`]). All other images, with the background, add
-//! the mean over the source of a smooth function, which is tabulated by size ([`crate::averages`]).
+//! The nearest image of the source is a square in free space ([`crate::square`]). All other images, with the
+//! background, add the mean over the source of a smooth function, which is tabulated by size ([`crate::averages`]).
 
 use std::f64::consts::{FRAC_1_PI, PI};
 use std::sync::{LazyLock, OnceLock};
@@ -18,8 +18,8 @@ use crate::truncated::{check_half_side, check_offset};
 const FIRST_LEVEL: usize = 2;
 const LEVELS: usize = 20;
 
-/// Below this half side d, the share of the images is that of a point: the difference, d²/6 times the Laplacian of ψ (below 20), is
-/// below 2e-13.
+/// Below this half side d, the share of the images is that of a point: the difference, d²/6 times the Laplacian of ψ
+/// (below 20), is below 2e-13.
 const POINT: f64 = 2.4e-7;
 
 /// The smooth part, fitted once per process, and its tables, each made when first used.
@@ -38,19 +38,19 @@ static TABLES: LazyLock<Tables> = LazyLock::new(|| Tables {
 
 /// The coefficients `L_ij = l_ij - l_m` of Eq. 4-6, all images, to 1e-12.
 ///
-/// `L_ij` is the displacement at the centre of element i, minus its mean over the cell, under unit pressure on the square
-/// element j, its images, and a uniform counter-load: `1/(π E*) ∫ φ ds` over the square, with φ of
+/// `L_ij` is the displacement at the centre of element i, minus its mean over the cell, under unit pressure on the
+/// square element j, its images, and a uniform counter-load: `1/(π E*) ∫ φ ds` over the square, with φ of
 /// [`ewald_phi`](crate::ewald_phi). In units of λ p/E*. The sum over a row is 0 on any tiling of the cell.
 ///
-/// *Accuracy*: error at most 1e-12 of the larger of |L_ij| and (2d)², the area of the source: where L_ij changes sign its
-/// relative error has no meaning. Measured 1.4e-13 for sides of λ/2 and 6e-14 for smaller ones, down to half sides of
-/// 2^-17, at all offsets (test `coefficients_match_the_quadrature_of_ewald_sums`). Exactly symmetric under x → -x, y → -y and
-/// x ↔ y.
+/// *Accuracy*: error at most 1e-12 of the larger of |L_ij| and (2d)², the area of the source: where L_ij changes sign
+/// its relative error has no meaning. Measured 1.4e-13 for sides of λ/2 and 6e-14 for smaller ones, down to half sides
+/// of 2^-17, at all offsets (test `coefficients_match_the_quadrature_of_ewald_sums`). Exactly symmetric under x → -x, y
+/// → -y and x ↔ y.
 ///
-/// *Cost*, one core, x86-64 without AVX: 54 ns within 13 half sides of the source, 31 ns beyond, for half sides 2^-2, 2^-3, …
-/// and all below 2.4e-7. Other half sides take 0.7 µs; a [`PeriodicSource`] has a table for one of them. Another
-/// square larger than λ/4 is the sum of its quarters, so 4 to 16 times as much. The first use in a
-/// process takes 1 ms, and the first use of a size 0.3 ms; after that this is a pointer.
+/// *Cost*, one core, x86-64 without AVX: 54 ns within 13 half sides of the source, 31 ns beyond, for half sides 2^-2,
+/// 2^-3, … and all below 2.4e-7. Other half sides take 0.7 µs; a [`PeriodicSource`] has a table for one of them.
+/// Another square larger than λ/4 is the sum of its quarters, so 4 to 16 times as much. The first use in a process
+/// takes 1 ms, and the first use of a size 0.3 ms; after that this is a pointer.
 #[derive(Clone, Copy, Debug)]
 pub struct PeriodicLove {
     tables: &'static Tables,
@@ -72,7 +72,8 @@ impl PeriodicLove {
     /// `L_ij` for a source of half-side `half_side` d at `offset` = target minus source, in units of λ.
     ///
     /// The offset may be between any images: it is wrapped into the cell, to [-1/2, 1/2]². Nothing is checked: for an
-    /// offset that is not finite or `half_side` not in (0, 1/2] the result has no meaning ([`Self::try_coefficient`] checks).
+    /// offset that is not finite or `half_side` not in (0, 1/2] the result has no meaning ([`Self::try_coefficient`]
+    /// checks).
     #[inline]
     #[must_use]
     pub fn coefficient(&self, offset: DVec2, half_side: f64) -> f64 {
@@ -175,8 +176,8 @@ impl Tables {
         if half_side <= MAX_HALF_SIDE {
             return MeanTable::new(&self.remainder, half_side);
         }
-        // A square of side λ/2 reaches too near its images for the fit of ψ. The share of the images at its own offsets is smooth:
-        // it is the sum of the quarters minus the nearest image.
+        // A square of side λ/2 reaches too near its images for the fit of ψ. The share of the images at its own offsets
+        // is smooth: it is the sum of the quarters minus the nearest image.
         let (half, side) = (0.5 * half_side, 2.0 * half_side);
         let quarter = self.make(half);
         MeanTable::of_means(|offset| {
@@ -186,8 +187,8 @@ impl Tables {
     }
 }
 
-/// `L_ij` at an offset, not as a [`DVec2`]: where this is not inlined, two numbers are passed in floating-point registers and a struct is
-/// not, which costs 5 ns.
+/// `L_ij` at an offset, not as a [`DVec2`]: where this is not inlined, two numbers are passed in floating-point
+/// registers and a struct is not, which costs 5 ns.
 #[inline]
 fn with_table(table: &MeanTable, dx: f64, dy: f64, half_side: f64) -> f64 {
     let (long, short) = folded(dx, dy);

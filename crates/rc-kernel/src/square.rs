@@ -1,7 +1,7 @@
 //! The integral of 1/r over a square in little more than the time of its four logarithms, to 1e-13.
 //!
-//! [`love_displacement`](crate::love_displacement) is accurate to rounding, at every distance. This is the same integral
-//! for sums in which it is one term of several, where the last two digits would be lost anyway.
+//! [`love_displacement`](crate::love_displacement) is accurate to rounding, at every distance. This is the same
+//! integral for sums in which it is one term of several, where the last two digits would be lost anyway.
 
 /// Distance, in half-sides, from which six orders of the multipole series are used. The first order left out is below
 /// 2.5e-14 there; the cancellation of the logarithms, which grows with the square of the distance, is not above.
@@ -28,8 +28,8 @@ fn six_orders(long: f64, short: f64, half_side: f64) -> f64 {
     area * inverse.sqrt() * (low + u * u * (middle + u * u * high))
 }
 
-/// Johnson's four logarithms: for each side, its distance times ∫ dt/√(distance² + t²) along it, t going from `from` to `to`,
-/// at the radii `r_from` and `r_to`. Never inlined, so that it is as fast in every caller.
+/// Johnson's four logarithms: for each side, its distance times ∫ dt/√(distance² + t²) along it, t going from `from` to
+/// `to`, at the radii `r_from` and `r_to`. Never inlined, so that it is as fast in every caller.
 #[inline(never)]
 fn four_logarithms(long: f64, short: f64, half_side: f64) -> f64 {
     let scale = 1.0 / half_side;
@@ -60,8 +60,8 @@ fn four_logarithms(long: f64, short: f64, half_side: f64) -> f64 {
 /// Below this, a squared distance times its logarithm is far below rounding.
 const TINY: f64 = 1e-60;
 
-/// Natural logarithm of a number ≥ 1, to a few roundings. Inlined and free of branches, unlike that of the standard library,
-/// it leaves the processor free to compute the four at once, which makes a periodic coefficient 10 ns faster.
+/// Natural logarithm of a number ≥ 1, to a few roundings. Inlined and free of branches, unlike that of the standard
+/// library, it leaves the processor free to compute the four at once, which makes a periodic coefficient 10 ns faster.
 #[inline]
 fn ln(number: f64) -> f64 {
     const SQRT_HALF: u64 = 0x3fe6_a09e_667f_3bcd;

@@ -32,20 +32,22 @@ impl LoadForm {
         (half_side / self.half_side()).powi(2)
     }
 
-    /// The part of l_m that the image of the cell at `image` has, for a source of half side d: one term of the sum in Eq. (6).
+    /// The part of l_m that the image of the cell at `image` has, for a source of half side d: one term of the sum in
+    /// Eq. (6).
     fn displacement(self, image: DVec2, half_side: f64) -> f64 {
         self.pressure(half_side) * love_displacement(image, self.half_side())
     }
 }
 
-/// `L_ij = l_ij - l_m` (Eq. 4-6) with the images |h|, |k| ≤ K = `shells`, for a source of half-side `half_side` d at `offset`
-/// = target minus source, in units of λ (displacement λ p/E*).
+/// `L_ij = l_ij - l_m` (Eq. 4-6) with the images |h|, |k| ≤ K = `shells`, for a source of half-side `half_side` d at
+/// `offset` = target minus source, in units of λ (displacement λ p/E*).
 ///
 /// l_ij and l_m diverge separately. Here each image of the source is summed together with its part of the counter-load,
 /// (2K + 1)² differences that fall as R⁻² (R⁻³ for opposite images together), from the outermost shell inwards. As in
 /// Eq. 6, the counter-load is seen from the centre of the source.
 ///
-/// The offset is wrapped into the cell first, so that images lie around the target evenly; without that the error is larger.
+/// The offset is wrapped into the cell first, so that images lie around the target evenly; without that the error is
+/// larger.
 ///
 /// *Accuracy*: truncation within [`truncation_error_bound`] of [`PeriodicLove`](crate::PeriodicLove) (test
 /// `truncation_error_is_below_its_bound`), rounding below 1e-16 (2d)² K.
@@ -70,17 +72,19 @@ pub fn truncated_coefficient(offset: DVec2, half_side: f64, shells: usize, form:
 /// A bound of |[`truncated_coefficient`] - `L_ij`| over all offsets, in units of λ (displacement λ p/E*). About
 /// (2d)² e/(π K), with e at most √2/3 for the plain form and 2√2/3 for the printed one, when the source is small.
 ///
-/// *Proof.* The images left out are a tail Σ_R (t_R(source) - t_R(counter-load)), each t_R being (2d)²/π times the mean of
-/// `1/|R - a| = Σ_l |a|^l/R^(l+1) P_l(cos γ)` over a square of points a. Images a quarter turn apart are left out together:
+/// *Proof.* The images left out are a tail Σ_R (t_R(source) - t_R(counter-load)), each t_R being (2d)²/π times the mean
+/// of `1/|R - a| = Σ_l |a|^l/R^(l+1) P_l(cos γ)` over a square of points a. Images a quarter turn apart are left out
+/// together:
 /// - l = 0 cancels between source and counter-load, odd l between opposite images;
-/// - l = 2 leaves ⟨|a|²⟩/(4R³). With ⟨|a|²⟩ = r² + 2d²/3 for the source at offset r² ≤ 1/2, and 2c²/3 for the counter-load
-///   of half-side c, the difference is largest at one of the ends of 0 ≤ r² ≤ 1/2;
+/// - l = 2 leaves ⟨|a|²⟩/(4R³). With ⟨|a|²⟩ = r² + 2d²/3 for the source at offset r² ≤ 1/2, and 2c²/3 for the
+///   counter-load of half-side c, the difference is largest at one of the ends of 0 ≤ r² ≤ 1/2;
 /// - for even l ≥ 4, P_l averaged over quarter turns is at most (1 + |P_l(0)|)/2 ≤ 11/16 (its Fourier coefficients are
-///   positive), and the series is at most geometric: 11/16 ⟨|a|⁴⟩/R⁵ · 1/(1 - A²/R²), with A the farthest point and R ≥ K + 1.
+///   positive), and the series is at most geometric: 11/16 ⟨|a|⁴⟩/R⁵ · 1/(1 - A²/R²), with A the farthest point and R ≥
+///   K + 1.
 ///
-/// A shell n of images is four trapezoidal sums of (n² + t²)^(-s/2) over -n ≤ t ≤ n, and these are below their integrals, by
-/// Euler and Maclaurin (test `shells_are_below_their_integrals`): Σ R⁻³ ≤ 4√2/n², Σ R⁻⁵ ≤ (10√2/3)/n⁴. By convexity
-/// `Σ_{n>K} n⁻²  ≤ 1/(K + ½)` and `Σ_{n>K} n⁻⁴ ≤ 1/(3 (K + ½)³)`.
+/// A shell n of images is four trapezoidal sums of (n² + t²)^(-s/2) over -n ≤ t ≤ n, and these are below their
+/// integrals, by Euler and Maclaurin (test `shells_are_below_their_integrals`): Σ R⁻³ ≤ 4√2/n², Σ R⁻⁵ ≤ (10√2/3)/n⁴. By
+/// convexity `Σ_{n>K} n⁻² ≤ 1/(K + ½)` and `Σ_{n>K} n⁻⁴ ≤ 1/(3 (K + ½)³)`.
 ///
 /// Infinite, as nothing is guaranteed, for `shells` = 0 or a half side outside (0, 1/2].
 #[must_use]

@@ -1,7 +1,8 @@
 //! Bounds of the permeance, from any pressure and any flow that is conserved.
 //!
-//! The pressure gives an upper bound (Dirichlet's principle): its power is at least that of the solution. The fluxes that it drives, made conserved along
-//! a spanning tree, give a lower bound (Thomson's principle): their power for a given flow is at least that of the solution.
+//! The pressure gives an upper bound (Dirichlet's principle): its power is at least that of the solution. The fluxes
+//! that it drives, made conserved along a spanning tree, give a lower bound (Thomson's principle): their power for a
+//! given flow is at least that of the solution.
 
 use crate::flow_state::{Correction, FlowState};
 use crate::network::Axis;
@@ -19,7 +20,8 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
-    /// Of the pressure in `state`, and of its flow with the excess of each element in `excess`, which becomes the flow along the tree.
+    /// Of the pressure in `state`, and of its flow with the excess of each element in `excess`, which becomes the flow
+    /// along the tree.
     pub(crate) fn of(state: FlowState<'_>, tree: &SpanningTree, axis: Axis, excess: &mut [f64]) -> Self {
         tree.route(excess);
         let (upper, _) = state.power_and_sections(axis);

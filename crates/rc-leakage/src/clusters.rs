@@ -137,7 +137,8 @@ impl WindingSets {
         (root, total)
     }
 
-    /// Joins the sets of two members. When they are in one set already, in another copy of the cell than the step leads to, it winds.
+    /// Joins the sets of two members. When they are in one set already, in another copy of the cell than the step leads
+    /// to, it winds.
     fn join(&mut self, Contact { runs: [a, b], leaves }: Contact) {
         let ((root_a, copy_a), (root_b, copy_b)) = (self.find(a), self.find(b));
         let to_b = add(copy_a, leaves);

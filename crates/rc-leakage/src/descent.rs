@@ -52,7 +52,8 @@ const NEXT_LOOK: f64 = 0.1;
 /// A recurrence that differs from the true residual by more than this part of it begins anew.
 const DRIFT: f64 = 0.1;
 
-/// Part of the power below which what is left of it, and of the residual, is rounding of what was there before: both are computed anew.
+/// Part of the power below which what is left of it, and of the residual, is rounding of what was there before: both
+/// are computed anew.
 const CANCELLED: f64 = 1e-4;
 
 /// Solves from the pressure of `solved` on, in at most `iterations`.

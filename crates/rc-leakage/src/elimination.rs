@@ -2,8 +2,9 @@
 
 use crate::real::Real;
 
-/// A bond that elimination makes is a sum of products of bonds, and a pivot the sum of the bonds that are left (Grassmann, Taksar and Heyman, Oper. Res. 33,
-/// 1985): nothing cancels, so that weak bonds keep their digits beside strong ones, and the last element of a cluster is left without a bond exactly.
+/// A bond that elimination makes is a sum of products of bonds, and a pivot the sum of the bonds that are left
+/// (Grassmann, Taksar and Heyman, Oper. Res. 33, 1985): nothing cancels, so that weak bonds keep their digits beside
+/// strong ones, and the last element of a cluster is left without a bond exactly.
 #[derive(Debug)]
 pub(crate) struct Elimination {
     n: usize,

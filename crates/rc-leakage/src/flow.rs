@@ -45,11 +45,11 @@ pub struct Leakage {
 /// The flow along one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flow {
-    /// Flow for a pressure that falls by one across the cell and 12 η = 1, in λ³: 0 where nothing percolates. An upper bound of the
-    /// permeance of the network, by the principle of Dirichlet; see [`FlowInfo::error`].
+    /// Flow for a pressure that falls by one across the cell and 12 η = 1, in λ³: 0 where nothing percolates. An upper
+    /// bound of the permeance of the network, by the principle of Dirichlet; see [`FlowInfo::error`].
     pub permeance: f64,
-    /// Estimated error of the grid: the difference from the permeance of every second element; `None` where it was not computed, or the
-    /// sides are odd.
+    /// Estimated error of the grid: the difference from the permeance of every second element; `None` where it was not
+    /// computed, or the sides are odd.
     pub permeance_error: Option<f64>,
     /// Whether a cluster of elements out of contact winds around the cell along this axis.
     pub percolates: bool,
@@ -64,7 +64,8 @@ pub struct Flow {
 pub struct FlowInfo {
     /// Iterations.
     pub iterations: usize,
-    /// Largest error of the permeance of the network, relative to it: the difference of the lower bound, by the principle of Thomson.
+    /// Largest error of the permeance of the network, relative to it: the difference of the lower bound, by the
+    /// principle of Thomson.
     pub error: f64,
     /// Largest difference of the flow through a section from the mean of all, relative to it.
     pub conservation: f64,
@@ -136,12 +137,12 @@ struct OfGrid {
     flux: Option<Flux>,
 }
 
-/// Gaps below this part of the smaller critical gap are taken as closed: such an element conducts 1e-15 of a constriction. A pool that only
-/// they join to the rest has a pressure that rounding decides.
+/// Gaps below this part of the smaller critical gap are taken as closed: such an element conducts 1e-15 of a
+/// constriction. A pool that only they join to the rest has a pressure that rounding decides.
 const CLOSED: f64 = 1e-5;
 
-/// Gaps above this multiple of the critical gap of an axis are taken as this wide: such an element resists 1e-14 of a constriction. What drives the flow
-/// through a wider one would be lost in the rounding of its pressure.
+/// Gaps above this multiple of the critical gap of an axis are taken as this wide: such an element resists 1e-14 of a
+/// constriction. What drives the flow through a wider one would be lost in the rounding of its pressure.
 const WIDE: f64 = 5e4;
 
 /// Permeances along both axes, and the flux along that of the larger one.
@@ -243,7 +244,8 @@ impl Prepared {
             solved = descent::solve(of, solved, multigrid, target, params.max_iterations.min(ON_GRIDS));
             if !target.is_met(&solved.bounds) {
                 self.preconditioner = Precondition::Aggregates(Aggregation::new(graph_of(&self.network)));
-                // From no pressure again: single precision may have left pools that hardly anything holds at a level that takes all digits.
+                // From no pressure again: single precision may have left pools that hardly anything holds at a level
+                // that takes all digits.
                 solved = Solved { iterations: solved.iterations, ..Solved::start(self.network.grid().len()) };
             }
         }

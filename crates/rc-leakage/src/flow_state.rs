@@ -1,4 +1,5 @@
-//! Fluxes through faces: those that a pressure drives, and what is added to them so that each element conserves the flow.
+//! Fluxes through faces: those that a pressure drives, and what is added to them so that each element conserves the
+//! flow.
 
 use crate::network::{Axis, Network};
 use crate::parallel;
@@ -129,7 +130,8 @@ impl<'a> FlowState<'a> {
         });
     }
 
-    /// Dissipation Σ flux²/conductance, and the flow through each section across `axis`, summed over the section in its order.
+    /// Dissipation Σ flux²/conductance, and the flow through each section across `axis`, summed over the section in its
+    /// order.
     pub(crate) fn power_and_sections(&self, axis: Axis) -> (f64, Vec<f64>) {
         let (nx, ny) = (self.network.grid().nx(), self.network.grid().ny());
         let blocks = parallel::map(self.network.blocks(), |block| {

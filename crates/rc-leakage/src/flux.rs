@@ -5,8 +5,8 @@ use rc_core::Field;
 use crate::flow_state::FlowState;
 use crate::parallel;
 
-/// The flux at the centres of elements: the volume that flows across a unit of length, for a pressure that falls by one across the cell and
-/// 12 η = 1, in λ².
+/// The flux at the centres of elements: the volume that flows across a unit of length, for a pressure that falls by one
+/// across the cell and 12 η = 1, in λ².
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flux {
     /// Along x.

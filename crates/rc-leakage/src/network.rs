@@ -48,7 +48,8 @@ impl Axis {
 
 /// Conductances of faces: the harmonic mean of g³ of the elements on both sides, times length over width of the face.
 ///
-/// Gaps are scaled to at most 2^30, so that single precision holds the conductances of gaps that differ by a factor of 10^20.
+/// Gaps are scaled to at most 2^30, so that single precision holds the conductances of gaps that differ by a factor of
+/// 10^20.
 #[derive(Debug)]
 pub(crate) struct Network {
     grid: Grid,
@@ -91,8 +92,8 @@ impl Network {
         conductance * self.scale
     }
 
-    /// Writes the conductances of the faces of row `iy`: of each element to the next along x, and along y. The face of an element to
-    /// itself, where there is only one, has none.
+    /// Writes the conductances of the faces of row `iy`: of each element to the next along x, and along y. The face of
+    /// an element to itself, where there is only one, has none.
     pub(crate) fn write_conductances<T: Real>(&self, iy: usize, east: &mut [T], north: &mut [T]) {
         let (nx, ny) = (self.grid.nx(), self.grid.ny());
         let [row, above] = [iy, (iy + 1) % ny].map(|iy| self.resistances(iy));

@@ -1,4 +1,5 @@
-//! Work on blocks of rows, in parallel; sums are over blocks in their order, so that no result depends on the number of threads.
+//! Work on blocks of rows, in parallel; sums are over blocks in their order, so that no result depends on the number of
+//! threads.
 
 use rayon::prelude::*;
 

@@ -106,7 +106,8 @@ impl Pools {
         blocks.concat()
     }
 
-    /// Orders the chosen bonds, each given from both sides with the pool on the other one, from the first pool of each cluster outwards.
+    /// Orders the chosen bonds, each given from both sides with the pool on the other one, from the first pool of each
+    /// cluster outwards.
     fn in_order(&self, chosen: &[[(u32, Saddle); 2]]) -> Vec<Saddle> {
         let of = |saddle: &Saddle| self.labels[saddle.from] as usize;
         let mut first = vec![0_u32; self.number + 1];

@@ -65,7 +65,8 @@ impl Step {
     }
 }
 
-/// A bond for comparison: of bonds of the same conductance a hash decides, so that trees in films of constant gap have short paths.
+/// A bond for comparison: of bonds of the same conductance a hash decides, so that trees in films of constant gap have
+/// short paths.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub(crate) struct Strength(f64, u64);
 

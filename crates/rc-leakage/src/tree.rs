@@ -1,6 +1,7 @@
 //! A spanning tree of the strongest bonds, along which what a pressure leaves unbalanced flows to where it is missing.
 //!
-//! The path of the tree between two elements has the largest weakest bond of all paths, so that what is unbalanced within a wide place stays there.
+//! The path of the tree between two elements has the largest weakest bond of all paths, so that what is unbalanced
+//! within a wide place stays there.
 
 use rc_core::Grid;
 
@@ -21,7 +22,8 @@ pub(crate) struct SpanningTree {
 const DONE: u8 = u8::MAX;
 
 impl SpanningTree {
-    /// The maximum spanning tree of each cluster of `network`, by Borůvka's first round and Kruskal's algorithm on what it leaves.
+    /// The maximum spanning tree of each cluster of `network`, by Borůvka's first round and Kruskal's algorithm on what
+    /// it leaves.
     pub(crate) fn new(network: &Network) -> Self {
         let mut tree = Self { grid: network.grid(), steps: strongest(network) };
         tree.break_pairs();

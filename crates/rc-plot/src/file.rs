@@ -17,8 +17,8 @@ pub fn save_png(picture: &impl Picture, path: &Path) -> Result<(), PictureError>
     save(path, &png_bytes(&pixels(picture)?, picture.size(), |_| ())?)
 }
 
-/// Saves a picture of few colours as a PNG that is several times smaller than that of [`save_png`], and takes longer to write: for files
-/// that are kept.
+/// Saves a picture of few colours as a PNG that is several times smaller than that of [`save_png`], and takes longer to
+/// write: for files that are kept.
 ///
 /// # Errors
 /// [`PictureError`] of the drawing or of the file.
@@ -82,7 +82,8 @@ fn save(path: &Path, bytes: &[u8]) -> Result<(), PictureError> {
     std::fs::write(path, bytes).map_err(PictureError::new)
 }
 
-/// Bytes of a PNG file with these pixels, three bytes each, rows from top to bottom, by an encoder that `configure` sets up.
+/// Bytes of a PNG file with these pixels, three bytes each, rows from top to bottom, by an encoder that `configure`
+/// sets up.
 fn png_bytes(
     rgb: &[u8],
     (width, height): (u32, u32),
@@ -98,8 +99,8 @@ fn png_bytes(
     Ok(bytes)
 }
 
-/// An SVG backend that embeds bitmaps as PNG. The plotting library does so with an image library of its own, which takes
-/// longer to compile than everything else that pictures need.
+/// An SVG backend that embeds bitmaps as PNG. The plotting library does so with an image library of its own, which
+/// takes longer to compile than everything else that pictures need.
 struct SvgWithBitmaps<'a> {
     svg: SVGBackend<'a>,
     /// The `image` elements, in the order in which they are drawn.

@@ -1,7 +1,7 @@
 //! Pictures: maps of fields and line plots, as PNG or SVG, with an embedded font.
 //!
-//! A [`Picture`] draws itself on any backend; [`save_png`], [`save_small_png`] and [`save_svg`] write it. [`draw_map`] and [`draw_lines`] fill an
-//! area of a larger picture, so figures are put together from them.
+//! A [`Picture`] draws itself on any backend; [`save_png`], [`save_small_png`] and [`save_svg`] write it. [`draw_map`]
+//! and [`draw_lines`] fill an area of a larger picture, so figures are put together from them.
 
 mod colour;
 mod file;

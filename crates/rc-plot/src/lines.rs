@@ -110,8 +110,8 @@ pub fn draw_lines<B: DrawingBackend>(area: &Area<B>, plot: &LinePlot<'_>, font: 
     Ok(())
 }
 
-/// The pieces of a series' sample in the legend, from its left end, and the radius of the dot at the first: every style is
-/// two pieces and a dot, some of them of no length.
+/// The pieces of a series' sample in the legend, from its left end, and the radius of the dot at the first: every style
+/// is two pieces and a dot, some of them of no length.
 fn sample(style: LineStyle, length: i32, stroke: u32) -> ([(i32, i32); 2], u32) {
     match style {
         LineStyle::Solid => ([(0, length / 2), (length / 2, length)], 0),

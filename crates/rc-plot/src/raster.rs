@@ -15,8 +15,8 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// A picture of `field` with y upwards. A pixel has the colour of the mean of `value` over the elements that it shows;
-    /// where pixels are smaller than elements, that of its element.
+    /// A picture of `field` with y upwards. A pixel has the colour of the mean of `value` over the elements that it
+    /// shows; where pixels are smaller than elements, that of its element.
     #[must_use]
     pub fn of(
         field: &Field,
@@ -40,8 +40,8 @@ impl Raster {
     }
 }
 
-/// The mean of a value over the elements of each pixel, from the rows of a field that need never be whole in memory. Its
-/// [`Raster`] of as many pixels is bit for bit that of the field.
+/// The mean of a value over the elements of each pixel, from the rows of a field that need never be whole in memory.
+/// Its [`Raster`] of as many pixels is bit for bit that of the field.
 #[derive(Clone, Debug)]
 pub struct PixelMean {
     grid: Grid,

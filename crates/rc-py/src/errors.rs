@@ -50,7 +50,8 @@ fn in_keywords(message: &str) -> String {
     text
 }
 
-/// What a reader of keys says of a value, without the names of its types: as `threads: invalid value: integer -1, expected usize`.
+/// What a reader of keys says of a value, without the names of its types: as `threads: invalid value: integer -1,
+/// expected usize`.
 fn in_words(message: &str) -> String {
     let Some((key, said)) = message.split_once(": ") else { return message.to_owned() };
     let Some((found, expected)) = said.split_once(", expected ") else { return message.to_owned() };

@@ -31,7 +31,8 @@ pub(crate) fn scene_numbers(scene: &str) -> PyResult<([f64; 2], f64, Option<u64>
     Ok((cell.sides(), contact.units.elasticity().e_star(), scene.surface.seed))
 }
 
-/// Density (1/Pa) of a pressure (Pa) over the nominal area on bins with these ends (Pa), and the contact area of the same interpolation.
+/// Density (1/Pa) of a pressure (Pa) over the nominal area on bins with these ends (Pa), and the contact area of the
+/// same interpolation.
 #[pyfunction]
 pub(crate) fn stress_distribution<'py>(
     py: Python<'py>,

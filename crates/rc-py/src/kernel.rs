@@ -37,8 +37,8 @@ struct Waves {
 }
 
 impl OwnKernel {
-    /// Calls `symbol(kx, ky)` once with all waves of `grid` but the zero wave, and mirror images of some: two arrays of wavenumbers
-    /// (rad/m). It returns as many displacements (m) for a pressure of 1 Pa.
+    /// Calls `symbol(kx, ky)` once with all waves of `grid` but the zero wave, and mirror images of some: two arrays of
+    /// wavenumbers (rad/m). It returns as many displacements (m) for a pressure of 1 Pa.
     pub(crate) fn new(symbol: &Bound<'_, PyAny>, grid: Grid, units: Units) -> PyResult<Self> {
         let waves = Waves { grid, per_wave: units.cell().sides().map(|side| TAU / side) };
         let (own, mirrored) = (waves.all(), waves.mirrored());
@@ -64,7 +64,8 @@ impl OwnKernel {
         self.values[kx * (self.max_ky + 1) + ky]
     }
 
-    /// Refuses values that differ for waves that are mirror images of each other: in kx, in ky, and on a square grid in their diagonal.
+    /// Refuses values that differ for waves that are mirror images of each other: in kx, in ky, and on a square grid in
+    /// their diagonal.
     fn check_symmetry(
         &self,
         waves: &Waves,
@@ -96,8 +97,8 @@ impl OwnKernel {
         Ok(())
     }
 
-    /// Warns where short waves, of the outer half of the grid's, are all of another half-space than that of E*: contact edges are located
-    /// with it.
+    /// Warns where short waves, of the outer half of the grid's, are all of another half-space than that of E*: contact
+    /// edges are located with it.
     fn warn_of_another_material(&self, py: Python<'_>, waves: &Waves, e_star: f64) -> PyResult<()> {
         let number = |[kx, ky]: [i64; 2]| waves.grid.waves(kx as usize, ky as usize);
         let (max_kx, max_ky) = (waves.grid.nx() as i64 / 2, waves.grid.ny() as i64 / 2);

@@ -1,7 +1,8 @@
 //! The extension module `roughcontact._core`: conversions between Python and the libraries, and nothing else.
 //!
-//! What a user calls is in `python/roughcontact`, which documents it. A call takes the keys of a scene and perhaps heights (`scene`),
-//! solves without the lock of the interpreter (`running`), and returns a `Solved`, whose arrays are made when they are asked for.
+//! What a user calls is in `python/roughcontact`, which documents it. A call takes the keys of a scene and perhaps
+//! heights (`scene`), solves without the lock of the interpreter (`running`), and returns a `Solved`, whose arrays are
+//! made when they are asked for.
 
 #![expect(clippy::needless_pass_by_value, reason = "Python hands arguments in by value")]
 

@@ -59,8 +59,8 @@ impl<T: Send> Observer for Watched<T> {
 
 /// How a computation ended.
 pub(crate) enum Ended<T> {
-    /// With a value. The exception is what ended it early: that of a signal handler, as `KeyboardInterrupt`, or of the function that
-    /// sees progress.
+    /// With a value. The exception is what ended it early: that of a signal handler, as `KeyboardInterrupt`, or of the
+    /// function that sees progress.
     Done { value: T, early: Option<PyErr> },
     /// A signal came, and the computation has not yet seen that it was told to stop. It goes on alone until it does.
     Left { early: PyErr, rest: Rest<T> },
@@ -86,8 +86,8 @@ impl<T: Send> Rest<T> {
     }
 }
 
-/// Runs `work` on its threads, without the lock of the interpreter, and tells it to stop when a signal comes or `progress` raises. Returns
-/// how it ended, and the number of threads.
+/// Runs `work` on its threads, without the lock of the interpreter, and tells it to stop when a signal comes or
+/// `progress` raises. Returns how it ended, and the number of threads.
 ///
 /// # Errors
 /// When there are no threads to be had.
@@ -188,7 +188,8 @@ struct Calls<'a> {
 }
 
 impl Calls<'_> {
-    /// Tells of an event, and runs the handlers of signals that have come. The exception of either, and whether it is of a signal.
+    /// Tells of an event, and runs the handlers of signals that have come. The exception of either, and whether it is
+    /// of a signal.
     fn look(&mut self, py: Python<'_>, event: Option<Event>) -> Result<(), (PyErr, bool)> {
         if let Some(event) = event {
             self.tell(py, event).map_err(|error| {

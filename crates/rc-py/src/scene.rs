@@ -43,8 +43,8 @@ pub(crate) fn scene_of(keys: &Bound<'_, PyDict>, path: Option<&Path>) -> PyResul
     resolve::layers(path, scene).map_err(raised)
 }
 
-/// The same where the call may hold a height map: it takes the place of the surface in a scene file, as a file would. What else the call
-/// says of a surface is refused later.
+/// The same where the call may hold a height map: it takes the place of the surface in a scene file, as a file would.
+/// What else the call says of a surface is refused later.
 pub(crate) fn with_map(keys: &Bound<'_, PyDict>, path: Option<&Path>, holds_map: bool) -> PyResult<Scene> {
     let mut scene = scene_of(keys, path)?;
     if holds_map {

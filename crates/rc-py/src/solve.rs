@@ -56,7 +56,8 @@ struct Prepared {
 /// What a solve returns: the solution, or what waits for it, and the exception that ended it early.
 type Returned = (Option<Solved>, Option<Unfinished>, Option<Py<PyAny>>);
 
-/// Solves. There is no solution yet where a signal came and the solve goes on alone until it sees that it was told to stop.
+/// Solves. There is no solution yet where a signal came and the solve goes on alone until it sees that it was told to
+/// stop.
 #[pyfunction]
 pub(crate) fn solve(py: Python<'_>, keys: &Bound<'_, PyDict>, given: Given<'_>) -> PyResult<Returned> {
     let scene = scene_of(keys, &given)?;

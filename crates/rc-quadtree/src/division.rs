@@ -3,12 +3,13 @@
 use crate::elements::Elements;
 use crate::tiles::{TILE, TileSet, quarters};
 
-/// Divides the elements of the chosen tiles into quarters. `chosen` has a flag for each tile of each level, finest first.
+/// Divides the elements of the chosen tiles into quarters. `chosen` has a flag for each tile of each level, finest
+/// first.
 ///
 /// With `deepen` a level is added below the finest; without it the flags of the finest level are ignored.
 ///
-/// Larger neighbours are divided too. Elements whose sizes differ by a factor of 4 are then farther from each other than `reach`
-/// cells of the size between.
+/// Larger neighbours are divided too. Elements whose sizes differ by a factor of 4 are then farther from each other
+/// than `reach` cells of the size between.
 ///
 /// # Panics
 /// When `chosen` has fewer levels than `elements`.

@@ -14,10 +14,10 @@ pub const BLOCK_CELLS: usize = BLOCK_TILES * CELLS;
 ///
 /// A level is named by how many levels it is `coarser` than the finest: its elements have 2^`coarser` times the side.
 ///
-/// Vectors have one value for each cell: those of the finest level first, then those of the next coarser one and so on. Each level
-/// begins at a whole block of [`BLOCK_CELLS`], so that all cells of a block are of one size. Values between the last cell of a level
-/// and the next block have no element, nor have those of tiles that reach beyond their level ([`TileSet`]); a mesh with such tiles has one
-/// level.
+/// Vectors have one value for each cell: those of the finest level first, then those of the next coarser one and so on.
+/// Each level begins at a whole block of [`BLOCK_CELLS`], so that all cells of a block are of one size. Values between
+/// the last cell of a level and the next block have no element, nor have those of tiles that reach beyond their level
+/// ([`TileSet`]); a mesh with such tiles has one level.
 #[derive(Clone, Debug)]
 pub struct Elements {
     levels: Vec<TileSet>,
@@ -102,7 +102,8 @@ impl Elements {
         Self::new(levels)
     }
 
-    /// The tiles for which `wanted` is true; it gets the sides of the level in cells, the place and where the cells are.
+    /// The tiles for which `wanted` is true; it gets the sides of the level in cells, the place and where the cells
+    /// are.
     #[must_use]
     pub fn filtered(&self, wanted: impl Fn([usize; 2], [u32; 2], Range<usize>) -> bool) -> Self {
         let level = |(tiles, &start): (&TileSet, &usize)| {

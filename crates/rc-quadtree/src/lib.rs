@@ -1,5 +1,5 @@
-//! The adaptive mesh of squares on the periodic cell, as geometry only: fine along the edges of contacts, coarser inside, nothing
-//! where there is no contact.
+//! The adaptive mesh of squares on the periodic cell, as geometry only: fine along the edges of contacts, coarser
+//! inside, nothing where there is no contact.
 //!
 //! The default solver runs on this mesh:
 //!
@@ -29,8 +29,8 @@
 //! assert_eq!(moved[refined.cells(0)][..2], [values[0]; 2]);
 //! ```
 //!
-//! Lengths are in λ, the side of the cell. A level is named by how many levels it is coarser than the finest. Places are columns and
-//! rows of tiles, counted from the cell's lower left corner.
+//! Lengths are in λ, the side of the cell. A level is named by how many levels it is coarser than the finest. Places
+//! are columns and rows of tiles, counted from the cell's lower left corner.
 
 mod division;
 mod elements;

@@ -1,8 +1,8 @@
 //! The Morton curve through the squares of a grid.
 
-/// Position of the square at column `ix` and row `iy` along the Morton curve through all squares of its size: the bits of `iy` and
-/// `ix` in turn. Squares that are near each other are mostly near along the curve. (G. M. Morton, *A computer oriented geodetic
-/// data base*, IBM Ottawa, 1966.)
+/// Position of the square at column `ix` and row `iy` along the Morton curve through all squares of its size: the bits
+/// of `iy` and `ix` in turn. Squares that are near each other are mostly near along the curve. (G. M. Morton, *A
+/// computer oriented geodetic data base*, IBM Ottawa, 1966.)
 pub(crate) const fn morton_code(ix: u32, iy: u32) -> u64 {
     spread(ix) | (spread(iy) << 1)
 }

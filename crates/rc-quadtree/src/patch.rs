@@ -5,8 +5,9 @@ use crate::tiles::{CELLS, TILE, TileSet};
 /// `SIDE` × `SIDE` values, row by row; `SIDE` is a multiple of [`TILE`].
 pub type Patch<T, const SIDE: usize> = [[T; SIDE]; SIDE];
 
-/// Fills `rows` of the patch whose lower left tile is at (`column`, `row`) of the periodically continued level. Where there is no
-/// tile, values are those of `T::default()`. Returns false when none of the tiles exists; the patch is then undefined.
+/// Fills `rows` of the patch whose lower left tile is at (`column`, `row`) of the periodically continued level. Where
+/// there is no tile, values are those of `T::default()`. Returns false when none of the tiles exists; the patch is then
+/// undefined.
 ///
 /// `values` has [`CELLS`] values for each of `tiles`.
 ///
@@ -49,7 +50,8 @@ pub fn gather<T: Copy + Default, const SIDE: usize>(
     any
 }
 
-/// The same cell by cell, for tiles that reach beyond their level and seams that they cross; values are `missing` where there is no tile.
+/// The same cell by cell, for tiles that reach beyond their level and seams that they cross; values are `missing` where
+/// there is no tile.
 #[cold]
 #[inline(never)]
 pub(crate) fn gather_cells<T: Copy, const SIDE: usize>(

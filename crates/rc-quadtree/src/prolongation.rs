@@ -1,7 +1,8 @@
-//! Prolongation: a function that is positive in contact, interpolated from the elements of one mesh to elements half as large.
+//! Prolongation: a function that is positive in contact, interpolated from the elements of one mesh to elements half as
+//! large.
 //!
-//! Interpolation is bilinear between centres. The function should be nearly linear across the edges of contacts; the edges are then
-//! kept to a fraction of an element.
+//! Interpolation is bilinear between centres. The function should be nearly linear across the edges of contacts; the
+//! edges are then kept to a fraction of an element.
 
 use std::ops::Range;
 
@@ -16,8 +17,8 @@ mod uneven;
 
 use near_contact::{MARGIN, PART_KEPT_OF_SINGLE_CELL, SIDE, is_near_contact, is_single, mark_missing};
 
-/// The tiles of the next finer level, of `sides` cells, where `function` is positive, or within two cells of them, and its positive part on
-/// their cells. The finer level has twice as many cells along both sides, or a little less.
+/// The tiles of the next finer level, of `sides` cells, where `function` is positive, or within two cells of them, and
+/// its positive part on their cells. The finer level has twice as many cells along both sides, or a little less.
 ///
 /// `function` has a value for each cell of `tiles`, which are whole; `elsewhere` is its value where there is no tile.
 ///
@@ -39,7 +40,8 @@ pub fn prolong(tiles: &TileSet, function: &[f64], elsewhere: f64, sides: [usize;
     (fine, result)
 }
 
-/// The tiles that [`prolong`] gives under some of `tiles`, with their values, for a level of twice as many cells along both sides.
+/// The tiles that [`prolong`] gives under some of `tiles`, with their values, for a level of twice as many cells along
+/// both sides.
 ///
 /// # Panics
 /// When there are fewer values than cells, or fewer tiles.
@@ -57,8 +59,8 @@ pub fn prolong_some(
     tiles.places()[which].par_iter().map(of_tile).collect::<Vec<Vec<_>>>().into_iter().flatten().collect()
 }
 
-/// Fills `values` on the smallest elements of `refined`, which are quarters of the smallest of `elements`, with the positive part of
-/// `function`. Other values stay.
+/// Fills `values` on the smallest elements of `refined`, which are quarters of the smallest of `elements`, with the
+/// positive part of `function`. Other values stay.
 ///
 /// `function` has a value for each of `elements`; `elsewhere` is its value where there is no element.
 ///
@@ -92,8 +94,8 @@ fn quarters_in_contact(
     std::array::from_fn(|child| fine_tile(&patch, (child % 2, child / 2)))
 }
 
-/// The positive part of the function on the fine tile in a quarter of the middle of the patch; none when it is not positive anywhere
-/// on the tile or near it.
+/// The positive part of the function on the fine tile in a quarter of the middle of the patch; none when it is not
+/// positive anywhere on the tile or near it.
 fn fine_tile(patch: &Patch<f64, SIDE>, (half_x, half_y): (usize, usize)) -> Option<Box<[f64; CELLS]>> {
     const WIDE: usize = TILE + 2 * MARGIN;
     // Coarse cell and its neighbour on the side of the fine cell; fine cells are counted from the margin's corner.

@@ -1,5 +1,5 @@
-//! The rule that says where smaller elements are needed (Sec. 2, Fig. 3): at the edges of contacts, and where a larger element may
-//! hide a contact.
+//! The rule that says where smaller elements are needed (Sec. 2, Fig. 3): at the edges of contacts, and where a larger
+//! element may hide a contact.
 
 use rayon::prelude::*;
 
@@ -31,9 +31,9 @@ pub struct ContactFields<'a> {
 impl ContactFields<'_> {
     /// Must the elements of a tile be divided? A flag for each tile of each level, finest first.
     ///
-    /// They must be where an edge of a contact is within [`RING`] cells, and where the gap may come down to that of contact between
-    /// centres of elements. `curvature` bounds, for the elements of each level, the second derivatives of the gap along the axes, in
-    /// 1/λ, in tiles that no pressure is nearer to than [`RING`] cells.
+    /// They must be where an edge of a contact is within [`RING`] cells, and where the gap may come down to that of
+    /// contact between centres of elements. `curvature` bounds, for the elements of each level, the second derivatives
+    /// of the gap along the axes, in 1/λ, in tiles that no pressure is nearer to than [`RING`] cells.
     #[must_use]
     pub fn too_coarse(&self, curvature: impl Fn(usize) -> f64) -> Vec<Vec<bool>> {
         let levels = self.elements.levels().iter().enumerate();
@@ -88,9 +88,9 @@ fn extrapolate(patch: &mut Patch<f64, SIDE>, bound: f64) {
     }
 }
 
-/// A lower bound of the gap in the cell at (`x`, `y`) and of its mean. Along an axis a function is above its chord minus an
-/// eighth of `bound`, and a chord from a centre reaches the cell's edge half-way to the next centre. Values are means over cells,
-/// which differ from the value at the centre by a twelfth of `bound` at most.
+/// A lower bound of the gap in the cell at (`x`, `y`) and of its mean. Along an axis a function is above its chord
+/// minus an eighth of `bound`, and a chord from a centre reaches the cell's edge half-way to the next centre. Values
+/// are means over cells, which differ from the value at the centre by a twelfth of `bound` at most.
 fn minimum_within(gap: &Patch<f64, SIDE>, x: usize, y: usize, bound: f64) -> f64 {
     let half_way = |here: f64, there: f64| here.min(0.5 * (here + there));
     let row = |y: usize| half_way(gap[y][x], gap[y][x - 1]).min(half_way(gap[y][x], gap[y][x + 1]));

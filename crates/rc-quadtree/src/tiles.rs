@@ -13,11 +13,13 @@ pub const CELLS: usize = TILE * TILE;
 
 /// The tiles of one level, sorted along the Morton curve so that neighbours are near in memory.
 ///
-/// A value of the level is at `tile · 64 + row · 8 + column`. Where tiles are is looked up in a table of 16 bytes for each 64
-/// possible tiles: 1/256 byte a cell of the level, the only memory that grows with the cell and not with the contact.
+/// A value of the level is at `tile · 64 + row · 8 + column`. Where tiles are is looked up in a table of 16 bytes for
+/// each 64 possible tiles: 1/256 byte a cell of the level, the only memory that grows with the cell and not with the
+/// contact.
 ///
-/// Where a side is not a multiple of 8, the last tiles along it reach beyond the level. What lies there is not part of the level: its
-/// values are never read by [`crate::gather`] and [`Elements::around`](crate::Elements::around), which continue the level periodically.
+/// Where a side is not a multiple of 8, the last tiles along it reach beyond the level. What lies there is not part of
+/// the level: its values are never read by [`crate::gather`] and [`Elements::around`](crate::Elements::around), which
+/// continue the level periodically.
 #[derive(Clone, Debug)]
 pub struct TileSet {
     sides: [usize; 2],
@@ -30,7 +32,8 @@ pub struct TileSet {
 }
 
 impl TileSet {
-    /// The tiles at `places` (column, row) of a level of `sides` cells along x and y, in any order; double ones are dropped.
+    /// The tiles at `places` (column, row) of a level of `sides` cells along x and y, in any order; double ones are
+    /// dropped.
     ///
     /// # Panics
     /// When a place is outside the level.
@@ -137,8 +140,8 @@ impl TileSet {
         Some(tile * CELLS + y % TILE * TILE + x % TILE)
     }
 
-    /// Whether a patch of `n` × `n` tiles, the lower left one at a place of the periodically continued level, has tiles that reach beyond the
-    /// level, or crosses a seam where they do.
+    /// Whether a patch of `n` × `n` tiles, the lower left one at a place of the periodically continued level, has tiles
+    /// that reach beyond the level, or crosses a seam where they do.
     #[must_use]
     #[inline]
     pub(crate) fn is_cut(&self, (column, row): (i64, i64), n: usize) -> bool {
@@ -148,8 +151,9 @@ impl TileSet {
         cut(self.sides[0], column, self.extent[0]) || cut(self.sides[1], row, self.extent[1])
     }
 
-    /// Hands out the values of the whole level, zero where there is no tile, a row of tiles at a time: the index of the first row of
-    /// cells, and eight rows one after the other (fewer where the last tiles reach beyond the level). Stops at the first error.
+    /// Hands out the values of the whole level, zero where there is no tile, a row of tiles at a time: the index of the
+    /// first row of cells, and eight rows one after the other (fewer where the last tiles reach beyond the level).
+    /// Stops at the first error.
     ///
     /// # Errors
     /// What `take` returns.
@@ -196,8 +200,8 @@ impl TileSet {
         Self::marked(self.sides, marks)
     }
 
-    /// The tiles of the level with half as many cells along both sides that hold these tiles, or a cell within `halo` cells of that
-    /// level from them.
+    /// The tiles of the level with half as many cells along both sides that hold these tiles, or a cell within `halo`
+    /// cells of that level from them.
     #[must_use]
     pub fn parents(&self, halo: usize) -> Self {
         self.on_coarser(self.sides.map(|side| side / 2), halo)
@@ -232,8 +236,8 @@ fn marks_of(sides: [usize; 2]) -> TileMarks {
     TileMarks::new(sides.map(|side| side.div_ceil(TILE)))
 }
 
-/// Writes the [`CELLS`] values of a tile into a row of tiles, which is eight rows of `side` cells each, at this column of tiles. What reaches
-/// beyond the rows is omitted.
+/// Writes the [`CELLS`] values of a tile into a row of tiles, which is eight rows of `side` cells each, at this column
+/// of tiles. What reaches beyond the rows is omitted.
 ///
 /// # Panics
 /// When the column is outside the rows.
@@ -244,14 +248,16 @@ pub fn put_tile(rows: &mut [f64], side: usize, column: usize, tile: &[f64]) {
     }
 }
 
-/// The places of a tile's quarters, on the level of elements half as large: lower left, lower right, upper left, upper right.
+/// The places of a tile's quarters, on the level of elements half as large: lower left, lower right, upper left, upper
+/// right.
 #[must_use]
 #[inline]
 pub fn quarters([column, row]: [u32; 2]) -> [[u32; 2]; 4] {
     [0, 1, 2, 3].map(|quarter| [2 * column + quarter % 2, 2 * row + quarter / 2])
 }
 
-/// The cell of a tile that holds cell (`x`, `y`) of its quarter at a place (only whether its column and row are odd matters).
+/// The cell of a tile that holds cell (`x`, `y`) of its quarter at a place (only whether its column and row are odd
+/// matters).
 #[must_use]
 #[inline]
 pub fn cell_over([column, row]: [u32; 2], x: usize, y: usize) -> usize {
@@ -327,7 +333,8 @@ mod tests {
             places
         };
         assert_eq!(places(0), [[0, 0]]);
-        // The tile covers cells 0 to 3 of 8 of its parent: two more on either side reach beyond the seam on one side only.
+        // The tile covers cells 0 to 3 of 8 of its parent: two more on either side reach beyond the seam on one side
+        // only.
         assert_eq!(places(2), [[0, 0], [0, 3], [3, 0], [3, 3]]);
         assert_eq!(places(5).len(), 9);
     }

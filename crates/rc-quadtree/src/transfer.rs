@@ -9,8 +9,9 @@ use crate::patch::{Patch, gather_cells};
 use crate::tiles::{CELLS, TILE, TileSet, cell_over, means_of_quarter, quarters};
 
 impl Elements {
-    /// Copies the values at the place of a tile, from elements of its level or twice as large or half as large: larger ones stand for
-    /// their quarters, smaller ones are averaged. Returns false, and copies nothing, where there are none.
+    /// Copies the values at the place of a tile, from elements of its level or twice as large or half as large: larger
+    /// ones stand for their quarters, smaller ones are averaged. Returns false, and copies nothing, where there are
+    /// none.
     fn tile_values(
         &self,
         values: &[f64],
@@ -55,8 +56,8 @@ impl Elements {
         true
     }
 
-    /// The values on a tile and its eight neighbours, `missing` where there are no elements. Elements twice as large stand for their
-    /// quarters, elements half as large are averaged.
+    /// The values on a tile and its eight neighbours, `missing` where there are no elements. Elements twice as large
+    /// stand for their quarters, elements half as large are averaged.
     #[must_use]
     pub fn around(
         &self,
@@ -80,7 +81,8 @@ impl Elements {
         patch
     }
 
-    /// The mesh without its finest level, and the values: those of the finest level are averaged over elements twice as large.
+    /// The mesh without its finest level, and the values: those of the finest level are averaged over elements twice as
+    /// large.
     fn without_finest(&self, values: &[f64]) -> (Self, Vec<f64>) {
         let mut levels = self.levels()[1..].to_vec();
         levels[0] = levels[0].with(&self.levels()[0].parents(0));
@@ -102,8 +104,8 @@ impl Elements {
         (coarser.finest().clone(), Cow::Owned(values))
     }
 
-    /// Values on the elements of `to`, whose tiles are tiles of this mesh, quarters of them, unions of four, or new ones. New ones have
-    /// the value `elsewhere`, and so has what fills vectors up.
+    /// Values on the elements of `to`, whose tiles are tiles of this mesh, quarters of them, unions of four, or new
+    /// ones. New ones have the value `elsewhere`, and so has what fills vectors up.
     #[must_use]
     pub fn moved(&self, to: &Self, values: &[f64], elsewhere: f64) -> Vec<f64> {
         let mut result = vec![elsewhere; to.len()];

@@ -5,28 +5,29 @@ use rc_core::Boundary;
 use crate::problem::Problem;
 use crate::{Control, ErrorBound};
 
-/// Bounds on how far a pressure is from solving the discrete contact problem, from a fresh application of L on the returned pressure. For the
-/// adaptive method they include the error of its operator, which is measured with a margin.
+/// Bounds on how far a pressure is from solving the discrete contact problem, from a fresh application of L on the
+/// returned pressure. For the adaptive method they include the error of its operator, which is measured with a margin.
 ///
-/// With g the gap shifted so that its pressure-weighted mean is 0, and H = h_max - h_min; on a flat patch with free borders, whose H is 0, the
-/// penetration instead.
+/// With g the gap shifted so that its pressure-weighted mean is 0, and H = h_max - h_min; on a flat patch with free
+/// borders, whose H is 0, the penetration instead.
 ///
-/// With a hardness the mean is over elements whose pressure is below it, and min g is the minimum over elements that could press more. Plastic
-/// elements may overlap as much as they do. Where their gap is above min g they could press less, and p (g - min g) counts the greatest of
-/// these gaps for all of them.
+/// With a hardness the mean is over elements whose pressure is below it, and min g is the minimum over elements that
+/// could press more. Plastic elements may overlap as much as they do. Where their gap is above min g they could press
+/// less, and p (g - min g) counts the greatest of these gaps for all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certificate {
     /// Σ p (g - min g) / (H Σ p).
     pub complementarity: f64,
     /// max(-g) / H.
     pub penetration: f64,
-    /// √(G/U), a bound on the relative error of the pressure in the energy norm; G = mean p (g - min g), U = mean p v / 2. The energy of a
-    /// layer under the mean pressure alone is not part of U.
+    /// √(G/U), a bound on the relative error of the pressure in the energy norm; G = mean p (g - min g), U = mean p v
+    /// / 2. The energy of a layer under the mean pressure alone is not part of U.
     ///
-    /// Under penetration control G has the pressure-weighted mean of |g| times the mean of p besides. With p* the exact pressure of the same mean and ⟨ ⟩ the mean over the cell, ⟨p - p*, L (p - p*)⟩ ≤ ⟨g, p - p*⟩, because p* is the
-    /// optimum. ⟨g - min g, p*⟩ is not negative, so the right side is at most G. The pits, the offset and the range of the heights are not
-    /// in it. Contact area, rms pressure, mean gap and penetration were measured to be off by 0.05 to 0.6 of its square where the operator is
-    /// exact.
+    /// Under penetration control G has the pressure-weighted mean of |g| times the mean of p besides. With p* the exact
+    /// pressure of the same mean and ⟨ ⟩ the mean over the cell, ⟨p - p*, L (p - p*)⟩ ≤ ⟨g, p - p*⟩, because p* is the
+    /// optimum. ⟨g - min g, p*⟩ is not negative, so the right side is at most G. The pits, the offset and the range of
+    /// the heights are not in it. Contact area, rms pressure, mean gap and penetration were measured to be off by 0.05
+    /// to 0.6 of its square where the operator is exact.
     pub energy: f64,
     /// |mean p - σ0| / σ0 under pressure control, |deviation of Δ| / H under penetration control, of the computed gap.
     pub load: f64,
@@ -37,7 +38,8 @@ pub struct Certificate {
 pub(crate) struct Residuals {
     /// min g over elements that could press more, less the gap of contact.
     pub(crate) least_gap: f64,
-    /// Pressure-weighted mean of g - min g, where no pressure is the hardness; a bound on G over the mean of p everywhere.
+    /// Pressure-weighted mean of g - min g, where no pressure is the hardness; a bound on G over the mean of p
+    /// everywhere.
     pub(crate) excess: f64,
     /// The gap of contact: the pressure-weighted mean of g.
     pub(crate) mean_gap: f64,
@@ -82,7 +84,8 @@ impl Certificate {
             _ if is_flat => 0.0,
             _ => numerator / denominator,
         };
-        // Σ p (g - min g) / Σ p with the weighted mean of g at zero is -min g: the two errors coincide, unless elements are plastic.
+        // Σ p (g - min g) / Σ p with the weighted mean of g at zero is -min g: the two errors coincide, unless elements
+        // are plastic.
         let [complementarity, penetration] = [excess, overlap].map(|error| ratio(error, range));
         let (load, off) = match problem.control {
             Control::MeanPressure(wanted) => ((mean_pressure - wanted).abs() / wanted, 0.0),

@@ -10,8 +10,8 @@ use crate::contact_area::{EdgeSums, around};
 pub struct ContactSpot {
     /// Elements of it.
     pub elements: usize,
-    /// Ratio of its area to that of the cell, from the edges between the centres of elements, as [`ContactArea::fraction`]: the spots add up to
-    /// the contact area. A spot of one element may be off by half of it.
+    /// Ratio of its area to that of the cell, from the edges between the centres of elements, as
+    /// [`ContactArea::fraction`]: the spots add up to the contact area. A spot of one element may be off by half of it.
     pub area_fraction: f64,
     /// Length of its edge, in λ ([`ContactArea::perimeter`]).
     pub perimeter: f64,
@@ -22,8 +22,8 @@ pub struct ContactSpot {
 }
 
 impl ContactSpot {
-    /// The spots of a contact, largest first; of equal ones, the one that begins in an earlier row. `pressure`, `gap` and `bias` are those of
-    /// [`ContactArea::of`].
+    /// The spots of a contact, largest first; of equal ones, the one that begins in an earlier row. `pressure`, `gap`
+    /// and `bias` are those of [`ContactArea::of`].
     ///
     /// # Panics
     /// When the two are not on the same grid.
@@ -65,7 +65,8 @@ impl ContactSpot {
     }
 }
 
-/// The elements in contact of each spot, connected across their edges and the sides of the cell; in the order in which spots begin.
+/// The elements in contact of each spot, connected across their edges and the sides of the cell; in the order in which
+/// spots begin.
 #[must_use]
 pub fn connected_elements(pressure: &Field) -> Vec<Vec<usize>> {
     connected(pressure, Boundary::Periodic)
@@ -139,8 +140,8 @@ mod tests {
         assert!((sum(|spot| spot.mean_pressure) / pressure.mean() - 1.0).abs() < 1e-12);
     }
 
-    /// A round contact on elements that are not squares has the area and the edge that it has on squares of the same size: each edge is
-    /// located with the side of the element across it.
+    /// A round contact on elements that are not squares has the area and the edge that it has on squares of the same
+    /// size: each edge is located with the side of the element across it.
     #[test]
     fn elements_that_are_not_squares_locate_edges_as_well() {
         let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_deviation: 0.0, per_square: 0.0 };

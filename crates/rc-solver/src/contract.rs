@@ -1,4 +1,5 @@
-//! Quick checks, before a solve, that a kernel or an operator of the caller is a half-space. [`rc_core::testing`] has the thorough ones.
+//! Quick checks, before a solve, that a kernel or an operator of the caller is a half-space. [`rc_core::testing`] has
+//! the thorough ones.
 
 use rc_core::testing::quasi_random;
 use rc_core::{Grid, Kernel, Operator};
@@ -18,10 +19,11 @@ const MIRROR_ERROR: f64 = 1e-8;
 /// Rounding of an operator in double precision, relative to its maximum displacement.
 const ROUNDING: f64 = 1e-12;
 
-/// Refuses a kernel whose symbol on `grid` is not that of an elastic half-space: finite, zero at the zero wave and positive elsewhere,
-/// symmetric in kx and ky on a square grid, and the same each time it is asked.
+/// Refuses a kernel whose symbol on `grid` is not that of an elastic half-space: finite, zero at the zero wave and
+/// positive elsewhere, symmetric in kx and ky on a square grid, and the same each time it is asked.
 ///
-/// All waves of small grids are looked at, a sample of those of large ones. A kernel that says it is Love's half-space is not asked.
+/// All waves of small grids are looked at, a sample of those of large ones. A kernel that says it is Love's half-space
+/// is not asked.
 pub(crate) fn check_kernel(kernel: &dyn Kernel, grid: Grid) -> Result<(), ProblemError> {
     if kernel.is_split_by_scale() {
         return Ok(());
@@ -76,8 +78,9 @@ fn waves(grid: Grid) -> impl Iterator<Item = (usize, usize)> {
     long_waves.chain(shortest).chain(others)
 }
 
-/// Refuses an operator that is not v = L p of an elastic half-space by more than `tolerance` of its maximum displacement: finite, of zero
-/// mean, symmetric, positive, linear, the same each time, and zero for a uniform pressure. Takes three applications.
+/// Refuses an operator that is not v = L p of an elastic half-space by more than `tolerance` of its maximum
+/// displacement: finite, of zero mean, symmetric, positive, linear, the same each time, and zero for a uniform
+/// pressure. Takes three applications.
 ///
 /// What is smaller than the tolerance of a solve changes its solution by no more than the tolerance.
 pub(crate) fn check_operator(operator: &dyn Operator, tolerance: f64) -> Result<(), ProblemError> {
@@ -124,7 +127,8 @@ impl Probes {
             return Err(self.why_sums_differ(operator, tolerance, difference));
         }
         let (ab, ba) = (product(a, of_b), product(b, of_a));
-        // The product of vectors without a pattern is smaller than that of their sizes, by √n; so is what noise adds to it.
+        // The product of vectors without a pattern is smaller than that of their sizes, by √n; so is what noise adds to
+        // it.
         if (ab - ba).abs() > tolerance * (product(a, a) * product(of_b, of_b) / n).sqrt() {
             return Err(OperatorFault::Symmetry { ab, ba });
         }

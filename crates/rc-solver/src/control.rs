@@ -7,7 +7,8 @@ use rc_core::Units;
 pub enum Control {
     /// Mean pressure σ0, in E*; the penetration is a result.
     MeanPressure(f64),
-    /// Penetration Δ, in λ (Sec. 2: the greatest displacement v under the rough surface); the mean pressure is a result.
+    /// Penetration Δ, in λ (Sec. 2: the greatest displacement v under the rough surface); the mean pressure is a
+    /// result.
     Penetration(f64),
 }
 

@@ -7,12 +7,12 @@ use crate::problem::{Load, Problem};
 use crate::support::Support;
 use crate::{Control, IterationParams, ProblemError};
 
-/// Pressures (in E*) on the grid of `heights` under a given penetration (in λ), by elimination on the elements in contact:
-/// solve `Σ_j L_ij p_j = h_i - h_max + Δ` there, release elements under tension, take in elements that penetrate, until
-/// neither changes the contact. Exact to rounding; O(n³): for tests on small grids.
+/// Pressures (in E*) on the grid of `heights` under a given penetration (in λ), by elimination on the elements in
+/// contact: solve `Σ_j L_ij p_j = h_i - h_max + Δ` there, release elements under tension, take in elements that
+/// penetrate, until neither changes the contact. Exact to rounding; O(n³): for tests on small grids.
 ///
-/// `None` when the contact still changes after as many rounds as there are elements, which does not happen for the positive
-/// definite operators of this workspace.
+/// `None` when the contact still changes after as many rounds as there are elements, which does not happen for the
+/// positive definite operators of this workspace.
 ///
 /// # Errors
 /// [`ProblemError`] for heights or a penetration out of range.
@@ -29,8 +29,8 @@ enum State {
     Plastic,
 }
 
-/// [`solve_dense`] with pressures of at most `hardness` (in E*): elements that would press more have that pressure, until they no longer
-/// overlap.
+/// [`solve_dense`] with pressures of at most `hardness` (in E*): elements that would press more have that pressure,
+/// until they no longer overlap.
 ///
 /// # Errors
 /// [`ProblemError`] for heights, a penetration or a hardness out of range.

@@ -78,8 +78,8 @@ pub enum ProblemError {
         /// Hardness given, in E*.
         hardness: f64,
     },
-    /// The penetration is outside (0, Δ_full]. Under penetration control no unique pressure exists beyond full contact: use
-    /// pressure control there.
+    /// The penetration is outside (0, Δ_full]. Under penetration control no unique pressure exists beyond full contact:
+    /// use pressure control there.
     #[error(
         "the penetration must be above 0 and below that of full contact, {full_contact}, not {value} (in units of the cell side)"
     )]
@@ -89,8 +89,8 @@ pub enum ProblemError {
         /// h_max - mean(h), in λ.
         full_contact: f64,
     },
-    /// The penetration is outside (0, h_max - h_min) of a surface with a hardness, whose pressure is the hardness everywhere beyond. What the
-    /// hardness compresses a layer by is added.
+    /// The penetration is outside (0, h_max - h_min) of a surface with a hardness, whose pressure is the hardness
+    /// everywhere beyond. What the hardness compresses a layer by is added.
     #[error(
         "the penetration must be above 0 and below {deepest}, where all is plastic, not {value} (in units of the cell side)"
     )]

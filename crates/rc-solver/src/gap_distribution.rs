@@ -1,7 +1,8 @@
 //! The distribution of the gap, resolved below the element at contact edges.
 //!
-//! Outside an edge the gap is (4c/3E*) s^{3/2}, with s the distance to it, so its density falls as g^{-1/3} from an infinite value at
-//! g = 0, which a histogram of elements cuts off. But g^{2/3} is linear there, as p² is inside: the same interpolation serves.
+//! Outside an edge the gap is (4c/3E*) s^{3/2}, with s the distance to it, so its density falls as g^{-1/3} from an
+//! infinite value at g = 0, which a histogram of elements cuts off. But g^{2/3} is linear there, as p² is inside: the
+//! same interpolation serves.
 
 use rayon::prelude::*;
 use rc_core::Field;
@@ -20,8 +21,8 @@ pub struct GapDistribution {
 }
 
 impl GapDistribution {
-    /// The distribution of `gap`, in λ on a periodic grid and zero in contact within the tolerance, on bins with these ends: increasing,
-    /// from 0 or above. Elements with `pressure` > 0 are in contact.
+    /// The distribution of `gap`, in λ on a periodic grid and zero in contact within the tolerance, on bins with these
+    /// ends: increasing, from 0 or above. Elements with `pressure` > 0 are in contact.
     ///
     /// # Panics
     /// When the two are not on the same grid.

@@ -9,7 +9,8 @@ use rc_core::quantity::digits;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Method {
-    /// Preconditioned conjugate gradients on elements that follow the contact: work and memory are those of the contact.
+    /// Preconditioned conjugate gradients on elements that follow the contact: work and memory are those of the
+    /// contact.
     Adaptive,
     /// The same on all elements of the grid.
     Uniform,

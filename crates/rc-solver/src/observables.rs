@@ -15,7 +15,8 @@ pub struct Observables {
     pub rms_pressure: f64,
     /// The same with what the elements at edges of contacts miss ([`ContactArea::missing_square`]): the best estimate.
     pub rms_pressure_corrected: f64,
-    /// Estimated discretisation error of `rms_pressure_corrected`; none in full contact without a coarser level to compare with.
+    /// Estimated discretisation error of `rms_pressure_corrected`; none in full contact without a coarser level to
+    /// compare with.
     pub rms_pressure_error: Option<f64>,
     /// Greatest pressure.
     pub max_pressure: f64,
@@ -30,8 +31,8 @@ pub struct Observables {
 }
 
 impl Observables {
-    /// Evaluates the observables of a solution whose contact edges are shifted by `bias`, and whose pressure is at most the `hardness`: one pass
-    /// over the fields, or two with a hardness.
+    /// Evaluates the observables of a solution whose contact edges are shifted by `bias`, and whose pressure is at most
+    /// the `hardness`: one pass over the fields, or two with a hardness.
     pub(crate) fn of(solution: &GridSolution, hardness: f64, bias: EdgeBias, boundary: Boundary) -> Self {
         let fields = [&solution.pressure, &solution.gap];
         let area = ContactArea::of_hard(fields, hardness, bias, boundary);
@@ -47,7 +48,8 @@ impl Observables {
         rms_pressure: f64,
         max_pressure: f64,
     ) -> Self {
-        // At edges of the plastic part the pressure that is left to the hardness is what it is at other edges: p² = H² - 2 H q + q².
+        // At edges of the plastic part the pressure that is left to the hardness is what it is at other edges: p² =
+        // H² - 2 H q + q².
         let rest = plastic.map(|edges| edges.rest);
         let of_rest = |of_area: &dyn Fn(&ContactArea) -> f64| rest.as_ref().map_or(0.0, of_area);
         let missing_square = area.missing_square + of_rest(&|rest| rest.missing_square);
@@ -69,8 +71,8 @@ impl Observables {
         observables.with_energy_error(info.iteration_error)
     }
 
-    /// With the errors that the tolerance of the solve leaves in the error bars; `energy_error` is √(G/U), the relative error of the
-    /// pressure in the energy norm. Those of the observables are of its square.
+    /// With the errors that the tolerance of the solve leaves in the error bars; `energy_error` is √(G/U), the relative
+    /// error of the pressure in the energy norm. Those of the observables are of its square.
     fn with_energy_error(self, energy_error: f64) -> Self {
         let with = |bar: f64, value: f64| bar.hypot(energy_error.powi(2) * value);
         Self {
@@ -93,7 +95,8 @@ fn corrected(rms_pressure: f64, area: &ContactArea) -> f64 {
     rms_pressure.mul_add(rms_pressure, area.missing_square).max(0.0).sqrt()
 }
 
-/// Errors of rms pressure and mean gap from the tolerance of the solve, relative to their values and to the square of the energy error.
+/// Errors of rms pressure and mean gap from the tolerance of the solve, relative to their values and to the square of
+/// the energy error.
 const PRESSURE_OF_SOLVE: f64 = 1.0;
 const GAP_OF_SOLVE: f64 = 0.5;
 
@@ -103,16 +106,17 @@ const SQUARE_SCATTER: f64 = 0.5;
 /// 95 % error of [`ContactArea::missing_square`], relative to it.
 const ERROR_OF_SQUARES: f64 = 2.5;
 
-/// 95 % error of ⟨p²⟩ inside of contacts from the kernel's elements: relative to ⟨p²⟩, to the kernel's constant, and to the ratio of
-/// elements at edges to those in contact.
+/// 95 % error of ⟨p²⟩ inside of contacts from the kernel's elements: relative to ⟨p²⟩, to the kernel's constant, and to
+/// the ratio of elements at edges to those in contact.
 const SQUARE_INSIDE: f64 = 0.2;
 
-/// Error of ⟨p²⟩ from larger elements, which keep their mean pressures only. With p = k √d at the distance d from an edge, an element of side s at
-/// d = 2s has the variance s k²/96; its row along the edges is 2s wide, and the elements at edges have k² times half their area.
+/// Error of ⟨p²⟩ from larger elements, which keep their mean pressures only. With p = k √d at the distance d from an
+/// edge, an element of side s at d = 2s has the variance s k²/96; its row along the edges is 2s wide, and the elements
+/// at edges have k² times half their area.
 const SQUARE_OF_LARGER: f64 = 1.0 / 24.0;
 
-/// In full contact, where there are no edges: error of the rms pressure relative to what the last halving of the elements changed. It is
-/// of second order, so a third is expected.
+/// In full contact, where there are no edges: error of the rms pressure relative to what the last halving of the
+/// elements changed. It is of second order, so a third is expected.
 const OF_CHANGE: f64 = 0.4;
 
 /// Estimated error of the rms pressure; none in full contact without a coarser level to compare with.
@@ -138,8 +142,8 @@ fn error_of_squares(area: &ContactArea, rms_pressure: f64) -> f64 {
     scatter.hypot(ERROR_OF_SQUARES * area.missing_square).hypot(inside).hypot(larger)
 }
 
-/// 95 % error of the mean gap, in ⟨p²⟩ over mean pressure and element side for each element at an edge per element in contact: its
-/// scatter over few edges, and what is the kernel's, relative to its constant.
+/// 95 % error of the mean gap, in ⟨p²⟩ over mean pressure and element side for each element at an edge per element in
+/// contact: its scatter over few edges, and what is the kernel's, relative to its constant.
 const GAP_SCATTER: f64 = 0.1;
 const GAP_OF_KERNEL: f64 = 0.48;
 
@@ -167,7 +171,8 @@ mod tests {
 
     use crate::{ContactProblem, Control, Method, SolveParams};
 
-    /// A sphere at loose tolerances, with energy errors up to a fifth: the bars of these alone hold the change to the exact solution.
+    /// A sphere at loose tolerances, with energy errors up to a fifth: the bars of these alone hold the change to the
+    /// exact solution.
     #[test]
     fn the_energy_error_holds_what_a_loose_tolerance_changes() {
         let n = 128;

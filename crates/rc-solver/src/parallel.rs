@@ -1,8 +1,8 @@
 //! Work on the blocks of vectors, in parallel.
 //!
-//! Iterators of rayon are generic over everything they pass on, and are compiled anew for each combination: four hundred combinations took
-//! most of the time that this crate needed to compile. Here rayon is compiled once. Each block costs a dynamic call and a lock without
-//! contention.
+//! Iterators of rayon are generic over everything they pass on, and are compiled anew for each combination: four
+//! hundred combinations took most of the time that this crate needed to compile. Here rayon is compiled once. Each
+//! block costs a dynamic call and a lock without contention.
 
 use std::mem;
 use std::sync::{Mutex, PoisonError};
@@ -53,8 +53,8 @@ pub(crate) fn rms(field: &Field) -> f64 {
     (rows.into_iter().sum::<f64>() / field.grid().len() as f64).sqrt()
 }
 
-/// Zeros, in memory that is written at once. What `vec!` gives is mapped page by page when it is first read, and once more, in all threads,
-/// when it is written.
+/// Zeros, in memory that is written at once. What `vec!` gives is mapped page by page when it is first read, and once
+/// more, in all threads, when it is written.
 pub(crate) fn zeros<T: Copy + Default + Send>(n: usize) -> Vec<T> {
     let mut values = vec![T::default(); n];
     for_each(values.chunks_mut(BLOCK), |block| block.fill(T::default()));

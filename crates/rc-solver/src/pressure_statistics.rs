@@ -5,8 +5,8 @@ use rc_core::{Field, Histogram};
 /// Bins of the distribution of pressures.
 const BINS: usize = 40;
 
-/// What a pressure field is like, in the unit of the field. [`crate::Observables`] are better estimates where there is a solution,
-/// and [`crate::StressDistribution`] resolves contact edges below the element.
+/// What a pressure field is like, in the unit of the field. [`crate::Observables`] are better estimates where there is
+/// a solution, and [`crate::StressDistribution`] resolves contact edges below the element.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PressureStatistics {

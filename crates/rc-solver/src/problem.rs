@@ -121,8 +121,8 @@ impl Problem {
         }
         check_load(load)?;
         match control {
-            // The hardness limits the mean pressure beyond full contact. How deep a patch with free borders is when all is plastic depends
-            // on its heights, and any depth is a problem.
+            // The hardness limits the mean pressure beyond full contact. How deep a patch with free borders is when all
+            // is plastic depends on its heights, and any depth is a problem.
             Control::Penetration(value) if hardness.is_finite() && support.boundary == Boundary::Periodic => {
                 let deepest = h_range + support.compliance * hardness;
                 if !(value > 0.0 && value < deepest) {
@@ -141,8 +141,8 @@ impl Problem {
         Ok(Self { control, hardness, h_max, h_mean, h_range, measure: params.bound.measure(), support })
     }
 
-    /// The length that overlaps are compared with, where the pressure does the `work` Σ p v and sums up to `pressure`: H, or
-    /// U/σ0 = Σ p v / 2 Σ p, without what a uniform pressure does; over `n_cell` elements.
+    /// The length that overlaps are compared with, where the pressure does the `work` Σ p v and sums up to `pressure`:
+    /// H, or U/σ0 = Σ p v / 2 Σ p, without what a uniform pressure does; over `n_cell` elements.
     pub(crate) fn reference_length(&self, work: f64, pressure: f64, n_cell: f64) -> f64 {
         match self.measure {
             Measure::HeightRange if self.h_range > 0.0 => self.h_range,
@@ -169,8 +169,9 @@ impl Problem {
         self.h_range.min(4.0 * (self.h_max - self.h_mean))
     }
 
-    /// The constant c in `g = L p - h + c`: h_max - Δ under penetration control. Under pressure control Δ is a multiplier, and
-    /// c is h_max, so that a large constant in the heights is not in the gap, whose sums it would drown.
+    /// The constant c in `g = L p - h + c`: h_max - Δ under penetration control. Under pressure control Δ is a
+    /// multiplier, and c is h_max, so that a large constant in the heights is not in the gap, whose sums it would
+    /// drown.
     pub(crate) fn offset(&self) -> f64 {
         match self.control {
             Control::MeanPressure(_) => self.h_max,

@@ -55,8 +55,8 @@ pub struct LevelValues {
 pub struct SolveInfo {
     /// Residuals from a fresh application of L on the returned pressure.
     pub certificate: Certificate,
-    /// [`Certificate::energy`] of the gap as the operator computed it, without the bound on the error of the operator: what the iteration has
-    /// left. Area and rms pressure were measured to be off by less than its square.
+    /// [`Certificate::energy`] of the gap as the operator computed it, without the bound on the error of the operator:
+    /// what the iteration has left. Area and rms pressure were measured to be off by less than its square.
     pub iteration_error: f64,
     /// Mean pressure σ0, in E*.
     pub mean_pressure: f64,
@@ -64,14 +64,15 @@ pub struct SolveInfo {
     pub penetration: f64,
     /// Penetration of full contact, h_max - mean(h), in λ.
     pub penetration_full_contact: f64,
-    /// Mean displacement over the nominal area, in λ: zero on the periodic half-space (Eq. 3), that of the mean pressure on a layer, that of
-    /// the whole patch where borders are free.
+    /// Mean displacement over the nominal area, in λ: zero on the periodic half-space (Eq. 3), that of the mean
+    /// pressure on a layer, that of the whole patch where borders are free.
     pub mean_displacement: f64,
     /// Elastic energy per nominal area, ½ mean(p v), in E* λ.
     pub elastic_energy: f64,
     /// The work, coarsest level first; empty in full contact.
     pub levels: Vec<LevelInfo>,
-    /// What the level below the finest one found; none when there was none, or not one with half the elements along both axes.
+    /// What the level below the finest one found; none when there was none, or not one with half the elements along
+    /// both axes.
     pub coarser: Option<LevelValues>,
 }
 

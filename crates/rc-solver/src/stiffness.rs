@@ -37,9 +37,9 @@ pub(crate) fn contact_stiffness(pressure: &Field, hardness: f64, kernel: &dyn Ke
     stiffness_of(&pressure, grid.len() as f64, &mut operator)
 }
 
-/// dσ0/dΔ, in E*/λ, for the contact set {p > 0}: the mean over a cell of `n` of the smallest elements of the pressure x that displaces every
-/// element in contact by 1, `L x = 1` there. The set may be held fixed, since pressure and gap vanish at its edge, so that
-/// moving it is of second order.
+/// dσ0/dΔ, in E*/λ, for the contact set {p > 0}: the mean over a cell of `n` of the smallest elements of the pressure x
+/// that displaces every element in contact by 1, `L x = 1` there. The set may be held fixed, since pressure and gap
+/// vanish at its edge, so that moving it is of second order.
 ///
 /// The mean of x is the maximum of 2⟨x⟩ - ⟨x L x⟩, so its error is the square of that of x, and conjugate gradients in
 /// single precision reach 1e-3 in about five steps.
@@ -54,8 +54,8 @@ pub(crate) fn stiffness_pressure(pressure: &[f64], n: f64, operator: &mut dyn Pr
     x
 }
 
-/// [`stiffness_of`] from an x that is a few percent off, as ⟨x⟩²/⟨x L x⟩ by one application of a better operator: this is a maximum over all
-/// x, so that the error of x enters squared.
+/// [`stiffness_of`] from an x that is a few percent off, as ⟨x⟩²/⟨x L x⟩ by one application of a better operator: this
+/// is a maximum over all x, so that the error of x enters squared.
 pub(crate) fn stiffness_under(x: &[f32], n: f64, operator: &mut dyn BlockOperator<f32>) -> f64 {
     let layout = operator.layout();
     let len = layout.len();
@@ -106,11 +106,12 @@ fn search(
     stiffness
 }
 
-/// The part of the cell in contact from which the first direction is the preconditioned residual. `docs/measurements-uniform.md` compares both.
+/// The part of the cell in contact from which the first direction is the preconditioned residual.
+/// `docs/measurements-uniform.md` compares both.
 const HEAVY_CONTACT: f64 = 0.5;
 
-/// Directions that are along the first one: the pressure itself, whose best multiple has the secant stiffness σ0²/mean(p v), or, in heavy
-/// contact, a uniform pressure in which what would press out of contact is beside it.
+/// Directions that are along the first one: the pressure itself, whose best multiple has the secant stiffness
+/// σ0²/mean(p v), or, in heavy contact, a uniform pressure in which what would press out of contact is beside it.
 fn first_direction(
     active: Vec<bool>,
     pressure: &[f64],

@@ -1,11 +1,11 @@
-//! The distribution of the interfacial stress P(σ) (Eq. 7 is Persson's form of it), resolved below the element at contact
-//! edges.
+//! The distribution of the interfacial stress P(σ) (Eq. 7 is Persson's form of it), resolved below the element at
+//! contact edges.
 //!
-//! At an edge the pressure is c√s, with s the distance to it, so P must start linearly at σ = 0. A histogram of elements
-//! cannot show that: the smallest pressures there are of elements that an edge cuts, about c√(element side), and its first bins stay
-//! at 30 to 60 % of the peak. But p² is linear across an edge. Here p² is interpolated linearly between the centres of
-//! elements, and continued linearly beyond those at edges; the area between two stresses is then exact for the
-//! interpolant.
+//! At an edge the pressure is c√s, with s the distance to it, so P must start linearly at σ = 0. A histogram of
+//! elements cannot show that: the smallest pressures there are of elements that an edge cuts, about c√(element side),
+//! and its first bins stay at 30 to 60 % of the peak. But p² is linear across an edge. Here p² is interpolated linearly
+//! between the centres of elements, and continued linearly beyond those at edges; the area between two stresses is then
+//! exact for the interpolant.
 
 use rayon::prelude::*;
 use rc_core::Field;
@@ -20,21 +20,22 @@ const DIAGONALS: [[isize; 2]; 4] = [[1, 1], [1, -1], [-1, 1], [-1, -1]];
 /// The density of the stress over the whole nominal area, P(σ) = (A/A0) p(σ), on bins.
 ///
 /// Accuracy on Hertz contacts solved with 51 elements per radius, in bins of a tenth of the peak pressure
-/// (`tests/it/stress_distribution.rs`): 5 % in every bin, the first included, 0.5 % from a third of the peak on; area 0.2 %.
+/// (`tests/it/stress_distribution.rs`): 5 % in every bin, the first included, 0.5 % from a third of the peak on;
+/// area 0.2 %.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StressDistribution {
     /// Ends of the bins, in E*: bin k goes from `edges[k]` to `edges[k + 1]`.
     pub edges: Vec<f64>,
     /// P, in 1/E*: the mean over each bin.
     pub density: Vec<f64>,
-    /// Part of the nominal area where the interpolated pressure is positive: the integral of P over all σ > 0, in bins or
-    /// not.
+    /// Part of the nominal area where the interpolated pressure is positive: the integral of P over all σ > 0, in bins
+    /// or not.
     pub area_fraction: f64,
 }
 
 impl StressDistribution {
-    /// The distribution of `pressure`, in E* on a periodic grid, on bins with these ends: increasing, from 0 or above. A bin
-    /// that ends before it begins has density 0.
+    /// The distribution of `pressure`, in E* on a periodic grid, on bins with these ends: increasing, from 0 or above.
+    /// A bin that ends before it begins has density 0.
     ///
     /// One pass over the field; only elements in contact and beside it cost more than a look.
     #[must_use]
@@ -136,7 +137,8 @@ impl<'a> Exceedance<'a> {
         Self { levels, cut: vec![0.0; levels.len()], whole: vec![0.0; levels.len() + 1] }
     }
 
-    /// Adds a square with these values at its corners: four triangles that meet in the middle, where the value is the mean.
+    /// Adds a square with these values at its corners: four triangles that meet in the middle, where the value is the
+    /// mean.
     fn add_square(&mut self, corners: [f64; 4]) {
         let middle = 0.25 * corners.iter().sum::<f64>();
         for i in 0..4 {
@@ -183,8 +185,8 @@ mod tests {
 
     use super::*;
 
-    /// p² = 1 - (r/a)², sampled at the centres, so P = 2πa²σ. The slope of p² at the edge is taken one element inside it, so the
-    /// error is of the order of an element over the radius.
+    /// p² = 1 - (r/a)², sampled at the centres, so P = 2πa²σ. The slope of p² at the edge is taken one element inside
+    /// it, so the error is of the order of an element over the radius.
     #[test]
     fn a_paraboloid_of_squared_pressure_has_a_linear_distribution() {
         for (n, bound) in [(128, 5e-2), (512, 1.3e-2)] {

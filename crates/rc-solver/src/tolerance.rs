@@ -3,14 +3,16 @@
 /// How accurately a contact problem is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tolerance {
-    /// Bound on [`crate::Certificate::energy`], a number between [`Tolerance::SMALLEST_ENERGY`] and 1. It does not depend on the height range: a
-    /// pit, a raised surface and a light load are solved as accurately as any other scene.
+    /// Bound on [`crate::Certificate::energy`], a number between [`Tolerance::SMALLEST_ENERGY`] and 1. It does not
+    /// depend on the height range: a pit, a raised surface and a light load are solved as accurately as any other
+    /// scene.
     Energy(f64),
-    /// Bound on [`crate::Certificate::complementarity`] and [`crate::Certificate::penetration`], relative to the peak-to-valley height, a number between
-    /// [`Tolerance::SMALLEST`] and 1. Other programs mean this by a tolerance. One deep point in the heights loosens it.
+    /// Bound on [`crate::Certificate::complementarity`] and [`crate::Certificate::penetration`], relative to the
+    /// peak-to-valley height, a number between [`Tolerance::SMALLEST`] and 1. Other programs mean this by a tolerance.
+    /// One deep point in the heights loosens it.
     Relative(f64),
-    /// Well below the error of the discretisation: an energy error of 0.06 (m/8)^(-3/4) for m elements per shortest wave, 0.03 for a height
-    /// map.
+    /// Well below the error of the discretisation: an energy error of 0.06 (m/8)^(-3/4) for m elements per shortest
+    /// wave, 0.03 for a height map.
     Auto,
 }
 
@@ -21,12 +23,12 @@ impl Tolerance {
     /// The smallest energy error that can be certified; its square is what rounding bounds.
     pub const SMALLEST_ENERGY: f64 = 1e-5;
 
-    /// Area, rms pressure and penetration are then those of the discrete problem to about 1e-5: the iteration goes to three tenths of the
-    /// bound.
+    /// Area, rms pressure and penetration are then those of the discrete problem to about 1e-5: the iteration goes to
+    /// three tenths of the bound.
     pub const DEFAULT: Self = Self::Energy(1e-2);
 
-    /// The bound on the certificate, for a grid with this many elements per shortest wave (`None` for a height map, whose waves are not
-    /// known).
+    /// The bound on the certificate, for a grid with this many elements per shortest wave (`None` for a height map,
+    /// whose waves are not known).
     #[must_use]
     pub fn bound(self, elements_per_wave: Option<f64>) -> ErrorBound {
         match self {
@@ -72,7 +74,8 @@ impl ErrorBound {
         }
     }
 
-    /// The bound on the deepest overlap δ, in units of the [`Measure`]'s length: G/U = σ0 δ/U is the square of the energy error.
+    /// The bound on the deepest overlap δ, in units of the [`Measure`]'s length: G/U = σ0 δ/U is the square of the
+    /// energy error.
     pub(crate) fn overlap(self) -> f64 {
         match self {
             Self::Energy(value) => value * value,
@@ -80,8 +83,9 @@ impl ErrorBound {
         }
     }
 
-    /// The overlap of the computed gap that an iteration ends with. An energy error is brought to [`AIM`] of its bound: area, pressure and
-    /// penetration are off by its square, which two or three iterations make a tenth, and the rest is left to the error of the operator.
+    /// The overlap of the computed gap that an iteration ends with. An energy error is brought to [`AIM`] of its bound:
+    /// area, pressure and penetration are off by its square, which two or three iterations make a tenth, and the rest
+    /// is left to the error of the operator.
     pub(crate) fn aim(self) -> f64 {
         match self {
             Self::Energy(value) => (AIM * value).powi(2),
@@ -112,8 +116,8 @@ pub(crate) enum Measure {
 }
 
 impl Measure {
-    /// Tolerance of the level below the finest: its discretisation error is far above this. Levels further down may be solved less
-    /// accurately by [`COARSENING`] each, up to a limit: they only prepare the next.
+    /// Tolerance of the level below the finest: its discretisation error is far above this. Levels further down may be
+    /// solved less accurately by [`COARSENING`] each, up to a limit: they only prepare the next.
     pub(crate) fn coarse_tolerance(self, below: usize) -> f64 {
         let (tolerance, coarsest) = match self {
             Self::HeightRange => (1e-4, 1e-3),
@@ -141,8 +145,8 @@ const AT_REFERENCE: f64 = 6e-2;
 /// Elements per shortest wave to which [`AT_REFERENCE`] belongs.
 const REFERENCE: f64 = 8.0;
 
-/// Order in the element side of the energy error: area and pressure change by its square, and the error of the discretisation falls with
-/// the power 1.5.
+/// Order in the element side of the energy error: area and pressure change by its square, and the error of the
+/// discretisation falls with the power 1.5.
 const ORDER: f64 = 0.75;
 
 /// Bounds: what any picture needs, and what a grid that fits into memory is never as accurate as.
@@ -152,12 +156,12 @@ const SMALLEST: f64 = 3e-3;
 /// For a height map, whose shortest wave is not known.
 const OF_MAP: f64 = 3e-2;
 
-/// The energy error at which the error of the iteration is well below that of the discretisation: 0.06 (m/8)^(-3/4) with m elements per
-/// shortest wave, from 3e-3 to 0.15; 0.03 for a height map (`None`).
+/// The energy error at which the error of the iteration is well below that of the discretisation: 0.06 (m/8)^(-3/4)
+/// with m elements per shortest wave, from 3e-3 to 0.15; 0.03 for a height map (`None`).
 ///
-/// Area and rms pressure were measured to be off by less than the square of the energy error that is aimed at, and errors of the discretisation fall
-/// about as the power 1.5 of the element side, which the model follows. Test `auto_stops_well_below_the_error_of_the_grid` of the command
-/// line compares the two.
+/// Area and rms pressure were measured to be off by less than the square of the energy error that is aimed at, and
+/// errors of the discretisation fall about as the power 1.5 of the element side, which the model follows. Test
+/// `auto_stops_well_below_the_error_of_the_grid` of the command line compares the two.
 fn auto_tolerance(elements_per_wave: Option<f64>) -> f64 {
     match elements_per_wave {
         Some(elements) => (AT_REFERENCE * (elements / REFERENCE).powf(-ORDER)).clamp(SMALLEST, LARGEST),

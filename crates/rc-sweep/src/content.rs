@@ -12,7 +12,8 @@ use crate::folder::JOURNAL_FILE;
 use crate::settings;
 use crate::shard::{MAX_ROWS, Shard, SweepShape};
 
-/// First key of the first line, by which a journal is recognised: of a whole sweep, or of a shard that is dealt load by load.
+/// First key of the first line, by which a journal is recognised: of a whole sweep, or of a shard that is dealt load by
+/// load.
 const FORMAT: u32 = 2;
 
 /// The same of a shard that is dealt by costs, which programs that deal load by load must not read.

@@ -37,8 +37,8 @@ struct Portion {
 }
 
 impl Deal {
-    /// Rows that take these processor seconds: for each scene its number of surfaces, and a value for each load, the same for
-    /// all surfaces. `None` is not known, and taken as the mean of the known values.
+    /// Rows that take these processor seconds: for each scene its number of surfaces, and a value for each load, the
+    /// same for all surfaces. `None` is not known, and taken as the mean of the known values.
     ///
     /// Values are rounded to two digits, so that processors that differ in the last digit deal alike.
     pub(crate) fn by_cost(scenes: Vec<(usize, Vec<Option<f64>>)>) -> Self {
@@ -89,8 +89,8 @@ impl Deal {
         rows
     }
 
-    /// What is dealt: whole surfaces, whose loads share their heights, where they are small enough for equal shards; else
-    /// single rows.
+    /// What is dealt: whole surfaces, whose loads share their heights, where they are small enough for equal shards;
+    /// else single rows.
     fn portions(&self, count: usize) -> Vec<Portion> {
         let sum = |scene: &SceneCosts| scene.costs.iter().map(|&cost| u128::from(cost)).sum::<u128>();
         let heaviest = self.scenes.iter().map(sum).max().unwrap_or(0);

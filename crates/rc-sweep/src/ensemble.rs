@@ -156,7 +156,8 @@ impl Ensemble {
     /// Starts a new ensemble in `folder`, or with `resume` goes on with what is there of the same one.
     ///
     /// # Errors
-    /// [`SweepError`] when there are too many loads, when the folder holds something else, or when it cannot be written to.
+    /// [`SweepError`] when there are too many loads, when the folder holds something else, or when it cannot be written
+    /// to.
     pub fn start(plan: EnsemblePlan, folder: &Path, resume: bool) -> Result<Self, SweepError> {
         let shape = plan.shape();
         if shape.rows() > MAX_ROWS {
@@ -172,8 +173,8 @@ impl Ensemble {
         Kept::new(&self.folder, self.locked())
     }
 
-    /// Solves what the means of all loads need, writes the table of the rows, and returns the means; `None` when the solver
-    /// stopped before. `workers` are those for grids with this many elements.
+    /// Solves what the means of all loads need, writes the table of the rows, and returns the means; `None` when the
+    /// solver stopped before. `workers` are those for grids with this many elements.
     ///
     /// What is solved depends on results only, so a run that goes on after an interruption ends with the same digits.
     ///
@@ -298,8 +299,8 @@ impl Ensemble {
     }
 }
 
-/// What a row took: elements of the finest level that were solved for, times applications of the operator to them. Unlike a
-/// time it is the same on every machine.
+/// What a row took: elements of the finest level that were solved for, times applications of the operator to them.
+/// Unlike a time it is the same on every machine.
 fn cost_of(cells: &Cells) -> Option<f64> {
     let grid = || Some(cells.get("grid")?.as_array()?.iter().filter_map(Value::as_f64).product());
     let elements: f64 = cells.get("cells_evaluated").and_then(Value::as_f64).or_else(grid)?;

@@ -66,8 +66,8 @@ fn or_here(path: &Path) -> &Path {
     if path.as_os_str().is_empty() { Path::new(".") } else { path }
 }
 
-/// A set of files, or of folders with files, on their way into a folder. They are written into a hidden folder inside it,
-/// and get their final names together in [`Staged::commit`]; dropped before that, they vanish.
+/// A set of files, or of folders with files, on their way into a folder. They are written into a hidden folder inside
+/// it, and get their final names together in [`Staged::commit`]; dropped before that, they vanish.
 #[derive(Debug)]
 pub struct Staged {
     folder: PathBuf,
@@ -177,8 +177,8 @@ pub fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     builder.prefix(PARTIAL).tempfile_in(folder)
 }
 
-/// Removes what processes that were killed have left in `folder`, as far as it can be removed. No other process may be writing
-/// there.
+/// Removes what processes that were killed have left in `folder`, as far as it can be removed. No other process may be
+/// writing there.
 pub fn remove_leftovers(folder: &Path) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     for entry in entries.flatten() {

@@ -35,8 +35,8 @@ pub(crate) fn has_fields(sweep: &Path, index: usize) -> bool {
     fields_folder(sweep, index).join(LAST_FILE).exists()
 }
 
-/// Writes the result folder of a row, whole or not at all: removes an earlier one first, and what `write` leaves when it
-/// fails. `write` writes `summary.json` last.
+/// Writes the result folder of a row, whole or not at all: removes an earlier one first, and what `write` leaves when
+/// it fails. `write` writes `summary.json` last.
 ///
 /// # Errors
 /// Those of `write`, and a [`FileError`] when an earlier folder cannot be removed.

@@ -97,9 +97,9 @@ struct Claim {
 struct Job<'a>(&'a dyn Fn(&str) -> Option<String>);
 
 impl Shard {
-    /// The shard of this process: its task of a job array (Slurm, PBS, Torque), or its rank (Open MPI, MPICH, Intel MPI, PMIx,
-    /// srun). With `count` there are so many shards, and the tasks of arrays are numbered from 1 to it; without, the job system
-    /// must say how many. `variable` gives the value of an environment variable.
+    /// The shard of this process: its task of a job array (Slurm, PBS, Torque), or its rank (Open MPI, MPICH, Intel
+    /// MPI, PMIx, srun). With `count` there are so many shards, and the tasks of arrays are numbered from 1 to it;
+    /// without, the job system must say how many. `variable` gives the value of an environment variable.
     ///
     /// # Errors
     /// [`JobError`], when nothing numbers the process, or when two sources contradict each other.
@@ -196,8 +196,8 @@ impl Job<'_> {
         Ok(None)
     }
 
-    /// The rank that an MPI launcher gave; all launchers that are there must agree. What srun says is not asked: the launcher
-    /// may have been started by it, once on each node.
+    /// The rank that an MPI launcher gave; all launchers that are there must agree. What srun says is not asked: the
+    /// launcher may have been started by it, once on each node.
     fn rank(&self) -> Result<Option<Claim>, JobError> {
         let mut agreed: Option<Claim> = None;
         for (rank, size) in MPI {

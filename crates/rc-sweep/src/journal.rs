@@ -1,7 +1,7 @@
 //! The rows of a sweep on disk as they finish: one line each, appended and synced.
 //!
-//! The first line says what sweep it is; it appears together with the file. A process that ends at any moment can only cut
-//! the last line, which is then taken off.
+//! The first line says what sweep it is; it appears together with the file. A process that ends at any moment can only
+//! cut the last line, which is then taken off.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write as _};
@@ -100,7 +100,8 @@ impl Journal {
         })
     }
 
-    /// Keeps a row. When it returns, the row is on disk; after an error the rows before still are, and no part of this one.
+    /// Keeps a row. When it returns, the row is on disk; after an error the rows before still are, and no part of this
+    /// one.
     ///
     /// # Errors
     /// [`SweepError::Append`].
@@ -125,7 +126,8 @@ impl Journal {
     /// Takes away a sweep without rows, and its folder if this process made it: there is nothing to go on with.
     pub(crate) fn discard_empty(&self, folder: &Path) {
         if self.rows.is_empty() {
-            // What cannot be removed does no harm: --resume takes it. The journal goes last, as long as it is there so does the rest.
+            // What cannot be removed does no harm: --resume takes it. The journal goes last, as long as it is there so
+            // does the rest.
             let _ = std::fs::remove_dir_all(folder.join(ROWS_FOLDER));
             let _ = std::fs::remove_file(folder.join(TABLE_FILE));
             let _ = std::fs::remove_file(&self.path);
@@ -136,7 +138,8 @@ impl Journal {
     }
 }
 
-/// Refuses a folder that would mix the files of a sweep with others of the same names, or, to resume, one with any files.
+/// Refuses a folder that would mix the files of a sweep with others of the same names, or, to resume, one with any
+/// files.
 fn check_unused(folder: &Path, resume: bool) -> Result<(), SweepError> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Ok(()) };
     let names = entries.filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()));

@@ -3,8 +3,8 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The value that was made last, by its key: a surface, whose loads follow one another, so that one at a time serves all
-/// workers.
+/// The value that was made last, by its key: a surface, whose loads follow one another, so that one at a time serves
+/// all workers.
 #[derive(Debug)]
 pub struct Latest<T>(Mutex<Option<Made<T>>>);
 

@@ -10,7 +10,8 @@ use crate::content::Cells;
 pub struct LeakageSummary {
     /// K of the flow Q = K ΔP/(12 η) with the viscosity η (m³): 0 where nothing percolates.
     pub permeance: [f64; 2],
-    /// Certified error of the solver, relative: the permeance of the network is at most `permeance`, and at least this part below it.
+    /// Certified error of the solver, relative: the permeance of the network is at most `permeance`, and at least this
+    /// part below it.
     pub relative_error: [f64; 2],
     /// Estimated error of the grid (m³): the difference from the permeance of every second element.
     pub permeance_error: [Option<f64>; 2],

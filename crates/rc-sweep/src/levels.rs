@@ -1,8 +1,8 @@
 //! Multilevel Monte Carlo: a mean over realisations from many on coarse grids and few differences to finer ones.
 //!
-//! M. B. Giles, Acta Numerica 24 (2015), 259-328: the mean on the finest grid is that on the coarsest one plus the means of the
-//! differences from grid to grid, each of the same realisation. The differences vary little, so they need few realisations. The
-//! number on each level makes the variance of the sum small enough at the smallest cost.
+//! M. B. Giles, Acta Numerica 24 (2015), 259-328: the mean on the finest grid is that on the coarsest one plus the
+//! means of the differences from grid to grid, each of the same realisation. The differences vary little, so they need
+//! few realisations. The number on each level makes the variance of the sum small enough at the smallest cost.
 
 use serde::Serialize;
 
@@ -21,14 +21,15 @@ pub(crate) const MOST_REALISATIONS: usize = 10_000;
 /// Part of the wanted error that the bias may have before a finer grid is taken; on the last grid.
 const BIAS_SHARE: [f64; 2] = [0.5, 0.9];
 
-/// Smallest ratio of the variance of a difference to that of the difference before: elements half as large divide it by 8, and
-/// few realisations may look as if they did not vary at all (Giles, Sec. 3.3).
+/// Smallest ratio of the variance of a difference to that of the difference before: elements half as large divide it by
+/// 8, and few realisations may look as if they did not vary at all (Giles, Sec. 3.3).
 const SMALLEST_RATIO: f64 = 1.0 / 16.0;
 
 /// The realisations of one level so far, by their seeds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Samples {
-    /// The quantity on the grid of the level, minus that on the next coarser grid; on the coarsest grid the quantity itself.
+    /// The quantity on the grid of the level, minus that on the next coarser grid; on the coarsest grid the quantity
+    /// itself.
     pub(crate) differences: Vec<f64>,
     /// What each took: elements times applications of the operator, of both grids.
     pub(crate) costs: Vec<f64>,
@@ -78,7 +79,8 @@ pub(crate) fn pilot(n_grids: usize) -> Vec<usize> {
     (0..n_grids.min(FIRST_LEVELS)).map(|level| PILOT[level.min(1)]).collect()
 }
 
-/// What comes after these levels, coarsest first, of at most `n_grids`, for a mean with the relative rms error `wanted`.
+/// What comes after these levels, coarsest first, of at most `n_grids`, for a mean with the relative rms error
+/// `wanted`.
 pub(crate) fn next(samples: &[Samples], n_grids: usize, wanted: f64) -> Step {
     let levels: Vec<LevelMean> = samples.iter().map(LevelMean::of).collect();
     let variances = guarded(&levels);
@@ -121,8 +123,8 @@ fn guarded(levels: &[LevelMean]) -> Vec<f64> {
     variances
 }
 
-/// Estimated error of the finest grid: that of a quantity that converges at first order, so that what is missing is as large as
-/// the last difference, or half of the one before.
+/// Estimated error of the finest grid: that of a quantity that converges at first order, so that what is missing is as
+/// large as the last difference, or half of the one before.
 fn bias(levels: &[LevelMean]) -> f64 {
     match levels {
         [_, .., before, last] => last.mean.abs().max(0.5 * before.mean.abs()),
@@ -162,8 +164,8 @@ impl Estimate {
 mod tests {
     use super::*;
 
-    /// A quantity of mean 1 and standard deviation 0.1 on an infinitely fine grid; each grid adds `bias` and noise that fall by
-    /// half and by √8.
+    /// A quantity of mean 1 and standard deviation 0.1 on an infinitely fine grid; each grid adds `bias` and noise that
+    /// fall by half and by √8.
     fn level(level: usize, n: usize, bias: f64) -> Samples {
         let unit = |i: usize, salt: f64| (12.0_f64).sqrt() * ((i as f64 * 0.618_033_988_75 + salt).fract() - 0.5);
         let on = |grid: usize, i: usize| {
@@ -203,7 +205,8 @@ mod tests {
             let error = estimate.standard_error.hypot(estimate.bias);
             assert!(estimate.is_reached && error <= wanted * estimate.mean, "{wanted}: {estimate:?}");
             assert!((estimate.mean - 1.0).abs() < 3.0 * error, "{wanted}: {estimate:?}");
-            // The differences alone cost little: less than a third of the finest grid's, when there are enough realisations.
+            // The differences alone cost little: less than a third of the finest grid's, when there are enough
+            // realisations.
             assert!(wanted > 0.005 || 3.0 * estimate.cost() < estimate.cost_of_plain_mean(), "{wanted}: {estimate:?}");
         }
     }

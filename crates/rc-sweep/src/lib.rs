@@ -1,13 +1,14 @@
 //! Load curves over realisations: many loads on many surfaces, kept row by row.
 //!
-//! A [`SweepPlan`] is what is to be solved, the journal what is done, workers do the difference, and a table is the result. No row
-//! depends on another one, so that resumed and sharded sweeps give the rows of an uninterrupted one. How a row is solved is
-//! handed in as a [`RowSolver`]; this crate prints nothing and knows no command line.
+//! A [`SweepPlan`] is what is to be solved, the journal what is done, workers do the difference, and a table is the
+//! result. No row depends on another one, so that resumed and sharded sweeps give the rows of an uninterrupted one. How
+//! a row is solved is handed in as a [`RowSolver`]; this crate prints nothing and knows no command line.
 //!
-//! An [`Ensemble`] is the mean over as many realisations, on as fine grids, as its error asks for, kept in the same way.
+//! An [`Ensemble`] is the mean over as many realisations, on as fine grids, as its error asks for, kept in the same
+//! way.
 //!
-//! [`Summary`] is what a row of a contact problem holds, in SI, and what `summary.json` holds. [`files`] writes files that
-//! are there whole or not at all, [`memory`] knows how many solves fit side by side.
+//! [`Summary`] is what a row of a contact problem holds, in SI, and what `summary.json` holds. [`files`] writes files
+//! that are there whole or not at all, [`memory`] knows how many solves fit side by side.
 //!
 //! ```
 //! use rc_sweep::{Cells, ControlKind, SweepPlan, PlannedSurface, SweepRow, RowError, RowSolver, Shard, Sweep, Workers};

@@ -50,8 +50,8 @@ fn range(text: &str) -> Result<Vec<f64>, String> {
     Ok(spaced(load(first)?, load(last)?, count, spacing))
 }
 
-/// `count` ≥ 2 values, both ends exact, the others rounded to 15 digits. `libm` makes them the same on every machine that takes
-/// part in a sweep.
+/// `count` ≥ 2 values, both ends exact, the others rounded to 15 digits. `libm` makes them the same on every machine
+/// that takes part in a sweep.
 fn spaced(first: f64, last: f64, count: usize, spacing: Spacing) -> Vec<f64> {
     let end = count - 1;
     let value = |i: usize| match (i, spacing) {

@@ -144,9 +144,9 @@ impl SweepPlan {
         Self { control, surfaces, names_scenes: false, keeps_fields: false, deal: Deal::default() }
     }
 
-    /// Deals the rows to shards by the processor seconds that they are expected to take: the longest first, each to the shard
-    /// with the least to do. `seconds` is asked for the loads of the first surface of each scene, and stands for all its
-    /// surfaces; what it does not know is taken as the mean.
+    /// Deals the rows to shards by the processor seconds that they are expected to take: the longest first, each to the
+    /// shard with the least to do. `seconds` is asked for the loads of the first surface of each scene, and stands for
+    /// all its surfaces; what it does not know is taken as the mean.
     #[must_use]
     pub fn dealt_by(mut self, mut seconds: impl FnMut(&SweepRow) -> Option<f64>) -> Self {
         let (mut scenes, mut first) = (Vec::new(), 0);
@@ -211,7 +211,8 @@ impl SweepPlan {
         cells
     }
 
-    /// The settings that determine the rows: the fingerprint of a sweep, in plain text so that a difference can be named.
+    /// The settings that determine the rows: the fingerprint of a sweep, in plain text so that a difference can be
+    /// named.
     pub(crate) fn settings(&self) -> Value {
         json!({
             "version": env!("CARGO_PKG_VERSION"),

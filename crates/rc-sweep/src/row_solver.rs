@@ -11,8 +11,8 @@ pub trait RowSolver<Row = SweepRow>: Sync {
     /// Why a row could not be solved.
     type Error: Send;
 
-    /// The cells of `row`, but for scene, seed and load, which the sweep knows. A row that did not converge is no error: its
-    /// cell `status` is `not_converged`. With fields, the folder of the row is complete when this returns.
+    /// The cells of `row`, but for scene, seed and load, which the sweep knows. A row that did not converge is no
+    /// error: its cell `status` is `not_converged`. With fields, the folder of the row is complete when this returns.
     ///
     /// # Errors
     /// [`RowError`].

@@ -75,9 +75,9 @@ pub struct Summary {
     pub mean_gap_error: Option<f64>,
     /// dσ0/dΔ (Pa/m); null where it is infinite, in full contact.
     pub contact_stiffness: Option<f64>,
-    /// Electrical and thermal contact conductance of the nominal area for a conductivity of 1 (1/m): dσ0/dΔ / E*, to be multiplied with the
-    /// harmonic mean 2 k1 k2/(k1 + k2) of the conductivities of the bodies (Barber, Proc. R. Soc. A 459, 2003); null in full contact,
-    /// where it is infinite, and on a layer, whose stiffness does not say it.
+    /// Electrical and thermal contact conductance of the nominal area for a conductivity of 1 (1/m): dσ0/dΔ / E*, to be
+    /// multiplied with the harmonic mean 2 k1 k2/(k1 + k2) of the conductivities of the bodies (Barber, Proc. R. Soc. A
+    /// 459, 2003); null in full contact, where it is infinite, and on a layer, whose stiffness does not say it.
     pub contact_conductance: Option<f64>,
     /// Elastic energy of the cell (J).
     pub elastic_energy: f64,
@@ -91,7 +91,8 @@ pub struct Summary {
     pub complementarity_error: f64,
     /// max(-g) / H.
     pub penetration_error: f64,
-    /// √(G/U), a bound on the relative error of the pressure in the energy norm, with G = mean p (g - min g) and U = mean p v / 2.
+    /// √(G/U), a bound on the relative error of the pressure in the energy norm, with G = mean p (g - min g) and U =
+    /// mean p v / 2.
     pub energy_error: Option<f64>,
     /// |mean p - σ0| / σ0, or the deviation of Δ over H under penetration control.
     pub load_error: f64,
@@ -201,7 +202,8 @@ impl Summary {
         }
     }
 
-    /// The summary as the cells of a row. Of a flow, those are `permeance_x`, `permeance_y` (m³) and `percolates` (along x and along y).
+    /// The summary as the cells of a row. Of a flow, those are `permeance_x`, `permeance_y` (m³) and `percolates`
+    /// (along x and along y).
     ///
     /// # Panics
     /// Never: a record of numbers and text is an object.

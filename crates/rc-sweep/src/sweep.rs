@@ -24,11 +24,12 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Starts the shard of a new sweep in `folder`, or with `resume` goes on with what is there of the same sweep, whose rows are
-    /// those that were dealt to it when it was started.
+    /// Starts the shard of a new sweep in `folder`, or with `resume` goes on with what is there of the same sweep,
+    /// whose rows are those that were dealt to it when it was started.
     ///
     /// # Errors
-    /// [`SweepError`] when the shard has no rows, when the folder holds something else, or when it cannot be written to.
+    /// [`SweepError`] when the shard has no rows, when the folder holds something else, or when it cannot be written
+    /// to.
     pub fn start(plan: SweepPlan, shard: Shard, folder: &Path, resume: bool) -> Result<Self, SweepError> {
         let shape = plan.shape();
         plan.check_shard(shard)?;
@@ -65,8 +66,8 @@ impl Sweep {
         self.plan.keeps_fields.then(|| fields_folder(&self.folder, index))
     }
 
-    /// Keeps a row with these cells beside its scene, seed and load. When it returns, the row is on disk; after an error the
-    /// rows before still are, and no part of this one.
+    /// Keeps a row with these cells beside its scene, seed and load. When it returns, the row is on disk; after an
+    /// error the rows before still are, and no part of this one.
     ///
     /// # Errors
     /// [`SweepError::Append`].
@@ -82,8 +83,8 @@ impl Sweep {
         Kept::new(&self.folder, self.locked())
     }
 
-    /// Solves what is left to do and writes the table, whose path is returned. A sweep of which no row could be solved leaves
-    /// nothing behind.
+    /// Solves what is left to do and writes the table, whose path is returned. A sweep of which no row could be solved
+    /// leaves nothing behind.
     ///
     /// # Errors
     /// [`RunError`]; the rows that were solved are kept, and in the table.
@@ -109,8 +110,8 @@ impl Sweep {
         })
     }
 
-    /// Ends a sweep whose rows a caller solved and kept: writes the table, whose path is returned. One of which no row is kept
-    /// leaves nothing behind.
+    /// Ends a sweep whose rows a caller solved and kept: writes the table, whose path is returned. One of which no row
+    /// is kept leaves nothing behind.
     ///
     /// # Errors
     /// [`SweepError::File`]; an earlier table is left as it was.
@@ -121,8 +122,8 @@ impl Sweep {
         written
     }
 
-    /// The journal, which workers and a handler of interrupts share. Every row in it is whole, so a worker that panicked
-    /// leaves it usable.
+    /// The journal, which workers and a handler of interrupts share. Every row in it is whole, so a worker that
+    /// panicked leaves it usable.
     fn locked(&self) -> MutexGuard<'_, Journal> {
         self.journal.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -13,8 +13,8 @@ type Keep<'a, R> = dyn Fn(&R, Cells) -> Result<(), SweepError> + Sync + 'a;
 /// Solves the rows `todo` and hands each to `keep` as it is done. After a failure no row is begun; a row that is
 /// refused is left out.
 ///
-/// Rows are solved side by side as far as memory allows. That is faster than all threads on one row for small surfaces, and
-/// no slower for large ones (docs/measurements.md).
+/// Rows are solved side by side as far as memory allows. That is faster than all threads on one row for small surfaces,
+/// and no slower for large ones (docs/measurements.md).
 ///
 /// # Errors
 /// The first one of a row, failures first; the counts of [`RunError::Refused`] are those of the caller.

@@ -2,11 +2,12 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-/// The surface D cos(2πx) cos(2πy), two crests and two troughs per cell, under the mean pressure p̄ over the cell; P = p̄/p^.
+/// The surface D cos(2πx) cos(2πy), two crests and two troughs per cell, under the mean pressure p̄ over the cell; P =
+/// p̄/p^.
 ///
 /// In between the two limits there is no closed form; numerically, contacts of neighbouring crests merge at P = 0.2286.
-/// Source: K. L. Johnson, J. A. Greenwood, J. G. Higginson, *The contact of elastic regular wavy surfaces*, Int. J. Mech. Sci. 27 (1985)
-/// 383-396. Both limits re-derived for this orientation of the cell.
+/// Source: K. L. Johnson, J. A. Greenwood, J. G. Higginson, *The contact of elastic regular wavy surfaces*, Int. J.
+/// Mech. Sci. 27 (1985) 383-396. Both limits re-derived for this orientation of the cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BiSinusoidal {
     /// D > 0, in λ.
@@ -20,14 +21,16 @@ impl BiSinusoidal {
         SQRT_2 * PI * self.amplitude
     }
 
-    /// A/A0 → π (3P/8π)^(2/3) for P → 0: two separate Hertz contacts per cell. Low by 0.7 % at P = 0.001, by 5 % at 0.02.
+    /// A/A0 → π (3P/8π)^(2/3) for P → 0: two separate Hertz contacts per cell. Low by 0.7 % at P = 0.001, by 5 %
+    /// at 0.02.
     #[must_use]
     pub fn area_fraction_at_low_load(self, mean_pressure: f64) -> f64 {
         let ratio = mean_pressure / self.full_contact_pressure();
         PI * (3.0 * ratio / (8.0 * PI)).cbrt().powi(2)
     }
 
-    /// A/A0 → 1 - (3/2π)(1 - P) for P → 1: two small pressurised cracks per cell. High by 0.04 % at P = 0.95, by 0.8 % at 0.8.
+    /// A/A0 → 1 - (3/2π)(1 - P) for P → 1: two small pressurised cracks per cell. High by 0.04 % at P = 0.95, by 0.8 %
+    /// at 0.8.
     #[must_use]
     pub fn area_fraction_near_full_contact(self, mean_pressure: f64) -> f64 {
         1.0 - 1.5 / PI * (1.0 - mean_pressure / self.full_contact_pressure())

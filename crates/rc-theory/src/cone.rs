@@ -4,8 +4,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A cone -s·r of slope s; a is the contact radius, δ the approach.
 ///
-/// Source: I. N. Sneddon, *The relation between load and penetration in the axisymmetric Boussinesq problem for a punch of arbitrary
-/// profile*, Int. J. Eng. Sci. 3 (1965) 47-57; K. L. Johnson, *Contact Mechanics*, Cambridge University Press 1985, section 5.2.
+/// Source: I. N. Sneddon, *The relation between load and penetration in the axisymmetric Boussinesq problem for a punch
+/// of arbitrary profile*, Int. J. Eng. Sci. 3 (1965) 47-57; K. L. Johnson, *Contact Mechanics*, Cambridge University
+/// Press 1985, section 5.2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
     /// s > 0: the tangent of the angle between the cone's side and the half-space.

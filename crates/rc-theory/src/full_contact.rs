@@ -1,9 +1,9 @@
 //! Full contact: the half-space follows the surface everywhere, and the problem is linear.
 //!
-//! Each wave `a_k` exp(2πi k·x) of the surface takes the pressure wave ½ q `a_k`, q = 2π|k| (the inverse of the
-//! symbol 2/q), on top of any mean pressure. So it holds for every mean pressure at which the pressure is nowhere negative, see
-//! [`smallest_mean_pressure`]; then Δ = `h_max` (heights of zero mean).
-//! Source: K. L. Johnson, *Contact Mechanics*, Cambridge University Press 1985, chapter 13; sums over waves by Parseval's theorem.
+//! Each wave `a_k` exp(2πi k·x) of the surface takes the pressure wave ½ q `a_k`, q = 2π|k| (the inverse of the symbol
+//! 2/q), on top of any mean pressure. So it holds for every mean pressure at which the pressure is nowhere negative,
+//! see [`smallest_mean_pressure`]; then Δ = `h_max` (heights of zero mean). Source: K. L. Johnson, *Contact Mechanics*,
+//! Cambridge University Press 1985, chapter 13; sums over waves by Parseval's theorem.
 
 use std::f64::consts::PI;
 
@@ -28,8 +28,8 @@ pub fn energy(sum_of_q_power: f64) -> f64 {
     0.25 * sum_of_q_power
 }
 
-/// The smallest mean pressure with full contact, in E*, from the full-contact pressure at any mean: how far its deepest point is
-/// below the mean. A field samples that point, so the result is low by what lies between elements.
+/// The smallest mean pressure with full contact, in E*, from the full-contact pressure at any mean: how far its deepest
+/// point is below the mean. A field samples that point, so the result is low by what lies between elements.
 #[must_use]
 pub fn smallest_mean_pressure(full_contact_pressure: &Field) -> f64 {
     full_contact_pressure.mean() - full_contact_pressure.min()

@@ -1,7 +1,8 @@
 //! Hertz: a rigid sphere on the half-space, infinite or periodic.
 //!
-//! The paper's Fig. 4 shows this contact in a periodic cell. There, at a given Δ, image contacts and the zero-mean convention make
-//! it noticeably larger than on an infinite half-space, so a solution in a cell is to be compared with [`PeriodicHertz`].
+//! The paper's Fig. 4 shows this contact in a periodic cell. There, at a given Δ, image contacts and the zero-mean
+//! convention make it noticeably larger than on an infinite half-space, so a solution in a cell is to be compared with
+//! [`PeriodicHertz`].
 
 use std::f64::consts::PI;
 
@@ -77,16 +78,16 @@ impl Hertz {
 
 /// A sphere of radius R in the middle of the periodic cell, with the zero-mean displacement of Eq. 3.
 ///
-/// Around one contact the images and the uniform counter-load add φ(r) - 1/r = -C + (S3/4) r² + O(r⁴) to the displacement of each
-/// load (see [`crate::lattice`]). The constant shifts Δ. The quadratic part is a curvature, so the contact stays Hertz's, on a sphere
-/// of effective radius `R_e`: with t = a/λ,
+/// Around one contact the images and the uniform counter-load add φ(r) - 1/r = -C + (S3/4) r² + O(r⁴) to the
+/// displacement of each load (see [`crate::lattice`]). The constant shifts Δ. The quadratic part is a curvature, so the
+/// contact stays Hertz's, on a sphere of effective radius `R_e`: with t = a/λ,
 ///
 /// ```text
 /// R_e = R [1 - (2 S3/3π) t³],   F = 4a³/(3 R_e),   Δ = a²/R_e - (F/π) [C - (S3/10) t²]
 /// ```
 ///
-/// The terms left out are of relative order t⁵: against a Fourier solution at 1024² (spectral kernel) Δ agrees within 1e-5 up to
-/// t = 0.1, and within 3e-4 at t = 0.2. Derived here; K. L. Johnson 1985 gives the parts.
+/// The terms left out are of relative order t⁵: against a Fourier solution at 1024² (spectral kernel) Δ agrees within
+/// 1e-5 up to t = 0.1, and within 3e-4 at t = 0.2. Derived here; K. L. Johnson 1985 gives the parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeriodicHertz {
     /// R > 0, in λ.
@@ -252,7 +253,8 @@ mod tests {
         }
     }
 
-    /// In a cell of 1 cm the paper's sphere has a 4.6 % larger contact and 14.5 % more load than on the infinite half-space.
+    /// In a cell of 1 cm the paper's sphere has a 4.6 % larger contact and 14.5 % more load than on the infinite
+    /// half-space.
     #[test]
     fn the_papers_sphere_in_cells_of_several_sizes() {
         let infinite = Hertz { radius: RADIUS };

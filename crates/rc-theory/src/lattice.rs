@@ -1,14 +1,16 @@
 //! Constants of the periodic half-space: the displacement near a point load repeated on a square lattice.
 //!
-//! A unit load at every point of the unit lattice, balanced by a uniform counter-load, gives v(r) = φ(r)/π (E* = 1) with zero mean and
+//! A unit load at every point of the unit lattice, balanced by a uniform counter-load, gives v(r) = φ(r)/π (E* = 1)
+//! with zero mean and
 //!
 //! ```text
 //! φ(r) = Σ_{q≠0} (2π/q) exp(iq·r) = 1/r - C + (S3/4) r² + (9/64) S5 r⁴ + (35/64) C4 r⁴ cos 4θ + …
 //! ```
 //!
-//! the exact limit of the paper's Eq. 5-6. The coefficients are lattice sums over R = (i, j) ≠ 0, which factor into Riemann's ζ and
-//! Dirichlet's β, Σ R^-s = 4 ζ(s/2) β(s/2) (I. J. Zucker, *Exact results for some lattice sums in 2, 4, 6 and 8 dimensions*,
-//! J. Phys. A 7 (1974) 1568-1575); C is the same sum continued to s = 1, with its sign changed. The tests recompute all four.
+//! the exact limit of the paper's Eq. 5-6. The coefficients are lattice sums over R = (i, j) ≠ 0, which factor into
+//! Riemann's ζ and Dirichlet's β, Σ R^-s = 4 ζ(s/2) β(s/2) (I. J. Zucker, *Exact results for some lattice sums in 2, 4,
+//! 6 and 8 dimensions*, J. Phys. A 7 (1974) 1568-1575); C is the same sum continued to s = 1, with its sign changed.
+//! The tests recompute all four.
 
 /// C = -4 ζ(1/2) β(1/2): the constant part that the images and the counter-load add to a point load.
 pub const C: f64 = 3.900_264_920_001_956;

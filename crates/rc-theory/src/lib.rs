@@ -1,8 +1,8 @@
 //! Closed forms of contact mechanics, each with its source: what numerical solutions are compared with.
 //!
-//! Units as in all libraries of this workspace: lengths in λ, pressures in E*, so forces in E*λ², energies in E*λ³. Shapes are those
-//! of the rigid body, heights up towards the half-space; penetration Δ is counted from first touch under the convention of
-//! Eq. 3, a displacement of zero mean, unless a type says that its half-space is infinite.
+//! Units as in all libraries of this workspace: lengths in λ, pressures in E*, so forces in E*λ², energies in E*λ³.
+//! Shapes are those of the rigid body, heights up towards the half-space; penetration Δ is counted from first touch
+//! under the convention of Eq. 3, a displacement of zero mean, unless a type says that its half-space is infinite.
 //!
 //! | module | contact | valid |
 //! |---|---|---|

@@ -7,13 +7,15 @@ use libm::erf;
 use crate::OutOfRange;
 use crate::root::increasing_root;
 
-/// Eq. 7: the stress density P(σ) = (4πΛ)^(-1/2) {exp[-(σ-σ0)²/4Λ] - exp[-(σ+σ0)²/4Λ]}, σ > 0, over the whole nominal area.
+/// Eq. 7: the stress density P(σ) = (4πΛ)^(-1/2) {exp[-(σ-σ0)²/4Λ] - exp[-(σ+σ0)²/4Λ]}, σ > 0, over the whole nominal
+/// area.
 ///
-/// The theory's Λ is E*²⟨|∇h|²⟩/8 ([`Persson::from_rms_slope`]); the paper fits it instead. Since ∫σP dσ = σ0 for every Λ, area and
-/// Λ are not independent: a fit of the distribution is a statement about the area, [`Persson::from_area_fraction`].
+/// The theory's Λ is E*²⟨|∇h|²⟩/8 ([`Persson::from_rms_slope`]); the paper fits it instead. Since ∫σP dσ = σ0 for every
+/// Λ, area and Λ are not independent: a fit of the distribution is a statement about the area,
+/// [`Persson::from_area_fraction`].
 ///
-/// Source: B. N. J. Persson, *Theory of rubber friction and contact mechanics*, J. Chem. Phys. 115 (2001) 3840-3861. A theory, not
-/// an exact result: it gives κ = A/A0 · slope/σ0 → 1.596 at low load, simulations find about 2.
+/// Source: B. N. J. Persson, *Theory of rubber friction and contact mechanics*, J. Chem. Phys. 115 (2001) 3840-3861. A
+/// theory, not an exact result: it gives κ = A/A0 · slope/σ0 → 1.596 at low load, simulations find about 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Persson {
     /// σ0 ≥ 0: mean pressure over the cell, in E*.
@@ -49,8 +51,9 @@ impl Persson {
 
     /// The Λ of Eq. 7 that is nearest to `densities` (stress, P) by least squares, the mean stress given.
     ///
-    /// One parameter: a search by golden sections in ln Λ, between limits where Eq. 7 is far narrower than the range of the
-    /// stresses given, or has its peak far beyond them. Any unit of stress will do here, as long as all three are in it.
+    /// One parameter: a search by golden sections in ln Λ, between limits where Eq. 7 is far narrower than the range of
+    /// the stresses given, or has its peak far beyond them. Any unit of stress will do here, as long as all three are
+    /// in it.
     #[must_use]
     pub fn fit(mean_pressure: f64, densities: &[(f64, f64)]) -> Self {
         let largest = densities.iter().fold(0.0, |largest: f64, at| largest.max(at.0));
@@ -72,7 +75,8 @@ impl Persson {
         of(0.5 * (low + high))
     }
 
-    /// P(σ) of Eq. (7), in 1/E*, for a stress in E*; 0 for σ ≤ 0, where non-contact is a separate peak of weight 1 - A/A0.
+    /// P(σ) of Eq. (7), in 1/E*, for a stress in E*; 0 for σ ≤ 0, where non-contact is a separate peak of weight 1 -
+    /// A/A0.
     #[must_use]
     pub fn density(self, stress: f64) -> f64 {
         if stress <= 0.0 {

@@ -1,15 +1,16 @@
 //! Persson: mean gap against pressure at low loads, σ0 = β E* exp(-ū/u0).
 //!
-//! At low loads the elastic energy is proportional to σ0, so the mean gap ū falls as the logarithm of the load: log σ0 is
-//! linear in Δ = h_max - ū, as the paper's Fig. 7 shows. Sources: B. N. J. Persson, *Relation between interfacial separation
-//! and load*, Phys. Rev. Lett. 99 (2007) 125502; C. Yang, B. N. J. Persson, J. Phys.: Condens. Matter 20 (2008) 215214:
+//! At low loads the elastic energy is proportional to σ0, so the mean gap ū falls as the logarithm of the load: log σ0
+//! is linear in Δ = h_max - ū, as the paper's Fig. 7 shows. Sources: B. N. J. Persson, *Relation between interfacial
+//! separation and load*, Phys. Rev. Lett. 99 (2007) 125502; C. Yang, B. N. J. Persson, J. Phys.: Condens. Matter 20
+//! (2008) 215214:
 //!
 //! ```text
 //! u0 = √π γ ∫ q² C(q) w(q) dq,   w(q) = (π ∫ q'³ C(q') dq')^(-1/2), q' from q0 to q,   ln β = -γ_E/2 - ⟨ln w⟩
 //! ```
 //!
-//! with ⟨ ⟩ weighted by the integrand of u0. γ < 1 accounts for the energy of partial contact; it is fitted, to about 0.4.
-//! A theory for systems without a highest asperity.
+//! with ⟨ ⟩ weighted by the integrand of u0. γ < 1 accounts for the energy of partial contact; it is fitted, to
+//! about 0.4. A theory for systems without a highest asperity.
 
 /// Half of Euler's constant.
 const HALF_EULER: f64 = 0.288_607_832_450_766_4;
@@ -40,8 +41,8 @@ impl SelfAffineBand {
         (self.weighted(f64::ln) / self.weighted(|_| 1.0) - HALF_EULER).exp()
     }
 
-    /// ∫ f(t)/q dt with t = 1/w from 0 to its largest value, q0 = 1 and h_rms = 1: dt takes the singularity of w at q0 with
-    /// it. f may have a logarithmic one at 0, which t = t1 s² removes from a midpoint rule.
+    /// ∫ f(t)/q dt with t = 1/w from 0 to its largest value, q0 = 1 and h_rms = 1: dt takes the singularity of w at q0
+    /// with it. f may have a logarithmic one at 0, which t = t1 s² removes from a midpoint rule.
     fn weighted(self, f: impl Fn(f64) -> f64) -> f64 {
         let exponent = 2.0 - 2.0 * self.hurst;
         // π C0 for ∫ q C dq = 1/2π.

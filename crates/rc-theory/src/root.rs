@@ -3,9 +3,9 @@
 /// Far more than bisection needs for every bit of an `f64` of ordinary size.
 const MAX_STEPS: usize = 200;
 
-/// The x in [`low`, `high`] where an increasing function, given as (value, derivative), is 0: Newton's method from `start`,
-/// bisecting whenever a step would leave the interval that is known to hold the root. Accurate to a few units in the last
-/// place of x, or to the rounding of the function where that is coarser.
+/// The x in [`low`, `high`] where an increasing function, given as (value, derivative), is 0: Newton's method from
+/// `start`, bisecting whenever a step would leave the interval that is known to hold the root. Accurate to a few units
+/// in the last place of x, or to the rounding of the function where that is coarser.
 pub(crate) fn increasing_root(
     (mut low, mut high): (f64, f64),
     start: f64,

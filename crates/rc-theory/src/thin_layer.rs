@@ -2,10 +2,12 @@
 
 use std::f64::consts::PI;
 
-/// A sphere of radius R (as the paraboloid -r²/2R) on a layer of thickness d ≪ a, where a is the contact radius; δ the approach.
+/// A sphere of radius R (as the paraboloid -r²/2R) on a layer of thickness d ≪ a, where a is the contact radius; δ the
+/// approach.
 ///
-/// A compressible layer is a bed of springs: p = (δ - r²/2R) / c with c = d (1-2ν)/(1-ν)² for a pressure of E*. An incompressible one
-/// (ν = 1/2) flows to the sides instead: δ - r²/2R = -(4d³/3) ∇²p, so that p and its slope are zero at the edge. Both to first order in d/a.
+/// A compressible layer is a bed of springs: p = (δ - r²/2R) / c with c = d (1-2ν)/(1-ν)² for a pressure of E*. An
+/// incompressible one (ν = 1/2) flows to the sides instead: δ - r²/2R = -(4d³/3) ∇²p, so that p and its slope are zero
+/// at the edge. Both to first order in d/a.
 ///
 /// Source: K. L. Johnson, *Contact Mechanics*, Cambridge University Press 1985, section 5.8.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 use crate::root::increasing_root;
 use crate::{OutOfRange, within};
 
-/// The surface A cos(2πx), one wave per cell, under the mean pressure p̄ over the cell. With P = p̄/p^ and full contact for P ≥ 1;
-/// crests are at integer x, contact is |x| < a around them, P = sin²(πa).
+/// The surface A cos(2πx), one wave per cell, under the mean pressure p̄ over the cell. With P = p̄/p^ and full contact
+/// for P ≥ 1; crests are at integer x, contact is |x| < a around them, P = sin²(πa).
 ///
-/// Source: H. M. Westergaard, *Bearing pressures and cracks*, J. Appl. Mech. 6 (1939) A49-A53; K. L. Johnson, *Contact Mechanics*,
-/// Cambridge University Press 1985, section 13.2. Mean gap, Δ and energy follow by integration (tests).
+/// Source: H. M. Westergaard, *Bearing pressures and cracks*, J. Appl. Mech. 6 (1939) A49-A53; K. L. Johnson, *Contact
+/// Mechanics*, Cambridge University Press 1985, section 13.2. Mean gap, Δ and energy follow by integration (tests).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Westergaard {
     /// A > 0, in λ: half the height from trough to crest.
@@ -76,7 +76,8 @@ impl Westergaard {
         self.amplitude * relative_penetration(self.ratio(mean_pressure))
     }
 
-    /// Elastic energy per nominal area, A p^ P² (1/4 - ln(P)/2), in E*λ; A p^/4 in full contact, where it does not grow with the load.
+    /// Elastic energy per nominal area, A p^ P² (1/4 - ln(P)/2), in E*λ; A p^/4 in full contact, where it does not grow
+    /// with the load.
     #[must_use]
     pub fn energy(self, mean_pressure: f64) -> f64 {
         let ratio = self.ratio(mean_pressure);
@@ -84,8 +85,8 @@ impl Westergaard {
         self.amplitude * self.full_contact_pressure() * ratio * ratio * (0.25 - 0.5 * logarithm)
     }
 
-    /// Mean pressure at penetration Δ, in E*, from Δ/A = P (1 - ln P). Near full contact Δ is flat in P, which is then known to
-    /// the square root of rounding only.
+    /// Mean pressure at penetration Δ, in E*, from Δ/A = P (1 - ln P). Near full contact Δ is flat in P, which is then
+    /// known to the square root of rounding only.
     ///
     /// # Errors
     /// [`OutOfRange`] unless 0 ≤ Δ ≤ A.
@@ -160,7 +161,8 @@ mod tests {
         }
     }
 
-    /// The displacement v = h - A + Δ + gap of a pressure wave c cos(2πkx) is c/(πk) times it: first three waves, by quadrature.
+    /// The displacement v = h - A + Δ + gap of a pressure wave c cos(2πkx) is c/(πk) times it: first three waves, by
+    /// quadrature.
     #[test]
     fn pressure_and_gap_belong_together() {
         let load = mean_pressure(0.2);

@@ -2,8 +2,8 @@
 
 use rc_figures::repository::Sources;
 
-/// `page` with each item that follows the path of a library's file, as in `` `crates/rc-core/src/grid.rs`: `Grid` ``, linked to its line in
-/// the sources that rustdoc shows, which are in `doc` beside the book.
+/// `page` with each item that follows the path of a library's file, as in `` `crates/rc-core/src/grid.rs`: `Grid` ``,
+/// linked to its line in the sources that rustdoc shows, which are in `doc` beside the book.
 pub(super) fn to_lines(page: &str, sources: &Sources) -> String {
     let mut linked = String::new();
     let mut file = None;

@@ -44,7 +44,8 @@ fn allows(name: &str, dependency: &str) -> Option<bool> {
     })
 }
 
-/// Checks the manifest of every member. Tests count: an arrow that only tests need is drawn in `tests/`, not in a crate.
+/// Checks the manifest of every member. Tests count: an arrow that only tests need is drawn in `tests/`, not in a
+/// crate.
 pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     let manifests = sources.iter().filter(|(path, _)| path.ends_with("/Cargo.toml"));
     manifests.flat_map(|(path, text)| check_manifest(path, text)).collect()

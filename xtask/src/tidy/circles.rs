@@ -1,8 +1,8 @@
 //! No circles between the modules of a crate.
 //!
-//! A file uses another when a path in it (`use`, or in the code) names something that the other one defines; re-exports lead
-//! to the file that defines the item. A module that declares a child and re-exports from it does not use it by that. What is
-//! compiled for tests only does not count.
+//! A file uses another when a path in it (`use`, or in the code) names something that the other one defines; re-exports
+//! lead to the file that defines the item. A module that declares a child and re-exports from it does not use it by
+//! that. What is compiled for tests only does not count.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 

@@ -25,7 +25,8 @@ const MACHINE_FOLDERS: &[&str] = &[
     concat!("C:", "\\Users"),
 ];
 
-/// Checks every Rust file for its first line, its length, long functions and hidden tests, every text for machine paths, and `.ci/run`.
+/// Checks every Rust file for its first line, its length, long functions and hidden tests, every text for machine
+/// paths, and `.ci/run`.
 pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     let per_file = sources.iter().flat_map(|(path, text)| {
         let rust = if has_extension(path, "rs") { check_rust(path, text) } else { Vec::new() };

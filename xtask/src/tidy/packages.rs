@@ -11,8 +11,8 @@ const FIELDS: &[&str] = &["version", "edition", "rust-version", "license", "read
 /// Macros that read a file of the sources.
 const INCLUDES: &[&str] = &[concat!("include_", "str!(\""), concat!("include_", "bytes!(\"")];
 
-/// Checks manifests in `crates/`, and that sources there include nothing from outside of their crate: a package would lack it.
-/// Crates with `publish = false` are left out.
+/// Checks manifests in `crates/`, and that sources there include nothing from outside of their crate: a package would
+/// lack it. Crates with `publish = false` are left out.
 pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     let files = sources.iter().filter(|(path, _)| path.starts_with("crates/") && is_published(path, sources));
     files

@@ -61,7 +61,8 @@ fn check_complete(map: &str) -> Vec<Complaint> {
     missing.map(|tag| format!("{MAP}: no row for {tag}; add one, under `{NOT_YET}` if it is not built")).collect()
 }
 
-/// Checks that a code file of the row names one of its equations or figures, and the cells "code" and "test": `path`: `Item`, `other item`; `another path`: `Item`.
+/// Checks that a code file of the row names one of its equations or figures, and the cells "code" and "test": `path`:
+/// `Item`, `other item`; `another path`: `Item`.
 fn check_links(row: &str, sources: &Sources) -> Vec<Complaint> {
     let tag = cell(row, 0);
     let mut complaints = Vec::new();
@@ -117,7 +118,8 @@ fn check_tags(path: &str, text: &str) -> Vec<Complaint> {
         .collect()
 }
 
-/// The tags in `text`: "Eq. 3", "Eq. (3)", "Eq. 3-5", "Eqs. (3), (4)", "Fig. 4". Numbers like 3.25 belong to other sources.
+/// The tags in `text`: "Eq. 3", "Eq. (3)", "Eq. 3-5", "Eqs. (3), (4)", "Fig. 4". Numbers like 3.25 belong to other
+/// sources.
 fn tags_of(text: &str) -> BTreeSet<Tag> {
     let mut tags = BTreeSet::new();
     for (prefix, tag) in [

@@ -1,4 +1,5 @@
-//! The tags `Eq. (n)` in code: each equation of the paper has one, at the function that evaluates it and that the paper map names.
+//! The tags `Eq. (n)` in code: each equation of the paper has one, at the function that evaluates it and that the paper
+//! map names.
 
 use rc_figures::repository::{Sources, has_extension};
 

@@ -97,7 +97,8 @@ impl Case {
 
 /// A scene on `meshes` (elements for the shortest wave), and its limit from `reference` elements per side.
 pub(super) fn cases_of(scene: Scene, meshes: &[usize], reference: usize) -> Result<Vec<Case>> {
-    // The area's limit is from the other kernel; the errors of pressure and gap are several times smaller with `spectral`.
+    // The area's limit is from the other kernel; the errors of pressure and gap are several times smaller with
+    // `spectral`.
     let (love, fine) = solve(scene, &Love, reference)?;
     let (spectral, _) = solve(scene, &Spectral, reference)?;
     let mut cases = Vec::new();

@@ -1,5 +1,5 @@
-//! How often error bars hold, on scenes that had no part in any constant, with limits from elements at least four times smaller and
-//! from the other kernel.
+//! How often error bars hold, on scenes that had no part in any constant, with limits from elements at least four times
+//! smaller and from the other kernel.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -107,7 +107,8 @@ impl Stratum {
         let solve = |kernel: &dyn Kernel, grid: Grid, params: &SolveParams| -> Result<Observables> {
             let heights;
             let control = Control::MeanPressure(self.mean_pressure(i));
-            // Scenes of the adaptive method are evaluated where it needs them; the others are maps, as measured ones are.
+            // Scenes of the adaptive method are evaluated where it needs them; the others are maps, as measured ones
+            // are.
             let problem = if params.method == Some(Method::Adaptive) {
                 let surface: &dyn HeightField = surface.as_ref();
                 ContactProblem::new(rc_core::HeightSource::Surface { surface, grid }, control)
@@ -124,7 +125,8 @@ impl Stratum {
             _ => (&Spectral, &Love),
         };
         let limit = solve(other, reference, &fine)?;
-        // Rms pressure and mean gap of `love` are less accurate on the fine grid than those of `spectral` on the coarse one.
+        // Rms pressure and mean gap of `love` are less accurate on the fine grid than those of `spectral` on the coarse
+        // one.
         let smooth = if self.kernel == "love" { limit } else { solve(&Spectral, reference, &fine)? };
         let params = SolveParams { border_level: self.border_level, ..SolveParams::default().by(self.method) };
         let found = solve(kernel, Grid::new(self.side() / self.ratio, self.side())?, &params)?;
@@ -139,8 +141,8 @@ impl Stratum {
     }
 }
 
-/// For each stratum: median errors and bars of the three quantities, and the part of the scenes whose bars hold, with the standard error
-/// of a part of 95 %.
+/// For each stratum: median errors and bars of the three quantities, and the part of the scenes whose bars hold, with
+/// the standard error of a part of 95 %.
 pub(super) fn table(bars: &[Bars]) -> Table {
     let header = [
         "surface",

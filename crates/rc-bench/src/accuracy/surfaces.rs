@@ -103,7 +103,8 @@ struct Waves {
 }
 
 impl Waves {
-    /// Up to `limit` to the cell along each side; `spectrum` gives the standard deviation of an amplitude, but for a factor.
+    /// Up to `limit` to the cell along each side; `spectrum` gives the standard deviation of an amplitude, but for a
+    /// factor.
     fn new(limit: usize, random: &mut Random, spectrum: impl Fn(DVec2) -> f64) -> Self {
         let numbers = -(limit as i32)..=limit as i32;
         let vectors = numbers.clone().flat_map(|ky| numbers.clone().map(move |kx| [kx, ky]));

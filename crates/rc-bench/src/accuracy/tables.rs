@@ -6,7 +6,8 @@ use rc_figures::{Table, number};
 use super::case::{Case, of_mesh, of_set, rms};
 use super::scenes::Set;
 
-/// For each set, kernel and mesh: rms error of each estimator of the area, and the part of the scenes whose bars hold the error.
+/// For each set, kernel and mesh: rms error of each estimator of the area, and the part of the scenes whose bars hold
+/// the error.
 pub(super) fn summary(cases: &[Case], meshes: &[usize]) -> Table {
     let header = [
         "set",
@@ -125,8 +126,8 @@ fn line(case: &Case) -> Vec<String> {
     first.chain(numbers.chain(rest).chain(stress).map(number)).collect()
 }
 
-/// For each kernel, the change of [`rc_core::EdgeBias`] that would fit the scenes for calibration best: in the least-squares sense,
-/// and in the median of the scenes for the squares.
+/// For each kernel, the change of [`rc_core::EdgeBias`] that would fit the scenes for calibration best: in the
+/// least-squares sense, and in the median of the scenes for the squares.
 pub(super) fn calibration(cases: &[Case]) -> Table {
     let rows = ["love", "spectral"].into_iter().map(|kernel| {
         // Normal equations of (area - limit) n = a edges + b contacts + c deviation, each scene weighed by its edges.
@@ -153,7 +154,8 @@ pub(super) fn calibration(cases: &[Case]) -> Table {
     )
 }
 
-/// Solves three linear equations, the last column being the right-hand side, by elimination; they are symmetric and definite.
+/// Solves three linear equations, the last column being the right-hand side, by elimination; they are symmetric and
+/// definite.
 fn solve(mut equations: [[f64; 4]; 3]) -> [f64; 3] {
     for pivot in 0..3 {
         for row in (0..3).filter(|&row| row != pivot) {

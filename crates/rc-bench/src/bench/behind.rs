@@ -88,7 +88,8 @@ pub(super) fn list(results: &Results<'_>) -> String {
     if lines.is_empty() { "In every comparison a peer takes at least twice our time.\n".to_owned() } else { lines }
 }
 
-/// How many comparisons there are, in how many the fastest peer is faster, and in how many more it takes less than twice our time.
+/// How many comparisons there are, in how many the fastest peer is faster, and in how many more it takes less than
+/// twice our time.
 fn counts(all: &[Behind]) -> [usize; 3] {
     let count = |of: fn(&Behind) -> usize| all.iter().map(of).sum::<usize>();
     [count(|b| b.n_compared), count(|b| b.slower.len()), count(|b| b.close.len())]

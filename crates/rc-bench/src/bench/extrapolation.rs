@@ -21,8 +21,8 @@ pub(super) struct Counted {
 /// Uncertainty of calibrated perimeter constants.
 const CONSTANT_UNCERTAINTY: f64 = 0.003;
 
-/// Scatter of a counted area in √edges · (element area): each edge falls anywhere in its element. Measured on sequences of
-/// meshes.
+/// Scatter of a counted area in √edges · (element area): each edge falls anywhere in its element. Measured on sequences
+/// of meshes.
 const SCATTER: f64 = 0.4;
 
 /// The area in the limit of small elements, from counts on several meshes.

@@ -24,7 +24,8 @@ pub(super) fn levels() -> impl Iterator<Item = (Quantity, f64)> {
 pub(super) enum Choice {
     /// The fastest of those that state an error below the one asked for: a user can choose so.
     Stated,
-    /// The fastest of those whose true error is below it on this mesh and all finer ones: only the reference value tells.
+    /// The fastest of those whose true error is below it on this mesh and all finer ones: only the reference value
+    /// tells.
     Hindsight,
 }
 

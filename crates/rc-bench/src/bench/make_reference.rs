@@ -1,7 +1,7 @@
 //! `cargo xtask bench --make-reference`: the reference values, from meshes much finer than those that are compared.
 //!
-//! Areas are counted on elements of up to 1/16384 of the cell at the edges of contacts (`love`); rms pressure and mean gap
-//! converge fastest with `spectral` on uniform grids. All are found again with the other kernel on uniform grids.
+//! Areas are counted on elements of up to 1/16384 of the cell at the edges of contacts (`love`); rms pressure and mean
+//! gap converge fastest with `spectral` on uniform grids. All are found again with the other kernel on uniform grids.
 
 use anyhow::{Context, Result};
 use rc_figures::repository;

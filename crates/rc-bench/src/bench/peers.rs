@@ -21,8 +21,8 @@ pub(super) struct PeerKind {
     pub(super) is_serial: bool,
 }
 
-/// ASPHER's tolerance means what ours does, so it also gets `auto`; that of Tamaas is relative as well; ContactMechanics
-/// derives one from the heights.
+/// ASPHER's tolerance means what ours does, so it also gets `auto`; that of Tamaas is relative as well;
+/// ContactMechanics derives one from the heights.
 pub(super) const PEERS: [PeerKind; 3] = [
     ASPHER,
     PeerKind { name: "tamaas", tolerances: &[Some(CERTIFIED)], is_serial: true },

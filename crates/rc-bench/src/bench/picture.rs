@@ -17,8 +17,9 @@ pub(super) struct ErrorAgainstTime<'a> {
     pub(super) scene: &'a str,
 }
 
-/// What is drawn of a program: the family, its colour (after Okabe and Ito, apart for colour-blind readers), and how the
-/// quantities are read. Solid lines are best estimates, or what users make of a peer's results; dashed ones counted areas.
+/// What is drawn of a program: the family, its colour (after Okabe and Ito, apart for colour-blind readers), and how
+/// the quantities are read. Solid lines are best estimates, or what users make of a peer's results; dashed ones counted
+/// areas.
 struct DrawnFamily {
     name: &'static str,
     of: fn(&Family) -> bool,

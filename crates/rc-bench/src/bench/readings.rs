@@ -20,8 +20,8 @@ pub(super) enum Reading {
 /// Elements an edge, (π - 1 + ln 2)/24: Yastrebov, Anciaux, Molinari, *Tribol. Int.* 114 (2017) 161.
 pub(super) const PUBLISHED: f64 = 0.1181141597562;
 
-/// Elements an edge for `spectral`, the peers' discretisation, calibrated on Hertz contacts of 51 elements per radius at random offsets, to
-/// 0.003.
+/// Elements an edge for `spectral`, the peers' discretisation, calibrated on Hertz contacts of 51 elements per radius
+/// at random offsets, to 0.003.
 pub(super) const CALIBRATED: f64 = 0.1013;
 
 /// Orders of the error in the element side: of counted areas, and at least of quantities that are not counted.
@@ -81,9 +81,9 @@ pub(super) struct Stated {
 
 /// The answers of one family, `rows` from coarse to fine.
 ///
-/// We state the error bars of the summary. A peer states none, so its user compares with the next coarser mesh: the error of the finer one
-/// is the change divided by 2^order - 1, with order 1 for counted areas, corrected or not, and 1.5 for others. That of an extrapolated
-/// value is its change from the extrapolation before.
+/// We state the error bars of the summary. A peer states none, so its user compares with the next coarser mesh: the
+/// error of the finer one is the change divided by 2^order - 1, with order 1 for counted areas, corrected or not,
+/// and 1.5 for others. That of an extrapolated value is its change from the extrapolation before.
 pub(super) fn answers<'a>(rows: &[&'a Row], quantity: Quantity, reading: Reading) -> Vec<Answer<'a>> {
     let mut answers: Vec<Answer<'a>> = Vec::new();
     for (i, &row) in rows.iter().enumerate() {

@@ -85,7 +85,8 @@ impl Family {
 pub(super) const OURS: &str = "rc";
 
 impl Row {
-    /// The line of repeated solves; the results are those of the first, since they are all the same. `None` without any.
+    /// The line of repeated solves; the results are those of the first, since they are all the same. `None` without
+    /// any.
     pub(super) fn of(scene: &Scene, family: &Family, elements_per_wave: usize, repeats: &[Outcome]) -> Option<Self> {
         let first = repeats.first()?;
         let Family { program, method, kernel, border_level, tolerance } = family.clone();

@@ -94,8 +94,8 @@ impl References {
 
     /// Relative error of a value, with its sign.
     ///
-    /// That of a penetration is the one of the mean gap, which is the value, relative to the penetration: the two add up to the height of
-    /// the highest point, and how well a grid's points meet that point says nothing about a solver.
+    /// That of a penetration is the one of the mean gap, which is the value, relative to the penetration: the two add
+    /// up to the height of the highest point, and how well a grid's points meet that point says nothing about a solver.
     pub(super) fn error(&self, scene: &str, quantity: Quantity, value: f64) -> Option<f64> {
         let reference = self.row(scene, quantity)?.value;
         if quantity == Quantity::Penetration {

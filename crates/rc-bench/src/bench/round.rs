@@ -130,8 +130,8 @@ fn cases(scene: &Scene, with_peers: bool) -> Vec<Case> {
     cases
 }
 
-/// Seconds that a case will take, from the next coarser mesh of its family: 0 on the two coarsest, since the very first solve of a
-/// process takes longer than others; infinite where that was left out.
+/// Seconds that a case will take, from the next coarser mesh of its family: 0 on the two coarsest, since the very first
+/// solve of a process takes longer than others; infinite where that was left out.
 fn expected(cases: &[Case], i: usize) -> f64 {
     let is_coarser = |case: &&Case| case.family == cases[i].family && case.elements_per_wave > COARSEST_OF_PEERS;
     let coarser = cases[..i].iter().rfind(is_coarser);

@@ -125,7 +125,8 @@ pub(super) struct ScaleRun {
     pub(super) seconds: f64,
 }
 
-/// Solves every case up to `repeats` times; the peer's only with an interpreter that has it. `quick` has small scenes only.
+/// Solves every case up to `repeats` times; the peer's only with an interpreter that has it. `quick` has small scenes
+/// only.
 pub(super) fn run(repeats: usize, quick: bool, python: Option<&Path>) -> ScaleRun {
     let start = Instant::now();
     let mut peer = python.and_then(|python| tell(Peer::start(python, &ASPHER)));

@@ -110,8 +110,8 @@ pub(super) fn parse_tolerance(text: &str) -> Result<Tolerance> {
     })
 }
 
-/// The tolerance of a peer as a number, relative to the peak-to-valley height. Its `auto` is 3e-5 (m/8)^(-3/2) for m elements per shortest
-/// wave, well below the error of its grid.
+/// The tolerance of a peer as a number, relative to the peak-to-valley height. Its `auto` is 3e-5 (m/8)^(-3/2) for m
+/// elements per shortest wave, well below the error of its grid.
 pub(super) fn of_peer(tolerance: Tolerance, elements_per_wave: usize) -> f64 {
     match tolerance {
         Tolerance::Relative(value) | Tolerance::Energy(value) => value,

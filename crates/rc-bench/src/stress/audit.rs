@@ -30,8 +30,8 @@ pub(crate) struct Audit {
     pub(crate) penetration: f64,
     /// max |g| / H over elements with at least [`PRESSED`] of the maximum pressure.
     pub(crate) open: f64,
-    /// √(G/U), with G = mean of p (g - min g), and the mean of p times the error of Δ where that is prescribed, and U = mean of p v / 2: a bound
-    /// of the pressure's error in the energy norm.
+    /// √(G/U), with G = mean of p (g - min g), and the mean of p times the error of Δ where that is prescribed, and U =
+    /// mean of p v / 2: a bound of the pressure's error in the energy norm.
     pub(crate) energy: f64,
     /// H times the mean pressure over U.
     range_per_work: f64,
@@ -90,7 +90,8 @@ pub(crate) fn gaps(heights: &Field, displacement: &[f64]) -> Vec<f64> {
     displacement.iter().zip(heights.values()).map(|(v, h)| v + (top - h)).collect()
 }
 
-/// The mean pressure under a penetration so small that one element alone is in contact, Δ/(n L_ii); `None` where others would touch too.
+/// The mean pressure under a penetration so small that one element alone is in contact, Δ/(n L_ii); `None` where others
+/// would touch too.
 pub(crate) fn load_of_one_element(heights: &Field, method: Method, penetration: f64) -> Option<f64> {
     let (grid, top) = (heights.grid(), heights.max());
     let highest = heights.values().iter().position(|&h| h >= top)?;
@@ -104,8 +105,8 @@ pub(crate) fn load_of_one_element(heights: &Field, method: Method, penetration: 
     (!touched).then(|| pressure / grid.len() as f64)
 }
 
-/// L p by another way than the method's own: the multilevel operator for the uniform grid where it can be, a direct sum for
-/// small grids, a Fourier transform for the others.
+/// L p by another way than the method's own: the multilevel operator for the uniform grid where it can be, a direct sum
+/// for small grids, a Fourier transform for the others.
 pub(crate) fn displacement(pressure: &Field, method: Method) -> Result<Vec<f64>> {
     // A constant displaces nothing, and its rounding would be all that is left of a large one.
     let (grid, mean) = (pressure.grid(), pressure.mean());

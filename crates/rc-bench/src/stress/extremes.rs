@@ -1,4 +1,5 @@
-//! Scenes at the ends of every range: loads, penetrations, Hurst exponents, waves, offsets, sizes of numbers, shapes, grids.
+//! Scenes at the ends of every range: loads, penetrations, Hurst exponents, waves, offsets, sizes of numbers, shapes,
+//! grids.
 
 use anyhow::Result;
 use rc_core::{DVec2, Field, Grid};
@@ -10,14 +11,16 @@ use super::row::Row;
 use super::scene::{Group, Scene, check};
 use super::solved::{Method, solve};
 
-/// Sides of the grids that the methods are tried on: the smallest the adaptive one takes, and one without coarser levels.
+/// Sides of the grids that the methods are tried on: the smallest the adaptive one takes, and one without coarser
+/// levels.
 const ADAPTIVE_SIDE: usize = 128;
 const UNIFORM_SIDE: usize = 64;
 
-/// Times the median number of iterations that some scenes may take: where the mean pressure is found on a grid that no coarser one
-/// prepares, and hardly changes the penetration; and by the adaptive method, whose approximate inverse is the rougher one, where one element
-/// stands out of a plane or is missing in it, where every element is a peak of its own, and where all pressure is at the edge of a flat punch.
-/// Each is a tenth above what was measured, over the lower median of both sets.
+/// Times the median number of iterations that some scenes may take: where the mean pressure is found on a grid that no
+/// coarser one prepares, and hardly changes the penetration; and by the adaptive method, whose approximate inverse is
+/// the rougher one, where one element stands out of a plane or is missing in it, where every element is a peak of its
+/// own, and where all pressure is at the edge of a flat punch. Each is a tenth above what was measured, over the lower
+/// median of both sets.
 const NEAR_FULL_CONTACT: f64 = 3.0;
 const SINGLE_ELEMENT: f64 = 2.75;
 const WHITE_NOISE: f64 = 3.3;

@@ -1,5 +1,5 @@
-//! Faulty operators and kernels: the solver itself must refuse them, fail to converge or certify a large error. What it cannot see, this audit
-//! sees, and says so.
+//! Faulty operators and kernels: the solver itself must refuse them, fail to converge or certify a large error. What it
+//! cannot see, this audit sees, and says so.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -183,8 +183,8 @@ fn conformance_of_operators(rows: &mut Rows) -> Result<()> {
     Ok(())
 }
 
-/// A solve with a faulty operator is an error of the solver; with a fault below the tolerance, an audit with the sound operator may also find
-/// the tolerance met.
+/// A solve with a faulty operator is an error of the solver; with a fault below the tolerance, an audit with the sound
+/// operator may also find the tolerance met.
 fn operators(rows: &mut Rows) -> Result<()> {
     let heights = rough(4, 0.8, 8, 32)?;
     let control = Control::MeanPressure(1e-3);
@@ -222,8 +222,8 @@ fn error_of_solver(rows: &mut Rows, scene: &str, solved: &Result<()>) {
     rows.holds(scene, "detected by the solver", "an error", text(solved), is_error);
 }
 
-/// A solve with a faulty kernel is an error of the solver. A sound symbol of another solid is not, which only an audit with the right kernel
-/// sees.
+/// A solve with a faulty kernel is an error of the solver. A sound symbol of another solid is not, which only an audit
+/// with the right kernel sees.
 fn kernels(rows: &mut Rows) -> Result<()> {
     let heights = rough(4, 0.8, 8, 32)?;
     let loads = [Control::MeanPressure(1e-3), Control::Penetration(0.3 * (heights.max() - heights.mean()))];

@@ -11,7 +11,8 @@ use super::row::{Row, Rows, guarded};
 use super::scene::TOLERANCE;
 use super::solved::{Method, Solved, solve, solve_hard};
 
-/// Overlaps and gaps that an audit may find over the tolerance: those of pressures well inside are a tenth as exact (`scene.rs`).
+/// Overlaps and gaps that an audit may find over the tolerance: those of pressures well inside are a tenth as exact
+/// (`scene.rs`).
 const AUDIT: [f64; 2] = [1.1, 10.0];
 
 /// Difference of two pressures of one problem, solved to 1e-9 of the height range, and of their penetrations.
@@ -64,7 +65,8 @@ fn check(rows: &mut Rows, method: Method, scene: &Scene<'_>) {
         let depth = Control::Penetration(by_load.info.penetration);
         // Where everything touches, a pressure more or less displaces nothing: no penetration tells them apart.
         let touches_everywhere = by_load.pressure.values().iter().all(|p| *p > 0.0);
-        let by_depth = if touches_everywhere { None } else { Some(solve_hard(heights, method, (depth, *hardness), TOLERANCE)?) };
+        let by_depth =
+            if touches_everywhere { None } else { Some(solve_hard(heights, method, (depth, *hardness), TOLERANCE)?) };
         Ok((by_load, by_depth))
     });
     let (by_load, by_depth) = match solved {
@@ -102,8 +104,8 @@ fn audit(rows: &mut Rows, name: &str, method: Method, (heights, hardness, solved
     rows.at_most(name, "gap of what could press less", gap, AUDIT[1] * TOLERANCE);
 }
 
-/// A uniform pressure displaces nothing: what is left to the hardness, H - p, is the pressure under the surface upside down and the rest of the load,
-/// and gaps change their sign.
+/// A uniform pressure displaces nothing: what is left to the hardness, H - p, is the pressure under the surface upside
+/// down and the rest of the load, and gaps change their sign.
 fn turned_inside_out(rows: &mut Rows) -> Result<()> {
     for method in [Method::Uniform, Method::Spectral] {
         let heights = rough(8, 0.8, 52, 64)?;

@@ -10,8 +10,8 @@ use super::heights::{mapped, rough};
 use super::row::{Row, Rows, guarded};
 use super::solved::{Method, Solved, solve};
 
-/// Tolerance of solutions that are compared with each other, and how far they may then differ: pressures go with the slope
-/// of the gap, so they differ by far more than gaps do.
+/// Tolerance of solutions that are compared with each other, and how far they may then differ: pressures go with the
+/// slope of the gap, so they differ by far more than gaps do.
 const TIGHT: f64 = 1e-10;
 const SAME_PRESSURE: f64 = 1e-6;
 const SAME_NUMBER: f64 = 1e-8;
@@ -242,7 +242,8 @@ fn slopes(rows: &mut Rows, _: Preset) -> Result<()> {
     Ok(())
 }
 
-/// Load and contact grow with the penetration; elements once in contact need not stay, so only their number is compared.
+/// Load and contact grow with the penetration; elements once in contact need not stay, so only their number is
+/// compared.
 fn monotony(rows: &mut Rows, preset: Preset) -> Result<()> {
     let steps = if preset == Preset::Full { 40 } else { 12 };
     for method in [Method::Uniform, Method::Adaptive] {

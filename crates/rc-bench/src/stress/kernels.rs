@@ -1,4 +1,5 @@
-//! The kernels over 20 decades of distance and size against stored values of 100-digit arithmetic, and condition numbers.
+//! The kernels over 20 decades of distance and size against stored values of 100-digit arithmetic, and condition
+//! numbers.
 
 use std::f64::consts::SQRT_2;
 
@@ -128,7 +129,8 @@ fn conditions(rows: &mut Rows, preset: Preset) -> Result<()> {
         for kernel in [&Love as &dyn Kernel, &Spectral] {
             let symbol = kernel.symbol(grid);
             let condition = symbol(1, 0) / symbol(side / 2, side / 2);
-            // Waves: the ratio of the longest to the shortest wavenumber. Squares are stiffer at the shortest by their aliases.
+            // Waves: the ratio of the longest to the shortest wavenumber. Squares are stiffer at the shortest by their
+            // aliases.
             let (low, high) = if kernel.name() == "love" { (0.5, 1.0) } else { (1.0 - 1e-14, 1.0 + 1e-14) };
             let passed = (low * of_waves..=high * of_waves).contains(&condition);
             let scene = format!("{} on {grid}", kernel.name());

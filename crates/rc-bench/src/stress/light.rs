@@ -9,7 +9,8 @@ use super::heights::{mapped, rough};
 use super::row::{Row, Rows, guarded};
 use super::solved::{Method, solve, solve_by_default};
 
-/// Tolerance of the solution that is taken for exact: pits and light loads loosen one that is relative to the height range.
+/// Tolerance of the solution that is taken for exact: pits and light loads loosen one that is relative to the height
+/// range.
 const TIGHT: f64 = 1e-11;
 
 /// Part of the stated error bar that the default solve may use up.
@@ -49,7 +50,8 @@ pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
 /// The default against the tight solution: area, and load or penetration.
 fn compare(rows: &mut Rows, scene: &str, (heights, method, control): (&Field, Method, Control)) {
     let solved = guarded(|| {
-        // The operator of the adaptive method is not as good; without border levels its solution is that of the uniform grid.
+        // The operator of the adaptive method is not as good; without border levels its solution is that of the uniform
+        // grid.
         let tight = solve(heights, Method::Uniform, control, TIGHT)?;
         Ok((solve_by_default(heights, method, control)?, tight))
     });

@@ -14,8 +14,8 @@ use super::solved::{Method, solve};
 /// Solves that allocate what is kept for good: plans, tables, threads' stacks.
 const WARM_UP: usize = 50;
 
-/// Growth of the peak that is allowed after that, in bytes: fragments of the allocator, not fields of a scene (8 kB to 131 kB
-/// each, twenty of them a solve).
+/// Growth of the peak that is allowed after that, in bytes: fragments of the allocator, not fields of a scene (8 kB to
+/// 131 kB each, twenty of them a solve).
 const GROWTH: f64 = 8e6;
 
 /// Scenes that take turns.

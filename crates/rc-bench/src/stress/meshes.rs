@@ -1,4 +1,5 @@
-//! The adaptive method on many levels and on elements of several sizes, audited on the whole grid of its smallest elements.
+//! The adaptive method on many levels and on elements of several sizes, audited on the whole grid of its smallest
+//! elements.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -238,12 +239,13 @@ struct MeshAudit {
     audit: Audit,
     /// max(-g) / H over elements out of contact alone.
     outside: f64,
-    /// Maximum difference between the height of a larger element in contact and the mean over the centres of its parts, over H.
+    /// Maximum difference between the height of a larger element in contact and the mean over the centres of its parts,
+    /// over H.
     means: f64,
 }
 
-/// The audit of a mesh: every element's pressure on its parts, their displacement by a transform of the whole grid, gaps in contact as means
-/// over elements, and gaps elsewhere at the centres of the smallest elements.
+/// The audit of a mesh: every element's pressure on its parts, their displacement by a transform of the whole grid,
+/// gaps in contact as means over elements, and gaps elsewhere at the centres of the smallest elements.
 fn of_elements(
     solution: &Solution<'_>,
     (source, heights): (HeightSource<'_>, &Field),
@@ -300,8 +302,8 @@ impl Square {
     }
 }
 
-/// Heights that the adaptive method gives larger elements: the mean over the centres of the smallest, to fourth order, from the centre and the
-/// centres of the four quarters.
+/// Heights that the adaptive method gives larger elements: the mean over the centres of the smallest, to fourth order,
+/// from the centre and the centres of the four quarters.
 struct LevelHeights {
     /// At the centres of elements of 1, 2, 4, … smallest elements per side.
     levels: Vec<Field>,

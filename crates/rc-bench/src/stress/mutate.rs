@@ -1,4 +1,5 @@
-//! Faults in the sources on purpose: which of them the reduced set finds, and which of the others the tests of their crate.
+//! Faults in the sources on purpose: which of them the reduced set finds, and which of the others the tests of their
+//! crate.
 
 use std::collections::HashSet;
 use std::fs;
@@ -58,8 +59,9 @@ impl Outcome {
     }
 }
 
-/// Builds and stresses each mutation whose name contains one of `only` (separated by commas), in a copy of the workspace; where no row fails
-/// that passes without it, runs the tests of its crate. Writes `mutations.csv` into `out`.
+/// Builds and stresses each mutation whose name contains one of `only` (separated by commas), in a copy of the
+/// workspace; where no row fails that passes without it, runs the tests of its crate. Writes `mutations.csv` into
+/// `out`.
 ///
 /// What is built is kept in `target/mutations`, so that each mutation is one incremental build.
 ///

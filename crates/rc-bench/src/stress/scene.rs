@@ -14,7 +14,8 @@ pub(crate) const TOLERANCE: f64 = 1e-6;
 /// What an audit may find beyond the tolerance, relative to it: its own rounding, and the error of the other operator.
 const AUDIT_SLACK: f64 = 0.1;
 
-/// The part of a prescribed penetration by which an audit may find another one: rounding of heights, and the error of the other operator.
+/// The part of a prescribed penetration by which an audit may find another one: rounding of heights, and the error of
+/// the other operator.
 const SAME_PENETRATION: f64 = 1e-6;
 
 /// Gaps of elements that carry a tenth of the maximum pressure or more, over the tolerance. Measured: at most 4.
@@ -143,8 +144,8 @@ fn numbers_of(solved: &Solved) -> [f64; 11] {
 /// Scenes of a group.
 pub(crate) type Group = (&'static str, Vec<Scene>);
 
-/// What is counted of [`Work`], as it is called in the table: ordinary scenes, slow scenes, the median; and what the bound of a scene is
-/// multiplied by. Coarser grids of a slow scene are slow too: 1.06 was measured.
+/// What is counted of [`Work`], as it is called in the table: ordinary scenes, slow scenes, the median; and what the
+/// bound of a scene is multiplied by. Coarser grids of a slow scene are slow too: 1.06 was measured.
 type Count = ([&'static str; 3], fn(&Work) -> f64, f64);
 
 const COUNTS: [Count; 2] = [

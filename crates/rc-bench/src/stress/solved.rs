@@ -27,8 +27,8 @@ impl Method {
         }
     }
 
-    /// Bound of the median number of iterations over all scenes: a fifth more than the 10, 10, 10.5 (all levels of the adaptive method) and 56
-    /// that were measured.
+    /// Bound of the median number of iterations over all scenes: a fifth more than the 10, 10, 10.5 (all levels of the
+    /// adaptive method) and 56 that were measured.
     pub(crate) fn most_iterations(self) -> f64 {
         match self {
             Self::Uniform | Self::Spectral => 12.0,

@@ -28,7 +28,8 @@ pub(super) struct Fields {
     pub(super) height: Option<Field>,
     /// Fluxes of a flow along x and y, with their names (m²).
     pub(super) flow: Vec<(&'static str, Field)>,
-    /// What 1 in [`Fields::contact`] says: `contact` of elements, `touched` of means over them, above 0 where any of them is in contact.
+    /// What 1 in [`Fields::contact`] says: `contact` of elements, `touched` of means over them, above 0 where any of
+    /// them is in contact.
     pub(super) contact_name: &'static str,
 }
 

@@ -29,7 +29,8 @@ pub(super) fn image(fields: &Fields) -> Dataset<'_> {
     Dataset { kind: "ImageData", whole, piece: vec![("Extent", extent)], sections: vec![("CellData", cells)] }
 }
 
-/// The elements as quadrilaterals, each with corners of its own, so that elements of different sizes need no common points.
+/// The elements as quadrilaterals, each with corners of its own, so that elements of different sizes need no common
+/// points.
 pub(super) fn mesh(elements: &[Element]) -> Dataset<'static> {
     const CORNERS: [[f64; 2]; 4] = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
     let n = elements.len();

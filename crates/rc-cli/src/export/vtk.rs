@@ -1,4 +1,5 @@
-//! VTK's XML files: a head of XML that says where each array begins, then the arrays as they are in memory ("appended raw").
+//! VTK's XML files: a head of XML that says where each array begins, then the arrays as they are in memory ("appended
+//! raw").
 //!
 //! Format: *VTK File Formats*, <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>.
 

@@ -1,8 +1,9 @@
 //! Zarr groups: a folder for each array, a file for each compressed chunk, and what they are as JSON.
 //!
-//! Format: *Zarr storage specification version 2*, <https://zarr-specs.readthedocs.io/en/latest/v2/v2.0.html>, which every reader
-//! knows; dimensions are named as xarray asks for, in `_ARRAY_DIMENSIONS`. Written by hand, as it is this page of code: the crate
-//! `zarrs` (0.23, default features off) brings more than 70 packages along that are not here yet and needs a newer compiler than ours.
+//! Format: *Zarr storage specification version 2*, <https://zarr-specs.readthedocs.io/en/latest/v2/v2.0.html>, which
+//! every reader knows; dimensions are named as xarray asks for, in `_ARRAY_DIMENSIONS`. Written by hand, as it is this
+//! page of code: the crate `zarrs` (0.23, default features off) brings more than 70 packages along that are not here
+//! yet and needs a newer compiler than ours.
 
 use std::borrow::Cow;
 use std::fs;
@@ -72,7 +73,8 @@ pub(super) fn write(path: &Path, group: &Group<'_>) -> io::Result<()> {
     group.arrays.iter().try_for_each(|array| array.write_chunks(&path.join(array.name)))
 }
 
-/// Makes the folder of a group and of its arrays, each given by its name, its description and its attributes. Chunks are to follow.
+/// Makes the folder of a group and of its arrays, each given by its name, its description and its attributes. Chunks
+/// are to follow.
 ///
 /// # Errors
 /// Those of the file system.
@@ -159,8 +161,8 @@ impl Array<'_> {
         })
     }
 
-    /// The bytes of the chunk that begins at this row and column. What of it is beyond the array is zero: all chunks are equally
-    /// large.
+    /// The bytes of the chunk that begins at this row and column. What of it is beyond the array is zero: all chunks
+    /// are equally large.
     fn chunk(&self, [first_row, first_column]: [usize; 2], [height, width]: [usize; 2]) -> Vec<u8> {
         let [ny, nx] = rows_and_columns(&self.shape);
         let size = match self.values {

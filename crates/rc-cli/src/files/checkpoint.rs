@@ -10,7 +10,8 @@ use rc_sweep::files;
 
 use crate::error::CliError;
 
-/// A file that keeps what each level leaves for the next, of one scene. Every rank reads it, so that it is on a file system that all of them see.
+/// A file that keeps what each level leaves for the next, of one scene. Every rank reads it, so that it is on a file
+/// system that all of them see.
 #[derive(Debug)]
 pub struct CheckpointFile {
     path: PathBuf,

@@ -22,8 +22,8 @@ fn divides(grid: Grid, spec: GridSpec) -> bool {
     divides(spec.nx, grid.nx()) && divides(spec.ny, grid.ny())
 }
 
-/// The mean over the elements of each element of a coarser grid, from the rows of the finer one: means over the cell are
-/// kept, and the finer field is never whole in memory.
+/// The mean over the elements of each element of a coarser grid, from the rows of the finer one: means over the cell
+/// are kept, and the finer field is never whole in memory.
 #[derive(Clone, Debug)]
 pub(crate) struct BlockMean {
     grid: Grid,

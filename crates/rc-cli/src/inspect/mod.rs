@@ -79,8 +79,8 @@ pub fn result(folder: &Path) -> Result<String, CliError> {
     inspect_result(folder, true)
 }
 
-/// What `rc inspect --json` says of a height map in metres, which is called `name`; `sides` of its cell (m) are given where the map
-/// does not know them.
+/// What `rc inspect --json` says of a height map in metres, which is called `name`; `sides` of its cell (m) are given
+/// where the map does not know them.
 ///
 /// # Errors
 /// [`CliError::Input`] for a map that has no statistics.
@@ -139,7 +139,8 @@ impl Inspected {
     }
 }
 
-/// Statistics of a height map; of several channels, a list first, or the names in the message that says why there are none.
+/// Statistics of a height map; of several channels, a list first, or the names in the message that says why there are
+/// none.
 fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
     let channels = rc_heights::channels(&args.file)?;
     let several = channels.len() > 1;

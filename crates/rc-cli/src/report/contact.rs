@@ -353,7 +353,8 @@ mod tests {
             let note = &stress.notes[1];
             let (_, part) = note.split_once("E*², ").expect("the part of the theory");
             let part: f64 = part.split(' ').next().expect("a number").parse().expect("a number");
-            // The ends beyond 2.9 widths are missing, and what is there is 0.4 % higher for it; a bin is 7 % of a width.
+            // The ends beyond 2.9 widths are missing, and what is there is 0.4 % higher for it; a bin is 7 % of a
+            // width.
             assert!((part - 1.0).abs() < 0.02, "mean {mean_pressure}: {note}");
             assert!(stress.values[0] > 0.5 * mean_pressure, "bins from {}", stress.values[0]);
         }

@@ -110,8 +110,8 @@ fn read(path: &Path) -> Result<Vec<Row>, CliError> {
     if rows.is_empty() { Err(CliError::in_file(path, "has no rows")) } else { Ok(rows) }
 }
 
-/// Whether all rows that were planned are there and converged. Those of an interrupted sweep, of other shards, and under loads
-/// that a surface cannot take, are missing.
+/// Whether all rows that were planned are there and converged. Those of an interrupted sweep, of other shards, and
+/// under loads that a surface cannot take, are missing.
 fn status(rows: &[Row], settings: Option<&Value>) -> (String, bool) {
     let surfaces = settings.and_then(|settings| settings["surfaces"].as_array());
     let loads = |surface: &Value| surface["loads"].as_array().map_or(0, Vec::len);

@@ -1,8 +1,8 @@
 //! `rc report`: a result or a sweep as one page that a browser opens without a network.
 //!
-//! The page is a frame ([`document`]), a script, and data: [`contact`] makes those of a solve, [`curves`] those of a sweep.
-//! Everything that is text is made here, and shown by the script as text; maps and charts are drawn by the script from
-//! numbers.
+//! The page is a frame ([`document`]), a script, and data: [`contact`] makes those of a solve, [`curves`] those of a
+//! sweep. Everything that is text is made here, and shown by the script as text; maps and charts are drawn by the
+//! script from numbers.
 
 pub(crate) mod args;
 

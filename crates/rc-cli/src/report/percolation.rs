@@ -5,8 +5,8 @@ use rc_core::quantity::digits;
 /// A surface, by scene and seed.
 type Surface = (String, Option<u64>);
 
-/// A sentence about the contact areas at which the film of a surface stops to percolate, from area and permeances of each row; `None` without
-/// rows.
+/// A sentence about the contact areas at which the film of a surface stops to percolate, from area and permeances of
+/// each row; `None` without rows.
 pub(super) fn note(mut rows: Vec<(Surface, f64, [f64; 2])>) -> Option<String> {
     rows.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let surfaces = rows.chunk_by(|a, b| a.0 == b.0);

@@ -26,7 +26,8 @@ pub(super) struct SpotSizes {
 }
 
 impl SpotSizes {
-    /// Spots of the stored fields, in the units in which their edges are located; `None` without contact, and without the elements.
+    /// Spots of the stored fields, in the units in which their edges are located; `None` without contact, and without
+    /// the elements.
     pub(super) fn of_result(result: ResultFolder, bias: EdgeBias, boundary: Boundary) -> Option<Self> {
         if !result.is_of_elements() {
             return None;

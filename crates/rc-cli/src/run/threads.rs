@@ -2,8 +2,8 @@
 
 use crate::error::CliError;
 
-/// Checks the number of worker threads and starts them. When it is not given, they are all cores, or as many as this process
-/// has already.
+/// Checks the number of worker threads and starts them. When it is not given, they are all cores, or as many as this
+/// process has already.
 ///
 /// # Errors
 /// [`CliError::Input`]: a number out of range, or another one than this process has already.

@@ -16,7 +16,8 @@ const PICTURE: &str = "watch.png";
 /// Least time from one picture to the next.
 const INTERVAL: Duration = Duration::from_secs(1);
 
-/// The next picture waits this many times as long as the last one took, so that watching costs a tenth of the time at most.
+/// The next picture waits this many times as long as the last one took, so that watching costs a tenth of the time at
+/// most.
 const SPARING: u32 = 10;
 
 /// Draws what it is shown into one file, now and then, and removes the file in the end.
@@ -48,8 +49,8 @@ impl Watch {
         Self { path: folder.join(PICTURE), e_star, side, interval: INTERVAL, state: Mutex::new(State::First) }
     }
 
-    /// Draws the pressure, if it is time. A picture that cannot be written does not end the solve: it is told once, and there are no
-    /// more.
+    /// Draws the pressure, if it is time. A picture that cannot be written does not end the solve: it is told once, and
+    /// there are no more.
     pub(crate) fn look(&self, pressure: &Snapshot<'_>) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         let started = Instant::now();

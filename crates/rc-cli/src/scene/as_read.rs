@@ -7,7 +7,8 @@ const CHUNK: usize = 1 << 14;
 
 /// What makes heights in λ those of the file (m): the length that they were divided by, and what rounding has changed.
 ///
-/// A result is repeated bit for bit only from the heights in the file. They take a byte for each element instead of eight.
+/// A result is repeated bit for bit only from the heights in the file. They take a byte for each element instead of
+/// eight.
 #[derive(Clone, Debug)]
 pub struct AsRead {
     unit: f64,

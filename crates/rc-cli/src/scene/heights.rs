@@ -9,11 +9,12 @@ use super::as_read::AsRead;
 use crate::error::CliError;
 use rc_core::quantity::engineering;
 
-/// Reads a height map of any format of `rc-heights`, in metres; `NaN` where nothing was measured. Row `iy` of the file is row
-/// `iy` of the field.
+/// Reads a height map of any format of `rc-heights`, in metres; `NaN` where nothing was measured. Row `iy` of the file
+/// is row `iy` of the field.
 ///
 /// # Errors
-/// [`CliError::Input`] when the file cannot be read, is damaged or does not have the channel, or when `scales` does not fit its units.
+/// [`CliError::Input`] when the file cannot be read, is damaged or does not have the channel, or when `scales` does not
+/// fit its units.
 pub fn read(path: &Path, params: &ReadParams, scales: Scales) -> Result<HeightMap, CliError> {
     rc_heights::read_with(path, params)?.in_metres(scales).map_err(|cause| CliError::in_file(path, cause))
 }
@@ -40,8 +41,8 @@ pub(crate) fn check_finite(path: &Path, field: &Field) -> Result<(), CliError> {
     }
 }
 
-/// Sides of the cell along x and y (m): those of the map where its file says them, else what is `given`. If both are there they must
-/// be the same. The second is `None` for a square.
+/// Sides of the cell along x and y (m): those of the map where its file says them, else what is `given`. If both are
+/// there they must be the same. The second is `None` for a square.
 ///
 /// # Errors
 /// [`CliError::Input`].

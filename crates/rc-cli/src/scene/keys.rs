@@ -25,29 +25,31 @@ pub struct SurfaceKeys {
     /// surface]
     #[arg(long, allow_hyphen_values = true)]
     pub cell: Option<f64>,
-    /// Side of a rectangular cell along y (m), of a height map [default: that of the height map if its file says it, else that
-    /// along x]
+    /// Side of a rectangular cell along y (m), of a height map [default: that of the height map if its file says it,
+    /// else that along x]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub cell_y: Option<f64>,
-    /// Height map instead of a random surface: text, .xyz, .npy, .mat, .h5, .nc, .gwy, .gsf, .grd, .ibw, .sdf, .x3p, .sur, .spm, .opd,
-    /// .dat, .al3d, .plu, .plux, .vk4, 16-bit .png or .tif; positive towards the half-space
+    /// Height map instead of a random surface: text, .xyz, .npy, .mat, .h5, .nc, .gwy, .gsf, .grd, .ibw, .sdf, .x3p,
+    /// .sur, .spm, .opd, .dat, .al3d, .plu, .plux, .vk4, 16-bit .png or .tif; positive towards the half-space
     #[arg(long, value_name = "FILE")]
     pub heights: Option<PathBuf>,
-    /// Fourier coefficients instead of a random surface: text, a line of kx ky Re Im for each wave, kx and ky in waves per cell, Re and
-    /// Im in m
+    /// Fourier coefficients instead of a random surface: text, a line of kx ky Re Im for each wave, kx and ky in waves
+    /// per cell, Re and Im in m
     #[arg(long, value_name = "FILE")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spectrum: Option<PathBuf>,
     /// Unit of the lengths of a height map that names none, or of coefficients: m, mm, um, nm [default: m]
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<LengthUnit>,
-    /// Height (m) of 1 in a height map that names no unit, as of one level of grey of an image, or in coefficients; goes before --unit
+    /// Height (m) of 1 in a height map that names no unit, as of one level of grey of an image, or in coefficients;
+    /// goes before --unit
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub height_scale: Option<f64>,
     /// Channel of a height map that has several, as rc inspect lists them [default: the first with heights]
     #[arg(long, value_name = "NAME")]
     pub channel: Option<String>,
-    /// How a text of numbers is laid out, where it could be either: matrix (a row of the map a line) or xyz (a point a line)
+    /// How a text of numbers is laid out, where it could be either: matrix (a row of the map a line) or xyz (a point a
+    /// line)
     #[arg(long, value_name = "matrix|xyz")]
     pub layout: Option<Layout>,
     /// N, waves per cell of the shortest wave
@@ -81,7 +83,8 @@ pub struct SurfaceKeys {
     /// Amplitudes exactly of the spectrum (Eq. 14), or random about it
     #[arg(long, value_parser = amplitudes())]
     pub amplitudes: Option<Amplitudes>,
-    /// Finest elements per side: 512, or 512x256 along x and y [default: 32 per shortest wave; a height map has its own]
+    /// Finest elements per side: 512, or 512x256 along x and y [default: 32 per shortest wave; a height map has its
+    /// own]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub grid: Option<GridSpec>,
 }
@@ -105,7 +108,8 @@ pub struct ContactKeys {
     /// Penetration Δ (m), instead of --pressure
     #[arg(long, allow_hyphen_values = true)]
     pub penetration: Option<f64>,
-    /// Hardness (Pa): no pressure is greater, the usual first model of plastic contact [default: none, an elastic contact]
+    /// Hardness (Pa): no pressure is greater, the usual first model of plastic contact [default: none, an elastic
+    /// contact]
     #[arg(long, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hardness: Option<f64>,
@@ -130,15 +134,16 @@ pub struct ContactKeys {
     /// Halve elements at the edges of contacts this many times beyond --grid (adaptive method, generated surfaces)
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub border_level: Option<usize>,
-    /// Certified relative error of the pressure in the energy norm, which pits, offsets and light loads do not loosen [default: 0.01]
+    /// Certified relative error of the pressure in the energy norm, which pits, offsets and light loads do not loosen
+    /// [default: 0.01]
     #[arg(long, value_name = "ERROR", allow_hyphen_values = true)]
     pub energy_tolerance: Option<f64>,
-    /// Instead: certified tolerance relative to the peak-to-valley height, as other programs have it; or auto, an energy error well below
-    /// the error of the grid
+    /// Instead: certified tolerance relative to the peak-to-valley height, as other programs have it; or auto, an
+    /// energy error well below the error of the grid
     #[arg(long, allow_hyphen_values = true)]
     pub tolerance: Option<ToleranceSpec>,
-    /// Choose the grid so that the relative error of the contact area is at most this, as 0.5% or 0.005, and no finer than needed;
-    /// the tolerance is auto then, unless it is given (random surfaces, instead of --grid)
+    /// Choose the grid so that the relative error of the contact area is at most this, as 0.5% or 0.005, and no finer
+    /// than needed; the tolerance is auto then, unless it is given (random surfaces, instead of --grid)
     #[arg(long, value_name = "ERROR", allow_hyphen_values = true)]
     pub area_error: Option<Fraction>,
     /// Compute the flow of a thin film through the gap too: permeance, percolation, critical constriction
@@ -163,8 +168,8 @@ pub struct RunKeys {
     /// Most memory, as 500MB, 2GB or bytes: what is estimated to need more is refused before any work
     #[arg(long, value_name = "SIZE", allow_hyphen_values = true)]
     pub memory_limit: Option<ByteSize>,
-    /// Most time, in seconds or as 90s, 5min, 1h: a solve that takes longer ends with what there is, marked not_converged; a sweep
-    /// begins no further row
+    /// Most time, in seconds or as 90s, 5min, 1h: a solve that takes longer ends with what there is, marked
+    /// not_converged; a sweep begins no further row
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     pub time_limit: Option<TimeLimit>,
     /// Print nothing but errors and what --json asks for
@@ -210,8 +215,9 @@ macro_rules! or_lower {
 }
 
 impl SurfaceKeys {
-    /// These keys laid over `lower`. A key given here also removes its alternatives below: a height map, a file of waves and the
-    /// parameters of a random surface each other, each of `rms`, `rms_slope`, `c0` the other two, and `cell` the other side.
+    /// These keys laid over `lower`. A key given here also removes its alternatives below: a height map, a file of
+    /// waves and the parameters of a random surface each other, each of `rms`, `rms_slope`, `c0` the other two, and
+    /// `cell` the other side.
     #[must_use]
     pub fn over(mut self, mut lower: Self) -> Self {
         if self.heights.is_some() {

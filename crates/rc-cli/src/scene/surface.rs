@@ -93,11 +93,12 @@ pub enum Shape {
 pub const HEIGHTS_FILE: &str = "heights.npy";
 
 impl SurfaceKeys {
-    /// The keys of a height map that a program holds, with the sides of its cell (m) where it knows them. The map is called as in a
-    /// result folder.
+    /// The keys of a height map that a program holds, with the sides of its cell (m) where it knows them. The map is
+    /// called as in a result folder.
     ///
     /// # Errors
-    /// [`CliError::Input`] when keys of a random surface, or of a file, are given; or another size than that of the map.
+    /// [`CliError::Input`] when keys of a random surface, or of a file, are given; or another size than that of the
+    /// map.
     pub fn of_map(self, sides: Option<[f64; 2]>) -> Result<Self, CliError> {
         if self.heights.is_some() || self.generates() {
             let message =
@@ -211,8 +212,8 @@ impl LoadedSurface {
         }
     }
 
-    /// rms height (λ) and rms slope: exact ones of a sum of waves, those of its grid for a height map, which meets itself across its borders
-    /// unless they are free.
+    /// rms height (λ) and rms slope: exact ones of a sum of waves, those of its grid for a height map, which meets
+    /// itself across its borders unless they are free.
     #[must_use]
     pub fn height_and_slope(&self, boundary: Boundary) -> [f64; 2] {
         match self.shape.waves_or_map() {

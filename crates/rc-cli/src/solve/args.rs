@@ -19,7 +19,8 @@ pub(crate) struct SolveArgs {
     /// Print the elements, memory and time to be expected, and solve nothing
     #[arg(long, help_heading = "Run")]
     pub(crate) dry_run: bool,
-    /// While solving, keep a picture of the contact so far in DIR/watch.png (DIR: --out), drawn anew once a second at most
+    /// While solving, keep a picture of the contact so far in DIR/watch.png (DIR: --out), drawn anew once a second at
+    /// most
     #[arg(long, help_heading = "Run")]
     pub(crate) watch: bool,
 }

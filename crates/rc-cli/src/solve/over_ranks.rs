@@ -21,8 +21,8 @@ use crate::terminal;
 
 /// One contact problem over the ranks of MPI: mpirun -n 4 rc-mpi solve ...
 ///
-/// Flags and files are those of rc solve, and the digits do not depend on the number of ranks. Each rank has a part of the mesh; all of them have
-/// the base grid. Exit codes: 0 solved, 2 bad input, 3 not converged, 4 could not write.
+/// Flags and files are those of rc solve, and the digits do not depend on the number of ranks. Each rank has a part of
+/// the mesh; all of them have the base grid. Exit codes: 0 solved, 2 bad input, 3 not converged, 4 could not write.
 #[derive(Parser, Clone, Debug)]
 #[command(name = "rc-mpi", version, max_term_width = 120, disable_help_subcommand = true)]
 struct Cli {
@@ -40,18 +40,18 @@ enum Command {
 struct RanksArgs {
     #[command(flatten)]
     solve: SolveArgs,
-    /// File that keeps what the last level has left for the next one: a run that was ended goes on from there, on any number of ranks, to the same
-    /// digits. It is removed when the result is there
+    /// File that keeps what the last level has left for the next one: a run that was ended goes on from there, on any
+    /// number of ranks, to the same digits. It is removed when the result is there
     #[arg(long, value_name = "FILE", help_heading = "Run")]
     checkpoint: Option<PathBuf>,
-    /// Write pressure and gap as the Zarr group DIR/fields.zarr, all ranks at once, in place of pressure.npy, gap.npy, elements.csv and contact.png,
-    /// which one rank writes
+    /// Write pressure and gap as the Zarr group DIR/fields.zarr, all ranks at once, in place of pressure.npy, gap.npy,
+    /// elements.csv and contact.png, which one rank writes
     #[arg(long, help_heading = "Run")]
     zarr: bool,
 }
 
-/// Runs a command line of `rc-mpi`, the name of the program first, and returns the exit code. All ranks call this together; the first of
-/// them prints and writes.
+/// Runs a command line of `rc-mpi`, the name of the program first, and returns the exit code. All ranks call this
+/// together; the first of them prints and writes.
 #[must_use]
 pub fn main_over_ranks(words: impl IntoIterator<Item = OsString>, ranks: &Ranks) -> u8 {
     let is_first = ranks.rank() == 0;

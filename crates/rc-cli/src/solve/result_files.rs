@@ -64,7 +64,8 @@ pub enum MapHeights<'a> {
 }
 
 impl ResultFiles<'_> {
-    /// The summary in SI, with rms height (λ) and rms slope of the surface; `wall` and `threads` are what it says of them.
+    /// The summary in SI, with rms height (λ) and rms slope of the surface; `wall` and `threads` are what it says of
+    /// them.
     #[must_use]
     pub fn summary(&self, [rms_height, rms_slope]: [f64; 2], wall: Duration, threads: usize) -> Summary {
         let context = SolveContext {
@@ -82,8 +83,8 @@ impl ResultFiles<'_> {
         Summary { leakage, contact_conductance, ..summary }
     }
 
-    /// Writes the result folder. The method decides whether pressure and gap are ever whole in memory: they are handed out some
-    /// rows at a time.
+    /// Writes the result folder. The method decides whether pressure and gap are ever whole in memory: they are handed
+    /// out some rows at a time.
     ///
     /// # Errors
     /// [`CliError::Write`].
@@ -95,8 +96,8 @@ impl ResultFiles<'_> {
         Ok(self.stage(folder, summary)?)
     }
 
-    /// Writes the result folder with pressure and gap as a Zarr group, which ranks write in parallel, in place of the files that one rank
-    /// writes: pressure.npy, gap.npy, elements.csv and contact.png.
+    /// Writes the result folder with pressure and gap as a Zarr group, which ranks write in parallel, in place of the
+    /// files that one rank writes: pressure.npy, gap.npy, elements.csv and contact.png.
     ///
     /// # Errors
     /// [`CliError::Write`], [`CliError::Input`].

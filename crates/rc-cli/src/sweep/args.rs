@@ -35,16 +35,17 @@ pub(crate) struct SweepArgs {
     /// Go on with the sweep in --out; start it, if there is none yet
     #[arg(long, help_heading = "Sweep")]
     pub(crate) resume: bool,
-    /// Solve part i of n, of about equal work; `rc sweep merge` puts the parts together. With auto, the part that the task of a
-    /// job array (Slurm, PBS) or the MPI rank says, in a folder of its own in --out; auto/N where only the task is known
+    /// Solve part i of n, of about equal work; `rc sweep merge` puts the parts together. With auto, the part that the
+    /// task of a job array (Slurm, PBS) or the MPI rank says, in a folder of its own in --out; auto/N where only the
+    /// task is known
     #[arg(long, value_name = "I/N", help_heading = "Sweep", allow_hyphen_values = true)]
     pub(crate) shard: Option<ShardSpec>,
-    /// Print the commands of N parts, one a line, for HyperQueue or GNU parallel, and solve nothing [default: a part for each
-    /// row]
+    /// Print the commands of N parts, one a line, for HyperQueue or GNU parallel, and solve nothing [default: a part
+    /// for each row]
     #[arg(long, value_name = "N", help_heading = "Sweep", num_args = 0..=1, default_missing_value = ListSpec::ROWS, require_equals = true, conflicts_with = "shard")]
     pub(crate) list: Option<ListSpec>,
-    /// Solve as many realisations, on as coarse grids, as the mean of the contact area needs for this relative rms error, as 0.5%;
-    /// --seed is the first, --grid the finest
+    /// Solve as many realisations, on as coarse grids, as the mean of the contact area needs for this relative rms
+    /// error, as 0.5%; --seed is the first, --grid the finest
     #[arg(long, value_name = "ERROR", help_heading = "Sweep", allow_hyphen_values = true)]
     pub(crate) error_of_mean: Option<Fraction>,
     /// What --error-of-mean is of, instead of area_fraction

@@ -12,8 +12,8 @@ pub(super) fn install(end: impl Fn() + Send + 'static) {
     let _ = ctrlc::set_handler(end);
 }
 
-/// Writes the table of the rows so far, of `n_rows` if that is known, and ends the process. `kept` is held until the end, so
-/// that no row is kept which the table does not have.
+/// Writes the table of the rows so far, of `n_rows` if that is known, and ends the process. `kept` is held until the
+/// end, so that no row is kept which the table does not have.
 pub(super) fn end(kept: &Kept<'_>, n_rows: Option<usize>, bar: &RowBar) {
     bar.clear();
     let of_all = n_rows.map_or_else(String::new, |n_rows| format!(" of {n_rows}"));

@@ -1,4 +1,5 @@
-//! The plan of a sweep whose rows a program solves: that of `rc sweep`, so that either goes on with the rows of the other.
+//! The plan of a sweep whose rows a program solves: that of `rc sweep`, so that either goes on with the rows of the
+//! other.
 
 use rc_sweep::{ControlKind, FileMark, Loads, Seeds, SweepPlan};
 
@@ -26,7 +27,8 @@ pub struct MapMark {
     pub mark: FileMark,
 }
 
-/// The plan of `rc sweep` for this scene, which is called `name`; of a map that a program holds, `map` says what is known.
+/// The plan of `rc sweep` for this scene, which is called `name`; of a map that a program holds, `map` says what is
+/// known.
 ///
 /// # Errors
 /// [`CliError::Input`] for keys that cannot be solved, or a file that cannot be read.

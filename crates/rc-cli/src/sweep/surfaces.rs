@@ -121,7 +121,8 @@ impl SweptSurface {
         Self::on(setup, name, &scene.contact, (control, loads))
     }
 
-    /// The same of a height map that a program holds: the sides of its cell (m), where it knows them, and by what it is recognised.
+    /// The same of a height map that a program holds: the sides of its cell (m), where it knows them, and by what it is
+    /// recognised.
     pub(super) fn of_map(
         name: &str,
         scene: Scene,

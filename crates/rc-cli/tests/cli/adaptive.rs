@@ -108,8 +108,8 @@ fn the_files_of_an_adaptive_solve_agree_with_its_summary() {
     let (pressure, gap) = (field(&place, "r/pressure.npy"), field(&place, "r/gap.npy"));
     assert_close("mean pressure", pressure.mean(), 3e5, 1e-10);
     assert_close("max pressure", pressure.max(), number(&summary, "max_pressure"), 1e-14);
-    // Gaps are those of single precision, and zero in contact as far as the tolerance demands; the height range is about
-    // 8 rms heights of 13 µm.
+    // Gaps are those of single precision, and zero in contact as far as the tolerance demands; the height range is
+    // about 8 rms heights of 13 µm.
     let bound = 2e-6 * 8.0 * 13e-6;
     assert!(gap.min() >= -bound, "gap of {:e} m", gap.min());
     let in_contact = pressure.values().iter().zip(gap.values()).filter(|(p, _)| **p > 0.0);
@@ -205,8 +205,8 @@ fn the_finest_grid_is_never_stored() {
     assert!(peak < heights, "a peak of {peak:e} bytes; the heights alone would be {heights:e}");
 }
 
-/// What the iteration leaves and what halving the elements changes, each summed over three surfaces: of one surface alone the
-/// second may vanish by chance.
+/// What the iteration leaves and what halving the elements changes, each summed over three surfaces: of one surface
+/// alone the second may vanish by chance.
 #[test]
 fn auto_stops_well_below_the_error_of_the_grid() {
     let place = Place::new();

@@ -1,4 +1,5 @@
-//! Whatever a scene file or a journal of a sweep say: an answer or one line, no panic. `fuzz/` has the same claims for a fuzzer.
+//! Whatever a scene file or a journal of a sweep say: an answer or one line, no panic. `fuzz/` has the same claims for
+//! a fuzzer.
 
 use proptest::prelude::*;
 use proptest::sample::Index;

@@ -171,8 +171,8 @@ fn a_folder_of_something_else_is_not_resumed() {
     assert_refused(&place.run(&sweep("t", &[])), "t: has rows already");
 }
 
-/// A limit of the size of files stands in for a full disk: writing stops in the middle of a line with an error, without rights
-/// that only the administrator has.
+/// A limit of the size of files stands in for a full disk: writing stops in the middle of a line with an error, without
+/// rights that only the administrator has.
 #[cfg(unix)]
 #[test]
 fn a_full_disk_costs_no_finished_row() {

@@ -96,7 +96,8 @@ impl Fig8 {
             |curve: &Curve, bin: &Bin| [curve.waves.to_string()].into_iter().chain(bin.cells()).collect::<Vec<_>>();
         let line = &line;
         let rows = self.curves.iter().flat_map(|curve| curve.small.iter().map(move |bin| line(curve, bin)));
-        // The narrowest of these bins are not much wider than the error of a pressure, so all of their elements may change.
+        // The narrowest of these bins are not much wider than the error of a pressure, so all of their elements may
+        // change.
         compared(Table::new("small", &header, rows), 3.0)
     }
 

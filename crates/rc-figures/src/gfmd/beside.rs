@@ -64,8 +64,8 @@ fn energies(figure: &Gfmd, folder: &Path) -> Result<Table> {
     Ok(Table::new("beside-energy", &header, rows))
 }
 
-/// Mean gaps from histograms of the gap over the rms height. Whether a gap of the files is the lower end of its bin or its middle is not
-/// said, so both means are given.
+/// Mean gaps from histograms of the gap over the rms height. Whether a gap of the files is the lower end of its bin or
+/// its middle is not said, so both means are given.
 fn gaps(figure: &Gfmd, folder: &Path) -> Result<Table> {
     let mut rows = Vec::new();
     for part in ["low", "high"] {

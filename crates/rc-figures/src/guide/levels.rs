@@ -56,7 +56,8 @@ pub struct Levels {
 struct Remainder<'a> {
     split: &'a ScaleSplit,
     cutoff: f64,
-    /// What the stencils displace under a uniform pressure of 1, which the base grid takes off again: a constant gives zero (Eq. 3).
+    /// What the stencils displace under a uniform pressure of 1, which the base grid takes off again: a constant gives
+    /// zero (Eq. 3).
     of_constant: f64,
 }
 

@@ -79,7 +79,8 @@ impl Split {
         if level == 0 { self.tables.love_stencil() } else { self.tables.level_stencil() }
     }
 
-    /// What a level adds to the displacement of the point at `r` along x; `None` where it has no point, zero beyond its stencil.
+    /// What a level adds to the displacement of the point at `r` along x; `None` where it has no point, zero beyond its
+    /// stencil.
     fn part(&self, level: usize, r: usize) -> Option<f64> {
         let step = 1 << level;
         let stencil = self.stencil(level);

@@ -1,4 +1,5 @@
-//! The start of a finer grid: the edge function of a solved wave is linear across the edge of the contact, the pressure is not.
+//! The start of a finer grid: the edge function of a solved wave is linear across the edge of the contact, the pressure
+//! is not.
 
 use anyhow::Result;
 use plotters::prelude::{Circle, DashedLineSeries, DrawingBackend, LineSeries, PathElement};

@@ -6,9 +6,11 @@ use anyhow::Result;
 use rc_core::{Field, Grid};
 use rc_kernel::Stencil;
 
-/// The cell of the coarser grid that tap number `tap` of `n_taps` reads for the value at cell `fine`, on `n` cells that repeat.
+/// The cell of the coarser grid that tap number `tap` of `n_taps` reads for the value at cell `fine`, on `n` cells that
+/// repeat.
 ///
-/// A fine cell of odd index lies a quarter of a coarse cell beyond the centre of its coarse cell, one of even index before it.
+/// A fine cell of odd index lies a quarter of a coarse cell beyond the centre of its coarse cell, one of even index
+/// before it.
 fn coarse_cell(fine: usize, (tap, n_taps): (usize, usize), n: usize) -> usize {
     let shift = tap as isize - (n_taps as isize / 2 - 1);
     let shift = if fine % 2 == 1 { shift } else { -shift };

@@ -1,7 +1,7 @@
 //! Area and elastic energy against the number of waves N, at the paper's load and with the same long waves.
 //!
-//! Only differences between values of N matter here, and contact edges are located between the centres of elements, so coarse elements
-//! are enough; N goes beyond the paper's two.
+//! Only differences between values of N matter here, and contact edges are located between the centres of elements, so
+//! coarse elements are enough; N goes beyond the paper's two.
 
 use anyhow::{Context, Result};
 use rc_core::{Grid, HeightField as _};

@@ -1,7 +1,8 @@
-//! The distribution of heights: the paper says that waves of fixed amplitude and random phase add up to Gaussian heights.
+//! The distribution of heights: the paper says that waves of fixed amplitude and random phase add up to Gaussian
+//! heights.
 //!
-//! They do when no few waves have most of the variance. Over all phases, the height is a sum of independent cosines c_i cos φ_i, for which
-//! the excess kurtosis is -(3/2) Σ c_i⁴ / (Σ c_i²)², a number without sampling.
+//! They do when no few waves have most of the variance. Over all phases, the height is a sum of independent cosines c_i
+//! cos φ_i, for which the excess kurtosis is -(3/2) Σ c_i⁴ / (Σ c_i²)², a number without sampling.
 
 use anyhow::Result;
 use rc_core::Grid;

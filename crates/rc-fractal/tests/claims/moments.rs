@@ -12,8 +12,8 @@ use crate::{assert_close, surface};
 const CELL_UM: f64 = 1e4;
 const CELL_M: f64 = 1e-2;
 
-/// Independently computed for the paper's two surfaces, both truncations: amplitudes at (1, 1) and (1, 0) (µm), rms slope, rms
-/// Laplacian (1/m), Nayak's parameter. All digits of the table must come out.
+/// Independently computed for the paper's two surfaces, both truncations: amplitudes at (1, 1) and (1, 0) (µm), rms
+/// slope, rms Laplacian (1/m), Nayak's parameter. All digits of the table must come out.
 #[test]
 fn moments_are_those_of_the_paper() {
     let table = [

@@ -12,7 +12,8 @@ fn the_height_field_contract_holds() {
     }
 }
 
-/// Synthesis against the direct sum: grids that resolve the surface, and grids so coarse that waves fold, down to one element.
+/// Synthesis against the direct sum: grids that resolve the surface, and grids so coarse that waves fold, down to one
+/// element.
 #[test]
 fn synthesis_equals_the_direct_sum_on_any_grid() {
     let surface = surface(SpectrumParams { truncation: Truncation::Square, ..SpectrumParams::paper(40, 2) });
@@ -87,7 +88,8 @@ fn a_coarse_grid_is_refused_with_the_smallest_that_would_do() {
     assert!(surface.sample_on(Grid::square(41).expect("small")).is_ok());
 }
 
-/// A map on a rectangular cell and the square of its copies: the same moments, and the same power in all rings together.
+/// A map on a rectangular cell and the square of its copies: the same moments, and the same power in all rings
+/// together.
 #[test]
 fn a_rectangle_has_the_moments_of_its_copies_and_all_of_the_power() {
     let copies = 4;

@@ -110,8 +110,8 @@ fn different_seeds_are_different_surfaces() {
     }
 }
 
-/// The draws are part of the format: a seed names the same surface on every machine and in every later version. The values come
-/// from an independent implementation of the description in `draws.rs`, `ChaCha8` included.
+/// The draws are part of the format: a seed names the same surface on every machine and in every later version. The
+/// values come from an independent implementation of the description in `draws.rs`, `ChaCha8` included.
 #[test]
 fn a_seed_names_the_same_surface_for_ever() {
     let surface = surface(SpectrumParams { amplitudes: Amplitudes::Random, ..SpectrumParams::paper(4, 42) });
@@ -141,7 +141,8 @@ fn rings_add_up_to_the_mean_square_height() {
     }
 }
 
-/// Averaging k^-3.6 over |k| ± ½ raises it by about 3.6·4.6/24 k^-2, and lattice points are uneven in a ring: 1 % beyond k = 10.
+/// Averaging k^-3.6 over |k| ± ½ raises it by about 3.6·4.6/24 k^-2, and lattice points are uneven in a ring: 1 %
+/// beyond k = 10.
 #[test]
 fn unit_rings_follow_the_power_law() {
     let surface = c0(1.0, SpectrumParams::paper(64, 6));

@@ -22,7 +22,8 @@ fn wave(kx: i64, ky: i64, re: f64, im: f64) -> Wave {
     Wave { kx, ky, amplitude: Complex64::new(re, im) }
 }
 
-/// Half planes to both sides, along either axis, and all waves in another order: each is the surface that they are of, bit by bit.
+/// Half planes to both sides, along either axis, and all waves in another order: each is the surface that they are of,
+/// bit by bit.
 #[test]
 fn a_surface_is_that_of_its_waves_whichever_half_is_given() {
     for truncation in [Truncation::Disc, Truncation::Square] {

@@ -1,5 +1,5 @@
-//! Alicona: tags of fixed length, then a depth image of 32-bit floats in metres, rows from top to bottom (the documentation of
-//! Gwyddion describes the format).
+//! Alicona: tags of fixed length, then a depth image of 32-bit floats in metres, rows from top to bottom (the
+//! documentation of Gwyddion describes the format).
 
 use rc_core::Grid;
 

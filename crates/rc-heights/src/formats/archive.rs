@@ -68,8 +68,8 @@ fn damaged(path: &Path) -> FormatError {
     FormatError::Container { format, reason: "the archive is cut off or damaged".to_owned() }
 }
 
-/// The folder of the archive in which `member` lies, with a slash at its end; the uppermost of several. Some programs pack the folder,
-/// not its members.
+/// The folder of the archive in which `member` lies, with a slash at its end; the uppermost of several. Some programs
+/// pack the folder, not its members.
 pub(super) fn folder_of(names: &[String], member: &str) -> String {
     let folders = names.iter().filter_map(|name| name.strip_suffix(member));
     let folders = folders.filter(|folder| folder.is_empty() || folder.ends_with('/'));

@@ -34,8 +34,8 @@ pub(super) fn step(name: &str, coordinates: &[f64]) -> Result<f64, FormatError> 
     }
 }
 
-/// The coordinates along both sides of matrices of coordinates (`meshgrid`) of `nx` columns: x is the same in every row, y in
-/// every column.
+/// The coordinates along both sides of matrices of coordinates (`meshgrid`) of `nx` columns: x is the same in every
+/// row, y in every column.
 pub(super) fn of_meshes(x: &[f64], y: &[f64], nx: usize) -> Option<[Vec<f64>; 2]> {
     let same = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs());
     let first = x.get(..nx)?;

@@ -21,7 +21,8 @@ pub(crate) type Channels<'a> = Result<Vec<Channel<'a>>, FormatError>;
 pub struct ChannelInfo {
     /// Its name; empty for the only channel of a format without names.
     pub name: String,
-    /// Whether it can be a map of heights: its values are lengths, as far as the file says. The first such channel is what [`crate::read`] reads.
+    /// Whether it can be a map of heights: its values are lengths, as far as the file says. The first such channel is
+    /// what [`crate::read`] reads.
     pub is_height: bool,
 }
 
@@ -44,7 +45,8 @@ pub(super) fn only<'a>(read: impl FnOnce() -> Result<HeightMap, FormatError> + '
     vec![Channel { name: String::new(), is_height: true, read: Box::new(read) }]
 }
 
-/// The same channels with a name of its own for each: its number where it has none, a number behind a name that came before.
+/// The same channels with a name of its own for each: its number where it has none, a number behind a name that came
+/// before.
 pub(super) fn named(mut channels: Vec<Channel<'_>>) -> Vec<Channel<'_>> {
     if channels.len() < 2 {
         return channels;
@@ -70,15 +72,16 @@ pub(super) fn is_topography(name: &str) -> bool {
     ["height", "zsensor", "z sensor", "topo"].iter().any(|word| name.contains(word))
 }
 
-/// Channels whose headers were read one by one, each with its name: what is wrong with one is said when it is read, and it counts as
-/// heights only where no other channel does.
+/// Channels whose headers were read one by one, each with its name: what is wrong with one is said when it is read, and
+/// it counts as heights only where no other channel does.
 pub(super) fn each(found: Vec<(String, Result<Channel<'_>, FormatError>)>) -> Vec<Channel<'_>> {
     let is_height = !found.iter().any(|(_, channel)| channel.as_ref().is_ok_and(|channel| channel.is_height));
     let damaged = |name, error| Channel { name, is_height, read: Box::new(move || Err(error)) };
     found.into_iter().map(|(name, channel)| channel.unwrap_or_else(|error| damaged(name, error))).collect()
 }
 
-/// The channel called `name`, in any case of letters, or the first with heights. A single channel without a name is called 1 too.
+/// The channel called `name`, in any case of letters, or the first with heights. A single channel without a name is
+/// called 1 too.
 ///
 /// # Errors
 /// [`FormatError::NoChannel`], [`FormatError::NoHeights`], with the names that there are.

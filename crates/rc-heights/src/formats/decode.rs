@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-/// UTF-8, with a byte-order mark or without; UTF-16 of either byte order with one; else Latin-1, in which old programs write µ.
+/// UTF-8, with a byte-order mark or without; UTF-16 of either byte order with one; else Latin-1, in which old programs
+/// write µ.
 pub(crate) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
     match bytes {
         [0xff, 0xfe, rest @ ..] => Cow::Owned(utf_16(rest, u16::from_le_bytes)),

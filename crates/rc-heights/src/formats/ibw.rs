@@ -1,5 +1,5 @@
-//! Igor Pro binary waves, version 5 (WaveMetrics' technical note PTN003): two headers, values whose first index changes fastest, then
-//! notes and labels. The first index is x, the second y, the third counts channels.
+//! Igor Pro binary waves, version 5 (WaveMetrics' technical note PTN003): two headers, values whose first index changes
+//! fastest, then notes and labels. The first index is x, the second y, the third counts channels.
 
 use rc_core::Grid;
 

@@ -12,8 +12,8 @@ pub(crate) fn data_lines(text: &str, first: usize) -> impl Iterator<Item = (usiz
     lines(text).filter(move |(n, line)| *n >= first && !line.starts_with(['#', '%']))
 }
 
-/// The values of a line, and whether a comma is a decimal point in them. Nothing between two separators is a value that is not a
-/// number.
+/// The values of a line, and whether a comma is a decimal point in them. Nothing between two separators is a value that
+/// is not a number.
 pub(crate) fn words(line: &str) -> (Box<dyn Iterator<Item = &str> + '_>, bool) {
     if line.contains(';') {
         (Box::new(line.split(';').map(str::trim)), true)
@@ -24,7 +24,8 @@ pub(crate) fn words(line: &str) -> (Box<dyn Iterator<Item = &str> + '_>, bool) {
     }
 }
 
-/// Whether a line with commas has several words between blanks, all of them numbers with a comma at most, which is inside.
+/// Whether a line with commas has several words between blanks, all of them numbers with a comma at most, which is
+/// inside.
 fn has_decimal_commas(line: &str) -> bool {
     let is_inside = |word: &str| {
         word.bytes().filter(|byte| *byte == b',').count() <= 1 && !word.starts_with(',') && !word.ends_with(',')

@@ -1,7 +1,9 @@
-//! MATLAB 5 files (The MathWorks, "MAT-File Format"): named arrays stored column by column, each alone or compressed with zlib. Real
-//! 2-D arrays are channels; the first index is y, the second x. Vectors or meshes called `x` and `y` are coordinates.
+//! MATLAB 5 files (The MathWorks, "MAT-File Format"): named arrays stored column by column, each alone or compressed
+//! with zlib. Real 2-D arrays are channels; the first index is y, the second x. Vectors or meshes called `x` and `y`
+//! are coordinates.
 //!
-//! Files of version 7.3 are HDF5. The readers on crates.io inflate whatever a compressed array promises; this one does not.
+//! Files of version 7.3 are HDF5. The readers on crates.io inflate whatever a compressed array promises; this one does
+//! not.
 
 use std::borrow::Cow;
 use std::io::Read as _;
@@ -64,7 +66,8 @@ impl MatArray {
     }
 }
 
-/// All real arrays of numbers with two dimensions in a MATLAB 5 file, vectors too. Arrays without a value are passed over.
+/// All real arrays of numbers with two dimensions in a MATLAB 5 file, vectors too. Arrays without a value are passed
+/// over.
 ///
 /// # Errors
 /// [`FormatError`].

@@ -1,5 +1,5 @@
-//! Zygo MetroPro: a big-endian header, intensities, and phases as 32-bit integers, rows from top to bottom (MetroPro Reference
-//! Guide OMP-0347, "Data format").
+//! Zygo MetroPro: a big-endian header, intensities, and phases as 32-bit integers, rows from top to bottom (MetroPro
+//! Reference Guide OMP-0347, "Data format").
 
 use rc_core::Grid;
 

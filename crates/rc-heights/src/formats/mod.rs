@@ -71,8 +71,8 @@ pub fn format_of(path: &Path) -> Result<Format, ReadError> {
     Opened::new(path).map(|file| file.format)
 }
 
-/// Whether the file at `path` may say how large the measured rectangle is: a format without sizes, or a text whose first lines do not
-/// say it, does not.
+/// Whether the file at `path` may say how large the measured rectangle is: a format without sizes, or a text whose
+/// first lines do not say it, does not.
 ///
 /// # Errors
 /// As of [`read`], as far as the first bytes tell.
@@ -143,12 +143,12 @@ fn unreadable(cause: std::io::Error) -> FormatError {
     FormatError::Unreadable(cause.to_string())
 }
 
-/// Reads the height map at `path`, in the units of the file ([`HeightMap::in_metres`]). Row `iy` of the file is row `iy` of the
-/// field; `NaN` is a missing point. Of several channels it is the first that has heights.
+/// Reads the height map at `path`, in the units of the file ([`HeightMap::in_metres`]). Row `iy` of the file is row
+/// `iy` of the field; `NaN` is a missing point. Of several channels it is the first that has heights.
 ///
 /// # Errors
-/// [`ReadError`] when the file cannot be read, is of no known format, damaged, without a measured point, or has an infinite
-/// height.
+/// [`ReadError`] when the file cannot be read, is of no known format, damaged, without a measured point, or has an
+/// infinite height.
 pub fn read(path: &Path) -> Result<HeightMap, ReadError> {
     read_with(path, &ReadParams::default())
 }

@@ -1,8 +1,8 @@
-//! Bruker, Veeco and Digital Instruments Nanoscope, from version 4.2 on: a text of lists, then the integers of each image; the
-//! first row has the lowest y (the documentation of Gwyddion describes the format).
+//! Bruker, Veeco and Digital Instruments Nanoscope, from version 4.2 on: a text of lists, then the integers of each
+//! image; the first row has the lowest y (the documentation of Gwyddion describes the format).
 //!
-//! A value is integer / 256^bytes x `Z scale` x the sensitivity that `Z scale` names; it is a length if the unit of the product is
-//! one. Other channels have the unit of the file, which is not named in the map.
+//! A value is integer / 256^bytes x `Z scale` x the sensitivity that `Z scale` names; it is a length if the unit of the
+//! product is one. Other channels have the unit of the file, which is not named in the map.
 
 use rc_core::Grid;
 

@@ -1,10 +1,10 @@
-//! HDF5 and NetCDF (classic, 64-bit, NetCDF-4), with the crate netcdf-reader: every array of numbers with two dimensions longer than 1
-//! is a channel, named with its path.
+//! HDF5 and NetCDF (classic, 64-bit, NetCDF-4), with the crate netcdf-reader: every array of numbers with two
+//! dimensions longer than 1 is a channel, named with its path.
 //!
-//! `units` (or `unit`) of an array says what it is in; `scale_factor`, `add_offset`, `_FillValue` and `missing_value` are applied.
-//! Coordinates are the variables of the dimensions of NetCDF, else arrays called `x` and `y` beside the map. The last index is x,
-//! unless the dimensions are called x and y in this order, or MATLAB wrote the array: its files have dimensions in reverse order, and
-//! vectors of two dimensions.
+//! `units` (or `unit`) of an array says what it is in; `scale_factor`, `add_offset`, `_FillValue` and `missing_value`
+//! are applied. Coordinates are the variables of the dimensions of NetCDF, else arrays called `x` and `y` beside the
+//! map. The last index is x, unless the dimensions are called x and y in this order, or MATLAB wrote the array: its
+//! files have dimensions in reverse order, and vectors of two dimensions.
 
 use std::rc::Rc;
 
@@ -67,8 +67,8 @@ pub(super) fn channels(bytes: &[u8], format: Format) -> Channels<'_> {
     Ok(names.into_iter().zip(unit::are_heights(&units)).map(channel).collect())
 }
 
-/// The rows of a table of four columns in an HDF5 file: of the first array of n × 4 numbers, or of the first four vectors of one length with
-/// these names in one group.
+/// The rows of a table of four columns in an HDF5 file: of the first array of n × 4 numbers, or of the first four
+/// vectors of one length with these names in one group.
 ///
 /// # Errors
 /// [`FormatError::NoTable`] when there is no such table.

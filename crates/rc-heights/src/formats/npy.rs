@@ -10,12 +10,12 @@ use rc_core::{Field, Grid};
 use super::field::{field, transposed};
 use crate::{Format, FormatError, ReadError};
 
-/// Longest header that is read; that of a 2-D array has about 120 bytes. The parser of headers goes one call deeper for each
-/// bracket.
+/// Longest header that is read; that of a 2-D array has about 120 bytes. The parser of headers goes one call deeper for
+/// each bracket.
 const LONGEST_HEADER: u32 = 4096;
 
-/// Reads a two-dimensional array of real numbers (any float or integer type, either byte order, C or Fortran order) as a
-/// field: the first index is y, the second x. Values may be `NaN` or infinite.
+/// Reads a two-dimensional array of real numbers (any float or integer type, either byte order, C or Fortran order) as
+/// a field: the first index is y, the second x. Values may be `NaN` or infinite.
 ///
 /// # Errors
 /// [`ReadError`] when the file cannot be read, is no npy file, is shorter than it says, or is not 2-D and real.
@@ -75,7 +75,8 @@ fn header(field: &'static str, found: &(impl ToString + ?Sized), expected: &'sta
     FormatError::Field { format: Format::Npy, field, found: found.to_string(), expected }
 }
 
-/// Writes a field as a 2-D `f64` array, C order, little-endian, each value multiplied by `factor`, without a copy of it.
+/// Writes a field as a 2-D `f64` array, C order, little-endian, each value multiplied by `factor`, without a copy of
+/// it.
 ///
 /// # Errors
 /// Those of the file system.
@@ -176,7 +177,8 @@ fn to_f64(npy: NpyFile<impl Read>, n: usize) -> io::Result<Vec<f64>> {
     }
 }
 
-/// The next `n` values of the usual type, of which a large map has so many that reading them one by one takes as long as a solve.
+/// The next `n` values of the usual type, of which a large map has so many that reading them one by one takes as long
+/// as a solve.
 fn doubles(mut file: impl Read, n: usize) -> io::Result<Vec<f64>> {
     let (mut values, mut bytes) = (vec![0.0; n], [[0; 8]; 1 << 11]);
     for values in values.chunks_mut(bytes.len()) {

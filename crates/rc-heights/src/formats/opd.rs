@@ -1,5 +1,6 @@
-//! Wyko: a directory of blocks, then the blocks in its order. Heights are multiples of the wavelength (nm) divided by `Mult`;
-//! points stand column by column, each from the lowest y on (the documentation of Gwyddion describes the format).
+//! Wyko: a directory of blocks, then the blocks in its order. Heights are multiples of the wavelength (nm) divided by
+//! `Mult`; points stand column by column, each from the lowest y on (the documentation of Gwyddion describes the
+//! format).
 
 use rc_core::Grid;
 

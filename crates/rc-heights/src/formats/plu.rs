@@ -1,5 +1,5 @@
-//! Sensofar: a header without a mark, then layers of 32-bit floats in µm, rows from top to bottom (the documentation of Gwyddion
-//! describes the format).
+//! Sensofar: a header without a mark, then layers of 32-bit floats in µm, rows from top to bottom (the documentation of
+//! Gwyddion describes the format).
 
 use rc_core::Grid;
 

@@ -1,5 +1,5 @@
-//! Sensofar, the newer format: a zip archive with `index.xml`, and for each layer a file of 32-bit floats in µm, rows from top to
-//! bottom; a missing point is not a number.
+//! Sensofar, the newer format: a zip archive with `index.xml`, and for each layer a file of 32-bit floats in µm, rows
+//! from top to bottom; a missing point is not a number.
 
 use std::io::{Cursor, Read as _};
 

@@ -1,6 +1,6 @@
-//! ISO 25178-71 surface data files: a header of scales in metres, then heights as text (`a…`) or binary (`b…`). Versions 1.0,
-//! 2.0 (which counts points with 32 bits) and the older proposal BCR, which marks missing points by the greatest number of a type
-//! where the standard takes the lowest.
+//! ISO 25178-71 surface data files: a header of scales in metres, then heights as text (`a…`) or binary (`b…`).
+//! Versions 1.0, 2.0 (which counts points with 32 bits) and the older proposal BCR, which marks missing points by the
+//! greatest number of a type where the standard takes the lowest.
 
 use super::binary::{Bytes, Number};
 use super::field::field;
@@ -62,8 +62,8 @@ fn binary(mut bytes: Bytes<'_>, mark: &[u8]) -> Result<(Header, Vec<f64>), Forma
     Ok((header, values))
 }
 
-/// The stored type, and the value that marks a point as missing: the lowest of a type, and in files of BCR the greatest. Of
-/// unsigned types, where the lowest may be a height, it is the greatest; of bytes the standard has none.
+/// The stored type, and the value that marks a point as missing: the lowest of a type, and in files of BCR the
+/// greatest. Of unsigned types, where the lowest may be a height, it is the greatest; of bytes the standard has none.
 fn number(header: &Header, bcr: bool) -> Result<(Number, f64), FormatError> {
     if header.compression != 0 {
         let what = "compressed data".to_owned();
@@ -87,7 +87,8 @@ fn number(header: &Header, bcr: bool) -> Result<(Number, f64), FormatError> {
     })
 }
 
-/// Header, heights and remarks are ended by a `*` each, which after the header is alone in its line: a name may have one.
+/// Header, heights and remarks are ended by a `*` each, which after the header is alone in its line: a name may have
+/// one.
 fn text(bytes: &[u8]) -> Result<(Header, Vec<f64>), FormatError> {
     let text = String::from_utf8_lossy(bytes);
     let mut end = 0;

@@ -48,18 +48,19 @@ const MARKS: &[(&[u8], Format)] = &[
 ];
 
 impl Format {
-    /// Whether files of this format may say how large the measured rectangle is. Texts do it in lines before the numbers.
+    /// Whether files of this format may say how large the measured rectangle is. Texts do it in lines before the
+    /// numbers.
     #[must_use]
     pub fn has_sides(self) -> bool {
         !matches!(self, Self::Npy | Self::Png | Self::Tiff)
     }
 
-    /// The format of a file that is called `path` and starts with `start`, of which 4096 bytes are enough but for zip archives, which
-    /// are needed whole. The first bytes count more than the name.
+    /// The format of a file that is called `path` and starts with `start`, of which 4096 bytes are enough but for zip
+    /// archives, which are needed whole. The first bytes count more than the name.
     ///
     /// # Errors
-    /// [`FormatError::Mark`] for a name that promises another start, [`FormatError::Container`] or [`FormatError::Archive`] for a zip
-    /// archive, [`FormatError::ZeroBytes`], [`FormatError::Unknown`].
+    /// [`FormatError::Mark`] for a name that promises another start, [`FormatError::Container`] or
+    /// [`FormatError::Archive`] for a zip archive, [`FormatError::ZeroBytes`], [`FormatError::Unknown`].
     pub fn of(path: &Path, start: &[u8]) -> Result<Self, FormatError> {
         if let Some((_, format)) = MARKS.iter().find(|(mark, _)| start.starts_with(mark)) {
             return Ok(*format);

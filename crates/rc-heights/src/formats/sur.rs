@@ -1,6 +1,7 @@
-//! Digital Surf: objects one behind the other, each a header of 512 bytes, a comment, private bytes, and integers, plain or
-//! compressed by zlib ("Surface file format", Digital Surf; the header is described in the documentation of Gwyddion and of
-//! RosettaSciIO too); rows from top to bottom. Heights are offset + spacing x integer; some programs count integers from the lowest.
+//! Digital Surf: objects one behind the other, each a header of 512 bytes, a comment, private bytes, and integers,
+//! plain or compressed by zlib ("Surface file format", Digital Surf; the header is described in the documentation of
+//! Gwyddion and of RosettaSciIO too); rows from top to bottom. Heights are offset + spacing x integer; some programs
+//! count integers from the lowest.
 
 use std::io::Read as _;
 

@@ -15,10 +15,10 @@ use super::layout::Layout;
 use super::lines::{data_lines, number, words};
 use crate::{Format, FormatError, HeightMap};
 
-/// The numbers of a text, a row of the map a line, which a line feed, a carriage return, or both end. Between numbers are commas,
-/// semicolons, tabs or blanks; where it is none of the first two, or a semicolon, commas may stand for decimal points, as many countries
-/// write them. Lines before the first number, empty lines and lines that start with `#` or `%` are passed over; `NaN`, `BAD`, `***` and
-/// `---` are missing points.
+/// The numbers of a text, a row of the map a line, which a line feed, a carriage return, or both end. Between numbers
+/// are commas, semicolons, tabs or blanks; where it is none of the first two, or a semicolon, commas may stand for
+/// decimal points, as many countries write them. Lines before the first number, empty lines and lines that start with
+/// `#` or `%` are passed over; `NaN`, `BAD`, `***` and `---` are missing points.
 ///
 /// # Errors
 /// [`FormatError`] with line and value.

@@ -8,8 +8,8 @@ pub(super) fn length(name: &str) -> Option<LengthUnit> {
     name.parse().ok().filter(|_| name.trim() != "A")
 }
 
-/// What the values of a channel are in, and the factor that makes metres of lengths: an empty name is a unit that is not named, a
-/// name that is not a unit of length that of another quantity.
+/// What the values of a channel are in, and the factor that makes metres of lengths: an empty name is a unit that is
+/// not named, a name that is not a unit of length that of another quantity.
 pub(super) fn of_values(name: &str) -> (Unit, f64) {
     match (name.trim(), length(name)) {
         ("", _) => (Unit::Unnamed, 1.0),
@@ -39,8 +39,8 @@ pub(super) fn of_both([x, y]: [(Unit, f64); 2]) -> ([f64; 2], Unit) {
     }
 }
 
-/// Whether channels in these units can be heights: those that are lengths, or those in units that are not named where no channel
-/// is a length by its unit.
+/// Whether channels in these units can be heights: those that are lengths, or those in units that are not named where
+/// no channel is a length by its unit.
 pub(super) fn are_heights(units: &[Unit]) -> Vec<bool> {
     let wanted = if units.contains(&Unit::Metre) { Unit::Metre } else { Unit::Unnamed };
     units.iter().map(|unit| *unit == wanted).collect()

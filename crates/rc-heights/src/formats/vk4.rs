@@ -1,5 +1,6 @@
-//! Keyence: a table of places, the conditions of the measurement, and images, of which up to three have heights, as integers of
-//! as many picometres as the conditions say; rows from top to bottom (the documentation of Gwyddion describes the format).
+//! Keyence: a table of places, the conditions of the measurement, and images, of which up to three have heights, as
+//! integers of as many picometres as the conditions say; rows from top to bottom (the documentation of Gwyddion
+//! describes the format).
 
 use rc_core::Grid;
 

@@ -1,4 +1,5 @@
-//! ISO 5436-2 (now ISO 25178-72): a zip archive with `main.xml`, heights as binary numbers, and a mask of measured points.
+//! ISO 5436-2 (now ISO 25178-72): a zip archive with `main.xml`, heights as binary numbers, and a mask of measured
+//! points.
 //!
 //! Lengths are in metres. The checksums of the archive itself are verified; the MD5 sums beside them are not.
 

@@ -59,8 +59,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
 /// First words of titles that count points.
 const COUNTS: [&str; 12] = ["index", "idx", "id", "no", "nr", "num", "number", "point", "row", "line", "col", "column"];
 
-/// The columns of x, y and height: those of x and y have titles that begin with these letters, the third is the height; else the first
-/// three.
+/// The columns of x, y and height: those of x and y have titles that begin with these letters, the third is the height;
+/// else the first three.
 ///
 /// # Errors
 /// [`FormatError::Field`] for titles of other columns.

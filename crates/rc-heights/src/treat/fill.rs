@@ -59,8 +59,9 @@ fn neighbours(i: usize, nx: usize, ny: usize) -> impl Iterator<Item = (usize, bo
     along(along_x, true).chain(along(along_y, false))
 }
 
-/// Fronts that start at all measured points: a hole gets the height of the point that is nearest to it of those that fill its
-/// neighbours, which is the nearest of all but for differences below a distance of points; ties in a fixed order.
+/// Fronts that start at all measured points: a hole gets the height of the point that is nearest to it of those that
+/// fill its neighbours, which is the nearest of all but for differences below a distance of points; ties in a fixed
+/// order.
 fn nearest(map: &mut HeightMap) {
     let (nx, ny) = (map.heights.grid().nx(), map.heights.grid().ny());
     let [dx, dy] = map.spacing();
@@ -92,8 +93,8 @@ fn around(i: usize, nx: usize, ny: usize) -> impl Iterator<Item = usize> {
     rows.flat_map(move |y| columns.clone().map(move |x| y * nx + x)).filter(move |j| *j != i)
 }
 
-/// Conjugate gradients for Σ w (h_i - h_j) = 0 over the neighbours of each hole, from the heights that the holes have, in
-/// `most` steps at most. Returns what is left of the first residual.
+/// Conjugate gradients for Σ w (h_i - h_j) = 0 over the neighbours of each hole, from the heights that the holes have,
+/// in `most` steps at most. Returns what is left of the first residual.
 fn laplace(map: &mut HeightMap, holes: &[usize], most: usize) -> f64 {
     let (nx, ny) = (map.heights.grid().nx(), map.heights.grid().ny());
     let [dx, dy] = map.spacing();

@@ -7,8 +7,8 @@ use crate::HeightMap;
 /// The weight is cut off where it is this many times the width below its peak: exp(-π 2.5²) = 3e-9.
 const REACH: f64 = 2.5;
 
-/// Least wavelength in points: shorter waves of the sampled weights are those of longer ones. A wave of four points keeps 0.5 +
-/// 0.002, of longer ones less too much.
+/// Least wavelength in points: shorter waves of the sampled weights are those of longer ones. A wave of four points
+/// keeps 0.5 + 0.002, of longer ones less too much.
 const LEAST_POINTS: f64 = 4.0;
 
 /// Weights exp(-π (x/αλ)²) with α = √(ln 2/π), so that a wave of length λ keeps half of its amplitude.

@@ -81,8 +81,8 @@ pub fn apply(map: HeightMap, treatments: &[Treatment]) -> Result<(HeightMap, Vec
     Ok((map, effects))
 }
 
-/// The grid of `map` after each treatment, without treating it: what a program compares with its memory first. No treatment has
-/// a larger one on its way.
+/// The grid of `map` after each treatment, without treating it: what a program compares with its memory first. No
+/// treatment has a larger one on its way.
 ///
 /// # Errors
 /// [`TreatError`] of the first treatment whose part is not inside the map, or whose grid is none.

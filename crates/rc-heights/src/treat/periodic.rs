@@ -47,9 +47,9 @@ fn window(mut map: HeightMap, weight: impl Fn(f64) -> f64) -> HeightMap {
     map
 }
 
-/// Heights about their mean under Hann's window, scaled so that the mean square of the window is 1: what the power spectrum
-/// of a map that is not periodic is taken of, as T. D. B. Jacobs, T. Junge and L. Pastewka recommend (Surf. Topogr.: Metrol.
-/// Prop. 5 (2017) 013001).
+/// Heights about their mean under Hann's window, scaled so that the mean square of the window is 1: what the power
+/// spectrum of a map that is not periodic is taken of, as T. D. B. Jacobs, T. Junge and L. Pastewka recommend (Surf.
+/// Topogr.: Metrol. Prop. 5 (2017) 013001).
 #[must_use]
 pub fn hann(heights: &Field) -> Field {
     // ⟨sin⁴⟩ = 3/8, so the mean square of each factor is 1 after division by √(3/8).

@@ -5,7 +5,8 @@ use rc_core::{Field, Grid};
 use super::stencil::{Edges, Taps, along_x, along_y};
 use crate::HeightMap;
 
-/// Fewer points are means over their elements; more points are on cubic curves (Catmull and Rom's) through those around.
+/// Fewer points are means over their elements; more points are on cubic curves (Catmull and Rom's) through those
+/// around.
 pub(super) fn resample(mut map: HeightMap, wanted: Grid, edges: Edges) -> HeightMap {
     let grid = map.heights.grid();
     let across = |field: Field| {

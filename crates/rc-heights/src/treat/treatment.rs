@@ -17,8 +17,8 @@ pub enum Treatment {
     Level(Level),
     /// Make opposite borders meet.
     Periodic(Periodic),
-    /// Take short waves away with a Gaussian filter that halves waves of this length (ISO 16610-61), which must be four points or
-    /// more: weights at points cannot tell shorter waves from longer ones.
+    /// Take short waves away with a Gaussian filter that halves waves of this length (ISO 16610-61), which must be four
+    /// points or more: weights at points cannot tell shorter waves from longer ones.
     LowPass {
         /// In the unit of the sides.
         wavelength: f64,
@@ -117,11 +117,11 @@ impl fmt::Display for Flip {
 pub enum Periodic {
     /// They meet already.
     AsIs,
-    /// The map and its mirror images: twice the sides, four times the points. Every height stays, and their distribution;
-    /// slopes change sign at the old borders, and what touches there touches twice as wide.
+    /// The map and its mirror images: twice the sides, four times the points. Every height stays, and their
+    /// distribution; slopes change sign at the old borders, and what touches there touches twice as wide.
     Mirror,
-    /// Heights fade to their mean towards the borders (Tukey's window). Sides stay; the outer part of the map is flatter than
-    /// the surface was.
+    /// Heights fade to their mean towards the borders (Tukey's window). Sides stay; the outer part of the map is
+    /// flatter than the surface was.
     Window {
         /// The part of each side that fades, at each of its ends: above 0, at most 0.5.
         taper: f64,
@@ -141,8 +141,8 @@ impl fmt::Display for Periodic {
 /// How often a map is repeated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Repeat {
-    /// As often as makes the cell a square, at most [`MOST_COPIES`] times along a side: the same contact, in a cell that every method
-    /// takes.
+    /// As often as makes the cell a square, at most [`MOST_COPIES`] times along a side: the same contact, in a cell
+    /// that every method takes.
     Square,
     /// So often along x and along y.
     Times([usize; 2]),

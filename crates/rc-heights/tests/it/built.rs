@@ -1,4 +1,5 @@
-//! Files built byte by byte are read as their specifications say; headers that promise too much or nonsense are refused.
+//! Files built byte by byte are read as their specifications say; headers that promise too much or nonsense are
+//! refused.
 
 use rc_heights::{Format, HeightMap, LengthUnit, Scales, Unit, parse};
 use zip::CompressionMethod;

@@ -14,7 +14,8 @@ fn parsed(name: &str, bytes: &[u8], format: Format) -> Result<HeightMap, FormatE
     parse(bytes, format).inspect(|map| assert_eq!(map.height_unit, Unit::Metre, "{name}"))
 }
 
-/// A file of the folder, what its heights are above those of `expected.csv`, how far they may be off (both nm), and its sides (µm).
+/// A file of the folder, what its heights are above those of `expected.csv`, how far they may be off (both nm), and its
+/// sides (µm).
 ///
 /// Errors are half a digit of the file, or the rounding of its 32-bit floats.
 const FILES: [(&str, f64, f64, [f64; 2]); 16] = [

@@ -1,4 +1,5 @@
-//! Readers on files of other programs, on files built byte by byte, and on damaged ones; treatments against closed forms.
+//! Readers on files of other programs, on files built byte by byte, and on damaged ones; treatments against closed
+//! forms.
 
 mod build;
 mod build_instruments;

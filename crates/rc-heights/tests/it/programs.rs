@@ -1,4 +1,5 @@
-//! Files of arrays, of Gwyddion, of Igor and texts that other programs wrote, in data/formats/ (its README says which and how).
+//! Files of arrays, of Gwyddion, of Igor and texts that other programs wrote, in data/formats/ (its README says which
+//! and how).
 
 use rc_heights::{
     ChannelInfo, Format, HeightMap, Layout, ReadParams, Unit, channels, format_of, may_have_sides, parse, read,

@@ -241,7 +241,8 @@ fn resampling_in_either_order_is_the_same_map() {
 
 #[test]
 fn the_nearest_height_is_the_nearest_by_length() {
-    // Points are ten times as far apart along x as along y: what is three points away along y is nearer than a neighbour along x.
+    // Points are ten times as far apart along x as along y: what is three points away along y is nearer than a
+    // neighbour along x.
     let mut holed = map(9, 9, [9.0, 0.9], |x, y| 10.0 * x.floor() + (10.0 * y).floor());
     for iy in 3..6 {
         let i = holed.heights.grid().index(4, iy);

@@ -10,12 +10,13 @@ fn layer(thickness: f64, poisson: f64) -> Layer {
     Layer { thickness, poisson }
 }
 
-/// Displacement u_z of the surface of a layer of thickness 1 and E* = 1 under the pressure cos(q x), by the equations of elasticity: the two
-/// potentials of Papkovich and Neuber in plane strain, with four constants from four conditions.
+/// Displacement u_z of the surface of a layer of thickness 1 and E* = 1 under the pressure cos(q x), by the equations
+/// of elasticity: the two potentials of Papkovich and Neuber in plane strain, with four constants from four conditions.
 fn of_boundary_values(q: f64, poisson: f64) -> f64 {
     let shear = 0.5 * (1.0 - poisson);
     let kappa = 3.0 - 4.0 * poisson;
-    // 2G u_x = sin(qx) (-q F - q z P), 2G u_z = cos(qx) (F' + z P' - κ P), with F and P of exp(±q(z - 1/2)), z from the base upwards.
+    // 2G u_x = sin(qx) (-q F - q z P), 2G u_z = cos(qx) (F' + z P' - κ P), with F and P of exp(±q(z - 1/2)), z from the
+    // base upwards.
     let potentials = |z: f64| {
         let [up, down] = [(q * (z - 0.5)).exp(), (-q * (z - 0.5)).exp()];
         [[up, q * up, q * q * up], [down, -q * down, q * q * down]]

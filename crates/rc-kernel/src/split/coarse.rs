@@ -1,9 +1,9 @@
-//! Elements coarser than the finest: squares of 2^m × 2^m of its elements under one pressure, whose displacement is the mean
-//! over them.
+//! Elements coarser than the finest: squares of 2^m × 2^m of its elements under one pressure, whose displacement is the
+//! mean over them.
 //!
-//! With P spreading a value to four elements of half the side and R = ¼ Pᵀ taking their mean, the operator on level K - m is
-//! `Rᵐ L Pᵐ`: symmetric, and the same L whichever level a patch of contact is on. Its smooth part sees, instead of points,
-//! elements blurred by
+//! With P spreading a value to four elements of half the side and R = ¼ Pᵀ taking their mean, the operator on level K -
+//! m is `Rᵐ L Pᵐ`: symmetric, and the same L whichever level a patch of contact is on. Its smooth part sees, instead of
+//! points, elements blurred by
 //!
 //! ```text
 //! b_m(q) = Π_{i=1}^{m} cos(q/2^{i+1}) · √sinc(q/2^{m+1})        (q in radians per coarse element)
@@ -16,8 +16,8 @@ use super::filter::{EXACT, SAMPLES, least_squares, love_target, weight};
 use super::stencil::Stencil;
 use super::window::Window;
 
-/// The blur of a coarse element along one axis: from pressures to the density of their own level, and, transposed, from that
-/// level's smooth displacement to the elements' means.
+/// The blur of a coarse element along one axis: from pressures to the density of their own level, and, transposed, from
+/// that level's smooth displacement to the elements' means.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoarseFilter {
     taps: Vec<f64>,
@@ -43,7 +43,8 @@ impl CoarseFilter {
 pub struct CoarseElement {
     /// Its blur.
     pub filter: CoarseFilter,
-    /// The displacement of other elements of its size, without the shares of the level's own stencil and of all coarser levels.
+    /// The displacement of other elements of its size, without the shares of the level's own stencil and of all coarser
+    /// levels.
     pub near: Stencil,
     /// The same, when the level's own stencil does not act either.
     pub whole: Stencil,
@@ -152,7 +153,8 @@ mod tests {
         }
     }
 
-    /// A constant pressure displaces alike on every level: stencils of the levels up to a common one add up to the same.
+    /// A constant pressure displaces alike on every level: stencils of the levels up to a common one add up to the
+    /// same.
     #[test]
     fn a_constant_is_the_same_on_every_level() {
         let split = ScaleSplit::new(SplitParams::certified());

@@ -1,8 +1,8 @@
 //! The filter between two levels: pressures go up by it, displacements come down.
 //!
-//! The centre of an element is a quarter of a coarse element away from the nearest coarse centre, on one side or the other,
-//! so that one set of taps, and its mirror image, is the whole table. It is the set that interpolates waves best (least
-//! squares), weighted by the spectrum of the remainder.
+//! The centre of an element is a quarter of a coarse element away from the nearest coarse centre, on one side or the
+//! other, so that one set of taps, and its mirror image, is the whole table. It is the set that interpolates waves best
+//! (least squares), weighted by the spectrum of the remainder.
 
 use super::SplitParams;
 use super::window::Window;
@@ -20,8 +20,8 @@ pub struct Filter {
 }
 
 impl Filter {
-    /// Weights of the coarse centres `c - (n/2 - 1), …, c + n/2`, n of them, in the value at the fine centre a quarter of a
-    /// coarse element beyond the coarse centre `c`; mirrored for the one before it.
+    /// Weights of the coarse centres `c - (n/2 - 1), …, c + n/2`, n of them, in the value at the fine centre a quarter
+    /// of a coarse element beyond the coarse centre `c`; mirrored for the one before it.
     #[must_use]
     pub fn taps(&self) -> &[f64] {
         &self.taps
@@ -35,13 +35,14 @@ impl Filter {
     }
 }
 
-/// For the finest level the filter is half of the difference between an element and a point: √sinc(q/2) along each axis;
-/// the other half is in its transpose.
+/// For the finest level the filter is half of the difference between an element and a point: √sinc(q/2) along each
+/// axis; the other half is in its transpose.
 pub(super) fn love_target(q: f64) -> f64 {
     ((0.5 * q).sin() / (0.5 * q)).sqrt()
 }
 
-/// Weight of the wavenumber `q` in a fit: the remainder of the cutoff `c`, times the decay of a pressure with square-root edges.
+/// Weight of the wavenumber `q` in a fit: the remainder of the cutoff `c`, times the decay of a pressure with
+/// square-root edges.
 pub(super) fn weight(window: &Window, c: f64, q: f64) -> f64 {
     (2.0 / q - c * window.short_range(q * c)) * q.powf(-1.5)
 }
@@ -72,8 +73,8 @@ pub(super) fn least_squares(rows: Vec<Vec<f64>>, n: usize) -> Vec<f64> {
     fit(rows, n).pop().unwrap_or_default()
 }
 
-/// Solves an overdetermined system of `n` unknowns, rows with right-hand sides last, by Householder reflections: a solution for each of
-/// these.
+/// Solves an overdetermined system of `n` unknowns, rows with right-hand sides last, by Householder reflections: a
+/// solution for each of these.
 pub(super) fn fit(mut rows: Vec<Vec<f64>>, n: usize) -> Vec<Vec<f64>> {
     let width = rows.first().map_or(n, Vec::len);
     for column in 0..n {

@@ -7,8 +7,8 @@ use super::{Filter, Stencil};
 /// Wavenumbers per axis at which the symbol is taken.
 const SAMPLES: usize = 64;
 
-/// The difference between |q|/2 on a level and |q|/2 on the next coarser one between two filters, cut off at `radius`. The weight at
-/// the centre is such that a constant still gives zero.
+/// The difference between |q|/2 on a level and |q|/2 on the next coarser one between two filters, cut off at `radius`.
+/// The weight at the centre is such that a constant still gives zero.
 pub(super) fn stencil(filter: &Filter, radius: usize) -> Stencil {
     let n = SAMPLES as i32;
     let wavenumbers: Vec<f64> = (0..n).map(|k| 2.0 * PI * f64::from(k - n / 2) / f64::from(n)).collect();

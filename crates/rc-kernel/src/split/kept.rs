@@ -1,5 +1,5 @@
-//! What is made once for each set of parameters, and kept as long as the process: many small problems would spend more time on it than on
-//! their solution.
+//! What is made once for each set of parameters, and kept as long as the process: many small problems would spend more
+//! time on it than on their solution.
 
 use std::sync::{Mutex, PoisonError};
 

@@ -1,4 +1,5 @@
-//! The kernel split by scale: a short-range stencil for each level of a mesh, and a smooth remainder for the next coarser one.
+//! The kernel split by scale: a short-range stencil for each level of a mesh, and a smooth remainder for the next
+//! coarser one.
 //!
 //! With a window χ that falls from 1 at r = 0 to 0 at the cutoff c ([`window`](self)), the half-space is
 //!
@@ -59,8 +60,8 @@ impl ScaleSplit {
         self.params
     }
 
-    /// Displacement at the centres around an element under unit pressure (Love's square), remainder excluded, for elements
-    /// of side 1.
+    /// Displacement at the centres around an element under unit pressure (Love's square), remainder excluded, for
+    /// elements of side 1.
     #[must_use]
     pub fn love_stencil(&self) -> Stencil {
         static STENCILS: Kept<Stencil> = Kept::new();
@@ -81,7 +82,8 @@ impl ScaleSplit {
         stencil::between(&self.window, self.params.cutoff, inner, sides)
     }
 
-    /// Filter between the finest level, of Love's squares, and a level with `ratio` elements to a finest one, along one axis.
+    /// Filter between the finest level, of Love's squares, and a level with `ratio` elements to a finest one, along one
+    /// axis.
     #[must_use]
     pub fn uneven_filter(&self, ratio: f64) -> UnevenFilter {
         uneven::design(&self.window, self.params, ratio)
@@ -120,15 +122,17 @@ impl ScaleSplit {
         c * self.window.short_range(q * c)
     }
 
-    /// Bound of the second derivatives along x and along y of the remainder's displacement, for pressures between 0 and 1 and
-    /// a cutoff `c`: what lies between two points of a grid cannot differ more from the line between them than this allows.
+    /// Bound of the second derivatives along x and along y of the remainder's displacement, for pressures between 0 and
+    /// 1 and a cutoff `c`: what lies between two points of a grid cannot differ more from the line between them than
+    /// this allows.
     #[must_use]
     pub fn remainder_curvature(&self, c: f64) -> f64 {
         self.window.curvature() / (std::f64::consts::PI * c)
     }
 
-    /// Stencil of one level of the inverse operator |q|/2, for elements of side 1 and reach `radius`; to be divided by the
-    /// side. Together with [`ScaleSplit::level_filter`] on every level and |q|/2 on the base grid it is a preconditioner.
+    /// Stencil of one level of the inverse operator |q|/2, for elements of side 1 and reach `radius`; to be divided by
+    /// the side. Together with [`ScaleSplit::level_filter`] on every level and |q|/2 on the base grid it is a
+    /// preconditioner.
     #[must_use]
     pub fn inverse_stencil(&self, radius: usize) -> Stencil {
         inverse::stencil(&self.level_filter(), radius)
@@ -139,8 +143,8 @@ impl ScaleSplit {
 mod tests {
     use super::*;
 
-    /// The displacement of the pressure that bends the remainder most, 1 where it is bent up, is between the bound's part for that sign and
-    /// the bound, which is for both.
+    /// The displacement of the pressure that bends the remainder most, 1 where it is bent up, is between the bound's
+    /// part for that sign and the bound, which is for both.
     #[test]
     fn no_pressure_bends_the_remainder_more_than_its_bound() {
         let (step, reach) = (0.02, 300_i32);

@@ -15,8 +15,8 @@ impl SplitParams {
     /// The smallest error that [`SplitParams::for_error`] promises.
     pub const SMALLEST_ERROR: f64 = 1e-10;
 
-    /// For corrections of a pressure that is known otherwise: relative error of v below 2e-3 on the pressures of contacts, and
-    /// of a few percent on pressures as rough as corrections are.
+    /// For corrections of a pressure that is known otherwise: relative error of v below 2e-3 on the pressures of
+    /// contacts, and of a few percent on pressures as rough as corrections are.
     #[must_use]
     pub fn quick() -> Self {
         Self { cutoff: 3, shape: 3.0, taps: 4 }
@@ -28,11 +28,11 @@ impl SplitParams {
         Self { cutoff: 8, shape: 10.0, taps: 16 }
     }
 
-    /// The cheapest split whose error of v, relative to its rms, is below `bound` on pressures of contacts: with square-root
-    /// edges, on random meshes of up to three levels above a base grid on which contacts are a few elements wide (test
-    /// `one_application_agrees_with_exact_sums` of rc-solver). On white noise it is 4 to 7
-    /// times the bound for 1e-6, 10 to 20 times for 2e-9.
-    /// `None` when the bound is below [`SplitParams::SMALLEST_ERROR`] or not a number.
+    /// The cheapest split whose error of v, relative to its rms, is below `bound` on pressures of contacts: with
+    /// square-root edges, on random meshes of up to three levels above a base grid on which contacts are a few elements
+    /// wide (test `one_application_agrees_with_exact_sums` of rc-solver). On white noise it is 4 to 7 times the bound
+    /// for 1e-6, 10 to 20 times for 2e-9. `None` when the bound is below [`SplitParams::SMALLEST_ERROR`] or not a
+    /// number.
     #[must_use]
     pub fn for_error(bound: f64) -> Option<Self> {
         match bound {

@@ -1,7 +1,7 @@
 //! The filter between the finest level and a level that has not half as many elements along a side.
 //!
-//! Centres of elements are then anywhere between coarse ones, so that each has its own taps. What they are fitted to is the same for all but
-//! for a shift: one fit at Chebyshev nodes gives the taps at any place, as polynomials.
+//! Centres of elements are then anywhere between coarse ones, so that each has its own taps. What they are fitted to is
+//! the same for all but for a shift: one fit at Chebyshev nodes gives the taps at any place, as polynomials.
 
 use std::f64::consts::PI;
 
@@ -10,8 +10,8 @@ use super::filter::{EXACT, SAMPLES, fit, love_target, weight};
 use super::window::Window;
 use crate::chebyshev::{coefficients, node, polynomials};
 
-/// Places that taps are fitted at: the fastest wave advances by half a period in a coarse element, and its polynomial of this many terms is
-/// exact to rounding.
+/// Places that taps are fitted at: the fastest wave advances by half a period in a coarse element, and its polynomial
+/// of this many terms is exact to rounding.
 const NODES: usize = 24;
 
 /// Interpolation to the finest level, along one axis, from a level with other elements.
@@ -22,8 +22,8 @@ pub struct UnevenFilter {
 }
 
 impl UnevenFilter {
-    /// Weights of the coarse centres `c - (n/2 - 1), …, c + n/2`, n of them, in the value at the fine centre `offset` (0 to 1) of a
-    /// coarse element beyond the coarse centre `c`.
+    /// Weights of the coarse centres `c - (n/2 - 1), …, c + n/2`, n of them, in the value at the fine centre `offset`
+    /// (0 to 1) of a coarse element beyond the coarse centre `c`.
     #[must_use]
     pub fn taps(&self, offset: f64) -> Vec<f64> {
         let waves = polynomials::<NODES>(2.0 * offset - 1.0);

@@ -8,7 +8,8 @@ use crate::bessel::bessel_series;
 use crate::chebyshev::Series;
 use crate::gauss_legendre::gauss_legendre;
 
-/// Terms of the expansions before negligible ones are dropped. They reach rounding accuracy up to β = 24 and cutoffs of 24 elements.
+/// Terms of the expansions before negligible ones are dropped. They reach rounding accuracy up to β = 24 and cutoffs of
+/// 24 elements.
 const TERMS: usize = 64;
 
 /// χ, tabulated.
@@ -81,8 +82,8 @@ impl Window {
         std::f64::consts::TAU * (inside + jump + mean(2.0, -1.0))
     }
 
-    /// Transform of `χ(r)/(π r)` at the wavenumber `q`: `2 ∫₀¹ χ(r) J₀(q r) dr`. Beyond the tabulated range it is extended
-    /// by its asymptote, 2/q.
+    /// Transform of `χ(r)/(π r)` at the wavenumber `q`: `2 ∫₀¹ χ(r) J₀(q r) dr`. Beyond the tabulated range it is
+    /// extended by its asymptote, 2/q.
     pub(super) fn short_range(&self, q: f64) -> f64 {
         if q < self.reach { self.transform.at((q / self.reach).powi(2)) } else { 2.0 / q }
     }

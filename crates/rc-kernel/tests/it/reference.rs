@@ -61,7 +61,8 @@ fn a_square_is_the_sum_of_its_quarters() {
 
 #[test]
 fn displacement_is_smooth_where_the_series_takes_over() {
-    // Third differences of a smooth function over 1e-6 are 1e-18: what is left is rounding, eight times that of a value.
+    // Third differences of a smooth function over 1e-6 are 1e-18: what is left is rounding, eight times that of a
+    // value.
     for y in [0.0, 1.0, 1.7, 2.5] {
         let at = |i: i32| love_displacement(DVec2::new(2.5 + 1e-6 * f64::from(i), y), 1.0);
         let jump = (at(1) - 3.0 * at(0) + 3.0 * at(-1) - at(-2)).abs() / at(0);
@@ -116,8 +117,8 @@ fn love_symbol_reproduces_the_periodic_coefficients() {
 
 #[test]
 fn love_symbol_reproduces_the_amplitude_ratios() {
-    // Full contact of one wave on m elements per wavelength, relative to the continuous half-space: the printed digits, and
-    // the converged alias sum.
+    // Full contact of one wave on m elements per wavelength, relative to the continuous half-space: the printed digits,
+    // and the converged alias sum.
     let ratio = |m: usize, both: bool| {
         let (grid, ky) = (Grid::square(m).expect("grid"), usize::from(both));
         let exact = Spectral.symbol(grid)(1, ky);

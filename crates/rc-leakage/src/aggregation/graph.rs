@@ -149,8 +149,9 @@ impl Graph {
         });
     }
 
-    /// Element `k` of the block from `start` on, from the neighbours in it that are relaxed already. Bonds to other blocks count twice: two
-    /// elements that are strongly bound across a border would otherwise change places (Baker, Falgout, Kolev and Yang, SIAM J. Sci. Comput. 33, 2011).
+    /// Element `k` of the block from `start` on, from the neighbours in it that are relaxed already. Bonds to other
+    /// blocks count twice: two elements that are strongly bound across a border would otherwise change places (Baker,
+    /// Falgout, Kolev and Yang, SIAM J. Sci. Comput. 33, 2011).
     #[inline]
     fn relaxed(&self, right: &[f64], (start, x): (usize, &[f64]), k: usize, is_done: impl Fn(usize) -> bool) -> f64 {
         let (mut flow, mut total) = (right[start + k], self.totals[start + k]);

@@ -1,8 +1,10 @@
-//! Multigrid on aggregates of strongly bound elements, for networks that coarser grids do not represent: films that hang together by a few elements.
+//! Multigrid on aggregates of strongly bound elements, for networks that coarser grids do not represent: films that
+//! hang together by a few elements.
 //!
-//! An aggregate is a pair of pairs (Notay, Electron. Trans. Numer. Anal. 37, 2010; Napov and Notay, SIAM J. Sci. Comput. 34, 2012). The coarser
-//! network is that of pressures that are constant on each. It is solved by two steps of conjugate gradients with its own cycle as
-//! preconditioner. Bonds of coarser levels are sums of bonds: nothing cancels, whatever the ratio of their conductances.
+//! An aggregate is a pair of pairs (Notay, Electron. Trans. Numer. Anal. 37, 2010; Napov and Notay, SIAM J. Sci.
+//! Comput. 34, 2012). The coarser network is that of pressures that are constant on each. It is solved by two steps of
+//! conjugate gradients with its own cycle as preconditioner. Bonds of coarser levels are sums of bonds: nothing
+//! cancels, whatever the ratio of their conductances.
 
 mod aggregates;
 mod graph;

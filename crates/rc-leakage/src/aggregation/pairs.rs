@@ -6,14 +6,16 @@ use super::graph::Graph;
 /// No aggregate yet.
 const FREE: u32 = u32::MAX - 1;
 
-/// Most that the energy of a pressure may grow when it is replaced by its mean on a pair, in units of what relaxation takes off: Napov and Notay's quality.
+/// Most that the energy of a pressure may grow when it is replaced by its mean on a pair, in units of what relaxation
+/// takes off: Napov and Notay's quality.
 const WORST: f64 = 8.0;
 
-/// An element that is left without a partner joins the aggregate of its strongest bond, where this has at least this part of all its bonds.
+/// An element that is left without a partner joins the aggregate of its strongest bond, where this has at least this
+/// part of all its bonds.
 const DOMINANT: f64 = 0.5;
 
-/// Pairs along the strongest bonds, in the order of the elements. `totals` are those of the bonds that relaxation sees: of the elements themselves, or the
-/// sums over what they are made of.
+/// Pairs along the strongest bonds, in the order of the elements. `totals` are those of the bonds that relaxation sees:
+/// of the elements themselves, or the sums over what they are made of.
 pub(super) fn matched(graph: &Graph, totals: &[f64]) -> Aggregates {
     let mut of = vec![FREE; graph.len()];
     let mut number = 0;

@@ -1,4 +1,5 @@
-//! Interpolation from a coarser level, with weights from the bonds of the finer one (black box multigrid: Dendy, J. Comput. Phys. 48, 1982).
+//! Interpolation from a coarser level, with weights from the bonds of the finer one (black box multigrid: Dendy, J.
+//! Comput. Phys. 48, 1982).
 
 use super::stencil::Stencil;
 use crate::parallel;
@@ -24,8 +25,8 @@ pub(super) struct Interpolation<T> {
     centre: Vec<[T; 4]>,
 }
 
-/// Weights of an element between two coarse ones, from what binds it to both sides. One that is bound to neither is given to a
-/// side that is a wall, so that no element that flows is without a coarse one.
+/// Weights of an element between two coarse ones, from what binds it to both sides. One that is bound to neither is
+/// given to a side that is a wall, so that no element that flows is without a coarse one.
 fn weights<T: Real>(towards: [T; 2], is_wall: [bool; 2]) -> [T; 2] {
     let [first, second] = towards.map(|bond| if bond > T::ZERO { bond } else { T::ZERO });
     let total = first + second;
@@ -137,7 +138,8 @@ impl<T: Real> Interpolation<T> {
         if total > T::TINY { truncated(sums.map(|sum| sum / total)) } else { [T::of(0.25); 4] }
     }
 
-    /// Weights of the fine element `offset` after coarse element `at`, of this one, the next along x, along y, along both.
+    /// Weights of the fine element `offset` after coarse element `at`, of this one, the next along x, along y, along
+    /// both.
     pub(super) fn corner_weights(&self, at: [usize; 2], offset: [usize; 2]) -> [T; 4] {
         let widths = self.widths(at);
         let ends = [0, 1].map(|axis| offset[axis] == widths[axis]);
@@ -190,7 +192,8 @@ impl<T: Real> Interpolation<T> {
         });
     }
 
-    /// Writes into `coarse` what the adjoint of the interpolation makes of the fine residual, of which `residual` writes a row.
+    /// Writes into `coarse` what the adjoint of the interpolation makes of the fine residual, of which `residual`
+    /// writes a row.
     pub(super) fn restrict(&self, residual: &(dyn Fn(usize, &mut [T]) + Sync), coarse: &mut [T]) {
         let (nc, rows_per_block) = (self.coarse[0], (parallel::rows_per_block(self.fine[0]) / 2).max(4));
         let blocks = coarse.chunks_mut(rows_per_block * nc).enumerate().collect();

@@ -6,7 +6,8 @@ use crate::real::Real;
 /// Rows that are relaxed one after the other; the next block sees their values from before the sweep.
 const BLOCK_ROWS: usize = 32;
 
-/// Conductances between the elements of a periodic grid. A bond is kept by the lower left of the elements that it belongs to.
+/// Conductances between the elements of a periodic grid. A bond is kept by the lower left of the elements that it
+/// belongs to.
 #[derive(Debug)]
 pub(super) struct Stencil<T> {
     pub(super) nx: usize,
@@ -77,8 +78,9 @@ impl<T: Real> RowBonds<'_, T> {
         out[0] += corners.rising_below[last] * pull(below[last], row[0]);
     }
 
-    /// Relaxes every second element from `first` on; `pull` is the right side and what the rows below and above add to it. Of an odd number of
-    /// elements the first and the last are neighbours: the later one goes first on the way back.
+    /// Relaxes every second element from `first` on; `pull` is the right side and what the rows below and above add to
+    /// it. Of an odd number of elements the first and the last are neighbours: the later one goes first on the way
+    /// back.
     fn relax_along(&self, row: &mut [T], pull: &[T], inverse: &[T], (order, first): (Order, usize)) {
         let (n, east) = (row.len(), self.east);
         let relax = |row: &mut [T], [before, i, after]: [usize; 3]| {
@@ -175,7 +177,8 @@ impl<T: Real> Stencil<T> {
         self.inverse = inverse;
     }
 
-    /// One sweep of Gauss and Seidel in four colours over blocks of rows: every second row, and in it every second element.
+    /// One sweep of Gauss and Seidel in four colours over blocks of rows: every second row, and in it every second
+    /// element.
     pub(super) fn relax(&self, x: &mut [T], right: &[T], order: Order) {
         let nx = self.nx;
         let borders: Vec<[Vec<T>; 2]> = (0..self.ny)
@@ -234,7 +237,8 @@ impl<T: Real> Stencil<T> {
     }
 }
 
-/// Rows that are relaxed together, from row `first` on, and the rows before and after them as they were before the sweep.
+/// Rows that are relaxed together, from row `first` on, and the rows before and after them as they were before the
+/// sweep.
 struct RowBlock<'a, T> {
     first: usize,
     x: &'a mut [T],

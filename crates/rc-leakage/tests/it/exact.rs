@@ -40,8 +40,9 @@ fn a_channel_with_a_step_adds_resistances_and_channels_side_by_side_add_conducta
     check(permeances(&channel)[0], 0.5 / (0.5 / 1e-6 + 0.5 / 8e-6), "a step between walls");
 }
 
-/// By Keller's theorem (J. Math. Phys. 5, 1964) K_x of g³ times K_y of 1/g³ is 1. Shifting this gap by half a cell along both axes makes 1/g³ of g³,
-/// and x and y may change places: K = 1, which effective medium theory gives as well. The network has the same symmetry.
+/// By Keller's theorem (J. Math. Phys. 5, 1964) K_x of g³ times K_y of 1/g³ is 1. Shifting this gap by half a cell
+/// along both axes makes 1/g³ of g³, and x and y may change places: K = 1, which effective medium theory gives as well.
+/// The network has the same symmetry.
 #[test]
 fn a_medium_that_is_its_own_dual_has_the_geometric_mean() {
     for n in [32, 64, 128] {

@@ -80,7 +80,8 @@ fn random(i: usize) -> f64 {
     ((bits ^ (bits >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Elements that are walls with this probability, and gaps over so many decades. The film percolates up to 0.4073 walls.
+/// Elements that are walls with this probability, and gaps over so many decades. The film percolates up to 0.4073
+/// walls.
 fn noise(n: usize, walls: f64, decades: f64) -> Field {
     let grid = Grid::square(n).expect("a grid");
     let of = |i: usize| 10.0_f64.powf(-decades * random(i + grid.len()));

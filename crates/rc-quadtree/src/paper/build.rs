@@ -7,16 +7,16 @@ use super::mask::Mask;
 use super::mesh::Mesh;
 
 impl Mesh {
-    /// The mesh of a contact set, by the paper's "purely geometric criteria" (text at Fig. 3): the smallest elements along every
-    /// contact border, doubling towards the inside of each spot, nothing outside contact and halo.
+    /// The mesh of a contact set, by the paper's "purely geometric criteria" (text at Fig. 3): the smallest elements
+    /// along every contact border, doubling towards the inside of each spot, nothing outside contact and halo.
     ///
-    /// A block of 2^k × 2^k cells is one element, unless it is part of a larger one, when it and `ring` blocks of its own
-    /// size around it, around the periodic cell, are all in contact. With a ring of at least 1 the result is 2:1 balanced
-    /// at edges and corners without further work: every block of half the side that touches the element has its own ring
-    /// within the ring of the element, so it is at least part of an element of half the side.
+    /// A block of 2^k × 2^k cells is one element, unless it is part of a larger one, when it and `ring` blocks of its
+    /// own size around it, around the periodic cell, are all in contact. With a ring of at least 1 the result is 2:1
+    /// balanced at edges and corners without further work: every block of half the side that touches the element has
+    /// its own ring within the ring of the element, so it is at least part of an element of half the side.
     ///
-    /// The mesh depends on nothing but the arguments. Mirror images have mirrored meshes, and so have images shifted by a
-    /// multiple of a root square, or of any block that is not smaller than the largest element.
+    /// The mesh depends on nothing but the arguments. Mirror images have mirrored meshes, and so have images shifted by
+    /// a multiple of a root square, or of any block that is not smaller than the largest element.
     ///
     /// *Cost*: 0.3 s or less for 4096² cells (`benches/mesh.rs`).
     ///

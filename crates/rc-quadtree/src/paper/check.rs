@@ -4,8 +4,8 @@ use super::key::{Key, MAX_LEVEL};
 use super::mesh::Mesh;
 
 impl Mesh {
-    /// Checks every invariant, for tests: squares inside the cell and aligned, strictly sorted without overlap, total area at most that of the
-    /// cell, 2:1 balance at edges and corners across the periodic seam.
+    /// Checks every invariant, for tests: squares inside the cell and aligned, strictly sorted without overlap, total
+    /// area at most that of the cell, 2:1 balance at edges and corners across the periodic seam.
     ///
     /// *Cost*: some 10 binary searches an element.
     ///

@@ -76,7 +76,8 @@ impl RefinementPlan {
     }
 }
 
-/// Decides the mesh of [`Mesh::from_mask`](super::Mesh::from_mask), from nothing but the arguments (test `plan_is_pure`).
+/// Decides the mesh of [`Mesh::from_mask`](super::Mesh::from_mask), from nothing but the arguments (test
+/// `plan_is_pure`).
 pub(super) fn plan(mask: &Mask, kind: MeshKind, params: &MeshParams) -> Result<RefinementPlan, MeshError> {
     let depth = depth_of(mask.side(), params.base)?;
     if params.ring == 0 {
@@ -102,14 +103,14 @@ pub(super) fn plan(mask: &Mask, kind: MeshKind, params: &MeshParams) -> Result<R
     Ok(RefinementPlan { base: params.base, levels })
 }
 
-/// Number of elements of each level of the mesh that [`Mesh::from_mask`](super::Mesh::from_mask) builds, from level 0 to the
-/// finest, without building it.
+/// Number of elements of each level of the mesh that [`Mesh::from_mask`](super::Mesh::from_mask) builds, from level 0
+/// to the finest, without building it.
 ///
 /// *Cost*: 4096² cells in about 0.1 s and 4 bytes a cell (`benches/mesh.rs`).
 ///
 /// # Errors
-/// [`MeshError::Base`] and [`MeshError::Side`] when the mask has not `base · 2^k` cells per side; [`MeshError::TooDeep`] when k is
-/// above [`MAX_LEVEL`](super::MAX_LEVEL); [`MeshError::ZeroRing`].
+/// [`MeshError::Base`] and [`MeshError::Side`] when the mask has not `base · 2^k` cells per side;
+/// [`MeshError::TooDeep`] when k is above [`MAX_LEVEL`](super::MAX_LEVEL); [`MeshError::ZeroRing`].
 pub fn count(mask: &Mask, kind: MeshKind, params: &MeshParams) -> Result<Vec<usize>, MeshError> {
     Ok(plan(mask, kind, params)?.counts())
 }

@@ -6,8 +6,8 @@ use super::key::Key;
 
 /// A periodic linear quadtree on the unit cell: squares of side `1 / (base · 2^level)`, sorted along the Morton curve.
 ///
-/// Only the squares of the contact set (and its halo) are stored; everything else is out of contact. Elements never overlap.
-/// Elements that touch, at an edge or a corner, also across the periodic seam, differ by at most one level.
+/// Only the squares of the contact set (and its halo) are stored; everything else is out of contact. Elements never
+/// overlap. Elements that touch, at an edge or a corner, also across the periodic seam, differ by at most one level.
 ///
 /// *Memory*: 8 bytes an element.
 #[derive(Clone, Debug, PartialEq, Eq)]

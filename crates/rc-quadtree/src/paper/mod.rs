@@ -2,8 +2,8 @@
 //!
 //! 1. A [`Mask`] says which cells of the finest uniform grid are in contact.
 //! 2. A plan decides, purely, which squares become elements ([`MeshKind`], [`MeshParams`]). [`count`] stops here.
-//! 3. [`Mesh::from_mask`] builds the [`Mesh`], a sorted list of [`Key`]s. [`transfer`] brings a pressure to another mesh and keeps
-//!    the load; [`Mesh::to_field`] brings it to a uniform grid.
+//! 3. [`Mesh::from_mask`] builds the [`Mesh`], a sorted list of [`Key`]s. [`transfer`] brings a pressure to another
+//!    mesh and keeps the load; [`Mesh::to_field`] brings it to a uniform grid.
 //!
 //! ```
 //! use rc_core::Grid;
@@ -23,8 +23,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Lengths are in λ, the side of the cell. Everything that is not an element is out of contact. Coordinates of masks and fields: see
-//! [`rc_core`].
+//! Lengths are in λ, the side of the cell. Everything that is not an element is out of contact. Coordinates of masks
+//! and fields: see [`rc_core`].
 
 mod build;
 mod check;

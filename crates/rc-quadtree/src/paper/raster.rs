@@ -7,12 +7,12 @@ use super::key::Key;
 use super::mesh::Mesh;
 
 impl Mesh {
-    /// The field of values per element on a uniform grid, 0 where there is no element. Each cell is the mean over its area, so
-    /// the mean of the field is the load Σ value·area to rounding.
+    /// The field of values per element on a uniform grid, 0 where there is no element. Each cell is the mean over its
+    /// area, so the mean of the field is the load Σ value·area to rounding.
     ///
     /// # Errors
-    /// [`MeshError::Length`] when there is not one value an element; [`MeshError::NotSquare`]; [`MeshError::Side`] when the grid
-    /// has not `base · 2^k` cells per side.
+    /// [`MeshError::Length`] when there is not one value an element; [`MeshError::NotSquare`]; [`MeshError::Side`] when
+    /// the grid has not `base · 2^k` cells per side.
     pub fn to_field(&self, values: &[f64], grid: Grid) -> Result<Field, MeshError> {
         check_length(self.len(), values.len())?;
         if !grid.is_square() {

@@ -14,8 +14,8 @@ pub struct Transferred {
     pub lost: f64,
 }
 
-/// Brings values per element (a pressure) from one mesh to another: smaller elements copy, larger ones average by areas of
-/// overlap, new elements get 0.
+/// Brings values per element (a pressure) from one mesh to another: smaller elements copy, larger ones average by areas
+/// of overlap, new elements get 0.
 ///
 /// The load is conserved: load of the values + `lost` = load of `old`, to rounding (property test
 /// `transfer_conserves_the_load`). Both meshes are intervals of one Morton curve, so this is one merge of two sorted

@@ -68,8 +68,8 @@ impl TilesByRow {
     }
 }
 
-/// Hands the rows of a band to the rank that gets them, zero where there is no tile: a row of tiles at a time, the index of the first row of
-/// cells with them. `own` are the tiles that this rank has. All ranks call this together.
+/// Hands the rows of a band to the rank that gets them, zero where there is no tile: a row of tiles at a time, the
+/// index of the first row of cells with them. `own` are the tiles that this rank has. All ranks call this together.
 pub(super) fn hand_out<'v, E>(
     (tiles, ranks): (&TileSet, &Ranks),
     (band, to): (Range<usize>, usize),

@@ -19,11 +19,12 @@ pub(super) const SMALLEST_BASE: usize = 64;
 /// The same along the shorter side, where it does not follow from the finest grid.
 const SMALLEST_WIDTH: usize = 16;
 
-/// Part of the mean square slope of a map that differences over the base grid's spacing must keep: four elements for a wave keep 0.81 of its slope,
-/// two keep 0.41.
+/// Part of the mean square slope of a map that differences over the base grid's spacing must keep: four elements for a
+/// wave keep 0.81 of its slope, two keep 0.41.
 const SLOPE_KEPT: f64 = 0.8;
 
-/// Checks or chooses the sides of the base grid in elements. Where its elements along x are `wanted`, those along y are in proportion.
+/// Checks or chooses the sides of the base grid in elements. Where its elements along x are `wanted`, those along y are
+/// in proportion.
 pub(super) fn base_sides(source: &HeightSource<'_>, wanted: Option<usize>) -> Result<[usize; 2], AdaptiveError> {
     let finest = sides_of(source.grid());
     let waves = source.surface().and_then(HeightField::band_limit);
@@ -32,7 +33,8 @@ pub(super) fn base_sides(source: &HeightSource<'_>, wanted: Option<usize>) -> Re
         return wanted_sides(base, waves.unwrap_or(0), finest).ok_or(error);
     }
     let long = finest[0].max(finest[1]);
-    // Heights may have waves as short as a few elements: two levels above the base grid are safe, and three on large grids.
+    // Heights may have waves as short as a few elements: two levels above the base grid are safe, and three on large
+    // grids.
     let safe = long / if long >= 4096 { 8 } else { 4 };
     let least = match (waves, source.map()) {
         (Some(waves), _) => BASE_ELEMENTS_PER_WAVE * waves,
@@ -44,7 +46,8 @@ pub(super) fn base_sides(source: &HeightSource<'_>, wanted: Option<usize>) -> Re
         let is_whole = finest.iter().all(|&side| side.is_multiple_of(n * TILE));
         is_whole.then(|| finest.map(|side| side / n))
     };
-    // As many levels as the longer side has halves that are not below `least`; one at least, where that keeps the waves.
+    // As many levels as the longer side has halves that are not below `least`; one at least, where that keeps the
+    // waves.
     let mut n = 1;
     while long / (2 * n) >= least {
         n *= 2;
@@ -67,18 +70,19 @@ pub(super) fn base_sides(source: &HeightSource<'_>, wanted: Option<usize>) -> Re
     even.filter(|even| !is_larger(even)).or(uneven).or(others).ok_or(error)
 }
 
-/// How many more elements than the finest grid the base grid doubled may have along a side, in parts of the side. (Patches of the operator
-/// are large enough for this.)
+/// How many more elements than the finest grid the base grid doubled may have along a side, in parts of the side.
+/// (Patches of the operator are large enough for this.)
 const MOST_ADDED: f64 = 0.15;
 
-/// Elements of the base grid may be longer along one side by this part, or by the second one where there is no other grid.
+/// Elements of the base grid may be longer along one side by this part, or by the second one where there is no other
+/// grid.
 const OBLONG: [f64; 2] = [0.01, 0.02];
 
 /// Greatest prime factor of the base grid's sides: Fourier transforms of such lengths are fast.
 const GREATEST_FACTOR: usize = 7;
 
-/// The base grid with the fewest elements that `n` times as many along a side are not fewer than those of the finest, nor many more, with
-/// elements that are nearly squares; none where there is no such grid.
+/// The base grid with the fewest elements that `n` times as many along a side are not fewer than those of the finest,
+/// nor many more, with elements that are nearly squares; none where there is no such grid.
 fn uneven_sides(finest: Grid, n: usize) -> Option<[usize; 2]> {
     let candidates = |side: usize| -> Vec<usize> {
         let least = side.div_ceil(n).next_multiple_of(TILE).max(SMALLEST_WIDTH);
@@ -117,8 +121,8 @@ fn smooth_side(map: &Field) -> usize {
     sides[0].max(sides[1]) / spacing
 }
 
-/// Of differences over so many elements along both axes, in units of the height over the side of an element. All rows are looked at: on
-/// some of them a surface that repeats may look smooth.
+/// Of differences over so many elements along both axes, in units of the height over the side of an element. All rows
+/// are looked at: on some of them a surface that repeats may look smooth.
 fn mean_square_slope(map: &Field, spacing: usize) -> f64 {
     let (nx, ny) = (map.grid().nx(), map.grid().ny());
     let of_row = |iy: usize| {

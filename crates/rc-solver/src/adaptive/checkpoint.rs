@@ -13,7 +13,8 @@ pub trait Checkpoint: Send + Sync {
     /// `len` bytes from `offset` on of what was kept; none where there are fewer, or nothing was kept.
     fn read(&self, offset: u64, len: usize) -> Option<Vec<u8>>;
 
-    /// Keeps these pieces, one after the other, in place of what was kept before. A failure is the keeper's to tell: the solve goes on.
+    /// Keeps these pieces, one after the other, in place of what was kept before. A failure is the keeper's to tell:
+    /// the solve goes on.
     fn replace(&self, pieces: &mut dyn Iterator<Item = Vec<u8>>);
 }
 

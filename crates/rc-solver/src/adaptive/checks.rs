@@ -9,9 +9,10 @@ use super::params::AdaptiveParams;
 use super::split::GapSplit;
 use crate::ErrorBound;
 
-/// Error of L relative to the rms displacement, over a relative tolerance, that descents may have: tolerances are relative to
-/// the height range, which is at least ten times the error's measure on any surface, and the greatest error of an element is up to five times
-/// the rms one. With 10, a third of a cell in contact at λ_min/128 did not converge to 3e-7.
+/// Error of L relative to the rms displacement, over a relative tolerance, that descents may have: tolerances are
+/// relative to the height range, which is at least ten times the error's measure on any surface, and the greatest error
+/// of an element is up to five times the rms one. With 10, a third of a cell in contact at λ_min/128 did not converge
+/// to 3e-7.
 const OPERATOR_ERROR_PER_TOLERANCE: f64 = 3.0;
 
 /// The same over the overlap that an energy error aims at, in units of U/σ0, which is 0.02 to 0.08 of the height range.

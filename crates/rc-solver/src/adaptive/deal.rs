@@ -5,7 +5,8 @@ use std::ops::Range;
 use rc_comm::Ranks;
 use rc_quadtree::TileSet;
 
-/// Ranges begin at multiples of so many tiles: sums are over blocks of 16 and of 64 tiles, and a block is never divided.
+/// Ranges begin at multiples of so many tiles: sums are over blocks of 16 and of 64 tiles, and a block is never
+/// divided.
 const AT_ONCE: usize = 64;
 
 /// The ranges of tiles that ranks have.

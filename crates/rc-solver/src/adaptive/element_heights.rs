@@ -7,12 +7,13 @@ use super::heights::Heights;
 use super::mesh::Mesh;
 use crate::problem::HeightStatistics;
 
-/// In units of the height range. Displacements there lack their smooth part, which differs by no more than the height range from that of
-/// elements, so that gaps are at least nine times it.
+/// In units of the height range. Displacements there lack their smooth part, which differs by no more than the height
+/// range from that of elements, so that gaps are at least nine times it.
 const FAR_BELOW: f64 = 10.0;
 
-/// Heights of the elements that this rank has, those of the elements of `known` taken from there. Values that have no element are never in
-/// contact: what fills up a vector has the minimum height, and what is beyond a level is far below.
+/// Heights of the elements that this rank has, those of the elements of `known` taken from there. Values that have no
+/// element are never in contact: what fills up a vector has the minimum height, and what is beyond a level is far
+/// below.
 pub(super) fn element_heights(heights: &Heights<'_>, mesh: &Mesh, known: Option<(&Mesh, &[f64])>) -> Vec<f64> {
     let HeightStatistics { greatest, least, .. } = heights.extremes();
     let none = if mesh.finest().is_whole() { least } else { least - FAR_BELOW * (greatest - least) };
@@ -48,9 +49,9 @@ pub(super) fn element_heights(heights: &Heights<'_>, mesh: &Mesh, known: Option<
     result
 }
 
-/// From heights at centres to means over the centres of the smallest elements, 2^`coarser` of them per side: the displacement of a
-/// larger element is such a mean too. With ⟨·⟩ over n × n centres, `⟨h⟩ - h(0) = Δh/24 (1 - 1/n²) d²` up to fourth order. The mean
-/// over four centres therefore gives the mean over all.
+/// From heights at centres to means over the centres of the smallest elements, 2^`coarser` of them per side: the
+/// displacement of a larger element is such a mean too. With ⟨·⟩ over n × n centres, `⟨h⟩ - h(0) = Δh/24 (1 - 1/n²) d²`
+/// up to fourth order. The mean over four centres therefore gives the mean over all.
 fn to_means(heights: &Heights<'_>, tiles: &TileSet, place: [u32; 2], coarser: usize, cells: &mut [f64; CELLS]) {
     let ratio = (1.0 - 1.0 / Elements::area(coarser)) / (1.0 - 0.25);
     for quarter in quarters(place) {

@@ -86,8 +86,8 @@ pub enum AdaptiveError {
         needed: u64,
         /// Limit, in 10^6 bytes.
         limit: u64,
-        /// Estimated contact area, in percent of the nominal one; `None` when the base grid alone is too large, which is said
-        /// before heights are sampled.
+        /// Estimated contact area, in percent of the nominal one; `None` when the base grid alone is too large, which
+        /// is said before heights are sampled.
         area_percent: Option<f64>,
     },
     /// The accuracy asked of the operator is out of reach.

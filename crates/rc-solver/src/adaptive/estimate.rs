@@ -8,7 +8,8 @@ use super::memory::base_bytes;
 use crate::Control;
 use crate::problem::Problem;
 
-/// Contact area relative to σ0/(E* · rms slope) at low loads; the literature has 1.6 to 2.5, and this solver 2.0 to 2.2.
+/// Contact area relative to σ0/(E* · rms slope) at low loads; the literature has 1.6 to 2.5, and this solver 2.0
+/// to 2.2.
 const PROPORTIONALITY: f64 = 2.1;
 
 /// Part of the cell that the tiles of a contact cover beyond the contact itself, measured at 1 % to 60 % contact, from
@@ -18,15 +19,17 @@ const TILES_PER_AREA: f64 = 1.9;
 /// Bytes for each cell of a tile where contact is possible, at the peak.
 const BYTES_PER_CELL: f64 = 80.0;
 
-/// What each border level adds to the bytes of a cell, relative to those without any, for the larger cells that every level reaches beyond its
-/// own: measured 75 to 150, 96 to 224 and 223 bytes for a cell of this estimate with one, two and three levels (512² and 1024², 5 % and 26 % contact).
+/// What each border level adds to the bytes of a cell, relative to those without any, for the larger cells that every
+/// level reaches beyond its own: measured 75 to 150, 96 to 224 and 223 bytes for a cell of this estimate with one, two
+/// and three levels (512² and 1024², 5 % and 26 % contact).
 const MORE_BYTES_PER_BORDER_LEVEL: f64 = 0.9;
 
-/// The same for the time: measured 2.3e-6 to 4.2e-6, 2.6e-6 to 5.5e-6 and 4.5e-6 seconds with one, two and three levels.
+/// The same for the time: measured 2.3e-6 to 4.2e-6, 2.6e-6 to 5.5e-6 and 4.5e-6 seconds with one, two and three
+/// levels.
 const MORE_WORK_PER_BORDER_LEVEL: f64 = 0.8;
 
-/// Cells of tiles with one more border level, relative to those without it: measured 3.1, 2.4 and 2.3 for the first three
-/// levels at 32 elements per shortest wave; edges alone would give 2.
+/// Cells of tiles with one more border level, relative to those without it: measured 3.1, 2.4 and 2.3 for the first
+/// three levels at 32 elements per shortest wave; edges alone would give 2.
 const GROWTH_PER_BORDER_LEVEL: f64 = 2.6;
 
 /// Bytes for each place of the smallest elements, used or not: the tables that find tiles, of a few meshes at a time.
@@ -48,12 +51,12 @@ pub(crate) struct Estimate {
 }
 
 impl Estimate {
-    /// Above this contact area the uniform grid is faster. Measured at 2048², N = 64: ratio of the times of the adaptive to the
-    /// uniform method 0.19 at 1 %, 0.29 at 7 %, 0.9 at 29 %, 1.3 at 61 % and 1.9 at 89 %.
+    /// Above this contact area the uniform grid is faster. Measured at 2048², N = 64: ratio of the times of the
+    /// adaptive to the uniform method 0.19 at 1 %, 0.29 at 7 %, 0.9 at 29 %, 1.3 at 61 % and 1.9 at 89 %.
     pub(crate) const GREATEST_ADAPTIVE_AREA: f64 = 0.35;
 
-    /// Above this fraction of the cell in tiles near contact, as the base grid finds it, the uniform grid is faster: measured on 27 scenes
-    /// (docs/measurements-adaptive.md).
+    /// Above this fraction of the cell in tiles near contact, as the base grid finds it, the uniform grid is faster:
+    /// measured on 27 scenes (docs/measurements-adaptive.md).
     pub(crate) const GREATEST_TILE_FRACTION: f64 = 0.35;
 
     pub(super) fn new(heights: &Heights<'_>, border_level: usize, problem: &Problem) -> Self {

@@ -1,8 +1,8 @@
 //! Where contact is possible: bounds that exclude it everywhere else.
 //!
-//! The displacement is a smooth part, interpolated from the base grid, plus short-range parts, which are not negative where no
-//! pressure is. The smooth part minus the height, both bounded between the points of the base grid, is then a lower bound of the
-//! gap. Fine cells are looked at only where this bound admits contact.
+//! The displacement is a smooth part, interpolated from the base grid, plus short-range parts, which are not negative
+//! where no pressure is. The smooth part minus the height, both bounded between the points of the base grid, is then a
+//! lower bound of the gap. Fine cells are looked at only where this bound admits contact.
 
 use rayon::prelude::*;
 use rc_comm::Ranks;
@@ -15,13 +15,13 @@ use super::ladder::sides_of;
 /// Side of a patch that holds a tile and its neighbours.
 const SIDE: usize = 3 * TILE;
 
-/// Between points of a grid a function is above their minimum less an eighth of its second derivative along either axis, times the square
-/// of the spacing.
+/// Between points of a grid a function is above their minimum less an eighth of its second derivative along either
+/// axis, times the square of the spacing.
 const SAGITTA: f64 = 0.25;
 
-/// The values on the base grid are the smooth displacement less 1/48 of its Laplacian, times the square of the finest elements' side, to leading
-/// order: the filter to the finest level holds the square root of the mean over an element. Those elements are at most half as large as
-/// the spacing where levels halve.
+/// The values on the base grid are the smooth displacement less 1/48 of its Laplacian, times the square of the finest
+/// elements' side, to leading order: the filter to the finest level holds the square root of the mean over an element.
+/// Those elements are at most half as large as the spacing where levels halve.
 const DECONVOLUTION: f64 = 1.0 / 96.0;
 
 /// The smooth part of the displacement.
@@ -90,7 +90,8 @@ impl Cells {
         }
     }
 
-    /// Appends the tile that a cell of the base grid is in, or those tiles in the cell that pass `may_touch` themselves.
+    /// Appends the tile that a cell of the base grid is in, or those tiles in the cell that pass `may_touch`
+    /// themselves.
     fn append_tiles(&self, at: [usize; 2], may_touch: &impl Fn([usize; 2]) -> bool, tiles: &mut Vec<[u32; 2]>) {
         let Self { base, extent, finest } = *self;
         if finest.is_none() && extent[0] <= base[0] {
@@ -131,7 +132,8 @@ mod tests {
 
     use super::*;
 
-    /// A displacement whose minimum, at the corner between four points of the base grid, touches a flat surface. At the points it does not.
+    /// A displacement whose minimum, at the corner between four points of the base grid, touches a flat surface. At the
+    /// points it does not.
     #[test]
     fn a_displacement_that_dips_between_points_is_not_excluded() {
         let (side, extent) = (32_usize, [8, 8]);

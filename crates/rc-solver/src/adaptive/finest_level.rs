@@ -1,7 +1,8 @@
 //! The finest level: solved to the tolerance, and certified for the whole cell.
 //!
-//! Rounds of two steps. A descent improves the pressure on the elements that press, or nearly do. An evaluation then computes the gap
-//! afresh wherever contact is possible, which gives the certificate, and adds elements until bounds exclude contact everywhere else.
+//! Rounds of two steps. A descent improves the pressure on the elements that press, or nearly do. An evaluation then
+//! computes the gap afresh wherever contact is possible, which gives the certificate, and adds elements until bounds
+//! exclude contact everywhere else.
 
 use std::ops::Range;
 
@@ -24,28 +25,29 @@ use crate::descent::{
 };
 use crate::solution::LevelInfo;
 
-/// The finest level is first solved to the tolerance times this, then the gap is computed afresh: corrections are applied with
-/// the quick operator, a few percent off on pressures as rough as corrections are.
+/// The finest level is first solved to the tolerance times this, then the gap is computed afresh: corrections are
+/// applied with the quick operator, a few percent off on pressures as rough as corrections are.
 const FIRST_TOLERANCE: f64 = 20.0;
 
-/// The error left to the fresh gap, relative to the tolerance, when corrections end. Two fresh gaps of one pressure, computed on
-/// different tiles, differ by about a tenth of the tolerance in the worst of ten million elements.
+/// The error left to the fresh gap, relative to the tolerance, when corrections end. Two fresh gaps of one pressure,
+/// computed on different tiles, differ by about a tenth of the tolerance in the worst of ten million elements.
 const LAST_TOLERANCE: f64 = 0.7;
 
-/// Rounds of descents and evaluations. Each round but the first starts with elements that the last one has missed; one is the rule,
-/// two are the exception.
+/// Rounds of descents and evaluations. Each round but the first starts with elements that the last one has missed; one
+/// is the rule, two are the exception.
 const MAX_ROUNDS: usize = 20;
 
-/// Candidates for contact are chosen with this margin, in units of the penetration, so that small changes of the pressure do
-/// not add others.
+/// Candidates for contact are chosen with this margin, in units of the penetration, so that small changes of the
+/// pressure do not add others.
 const CANDIDATE_MARGIN: f64 = 7e-3;
 
-/// The error of the smooth displacement on the base grid that the exclusion of contact allows for, in units of the bound on the error
-/// of displacements ([`OperatorError`]), within which it was measured (test `the_smooth_displacement_is_as_exact_as_the_others`).
+/// The error of the smooth displacement on the base grid that the exclusion of contact allows for, in units of the
+/// bound on the error of displacements ([`OperatorError`]), within which it was measured (test
+/// `the_smooth_displacement_is_as_exact_as_the_others`).
 const EXCLUSION_MARGIN: f64 = 2.0;
 
-/// Solves to the tolerance from `start`, whose gap in contact is `contact_gap`, and proves it for the whole cell. Also returns what the error
-/// of an operator depends on.
+/// Solves to the tolerance from `start`, whose gap in contact is `contact_gap`, and proves it for the whole cell. Also
+/// returns what the error of an operator depends on.
 pub(super) fn solve_finest_level(
     setup: &Setup<'_>,
     grid: Grid,
@@ -148,8 +150,8 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         Self { setup, tables, candidates, current: start, info }
     }
 
-    /// Improves the pressure on the elements near contact, with fresh gaps of the operator for certificates if `certify`: the first round
-    /// has used that of descents. Returns whether the tolerance was reached there.
+    /// Improves the pressure on the elements near contact, with fresh gaps of the operator for certificates if
+    /// `certify`: the first round has used that of descents. Returns whether the tolerance was reached there.
     fn improve(self, evaluation: Evaluation, certify: bool, observer: &dyn Observer) -> (Self, bool) {
         let Self { setup, mut tables, mut candidates, current, mut info } = self;
         let tolerance = evaluation.error.goal(setup.params.bound, &setup.problem);
@@ -181,7 +183,8 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         (Self { setup, tables, candidates, current, info }, last.converged)
     }
 
-    /// The gap on all candidates, and the operator that it was computed with: the one for certificates, or that of descents.
+    /// The gap on all candidates, and the operator that it was computed with: the one for certificates, or that of
+    /// descents.
     fn evaluate(&self, certify: bool) -> (Evaluation, Box<dyn GapOperator + '_>) {
         let Self { setup, tables, candidates: Candidates { elements, heights }, current, info } = self;
         let (prepared, tables) = tables.gaps.choose(setup, certify);
@@ -232,7 +235,8 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         }
     }
 
-    /// The elements of the candidates, divided where they are too coarse, and tiles of the coarsest level wherever contact is possible.
+    /// The elements of the candidates, divided where they are too coarse, and tiles of the coarsest level wherever
+    /// contact is possible.
     fn with_more_candidates(&self, evaluation: &Evaluation, operator: &dyn GapOperator) -> Mesh {
         let (setup, elements) = (self.setup, &self.candidates.elements);
         let Evaluation { pressure, gap, outcome, error, scaling, .. } = evaluation;
@@ -292,7 +296,8 @@ struct NearContact {
 }
 
 impl NearContact {
-    /// `before` are the elements of the last descent. Descents need the memory: the candidates are left without heights.
+    /// `before` are the elements of the last descent. Descents need the memory: the candidates are left without
+    /// heights.
     fn choose(candidates: &mut Candidates, before: &Mesh, evaluation: Evaluation, setup: &Setup<'_>) -> Self {
         let Evaluation { pressure, gap, outcome, .. } = evaluation;
         // Elements that are nearer to contact than the error may come into it yet.

@@ -12,7 +12,8 @@ use crate::descent::BlockOperator;
 
 /// L on the elements of one mesh, with the part of its displacement that is smooth on the base grid.
 pub(super) trait GapOperator: BlockOperator<f64> {
-    /// What the last pressure displaces the centres of the base grid by, short-range parts excepted: tile by tile, tiles row by row, in λ.
+    /// What the last pressure displaces the centres of the base grid by, short-range parts excepted: tile by tile,
+    /// tiles row by row, in λ.
     fn base_displacement(&self) -> Vec<f64>;
 }
 

@@ -2,8 +2,8 @@
 
 use rc_core::Grid;
 
-/// A base grid, grids with twice as many elements along both sides one after the other, and the finest grid, which has twice as many as the
-/// last of these or a little less. Level 0 is the base grid.
+/// A base grid, grids with twice as many elements along both sides one after the other, and the finest grid, which has
+/// twice as many as the last of these or a little less. Level 0 is the base grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ladder {
     base: Grid,

@@ -11,7 +11,8 @@ use super::part::{Part, append_around};
 
 /// The elements of a mesh, which all ranks know, and which of them this rank has.
 ///
-/// A vector has a value for each element that this rank has: all of them if it is alone. Over ranks all elements are of one size.
+/// A vector has a value for each element that this rank has: all of them if it is alone. Over ranks all elements are of
+/// one size.
 #[derive(Clone, Debug)]
 pub(crate) struct Mesh {
     elements: Elements,
@@ -82,8 +83,8 @@ impl Mesh {
         self.own().len()
     }
 
-    /// The levels, finest first, of which this rank has something: how much coarser they are than the finest, the places of its tiles, and
-    /// their values in its vectors.
+    /// The levels, finest first, of which this rank has something: how much coarser they are than the finest, the
+    /// places of its tiles, and their values in its vectors.
     pub(super) fn own_levels(&self) -> impl Iterator<Item = (usize, &[[u32; 2]], Range<usize>)> {
         let levels = self.levels().iter().enumerate();
         levels.map(|(coarser, tiles)| {
@@ -95,7 +96,8 @@ impl Mesh {
         })
     }
 
-    /// Values on the elements of `to`, as [`Elements::moved`] gives them. Over ranks they go to those that have the tiles there.
+    /// Values on the elements of `to`, as [`Elements::moved`] gives them. Over ranks they go to those that have the
+    /// tiles there.
     pub(super) fn moved(&self, to: &Self, values: &[f64], elsewhere: f64) -> Vec<f64> {
         if self.ranks.are_alone() {
             return self.elements.moved(&to.elements, values, elsewhere);
@@ -104,7 +106,8 @@ impl Mesh {
         to.delivered(places.iter().copied().zip(values.chunks_exact(CELLS)), elsewhere)
     }
 
-    /// The mesh of the tiles for which `wanted` is true; it gets the sides of the level in cells, the place, and where the values are.
+    /// The mesh of the tiles for which `wanted` is true; it gets the sides of the level in cells, the place, and where
+    /// the values are.
     pub(super) fn chosen(&self, wanted: impl Fn([usize; 2], [u32; 2], Range<usize>) -> bool) -> Self {
         if self.ranks.are_alone() {
             return self.elements.filtered(wanted).into();
@@ -116,8 +119,8 @@ impl Mesh {
         Self::new(Elements::uniform(Self::tiles_of_places(sides, places, &self.ranks)), &self.ranks)
     }
 
-    /// A vector from tiles of any rank, and `elsewhere` on all others; tiles that the mesh does not have are dropped. All ranks call this
-    /// together.
+    /// A vector from tiles of any rank, and `elsewhere` on all others; tiles that the mesh does not have are dropped.
+    /// All ranks call this together.
     pub(super) fn delivered<'v>(&self, tiles: impl Iterator<Item = ([u32; 2], &'v [f64])>, elsewhere: f64) -> Vec<f64> {
         let (deal, own) = (self.deal(), self.own_tiles());
         let mut result = vec![elsewhere; self.n_own()];

@@ -1,7 +1,7 @@
 //! The contact problem on an adaptive mesh: work and memory follow the contact, not the cell.
 //!
-//! Uniform grids up to a base grid, as the uniform method; from there on, level by level, only the tiles of 8 × 8
-//! cells that contact touches or nearly does, with the multilevel operator. What is not stored is out of contact, and the
+//! Uniform grids up to a base grid, as the uniform method; from there on, level by level, only the tiles of 8 × 8 cells
+//! that contact touches or nearly does, with the multilevel operator. What is not stored is out of contact, and the
 //! exclusion proves it.
 
 mod agreed_stop;
@@ -181,8 +181,9 @@ impl<'a> AdaptiveProblem<'a> {
 
     /// Solves it.
     ///
-    /// The certificate comes from a fresh application of L on the returned pressure, with bounds on the error of that operator added; it
-    /// covers every cell where a bound does not exclude contact. The result is bitwise the same for any number of threads.
+    /// The certificate comes from a fresh application of L on the returned pressure, with bounds on the error of that
+    /// operator added; it covers every cell where a bound does not exclude contact. The result is bitwise the same for
+    /// any number of threads.
     pub(crate) fn solve(&self, observer: &dyn Observer) -> AdaptiveSolution {
         let observer = &AgreedStop { observer, ranks: &self.place.ranks };
         let solver = self.first_solver();
@@ -287,8 +288,8 @@ impl<'a> AdaptiveProblem<'a> {
         solution.contact_stiffness(&self.ground.kernels)
     }
 
-    /// Hands out a part of the gap under the mean `solution` on the grid, as [`AdaptiveSolution::displacement_rows`] does the
-    /// displacement. Neither it nor the heights are ever whole in memory.
+    /// Hands out a part of the gap under the mean `solution` on the grid, as [`AdaptiveSolution::displacement_rows`]
+    /// does the displacement. Neither it nor the heights are ever whole in memory.
     ///
     /// # Errors
     /// What `take` returns.

@@ -12,8 +12,9 @@ use crate::parallel::Tasks;
 
 /// `v = L p` (Eq. 4) for Love's squares of one size on tiles of 8 × 8 of them, with any tiles left out.
 ///
-/// Pressures are zero on the tiles that are left out, and displacements are not asked for there; the cost is proportional to
-/// the tiles that are there, plus a Fourier transform of the base grid. Element i is cell i % 64 (row by row) of tile i / 64.
+/// Pressures are zero on the tiles that are left out, and displacements are not asked for there; the cost is
+/// proportional to the tiles that are there, plus a Fourier transform of the base grid. Element i is cell i % 64 (row
+/// by row) of tile i / 64.
 pub struct MultilevelOperator {
     tables: Tables<f64>,
     n_elements: usize,
@@ -28,13 +29,13 @@ impl std::fmt::Debug for MultilevelOperator {
 }
 
 impl MultilevelOperator {
-    /// The operator on the tiles at `places` (column, row) of a grid of `side` elements per side, with `base_side` on its base
-    /// grid and an error of at most `error` of the rms displacement (see [`SplitParams::for_error`]). Tiles are sorted, and
-    /// double ones dropped: [`MultilevelOperator::places`].
+    /// The operator on the tiles at `places` (column, row) of a grid of `side` elements per side, with `base_side` on
+    /// its base grid and an error of at most `error` of the rms displacement (see [`SplitParams::for_error`]). Tiles
+    /// are sorted, and double ones dropped: [`MultilevelOperator::places`].
     ///
     /// # Errors
-    /// [`AdaptiveError::Base`] when `base_side` is not a multiple of 8, or `side` not 2^k times it, k ≥ 1, or a place outside
-    /// the grid; [`AdaptiveError::OperatorError`].
+    /// [`AdaptiveError::Base`] when `base_side` is not a multiple of 8, or `side` not 2^k times it, k ≥ 1, or a place
+    /// outside the grid; [`AdaptiveError::OperatorError`].
     pub fn new(base_side: usize, side: usize, places: Vec<[u32; 2]>, error: f64) -> Result<Self, AdaptiveError> {
         let bad = AdaptiveError::Base { base: base_side, waves: 0, finest: side };
         let divides = base_side >= TILE && base_side.is_multiple_of(TILE) && side > base_side;

@@ -109,8 +109,8 @@ impl<'a> NestedIteration<'a> {
         NestedSolution { splits: self.splits, grid, level, scale, levels, coarser }
     }
 
-    /// Solves the finest level where another operator has prepared it. Where sizes of elements differ they suit the other operator;
-    /// all levels are then solved again.
+    /// Solves the finest level where another operator has prepared it. Where sizes of elements differ they suit the
+    /// other operator; all levels are then solved again.
     pub(super) fn take_over(&self, start: LevelStart, observer: &dyn Observer) -> NestedSolution {
         let start = if self.setup.border_level > 0 { self.prepare(self.begin(observer), observer) } else { start };
         self.finish(start, observer)

@@ -51,7 +51,8 @@ impl OperatorError {
         let PressureScale { n_levels, displacement, roughness, energy_length } = *scale;
         let displacement = split.error * n_levels as f64 * displacement + split.error_of_roughness * roughness;
         let relative = displacement / energy_length;
-        // The mean of the gap and its minimum may be off to opposite sides; under penetration control G has the mean once more.
+        // The mean of the gap and its minimum may be off to opposite sides; under penetration control G has the mean
+        // once more.
         let of_gap = match control {
             Control::MeanPressure(_) => 2.0,
             Control::Penetration(_) => 3.0,
@@ -85,7 +86,8 @@ impl OperatorError {
         (bound.overlap() - error).max(0.0)
     }
 
-    /// What an iteration has to reach for the bound to be met. Where the error leaves less than that, a better operator will certify.
+    /// What an iteration has to reach for the bound to be met. Where the error leaves less than that, a better operator
+    /// will certify.
     pub(super) fn goal(self, bound: ErrorBound, problem: &Problem) -> f64 {
         self.remaining(bound, problem).max(minimum_remaining(bound)).min(bound.aim())
     }
@@ -101,7 +103,8 @@ fn minimum_remaining(bound: ErrorBound) -> f64 {
     bound.aim().min((1.0 - LARGEST_PART) * bound.overlap())
 }
 
-/// The fastest split, from `split` on, whose error is a small part of the bound; the most accurate one where no error is.
+/// The fastest split, from `split` on, whose error is a small part of the bound; the most accurate one where no error
+/// is.
 pub(super) fn certifying_split(
     split: GapSplit,
     scale: &PressureScale,

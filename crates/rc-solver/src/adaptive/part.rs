@@ -9,7 +9,8 @@ use super::deal::Deal;
 
 /// The tiles of a level that a rank has, and those of other ranks that it reads. Alone it has all of them.
 ///
-/// Values are those of [`Part::tiles`]. The own ones are in one piece, since a rank has a range of the curve that tiles are sorted along.
+/// Values are those of [`Part::tiles`]. The own ones are in one piece, since a rank has a range of the curve that tiles
+/// are sorted along.
 #[derive(Debug)]
 pub(super) struct Part {
     ranks: Ranks,
@@ -27,7 +28,8 @@ impl Part {
         Self { ranks: Ranks::alone(), own: 0..tiles.len(), tiles, sent: Vec::new(), received: Vec::new() }
     }
 
-    /// The tiles of `level` that this rank has, and those at the `read` places that there are. All ranks call this together.
+    /// The tiles of `level` that this rank has, and those at the `read` places that there are. All ranks call this
+    /// together.
     pub(super) fn new(ranks: &Ranks, level: &TileSet, deal: &Deal, read: Vec<[u32; 2]>) -> Self {
         let own = deal.range(ranks.rank());
         let find = |place: [u32; 2]| level.find(place[0].into(), place[1].into());
@@ -105,8 +107,8 @@ impl Part {
     }
 }
 
-/// Appends the places that are at most `margin` tiles from the square of tiles between two places, both included, of a periodic level of
-/// so many tiles.
+/// Appends the places that are at most `margin` tiles from the square of tiles between two places, both included, of a
+/// periodic level of so many tiles.
 pub(super) fn append_around(
     places: &mut Vec<[u32; 2]>,
     (first, last): ([u32; 2], [u32; 2]),

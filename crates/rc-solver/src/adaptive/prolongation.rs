@@ -1,7 +1,7 @@
 //! From the pressure on the elements of one level to the start, and the elements it needs, on the next finer one.
 //!
-//! The edge function φ of [`crate::uniform`]'s prolongation is interpolated: p² inside, and -c² times the distance to the edge
-//! outside, which is linear across the edge of a contact.
+//! The edge function φ of [`crate::uniform`]'s prolongation is interpolated: p² inside, and -c² times the distance to
+//! the edge outside, which is linear across the edge of a contact.
 
 use std::ops::Range;
 
@@ -46,8 +46,8 @@ pub(super) fn edge_function(mesh: &Mesh, pressure: &[f64], gap: &[f64], contact_
     function
 }
 
-/// The start on the elements of the next finer `grid`, where there is contact or nearly, from φ on all tiles of the base grid, which all ranks
-/// have.
+/// The start on the elements of the next finer `grid`, where there is contact or nearly, from φ on all tiles of the
+/// base grid, which all ranks have.
 pub(super) fn refine_base(tiles: &TileSet, function: &[f64], grid: Grid, ranks: &Ranks) -> MeshStart {
     let elsewhere = far_from_contact(function, &Ranks::alone());
     let own = Deal::equal(tiles.len(), ranks).range(ranks.rank());
@@ -86,8 +86,8 @@ fn refined(
     MeshStart { elements, pressure }
 }
 
-/// The start on `refined`, whose smallest elements are quarters of those of `elements`. Elements that stay keep their `pressure`;
-/// that of new ones comes from φ. Elements are of several sizes, so that this rank is alone.
+/// The start on `refined`, whose smallest elements are quarters of those of `elements`. Elements that stay keep their
+/// `pressure`; that of new ones comes from φ. Elements are of several sizes, so that this rank is alone.
 pub(super) fn refine_some(elements: &Elements, pressure: &[f64], function: &[f64], refined: Elements) -> MeshStart {
     let mut start = elements.moved(&refined, pressure, 0.0);
     prolong_onto(elements, function, far_from_contact(function, &Ranks::alone()), &refined, &mut start);

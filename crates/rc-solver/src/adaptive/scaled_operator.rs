@@ -1,8 +1,8 @@
 //! The multilevel operator on vectors of double precision, for fresh gaps: certificates come from it.
 //!
-//! Inside it computes in double or in single precision. In single precision the rounding of L p is below 1e-6 of the rms
-//! displacement, as is the error of the split kernel itself; it takes half the time and memory. Heights and gaps are in double
-//! precision either way.
+//! Inside it computes in double or in single precision. In single precision the rounding of L p is below 1e-6 of the
+//! rms displacement, as is the error of the split kernel itself; it takes half the time and memory. Heights and gaps
+//! are in double precision either way.
 
 use std::sync::Arc;
 
@@ -25,8 +25,9 @@ pub(super) struct ScaledOperator<'a, T> {
 impl<'a, T: Real + Into<f64>> ScaledOperator<'a, T> {
     /// The operator of `tables` on `hierarchy`, for pressures about `mean` and displacements of about `size`.
     ///
-    /// A uniform pressure displaces nothing, so where elements cover the cell the mean is subtracted. Far beyond full contact its
-    /// rounding, and its part of the split kernel's error, would be larger than the pressure that the heights add to it.
+    /// A uniform pressure displaces nothing, so where elements cover the cell the mean is subtracted. Far beyond full
+    /// contact its rounding, and its part of the split kernel's error, would be larger than the pressure that the
+    /// heights add to it.
     pub(super) fn new(hierarchy: Arc<Hierarchy>, tables: &'a Tables<T>, mean: f64, size: f64) -> Self {
         let reference = if hierarchy.elements().cover_cell() { mean } else { 0.0 };
         Self { operator: TileOperator::new(hierarchy), tables, reference, unit: power_of_two_near(size) }

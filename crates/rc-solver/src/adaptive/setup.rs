@@ -136,7 +136,8 @@ impl<'a> Setup<'a> {
         contact_gap - self.problem.offset() + self.problem.h_max
     }
 
-    /// Tiles, of so many columns and rows, where the gap may be less than `gap` under a displacement whose smooth part is `smooth`.
+    /// Tiles, of so many columns and rows, where the gap may be less than `gap` under a displacement whose smooth part
+    /// is `smooth`.
     pub(super) fn possible_contact(
         &self,
         smooth: &SmoothDisplacement<'_>,
@@ -151,8 +152,8 @@ impl<'a> Setup<'a> {
         is_plastic(pressure, self.problem.hardness)
     }
 
-    /// The mesh with elements divided wherever they are too coarse for the pressure and the gap on them; with `deepen` the smallest
-    /// too.
+    /// The mesh with elements divided wherever they are too coarse for the pressure and the gap on them; with `deepen`
+    /// the smallest too.
     pub(super) fn refined(&self, fields: &ContactFields<'_>, deepen: bool) -> Elements {
         let (heights, pressure) = (self.heights.curvature(), parallel::maximum(fields.pressure, 0.0));
         let hardness = self.problem.hardness;
@@ -161,7 +162,8 @@ impl<'a> Setup<'a> {
         let curvature = |coarser| heights + of_displacement(fields.elements.side(coarser));
         let mut chosen = fields.too_coarse(curvature);
         if pressure >= hardness {
-            // The edges of the plastic part are those of what is left to the hardness, of which plastic elements must hide nothing.
+            // The edges of the plastic part are those of what is left to the hardness, of which plastic elements must
+            // hide nothing.
             let rest: Vec<f64> = fields.pressure.iter().map(|p| hardness - p).collect();
             let gap: Vec<f64> = fields.gap.iter().map(|g| -g).collect();
             let (beyond, contact_gap) = (hardness, -fields.contact_gap);

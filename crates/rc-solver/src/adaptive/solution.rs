@@ -21,8 +21,8 @@ use crate::{ContactArea, ContactElement, Observables, SolveInfo};
 
 /// A contact problem solved on an adaptive mesh.
 ///
-/// Only what contact touches is stored, over ranks by the one that has it; [`AdaptiveSolution::pressure_rows`] gives the rows of the finest grid one tile high at
-/// a time, for files and pictures.
+/// Only what contact touches is stored, over ranks by the one that has it; [`AdaptiveSolution::pressure_rows`] gives
+/// the rows of the finest grid one tile high at a time, for files and pictures.
 #[derive(Clone, Debug)]
 pub(crate) struct AdaptiveSolution {
     /// Whether the certificate meets the tolerance.
@@ -46,7 +46,8 @@ pub(crate) struct AdaptiveSolution {
 }
 
 impl AdaptiveSolution {
-    /// The grid: the smallest elements are 2^[`AdaptiveParams::border_level`](super::AdaptiveParams) times smaller than its own.
+    /// The grid: the smallest elements are 2^[`AdaptiveParams::border_level`](super::AdaptiveParams) times smaller than
+    /// its own.
     #[must_use]
     pub(crate) fn grid(&self) -> Grid {
         self.grid
@@ -104,7 +105,8 @@ impl AdaptiveSolution {
         (Elements::uniform(tiles).into(), pressure)
     }
 
-    /// Tiles of the smallest elements wherever there are elements, and the pressure on them: a larger element stands for its parts.
+    /// Tiles of the smallest elements wherever there are elements, and the pressure on them: a larger element stands
+    /// for its parts.
     pub(super) fn on_finest(&self) -> (Mesh, Cow<'_, [f64]>) {
         let levels = self.elements.levels();
         let parts = |coarser: usize, tile: usize| {
@@ -128,8 +130,8 @@ impl AdaptiveSolution {
         (Elements::uniform(tiles).into(), Cow::Owned(values))
     }
 
-    /// Hands out the pressure on the grid, in the mean over smaller elements, eight rows at a time, in order: the index of the
-    /// first row, and the rows one after the other. Stops at the first error.
+    /// Hands out the pressure on the grid, in the mean over smaller elements, eight rows at a time, in order: the index
+    /// of the first row, and the rows one after the other. Stops at the first error.
     ///
     /// # Errors
     /// What `take` returns.
@@ -149,9 +151,10 @@ impl AdaptiveSolution {
         Ok(())
     }
 
-    /// Hands out the displacement v of the grid's pressure, rows of tiles at a time as [`AdaptiveSolution::pressure_rows`]
-    /// does, at about the cost of one application of L on the whole grid; with `finest` that of the pressure itself, on the grid of the
-    /// smallest elements. The gap is `v - h + offset`: see [`AdaptiveSolution::gap_offset`], and [`super::AdaptiveProblem::gap_rows`].
+    /// Hands out the displacement v of the grid's pressure, rows of tiles at a time as
+    /// [`AdaptiveSolution::pressure_rows`] does, at about the cost of one application of L on the whole grid; with
+    /// `finest` that of the pressure itself, on the grid of the smallest elements. The gap is `v - h + offset`: see
+    /// [`AdaptiveSolution::gap_offset`], and [`super::AdaptiveProblem::gap_rows`].
     ///
     /// # Errors
     /// What `take` returns.

@@ -2,8 +2,8 @@
 
 use rc_kernel::SplitParams;
 
-/// A split of the kernel with bounds on its error, which are measured, with a margin, by the tests of `operator_error/` and of
-/// `operator/tests.rs`.
+/// A split of the kernel with bounds on its error, which are measured, with a margin, by the tests of `operator_error/`
+/// and of `operator/tests.rs`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GapSplit {
     pub(super) params: SplitParams,
@@ -18,8 +18,8 @@ pub(super) struct GapSplit {
 /// Number of splits.
 pub(super) const N_SPLITS: usize = 3;
 
-/// Errors that splits are chosen by ([`SplitParams::for_error`]), and bounds on their errors of displacements, smooth and rough: fastest
-/// first. On solved contacts the error was 0.1 to 0.8 of the sum of both bounds.
+/// Errors that splits are chosen by ([`SplitParams::for_error`]), and bounds on their errors of displacements, smooth
+/// and rough: fastest first. On solved contacts the error was 0.1 to 0.8 of the sum of both bounds.
 const SPLITS: [(f64, [f64; 2]); N_SPLITS] = [(1e-6, [1e-6, 4e-5]), (2e-9, [1e-8, 1.2e-7]), (1e-10, [2e-10, 6e-9])];
 
 /// Cutoffs up to this one are accurate enough for single precision only.

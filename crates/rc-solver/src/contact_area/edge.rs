@@ -5,9 +5,10 @@ const MOST_STEPS: usize = 12;
 
 /// The edge of a contact between the centre of an element in contact and that of a neighbour out of it.
 ///
-/// At an edge the pressure is c √s inside and the gap (4c/3E*) s^{3/2} outside, with the same c. With h the distance between the centres
-/// and s the distance of the edge from the first of them, divided by h: p² = c² s h and (3g/4)² = c² (1 - s)³ h³, so u = s^{1/3} solves
-/// u³ + β u = 1, β = (3g/4ph)^{2/3}: the pressure and the gap matter by their ratio only.
+/// At an edge the pressure is c √s inside and the gap (4c/3E*) s^{3/2} outside, with the same c. With h the distance
+/// between the centres and s the distance of the edge from the first of them, divided by h: p² = c² s h and (3g/4)² =
+/// c² (1 - s)³ h³, so u = s^{1/3} solves u³ + β u = 1, β = (3g/4ph)^{2/3}: the pressure and the gap matter by their
+/// ratio only.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
     u: f64,
@@ -37,9 +38,9 @@ impl Edge {
         self.u.powi(3)
     }
 
-    /// The deviation of the gap one element further out, as g E*/(p h), from the law: the distance from the edge at which the law has
-    /// this gap, minus the true distance, in elements. It is -2 to about 0 in gaps between contacts, where the gap is smaller than the
-    /// law's. `None` for a ratio that is not a number.
+    /// The deviation of the gap one element further out, as g E*/(p h), from the law: the distance from the edge at
+    /// which the law has this gap, minus the true distance, in elements. It is -2 to about 0 in gaps between contacts,
+    /// where the gap is smaller than the law's. `None` for a ratio that is not a number.
     pub(super) fn deviation(self, next_gap_ratio: f64) -> Option<f64> {
         let deviation = beta(next_gap_ratio) * self.u - (2.0 - self.position());
         (!next_gap_ratio.is_nan()).then(|| deviation.min(MAX_DEVIATION))

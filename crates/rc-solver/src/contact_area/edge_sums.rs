@@ -24,8 +24,8 @@ pub(crate) struct EdgeSums {
     pub(crate) shift: f64,
     /// Σ of [`Edge::deviation`] over the second of these.
     pub(crate) deviation: f64,
-    /// Edges of plastic elements, where the pressure falls from the hardness to zero within an element. They are in none of the sums above but
-    /// `edges`, `along_x` and `diagonals`.
+    /// Edges of plastic elements, where the pressure falls from the hardness to zero within an element. They are in
+    /// none of the sums above but `edges`, `along_x` and `diagonals`.
     pub(crate) sharp: usize,
     /// Those of them where the gap beside the contact is known.
     pub(crate) known_sharp: usize,
@@ -33,14 +33,14 @@ pub(crate) struct EdgeSums {
     pub(crate) shift_of_sharp: f64,
     /// Σ p² of the elements inside, over all edges that are not sharp.
     pub(crate) squares: f64,
-    /// Corners where one of the four elements that meet is in contact, less those where three are: four times the number of
-    /// contacts minus the number of holes in them.
+    /// Corners where one of the four elements that meet is in contact, less those where three are: four times the
+    /// number of contacts minus the number of holes in them.
     pub(crate) turns: isize,
 }
 
 impl EdgeSums {
-    /// Adds an element in contact, where no pressure is greater than the `hardness`. `at` gives pressure and gap at a place from it, in elements;
-    /// the gap may be NaN where it is not known. `sides` are those of the element.
+    /// Adds an element in contact, where no pressure is greater than the `hardness`. `at` gives pressure and gap at a
+    /// place from it, in elements; the gap may be NaN where it is not known. `sides` are those of the element.
     pub(crate) fn add(&mut self, sides: [f64; 2], hardness: f64, at: &impl Fn(isize, isize) -> [f64; 2]) {
         self.n_contact += 1;
         let free = AROUND.map(|[dx, dy]| at(dx, dy)[0] <= 0.0);
@@ -136,7 +136,8 @@ impl EdgeSums {
         self.known_sharp += 1;
     }
 
-    /// Shift and deviation summed over all edges: where they are not known, they are the mean of the others of their kind.
+    /// Shift and deviation summed over all edges: where they are not known, they are the mean of the others of their
+    /// kind.
     pub(crate) fn of_all(&self) -> [f64; 2] {
         let all = |sum: f64, edges: usize, known: usize| match known {
             0 => 0.0,

@@ -1,8 +1,8 @@
 //! The contact area, with edges located between the centres of elements (see `docs/accuracy.md`).
 //!
 //! Counting the elements in contact is first-order accurate only: 1 to 4 % too much on usual meshes. Here the edge is
-//! located between every two neighbours of which one is in contact, from the pressure of the one and the gap of the other.
-//! The rest of the first-order error is the same for all contacts, and is subtracted.
+//! located between every two neighbours of which one is in contact, from the pressure of the one and the gap of the
+//! other. The rest of the first-order error is the same for all contacts, and is subtracted.
 
 mod edge;
 mod edge_sums;
@@ -24,19 +24,22 @@ pub struct ContactArea {
     pub cells: f64,
     /// Number of edges of smallest elements between elements in and out of contact.
     pub perimeter_edges: usize,
-    /// Length of the edges of all contacts, in λ: free of the steps of the elements (Crofton's formula for eight directions;
-    /// within 5 % for a straight edge, exact in the mean over directions).
+    /// Length of the edges of all contacts, in λ: free of the steps of the elements (Crofton's formula for eight
+    /// directions; within 5 % for a straight edge, exact in the mean over directions).
     pub perimeter: f64,
-    /// Number of contacts minus the number of holes in them (where elements touch across a corner only, half of them count as joined).
+    /// Number of contacts minus the number of holes in them (where elements touch across a corner only, half of them
+    /// count as joined).
     pub euler_number: f64,
-    /// Sum over edges of the deviation of the gap outside them from the law of an edge, see [`EdgeBias::per_deviation`].
+    /// Sum over edges of the deviation of the gap outside them from the law of an edge, see
+    /// [`EdgeBias::per_deviation`].
     pub gap_deviation: f64,
     /// The part of ⟨p²⟩ that is missing from the mean over elements, in E*²: see [`EdgeBias::per_square`].
     pub missing_square: f64,
     /// Best estimate, from the edges between the centres of elements.
     pub fraction: f64,
-    /// Estimated error of `fraction`, above the true one in 95 of 100 scenes (`cargo xtask accuracy` measures it): from the number of
-    /// edges, their directions, and the difference to the count. Slopes that jump are not covered, see `docs/accuracy.md`.
+    /// Estimated error of `fraction`, above the true one in 95 of 100 scenes (`cargo xtask accuracy` measures it): from
+    /// the number of edges, their directions, and the difference to the count. Slopes that jump are not covered, see
+    /// `docs/accuracy.md`.
     pub error: f64,
     /// What the error bars of pressure and gap need.
     pub(crate) rim: Rim,
@@ -59,26 +62,28 @@ pub(crate) struct Rim {
     pub(crate) kernel: f64,
 }
 
-/// 95 % error of the area, in elements, relative to the root of the number of independent edges: the same on every mesh.
+/// 95 % error of the area, in elements, relative to the root of the number of independent edges: the same on every
+/// mesh.
 const SCATTER: f64 = 0.17;
 
-/// 95 % error of the bias, relative to the square of (count - `fraction`) over `fraction`: it is of second order, and the error of
-/// scenes with very many edges.
+/// 95 % error of the bias, relative to the square of (count - `fraction`) over `fraction`: it is of second order, and
+/// the error of scenes with very many edges.
 const ERROR_OF_TERM: f64 = 0.4;
 
-/// 95 % error for each diagonal that there is more (or less) than [`DIAGONALS`]: the bias is that of edges in all directions.
+/// 95 % error for each diagonal that there is more (or less) than [`DIAGONALS`]: the bias is that of edges in all
+/// directions.
 const ERROR_OF_DIRECTIONS: f64 = 0.15;
 
-/// Neighbours across a corner for each edge, in the mean over the directions of a contact's edge. There are two where it is along the
-/// elements, one at 45 degrees to them.
+/// Neighbours across a corner for each edge, in the mean over the directions of a contact's edge. There are two where
+/// it is along the elements, one at 45 degrees to them.
 const DIAGONALS: f64 = SQRT_2;
 
 /// 95 % error of the area from the tolerance of the solve, relative to the area and to the square of the energy error.
 const ERROR_OF_SOLVE: f64 = 1.0;
 
 impl ContactArea {
-    /// The contact area of `pressure` and `gap` (E* = 1, λ = 1; the gap zero in contact) on a uniform grid; `bias` is that of the
-    /// kernel they were found with. One pass; the time is that of the elements in contact.
+    /// The contact area of `pressure` and `gap` (E* = 1, λ = 1; the gap zero in contact) on a uniform grid; `bias` is
+    /// that of the kernel they were found with. One pass; the time is that of the elements in contact.
     ///
     /// # Panics
     /// When the two are not on the same grid.
@@ -88,7 +93,8 @@ impl ContactArea {
         Self::with_boundary(pressure, gap, bias, Boundary::Periodic)
     }
 
-    /// The same on heights with this `boundary`. A free border that contact reaches is no edge of it: there the heights end.
+    /// The same on heights with this `boundary`. A free border that contact reaches is no edge of it: there the heights
+    /// end.
     ///
     /// # Panics
     /// As [`ContactArea::of`].
@@ -98,7 +104,8 @@ impl ContactArea {
         Self::of_hard([pressure, gap], f64::INFINITY, bias, boundary)
     }
 
-    /// The same where no pressure is greater than the `hardness`, and the gap of plastic elements is less than that of contact.
+    /// The same where no pressure is greater than the `hardness`, and the gap of plastic elements is less than that of
+    /// contact.
     pub(crate) fn of_hard([pressure, gap]: [&Field; 2], hardness: f64, bias: EdgeBias, boundary: Boundary) -> Self {
         let grid = pressure.grid();
         let values = [pressure.values(), gap.values()];
@@ -107,8 +114,8 @@ impl ContactArea {
         Self::from_sums(&[sums], grid, bias)
     }
 
-    /// From the sums over elements of one size each: the smallest ones, those of the grid `finest`, then those twice as large, and so
-    /// on.
+    /// From the sums over elements of one size each: the smallest ones, those of the grid `finest`, then those twice as
+    /// large, and so on.
     pub(crate) fn from_sums(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> Self {
         let (area, scatter) = Self::with_scatter(sums, finest, bias);
         let error = scatter.error(area.cells - area.fraction, area.fraction.max(0.1 * area.cells));
@@ -169,8 +176,8 @@ impl ContactArea {
         (area, Scatter { of_edges: scatter.sqrt(), of_directions: ERROR_OF_DIRECTIONS * excess_diagonals })
     }
 
-    /// With the error that the tolerance of the solve leaves; `energy_error` is √(G/U), the relative error of the pressure in the
-    /// energy norm, below a third. The area's is of its square.
+    /// With the error that the tolerance of the solve leaves; `energy_error` is √(G/U), the relative error of the
+    /// pressure in the energy norm, below a third. The area's is of its square.
     pub(crate) fn with_energy_error(self, energy_error: f64) -> Self {
         Self { error: self.error.hypot(ERROR_OF_SOLVE * energy_error.powi(2) * self.fraction), ..self }
     }
@@ -182,7 +189,8 @@ impl ContactArea {
     }
 }
 
-/// Sums over the elements of a grid that are in contact, with pressure and gap, less that of contact, around each place.
+/// Sums over the elements of a grid that are in contact, with pressure and gap, less that of contact, around each
+/// place.
 fn sums_of_rows<A: Fn(isize, isize) -> [f64; 2]>(
     grid: Grid,
     hardness: f64,
@@ -208,23 +216,25 @@ struct Scatter {
 }
 
 impl Scatter {
-    /// The error of an area of which the count differs by `term`. Contacts of single elements may be no area at all: the `size` of the area is not
-    /// less than a part of the count.
+    /// The error of an area of which the count differs by `term`. Contacts of single elements may be no area at all:
+    /// the `size` of the area is not less than a part of the count.
     fn error(&self, term: f64, size: f64) -> f64 {
         let of_term = ERROR_OF_TERM * term.powi(2) / size.max(f64::MIN_POSITIVE);
         self.of_edges.hypot(of_term).hypot(self.of_directions).min(1.0)
     }
 }
 
-/// How many edges in a row have about the same place between elements: 1 for edges in all directions, all of them when they are along
-/// the elements. An edge whose neighbour along the contact is in the same row or column has two diagonals, at a step there is one.
+/// How many edges in a row have about the same place between elements: 1 for edges in all directions, all of them when
+/// they are along the elements. An edge whose neighbour along the contact is in the same row or column has two
+/// diagonals, at a step there is one.
 fn edges_that_scatter_together(sums: &EdgeSums) -> f64 {
     let edges = sums.edges.max(1) as f64;
     let steps = (2.0 - sums.diagonals as f64 / edges).max(f64::MIN_POSITIVE);
     ((2.0 - DIAGONALS) / steps).min(edges).max(1.0)
 }
 
-/// Length of all edges of elements with these sides: Crofton's formula for eight directions on squares, for four on rectangles.
+/// Length of all edges of elements with these sides: Crofton's formula for eight directions on squares, for four on
+/// rectangles.
 fn length(sums: &EdgeSums, sides: [f64; 2]) -> f64 {
     let (along_x, along_y) = (sums.along_x as f64, (sums.edges - sums.along_x) as f64);
     let [x, y] = sides;

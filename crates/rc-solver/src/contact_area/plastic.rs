@@ -1,7 +1,8 @@
 //! The plastic part of the contact, where the pressure is the hardness H.
 //!
-//! What is left to the hardness, q = H - p, is zero there and the square root of the distance beyond its edge, and the overlap that plastic flow removes
-//! grows inside as the gap does outside a contact. So the area where q > 0 is found as a contact area is, with -g for a gap, and has its error.
+//! What is left to the hardness, q = H - p, is zero there and the square root of the distance beyond its edge, and the
+//! overlap that plastic flow removes grows inside as the gap does outside a contact. So the area where q > 0 is found
+//! as a contact area is, with -g for a gap, and has its error.
 
 use rc_core::{Boundary, EdgeBias, Field, Grid};
 
@@ -20,8 +21,9 @@ pub struct PlasticContact {
     pub mean_gap: f64,
 }
 
-/// How much wider the error bars of the contact area and of its plastic part are than those of an elastic contact. The elastic rim of a plastic
-/// contact may be thinner than an element, and its edges are then not located as well. Measured: see `docs/hardness.md`.
+/// How much wider the error bars of the contact area and of its plastic part are than those of an elastic contact. The
+/// elastic rim of a plastic contact may be thinner than an element, and its edges are then not located as well.
+/// Measured: see `docs/hardness.md`.
 const WIDER_CONTACT: f64 = 2.7;
 const WIDER_PLASTIC: [f64; 2] = [1.2, 3.3];
 
@@ -59,8 +61,8 @@ impl PlasticEdges {
         Self::from_sums(&[sums], grid, bias, flow / grid.len() as f64)
     }
 
-    /// From the sums over elements of one size each, as [`ContactArea::from_sums`] takes them, of q and -g. What no element covers is in
-    /// the count of the smallest.
+    /// From the sums over elements of one size each, as [`ContactArea::from_sums`] takes them, of q and -g. What no
+    /// element covers is in the count of the smallest.
     pub(crate) fn from_sums(sums: &[EdgeSums], finest: Grid, bias: EdgeBias, mean_gap: f64) -> Self {
         let (rest, scatter) = ContactArea::with_scatter(sums, finest, bias);
         let (cells, fraction) = (1.0 - rest.cells, 1.0 - rest.fraction);

@@ -13,7 +13,8 @@ pub(crate) struct ConjugateDirections {
     pub(super) direction: Vec<f32>,
     /// Its displacement u = L t.
     pub(super) displacement: Vec<f32>,
-    /// The residual, then the preconditioned residual z; between a clipped step and the next round what clipping has added.
+    /// The residual, then the preconditioned residual z; between a clipped step and the next round what clipping has
+    /// added.
     pub(super) preconditioned: Vec<f32>,
 }
 
@@ -68,7 +69,8 @@ impl ConjugateDirections {
         });
     }
 
-    /// The present direction for a step that is clipped, with room for what clipping adds, where no residual is needed any more.
+    /// The present direction for a step that is clipped, with room for what clipping adds, where no residual is needed
+    /// any more.
     pub(super) fn clipped_steps(&mut self, len: usize) -> impl Iterator<Item = ClippedStep<'_>> {
         let Self { active, direction, displacement, preconditioned } = self;
         let along = direction.chunks(len).zip(displacement.chunks(len));
@@ -91,7 +93,8 @@ impl ConjugateDirections {
         &self.preconditioned
     }
 
-    /// The present direction, its displacement and its elements, with the place of the residual that is preconditioned next.
+    /// The present direction, its displacement and its elements, with the place of the residual that is preconditioned
+    /// next.
     pub(crate) fn steps_and_residuals(
         &mut self,
         len: usize,

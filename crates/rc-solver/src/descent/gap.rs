@@ -42,8 +42,8 @@ pub(crate) fn mean_pressure(n_cell: f64, layout: &BlockLayout, pressure: &[f64])
     sum / n_cell
 }
 
-/// Multiplies the pressure so that its mean over a cell of `n_cell` of the smallest elements is the prescribed one, if one is prescribed
-/// and anything presses.
+/// Multiplies the pressure so that its mean over a cell of `n_cell` of the smallest elements is the prescribed one, if
+/// one is prescribed and anything presses.
 pub(crate) fn scale_to_load(problem: &Problem, n_cell: f64, layout: &BlockLayout, pressure: &mut [f64]) {
     if let Control::MeanPressure(wanted) = problem.control {
         let mean = mean_pressure(n_cell, layout, pressure);

@@ -7,8 +7,8 @@ use rc_comm::Ranks;
 
 use crate::parallel;
 
-/// Blocks of so many values; the last may be shorter. All elements of a block are of one size. Over ranks the blocks are those of this rank, which
-/// follow those of the ranks before it.
+/// Blocks of so many values; the last may be shorter. All elements of a block are of one size. Over ranks the blocks
+/// are those of this rank, which follow those of the ranks before it.
 #[derive(Clone, Debug)]
 pub(crate) struct BlockLayout {
     len: usize,
@@ -25,7 +25,8 @@ enum Places {
     Anywhere,
     /// Rows of a grid of so many elements along both axes.
     Rows([usize; 2]),
-    /// Runs of so many elements, each around its own centre, in a cell of so many of the largest elements along both axes.
+    /// Runs of so many elements, each around its own centre, in a cell of so many of the largest elements along both
+    /// axes.
     Runs { run: usize, centres: Arc<[[f32; 2]]>, sides: [usize; 2] },
 }
 
@@ -48,8 +49,8 @@ impl BlockLayout {
         Self { areas: areas.into(), ..self }
     }
 
-    /// With the centres of runs of `run` elements, in parts of a cell of `sides` of the largest elements along both axes. What is behind the
-    /// last of a level has no element, but a centre.
+    /// With the centres of runs of `run` elements, in parts of a cell of `sides` of the largest elements along both
+    /// axes. What is behind the last of a level has no element, but a centre.
     pub(crate) fn with_runs(self, run: usize, centres: Vec<[f32; 2]>, sides: [usize; 2]) -> Self {
         debug_assert!(self.len.is_multiple_of(run), "blocks of whole runs");
         Self { places: Places::Runs { run, centres: centres.into(), sides }, ..self }
@@ -73,7 +74,8 @@ impl BlockLayout {
         }
     }
 
-    /// Calls `take` with runs of neighbours among the first `n` elements of block `i`, and with the centre of each in parts of the cell.
+    /// Calls `take` with runs of neighbours among the first `n` elements of block `i`, and with the centre of each in
+    /// parts of the cell.
     pub(crate) fn for_each_run(&self, i: usize, n: usize, mut take: impl FnMut(Range<usize>, [f64; 2])) {
         match &self.places {
             Places::Anywhere => take(0..n, [0.5, 0.5]),

@@ -1,7 +1,8 @@
 //! Load and penetration where pressures are limited by a hardness.
 //!
-//! Scaling would take plastic elements off the hardness, or others beyond it. So pressures p change along p (1 - p/H) instead, which leaves
-//! elements at both bounds where they are, keeps the others between them for multiples from -1 to 1, and is scaling where p is far below H.
+//! Scaling would take plastic elements off the hardness, or others beyond it. So pressures p change along p (1 - p/H)
+//! instead, which leaves elements at both bounds where they are, keeps the others between them for multiples from -1 to
+//! 1, and is scaling where p is far below H.
 
 use super::layout::BlockLayout;
 use super::operators::{read_blocks, write_blocks};
@@ -28,8 +29,8 @@ const MAX_STEPS: usize = 2;
 /// Changes of the pressure in one step, relative to p (1 - p/H).
 const STEPS: [f64; 2] = [-0.5, 1.0];
 
-/// The range of gaps, or heights, in which they are looked for: at first relative to the range of depths, how often it doubles, and how often
-/// it is halved then.
+/// The range of gaps, or heights, in which they are looked for: at first relative to the range of depths, how often it
+/// doubles, and how often it is halved then.
 const FIRST_RANGE: f64 = 1e-3;
 const MAX_DOUBLINGS: usize = 14;
 const MAX_HALVINGS: usize = 40;
@@ -42,8 +43,9 @@ pub(crate) fn is_plastic(pressure: &[f64], hardness: f64) -> bool {
     hardness.is_finite() && parallel::maximum(pressure, 0.0) >= NEARLY * hardness
 }
 
-/// Limits the pressure by the hardness and, under load control, restores the load in a cell of `n_cell` of the smallest elements. Where
-/// elements between the bounds cannot, those of least `order`, a gap, take what is missing, or those of greatest order lose what is too much.
+/// Limits the pressure by the hardness and, under load control, restores the load in a cell of `n_cell` of the smallest
+/// elements. Where elements between the bounds cannot, those of least `order`, a gap, take what is missing, or those of
+/// greatest order lose what is too much.
 pub(crate) fn limit_to_load(
     problem: &Problem,
     n_cell: f64,
@@ -94,8 +96,8 @@ fn sums_of(layout: &BlockLayout, pressure: &[f64], hardness: f64) -> [f64; 2] {
     }))
 }
 
-/// Adds the load `missing`, which may be negative: elements of least `order`, a gap, get the hardness one after the other, or those of greatest order
-/// nothing, but for the last ones, which get a part.
+/// Adds the load `missing`, which may be negative: elements of least `order`, a gap, get the hardness one after the
+/// other, or those of greatest order nothing, but for the last ones, which get a part.
 fn fill(problem: &Problem, missing: f64, layout: &BlockLayout, (pressure, order): (&mut [f64], &[f64])) {
     let (hardness, adds) = (problem.hardness, missing > 0.0);
     let key = |at: f64| if adds { at } else { -at };
@@ -243,8 +245,8 @@ impl Descent<'_> {
         });
     }
 
-    /// Brings the pressure nearer to the prescribed penetration, if one is: by scaling where that meets no bound, else along p (1 - p/H) to the
-    /// least energy. The stiffness of that direction preconditions the mean.
+    /// Brings the pressure nearer to the prescribed penetration, if one is: by scaling where that meets no bound, else
+    /// along p (1 - p/H) to the least energy. The stiffness of that direction preconditions the mean.
     fn follow_penetration(&mut self, sums: GapSums) -> GapSums {
         if !matches!(self.problem.control, Control::Penetration(_)) || sums.may_scale() {
             return self.meet_penetration(sums);

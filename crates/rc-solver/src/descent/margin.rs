@@ -1,7 +1,8 @@
 //! The approximate inverse of L for heights with free borders: that of a periodic cell with a margin around them.
 //!
-//! Outside of the heights the surface is as free as between contacts, and a residual is extended smoothly over it ([`super::extension`]). A margin is
-//! enough: what is farther away matters to long waves only, of which there are few. `docs/uniform-solver.md` has what it gives.
+//! Outside of the heights the surface is as free as between contacts, and a residual is extended smoothly over it
+//! ([`super::extension`]). A margin is enough: what is farther away matters to long waves only, of which there are few.
+//! `docs/uniform-solver.md` has what it gives.
 
 use rc_core::{Grid, Kernel};
 use rc_fft::{Convolution, SymbolTable};

@@ -6,16 +6,17 @@ use super::sums::GapSums;
 use crate::Control;
 use crate::parallel;
 
-/// The part of the cell in contact from which a uniform pressure is looked at: below it the present one is the stiffer, or as
-/// good as, and the application of L would gain nothing.
+/// The part of the cell in contact from which a uniform pressure is looked at: below it the present one is the stiffer,
+/// or as good as, and the application of L would gain nothing.
 const LARGE_CONTACT: f64 = 0.7;
 
 impl Descent<'_> {
-    /// Brings the pressure to the prescribed penetration, if one is: scales it, so that its weighted mean gap is zero, or nearer to it.
+    /// Brings the pressure to the prescribed penetration, if one is: scales it, so that its weighted mean gap is zero,
+    /// or nearer to it.
     ///
-    /// Where nothing holds the solid and all elements press although the penetration is less than that of full contact, the mean pressure is too large by the
-    /// minimum, at least. Taken off all of them it displaces nothing and lowers the energy, while scaling would undo what already
-    /// fits the heights.
+    /// Where nothing holds the solid and all elements press although the penetration is less than that of full contact,
+    /// the mean pressure is too large by the minimum, at least. Taken off all of them it displaces nothing and lowers
+    /// the energy, while scaling would undo what already fits the heights.
     pub(super) fn meet_penetration(&mut self, sums: GapSums) -> GapSums {
         match sums.scale_to_penetration(self.problem) {
             None => self.settle(sums),
@@ -29,8 +30,8 @@ impl Descent<'_> {
         }
     }
 
-    /// What to take off the mean where all elements press: the minimum, or less than nothing where the penetration is beyond that of full contact
-    /// and the hardness limits the pressure.
+    /// What to take off the mean where all elements press: the minimum, or less than nothing where the penetration is
+    /// beyond that of full contact and the hardness limits the pressure.
     fn too_much_everywhere(&self) -> f64 {
         match self.problem.control {
             Control::Penetration(penetration) if penetration >= self.problem.h_max - self.problem.h_mean => {
@@ -40,9 +41,10 @@ impl Descent<'_> {
         }
     }
 
-    /// Preconditions the mean by the contact stiffness dσ0/dΔ = max ⟨x⟩²/⟨x L x⟩ over pressures x on the contact, of which each
-    /// gives a lower bound. The present pressure gives σ0²/mean(p v), which stays finite towards full contact, where the true
-    /// one grows without bound; so does that of a uniform pressure, which displaces less the less is out of contact.
+    /// Preconditions the mean by the contact stiffness dσ0/dΔ = max ⟨x⟩²/⟨x L x⟩ over pressures x on the contact, of
+    /// which each gives a lower bound. The present pressure gives σ0²/mean(p v), which stays finite towards full
+    /// contact, where the true one grows without bound; so does that of a uniform pressure, which displaces less the
+    /// less is out of contact.
     pub(super) fn precondition_mean(&mut self, sums: &GapSums) {
         let Control::Penetration(_) = self.problem.control else { return };
         // Where elements are plastic, their stiffness was found by the last projection.

@@ -3,9 +3,9 @@
 use super::layout::BlockLayout;
 use crate::parallel::Tasks;
 
-/// L on the vectors of one mesh, in values of type `T`. They pass block by block, so that the caller's vector work rides along while a
-/// block is in cache: the caller writes the pressures, L is applied, the caller reads the displacements. [`write_blocks`] and
-/// [`read_blocks`] hand each block its part of the caller's own vectors.
+/// L on the vectors of one mesh, in values of type `T`. They pass block by block, so that the caller's vector work
+/// rides along while a block is in cache: the caller writes the pressures, L is applied, the caller reads the
+/// displacements. [`write_blocks`] and [`read_blocks`] hand each block its part of the caller's own vectors.
 pub(crate) trait BlockOperator<T> {
     /// How vectors are divided.
     fn layout(&self) -> BlockLayout;
@@ -33,8 +33,8 @@ pub(crate) trait PreconditionedOperator: BlockOperator<f32> {
     /// The elements that the approximate inverse is for from now on.
     fn set_active(&mut self, active: &[bool]);
 
-    /// Applies the approximate inverse of L among the `active` elements, which were set before, to displacements that are zero elsewhere: what is
-    /// left in their places is a pressure. Elsewhere it leaves anything.
+    /// Applies the approximate inverse of L among the `active` elements, which were set before, to displacements that
+    /// are zero elsewhere: what is left in their places is a pressure. Elsewhere it leaves anything.
     fn precondition(&mut self, active: &[bool], values: &mut [f32]);
 
     /// Sets the eigenvalue of the approximate inverse for constant vectors.
@@ -49,7 +49,8 @@ pub(crate) struct LevelOperators<'a> {
     pub(crate) fresh: Box<dyn BlockOperator<f64> + 'a>,
 }
 
-/// Writes the pressures: `work` gets one of `items` for each block, and what it returns is collected in the order of blocks.
+/// Writes the pressures: `work` gets one of `items` for each block, and what it returns is collected in the order of
+/// blocks.
 pub(crate) fn write_blocks<T, S: Send, R: Send>(
     operator: &mut (impl BlockOperator<T> + ?Sized),
     items: impl Iterator<Item = S>,

@@ -15,8 +15,8 @@ fn n_blocks(grid: Grid) -> usize {
     grid.ny().div_ceil(BLOCK_ROWS)
 }
 
-/// Calls `write` once for each block of rows, with its index and the rows to be filled in. (All callers pass closures in this form, for
-/// which the transforms are compiled once.)
+/// Calls `write` once for each block of rows, with its index and the rows to be filled in. (All callers pass closures
+/// in this form, for which the transforms are compiled once.)
 pub(crate) fn write_rows<T: TransformReal>(convolution: &mut Convolution<T>, write: &(dyn Fn(usize, &mut [T]) + Sync)) {
     let blocks = (0..n_blocks(convolution.grid())).into_par_iter();
     convolution.transform_rows(blocks, write);

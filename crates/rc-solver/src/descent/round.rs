@@ -21,8 +21,8 @@ struct ActiveSet {
     direction_mean: f64,
 }
 
-/// The part of the cell in contact above which each step is clipped, and what joins the contact gets a pressure at once.
-/// `docs/measurements-uniform.md` compares both rules.
+/// The part of the cell in contact above which each step is clipped, and what joins the contact gets a pressure at
+/// once. `docs/measurements-uniform.md` compares both rules.
 const HEAVY_CONTACT: f64 = 0.5;
 
 /// What displaces a square of side 1 by 1 at its centre when it presses on it alone, π / (4 ln(1 + √2)) E*.
@@ -40,7 +40,8 @@ impl Descent<'_> {
         self.precondition_mean(sums);
         let mut set = self.begin_round();
         if set.n == 0.0 && sums.has_plastic() {
-            // The last projection has left every element at one of both bounds, and then changed the gaps that it had chosen by.
+            // The last projection has left every element at one of both bounds, and then changed the gaps that it had
+            // chosen by.
             self.is_chosen = false;
             set = self.begin_round();
         }
@@ -73,7 +74,8 @@ impl Descent<'_> {
         let [n, direction] = self.layout.total(sums);
         self.operators.corrections.set_active(&self.directions.active);
         let fixed_load = matches!(self.problem.control, Control::MeanPressure(_));
-        // Where a uniform pressure on the whole cell displaces nothing, no step along it is long enough, and others would be scaled with it.
+        // Where a uniform pressure on the whole cell displaces nothing, no step along it is long enough, and others
+        // would be scaled with it.
         let is_free = self.problem.support.is_none() && n >= self.n_cell();
         ActiveSet { n, fixed_mean: fixed_load || is_free, direction_mean: direction / n }
     }
@@ -157,8 +159,8 @@ impl Descent<'_> {
         self.meet_penetration(sums)
     }
 
-    /// Takes a step and clips tensile pressures; in heavy contact what joins gets its own. Returns how many pressures that changed, and the
-    /// load of each square.
+    /// Takes a step and clips tensile pressures; in heavy contact what joins gets its own. Returns how many pressures
+    /// that changed, and the load of each square.
     fn clip(&mut self, length: f64, is_heavy: bool, gradient: &Gradient) -> (u64, Vec<Load>) {
         let (len, squares, layout) = (self.layout.len(), self.squares(), &self.layout);
         let spacing = self.info.grid.spacing();

@@ -1,8 +1,9 @@
 //! The vector work of the iteration, on one block at a time, with the sums that decide the next step.
 //!
-//! Functions that write the block of an operator or read it pass the vectors through the cache once. Sums are in double precision
-//! and in a fixed order: element by element in a block, then block by block. The overlap of the heights with the rigid plane, h - c, is
-//! computed first: a constant in the heights, however large, then cancels before anything is added to it.
+//! Functions that write the block of an operator or read it pass the vectors through the cache once. Sums are in double
+//! precision and in a fixed order: element by element in a block, then block by block. The overlap of the heights with
+//! the rigid plane, h - c, is computed first: a constant in the heights, however large, then cancels before anything is
+//! added to it.
 
 use super::sums::GapSums;
 
@@ -41,7 +42,8 @@ impl ElementValues<'_> {
         sums
     }
 
-    /// Adds the displacement of the pressures that clipping has added, in units of `range`, then multiplies the pressure by `scale`.
+    /// Adds the displacement of the pressures that clipping has added, in units of `range`, then multiplies the
+    /// pressure by `scale`.
     pub(super) fn add_clipped(
         self,
         displacement: &[f32],
@@ -59,8 +61,8 @@ impl ElementValues<'_> {
         sums
     }
 
-    /// Writes the residual of the active elements: of those that `active` has, or, where nothing has been `chosen` yet, those that press or
-    /// penetrate. Returns their number and the sum of the last `direction` over them.
+    /// Writes the residual of the active elements: of those that `active` has, or, where nothing has been `chosen` yet,
+    /// those that press or penetrate. Returns their number and the sum of the last `direction` over them.
     pub(super) fn first_residual(
         self,
         gradient: &Gradient,
@@ -99,10 +101,10 @@ impl ElementValues<'_> {
         }
     }
 
-    /// Takes the step `length` along a direction, clips tensile pressures and those above the hardness, and writes what the clipping has added, in
-    /// units of `1 / unit`. Chooses the next active elements before clipping: those between both bounds, those outside that penetrate, which get
-    /// `joining` times their overlap for a pressure, and plastic ones with a gap, which lose as much. Returns the number of pressures that changed
-    /// so.
+    /// Takes the step `length` along a direction, clips tensile pressures and those above the hardness, and writes what
+    /// the clipping has added, in units of `1 / unit`. Chooses the next active elements before clipping: those between
+    /// both bounds, those outside that penetrate, which get `joining` times their overlap for a pressure, and plastic
+    /// ones with a gap, which lose as much. Returns the number of pressures that changed so.
     pub(super) fn clip(&mut self, length: f64, joining: f64, step: &mut ClippedStep<'_>, gradient: &Gradient) -> u32 {
         let ClippedStep { direction, displacement, active, added } = step;
         let hardness = gradient.hardness;
@@ -129,7 +131,8 @@ impl ElementValues<'_> {
     }
 }
 
-/// Multiplies some pressures by `share`, and adds what that adds, in units of `1 / unit`, to what clipping has `added`. Returns Σ p.
+/// Multiplies some pressures by `share`, and adds what that adds, in units of `1 / unit`, to what clipping has `added`.
+/// Returns Σ p.
 pub(super) fn share(pressure: &mut [f64], share: f64, unit: f64, added: &[f32], written: &mut [f32]) -> f64 {
     let mut sum = 0.0;
     for ((p, added), written) in pressure.iter_mut().zip(added).zip(written) {
@@ -187,7 +190,8 @@ impl Gradient {
     }
 }
 
-/// Of the preconditioned residual z: Σ z, Σ z u, Σ u over the active elements, with the displacement u of the last direction.
+/// Of the preconditioned residual z: Σ z, Σ z u, Σ u over the active elements, with the displacement u of the last
+/// direction.
 pub(super) fn sums_of_preconditioned(preconditioned: &[f32], displacement: &[f32], active: &[bool]) -> [f64; 3] {
     let mut sums = [0.0; 3];
     for ((&z, &u), &active) in preconditioned.iter().zip(displacement).zip(active) {
@@ -257,8 +261,8 @@ pub(super) fn next_direction(
 mod tests {
     use super::*;
 
-    /// Pressures, active elements and what was added after a step of length 1 on five elements: one that stays, one that turns tensile, one
-    /// that comes to penetrate, one that does not, and one that stopped penetrating.
+    /// Pressures, active elements and what was added after a step of length 1 on five elements: one that stays, one
+    /// that turns tensile, one that comes to penetrate, one that does not, and one that stopped penetrating.
     fn clipped(joining: f64, hardness: f64) -> ([f64; 5], [bool; 5], [f32; 5], u32) {
         let (mut pressure, mut gap) = ([2.0, 1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.5, 0.5, -0.5]);
         let (mut active, mut added) = ([true, true, false, false, true], [0.0; 5]);

@@ -8,14 +8,15 @@ use super::state::Descent;
 use super::sums::GapSums;
 use crate::ErrorBound;
 
-/// Conjugate-gradient steps between two clippings. Measured without extended residuals at 1024², N = 64, σ0/E* = 8.9e-4 to 1e-6: 1, 2, 3 steps need
-/// 37, 36, 36 convolutions, but only 2 does it everywhere from 0.1 % to 86 % contact.
+/// Conjugate-gradient steps between two clippings. Measured without extended residuals at 1024², N = 64, σ0/E* = 8.9e-4
+/// to 1e-6: 1, 2, 3 steps need 37, 36, 36 convolutions, but only 2 does it everywhere from 0.1 % to 86 % contact.
 const STEPS_PER_ROUND: usize = 2;
 
-/// Rounds without progress before directions are forgotten, and three times as many before the iteration gives up. From the first of them
-/// on tensile pressures are clipped after every step: where pressures are smooth over many contacts, steps are large, contacts change under
-/// them, and two steps between clippings lead astray. Before residuals were extended, in cells 50 and 100 times as long as wide, 15 of 144 loads did not converge without
-/// this rule, and 1 with it, in half the iterations; N = 1024 on 2304² needs 29 instead of 36, and other scenes are as before.
+/// Rounds without progress before directions are forgotten, and three times as many before the iteration gives up. From
+/// the first of them on tensile pressures are clipped after every step: where pressures are smooth over many contacts,
+/// steps are large, contacts change under them, and two steps between clippings lead astray. Before residuals were
+/// extended, in cells 50 and 100 times as long as wide, 15 of 144 loads did not converge without this rule, and 1 with
+/// it, in half the iterations; N = 1024 on 2304² needs 29 instead of 36, and other scenes are as before.
 const PATIENCE: usize = 20;
 
 /// An error below this part of the smallest one so far is progress.
@@ -24,7 +25,8 @@ const PROGRESS: f64 = 0.9;
 /// When a descent ends.
 #[derive(Clone, Copy)]
 pub(crate) struct Goal {
-    /// The deepest overlap to be reached, or a tenth of the greatest gap well inside contact, in units of the problem's length.
+    /// The deepest overlap to be reached, or a tenth of the greatest gap well inside contact, in units of the problem's
+    /// length.
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: usize,
     /// What a fresh application of L must confirm, if anything.
@@ -98,8 +100,8 @@ impl Descent<'_> {
         }
     }
 
-    /// The gap from a fresh application of L, in double precision, and the pressure at the prescribed load or penetration: the gap follows
-    /// scaling to rounding, since v is linear in p.
+    /// The gap from a fresh application of L, in double precision, and the pressure at the prescribed load or
+    /// penetration: the gap follows scaling to rounding, since v is linear in p.
     pub(crate) fn refresh(&mut self) -> GapSums {
         if self.problem.hardness.is_finite() {
             self.limit_pressure();

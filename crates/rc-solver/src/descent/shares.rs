@@ -1,11 +1,13 @@
 //! Load that stays where it is when tensile pressures are clipped.
 //!
-//! Clipping adds load, which has to go again. Taken from the whole cell it moves load over long distances, and every step that is long enough for
-//! contacts to change would undo what it has gained for long waves. So the load of a step is kept in squares of the cell, as far as pressures there
-//! have one: what is to be shared out in a square is divided among its quarters by the load they have, down to the smallest squares. Between the
-//! centres of these both loads are interpolated, before and after, whose ratio is the factor on pressures.
+//! Clipping adds load, which has to go again. Taken from the whole cell it moves load over long distances, and every
+//! step that is long enough for contacts to change would undo what it has gained for long waves. So the load of a step
+//! is kept in squares of the cell, as far as pressures there have one: what is to be shared out in a square is divided
+//! among its quarters by the load they have, down to the smallest squares. Between the centres of these both loads are
+//! interpolated, before and after, whose ratio is the factor on pressures.
 
-/// Elements along a side of the smallest squares, at least: their number is a power of two. `docs/measurements-uniform.md` compares 8 to 128.
+/// Elements along a side of the smallest squares, at least: their number is a power of two.
+/// `docs/measurements-uniform.md` compares 8 to 128.
 const SMALLEST_SQUARE: usize = 64;
 
 /// A square keeps at least this part of its load after clipping: where contacts vanish there may be none before.

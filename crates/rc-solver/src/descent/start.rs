@@ -9,13 +9,15 @@ use crate::parallel;
 #[cfg(doc)]
 use crate::problem::Problem;
 
-/// The pressure of a rigid overlap may miss the prescribed load by this factor before it is scaled to it, and is computed this
-/// often at most. Over 57 cold starts on 64² to 512², 448 iterations and 830 applications of L, the start's included, where a
-/// uniform pressure needs 976 and 1519; 444 to 456 with a factor from 1.1 to 2 and three to eight tries.
+/// The pressure of a rigid overlap may miss the prescribed load by this factor before it is scaled to it, and is
+/// computed this often at most. Over 57 cold starts on 64² to 512², 448 iterations and 830 applications of L, the
+/// start's included, where a uniform pressure needs 976 and 1519; 444 to 456 with a factor from 1.1 to 2 and three to
+/// eight tries.
 const LOAD_FACTOR: f64 = 1.3;
 const MAX_OVERLAPS: usize = 3;
 
-/// The first overlap, as a part of the range of depths ([`Problem::depth_range`]), and the exponent of the load over the overlap until two are known.
+/// The first overlap, as a part of the range of depths ([`Problem::depth_range`]), and the exponent of the load over
+/// the overlap until two are known.
 const FIRST_OVERLAP: f64 = 0.25;
 const FIRST_EXPONENT: f64 = 1.5;
 
@@ -35,7 +37,8 @@ impl DepthSearch {
         Self { depth: FIRST_OVERLAP * range, exponent: FIRST_EXPONENT, last: None }
     }
 
-    /// The next depth, when the present one carries `load`, which is too small by the factor `missing`. NaN when two loads are the same.
+    /// The next depth, when the present one carries `load`, which is too small by the factor `missing`. NaN when two
+    /// loads are the same.
     fn improve(&mut self, load: f64, missing: f64) {
         if let Some((last_depth, last_load)) = self.last {
             let [least, most] = EXPONENTS;
@@ -85,8 +88,9 @@ impl Descent<'_> {
         self.refresh()
     }
 
-    /// Sets the pressure to the overlap of the heights with a rigid plane at `floor`, in units of length, or to a multiple of it that is below the
-    /// hardness: it is scaled in any case, and what has the hardness would have no part in that.
+    /// Sets the pressure to the overlap of the heights with a rigid plane at `floor`, in units of length, or to a
+    /// multiple of it that is below the hardness: it is scaled in any case, and what has the hardness would have no
+    /// part in that.
     fn overlap(&mut self, floor: f64) {
         let len = self.layout.len();
         parallel::for_each(self.elements().blocks(len), |block| {
@@ -101,8 +105,8 @@ impl Descent<'_> {
         }
     }
 
-    /// The overlap with a rigid plane that carries the mean pressure `wanted`, nearly, when it is scaled so that its weighted mean gap
-    /// is zero; a uniform pressure where only an overlap of more than the range of depths would.
+    /// The overlap with a rigid plane that carries the mean pressure `wanted`, nearly, when it is scaled so that its
+    /// weighted mean gap is zero; a uniform pressure where only an overlap of more than the range of depths would.
     fn overlap_of_load(&mut self, wanted: f64) -> GapSums {
         let n_cell = self.n_cell();
         // A coarse level may not reach as high as the finest.

@@ -154,7 +154,8 @@ impl<'a> Descent<'a> {
         Outcome::new(self.problem, sums, self.n_cell(), converged)
     }
 
-    /// The solution on a uniform grid, with the work on all levels, coarsest first, and the values of the last level but one.
+    /// The solution on a uniform grid, with the work on all levels, coarsest first, and the values of the last level
+    /// but one.
     pub(crate) fn into_solution(
         self,
         outcome: &Outcome,

@@ -28,7 +28,8 @@ pub(crate) struct GapSums {
     pub(super) max_pressed_gap: f64,
     /// Elements of more pressure are well inside contact.
     pub(super) pressed: f64,
-    /// The greatest pressure. Elements that have it are in none of the sums above but `max_pressure` and `max_pressed_gap`.
+    /// The greatest pressure. Elements that have it are in none of the sums above but `max_pressure` and
+    /// `max_pressed_gap`.
     pub(super) hardness: f64,
     pub(super) plastic: PlasticSums,
 }
@@ -67,7 +68,8 @@ impl PlasticSums {
     }
 }
 
-/// Part of the maximum pressure from which elements are well inside contact, and part of their greatest gap that counts as an overlap.
+/// Part of the maximum pressure from which elements are well inside contact, and part of their greatest gap that counts
+/// as an overlap.
 const PRESSED: f64 = 0.1;
 const OPEN: f64 = 0.1;
 
@@ -176,8 +178,8 @@ impl GapSums {
         if self.pressure > 0.0 { self.pressure_gap / self.pressure } else { self.gap_of_plastic(problem) }
     }
 
-    /// The gap of contact where nothing but plastic elements press: any between theirs and those of the others is. Where the penetration is
-    /// prescribed it should be zero.
+    /// The gap of contact where nothing but plastic elements press: any between theirs and those of the others is.
+    /// Where the penetration is prescribed it should be zero.
     fn gap_of_plastic(&self, problem: &Problem) -> f64 {
         let [inside, outside] = [self.plastic.max_gap, self.min_gap];
         match problem.control {
@@ -221,8 +223,8 @@ impl GapSums {
         if gap < 0.0 { 0.0 } else { gap }
     }
 
-    /// The gap of contact that certificates and penetrations are from: where the penetration is prescribed and elements are plastic, it is
-    /// exact, since no scaling of the pressure could close the mean gap of the others.
+    /// The gap of contact that certificates and penetrations are from: where the penetration is prescribed and elements
+    /// are plastic, it is exact, since no scaling of the pressure could close the mean gap of the others.
     pub(super) fn reference_gap(&self, problem: &Problem) -> f64 {
         match problem.control {
             Control::Penetration(_) if !self.may_scale() => 0.0,
@@ -236,9 +238,9 @@ impl GapSums {
         !self.has_plastic() && self.scale_to_no_gap().is_none_or(|scale| scale * self.max_pressure <= self.hardness)
     }
 
-    /// Bound on G over the mean pressure, where G = max ⟨g, p - p*⟩ over pressures p* that are possible and have the mean of p: the weighted mean
-    /// of g - min g, with min g over elements that could press more. Plastic elements below that minimum could press less, which adds
-    /// nothing; the others count with the greatest gap of them all.
+    /// Bound on G over the mean pressure, where G = max ⟨g, p - p*⟩ over pressures p* that are possible and have the
+    /// mean of p: the weighted mean of g - min g, with min g over elements that could press more. Plastic elements
+    /// below that minimum could press less, which adds nothing; the others count with the greatest gap of them all.
     pub(super) fn excess(&self, problem: &Problem) -> f64 {
         let of_elastic = self.mean_gap(problem) - self.min_gap;
         if !self.has_plastic() {
@@ -263,8 +265,8 @@ impl GapSums {
         }
     }
 
-    /// The factor on the pressure that makes its weighted mean gap zero, under penetration control; within [`MAXIMUM_SCALING`]. None where
-    /// the hardness forbids it.
+    /// The factor on the pressure that makes its weighted mean gap zero, under penetration control; within
+    /// [`MAXIMUM_SCALING`]. None where the hardness forbids it.
     pub(crate) fn scale_to_penetration(&self, problem: &Problem) -> Option<f64> {
         let Control::Penetration(_) = problem.control else { return None };
         if !self.may_scale() {
@@ -279,8 +281,8 @@ impl GapSums {
         (scale.is_finite() && self.work() > 0.0).then_some(scale)
     }
 
-    /// The deepest overlap, a tenth of the greatest gap well inside contact, the greatest gap of a plastic element, or the mean gap where there
-    /// should be none, in units of the problem's length, in a cell of `n_cell` elements.
+    /// The deepest overlap, a tenth of the greatest gap well inside contact, the greatest gap of a plastic element, or
+    /// the mean gap where there should be none, in units of the problem's length, in a cell of `n_cell` elements.
     pub(super) fn error(&self, problem: &Problem, n_cell: f64) -> f64 {
         let mean_gap = self.mean_gap(problem);
         let length = problem.reference_length(self.work(), self.load(), n_cell);

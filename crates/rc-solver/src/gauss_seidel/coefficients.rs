@@ -36,8 +36,8 @@ impl<'a> Coefficients<'a> {
         Self { coefficient, side, tables: Vec::new(), budget }
     }
 
-    /// The elements of `mesh` on the lattice, and tables for their sizes as far as the budget goes, smallest sources first:
-    /// they are the most numerous.
+    /// The elements of `mesh` on the lattice, and tables for their sizes as far as the budget goes, smallest sources
+    /// first: they are the most numerous.
     pub(super) fn prepare(&mut self, mesh: &Mesh) -> Vec<Site> {
         let finest = 1.0 / f64::from(self.side);
         let sites: Vec<Site> = mesh

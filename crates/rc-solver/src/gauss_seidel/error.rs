@@ -25,8 +25,8 @@ pub enum GaussSeidelError {
     /// The mesh cannot be made.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// The scene needs more work than the budget allows. The estimate comes from a solution on a coarse grid, before any
-    /// other work.
+    /// The scene needs more work than the budget allows. The estimate comes from a solution on a coarse grid, before
+    /// any other work.
     #[error(
         "about {elements} elements in contact need {coefficients:.1e} coefficients a sweep, about {seconds_per_sweep:.0} s, \
          more than the budget of {budget:.1e}; take a coarser grid, another method, or a larger budget"

@@ -7,7 +7,8 @@ use super::{GaussSeidelError, GaussSeidelParams, HalfSpace};
 use crate::uniform::{coarsen_without_pits, solve_uniform};
 use crate::{Control, IterationParams, SolveInfo};
 
-/// Largest element, in finest elements: beyond it coarsening saves nothing and heights at centres would need more levels.
+/// Largest element, in finest elements: beyond it coarsening saves nothing and heights at centres would need more
+/// levels.
 pub(super) const LARGEST_DOUBLINGS: u32 = 5;
 
 /// Maximum side of the coarse grid that the cost is estimated on.

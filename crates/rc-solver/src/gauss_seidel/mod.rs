@@ -4,19 +4,20 @@
 //! For each increment of Δ:
 //!
 //! - (i) fix Δ;
-//! - (ii) first guess of the contact: the deformed layer of the increment before, lowered to the new Δ, meets the surface;
+//! - (ii) first guess of the contact: the deformed layer of the increment before, lowered to the new Δ, meets the
+//!   surface;
 //! - (iii) prescribe `v_i = h_i - h_max + Δ` on the elements in contact;
 //! - (iv) solve Eq. 4 on them, by Gauss-Seidel;
 //! - (v) find the displacement out of contact;
 //! - (vi) remove elements under tension, add those that penetrate, and mesh the new contact, until neither changes it.
 //!
-//! One departure: step (v) evaluates `Σ_j L_ij σ_j` on all points of the finest grid by FFT. An element of the mesh is a
-//! patch of finest elements under one pressure, so this is the same sum to rounding (test
+//! One departure: step (v) evaluates `Σ_j L_ij σ_j` on all points of the finest grid by FFT. An element of the mesh is
+//! a patch of finest elements under one pressure, so this is the same sum to rounding (test
 //! `displacement_by_fft_is_the_direct_sum`), without its O(n·N) cost.
 //!
 //! On a mesh of unequal elements collocation makes L non-symmetric: Gauss-Seidel tolerates that, conjugate gradients do
-//! not. The cost is that of a dense matrix, n² coefficients a sweep, so there is a budget, and a clear error when a scene
-//! needs more.
+//! not. The cost is that of a dense matrix, n² coefficients a sweep, so there is a budget, and a clear error when a
+//! scene needs more.
 
 mod coefficients;
 mod error;
@@ -38,11 +39,11 @@ use crate::problem::Problem;
 use crate::solution::GridSolution;
 use crate::{Control, ErrorBound, IterationParams, Tolerance};
 
-/// Solves the contact problem by the paper's procedure (Sec. 2, steps (i)-(vi)) on an adaptive mesh whose finest elements are those of the
-/// grid of `heights`, to a tolerance.
+/// Solves the contact problem by the paper's procedure (Sec. 2, steps (i)-(vi)) on an adaptive mesh whose finest
+/// elements are those of the grid of `heights`, to a tolerance.
 ///
-/// A mean pressure is found by a secant search over the penetration, which is what the procedure controls. The result is bitwise the same
-/// for any number of threads.
+/// A mean pressure is found by a secant search over the penetration, which is what the procedure controls. The result
+/// is bitwise the same for any number of threads.
 pub(crate) fn solve_gauss_seidel(
     heights: &Field,
     half_space: HalfSpace<'_>,

@@ -90,7 +90,8 @@ impl<'a> Procedure<'a> {
         })
     }
 
-    /// Step (i): Δ in increments, of which only the last is solved to the tolerance, and that only when Δ is what is prescribed.
+    /// Step (i): Δ in increments, of which only the last is solved to the tolerance, and that only when Δ is what is
+    /// prescribed.
     pub(super) fn increase_to(&mut self, penetration: f64) -> Result<(), GaussSeidelError> {
         let (grid, steps) = (self.info.grid, self.params.increments);
         for step in 1..=steps {
@@ -252,8 +253,8 @@ struct Bracket {
 }
 
 impl Bracket {
-    /// Narrows the bracket to `here`. Returns the penetration to try next: on the chord to the other end, or to the origin while the
-    /// bracket has no upper end.
+    /// Narrows the bracket to `here`. Returns the penetration to try next: on the chord to the other end, or to the
+    /// origin while the bracket has no upper end.
     fn next(&mut self, here: (f64, f64), mean: f64) -> f64 {
         let other = if here.1 < mean && self.high.1.is_finite() { self.high } else { self.low };
         if here.1 < mean {

@@ -28,9 +28,9 @@ pub(super) struct Limits {
 
 /// Relaxes `pressure` until L p equals `prescribed` on the elements.
 ///
-/// Elements are relaxed in their order, each seeing all changes before it, as Gauss-Seidel demands: a block is relaxed in
-/// sequence, then the displacement of all other elements by its changes is added, in parallel over those elements. The
-/// sums do not depend on the number of threads.
+/// Elements are relaxed in their order, each seeing all changes before it, as Gauss-Seidel demands: a block is relaxed
+/// in sequence, then the displacement of all other elements by its changes is added, in parallel over those elements.
+/// The sums do not depend on the number of threads.
 pub(super) fn relax(
     coefficients: &Coefficients<'_>,
     sites: &[Site],

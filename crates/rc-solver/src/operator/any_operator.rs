@@ -10,8 +10,9 @@ use crate::parallel;
 /// Values in a block.
 const BLOCK: usize = 4096;
 
-/// Eigenvalue of the approximate inverse for one wave along the second axis, which is about the longest: π on a half-space of E* = 1. Only its
-/// ratio to the eigenvalue of the mean matters, so an operator that says nothing usable gets that of the half-space.
+/// Eigenvalue of the approximate inverse for one wave along the second axis, which is about the longest: π on a
+/// half-space of E* = 1. Only its ratio to the eigenvalue of the mean matters, so an operator that says nothing usable
+/// gets that of the half-space.
 fn inverse_of_longest_wave(operator: &dyn Operator) -> f64 {
     let n = operator.n_elements();
     let wave: Vec<f64> = (0..n).map(|i| (TAU * i as f64 / n as f64).cos()).collect();
@@ -22,7 +23,8 @@ fn inverse_of_longest_wave(operator: &dyn Operator) -> f64 {
     if inverse > 0.0 && inverse.is_finite() { inverse } else { PI }
 }
 
-/// L for corrections and for fresh gaps, both in double precision: nothing is known of the rounding of an operator in single precision.
+/// L for corrections and for fresh gaps, both in double precision: nothing is known of the rounding of an operator in
+/// single precision.
 pub(super) fn operators_of(operator: &dyn Operator) -> LevelOperators<'_> {
     let inverse = inverse_of_longest_wave(operator);
     LevelOperators {

@@ -10,21 +10,21 @@ use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
 use crate::stiffness::stiffness_of;
 use crate::{Certificate, Control, IterationParams, ProblemError};
 
-/// Largest fault of an operator, relative to its displacements, over the overlap that a solve aims at. A tenth, because U/σ0 may be a tenth of the
-/// displacements.
+/// Largest fault of an operator, relative to its displacements, over the overlap that a solve aims at. A tenth, because
+/// U/σ0 may be a tenth of the displacements.
 const FAULT_PER_AIM: f64 = 0.1;
 
-/// Solves the contact problem on the grid of `heights` (in λ, any mean) with `operator` for v = L p, whatever it is: symmetric,
-/// of zero mean, positive for pressures that are not uniform, and its element i is that of `heights`.
+/// Solves the contact problem on the grid of `heights` (in λ, any mean) with `operator` for v = L p, whatever it is:
+/// symmetric, of zero mean, positive for pressures that are not uniform, and its element i is that of `heights`.
 ///
-/// The pressure is found by projected conjugate gradients on this grid alone. Nothing is known of the operator that would precondition them
-/// or that coarser grids could use, so they need several times the iterations of the uniform method, which is the one to choose for an
-/// operator that a [`rc_core::Kernel`] describes. The certificate is computed from a fresh application of the operator on the pressure that is
-/// returned.
+/// The pressure is found by projected conjugate gradients on this grid alone. Nothing is known of the operator that
+/// would precondition them or that coarser grids could use, so they need several times the iterations of the uniform
+/// method, which is the one to choose for an operator that a [`rc_core::Kernel`] describes. The certificate is computed
+/// from a fresh application of the operator on the pressure that is returned.
 ///
 /// # Errors
-/// [`ProblemError`]: an operator for another number of elements or not of a half-space, heights that are not finite, a control or tolerance out
-/// of range.
+/// [`ProblemError`]: an operator for another number of elements or not of a half-space, heights that are not finite, a
+/// control or tolerance out of range.
 pub(crate) fn solve_on_grid(
     heights: &Field,
     operator: &dyn Operator,

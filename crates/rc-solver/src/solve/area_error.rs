@@ -11,7 +11,8 @@ const FINEST: usize = 256;
 /// Fewest elements per side of the first grid.
 const SMALLEST_SIDE: usize = 64;
 
-/// Order at which the error bar falls with the element side: most of it is the scatter of edges, √(edges) element areas.
+/// Order at which the error bar falls with the element side: most of it is the scatter of edges, √(edges) element
+/// areas.
 const ORDER: f64 = 1.5;
 
 /// Solves on finer and finer grids until the error bar of the contact area is at most `wanted` of it.

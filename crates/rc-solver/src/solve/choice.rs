@@ -146,7 +146,8 @@ impl<'a> Choice<'a, '_> {
         }
     }
 
-    /// Why the uniform method solves a problem that the adaptive one refuses with `error`; `None` when it is refused too.
+    /// Why the uniform method solves a problem that the adaptive one refuses with `error`; `None` when it is refused
+    /// too.
     fn obstacle(&self, error: &AdaptiveError) -> Option<MethodReason> {
         let grid = self.problem.heights.grid();
         let is_large = |percent: &f64| *percent > 100.0 * Estimate::GREATEST_ADAPTIVE_AREA;

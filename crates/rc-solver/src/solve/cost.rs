@@ -8,8 +8,9 @@ use crate::ErrorBound;
 use crate::support::Support;
 use crate::uniform::FREE_BYTES_PER_ELEMENT;
 
-/// Processor seconds for each cell of the adaptive method at the default tolerance: measured 1.1e-6 to 1.5e-6 for cells that are
-/// evaluated, of which the estimate counts 0.55 to 0.9 (512² to 4096², 0.9 % to 20 % contact, H = 0.3 and 0.8).
+/// Processor seconds for each cell of the adaptive method at the default tolerance: measured 1.1e-6 to 1.5e-6 for cells
+/// that are evaluated, of which the estimate counts 0.55 to 0.9 (512² to 4096², 0.9 % to 20 % contact, H = 0.3
+/// and 0.8).
 const SECONDS_PER_ADAPTIVE_CELL: f64 = 1.7e-6;
 
 /// The same for each element of the uniform grid: measured 0.6e-6 to 1.0e-6 (512² and 2048², 7 % to 71 % contact).

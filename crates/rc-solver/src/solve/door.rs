@@ -28,7 +28,8 @@ impl<'a> ContactProblem<'a> {
         self.plan(params)?.solve(observer)
     }
 
-    /// The coarsest grid that [`ContactProblem::solve_to_area_error`] solves on. The sides of all others are multiples of its own.
+    /// The coarsest grid that [`ContactProblem::solve_to_area_error`] solves on. The sides of all others are multiples
+    /// of its own.
     ///
     /// # Errors
     /// [`SolveError::NoWaves`]; [`SolveError::Grid`] for a surface with too many waves.
@@ -36,15 +37,15 @@ impl<'a> ContactProblem<'a> {
         area_error::coarsest_grid(&self.heights)
     }
 
-    /// Solves the problem on the coarsest grid whose error bar of the contact area is at most `wanted` of the area. The heights must be
-    /// a band-limited surface; the grid they are wanted on is not used.
+    /// Solves the problem on the coarsest grid whose error bar of the contact area is at most `wanted` of the area. The
+    /// heights must be a band-limited surface; the grid they are wanted on is not used.
     ///
-    /// The bar on a first grid, with four elements for the shortest wave, says where to go next. Mostly two problems are solved, of which
-    /// the last takes longer than all others.
+    /// The bar on a first grid, with four elements for the shortest wave, says where to go next. Mostly two problems
+    /// are solved, of which the last takes longer than all others.
     ///
     /// # Errors
-    /// [`SolveError`]; [`SolveError::NoWaves`] for heights that no other grid can have, and [`SolveError::AreaError`] when 256 elements
-    /// for the shortest wave are not enough.
+    /// [`SolveError`]; [`SolveError::NoWaves`] for heights that no other grid can have, and [`SolveError::AreaError`]
+    /// when 256 elements for the shortest wave are not enough.
     pub fn solve_to_area_error(
         self,
         wanted: f64,
@@ -56,8 +57,9 @@ impl<'a> ContactProblem<'a> {
 }
 
 impl Plan<'_> {
-    /// The plan of another load on the same surface, with the same parameters. Heights, their bounds and the tables of the operator are
-    /// shared by the plans, and kept as long as one of them lives; every digit is that of a plan of its own.
+    /// The plan of another load on the same surface, with the same parameters. Heights, their bounds and the tables of
+    /// the operator are shared by the plans, and kept as long as one of them lives; every digit is that of a plan of
+    /// its own.
     ///
     /// ```
     /// use rc_core::{Field, Grid, Silent};
@@ -82,8 +84,8 @@ impl Plan<'_> {
 
 /// Solves the contact of `heights` (in λ) with the elastic half-space under a load.
 ///
-/// The method is chosen by the estimated contact area unless `params` name one. The certificate comes from a fresh application of L on the
-/// returned pressure. The result is bitwise the same for any number of threads.
+/// The method is chosen by the estimated contact area unless `params` name one. The certificate comes from a fresh
+/// application of L on the returned pressure. The result is bitwise the same for any number of threads.
 ///
 /// ```
 /// use rc_core::{Field, Grid};
@@ -108,18 +110,19 @@ pub fn solve<'a>(
     ContactProblem::new(heights, control).solve(params, &Silent)
 }
 
-/// Solves the contact of `heights` (in λ) with the half-space of an operator of the caller: v = L p, symmetric, of zero mean, and positive for
-/// pressures that are not uniform. Element i of the operator is element i of the heights.
+/// Solves the contact of `heights` (in λ) with the half-space of an operator of the caller: v = L p, symmetric, of zero
+/// mean, and positive for pressures that are not uniform. Element i of the operator is element i of the heights.
 ///
-/// The pressure is found by projected conjugate gradients on the grid alone. Nothing is known of the operator that would precondition them, so
-/// they need several times the iterations of the uniform method. A half-space that a [`rc_core::Kernel`] describes is solved faster by
-/// [`ContactProblem::with_kernel`]. Of `params`, tolerance and number of iterations count. The certificate comes from a fresh application of the
-/// operator. [`Solution::stiffness`] is a lower bound here, mostly within a percent, since its iteration is not preconditioned either.
+/// The pressure is found by projected conjugate gradients on the grid alone. Nothing is known of the operator that
+/// would precondition them, so they need several times the iterations of the uniform method. A half-space that a
+/// [`rc_core::Kernel`] describes is solved faster by [`ContactProblem::with_kernel`]. Of `params`, tolerance and number
+/// of iterations count. The certificate comes from a fresh application of the operator. [`Solution::stiffness`] is a
+/// lower bound here, mostly within a percent, since its iteration is not preconditioned either.
 ///
 /// # Errors
 /// [`SolveError`]; [`crate::ProblemError::Operator`] for an operator with another number of elements, and
-/// [`crate::ProblemError::NotElastic`] for one that three applications at the start show not to be that of a half-space ([`Operator`] says what
-/// they see).
+/// [`crate::ProblemError::NotElastic`] for one that three applications at the start show not to be that of a half-space
+/// ([`Operator`] says what they see).
 pub fn solve_with_operator<'a>(
     heights: impl Into<HeightSource<'a>>,
     operator: &'a dyn Operator,

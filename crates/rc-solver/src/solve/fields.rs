@@ -20,8 +20,8 @@ impl Solution<'_> {
         }
     }
 
-    /// The gap on the grid, in λ, with its pressure-weighted mean at zero; zero in contact within the tolerance. With a hardness it is that after
-    /// plastic flow.
+    /// The gap on the grid, in λ, with its pressure-weighted mean at zero; zero in contact within the tolerance. With a
+    /// hardness it is that after plastic flow.
     #[must_use]
     pub fn gap(&self) -> &Field {
         match &self.pressures {
@@ -30,8 +30,8 @@ impl Solution<'_> {
         }
     }
 
-    /// The gap on the grid of the smallest elements, in λ, as [`Solution::gap`]; `None` where that is [`Solution::grid`], which it is without
-    /// a border level. Takes one application of L on that grid each time.
+    /// The gap on the grid of the smallest elements, in λ, as [`Solution::gap`]; `None` where that is
+    /// [`Solution::grid`], which it is without a border level. Takes one application of L on that grid each time.
     #[must_use]
     pub fn finest_gap(&self) -> Option<Field> {
         match &self.pressures {
@@ -44,14 +44,15 @@ impl Solution<'_> {
         }
     }
 
-    /// The overlap that plastic flow has removed, on the grid, in λ, ≥ 0; zero where the pressure is below the hardness, and everywhere
-    /// without one.
+    /// The overlap that plastic flow has removed, on the grid, in λ, ≥ 0; zero where the pressure is below the
+    /// hardness, and everywhere without one.
     #[must_use]
     pub fn plastic_gap(&self) -> &Field {
         self.plastic_gap.get_or_init(|| self.collect(self.grid(), |take| self.plastic_gap_rows(take)))
     }
 
-    /// The displacement v on the grid, in λ, of mean zero on the periodic half-space. Takes one application of L the first time.
+    /// The displacement v on the grid, in λ, of mean zero on the periodic half-space. Takes one application of L the
+    /// first time.
     #[must_use]
     pub fn displacement(&self) -> &Field {
         self.displacement.get_or_init(|| match &self.pressures {
@@ -62,8 +63,8 @@ impl Solution<'_> {
         })
     }
 
-    /// Hands out [`Solution::pressure`] in order, some rows at a time: the index of the first row, and the rows one after the other. Stops
-    /// at the first error.
+    /// Hands out [`Solution::pressure`] in order, some rows at a time: the index of the first row, and the rows one
+    /// after the other. Stops at the first error.
     ///
     /// # Errors
     /// What `take` returns.
@@ -75,7 +76,8 @@ impl Solution<'_> {
         }
     }
 
-    /// The same over ranks, with some rows for each rank: those that it takes follow each other, and those of the next rank follow them.
+    /// The same over ranks, with some rows for each rank: those that it takes follow each other, and those of the next
+    /// rank follow them.
     ///
     /// # Errors
     /// What `take` returns.
@@ -86,8 +88,8 @@ impl Solution<'_> {
         }
     }
 
-    /// Hands out [`Solution::gap`] as [`Solution::pressure_rows`] does the pressure, for the adaptive method at about the cost of one
-    /// application of L on the whole grid.
+    /// Hands out [`Solution::gap`] as [`Solution::pressure_rows`] does the pressure, for the adaptive method at about
+    /// the cost of one application of L on the whole grid.
     ///
     /// # Errors
     /// What `take` returns.

@@ -12,15 +12,17 @@ pub struct SolveParams {
     pub max_iterations: usize,
     /// The method; `None` chooses by the estimated contact area.
     pub method: Option<Method>,
-    /// How often elements at contact edges are halved beyond the grid. Only the adaptive method does so, and only on a surface.
+    /// How often elements at contact edges are halved beyond the grid. Only the adaptive method does so, and only on a
+    /// surface.
     pub border_level: usize,
-    /// Maximum memory, in bytes. A larger estimate is an error before any work, or after the base grid where scattered contact turns out to need the
-    /// uniform grid.
+    /// Maximum memory, in bytes. A larger estimate is an error before any work, or after the base grid where scattered
+    /// contact turns out to need the uniform grid.
     pub memory_limit: Option<u64>,
-    /// Whether a method that does not fit into memory gives way to one that does. Their results differ within the error bars, so one of many
-    /// solves, which may run on another machine, sets this to `false`.
+    /// Whether a method that does not fit into memory gives way to one that does. Their results differ within the error
+    /// bars, so one of many solves, which may run on another machine, sets this to `false`.
     pub method_follows_memory: bool,
-    /// Bound on the error of one application of the adaptive operator, relative to the rms displacement. A smaller tolerance lowers it.
+    /// Bound on the error of one application of the adaptive operator, relative to the rms displacement. A smaller
+    /// tolerance lowers it.
     pub operator_error: f64,
     /// Elements per side of the base grid of the adaptive method; `None` chooses.
     pub base_side: Option<usize>,
@@ -29,7 +31,8 @@ pub struct SolveParams {
 }
 
 impl SolveParams {
-    /// Certified to [`Tolerance::DEFAULT`]: area and rms pressure are then those of the discrete problem to about five digits.
+    /// Certified to [`Tolerance::DEFAULT`]: area and rms pressure are then those of the discrete problem to about five
+    /// digits.
     #[must_use]
     pub fn certified() -> Self {
         Self {

@@ -37,8 +37,8 @@ pub(super) enum ChosenMethod<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// The method. An adaptive one that was not asked for gives way to the uniform one when contact on its base grid is too scattered:
-    /// [`Solution::method`] is the one that has solved.
+    /// The method. An adaptive one that was not asked for gives way to the uniform one when contact on its base grid is
+    /// too scattered: [`Solution::method`] is the one that has solved.
     #[must_use]
     pub fn method(&self) -> Method {
         match self.chosen {
@@ -63,8 +63,8 @@ impl<'a> Plan<'a> {
     /// Solves the problem.
     ///
     /// # Errors
-    /// [`SolveError::NotConverged`] with the best solution found; [`SolveError::Problem`] for heights that are not finite, and
-    /// [`SolveError::GaussSeidel`] for what the paper's procedure refuses.
+    /// [`SolveError::NotConverged`] with the best solution found; [`SolveError::Problem`] for heights that are not
+    /// finite, and [`SolveError::GaussSeidel`] for what the paper's procedure refuses.
     pub fn solve(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
         let Self { problem, params, bound, chosen, reason, mut shared } = self;
         let name = problem.kernel.get().name();
@@ -96,8 +96,8 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// The solution of the adaptive method; where that was chosen by an estimate, and contact turns out to be so scattered that the uniform grid
-/// is cheaper and fits into memory, that reason.
+/// The solution of the adaptive method; where that was chosen by an estimate, and contact turns out to be so scattered
+/// that the uniform grid is cheaper and fits into memory, that reason.
 fn by_adaptive(
     problem: &ContactProblem<'_>,
     params: &SolveParams,

@@ -44,8 +44,9 @@ impl<'a> ContactProblem<'a> {
         Self { heights: heights.into(), kernel, control, hardness: f64::INFINITY, place }
     }
 
-    /// The same problem with a hardness, in E*: no pressure is greater. It is the usual first model of plastic contact. Where the pressure is the
-    /// hardness, plastic flow removes the overlap of the surfaces ([`crate::Solution::plastic_gap`]).
+    /// The same problem with a hardness, in E*: no pressure is greater. It is the usual first model of plastic contact.
+    /// Where the pressure is the hardness, plastic flow removes the overlap of the surfaces
+    /// ([`crate::Solution::plastic_gap`]).
     ///
     /// ```
     /// use rc_core::{Field, Grid};
@@ -81,9 +82,9 @@ impl<'a> ContactProblem<'a> {
         Self { kernel: OwnedKernel::Shared(kernel), ..self }
     }
 
-    /// The same problem over ranks, which all solve it together: each has a part of the mesh, and calls the same functions in the same order, those of
-    /// the solution included. Only the adaptive method does so, with elements of one size on grids that halve. Digits do not depend on the
-    /// number of ranks.
+    /// The same problem over ranks, which all solve it together: each has a part of the mesh, and calls the same
+    /// functions in the same order, those of the solution included. Only the adaptive method does so, with elements of
+    /// one size on grids that halve. Digits do not depend on the number of ranks.
     ///
     /// ```
     /// use rc_comm::run_threads;
@@ -107,9 +108,9 @@ impl<'a> ContactProblem<'a> {
         Self { place: Place { ranks, ..self.place }, ..self }
     }
 
-    /// The same problem with a place for what each level leaves for the next. A solve of the same problem goes on from the last level that was
-    /// kept there, on any number of ranks, to the same digits. What is kept is of this problem alone: the caller sees to that. Only
-    /// the adaptive method without a border level keeps anything.
+    /// The same problem with a place for what each level leaves for the next. A solve of the same problem goes on from
+    /// the last level that was kept there, on any number of ranks, to the same digits. What is kept is of this problem
+    /// alone: the caller sees to that. Only the adaptive method without a border level keeps anything.
     #[must_use]
     pub fn kept_in(self, checkpoint: Arc<dyn Checkpoint>) -> Self {
         Self { place: Place { checkpoint: Some(checkpoint), ..self.place }, ..self }

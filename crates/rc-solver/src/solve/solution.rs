@@ -14,11 +14,12 @@ use crate::{Certificate, ContactArea, ContactElement, ErrorBound, Method, Method
 
 /// A solved contact problem.
 ///
-/// Pressures are in E*, lengths in λ, areas relative to the nominal area. Fields are on [`Solution::grid`]. Those of the adaptive method
-/// are made when they are first asked for; [`Solution::pressure_rows`] and [`Solution::gap_rows`] never hold them whole.
+/// Pressures are in E*, lengths in λ, areas relative to the nominal area. Fields are on [`Solution::grid`]. Those of
+/// the adaptive method are made when they are first asked for; [`Solution::pressure_rows`] and [`Solution::gap_rows`]
+/// never hold them whole.
 ///
-/// Over ranks ([`crate::ContactProblem::over`]) each has a part. All of them call the functions of a solution together; each gets the same numbers, rows go to
-/// the first of them, and elements are those of the rank.
+/// Over ranks ([`crate::ContactProblem::over`]) each has a part. All of them call the functions of a solution together;
+/// each gets the same numbers, rows go to the first of them, and elements are those of the rank.
 pub struct Solution<'a> {
     pub(super) how: HowSolved,
     pub(super) status: Status,
@@ -108,8 +109,8 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// The same solution without borrows. The adaptive method's keeps a copy of a map, and that of a grid the symbol of its kernel. With an
-    /// operator, displacement and stiffness are computed now.
+    /// The same solution without borrows. The adaptive method's keeps a copy of a map, and that of a grid the symbol of
+    /// its kernel. With an operator, displacement and stiffness are computed now.
     #[must_use]
     pub fn into_owned(self) -> Solution<'static> {
         let pressures = match self.pressures {
@@ -181,7 +182,8 @@ impl<'a> Solution<'a> {
         self.how.kernel
     }
 
-    /// How the solution was found and how good it is: certificate, load, penetration, energy, and the work on each level.
+    /// How the solution was found and how good it is: certificate, load, penetration, energy, and the work on each
+    /// level.
     #[must_use]
     pub fn info(&self) -> &SolveInfo {
         match &self.pressures {
@@ -237,9 +239,8 @@ impl<'a> Solution<'a> {
         })
     }
 
-    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact with the half-space. What is plastic
-    /// stays so, and adds nothing. Takes a few applications of L
-    /// the first time.
+    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact with the
+    /// half-space. What is plastic stays so, and adds nothing. Takes a few applications of L the first time.
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         *self.stiffness.get_or_init(|| match &self.pressures {
@@ -249,7 +250,8 @@ impl<'a> Solution<'a> {
         })
     }
 
-    /// Hands out the elements of [`Solution::elements`], over ranks those of all of them to the first, in order. Stops at the first error.
+    /// Hands out the elements of [`Solution::elements`], over ranks those of all of them to the first, in order. Stops
+    /// at the first error.
     ///
     /// # Errors
     /// What `take` returns.
@@ -291,7 +293,8 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// The elements of a mesh that is not the grid itself, those in contact with their pressures; `None` for the uniform method.
+    /// The elements of a mesh that is not the grid itself, those in contact with their pressures; `None` for the
+    /// uniform method.
     #[must_use]
     pub fn elements(&self) -> Option<Box<dyn Iterator<Item = ContactElement> + '_>> {
         match &self.pressures {

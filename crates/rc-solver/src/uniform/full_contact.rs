@@ -11,8 +11,8 @@ use crate::problem::Problem;
 use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
 use crate::{Control, ErrorBound};
 
-/// The mean pressure that closes every gap at the load of `problem`, if any does: that of the load, or on a layer what a penetration beyond
-/// that of the half-space's full contact compresses it by.
+/// The mean pressure that closes every gap at the load of `problem`, if any does: that of the load, or on a layer what
+/// a penetration beyond that of the half-space's full contact compresses it by.
 pub(super) fn mean_pressure(problem: &Problem) -> Option<f64> {
     match problem.control {
         Control::MeanPressure(value) => Some(value),
@@ -24,8 +24,8 @@ pub(super) fn mean_pressure(problem: &Problem) -> Option<f64> {
 }
 
 /// The solution when `mean_pressure` closes every gap: v = h - mean(h) and p = σ0 + L⁻¹ h, provided that is nowhere
-/// tensile nor above the hardness. (For the spectral kernel p̂ = E*|q|ĥ/2.) `None` otherwise, and where rounding or a faulty kernel leave a larger error than
-/// `bound`. Coarser grids have the heights `coarser`, finest first.
+/// tensile nor above the hardness. (For the spectral kernel p̂ = E*|q|ĥ/2.) `None` otherwise, and where rounding or a
+/// faulty kernel leave a larger error than `bound`. Coarser grids have the heights `coarser`, finest first.
 pub(super) fn solve(
     (heights, coarser): (&Field, &[Field]),
     kernel: &dyn Kernel,
@@ -74,12 +74,12 @@ fn fluctuation(heights: &Field, kernel: &dyn Kernel, mean: f64) -> SymbolOperato
 /// Elements of a grid that shows whether contact is partial, at most.
 const SKETCH: usize = 1 << 18;
 
-/// A coarser grid shows it where its pressure of full contact is this many times below the mean that lies above it: the pressures of the
-/// two grids differ by much less.
+/// A coarser grid shows it where its pressure of full contact is this many times below the mean that lies above it: the
+/// pressures of the two grids differ by much less.
 const CLEARLY: f64 = 2.0;
 
-/// Whether full contact would pull on a coarse grid, so clearly that it does on the finest one. Should it not, the iteration finds full
-/// contact.
+/// Whether full contact would pull on a coarse grid, so clearly that it does on the finest one. Should it not, the
+/// iteration finds full contact.
 fn shows_partial_contact(coarser: &[Field], kernel: &dyn Kernel, mean_pressure: f64) -> bool {
     let Some(heights) = coarser.iter().find(|heights| heights.grid().len() <= SKETCH) else { return false };
     let fluctuation = fluctuation(heights, kernel, heights.mean());
@@ -88,8 +88,9 @@ fn shows_partial_contact(coarser: &[Field], kernel: &dyn Kernel, mean_pressure: 
     least.into_iter().fold(f64::INFINITY, f64::min) < -CLEARLY * mean_pressure
 }
 
-/// A pressure p ≥ 0 has no Fourier coefficient above its mean. Full contact prescribes them, and the longest waves are the
-/// largest of a rough surface, so two of them usually prove that contact is partial, at a tenth of a transform's cost.
+/// A pressure p ≥ 0 has no Fourier coefficient above its mean. Full contact prescribes them, and the longest waves are
+/// the largest of a rough surface, so two of them usually prove that contact is partial, at a tenth of a transform's
+/// cost.
 fn proves_partial_contact(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64) -> bool {
     let grid = heights.grid();
     if grid.nx() < 3 || grid.ny() < 3 {
@@ -171,8 +172,9 @@ fn certified(
     GridSolution { pressure, gap, status: Status::FullContact, elements: None, info }
 }
 
-/// Another bound on the energy error, √(⟨r, L⁻¹ r⟩/U), r the gap less its mean: ⟨p - p*, L (p - p*)⟩ ≤ ⟨r, p - p*⟩, since the means of p and
-/// p* are the same. It stays small where the mean pressure is far beyond that of full contact and multiplies every rounding of the gap.
+/// Another bound on the energy error, √(⟨r, L⁻¹ r⟩/U), r the gap less its mean: ⟨p - p*, L (p - p*)⟩ ≤ ⟨r, p - p*⟩,
+/// since the means of p and p* are the same. It stays small where the mean pressure is far beyond that of full contact
+/// and multiplies every rounding of the gap.
 fn error_of_residual(gap: &Field, elastic_energy: f64, inverse: &mut SymbolOperator) -> f64 {
     let (block, mean) = (inverse.layout().len(), gap.mean());
     write_blocks(inverse, gap.values().chunks(block), |g, rows| {

@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 use rc_core::{Boundary, Grid};
 
-/// Interpolates between `N` neighbours along each axis (Lagrange): each value is `read` before and `written` after. At free borders the neighbours
-/// are the outermost ones, and beyond the last centre a value is that of its centre.
+/// Interpolates between `N` neighbours along each axis (Lagrange): each value is `read` before and `written` after. At
+/// free borders the neighbours are the outermost ones, and beyond the last centre a value is that of its centre.
 pub(super) fn interpolate<const N: usize>(
     values: &[f64],
     ([from, to], boundary): ([Grid; 2], Boundary),

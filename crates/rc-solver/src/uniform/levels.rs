@@ -8,19 +8,22 @@ use crate::factors::has_small_factors;
 /// Elements across a long cell on its coarsest grid, at least.
 const SMALLEST_WIDTH: usize = 8;
 
-/// An odd side is followed by one of 2^k times one of these numbers of elements: FFTs of such lengths are fast, and k halvings follow.
+/// An odd side is followed by one of 2^k times one of these numbers of elements: FFTs of such lengths are fast, and k
+/// halvings follow.
 const MULTIPLES: [usize; 6] = [8, 9, 10, 12, 14, 15];
 
 /// Greatest prime factor of a side that is halved as it is, when the half is odd.
 const GREATEST_FACTOR: usize = 13;
 
-/// The heights on coarser and coarser grids, finest of them first, each with half the elements per side, as long as that
-/// leaves whole elements, at least `smallest_side` of them along the side with more; a long cell is in need of coarser grids too.
+/// The heights on coarser and coarser grids, finest of them first, each with half the elements per side, as long as
+/// that leaves whole elements, at least `smallest_side` of them along the side with more; a long cell is in need of
+/// coarser grids too.
 pub(crate) fn coarsen(heights: &Field, smallest_side: usize) -> Vec<Field> {
     coarsen_above(heights, smallest_side, (f64::NEG_INFINITY, Boundary::Periodic), half)
 }
 
-/// The heights on coarser grids of any sizes, one after the other, for starts on finer grids: heights below the [`floor`] count as that.
+/// The heights on coarser grids of any sizes, one after the other, for starts on finer grids: heights below the
+/// [`floor`] count as that.
 pub(crate) fn coarsen_to(heights: &Field, coarser: impl Iterator<Item = Grid>) -> Vec<Field> {
     let floor = floor(heights);
     let mut levels: Vec<Field> = Vec::new();
@@ -36,7 +39,8 @@ pub(crate) fn coarsen_without_pits(heights: &Field, smallest_side: usize) -> Vec
     coarsen_above(heights, smallest_side, (floor(heights), Boundary::Periodic), half)
 }
 
-/// The same for grids of any size: the next one has half the elements of an even side, and about half those of an odd one.
+/// The same for grids of any size: the next one has half the elements of an even side, and about half those of an odd
+/// one.
 pub(super) fn nest_without_pits(heights: &Field, smallest_side: usize, boundary: Boundary) -> Vec<Field> {
     coarsen_above(heights, smallest_side, (floor(heights), boundary), |n| Some(about_half(n)))
 }
@@ -82,8 +86,8 @@ const SAMPLES: usize = 1 << 14;
 /// How many times farther below the highest point than the lower quartile the floor is.
 const FLOOR_DEPTH: f64 = 5.0;
 
-/// What only pits are below: interpolation next to a deep pit overshoots, and a summit that is not there would carry the whole load of a
-/// coarse grid. On a plateau, whose quartile is its top, nothing is.
+/// What only pits are below: interpolation next to a deep pit overshoots, and a summit that is not there would carry
+/// the whole load of a coarse grid. On a plateau, whose quartile is its top, nothing is.
 fn floor(heights: &Field) -> f64 {
     let values = heights.values();
     // An odd step, which does not stay in one column of a grid whose sides are even.
@@ -96,8 +100,9 @@ fn floor(heights: &Field) -> f64 {
     if depth > 0.0 { highest - FLOOR_DEPTH * depth } else { f64::NEG_INFINITY }
 }
 
-/// The heights at the centres of a coarser grid of the same cell. Six neighbours keep 99.9 % of a wave of eight elements at the midpoint of two
-/// centres, which is where the centre of an element twice as large lies; averaging would keep 92 %.
+/// The heights at the centres of a coarser grid of the same cell. Six neighbours keep 99.9 % of a wave of eight
+/// elements at the midpoint of two centres, which is where the centre of an element twice as large lies; averaging
+/// would keep 92 %.
 fn sample(finer: &Field, grid: Grid, (floor, boundary): (f64, Boundary)) -> Field {
     let heights =
         interpolate::<6>(finer.values(), ([finer.grid(), grid], boundary), |height| height.max(floor), |height| height);

@@ -2,8 +2,8 @@
 //!
 //! Interpolating the pressure itself spreads every contact by half a coarse element, which costs the next level six
 //! iterations. At an edge p = c √s inside and g = (4c/3) s^{3/2} outside, with s the distance to it and the same c
-//! (`E* = 1`), so the edge function φ = p² inside, -c² (3g/4c)^{2/3} outside is linear in s across the edge, and bilinear
-//! interpolation puts the edge where it belongs.
+//! (`E* = 1`), so the edge function φ = p² inside, -c² (3g/4c)^{2/3} outside is linear in s across the edge, and
+//! bilinear interpolation puts the edge where it belongs.
 
 use rayon::prelude::*;
 use rc_core::{Boundary, Grid};
@@ -60,8 +60,8 @@ impl Neighbours {
     }
 }
 
-/// φ of an element out of contact with these pressures around it. c² is estimated from its neighbours in contact, whose centres are about 0.7
-/// elements inside the edge; without any the value has no influence.
+/// φ of an element out of contact with these pressures around it. c² is estimated from its neighbours in contact, whose
+/// centres are about 0.7 elements inside the edge; without any the value has no influence.
 pub(crate) fn edge_function_outside<'a>(near: impl Iterator<Item = &'a f64>, gap: f64, spacing: f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for p in near {
@@ -85,7 +85,8 @@ const EDGE_DISTANCE: f64 = 0.7;
 mod tests {
     use super::*;
 
-    /// φ is linear across the straight edges of a strip, so p² on the fine elements is too, and the edges stay where they are.
+    /// φ is linear across the straight edges of a strip, so p² on the fine elements is too, and the edges stay where
+    /// they are.
     #[test]
     fn edges_of_a_strip_stay_where_they_are() {
         let (nx, ny) = (16, 8);

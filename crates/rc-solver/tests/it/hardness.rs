@@ -37,8 +37,9 @@ fn rough(seed: usize, side: usize, n: i32) -> Field {
     Field::from_fn(Grid::square(side).expect("a grid"), height)
 }
 
-/// What a hardness must not be broken by, from nothing but the pressure: greatest overlap of elements that could press more, and greatest gap of
-/// those that could press less, from the mean gap of those between the bounds, relative to the height range.
+/// What a hardness must not be broken by, from nothing but the pressure: greatest overlap of elements that could press
+/// more, and greatest gap of those that could press less, from the mean gap of those between the bounds, relative to
+/// the height range.
 fn violations(heights: &Field, pressure: &Field, hardness: f64) -> [f64; 2] {
     let mut v = vec![0.0; heights.grid().len()];
     DirectSum::new(heights.grid(), &Love).apply(pressure.values(), &mut v, &mut []);
@@ -257,7 +258,8 @@ fn a_flat_surface_bears_what_is_below_its_hardness() {
     assert!(solution.observables().plastic.expect("hard").fraction <= 0.0);
 }
 
-/// Heights, load and hardness times any factor are one problem. Another program does not converge from a load of 0.07 E* on.
+/// Heights, load and hardness times any factor are one problem. Another program does not converge from a load of 0.07
+/// E* on.
 #[test]
 fn pressures_of_the_order_of_e_star_take_no_more_iterations() {
     let gentle = rough(5, 128, 8);

@@ -77,7 +77,8 @@ fn a_hardness_that_nothing_reaches_changes_no_bit() {
     }
 }
 
-/// A flat punch: pressures without bound at its border become a plastic rim, and far below the surface all of it is plastic.
+/// A flat punch: pressures without bound at its border become a plastic rim, and far below the surface all of it is
+/// plastic.
 #[test]
 fn the_border_of_a_flat_punch_is_plastic() {
     let heights = Field::zeros(Grid::square(64).expect("a grid"));

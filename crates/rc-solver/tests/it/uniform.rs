@@ -160,8 +160,8 @@ fn stiffness_is_the_slope_of_load_over_penetration() {
     }
 }
 
-/// A cell whose copies make a square has the solution of that square: with square elements and with others, on one grid and on nested
-/// ones, by load and by penetration.
+/// A cell whose copies make a square has the solution of that square: with square elements and with others, on one grid
+/// and on nested ones, by load and by penetration.
 #[test]
 fn a_rectangular_cell_is_a_part_of_the_square_of_its_copies() {
     for (nx, ny, copies) in [(48, 24, 2), (40, 32, 2), (192, 64, 3), (128, 128, 2)] {

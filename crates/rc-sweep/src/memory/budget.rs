@@ -54,8 +54,8 @@ impl Budget {
         self.limit.into_iter().chain(self.machine).map(|bytes| bytes.0).min()
     }
 
-    /// Refuses `what`, which needs about `needed` bytes, when there are fewer; `remedy` (may be empty) gets the bytes that
-    /// there are.
+    /// Refuses `what`, which needs about `needed` bytes, when there are fewer; `remedy` (may be empty) gets the bytes
+    /// that there are.
     ///
     /// # Errors
     /// [`MemoryError`].
@@ -74,8 +74,8 @@ impl Budget {
         exceeded.map_or(Ok(()), Err)
     }
 
-    /// How many solves fit side by side, the largest on `n_elements` elements, whatever their method: within the limit, or half
-    /// of the machine's memory; at least one.
+    /// How many solves fit side by side, the largest on `n_elements` elements, whatever their method: within the limit,
+    /// or half of the machine's memory; at least one.
     #[must_use]
     pub fn solves_at_once(&self, n_elements: f64) -> usize {
         let available = self.limit.map(|limit| limit.0 as f64).or(self.machine.map(|machine| 0.5 * machine.0 as f64));

@@ -11,7 +11,8 @@ pub use byte_size::ByteSize;
 #[must_use]
 pub fn peak() -> Option<u64> {
     use nix::sys::resource::{UsageWho, getrusage};
-    // What Linux accounts to a process begins with what its parent had when it started it; the status is of this program alone.
+    // What Linux accounts to a process begins with what its parent had when it started it; the status is of this
+    // program alone.
     if cfg!(target_os = "linux")
         && let Some(peak) = std::fs::read_to_string("/proc/self/status").ok().as_deref().and_then(peak_of_status)
     {

@@ -78,7 +78,8 @@ pub fn kernel(name: KernelName) -> Option<&'static dyn Kernel> {
     }
 }
 
-/// Checks the keys of half-space, load and method, with the embedded example for defaults; control and method have none.
+/// Checks the keys of half-space, load and method, with the embedded example for defaults; control and method have
+/// none.
 ///
 /// # Errors
 /// [`CliError::Input`].

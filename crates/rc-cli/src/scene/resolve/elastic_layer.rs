@@ -56,7 +56,8 @@ pub(super) fn layer(keys: &ContactKeys, kernel: KernelName, side: f64) -> Result
     Ok(Some(Layer { thickness, poisson }))
 }
 
-/// Refuses a layer that is thinner than elements, of kernel love: it is a bed of springs for them, at a high cost. `side` is λ in m.
+/// Refuses a layer that is thinner than elements, of kernel love: it is a bed of springs for them, at a high cost.
+/// `side` is λ in m.
 pub(crate) fn check_thickness(layer: Option<Layer>, kernel: KernelName, grid: Grid, side: f64) -> Result<(), CliError> {
     let spacing = grid.spacing().max_element();
     match (layer, kernel) {

@@ -71,7 +71,8 @@ fn random(keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Result<S
     Ok(SurfaceSetup { cell, source: Source::Random { spectrum, grid }, may_be_flat: false, keys })
 }
 
-/// The surface that a file has the waves of, on a grid that resolves them. The file is read here, since the grid depends on it.
+/// The surface that a file has the waves of, on a grid that resolves them. The file is read here, since the grid
+/// depends on it.
 fn of_waves(keys: SurfaceKeys, path: &Path, cell: PeriodicCell, grid: Option<Grid>) -> Result<SurfaceSetup, CliError> {
     if keys.cell_y.is_some() {
         return Err(CliError::input(

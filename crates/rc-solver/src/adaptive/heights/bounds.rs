@@ -1,19 +1,19 @@
 //! Proven upper bounds of the heights in squares of the cell.
 //!
-//! For a map they are its maxima. For a band-limited surface each cell of side 2d of a grid is bounded by the expansion about
-//! its centre,
+//! For a map they are its maxima. For a band-limited surface each cell of side 2d of a grid is bounded by the expansion
+//! about its centre,
 //!
 //! ```text
 //! h(c + t) ≤ h + max_|t|≤d (hx t + hxx t²/2) + max_|t|≤d (hy t + hyy t²/2) + |hxy| d² + R,
 //! R = d³/6 · (max |hxxx| + 3 max |hxxy| + 3 max |hxyy| + max |hyyy|),   maxima over the whole surface.
 //! ```
 //!
-//! Third derivatives follow from second ones by Bernstein's inequality: `max |f'| ≤ n max |f|` for a trigonometric polynomial
-//! of degree n in an angle. And the maximum of second derivatives follows from their values at the centres, d from the
-//! nearest of which no point is farther in either direction: where |f| has its maximum F, M. Riesz's lemma says
-//! `|f| ≥ F cos(n t)` at an angle t ≤ π/n from it (Jahresber. Dtsch. Math.-Ver. 23 (1914) 354-368), so with M centres in a
-//! period some centre has |f| ≥ F cos(πn/M) (Ehlich, Zeller, Math. Z. 86 (1964) 41-44), and in two directions, one after
-//! the other, |f| ≥ F cos²(πn/M).
+//! Third derivatives follow from second ones by Bernstein's inequality: `max |f'| ≤ n max |f|` for a trigonometric
+//! polynomial of degree n in an angle. And the maximum of second derivatives follows from their values at the centres,
+//! d from the nearest of which no point is farther in either direction: where |f| has its maximum F, M. Riesz's lemma
+//! says `|f| ≥ F cos(n t)` at an angle t ≤ π/n from it (Jahresber. Dtsch. Math.-Ver. 23 (1914) 354-368), so with M
+//! centres in a period some centre has |f| ≥ F cos(πn/M) (Ehlich, Zeller, Math. Z. 86 (1964) 41-44), and in two
+//! directions, one after the other, |f| ≥ F cos²(πn/M).
 
 use std::f64::consts::{PI, TAU};
 
@@ -100,7 +100,8 @@ impl Bounds {
         self.height(self.pyramid.leaf(place))
     }
 
-    /// Upper bound of |∂²h/∂x²| and |∂²h/∂y²| everywhere; infinite for a map, of which nothing is known between elements.
+    /// Upper bound of |∂²h/∂x²| and |∂²h/∂y²| everywhere; infinite for a map, of which nothing is known between
+    /// elements.
     pub(super) fn curvature(&self) -> f64 {
         self.curvature
     }
@@ -126,7 +127,8 @@ fn scale(extremes: &HeightStatistics) -> f64 {
     if scale > 0.0 { scale } else { 1.0 }
 }
 
-/// The next single-precision number above, always a larger one: what double precision has rounded before is covered too.
+/// The next single-precision number above, always a larger one: what double precision has rounded before is covered
+/// too.
 fn round_up(value: f64) -> f32 {
     (value as f32).next_up()
 }
@@ -148,8 +150,8 @@ impl<'a> Expansions<'a> {
         Self { surface, refinement, stencils, half: 0.5 / f64::from(1 << refinement) }
     }
 
-    /// Fills the bounds of coefficient cells, of the heights and of their negatives, in units of `scale`; returns the remainder
-    /// to be added to them, and the bound of second derivatives along the axes.
+    /// Fills the bounds of coefficient cells, of the heights and of their negatives, in units of `scale`; returns the
+    /// remainder to be added to them, and the bound of second derivatives along the axes.
     fn bound(&self, scale: f64, [above, below]: &mut [Vec<f32>; 2]) -> (f64, f64) {
         let len = (TILE >> self.refinement) * self.surface.side();
         let rows = above.par_chunks_mut(len).zip(below.par_chunks_mut(len)).enumerate();
@@ -159,7 +161,8 @@ impl<'a> Expansions<'a> {
         self.remainder([greatest(0), greatest(1), greatest(2)])
     }
 
-    /// The bounds in a row of tiles, for as many rows of cells as the slices hold. Returns the greatest |hxx|, |hxy|, |hyy|.
+    /// The bounds in a row of tiles, for as many rows of cells as the slices hold. Returns the
+    /// greatest |hxx|, |hxy|, |hyy|.
     fn bound_rows(&self, ty: usize, scale: f64, above: &mut [f32], below: &mut [f32]) -> [f64; 3] {
         let (side, cells) = (self.surface.side(), TILE >> self.refinement);
         let mut greatest = [0.0; 3];
@@ -179,8 +182,8 @@ impl<'a> Expansions<'a> {
         greatest
     }
 
-    /// Raises cells to the bounds of the squares they consist of. There are fewer cells than squares where the last tile is
-    /// larger than what is left of the row.
+    /// Raises cells to the bounds of the squares they consist of. There are fewer cells than squares where the last
+    /// tile is larger than what is left of the row.
     fn raise(&self, cells: &mut [f32], bounds: &[f64; TILE], scale: f64) {
         for (cell, bounds) in cells.iter_mut().zip(bounds.chunks_exact(1 << self.refinement)) {
             let greatest = bounds.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -205,11 +208,12 @@ impl<'a> Expansions<'a> {
         }
     }
 
-    /// R, from the greatest |hxx|, |hxy| and |hyy| at the centres, and the errors of interpolation: of the expansions, and of
-    /// the tiles that are to be bounded. And the greatest of |hxx| and |hyy| anywhere, in 1/λ.
+    /// R, from the greatest |hxx|, |hxy| and |hyy| at the centres, and the errors of interpolation: of the expansions,
+    /// and of the tiles that are to be bounded. And the greatest of |hxx| and |hyy| anywhere, in 1/λ.
     fn remainder(&self, curvatures: [f64; 3]) -> (f64, f64) {
         let surface = self.surface;
-        // Angle by which the shortest wave advances in a coefficient cell: a derivative multiplies a wave by this at most.
+        // Angle by which the shortest wave advances in a coefficient cell: a derivative multiplies a wave by this at
+        // most.
         let angle = TAU * surface.band_limit() as f64 / surface.side() as f64;
         let [e0, e1, e2] = ERRORS;
         let curvature_error = (e2 + e0 * angle * angle).max(2.0 * angle * e1) * surface.amplitude();

@@ -3,8 +3,8 @@
 use super::TILE;
 use super::bounds::Bounds;
 
-/// The greatest value at the centres of `tiles_per_side`² tiles, evaluating only tiles that may hold it: those with a leaf
-/// of `bounds` above the greatest value found so far. `tile(tx, ty)` is the greatest value of a tile.
+/// The greatest value at the centres of `tiles_per_side`² tiles, evaluating only tiles that may hold it: those with a
+/// leaf of `bounds` above the greatest value found so far. `tile(tx, ty)` is the greatest value of a tile.
 ///
 /// That is a few leaves of a rough surface; of a wavy one with a level ridge, all leaves along it.
 pub(super) fn greatest(bounds: &Bounds, tiles_per_side: usize, tile: impl Fn(usize, usize) -> f64) -> f64 {

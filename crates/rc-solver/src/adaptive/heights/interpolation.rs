@@ -8,8 +8,8 @@ use super::TILE;
 use super::stencil::{MAX_WIDTH, Stencil, Stencils};
 use super::window::{Derivative, ERRORS, HIGHEST_FREQUENCY, TAPS, transform};
 
-/// Coefficients before the first and after the last of a row (and rows before and after), periodic copies, so that no tile
-/// has to look where the cell ends.
+/// Coefficients before the first and after the last of a row (and rows before and after), periodic copies, so that no
+/// tile has to look where the cell ends.
 const HALO_BEFORE: usize = TAPS / 2;
 const HALO_AFTER: usize = MAX_WIDTH;
 
@@ -68,8 +68,8 @@ impl Interpolation {
         self.rms
     }
 
-    /// Upper bound of Σ |a_k| over all waves but the mean, so of what an error per wave can add up to: there are less than
-    /// (2N + 1)² of them, and Σ |a_k|² is the mean square.
+    /// Upper bound of Σ |a_k| over all waves but the mean, so of what an error per wave can add up to: there are less
+    /// than (2N + 1)² of them, and Σ |a_k|² is the mean square.
     pub(super) fn amplitude(&self) -> f64 {
         (2 * self.band_limit + 1) as f64 * self.rms
     }
@@ -98,8 +98,8 @@ impl Interpolation {
         }
     }
 
-    /// Weighted sums of the coefficients along y, for one row of centres of a tile: one sum for each coefficient column that
-    /// the tile uses. WIDTH is at least the width of the stencil along x, and at most [`MAX_WIDTH`].
+    /// Weighted sums of the coefficients along y, for one row of centres of a tile: one sum for each coefficient column
+    /// that the tile uses. WIDTH is at least the width of the stencil along x, and at most [`MAX_WIDTH`].
     #[inline]
     pub(super) fn blend<const WIDTH: usize>(&self, x: Place<'_>, y: Place<'_>, row: usize) -> [f64; WIDTH] {
         let ((along_x, origin_x), (along_y, origin_y)) = (x, y);
@@ -134,8 +134,8 @@ fn stride(side: usize) -> usize {
     HALO_BEFORE + side + HALO_AFTER
 }
 
-/// Divides the waves of the samples by the transform of the window, and drops what is not a wave of the surface: its mean,
-/// and rounding beyond the band limit.
+/// Divides the waves of the samples by the transform of the window, and drops what is not a wave of the surface: its
+/// mean, and rounding beyond the band limit.
 fn coefficients(samples: Field, band_limit: usize) -> Vec<f64> {
     let grid = samples.grid();
     let (side, stride) = (grid.nx(), stride(grid.nx()));

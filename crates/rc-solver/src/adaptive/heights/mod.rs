@@ -1,8 +1,8 @@
 //! Heights of the rigid surface, tile by tile, without the finest grid.
 //!
-//! A band-limited surface is sampled once, on a grid with at least four elements for its shortest wave, and interpolated from
-//! there to nine digits on tiles of any finer level; a map is kept as it is. Both give coarser levels, and upper bounds of
-//! the heights in any square, which say where the surface cannot touch.
+//! A band-limited surface is sampled once, on a grid with at least four elements for its shortest wave, and
+//! interpolated from there to nine digits on tiles of any finer level; a map is kept as it is. Both give coarser
+//! levels, and upper bounds of the heights in any square, which say where the surface cannot touch.
 
 mod bounds;
 mod extremes;
@@ -30,14 +30,15 @@ use interpolation::{Interpolation, smallest_side};
 
 /// Heights at the centres of the levels of a [`Ladder`].
 ///
-/// Memory for a band-limited surface with waves up to N is 16 M² bytes, where M × M is the interpolation grid: M is the least
-/// side of a level that is at least 4N. Of these, 8 are coefficients, 8/3 coarser levels (8 if M is the base), and 16/3 bounds;
-/// making it takes 5 more. Nothing but a few weights depends on the finest level. For a map it is 8/3 bytes an element for
-/// coarser levels and 1/12 for bounds.
+/// Memory for a band-limited surface with waves up to N is 16 M² bytes, where M × M is the interpolation grid: M is the
+/// least side of a level that is at least 4N. Of these, 8 are coefficients, 8/3 coarser levels (8 if M is the base),
+/// and 16/3 bounds; making it takes 5 more. Nothing but a few weights depends on the finest level. For a map it is 8/3
+/// bytes an element for coarser levels and 1/12 for bounds.
 #[derive(Clone)]
 pub(crate) struct Heights<'a> {
     ladder: Ladder,
-    /// Levels that are kept whole, base first. Of a map all, of a band-limited surface those below the interpolation grid.
+    /// Levels that are kept whole, base first. Of a map all, of a band-limited surface those below the interpolation
+    /// grid.
     grids: Vec<WholeGrid<'a>>,
     interpolation: Option<Interpolation>,
     bounds: Bounds,
@@ -48,7 +49,8 @@ impl<'a> Heights<'a> {
     /// Prepares the levels from a base grid of these sides to the finest grid.
     ///
     /// # Errors
-    /// [`ProblemError::Height`] for a height that is not finite; of a surface, its element is one of the grid it is sampled on.
+    /// [`ProblemError::Height`] for a height that is not finite; of a surface, its element is one of the grid it is
+    /// sampled on.
     pub(crate) fn new(source: HeightSource<'a>, base: [usize; 2]) -> Result<Self, ProblemError> {
         let ladder = Ladder::new(base, source.grid());
         match source {
@@ -59,7 +61,8 @@ impl<'a> Heights<'a> {
         }
     }
 
-    /// Bytes of a surface's samples on its whole grid, and on coarser ones, where they are needed: 0 for a map, whose own bytes are not counted.
+    /// Bytes of a surface's samples on its whole grid, and on coarser ones, where they are needed: 0 for a map, whose
+    /// own bytes are not counted.
     pub(crate) fn sampled_bytes(source: &HeightSource<'_>, ladder: Ladder) -> f64 {
         let Some(surface) = source.surface() else { return 0.0 };
         if is_interpolated(surface, source.grid(), ladder).is_some() {
@@ -136,11 +139,11 @@ impl<'a> Heights<'a> {
         &self.grids[0]
     }
 
-    /// Heights at the centres of tile (`tx`, `ty`) of the level of these sides in cells, row-major, in λ. What reaches beyond the level
-    /// is left as it is.
+    /// Heights at the centres of tile (`tx`, `ty`) of the level of these sides in cells, row-major, in λ. What reaches
+    /// beyond the level is left as it is.
     ///
-    /// A band-limited surface is exact to 1e-9 of its rms height on every level. The coarser levels of a map are interpolated
-    /// at their centres from the next finer ones.
+    /// A band-limited surface is exact to 1e-9 of its rms height on every level. The coarser levels of a map are
+    /// interpolated at their centres from the next finer ones.
     ///
     /// # Panics
     /// When there is no such level, or the tile is outside it.
@@ -161,7 +164,8 @@ impl<'a> Heights<'a> {
         }
     }
 
-    /// Heights of row `ty` of the tiles of the level of these sides in cells: eight rows of cells, or what is left of them.
+    /// Heights of row `ty` of the tiles of the level of these sides in cells: eight rows of cells, or what is left of
+    /// them.
     ///
     /// # Panics
     /// As [`Heights::tile`].
@@ -179,11 +183,11 @@ impl<'a> Heights<'a> {
         rows
     }
 
-    /// Upper bound of the heights at all centres of the finest level in the block at `place`, of `blocks` equal ones along both
-    /// sides of the cell. Of a band-limited surface it bounds every point, and so the tiles of every level.
+    /// Upper bound of the heights at all centres of the finest level in the block at `place`, of `blocks` equal ones
+    /// along both sides of the cell. Of a band-limited surface it bounds every point, and so the tiles of every level.
     ///
-    /// One look-up when the blocks are the tiles of a level, a few otherwise. Blocks smaller than what is kept (cells of the
-    /// interpolation grid, finest tiles of a map) get the bound of what contains them.
+    /// One look-up when the blocks are the tiles of a level, a few otherwise. Blocks smaller than what is kept (cells
+    /// of the interpolation grid, finest tiles of a map) get the bound of what contains them.
     ///
     /// # Panics
     /// When the block is outside the cell.
@@ -191,7 +195,8 @@ impl<'a> Heights<'a> {
         self.bounds.of_block(blocks, place)
     }
 
-    /// The same of a tile of the finest level that the finest grid does not divide into evenly: heights are those of a map then.
+    /// The same of a tile of the finest level that the finest grid does not divide into evenly: heights are those of a
+    /// map then.
     ///
     /// # Panics
     /// When the tile is outside the level.
@@ -210,7 +215,8 @@ impl<'a> Heights<'a> {
     }
 }
 
-/// The band limit of a surface that is interpolated on the finest level, and the level of the grid that it is interpolated from.
+/// The band limit of a surface that is interpolated on the finest level, and the level of the grid that it is
+/// interpolated from.
 fn is_interpolated(surface: &dyn HeightField, grid: Grid, ladder: Ladder) -> Option<(usize, u32)> {
     let limit = surface.band_limit().filter(|_| grid.is_square() && ladder.is_even())?;
     let level = interpolation_level(limit, ladder.grid(0).nx());

@@ -1,9 +1,10 @@
 //! Maxima over nested squares of a grid.
 
-/// Maxima of a field of bounds over blocks of 1, 2², 4², … leaves, as long as the numbers of blocks along both sides are even.
+/// Maxima of a field of bounds over blocks of 1, 2², 4², … leaves, as long as the numbers of blocks along both sides
+/// are even.
 ///
-/// Bounds are kept in single precision, rounded up, relative to an offset and in units of the range of heights: 4 bytes a
-/// leaf, and a third more for the larger blocks.
+/// Bounds are kept in single precision, rounded up, relative to an offset and in units of the range of heights: 4 bytes
+/// a leaf, and a third more for the larger blocks.
 #[derive(Clone)]
 pub(super) struct MaxPyramid {
     /// Cells along both sides, and cells of a leaf; the last leaves along a side may reach beyond it.
@@ -41,8 +42,9 @@ impl MaxPyramid {
         &self.levels[0].1
     }
 
-    /// Greatest bound of the leaves that the block at `place` overlaps, of `blocks` equal ones along both sides of the cell. One
-    /// look-up when a level of the pyramid has this number of blocks, or when they divide its leaves, and a few otherwise.
+    /// Greatest bound of the leaves that the block at `place` overlaps, of `blocks` equal ones along both sides of the
+    /// cell. One look-up when a level of the pyramid has this number of blocks, or when they divide its leaves, and a
+    /// few otherwise.
     ///
     /// # Panics
     /// When the block is outside the cell.

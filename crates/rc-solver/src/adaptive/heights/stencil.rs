@@ -3,8 +3,8 @@
 use super::TILE;
 use super::window::{Derivative, TAPS, window};
 
-/// Most coefficients, along one direction, that the centres of a tile use: TAPS and the cells between first and last centre,
-/// rounded up to whole vectors.
+/// Most coefficients, along one direction, that the centres of a tile use: TAPS and the cells between first and last
+/// centre, rounded up to whole vectors.
 pub(super) const MAX_WIDTH: usize = TAPS + TILE;
 
 /// Weights for the eight centres at one place relative to the coefficients.

@@ -187,8 +187,8 @@ fn tiles_far_below_a_cell_of_the_interpolation_grid_are_exact() {
 
 #[test]
 fn bounds_of_a_surface_hold_in_every_block_and_are_close() {
-    // The last number is how far above the greatest height in a block the bounds are on average, in units of the rms height,
-    // for blocks not smaller than the cells that are bounded. It grows with the share of short waves.
+    // The last number is how far above the greatest height in a block the bounds are on average, in units of the rms
+    // height, for blocks not smaller than the cells that are bounded. It grows with the share of short waves.
     let cases =
         [(32, 32, 1024, 0.8, 0.03), (32, 32, 1024, 0.1, 0.1), (16, 128, 512, 0.8, 0.03), (25, 100, 800, 0.8, 0.03)];
     for (waves, base, finest, hurst, close) in cases {

@@ -1,11 +1,11 @@
 //! The window that heights are interpolated with: Kaiser and Bessel's, and its derivatives.
 //!
-//! A wave of frequency ξ (waves per grid cell) with samples `exp(2πi ξ j)` is the sum over cells j of `φ(x - j) c_j` with
-//! coefficients `c_j = exp(2πi ξ j) / φ̂(ξ)`, but for aliases of relative size `φ̂(ξ + m) / φ̂(ξ)`, m ≠ 0. Dividing by φ̂ once,
-//! by a Fourier transform, leaves all of the window's width to suppress the aliases: half as many taps as interpolation of
-//! the samples themselves needs, and 12 instead of 24 at four samples per wave. It is the interpolation step of a
-//! non-uniform Fourier transform (Jackson, Meyer, Nishimura, Macovski, IEEE Trans. Med. Imaging 10 (1991) 473-478; Barnett,
-//! Magland, af Klinteberg, SIAM J. Sci. Comput. 41 (2019) C479-C504).
+//! A wave of frequency ξ (waves per grid cell) with samples `exp(2πi ξ j)` is the sum over cells j of `φ(x - j) c_j`
+//! with coefficients `c_j = exp(2πi ξ j) / φ̂(ξ)`, but for aliases of relative size `φ̂(ξ + m) / φ̂(ξ)`, m ≠ 0.
+//! Dividing by φ̂ once, by a Fourier transform, leaves all of the window's width to suppress the aliases: half as many
+//! taps as interpolation of the samples themselves needs, and 12 instead of 24 at four samples per wave. It is the
+//! interpolation step of a non-uniform Fourier transform (Jackson, Meyer, Nishimura, Macovski, IEEE Trans. Med. Imaging
+//! 10 (1991) 473-478; Barnett, Magland, af Klinteberg, SIAM J. Sci. Comput. 41 (2019) C479-C504).
 
 use std::f64::consts::PI;
 
@@ -17,12 +17,12 @@ pub(super) const TAPS: usize = 12;
 /// Highest frequency that is interpolated, in waves per cell: four samples in a wave.
 pub(super) const HIGHEST_FREQUENCY: f64 = 0.25;
 
-/// Shape parameter β: the main lobe of φ̂ ends where the first alias begins, at 1 - [`HIGHEST_FREQUENCY`]. One per cent less
-/// makes the largest error a third, since φ̂ is not yet small where its main lobe ends.
+/// Shape parameter β: the main lobe of φ̂ ends where the first alias begins, at 1 - [`HIGHEST_FREQUENCY`]. One per cent
+/// less makes the largest error a third, since φ̂ is not yet small where its main lobe ends.
 const SHAPE: f64 = 0.99 * PI * TAPS as f64 * (1.0 - HIGHEST_FREQUENCY);
 
-/// Error of the interpolated wave of amplitude 1 and of its first and second derivative (per cell), one direction, at any
-/// place and any frequency up to [`HIGHEST_FREQUENCY`]. Test `errors_of_waves_are_as_stated`.
+/// Error of the interpolated wave of amplitude 1 and of its first and second derivative (per cell), one direction, at
+/// any place and any frequency up to [`HIGHEST_FREQUENCY`]. Test `errors_of_waves_are_as_stated`.
 pub(super) const ERRORS: [f64; 3] = [1e-10, 2e-9, 1e-7];
 
 /// The window φ at `x` cells from its centre, or its first or second derivative; zero from TAPS/2 on.
@@ -94,7 +94,8 @@ mod tests {
     fn errors_of_waves_are_as_stated() {
         for (order, derivative) in Derivative::ALL.into_iter().enumerate() {
             let (worst, stated) = (worst_error(derivative, order as i32), ERRORS[order]);
-            // Room for what lies between the places and frequencies tried; a stated error far too large would hide a loss.
+            // Room for what lies between the places and frequencies tried; a stated error far too large would hide a
+            // loss.
             let allowed = 0.1 * stated..0.8 * stated;
             assert!(allowed.contains(&worst), "{derivative:?}: {worst:e}, stated {stated:e}");
         }

@@ -1,9 +1,9 @@
 //! Elements coarser than the finest level's ([`rc_kernel::CoarseElement`] has the mathematics).
 //!
-//! They take part in the density and the displacement of their own level through a blur. What finer levels would add is a
-//! stencil between elements of one size; across a border between two sizes, quarters of the coarse elements stand in for
-//! them on the finer level (ghosts). A ghost acts on finer elements and they on it, but ghosts do not act on each other:
-//! that is in the coarse stencil already.
+//! They take part in the density and the displacement of their own level through a blur. What finer levels would add is
+//! a stencil between elements of one size; across a border between two sizes, quarters of the coarse elements stand in
+//! for them on the finer level (ghosts). A ghost acts on finer elements and they on it, but ghosts do not act on each
+//! other: that is in the coarse stencil already.
 
 use pulp::Simd;
 use rc_kernel::CoarseElement;

@@ -1,10 +1,12 @@
-//! The approximate inverse of L among the active elements of a mesh ([`crate::descent`] has the extension F of a residual to the whole cell).
+//! The approximate inverse of L among the active elements of a mesh ([`crate::descent`] has the extension F of a
+//! residual to the whole cell).
 //!
-//! On tiles u = F r is kept level by level, as far as there are tiles: u of a level is its own share of the means over active elements,
-//! and for the rest P u of the next coarser level, with P the interpolation. The base grid has u on the whole cell and |q|/2 by its Fourier transform. Each level above
-//! adds its stencil of the difference w = u - P u, which is zero where nothing is active. The inverse is the sum of all with the transposes
-//! around them, so that it is symmetric. (The filters that L goes through between levels would see the ends of tiles as edges of u.) With
-//! the extension and one grid, residuals fall by ten in an iteration; with two or three levels as here, in one and a half.
+//! On tiles u = F r is kept level by level, as far as there are tiles: u of a level is its own share of the means over
+//! active elements, and for the rest P u of the next coarser level, with P the interpolation. The base grid has u on
+//! the whole cell and |q|/2 by its Fourier transform. Each level above adds its stencil of the difference w = u - P u,
+//! which is zero where nothing is active. The inverse is the sum of all with the transposes around them, so that it is
+//! symmetric. (The filters that L goes through between levels would see the ends of tiles as edges of u.) With the
+//! extension and one grid, residuals fall by ten in an iteration; with two or three levels as here, in one and a half.
 
 use std::sync::Arc;
 
@@ -71,8 +73,8 @@ impl TileExtension {
         self.pyramid.set_active();
     }
 
-    /// z = Fᵀ |q|/2 F r: `values` has r on the active elements and zeros elsewhere, and is left with z. `finest` has room for the values of
-    /// the finest elements, those of other ranks that this one reads included.
+    /// z = Fᵀ |q|/2 F r: `values` has r on the active elements and zeros elsewhere, and is left with z. `finest` has
+    /// room for the values of the finest elements, those of other ranks that this one reads included.
     pub(super) fn precondition(
         &mut self,
         arch: Arch,
@@ -88,7 +90,8 @@ impl TileExtension {
         self.gather(active, values, finest);
     }
 
-    /// Means over the cells of all levels, from the values of own elements; those of the base grid are left to the pyramid.
+    /// Means over the cells of all levels, from the values of own elements; those of the base grid are left to the
+    /// pyramid.
     fn take_means(&mut self, of_element: &(dyn Fn(usize) -> f32 + Sync), finest: &mut [f32]) {
         if self.hierarchy.base_part.is_none() {
             return self.take_means_of(of_element);

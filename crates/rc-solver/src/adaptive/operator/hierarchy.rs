@@ -37,8 +37,8 @@ pub(crate) struct Reach {
 }
 
 impl Hierarchy {
-    /// The levels over `elements` down to the base grid, whose sides are multiples of 8, each with the tiles
-    /// that filters need. The coarsest elements are finer than the base grid's, and elements whose sizes differ by more than
+    /// The levels over `elements` down to the base grid, whose sides are multiples of 8, each with the tiles that
+    /// filters need. The coarsest elements are finer than the base grid's, and elements whose sizes differ by more than
     /// a factor of 2 are farther from each other than stencils of the level between them reach.
     pub(crate) fn new(base: Grid, mesh: impl Into<Mesh>, reach: Reach) -> Self {
         let mesh = mesh.into();
@@ -98,8 +98,8 @@ impl Hierarchy {
         self.base
     }
 
-    /// The same for the preconditioner, which halves every level: where the finest has not twice as many elements as the level below
-    /// it, a strip without elements takes the place of what is missing, along the seam.
+    /// The same for the preconditioner, which halves every level: where the finest has not twice as many elements as
+    /// the level below it, a strip without elements takes the place of what is missing, along the seam.
     pub(super) fn halved(self: &Arc<Self>) -> Arc<Self> {
         let sides = sides_of(ladder::doubled(self.base, self.n_levels()));
         if self.elements().finest().sides() == sides {

@@ -2,8 +2,8 @@
 //! their number.
 //!
 //! Each level adds a short-range stencil; between levels go short filters; the base grid has a Fourier transform
-//! ([`rc_kernel::ScaleSplit`] has the formulas). Everything is summed target by target, so the result does not depend on
-//! the number of threads.
+//! ([`rc_kernel::ScaleSplit`] has the formulas). Everything is summed target by target, so the result does not depend
+//! on the number of threads.
 
 #![allow(
     clippy::inline_always,

@@ -1,7 +1,7 @@
 //! The passes over the tiles of a level: what each of them reads, and their loops in the machine's vector instructions.
 //!
-//! Loops are compiled for a few numbers of taps and sides of patches ([`TilePasses::new`]), which are numbers the compiler knows; everything
-//! else calls them through [`TilePasses`] and does not depend on these numbers.
+//! Loops are compiled for a few numbers of taps and sides of patches ([`TilePasses::new`]), which are numbers the
+//! compiler knows; everything else calls them through [`TilePasses`] and does not depend on these numbers.
 
 use pulp::{Arch, Simd, WithSimd};
 use rc_quadtree::{CELLS, TILE, TileSet, gather, means_of_quarter, quarters};
@@ -91,8 +91,9 @@ pub(super) struct TilePasses<T> {
 }
 
 impl<T: Arithmetic> TilePasses<T> {
-    /// For filters of `TAPS` taps; patches have `AROUND` cells per side around one tile, and `UNDER` cells around the tiles under a coarse
-    /// one. Where sides are not halved, a fine tile takes from a patch of `OVER` cells per side, and a coarse one from `BELOW` cells.
+    /// For filters of `TAPS` taps; patches have `AROUND` cells per side around one tile, and `UNDER` cells around the
+    /// tiles under a coarse one. Where sides are not halved, a fine tile takes from a patch of `OVER` cells per side,
+    /// and a coarse one from `BELOW` cells.
     pub(super) const fn new<
         const TAPS: usize,
         const AROUND: usize,

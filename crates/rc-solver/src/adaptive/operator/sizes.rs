@@ -5,7 +5,8 @@ use rc_kernel::SplitParams;
 use super::passes::TilePasses;
 use super::real::Arithmetic;
 
-/// Filters are filled up to a number of taps for which the inner loops are compiled, and patches are as large as that needs.
+/// Filters are filled up to a number of taps for which the inner loops are compiled, and patches are as large as that
+/// needs.
 #[derive(Clone, Copy)]
 pub(crate) struct Sizes<T> {
     /// Taps of filters.
@@ -18,8 +19,9 @@ pub(crate) struct Sizes<T> {
 }
 
 impl<T: Arithmetic> Sizes<T> {
-    /// `UNDER` is the side of the patch around the four tiles under a coarse one, `OVER` and `BELOW` are those of the patches that a fine
-    /// and a coarse tile take from where sides are not halved: they hold 12 elements more than the taps, and 23 more than twice the taps.
+    /// `UNDER` is the side of the patch around the four tiles under a coarse one, `OVER` and `BELOW` are those of the
+    /// patches that a fine and a coarse tile take from where sides are not halved: they hold 12 elements more than the
+    /// taps, and 23 more than twice the taps.
     const fn new<const TAPS: usize, const AROUND: usize, const UNDER: usize, const OVER: usize, const BELOW: usize>(
         cutoff: usize,
     ) -> Self {

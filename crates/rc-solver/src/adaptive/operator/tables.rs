@@ -21,7 +21,8 @@ pub(crate) struct Tables<T> {
     pub(super) base: SymbolTable<T>,
     /// Of levels 1 to K: the stencil on the level, and the transfer between it and the next coarser one.
     pub(super) levels: Vec<(Taps<T>, Transfer<T>)>,
-    /// The transfer between the finest level and the next coarser one, where that has not half as many elements along a side.
+    /// The transfer between the finest level and the next coarser one, where that has not half as many elements along a
+    /// side.
     pub(super) uneven: Option<Uneven<T>>,
     /// Of elements 2, 4, … times as large as the finest; empty when they are like any value of their level.
     coarse: Vec<CoarseTable<T>>,
@@ -109,7 +110,8 @@ impl<T: Real> Prepared<T> {
         Reach { filter: self.finest.1.reach(), stencil: self.finest.0.radius() }
     }
 
-    /// Bound of the second derivatives, along the axes, of what comes down to the base grid under pressures between 0 and 1.
+    /// Bound of the second derivatives, along the axes, of what comes down to the base grid under pressures between 0
+    /// and 1.
     pub(crate) fn remainder_curvature(&self) -> f64 {
         self.remainder_curvature
     }
@@ -149,7 +151,8 @@ impl<T: Real> Prepared<T> {
         self.split.params().cutoff as f64
     }
 
-    /// The stencil of the level below the finest, when that has not twice as many elements: cutoffs differ by less than a factor of two.
+    /// The stencil of the level below the finest, when that has not twice as many elements: cutoffs differ by less than
+    /// a factor of two.
     fn below_uneven(&self, finest: Grid, n_levels: usize) -> Stencil {
         let spacing = ladder::doubled(self.base, n_levels - 1).spacing();
         let inner = self.cutoff() * finest.spacing().min_element() / spacing.min_element();
@@ -163,8 +166,8 @@ impl<T: Real> Prepared<T> {
         Uneven::new(&filters, fine, coarse)
     }
 
-    /// What a stencil in units of the elements of a level is multiplied by; the level's grid is the base grid doubled unless it is
-    /// another one.
+    /// What a stencil in units of the elements of a level is multiplied by; the level's grid is the base grid doubled
+    /// unless it is another one.
     fn factor(&self, level: usize, grid: Option<Grid>) -> f64 {
         let grid = grid.unwrap_or_else(|| ladder::doubled(self.base, level));
         match self.scale {
@@ -196,7 +199,8 @@ fn remainder_symbol<T: Real>(split: &ScaleSplit, base: Grid, cutoff: f64) -> Sym
     })
 }
 
-/// The stencil of levels between the base grid and the finest: their elements are squares, or nearly, as those of the base grid.
+/// The stencil of levels between the base grid and the finest: their elements are squares, or nearly, as those of the
+/// base grid.
 fn level_stencil(split: &ScaleSplit, base: Grid) -> Stencil {
     if has_squares(base) {
         return split.level_stencil();

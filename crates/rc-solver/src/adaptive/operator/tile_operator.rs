@@ -21,7 +21,8 @@ use crate::adaptive::part::Part;
 use crate::descent::{BlockLayout, read_rows, write_rows};
 use crate::parallel::{self, Tasks};
 
-/// Buffers for operators on one hierarchy. Blocks of vectors are of [`BLOCK_CELLS`] cells. Memory for vectors is taken when pressures are written.
+/// Buffers for operators on one hierarchy. Blocks of vectors are of [`BLOCK_CELLS`] cells. Memory for vectors is taken
+/// when pressures are written.
 pub(crate) struct TileOperator<T> {
     hierarchy: Arc<Hierarchy>,
     arch: Arch,
@@ -68,7 +69,8 @@ impl<T: Real> TileOperator<T> {
         (self.source, self.densities, self.displacements, self.ghosts) = Default::default();
     }
 
-    /// What another operator on the base grid and the elements may use, and be changed by: vector instructions, the convolution, room for a vector.
+    /// What another operator on the base grid and the elements may use, and be changed by: vector instructions, the
+    /// convolution, room for a vector.
     pub(super) fn buffers(&mut self) -> (Arch, &mut Convolution<T>, &mut [T]) {
         self.reserve();
         (self.arch, &mut self.convolution, &mut self.source)
@@ -84,7 +86,8 @@ impl<T: Real> TileOperator<T> {
         self.hierarchy.base()
     }
 
-    /// The displacement of the cells of the base grid in the last [`TileOperator::apply`], tile by tile, row-major: the smooth remainder.
+    /// The displacement of the cells of the base grid in the last [`TileOperator::apply`], tile by tile, row-major: the
+    /// smooth remainder.
     pub(crate) fn base_displacement(&self) -> &[T] {
         &self.displacements[0]
     }
@@ -105,7 +108,8 @@ impl<T: Real> TileOperator<T> {
         self.prolong(tables);
     }
 
-    /// Calls `read` once for each block, with its index and the result of the last [`TileOperator::apply`], which was of the same table.
+    /// Calls `read` once for each block, with its index and the result of the last [`TileOperator::apply`], which was
+    /// of the same table.
     pub(crate) fn read(&self, tables: &Tables<T>, read: &(dyn Fn(usize, &[T]) + Sync)) {
         let (blocks, n_own) = (&self.hierarchy.blocks, self.hierarchy.own_values().len());
         parallel::for_each_index(blocks.len(), &|i| {
@@ -233,8 +237,8 @@ impl<T: Real> TileOperator<T> {
         (tables.sizes.passes.displace_coarse)(self.arch, &pass, Targets { places: &here.places()[tiles], cells });
     }
 
-    /// Adds what larger elements nearby add to the displacement of some tiles of elements 2^`coarser` times as large as the
-    /// finest.
+    /// Adds what larger elements nearby add to the displacement of some tiles of elements 2^`coarser` times as large as
+    /// the finest.
     fn add_ghosts(&self, tables: &Tables<T>, coarser: usize, tiles: Range<usize>, cells: &mut [T]) {
         let Some(larger) = self.hierarchy.leaves.get(coarser) else { return };
         let Some(table) = tables.coarse_table(coarser + 1) else { return };

@@ -1,4 +1,5 @@
-//! Between two levels: pressures are restricted to the coarser one by a filter, displacements are prolonged by its transpose.
+//! Between two levels: pressures are restricted to the coarser one by a filter, displacements are prolonged by its
+//! transpose.
 
 use std::ops::Range;
 
@@ -30,7 +31,8 @@ impl<T: Arithmetic> Transfer<T> {
         self.taps.len() / 2
     }
 
-    /// Rows of the coarse patch that [`Transfer::prolong`] reads, for a fine tile in the half `half_y` (0 or 1) of its parent.
+    /// Rows of the coarse patch that [`Transfer::prolong`] reads, for a fine tile in the half `half_y` (0 or 1) of its
+    /// parent.
     pub(crate) fn rows_to_prolong(&self, side: usize, half_y: usize) -> Range<usize> {
         let start = (side - TILE) / 2 + half_y * HALF;
         start - self.reach()..start + HALF + self.reach()
@@ -47,11 +49,11 @@ impl<T: Arithmetic> Transfer<T> {
         std::array::from_fn(|j| self.taps[j])
     }
 
-    /// Interpolates to a fine tile in the quarter (`half_x`, `half_y`) of the tile in the middle of the coarse patch: along y, then
-    /// along x.
+    /// Interpolates to a fine tile in the quarter (`half_x`, `half_y`) of the tile in the middle of the coarse patch:
+    /// along y, then along x.
     ///
-    /// The value at the fine centre beyond coarse centre c is `Σ_j tap_j · value(c + 1 - N/2 + j)`; the one before it has the
-    /// taps in reverse, `Σ_j tap_j · value(c - 1 + N/2 - j)`.
+    /// The value at the fine centre beyond coarse centre c is `Σ_j tap_j · value(c + 1 - N/2 + j)`; the one before it
+    /// has the taps in reverse, `Σ_j tap_j · value(c - 1 + N/2 - j)`.
     #[inline(always)]
     pub(crate) fn prolong<S: Simd, const N: usize, const SIDE: usize>(
         &self,

@@ -1,4 +1,5 @@
-//! Between the finest level and a level that has not half as many elements along a side: each element has its own taps along each axis.
+//! Between the finest level and a level that has not half as many elements along a side: each element has its own taps
+//! along each axis.
 
 use std::ops::Range;
 

@@ -42,7 +42,8 @@ fn applied(operator: &mut (impl BlockOperator<f64> + ?Sized), values: &[f64]) ->
     result
 }
 
-/// ‖L^(-1/2) (L~ - L) L^(-1/2)‖ for the split operator L~ above a base grid on every tile of a grid, from below, by power iteration.
+/// ‖L^(-1/2) (L~ - L) L^(-1/2)‖ for the split operator L~ above a base grid on every tile of a grid, from below, by
+/// power iteration.
 fn energy_error(split: GapSplit, base_grid: Grid, grid: Grid, rng: &mut impl Rng) -> f64 {
     let elements = Elements::uniform(TileSet::full(sides_of(grid)));
     let places = places(&elements);
@@ -92,14 +93,16 @@ fn the_error_in_the_energy_norm_does_not_grow_with_the_levels() {
     }
 }
 
-/// The error in the energy norm does not depend on whether sides are halves of each other, nor on the shape of the cell.
+/// The error in the energy norm does not depend on whether sides are halves of each other, nor on the shape of the
+/// cell.
 #[test]
 #[expect(clippy::print_stdout, reason = "docs/measurements-adaptive.md has the numbers")]
 fn the_error_in_the_energy_norm_is_the_same_on_any_grid() {
     let mut rng = ChaCha8Rng::seed_from_u64(4);
     for (error, bound) in [(1e-6, 4.5e-5), (2e-9, 4e-7), (1e-10, 4e-9)] {
         let split = GapSplit::for_error(error).expect("a split");
-        // In the last one the elements of coarser levels are 2 % longer along one side, the most that there is: twice the error of squares.
+        // In the last one the elements of coarser levels are 2 % longer along one side, the most that there is: twice
+        // the error of squares.
         for ([bx, by], [nx, ny], times) in [
             ([64, 32], [128, 64], 1.0),
             ([64, 64], [125, 125], 1.0),
@@ -228,7 +231,8 @@ impl Audited {
     }
 }
 
-/// A rectangle, sides that are not halved, and both, at light and heavy loads under both controls: each with its solution.
+/// A rectangle, sides that are not halved, and both, at light and heavy loads under both controls: each with its
+/// solution.
 fn for_any_grid(bounds: &[ErrorBound], mut check: impl FnMut(&str, &Scene<'_>, &Audited)) {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     let grids = [([256, 64], 16), ([300, 207], 16), ([101, 101], 8), ([250, 250], 30), ([261, 261], 12)];
@@ -248,7 +252,8 @@ fn for_any_grid(bounds: &[ErrorBound], mut check: impl FnMut(&str, &Scene<'_>, &
     }
 }
 
-/// Rough and noise-like maps, light and heavy loads, both controls, both kinds of tolerance: each is given to `check` with its solution.
+/// Rough and noise-like maps, light and heavy loads, both controls, both kinds of tolerance: each is given to `check`
+/// with its solution.
 fn for_each_scene(bounds: &[ErrorBound], mut check: impl FnMut(&str, &Scene<'_>, &Audited)) {
     let mut rng = ChaCha8Rng::seed_from_u64(2);
     let mut maps = Vec::new();

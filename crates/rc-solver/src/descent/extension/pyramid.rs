@@ -6,8 +6,8 @@ use crate::parallel;
 /// Values that one task works on, at least.
 const TASK: usize = 4096;
 
-/// What a square takes from its own active elements, with x the part of its elements that are active; it has the rest from larger squares.
-/// `docs/measurements-uniform.md` compares x^(3/4) with others.
+/// What a square takes from its own active elements, with x the part of its elements that are active; it has the rest
+/// from larger squares. `docs/measurements-uniform.md` compares x^(3/4) with others.
 pub(crate) fn own_part(x: f32) -> f32 {
     x.sqrt() * x.sqrt().sqrt()
 }

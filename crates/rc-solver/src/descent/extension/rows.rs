@@ -1,7 +1,7 @@
 //! Rows of squares and of their parts: means, interpolation, and the transpose of each.
 //!
-//! A square has two parts along each axis. Where the number of parts is odd the last square has one, and the other counts as one with
-//! nothing in it.
+//! A square has two parts along each axis. Where the number of parts is odd the last square has one, and the other
+//! counts as one with nothing in it.
 
 /// Means over squares from the two rows of their parts, of which the second may be missing.
 pub(super) fn means(rows: [Option<&[f32]>; 2], means: &mut [f32]) {
@@ -17,8 +17,8 @@ pub(super) fn means(rows: [Option<&[f32]>; 2], means: &mut [f32]) {
     }
 }
 
-/// Interpolates between the centres of squares along both axes: the parts in row `iy`, from the squares of `values`, `width` to a row.
-/// `line` is scratch.
+/// Interpolates between the centres of squares along both axes: the parts in row `iy`, from the squares of `values`,
+/// `width` to a row. `line` is scratch.
 pub(super) fn interpolate(values: &[f32], width: usize, iy: usize, line: &mut Vec<f32>, parts: &mut [f32]) {
     let height = values.len() / width;
     let (near, far) = (iy / 2, if iy.is_multiple_of(2) { iy / 2 + height - 1 } else { iy / 2 + 1 } % height);
@@ -40,8 +40,8 @@ pub(super) fn interpolate(values: &[f32], width: usize, iy: usize, line: &mut Ve
     }
 }
 
-/// A quarter of the transpose of [`interpolate`]: row `iy` of `height` rows of squares. `part(y, line)` adds a multiple of row `y` of the
-/// `n` rows of parts to a line of `width` values.
+/// A quarter of the transpose of [`interpolate`]: row `iy` of `height` rows of squares. `part(y, line)` adds a multiple
+/// of row `y` of the `n` rows of parts to a line of `width` values.
 pub(super) fn gather(
     [width, n]: [usize; 2],
     [iy, height]: [usize; 2],
