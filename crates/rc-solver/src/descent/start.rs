@@ -82,15 +82,15 @@ impl Descent<'_> {
             Control::Penetration(_) => {
                 self.overlap(self.problem.offset());
                 let sums = self.fresh_gap();
-                return sums.scale_to_no_gap().map_or(sums, |scale| self.rescale(scale));
+                // Where all of it is beyond the hardness, nothing scales: what is limited to it is the start.
+                let scale = sums.scale_to_no_gap().filter(|scale| *scale > 0.0);
+                return scale.map_or(sums, |scale| self.rescale(scale));
             }
         }
         self.refresh()
     }
 
-    /// Sets the pressure to the overlap of the heights with a rigid plane at `floor`, in units of length, or to a
-    /// multiple of it that is below the hardness: it is scaled in any case, and what has the hardness would have no
-    /// part in that.
+    /// Sets the pressure to the overlap of the heights with a rigid plane at `floor`, in units of length.
     fn overlap(&mut self, floor: f64) {
         let len = self.layout.len();
         parallel::for_each(self.elements().blocks(len), |block| {
@@ -98,11 +98,6 @@ impl Descent<'_> {
                 *p = (h - floor).max(0.0);
             }
         });
-        let (greatest, hardness) = (self.layout.maximum(&self.pressure, 0.0), self.problem.hardness);
-        if greatest >= hardness {
-            let factor = 0.5 * hardness / greatest;
-            parallel::update(&mut self.pressure, |p| *p *= factor);
-        }
     }
 
     /// The overlap with a rigid plane that carries the mean pressure `wanted`, nearly, when it is scaled so that its
