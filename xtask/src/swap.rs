@@ -61,7 +61,7 @@ pub(crate) fn is_wrong() -> bool {
 "#;
 
 /// The other libraries that the solver needs.
-const CRATES: &[&str] = &["rc-core", "rc-fft", "rc-solver"];
+const CRATES: &[&str] = &["rc-comm", "rc-core", "rc-fft", "rc-solver"];
 
 /// The program that solves with the forks.
 const SCENE: &str = include_str!("swap/scene.rs");
