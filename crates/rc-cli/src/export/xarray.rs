@@ -1,6 +1,7 @@
 //! The fields of a result as a Zarr group that xarray opens as a data set: variables on the dimensions y and x.
 
-use serde_json::json;
+use rc_core::Grid;
+use serde_json::{Value, json};
 
 use super::fields::Fields;
 use super::zarr::{Array, Group, Values};
@@ -51,7 +52,12 @@ pub(super) fn group(fields: &Fields) -> Group<'_> {
     }));
     arrays.push(axis("y", &["y"], (0..grid.ny()).map(|iy| grid.centre(0, iy).y * side).collect()));
     arrays.push(axis("x", &["x"], (0..grid.nx()).map(|ix| grid.centre(ix, 0).x * side).collect()));
-    let attributes = json!({
+    Group { attributes: attributes(status, grid, *side, *e_star), arrays }
+}
+
+/// The attributes of the group: where it comes from, and the cell (side in m) and the material (E* in Pa).
+pub(crate) fn attributes(status: &str, grid: Grid, side: f64, e_star: f64) -> Value {
+    json!({
         "source": concat!("rc ", env!("CARGO_PKG_VERSION")),
         "status": status,
         "cell": side,
@@ -60,6 +66,5 @@ pub(super) fn group(fields: &Fields) -> Group<'_> {
         "cell_meaning": "side of the periodic cell along x; cell_y is that along y",
         "e_star": e_star,
         "e_star_units": "Pa",
-    });
-    Group { attributes, arrays }
+    })
 }

@@ -5,10 +5,9 @@ use std::path::{Path, PathBuf};
 
 use rc_core::Units;
 use rc_solver::Solution;
-use serde_json::json;
 
 use crate::error::CliError;
-use crate::export::zarr;
+use crate::export::{xarray, zarr};
 use crate::run::together::together;
 
 /// Rows of a chunk: those of a tile. Columns are all in one chunk.
@@ -59,16 +58,7 @@ fn describe(path: &Path, solution: &Solution<'_>, units: Units) -> io::Result<()
     }
     let grid = solution.grid();
     let (side, e_star) = (units.cell().side(), units.elasticity().e_star());
-    let attributes = json!({
-        "source": concat!("rc ", env!("CARGO_PKG_VERSION")),
-        "status": solution.status().name(),
-        "cell": side,
-        "cell_units": "m",
-        "cell_y": side * grid.cell_ratio(),
-        "cell_meaning": "side of the periodic cell along x; cell_y is that along y",
-        "e_star": e_star,
-        "e_star_units": "Pa",
-    });
+    let attributes = xarray::attributes(solution.status().name(), grid, side, e_star);
     let fields = [("pressure", "Pa", "contact pressure"), ("gap", "m", "gap between the surfaces")];
     let description = zarr::description("<f8", &[grid.ny(), grid.nx()], &[ROWS, grid.nx()]);
     let arrays =
