@@ -32,7 +32,7 @@ const KILLED: usize = 2;
 const OF_THE_RUN: [&str; 2] = ["wall_seconds", "peak_memory_bytes"];
 
 /// After this long something has gone wrong.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_secs(300);
 
 #[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
 pub(crate) fn run(_args: &Args) -> Result<()> {
@@ -50,11 +50,16 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
     let rows = kill_amid(&rc)?;
     eprintln!("slurm: task {KILLED} killed after {rows} rows");
     let task = format!("{job}_{KILLED}");
-    // Slurm takes a moment to see that the task has ended, and starts what is requeued after two minutes if nobody
-    // asks.
+    // Slurm takes a moment to see that the task has ended.
     wait("task is requeued", || Ok(slurm.ask("scontrol", &["requeue", &task]).is_ok()))?;
-    slurm.ask("scontrol", &["update", &format!("JobId={task}"), "StartTime=now"])?;
-    wait("job ends", || Ok(slurm.ask("squeue", &["--noheader"])?.is_empty()))?;
+    wait("job ends", || {
+        // Slurm delays a requeued task by two minutes, from some moment after the request on, if nobody asks. The
+        // request fails where the task has started since.
+        if slurm.ask("squeue", &["--noheader", "--states=PENDING", "--format=%r"])?.contains("BeginTime") {
+            slurm.ask("scontrol", &["update", &format!("JobId={task}"), "StartTime=now"]).ok();
+        }
+        Ok(slurm.ask("squeue", &["--noheader"])?.is_empty())
+    })?;
     rc.log()?;
     let parts: Vec<String> = (1..=TASKS).map(|index| format!("parts/part-{index}-of-{TASKS}")).collect();
     let parts: Vec<&str> = parts.iter().map(String::as_str).collect();
@@ -219,7 +224,7 @@ fn wait(what: &str, is_so: impl Fn() -> Result<bool>) -> Result<()> {
     let started = Instant::now();
     while !is_so()? {
         ensure!(started.elapsed() < PATIENCE, "no {what} within {} s", PATIENCE.as_secs());
-        std::thread::sleep(Duration::from_millis(5));
+        std::thread::sleep(Duration::from_millis(20));
     }
     Ok(())
 }
