@@ -71,7 +71,8 @@ class Result:
     rms_pressure: float
     #: Rms pressure (Pa), best estimate.
     rms_pressure_corrected: float
-    #: Estimated error of ``rms_pressure_corrected`` (Pa).
+    #: Estimated error of ``rms_pressure_corrected`` (Pa). ``None`` where contact reaches a free border: the rms of the
+    #: singular pressure has no limit.
     rms_pressure_error: float | None
     #: Maximum pressure (Pa).
     max_pressure: float

@@ -197,6 +197,26 @@ fn the_error_bar_of_the_area_holds_the_limit_of_fine_grids() {
     }
 }
 
+/// The limit is extrapolated, as the error of the singular pressure falls with the side of elements.
+#[test]
+fn the_error_bar_of_the_gap_holds_where_contact_reaches_a_border() {
+    let beside = |n: usize| body(n, DVec2::new(0.1, 0.2), |r| -0.5 * r * r);
+    let inside = |n: usize| body(n, DVec2::splat(0.5), |r| -0.5 * r * r);
+    let bodies: [(fn(usize) -> Field, f64); 3] = [(beside, 0.1), (inside, 0.5), (|n| rough(n, 4), 0.03)];
+    for (heights, load) in bodies {
+        let [coarse, fine, finest] =
+            [128, 256, 512].map(|n| solved(&heights(n), &FreeLove, Control::MeanPressure(load), 1e-8));
+        let limit = 2.0 * finest.info().penetration - fine.info().penetration;
+        for solution in [coarse, fine] {
+            let (error, bar) = (solution.info().penetration - limit, solution.observables().mean_gap_error);
+            assert!(error.abs() <= bar && bar <= 6.0 * error.abs(), "{load}: {error:e}, bar {bar:e}");
+            assert_eq!(solution.observables().rms_pressure_error, None, "the rms pressure has no limit");
+        }
+    }
+    let apart = solved(&inside(128), &FreeLove, Control::MeanPressure(1e-3), 1e-8);
+    assert!(apart.observables().rms_pressure_error.is_some_and(|bar| bar < 1e-2));
+}
+
 #[test]
 fn spots_are_not_joined_across_borders() {
     let grid = Grid::square(32).expect("a grid");

@@ -15,8 +15,8 @@ pub struct Observables {
     pub rms_pressure: f64,
     /// The same with what the elements at edges of contacts miss ([`ContactArea::missing_square`]): the best estimate.
     pub rms_pressure_corrected: f64,
-    /// Estimated discretisation error of `rms_pressure_corrected`; none in full contact without a coarser level to
-    /// compare with.
+    /// Estimated discretisation error of `rms_pressure_corrected`. `None` in full contact without a coarser level to
+    /// compare with, and where contact reaches a free border: the rms of the singular pressure has no limit.
     pub rms_pressure_error: Option<f64>,
     /// Greatest pressure.
     pub max_pressure: f64,
@@ -119,12 +119,15 @@ const SQUARE_OF_LARGER: f64 = 1.0 / 24.0;
 /// elements changed. It is of second order, so a third is expected.
 const OF_CHANGE: f64 = 0.4;
 
-/// Estimated error of the rms pressure; none in full contact without a coarser level to compare with.
+/// Estimated error of the rms pressure, see [`Observables::rms_pressure_error`].
 fn rms_pressure_error(
     info: &SolveInfo,
     (area, rest): (&ContactArea, Option<&ContactArea>),
     rms_pressure: f64,
 ) -> Option<f64> {
+    if area.rim.at_border > 0.0 {
+        return None;
+    }
     let rest = rest.filter(|rest| rest.perimeter_edges > 0);
     if area.perimeter_edges == 0 && rest.is_none() {
         return info.coarser.map(|coarser| OF_CHANGE * (rms_pressure - coarser.rms_pressure).abs());
@@ -150,14 +153,19 @@ const GAP_OF_KERNEL: f64 = 0.48;
 /// 95 % error of the mean gap relative to that of the area: it matters for contacts that are few and light.
 const GAP_OVER_AREA: f64 = 0.025;
 
-/// Estimated error of the mean gap; 0 in full contact, and without contact.
+/// 95 % error of the mean gap from the singular pressure at free borders, in `Rim::at_border`
+/// over the mean pressure. See the table in docs/measurements.md.
+const GAP_AT_BORDER: f64 = 0.7;
+
+/// Estimated error of the mean gap; 0 in full contact of a periodic cell, and without contact.
 fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f64 {
     let (rim, mean_gap) = (area.rim, info.mean_gap());
     let of_element = rim.side * rms_pressure * rms_pressure / info.mean_pressure.max(f64::MIN_POSITIVE);
     let at_edges = of_element * per_contact_area(rim.area, area);
     let scatter = GAP_SCATTER / rim.independent_edges.max(1.0).sqrt();
     let of_edges = at_edges * scatter.hypot(GAP_OF_KERNEL * rim.kernel);
-    of_edges.hypot(GAP_OVER_AREA * area.relative_error() * mean_gap)
+    let of_border = GAP_AT_BORDER * rim.at_border / info.mean_pressure.max(f64::MIN_POSITIVE);
+    of_edges.hypot(GAP_OVER_AREA * area.relative_error() * mean_gap).hypot(of_border)
 }
 
 /// Relative to the contact area; 0 without contact.

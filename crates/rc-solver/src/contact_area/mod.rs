@@ -60,6 +60,9 @@ pub(crate) struct Rim {
     pub(crate) side: f64,
     /// Size of [`EdgeBias::per_square`]: how far the kernel's elements are from the half-space at the edges.
     pub(crate) kernel: f64,
+    /// Pressure at free borders: Σ of squared pressure, area of an element and its side across the border, relative to
+    /// the nominal area, in E*² and λ. Zero where contact does not reach a free border.
+    pub(crate) at_border: f64,
 }
 
 /// 95 % error of the area, in elements, relative to the root of the number of independent edges: the same on every
@@ -111,7 +114,11 @@ impl ContactArea {
         let values = [pressure.values(), gap.values()];
         let at = |place: [usize; 2]| around(values, [grid.nx(), grid.ny()], place, boundary);
         let sums = sums_of_rows(grid, hardness, |i| values[0][i] > 0.0, at);
-        Self::from_sums(&[sums], grid, bias)
+        let mut area = Self::from_sums(&[sums], grid, bias);
+        if boundary == Boundary::Free {
+            area.rim.at_border = at_border(pressure, hardness);
+        }
+        area
     }
 
     /// From the sums over elements of one size each: the smallest ones, those of the grid `finest`, then those twice as
@@ -133,6 +140,7 @@ impl ContactArea {
             larger: 0.0,
             side: (width * height).sqrt(),
             kernel: bias.per_square.abs(),
+            at_border: 0.0,
         };
         let mut area = Self {
             cells: 0.0,
@@ -207,6 +215,19 @@ fn sums_of_rows<A: Fn(isize, isize) -> [f64; 2]>(
     };
     let rows: Vec<EdgeSums> = (0..grid.ny()).into_par_iter().map(row_sums).collect();
     rows.into_iter().fold(EdgeSums::default(), |a, b| a + b)
+}
+
+/// [`Rim::at_border`] of these pressures. Plastic elements are left out: the hardness ends the singularity.
+fn at_border(pressure: &Field, hardness: f64) -> f64 {
+    let grid = pressure.grid();
+    let (nx, ny, [width, height]) = (grid.nx(), grid.ny(), <[f64; 2]>::from(grid.spacing()));
+    let values = pressure.values();
+    let squares = |places: &mut dyn Iterator<Item = usize>| -> f64 {
+        places.map(|i| values[i]).filter(|&p| p < hardness).map(|p| p * p).sum()
+    };
+    let bottom_and_top = squares(&mut (0..nx).chain((ny - 1) * nx..ny * nx));
+    let left_and_right = squares(&mut (0..ny).flat_map(|iy| [iy * nx, iy * nx + nx - 1]));
+    (height * bottom_and_top + width * left_and_right) / grid.len() as f64
 }
 
 /// What the error of an area follows from.
