@@ -1,23 +1,26 @@
-//! What an implementation gives.
+//! The trait that an implementation of ranks provides.
 
-/// Exchange of bytes between ranks, which call the same functions in the same order.
+/// Exchange of bytes between ranks.
 ///
-/// A rank that is lost ends the others: functions do not return then. (An implementation aborts the run with a message,
-/// or unwinds with a [`crate::LostRank`].) All are called by one thread at a time, not always the same one.
+/// All ranks call the same functions in the same order. When a rank is lost, the others end too, and functions do not
+/// return. An implementation then aborts the run with a message, or unwinds with a [`crate::LostRank`]. Functions are
+/// called by one thread at a time, but not always by the same one.
 pub trait Communicator: Send + Sync {
-    /// This rank, from 0 on.
+    /// Number of this rank, from 0.
     fn rank(&self) -> usize;
 
     /// Number of ranks.
     fn size(&self) -> usize;
 
-    /// Waits for all ranks.
+    /// Waits until all ranks have called it.
     fn barrier(&self);
 
-    /// What each rank gives, in the order of ranks.
+    /// Returns the bytes of each rank, in the order of ranks.
     fn all_gather(&self, mine: &[u8]) -> Vec<Vec<u8>>;
 
-    /// Sends bytes to some ranks, at most once to each and not to itself, and receives from those in `from`, in their
-    /// order. They send to this rank in the same call.
+    /// Sends bytes to some ranks, and receives bytes from the ranks in `from`.
+    ///
+    /// `outgoing` has at most one message for each other rank, and no message to itself. The result is in the order of
+    /// `from`. Those ranks send to this rank in the same call.
     fn exchange(&self, outgoing: Vec<(usize, Vec<u8>)>, from: &[usize]) -> Vec<Vec<u8>>;
 }

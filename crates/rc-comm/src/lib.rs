@@ -1,10 +1,14 @@
-//! How the ranks of one solve exchange values.
+//! Exchange of values between the ranks of one solve.
 //!
-//! A solve over ranks runs the same program on each of them. What is small is known to all and computed by all, bit by
-//! bit alike; large vectors are divided. [`Communicator`] is what an implementation has to give: ranks that are threads
-//! of one process ([`run_threads`]), or processes of MPI (crate `rc-mpi`). [`Ranks`] is what a solver uses: values
-//! instead of bytes, sums in one order for any number of ranks, and a count of the bytes. Without a communicator a
-//! process is alone, and nothing is copied.
+//! A solve over ranks runs the same program on each of them. Every rank holds and computes all small data, bit by bit
+//! the same. Large vectors are divided between the ranks.
+//!
+//! - [`Communicator`] is the trait that an implementation provides. Ranks are threads of one process ([`run_threads`]),
+//!   or processes of MPI (crate `rc-mpi`).
+//! - [`Ranks`] is the interface for a solver. It exchanges values instead of bytes, adds in one order for any number of
+//!   ranks, and counts the bytes.
+//!
+//! Without a communicator a process is alone, and nothing is copied.
 //!
 //! ```
 //! use rc_comm::{Ranks, run_threads};

@@ -1,4 +1,4 @@
-//! The end of a rank.
+//! The error for a rank that has ended.
 
 use thiserror::Error;
 

@@ -1,20 +1,20 @@
-//! Values as bytes.
+//! Conversion of values to bytes and back.
 
 /// Numbers that ranks exchange, as little-endian bytes.
 pub trait Packed: Copy + Send + Sync + 'static {
-    /// Bytes of a value.
+    /// Number of bytes of a value.
     const BYTES: usize;
 
     /// Appends the bytes of `values`.
     fn pack(values: &[Self], bytes: &mut Vec<u8>);
 
-    /// Fills `values` from as many bytes as they have.
+    /// Fills `values` from the first bytes of `bytes`.
     ///
     /// # Panics
-    /// When there are fewer bytes.
+    /// When `bytes` is too short.
     fn unpack(bytes: &[u8], values: &mut [Self]);
 
-    /// All values of some bytes; an incomplete last one is dropped.
+    /// Converts all bytes to values. An incomplete last value is dropped.
     #[must_use]
     fn unpack_all(bytes: &[u8]) -> Vec<Self>;
 }

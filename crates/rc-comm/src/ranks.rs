@@ -1,4 +1,4 @@
-//! What a solver uses of a communicator.
+//! The interface of a solver to a communicator.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -6,34 +6,34 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::communicator::Communicator;
 use crate::packed::Packed;
 
-/// The ranks of one solve, or none beside this process.
+/// The ranks of one solve, or this process alone.
 #[derive(Clone, Default)]
 pub struct Ranks(Option<Arc<Counted>>);
 
-/// A communicator and what went through it.
+/// A communicator with counts of messages and bytes.
 struct Counted {
     communicator: Box<dyn Communicator>,
     messages: AtomicU64,
     bytes: AtomicU64,
 }
 
-/// What this rank has sent so far.
+/// Number of messages and bytes that this rank has sent so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Traffic {
-    /// Messages to one other rank.
+    /// Messages, each to one other rank.
     pub messages: u64,
-    /// Their bytes.
+    /// Bytes of these messages.
     pub bytes: u64,
 }
 
 impl Ranks {
-    /// This process alone.
+    /// Ranks that consist of this process alone.
     #[must_use]
     pub fn alone() -> Self {
         Self(None)
     }
 
-    /// The ranks of a communicator. A single one is alone.
+    /// The ranks of a communicator. A communicator of one rank is a process alone.
     #[must_use]
     pub fn new(communicator: Box<dyn Communicator>) -> Self {
         if communicator.size() <= 1 {
@@ -42,13 +42,13 @@ impl Ranks {
         Self(Some(Arc::new(Counted { communicator, messages: AtomicU64::new(0), bytes: AtomicU64::new(0) })))
     }
 
-    /// Whether there are no other ranks.
+    /// Whether this process is alone.
     #[must_use]
     pub fn are_alone(&self) -> bool {
         self.0.is_none()
     }
 
-    /// This rank, from 0 on.
+    /// Number of this rank, from 0.
     #[must_use]
     pub fn rank(&self) -> usize {
         self.0.as_ref().map_or(0, |ranks| ranks.communicator.rank())
@@ -60,7 +60,7 @@ impl Ranks {
         self.0.as_ref().map_or(1, |ranks| ranks.communicator.size())
     }
 
-    /// What this rank has sent so far.
+    /// The messages and bytes that this rank has sent so far.
     #[must_use]
     pub fn traffic(&self) -> Traffic {
         self.0.as_ref().map_or(Traffic::default(), |ranks| Traffic {
@@ -69,14 +69,14 @@ impl Ranks {
         })
     }
 
-    /// Waits for all ranks.
+    /// Waits until all ranks have called it.
     pub fn barrier(&self) {
         if let Some(ranks) = &self.0 {
             ranks.communicator.barrier();
         }
     }
 
-    /// What each rank gives, in the order of ranks.
+    /// Returns the values of each rank, in the order of ranks.
     #[must_use]
     pub fn all_gather<T: Packed>(&self, mine: &[T]) -> Vec<Vec<T>> {
         match &self.0 {
@@ -91,14 +91,15 @@ impl Ranks {
         }
     }
 
-    /// The values of all ranks one after the other.
+    /// Returns the values of all ranks in one vector, in the order of ranks.
     #[must_use]
     pub fn concatenate<T: Packed>(&self, mine: Vec<T>) -> Vec<T> {
         if self.are_alone() { mine } else { self.all_gather(&mine).concat() }
     }
 
-    /// Sends bytes to some ranks, not to itself, and receives from those in `from`, in their order. They send to this
-    /// rank in the same call.
+    /// Sends bytes to some other ranks, and receives bytes from the ranks in `from`.
+    ///
+    /// The result is in the order of `from`. Those ranks send to this rank in the same call.
     #[must_use]
     pub fn exchange(&self, outgoing: Vec<(usize, Vec<u8>)>, from: &[usize]) -> Vec<Vec<u8>> {
         match &self.0 {
@@ -110,8 +111,10 @@ impl Ranks {
         }
     }
 
-    /// Sends bytes to every rank, as many as there are in `outgoing`, and gives what each has sent to this one, itself
-    /// included.
+    /// Sends one message to every rank, and returns the messages to this rank.
+    ///
+    /// `outgoing[rank]` is the message to `rank`. Item `rank` of the result is its message to this rank. Both include
+    /// this rank itself.
     #[must_use]
     pub fn exchange_all(&self, mut outgoing: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
         if self.are_alone() {
@@ -127,8 +130,10 @@ impl Ranks {
         received
     }
 
-    /// Continues a sum from rank to rank: rank 0 begins with `start`, `add` adds what a rank has, and all get the
-    /// result. The order of the summands is that of ranks, as if one rank had them all.
+    /// Continues a sum from rank to rank, and returns the result on all ranks.
+    ///
+    /// Rank 0 begins with `start`. On each rank `add` adds the summands of the rank to the sum so far. The order of
+    /// summands is the order of ranks, so the rounding is the same as on a single rank.
     #[must_use]
     pub fn fold<const N: usize>(&self, start: [f64; N], add: impl FnOnce([f64; N]) -> [f64; N]) -> [f64; N] {
         if self.are_alone() {
@@ -144,14 +149,14 @@ impl Ranks {
         f64::pack(&sum, &mut bytes);
         if rank < last {
             let _ = self.exchange(vec![(rank + 1, bytes)], &[]);
-            // The last rank has the whole sum.
+            // The last rank has the complete sum.
             return first_of(&self.exchange(Vec::new(), &[last])).unwrap_or(sum);
         }
         let _ = self.exchange((0..last).map(|other| (other, bytes.clone())).collect(), &[]);
         sum
     }
 
-    /// Largest value of all ranks, but not less than `at_least`; NaN is passed over.
+    /// Maximum of `at_least` and the values of all ranks. NaN values are ignored.
     #[must_use]
     pub fn maximum(&self, mine: f64, at_least: f64) -> f64 {
         if self.are_alone() {
@@ -160,7 +165,7 @@ impl Ranks {
         self.all_gather(&[mine]).concat().into_iter().fold(at_least, f64::max)
     }
 
-    /// Sum of the numbers of all ranks.
+    /// Sum of the numbers `mine` of all ranks.
     #[must_use]
     pub fn count(&self, mine: usize) -> usize {
         if self.are_alone() {
@@ -169,7 +174,7 @@ impl Ranks {
         self.all_gather(&[mine as u64]).concat().into_iter().sum::<u64>() as usize
     }
 
-    /// Smallest of the numbers of all ranks.
+    /// Minimum of the numbers `mine` of all ranks.
     #[must_use]
     pub fn minimum(&self, mine: u64) -> u64 {
         if self.are_alone() {
@@ -178,14 +183,14 @@ impl Ranks {
         self.all_gather(&[mine]).concat().into_iter().fold(mine, u64::min)
     }
 
-    /// Whether it is so on any rank.
+    /// Whether `mine` is true on any rank.
     #[must_use]
     pub fn any(&self, mine: bool) -> bool {
         self.count(usize::from(mine)) > 0
     }
 }
 
-/// The first values of the first message.
+/// The values of the first message.
 fn first_of<const N: usize>(messages: &[Vec<u8>]) -> Option<[f64; N]> {
     messages.first().and_then(|bytes| f64::unpack_all(bytes).try_into().ok())
 }

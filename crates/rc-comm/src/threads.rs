@@ -10,27 +10,27 @@ use crate::communicator::Communicator;
 use crate::lost::LostRank;
 use crate::ranks::Ranks;
 
-/// Bytes of the stack of a rank: as much as a main thread has.
+/// Bytes of the stack of a rank, as many as for a main thread.
 const STACK: usize = 8 << 20;
 
-/// A rank among threads: a channel from each rank to each.
+/// A rank that is a thread, with a channel from and to each rank.
 struct ThreadRank {
     rank: usize,
     to: Vec<Mutex<Sender<Vec<u8>>>>,
     from: Vec<Mutex<Receiver<Vec<u8>>>>,
 }
 
-/// Runs `work` on `size` ranks, each a thread, and returns what it gives on each, in the order of ranks.
+/// Runs `work` on `size` ranks, each a thread, and returns the results in their order.
 ///
 /// # Errors
-/// [`LostRank`] when `work` panics on a rank: the others end too.
+/// [`LostRank`] when `work` panics on a rank. The other ranks end too.
 pub fn run_threads<T: Send>(size: usize, work: impl Fn(Ranks) -> T + Sync) -> Result<Vec<T>, LostRank> {
     let work = &work;
     let results: Vec<thread::Result<T>> = thread::scope(|scope| {
         let spawn = |rank: ThreadRank| {
             let builder = thread::Builder::new().stack_size(STACK);
             builder.spawn_scoped(scope, move || {
-                // The channels close with the closure, also when it panics.
+                // The channels close when the closure ends, also by a panic.
                 panic::catch_unwind(AssertUnwindSafe(move || work(Ranks::new(Box::new(rank)))))
             })
         };
@@ -41,7 +41,7 @@ pub fn run_threads<T: Send>(size: usize, work: impl Fn(Ranks) -> T + Sync) -> Re
         };
         threads.into_iter().map(join).collect()
     });
-    // The first to end has another reason than that another one has ended.
+    // The rank that ended first has a cause other than `LostRank`.
     let ended = |result: &thread::Result<T>| result.as_ref().is_err_and(|cause| !cause.is::<LostRank>());
     match results.iter().position(ended).or_else(|| results.iter().position(Result::is_err)) {
         Some(rank) => Err(LostRank { rank, size }),
@@ -49,7 +49,7 @@ pub fn run_threads<T: Send>(size: usize, work: impl Fn(Ranks) -> T + Sync) -> Re
     }
 }
 
-/// Ranks with channels between them.
+/// Creates ranks with channels between them.
 fn connected(size: usize) -> Vec<ThreadRank> {
     let mut ranks: Vec<ThreadRank> =
         (0..size).map(|rank| ThreadRank { rank, to: Vec::new(), from: Vec::new() }).collect();
@@ -76,7 +76,7 @@ impl ThreadRank {
         receiver.recv().unwrap_or_else(|_| self.end(from))
     }
 
-    /// Unwinds to [`run_threads`], without a message: the rank that ended has one.
+    /// Unwinds to [`run_threads`] without a message. The rank that ended first has printed one.
     fn end(&self, rank: usize) -> ! {
         panic::resume_unwind(Box::new(LostRank { rank, size: self.size() }))
     }

@@ -5,20 +5,20 @@ use ndarray::{Array2, ArrayView2};
 use crate::{Field, Grid, GridError};
 
 impl Field {
-    /// A field from an array of shape (ny, nx), row iy and column ix, on a cell whose side along y is `cell_ratio`
-    /// times that along x.
+    /// A field from an array of shape (ny, nx). Index (iy, ix) is row iy and column ix.
     ///
-    /// Nothing is copied where the array is contiguous, row by row.
+    /// The side of the cell along y is `cell_ratio` times the side along x. Nothing is copied when the array is
+    /// contiguous and row-major.
     ///
     /// # Errors
-    /// As [`Grid::in_cell`].
+    /// Those of [`Grid::in_cell`].
     #[expect(clippy::missing_panics_doc, reason = "an array has as many values as its grid")]
     pub fn from_array(array: Array2<f64>, cell_ratio: f64) -> Result<Self, GridError> {
         let (ny, nx) = array.dim();
         let grid = Grid::in_cell(nx, ny, cell_ratio)?;
         let array = if array.is_standard_layout() { array } else { array.as_standard_layout().into_owned() };
         let (mut values, offset) = array.into_raw_vec_and_offset();
-        // The array may be a part of what it owns.
+        // The array may be a part of the vector that it owns.
         values.drain(..offset.unwrap_or(0));
         values.truncate(grid.len());
         Ok(Self::new(grid, values).expect("an array has as many values as its grid"))

@@ -41,7 +41,7 @@ impl Field {
         Self { grid, values: vec![0.0; grid.len()] }
     }
 
-    /// A field from a function of the element centre, in λ.
+    /// A field that holds the value of a function at each element centre. The function takes the centre in λ.
     #[must_use]
     pub fn from_fn(grid: Grid, mut value: impl FnMut(DVec2) -> f64) -> Self {
         let mut values = Vec::with_capacity(grid.len());
@@ -65,12 +65,12 @@ impl Field {
         &self.values
     }
 
-    /// The values, to change in place.
+    /// The values, mutable.
     pub fn values_mut(&mut self) -> &mut [f64] {
         &mut self.values
     }
 
-    /// The values alone.
+    /// The values, without the grid.
     #[must_use]
     pub fn into_values(self) -> Vec<f64> {
         self.values
@@ -95,33 +95,37 @@ impl Field {
         &self.values[iy * nx..(iy + 1) * nx]
     }
 
-    /// Mean over the cell, summed row by row so that rounding does not grow with the whole field.
+    /// Mean over the cell.
+    ///
+    /// It is summed row by row, so that rounding errors do not grow with the whole field.
     #[must_use]
     pub fn mean(&self) -> f64 {
         let rows = self.values.chunks_exact(self.grid.nx());
         rows.map(|row| row.iter().sum::<f64>()).sum::<f64>() / self.values.len() as f64
     }
 
-    /// Root mean square over the cell (about zero).
+    /// Root mean square over the cell, about zero.
     #[must_use]
     pub fn rms(&self) -> f64 {
         let rows = self.values.chunks_exact(self.grid.nx());
         (rows.map(|row| row.iter().map(|v| v * v).sum::<f64>()).sum::<f64>() / self.values.len() as f64).sqrt()
     }
 
-    /// Smallest value; NaN values are passed over.
+    /// Smallest value. NaN values are ignored.
     #[must_use]
     pub fn min(&self) -> f64 {
         extreme(&self.values, f64::INFINITY, |value, least| value < least)
     }
 
-    /// Largest value; NaN values are passed over.
+    /// Largest value. NaN values are ignored.
     #[must_use]
     pub fn max(&self) -> f64 {
         extreme(&self.values, f64::NEG_INFINITY, |value, greatest| value > greatest)
     }
 }
-/// The value that `is_beyond` all others, and `start`, in several lanes, which a vector register holds.
+/// The most extreme of all values and `start`, where `is_beyond` compares two values.
+///
+/// Several lanes are compared at once, so that they fit a vector register.
 fn extreme(values: &[f64], start: f64, is_beyond: impl Fn(f64, f64) -> bool) -> f64 {
     let farther = |value: f64, so_far: f64| if is_beyond(value, so_far) { value } else { so_far };
     let (chunks, rest) = values.as_chunks::<16>();

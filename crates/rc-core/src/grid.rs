@@ -3,10 +3,10 @@
 use glam::DVec2;
 use thiserror::Error;
 
-/// A uniform grid of `nx` × `ny` elements on the periodic cell, whose side along x is 1.
+/// A uniform grid of `nx` × `ny` elements on the periodic cell.
 ///
-/// The cell is a square unless [`Grid::in_cell`] says otherwise, so elements are squares when `nx == ny`, rectangles
-/// otherwise.
+/// The side of the cell along x is 1. The cell is a square unless [`Grid::in_cell`] says otherwise. On a square cell,
+/// elements are squares when `nx == ny`, and rectangles otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "GridData"))]
 pub struct Grid {
@@ -15,7 +15,7 @@ pub struct Grid {
     cell_ratio: f64,
 }
 
-/// A grid as it is read, before it is checked; `cell_ratio` may be omitted for a square cell.
+/// Grid data that are not yet checked. `cell_ratio` may be omitted for a square cell.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 struct GridData {
@@ -54,7 +54,7 @@ pub enum GridError {
 }
 
 impl Grid {
-    /// Largest number of elements per side: 2^20, far beyond memory, so that index arithmetic cannot overflow.
+    /// Maximum number of elements per side: 2^20, far beyond memory, so index arithmetic cannot overflow.
     pub const MAX_SIDE: usize = 1 << 20;
 
     /// Maximum ratio of the longer to the shorter side of a cell.
@@ -68,16 +68,19 @@ impl Grid {
         Self::in_cell(nx, ny, 1.0)
     }
 
-    /// A grid of `nx` × `ny` elements on a rectangular cell, whose side along y is `cell_ratio` times that along x.
+    /// A grid of `nx` × `ny` elements on a rectangular cell.
+    ///
+    /// The side of the cell along y is `cell_ratio` times the side along x.
     ///
     /// # Errors
-    /// As [`Grid::new`]; [`GridError::CellRatio`].
+    /// [`GridError::Side`] as for [`Grid::new`]. [`GridError::CellRatio`] when `cell_ratio` is not between
+    /// 1/[`Grid::MAX_CELL_RATIO`] and [`Grid::MAX_CELL_RATIO`].
     pub fn in_cell(nx: usize, ny: usize, cell_ratio: f64) -> Result<Self, GridError> {
         let side_ok = |n: usize| (1..=Self::MAX_SIDE).contains(&n);
         if !(side_ok(nx) && side_ok(ny)) {
             return Err(GridError::Side { nx, ny });
         }
-        // A quotient of lengths may be off by a rounding.
+        // A quotient of lengths may have a rounding error.
         let maximum = Self::MAX_CELL_RATIO * (1.0 + 1e-12);
         if !(maximum.recip()..=maximum).contains(&cell_ratio) {
             return Err(GridError::CellRatio);
@@ -105,8 +108,9 @@ impl Grid {
         self.ny
     }
 
-    /// Side of the cell along y relative to the side along x: 1 for a square. The side along x is the unit of length,
-    /// so this is also the area of the cell.
+    /// Side of the cell along y divided by the side along x.
+    ///
+    /// It is 1 for a square. The side along x is the unit of length, so this is also the area of the cell.
     #[must_use]
     pub fn cell_ratio(self) -> f64 {
         self.cell_ratio
@@ -119,13 +123,13 @@ impl Grid {
         self.cell_ratio == 1.0
     }
 
-    /// Whether x and y may change places: a square cell, with as many elements along both.
+    /// Whether x and y may be exchanged: a square cell with `nx == ny`.
     #[must_use]
     pub fn is_square(self) -> bool {
         self.nx == self.ny && self.has_square_cell()
     }
 
-    /// Another number of elements on the same cell.
+    /// This cell with other numbers of elements.
     ///
     /// # Errors
     /// As [`Grid::new`].
@@ -140,7 +144,7 @@ impl Grid {
         self.nx * self.ny
     }
 
-    /// Element sides (along x, along y), in λ.
+    /// Sides of an element along x and y, in λ.
     #[must_use]
     pub fn spacing(self) -> DVec2 {
         DVec2::new(1.0 / self.nx as f64, self.cell_ratio / self.ny as f64)
@@ -158,20 +162,21 @@ impl Grid {
         iy * self.nx + ix
     }
 
-    /// |k| of the wave with `kx` and `ky` periods along the sides of the cell, in waves per λ.
+    /// Wavenumber |k| of the wave with `kx` and `ky` periods per side, in waves per λ.
     #[must_use]
     pub fn waves(self, kx: usize, ky: usize) -> f64 {
         self.squared_waves(kx, ky).sqrt()
     }
 
-    /// |k|² of the same wave.
+    /// Squared wavenumber |k|² of the wave with `kx` and `ky` periods per side.
     #[must_use]
     pub fn squared_waves(self, kx: usize, ky: usize) -> f64 {
         (kx as f64).powi(2) + (ky as f64 / self.cell_ratio).powi(2)
     }
 
-    /// Largest number of waves per side of the cell that the grid resolves along both: strictly below half its smaller
-    /// number of elements.
+    /// Largest number of waves per side that the grid resolves along x and y.
+    ///
+    /// It is strictly below half the smaller number of elements.
     #[must_use]
     pub fn resolved_wavenumber(self) -> usize {
         (self.nx.min(self.ny) - 1) / 2

@@ -1,4 +1,4 @@
-//! Rough surfaces, and the heights of a contact problem that come from them.
+//! Rough surfaces, and the heights of a contact problem.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -7,17 +7,21 @@ use crate::{DVec2, Field, Grid};
 
 /// A rough surface, periodic on the square cell of side 1.
 ///
-/// Implementations: a realised spectrum, a measured map, a sphere. [`crate::testing::check_height_field`]
-/// checks the contract.
+/// Implementations are, for example, a realised spectrum, a measured map and a sphere.
+/// [`crate::testing::check_height_field`] checks the contract.
 pub trait HeightField: Sync {
-    /// Height at the point `at`, both in λ; periodic with period 1 along x and along y.
+    /// Height at the point `at`, both in λ. Periodic with period 1 along x and along y.
     fn height(&self, at: DVec2) -> f64;
 
-    /// The largest wavenumber (waves per cell) in any direction, or `None` when the surface is not band-limited.
+    /// The largest wavenumber (waves per cell), or `None` for a surface without a band limit.
+    ///
+    /// The limit holds in every direction.
     fn band_limit(&self) -> Option<usize>;
 
-    /// Heights at the element centres of `grid`. Equal to [`HeightField::height`] there up to rounding, so they are
-    /// periodic on a square cell only; implementations that have a fast transform override it.
+    /// Heights at the element centres of `grid`, in λ.
+    ///
+    /// They equal [`HeightField::height`] up to rounding, so they are periodic on a square cell only. Implementations
+    /// that have a fast transform override this method.
     fn sample(&self, grid: Grid) -> Field {
         Field::from_fn(grid, |at| self.height(at))
     }
@@ -33,16 +37,18 @@ pub trait HeightField: Sync {
 
 /// The heights of a contact problem on its grid.
 ///
-/// A surface is evaluated where a solver needs it, which is a small part of the grid for the adaptive method. A map is
-/// used as it is. [`HeightField::on`] and `From<&Field>` make sources that borrow, [`HeightSource::shared`] and
-/// `From<Arc<Field>>` sources without a lifetime.
+/// A solver evaluates a surface only where it needs heights. For the adaptive method this is a small part of the grid.
+/// A map is used as it is.
+///
+/// [`HeightField::on`] and `From<&Field>` make sources that borrow. [`HeightSource::shared`] and `From<Arc<Field>>`
+/// make sources without a lifetime.
 #[derive(Clone)]
 pub enum HeightSource<'a> {
     /// A surface, evaluated at the centres of elements.
     Surface {
         /// The surface.
         surface: &'a dyn HeightField,
-        /// The grid it is wanted on.
+        /// The grid on which the heights are wanted.
         grid: Grid,
     },
     /// Heights (in λ) at the centres of all elements.
@@ -51,7 +57,7 @@ pub enum HeightSource<'a> {
     SharedSurface {
         /// The surface.
         surface: Arc<dyn HeightField + Send + Sync>,
-        /// The grid it is wanted on.
+        /// The grid on which the heights are wanted.
         grid: Grid,
     },
     /// A map with several owners.
@@ -59,7 +65,7 @@ pub enum HeightSource<'a> {
 }
 
 impl HeightSource<'static> {
-    /// A surface with several owners on `grid`. Nothing is evaluated yet.
+    /// The heights of a surface with several owners on `grid`. Nothing is evaluated yet.
     #[must_use]
     pub fn shared(surface: Arc<dyn HeightField + Send + Sync>, grid: Grid) -> Self {
         Self::SharedSurface { surface, grid }
@@ -77,7 +83,7 @@ impl HeightSource<'_> {
         }
     }
 
-    /// The surface, unless the heights are a map.
+    /// The surface, or `None` when the heights are a map.
     #[must_use]
     pub fn surface(&self) -> Option<&dyn HeightField> {
         match self {
@@ -87,7 +93,7 @@ impl HeightSource<'_> {
         }
     }
 
-    /// The map, unless the heights are those of a surface.
+    /// The map, or `None` when the heights come from a surface.
     #[must_use]
     pub fn map(&self) -> Option<&Field> {
         match self {
@@ -97,7 +103,7 @@ impl HeightSource<'_> {
         }
     }
 
-    /// The surface on another grid; a map stays as it is.
+    /// The same surface on another grid. A map stays as it is.
     #[must_use]
     pub fn on_grid(self, grid: Grid) -> Self {
         match self {
@@ -107,7 +113,7 @@ impl HeightSource<'_> {
         }
     }
 
-    /// Heights (in λ) on the whole grid: those of the map, or those of the surface, evaluated now.
+    /// Heights (in λ) on the whole grid. A surface is evaluated by this call.
     #[must_use]
     pub fn heights(&self) -> Cow<'_, Field> {
         match self {
@@ -118,7 +124,9 @@ impl HeightSource<'_> {
         }
     }
 
-    /// Elements along the shorter side of the grid for the shortest wave; `None` where the shortest wave is not known.
+    /// Number of elements per shortest wave, or `None` for heights without a band limit.
+    ///
+    /// Elements are counted along the shorter side of the grid. A map has no band limit.
     #[must_use]
     pub fn elements_per_wave(&self) -> Option<f64> {
         let waves = self.surface()?.band_limit().filter(|&waves| waves > 0)?;

@@ -8,13 +8,14 @@ pub struct Histogram {
     pub low: f64,
     /// Upper end of the last bin.
     pub high: f64,
-    /// Density in each bin; its integral is 1.
+    /// Density in each bin. Its integral is 1.
     pub density: Vec<f64>,
 }
 
 impl Histogram {
-    /// The density, in `n_bins` bins, of the values in [`low`, `high`]; values outside are passed over. Zero everywhere
-    /// when there are none.
+    /// The density of the values in [`low`, `high`], in `n_bins` bins.
+    ///
+    /// Values outside this range are ignored. Without any value inside it, the density is zero everywhere.
     #[must_use]
     pub fn of(values: impl Iterator<Item = f64>, low: f64, high: f64, n_bins: usize) -> Self {
         let mut counts = vec![0_u64; n_bins];

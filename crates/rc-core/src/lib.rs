@@ -1,15 +1,15 @@
-//! The common types of rc: grids, fields, elasticity, and the small traits that a research fork implements.
+//! The types that all crates of rc share, and the traits for research forks.
 //!
-//! # Conventions (of every crate of this workspace)
+//! # Conventions of all crates of this workspace
 //!
-//! - **Units.** Libraries compute with cell side λ = 1 (along x, where a cell is a rectangle) and E* = E/(1-ν²) = 1 in
-//!   `f64`. Lengths are multiples of λ, pressures multiples of E*. Only `rc-cli` knows metres and pascals;
-//!   [`PeriodicCell`] and [`Elasticity`] convert.
-//! - **Signs.** Pressure p ≥ 0 is compression. Heights h are those of the rigid surface, positive towards the
-//!   half-space. Gap g ≥ 0. The interface displacement v has zero mean over the cell, and `g = v - (h - h_max + Δ)`
-//!   with penetration Δ.
-//! - **Points**, offsets and wave vectors of floats are [`DVec2`], that of `glam`.
-//! - **Layout.** Fields are row-major, `index = iy * nx + ix`. The origin of the cell is its corner; point (ix, iy) is
+//! - **Units.** Libraries compute in `f64` with cell side λ = 1 and E* = E/(1-ν²) = 1. On a rectangular cell, λ is the
+//!   side along x. Lengths are multiples of λ, pressures multiples of E*. Metres and pascals are at the edge of the
+//!   program, in `rc-cli` for example; [`Units`] converts.
+//! - **Signs.** Pressure p ≥ 0 is compression. h is the height of the rigid surface, positive towards the half-space.
+//!   Gap g ≥ 0. The interface displacement v has zero mean over the cell, and `g = v - (h - h_max + Δ)` with
+//!   penetration Δ.
+//! - **Points**, offsets and wave vectors in floating point are [`DVec2`] of `glam`.
+//! - **Layout.** Fields are row-major, `index = iy * nx + ix`. The origin of the cell is its corner. Point (ix, iy) is
 //!   the **centre** of its element, ((ix + ½)/nx, (iy + ½)/ny) on a square cell ([`Grid::centre`]).
 //! - **Fourier.** Wavenumbers k are integers, waves per cell; q = 2πk on a square cell ([`Grid::waves`]). A forward
 //!   transform carries no factor, the inverse carries 1/(nx·ny). The symbol of an operator is its eigenvalue for the
@@ -17,7 +17,7 @@
 //! - **Means** are over the whole cell (nominal area A0) unless a name says "contact".
 //! - **rms slope** is the isotropic one, √⟨|∇h|²⟩.
 //!
-//! # Example: a surface of one's own
+//! # Example: a surface of your own
 //!
 //! ```
 //! use rc_core::{DVec2, Elasticity, Grid, HeightField, PeriodicCell};
@@ -48,14 +48,17 @@
 //!
 //! # Features
 //!
-//! `serde`: plain data (grids, cells, elasticity) serialises, and is checked when it is read. `ndarray`: a [`Field`] to
-//! and from `ndarray::Array2<f64>` without a copy.
+//! - `serde`: plain data (grids, cells, elasticity) serialises. It is checked when it is read.
+//! - `ndarray`: a [`Field`] converts to and from `ndarray::Array2<f64>` without a copy.
 //!
-//! Module [`testing`] has a check for each trait; `tests/examples/` of the repository goes on from here.
+//! # Further
+//!
+//! Module [`testing`] has a check for each trait. More examples are in `tests/examples/` of the repository.
 //!
 //! The paper is Putignano, Afferrante, Carbone, Demelio, *A new efficient numerical method for contact mechanics of
-//! rough surfaces*, Int. J. Solids Struct. 49 (2012) 338-343; "Eq. 4" without another source means its equation. The
-//! function that evaluates an equation has it in parentheses, so that a search for "Eq. (14" finds one place.
+//! rough surfaces*, Int. J. Solids Struct. 49 (2012) 338-343. A mention such as "Eq. 4" without another source means
+//! equation 4 of this paper. The function that evaluates an equation has its number in parentheses, so a search for
+//! "Eq. (14" finds one place.
 
 #[cfg(feature = "ndarray")]
 mod array;

@@ -1,4 +1,4 @@
-//! How long computations report what they do, without printing.
+//! Reports on running computations, without printing.
 
 use crate::Grid;
 
@@ -17,22 +17,25 @@ pub enum Event {
     },
     /// An iteration ended.
     Iteration {
-        /// Iterations on this level so far.
+        /// Number of iterations on this level so far.
         iteration: usize,
-        /// Estimated error, relative as the tolerance is.
+        /// Estimated error. It is relative to the same quantity as the tolerance.
         error: f64,
-        /// The tolerance that the error is to reach on this level.
+        /// Tolerance that the error has to reach on this level.
         tolerance: f64,
-        /// Elements in contact.
+        /// Number of elements in contact.
         n_contact: usize,
     },
 }
 
-/// Hands out the rows of a field in order, any number of whole ones at a time.
+/// Passes the rows of a field to a function, in order.
+///
+/// Each call of the function gets one or more whole rows.
 pub type Rows<'a> = dyn Fn(&mut dyn FnMut(&[f64])) + 'a;
 
-/// The pressure of a running solve, between two iterations. Rows are made when they are asked for, so that it costs
-/// nothing where nobody looks.
+/// The pressure of a running solve, between two iterations.
+///
+/// Rows are computed when they are requested, so a snapshot costs nothing without an observer that reads it.
 #[derive(Clone, Copy)]
 pub struct Snapshot<'a> {
     grid: Grid,
@@ -40,20 +43,22 @@ pub struct Snapshot<'a> {
 }
 
 impl<'a> Snapshot<'a> {
-    /// Of a pressure (in E*) on `grid`, whose rows `rows` hands out.
+    /// A snapshot of a pressure (in E*) on `grid`. `rows` passes on its rows.
     #[must_use]
     pub fn new(grid: Grid, rows: &'a Rows<'a>) -> Self {
         Self { grid, rows }
     }
 
-    /// The grid of the present level, coarser than that of the result before the last one.
+    /// The grid of the present level. It is the grid of the result on the last level, and coarser before.
     #[must_use]
     pub fn grid(&self) -> Grid {
         self.grid
     }
 
-    /// Hands out the pressure (in E*) row by row from iy = 0, one row or some of them at a time. It is not a solution
-    /// yet: Gauss-Seidel may have tension in it.
+    /// Passes the pressure (in E*) to `take` row by row from iy = 0.
+    ///
+    /// Each call gets one or more whole rows. The pressure is not a solution yet: with Gauss-Seidel it may contain
+    /// tension.
     pub fn pressure_rows(&self, mut take: impl FnMut(&[f64])) {
         (self.rows)(&mut take);
     }
@@ -65,21 +70,27 @@ impl std::fmt::Debug for Snapshot<'_> {
     }
 }
 
-/// Receives [`Event`]s. Called from the solving thread, between iterations; should return quickly.
+/// Receives [`Event`]s.
+///
+/// Methods are called from the solving thread, between iterations. They should return quickly.
 pub trait Observer: Sync {
-    /// Takes note of an event.
+    /// Receives an event.
     fn notify(&self, event: &Event);
 
-    /// May look at the pressure so far; called after each [`Event::Iteration`]. The result does not depend on it.
+    /// Gives access to the pressure so far, after each [`Event::Iteration`].
+    ///
+    /// The result of the solve does not depend on this method.
     fn look(&self, _pressure: &Snapshot<'_>) {}
 
-    /// Whether to end now, with what there is: it is returned as not converged. Asked between iterations.
+    /// Whether to stop the solve now. Asked between iterations.
+    ///
+    /// The present state is then returned as not converged.
     fn should_stop(&self) -> bool {
         false
     }
 }
 
-/// The observer that ignores everything.
+/// The observer that ignores all events.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 

@@ -1,9 +1,11 @@
-//! Numbers with units for people: `446.4 kPa`, `13 µm`, round tick marks.
+//! Numbers with units for people, such as `446.4 kPa` and `13 µm`, and round tick marks.
 
-/// A unit with a decimal prefix, shared by numbers that belong together (the ticks of an axis).
+/// A unit with a decimal prefix.
+///
+/// Numbers that belong together share it, such as the tick marks of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
-    /// Values divided by this are in the prefixed unit.
+    /// Value of one prefixed unit. Divide a value by it to get the number that is written.
     pub factor: f64,
     prefix: &'static str,
     unit: &'static str,
@@ -13,32 +15,34 @@ const PREFIXES: [(f64, &str); 9] =
     [(1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p")];
 
 impl Scale {
-    /// The prefix that writes `largest` as a number from 1 to 1000, where there is one.
+    /// The prefix that writes `largest` as a number from 1 to 1000, where possible.
     #[must_use]
     pub fn of(largest: f64, unit: &'static str) -> Self {
         let magnitude = largest.abs();
-        // Rounding to four digits must not show 1000 of the next smaller unit.
+        // A value that rounds to 1000 at four digits gets the next larger prefix.
         let fits = |(factor, _): &&(f64, &str)| magnitude >= factor * 0.999_95;
         let smallest = if magnitude > 0.0 { PREFIXES[PREFIXES.len() - 1] } else { (1.0, "") };
         let (factor, prefix) = PREFIXES.iter().find(fits).copied().unwrap_or(smallest);
         Self { factor, prefix, unit }
     }
 
-    /// The unit with its prefix, as `MPa`.
+    /// The unit with its prefix, such as `MPa`.
     #[must_use]
     pub fn unit(&self) -> String {
         format!("{}{}", self.prefix, self.unit)
     }
 }
 
-/// `value` in `unit`, four significant digits, with a decimal prefix: `446.4 kPa`.
+/// Text of `value` in `unit`, with four significant digits and a decimal prefix: `446.4 kPa`.
 #[must_use]
 pub fn engineering(value: f64, unit: &'static str) -> String {
     let scale = Scale::of(value, unit);
     format!("{} {}", digits(value / scale.factor, 4), scale.unit()).trim_end().to_owned()
 }
 
-/// `value` with `n` significant digits, plain between 1e-4 and 1e6, trailing zeros removed.
+/// Text of `value` with `n` significant digits, without trailing zeros.
+///
+/// It is plain between 1e-4 and 1e6, and has an exponent elsewhere.
 #[must_use]
 pub fn digits(value: f64, n: usize) -> String {
     if value == 0.0 || !value.is_finite() {
@@ -53,22 +57,22 @@ pub fn digits(value: f64, n: usize) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// [`digits`] for pictures: with a true minus sign.
+/// Text of `value` for pictures, with four significant digits and a true minus sign.
 #[must_use]
 pub fn label(value: f64) -> String {
     digits(value, 4).replace('-', "\u{2212}")
 }
 
-/// The largest of 1, 2, 5 times a power of ten that is at most `limit` (positive).
+/// The largest value of 1, 2 or 5 times a power of ten up to `limit` (positive).
 #[must_use]
 pub fn round_below(limit: f64) -> f64 {
     let power = 10_f64.powf(limit.log10().floor());
-    // The logarithm of a power of ten may be off by a rounding; so is the comparison then.
+    // The logarithm of a power of ten may have a rounding error, and the comparison too.
     let fits = |digit: &f64| digit * power <= limit * (1.0 + 1e-12);
     [10.0, 5.0, 2.0, 1.0].into_iter().find(fits).unwrap_or(0.5) * power
 }
 
-/// Tick marks at multiples of a round step in [`low`, `high`], about `n` of them.
+/// About `n` tick marks in [`low`, `high`], at multiples of a round step.
 #[must_use]
 pub fn ticks(low: f64, high: f64, n: usize) -> Vec<f64> {
     let span = high - low;

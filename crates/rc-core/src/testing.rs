@@ -1,16 +1,20 @@
-//! Conformance checks: what every implementation of a trait must satisfy, for forks to run on their own types.
+//! Conformance checks of the traits. Forks run them on their own types.
 //!
 //! Each function panics with a sentence that says what failed, so a test is one call.
 
 use crate::{DVec2, Grid, HeightField, Kernel, Operator};
 
-/// A reproducible pseudo-random value in [0, 1) for index `i` (a Weyl sequence: no dependency, no state).
+/// A reproducible pseudo-random value in [0, 1) for index `i`.
+///
+/// It is a Weyl sequence, without a dependency and without a state.
 #[must_use]
 pub fn quasi_random(i: usize) -> f64 {
     (i as f64 * 0.754_877_666_246_692_8 + 0.5).fract()
 }
 
-/// Checks a [`HeightField`]: finite, periodic, and sampled as evaluated, on a grid that is neither square nor even.
+/// Checks that a [`HeightField`] is finite and periodic, and that its samples equal its values.
+///
+/// The grid has different and odd numbers of elements.
 ///
 /// # Panics
 /// When the contract is broken.
@@ -38,8 +42,10 @@ pub fn check_height_field(surface: &dyn HeightField) {
     }
 }
 
-/// Checks a [`Kernel`]: zero at k = 0, positive and finite elsewhere, symmetric under x ↔ y on a square grid; the same
-/// on a rectangular cell as on the square of its copies.
+/// Checks the symbol of a [`Kernel`].
+///
+/// It must be zero at k = 0, and positive and finite elsewhere. It must be symmetric under x ↔ y on a square grid. A
+/// rectangular cell must have the same symbol as the square that its copies form.
 ///
 /// # Panics
 /// When the contract is broken.
@@ -62,7 +68,7 @@ pub fn check_kernel(kernel: &dyn Kernel) {
             }
         }
     }
-    // Three copies make a square, with square elements and with others.
+    // Three copies make a square, with square and with rectangular elements.
     for (nx, ny) in [(24, 8), (12, 10)] {
         let part = kernel.symbol(Grid::in_cell(nx, ny, 1.0 / 3.0).expect("small grid"));
         let whole = kernel.symbol(Grid::new(nx, 3 * ny).expect("small grid"));
@@ -78,8 +84,10 @@ pub fn check_kernel(kernel: &dyn Kernel) {
     }
 }
 
-/// Checks a symmetric [`Operator`]: linear, symmetric, positive on neutral loads, zero for a uniform load, indifferent
-/// to dirty scratch.
+/// Checks a symmetric [`Operator`].
+///
+/// It must be linear, symmetric, positive on random loads, and zero for a uniform load. The result must not depend on
+/// the previous contents of scratch.
 ///
 /// # Panics
 /// When the contract is broken.

@@ -1,10 +1,10 @@
-//! From SI to the units of the libraries, and back.
+//! Conversion from SI units to the units of the libraries, and back.
 
 use thiserror::Error;
 
 use crate::{Field, Grid, GridError};
 
-/// A physical quantity that cannot be.
+/// A physical quantity with an impossible value.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum UnitError {
@@ -16,7 +16,7 @@ pub enum UnitError {
         /// The value given.
         value: f64,
     },
-    /// Poisson's ratio outside the range of stable isotropic solids.
+    /// Poisson's ratio is outside the range of stable isotropic solids.
     #[error("Poisson's ratio must be above -1 and at most 0.5, not {value}")]
     Poisson {
         /// The value given.
@@ -28,7 +28,7 @@ fn positive(what: &'static str, value: f64) -> Result<f64, UnitError> {
     if value > 0.0 && value.is_finite() { Ok(value) } else { Err(UnitError::NotPositive { what, value }) }
 }
 
-/// The periodic cell: a square of side λ, or a rectangle whose side along x is λ.
+/// The periodic cell. It is a square of side λ, or a rectangle whose side along x is λ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "CellData"))]
 pub struct PeriodicCell {
@@ -36,7 +36,7 @@ pub struct PeriodicCell {
     side_y: f64,
 }
 
-/// A cell as it is read, before it is checked; `side_y` may be omitted for a square.
+/// Cell data that are not yet checked. `side_y` may be omitted for a square.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 struct CellData {
@@ -82,27 +82,27 @@ impl PeriodicCell {
         [self.side, self.side_y]
     }
 
-    /// Side along y over side along x, as [`crate::Grid::cell_ratio`].
+    /// Side along y divided by side along x, as [`crate::Grid::cell_ratio`].
     #[must_use]
     pub fn ratio(self) -> f64 {
         self.side_y / self.side
     }
 
-    /// Nominal area A0 (m²); λ² for a square.
+    /// Nominal area A0 (m²). It is λ² for a square.
     #[must_use]
     pub fn nominal_area(self) -> f64 {
         self.side * self.side_y
     }
 }
 
-/// The elastic half-space against a rigid surface: E* = E/(1-ν²) (below Eq. 5).
+/// The elastic half-space against a rigid surface, E* = E/(1-ν²) (below Eq. 5).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "ElasticityData"))]
 pub struct Elasticity {
     e_star: f64,
 }
 
-/// A half-space as it is read, before it is checked.
+/// Data of a half-space that are not yet checked.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 struct ElasticityData {
@@ -119,7 +119,7 @@ impl TryFrom<ElasticityData> for Elasticity {
 }
 
 impl Elasticity {
-    /// From Young's modulus (Pa) and Poisson's ratio.
+    /// A half-space with a given Young's modulus (Pa) and Poisson's ratio.
     ///
     /// # Errors
     /// [`UnitError`] for a modulus that is not positive or a ratio outside (-1, 0.5].
@@ -132,7 +132,7 @@ impl Elasticity {
         }
     }
 
-    /// From E* (Pa) itself.
+    /// A half-space with a given E* (Pa).
     ///
     /// # Errors
     /// [`UnitError::NotPositive`].
@@ -147,7 +147,9 @@ impl Elasticity {
     }
 }
 
-/// The units of a scene: lengths are multiples of the side λ of its cell, pressures multiples of its E*.
+/// The units of a scene.
+///
+/// Lengths are multiples of the side λ of its cell, pressures multiples of its E*.
 ///
 /// ```
 /// use rc_core::{Elasticity, PeriodicCell, Units};
@@ -184,46 +186,48 @@ impl Units {
         self.elasticity
     }
 
-    /// A length (m) in λ.
+    /// Converts a length from metres to λ.
     #[must_use]
     pub fn length(self, metres: f64) -> f64 {
         metres / self.cell.side()
     }
 
-    /// A pressure (Pa) in E*.
+    /// Converts a pressure from pascals to E*.
     #[must_use]
     pub fn pressure(self, pascals: f64) -> f64 {
         pascals / self.elasticity.e_star()
     }
 
-    /// A length (λ) in m.
+    /// Converts a length from λ to metres.
     #[must_use]
     pub fn metres(self, length: f64) -> f64 {
         length * self.cell.side()
     }
 
-    /// A pressure (E*) in Pa.
+    /// Converts a pressure from E* to pascals.
     #[must_use]
     pub fn pascals(self, pressure: f64) -> f64 {
         pressure * self.elasticity.e_star()
     }
 
-    /// A stiffness per area (E*/λ) in Pa/m.
+    /// Converts a stiffness per area from E*/λ to Pa/m.
     #[must_use]
     pub fn pascals_per_metre(self, stiffness: f64) -> f64 {
         stiffness * self.elasticity.e_star() / self.cell.side()
     }
 
-    /// An energy per nominal area (E* λ) as that of the cell, in J.
+    /// Energy of the whole cell in J, from an energy per nominal area in E* λ.
     #[must_use]
     pub fn joules(self, energy: f64) -> f64 {
         energy * self.elasticity.e_star() * self.cell.side().powi(3) * self.cell.ratio()
     }
 
-    /// A height map (m) in λ, on the grid of its points in the cell.
+    /// Converts a height map from metres to λ.
+    ///
+    /// The result is on a grid with the numbers of points of the map and the shape of the cell.
     ///
     /// # Errors
-    /// [`GridError::CellRatio`] when the sides of the cell differ too much.
+    /// [`GridError::CellRatio`] when the sides of the cell differ by too large a factor.
     pub fn heights(self, map: &Field) -> Result<Field, GridError> {
         let grid = Grid::in_cell(map.grid().nx(), map.grid().ny(), self.cell.ratio())?;
         let mut heights = Field::zeros(grid);
@@ -238,8 +242,8 @@ impl Units {
 mod tests {
     use super::*;
 
-    /// A spring of pressures and lengths is the same in SI: its stiffness is their ratio, its energy half their product
-    /// times the area.
+    /// A spring with given pressures and lengths is the same in SI. Its stiffness is the ratio of both. Its energy is
+    /// half their product times the area.
     #[test]
     fn stiffness_and_energy_follow_from_pressure_and_length() {
         let cell = PeriodicCell::rectangle(2e-3, 5e-3).expect("a cell");

@@ -1,11 +1,16 @@
-//! Convolutions of real fields: `field → inverse FFT( symbol · FFT(field) )`, periodic on the grid of the field, or on
-//! a larger one on which the field is zero elsewhere.
+//! Convolutions of real fields, `field → inverse FFT( symbol · FFT(field) )`.
 //!
-//! There are three passes over memory. Rows are transformed block by block and left in tiles. Panels of a few columns
-//! are gathered from the tiles, transformed, multiplied by the symbol, transformed back and scattered. Rows are
-//! transformed back. The caller writes the rows and reads them block by block, so that its own vector work is done
-//! while they are in cache. Work is parallel over blocks and panels, never inside one transform, so results do not
-//! depend on the number of threads.
+//! A convolution is periodic on the grid of the field, or on a larger grid where the field is zero elsewhere.
+//!
+//! There are three passes over memory:
+//!
+//! 1. Rows are transformed block by block and stored in tiles.
+//! 2. Panels of a few columns are gathered from the tiles, transformed, multiplied by the symbol, transformed back and
+//!    scattered.
+//! 3. Rows are transformed back.
+//!
+//! The caller writes and reads rows block by block, so that its own vector work is done while they are in cache. Work
+//! is parallel over blocks and panels, never inside one transform, so results do not depend on the number of threads.
 
 use std::sync::{Arc, Mutex};
 
@@ -17,21 +22,24 @@ use rustfft::num_complex::Complex;
 
 use crate::{SymbolTable, TransformReal};
 
-/// Rows per block of a [`Convolution`]: what it asks for and hands out at a time. The last block of a grid may have
-/// fewer.
+/// Number of rows in a block of a [`Convolution`].
+///
+/// A convolution requests and returns one block at a time. The last block of a grid may have fewer rows.
 pub const BLOCK_ROWS: usize = 16;
 
-/// Columns per panel: sixteen f32 complex values are two cache lines.
+/// Columns per panel. Sixteen complex values of f32 are two cache lines.
 const PANEL_COLUMNS: usize = 16;
 
-/// Unused values after each column of a panel. Without them the columns of a grid with a power of two of rows would all
-/// compete for the same few cache lines while a panel is gathered or scattered.
+/// Unused values after each column of a panel.
+///
+/// Without them, if the number of rows is a power of two, all columns would compete for a few cache lines. This happens
+/// while a panel is gathered or scattered.
 const PANEL_PADDING: usize = 16;
 
 /// Plans and buffers for convolutions on one grid.
 ///
-/// [`Convolution::apply`] is the whole; its three passes are there one by one for callers that do something else
-/// between them.
+/// [`Convolution::apply`] runs all three passes. Callers that do something else between the passes call them one by
+/// one.
 ///
 /// ```
 /// use rayon::prelude::*;
@@ -56,43 +64,47 @@ const PANEL_PADDING: usize = 16;
 /// ```
 pub struct Convolution<T> {
     grid: Grid,
-    /// Elements of the transforms along both axes: those of the grid, or more.
+    /// Elements of the transforms along x and y, at least as many as the grid has.
     period: [usize; 2],
     row_forward: Arc<dyn RealToComplex<T>>,
     row_inverse: Arc<dyn ComplexToReal<T>>,
     column_forward: Arc<dyn Fft<T>>,
     column_inverse: Arc<dyn Fft<T>>,
-    /// The row spectra, tiled: block of rows, then panel of columns, then row, then column.
+    /// Row spectra in tiles. The order is block of rows, panel of columns, row, column.
     spectrum: Vec<Complex<T>>,
     /// One workspace per thread, locked by the thread that uses it.
     workspaces: Vec<Mutex<Workspace<T>>>,
 }
 
 struct Workspace<T> {
-    /// One block of rows.
+    /// Rows of one block.
     rows: Vec<T>,
-    /// A row with the zeros behind it; empty where there are none.
+    /// A row followed by zeros, or nothing when the transform is as long as the row.
     padded: Vec<T>,
-    /// One spectrum of a row.
+    /// Spectrum of one row.
     row_spectrum: Vec<Complex<T>>,
-    /// One panel, columns contiguous.
+    /// One panel, with contiguous columns.
     panel: Vec<Complex<T>>,
     scratch: Vec<Complex<T>>,
 }
 
 impl<T: TransformReal> Convolution<T> {
-    /// Plans for `grid`, and a workspace for each thread of the present rayon pool. *Memory*: nx·ny complex numbers of
-    /// `T`.
+    /// Plans for periodic convolutions on `grid`.
+    ///
+    /// They have a workspace for each thread of the present rayon pool. *Memory*: nx·ny complex numbers of `T`.
     #[must_use]
     pub fn new(grid: Grid) -> Self {
         Self::padded(grid, [grid.nx(), grid.ny()])
     }
 
-    /// Plans for fields on `grid` that are zero on the rest of a larger one, of `period` elements along both axes,
-    /// whose table the symbol is then; only the result on `grid` is kept. Transforms of rows that are zero are left
-    /// out. *Memory*: about period\[0\] · ny / 2 complex numbers.
+    /// Plans for fields on `grid` that are zero on the rest of a larger grid.
     ///
-    /// With a period of at least 2n - 1 elements along a side of n, no element acts on another around the border.
+    /// `period` is the number of elements of the larger grid along x and y. The symbol is tabulated for the larger
+    /// grid. Only the result on `grid` is kept. Transforms of rows that are zero are omitted. *Memory*: about
+    /// period\[0\] · ny / 2 complex numbers.
+    ///
+    /// With a period of at least 2n - 1 elements along a side of n, elements do not act on each other across the
+    /// border.
     ///
     /// # Panics
     /// When the period is shorter than the grid.
@@ -119,7 +131,7 @@ impl<T: TransformReal> Convolution<T> {
             scratch: vec![zero; scratch_len],
         };
         let workspaces = (0..rayon::current_num_threads()).map(|_| Mutex::new(workspace())).collect();
-        // Written by all threads: a large one is new memory.
+        // All threads write it, because a large spectrum is new memory.
         let spectrum = rayon::iter::repeat_n(zero, n_columns * grid.ny()).collect();
         Self { grid, period, row_forward, row_inverse, column_forward, column_inverse, spectrum, workspaces }
     }
@@ -130,14 +142,15 @@ impl<T: TransformReal> Convolution<T> {
         self.grid
     }
 
-    /// Convolves with `symbol`, the table of the same grid.
+    /// Convolves with `symbol`, the table for the same grid.
     ///
-    /// `sources` and `sinks` have one item for each [`BLOCK_ROWS`] rows of the grid, in order. `write` writes the
-    /// field's rows of its block; it is called once for each block before `read` is called at all. `read` receives the
-    /// rows of the result; its return values are collected in the order of blocks, for the caller to sum.
+    /// `sources` and `sinks` have one item for each block of [`BLOCK_ROWS`] rows of the grid, in order. `write` writes
+    /// the rows of the field in its block. It is called once for each block before the first call of `read`. `read`
+    /// receives the rows of the result. Its return values are collected in the order of blocks, so that the caller can
+    /// sum them.
     ///
     /// # Panics
-    /// When `sources` or `sinks` have another length than there are blocks.
+    /// When the length of `sources` or `sinks` is not the number of blocks.
     pub fn apply<S, F, K, R>(
         &mut self,
         symbol: &SymbolTable<T>,
@@ -157,10 +170,12 @@ impl<T: TransformReal> Convolution<T> {
         self.read_rows(sinks, read)
     }
 
-    /// First pass: the rows that `write` writes are transformed. Returns what `write` returns, in the order of blocks.
+    /// First pass, which transforms the rows that `write` writes.
+    ///
+    /// Returns what `write` returns, in the order of blocks.
     ///
     /// # Panics
-    /// As [`Convolution::apply`].
+    /// As for [`Convolution::apply`].
     pub fn transform_rows<S, R>(&mut self, sources: S, write: impl Fn(S::Item, &mut [T]) -> R + Sync) -> Vec<R>
     where
         S: IndexedParallelIterator,
@@ -188,8 +203,9 @@ impl<T: TransformReal> Convolution<T> {
             .collect()
     }
 
-    /// Second pass: columns are transformed, multiplied by the symbol, the table of the same grid, and transformed
-    /// back.
+    /// Second pass, which transforms columns, multiplies by `symbol`, and transforms back.
+    ///
+    /// `symbol` is the table for the same grid.
     pub fn apply_symbol(&mut self, symbol: &SymbolTable<T>) {
         let (n_rows, [nx, ny]) = (self.grid.ny(), self.period);
         let n_columns = nx / 2 + 1;
@@ -220,11 +236,12 @@ impl<T: TransformReal> Convolution<T> {
         });
     }
 
-    /// Third pass: rows are transformed back and handed to `read`, whose return values are collected in the order of
-    /// blocks.
+    /// Third pass, which transforms rows back and passes them to `read`.
+    ///
+    /// The return values of `read` are collected in the order of blocks.
     ///
     /// # Panics
-    /// As [`Convolution::apply`].
+    /// As for [`Convolution::apply`].
     pub fn read_rows<K, R>(&self, sinks: K, read: impl Fn(K::Item, &[T]) -> R + Sync) -> Vec<R>
     where
         K: IndexedParallelIterator,
@@ -242,7 +259,7 @@ impl<T: TransformReal> Convolution<T> {
                 let rows = &mut rows[..n_rows * nx];
                 for (iy, row) in rows.chunks_exact_mut(nx).enumerate() {
                     from_tiles(block, iy, row_spectrum);
-                    // These are real up to rounding; the plan insists on exact zeros.
+                    // These parts are zero up to rounding, but the plan requires exact zeros.
                     row_spectrum[0].im = T::zero();
                     if is_even {
                         row_spectrum[n_columns - 1].im = T::zero();
@@ -266,14 +283,15 @@ impl<T> std::fmt::Debug for Convolution<T> {
     }
 }
 
-/// The workspace of the calling thread. A lock is only ever waited for when more threads run than when the plan was
-/// made.
+/// The workspace of the calling thread.
+///
+/// A thread waits for a lock only if more threads run than when the plan was made.
 fn lock<T>(workspaces: &[Mutex<Workspace<T>>]) -> std::sync::MutexGuard<'_, Workspace<T>> {
     let thread = rayon::current_thread_index().unwrap_or(0) % workspaces.len();
     workspaces[thread].lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
-/// A row with zeros behind it, in `padded`; the row itself where that is empty.
+/// Copies `row` and zeros behind it into `padded`. Returns `row` itself if `padded` is empty.
 fn with_zeros<'a, T: TransformReal>(row: &'a mut [T], padded: &'a mut [T]) -> &'a mut [T] {
     if padded.is_empty() {
         return row;
@@ -284,7 +302,7 @@ fn with_zeros<'a, T: TransformReal>(row: &'a mut [T], padded: &'a mut [T]) -> &'
     padded
 }
 
-/// Writes row `iy` of a block to the block's tiles, one for each panel of columns.
+/// Writes row `iy` of a block to its tiles, one for each panel.
 fn to_tiles<T: TransformReal>(row: &[Complex<T>], block: &mut [Complex<T>], iy: usize) {
     let n_rows = block.len() / row.len();
     let (panels, rest) = row.as_chunks::<PANEL_COLUMNS>();
@@ -296,7 +314,7 @@ fn to_tiles<T: TransformReal>(row: &[Complex<T>], block: &mut [Complex<T>], iy: 
     rest_tile[iy * rest.len()..][..rest.len()].copy_from_slice(rest);
 }
 
-/// Reads row `iy` of a block from the block's tiles.
+/// Reads row `iy` of a block from the tiles of the block.
 fn from_tiles<T: TransformReal>(block: &[Complex<T>], iy: usize, row: &mut [Complex<T>]) {
     let n_rows = block.len() / row.len();
     let (panels, rest) = row.as_chunks_mut::<PANEL_COLUMNS>();
@@ -308,7 +326,7 @@ fn from_tiles<T: TransformReal>(block: &[Complex<T>], iy: usize, row: &mut [Comp
     rest.copy_from_slice(&rest_tile[iy * rest.len()..][..rest.len()]);
 }
 
-/// Tiles (rows of a few columns) to padded columns.
+/// Copies tiles (rows of a few columns) to padded columns.
 fn gather<T: TransformReal>(tiles: &[&mut [Complex<T>]], panel: &mut [Complex<T>], width: usize) {
     let stride = panel.len() / width;
     for (tile_idx, tile) in tiles.iter().enumerate() {
@@ -321,7 +339,7 @@ fn gather<T: TransformReal>(tiles: &[&mut [Complex<T>]], panel: &mut [Complex<T>
     }
 }
 
-/// Padded columns back to tiles.
+/// Copies padded columns back to tiles.
 fn scatter<T: TransformReal>(panel: &[Complex<T>], tiles: &mut [&mut [Complex<T>]], width: usize) {
     let stride = panel.len() / width;
     for (tile_idx, tile) in tiles.iter_mut().enumerate() {
@@ -341,7 +359,7 @@ fn scale_column<T: TransformReal>(column: &mut [Complex<T>], symbol: &[T]) {
     for (value, &factor) in low.iter_mut().zip(symbol) {
         *value = value.scale(factor);
     }
-    // ky = ny - 1, ny - 2, … down to the first that `low` does not hold.
+    // ky = ny - 1, ny - 2, … down to the first wave beyond `low`.
     for (value, &factor) in high.iter_mut().rev().zip(&symbol[1..]) {
         *value = value.scale(factor);
     }
@@ -352,7 +370,7 @@ fn scale_column<T: TransformReal>(column: &mut [Complex<T>], symbol: &[T]) {
 mod tests {
     use super::*;
 
-    /// A kernel without a period, summed one by one.
+    /// A kernel without a period, summed term by term.
     #[test]
     fn a_padded_convolution_is_the_sum_without_images() {
         for (nx, ny, px, py) in [(12, 10, 24, 20), (5, 33, 9, 65), (16, 16, 32, 31), (1, 7, 1, 16), (40, 3, 81, 6)] {
@@ -368,7 +386,7 @@ mod tests {
             let mut found = vec![0.0; grid.len()];
             let block = BLOCK_ROWS * nx;
             let mut convolution = Convolution::<f64>::padded(grid, [px, py]);
-            // Twice: nothing is left of what was there before.
+            // The second run shows that no values of the first one remain.
             for _ in 0..2 {
                 convolution.apply(
                     &table,

@@ -1,4 +1,6 @@
-//! Transforms between a real field and its waves in the half plane kx ≥ 0, whose conjugates are the others.
+//! Transforms between a real field and its waves in the half plane kx ≥ 0.
+//!
+//! The other waves are their complex conjugates.
 
 use std::f64::consts::PI;
 
@@ -8,14 +10,15 @@ use rustfft::num_complex::Complex64;
 
 use crate::TransformReal;
 
-/// Columns, or rows, that a second pass gathers at once, so that every cache line of the first pass's result is read
-/// once.
+/// Number of columns, or rows, that a second pass gathers at once.
+///
+/// Every cache line of the result of the first pass is then read once.
 const PANEL: usize = 8;
 
-/// `value(w)` of every wave w = Σ f exp(-2πi k·x) of a real field minus `offset`, for the half plane 0 ≤ kx ≤ nx/2,
-/// column by column: `values[kx * ny + (ky mod ny)]`.
+/// `value(w)` for every wave w = Σ f exp(-2πi k·x) of a real field f minus `offset`.
 ///
-/// Phases are those of a field whose first value is at x = 0, not at the centre of an element.
+/// The result has the half plane 0 ≤ kx ≤ nx/2 column by column: `values[kx * ny + (ky mod ny)]`. Phases are relative
+/// to the centre of the first element, which has x = 0 here.
 #[must_use]
 pub fn half_plane_values(field: &Field, offset: f64, value: impl Fn(Complex64) -> f64 + Sync) -> Vec<f64> {
     let ny = field.grid().ny();
@@ -40,7 +43,7 @@ pub fn half_plane_values(field: &Field, offset: f64, value: impl Fn(Complex64) -
     values
 }
 
-/// The transform of every row minus `offset`: ny rows of nx/2 + 1 complex numbers.
+/// The transform of every row minus `offset`, as ny rows of nx/2 + 1 complex numbers.
 fn transformed_rows(field: &Field, offset: f64) -> Vec<Complex64> {
     let (nx, ny) = (field.grid().nx(), field.grid().ny());
     let width = nx / 2 + 1;
@@ -56,12 +59,13 @@ fn transformed_rows(field: &Field, offset: f64) -> Vec<Complex64> {
     rows
 }
 
-/// The field Σ a_k exp(2πi k·x) at the element centres of `grid`, for waves in the columns kx = 0, 1, …; those of -kx
-/// are their conjugates, and the column kx = 0 must be its own.
+/// The field Σ a_k exp(2πi k·x) at the element centres of `grid`.
 ///
-/// `columns[kx][reach + ky]` is a_k, with 2·reach + 1 entries in that column. Waves too short for the grid are folded
-/// onto those with the same values at its centres, so the result is the direct sum on any grid. Besides the result, as
-/// many complex numbers are stored as there are columns times ny.
+/// `columns[kx][reach + ky]` is a_k for kx = 0, 1, …. The column of kx has 2·reach + 1 entries, and columns may have
+/// different reaches. Waves with -kx are the complex conjugates. So the column kx = 0 must be its own conjugate.
+///
+/// Waves that are too short for the grid are folded onto the waves with the same values at the element centres. So the
+/// result is the direct sum on any grid. *Memory*: besides the result, ny complex numbers for each column.
 #[must_use]
 pub fn field_of_columns(columns: &[Vec<Complex64>], grid: Grid) -> Field {
     let waves_by_row = transformed_columns(columns, grid);
@@ -70,8 +74,10 @@ pub fn field_of_columns(columns: &[Vec<Complex64>], grid: Grid) -> Field {
     field
 }
 
-/// First pass. Column by column: Σ `a_k` exp(2πi (ky y + kx/(2 nx))) over ky, for the ny centres y; the last factor is
-/// the half element by which the first centre is off the corner.
+/// First pass: the sums over ky of each column, at the ny centres y.
+///
+/// A sum is Σ `a_k` exp(2πi (ky y + kx/(2 nx))). The last term shifts by half an element, from the corner of the cell
+/// to the first centre.
 fn transformed_columns(columns: &[Vec<Complex64>], grid: Grid) -> Vec<Complex64> {
     let ny = grid.ny();
     let fft = f64::complex_inverse(ny);
@@ -93,7 +99,9 @@ fn transformed_columns(columns: &[Vec<Complex64>], grid: Grid) -> Vec<Complex64>
     result
 }
 
-/// Second pass: row by row from complex to real, of the columns' transforms, each with ny contiguous values.
+/// Second pass: complex-to-real transforms of rows.
+///
+/// The transform of each column is ny contiguous values.
 fn transform_rows(waves_by_row: &[Complex64], n_columns: usize, field: &mut Field) {
     let (nx, ny) = (field.grid().nx(), field.grid().ny());
     let fft = f64::real_inverse(nx);
@@ -117,7 +125,7 @@ fn transform_rows(waves_by_row: &[Complex64], n_columns: usize, field: &mut Fiel
     });
 }
 
-/// Where a wave goes in the half spectrum of a real row, and with which factors of its parts.
+/// Target of a wave in the half spectrum of a real row, and factors of its two parts.
 struct Fold {
     target: usize,
     re: f64,
@@ -125,8 +133,11 @@ struct Fold {
 }
 
 impl Fold {
-    /// The complex-to-real transform adds the conjugate of every wave by itself, except of its first (0) and, for even
-    /// `nx`, last (nx/2) one: these are real, and a wave folded onto them brings its conjugate along.
+    /// Target and factors of wave `kx` in a row of `nx` elements.
+    ///
+    /// The complex-to-real transform adds the conjugate of every wave by itself. Exceptions are the first wave (0) and,
+    /// for even `nx`, the last wave (nx/2). These two are real, so a wave that is folded onto them adds its own
+    /// conjugate.
     fn of(kx: usize, nx: usize) -> Self {
         let alias = kx % nx;
         if kx == 0 {
@@ -141,12 +152,12 @@ impl Fold {
     }
 }
 
-/// Largest ky of a column that is stored from -reach to reach.
+/// Largest ky of a column that holds -reach to reach.
 fn reach(column: &[Complex64]) -> usize {
     column.len() / 2
 }
 
-/// exp(2πi k s) for half an element s = 1/(2n).
+/// exp(2πi k s) for half an element, s = 1/(2n).
 fn half_element(k: usize, n: usize) -> Complex64 {
     Complex64::cis(PI * k as f64 / n as f64)
 }
@@ -177,11 +188,11 @@ mod tests {
         }
     }
 
-    /// On grids that resolve all waves, and on coarser ones, where waves are folded.
+    /// Tests grids that resolve all waves, and coarser grids on which waves are folded.
     #[test]
     fn a_field_of_columns_is_the_direct_sum() {
         let wave = |kx: usize, ky: i32| Complex64::new(1.0 / (1.0 + kx as f64), 0.3 * f64::from(ky));
-        // The column kx = 0 is its own conjugate; columns have different numbers of waves.
+        // The column kx = 0 is its own conjugate. Columns have different numbers of waves.
         let columns: Vec<Vec<Complex64>> = vec![
             (-2..=2).map(|ky| wave(0, ky)).collect(),
             (-4..=4).map(|ky| wave(1, ky)).collect(),

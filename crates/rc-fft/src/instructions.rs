@@ -1,26 +1,28 @@
-//! Which vector instructions are used: those of the processor, or fewer.
+//! Choice of the vector instructions.
 
 use std::sync::OnceLock;
 
-/// The environment variable that lowers [`Instructions::of_process`].
+/// Name of the environment variable that lowers [`Instructions::of_process`].
 const VARIABLE: &str = "RC_SIMD";
 
-/// The widest vector instructions that loops chosen at run time may use.
+/// The widest vector instructions that code chosen at run time may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Instructions {
-    /// What every processor of the architecture has.
+    /// Instructions that every processor of the architecture has.
     Scalar,
-    /// Transforms by SSE 4.1 where it is, and nothing wider. On other architectures than x86, as `Scalar`.
+    /// Transforms with SSE 4.1 if the processor has it. The same as `Scalar` on other architectures than x86.
     Sse,
-    /// The widest that the processor has.
+    /// The widest instructions that the processor has.
     Best,
 }
 
 impl Instructions {
-    /// What this process uses: [`Instructions::Best`], unless the environment variable `RC_SIMD` is `scalar` or `sse`.
-    /// It is read once.
+    /// The instructions that this process uses.
     ///
-    /// Sums are rounded in another order by other instructions, so results differ in their last digits, as on other
+    /// This is [`Instructions::Best`] unless the environment variable `RC_SIMD` is `scalar` or `sse`. The variable is
+    /// read once.
+    ///
+    /// Other instructions round sums in another order. So results differ in their last digits, as they do on other
     /// processors.
     ///
     /// # Panics

@@ -1,24 +1,24 @@
 //! Fourier transforms of real fields on a grid: plans, row and column passes, scratch.
 //!
-//! A transform of two dimensions is a pass over rows and a pass over columns, each parallel over blocks that stay in
-//! cache. This crate is the only place that such passes are written:
+//! A two-dimensional transform is a pass over rows and a pass over columns. Each pass is parallel over blocks that stay
+//! in cache. Only this crate contains such passes:
 //!
-//! | item | what |
+//! | item | what it does |
 //! |---|---|
-//! | [`Convolution`] | field → inverse FFT( symbol · FFT(field) ), again and again on one grid, in `f32` or `f64` |
-//! | [`SymbolTable`] | the symbol of a convolution, tabulated |
-//! | [`half_plane_values`] | one forward transform of a real field, every wave of the half plane kx ≥ 0 mapped to a number |
-//! | [`field_of_columns`] | one inverse transform of columns kx = 0, 1, … of waves, as many as there are, to a real field |
+//! | [`Convolution`] | field → inverse FFT( symbol · FFT(field) ), repeatedly on one grid, in `f32` or `f64` |
+//! | [`SymbolTable`] | table of the symbol of a convolution |
+//! | [`half_plane_values`] | forward transform of a real field, then a number for every wave of the half plane kx ≥ 0 |
+//! | [`field_of_columns`] | inverse transform of waves in the columns kx = 0, 1, … to a real field |
 //! | [`powers_of_lines`] | transforms of rows and of columns, one axis at a time, and weighted sums of their powers |
-//! | [`TransformReal`] | transforms of one dimension |
-//! | [`Instructions`] | the vector instructions that are used, which `RC_SIMD` in the environment can lower |
+//! | [`TransformReal`] | one-dimensional transforms |
+//! | [`Instructions`] | the vector instructions in use, which the environment variable `RC_SIMD` can lower |
 //!
-//! Results are bitwise the same for any number of threads: work is divided over rows and columns, never inside one
+//! Results are bitwise the same for any number of threads. Work is divided over rows and columns, never inside one
 //! transform.
 //!
-//! `rustfft` is generic over the number type, so every crate that makes a plan compiles all of its algorithms, for each
-//! instruction set and precision: a million lines of LLVM code. Here they are compiled once; other crates get a plan as
-//! a trait object.
+//! `rustfft` is generic over the number type. Every crate that makes a plan compiles all of its algorithms, for each
+//! instruction set and precision. This is a million lines of LLVM code. Here they are compiled once, and other crates
+//! get a plan as a trait object.
 //!
 //! ```
 //! use rc_fft::{Complex, TransformReal};

@@ -1,20 +1,24 @@
-//! Transforms of the lines of a real field, along one axis at a time: what they say of it needs no second field.
+//! Transforms of the lines of a real field, along one axis at a time.
+//!
+//! They need no second field.
 
 use rayon::prelude::*;
 use rc_core::Field;
 
 use crate::TransformReal;
 
-/// Columns that are gathered at once: with fewer, rows far apart are read for little.
+/// Number of columns that are gathered at once. Fewer columns would use little of each cache line.
 const PANEL: usize = 32;
 
-/// For the rows of a field minus `offset`, and for its columns: Σ over all of them of `Σ weights[k] |w_k|²`, with the
-/// waves w_k = Σ f exp(-2πi jk/n), k = 0, …, n/2, of one line.
+/// Weighted powers of the waves along rows and along columns, of a field minus `offset`.
 ///
-/// Bitwise the same for any number of threads. Besides the field only a few lines are in memory.
+/// The first value is the sum over all rows of `Σ weights[k] |w_k|²`, and the second is the sum over all columns. The
+/// waves of a line of n values f are w_k = Σ f exp(-2πi jk/n), k = 0, …, n/2.
+///
+/// The result is bitwise the same for any number of threads. *Memory*: a few lines.
 ///
 /// # Panics
-/// When `weights` are not n/2 + 1 for the n elements along each axis.
+/// When there are not n/2 + 1 weights for the n elements along each axis.
 #[must_use]
 pub fn powers_of_lines(field: &Field, offset: f64, [of_rows, of_columns]: [&[f64]; 2]) -> [f64; 2] {
     let (nx, ny) = (field.grid().nx(), field.grid().ny());
@@ -35,7 +39,7 @@ pub fn powers_of_lines(field: &Field, offset: f64, [of_rows, of_columns]: [&[f64
     [rows, columns]
 }
 
-/// The sum over `n_lines` lines of `length` values; `read(first, lines)` fills in some of them.
+/// The sum over `n_lines` lines of `length` values. `read(first, lines)` writes the lines from `first` on.
 fn sum(n_lines: usize, length: usize, weights: &[f64], read: impl Fn(usize, &mut [f64]) + Sync) -> f64 {
     let fft = f64::real_forward(length);
     let panel = PANEL.min(n_lines);
@@ -72,7 +76,7 @@ mod tests {
             let of =
                 |n: usize, wave: usize| -> Vec<f64> { (0..=n / 2).map(|k| f64::from(u8::from(k == wave))).collect() };
             let [constant, along_y] = powers_of_lines(&field, 3.0, [&of(nx, 0), &of(ny, 1)]);
-            // Σ over rows of (nx f)², and over columns of (ny/2)².
+            // Σ over rows of (nx f)², and Σ over columns of (ny/2)².
             let squares: f64 = (0..ny).map(|iy| (field.row(iy)[0] - 3.0).powi(2)).sum();
             let expected = [(nx * nx) as f64 * squares, (nx * ny * ny) as f64 / 4.0];
             for (found, expected) in [constant, along_y].into_iter().zip(expected) {

@@ -1,4 +1,4 @@
-//! Plans of transforms of one dimension.
+//! Plans of one-dimensional transforms.
 
 use std::sync::Arc;
 
@@ -8,20 +8,21 @@ use rustfft::{Fft, FftDirection, FftPlanner, FftPlannerScalar, FftPlannerSse};
 use crate::Instructions;
 use crate::real_by_complex::RealByComplex;
 
-/// `f32` or `f64`. Transforms are not normalised: there and back multiplies by the length.
+/// A number type of transforms, `f32` or `f64`.
 ///
-/// Plans are made for [`Instructions::of_process`].
+/// Transforms are not normalised. A forward and an inverse transform together multiply by the length. Plans are made
+/// for [`Instructions::of_process`].
 pub trait TransformReal: FftNum {
-    /// `Σ x_j exp(-2πi jk/n)` of `n` complex values, in place.
+    /// A plan of `Σ x_j exp(-2πi jk/n)` for `n` complex values, in place.
     fn complex_forward(n: usize) -> Arc<dyn Fft<Self>>;
 
-    /// `Σ x_j exp(+2πi jk/n)` of `n` complex values, in place.
+    /// A plan of `Σ x_j exp(+2πi jk/n)` for `n` complex values, in place.
     fn complex_inverse(n: usize) -> Arc<dyn Fft<Self>>;
 
-    /// From `n` real values to n/2 + 1 complex ones.
+    /// A plan from `n` real values to n/2 + 1 complex values.
     fn real_forward(n: usize) -> Arc<dyn RealToComplex<Self>>;
 
-    /// From n/2 + 1 complex values to `n` real ones.
+    /// A plan from n/2 + 1 complex values to `n` real values.
     fn real_inverse(n: usize) -> Arc<dyn ComplexToReal<Self>>;
 }
 
@@ -73,7 +74,7 @@ mod tests {
 
     use super::*;
 
-    /// Whatever the instructions, transforms are the same to rounding, for lengths of every kind of algorithm.
+    /// Any instructions give the same transforms up to rounding. The lengths cover every kind of algorithm.
     #[test]
     fn fewer_instructions_give_the_same_transforms() {
         for n in [1, 2, 5, 16, 60, 97, 256] {

@@ -1,4 +1,6 @@
-//! Real transforms by a complex transform of the same length, for planners that `realfft` cannot use.
+//! Real transforms by a complex transform of the same length.
+//!
+//! They serve planners that `realfft` cannot use.
 
 use std::sync::Arc;
 
@@ -6,13 +8,15 @@ use realfft::{ComplexToReal, FftError, FftNum, RealToComplex};
 use rustfft::Fft;
 use rustfft::num_complex::Complex;
 
-/// Twice the work of `realfft`, whose transforms take their plans from `rustfft`'s choice of instructions alone.
+/// A real transform with twice the work of `realfft`.
+///
+/// `realfft` cannot be used, because it always takes the instructions that `rustfft` chooses.
 pub(crate) struct RealByComplex<T> {
     plan: Arc<dyn Fft<T>>,
 }
 
 impl<T: FftNum> RealByComplex<T> {
-    /// By a forward plan for [`RealToComplex`], and an inverse one for [`ComplexToReal`].
+    /// A transform with a forward plan for [`RealToComplex`], or an inverse plan for [`ComplexToReal`].
     pub(crate) fn new(plan: Arc<dyn Fft<T>>) -> Self {
         Self { plan }
     }
@@ -21,7 +25,7 @@ impl<T: FftNum> RealByComplex<T> {
         self.plan.len()
     }
 
-    /// Transforms the complex values that `set` sets.
+    /// Transforms the complex values that `set` writes.
     fn transform<'a>(&self, scratch: &'a mut [Complex<T>], set: impl FnOnce(&mut [Complex<T>])) -> &'a [Complex<T>] {
         let (values, scratch) = scratch.split_at_mut(self.n());
         set(values);
@@ -33,7 +37,7 @@ impl<T: FftNum> RealByComplex<T> {
         self.n() + self.plan.get_inplace_scratch_len()
     }
 
-    /// As `realfft`, an error unless there is room for a transform.
+    /// Checks lengths. Returns the errors of `realfft` for a wrong length.
     fn check(&self, n_real: usize, n_complex: usize, n_scratch: usize) -> Result<(), FftError> {
         let wanted = self.n() / 2 + 1;
         if n_real != self.n() {
@@ -104,7 +108,7 @@ impl<T: FftNum> ComplexToReal<T> for RealByComplex<T> {
         self.check(output.len(), input.len(), scratch.len())?;
         let field = self.transform(scratch, |values| {
             values[..input.len()].copy_from_slice(input);
-            // The other half of the spectrum of a real field.
+            // The other half of the spectrum of a real field, by symmetry.
             for (value, conjugate) in values[input.len()..].iter_mut().rev().zip(&input[1..]) {
                 *value = conjugate.conj();
             }

@@ -1,15 +1,19 @@
-//! A symbol tabulated for one grid.
+//! A table of a symbol for one grid.
 
 use rayon::prelude::*;
 use rc_core::Grid;
 
 use crate::TransformReal;
 
-/// Columns that are filled at once, so that each cache line of those before the diagonal is read once.
+/// Number of columns that are filled at once.
+///
+/// Each cache line of the columns before the diagonal is then read once.
 const COLUMNS: usize = 16;
 
-/// Eigenvalues of a [`Convolution`](crate::Convolution) for 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2, even in kx and in ky;
-/// columns of constant kx are contiguous, and the 1/(nx·ny) of the inverse transform is a factor of the entries.
+/// Table of the eigenvalues of a [`Convolution`](crate::Convolution).
+///
+/// It covers 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2, because eigenvalues are even in kx and in ky. Columns of constant kx are
+/// contiguous. The entries include the factor 1/(nx·ny) of the inverse transform.
 #[derive(Clone, Debug)]
 pub struct SymbolTable<T> {
     column_len: usize,
@@ -17,17 +21,18 @@ pub struct SymbolTable<T> {
 }
 
 impl<T: TransformReal> SymbolTable<T> {
-    /// Tabulates `eigenvalue(kx, ky)`. On a square grid of a square cell, where it is symmetric, it is asked for ky ≥
-    /// kx only.
+    /// Tabulates `eigenvalue(kx, ky)`.
+    ///
+    /// On a [square](Grid::is_square) grid eigenvalues are symmetric, so the function is called for ky ≥ kx only.
     ///
     /// # Panics
-    /// When `T` cannot hold an `f64`, rounded: `f32` and `f64` can.
+    /// When `T` cannot hold an `f64` after rounding. `f32` and `f64` can.
     pub fn new(grid: Grid, eigenvalue: impl Fn(usize, usize) -> f64 + Sync) -> Self {
         let column_len = grid.ny() / 2 + 1;
         let symmetric = grid.is_square();
         let scale = 1.0 / grid.len() as f64;
         let entry = |kx, ky| T::from_f64(scale * eigenvalue(kx, ky)).expect("a float type holds every f64, rounded");
-        // From the diagonal on, where the rest is known by symmetry.
+        // Only entries from the diagonal on are computed. The others follow from symmetry.
         let first = |kx: usize| if symmetric { kx } else { 0 };
         let columns: Vec<Vec<T>> = (0..=grid.nx() / 2)
             .into_par_iter()
@@ -44,10 +49,12 @@ impl<T: TransformReal> SymbolTable<T> {
         Self { column_len, values }
     }
 
-    /// The table of the inverse operator on the same grid, in any precision: reciprocals, and 0 at k = 0.
+    /// Table of the inverse operator: reciprocals, and 0 at k = 0.
+    ///
+    /// The grid is the same. The precision `U` may be another one.
     ///
     /// # Panics
-    /// As [`SymbolTable::new`].
+    /// As for [`SymbolTable::new`].
     #[must_use]
     pub fn inverse<U: TransformReal>(&self, grid: Grid) -> SymbolTable<U>
     where
@@ -60,19 +67,19 @@ impl<T: TransformReal> SymbolTable<T> {
         table
     }
 
-    /// Sets the entry at k = 0, factor of the inverse transform included.
+    /// Sets the entry at k = 0. `value` includes the factor of the inverse transform.
     pub fn set_mean(&mut self, value: T) {
         self.values[0] = value;
     }
 
-    /// The table with `convert` applied to every entry, as to another precision.
+    /// The table with `convert` applied to every entry, for example to change the precision.
     #[must_use]
     pub fn map<U: Send>(&self, convert: impl Fn(T) -> U + Sync) -> SymbolTable<U> {
         let values = self.values.par_iter().map(|&value| convert(value)).collect();
         SymbolTable { column_len: self.column_len, values }
     }
 
-    /// The column of `kx`: eigenvalues for 0 ≤ ky ≤ ny/2.
+    /// The eigenvalues of column `kx`, for 0 ≤ ky ≤ ny/2.
     pub(crate) fn column(&self, kx: usize) -> &[T] {
         &self.values[kx * self.column_len..(kx + 1) * self.column_len]
     }
@@ -86,7 +93,7 @@ mod tests {
     fn tables_of_any_size_have_the_eigenvalues_and_their_reciprocals() {
         for (nx, ny) in [(64, 64), (37, 37), (30, 41), (1, 1)] {
             let grid = Grid::new(nx, ny).expect("a grid");
-            // Symmetric in kx and ky, as eigenvalues of square grids are.
+            // Symmetric in kx and ky, like eigenvalues on square grids.
             let eigenvalue = |kx: usize, ky: usize| (kx * kx + ky * ky) as f64 + (kx * ky) as f64 / 7.0;
             let table = SymbolTable::<f64>::new(grid, eigenvalue);
             let inverse: SymbolTable<f32> = table.inverse(grid);

@@ -1,9 +1,11 @@
-//! Random numbers that belong to wave vectors: the same for every N, grid, truncation and kind of amplitude.
+//! Random numbers that belong to wave vectors.
+//!
+//! They are the same for every N, grid, truncation and kind of amplitude.
 //!
 //! `ChaCha8` is a function of key, stream and position, and portable by its definition. The key is the seed
-//! (little-endian, then zeros). Stream 2kx holds the phases and stream 2kx + 1 the sizes of the waves with this kx ≥ 0;
-//! the wave (kx, ky) has the 64-bit word at place 0, 1, 2, 3, 4, … for ky = 0, 1, -1, 2, -2, …, so a column is read
-//! front to back however long it is.
+//! (little-endian, then zeros). Stream 2kx holds the phases, and stream 2kx + 1 the sizes, of the waves with this kx
+//! ≥ 0. The words of 64 bits of a stream belong to ky = 0, 1, -1, 2, -2, …, in this order. So a column of any length is
+//! read from front to back.
 
 use std::f64::consts::TAU;
 
@@ -13,9 +15,10 @@ use rc_fft::Complex64;
 
 use crate::Amplitudes;
 
-/// One complex number of mean square 1 for each of ky = -reach, …, reach: exp(iφ), Eq. (14), times a
-/// Rayleigh-distributed factor for [`Amplitudes::Random`]. In the column kx = 0 the waves ky and -ky are conjugate and
-/// the mean height is 0.
+/// One complex number of mean square 1 for each of ky = -reach, …, reach.
+///
+/// The number is exp(iφ), Eq. (14). For [`Amplitudes::Random`] it has another factor with Rayleigh's distribution. In
+/// the column kx = 0 the waves ky and -ky are conjugate, and the mean height is 0.
 pub(crate) fn draw_column(seed: u64, kx: usize, reach: usize, amplitudes: Amplitudes) -> Vec<Complex64> {
     let mut column = vec![Complex64::ZERO; 2 * reach + 1];
     let mut phases = stream(seed, 2 * kx as u64);
@@ -46,12 +49,14 @@ fn stream(seed: u64, number: u64) -> ChaCha8Rng {
     words
 }
 
-/// Uniform in [0, 1), from the upper 53 bits of the next word.
+/// Uniform number in [0, 1), from the upper 53 bits of the next word.
 fn uniform(words: &mut ChaCha8Rng) -> f64 {
     (words.next_u64() >> 11) as f64 * f64::EPSILON / 2.0
 }
 
-/// Where in a column from -reach to reach the draw at `place` belongs: 0, 1, -1, 2, -2, ….
+/// Index, in a column from -reach to reach, of the draw at `place`.
+///
+/// Places 0, 1, 2, 3, 4, … belong to ky = 0, 1, -1, 2, -2, ….
 fn index_of_place(place: usize, reach: usize) -> usize {
     let magnitude = place.div_ceil(2);
     if place % 2 == 1 { reach + magnitude } else { reach - magnitude }

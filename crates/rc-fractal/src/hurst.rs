@@ -1,45 +1,49 @@
-//! The Hurst exponent of a measured spectrum, and the range over which it is one.
+//! The Hurst exponent of a measured spectrum, and its range of wavenumbers.
 
 use crate::radial::SpectrumBin;
 
-/// Rings are put together into bins that are this much wider than the ones before, so that every decade counts alike.
+/// Width of a bin of rings, as a ratio of wavenumbers. Every decade then has the same weight.
 const BIN_RATIO: f64 = 1.189_207_115_002_721; // 2^(1/4)
 
-/// Minimum number of bins in a range, and minimum ratio of the last to the first.
+/// Minimum number of bins in a range, and minimum ratio of its wavenumbers.
 const FEWEST_BINS: usize = 6;
 const LEAST_RATIO: f64 = 4.0;
 
-/// Maximum distance of a bin from the line, in ln C, besides the scatter of a bin of few waves.
+/// Maximum distance of a bin from the line, in ln C. The scatter of a bin of few waves is added.
 const STRAIGHT: f64 = 0.15;
 
-/// Deviations of that many standard deviations are scatter.
+/// Number of standard deviations that count as scatter.
 const SCATTER: f64 = 2.5;
 
-/// Exponents that make a range: those of self-affine surfaces, and a little more. A roll-off is straight too, with
-/// H = -1.
+/// Exponents of self-affine surfaces, with a small margin.
+///
+/// A roll-off is straight too, but has H = -1.
 const SELF_AFFINE: std::ops::RangeInclusive<f64> = 0.0..=1.2;
 
-/// Part of the maximum C below which there is only rounding.
+/// Minimum C of a ring relative to the maximum C. Smaller values are only rounding.
 const ROUNDING: f64 = 1e-20;
 
-/// A power law C ∝ q^(-2(1+H)) through a part of a spectrum.
+/// A power law C ∝ q^(-2(1+H)) for a part of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct HurstFit {
-    /// Hurst exponent H, from 0 to 1.2. Above 1 the surface is smoother than a self-affine one, though its spectrum is
-    /// a power law.
+    /// Hurst exponent H, from 0 to 1.2.
+    ///
+    /// Above 1 the surface is smoother than a self-affine one, although its spectrum is a power law.
     pub hurst: f64,
-    /// ln C at one wave per cell on the line, C in λ⁴.
+    /// ln C of the line at one wave per cell, with C in λ⁴.
     pub ln_c: f64,
     /// First wavenumber of the range, in waves per cell.
     pub from: f64,
     /// Last wavenumber of the range.
     pub to: f64,
-    /// Root mean square distance from the line, in ln C, of bins weighted as in the fit.
+    /// Root mean square distance of the bins from the line, in ln C.
+    ///
+    /// The weights are those of the fit.
     pub deviation: f64,
 }
 
-/// A bin: ln of the wavenumber, ln of C, and what C may scatter.
+/// A bin with ln of its wavenumber, ln of its C, and its maximum distance from a line.
 #[derive(Clone, Copy)]
 struct Point {
     ln_k: f64,
@@ -47,13 +51,17 @@ struct Point {
     tolerance: f64,
 }
 
-/// H of Eq. (8), x → t x and h → t^H h, from the longest part of `spectrum` that is straight in logarithms, within the
-/// scatter of its rings, and as steep as that of a self-affine surface; `None` when less than a factor 4 in wavenumber
-/// is.
+/// Fits the Hurst exponent H of Eq. (8) to a spectrum.
 ///
-/// A line through all bins of a candidate by least squares, bins of many waves with more weight; no bin further from it
-/// than 15 % and the scatter of a mean over so many random waves. Of equally long candidates the straighter one. Tests
-/// `the_exponent_of_a_generated_surface_and_its_range_are_found` and `roll_off_and_truncation_are_left_out`.
+/// H describes the scaling x → t x and h → t^H h.
+///
+/// The range of the fit is the longest part of `spectrum` that is a straight line in logarithms, with the slope of a
+/// self-affine surface. `None` when no such part covers a factor of 4 in wavenumber.
+///
+/// The line through all bins of a candidate range is fitted by least squares. Bins of many waves have more weight. No
+/// bin may be further from the line than 15 % plus the scatter of a mean over its random waves. The straightest of
+/// equally long candidates is taken. Tests `the_exponent_of_a_generated_surface_and_its_range_are_found` and
+/// `roll_off_and_truncation_are_left_out`.
 #[must_use]
 pub fn fit_hurst(spectrum: &[SpectrumBin]) -> Option<HurstFit> {
     let points = bins(spectrum);
@@ -87,20 +95,22 @@ fn bins(spectrum: &[SpectrumBin]) -> Vec<Point> {
             (waves, ln_k, power) = (waves + n, ln_k + n * wavenumber.ln(), power + n * psd);
             ring = rings.next_if(|next| next.wavenumber < end);
         }
-        // k and -k are one wave; powers of random waves scatter by their mean.
+        // k and -k are one wave. The standard deviation of a random wave's power is its mean.
         let tolerance = STRAIGHT + SCATTER / (0.5 * waves).sqrt();
         points.push(Point { ln_k: ln_k / waves, ln_c: (power / waves).ln(), tolerance });
     }
     points
 }
 
-/// The power law of Eq. (9) through all points, ln C = ln c - 2(1+H) ln k, if they are on one.
+/// The power law of Eq. (9) through all points.
+///
+/// The line is ln C = ln c - 2(1+H) ln k. `None` if a point is too far from it, or if the line is not self-affine.
 fn line(points: &[Point]) -> Option<HurstFit> {
     let (first, last) = (points.first()?, points.last()?);
     if last.ln_k - first.ln_k < LEAST_RATIO.ln() {
         return None;
     }
-    // A bin counts by what it may be off, so that the scatter of a few long waves does not tilt the line.
+    // The weight follows from the tolerance, so that the scatter of a few long waves does not tilt the line.
     let weight = |point: &Point| point.tolerance.powi(-2);
     let total: f64 = points.iter().map(weight).sum();
     let mean =
@@ -136,7 +146,7 @@ mod tests {
             for hurst in [0.3, 0.8] {
                 let params = SpectrumParams { hurst, amplitudes, ..SpectrumParams::paper(128, 5) };
                 let fit = fit(&params);
-                // Bins of hundreds of waves over a factor 60 in wavenumber: a few percent of ln C each.
+                // Bins of hundreds of waves, over a factor of 60 in wavenumber, scatter by a few percent in C.
                 assert!((fit.hurst - hurst).abs() < 0.03, "H = {hurst}, {amplitudes:?}: {fit:?}");
                 assert!(fit.from < 4.0 && (90.0..140.0).contains(&fit.to), "{fit:?}");
             }
@@ -151,7 +161,7 @@ mod tests {
 
     #[test]
     fn a_roll_off_near_the_longest_waves_does_not_tilt_the_line() {
-        // Its few long waves may scatter as much as the roll-off is off the line.
+        // The few long waves of a roll-off may scatter by as much as its distance from the line.
         let fit = fit(&SpectrumParams { roll_off: 4.0, ..SpectrumParams::paper(128, 5) });
         assert!((fit.hurst - 0.8).abs() < 0.03, "{fit:?}");
     }

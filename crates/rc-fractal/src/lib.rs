@@ -1,20 +1,24 @@
-//! Periodic self-affine rough surfaces: spectra, phases, synthesis, exact moments, spectrum estimators.
+//! Periodic self-affine rough surfaces and their statistics.
 //!
-//! The surface of the paper's appendix A is a sum of waves on the unit cell,
+//! The crate has spectra, phases, synthesis, exact moments and estimators of spectra. The surface of the paper's
+//! appendix A is a sum of waves on the unit cell,
 //!
 //! ```text
 //! h(x) = Σ_k a_k exp(2πi k·x),    a_{-k} = conj(a_k),  a_00 = 0                              (Eq. 10)
 //! ⟨|a_k|²⟩ = (2π)² C(q),          C(q) = C0 (max(|k|, k_r) / k_r)^(-2(1+H)),   q = 2πk        (Eq. 1, 9, 12, 13)
 //! ```
 //!
-//! with integer wave vectors k = (kx, ky) (waves per cell), Hurst exponent H, roll-off wavenumber `k_r` (the paper: 1,
-//! no plateau) and N = [`SpectrumParams::waves`] the largest wavenumber. In a periodic cell of side λ the δ(0) of Eq.
-//! 12 is 1/q0² with q0 = 2π/λ, which gives the factor (2π)² for λ = 1; C is in λ⁴, a in λ.
+//! The wave vectors k = (kx, ky) are integers (waves per cell). H is the Hurst exponent, and `k_r` the roll-off
+//! wavenumber; the paper has `k_r` = 1, which means no plateau. N = [`SpectrumParams::waves`] is the largest
+//! wavenumber. In a periodic cell of side λ the δ(0) of Eq. 12 is 1/q0² with q0 = 2π/λ, which gives the factor (2π)²
+//! for λ = 1. C is in λ⁴, a in λ.
 //!
-//! [`Surface`] realises such a spectrum, or is the sum of given waves ([`Surface::from_waves`]). The phase of a wave
-//! depends on the seed and on k alone, so one seed means one surface: on every grid, and, for its long waves, for every
-//! N. Everything else here measures surfaces: [`Surface::moments`] without a grid, [`moments_of_grid`] and
-//! [`radial_spectrum`] for any height map.
+//! [`Surface`] is a realisation of such a spectrum, or the sum of given waves ([`Surface::from_waves`]). The phase of a
+//! wave depends only on the seed and on k. So a seed determines the surface on every grid, and its long waves for every
+//! N.
+//!
+//! The other functions measure surfaces. [`Surface::moments`] needs no grid. [`moments_of_grid`] and
+//! [`radial_spectrum`] take any height map.
 //!
 //! ```
 //! use rc_core::Grid;

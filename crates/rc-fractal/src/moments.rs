@@ -8,24 +8,28 @@ use rc_fft::powers_of_lines;
 
 use crate::power::PowerSpectrum;
 
-/// Statistics of a whole periodic surface. In terms of the amplitudes `a_k` with q = 2π|k| (Parseval):
-/// ⟨h²⟩ = Σ |a|², ⟨|∇h|²⟩ = Σ q² |a|², ⟨(∇²h)²⟩ = Σ q⁴ |a|².
+/// Statistics of a whole periodic surface.
+///
+/// They follow from the amplitudes `a_k` with q = 2π|k| (Parseval): ⟨h²⟩ = Σ |a|², ⟨|∇h|²⟩ = Σ q² |a|², ⟨(∇²h)²⟩ = Σ
+/// q⁴ |a|².
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Moments {
-    /// √⟨h²⟩ about the mean plane, in λ.
+    /// rms height √⟨h²⟩ about the mean plane, in λ.
     pub rms_height: f64,
-    /// √⟨|∇h|²⟩, of the whole gradient (isotropic), not of one profile.
+    /// rms slope √⟨|∇h|²⟩ of the whole gradient (isotropic), not of one profile.
     pub rms_slope: f64,
-    /// rms of the mean curvature, half the Laplacian: ½ √⟨(∇²h)²⟩, in 1/λ.
+    /// rms mean curvature ½ √⟨(∇²h)²⟩, half the Laplacian, in 1/λ.
     pub rms_curvature: f64,
-    /// Nayak's bandwidth parameter α = m0 m4 / m2² = 1.5 ⟨h²⟩ ⟨(∇²h)²⟩ / ⟨|∇h|²⟩², with the profile moments m2 =
-    /// ⟨|∇h|²⟩/2 and m4 = (3/8) ⟨(∇²h)²⟩ of an isotropic surface (P. R. Nayak, *Random process model of rough
-    /// surfaces*, J. Lubr. Technol. 93 (1971) 398-407). `NaN` for a flat surface.
+    /// Nayak's bandwidth parameter α = m0 m4 / m2², or `NaN` for a flat surface.
+    ///
+    /// For an isotropic surface, the moments of profiles are m0 = ⟨h²⟩, m2 = ⟨|∇h|²⟩/2 and m4 = (3/8) ⟨(∇²h)²⟩. So α =
+    /// 1.5 ⟨h²⟩ ⟨(∇²h)²⟩ / ⟨|∇h|²⟩². Source: P. R. Nayak, *Random process model of rough surfaces*, J. Lubr. Technol.
+    /// 93 (1971) 398-407.
     pub nayak: f64,
 }
 
-/// The three sums over waves that all moments come from.
+/// The three sums over waves from which all moments follow.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SpectralSums {
     /// Σ |a|².
@@ -37,7 +41,7 @@ pub(crate) struct SpectralSums {
 }
 
 impl SpectralSums {
-    /// Counts waves of squared wavenumber |k|² whose |a|² add up to `power`.
+    /// Adds waves of squared wavenumber |k|² whose |a|² have the sum `power`.
     pub(crate) fn add(&mut self, k_squared: f64, power: f64) {
         let q_squared = TAU * TAU * k_squared;
         self.height += power;
@@ -45,7 +49,7 @@ impl SpectralSums {
         self.laplacian += q_squared * q_squared * power;
     }
 
-    /// The sums of both, with the other's counted `weight` times.
+    /// The sums of both, where `other` is multiplied by `weight`.
     pub(crate) fn plus(self, other: Self, weight: f64) -> Self {
         Self {
             height: self.height + weight * other.height,
@@ -64,11 +68,11 @@ impl SpectralSums {
     }
 }
 
-/// Moments of a height map, with spectral derivatives through one Fourier transform; the mean height is removed first.
+/// Moments of a height map, with spectral derivatives through one Fourier transform.
 ///
-/// Exact for a surface whose waves the grid resolves (|kx| < nx/2, |ky| < ny/2), whatever the sides of the grid and of
-/// the cell; test `moments_of_a_resolved_grid_equal_the_exact_sums` shows 1e-10. A wave of exactly half a side counts
-/// with that wavenumber.
+/// The mean height is removed first. Moments are exact for a surface whose waves the grid resolves (|kx| < nx/2, |ky| <
+/// ny/2), for any sides of the grid and of the cell. Test `moments_of_a_resolved_grid_equal_the_exact_sums` shows
+/// 1e-10. A wave of exactly half a side counts with that wavenumber.
 #[must_use]
 pub fn moments_of_grid(heights: &Field) -> Moments {
     let spectrum = PowerSpectrum::of(heights);
@@ -83,10 +87,11 @@ pub fn moments_of_grid(heights: &Field) -> Moments {
     total.moments()
 }
 
-/// rms height (λ) and rms slope of a height map, the same as those of [`moments_of_grid`] to rounding.
+/// rms height (λ) and rms slope of a height map.
 ///
-/// ⟨|∂h/∂x|²⟩ is the mean over rows of Σ q² |a|² of their own waves (Parseval along one axis), and in the same way for
-/// columns; so no memory is needed, unlike for the curvature.
+/// They equal those of [`moments_of_grid`] up to rounding. The mean square ⟨|∂h/∂x|²⟩ is the mean over rows of Σ
+/// q² |a|² with the waves of each row (Parseval along one axis). The mean square ⟨|∂h/∂y|²⟩ follows from columns in the
+/// same way. So no second field is needed, unlike for the curvature.
 #[must_use]
 pub fn height_and_slope_of_grid(heights: &Field) -> [f64; 2] {
     let (grid, n) = (heights.grid(), heights.grid().len() as f64);
@@ -106,8 +111,10 @@ pub fn height_and_slope_of_grid(heights: &Field) -> [f64; 2] {
     [squares / n, (along_x + along_y) / n].map(f64::sqrt)
 }
 
-/// rms height (λ) and rms slope of a map whose borders do not meet: slopes are differences of neighbours inside. Those
-/// of a wave of eight elements are 5 % too small, of 32 elements 0.3 %.
+/// rms height (λ) and rms slope of a map whose opposite borders do not match.
+///
+/// Slopes are differences between neighbours inside the map. They are 5 % too small for a wave of eight elements, and
+/// 0.3 % for a wave of 32 elements.
 #[must_use]
 pub fn height_and_slope_of_patch(heights: &Field) -> [f64; 2] {
     let (grid, spacing) = (heights.grid(), heights.grid().spacing());

@@ -2,65 +2,78 @@
 
 use thiserror::Error;
 
-/// Largest accepted [`SpectrumParams::waves`]: 4096, where a surface holds 26 million (disc) or 34 million (square)
-/// complex amplitudes, about half a gigabyte.
+/// Maximum of [`SpectrumParams::waves`], 4096.
+///
+/// Such a surface holds 26 million (disc) or 34 million (square) complex amplitudes, about half a gigabyte.
 pub const MAX_WAVES: usize = 4096;
 
-/// Which wave vectors belong to a spectrum with N waves.
+/// Set of wave vectors of a spectrum with N waves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Truncation {
-    /// |k| ≤ N: "Fourier components up to q1 = N q0" (below Eq. 1). The isotropic choice, and the default of this project.
+    /// |k| ≤ N, "Fourier components up to q1 = N q0" (below Eq. 1).
+    ///
+    /// This is the isotropic choice, and the default of this project.
     Disc,
-    /// max(|kx|, |ky|) ≤ N: the double sum of Eq. 10 as written. Its slope is 2.9 % larger at N = 64 and H = 0.8.
+    /// max(|kx|, |ky|) ≤ N, the double sum of Eq. 10 as written.
+    ///
+    /// The slope is 2.9 % larger at N = 64 and H = 0.8.
     Square,
 }
 
-/// How |`a_k`| is distributed about its mean square of Eq. 13.
+/// Distribution of |`a_k`| about its mean square of Eq. 13.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Amplitudes {
-    /// |`a_k`| is its root mean square in every realisation (Eq. 14, Dirac's delta): all realisations share their moments.
+    /// |`a_k`| is its root mean square in every realisation (Eq. 14, Dirac's delta).
+    ///
+    /// All realisations have the same moments.
     Fixed,
-    /// `a_k` is complex Gaussian, so |`a_k`| follows Rayleigh's distribution: a truly Gaussian surface. Phases are
-    /// those of [`Amplitudes::Fixed`] with the same seed.
+    /// `a_k` is complex Gaussian, so |`a_k`| follows Rayleigh's distribution.
+    ///
+    /// The surface is truly Gaussian. Phases are the same as for [`Amplitudes::Fixed`] with the same seed.
     Random,
 }
 
-/// The quantity that fixes the size of the heights. Every value must be positive and finite.
+/// Quantity that determines the size of the heights. Every value must be positive and finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Normalisation {
-    /// √⟨h²⟩ of this realisation, in λ.
+    /// rms height √⟨h²⟩ of this realisation, in λ.
     RmsHeight(f64),
-    /// √⟨|∇h|²⟩ of this realisation.
+    /// rms slope √⟨|∇h|²⟩ of this realisation.
     RmsSlope(f64),
-    /// Prefactor C0 of Eq. 1 and 9, in λ⁴: the ensemble's ⟨|`a_k`|²⟩ is (2π)² C0 up to the roll-off wavenumber
-    /// (at |k| = 1 without roll-off). With [`Amplitudes::Random`] a realisation scatters about it.
+    /// Prefactor C0 of Eq. 1 and 9, in λ⁴.
+    ///
+    /// ⟨|`a_k`|²⟩ of the ensemble is (2π)² C0 up to the roll-off wavenumber (at |k| = 1 without roll-off). With
+    /// [`Amplitudes::Random`] a realisation scatters about this value.
     C0(f64),
 }
 
-/// The spectrum of a surface, and the seed that picks one realisation. All lengths in λ.
+/// The spectrum of a surface, and the seed of one realisation. All lengths are in λ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpectrumParams {
-    /// N, the largest wavenumber in waves per cell: 1 to [`MAX_WAVES`].
+    /// N, the largest wavenumber in waves per cell, from 1 to [`MAX_WAVES`].
     pub waves: usize,
-    /// Hurst exponent H in (0, 1]; the fractal dimension is 3 - H.
+    /// Hurst exponent H in (0, 1]. The fractal dimension is 3 - H.
     pub hurst: f64,
-    /// Wavenumber `k_r` in [1, N] (waves per cell) below which the spectrum is flat; 1 means no plateau.
+    /// Wavenumber `k_r` in [1, N] (waves per cell) below which the spectrum is flat.
+    ///
+    /// 1 means no plateau.
     pub roll_off: f64,
-    /// Wavenumber in [1, N] (waves per cell) below which there are no waves; 1 means all are there. The plateau of the
-    /// roll-off, if there is one, lies between the two.
+    /// Wavenumber in [1, N] (waves per cell) below which there are no waves.
+    ///
+    /// 1 means that no waves are missing. The plateau of a roll-off lies between this wavenumber and `roll_off`.
     #[cfg_attr(feature = "serde", serde(default = "no_cut"))]
     pub low_cut: f64,
-    /// Which wave vectors take part.
+    /// Set of wave vectors.
     pub truncation: Truncation,
     /// Distribution of the |`a_k`|.
     pub amplitudes: Amplitudes,
     /// Size of the heights.
     pub normalisation: Normalisation,
-    /// Picks the realisation. Any number is as good as any other.
+    /// Seed of the realisation. Any number is as good as any other.
     pub seed: u64,
 }
 
@@ -74,13 +87,13 @@ pub enum SpectrumError {
         /// N as given.
         waves: usize,
     },
-    /// H outside (0, 1].
+    /// H is outside (0, 1].
     #[error("the Hurst exponent must be above 0 and at most 1, not {hurst}")]
     Hurst {
         /// H as given.
         hurst: f64,
     },
-    /// Roll-off below one wave per cell or beyond the shortest wave.
+    /// The roll-off is below one wave per cell or beyond the shortest wave.
     #[error("the roll-off wavenumber must be between 1 and the number of waves ({waves}), not {roll_off}")]
     RollOff {
         /// `k_r` as given.
@@ -88,7 +101,7 @@ pub enum SpectrumError {
         /// N.
         waves: usize,
     },
-    /// Low cut below one wave per cell or beyond the shortest wave.
+    /// The low cut is below one wave per cell or beyond the shortest wave.
     #[error("the lowest wavenumber must be between 1 and the number of waves ({waves}), not {low_cut}")]
     LowCut {
         /// The wavenumber as given.
@@ -96,10 +109,10 @@ pub enum SpectrumError {
         /// N.
         waves: usize,
     },
-    /// A normalisation that is not positive and finite.
+    /// The value of a normalisation is not positive and finite.
     #[error("the {what} must be positive and finite, not {value}")]
     Normalisation {
-        /// Which of the normalisations.
+        /// Name of the normalisation.
         what: &'static str,
         /// The value given.
         value: f64,
@@ -107,8 +120,9 @@ pub enum SpectrumError {
 }
 
 impl SpectrumParams {
-    /// The paper's surface with `waves` waves (64 or 128 there): H = 0.8, no roll-off, disc, fixed amplitudes, rms
-    /// height 13 µm in a cell of 1 cm, that is 1.3e-3 λ.
+    /// The paper's surface with `waves` waves (64 or 128 in the paper).
+    ///
+    /// H = 0.8, no roll-off, disc, fixed amplitudes, rms height 13 µm in a cell of 1 cm, that is 1.3e-3 λ.
     #[must_use]
     pub fn paper(waves: usize, seed: u64) -> Self {
         Self {
@@ -123,7 +137,7 @@ impl SpectrumParams {
         }
     }
 
-    /// Says what is wrong with the parameters, if anything; `NaN` is wrong everywhere.
+    /// Checks all parameters. `NaN` is refused for each of them.
     pub(crate) fn validate(&self) -> Result<(), SpectrumError> {
         let &Self { waves, hurst, roll_off, low_cut, .. } = self;
         if !(1..=MAX_WAVES).contains(&waves) {
@@ -146,7 +160,7 @@ impl SpectrumParams {
         if value > 0.0 && value.is_finite() { Ok(()) } else { Err(SpectrumError::Normalisation { what, value }) }
     }
 
-    /// Largest ky of the waves with this kx, which is at most N.
+    /// Largest ky of the waves with this kx (at most N).
     pub(crate) fn reach(&self, kx: usize) -> usize {
         match self.truncation {
             Truncation::Disc => (self.waves * self.waves - kx * kx).isqrt(),
@@ -154,8 +168,9 @@ impl SpectrumParams {
         }
     }
 
-    /// √(C(q)/C0) of the power law, Eq. (1): (max(|k|, `k_r`)/`k_r`)^(-(1+H)), and 0 below the low cut, with |k|²
-    /// given.
+    /// √(C(q)/C0) of the power law, Eq. (1), for a given |k|².
+    ///
+    /// It is (max(|k|, `k_r`)/`k_r`)^(-(1+H)), and 0 below the low cut.
     pub(crate) fn relative_amplitude(&self, k_squared: f64) -> f64 {
         if k_squared < self.low_cut * self.low_cut {
             return 0.0;
@@ -165,7 +180,7 @@ impl SpectrumParams {
     }
 }
 
-/// The low cut of data that were written before there was one.
+/// The low cut of data that were written before this field existed.
 #[cfg(feature = "serde")]
 fn no_cut() -> f64 {
     1.0

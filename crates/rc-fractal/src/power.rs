@@ -3,7 +3,7 @@
 use rc_core::Field;
 use rc_fft::half_plane_values;
 
-/// |`a_k`|² of a height map without its mean, for the half plane 0 ≤ kx ≤ nx/2.
+/// |`a_k`|² of a height map minus its mean, for the half plane 0 ≤ kx ≤ nx/2.
 pub(crate) struct PowerSpectrum {
     nx: usize,
     ny: usize,
@@ -11,10 +11,10 @@ pub(crate) struct PowerSpectrum {
     values: Vec<f64>,
 }
 
-/// The waves that share one kx ≥ 0.
+/// The waves with one kx ≥ 0.
 pub(crate) struct PowerColumn<'a> {
     pub(crate) kx: usize,
-    /// 2 when the column also stands for -kx, whose waves are the conjugates; 1 for kx = 0 and for half the side.
+    /// 2 when the column also represents -kx, whose waves are the conjugates. 1 for kx = 0 and for half the side.
     pub(crate) multiplicity: usize,
     values: &'a [f64],
 }
@@ -28,12 +28,14 @@ impl PowerColumn<'_> {
 }
 
 impl PowerSpectrum {
-    /// Transforms a height map. Bitwise the same for any number of threads: each value is computed by one of them.
+    /// Transforms a height map.
+    ///
+    /// The result is bitwise the same for any number of threads, because each value is computed by one thread.
     pub(crate) fn of(heights: &Field) -> Self {
         let (nx, ny) = (heights.grid().nx(), heights.grid().ny());
         let per_element = 1.0 / (nx * ny) as f64;
         let mut values = half_plane_values(heights, heights.mean(), |wave| (wave * per_element).norm_sqr());
-        // Rounding leaves a trace of the mean, which is not a wave.
+        // Rounding leaves a remainder of the mean, which is not a wave.
         values[0] = 0.0;
         Self { nx, ny, values }
     }

@@ -6,36 +6,40 @@ use rc_core::Field;
 
 use crate::power::PowerSpectrum;
 
-/// One ring of wave vectors.
+/// A ring of wave vectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SpectrumBin {
-    /// Mean |k| of the ring's wave vectors, in waves per λ.
+    /// Mean |k| of the wave vectors in the ring, in waves per λ.
     pub wavenumber: f64,
-    /// Mean of C = |`a_k`|² A0/(2π)² over the ring's wave vectors, in λ⁴; A0 = 1 for a square cell.
+    /// Mean of C = |`a_k`|² A0/(2π)² over the wave vectors in the ring, in λ⁴. A0 = 1 for a square cell.
     pub psd: f64,
-    /// Number of wave vectors in the ring, k and -k counted both.
+    /// Number of wave vectors in the ring, where k and -k are counted separately.
     pub n_modes: usize,
 }
 
-/// Radially averaged C(q) of a height map: rings of width 1 about |k| = 1, 2, 3, …, shortest wavenumber first; in
-/// waves per longer side of a rectangular cell.
+/// Radially averaged spectrum C(q) of a height map.
 ///
-/// Every wave vector of the grid except k = 0 is in one ring, hence Σ (2π)² `psd` · `n_modes` / A0 = ⟨h²⟩ about the
-/// mean, exactly (Parseval; the sum is ∫ C d²q). Rings beyond half the shorter side of the grid reach into the corners
-/// of its wave vectors only. A ring averages over |k| ± ½, so C of a power law comes out high where the ring is wide
-/// against |k|, and low in the ring at the truncation, half of which is empty. Source: T. D. B. Jacobs, T. Junge, L.
-/// Pastewka, *Quantitative characterization of surface topography using spectral analysis*, Surf. Topogr.: Metrol.
-/// Prop. 5 (2017) 013001. Tests `thin_rings_recover_the_power_law_to_rounding` and
+/// Rings have width 1 about |k| = 1, 2, 3, …, in waves per longer side of the cell. The ring of the longest waves is
+/// first. Every wave vector of the grid except k = 0 is in one ring. Hence Σ (2π)² `psd` · `n_modes` / A0 = ⟨h²⟩ about
+/// the mean, exactly (Parseval; the sum is ∫ C d²q).
+///
+/// Rings beyond half the shorter side of the grid contain only wave vectors in the corners of the spectrum. A ring
+/// averages over |k| ± ½. So C of a power law is too high where the ring is wide relative to |k|. It is too low in the
+/// ring at the truncation, half of which is empty.
+///
+/// Source: T. D. B. Jacobs, T. Junge, L. Pastewka, *Quantitative characterization of surface topography using spectral
+/// analysis*, Surf. Topogr.: Metrol. Prop. 5 (2017) 013001. Tests `thin_rings_recover_the_power_law_to_rounding` and
 /// `rings_add_up_to_the_mean_square_height`.
 #[must_use]
 pub fn radial_spectrum(heights: &Field) -> Vec<SpectrumBin> {
-    // The longest waves of a cell that is longer along y are shorter than one per side along x.
+    // If the cell is longer along y, its longest waves are shorter than one per side along x.
     binned_spectrum(heights, heights.grid().cell_ratio().max(1.0))
 }
 
-/// Means over rings of the spectrum of Eq. (11), with `rings_per_wave` rings for each unit of |k|; every ring that
-/// holds a wave vector is returned.
+/// Means over rings of the spectrum of Eq. (11).
+///
+/// There are `rings_per_wave` rings for each unit of |k|. Rings without a wave vector are omitted.
 fn binned_spectrum(heights: &Field, rings_per_wave: f64) -> Vec<SpectrumBin> {
     #[derive(Clone, Copy, Default)]
     struct Ring {
@@ -57,7 +61,7 @@ fn binned_spectrum(heights: &Field, rings_per_wave: f64) -> Vec<SpectrumBin> {
             ring.power += weight * power;
         }
     }
-    // The mean height is alone in ring 0 and is not a wave.
+    // Ring 0 holds only the mean height, which is not a wave.
     let waves = rings.iter().skip(1).filter(|ring| ring.n_modes > 0);
     waves
         .map(|ring| {
@@ -75,7 +79,7 @@ mod tests {
     use super::*;
     use crate::{Normalisation, SpectrumParams, Surface};
 
-    /// With rings so thin that all waves of a ring have the same |k|, averaging hides nothing.
+    /// In very thin rings all waves have the same |k|, so averaging changes nothing.
     #[test]
     fn thin_rings_recover_the_power_law_to_rounding() {
         let (c0, roll_off) = (3e-9, 4.5);

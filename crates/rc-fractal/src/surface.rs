@@ -1,4 +1,4 @@
-//! A realised surface: its amplitudes, and its height anywhere.
+//! A realised surface, with its amplitudes and its height at any point.
 
 use std::f64::consts::TAU;
 
@@ -12,47 +12,49 @@ use crate::moments::SpectralSums;
 use crate::waves::{Wave, WaveError, columns_of_waves};
 use crate::{Moments, Normalisation, SpectrumError, SpectrumParams};
 
-/// A band-limited surface of zero mean height on the unit cell: one realisation of a [`SpectrumParams`], or a sum of
-/// given waves.
+/// A band-limited surface of zero mean height on the unit cell.
 ///
-/// Holds one complex amplitude (16 bytes) for each wave vector of the half plane kx ≥ 0; the others are conjugates.
-/// [`HeightField::height`] is the direct sum of Eq. 10 and costs one multiplication per wave; [`HeightField::sample`]
-/// is the Fourier synthesis, equal to it at every element centre of any grid up to rounding.
+/// It is a realisation of a [`SpectrumParams`], or a sum of given waves. It holds one complex amplitude (16 bytes) for
+/// each wave vector of the half plane kx ≥ 0. The other amplitudes are conjugates.
+///
+/// [`HeightField::height`] is the direct sum of Eq. 10 and costs one multiplication per wave. [`HeightField::sample`]
+/// is the Fourier synthesis. It equals the direct sum up to rounding, at every element centre of any grid.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    /// `None` of a surface that was not generated.
+    /// `None` for a surface that was not generated.
     params: Option<SpectrumParams>,
-    /// The largest |kx| or |ky| of a wave; N of a generated surface.
+    /// The largest |kx| or |ky| of a wave, which is N for a generated surface.
     waves: usize,
-    /// `columns[kx][reach + ky]`, with the reach of that column.
+    /// `columns[kx][reach + ky]`, with the reach of this column.
     columns: Vec<Vec<Complex64>>,
 }
 
-/// A grid that cannot carry the surface.
+/// A grid that cannot represent the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum SampleError {
-    /// The shortest wave has two elements or less.
+    /// The shortest wave has no more than two elements.
     #[error("a grid of {grid} is too coarse for {waves} waves: it needs at least {smallest} elements per side")]
     TooCoarse {
         /// The grid.
         grid: Grid,
         /// N of the surface.
         waves: usize,
-        /// The smallest side that would do, 2N + 1.
+        /// The smallest sufficient number of elements per side, 2N + 1.
         smallest: usize,
     },
-    /// The surface repeats itself in squares.
+    /// The cell is not a square, but the surface repeats itself in squares.
     #[error("a surface made of waves needs a square cell")]
     RectangularCell,
 }
 
 impl Surface {
-    /// The realisation of a spectrum (Eq. 10 to 14). The same parameters give the same surface, bit by bit, for any
-    /// number of threads.
+    /// The realisation of a spectrum (Eq. 10 to 14).
     ///
-    /// A wave's phase depends on (seed, kx, ky) alone, and its Rayleigh factor too. So surfaces of one seed with
-    /// different N, roll-off, truncation or kind of amplitude share the phases of their common waves.
+    /// The same parameters give the same surface, bit by bit, for any number of threads.
+    ///
+    /// The phase and the Rayleigh factor of a wave depend only on (seed, kx, ky). So surfaces with one seed and
+    /// different N, roll-off, truncation or kind of amplitude have the same phases of their common waves.
     ///
     /// # Errors
     /// [`SpectrumError`] when a parameter is out of its range.
@@ -69,47 +71,50 @@ impl Surface {
         Ok(surface)
     }
 
-    /// The surface that has these waves and no others (Eq. 10), in any order, its amplitudes in λ.
+    /// The sum of given waves (Eq. 10), in any order, with amplitudes in λ.
     ///
-    /// A wave is given by k, by -k, whose amplitude is the conjugate, or by both if these agree to 1e-6; zeros may be
-    /// left out. The mean height, k = 0, is not part of a surface and is dropped.
+    /// A wave is given by k, or by -k, whose amplitude is the conjugate. It may be given by both if these agree to
+    /// 1e-6. Waves of amplitude zero may be omitted. The mean height, k = 0, is not part of a surface and is dropped.
     ///
     /// # Errors
-    /// [`WaveError`] when a wave is given twice, is not the conjugate of its opposite, is too short or not finite, or
-    /// when all are zero.
+    /// [`WaveError`] when a wave is given twice, is not the conjugate of its opposite, is too short or not finite. Also
+    /// when all waves are zero.
     pub fn from_waves(waves: Vec<Wave>) -> Result<Self, WaveError> {
         let (columns, waves) = columns_of_waves(waves)?;
         Ok(Self { params: None, waves, columns })
     }
 
-    /// The surface with all heights multiplied by `factor`; no longer that of a spectrum.
+    /// The surface with all heights multiplied by `factor`. It has no [`Surface::params`].
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
         self.columns.par_iter_mut().flatten().for_each(|amplitude| *amplitude = amplitude.scale(factor));
         Self { params: None, ..self }
     }
 
-    /// The spectrum it realises; `None` of a surface of given waves.
+    /// The spectrum of the surface, or `None` for a surface of given waves.
     #[must_use]
     pub fn params(&self) -> Option<&SpectrumParams> {
         self.params.as_ref()
     }
 
-    /// N, in waves per cell: the largest wavenumber of a generated surface, the largest component of a wave vector in
-    /// one of given waves.
+    /// N, in waves per cell.
+    ///
+    /// For a generated surface this is the largest wavenumber. For given waves it is the largest component of a wave
+    /// vector.
     #[must_use]
     pub fn waves(&self) -> usize {
         self.waves
     }
 
-    /// Moments from exact sums over the waves, without any grid. Test `moments_are_those_of_the_paper` compares them
-    /// with independently computed values to ten digits.
+    /// Moments from exact sums over the waves, without a grid.
+    ///
+    /// Test `moments_are_those_of_the_paper` compares them with independently computed values to ten digits.
     #[must_use]
     pub fn moments(&self) -> Moments {
         self.sums().moments()
     }
 
-    /// Amplitude `a_k` (Eq. 10) in λ; 0 for wave vectors outside the truncation and for k = 0.
+    /// Amplitude `a_k` (Eq. 10) in λ. It is 0 for wave vectors outside the truncation and for k = 0.
     #[must_use]
     pub fn amplitude(&self, kx: i64, ky: i64) -> Complex64 {
         let stored = |kx: i64, ky: i64| {
@@ -124,10 +129,11 @@ impl Surface {
 
     /// Heights at the element centres of a grid that resolves every wave.
     ///
-    /// Equal to [`HeightField::sample`], which takes any grid and would return aliased waves on a coarser one.
+    /// They equal [`HeightField::sample`], which takes any grid and returns aliased waves on a coarser grid.
     ///
     /// # Errors
-    /// [`SampleError::TooCoarse`] when a side has less than 2N + 1 elements; [`SampleError::RectangularCell`].
+    /// - [`SampleError::TooCoarse`] when a side has fewer than 2N + 1 elements.
+    /// - [`SampleError::RectangularCell`] when the cell is not a square.
     pub fn sample_on(&self, grid: Grid) -> Result<Field, SampleError> {
         let waves = self.waves();
         if !grid.has_square_cell() {
@@ -139,7 +145,10 @@ impl Surface {
         Ok(self.sample(grid))
     }
 
-    /// Columns are summed each by one thread and added in their order, so that rounding does not depend on threads.
+    /// Sums over all waves.
+    ///
+    /// Each column is summed by one thread. Columns are added in their order, so that rounding does not depend on the
+    /// number of threads.
     fn sums(&self) -> SpectralSums {
         let of_columns: Vec<SpectralSums> = self.columns.par_iter().enumerate().map(column_sums).collect();
         let mut columns = of_columns.into_iter();
@@ -159,7 +168,7 @@ impl HeightField for Surface {
             for ky in 1..=reach {
                 sum += column[reach + ky] * along_y[ky] + column[reach - ky] * along_y[ky].conj();
             }
-            // Columns kx and -kx are conjugates of each other.
+            // Columns kx and -kx are conjugates.
             let multiplicity = if kx == 0 { 1.0 } else { 2.0 };
             height += multiplicity * (sum * wave(kx, at.x)).re;
         }
@@ -179,12 +188,14 @@ impl HeightField for Surface {
     }
 }
 
-/// √⟨|`a_k`|²⟩ in λ where the spectral density is `density` in λ⁴, by Eq. (12) with δ(0) = (λ/2π)².
+/// rms amplitude √⟨|`a_k`|²⟩ in λ for a spectral density in λ⁴, by Eq. (12) with δ(0) = (λ/2π)².
 fn rms_amplitude(density: f64) -> f64 {
     TAU * density.sqrt()
 }
 
-/// Amplitudes of the waves with this kx, relative to the plateau: their mean squares are those of Eq. (13).
+/// Amplitudes of the waves with this kx, relative to the plateau.
+///
+/// Their mean squares follow Eq. (13).
 fn relative_column(params: &SpectrumParams, kx: usize) -> Vec<Complex64> {
     let reach = params.reach(kx);
     let mut column = draw_column(params.seed, kx, reach, params.amplitudes);
@@ -208,12 +219,12 @@ fn column_sums((kx, column): (usize, &Vec<Complex64>)) -> SpectralSums {
     sums
 }
 
-/// Largest ky of a column stored from -reach to reach.
+/// Largest ky of a column that holds -reach to reach.
 fn reach(column: &[Complex64]) -> usize {
     column.len() / 2
 }
 
-/// exp(2πi k x), with the integer part of k x removed before rounding can reach the phase.
+/// exp(2πi k x). The integer part of x is removed before its rounding reaches the phase.
 fn wave(k: usize, x: f64) -> Complex64 {
     let (k, x) = (k as f64, x - x.round());
     let turns = k * x;

@@ -1,15 +1,19 @@
-//! Surfaces whose waves are given one by one.
+//! Surfaces of waves that are given one by one.
 
 use rc_fft::Complex64;
 use thiserror::Error;
 
 use crate::MAX_WAVES;
 
-/// The amplitudes of k and -k agree to this part of them, and of the largest amplitude to the second.
+/// Maximum difference between the amplitudes of k and -k, relative to the amplitude.
+///
+/// The second number is relative to the largest amplitude and is added.
 const SAME: f64 = 1e-6;
 const SAME_AS_LARGEST: f64 = 1e-12;
 
-/// A wave a exp(2πi k·x) of a surface on the unit cell; with its conjugate at -k it is real.
+/// A wave a exp(2πi k·x) of a surface on the unit cell.
+///
+/// The sum of the wave and its conjugate at -k is real.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wave {
     /// Waves per cell along x.
@@ -20,7 +24,7 @@ pub struct Wave {
     pub amplitude: Complex64,
 }
 
-/// Waves that make no surface. Messages name the wave and what would be right.
+/// Waves that do not define a surface. Messages name the wave and say what would be right.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum WaveError {
@@ -32,7 +36,7 @@ pub enum WaveError {
         /// Waves per cell along y.
         ky: i64,
     },
-    /// `NaN`, or infinite.
+    /// The amplitude is `NaN` or infinite.
     #[error("wave ({kx}, {ky}): its amplitude is {re} + {im}i; it must be finite")]
     NotFinite {
         /// Waves per cell along x.
@@ -44,7 +48,7 @@ pub enum WaveError {
         /// Imaginary part.
         im: f64,
     },
-    /// Two amplitudes for one wave vector.
+    /// One wave vector has two amplitudes.
     #[error("wave ({kx}, {ky}) is given twice; give it once")]
     Twice {
         /// Waves per cell along x.
@@ -52,7 +56,7 @@ pub enum WaveError {
         /// Waves per cell along y.
         ky: i64,
     },
-    /// The sum with the opposite wave is not real.
+    /// The sum of a wave and its opposite is not real.
     #[error(
         "wave ({kx}, {ky}) is {re} + {im}i, and its opposite, -k, is {} + {}i; a real surface needs the conjugate, so correct or omit one of them",
         .of_opposite.re, .of_opposite.im
@@ -66,15 +70,17 @@ pub enum WaveError {
         re: f64,
         /// Imaginary part.
         im: f64,
-        /// The amplitude of the opposite wave.
+        /// Amplitude of the opposite wave.
         of_opposite: Complex64,
     },
-    /// No wave, or zeros only.
+    /// There is no wave, or only waves of amplitude zero.
     #[error("all waves are zero; a flat surface has no contact problem")]
     Flat,
 }
 
-/// A wave of the half plane kx > 0, or kx = 0 and ky ≥ 0, and whether its opposite is what was given.
+/// A wave of the half plane kx > 0, or kx = 0 and ky ≥ 0.
+///
+/// It also says whether the opposite wave was given.
 #[derive(Clone, Copy)]
 struct Half {
     k: (i64, i64),
@@ -92,7 +98,9 @@ impl Half {
     }
 }
 
-/// Amplitudes column by column, `columns[kx][reach + ky]` for 0 ≤ kx, and the largest |kx| or |ky|.
+/// Amplitudes column by column, and the largest |kx| or |ky|.
+///
+/// `columns[kx][reach + ky]` is the amplitude of (kx, ky) for 0 ≤ kx.
 pub(crate) fn columns_of_waves(waves: Vec<Wave>) -> Result<(Vec<Vec<Complex64>>, usize), WaveError> {
     waves.iter().try_for_each(check)?;
     let largest = waves.iter().map(|wave| wave.amplitude.norm()).fold(0.0, f64::max);
@@ -108,7 +116,7 @@ pub(crate) fn columns_of_waves(waves: Vec<Wave>) -> Result<(Vec<Vec<Complex64>>,
         let reach = merged.iter().map(|half: &Half| half.k.1.unsigned_abs() as usize).max();
         let (Some(reach), Some(first)) = (reach, merged.first()) else { continue };
         let kx = first.k.0.unsigned_abs() as usize;
-        // Columns between hold no wave but the one with ky = 0, which is zero.
+        // A column between two given ones holds only the wave ky = 0, which is zero.
         columns.resize(kx, vec![Complex64::ZERO]);
         columns.push(column_of(kx, reach, &merged));
         most = most.max(kx).max(reach);
@@ -126,7 +134,9 @@ fn check(&Wave { kx, ky, amplitude }: &Wave) -> Result<(), WaveError> {
     Ok(())
 }
 
-/// The one amplitude of a wave vector: of k, of -k, or the mean of both; none for zeros and for the mean height.
+/// The amplitude of a wave that is given by k, by -k, or by both.
+///
+/// If both are given, it is their mean. `None` for zeros and for the mean height.
 fn merge(same: &[Half], largest: f64) -> Result<Option<Half>, WaveError> {
     let near = |a: Complex64, b: Complex64| (a - b).norm() <= SAME * a.norm() + SAME_AS_LARGEST * largest;
     let failed = |half: &Half, of_opposite: Complex64| {
@@ -134,7 +144,7 @@ fn merge(same: &[Half], largest: f64) -> Result<Option<Half>, WaveError> {
         Err(WaveError::NotConjugate { kx, ky, re, im, of_opposite })
     };
     let merged = match same {
-        // Its own opposite.
+        // The wave k = 0 is its own opposite.
         [half] if half.k == (0, 0) => {
             return if near(half.amplitude, half.amplitude.conj()) { Ok(None) } else { failed(half, half.amplitude) };
         }
@@ -154,7 +164,7 @@ fn merge(same: &[Half], largest: f64) -> Result<Option<Half>, WaveError> {
     Ok(Some(merged).filter(|half| half.amplitude != Complex64::ZERO))
 }
 
-/// The column of the waves with this kx; that of kx = 0 has their opposites too.
+/// The column of the waves with this kx. The column kx = 0 includes their opposites.
 fn column_of(kx: usize, reach: usize, waves: &[Half]) -> Vec<Complex64> {
     let mut column = vec![Complex64::ZERO; 2 * reach + 1];
     for &Half { k: (_, ky), amplitude, .. } in waves {

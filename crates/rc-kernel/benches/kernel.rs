@@ -1,6 +1,7 @@
-//! Time of kernel values: Love's square at several distances, values of the symbols, and making a symbol.
+//! Time of kernel values.
 //!
-//! `cargo bench -p rc-kernel`. Each sample of a benchmark of values is 1000 values.
+//! They are Love's square at several distances, values of the symbols, and the making of a symbol. Run
+//! `cargo bench -p rc-kernel`. A sample of a benchmark of values is 1000 values.
 
 use divan::{Bencher, black_box};
 use rc_core::{DVec2, Grid, Kernel};
@@ -12,7 +13,7 @@ fn main() {
     divan::main();
 }
 
-/// Distances in half-sides: inside, beside, both sides of the switch to the series, and far.
+/// Distances in half-sides: inside, beside, near the switch to the series, and far away.
 #[divan::bench(args = [0.5, 1.5, 2.4, 2.6, 8.0, 50.0, 1e4])]
 fn displacement(bencher: Bencher<'_, '_>, distance: f64) {
     let slope = |i: usize| i as f64 / VALUES as f64;
@@ -20,7 +21,7 @@ fn displacement(bencher: Bencher<'_, '_>, distance: f64) {
     bencher.counter(VALUES).bench(|| (0..VALUES).map(|i| love_displacement(offset(i), 1.0)).sum::<f64>());
 }
 
-/// One row of the symbol; elements are squares, at most 2:1, and longer.
+/// One row of the symbol. Elements are squares, rectangles up to 2:1, and longer rectangles.
 #[divan::bench(args = [(4096, 4096), (2048, 4096), (512, 4096)])]
 fn love_values(bencher: Bencher<'_, '_>, (nx, ny): (usize, usize)) {
     values(bencher, &Love, (nx, ny));

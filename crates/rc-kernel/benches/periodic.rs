@@ -1,6 +1,7 @@
-//! Time of periodic coefficients: near, midway and far, for small and large sources, tables, and truncated sums.
+//! Time of periodic coefficients.
 //!
-//! `cargo bench -p rc-kernel --bench periodic`. Each sample of a benchmark of values is 1000 values.
+//! Targets are near, midway and far, sources small and large. Tables and truncated sums are timed too. Run
+//! `cargo bench -p rc-kernel --bench periodic`. A sample of a benchmark of values is 1000 values.
 
 use divan::{Bencher, black_box};
 use rc_core::DVec2;
@@ -12,13 +13,13 @@ fn main() {
     divan::main();
 }
 
-/// Half side 2^-level; offsets all around at `distance`.
+/// Sources of half side 2^-level, and offsets all around at `distance`.
 #[divan::bench(args = [(2, 0.3), (3, 0.3), (3, 0.5), (5, 0.02), (5, 0.1), (5, 0.4), (8, 0.001), (8, 0.01), (8, 0.1), (8, 0.4), (12, 0.001), (12, 0.4), (17, 0.4)])]
 fn coefficient(bencher: Bencher<'_, '_>, (level, distance): (i32, f64)) {
     let love = PeriodicLove::new();
     let half_side = 0.5_f64.powi(level);
     let offsets = ring(distance);
-    // Makes the table.
+    // This call makes the table.
     let _ = love.coefficient(DVec2::splat(0.1), half_side);
     bencher.counter(VALUES).bench(|| {
         let half_side = black_box(half_side);
@@ -32,7 +33,9 @@ fn ring(distance: f64) -> Vec<DVec2> {
     (0..VALUES).map(point).map(|(sin, cos)| distance * DVec2::new(cos, sin)).collect()
 }
 
-/// Sizes from λ/4 to λ/2048 in random order, targets anywhere in the cell: a row of L on an adaptive mesh.
+/// Sizes from λ/4 to λ/2048 in random order, with targets anywhere in the cell.
+///
+/// This resembles a row of L on an adaptive mesh.
 #[divan::bench]
 fn mixed_sizes(bencher: Bencher<'_, '_>) {
     let love = PeriodicLove::new();
@@ -45,7 +48,7 @@ fn mixed_sizes(bencher: Bencher<'_, '_>) {
     bencher.counter(VALUES).bench(|| requests.iter().map(|&(offset, d)| love.coefficient(offset, d)).sum::<f64>());
 }
 
-/// Sizes that are not powers of two: with a table of their own, and without.
+/// Sizes that are not powers of two, with a table and without.
 #[divan::bench(args = [true, false])]
 fn other_sizes(bencher: Bencher<'_, '_>, table: bool) {
     let love = PeriodicLove::new();

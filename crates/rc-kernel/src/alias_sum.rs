@@ -1,40 +1,42 @@
-//! The symbol of the paper's element as a sum over aliases: the slow reference of this crate.
+//! The symbol of the paper's element as a sum over aliases.
 //!
-//! On a grid of spacing (hx, hy) the wave k looks the same as its aliases k + (m nx, n ny). A pressure that is constant
-//! on each element contains all of them, each damped by the transform of the element, so the symbol is
+//! This is the slow reference of the crate. On a grid of spacing (hx, hy) the wave k has the same values as its aliases
+//! k + (m nx, n ny). A pressure that is constant on each element contains all of them. Each alias is damped by the
+//! transform of the element, so the symbol is
 //!
 //! ```text
 //! λ(k) = Σ_mn 2/|q| sinc(q_x hx/2) sinc(q_y hy/2),     q = 2π (kx + m nx, ky + n ny),     sinc z = sin z / z.
 //! ```
 //!
-//! With θ = π k/n the sines come out of the sums and leave alternating signs:
+//! With θ = π k/n the sines are common factors, and alternating signs remain:
 //!
 //! ```text
 //! λ(k) = Σ_mn T_m(θx) T_n(θy) / √(((θx + πm)/hx)² + ((θy + πn)/hy)²),     T_m(θ) = (-1)^m sin θ / (θ + πm).
 //! ```
 //!
-//! Such a sum converges like 1/m² if added up. With the weights of Cohen, Rodriguez Villegas and Zagier (*Convergence
-//! acceleration of alternating series*, Experimental Math. 9 (2000) 3-12) its error falls like 5.8^-terms: they ask for
-//! terms that are moments of a positive measure, which 1/(t √(t² + b²)) is at equidistant t, being the Laplace
-//! transform of the positive function ∫ J0(b s) ds.
+//! The plain sum converges like 1/m². With the weights of Cohen, Rodriguez Villegas and Zagier (*Convergence
+//! acceleration of alternating series*, Experimental Math. 9 (2000) 3-12) its error falls like 5.8^-terms. The weights
+//! need terms that are moments of a positive measure. The terms 1/(t √(t² + b²)) at equidistant t are such moments,
+//! because they are the Laplace transform of the positive function ∫ J0(b s) ds.
 
 use std::f64::consts::PI;
 
 use rc_core::Grid;
 
-/// Terms of an accelerated sum: 5.8^-24 = 4e-19 is below rounding.
+/// Number of terms of an accelerated sum. 5.8^-24 = 4e-19 is below rounding.
 pub(crate) const TERMS: usize = 24;
 
-/// The symbol of [`Love`](crate::Love) at wave (`kx`, `ky`) of `grid`, summed over all aliases; in λ/E*, zero at k = 0.
+/// The symbol of [`Love`](crate::Love) at wave (`kx`, `ky`) of `grid`, in λ/E*.
 ///
-/// The slow reference of [`Love`](crate::Love), for tests and for single values: about 2500 terms, 10 µs.
+/// The sum is over all aliases, and the symbol is zero at k = 0. It takes about 2500 terms and 10 µs, so it serves as a
+/// reference in tests and for single values.
 ///
-/// *Accuracy*: 2e-15 relative (test `alias_sum_is_converged`; against sums without acceleration, test
-/// `alias_sum_matches_brute_force`). Any kx and ky are allowed; the symbol is periodic in them.
+/// *Accuracy*: 2e-15 relative (test `alias_sum_is_converged`). Test `alias_sum_matches_brute_force` compares it with
+/// sums without acceleration. Any kx and ky are allowed, and the symbol is periodic in them.
 #[must_use]
 pub fn love_alias_sum(grid: Grid, kx: usize, ky: usize) -> f64 {
     let (nx, ny) = (grid.nx(), grid.ny());
-    // The nearest of all aliases, and by symmetry its mirror image with positive components.
+    // The nearest of all aliases. By symmetry, its mirror image with positive components has the same value.
     let nearest = |k: usize, n: usize| (k % n).min(n - k % n);
     let (kx, ky) = (nearest(kx, nx), nearest(ky, ny));
     if kx == 0 && ky == 0 {
@@ -43,14 +45,16 @@ pub fn love_alias_sum(grid: Grid, kx: usize, ky: usize) -> f64 {
     AliasSum::<TERMS>::new(grid.spacing().into()).full((phase(kx, nx), phase(ky, ny)))
 }
 
-/// θ = π k/n.
+/// Phase θ = π k/n.
 pub(crate) fn phase(k: usize, n: usize) -> f64 {
     PI * (k as f64 / n as f64)
 }
 
-/// The sum and its parts, on elements of sides (hx, hy), with `N` terms where it is accelerated.
+/// The alias sum and its parts, for elements of sides (hx, hy).
 ///
-/// θ = (θx, θy) lies in [0, π/2]² and is not (0, 0), except for the parts that do not contain m = n = 0.
+/// An accelerated sum has `N` terms.
+///
+/// θ = (θx, θy) lies in [0, π/2]². It is not (0, 0), except for the parts without the term m = n = 0.
 pub(crate) struct AliasSum<const N: usize> {
     inverse_spacing: (f64, f64),
     weights: [f64; N],
@@ -61,18 +65,18 @@ impl<const N: usize> AliasSum<N> {
         Self { inverse_spacing: (1.0 / spacing.0, 1.0 / spacing.1), weights: alternating_weights() }
     }
 
-    /// All terms: λ.
+    /// Sum of all terms, λ.
     pub(crate) fn full(&self, theta: (f64, f64)) -> f64 {
         Damping::new(theta.1).at(0.0) * self.row(theta, 0.0) + self.outside_row(theta)
     }
 
-    /// The terms with n ≠ 0.
+    /// Sum of the terms with n ≠ 0.
     pub(crate) fn outside_row(&self, theta: (f64, f64)) -> f64 {
         let y = Damping::new(theta.1);
         self.accelerated(1, |n| y.at(n) * self.row(theta, n))
     }
 
-    /// The terms with |m| > `reach.0` or |n| > `reach.1`.
+    /// Sum of the terms with |m| > `reach.0` or |n| > `reach.1`.
     pub(crate) fn outside_block(&self, theta: (f64, f64), reach: (usize, usize)) -> f64 {
         let (x, y) = (Damping::new(theta.0), Damping::new(theta.1));
         let beside = |n: f64| self.accelerated(reach.0 + 1, |m| x.at(m) * self.reciprocal(theta, m, n));
@@ -96,19 +100,19 @@ impl<const N: usize> AliasSum<N> {
         pairs.sum()
     }
 
-    /// 2/|q| = 1/√(…).
+    /// The factor 2/|q| = 1/√(…).
     fn reciprocal(&self, theta: (f64, f64), m: f64, n: f64) -> f64 {
         let (a, b) = ((theta.0 + PI * m) * self.inverse_spacing.0, (theta.1 + PI * n) * self.inverse_spacing.1);
         1.0 / (a * a + b * b).sqrt()
     }
 }
 
-/// -reach..=reach as floats.
+/// The numbers -reach..=reach as floats.
 pub(crate) fn alias_range(reach: usize) -> impl Iterator<Item = f64> {
     (0..=2 * reach).map(move |i| i as f64 - reach as f64)
 }
 
-/// The factors T_m of one θ.
+/// The factors T_m for one θ.
 pub(crate) struct Damping {
     theta: f64,
     sin: f64,
@@ -119,7 +123,7 @@ impl Damping {
         Self { theta, sin: theta.sin() }
     }
 
-    /// T_m(θ) = (-1)^m sin θ / (θ + πm), 1 where both vanish.
+    /// T_m(θ) = (-1)^m sin θ / (θ + πm), or 1 where numerator and denominator are zero.
     pub(crate) fn at(&self, m: f64) -> f64 {
         let argument = self.theta + PI * m;
         if argument == 0.0 {
@@ -130,8 +134,10 @@ impl Damping {
     }
 }
 
-/// Weights w_i, falling from 1 to 0, with which Σ w_i a_i, i < N, replaces Σ a_i, i < ∞, of alternating a_i (algorithm
-/// 1 of the paper cited above; its weights of |a_i| carry the signs that ours leave to a_i).
+/// Weights w_i, decreasing from 1 to 0, of alternating terms a_i.
+///
+/// Σ w_i a_i, i < N, replaces Σ a_i, i < ∞. This is algorithm 1 of the paper cited above. Its weights belong to |a_i|
+/// and carry the signs. Here a_i has the signs.
 pub(crate) fn alternating_weights<const N: usize>() -> [f64; N] {
     let n = N as f64;
     let d = (3.0 + 8.0_f64.sqrt()).powi(N as i32);
@@ -151,7 +157,7 @@ mod tests {
 
     use super::*;
 
-    /// Phases (θx, θy): edges, corners, near the origin, and in between.
+    /// Phases (θx, θy) on edges, at corners, near the origin, and in between.
     const PHASES: [(f64, f64); 9] = [
         (0.3, 1.1),
         (FRAC_PI_2, FRAC_PI_2),
@@ -164,15 +170,17 @@ mod tests {
         (0.7, FRAC_PI_2),
     ];
 
-    /// Sides of elements: squares and rectangles up to slivers.
+    /// Sides of elements, from squares to very thin rectangles.
     const SPACINGS: [(f64, f64); 6] = [(1.0, 1.0), (0.25, 0.25), (1.0, 0.7), (0.1, 0.4), (1.0, 0.05), (0.02, 1.0)];
 
-    /// The double sum over |m|, |n| ≤ 100, tapered to 0 over ten more terms by repeated averaging of the last partial
-    /// sums: slow, and without anything of the accelerated sum.
+    /// The double sum over |m|, |n| ≤ 100, tapered to 0 over ten more terms.
+    ///
+    /// The taper is repeated averaging of the last partial sums. The sum is slow and shares nothing with the
+    /// accelerated sum.
     fn brute_force(spacing: (f64, f64), theta: (f64, f64)) -> f64 {
         const KEPT: usize = 100;
         const AVERAGED: i32 = 10;
-        // A term beyond the kept ones is in as many of the averaged partial sums as a binomial law says.
+        // The number of averaged partial sums that include a term beyond the kept ones follows a binomial law.
         let mut taper = vec![1.0; KEPT + 1];
         let (mut share, mut left) = (0.5_f64.powi(AVERAGED), 1.0);
         for i in 0..AVERAGED {
@@ -186,7 +194,7 @@ mod tests {
             let q = ((theta.0 + PI * m) / spacing.0).hypot((theta.1 + PI * n) / spacing.1);
             weight(m) * weight(n) * x.at(m) * y.at(n) / q
         };
-        // Row by row: added to one sum, 48 841 roundings would reach 2e-14.
+        // Summed row by row. In a single sum, 48 841 roundings would reach 2e-14.
         let reach = taper.len() - 1;
         alias_range(reach).map(|n| alias_range(reach).map(|m| term(m, n)).sum::<f64>()).sum()
     }

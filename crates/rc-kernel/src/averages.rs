@@ -1,10 +1,11 @@
-//! The part of the mean of φ over a square that is due to the background and to all images but the nearest: smooth, and
-//! tabulated.
+//! Smooth part of the mean of φ over a square, from tables.
 //!
-//! `ψ = φ - 1/r` is smooth on the whole cell. It is fitted once to Ewald's sum, in the squares of the coordinates. The
-//! mean of the fit over a square is exact: along each axis it is the mean of Chebyshev polynomials over an interval.
-//! For one size of square this mean, as a function of the offset, is cut into patches on which a polynomial of degree 7
-//! in each coordinate is enough.
+//! It is the contribution of the background and of all images except the nearest. `ψ = φ - 1/r` is smooth on the whole
+//! cell. It is fitted once to Ewald's sum, in the squares of the coordinates. The mean of the fit over a square is
+//! exact: along each axis it is the mean of Chebyshev polynomials over an interval.
+//!
+//! For one size of square, this mean is a function of the offset. The table divides the offsets into patches, with a
+//! polynomial of degree 7 in each coordinate on each patch.
 
 use rc_core::DVec2;
 
@@ -12,24 +13,29 @@ use crate::chebyshev::{coefficients_in_two, node, polynomials, to_powers};
 use crate::gauss_legendre::gauss_legendre;
 use crate::lattice::ewald_remainder;
 
-/// Largest half side of a square that is averaged over: ψ is fitted on the cell with a margin as wide. Beyond the
-/// margin are the nearest images, where ψ is singular; with 1/8, [`TERMS`] are enough for 1e-14.
+/// Largest half side of a square for which means are computed.
+///
+/// ψ is fitted on the cell with a margin of this width. The nearest images, where ψ is singular, lie beyond the margin.
+/// With 1/8, [`TERMS`] are enough for 1e-14.
 pub(crate) const MAX_HALF_SIDE: f64 = 0.125;
 
 /// Half the side of the square on which ψ is fitted.
 const REACH: f64 = 0.5 + MAX_HALF_SIDE;
 
-/// Chebyshev polynomials in x² and in y² of the fit.
+/// Number of Chebyshev polynomials in x², and in y², of the fit.
 const TERMS: usize = 24;
 
-/// Points of the Gauss-Legendre rule along one side of a square: exact up to degree 23, far beyond what ψ has there.
+/// Points of the Gauss-Legendre rule along one side of a square.
+///
+/// The rule is exact up to degree 23, which is far beyond what ψ needs there.
 const GAUSS: usize = 12;
 
-/// Patches along half a side of the cell.
+/// Number of patches along half a side of the cell.
 const PATCHES: usize = 12;
 
-/// Coefficients per direction on one patch: error 3e-13 (test `tables_agree_with_the_means`). With eight, one row of
-/// them fills four registers of two.
+/// Coefficients per direction on one patch, with error 3e-13 (test `tables_agree_with_the_means`).
+///
+/// With eight of them, a row fills four registers of two.
 const DEGREES: usize = 8;
 
 /// ψ in Chebyshev polynomials of (x/REACH)² and (y/REACH)².
@@ -75,7 +81,7 @@ impl Remainder {
         means
     }
 
-    /// The sum over the polynomials in x, which leaves the coefficients of those in y.
+    /// The sum over the polynomials in x. It gives the coefficients of the polynomials in y.
     fn contract(&self, along_x: &Means) -> Means {
         let mut left = [0.0; TERMS];
         for (row, mean) in self.coefficients.chunks_exact(TERMS).zip(along_x) {
@@ -91,16 +97,19 @@ fn dot(a: &Means, b: &Means) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The mean of ψ over squares of one size: polynomials on patches of the triangle 0 ≤ y ≤ x ≤ 1/2.
+/// The mean of ψ over squares of one size, as a function of the offset.
+///
+/// It consists of polynomials on patches of the triangle 0 ≤ y ≤ x ≤ 1/2.
 #[derive(Debug)]
 pub(crate) struct MeanTable {
-    /// Coefficients of powers of the offset from the centre of the patch, in half patches; patch (i, j), j ≤ i, is at
-    /// i (i + 1)/2 + j.
+    /// Coefficients of powers of the offset from the centre of the patch, in half patches.
+    ///
+    /// Patch (i, j), j ≤ i, is at i (i + 1)/2 + j.
     patches: Vec<[[f64; DEGREES]; DEGREES]>,
 }
 
 impl MeanTable {
-    /// The table for squares of half-side `half_side` ≤ [`MAX_HALF_SIDE`]; 0 is ψ itself.
+    /// The table for squares of half-side `half_side` ≤ [`MAX_HALF_SIDE`]. A half side of 0 gives ψ itself.
     pub(crate) fn new(remainder: &Remainder, half_side: f64) -> Self {
         let half_patch = 0.25 / PATCHES as f64;
         let point = |at: usize| {
@@ -117,8 +126,9 @@ impl MeanTable {
         Self { patches: (0..PATCHES).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| patch(i, j)).collect() }
     }
 
-    /// The table of means given by themselves, at offsets (x, y) with 0 ≤ y, x ≤ 1/2: for squares larger than
-    /// [`MAX_HALF_SIDE`].
+    /// The table from means at offsets (x, y) with 0 ≤ y, x ≤ 1/2.
+    ///
+    /// It serves squares larger than [`MAX_HALF_SIDE`].
     pub(crate) fn of_means(mean: impl Fn(DVec2) -> f64) -> Self {
         let half_patch = 0.25 / PATCHES as f64;
         let point = |patch: usize, at: usize| half_patch * ((2 * patch + 1) as f64 + node(at, DEGREES));
@@ -132,7 +142,8 @@ impl MeanTable {
 
     /// The mean at offset (`long`, `short`), 0 ≤ short ≤ long ≤ 1/2.
     ///
-    /// Never inlined: 18 ns as a function, and up to 30 inside loops, where the compiler spills the eight sums.
+    /// The function is never inlined. It takes 18 ns as a function, and up to 30 ns inside loops, where the compiler
+    /// spills the eight sums.
     #[inline(never)]
     pub(crate) fn mean(&self, long: f64, short: f64) -> f64 {
         const PER_LENGTH: f64 = 2.0 * PATCHES as f64;
@@ -145,7 +156,7 @@ impl MeanTable {
                 *sum = *sum * x + c;
             }
         }
-        // Estrin's scheme: half the operations in a row.
+        // Estrin's scheme needs half as many operations in sequence.
         let [c0, c1, c2, c3, c4, c5, c6, c7] = along_y;
         let (y2, y4) = (y * y, y * y * y * y);
         (c0 + c1 * y + (c2 + c3 * y) * y2) + (c4 + c5 * y + (c6 + c7 * y) * y2) * y4

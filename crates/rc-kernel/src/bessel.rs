@@ -1,6 +1,6 @@
-//! Modified Bessel functions by their series, for windows.
+//! Modified Bessel functions from their series, for windows.
 
-/// `F_m(q) = Σ_n qⁿ / (n! (n + m)!)` for q ≥ 0, to rounding accuracy: all its terms are positive.
+/// `F_m(q) = Σ_n qⁿ / (n! (n + m)!)` for q ≥ 0, to rounding accuracy because all terms are positive.
 ///
 /// Modified Bessel functions are `I_m(x) = (x/2)^m F_m(x²/4)`, and `F_m' = F_(m+1)`. The number of terms grows like √q.
 #[must_use]
@@ -22,7 +22,7 @@ mod tests {
 
     use super::*;
 
-    /// I_m(x) as the mean of exp(x cos θ) cos(m θ), exact but for rounding with 128 angles.
+    /// I_m(x) as the mean of exp(x cos θ) cos(m θ). With 128 angles it is exact up to rounding.
     fn modified_bessel(x: f64, m: usize) -> f64 {
         let angles = (0..128).map(|i| TAU * f64::from(i) / 128.0);
         angles.map(|angle| (x * angle.cos()).exp() * (m as f64 * angle).cos()).sum::<f64>() / 128.0

@@ -1,4 +1,6 @@
-//! Chebyshev series: interpolants through the Chebyshev nodes, their sums, and their polynomials in powers.
+//! Chebyshev series.
+//!
+//! The module has interpolants through the Chebyshev nodes, their sums, and their polynomials in powers.
 
 use std::f64::consts::PI;
 
@@ -12,7 +14,7 @@ fn node_angle(i: usize, n: usize) -> f64 {
     PI * (i as f64 + 0.5) / n as f64
 }
 
-/// cos(k θ_i) of `n` nodes, which turn values there into coefficients.
+/// cos(k θ_i) of `n` nodes. These convert values at the nodes to coefficients.
 struct Cosines {
     n: usize,
     /// `values[k * n + i]`.
@@ -30,7 +32,7 @@ impl Cosines {
     }
 }
 
-/// The mean over nodes has 1 for the constant, 2 for all other polynomials.
+/// Factor of a mean over nodes: 1 for the constant, 2 for other polynomials.
 fn multiplicity(k: usize) -> f64 {
     if k == 0 { 1.0 } else { 2.0 }
 }
@@ -63,7 +65,9 @@ pub(crate) fn polynomials<const N: usize>(x: f64) -> [f64; N] {
     })
 }
 
-/// Σ c_k T_k(x), by Clenshaw's recurrence. The length is known when it is compiled: for inner loops.
+/// Σ c_k T_k(x), by Clenshaw's recurrence.
+///
+/// The length is a constant of the compiler, for inner loops.
 #[inline]
 pub(crate) fn sum<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
     let (mut b1, mut b2) = (0.0, 0.0);
@@ -73,14 +77,16 @@ pub(crate) fn sum<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
     coefficients[0] + x * b1 - b2
 }
 
-/// The interpolant of a function on [0, 1], as long as rounding accuracy needs it to be.
+/// The interpolant of a function on [0, 1], with as many terms as rounding accuracy needs.
 #[derive(Clone, Debug)]
 pub(crate) struct Series {
     coefficients: Vec<f64>,
 }
 
 impl Series {
-    /// From the values at `n` nodes. Coefficients below 1e-16 of the largest are dropped from the end.
+    /// The interpolant through the values at `n` nodes.
+    ///
+    /// Coefficients below 1e-16 of the largest are dropped from the end.
     pub(crate) fn new(n: usize, value: impl Fn(f64) -> f64) -> Self {
         let values: Vec<f64> = (0..n).map(|i| value(0.5 + 0.5 * node(i, n))).collect();
         let mut coefficients = coefficients(&values);
@@ -91,8 +97,9 @@ impl Series {
         Self { coefficients }
     }
 
-    /// The value at `x` in [0, 1], by Clenshaw's recurrence. The coefficient is added last, in [`sum`] it is added
-    /// first: tables made from either keep their last digit.
+    /// The value at `x` in [0, 1], by Clenshaw's recurrence.
+    ///
+    /// The coefficient is added last, whereas [`sum`] adds it first. Tables from each of the two keep their last digit.
     pub(crate) fn at(&self, x: f64) -> f64 {
         let t = 2.0 * x - 1.0;
         let (mut b1, mut b2) = (0.0, 0.0);
@@ -103,9 +110,11 @@ impl Series {
     }
 }
 
-/// Coefficients of x^i y^j of the polynomial with the Chebyshev coefficients `c`, both row-major in i.
+/// Coefficients of x^i y^j of a polynomial with Chebyshev coefficients `c`.
 ///
-/// Powers of low degree on [-1, 1] lose a factor (1 + √2)^degree of the *high* coefficients only, which are small.
+/// Both are row-major in i.
+///
+/// In powers of low degree on [-1, 1], only the *high* coefficients lose a factor (1 + √2)^degree, and these are small.
 pub(crate) fn to_powers<const N: usize>(c: &[f64]) -> [[f64; N]; N] {
     let powers = powers::<N>();
     let mut half = [[0.0; N]; N];
@@ -123,7 +132,7 @@ pub(crate) fn to_powers<const N: usize>(c: &[f64]) -> [[f64; N]; N] {
     all
 }
 
-/// For each k < N, the coefficients of x^i in T_k: integers.
+/// For each k < N, the coefficients of x^i in T_k. They are integers.
 pub(crate) fn powers<const N: usize>() -> [[f64; N]; N] {
     let mut all = [[0.0; N]; N];
     all[0][0] = 1.0;

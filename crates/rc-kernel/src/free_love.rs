@@ -1,14 +1,14 @@
-//! The paper's element on an infinite half-space, whose surface is free beyond the heights.
+//! The paper's element on an infinite half-space whose surface is free beyond the heights.
 
 use rc_core::{DVec2, Grid, Kernel, Symbol};
 
 use crate::{Love, love_rectangle_displacement};
 
-/// [`Love`] without periodic images: uniform pressure on each element of a finite patch, displacement at element
-/// centres, zero far away.
+/// [`Love`] without periodic images.
 ///
-/// The response of element to element is [`love_displacement`](crate::love_displacement), and that of rectangles, each
-/// evaluated once; the solver sums them by a transform on a padded grid.
+/// The pressure is uniform on each element of a finite patch. The displacement is taken at element centres and is zero
+/// far away. The response between two elements is [`love_displacement`](crate::love_displacement), or its form for
+/// rectangles. Each value is computed once. The solver sums the responses by a transform on a padded grid.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FreeLove;
 
@@ -17,14 +17,14 @@ impl Kernel for FreeLove {
         "love"
     }
 
-    /// That of the periodic cell, for preconditioning.
+    /// The symbol of the periodic cell, for preconditioning.
     fn symbol(&self, grid: Grid) -> Symbol<'_> {
         Love.symbol(grid)
     }
 
     fn free_response(&self, grid: Grid) -> Option<Symbol<'_>> {
         let spacing = grid.spacing();
-        // The sides of a square may differ by a rounding.
+        // The sides of a square may differ by rounding.
         let is_square = (spacing.x - spacing.y).abs() <= 4.0 * f64::EPSILON * spacing.x;
         let half_sides = 0.5 * if is_square { DVec2::splat(spacing.x) } else { spacing };
         let distance = 2.0 * half_sides;

@@ -1,9 +1,9 @@
-//! The lattice function φ: potential of unit charges on all images with a uniform neutralising background, by Ewald's
-//! sum.
+//! The lattice function φ by Ewald's sum.
 //!
-//! A point load on the unit cell and all its images, with the uniform counter-load of Eq. 3, displaces the surface by
-//! φ(r)/(π E*), `φ(r) = Σ_{q≠0} (2π/|q|) exp(iq·r)`, which has zero mean. It is the slow reference that the fast
-//! coefficients are made from and tested against.
+//! φ is the potential of unit charges on all images, with a uniform neutralising background. A point load on the unit
+//! cell and all its images, with the uniform counter-load of Eq. 3, displaces the surface by φ(r)/(π E*). Here
+//! `φ(r) = Σ_{q≠0} (2π/|q|) exp(iq·r)`, which has zero mean. φ is the slow reference: the fast coefficients are fitted
+//! to it and tested against it.
 
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
@@ -12,23 +12,27 @@ use rc_core::DVec2;
 use crate::gauss_legendre::gauss_legendre;
 use crate::love_displacement;
 
-/// Images and waves per direction. Both sums end below 1e-17 of φ.
+/// Number of images and of waves per direction. Both sums end below 1e-17 of φ.
 const SHELLS: i32 = 3;
 
-/// φ(0) - 1/r: `-C = 4 ζ(1/2) β(1/2)`, β being Dirichlet's; the lattice sum of 1/R minus its background (Ewald, two
-/// splitting parameters, 27 digits).
+/// φ(0) - 1/r, the lattice sum of 1/R minus its background.
+///
+/// The value is `-C = 4 ζ(1/2) β(1/2)` with Dirichlet's β. It comes from Ewald's sum with two splitting parameters, to
+/// 27 digits.
 pub const LATTICE_CONSTANT: f64 = -3.900_264_920_001_956;
 
-/// φ at `offset` from a source, in units of 1/λ; +∞ on the source and its images. φ/(π E*) is the 𝓛 of Eq. (3).
+/// φ at `offset` from a source, in units of 1/λ. φ/(π E*) is the 𝓛 of Eq. (3).
+///
+/// φ is +∞ on the source and its images.
 ///
 /// ```text
 /// φ(r) = Σ_R erfc(√π |r - R|)/|r - R| + Σ_{n≠0} erfc(√π |n|)/|n| cos(2π n·r) - 2
 /// ```
 ///
-/// Ewald, *Ann. Phys.* 369 (1921) 253, for charges in a plane with 1/r between them. Near a source
+/// Source: Ewald, *Ann. Phys.* 369 (1921) 253, for charges in a plane with 1/r between them. Near a source
 /// `φ = 1/r - C + (S3/4) r² + …`.
 ///
-/// *Accuracy*: 1e-14 absolute, and relative near a source (test `lattice_function_has_its_known_values`).
+/// *Accuracy*: 1e-14, absolute, and relative near a source (test `lattice_function_has_its_known_values`).
 #[must_use]
 pub fn ewald_phi(offset: DVec2) -> f64 {
     let nearest = wrapped(offset);
@@ -36,14 +40,16 @@ pub fn ewald_phi(offset: DVec2) -> f64 {
     libm::erfc(PI.sqrt() * r) / r + images_and_waves(nearest)
 }
 
-/// φ - 1/r at `offset`, |x|, |y| ≤ 0.6: a smooth function, the sum of all images but the nearest and of the background.
+/// φ - 1/r at `offset`, |x|, |y| ≤ 0.6.
+///
+/// This function is smooth. It is the sum of the background and of all images except the nearest.
 pub(crate) fn ewald_remainder(offset: DVec2) -> f64 {
     let r = offset.x.hypot(offset.y);
     let own = if r == 0.0 { 2.0 } else { libm::erf(PI.sqrt() * r) / r };
     images_and_waves(offset) - own
 }
 
-/// The offset to the nearest image, in [-1/2, 1/2]²; odd in both coordinates, and exact.
+/// The offset to the nearest image, in [-1/2, 1/2]². It is exact, and odd in both coordinates.
 #[inline]
 pub(crate) fn wrapped(offset: DVec2) -> DVec2 {
     DVec2::new(wrap(offset.x), wrap(offset.y))
@@ -52,8 +58,8 @@ pub(crate) fn wrapped(offset: DVec2) -> DVec2 {
 /// One coordinate of [`wrapped`].
 #[inline]
 pub(crate) fn wrap(x: f64) -> f64 {
-    // Adding 3 · 2^51 leaves no digits after the point. Faster than `round`, which older processors have no instruction
-    // for.
+    // Adding 3 · 2^51 removes all digits after the point. This is faster than `round`, for which older processors have
+    // no instruction.
     const SHIFT: f64 = 6_755_399_441_055_744.0;
     let nearest = if x.abs() < 1e15 { (x + SHIFT) - SHIFT } else { x.round() };
     x - nearest
@@ -70,7 +76,7 @@ fn images_and_waves(DVec2 { x, y }: DVec2) -> f64 {
                 let r = (x - h).hypot(y - k);
                 images += libm::erfc(root_pi * r) / r;
             }
-            // The waves (±h, ±k) together: twice as many where a component is not zero.
+            // The waves (±h, ±k) together. Each component that is not zero doubles their number.
             if h >= 0.0 && k >= 0.0 && h + k > 0.0 {
                 let n = h.hypot(k);
                 let count = if h > 0.0 { 2.0 } else { 1.0 } * if k > 0.0 { 2.0 } else { 1.0 };
@@ -81,14 +87,15 @@ fn images_and_waves(DVec2 { x, y }: DVec2) -> f64 {
     images + waves - 2.0
 }
 
-/// `L_ij` by quadrature of Ewald's sum: the slow reference of [`PeriodicLove`](crate::PeriodicLove), a millisecond
-/// each.
+/// `L_ij` by quadrature of Ewald's sum, in one millisecond.
 ///
-/// Arguments as there. The nearest image is [`love_displacement`], the others and the background are averaged over the
-/// source by 24 × 24 Gauss-Legendre points; squares above λ/4 are cut into quarters first.
+/// It is the slow reference for [`PeriodicLove`](crate::PeriodicLove), with the same arguments. The contribution of the
+/// nearest image is [`love_displacement`]. The other images and the background are averaged over the source by 24 × 24
+/// Gauss-Legendre points. Squares above λ/4 are divided into quarters first. `half_side` must be in (0, 1/2]; otherwise
+/// the result is NaN.
 ///
 /// *Accuracy*: 2e-14 of the larger of |L| and (2d)², by comparison with a 17-digit table (test
-/// `coefficients_match_the_seventeen_digit_table`). `half_side` must be in (0, 1/2]; NaN otherwise.
+/// `coefficients_match_the_seventeen_digit_table`).
 #[must_use]
 pub fn ewald_coefficient(offset: DVec2, half_side: f64) -> f64 {
     if !(half_side > 0.0 && half_side <= 0.5) {
@@ -116,7 +123,7 @@ mod tests {
 
     #[test]
     fn lattice_function_has_its_known_values() {
-        // Madelung-type sums to 16 digits (mpmath).
+        // Sums of Madelung's type to 16 digits (mpmath).
         let known =
             [(0.5, 0.5, -1.6155426267128243), (0.5, 0.0, -1.1423611466445647), (0.25, 0.1, -0.01824371850081752)];
         for (x, y, reference) in known {

@@ -1,4 +1,4 @@
-//! An elastic layer, bonded to a rigid base, instead of the half-space.
+//! An elastic layer, bonded to a rigid base, in place of the half-space.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,22 +6,25 @@ use rc_core::{EdgeBias, Grid, Kernel, Symbol};
 
 use crate::{Love, Spectral};
 
-/// A layer that sticks to a rigid base, loaded without friction, in units of λ and E* = E/(1-ν²) of the layer.
+/// A layer that is bonded to a rigid base and loaded without friction.
 ///
-/// A pressure wave of wavenumber q displaces its surface by 2/(E* q) · M(q d), with ξ = q d:
+/// Units are λ and E* = E/(1-ν²) of the layer. A pressure wave of wavenumber q displaces its surface by 2/(E* q) · M(q
+/// d), with ξ = q d:
 ///
 /// ```text
 /// M(ξ) = [(3-4ν) sinh 2ξ - 2ξ] / [(3-4ν) cosh 2ξ + 2ξ² + 5 - 12ν + 8ν²]
 /// ```
 ///
-/// (R. H. Bentall, K. L. Johnson, *Int. J. Mech. Sci.* 10 (1968) 637-663; with any layer and substrate T. C.
-/// O'Sullivan, R. B. King, *J. Tribol.* 110 (1988) 235-240; in this form G. Carbone, L. Mangialardi, *J. Mech. Phys.
-/// Solids* 56 (2008) 684-706.) M → 1 for short waves, the half-space. M → ξ (1-2ν)/(2(1-ν)²) for long ones: there each
-/// column of the layer is a spring, with [`Layer::uniform_displacement`] for a pressure of E*. An incompressible layer
-/// (ν = 1/2) has M → 2ξ³/3, and a uniform pressure does not displace it.
+/// Short waves have M → 1, as for the half-space. Long waves have M → ξ (1-2ν)/(2(1-ν)²). There each column of the
+/// layer is a spring, and a pressure of E* causes [`Layer::uniform_displacement`]. An incompressible layer (ν = 1/2)
+/// has M → 2ξ³/3, and a uniform pressure does not displace it.
 ///
-/// The factor is the solution of the equations of elasticity in the layer (test
+/// *Accuracy*: the factor is the solution of the equations of elasticity in the layer (test
 /// `the_factor_solves_the_equations_of_the_layer`).
+///
+/// *Sources*: R. H. Bentall, K. L. Johnson, *Int. J. Mech. Sci.* 10 (1968) 637-663. For any layer and substrate: T. C.
+/// O'Sullivan, R. B. King, *J. Tribol.* 110 (1988) 235-240. In this form: G. Carbone, L. Mangialardi, *J. Mech. Phys.
+/// Solids* 56 (2008) 684-706.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layer {
     /// Thickness d > 0, in λ.
@@ -31,21 +34,23 @@ pub struct Layer {
 }
 
 impl Layer {
-    /// M(ξ) for ξ ≥ 0: 0 at 0, positive beyond, → 1. Relative error a few roundings.
+    /// The factor M(ξ) for ξ ≥ 0.
+    ///
+    /// It is 0 at 0, positive beyond, and tends to 1. The relative error is a few roundings.
     #[must_use]
     pub fn factor(self, xi: f64) -> f64 {
         let (kappa, decay) = (3.0 - 4.0 * self.poisson, (-2.0 * xi).exp());
         if xi < SERIES {
-            // κ sinh 2ξ - 2ξ without the cancellation of long waves.
+            // κ sinh 2ξ - 2ξ without the cancellation that long waves would cause.
             let above = (kappa - 1.0) * 2.0 * xi + kappa * sinh_minus_argument(2.0 * xi);
             return above / (kappa * (2.0 * xi).cosh() + 2.0 * xi * xi + 0.5 * (1.0 + kappa * kappa));
         }
-        // Numerator and denominator times 2 exp(-2ξ), so that short waves do not overflow.
+        // Numerator and denominator are multiplied by 2 exp(-2ξ), so that short waves do not overflow.
         let above = kappa * (1.0 - decay * decay) - 4.0 * xi * decay;
         above / (kappa * (1.0 + decay * decay) + (4.0 * xi * xi + 1.0 + kappa * kappa) * decay)
     }
 
-    /// M(ξ) - 1, to the same relative error where it is small.
+    /// M(ξ) - 1, with the same relative error where it is small.
     fn excess(self, xi: f64) -> f64 {
         if xi < SERIES {
             return self.factor(xi) - 1.0;
@@ -56,8 +61,9 @@ impl Layer {
         above / (kappa * (1.0 + decay * decay) + (4.0 * xi * xi + constant) * decay)
     }
 
-    /// Displacement of the surface under a uniform pressure of E*, in λ: d (1-2ν)/(1-ν)². With E* = E/(1-ν²) that is
-    /// the uniaxial compression d (1+ν)(1-2ν)/((1-ν) E) for a pressure of 1.
+    /// Displacement of the surface under a uniform pressure of E*, in λ: d (1-2ν)/(1-ν)².
+    ///
+    /// With E* = E/(1-ν²) this is the uniaxial compression d (1+ν)(1-2ν)/((1-ν) E) per unit pressure.
     #[must_use]
     pub fn uniform_displacement(self) -> f64 {
         self.thickness * (1.0 - 2.0 * self.poisson) / (1.0 - self.poisson).powi(2)
@@ -67,7 +73,7 @@ impl Layer {
 /// Below this ξ, sums of exponentials would cancel.
 const SERIES: f64 = 0.5;
 
-/// sinh y - y for |y| ≤ 1, by its series.
+/// sinh y - y for |y| ≤ 1, from its series.
 fn sinh_minus_argument(y: f64) -> f64 {
     let squared = y * y;
     // The last term is below 1e-17 of the first.
@@ -75,19 +81,24 @@ fn sinh_minus_argument(y: f64) -> f64 {
     y * sum
 }
 
-/// Thickness in elements below which the sum over aliases would be long: such a layer is a bed of springs for the grid.
+/// Minimum thickness of a layer, in elements.
+///
+/// For a thinner layer, which acts like a bed of springs on the grid, the sum over aliases would be long.
 pub const THINNEST_LAYER: f64 = 0.25;
 
-/// [`Layer`] under pressures that are constant on elements, displacements at their centres: [`Love`] on a layer.
+/// [`Love`] on a layer: pressures that are constant on elements, displacements at element centres.
 ///
-/// Its symbol is that of [`Love`] plus Σ 2/|q| (M(|q|d) - 1) sinc(q_x hx/2) sinc(q_y hy/2) over the aliases q of the
-/// wave. These terms fall as exp(-2|q|d), so that few aliases count. *Accuracy*: every value within 1e-13 of the
-/// half-space's (test `the_symbol_is_the_sum_over_aliases`). *Cost*: that of [`Love`] and about 10 ns a term; a layer
-/// of 4 elements has 1 to 4 terms, one of [`THINNEST_LAYER`] 800.
+/// The symbol is that of [`Love`] plus Σ 2/|q| (M(|q|d) - 1) sinc(q_x hx/2) sinc(q_y hy/2) over the aliases q of the
+/// wave. These terms decrease like exp(-2|q|d), so few aliases count.
+///
+/// *Accuracy*: every value is within 1e-13 of the value of the half-space (test `the_symbol_is_the_sum_over_aliases`).
+///
+/// *Cost*: that of [`Love`], plus about 10 ns for each term. A layer of 4 elements has 1 to 4 terms, a layer of
+/// [`THINNEST_LAYER`] has 800.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoveLayer(pub Layer);
 
-/// Relative to the largest, terms below this do not count: exp(-2ξ) at ξ.
+/// The value of ξ at which exp(-2ξ), relative to the largest term, is negligible.
 const NEGLIGIBLE_XI: f64 = 18.5;
 
 impl Kernel for LoveLayer {
@@ -109,7 +120,7 @@ impl Kernel for LoveLayer {
             for (qy, wy) in rows[ky].terms() {
                 for (qx, wx) in columns[kx].terms() {
                     let q = (qx * qx + qy * qy).sqrt();
-                    // Aliases of the zero wave along both axes are not there: the sinc of a whole wave is zero.
+                    // Aliases of the zero wave along both axes are omitted, because the sinc of a whole wave is zero.
                     if q > 0.0 && q < farthest {
                         sum += 2.0 / q * layer.excess(q * layer.thickness) * wx * wy;
                     }
@@ -124,7 +135,7 @@ impl Kernel for LoveLayer {
     }
 }
 
-/// Aliases along one axis, nearest first: wavenumber and mean of the wave over an element.
+/// Aliases along one axis, nearest first. Each is a wavenumber and the mean of its wave over an element.
 struct Aliases(Vec<(f64, f64)>);
 
 impl Aliases {
@@ -151,7 +162,7 @@ impl Aliases {
     }
 }
 
-/// [`Layer`] for waves instead of elements: [`Spectral`] on a layer, 2/(E* |q|) M(|q|d) without aliases.
+/// [`Spectral`] on a layer: waves instead of elements, 2/(E* |q|) M(|q|d) without aliases.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectralLayer(pub Layer);
 

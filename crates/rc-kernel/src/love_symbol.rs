@@ -1,17 +1,19 @@
-//! The symbol of the paper's element on a uniform grid, fast: a few aliases and a smooth rest.
+//! The symbol of the paper's element on a uniform grid.
 //!
-//! The aliases nearest to the wave are summed as they are. The rest of the alias sum ([`crate::alias_sum`]) is a smooth
-//! and even function of θx and θy, singular only at the nearest alias that is left out. It is a Chebyshev interpolant
-//! in θx² and θy², fitted to the alias sum, and as accurate as that sum. But for the unit of length it depends on the
-//! shape of elements alone, so all grids of a process whose elements are alike have one fit: fitted for each grid, it
-//! took a quarter of a solve on 256² elements.
+//! It is the sum of a few aliases and a smooth rest. The aliases nearest to the wave are summed directly. The rest of
+//! the alias sum ([`crate::alias_sum`]) is a smooth and even function of θx and θy. It is singular only at the nearest
+//! of its aliases. A Chebyshev interpolant in θx² and θy², fitted to the alias sum, represents it with the accuracy of
+//! that sum.
 //!
-//! Which aliases are near depends on the shape of the elements. Let r ≥ 1 be long side over short side, m count aliases
-//! along the long side and n along the short one.
+//! Except for the unit of length, the rest depends only on the shape of the elements. So a process has one fit for all
+//! grids with elements of the same shape. A fit for each grid would take a quarter of a solve on 256² elements.
+//!
+//! The set of near aliases depends on the shape of the elements. Let r ≥ 1 be the ratio of the long to the short side.
+//! Let m count aliases along the long side and n along the short side.
 //!
 //! - Up to r = 2, a block of 3, 5 or 7 aliases along by 3 across is enough.
-//! - Beyond, the row n = 0 is singular at distances of order 1/r from real θ, for ever more m. This row is summed
-//!   whole, with the weights of the alternating sum, and all other rows are smooth.
+//! - For larger r, the row n = 0 is singular at distances of order 1/r from real θ, for more and more m. This row is
+//!   summed completely, with the weights of the alternating sum, and all other rows are smooth.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -21,20 +23,24 @@ use rc_core::Grid;
 use crate::alias_sum::{AliasSum, Damping, TERMS, alias_range, alternating_weights, phase};
 use crate::chebyshev;
 
-/// Chebyshev nodes per direction: the interpolant converges like 14^-nodes or faster (for squares like 38^-nodes).
+/// Chebyshev nodes per direction.
+///
+/// The interpolant converges like 14^-nodes or faster, for squares like 38^-nodes.
 const NODES: usize = 14;
 
-/// Weighted terms on each side of the row n = 0: 5.8^-18 = 2e-14 is a bound, the error measured is below 2e-15.
+/// Weighted terms on each side of the row n = 0.
+///
+/// A bound of the error is 5.8^-18 = 2e-14. The measured error is below 2e-15.
 const ROW_TERMS: usize = 18;
 
-/// Largest aspect ratio of elements for which a block of aliases is the shorter sum.
+/// Maximum aspect ratio of elements for which a block of aliases is the shorter sum.
 const LARGEST_BLOCK_ASPECT: f64 = 2.0;
 
 /// Evaluates λ(kx, ky) on one grid.
 pub(crate) struct LoveSymbol {
     /// Whether the long side of the elements is along y.
     swapped: bool,
-    /// Aliases along the long side, two at a time, since a processor takes two square roots at once.
+    /// Aliases along the long side, in pairs, because a processor computes two square roots at once.
     long: Axis<2>,
     short: Axis<1>,
     /// For each wavenumber along the long side, the Chebyshev coefficients of the rest in θ² of the short side.
@@ -42,10 +48,12 @@ pub(crate) struct LoveSymbol {
 }
 
 impl LoveSymbol {
-    /// Fits the rest, if no fit for elements of this shape is kept, in 1.6 ms, and tabulates what depends on one
-    /// component of the wave: 0.3 µs for each element of a side.
+    /// Fits the rest, and tabulates what depends on one component of the wave.
+    ///
+    /// The fit takes 1.6 ms, unless a fit for elements of this shape is kept. The tables take 0.3 µs for each element
+    /// of a side.
     pub(crate) fn new(grid: Grid) -> Self {
-        // Number of elements, and how many of them are as long as the unit.
+        // For each axis, the number of elements, and how many of them are as long as the unit.
         let [x, y] = [(grid.nx(), grid.nx() as f64), (grid.ny(), grid.ny() as f64 / grid.cell_ratio())];
         let swapped = x.1 > y.1;
         let ((n_long, per_long), (n_short, per_short)) = if swapped { (y, x) } else { (x, y) };
@@ -81,27 +89,32 @@ impl LoveSymbol {
     }
 }
 
-/// Aliases of the block along and across elements of this aspect ratio; none where the row n = 0 is summed whole.
+/// Aliases of the block along and across elements of this aspect ratio.
+///
+/// `None` where the row n = 0 is summed completely.
 fn reach(aspect: f64) -> Option<(usize, usize)> {
-    // With this reach, the singularities of the rest are nowhere closer than for squares and 3 x 3 aliases.
+    // With this reach, the singularities of the rest are at least as far away as for squares and 3 x 3 aliases.
     (aspect <= LARGEST_BLOCK_ASPECT).then(|| ((1.5 * aspect - 0.5).ceil() as usize, 1))
 }
 
-/// Chebyshev coefficients of the rest, as [`interpolate`] gives them.
+/// Chebyshev coefficients of the rest, as [`interpolate`] returns them.
 type Table = [[f64; NODES]; NODES];
 
-/// Fits that are kept. A process that uses more shapes makes the first ones again.
+/// Number of fits that are kept. A process with more shapes repeats the fits that it used longest ago.
 const KEPT: usize = 16;
 
-/// Fits by aspect ratio, the last one used at the end.
+/// Fits by aspect ratio. The last one used is at the end.
 static FITS: Mutex<Vec<(f64, Arc<Table>)>> = Mutex::new(Vec::new());
 
-/// The rest for elements of this aspect ratio, whose long side is the unit of length.
+/// The rest for elements of this aspect ratio.
+///
+/// Their long side is the unit of length.
 fn rest_of_shape(aspect: f64) -> Arc<Table> {
     let fits = || FITS.lock().unwrap_or_else(PoisonError::into_inner);
     let is_this = |(other, _): &(f64, Arc<Table>)| other.to_bits() == aspect.to_bits();
     let found = fits().iter().find(|fit| is_this(fit)).map(|(_, table)| Arc::clone(table));
-    // Without the lock: others need not wait, and who fits the same finds the same.
+    // The fit runs without the lock, so that other threads need not wait. Two threads that fit the same shape get the
+    // same result.
     let table = found.unwrap_or_else(|| Arc::new(fit(aspect)));
     let mut fits = fits();
     fits.retain(|fit| !is_this(fit));
@@ -120,11 +133,11 @@ fn fit(aspect: f64) -> Table {
     }
 }
 
-/// Tables over one component of the wave, with `L` aliases side by side.
+/// Tables for one component of the wave, with `L` aliases side by side.
 struct Axis<const L: usize> {
     /// The near aliases of each wavenumber up to half the grid.
     near: Vec<Aliases<L>>,
-    /// Entries of `near` for each wavenumber.
+    /// Number of entries of `near` for each wavenumber.
     stride: usize,
     /// θ² mapped to [-1, 1], for each wavenumber.
     mapped: Vec<f64>,
@@ -132,16 +145,18 @@ struct Axis<const L: usize> {
 
 /// `L` aliases of one wavenumber.
 struct Aliases<const L: usize> {
-    /// T_m, times the weight of the alias in the sum.
+    /// T_m times the weight of the alias in the sum.
     damping: [f64; L],
     /// ((θ + πm)/h)².
     squared: [f64; L],
 }
 
 impl<const L: usize> Axis<L> {
-    /// For `n` elements, of which `per_unit` are as long as the unit; `aliases`: (m, weight in the sum).
+    /// Tables for `n` elements, of which `per_unit` are as long as the unit.
+    ///
+    /// `aliases` has pairs of m and the weight in the sum.
     fn new(n: usize, per_unit: f64, aliases: &[(f64, f64)]) -> Self {
-        // Where the aliases do not fill the last entry, alias 2 with weight 0 does: its denominator is never 0.
+        // Lanes of the last entry without an alias get alias 2 with weight 0. Its denominator is never 0.
         let alias = |entry: usize, lane: usize| aliases.get(entry * L + lane).copied().unwrap_or((2.0, 0.0));
         let stride = aliases.len().div_ceil(L);
         let mut near = Vec::with_capacity((n / 2 + 1) * stride);
@@ -167,7 +182,7 @@ fn block(reach: usize) -> Vec<(f64, f64)> {
     alias_range(reach).map(|m| (m, 1.0)).collect()
 }
 
-/// All aliases, by the weights of the alternating sum.
+/// All aliases, with the weights of the alternating sum.
 fn weighted_row() -> Vec<(f64, f64)> {
     let weights = alternating_weights::<ROW_TERMS>();
     let both_sides = weights.iter().enumerate().flat_map(|(i, &weight)| {
@@ -177,8 +192,9 @@ fn weighted_row() -> Vec<(f64, f64)> {
     std::iter::once((0.0, 1.0)).chain(both_sides).collect()
 }
 
-/// Chebyshev coefficients in (θ² of the short side, θ² of the long side) of the interpolant of `value((θ long, θ
-/// short))` on [0, π/2]².
+/// Chebyshev coefficients of the interpolant of `value((θ long, θ short))` on [0, π/2]².
+///
+/// The variables are θ² of the short side and θ² of the long side.
 fn interpolate(value: impl Fn((f64, f64)) -> f64) -> Table {
     let theta = |node: usize| FRAC_PI_2 * f64::midpoint(1.0, chebyshev::node(node, NODES)).sqrt();
     let over_short: Table = std::array::from_fn(|i| coefficients(std::array::from_fn(|j| value((theta(i), theta(j))))));
@@ -197,7 +213,9 @@ mod tests {
 
     use super::*;
 
-    /// Every wave of a small grid, and about 33 × 33 of a large one, the longest included.
+    /// Every wave of a small grid, and about 33 × 33 waves of a large one.
+    ///
+    /// The longest waves are included.
     fn waves(n: usize) -> Vec<usize> {
         let half = n / 2;
         let mut waves: Vec<usize> = (0..=32).map(|i| i * half / 32).chain((1..4).filter(|&k| k <= half)).collect();
@@ -220,7 +238,7 @@ mod tests {
 
     #[test]
     fn fast_symbol_matches_the_alias_sum() {
-        // Squares, odd sides, both orientations, both sides of the switch at aspect 2, slivers.
+        // Squares, odd sides, both orientations, both sides of the switch at aspect 2, very thin elements.
         let sizes = [
             (16, 16),
             (64, 64),

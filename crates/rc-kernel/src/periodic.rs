@@ -1,7 +1,7 @@
 //! `L_ij = l_ij - l_m` of Eq. 4-6, over all images, between any two elements of the cell.
 //!
-//! The nearest image of the source is a square in free space ([`crate::square`]). All other images, with the
-//! background, add the mean over the source of a smooth function, which is tabulated by size ([`crate::averages`]).
+//! The nearest image of the source is a square in free space ([`crate::square`]). All other images and the background
+//! add the mean of a smooth function over the source. This mean is tabulated by size ([`crate::averages`]).
 
 use std::f64::consts::{FRAC_1_PI, PI};
 use std::sync::{LazyLock, OnceLock};
@@ -18,11 +18,12 @@ use crate::truncated::{check_half_side, check_offset};
 const FIRST_LEVEL: usize = 2;
 const LEVELS: usize = 20;
 
-/// Below this half side d, the share of the images is that of a point: the difference, d²/6 times the Laplacian of ψ
-/// (below 20), is below 2e-13.
+/// Half side d below which the contribution of the images is that of a point.
+///
+/// The difference, d²/6 times the Laplacian of ψ (below 20), is then below 2e-13.
 const POINT: f64 = 2.4e-7;
 
-/// The smooth part, fitted once per process, and its tables, each made when first used.
+/// The smooth part, fitted once per process, and its tables. Each table is made when it is first used.
 #[derive(Debug)]
 struct Tables {
     remainder: Remainder,
@@ -36,21 +37,22 @@ static TABLES: LazyLock<Tables> = LazyLock::new(|| Tables {
     point: OnceLock::new(),
 });
 
-/// The coefficients `L_ij = l_ij - l_m` of Eq. 4-6, all images, to 1e-12.
+/// The coefficients `L_ij = l_ij - l_m` of Eq. 4-6, with all images, to 1e-12.
 ///
-/// `L_ij` is the displacement at the centre of element i, minus its mean over the cell, under unit pressure on the
-/// square element j, its images, and a uniform counter-load: `1/(π E*) ∫ φ ds` over the square, with φ of
-/// [`ewald_phi`](crate::ewald_phi). In units of λ p/E*. The sum over a row is 0 on any tiling of the cell.
+/// `L_ij` is the displacement at the centre of element i, minus its mean over the cell. The load is unit pressure on
+/// the square element j and its images, and a uniform counter-load. So `L_ij = 1/(π E*) ∫ φ ds` over the square, with φ
+/// of [`ewald_phi`](crate::ewald_phi), in units of λ p/E*. The sum over a row is 0 on any tiling of the cell.
 ///
-/// *Accuracy*: error at most 1e-12 of the larger of |L_ij| and (2d)², the area of the source: where L_ij changes sign
-/// its relative error has no meaning. Measured 1.4e-13 for sides of λ/2 and 6e-14 for smaller ones, down to half sides
-/// of 2^-17, at all offsets (test `coefficients_match_the_quadrature_of_ewald_sums`). Exactly symmetric under x → -x, y
-/// → -y and x ↔ y.
+/// *Accuracy*: the error is at most 1e-12 of the larger of |L_ij| and (2d)², the area of the source. Relative to L_ij
+/// alone it has no meaning where L_ij changes sign. Measured errors are 1.4e-13 for sides of λ/2 and 6e-14 for smaller
+/// ones, down to half sides of 2^-17, at all offsets (test `coefficients_match_the_quadrature_of_ewald_sums`). The
+/// result is exactly symmetric under x → -x, y → -y and x ↔ y.
 ///
-/// *Cost*, one core, x86-64 without AVX: 54 ns within 13 half sides of the source, 31 ns beyond, for half sides 2^-2,
-/// 2^-3, … and all below 2.4e-7. Other half sides take 0.7 µs; a [`PeriodicSource`] has a table for one of them.
-/// Another square larger than λ/4 is the sum of its quarters, so 4 to 16 times as much. The first use in a process
-/// takes 1 ms, and the first use of a size 0.3 ms; after that this is a pointer.
+/// *Cost*, on one core of x86-64 without AVX, for half sides 2^-2, 2^-3, … and all below 2.4e-7: 54 ns within 13 half
+/// sides of the source, and 31 ns beyond. Other half sides take 0.7 µs. A [`PeriodicSource`] has a table for one of
+/// them. A square larger than λ/4 without a table is the sum of its quarters, which costs 4 to 16 times as much. The
+/// first use in a process takes 1 ms, and the first use of a size takes 0.3 ms. After that, a value of this type is
+/// only a pointer.
 #[derive(Clone, Copy, Debug)]
 pub struct PeriodicLove {
     tables: &'static Tables,
@@ -63,17 +65,17 @@ impl Default for PeriodicLove {
 }
 
 impl PeriodicLove {
-    /// The tables shared by all of this process; see [`PeriodicLove`] for the cost.
+    /// The tables that all users in this process share. For the cost see [`PeriodicLove`].
     #[must_use]
     pub fn new() -> Self {
         Self { tables: &TABLES }
     }
 
-    /// `L_ij` for a source of half-side `half_side` d at `offset` = target minus source, in units of λ.
+    /// `L_ij` for a source of half-side `half_side` d at `offset`, in units of λ.
     ///
-    /// The offset may be between any images: it is wrapped into the cell, to [-1/2, 1/2]². Nothing is checked: for an
-    /// offset that is not finite or `half_side` not in (0, 1/2] the result has no meaning ([`Self::try_coefficient`]
-    /// checks).
+    /// The offset is target minus source. It may be between any images. It is wrapped into the cell, to [-1/2, 1/2]².
+    /// Arguments are not checked. For an offset that is not finite, or `half_side` not in (0, 1/2], the result has no
+    /// meaning. [`Self::try_coefficient`] checks.
     #[inline]
     #[must_use]
     pub fn coefficient(&self, offset: DVec2, half_side: f64) -> f64 {
@@ -84,17 +86,19 @@ impl PeriodicLove {
         }
     }
 
-    /// As [`Self::coefficient`], checked.
+    /// As [`Self::coefficient`], with checked arguments.
     ///
     /// # Errors
-    /// [`KernelError`]: an offset that is not finite, or `half_side` not in (0, 1/2].
+    /// [`KernelError`] for an offset that is not finite, or `half_side` not in (0, 1/2].
     pub fn try_coefficient(&self, offset: DVec2, half_side: f64) -> Result<f64, KernelError> {
         check_offset(offset)?;
         check_half_side(half_side)?;
         Ok(self.coefficient(offset, half_side))
     }
 
-    /// A table for sources of one size, when it is not a power of two: made in 0.3 ms, 40 kB.
+    /// A table for sources of one size that is not a power of two.
+    ///
+    /// It is made in 0.3 ms and takes 40 kB.
     ///
     /// # Errors
     /// [`KernelError::HalfSide`] when `half_side` is not in (0, 1/2].
@@ -123,18 +127,20 @@ impl PeriodicLove {
     }
 }
 
-/// The coefficients `L_ij` of Eq. 4-6 for sources of one size; from [`PeriodicLove::source`], as accurate and as fast.
+/// The coefficients `L_ij` of Eq. 4-6 for sources of one size.
+///
+/// They come from [`PeriodicLove::source`] and have its accuracy and speed.
 #[derive(Debug)]
 pub struct PeriodicSource {
     /// Half side of one piece of the source.
     half_side: f64,
-    /// Pieces along a side: 1 up to λ/4.
+    /// Number of pieces along a side, which is 1 up to λ/4.
     pieces: usize,
     table: MeanTable,
 }
 
 impl PeriodicSource {
-    /// `L_ij` at `offset` = target minus source; see [`PeriodicLove::coefficient`].
+    /// `L_ij` at `offset` = target minus source, as [`PeriodicLove::coefficient`].
     #[inline]
     #[must_use]
     pub fn coefficient(&self, offset: DVec2) -> f64 {
@@ -156,11 +162,11 @@ impl PeriodicSource {
 }
 
 impl Tables {
-    /// The table for `half_side`, when there is one.
+    /// The table for `half_side`, or `None` if there is none.
     #[inline]
     fn of(&self, half_side: f64) -> Option<&MeanTable> {
         let bits = half_side.to_bits();
-        // A power of two has only an exponent; that of 2^-level is 1023 - level.
+        // A power of two has only an exponent. The exponent of 2^-level is 1023 - level.
         if bits << 12 == 0 {
             let level = 1023_usize.wrapping_sub((bits >> 52) as usize);
             if let Some(table) = self.levels.get(level.wrapping_sub(FIRST_LEVEL)) {
@@ -176,8 +182,8 @@ impl Tables {
         if half_side <= MAX_HALF_SIDE {
             return MeanTable::new(&self.remainder, half_side);
         }
-        // A square of side λ/2 reaches too near its images for the fit of ψ. The share of the images at its own offsets
-        // is smooth: it is the sum of the quarters minus the nearest image.
+        // A square of side λ/2 is too close to its images for the fit of ψ. The contribution of the images is smooth at
+        // the offsets of this square. It is the sum of the quarters minus the nearest image.
         let (half, side) = (0.5 * half_side, 2.0 * half_side);
         let quarter = self.make(half);
         MeanTable::of_means(|offset| {
@@ -187,8 +193,10 @@ impl Tables {
     }
 }
 
-/// `L_ij` at an offset, not as a [`DVec2`]: where this is not inlined, two numbers are passed in floating-point
-/// registers and a struct is not, which costs 5 ns.
+/// `L_ij` at an offset (`dx`, `dy`).
+///
+/// The offset is not a [`DVec2`], which would cost 5 ns. Where this is not inlined, two numbers are passed in
+/// floating-point registers, but a struct is not.
 #[inline]
 fn with_table(table: &MeanTable, dx: f64, dy: f64, half_side: f64) -> f64 {
     let (long, short) = folded(dx, dy);
@@ -202,14 +210,16 @@ fn folded(dx: f64, dy: f64) -> (f64, f64) {
     if x >= y { (x, y) } else { (y, x) }
 }
 
-/// The nearest image, and the rest from its mean over the source.
+/// The nearest image plus the rest, which follows from its mean over the source.
 #[inline]
 fn assembled(long: f64, short: f64, half_side: f64, mean: f64) -> f64 {
     let side = 2.0 * half_side;
     FRAC_1_PI * (square_integral(long, short, half_side) + side * side * mean)
 }
 
-/// The sum of `of` over the centres of four quarters, `half` from the centre along each axis.
+/// The sum of `of` over the centres of four quarters.
+///
+/// They are `half` from the centre along each axis.
 ///
 /// The offset is folded first, so that symmetric offsets add the same numbers in the same order.
 fn quarters(offset: DVec2, half: f64, of: impl Fn(DVec2) -> f64) -> f64 {

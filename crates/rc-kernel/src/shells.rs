@@ -1,4 +1,4 @@
-//! The number of shells of images that are summed at most.
+//! Maximum number of shells of images in a sum.
 
-/// Maximum number of shells of images: 4 million images, a second for one coefficient.
+/// Maximum number of shells of images: 4 million images, one second for a coefficient.
 pub const MAX_SHELLS: usize = 1024;

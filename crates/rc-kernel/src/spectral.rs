@@ -1,12 +1,13 @@
-//! The point-collocated kernel that the FFT codes of this field use.
+//! The point-collocated kernel that FFT codes of this field use.
 
 use std::f64::consts::PI;
 
 use rc_core::{EdgeBias, Grid, Kernel, Symbol};
 
-/// The symbol of the continuous half-space, `2/(E* |q|)`, at the wavenumbers of the grid, without aliases.
+/// The symbol of the continuous half-space, `2/(E* |q|)`, without aliases.
 ///
-/// Exact for band-limited pressures; makes results comparable digit by digit with other codes.
+/// It is evaluated at the wavenumbers of the grid, and exact for band-limited pressures. Results can be compared with
+/// other codes digit by digit.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Spectral;
 

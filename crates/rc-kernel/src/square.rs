@@ -1,19 +1,26 @@
-//! The integral of 1/r over a square in little more than the time of its four logarithms, to 1e-13.
+//! A fast integral of 1/r over a square, to 1e-13.
 //!
-//! [`love_displacement`](crate::love_displacement) is accurate to rounding, at every distance. This is the same
-//! integral for sums in which it is one term of several, where the last two digits would be lost anyway.
+//! [`love_displacement`](crate::love_displacement) is accurate to rounding at every distance. This is the same
+//! integral, for sums in which it is one term of several. Such a sum would lose the last two digits anyway. The
+//! function takes little more than the time of its four logarithms.
 
-/// Distance, in half-sides, from which six orders of the multipole series are used. The first order left out is below
-/// 2.5e-14 there; the cancellation of the logarithms, which grows with the square of the distance, is not above.
+/// Distance, in half-sides, from which six orders of the multipole series are used.
+///
+/// There, the first omitted order is below 2.5e-14. So is the cancellation of the logarithms, which grows with the
+/// square of the distance.
 const FAR: f64 = 13.0;
 
-/// ∫∫ 1/|r - s| ds over the square |s_x|, |s_y| ≤ d = `half_side`, at r = (`long`, `short`), 0 ≤ short ≤ long.
+/// ∫∫ 1/|r - s| ds over the square |s_x|, |s_y| ≤ d = `half_side`, at r = (`long`, `short`).
+///
+/// The arguments have 0 ≤ short ≤ long.
 #[inline]
 pub(crate) fn square_integral(long: f64, short: f64, half_side: f64) -> f64 {
     if long > FAR * half_side { six_orders(long, short, half_side) } else { four_logarithms(long, short, half_side) }
 }
 
-/// The multipole series of [`crate::multipoles`] up to order (d/r)^10, with its coefficients as fractions; c = cos 4φ.
+/// The multipole series of [`crate::multipoles`] up to order (d/r)^10.
+///
+/// Its coefficients are fractions, and c = cos 4φ.
 #[inline]
 fn six_orders(long: f64, short: f64, half_side: f64) -> f64 {
     let (x2, y2) = (long * long, short * short);
@@ -28,16 +35,18 @@ fn six_orders(long: f64, short: f64, half_side: f64) -> f64 {
     area * inverse.sqrt() * (low + u * u * (middle + u * u * high))
 }
 
-/// Johnson's four logarithms: for each side, its distance times ∫ dt/√(distance² + t²) along it, t going from `from` to
-/// `to`, at the radii `r_from` and `r_to`. Never inlined, so that it is as fast in every caller.
+/// Johnson's four logarithms, one for each side.
+///
+/// Each is the distance of the side times ∫ dt/√(distance² + t²) along it. t goes from `from` to `to`, at the radii
+/// `r_from` and `r_to`. The function is never inlined, so that it is as fast in every caller.
 #[inline(never)]
 fn four_logarithms(long: f64, short: f64, half_side: f64) -> f64 {
     let scale = 1.0 / half_side;
-    // Differences before the scaling: next to a side they are exact.
+    // Differences are taken before the scaling, so that they are exact next to a side.
     let [a, b] = [(long + half_side) * scale, (long - half_side) * scale];
     let [c, e] = [(short + half_side) * scale, (short - half_side) * scale];
     let (a2, b2, c2, e2) = (a * a, b * b, c * c, e * e);
-    // Each side: squared distance to its line, offsets and squared radii of its ends.
+    // For each side: squared distance to its line, offsets and squared radii of its ends.
     let squared = [a2, b2, c2, e2];
     let to = [c, c, a, a];
     let from = [e, e, b, b];
@@ -48,7 +57,7 @@ fn four_logarithms(long: f64, short: f64, half_side: f64) -> f64 {
     for (i, logarithm) in logarithms.iter_mut().enumerate() {
         let ahead = to[i] + r_to[i];
         let start = from[i].abs() + r_from[i];
-        // Where a side starts behind the point, r_from + from would cancel; it is squared/(r_from - from).
+        // Where a side starts behind the point, r_from + from would cancel. It equals squared/(r_from - from).
         let behind = from[i] < 0.0;
         let numerator = ahead * if behind { start } else { 1.0 };
         let denominator = if behind { squared[i] } else { start };
@@ -57,15 +66,17 @@ fn four_logarithms(long: f64, short: f64, half_side: f64) -> f64 {
     half_side * ((a * logarithms[0] - b * logarithms[1]) + (c * logarithms[2] - e * logarithms[3]))
 }
 
-/// Below this, a squared distance times its logarithm is far below rounding.
+/// A squared distance below this, times its logarithm, is far below rounding.
 const TINY: f64 = 1e-60;
 
-/// Natural logarithm of a number ≥ 1, to a few roundings. Inlined and free of branches, unlike that of the standard
-/// library, it leaves the processor free to compute the four at once, which makes a periodic coefficient 10 ns faster.
+/// Natural logarithm of a number ≥ 1, to a few roundings.
+///
+/// Unlike the logarithm of the standard library, it is inlined and free of branches. The processor can then compute all
+/// four logarithms at once. This makes a periodic coefficient 10 ns faster.
 #[inline]
 fn ln(number: f64) -> f64 {
     const SQRT_HALF: u64 = 0x3fe6_a09e_667f_3bcd;
-    // 2^52 with an integer in its last bits is 2^52 more than the integer.
+    // 2^52 with an integer in its last bits is 2^52 plus the integer.
     const TWO_52: u64 = 0x4330_0000_0000_0000;
     // number = 2^exponent · m, with m from √½ to √2.
     let exponent = number.to_bits().wrapping_sub(SQRT_HALF) >> 52;

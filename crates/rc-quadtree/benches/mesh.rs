@@ -1,6 +1,6 @@
-//! Time to count, build and transfer the paper's meshes of a mask of 4096² cells in contact to two thirds.
+//! Time to count, build and transfer the paper's meshes.
 //!
-//! `cargo bench -p rc-quadtree`
+//! The mask has 4096² cells, of which two thirds are in contact. Run `cargo bench -p rc-quadtree`.
 
 use std::{f64::consts::TAU, sync::LazyLock};
 
@@ -8,7 +8,7 @@ use divan::{Bencher, black_box, counter::ItemsCount};
 use rc_core::{DVec2, Grid};
 use rc_quadtree::paper::{Mask, Mesh, MeshKind, MeshParams, count, transfer};
 
-/// Two thirds of the cell, in patches with borders on several scales.
+/// Two thirds of the periodic cell, in patches with borders on several scales.
 static MASK: LazyLock<Mask> = LazyLock::new(|| {
     let rough = |DVec2 { x, y }: DVec2| {
         let wave = |k: f64, phase: f64| (TAU * k * x + phase).cos() * (TAU * k * y + 2.0 * phase).sin() / k.sqrt();

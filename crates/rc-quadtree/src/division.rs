@@ -1,14 +1,16 @@
-//! Division of elements into quarters, with sizes of neighbours kept within what an operator allows.
+//! Division of elements into quarters.
+//!
+//! Sizes of neighbours stay within the limits of an operator.
 
 use crate::elements::Elements;
 use crate::tiles::{TILE, TileSet, quarters};
 
-/// Divides the elements of the chosen tiles into quarters. `chosen` has a flag for each tile of each level, finest
-/// first.
+/// Divides the elements of the chosen tiles into quarters.
 ///
-/// With `deepen` a level is added below the finest; without it the flags of the finest level are ignored.
+/// `chosen` has a flag for each tile of each level, finest first. With `deepen` a level is added below the finest.
+/// Without it the flags of the finest level are ignored.
 ///
-/// Larger neighbours are divided too. Elements whose sizes differ by a factor of 4 are then farther from each other
+/// Larger neighbours are divided too. Then the distance between elements whose sizes differ by a factor of 4 is more
 /// than `reach` cells of the size between.
 ///
 /// # Panics
@@ -37,7 +39,9 @@ pub fn divide(elements: &Elements, mut chosen: Vec<Vec<bool>>, deepen: bool, rea
     Elements::new(result)
 }
 
-/// Chooses the tiles of each level that are within `reach` cells of a chosen tile of the next finer level.
+/// Chooses the tiles of each level near chosen tiles of the next finer level.
+///
+/// They are within `reach` cells of one of these.
 fn choose_larger_neighbours(elements: &Elements, chosen: &mut [Vec<bool>], reach: usize) {
     let levels = elements.levels();
     let reach = reach.div_ceil(TILE) as i64;
@@ -55,12 +59,12 @@ fn choose_larger_neighbours(elements: &Elements, chosen: &mut [Vec<bool>], reach
     }
 }
 
-/// Places of the tiles with this flag.
+/// Places of the tiles whose flag is `wanted`.
 fn with_flag(tiles: &TileSet, flags: &[bool], wanted: bool) -> impl Iterator<Item = [u32; 2]> {
     tiles.places().iter().zip(flags).filter(move |&(_, &flag)| flag == wanted).map(|(&place, _)| place)
 }
 
-/// Places, on the next finer level, of the quarters of the chosen tiles.
+/// Places of the quarters of the chosen tiles, on the next finer level.
 fn quarters_of_chosen(tiles: &TileSet, chosen: &[bool]) -> impl Iterator<Item = [u32; 2]> {
     with_flag(tiles, chosen, true).flat_map(quarters)
 }
@@ -82,8 +86,8 @@ mod tests {
         };
         let two = divide(&all, corner(&all), true, 8);
         assert_eq!(n_tiles(&two), [4, 63]);
-        // The quarter in the corner is divided, and so are the three large tiles that touch it across the seams: two of
-        // its neighbours' places each are theirs.
+        // The quarter in the corner is divided, and so are the three large tiles that touch it across the seams. Two of
+        // the neighbours' places of each belong to these tiles.
         let three = divide(&two, corner(&two), true, 8);
         assert_eq!(n_tiles(&three), [4, 3 + 3 * 4, 60]);
         let area: usize = n_tiles(&three).iter().enumerate().map(|(coarser, n)| n << (2 * coarser)).sum();
@@ -103,7 +107,7 @@ mod tests {
         let moved = all.moved(&two, &values, 0.0);
         let tile = all.levels()[0].find(1, 2).expect("all tiles");
         let fine = two.levels()[0].find(3, 4).expect("a quarter");
-        // The cell in the lower right corner of the tile, four times.
+        // The cell in the lower right corner of the tile appears four times.
         for cell in [6, 7, 14, 15] {
             assert_eq!(moved[fine * 64 + cell].to_bits(), values[tile * 64 + 7].to_bits());
         }

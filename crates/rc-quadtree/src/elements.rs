@@ -1,23 +1,27 @@
-//! The elements of a mesh: tiles of the finest level, and tiles of coarser ones where the pressure is smooth.
+//! The elements of a mesh.
+//!
+//! They are cells of the finest level, and of coarser levels where the pressure is smooth.
 
 use std::ops::Range;
 
 use crate::tiles::{CELLS, TileSet};
 
-/// Tiles that one thread works on at a time.
+/// Number of tiles that one thread processes at a time.
 pub const BLOCK_TILES: usize = 16;
 
-/// Cells in a block of a vector.
+/// Number of cells in a block of a vector.
 pub const BLOCK_CELLS: usize = BLOCK_TILES * CELLS;
 
-/// Elements of one or more sizes: the cells of disjoint tiles of one or more levels, finest first.
+/// Elements of one or more sizes.
 ///
-/// A level is named by how many levels it is `coarser` than the finest: its elements have 2^`coarser` times the side.
+/// They are the cells of disjoint tiles of one or more levels, finest first. The elements of the level `coarser` have
+/// 2^`coarser` times the side of the finest elements.
 ///
-/// Vectors have one value for each cell: those of the finest level first, then those of the next coarser one and so on.
-/// Each level begins at a whole block of [`BLOCK_CELLS`], so that all cells of a block are of one size. Values between
-/// the last cell of a level and the next block have no element, nor have those of tiles that reach beyond their level
-/// ([`TileSet`]); a mesh with such tiles has one level.
+/// Vectors have one value for each cell. The values of the finest level come first, then those of the next coarser
+/// level, and so on. Each level begins at a whole block of [`BLOCK_CELLS`], so all cells of a block have the same size.
+///
+/// Some values of a vector have no element. These are values between the last cell of a level and the next block, and
+/// cells beyond the level in a tile that extends beyond it ([`TileSet`]). A mesh with such tiles has only one level.
 #[derive(Clone, Debug)]
 pub struct Elements {
     levels: Vec<TileSet>,
@@ -31,10 +35,12 @@ impl Elements {
         Self::new(vec![tiles])
     }
 
-    /// Elements of the tiles of the finest level, of the next coarser one with half as many per side, and so on.
+    /// Elements of the tiles of several levels.
+    ///
+    /// The finest level is first. Each further level has half as many cells per side.
     ///
     /// # Panics
-    /// Without any level.
+    /// When there is no level.
     #[must_use]
     pub fn new(levels: Vec<TileSet>) -> Self {
         assert!(!levels.is_empty(), "a mesh has at least one level");
@@ -48,7 +54,7 @@ impl Elements {
         Self { levels, starts }
     }
 
-    /// Tiles of each level, finest first.
+    /// The tiles of each level, finest first.
     #[must_use]
     pub fn levels(&self) -> &[TileSet] {
         &self.levels
@@ -66,21 +72,21 @@ impl Elements {
         self.levels.iter().map(TileSet::n_inside).sum()
     }
 
-    /// Is there the tile at a place of the level with `sides` cells?
+    /// Whether there is a tile at a place of the level with `sides` cells.
     #[must_use]
     pub fn has(&self, sides: [usize; 2], [column, row]: [u32; 2]) -> bool {
         let level = self.levels.iter().find(|tiles| tiles.sides() == sides);
         level.is_some_and(|tiles| tiles.find(column.into(), row.into()).is_some())
     }
 
-    /// Length of vectors: [`Elements::n_cells`], and what fills up the blocks.
+    /// Length of vectors: [`Elements::n_cells`] plus the values that complete blocks.
     #[must_use]
     pub fn len(&self) -> usize {
         let last = self.levels.len() - 1;
         self.starts[last] + self.levels[last].n_cells()
     }
 
-    /// Is there no element?
+    /// Whether there are no elements.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.levels.iter().all(TileSet::is_empty)
@@ -92,7 +98,9 @@ impl Elements {
         &self.levels[self.levels.len() - 1]
     }
 
-    /// With tiles of the coarsest level at all of `places` that have no elements yet.
+    /// This mesh with more tiles of the coarsest level.
+    ///
+    /// It gets a tile at each of `places` that has no elements yet.
     #[must_use]
     pub fn with(&self, places: &[[u32; 2]]) -> Self {
         let last = self.levels.len() - 1;
@@ -102,8 +110,9 @@ impl Elements {
         Self::new(levels)
     }
 
-    /// The tiles for which `wanted` is true; it gets the sides of the level in cells, the place and where the cells
-    /// are.
+    /// The tiles for which `wanted` is true.
+    ///
+    /// `wanted` gets the sides of the level in cells, the place of the tile, and the range of its cells in a vector.
     #[must_use]
     pub fn filtered(&self, wanted: impl Fn([usize; 2], [u32; 2], Range<usize>) -> bool) -> Self {
         let level = |(tiles, &start): (&TileSet, &usize)| {
@@ -116,20 +125,22 @@ impl Elements {
         Self::new(self.levels.iter().zip(&self.starts).map(level).collect())
     }
 
-    /// Whether they cover the whole cell.
+    /// Whether the elements cover the whole periodic cell.
     #[must_use]
     pub fn cover_cell(&self) -> bool {
         let areas = self.levels.iter().enumerate().map(|(coarser, tiles)| tiles.n_inside() << (2 * coarser));
         areas.sum::<usize>() == self.finest().sides().into_iter().product::<usize>()
     }
 
-    /// Where the cells of a level are in a vector.
+    /// Range of the cells of a level in a vector.
     #[must_use]
     pub fn cells(&self, coarser: usize) -> Range<usize> {
         self.starts[coarser]..self.starts[coarser] + self.levels[coarser].n_cells()
     }
 
-    /// The blocks of a vector: how much coarser than the finest level, and which of its tiles.
+    /// The blocks of a vector.
+    ///
+    /// Each is the number of a level and a range of its tiles.
     #[must_use]
     pub fn blocks(&self) -> Vec<(usize, Range<usize>)> {
         let per_block = BLOCK_CELLS / CELLS;
@@ -140,19 +151,23 @@ impl Elements {
         self.levels.iter().enumerate().flat_map(blocks).collect()
     }
 
-    /// Area of an element of a level, in units of the smallest ones.
+    /// Area of an element of a level, in units of the smallest elements.
     #[must_use]
     pub fn area(coarser: usize) -> f64 {
         f64::from(1_u32 << (2 * coarser))
     }
 
-    /// Side of an element of a level, in λ, the side of the cell along x. Elements are squares, or nearly.
+    /// Side of an element of a level, in λ.
+    ///
+    /// λ is the side of the periodic cell along x. Elements are squares, or nearly squares.
     #[must_use]
     pub fn side(&self, coarser: usize) -> f64 {
         1.0 / self.levels[coarser].sides()[0] as f64
     }
 
-    /// All tiles: how much coarser than the finest, the index among those of its level, and the first cell.
+    /// All tiles.
+    ///
+    /// Each is given by the number of its level, its index there, and its first cell.
     pub fn tiles(&self) -> impl Iterator<Item = (usize, usize, usize)> + '_ {
         let of_level = |(coarser, tiles): (usize, &TileSet)| {
             let start = self.starts[coarser];
@@ -161,16 +176,16 @@ impl Elements {
         self.levels.iter().enumerate().flat_map(of_level)
     }
 
-    /// The first cell of the tile at a place of a level, when its elements are of that size.
+    /// The first cell of the tile at a place of a level, if it exists.
     pub(crate) fn find(&self, coarser: usize, column: i64, row: i64) -> Option<usize> {
         let tile = self.levels.get(coarser)?.find(column, row)?;
         Some(self.starts[coarser] + tile * CELLS)
     }
 
-    /// Are there elements, of this size or smaller ones, at a place of a level?
+    /// Whether there are elements of this size or smaller at a place.
     #[must_use]
     pub fn cover(&self, coarser: usize, column: u32, row: u32) -> bool {
-        // A tile that is divided has all its quarters.
+        // If a tile is divided, all of its quarters exist.
         let (mut x, mut y) = (i64::from(column), i64::from(row));
         (0..=coarser).rev().any(|coarser| {
             let found = self.levels.get(coarser).is_some_and(|tiles| tiles.find(x, y).is_some());

@@ -1,15 +1,15 @@
-//! The adaptive mesh of squares on the periodic cell, as geometry only: fine along the edges of contacts, coarser
-//! inside, nothing where there is no contact.
+//! The adaptive mesh of squares on the periodic cell.
 //!
-//! The default solver runs on this mesh:
+//! The crate has only the geometry, without physics. The mesh is fine along the edges of contacts, coarser inside them,
+//! and has no elements outside contact. The default solver runs on this mesh:
 //!
-//! | item | what |
+//! | item | what it is or does |
 //! |---|---|
 //! | [`TileSet`] | the tiles of one level; a tile is a square of 8 × 8 cells |
 //! | [`Elements`] | elements of several sizes: disjoint tiles of several levels, the layout of vectors, values moved to another mesh |
-//! | [`divide`] | elements of chosen tiles into quarters, with neighbours kept within a factor of 2 |
-//! | [`ContactFields`] | the refinement rule: where elements must be divided |
-//! | [`prolong`], [`prolong_onto`] | a function that is positive in contact, brought to elements half as large |
+//! | [`divide`] | divides the elements of chosen tiles into quarters, and keeps neighbours within a factor of 2 |
+//! | [`ContactFields`] | the refinement rule, which says where elements must be divided |
+//! | [`prolong`], [`prolong_onto`] | interpolate a function that is positive in contact to elements half as large |
 //! | [`Patch`], [`gather`] | a tile with its neighbourhood, for stencils and filters |
 //!
 //! Module [`paper`] has the meshes that the paper compares in Fig. 3.
@@ -29,8 +29,8 @@
 //! assert_eq!(moved[refined.cells(0)][..2], [values[0]; 2]);
 //! ```
 //!
-//! Lengths are in λ, the side of the cell. A level is named by how many levels it is coarser than the finest. Places
-//! are columns and rows of tiles, counted from the cell's lower left corner.
+//! Lengths are in λ, the side of the periodic cell. The number `coarser` of a level counts levels from the finest,
+//! which has 0. Places are columns and rows of tiles, counted from the lower left corner of the periodic cell.
 
 mod division;
 mod elements;

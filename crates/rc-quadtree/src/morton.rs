@@ -1,8 +1,10 @@
 //! The Morton curve through the squares of a grid.
 
-/// Position of the square at column `ix` and row `iy` along the Morton curve through all squares of its size: the bits
-/// of `iy` and `ix` in turn. Squares that are near each other are mostly near along the curve. (G. M. Morton, *A
-/// computer oriented geodetic data base*, IBM Ottawa, 1966.)
+/// Position of a square along the Morton curve through all squares of its size.
+///
+/// The square is at column `ix` and row `iy`. The position has the bits of `iy` and `ix` in turn. Squares that are near
+/// each other are mostly near along the curve. Source: G. M. Morton, *A computer oriented geodetic data base*, IBM
+/// Ottawa, 1966.
 pub(crate) const fn morton_code(ix: u32, iy: u32) -> u64 {
     spread(ix) | (spread(iy) << 1)
 }
@@ -22,7 +24,9 @@ const fn spread(v: u32) -> u64 {
     (v | (v << 1)) & 0x5555_5555_5555_5555
 }
 
-/// Moves bit 2i of `v` to bit i; odd bits are dropped. The inverse of the spreading in [`morton_code`].
+/// Moves bit 2i of `v` to bit i and drops odd bits.
+///
+/// It is the inverse of the spreading in [`morton_code`].
 pub(crate) fn gather(v: u64) -> u32 {
     let mut v = v & 0x5555_5555_5555_5555;
     v = (v | (v >> 1)) & 0x3333_3333_3333_3333;

@@ -1,18 +1,18 @@
-//! A tile with its neighbourhood, copied to one place for inner loops.
+//! A tile with its neighbourhood, copied to contiguous memory for inner loops.
 
 use crate::tiles::{CELLS, TILE, TileSet};
 
-/// `SIDE` × `SIDE` values, row by row; `SIDE` is a multiple of [`TILE`].
+/// `SIDE` × `SIDE` values, row by row. `SIDE` is a multiple of [`TILE`].
 pub type Patch<T, const SIDE: usize> = [[T; SIDE]; SIDE];
 
-/// Fills `rows` of the patch whose lower left tile is at (`column`, `row`) of the periodically continued level. Where
-/// there is no tile, values are those of `T::default()`. Returns false when none of the tiles exists; the patch is then
-/// undefined.
+/// Fills `rows` of a patch with the values of `tiles`.
 ///
-/// `values` has [`CELLS`] values for each of `tiles`.
+/// The lower left tile of the patch is at (`column`, `row`) of the level, which continues periodically. Where there is
+/// no tile, values are those of `T::default()`. Returns false when none of the tiles exists. The contents of the patch
+/// are then undefined. `values` has [`CELLS`] values for each of `tiles`.
 ///
 /// # Panics
-/// When there are fewer values than that, or rows are outside the patch.
+/// When there are fewer values, or when rows are outside the patch.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "it is part of vectorised loops, which are compiled for the machine at hand")]
 pub fn gather<T: Copy + Default, const SIDE: usize>(
@@ -50,8 +50,11 @@ pub fn gather<T: Copy + Default, const SIDE: usize>(
     any
 }
 
-/// The same cell by cell, for tiles that reach beyond their level and seams that they cross; values are `missing` where
-/// there is no tile.
+/// As [`gather`], cell by cell.
+///
+/// It serves tiles that extend beyond their level, and patches across their seams.
+///
+/// Values are `missing` where there is no tile.
 #[cold]
 #[inline(never)]
 pub(crate) fn gather_cells<T: Copy, const SIDE: usize>(
@@ -77,7 +80,9 @@ pub(crate) fn gather_cells<T: Copy, const SIDE: usize>(
 mod tests {
     use super::*;
 
-    /// Both ways agree where tiles are whole, and a level whose tiles are cut goes on with its first cells.
+    /// Both functions agree where tiles are whole.
+    ///
+    /// After the last cell of a level whose tiles are cut, its first cells follow.
     #[test]
     fn patches_continue_the_level_periodically() {
         let mut values: Vec<f64> = (0..6 * CELLS).map(|i| i as f64).collect();

@@ -1,8 +1,7 @@
-//! Prolongation: a function that is positive in contact, interpolated from the elements of one mesh to elements half as
-//! large.
+//! Prolongation of a function that is positive in contact, to elements half as large.
 //!
-//! Interpolation is bilinear between centres. The function should be nearly linear across the edges of contacts; the
-//! edges are then kept to a fraction of an element.
+//! The function is interpolated bilinearly between the centres of elements. It should be nearly linear across the edges
+//! of contacts. The error of an edge is then a fraction of an element.
 
 use std::ops::Range;
 
@@ -17,10 +16,13 @@ mod uneven;
 
 use near_contact::{MARGIN, PART_KEPT_OF_SINGLE_CELL, SIDE, is_near_contact, is_single, mark_missing};
 
-/// The tiles of the next finer level, of `sides` cells, where `function` is positive, or within two cells of them, and
-/// its positive part on their cells. The finer level has twice as many cells along both sides, or a little less.
+/// Interpolates the positive part of `function` to the next finer level, of `sides` cells.
 ///
-/// `function` has a value for each cell of `tiles`, which are whole; `elsewhere` is its value where there is no tile.
+/// Returns the tiles of the finer level where `function` is positive, or within two cells of such a tile, and the
+/// values on their cells. The finer level has twice as many cells along both sides, or slightly fewer.
+///
+/// `function` has a value for each cell of `tiles`. None of these tiles may extend beyond the level. `elsewhere` is the
+/// value of the function where there is no tile.
 ///
 /// # Panics
 /// When there are fewer values than cells.
@@ -40,11 +42,12 @@ pub fn prolong(tiles: &TileSet, function: &[f64], elsewhere: f64, sides: [usize;
     (fine, result)
 }
 
-/// The tiles that [`prolong`] gives under some of `tiles`, with their values, for a level of twice as many cells along
-/// both sides.
+/// The tiles and values that [`prolong`] returns below some of `tiles`.
+///
+/// The finer level has twice as many cells along both sides.
 ///
 /// # Panics
-/// When there are fewer values than cells, or fewer tiles.
+/// When there are fewer values than cells, or when `which` is outside `tiles`.
 #[must_use]
 pub fn prolong_some(
     tiles: &TileSet,
@@ -59,10 +62,10 @@ pub fn prolong_some(
     tiles.places()[which].par_iter().map(of_tile).collect::<Vec<Vec<_>>>().into_iter().flatten().collect()
 }
 
-/// Fills `values` on the smallest elements of `refined`, which are quarters of the smallest of `elements`, with the
-/// positive part of `function`. Other values stay.
+/// Fills `values` on the smallest elements of `refined` with the positive part of `function`.
 ///
-/// `function` has a value for each of `elements`; `elsewhere` is its value where there is no element.
+/// These elements are quarters of the smallest of `elements`. Other values do not change. `function` has a value for
+/// each of `elements`, and `elsewhere` is its value where there is no element.
 ///
 /// # Panics
 /// When a vector is shorter than [`Elements::len`] of its mesh.
@@ -77,7 +80,9 @@ pub fn prolong_onto(elements: &Elements, function: &[f64], elsewhere: f64, refin
     });
 }
 
-/// The positive part of `function` on the quarters of a tile; none for those that no contact is in or near.
+/// The positive part of `function` on the quarters of a tile.
+///
+/// `None` for quarters that are neither in contact nor near contact.
 fn quarters_in_contact(
     tiles: &TileSet,
     function: &[f64],
@@ -94,11 +99,15 @@ fn quarters_in_contact(
     std::array::from_fn(|child| fine_tile(&patch, (child % 2, child / 2)))
 }
 
-/// The positive part of the function on the fine tile in a quarter of the middle of the patch; none when it is not
-/// positive anywhere on the tile or near it.
+/// The positive part of the function on a fine tile.
+///
+/// The tile is a quarter of the middle of the patch.
+///
+/// `None` when the function is not positive anywhere on the tile or near it.
 fn fine_tile(patch: &Patch<f64, SIDE>, (half_x, half_y): (usize, usize)) -> Option<Box<[f64; CELLS]>> {
     const WIDE: usize = TILE + 2 * MARGIN;
-    // Coarse cell and its neighbour on the side of the fine cell; fine cells are counted from the margin's corner.
+    // A coarse cell and its neighbour on the side of the fine cell. Fine cells are counted from the corner of the
+    // margin.
     let near = |i: usize, half: usize| {
         let fine = TILE * 2 + half * TILE + i - MARGIN;
         let coarse = fine / 2;
@@ -113,7 +122,7 @@ fn fine_tile(patch: &Patch<f64, SIDE>, (half_x, half_y): (usize, usize)) -> Opti
             let blend = |x: usize| 0.75 * patch[near_y][x] + 0.25 * patch[far_y][x];
             let mut value = 0.75 * blend(near_x) + 0.25 * blend(far_x);
             if value <= 0.0 && patch[near_y][near_x] > 0.0 && is_single(patch, near_x, near_y) {
-                // Between free cells no fine centre may be left inside the edge; the contact must not get lost.
+                // Between free cells, no fine centre may lie inside the edge. The contact must not be lost.
                 value = PART_KEPT_OF_SINGLE_CELL * patch[near_y][near_x];
             }
             touched |= value > 0.0;
@@ -130,7 +139,7 @@ fn fine_tile(patch: &Patch<f64, SIDE>, (half_x, half_y): (usize, usize)) -> Opti
 mod tests {
     use super::*;
 
-    /// Distance inside a disc in λ, negative outside.
+    /// Distance from the edge of a disc in λ, positive inside and negative outside.
     fn disc(tiles: &TileSet, radius: f64) -> Vec<f64> {
         let side = tiles.sides()[0] as f64;
         let centre = |i: u32, cell: usize| (i as usize * TILE + cell) as f64 + 0.5;
@@ -151,7 +160,8 @@ mod tests {
         assert!(fine.len() < 4 * tiles.len() / 2, "only the disc and its surroundings have tiles");
         let exact = disc(&fine, 0.2);
         for (value, exact) in values.iter().zip(&exact) {
-            // The cone's tip is smoothed; along edges bilinear interpolation errs by d²/(4r), and d = 1/64.
+            // The tip of the cone is smoothed. Along edges, bilinear interpolation has an error of d²/(4r), and d =
+            // 1/64.
             let allowed = if *exact > 0.15 { 0.02 } else { 1e-3 };
             assert!((value - exact.max(0.0)).abs() < allowed, "{value} for {exact}");
         }
@@ -167,7 +177,7 @@ mod tests {
                 let allowed = if *exact > 0.15 { 0.02 } else { 1e-3 };
                 assert!((value - exact.max(0.0)).abs() < allowed, "{sides:?}: {value} for {exact}");
             }
-            // Without tiles around the disc, and over a seam.
+            // Without tiles around the disc, and across a seam.
             let corner = |at: f64| at.min(1.0 - at);
             let near_corner = |tiles: &TileSet| -> Vec<f64> {
                 let centre = |i: u32, cell: usize, side: usize| ((i as usize * TILE + cell) as f64 + 0.5) / side as f64;

@@ -1,5 +1,6 @@
-//! The rule that says where smaller elements are needed (Sec. 2, Fig. 3): at the edges of contacts, and where a larger
-//! element may hide a contact.
+//! The rule that says where smaller elements are needed (Sec. 2, Fig. 3).
+//!
+//! They are needed at the edges of contacts, and where a larger element may hide a contact.
 
 use rayon::prelude::*;
 
@@ -7,20 +8,22 @@ use crate::elements::Elements;
 use crate::patch::Patch;
 use crate::tiles::TILE;
 
-/// Cells around a tile that the rule looks at, and that edges keep away from larger elements.
+/// Number of cells around a tile that the rule examines.
+///
+/// Edges keep this distance from larger elements.
 pub const RING: usize = 2;
 
-/// Side of a patch that holds a tile and its neighbours.
+/// Side of a patch of a tile and its neighbours.
 const SIDE: usize = 3 * TILE;
 
-/// Pressure and gap on the elements of a mesh, one value for each.
+/// Pressure and gap on a mesh, with one value for each element.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactFields<'a> {
     /// The mesh.
     pub elements: &'a Elements,
-    /// Pressure, in any unit: positive in contact.
+    /// Pressure in any unit, positive in contact.
     pub pressure: &'a [f64],
-    /// The pressure where no element is.
+    /// The pressure where there is no element.
     pub beyond: f64,
     /// Gap, in λ.
     pub gap: &'a [f64],
@@ -29,11 +32,13 @@ pub struct ContactFields<'a> {
 }
 
 impl ContactFields<'_> {
-    /// Must the elements of a tile be divided? A flag for each tile of each level, finest first.
+    /// Flags for the tiles whose elements must be divided, for each level, finest first.
     ///
-    /// They must be where an edge of a contact is within [`RING`] cells, and where the gap may come down to that of
-    /// contact between centres of elements. `curvature` bounds, for the elements of each level, the second derivatives
-    /// of the gap along the axes, in 1/λ, in tiles that no pressure is nearer to than [`RING`] cells.
+    /// The elements of a tile must be divided if an edge of a contact is within [`RING`] cells. They must also be
+    /// divided if the gap between centres of elements may be as small as the gap of contact.
+    ///
+    /// `curvature` returns a bound of the second derivatives of the gap along the axes, in 1/λ, for the elements of
+    /// each level. It applies to tiles without pressure on them and within [`RING`] cells of them.
     #[must_use]
     pub fn too_coarse(&self, curvature: impl Fn(usize) -> f64) -> Vec<Vec<bool>> {
         let levels = self.elements.levels().iter().enumerate();
@@ -47,7 +52,7 @@ impl ContactFields<'_> {
             .collect()
     }
 
-    /// `bound` is that of second differences of the gap.
+    /// Whether the elements of one tile must be divided. `bound` limits second differences of the gap.
     fn is_too_coarse(&self, coarser: usize, place: [u32; 2], bound: f64) -> bool {
         let pressure = self.elements.around(self.pressure, coarser, place, self.beyond);
         let near = TILE - RING..2 * TILE + RING;
@@ -66,7 +71,9 @@ impl ContactFields<'_> {
     }
 }
 
-/// Fills missing values beside the tile in the middle with lower bounds: second differences are at most `bound`.
+/// Fills missing values beside the middle tile with lower bounds.
+///
+/// Second differences are at most `bound`.
 fn extrapolate(patch: &mut Patch<f64, SIDE>, bound: f64) {
     let (first, last) = (TILE, 2 * TILE - 1);
     let beyond = |near: f64, next: f64| 2.0 * near - next - bound;
@@ -88,9 +95,11 @@ fn extrapolate(patch: &mut Patch<f64, SIDE>, bound: f64) {
     }
 }
 
-/// A lower bound of the gap in the cell at (`x`, `y`) and of its mean. Along an axis a function is above its chord
-/// minus an eighth of `bound`, and a chord from a centre reaches the cell's edge half-way to the next centre. Values
-/// are means over cells, which differ from the value at the centre by a twelfth of `bound` at most.
+/// A lower bound of the gap and of its mean in one cell.
+///
+/// The cell is at (`x`, `y`). Along an axis a function is above its chord minus an eighth of `bound`. A chord from a
+/// centre reaches the edge of the cell half-way to the next centre. Values are means over cells. They differ from the
+/// value at the centre by at most a twelfth of `bound`.
 fn minimum_within(gap: &Patch<f64, SIDE>, x: usize, y: usize, bound: f64) -> f64 {
     let half_way = |here: f64, there: f64| here.min(0.5 * (here + there));
     let row = |y: usize| half_way(gap[y][x], gap[y][x - 1]).min(half_way(gap[y][x], gap[y][x + 1]));
@@ -103,7 +112,7 @@ mod tests {
     use super::*;
     use crate::tiles::{CELLS, TileSet};
 
-    /// A parabola that dips below zero between centres only is found, one that stays above is not.
+    /// A parabola that is negative only between centres is found. One that stays positive is not.
     #[test]
     fn a_dip_between_centres_is_found() {
         let elements = Elements::uniform(TileSet::new([32, 32], vec![[1, 1]]));
@@ -112,7 +121,7 @@ mod tests {
         for (minimum, found) in [(-1.0, true), (20.0, false)] {
             let gap: Vec<f64> = (0..CELLS)
                 .map(|cell| {
-                    // From the corner between the four cells in the middle of the tile.
+                    // Distance from the corner between the four cells in the middle of the tile.
                     let distance = |i: usize| (i as f64 - 3.5) * side;
                     minimum + 0.5 * curvature * (distance(cell % TILE).powi(2) + distance(cell / TILE).powi(2))
                 })
@@ -142,11 +151,12 @@ mod tests {
         }
     }
 
-    /// Tiles beside an edge are divided too, where it is within [`RING`] cells of them.
+    /// Tiles beside an edge are divided too, if the edge is within [`RING`] cells.
     #[test]
     fn edges_keep_two_cells_from_larger_elements() {
         let elements = Elements::uniform(TileSet::full([64, 64]));
-        // Cells of the tiles of column 4 that press; those of columns 0 to 3 all do. The other edge is on the seam.
+        // Number of cells under pressure in the tiles of column 4. All cells of columns 0 to 3 are under pressure. The
+        // other edge is on the seam.
         for (n_pressed, third_column) in [(0, true), (1, true), (2, false), (3, false)] {
             let column_of = |cell: usize, column: u32| column as usize * TILE + cell % TILE;
             let places = elements.levels()[0].places().iter();

@@ -1,26 +1,28 @@
-//! Where the tiles of a level are in a vector: a bit for each possible tile, counted block by block.
+//! The index of the tiles of a level in a vector.
+//!
+//! It has a bit for each possible tile, and counts block by block.
 
 use crate::morton::{morton_code, place_of};
 
-/// Tiles per side of a block: as many tiles as a word has bits.
+/// Tiles per side of a block. A block has a tile for each bit of a word.
 const BLOCK: usize = 8;
 
-/// Marks of the tiles of a level of so many columns and rows of tiles.
+/// Marks of the tiles of a level with so many columns and rows of tiles.
 pub(crate) struct TileMarks {
     extent: [usize; 2],
-    /// The blocks row by row; bit i is the tile at position i of the Morton curve through the block.
+    /// The blocks row by row. Bit i belongs to the tile at position i of the Morton curve through the block.
     blocks: Vec<u64>,
 }
 
-/// Finds tiles that are sorted along the Morton curve, on which a block is one piece.
+/// Finds tiles that are sorted along the Morton curve. A block is a contiguous piece of this curve.
 #[derive(Debug)]
 pub(crate) struct TileIndex {
-    /// Blocks in a row.
+    /// Number of blocks in a row.
     columns: usize,
     blocks: Vec<Block>,
 }
 
-/// The tiles of a block: which there are, and how many are before it on the curve.
+/// The tiles that exist in a block, and the number of tiles before it on the curve.
 #[derive(Clone, Copy, Debug, Default)]
 struct Block {
     bits: u64,
@@ -36,7 +38,7 @@ impl TileMarks {
     /// Marks the tile at this column and row.
     ///
     /// # Panics
-    /// When it is outside the level.
+    /// When the tile is outside the level.
     pub(crate) fn mark(&mut self, [column, row]: [u32; 2]) {
         let ([columns, rows], [column, row]) = (self.extent, [column as usize, row as usize]);
         assert!(column < columns && row < rows, "tile ({column}, {row}) of {columns} x {rows}");
@@ -50,7 +52,7 @@ impl TileMarks {
         let n_tiles: u32 = self.blocks.iter().map(|bits| bits.count_ones()).sum();
         let mut places = Vec::with_capacity(n_tiles as usize);
         let mut blocks = vec![Block::default(); self.blocks.len()];
-        // Along the longer side the curve goes through one square as wide as the shorter one after the other.
+        // Along the longer side, the curve passes through squares as wide as the shorter side, one after the other.
         let side = columns.min(rows).next_power_of_two();
         let squares = 0..columns.max(rows).div_ceil(side);
         let places_of_blocks = squares.flat_map(|square| {
@@ -77,7 +79,7 @@ impl TileMarks {
 }
 
 impl TileIndex {
-    /// The tile at this column and row, which are inside the level.
+    /// Index of the tile at this column and row, which are inside the level.
     #[inline]
     pub(crate) fn find(&self, column: usize, row: usize) -> Option<usize> {
         let (block, bit) = block_and_bit(self.columns, column, row);

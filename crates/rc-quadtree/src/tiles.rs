@@ -1,39 +1,40 @@
-//! Tiles: the squares of 8 × 8 cells in which a level of the mesh is stored.
+//! Tiles, the squares of 8 × 8 cells in which a level of the mesh is stored.
 
 use std::ops::{Add, Mul};
 use std::sync::Arc;
 
 use crate::tile_index::{TileIndex, TileMarks};
 
-/// Cells per side of a tile.
+/// Number of cells per side of a tile.
 pub const TILE: usize = 8;
 
-/// Cells of a tile.
+/// Number of cells of a tile.
 pub const CELLS: usize = TILE * TILE;
 
-/// The tiles of one level, sorted along the Morton curve so that neighbours are near in memory.
+/// The tiles of one level, sorted along the Morton curve.
 ///
-/// A value of the level is at `tile · 64 + row · 8 + column`. Where tiles are is looked up in a table of 16 bytes for
-/// each 64 possible tiles: 1/256 byte a cell of the level, the only memory that grows with the cell and not with the
-/// contact.
+/// Neighbours are thus near in memory. A value of the level is at `tile · 64 + row · 8 + column`. The index of a tile
+/// is looked up in a table with 16 bytes for every 64 possible tiles, or 1/256 byte for each cell of the level. No
+/// other memory grows with the level instead of the contact.
 ///
-/// Where a side is not a multiple of 8, the last tiles along it reach beyond the level. What lies there is not part of
-/// the level: its values are never read by [`crate::gather`] and [`Elements::around`](crate::Elements::around), which
-/// continue the level periodically.
+/// Where a side is not a multiple of 8, the last tiles along it extend beyond the level. Cells there are not part of
+/// the level. [`crate::gather`] and [`Elements::around`](crate::Elements::around) continue the level periodically and
+/// never read the values of these cells.
 #[derive(Clone, Debug)]
 pub struct TileSet {
     sides: [usize; 2],
-    /// Columns and rows of tiles.
+    /// Numbers of columns and rows of tiles.
     extent: [usize; 2],
-    // Shared: meshes are cloned often, and never changed.
+    // Shared, because meshes are cloned often and never changed.
     places: Arc<Vec<[u32; 2]>>,
-    /// None where all tiles are there, row by row.
+    /// `None` if all tiles exist, row by row.
     index: Option<Arc<TileIndex>>,
 }
 
 impl TileSet {
-    /// The tiles at `places` (column, row) of a level of `sides` cells along x and y, in any order; double ones are
-    /// dropped.
+    /// The tiles at `places` of a level of `sides` cells along x and y.
+    ///
+    /// A place is a column and a row. Places may have any order. Duplicates are dropped.
     ///
     /// # Panics
     /// When a place is outside the level.
@@ -60,13 +61,13 @@ impl TileSet {
         Self { sides, extent: [columns, rows], places: Arc::new(places.collect()), index: None }
     }
 
-    /// Columns and rows of tiles of the whole level.
+    /// Numbers of columns and rows of tiles of the whole level.
     #[must_use]
     pub fn extent(&self) -> [usize; 2] {
         self.extent
     }
 
-    /// Cells of the whole level along x and y.
+    /// Numbers of cells of the whole level along x and y.
     #[must_use]
     pub fn sides(&self) -> [usize; 2] {
         self.sides
@@ -78,19 +79,21 @@ impl TileSet {
         self.places.len()
     }
 
-    /// Is there no tile?
+    /// Whether there are no tiles.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
     }
 
-    /// Number of values: [`CELLS`] for each tile.
+    /// Number of values, [`CELLS`] for each tile.
     #[must_use]
     pub fn n_cells(&self) -> usize {
         self.places.len() * CELLS
     }
 
-    /// Number of cells that are part of the level: [`TileSet::n_cells`] where sides are multiples of 8.
+    /// Number of cells that are part of the level.
+    ///
+    /// It equals [`TileSet::n_cells`] where sides are multiples of 8.
     #[must_use]
     pub fn n_inside(&self) -> usize {
         if self.is_whole() {
@@ -99,7 +102,7 @@ impl TileSet {
         self.places.iter().map(|&place| self.inside(place).into_iter().product::<usize>()).sum()
     }
 
-    /// Columns and rows of the cells of the tile at a place that are part of the level.
+    /// Numbers of columns and rows of a tile's cells that belong to the level.
     #[must_use]
     pub fn inside(&self, place: [u32; 2]) -> [usize; 2] {
         [0, 1].map(|axis| TILE.min(self.sides[axis] - TILE * place[axis] as usize))
@@ -117,7 +120,7 @@ impl TileSet {
         &self.places
     }
 
-    /// Index of the tile at a place of the periodically continued level; none where there is no tile.
+    /// Index of the tile at a place of the periodically continued level, or `None`.
     #[must_use]
     #[inline]
     pub fn find(&self, column: i64, row: i64) -> Option<usize> {
@@ -131,7 +134,9 @@ impl TileSet {
         }
     }
 
-    /// Where the value of a cell of the periodically continued level is; none where there is no tile.
+    /// Index of the value of a cell of the periodically continued level.
+    ///
+    /// `None` where there is no tile.
     #[must_use]
     pub fn find_cell(&self, x: i64, y: i64) -> Option<usize> {
         let [nx, ny] = self.sides.map(|side| side as i64);
@@ -140,8 +145,11 @@ impl TileSet {
         Some(tile * CELLS + y % TILE * TILE + x % TILE)
     }
 
-    /// Whether a patch of `n` × `n` tiles, the lower left one at a place of the periodically continued level, has tiles
-    /// that reach beyond the level, or crosses a seam where they do.
+    /// Whether a patch contains tiles that extend beyond the level.
+    ///
+    /// Also true if it crosses a seam of such tiles.
+    ///
+    /// The patch has `n` × `n` tiles. The lower left one is at a place of the periodically continued level.
     #[must_use]
     #[inline]
     pub(crate) fn is_cut(&self, (column, row): (i64, i64), n: usize) -> bool {
@@ -151,12 +159,13 @@ impl TileSet {
         cut(self.sides[0], column, self.extent[0]) || cut(self.sides[1], row, self.extent[1])
     }
 
-    /// Hands out the values of the whole level, zero where there is no tile, a row of tiles at a time: the index of the
-    /// first row of cells, and eight rows one after the other (fewer where the last tiles reach beyond the level).
-    /// Stops at the first error.
+    /// Passes the values of the whole level to `take`, by rows of tiles.
+    ///
+    /// `take` gets the index of the first row of cells, and the values of eight rows. There are fewer rows where the
+    /// last tiles extend beyond the level. Values are zero where there is no tile. The first error ends the loop.
     ///
     /// # Errors
-    /// What `take` returns.
+    /// The error that `take` returns.
     ///
     /// # Panics
     /// When there are fewer than [`TileSet::n_cells`] values.
@@ -175,7 +184,7 @@ impl TileSet {
         Ok(())
     }
 
-    /// These tiles and those within `halo` cells of them.
+    /// These tiles and all tiles within `halo` cells of them.
     #[must_use]
     pub fn around(&self, halo: usize) -> Self {
         let ([columns, rows], reach) = (self.extent.map(|n| n as i64), halo.div_ceil(TILE) as i64);
@@ -190,7 +199,7 @@ impl TileSet {
         Self::marked(self.sides, marks)
     }
 
-    /// These tiles and others of the same level.
+    /// These tiles and other tiles of the same level.
     #[must_use]
     pub fn with(&self, others: &Self) -> Self {
         let mut marks = marks_of(self.sides);
@@ -200,14 +209,18 @@ impl TileSet {
         Self::marked(self.sides, marks)
     }
 
-    /// The tiles of the level with half as many cells along both sides that hold these tiles, or a cell within `halo`
-    /// cells of that level from them.
+    /// The tiles of the next coarser level over these tiles and their halo.
+    ///
+    /// The coarser level has half as many cells along both sides. The halo is `halo` of its cells wide.
     #[must_use]
     pub fn parents(&self, halo: usize) -> Self {
         self.on_coarser(self.sides.map(|side| side / 2), halo)
     }
 
-    /// The same tiles of a coarser level of `sides` cells, whole numbers of tiles.
+    /// The tiles of a coarser level over these tiles and their halo.
+    ///
+    /// The coarser level has `sides` cells along x and y, which are whole numbers of tiles. The halo is `halo` cells of
+    /// the coarser level wide.
     #[must_use]
     pub fn on_coarser(&self, sides: [usize; 2], halo: usize) -> Self {
         let [columns, rows] = sides.map(|side| (side / TILE) as i64);
@@ -215,7 +228,7 @@ impl TileSet {
         let tiles = |[column, row]: [u32; 2], axis: usize| {
             let first = TILE * if axis == 0 { column } else { row } as usize;
             let last = (first + TILE).min(self.sides[axis]);
-            // The cells of the coarser level that the tile has a part of.
+            // The cells of the coarser level that the tile overlaps.
             let start = (first * sides[axis] / self.sides[axis]) as i64 - halo as i64;
             let end = ((last * sides[axis]).div_ceil(self.sides[axis]) + halo) as i64;
             start.div_euclid(TILE as i64)..=(end - 1).div_euclid(TILE as i64)
@@ -231,13 +244,15 @@ impl TileSet {
     }
 }
 
-/// No marks on a level of `sides` cells.
+/// Marks of a level of `sides` cells, without a marked tile.
 fn marks_of(sides: [usize; 2]) -> TileMarks {
     TileMarks::new(sides.map(|side| side.div_ceil(TILE)))
 }
 
-/// Writes the [`CELLS`] values of a tile into a row of tiles, which is eight rows of `side` cells each, at this column
-/// of tiles. What reaches beyond the rows is omitted.
+/// Writes the [`CELLS`] values of a tile into a row of tiles.
+///
+/// The tile is in column `column` of the tiles. A row of tiles is eight rows of `side` cells each. Values that extend
+/// beyond the rows are omitted.
 ///
 /// # Panics
 /// When the column is outside the rows.
@@ -248,16 +263,20 @@ pub fn put_tile(rows: &mut [f64], side: usize, column: usize, tile: &[f64]) {
     }
 }
 
-/// The places of a tile's quarters, on the level of elements half as large: lower left, lower right, upper left, upper
-/// right.
+/// The places of the four quarters of a tile.
+///
+/// The order is lower left, lower right, upper left, upper right. The places are on the level of elements half as
+/// large.
 #[must_use]
 #[inline]
 pub fn quarters([column, row]: [u32; 2]) -> [[u32; 2]; 4] {
     [0, 1, 2, 3].map(|quarter| [2 * column + quarter % 2, 2 * row + quarter / 2])
 }
 
-/// The cell of a tile that holds cell (`x`, `y`) of its quarter at a place (only whether its column and row are odd
-/// matters).
+/// The cell of a tile that contains a cell of one of its quarters.
+///
+/// The cell of the quarter is (`x`, `y`), and the quarter is at (`column`, `row`). Only whether column and row are odd
+/// matters.
 #[must_use]
 #[inline]
 pub fn cell_over([column, row]: [u32; 2], x: usize, y: usize) -> usize {
@@ -265,7 +284,9 @@ pub fn cell_over([column, row]: [u32; 2], x: usize, y: usize) -> usize {
     (half(row) + y / 2) * TILE + half(column) + x / 2
 }
 
-/// Means over two by two cells of a tile's quarter at a place: `put` gets the cell of the tile, and the mean.
+/// Means over two by two cells of the quarter of a tile at a place.
+///
+/// `put` gets the cell of the tile and the mean.
 ///
 /// # Panics
 /// When `fine` has fewer than [`CELLS`] values.
@@ -333,8 +354,8 @@ mod tests {
             places
         };
         assert_eq!(places(0), [[0, 0]]);
-        // The tile covers cells 0 to 3 of 8 of its parent: two more on either side reach beyond the seam on one side
-        // only.
+        // The tile covers cells 0 to 3 of the 8 cells of its parent. Two more cells on either side extend beyond the
+        // seam on one side only.
         assert_eq!(places(2), [[0, 0], [0, 3], [3, 0], [3, 3]]);
         assert_eq!(places(5).len(), 9);
     }

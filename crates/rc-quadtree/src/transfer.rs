@@ -1,4 +1,4 @@
-//! Transfer: values on the elements of one mesh brought to tiles, patches and elements of another mesh.
+//! Transfer of values from elements to tiles, patches and elements of another mesh.
 
 use std::borrow::Cow;
 
@@ -9,9 +9,11 @@ use crate::patch::{Patch, gather_cells};
 use crate::tiles::{CELLS, TILE, TileSet, cell_over, means_of_quarter, quarters};
 
 impl Elements {
-    /// Copies the values at the place of a tile, from elements of its level or twice as large or half as large: larger
-    /// ones stand for their quarters, smaller ones are averaged. Returns false, and copies nothing, where there are
-    /// none.
+    /// Copies the values at the place of a tile.
+    ///
+    /// The elements there may have the size of this level, or be twice or half as large. The value of a larger element
+    /// is copied to its quarters, and smaller elements are averaged. Returns false, and copies nothing, where there are
+    /// no elements.
     fn tile_values(
         &self,
         values: &[f64],
@@ -39,7 +41,10 @@ impl Elements {
         any
     }
 
-    /// The same for the place of a tile half as large as those of the level `coarser`, from that level only.
+    /// Copies the values at the place of a tile half as large.
+    ///
+    /// The tile is half as large as tiles of the level `coarser`. The values come from that level only. Returns false
+    /// where it has no tile.
     fn quarter_values(
         &self,
         values: &[f64],
@@ -56,8 +61,9 @@ impl Elements {
         true
     }
 
-    /// The values on a tile and its eight neighbours, `missing` where there are no elements. Elements twice as large
-    /// stand for their quarters, elements half as large are averaged.
+    /// The values on a tile and its eight neighbours, `missing` where there are no elements.
+    ///
+    /// The value of an element twice as large is copied to its quarters. Elements half as large are averaged.
     #[must_use]
     pub fn around(
         &self,
@@ -81,8 +87,9 @@ impl Elements {
         patch
     }
 
-    /// The mesh without its finest level, and the values: those of the finest level are averaged over elements twice as
-    /// large.
+    /// The mesh without its finest level, and the values on it.
+    ///
+    /// Values of the finest level are averaged over elements twice as large.
     fn without_finest(&self, values: &[f64]) -> (Self, Vec<f64>) {
         let mut levels = self.levels()[1..].to_vec();
         levels[0] = levels[0].with(&self.levels()[0].parents(0));
@@ -91,7 +98,9 @@ impl Elements {
         (coarser, values)
     }
 
-    /// Tiles of the coarsest level wherever there are elements, and the values on them: means over smaller elements.
+    /// The mesh with elements of the coarsest level only, and the values on it.
+    ///
+    /// There is a tile wherever there are elements. Values are means over smaller elements.
     #[must_use]
     pub fn on_coarsest<'a>(&self, values: &'a [f64]) -> (TileSet, Cow<'a, [f64]>) {
         if self.levels().len() == 1 {
@@ -104,13 +113,15 @@ impl Elements {
         (coarser.finest().clone(), Cow::Owned(values))
     }
 
-    /// Values on the elements of `to`, whose tiles are tiles of this mesh, quarters of them, unions of four, or new
-    /// ones. New ones have the value `elsewhere`, and so has what fills vectors up.
+    /// Values on the elements of another mesh `to`.
+    ///
+    /// The tiles of `to` are tiles of this mesh, quarters of them, unions of four, or new tiles. New tiles, and the
+    /// values that complete blocks of vectors, get the value `elsewhere`.
     #[must_use]
     pub fn moved(&self, to: &Self, values: &[f64], elsewhere: f64) -> Vec<f64> {
         let mut result = vec![elsewhere; to.len()];
         for (coarser, tiles) in to.levels().iter().enumerate() {
-            // The same level here, unless the other mesh has a finer one.
+            // The same level of this mesh, unless the other mesh has a finer level.
             let here = self.levels().iter().position(|level| level.sides() == tiles.sides());
             let cells = &mut result[to.cells(coarser)];
             let sinks = cells.par_chunks_mut(CELLS).zip(tiles.places()).with_min_len(64);

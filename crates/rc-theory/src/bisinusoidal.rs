@@ -1,36 +1,41 @@
-//! Johnson, Greenwood, Higginson: a two-dimensional wave, whose area is known at both ends of the load range.
+//! Contact of a two-dimensional wave, after Johnson, Greenwood and Higginson.
+//!
+//! The area is known at both ends of the load range.
 
 use std::f64::consts::{PI, SQRT_2};
 
-/// The surface D cos(2πx) cos(2πy), two crests and two troughs per cell, under the mean pressure p̄ over the cell; P =
-/// p̄/p^.
+/// The surface D cos(2πx) cos(2πy) under the mean pressure p̄ over the cell.
 ///
-/// In between the two limits there is no closed form; numerically, contacts of neighbouring crests merge at P = 0.2286.
+/// It has two crests and two troughs per cell. The relative load is P = p̄/p^. Between the two limits there is no
+/// closed form. Numerically, contacts of neighbouring crests merge at P = 0.2286.
+///
 /// Source: K. L. Johnson, J. A. Greenwood, J. G. Higginson, *The contact of elastic regular wavy surfaces*, Int. J.
-/// Mech. Sci. 27 (1985) 383-396. Both limits re-derived for this orientation of the cell.
+/// Mech. Sci. 27 (1985) 383-396. Both limits are derived again for this orientation of the cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BiSinusoidal {
-    /// D > 0, in λ.
+    /// Amplitude D > 0, in λ.
     pub amplitude: f64,
 }
 
 impl BiSinusoidal {
-    /// p^ = √2 π D, in E*: the smallest mean pressure with full contact.
+    /// The smallest mean pressure with full contact, p^ = √2 π D, in E*.
     #[must_use]
     pub fn full_contact_pressure(self) -> f64 {
         SQRT_2 * PI * self.amplitude
     }
 
-    /// A/A0 → π (3P/8π)^(2/3) for P → 0: two separate Hertz contacts per cell. Low by 0.7 % at P = 0.001, by 5 %
-    /// at 0.02.
+    /// A/A0 → π (3P/8π)^(2/3) for P → 0, as for two separate Hertz contacts per cell.
+    ///
+    /// It is too low by 0.7 % at P = 0.001, and by 5 % at 0.02.
     #[must_use]
     pub fn area_fraction_at_low_load(self, mean_pressure: f64) -> f64 {
         let ratio = mean_pressure / self.full_contact_pressure();
         PI * (3.0 * ratio / (8.0 * PI)).cbrt().powi(2)
     }
 
-    /// A/A0 → 1 - (3/2π)(1 - P) for P → 1: two small pressurised cracks per cell. High by 0.04 % at P = 0.95, by 0.8 %
-    /// at 0.8.
+    /// A/A0 → 1 - (3/2π)(1 - P) for P → 1, with two small pressurised cracks per cell.
+    ///
+    /// It is too high by 0.04 % at P = 0.95, and by 0.8 % at 0.8.
     #[must_use]
     pub fn area_fraction_near_full_contact(self, mean_pressure: f64) -> f64 {
         1.0 - 1.5 / PI * (1.0 - mean_pressure / self.full_contact_pressure())
@@ -60,7 +65,9 @@ mod tests {
         }
     }
 
-    /// The crest has curvature (2π)² D in every direction and carries half the load of the cell.
+    /// The crest has curvature (2π)² D in every direction.
+    ///
+    /// It carries half the load of the cell.
     #[test]
     fn low_load_is_two_spheres_per_cell() {
         let sphere = Hertz { radius: 1.0 / (4.0 * PI * PI * WAVE.amplitude) };

@@ -1,23 +1,25 @@
-//! An ellipsoidal peak on the half-space: Hertz with two radii.
+//! Contact of an ellipsoidal peak on the half-space, Hertz's contact with two radii.
 
 use std::f64::consts::PI;
 
-/// An elliptic contact on an infinite half-space: its semi-axes and maximum pressure; the shape and load follow.
+/// An elliptic contact on an infinite half-space, given by semi-axes and maximum pressure.
 ///
-/// Source: K. L. Johnson, *Contact Mechanics*, Cambridge University Press 1985, section 4.2 (Eq. 4.24 to 4.26).
+/// Shape and load follow from these. Source: K. L. Johnson, *Contact Mechanics*, Cambridge University Press 1985,
+/// section 4.2 (Eq. 4.24 to 4.26).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EllipticContact {
-    /// Greater semi-axis a, along x, in λ.
+    /// Major semi-axis a, along x, in λ.
     pub major: f64,
-    /// Lesser semi-axis b, along y, in λ: 0 < b < a.
+    /// Minor semi-axis b, along y, in λ. 0 < b < a.
     pub minor: f64,
-    /// p0, in E*.
+    /// Maximum pressure p0, in E*.
     pub peak_pressure: f64,
 }
 
 impl EllipticContact {
-    /// The A and B of the heights -(A x² + B y²), in 1/λ: with e² = 1 - b²/a²,
-    /// A = p0 b/(e² a²) [K(e) - E(e)], B = p0 b/(e² a²) [(a²/b²) E(e) - K(e)].
+    /// The curvatures A and B of the heights -(A x² + B y²), in 1/λ.
+    ///
+    /// With e² = 1 - b²/a², A = p0 b/(e² a²) [K(e) - E(e)] and B = p0 b/(e² a²) [(a²/b²) E(e) - K(e)].
     #[must_use]
     pub fn curvatures(self) -> [f64; 2] {
         let Self { major: a, minor: b, peak_pressure } = self;
@@ -27,20 +29,22 @@ impl EllipticContact {
         [factor * (first - second), factor * ((a / b).powi(2) * second - first)]
     }
 
-    /// F = (2/3) p0 π a b, in E*λ².
+    /// Load F = (2/3) p0 π a b, in E*λ².
     #[must_use]
     pub fn load(self) -> f64 {
         2.0 / 3.0 * self.peak_pressure * self.area()
     }
 
-    /// π a b, in λ².
+    /// Contact area π a b, in λ².
     #[must_use]
     pub fn area(self) -> f64 {
         PI * self.major * self.minor
     }
 }
 
-/// K and E of the modulus whose square is `m` in [0, 1), by the arithmetic-geometric mean (Abramowitz & Stegun 17.6).
+/// The complete elliptic integrals K and E of the modulus whose square is `m` in [0, 1).
+///
+/// They are computed by the arithmetic-geometric mean (Abramowitz & Stegun 17.6).
 fn complete_elliptic(m: f64) -> (f64, f64) {
     let (mut a, mut b, mut c) = (1.0, (1.0 - m).sqrt(), m.sqrt());
     let (mut sum, mut power) = (0.5 * c * c, 1.0);

@@ -1,7 +1,7 @@
-//! Hertz: a rigid sphere on the half-space, infinite or periodic.
+//! Hertz's contact of a rigid sphere on the half-space, infinite or periodic.
 //!
-//! The paper's Fig. 4 shows this contact in a periodic cell. There, at a given Δ, image contacts and the zero-mean
-//! convention make it noticeably larger than on an infinite half-space, so a solution in a cell is to be compared with
+//! The paper's Fig. 4 shows this contact in a periodic cell. At a given Δ it is noticeably larger there than on an
+//! infinite half-space, because of image contacts and the zero-mean convention. So compare a solution in a cell with
 //! [`PeriodicHertz`].
 
 use std::f64::consts::PI;
@@ -10,61 +10,64 @@ use crate::lattice::{C, S3};
 use crate::root::increasing_root;
 use crate::{OutOfRange, within};
 
-/// A sphere of radius R (as the paraboloid -r²/2R) on an infinite half-space; a is the contact radius, δ the approach.
+/// A sphere of radius R, as the paraboloid -r²/2R, on an infinite half-space.
 ///
-/// Source: K. L. Johnson, *Contact Mechanics*, Cambridge University Press 1985, sections 3.4 and 4.2.
+/// The contact radius is a, and the approach is δ. Source: K. L. Johnson, *Contact Mechanics*, Cambridge University
+/// Press 1985, sections 3.4 and 4.2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hertz {
-    /// R > 0, in λ.
+    /// Radius R > 0, in λ.
     pub radius: f64,
 }
 
 impl Hertz {
-    /// a = √(Rδ), in λ; 0 for δ ≤ 0.
+    /// Contact radius a = √(Rδ), in λ. It is 0 for δ ≤ 0.
     #[must_use]
     pub fn contact_radius(self, penetration: f64) -> f64 {
         (self.radius * penetration).max(0.0).sqrt()
     }
 
-    /// a = (3FR/4)^(1/3), in λ, for a load in E*λ².
+    /// Contact radius a = (3FR/4)^(1/3), in λ, for a load in E*λ².
     #[must_use]
     pub fn contact_radius_at_load(self, load: f64) -> f64 {
         (0.75 * load * self.radius).cbrt()
     }
 
-    /// δ = a²/R, in λ.
+    /// Approach δ = a²/R, in λ.
     #[must_use]
     pub fn penetration(self, contact_radius: f64) -> f64 {
         contact_radius * contact_radius / self.radius
     }
 
-    /// F = 4a³/(3R), in E*λ².
+    /// Load F = 4a³/(3R), in E*λ².
     #[must_use]
     pub fn load(self, contact_radius: f64) -> f64 {
         4.0 * contact_radius.powi(3) / (3.0 * self.radius)
     }
 
-    /// p0 = 2a/(πR), in E*: 3/2 of the mean pressure in the contact.
+    /// Maximum pressure p0 = 2a/(πR), in E*. It is 3/2 of the mean pressure in the contact.
     #[must_use]
     pub fn peak_pressure(self, contact_radius: f64) -> f64 {
         2.0 * contact_radius / (PI * self.radius)
     }
 
-    /// p(r) = p0 √(1 - r²/a²) for r < a, in E*; 0 outside.
+    /// Pressure p(r) = p0 √(1 - r²/a²) for r < a, in E*. It is 0 outside.
     #[must_use]
     pub fn pressure(self, r: f64, contact_radius: f64) -> f64 {
         self.peak_pressure(contact_radius) * (1.0 - (r / contact_radius).powi(2)).max(0.0).sqrt()
     }
 
-    /// Displacement of the surface, in λ, zero far away: δ - r²/2R in the contact, and outside
-    /// (1/πR) [(2a² - r²) asin(a/r) + a √(r² - a²)], whose relative rounding error grows as (r/a)².
+    /// Displacement of the surface, in λ, zero far away.
+    ///
+    /// It is δ - r²/2R in the contact, and (1/πR) [(2a² - r²) asin(a/r) + a √(r² - a²)] outside. The relative rounding
+    /// error outside grows as (r/a)².
     #[must_use]
     pub fn displacement(self, r: f64, contact_radius: f64) -> f64 {
         let (r, a) = (r.abs(), contact_radius);
         if r <= a {
             return self.penetration(a) - r * r / (2.0 * self.radius);
         }
-        // asin(a/r) as an angle of the triangle, which is well-conditioned at the edge too.
+        // asin(a/r) is an angle of the triangle. In this form it is well-conditioned at the edge too.
         let leg = ((r - a) * (r + a)).sqrt();
         ((2.0 * a * a - r * r) * a.atan2(leg) + a * leg) / (PI * self.radius)
     }
@@ -76,41 +79,45 @@ impl Hertz {
     }
 }
 
-/// A sphere of radius R in the middle of the periodic cell, with the zero-mean displacement of Eq. 3.
+/// A sphere of radius R in the periodic cell, with the zero-mean displacement of Eq. 3.
 ///
-/// Around one contact the images and the uniform counter-load add φ(r) - 1/r = -C + (S3/4) r² + O(r⁴) to the
-/// displacement of each load (see [`crate::lattice`]). The constant shifts Δ. The quadratic part is a curvature, so the
-/// contact stays Hertz's, on a sphere of effective radius `R_e`: with t = a/λ,
+/// Images and uniform counter-load add φ(r) - 1/r = -C + (S3/4) r² + O(r⁴) to the displacement of each load (see
+/// [`crate::lattice`]). The constant shifts Δ. The quadratic part is a curvature, so the contact remains a Hertz
+/// contact, on a sphere of effective radius `R_e`. With t = a/λ,
 ///
 /// ```text
 /// R_e = R [1 - (2 S3/3π) t³],   F = 4a³/(3 R_e),   Δ = a²/R_e - (F/π) [C - (S3/10) t²]
 /// ```
 ///
-/// The terms left out are of relative order t⁵: against a Fourier solution at 1024² (spectral kernel) Δ agrees within
-/// 1e-5 up to t = 0.1, and within 3e-4 at t = 0.2. Derived here; K. L. Johnson 1985 gives the parts.
+/// *Accuracy*: the omitted terms are of relative order t⁵. A Fourier solution at 1024² (spectral kernel) has the same Δ
+/// within 1e-5 up to t = 0.1, and within 3e-4 at t = 0.2.
+///
+/// *Source*: derived here. The parts are in K. L. Johnson 1985.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeriodicHertz {
-    /// R > 0, in λ.
+    /// Radius R > 0, in λ.
     pub radius: f64,
 }
 
 /// A state of [`PeriodicHertz`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeriodicContact {
-    /// a, in λ.
+    /// Contact radius a, in λ.
     pub contact_radius: f64,
-    /// `R_e`, in λ.
+    /// Effective radius `R_e`, in λ.
     pub effective_radius: f64,
-    /// F, in E*λ²: equal to the mean pressure over the cell, in E*.
+    /// Load F, in E*λ². It equals the mean pressure over the cell, in E*.
     pub load: f64,
-    /// Δ, in λ.
+    /// Penetration Δ, in λ.
     pub penetration: f64,
-    /// p0 = 2a/(π`R_e`), in E*.
+    /// Maximum pressure p0 = 2a/(π`R_e`), in E*.
     pub peak_pressure: f64,
 }
 
 impl PeriodicContact {
-    /// p(r) = p0 √(1 - r²/a²) at distance r from the centre of the contact, in E*; 0 outside.
+    /// Pressure p(r) = p0 √(1 - r²/a²) at distance r from the centre of the contact, in E*.
+    ///
+    /// It is 0 outside.
     #[must_use]
     pub fn pressure(&self, r: f64) -> f64 {
         Hertz { radius: self.effective_radius }.pressure(r, self.contact_radius)
@@ -118,8 +125,9 @@ impl PeriodicContact {
 }
 
 impl PeriodicHertz {
-    /// Largest contact radius, in λ, that the formulas answer for; the terms left out, growing about as t⁵, reach 1e-3
-    /// of Δ about here.
+    /// Maximum contact radius of the formulas, in λ.
+    ///
+    /// The omitted terms grow about as t⁵, and reach about 1e-3 of Δ there.
     pub const MAX_CONTACT_RADIUS: f64 = 0.25;
 
     /// The contact of radius a, in λ.
@@ -130,7 +138,9 @@ impl PeriodicHertz {
         within("contact radius", contact_radius, Self::MAX_CONTACT_RADIUS).map(|a| self.contact(a))
     }
 
-    /// The contact under a load F, in E*λ² (or under the mean pressure F, in E*); a³ = FR / (4/3 + (2 S3/3π) FR).
+    /// The contact under a load F, in E*λ².
+    ///
+    /// The mean pressure in E* has the same value. The radius follows from a³ = FR / (4/3 + (2 S3/3π) FR).
     ///
     /// # Errors
     /// [`OutOfRange`] unless the contact radius is in the range of [`Self::at_contact_radius`].
@@ -147,7 +157,7 @@ impl PeriodicHertz {
     pub fn at_penetration(self, penetration: f64) -> Result<PeriodicContact, OutOfRange> {
         within("penetration", penetration, self.contact(Self::MAX_CONTACT_RADIUS).penetration)?;
         let scaled = penetration * self.radius;
-        // Δ < a²/R, so Hertz's radius is below the root, and near it for small contacts.
+        // Δ < a²/R, so Hertz's radius is below the root. It is near the root for small contacts.
         let start = scaled.sqrt();
         let bounds = (start.min(Self::MAX_CONTACT_RADIUS), Self::MAX_CONTACT_RADIUS);
         let root = increasing_root(bounds, start, |t| {
@@ -170,10 +180,12 @@ impl PeriodicHertz {
     }
 }
 
-/// 2 S3/(3π).
+/// The factor 2 S3/(3π).
 const CURVATURE: f64 = 2.0 * S3 / (3.0 * PI);
 
-/// ΔR/λ² as a function of t = a/λ, and its derivative: [t² - (4/3π) t³ (C - (S3/10) t²)] / (1 - (2 S3/3π) t³).
+/// ΔR/λ² as a function of t = a/λ, and its derivative.
+///
+/// The function is [t² - (4/3π) t³ (C - (S3/10) t²)] / (1 - (2 S3/3π) t³).
 fn scaled_penetration(t: f64) -> (f64, f64) {
     let b = 4.0 / (3.0 * PI);
     let numerator = t * t * (1.0 - b * t * (C - 0.1 * S3 * t * t));
@@ -189,7 +201,9 @@ mod tests {
     use super::*;
     use crate::testing::{assert_close, integral};
 
-    /// The paper's Fig. 4 in SI: R = 1 cm, Δ = 25 µm, E = 0.4e9 Pa, ν = 0.45. Lengths in metres, pressures in pascals.
+    /// The paper's Fig. 4 in SI units: R = 1 cm, Δ = 25 µm, E = 0.4e9 Pa, ν = 0.45.
+    ///
+    /// Lengths are in metres, pressures in pascals.
     const RADIUS: f64 = 1e-2;
     const PENETRATION: f64 = 25e-6;
     const E_STAR: f64 = 0.4e9 / (1.0 - 0.45 * 0.45);
@@ -229,13 +243,13 @@ mod tests {
         let edge = sphere.displacement(a, a);
         assert_close("at the edge", sphere.displacement(a * (1.0 + 1e-12), a), edge, 1e-11);
         assert_close("at the edge, half of δ", edge, sphere.penetration(a) / 2.0, 1e-14);
-        // The next term of the expansion is (a/r)²/10 of the point load's.
+        // The next term of the expansion is (a/r)²/10 of the displacement of a point load.
         let r = 1e3 * a;
         assert_close("far away", sphere.displacement(r, a), sphere.load(a) / (PI * r), 2e-7);
         assert!(sphere.displacement(1.1 * a, a) > sphere.penetration(a) - 1.21 * a * a / 4.0, "the gap is open");
     }
 
-    /// (t, FR, ΔR), independently evaluated, ten digits.
+    /// Values (t, FR, ΔR), independently evaluated to ten digits.
     #[test]
     fn periodic_contacts_match_the_table() {
         let table = [
@@ -253,8 +267,9 @@ mod tests {
         }
     }
 
-    /// In a cell of 1 cm the paper's sphere has a 4.6 % larger contact and 14.5 % more load than on the infinite
-    /// half-space.
+    /// In a cell of 1 cm the paper's sphere has a 4.6 % larger contact and 14.5 % more load.
+    ///
+    /// This is relative to the infinite half-space.
     #[test]
     fn the_papers_sphere_in_cells_of_several_sizes() {
         let infinite = Hertz { radius: RADIUS };
@@ -297,7 +312,7 @@ mod tests {
         let contact = PeriodicHertz { radius: 2.0 }.at_contact_radius(1e-8).expect("in range");
         let infinite = Hertz { radius: 2.0 };
         assert_close("F", contact.load, infinite.load(1e-8), 1e-14);
-        // The shift of Δ is (4C/3π) t = 1.66 t of it.
+        // Relative to Δ, its shift is (4C/3π) t = 1.66 t.
         assert_close("Δ", contact.penetration, infinite.penetration(1e-8), 2e-8);
     }
 

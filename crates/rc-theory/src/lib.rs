@@ -1,22 +1,23 @@
-//! Closed forms of contact mechanics, each with its source: what numerical solutions are compared with.
+//! Closed forms of contact mechanics with their sources, for comparison with numerical solutions.
 //!
-//! Units as in all libraries of this workspace: lengths in λ, pressures in E*, so forces in E*λ², energies in E*λ³.
-//! Shapes are those of the rigid body, heights up towards the half-space; penetration Δ is counted from first touch
-//! under the convention of Eq. 3, a displacement of zero mean, unless a type says that its half-space is infinite.
+//! Units are those of all libraries of this workspace. Lengths are in λ and pressures in E*, so forces are in E*λ² and
+//! energies in E*λ³. Shapes are those of the rigid body, with heights up towards the half-space. Penetration Δ is
+//! counted from first touch. It follows the convention of Eq. 3, a displacement of zero mean, unless a type says that
+//! its half-space is infinite.
 //!
 //! | module | contact | valid |
 //! |---|---|---|
 //! | [`hertz`] | sphere, on an infinite half-space and in the periodic cell | exact; contact radius up to 0.25 λ |
 //! | [`elliptic`] | ellipsoidal peak on an infinite half-space | exact |
 //! | [`cone`] | cone on an infinite half-space | exact |
-//! | [`thin_layer`] | sphere on a layer bonded to a rigid base | layer thin against the contact |
+//! | [`thin_layer`] | sphere on a layer bonded to a rigid base | layer thin relative to the contact |
 //! | [`westergaard`] | one-dimensional wave | exact at every load |
 //! | [`bisinusoidal`] | two-dimensional wave | both ends of the load range |
 //! | [`full_contact`] | any band-limited surface | exact, above a load |
 //! | [`persson`] | random surface, Eq. 7 | a theory, not exact in partial contact |
 //! | [`persson_gap`] | mean gap of a random surface at low loads | a theory, without a highest asperity |
 //!
-//! [`lattice`] holds the constants of the periodic half-space.
+//! Module [`lattice`] has the constants of the periodic half-space.
 //!
 //! ```
 //! use rc_theory::hertz::{Hertz, PeriodicHertz};
@@ -52,19 +53,19 @@ mod root;
 #[cfg(test)]
 mod testing;
 
-/// A question whose answer the formula does not know.
+/// An argument for which the formula has no answer.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("{quantity} {value:e} is out of range: it must be between 0 and {max:e}")]
 pub struct OutOfRange {
     /// Name of the quantity.
     pub quantity: &'static str,
-    /// The value given.
+    /// The value as given.
     pub value: f64,
-    /// The largest value that has an answer.
+    /// The maximum value with an answer.
     pub max: f64,
 }
 
-/// The value, when it is in [0, `max`]; `NaN` is not.
+/// Returns the value if it is in [0, `max`]. `NaN` is not.
 fn within(quantity: &'static str, value: f64, max: f64) -> Result<f64, OutOfRange> {
     if (0.0..=max).contains(&value) { Ok(value) } else { Err(OutOfRange { quantity, value, max }) }
 }

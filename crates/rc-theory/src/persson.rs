@@ -1,4 +1,4 @@
-//! Persson: the distribution of stress between randomly rough surfaces, Eq. 7.
+//! Persson's distribution of stress between randomly rough surfaces, Eq. 7.
 
 use std::f64::consts::PI;
 
@@ -7,34 +7,36 @@ use libm::erf;
 use crate::OutOfRange;
 use crate::root::increasing_root;
 
-/// Eq. 7: the stress density P(σ) = (4πΛ)^(-1/2) {exp[-(σ-σ0)²/4Λ] - exp[-(σ+σ0)²/4Λ]}, σ > 0, over the whole nominal
-/// area.
+/// The stress density P(σ) of Eq. 7, over the whole nominal area.
 ///
-/// The theory's Λ is E*²⟨|∇h|²⟩/8 ([`Persson::from_rms_slope`]); the paper fits it instead. Since ∫σP dσ = σ0 for every
-/// Λ, area and Λ are not independent: a fit of the distribution is a statement about the area,
-/// [`Persson::from_area_fraction`].
+/// P(σ) = (4πΛ)^(-1/2) {exp[-(σ-σ0)²/4Λ] - exp[-(σ+σ0)²/4Λ]} for σ > 0. The Λ of the theory is E*²⟨|∇h|²⟩/8
+/// ([`Persson::from_rms_slope`]). The paper fits Λ instead. Since ∫σP dσ = σ0 for every Λ, area and Λ are not
+/// independent. A fit of the distribution determines the area, [`Persson::from_area_fraction`].
 ///
-/// Source: B. N. J. Persson, *Theory of rubber friction and contact mechanics*, J. Chem. Phys. 115 (2001) 3840-3861. A
-/// theory, not an exact result: it gives κ = A/A0 · slope/σ0 → 1.596 at low load, simulations find about 2.
+/// This is a theory, not an exact result. At low load it gives κ = A/A0 · slope/σ0 → 1.596, whereas simulations find
+/// about 2. Source: B. N. J. Persson, *Theory of rubber friction and contact mechanics*, J. Chem. Phys. 115 (2001)
+/// 3840-3861.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Persson {
-    /// σ0 ≥ 0: mean pressure over the cell, in E*.
+    /// Mean pressure over the cell σ0 ≥ 0, in E*.
     pub mean_pressure: f64,
-    /// Λ > 0, in E*²: half the variance of the stress in full contact.
+    /// Half the variance of the stress in full contact, Λ > 0, in E*².
     pub lambda: f64,
 }
 
 impl Persson {
-    /// κ of the theory at low load, √(8/π): A/A0 = κ σ0/slope.
+    /// κ of the theory at low load, √(8/π), where A/A0 = κ σ0/slope.
     pub const KAPPA: f64 = 1.595_769_121_605_730_7;
 
-    /// The theory without a fit: Λ = slope²/8, in E*², so that full contact has the variance slope²/4.
+    /// The theory without a fit, Λ = slope²/8, in E*².
+    ///
+    /// Full contact then has the variance slope²/4.
     #[must_use]
     pub fn from_rms_slope(mean_pressure: f64, rms_slope: f64) -> Self {
         Self { mean_pressure, lambda: rms_slope * rms_slope / 8.0 }
     }
 
-    /// The distribution that has a known area fraction.
+    /// The distribution with a known area fraction.
     ///
     /// # Errors
     /// [`OutOfRange`] unless the fraction is above 0 and below 1.
@@ -42,23 +44,23 @@ impl Persson {
         if !(area_fraction > 0.0 && area_fraction < 1.0) {
             return Err(OutOfRange { quantity: "area fraction", value: area_fraction, max: 1.0 });
         }
-        // erf is below its tangent at 0, so its inverse is above that line's; erf(6) rounds to 1.
+        // erf is below its tangent at 0, so its inverse is above the inverse of this line. erf(6) rounds to 1.
         let slope = 2.0 / PI.sqrt();
         let z =
             increasing_root((0.0, 6.0), area_fraction / slope, |z| (erf(z) - area_fraction, slope * (-z * z).exp()));
         Ok(Self { mean_pressure, lambda: (0.5 * mean_pressure / z).powi(2) })
     }
 
-    /// The Λ of Eq. 7 that is nearest to `densities` (stress, P) by least squares, the mean stress given.
+    /// The Λ of Eq. 7 that is nearest to `densities` (stress, P) by least squares.
     ///
-    /// One parameter: a search by golden sections in ln Λ, between limits where Eq. 7 is far narrower than the range of
-    /// the stresses given, or has its peak far beyond them. Any unit of stress will do here, as long as all three are
-    /// in it.
+    /// The mean stress is given, so Λ is the only parameter. The fit is a golden-section search in ln Λ. At the lower
+    /// limit, Eq. 7 is much narrower than the range of the given stresses. At the upper limit, its peak is far beyond
+    /// them. All three quantities may be in any common unit of stress.
     #[must_use]
     pub fn fit(mean_pressure: f64, densities: &[(f64, f64)]) -> Self {
         let largest = densities.iter().fold(0.0, |largest: f64, at| largest.max(at.0));
         let least = densities.iter().fold(largest, |least, at| least.min(at.0));
-        // In full contact all may be near their mean, or even the same.
+        // In full contact all stresses may be near their mean, or even equal.
         let range = if least > 0.5 * largest { (largest - least).max(1e-9 * largest) } else { largest };
         let of = |logarithm: f64| Self { mean_pressure, lambda: logarithm.exp() };
         let misfit = |logarithm: f64| {
@@ -67,7 +69,7 @@ impl Persson {
         };
         let section = 0.5 * (5_f64.sqrt() - 1.0);
         let (mut low, mut high) = ((1e-6 * range * range).ln(), (largest * largest).ln());
-        // The interval shrinks to 1e-13 of itself.
+        // The interval shrinks to 1e-13 of its width.
         for _ in 0..62 {
             let (left, right) = (high - section * (high - low), low + section * (high - low));
             if misfit(left) < misfit(right) { high = right } else { low = left }
@@ -75,8 +77,9 @@ impl Persson {
         of(0.5 * (low + high))
     }
 
-    /// P(σ) of Eq. (7), in 1/E*, for a stress in E*; 0 for σ ≤ 0, where non-contact is a separate peak of weight 1 -
-    /// A/A0.
+    /// P(σ) of Eq. (7), in 1/E*, for a stress in E*.
+    ///
+    /// It is 0 for σ ≤ 0. Non-contact is a separate peak of weight 1 - A/A0.
     #[must_use]
     pub fn density(self, stress: f64) -> f64 {
         if stress <= 0.0 {
@@ -88,27 +91,29 @@ impl Persson {
         (-(s - s0).powi(2) / (4.0 * lambda)).exp() * mirrored / (4.0 * PI * lambda).sqrt()
     }
 
-    /// A/A0 = ∫P dσ = erf(σ0/2√Λ).
+    /// Area fraction A/A0 = ∫P dσ = erf(σ0/2√Λ).
     #[must_use]
     pub fn area_fraction(self) -> f64 {
         erf(self.scaled_pressure())
     }
 
-    /// ⟨σ²⟩ over the nominal area, in E*²: (σ0² + 2Λ) erf(σ0/2√Λ) + 2σ0 √(Λ/π) exp(-σ0²/4Λ).
+    /// Mean square stress ⟨σ²⟩ over the nominal area, in E*².
+    ///
+    /// It is (σ0² + 2Λ) erf(σ0/2√Λ) + 2σ0 √(Λ/π) exp(-σ0²/4Λ).
     #[must_use]
     pub fn second_moment(self) -> f64 {
         let (s0, lambda, z) = (self.mean_pressure, self.lambda, self.scaled_pressure());
         (s0 * s0 + 2.0 * lambda) * erf(z) + 2.0 * s0 * (lambda / PI).sqrt() * (-z * z).exp()
     }
 
-    /// dP/dσ at σ = 0, in 1/E*²: σ0 exp(-σ0²/4Λ) / (2√π Λ^(3/2)).
+    /// Derivative dP/dσ at σ = 0, σ0 exp(-σ0²/4Λ) / (2√π Λ^(3/2)), in 1/E*².
     #[must_use]
     pub fn slope_at_zero(self) -> f64 {
         let z = self.scaled_pressure();
         self.mean_pressure * (-z * z).exp() / (2.0 * PI.sqrt() * self.lambda.powf(1.5))
     }
 
-    /// σ0/2√Λ.
+    /// The argument σ0/2√Λ.
     fn scaled_pressure(self) -> f64 {
         0.5 * self.mean_pressure / self.lambda.sqrt()
     }
@@ -120,7 +125,7 @@ mod tests {
     use crate::full_contact;
     use crate::testing::{assert_close, assert_printed, integral};
 
-    /// (σ0/slope, A/A0).
+    /// Values (σ0/slope, A/A0).
     #[test]
     fn areas_match_the_table() {
         let table = [(0.001, "0.00159577"), (0.01, "0.01595663"), (0.1, "0.15851942"), (0.3, "0.45149376")];
@@ -132,7 +137,7 @@ mod tests {
         assert_close("κ", Persson::from_rms_slope(1e-9, 1.0).area_fraction(), Persson::KAPPA * 1e-9, 1e-15);
     }
 
-    /// (slope, Λ, A/A0) of the paper's surfaces at σ0/E* = 8.9e-4.
+    /// Values (slope, Λ, A/A0) of the paper's surfaces at σ0/E* = 8.9e-4.
     #[test]
     fn the_papers_surfaces_match_the_table() {
         let surfaces = [
@@ -148,7 +153,7 @@ mod tests {
         }
     }
 
-    /// The Λ that the paper's two areas imply.
+    /// The Λ that follow from the paper's two areas.
     #[test]
     fn an_area_has_one_lambda() {
         for (area, lambda) in [(0.0673, "5.5535"), (0.0588, "7.2793")] {
@@ -166,7 +171,7 @@ mod tests {
 
     #[test]
     fn the_fit_finds_the_lambda_of_eq_7() {
-        // Far beyond full contact, the stresses are all near their mean.
+        // At loads far beyond full contact, all stresses are near their mean.
         let far = Persson { mean_pressure: 5.0, lambda: 1e-8 };
         let densities: Vec<(f64, f64)> =
             (-100..=100).map(|k| 5.0 + 5e-6 * f64::from(k)).map(|stress| (stress, far.density(stress))).collect();
@@ -185,7 +190,7 @@ mod tests {
         }
     }
 
-    /// Low, middle and nearly full contact.
+    /// Tests low, middle and nearly full contact.
     #[test]
     fn moments_are_those_of_the_density() {
         for mean_pressure in [1e-4, 0.02, 0.2] {

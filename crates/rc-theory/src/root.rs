@@ -1,11 +1,15 @@
-//! The root of an increasing function, for formulas that are explicit in the other direction.
+//! The root of an increasing function.
+//!
+//! It serves formulas that are explicit in the opposite direction.
 
-/// Far more than bisection needs for every bit of an `f64` of ordinary size.
+/// Maximum number of steps, far more than bisection needs for all bits of an `f64`.
 const MAX_STEPS: usize = 200;
 
-/// The x in [`low`, `high`] where an increasing function, given as (value, derivative), is 0: Newton's method from
-/// `start`, bisecting whenever a step would leave the interval that is known to hold the root. Accurate to a few units
-/// in the last place of x, or to the rounding of the function where that is coarser.
+/// The x in [`low`, `high`] where an increasing function is 0.
+///
+/// The function returns (value, derivative). Newton's method begins at `start`. It bisects whenever a step would leave
+/// the interval that is known to contain the root. The result is accurate to a few units in the last place of x, or to
+/// the rounding of the function if this is coarser.
 pub(crate) fn increasing_root(
     (mut low, mut high): (f64, f64),
     start: f64,

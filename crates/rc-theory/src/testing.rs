@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
-/// ∫ f from a to b by the tanh-sinh rule (Takahasi and Mori 1974): to rounding, even when f or its derivatives are
-/// singular at the ends.
+/// ∫ f from a to b by the tanh-sinh rule (Takahasi and Mori 1974).
+///
+/// It is accurate to rounding, even when f or its derivatives are singular at the ends.
 pub(crate) fn integral(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let steps_per_unit = 64;
     let mut sum = 0.0;
@@ -17,7 +18,7 @@ pub(crate) fn integral(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     sum * (b - a) / f64::from(steps_per_unit)
 }
 
-/// Fails unless `value` is within `tolerance` of `reference`, relative.
+/// Fails unless the relative error of `value` against `reference` is within `tolerance`.
 #[track_caller]
 pub(crate) fn assert_close(what: &str, value: f64, reference: f64, tolerance: f64) {
     let error = ((value - reference) / reference).abs();
@@ -27,7 +28,7 @@ pub(crate) fn assert_close(what: &str, value: f64, reference: f64, tolerance: f6
     );
 }
 
-/// Fails unless `value` rounds to the printed decimal `reference`, all its digits.
+/// Fails unless `value` rounds to the printed decimal `reference`, with all its digits.
 #[track_caller]
 pub(crate) fn assert_printed(what: &str, value: f64, reference: &str) {
     let decimals = reference.find('.').map_or(0, |point| reference.len() - point - 1);

@@ -1,27 +1,29 @@
-//! A rigid sphere on a layer that is bonded to a rigid base and thin against the contact.
+//! A rigid sphere on a thin layer that is bonded to a rigid base.
+//!
+//! Thin means relative to the contact.
 
 use std::f64::consts::PI;
 
-/// A sphere of radius R (as the paraboloid -r²/2R) on a layer of thickness d ≪ a, where a is the contact radius; δ the
-/// approach.
+/// A sphere of radius R on a layer of thickness d ≪ a.
 ///
-/// A compressible layer is a bed of springs: p = (δ - r²/2R) / c with c = d (1-2ν)/(1-ν)² for a pressure of E*. An
-/// incompressible one (ν = 1/2) flows to the sides instead: δ - r²/2R = -(4d³/3) ∇²p, so that p and its slope are zero
-/// at the edge. Both to first order in d/a.
+/// The sphere is the paraboloid -r²/2R. The contact radius is a, and the approach is δ. A compressible layer is a bed
+/// of springs, p = (δ - r²/2R) / c with c = d (1-2ν)/(1-ν)² for a pressure of E*. An incompressible layer (ν = 1/2)
+/// flows to the sides instead. Then δ - r²/2R = -(4d³/3) ∇²p, with p and its slope zero at the edge. Both formulas are
+/// of first order in d/a.
 ///
 /// Source: K. L. Johnson, *Contact Mechanics*, Cambridge University Press 1985, section 5.8.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinLayer {
-    /// R > 0, in λ.
+    /// Radius R > 0, in λ.
     pub radius: f64,
-    /// d > 0, in λ.
+    /// Thickness d > 0, in λ.
     pub thickness: f64,
-    /// ν of the layer, above -1 and at most 1/2.
+    /// Poisson's ratio ν of the layer, above -1 and at most 1/2.
     pub poisson: f64,
 }
 
 impl ThinLayer {
-    /// c: displacement under a uniform pressure of E*, in λ; 0 for an incompressible layer.
+    /// Displacement c under a uniform pressure of E*, in λ. It is 0 for an incompressible layer.
     #[must_use]
     pub fn spring(self) -> f64 {
         self.thickness * (1.0 - 2.0 * self.poisson) / (1.0 - self.poisson).powi(2)
@@ -31,14 +33,16 @@ impl ThinLayer {
         self.poisson >= 0.5
     }
 
-    /// δ = a²/2R, in λ; a²/4R for an incompressible layer, which bulges beside the contact.
+    /// Approach δ = a²/2R, in λ.
+    ///
+    /// It is a²/4R for an incompressible layer, which bulges beside the contact.
     #[must_use]
     pub fn penetration(self, contact_radius: f64) -> f64 {
         let divisor = if self.is_incompressible() { 4.0 } else { 2.0 };
         contact_radius * contact_radius / (divisor * self.radius)
     }
 
-    /// F = π a⁴ / (4Rc), in E*λ²; π a⁶ / (128 R d³) for an incompressible layer.
+    /// Load F = π a⁴ / (4Rc), in E*λ². It is π a⁶ / (128 R d³) for an incompressible layer.
     #[must_use]
     pub fn load(self, contact_radius: f64) -> f64 {
         let a = contact_radius;
@@ -49,7 +53,9 @@ impl ThinLayer {
         }
     }
 
-    /// p(r) for r < a, in E*; 0 outside: (a² - r²)/(2Rc), or 3 (a² - r²)² / (128 R d³) for an incompressible layer.
+    /// Pressure p(r) for r < a, in E*. It is 0 outside.
+    ///
+    /// The formula is (a² - r²)/(2Rc), or 3 (a² - r²)² / (128 R d³) for an incompressible layer.
     #[must_use]
     pub fn pressure(self, r: f64, contact_radius: f64) -> f64 {
         let inside = (contact_radius * contact_radius - r * r).max(0.0);
@@ -76,7 +82,7 @@ mod tests {
         }
     }
 
-    /// -(4d³/3) ∇²p = δ - r²/2R by differences of the pressure.
+    /// Tests -(4d³/3) ∇²p = δ - r²/2R with differences of the pressure.
     #[test]
     fn the_incompressible_pressure_solves_its_equation() {
         let layer = ThinLayer { radius: 2.0, thickness: 0.01, poisson: 0.5 };

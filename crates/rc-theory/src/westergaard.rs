@@ -1,41 +1,45 @@
-//! Westergaard: a one-dimensional wave in periodic contact, exact at every load.
+//! Westergaard's contact of a one-dimensional wave, exact at every load.
 
 use std::f64::consts::PI;
 
 use crate::root::increasing_root;
 use crate::{OutOfRange, within};
 
-/// The surface A cos(2πx), one wave per cell, under the mean pressure p̄ over the cell. With P = p̄/p^ and full contact
-/// for P ≥ 1; crests are at integer x, contact is |x| < a around them, P = sin²(πa).
+/// The surface A cos(2πx) under the mean pressure p̄ over the cell.
 ///
-/// Source: H. M. Westergaard, *Bearing pressures and cracks*, J. Appl. Mech. 6 (1939) A49-A53; K. L. Johnson, *Contact
+/// There is one wave per cell, with crests at integer x. The relative load is P = p̄/p^, and contact is full for P ≥ 1.
+/// Contact is |x| < a around the crests, with P = sin²(πa).
+///
+/// Sources: H. M. Westergaard, *Bearing pressures and cracks*, J. Appl. Mech. 6 (1939) A49-A53; K. L. Johnson, *Contact
 /// Mechanics*, Cambridge University Press 1985, section 13.2. Mean gap, Δ and energy follow by integration (tests).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Westergaard {
-    /// A > 0, in λ: half the height from trough to crest.
+    /// Amplitude A > 0, in λ, half the height from trough to crest.
     pub amplitude: f64,
 }
 
 impl Westergaard {
-    /// p^ = πA, in E*: the smallest mean pressure with full contact.
+    /// The smallest mean pressure with full contact, p^ = πA, in E*.
     #[must_use]
     pub fn full_contact_pressure(self) -> f64 {
         PI * self.amplitude
     }
 
-    /// a = asin(√P)/π, in λ, at most ½.
+    /// Half width of a contact a = asin(√P)/π, in λ, at most ½.
     #[must_use]
     pub fn half_width(self, mean_pressure: f64) -> f64 {
         self.ratio(mean_pressure).sqrt().asin() / PI
     }
 
-    /// A/A0 = 2a.
+    /// Area fraction A/A0 = 2a.
     #[must_use]
     pub fn area_fraction(self, mean_pressure: f64) -> f64 {
         2.0 * self.half_width(mean_pressure)
     }
 
-    /// p(x) = 2p^ cos(πx) √(P - sin²(πx)) in the contact, p̄ + p^ cos(2πx) in full contact, in E*.
+    /// Pressure p(x) = 2p^ cos(πx) √(P - sin²(πx)) in the contact, in E*.
+    ///
+    /// In full contact it is p̄ + p^ cos(2πx).
     #[must_use]
     pub fn pressure(self, x: f64, mean_pressure: f64) -> f64 {
         let (full, (sine, cosine)) = (self.full_contact_pressure(), phase(x));
@@ -45,13 +49,15 @@ impl Westergaard {
         2.0 * full * cosine * (self.ratio(mean_pressure) - sine * sine).max(0.0).sqrt()
     }
 
-    /// Largest pressure, at the crest, in E*: 2p^ √P, in full contact p̄ + p^.
+    /// Maximum pressure, at the crest, in E*. It is 2p^ √P, and p̄ + p^ in full contact.
     #[must_use]
     pub fn peak_pressure(self, mean_pressure: f64) -> f64 {
         self.pressure(0.0, mean_pressure)
     }
 
-    /// Gap in λ: with s = |sin πx| and χ = √(s² - P), 2A [s χ - P ln((s + χ)/√P)] out of contact, 0 in it.
+    /// Gap at x, in λ. It is 0 in contact.
+    ///
+    /// Out of contact it is 2A [s χ - P ln((s + χ)/√P)] with s = |sin πx| and χ = √(s² - P).
     #[must_use]
     pub fn gap(self, x: f64, mean_pressure: f64) -> f64 {
         let (ratio, (sine, _)) = (self.ratio(mean_pressure), phase(x));
@@ -70,14 +76,17 @@ impl Westergaard {
         self.amplitude - self.penetration(mean_pressure)
     }
 
-    /// Δ = A P (1 - ln P), in λ: A minus the mean gap; A in full contact.
+    /// Penetration Δ = A P (1 - ln P), in λ, equal to A minus the mean gap.
+    ///
+    /// It is A in full contact.
     #[must_use]
     pub fn penetration(self, mean_pressure: f64) -> f64 {
         self.amplitude * relative_penetration(self.ratio(mean_pressure))
     }
 
-    /// Elastic energy per nominal area, A p^ P² (1/4 - ln(P)/2), in E*λ; A p^/4 in full contact, where it does not grow
-    /// with the load.
+    /// Elastic energy per nominal area, A p^ P² (1/4 - ln(P)/2), in E*λ.
+    ///
+    /// In full contact it is A p^/4 and does not grow with the load.
     #[must_use]
     pub fn energy(self, mean_pressure: f64) -> f64 {
         let ratio = self.ratio(mean_pressure);
@@ -85,31 +94,32 @@ impl Westergaard {
         self.amplitude * self.full_contact_pressure() * ratio * ratio * (0.25 - 0.5 * logarithm)
     }
 
-    /// Mean pressure at penetration Δ, in E*, from Δ/A = P (1 - ln P). Near full contact Δ is flat in P, which is then
-    /// known to the square root of rounding only.
+    /// Mean pressure at penetration Δ, in E*, from Δ/A = P (1 - ln P).
+    ///
+    /// Near full contact Δ is flat in P, so the error of P is the square root of rounding.
     ///
     /// # Errors
     /// [`OutOfRange`] unless 0 ≤ Δ ≤ A.
     pub fn mean_pressure_at(self, penetration: f64) -> Result<f64, OutOfRange> {
         let relative = within("penetration", penetration, self.amplitude)? / self.amplitude;
-        // P (1 - ln P) > P and P < Δ/A give this upper bound, which is near for small Δ.
+        // P (1 - ln P) > P and P < Δ/A give this upper bound. It is near the root for small Δ.
         let start = if relative > 0.0 { relative / (1.0 - relative.ln()) } else { 0.0 };
         let root = increasing_root((0.0, 1.0), start, |p| (relative_penetration(p) - relative, -p.ln()));
         Ok(self.full_contact_pressure() * root)
     }
 
-    /// P, between 0 and 1.
+    /// The relative load P, between 0 and 1.
     fn ratio(self, mean_pressure: f64) -> f64 {
         (mean_pressure / self.full_contact_pressure()).clamp(0.0, 1.0)
     }
 }
 
-/// P (1 - ln P), continued to 0 at P = 0.
+/// The function P (1 - ln P), continued to 0 at P = 0.
 fn relative_penetration(ratio: f64) -> f64 {
     if ratio > 0.0 { ratio * (1.0 - ratio.ln()) } else { 0.0 }
 }
 
-/// |sin| and cos ≥ 0 of πx, x taken from the nearest crest.
+/// |sin| and cos ≥ 0 of πx, where x is measured from the nearest crest.
 fn phase(x: f64) -> (f64, f64) {
     let (sine, cosine) = (PI * (x - x.round())).sin_cos();
     (sine.abs(), cosine.max(0.0))
@@ -126,7 +136,7 @@ mod tests {
         WAVE.full_contact_pressure() * (PI * half_width).sin().powi(2)
     }
 
-    /// (a, P, Δ/A, largest p/p^, U/(A p^)), independently evaluated; every printed digit must come out.
+    /// Values (a, P, Δ/A, largest p/p^, U/(A p^)), independently evaluated. Every printed digit must agree.
     #[test]
     fn states_match_the_table() {
         let table = [
@@ -154,15 +164,16 @@ mod tests {
         for a in [0.01, 0.1, 0.25, 0.4, 0.49] {
             let load = mean_pressure(a);
             assert_close("∫ p", 2.0 * integral(0.0, a, |x| WAVE.pressure(x, load)), load, 1e-12);
-            // The gap closes towards full contact and is then known relative to A.
+            // The gap closes towards full contact, so its error is relative to A.
             let mean_gap = 2.0 * integral(a, 0.5, |x| WAVE.gap(x, load));
             let error = (mean_gap - WAVE.mean_gap(load)).abs() / WAVE.amplitude;
             assert!(error <= 1e-14, "mean gap {mean_gap:e}, closed form {:e}", WAVE.mean_gap(load));
         }
     }
 
-    /// The displacement v = h - A + Δ + gap of a pressure wave c cos(2πkx) is c/(πk) times it: first three waves, by
-    /// quadrature.
+    /// The displacement of a pressure wave c cos(2πkx) is c/(πk) times the wave.
+    ///
+    /// The displacement is v = h - A + Δ + gap. The first three waves are compared by quadrature.
     #[test]
     fn pressure_and_gap_belong_together() {
         let load = mean_pressure(0.2);
@@ -188,7 +199,7 @@ mod tests {
             let load = ratio * WAVE.full_contact_pressure();
             assert_close("p̄", WAVE.mean_pressure_at(WAVE.penetration(load)).expect("below A"), load, 2e-14);
         }
-        // Here 1 - Δ/A = (1 - P)²/2: rounding of Δ is its square root in P.
+        // Here 1 - Δ/A = (1 - P)²/2, so the error of P is the square root of the rounding of Δ.
         let load = WAVE.mean_pressure_at(WAVE.amplitude).expect("full contact");
         assert_close("p̄ at Δ = A", load, WAVE.full_contact_pressure(), 5e-8);
         assert_eq!(WAVE.mean_pressure_at(0.0), Ok(0.0));

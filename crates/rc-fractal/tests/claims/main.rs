@@ -1,4 +1,4 @@
-//! The claims of `rc-fractal`, checked from outside.
+//! Tests of the claims of `rc-fractal`, from outside.
 
 mod moments;
 mod parameters;
@@ -13,7 +13,7 @@ fn surface(params: SpectrumParams) -> Surface {
     Surface::new(&params).expect("valid parameters")
 }
 
-/// Fails unless `value` is within `tolerance` of `reference`, relative.
+/// Fails unless the relative error of `value` against `reference` is within `tolerance`.
 fn assert_close(what: &str, value: f64, reference: f64, tolerance: f64) {
     let error = ((value - reference) / reference).abs();
     assert!(

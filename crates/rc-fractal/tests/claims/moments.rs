@@ -12,8 +12,10 @@ use crate::{assert_close, surface};
 const CELL_UM: f64 = 1e4;
 const CELL_M: f64 = 1e-2;
 
-/// Independently computed for the paper's two surfaces, both truncations: amplitudes at (1, 1) and (1, 0) (µm), rms
-/// slope, rms Laplacian (1/m), Nayak's parameter. All digits of the table must come out.
+/// Independently computed values for the paper's two surfaces and both truncations.
+///
+/// The values are amplitudes at (1, 1) and (1, 0) (µm), rms slope, rms Laplacian (1/m) and Nayak's parameter. All
+/// digits of the table must agree.
 #[test]
 fn moments_are_those_of_the_paper() {
     let table = [
@@ -40,7 +42,8 @@ fn moments_are_those_of_the_paper() {
     }
 }
 
-/// Rounding of the transform reaches the curvature through the largest q⁴, hence 1e-10 and not 1e-14.
+/// Rounding errors of the transform reach the curvature through the largest q⁴. Hence the tolerance is 1e-10 and not
+/// 1e-14.
 #[test]
 fn moments_of_a_resolved_grid_equal_the_exact_sums() {
     let surface = surface(SpectrumParams { amplitudes: Amplitudes::Random, ..SpectrumParams::paper(30, 3) });
@@ -107,7 +110,7 @@ fn assert_same(what: &str, actual: Moments, expected: Moments) {
     }
 }
 
-/// A tilted plane has its slope, and no cliff across the border.
+/// A tilted plane has its slope, without a cliff at the border.
 #[test]
 fn the_slope_of_a_patch_is_that_inside() {
     let grid = rc_core::Grid::in_cell(40, 30, 0.75).expect("a grid");

@@ -1,4 +1,4 @@
-//! Parameters that cannot be are refused, with their value.
+//! Invalid parameters are refused, with their value.
 
 use rc_fractal::{MAX_WAVES, Normalisation, SpectrumError, SpectrumParams, Surface};
 

@@ -1,4 +1,4 @@
-//! One surface, whatever the grid, the method or the number of threads.
+//! A surface is the same for any grid, method and number of threads.
 
 use rc_core::{DVec2, Field, Grid, HeightField, testing};
 use rc_fractal::{Amplitudes, SampleError, SpectrumParams, Surface, Truncation, moments_of_grid, radial_spectrum};
@@ -12,8 +12,9 @@ fn the_height_field_contract_holds() {
     }
 }
 
-/// Synthesis against the direct sum: grids that resolve the surface, and grids so coarse that waves fold, down to one
-/// element.
+/// Compares synthesis with the direct sum.
+///
+/// Some grids resolve the surface. Others are so coarse that waves fold, down to one element.
 #[test]
 fn synthesis_equals_the_direct_sum_on_any_grid() {
     let surface = surface(SpectrumParams { truncation: Truncation::Square, ..SpectrumParams::paper(40, 2) });
@@ -27,7 +28,7 @@ fn synthesis_equals_the_direct_sum_on_any_grid() {
             let at = grid.centre(index % nx, index / nx);
             let (fast, direct) = (heights.values()[index], surface.height(at));
             let error = (fast - direct).abs() / scale;
-            // Rounding of 6560 waves whose sizes add up to about 40 rms.
+            // Rounding of 6560 waves whose sizes have a sum of about 40 rms.
             assert!(error <= 1e-13, "{grid}, element {index}: {fast:e}, direct sum {direct:e}, error {error:.1e} rms");
         }
     }
@@ -88,7 +89,7 @@ fn a_coarse_grid_is_refused_with_the_smallest_that_would_do() {
     assert!(surface.sample_on(Grid::square(41).expect("small")).is_ok());
 }
 
-/// A map on a rectangular cell and the square of its copies: the same moments, and the same power in all rings
+/// A rectangular map has the same moments as the square of its copies. They also have the same power in all rings
 /// together.
 #[test]
 fn a_rectangle_has_the_moments_of_its_copies_and_all_of_the_power() {

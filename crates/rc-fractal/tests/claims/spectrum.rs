@@ -1,4 +1,4 @@
-//! Amplitudes and phases, wave by wave.
+//! Amplitudes and phases of single waves.
 
 use std::f64::consts::TAU;
 
@@ -73,8 +73,8 @@ fn the_spectrum_is_flat_up_to_the_roll_off_and_a_power_law_beyond() {
     }
 }
 
-/// |a|² of a complex Gaussian is exponentially distributed: |a|²/⟨|a|²⟩ has mean 1 ± 1 and mean square 2 ± √20, so averages
-/// over n waves must be within five times that over √n.
+/// The |a|² of complex Gaussian numbers are exponentially distributed. So |a|²/⟨|a|²⟩ has mean 1 ± 1 and mean square 2
+/// ± √20. Averages over n waves must be within five times these deviations over √n.
 #[test]
 fn random_amplitudes_are_complex_gaussian_about_the_spectrum() {
     let base = SpectrumParams::paper(128, 2);
@@ -110,8 +110,9 @@ fn different_seeds_are_different_surfaces() {
     }
 }
 
-/// The draws are part of the format: a seed names the same surface on every machine and in every later version. The
-/// values come from an independent implementation of the description in `draws.rs`, `ChaCha8` included.
+/// The draws are part of the format. A seed means the same surface on every machine and in every later version.
+///
+/// The values come from an independent implementation of the description in `draws.rs`, including `ChaCha8`.
 #[test]
 fn a_seed_names_the_same_surface_for_ever() {
     let surface = surface(SpectrumParams { amplitudes: Amplitudes::Random, ..SpectrumParams::paper(4, 42) });
@@ -141,8 +142,8 @@ fn rings_add_up_to_the_mean_square_height() {
     }
 }
 
-/// Averaging k^-3.6 over |k| ± ½ raises it by about 3.6·4.6/24 k^-2, and lattice points are uneven in a ring: 1 %
-/// beyond k = 10.
+/// Averaging k^-3.6 over |k| ± ½ raises it by about 3.6·4.6/24 k^-2. Lattice points are also uneven in a ring. Both
+/// together are 1 % beyond k = 10.
 #[test]
 fn unit_rings_follow_the_power_law() {
     let surface = c0(1.0, SpectrumParams::paper(64, 6));

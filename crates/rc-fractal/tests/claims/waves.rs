@@ -7,10 +7,10 @@ use rc_fractal::{Amplitudes, Complex64, MAX_WAVES, SpectrumParams, Surface, Trun
 
 use crate::surface;
 
-/// Which waves of a surface are given.
+/// Selects the waves of a surface that are given.
 type Half = fn(&Wave) -> bool;
 
-/// Every wave of a surface, its opposite too.
+/// Every wave of a surface, and the opposite of every wave.
 fn waves_of(surface: &Surface) -> Vec<Wave> {
     let n = surface.waves() as i64;
     let all = (-n..=n).flat_map(|kx| (-n..=n).map(move |ky| (kx, ky)));
@@ -22,8 +22,9 @@ fn wave(kx: i64, ky: i64, re: f64, im: f64) -> Wave {
     Wave { kx, ky, amplitude: Complex64::new(re, im) }
 }
 
-/// Half planes to both sides, along either axis, and all waves in another order: each is the surface that they are of,
-/// bit by bit.
+/// The waves of a surface define the same surface again, bit by bit.
+///
+/// They are given as half planes to both sides along both axes, and completely in another order.
 #[test]
 fn a_surface_is_that_of_its_waves_whichever_half_is_given() {
     for truncation in [Truncation::Disc, Truncation::Square] {
@@ -58,7 +59,7 @@ fn one_wave_is_a_cosine() {
     let (amplitude, phase) = (2e-3, 0.4);
     let given = Complex64::from_polar(0.5 * amplitude, phase);
     for (kx, ky) in [(3, -2), (0, -5), (-4, 0), (0, 1)] {
-        // The mean height does not count, nor do zeros.
+        // The mean height and zeros are ignored.
         let waves = vec![wave(0, 0, 7.0, 0.0), Wave { kx, ky, amplitude: given }, wave(9, 9, 0.0, 0.0)];
         let surface = Surface::from_waves(waves).expect("a wave");
         assert_eq!(surface.waves(), kx.abs().max(ky.abs()) as usize);
@@ -105,7 +106,7 @@ fn waves_that_make_no_surface_are_named() {
     assert_eq!(Surface::from_waves(Vec::new()).expect_err("no waves"), WaveError::Flat);
 }
 
-/// As files with few digits, or a Fourier transform, leave them.
+/// Opposite waves differ by rounding in files with few digits, or after a Fourier transform.
 #[test]
 fn opposites_may_differ_by_rounding() {
     let waves =

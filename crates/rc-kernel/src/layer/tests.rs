@@ -1,4 +1,6 @@
-//! The factor of a layer against the equations of elasticity, its limits, and its kernels.
+//! Tests of the factor of a layer, its limits, and its kernels.
+//!
+//! The factor is compared with the equations of elasticity.
 
 use rc_core::testing::check_kernel;
 
@@ -10,18 +12,20 @@ fn layer(thickness: f64, poisson: f64) -> Layer {
     Layer { thickness, poisson }
 }
 
-/// Displacement u_z of the surface of a layer of thickness 1 and E* = 1 under the pressure cos(q x), by the equations
-/// of elasticity: the two potentials of Papkovich and Neuber in plane strain, with four constants from four conditions.
+/// Displacement u_z of the surface of a layer under the pressure cos(q x).
+///
+/// It follows from the equations of elasticity. The layer has thickness 1 and E* = 1. The two potentials of Papkovich
+/// and Neuber in plane strain have four constants, which follow from four conditions.
 fn of_boundary_values(q: f64, poisson: f64) -> f64 {
     let shear = 0.5 * (1.0 - poisson);
     let kappa = 3.0 - 4.0 * poisson;
-    // 2G u_x = sin(qx) (-q F - q z P), 2G u_z = cos(qx) (F' + z P' - κ P), with F and P of exp(±q(z - 1/2)), z from the
-    // base upwards.
+    // 2G u_x = sin(qx) (-q F - q z P), 2G u_z = cos(qx) (F' + z P' - κ P). F and P consist of exp(±q(z - 1/2)), and z
+    // increases from the base upwards.
     let potentials = |z: f64| {
         let [up, down] = [(q * (z - 0.5)).exp(), (-q * (z - 0.5)).exp()];
         [[up, q * up, q * q * up], [down, -q * down, q * q * down]]
     };
-    // Rows: coefficients of F's two waves and of P's two waves.
+    // Rows are the coefficients of the two waves of F and of the two waves of P.
     let row = |of_f: &dyn Fn([f64; 3]) -> f64, of_p: &dyn Fn([f64; 3]) -> f64, z: f64| {
         let [up, down] = potentials(z);
         [of_f(up), of_f(down), of_p(up), of_p(down)]
@@ -36,7 +40,7 @@ fn of_boundary_values(q: f64, poisson: f64) -> f64 {
     -lifted / (2.0 * shear)
 }
 
-/// Gauss with pivots.
+/// Gaussian elimination with pivots.
 fn eliminate(mut matrix: [[f64; 4]; 4], mut right: [f64; 4]) -> [f64; 4] {
     for i in 0..4 {
         let pivot = (i..4).max_by(|&a, &b| matrix[a][i].abs().total_cmp(&matrix[b][i].abs())).expect("rows");
@@ -64,7 +68,7 @@ fn the_factor_solves_the_equations_of_the_layer() {
     for poisson in RATIOS {
         for xi in [0.05, 0.3, 0.49, 0.51, 1.0, 2.0, 5.0] {
             let (found, expected) = (2.0 / xi * layer(1.0, poisson).factor(xi), of_boundary_values(xi, poisson));
-            // Elimination loses digits where long waves hardly displace.
+            // Elimination loses digits for long waves, whose displacement is small.
             let error = (found / expected - 1.0).abs();
             assert!(error < 1e-9, "ν = {poisson}, ξ = {xi}: {found} for {expected}, off by {error:e}");
         }
@@ -85,7 +89,7 @@ fn the_factor_is_that_of_columns_and_of_the_half_space_in_its_limits() {
             let (excess, difference) = (layer.excess(xi), layer.factor(xi) - 1.0);
             assert!((excess - difference).abs() < 1e-15, "ν = {poisson}, ξ = {xi}: {excess} and {difference}");
         }
-        // One formula goes on where the other ends.
+        // The two formulas agree where one replaces the other.
         let [before, after] = [SERIES * (1.0 - 1e-12), SERIES].map(|xi| layer.factor(xi));
         assert!((before / after - 1.0).abs() < 1e-11, "ν = {poisson}: {before} and {after}");
     }
@@ -122,7 +126,7 @@ fn a_thick_layer_is_the_half_space() {
     }
 }
 
-/// The plain sum over aliases of the whole response, whose slow part is summed for the half-space too.
+/// The plain sum over aliases of the whole response. Its slowly converging part is summed for the half-space too.
 #[test]
 fn the_symbol_is_the_sum_over_aliases() {
     const REACH: i64 = 400;

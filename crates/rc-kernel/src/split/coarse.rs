@@ -1,30 +1,34 @@
-//! Elements coarser than the finest: squares of 2^m × 2^m of its elements under one pressure, whose displacement is the
-//! mean over them.
+//! Elements that are coarser than the finest.
 //!
-//! With P spreading a value to four elements of half the side and R = ¼ Pᵀ taking their mean, the operator on level K -
-//! m is `Rᵐ L Pᵐ`: symmetric, and the same L whichever level a patch of contact is on. Its smooth part sees, instead of
-//! points, elements blurred by
+//! A coarse element is a square of 2^m × 2^m finest elements under one pressure. Its displacement is the mean over the
+//! finest elements.
+//!
+//! P copies a value to four elements of half the side, and R = ¼ Pᵀ takes their mean. The operator on level K - m is
+//! `Rᵐ L Pᵐ`. It is symmetric, and uses the same L for a patch of contact on any level. In its smooth part, points are
+//! replaced by elements with the blur
 //!
 //! ```text
 //! b_m(q) = Π_{i=1}^{m} cos(q/2^{i+1}) · √sinc(q/2^{m+1})        (q in radians per coarse element)
 //! ```
 //!
-//! along each axis ([`CoarseFilter`]); its short-range part follows level by level from that of Love's squares.
+//! along each axis ([`CoarseFilter`]). Its short-range part follows level by level from that of Love's squares.
 
 use super::SplitParams;
 use super::filter::{EXACT, SAMPLES, least_squares, love_target, weight};
 use super::stencil::Stencil;
 use super::window::Window;
 
-/// The blur of a coarse element along one axis: from pressures to the density of their own level, and, transposed, from
-/// that level's smooth displacement to the elements' means.
+/// The blur of a coarse element along one axis.
+///
+/// It takes pressures to the density of their own level. Its transpose takes the smooth displacement of that level to
+/// the means over elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoarseFilter {
     taps: Vec<f64>,
 }
 
 impl CoarseFilter {
-    /// Weights of the element itself and of the ones 1, 2, … elements away on either side.
+    /// Weights of the element itself and of the elements 1, 2, … away on either side.
     #[must_use]
     pub fn taps(&self) -> &[f64] {
         &self.taps
@@ -41,16 +45,19 @@ impl CoarseFilter {
 /// The response of an element of a coarse level, for elements of side 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoarseElement {
-    /// Its blur.
+    /// The blur of the element.
     pub filter: CoarseFilter,
-    /// The displacement of other elements of its size, without the shares of the level's own stencil and of all coarser
-    /// levels.
+    /// The displacement of other elements of its size by finer levels.
+    ///
+    /// It excludes the level's own stencil and all coarser levels.
     pub near: Stencil,
-    /// The same, when the level's own stencil does not act either.
+    /// The displacement including the level's own stencil, but excluding all coarser levels.
     pub whole: Stencil,
 }
 
-/// Elements of 2, 4, … 2^`n_levels` times the finest side, from Love's stencil and the levels' stencil.
+/// Elements of 2, 4, … 2^`n_levels` times the finest side.
+///
+/// They follow from Love's stencil and the stencil of the levels.
 pub(super) fn elements(
     window: &Window,
     params: SplitParams,
@@ -69,11 +76,13 @@ pub(super) fn elements(
     elements
 }
 
-/// `R S P` of a stencil on elements of half the side, in units of the coarse side.
+/// `R S P` of a stencil S on elements of half the side.
+///
+/// The unit of length is the coarse side.
 fn mean_over_pairs(finer: &Stencil) -> Stencil {
     let radius = finer.radius() as i32;
     Stencil::new(usize::midpoint(finer.radius(), 1), |dx, dy| {
-        // The four by four pairs of halves, by their distance: 1, 2, 1 along either axis.
+        // The four by four pairs of halves have distances with multiplicities 1, 2, 1 along each axis.
         let pairs = [(-1, 1.0), (0, 2.0), (1, 1.0)];
         let (x, y) = (2 * dx as i32, 2 * dy as i32);
         let mut sum = 0.0;
@@ -84,12 +93,12 @@ fn mean_over_pairs(finer: &Stencil) -> Stencil {
                 }
             }
         }
-        // A quarter for the mean, a half for the unit of length.
+        // A factor of a quarter for the mean, and a half for the unit of length.
         0.125 * sum
     })
 }
 
-/// `near` and the level's stencil between two blurred elements.
+/// The sum of `near` and the level's stencil between two blurred elements.
 fn with_level(near: &Stencil, level: &Stencil, filter: &CoarseFilter) -> Stencil {
     let n = filter.taps.len() as i32 - 1;
     let tap = |j: i32| filter.taps.get(j.unsigned_abs() as usize).copied().unwrap_or(0.0);
@@ -108,13 +117,15 @@ fn with_level(near: &Stencil, level: &Stencil, filter: &CoarseFilter) -> Stencil
     })
 }
 
-/// b_m.
+/// The blur b_m(q).
 fn blur(q: f64, m: u32) -> f64 {
     let halves = (1..=m).map(|i| (q / f64::from(1_u32 << (i + 1))).cos());
     halves.product::<f64>() * love_target(q / f64::from(1_u32 << m))
 }
 
-/// The taps whose response is nearest to b_m (least squares), weighted by the spectrum that the level has to represent.
+/// The taps whose response is nearest to b_m by least squares.
+///
+/// The weight is the spectrum that the level has to represent.
 fn design(window: &Window, params: SplitParams, m: u32) -> CoarseFilter {
     let n = params.taps / 2;
     let c = 0.5 * params.cutoff as f64;
@@ -143,7 +154,7 @@ mod tests {
             assert!((element.filter.response(0.0) - 1.0).abs() < 1e-9);
             for q in [0.2, 0.6, 1.2] {
                 let (n, side) = (1 << m, 1.0 / f64::from(1 << m));
-                // The mean of a wave over the centres of the finest elements, each of which is itself half a square.
+                // The mean of a wave over the centres of the finest elements. Each of these is itself half of a square.
                 let centres = (0..n).map(|i| (q * (f64::from(i) + 0.5 - 0.5 * f64::from(n)) * side).cos());
                 let mean = centres.sum::<f64>() / f64::from(n);
                 let finest = ((0.5 * q * side).sin() / (0.5 * q * side)).sqrt();
@@ -153,14 +164,15 @@ mod tests {
         }
     }
 
-    /// A constant pressure displaces alike on every level: stencils of the levels up to a common one add up to the
-    /// same.
+    /// A constant pressure displaces the surface equally on every level.
+    ///
+    /// The sum of the stencils of the levels up to a common level is the same.
     #[test]
     fn a_constant_is_the_same_on_every_level() {
         let split = ScaleSplit::new(SplitParams::certified());
         let mut finest = split.love_stencil().sum();
         for element in split.coarse_elements(4) {
-            // In units of the coarser side.
+            // In units of the side of the coarser elements.
             let near = element.near.sum();
             assert!((near / (0.5 * finest) - 1.0).abs() < 1e-12, "{near} for {}", 0.5 * finest);
             finest = element.whole.sum();

@@ -1,27 +1,32 @@
-//! The filter between two levels: pressures go up by it, displacements come down.
+//! The filter between two levels.
 //!
-//! The centre of an element is a quarter of a coarse element away from the nearest coarse centre, on one side or the
-//! other, so that one set of taps, and its mirror image, is the whole table. It is the set that interpolates waves best
-//! (least squares), weighted by the spectrum of the remainder.
+//! It takes pressures to the coarser level, and displacements to the finer level. The centre of an element is a quarter
+//! of a coarse element away from the nearest coarse centre, on one side or the other. So one set of taps and its mirror
+//! image form the whole table. The taps are fitted by least squares to interpolate waves, with the spectrum of the
+//! remainder as weight.
 
 use super::SplitParams;
 use super::window::Window;
 
-/// Wavenumbers at which the fit is made.
+/// Number of wavenumbers of the fit.
 pub(super) const SAMPLES: usize = 400;
 
-/// Weight of the condition that a constant is interpolated exactly, relative to the largest of the fit.
+/// Weight of the condition that a constant is interpolated exactly.
+///
+/// It is relative to the largest weight of the fit.
 pub(super) const EXACT: f64 = 1e4;
 
-/// Interpolation from a grid to the one twice as fine, along one axis.
+/// Interpolation along one axis, from a grid to a grid twice as fine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Filter {
     taps: Vec<f64>,
 }
 
 impl Filter {
-    /// Weights of the coarse centres `c - (n/2 - 1), …, c + n/2`, n of them, in the value at the fine centre a quarter
-    /// of a coarse element beyond the coarse centre `c`; mirrored for the one before it.
+    /// Weights of the coarse centres in the value at a fine centre.
+    ///
+    /// There are n coarse centres `c - (n/2 - 1), …, c + n/2`. The fine centre is a quarter of a coarse element beyond
+    /// the coarse centre `c`. For the fine centre before `c` the weights are mirrored.
     #[must_use]
     pub fn taps(&self) -> &[f64] {
         &self.taps
@@ -35,19 +40,23 @@ impl Filter {
     }
 }
 
-/// For the finest level the filter is half of the difference between an element and a point: √sinc(q/2) along each
-/// axis; the other half is in its transpose.
+/// Target of the filter for the finest level, √sinc(q/2) along each axis.
+///
+/// This filter is half of the difference between an element and a point. Its transpose is the other half.
 pub(super) fn love_target(q: f64) -> f64 {
     ((0.5 * q).sin() / (0.5 * q)).sqrt()
 }
 
-/// Weight of the wavenumber `q` in a fit: the remainder of the cutoff `c`, times the decay of a pressure with
-/// square-root edges.
+/// Weight of the wavenumber `q` in a fit.
+///
+/// It is the remainder of the cutoff `c`, times the decay of the spectrum of a pressure with square-root edges.
 pub(super) fn weight(window: &Window, c: f64, q: f64) -> f64 {
     (2.0 / q - c * window.short_range(q * c)) * q.powf(-1.5)
 }
 
-/// The taps whose response at q, in radians per fine element, is nearest to `target(q)`.
+/// The taps whose response at q is nearest to `target(q)`.
+///
+/// q is in radians per fine element.
 pub(super) fn design(window: &Window, params: SplitParams, target: impl Fn(f64) -> f64) -> Filter {
     let n = params.taps;
     let c = params.cutoff as f64;
@@ -62,19 +71,20 @@ pub(super) fn design(window: &Window, params: SplitParams, target: impl Fn(f64) 
         rows.push(phases.iter().map(|phase| weight * phase.cos()).chain([wanted]).collect());
         rows.push(phases.iter().map(|phase| weight * phase.sin()).chain([0.0]).collect());
     }
-    // Heaviest rows first: reflections are accurate for rows of very different weights only in that order.
+    // The heaviest rows come first. Only in this order are reflections accurate for rows of very different weights.
     let heaviest = rows.iter().map(|row| row[n].abs()).fold(0.0, f64::max);
     rows.insert(0, vec![EXACT * heaviest; n + 1]);
     Filter { taps: least_squares(rows, n) }
 }
 
-/// Solves an overdetermined system, rows with the right-hand side last.
+/// Solves an overdetermined system. The right-hand side is the last item of each row.
 pub(super) fn least_squares(rows: Vec<Vec<f64>>, n: usize) -> Vec<f64> {
     fit(rows, n).pop().unwrap_or_default()
 }
 
-/// Solves an overdetermined system of `n` unknowns, rows with right-hand sides last, by Householder reflections: a
-/// solution for each of these.
+/// Solves an overdetermined system of `n` unknowns by Householder reflections.
+///
+/// Right-hand sides are the last items of each row. There is one solution for each of them.
 pub(super) fn fit(mut rows: Vec<Vec<f64>>, n: usize) -> Vec<Vec<f64>> {
     let width = rows.first().map_or(n, Vec::len);
     for column in 0..n {

@@ -1,19 +1,21 @@
-//! The inverse operator |q|/2 split by scale, accurately enough for a preconditioner.
+//! The inverse operator |q|/2 split by scale, with the accuracy of a preconditioner.
 
 use std::f64::consts::PI;
 
 use super::{Filter, Stencil};
 
-/// Wavenumbers per axis at which the symbol is taken.
+/// Number of wavenumbers per axis at which the symbol is evaluated.
 const SAMPLES: usize = 64;
 
-/// The difference between |q|/2 on a level and |q|/2 on the next coarser one between two filters, cut off at `radius`.
-/// The weight at the centre is such that a constant still gives zero.
+/// The part of |q|/2 that a level adds to the next coarser level.
+///
+/// It is |q|/2 on the level minus |q|/2 on the coarser level between two filters, cut off at `radius`. The weight at
+/// the centre is chosen so that a constant still gives zero.
 pub(super) fn stencil(filter: &Filter, radius: usize) -> Stencil {
     let n = SAMPLES as i32;
     let wavenumbers: Vec<f64> = (0..n).map(|k| 2.0 * PI * f64::from(k - n / 2) / f64::from(n)).collect();
     let squares: Vec<f64> = wavenumbers.iter().map(|&q| filter.response(q).powi(2)).collect();
-    // Waves too short for the coarse grid appear there as the longer ones they alias to.
+    // Waves that are too short for the coarse grid appear there as their longer aliases.
     let folded: Vec<f64> = wavenumbers.iter().map(|&q| q - PI * (q / PI).round()).collect();
     let missing = |kx: usize, ky: usize| {
         let fine = wavenumbers[kx].hypot(wavenumbers[ky]);
@@ -37,7 +39,9 @@ pub(super) fn stencil(filter: &Filter, radius: usize) -> Stencil {
 mod tests {
     use crate::{ScaleSplit, SplitParams};
 
-    /// On top of a coarser level that has |q|/2 exactly, the stencil restores |q|/2 well enough for a preconditioner.
+    /// The stencil restores |q|/2 well enough for a preconditioner.
+    ///
+    /// The coarser level has |q|/2 exactly here.
     #[test]
     fn one_level_restores_the_symbol() {
         let split = ScaleSplit::new(SplitParams::quick());

@@ -1,11 +1,13 @@
-//! What is made once for each set of parameters, and kept as long as the process: many small problems would spend more
-//! time on it than on their solution.
+//! Values that are made once for each set of parameters.
+//!
+//! They are kept as long as the process. Otherwise, many small problems would spend more time on these values than on
+//! their solution.
 
 use std::sync::{Mutex, PoisonError};
 
 use super::SplitParams;
 
-/// Sets of parameters that values are kept of, at most; solvers use four.
+/// Maximum number of sets of parameters with kept values. Solvers use four.
 const MOST: usize = 16;
 
 /// Values by parameters.
@@ -16,13 +18,13 @@ impl<T: Clone> Kept<T> {
         Self(Mutex::new(Vec::new()))
     }
 
-    /// The value of `params`; `make` is called when there is none yet.
+    /// The value for `params`. `make` is called if there is no value yet.
     pub(super) fn of(&self, params: SplitParams, make: impl FnOnce() -> T) -> T {
         // A thread that panicked has stored nothing.
         let kept = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let known = kept().iter().find(|(other, _)| *other == params).map(|(_, value)| value.clone());
         known.unwrap_or_else(|| {
-            // Not under the lock, which work stolen meanwhile might want too.
+            // The lock is not held here, because work that this thread steals meanwhile may need it.
             let (value, mut kept) = (make(), kept());
             if kept.len() < MOST && kept.iter().all(|(other, _)| *other != params) {
                 kept.push((params, value.clone()));

@@ -1,4 +1,4 @@
-//! Short-range stencils: the displacement of the centres around one element.
+//! Short-range stencils, the displacement of the centres around one element.
 
 use std::f64::consts::FRAC_1_PI;
 
@@ -19,7 +19,7 @@ pub struct Stencil {
 }
 
 impl Stencil {
-    /// A stencil from its weight at (dx, dy), asked for 0 ≤ dy ≤ dx ≤ `radius` only.
+    /// A stencil from its weight at (dx, dy), called for 0 ≤ dy ≤ dx ≤ `radius` only.
     pub(super) fn new(radius: usize, weight: impl Fn(usize, usize) -> f64) -> Self {
         let side = 2 * radius + 1;
         let mut weights = vec![0.0; side * side];
@@ -37,7 +37,9 @@ impl Stencil {
         Self { radius, weights }
     }
 
-    /// The same of elements that are not squares: the weight is asked for 0 ≤ dx, dy ≤ `radius`.
+    /// A stencil of elements that are not squares.
+    ///
+    /// The weight is called for 0 ≤ dx, dy ≤ `radius`.
     pub(super) fn of_rectangles(radius: usize, weight: impl Fn(usize, usize) -> f64) -> Self {
         let side = 2 * radius + 1;
         let distance = |i: usize| i.abs_diff(radius);
@@ -51,10 +53,10 @@ impl Stencil {
         self.radius
     }
 
-    /// Weight at offset (`dx`, `dy`), each at most the radius in size.
+    /// Weight at offset (`dx`, `dy`). The size of each is at most the radius.
     ///
     /// # Panics
-    /// When an offset is larger.
+    /// When an offset is larger than the radius.
     #[must_use]
     pub fn weight(&self, dx: i32, dy: i32) -> f64 {
         let radius = self.radius as i32;
@@ -77,8 +79,9 @@ pub(super) fn love(window: &Window, cutoff: usize) -> Stencil {
     })
 }
 
-/// Mean of `Ψ(r/c)/(π r)` over the unit square around `centre`. The window ends at r = c with a kink: a square that it
-/// crosses is halved a few times.
+/// Mean of `Ψ(r/c)/(π r)` over the unit square around `centre`.
+///
+/// The window ends at r = c with a kink. A square that contains a part of the kink is halved a few times.
 fn mean_remainder(window: &Window, cutoff: f64, DVec2 { x, y }: DVec2, rule: &[(f64, f64)]) -> f64 {
     let (nearest, farthest) = ((x - 0.5).max(0.0).hypot((y - 0.5).max(0.0)), (x + 0.5).hypot(y + 0.5));
     let parts = if nearest < cutoff && cutoff < farthest { 8 } else { 2 };
@@ -107,7 +110,9 @@ pub(super) fn level(window: &Window, cutoff: usize) -> Stencil {
     })
 }
 
-/// The kernel between cutoffs `inner` and c, at the centres of elements of these sides, of which the smaller is 1.
+/// The kernel between cutoffs `inner` and c, at the centres of elements of these sides.
+///
+/// The smaller side is 1.
 pub(super) fn between(window: &Window, cutoff: usize, inner: f64, [width, height]: [f64; 2]) -> Stencil {
     let c = cutoff as f64;
     let remainder = |r: f64, c: f64| window.rise_over(r / c) / c;
@@ -128,20 +133,20 @@ mod tests {
         for (dx, dy) in (0..=64).map(|i| (i / 8 - 4, i % 8 - 4)) {
             assert!((even.weight(dx, dy) - any.weight(dx, dy)).abs() < 1e-15);
         }
-        // The sum over rectangles is the same integral.
+        // The sum over rectangles approximates the same integral.
         let sum = between(&window, 8, 4.1, [1.03, 1.0]).sum();
         let squares = between(&window, 8, 4.1, [1.0, 1.0]).sum();
         assert!((sum / squares - 1.0).abs() < 1e-4, "{sum} for {squares}");
     }
 
-    /// The weights of all squares add up to the integral of the short-range kernel.
+    /// The sum of the weights of all squares is the integral of the short-range kernel.
     #[test]
     fn sums_are_integrals() {
         for (cutoff, shape) in [(3, 3.0), (6, 8.0), (12, 18.0)] {
             let window = Window::new(shape, cutoff);
             let integral = cutoff as f64 * window.short_range(0.0);
             let sum = love(&window, cutoff).sum();
-            // Squares beyond the stencil's radius, which the window's edge still touches, are left out.
+            // Squares beyond the radius of the stencil are omitted, although the edge of the window still touches them.
             let tolerance = if shape < 5.0 { 1e-3 } else { 1e-6 };
             assert!((sum / integral - 1.0).abs() < tolerance, "cutoff {cutoff}: {sum} for {integral}");
         }

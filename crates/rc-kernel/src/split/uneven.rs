@@ -1,7 +1,8 @@
-//! The filter between the finest level and a level that has not half as many elements along a side.
+//! The filter between the finest level and a level of any size.
 //!
-//! Centres of elements are then anywhere between coarse ones, so that each has its own taps. What they are fitted to is
-//! the same for all but for a shift: one fit at Chebyshev nodes gives the taps at any place, as polynomials.
+//! The coarse level does not have half as many elements along a side. So fine centres are at any place between coarse
+//! centres, and each has its own taps. The targets of the fits differ only by a shift. One fit at Chebyshev nodes gives
+//! the taps at any place, as polynomials.
 
 use std::f64::consts::PI;
 
@@ -10,11 +11,13 @@ use super::filter::{EXACT, SAMPLES, fit, love_target, weight};
 use super::window::Window;
 use crate::chebyshev::{coefficients, node, polynomials};
 
-/// Places that taps are fitted at: the fastest wave advances by half a period in a coarse element, and its polynomial
-/// of this many terms is exact to rounding.
+/// Number of places at which taps are fitted.
+///
+/// The fastest wave advances by half a period in a coarse element. A polynomial of this many terms represents it up to
+/// rounding.
 const NODES: usize = 24;
 
-/// Interpolation to the finest level, along one axis, from a level with other elements.
+/// Interpolation along one axis to the finest level, from a level with other elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnevenFilter {
     /// Coefficients of the Chebyshev polynomials in 2 δ - 1, for each tap.
@@ -22,8 +25,10 @@ pub struct UnevenFilter {
 }
 
 impl UnevenFilter {
-    /// Weights of the coarse centres `c - (n/2 - 1), …, c + n/2`, n of them, in the value at the fine centre `offset`
-    /// (0 to 1) of a coarse element beyond the coarse centre `c`.
+    /// Weights of the coarse centres in the value at a fine centre.
+    ///
+    /// There are n coarse centres `c - (n/2 - 1), …, c + n/2`. The fine centre is `offset` (0 to 1) of a coarse element
+    /// beyond the coarse centre `c`.
     #[must_use]
     pub fn taps(&self, offset: f64) -> Vec<f64> {
         let waves = polynomials::<NODES>(2.0 * offset - 1.0);
@@ -31,11 +36,13 @@ impl UnevenFilter {
     }
 }
 
-/// As [`super::filter::design`] for Love's squares, with `ratio` coarse elements to a fine one.
+/// Fits the filter for Love's squares, with `ratio` coarse elements for each fine one.
+///
+/// The method is that of [`super::filter::design`].
 pub(super) fn design(window: &Window, params: SplitParams, ratio: f64) -> UnevenFilter {
     let (n, c) = (params.taps, params.cutoff as f64);
     let offsets: [f64; NODES] = std::array::from_fn(|i| 0.5 + 0.5 * node(i, NODES));
-    // Coarse centres in fine elements from the middle between two of them, which is where errors are about even.
+    // Coarse centres, in fine elements, from the middle between two of them. There, errors are about even.
     let place = |j: usize| (j as f64 - 0.5 * (n - 1) as f64) / ratio;
     let mut rows: Vec<Vec<f64>> = Vec::with_capacity(2 * SAMPLES + 1);
     for sample in 1..=SAMPLES {

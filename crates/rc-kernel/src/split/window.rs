@@ -8,18 +8,19 @@ use crate::bessel::bessel_series;
 use crate::chebyshev::Series;
 use crate::gauss_legendre::gauss_legendre;
 
-/// Terms of the expansions before negligible ones are dropped. They reach rounding accuracy up to β = 24 and cutoffs of
-/// 24 elements.
+/// Number of terms of the expansions before negligible ones are dropped.
+///
+/// The expansions reach rounding accuracy up to β = 24 and cutoffs of 24 elements.
 const TERMS: usize = 64;
 
-/// χ, tabulated.
+/// The window χ, tabulated.
 #[derive(Clone, Debug)]
 pub(crate) struct Window {
     /// Ψ(x)/x in Chebyshev polynomials of x², of which it is an entire function.
     rise: Series,
     /// `2 ∫₀¹ χ(x) J₀(q x) dx` in Chebyshev polynomials of q², q ≤ `reach`.
     transform: Series,
-    /// q·c at the corner of the coarser level's Brillouin zone, and a little more.
+    /// q·c at the corner of the Brillouin zone of the coarser level, with a small margin.
     reach: f64,
 }
 
@@ -50,7 +51,7 @@ impl Window {
         Self { rise, transform, reach }
     }
 
-    /// Ψ(x)/x.
+    /// The function Ψ(x)/x.
     pub(super) fn rise_over(&self, x: f64) -> f64 {
         if x < 1.0 { self.rise.at(x * x) } else { 1.0 / x }
     }
@@ -77,13 +78,14 @@ impl Window {
                 w * mean(second, first / r) * r
             })
             .sum();
-        // The slope jumps where the window ends; beyond, f = 1/r.
+        // The slope jumps where the window ends. Beyond, f = 1/r.
         let jump = 0.5 * ((f(1.0) - f(1.0 - step)) / step + 1.0).abs();
         std::f64::consts::TAU * (inside + jump + mean(2.0, -1.0))
     }
 
-    /// Transform of `χ(r)/(π r)` at the wavenumber `q`: `2 ∫₀¹ χ(r) J₀(q r) dr`. Beyond the tabulated range it is
-    /// extended by its asymptote, 2/q.
+    /// Transform of `χ(r)/(π r)` at the wavenumber `q`, `2 ∫₀¹ χ(r) J₀(q r) dr`.
+    ///
+    /// Beyond the tabulated range its asymptote 2/q is used.
     pub(super) fn short_range(&self, q: f64) -> f64 {
         if q < self.reach { self.transform.at((q / self.reach).powi(2)) } else { 2.0 / q }
     }

@@ -1,4 +1,4 @@
-//! The kernels against tables, slow sums and closed forms, one test binary.
+//! Tests of the kernels with tables, slow sums and closed forms, in one test binary.
 
 mod periodic;
 mod reference;

@@ -1,4 +1,4 @@
-//! Periodic coefficients against tables, slow sums, the symbol, and the identities that they must obey.
+//! Tests of periodic coefficients with tables, slow sums, the symbol, and identities.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -12,7 +12,7 @@ use rc_kernel::{
     truncation_error_bound,
 };
 
-/// The scale of errors: |L|, or where it changes sign, what a unit φ gives.
+/// The scale of errors: |L|, or the contribution of a unit φ where L changes sign.
 fn scale(reference: f64, half_side: f64) -> f64 {
     reference.abs().max(4.0 * half_side * half_side)
 }
@@ -46,7 +46,7 @@ fn coefficients_match_the_seventeen_digit_table() {
 fn coefficients_match_the_quadrature_of_ewald_sums() {
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let love = PeriodicLove::new();
-    // The table of λ/2 squares is interpolated nearer to their images than the others are.
+    // The table of λ/2 squares is interpolated closer to their images than the other tables.
     let (mut worst, mut worst_of_half_cells) = (0.0_f64, 0.0_f64);
     let sizes = (1..=17).map(|level| 0.5_f64.powi(level)).chain([0.4, 1.0 / 6.0, 0.1, 1.0 / 96.0, 3e-3, 1e-7, 1e-12]);
     for d in sizes {
@@ -76,7 +76,7 @@ fn the_inverse_transform_of_the_symbol_gives_the_coefficients() {
     let symbol = Love.symbol(Grid::square(N).expect("grid"));
     let fold = |k: usize| k.min(N - k);
     let cosine = |k: usize, i: usize| (2.0 * PI * ((k * i) % N) as f64 / N as f64).cos();
-    // Σ_k λ(k) cos cos, one direction at a time.
+    // Σ_k λ(k) cos cos, along one direction at a time.
     let values: Vec<f64> = (0..N * N).map(|at| symbol(fold(at % N), fold(at / N)) / (N * N) as f64).collect();
     let transformed = |values: &[f64]| -> Vec<f64> {
         let along = |i: usize, row: &[f64]| row.iter().enumerate().map(|(k, value)| value * cosine(k, i)).sum::<f64>();
@@ -92,7 +92,9 @@ fn the_inverse_transform_of_the_symbol_gives_the_coefficients() {
     }
 }
 
-/// Centres and half sides of a random tiling: squares are quartered with a probability, down to a side of 2^-`depth`.
+/// Centres and half sides of a random tiling.
+///
+/// Squares are quartered with a probability, down to a side of 2^-`depth`.
 fn tiling(random: &mut ChaCha8Rng, x: f64, y: f64, d: f64, depth: usize, tiles: &mut Vec<(f64, f64, f64)>) {
     if depth > 0 && (d > 0.2 || random.random_bool(0.6)) {
         let h = 0.5 * d;
@@ -109,7 +111,7 @@ fn a_uniform_load_on_any_tiling_moves_nothing() {
     let love = PeriodicLove::new();
     for seed in 0..8 {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
-        // Half of the tilings start from 3 x 3 squares: their sizes are not powers of two.
+        // Half of the tilings start from 3 x 3 squares, so their sizes are not powers of two.
         let base = if seed % 2 == 0 { 1 } else { 3 };
         let mut tiles = Vec::new();
         let root = 0.5 / f64::from(base);
@@ -134,7 +136,7 @@ fn a_uniform_load_on_any_tiling_moves_nothing() {
 #[test]
 fn a_load_on_the_whole_cell_moves_nothing() {
     let love = PeriodicLove::new();
-    // Four squares of side λ/2, each with their accuracy.
+    // Four squares of side λ/2, each with its own error.
     for (x, y) in [(0.0, 0.0), (0.5, 0.5), (0.1, -0.3)] {
         assert!(
             love.coefficient(DVec2::new(x, y), 0.5).abs() <= 2e-13,
@@ -174,7 +176,8 @@ fn neutral_loads_on_a_uniform_grid_have_positive_energy() {
     const N: usize = 8;
     let love = PeriodicLove::new();
     let offset = |i: usize, j: usize| (i as f64 - j as f64) / N as f64;
-    // A uniform load moves nothing, so L + 1 is positive definite when L is on neutral loads. Cholesky, in place.
+    // A uniform load causes no displacement. So L + 1 is positive definite if L is positive definite on loads with zero
+    // mean. Cholesky factorisation, in place.
     let mut a: Vec<Vec<f64>> = (0..N * N)
         .map(|i| {
             let entry =
@@ -186,7 +189,7 @@ fn neutral_loads_on_a_uniform_grid_have_positive_energy() {
         for j in 0..=i {
             let rest = a[i][j] - (0..j).map(|k| a[i][k] * a[j][k]).sum::<f64>();
             if i == j {
-                // The smallest eigenvalue of L is that of the shortest wave, about 0.4/N.
+                // The smallest eigenvalue of L belongs to the shortest wave and is about 0.4/N.
                 assert!(rest > 0.2 / N as f64, "pivot {i} is {rest:e}");
                 a[i][i] = rest.sqrt();
             } else {
@@ -220,7 +223,7 @@ fn truncation_error_is_below_its_bound() {
 
 #[test]
 fn truncation_errors_are_those_measured_for_small_sources() {
-    // e = π K error/(2d)², of the printed and of the plain form (n = 64, many shells).
+    // e = π K error/(2d)², for the printed and for the plain form (n = 64, many shells).
     let love = PeriodicLove::new();
     let (d, shells) = (1.0 / 128.0, 40);
     for (x, y, printed, plain) in [(0.0, 0.0, 0.94, 0.235), (0.25, 0.1, 0.84, 0.13), (0.5, 0.5, 0.23, -0.47)] {
@@ -239,7 +242,7 @@ fn eq_6_as_printed_has_the_limit_of_the_plain_form() {
         let exact = love.coefficient(DVec2::new(x, y), d);
         for form in [LoadForm::Plain, LoadForm::Printed] {
             let at = |shells: usize| truncated_coefficient(DVec2::new(x, y), d, shells, form).expect("a valid request");
-            // The error is c/(K + ½) + O(K⁻³): two values give the limit.
+            // The error is c/(K + ½) + O(K⁻³), so two values give the limit.
             let limit = |k: usize| ((2 * k) as f64 + 0.5) * at(2 * k) - (k as f64 + 0.5) * at(k);
             let errors = [8, 16, 32].map(|k| (limit(k) / k as f64 - exact).abs() / scale(exact, d));
             assert!(errors[2] < 2e-5, "({x}, {y}), d = {d}, {form:?}: extrapolated errors {errors:?}");
@@ -298,7 +301,7 @@ fn the_smallest_sources_are_points() {
         let phi = rc_kernel::ewald_phi(DVec2::new(0.3, 0.1)) / PI;
         assert!((value - phi).abs() <= 1e-12, "d = {d}: {value}, point load {phi}");
         let own = love.try_coefficient(DVec2::ZERO, d).expect("a valid request") / d;
-        // The images take 4 d C/π, that is 4.97 d.
+        // The images contribute 4 d C/π, that is 4.97 d.
         assert!((own - 8.0 * 1.0_f64.asinh() / PI).abs() <= 5.0 * d + 1e-14, "d = {d}: {own}");
     }
 }
@@ -306,7 +309,7 @@ fn the_smallest_sources_are_points() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
-    /// Offsets are exact multiples of 2^-40, so that shifting them by whole cells is exact.
+    /// Offsets are exact multiples of 2^-40, so a shift by whole cells is exact.
     #[test]
     fn whole_cells_between_source_and_target_do_not_matter(
         x in -(1_i64 << 40)..(1_i64 << 40), y in -(1_i64 << 40)..(1_i64 << 40),

@@ -1,4 +1,4 @@
-//! The kernels against tabulated values and closed forms.
+//! Tests of the kernels with tabulated values and closed forms.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -31,7 +31,7 @@ fn matches_reference_values_everywhere() {
         let (x, y, half_side, reference) = (row[0], row[1], row[2], row[3]);
         let value = love_displacement(DVec2::new(x, y), half_side);
         let error = (value / reference - 1.0).abs();
-        // 1e-15, and the rounding of the reference to a double and of this division.
+        // 1e-15, plus the rounding of the reference to a double and of this division.
         assert!(
             error <= 1.2e-15,
             "at ({x}, {y}), d = {half_side}: {value:e}, reference {reference:e}, off by {error:.1e}"
@@ -45,7 +45,7 @@ fn matches_reference_values_everywhere() {
 
 #[test]
 fn a_square_is_the_sum_of_its_quarters() {
-    // The quarters are twice as far in their own units, so near and far forms check each other. Both sides have 1e-15.
+    // The quarters are twice as far in their own units, so near and far forms check each other. Each has 1e-15.
     for i in 0..20_000 {
         let distance = 0.01 * 1000.0_f64.powf(quasi_random(i));
         // Rounded to a dyadic grid, on which the centres of the quarters are exact.
@@ -61,8 +61,8 @@ fn a_square_is_the_sum_of_its_quarters() {
 
 #[test]
 fn displacement_is_smooth_where_the_series_takes_over() {
-    // Third differences of a smooth function over 1e-6 are 1e-18: what is left is rounding, eight times that of a
-    // value.
+    // Third differences of a smooth function over 1e-6 are 1e-18. The remaining difference is rounding, eight times as
+    // large as for a value.
     for y in [0.0, 1.0, 1.7, 2.5] {
         let at = |i: i32| love_displacement(DVec2::new(2.5 + 1e-6 * f64::from(i), y), 1.0);
         let jump = (at(1) - 3.0 * at(0) + 3.0 * at(-1) - at(-2)).abs() / at(0);
@@ -85,7 +85,7 @@ fn extreme_arguments_give_limits_and_no_panics() {
     }
 }
 
-/// Coefficients L between element (0, 0) and all others: the inverse transform of the symbol.
+/// Coefficients L between element (0, 0) and all others, the inverse transform of the symbol.
 fn coefficients(kernel: &dyn Kernel, n: usize) -> Vec<f64> {
     let symbol = kernel.symbol(Grid::square(n).expect("grid"));
     let fold = |k: usize| k.min(n - k);
@@ -117,8 +117,8 @@ fn love_symbol_reproduces_the_periodic_coefficients() {
 
 #[test]
 fn love_symbol_reproduces_the_amplitude_ratios() {
-    // Full contact of one wave on m elements per wavelength, relative to the continuous half-space: the printed digits,
-    // and the converged alias sum.
+    // Full contact of one wave on m elements per wavelength, relative to the continuous half-space. Compared with the
+    // printed digits and with the converged alias sum.
     let ratio = |m: usize, both: bool| {
         let (grid, ky) = (Grid::square(m).expect("grid"), usize::from(both));
         let exact = Spectral.symbol(grid)(1, ky);
@@ -137,8 +137,10 @@ fn love_symbol_reproduces_the_amplitude_ratios() {
     assert!((ratio(16, false).recip() - 1.005_561_73).abs() <= 5.1e-9, "stress amplitude of 16 elements");
 }
 
-/// π times what the images of a square of area 1 and half side d add at (x, y), to fourth order in distance over λ: the
-/// lattice field -C + (S3/4) r² + (9/64) S5 r⁴ + (35/64) C4 r⁴ cos 4θ, averaged over the square.
+/// π times the contribution of the images of a square at (x, y).
+///
+/// The square has area 1 and half side d. The result is to fourth order in distance over λ. It is the lattice field
+/// -C + (S3/4) r² + (9/64) S5 r⁴ + (35/64) C4 r⁴ cos 4θ, averaged over the square.
 fn images(x: f64, y: f64, d: f64) -> f64 {
     // 4 ζ(s/2) β(s/2) at s = 1 (with sign), 3, 5, and the lattice sum of cos 4θ/R⁵.
     const C: f64 = 3.900_264_920_001_956;
@@ -162,7 +164,8 @@ fn near_coefficients_are_free_space_less_the_images() {
             let expected =
                 love_displacement(DVec2::new(x, y), 0.5 * side) + side * side * images(x, y, 0.5 * side) / PI;
             let value = coefficients[usize::from(j) * n + usize::from(i)];
-            // The sixth order is below 2 r⁶, with r up to the far corner of the square; and the transform rounds.
+            // The sixth order is below 2 r⁶, with r up to the far corner of the square. The transform adds its
+            // rounding.
             let next = side * side * 2.0 / PI * (x.hypot(y) + side / 2.0_f64.sqrt()).powi(6);
             let (allowed, error) = (next + 2e-16 * coefficients[0], (value - expected).abs());
             assert!(error <= allowed, "n = {n}, ({i}, {j}): {value:e} against {expected:e}, off by {error:.1e}");
@@ -170,7 +173,9 @@ fn near_coefficients_are_free_space_less_the_images() {
     }
 }
 
-/// Copies along x of a cell that is longer along y make a square; its side is the unit of length then.
+/// Copies along x of a cell that is longer along y form a square.
+///
+/// Its side is then the unit of length.
 #[test]
 fn a_cell_longer_along_y_is_a_part_of_the_square_of_its_copies() {
     for (nx, ny, copies) in [(8, 24, 3), (10, 12, 3), (6, 48, 5)] {

@@ -1,4 +1,4 @@
-//! Building: from the plan of a mesh to its sorted keys.
+//! Conversion of the plan of a mesh to its sorted keys.
 
 use super::error::MeshError;
 use super::key::Key;
@@ -7,28 +7,33 @@ use super::mask::Mask;
 use super::mesh::Mesh;
 
 impl Mesh {
-    /// The mesh of a contact set, by the paper's "purely geometric criteria" (text at Fig. 3): the smallest elements
-    /// along every contact border, doubling towards the inside of each spot, nothing outside contact and halo.
+    /// The mesh of a contact set, by the paper's "purely geometric criteria" (text at Fig. 3).
     ///
-    /// A block of 2^k × 2^k cells is one element, unless it is part of a larger one, when it and `ring` blocks of its
-    /// own size around it, around the periodic cell, are all in contact. With a ring of at least 1 the result is 2:1
-    /// balanced at edges and corners without further work: every block of half the side that touches the element has
-    /// its own ring within the ring of the element, so it is at least part of an element of half the side.
+    /// The smallest elements lie along every contact border. Sizes double towards the inside of each spot. There are no
+    /// elements outside contact and halo.
     ///
-    /// The mesh depends on nothing but the arguments. Mirror images have mirrored meshes, and so have images shifted by
-    /// a multiple of a root square, or of any block that is not smaller than the largest element.
+    /// A block of 2^k × 2^k cells may be one element if it and `ring` blocks of its own size around it are all in
+    /// contact. The ring continues around the periodic cell. The largest such blocks are the elements.
+    ///
+    /// With a ring of at least 1 the result is 2:1 balanced at edges and corners without further work. A block of half
+    /// the side that touches an element has its own ring within the ring of that element. So it is at least a part of
+    /// an element of half the side.
+    ///
+    /// The mesh depends only on the arguments. Mirror images have mirrored meshes. So do images that are shifted by a
+    /// multiple of a root square, or of any block that is not smaller than the largest element.
     ///
     /// *Cost*: 0.3 s or less for 4096² cells (`benches/mesh.rs`).
     ///
     /// # Errors
-    /// As [`count`](super::count).
+    /// Those of [`count`](super::count).
     pub fn from_mask(mask: &Mask, kind: MeshKind, params: &MeshParams) -> Result<Self, MeshError> {
         Ok(Self::from_plan(&plan(mask, kind, params)?))
     }
 
-    /// The mesh that a plan decided.
+    /// The mesh of a plan.
     ///
-    /// *Cost*: in proportion to the elements; keys come out of the descent in Morton order, nothing is sorted.
+    /// *Cost*: in proportion to the number of elements. The descent generates keys in Morton order, so they are not
+    /// sorted.
     pub(super) fn from_plan(plan: &RefinementPlan) -> Self {
         let base = plan.base();
         let mut roots: Vec<Key> =
@@ -43,15 +48,16 @@ impl Mesh {
     }
 }
 
-/// The way down from a root square, quarters in Morton order.
+/// The descent from a root square, with quarters in Morton order.
 struct MortonWalk<'a> {
     base: usize,
     levels: &'a [Vec<Mark>],
 }
 
 impl MortonWalk<'_> {
-    /// Appends the elements of `square`, whose column and row are passed along because taking them out of the key
-    /// costs more than the rest.
+    /// Appends the elements of `square`.
+    ///
+    /// Its column and row are arguments, because to extract them from the key costs more than the rest.
     fn append(&self, square: Key, (ix, iy): (usize, usize), keys: &mut Vec<Key>) {
         let level = square.level() as usize;
         match self.levels[level][iy * (self.base << level) + ix] {

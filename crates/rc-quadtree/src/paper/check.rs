@@ -1,16 +1,20 @@
-//! The invariants of a mesh, checked one by one.
+//! Checks of the invariants of a mesh.
 
 use super::key::{Key, MAX_LEVEL};
 use super::mesh::Mesh;
 
 impl Mesh {
-    /// Checks every invariant, for tests: squares inside the cell and aligned, strictly sorted without overlap, total
-    /// area at most that of the cell, 2:1 balance at edges and corners across the periodic seam.
+    /// Checks every invariant, for tests.
     ///
-    /// *Cost*: some 10 binary searches an element.
+    /// - Squares are inside the cell and aligned.
+    /// - They are strictly sorted and do not overlap.
+    /// - Their total area is at most the area of the cell.
+    /// - They are 2:1 balanced at edges and corners, also across the periodic seam.
+    ///
+    /// *Cost*: about 10 binary searches for each element.
     ///
     /// # Panics
-    /// When an invariant does not hold; the text says which and where.
+    /// When an invariant does not hold. The message says which one and where.
     pub fn assert_well_formed(&self) {
         self.assert_squares();
         for &key in self.keys() {
@@ -39,26 +43,32 @@ impl Mesh {
         }
     }
 
-    /// The element that is the square `block` or contains it.
+    /// Index of the element that is the square `block` or contains it.
     pub(super) fn find(&self, block: Key) -> Option<usize> {
         let index = self.keys().partition_point(|key| key.start() <= block.start()).checked_sub(1)?;
         (block.end() <= self.keys()[index].end()).then_some(index)
     }
 
-    /// Ratio of the area of all elements to that of the cell, exact to rounding of one division.
+    /// Ratio of the area of all elements to the area of the cell.
+    ///
+    /// It is exact up to the rounding of one division.
     pub(super) fn area(&self) -> f64 {
         let cell = (self.base() as u64).pow(2) << (2 * MAX_LEVEL);
         self.keys().iter().map(|key| key.span()).sum::<u64>() as f64 / cell as f64
     }
 }
 
-/// The eight squares of the same size that touch `key` at an edge or a corner, around the periodic cell.
+/// The eight squares of the same size that touch `key`, also at corners.
+///
+/// They continue around the periodic cell.
 fn touching_blocks(base: usize, key: Key) -> impl Iterator<Item = Key> {
     let steps = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
     steps.into_iter().map(move |(dx, dy)| step(base, key, dx, dy))
 }
 
-/// The square of the same size `dx` columns and `dy` rows away, around the periodic cell of `base` root squares.
+/// The square of the same size, `dx` columns and `dy` rows away.
+///
+/// It continues around the periodic cell of `base` root squares.
 fn step(base: usize, key: Key, dx: i64, dy: i64) -> Key {
     let per_side = (base as i64) << key.level();
     let [ix, iy] = [i64::from(key.ix()) + dx, i64::from(key.iy()) + dy].map(|i| i.rem_euclid(per_side) as u32);
@@ -69,7 +79,7 @@ fn step(base: usize, key: Key, dx: i64, dy: i64) -> Key {
 mod tests {
     use super::*;
 
-    /// What `assert_well_formed` says of a mesh that is not.
+    /// Message of `assert_well_formed` for an invalid mesh.
     fn complaint(mesh: &Mesh) -> String {
         let panic = std::panic::catch_unwind(|| mesh.assert_well_formed()).expect_err("the mesh is ill-formed");
         panic.downcast_ref::<String>().cloned().unwrap_or_default()
@@ -77,7 +87,7 @@ mod tests {
 
     #[test]
     fn unbalanced_corner_across_the_seam_is_found() {
-        // The lower left root touches the upper right one only at a corner, around the periodic cell.
+        // The lower left root touches the upper right root only at a corner, across the periodic border.
         let keys = vec![Key::new(0, 0, 0), Key::new(2, 11, 11)];
         let complaint = complaint(&Mesh::from_sorted(3, keys));
         assert!(complaint.contains("not 2:1 balanced"), "{complaint}");

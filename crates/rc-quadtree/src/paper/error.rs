@@ -1,11 +1,11 @@
-//! What can be wrong with a request to this crate.
+//! Errors of requests to module `paper`.
 
 use rc_core::{Grid, GridError};
 use thiserror::Error;
 
 use super::key::{MAX_BASE, MAX_LEVEL};
 
-/// A mesh, a mask or a field that cannot be used as asked.
+/// An invalid mesh, mask or field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum MeshError {
     /// The number of root squares per side is 0 or above [`MAX_BASE`].
@@ -14,18 +14,18 @@ pub enum MeshError {
         /// Root squares per side, as given.
         base: usize,
     },
-    /// The side of a mask or grid is not the base doubled some number of times.
+    /// A side of a mask or grid is not base times a power of two.
     #[error("a side of {side} cells is not {base} (the root squares per side) times a power of two")]
     Side {
-        /// Cells per side.
+        /// Number of cells per side.
         side: usize,
-        /// Root squares per side.
+        /// Number of root squares per side.
         base: usize,
     },
-    /// The side of a mask is not a side of any grid.
+    /// The side of a mask is not a valid side of a grid.
     #[error(transparent)]
     Grid(#[from] GridError),
-    /// A field on a grid of rectangles: elements are squares.
+    /// The elements of a field are rectangles, but the mesh has squares.
     #[error("the mesh has square elements, but the field is on {grid} elements")]
     NotSquare {
         /// The grid of the field.
@@ -34,10 +34,10 @@ pub enum MeshError {
     /// The mesh would be deeper than its keys allow.
     #[error("level {level} is deeper than the {MAX_LEVEL} that a key can hold")]
     TooDeep {
-        /// The level asked for.
+        /// The requested level.
         level: u32,
     },
-    /// A ring of no blocks would allow coarse elements on the contact border.
+    /// The ring has no blocks, so coarse elements could touch the contact border.
     #[error("the ring must be at least 1 block: with 0, coarse elements would touch the contact border")]
     ZeroRing,
     /// The number of values does not match the number of elements or cells.
@@ -48,12 +48,12 @@ pub enum MeshError {
         /// Number of values given.
         actual: usize,
     },
-    /// Two meshes whose squares are not nested.
+    /// The squares of two meshes are not nested.
     #[error("meshes with {from} and {to} root squares per side have no common squares")]
     DifferentBase {
-        /// Root squares per side of the mesh that has the values.
+        /// Root squares per side of the mesh with the values.
         from: usize,
-        /// Root squares per side of the mesh that receives them.
+        /// Root squares per side of the mesh that is to receive the values.
         to: usize,
     },
 }
@@ -63,7 +63,7 @@ pub(super) fn check_length(expected: usize, actual: usize) -> Result<(), MeshErr
     if actual == expected { Ok(()) } else { Err(MeshError::Length { expected, actual }) }
 }
 
-/// The number of levels below the roots of a grid of `side` cells, log2(side / base).
+/// Number of levels below the roots of a grid of `side` cells, log2(side / base).
 pub(super) fn depth_of(side: usize, base: usize) -> Result<u32, MeshError> {
     check_base(base)?;
     let depth = (side / base).checked_ilog2().ok_or(MeshError::Side { side, base })?;
@@ -73,7 +73,7 @@ pub(super) fn depth_of(side: usize, base: usize) -> Result<u32, MeshError> {
     if base << depth == side { Ok(depth) } else { Err(MeshError::Side { side, base }) }
 }
 
-/// `Ok` when `base` root squares per side can be keyed.
+/// `Ok` when a key can represent `base` root squares per side.
 pub(super) fn check_base(base: usize) -> Result<(), MeshError> {
     if (1..=MAX_BASE).contains(&base) { Ok(()) } else { Err(MeshError::Base { base }) }
 }

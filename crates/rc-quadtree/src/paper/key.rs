@@ -1,11 +1,13 @@
-//! Keys: the place and size of one square, sorted along the Morton curve.
+//! Keys of squares, which hold place and size and sort along the Morton curve.
 
 use crate::morton::{gather, morton_code};
 
-/// Deepest level a key can hold: squares of side 2^-20 of a root square.
+/// Deepest level of a key, with squares of side 2^-20 of a root square.
 pub const MAX_LEVEL: u32 = 20;
 
-/// Most root squares per side: with [`MAX_LEVEL`] below them, a coordinate takes 29 bits and a whole key 63.
+/// Maximum number of root squares per side.
+///
+/// With [`MAX_LEVEL`] levels below them, a coordinate takes 29 bits and a whole key 63 bits.
 pub const MAX_BASE: usize = 512;
 
 const LEVEL_BITS: u32 = 5;
@@ -13,11 +15,13 @@ const LEVEL_MASK: u64 = (1 << LEVEL_BITS) - 1;
 
 /// The place and size of one square of the mesh in 8 bytes.
 ///
-/// A square of level l is one of `base · 2^l` per side, at column `ix` and row `iy` of these. The key is the Morton
-/// code (the bits of y and x in turn) of its lower left corner in units of the smallest square, followed by the
-/// level. Hence keys sort along the Morton curve, a square covers the interval of `4^(MAX_LEVEL - l)` codes that
-/// starts at its own code, and two squares either are nested or have disjoint intervals. (G. M. Morton, *A computer
-/// oriented geodetic data base*, IBM Ottawa, 1966; linear quadtrees: I. Gargantini, Commun. ACM 25 (1982) 905-910.)
+/// Level l has `base · 2^l` squares per side. A square is at column `ix` and row `iy` of its level. The key is the
+/// Morton code (the bits of y and x in turn) of its lower left corner, in units of the smallest square. The level
+/// follows after the code.
+///
+/// Hence keys sort along the Morton curve. A square covers the interval of `4^(MAX_LEVEL - l)` codes that starts at its
+/// own code. Two squares either are nested or have disjoint intervals. Sources: G. M. Morton, *A computer oriented
+/// geodetic data base*, IBM Ottawa, 1966; linear quadtrees: I. Gargantini, Commun. ACM 25 (1982) 905-910.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Key(u64);
 
@@ -32,19 +36,21 @@ impl Key {
         Self((code << LEVEL_BITS) | u64::from(level))
     }
 
-    /// Level of the square: 0 for a root square, one more for every halving of the side.
+    /// Level of the square.
+    ///
+    /// It is 0 for a root square, and increases by one with every halving of the side.
     #[must_use]
     pub fn level(self) -> u32 {
         (self.0 & LEVEL_MASK) as u32
     }
 
-    /// Column of the square among those of its level.
+    /// Column of the square in its level.
     #[must_use]
     pub fn ix(self) -> u32 {
         gather(self.start()) >> (MAX_LEVEL - self.level())
     }
 
-    /// Row of the square among those of its level.
+    /// Row of the square in its level.
     #[must_use]
     pub fn iy(self) -> u32 {
         gather(self.start() >> 1) >> (MAX_LEVEL - self.level())
@@ -55,7 +61,7 @@ impl Key {
         self.0 >> LEVEL_BITS
     }
 
-    /// Number of Morton codes of the square: its area in units of the smallest square.
+    /// Number of Morton codes of the square, its area in units of the smallest square.
     pub(super) fn span(self) -> u64 {
         1 << (2 * (MAX_LEVEL - self.level()))
     }
@@ -65,8 +71,9 @@ impl Key {
         self.start() + self.span()
     }
 
-    /// The four quarters in Morton order: lower left, lower right, upper left, upper right. The level must be below
-    /// [`MAX_LEVEL`].
+    /// The four quarters in Morton order: lower left, lower right, upper left, upper right.
+    ///
+    /// The level must be below [`MAX_LEVEL`].
     pub(super) fn children(self) -> [Self; 4] {
         let quarter = self.span() / 4;
         std::array::from_fn(|q| Self::from_code(self.start() + q as u64 * quarter, self.level() + 1))

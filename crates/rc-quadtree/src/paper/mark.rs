@@ -1,4 +1,4 @@
-//! Marking: which squares shall be elements, decided from the contact set alone.
+//! Choice of the squares that become elements, from the contact set alone.
 
 use super::error::{MeshError, depth_of};
 use super::mask::{Mask, eroded};
@@ -8,51 +8,62 @@ use super::mask::{Mask, eroded};
 pub enum MeshKind {
     /// Every cell of the finest grid is an element, in contact or not ("uniform grid").
     Uniform,
-    /// The cells in contact, and the halo, all of the finest size ("adaptive uniform grid", after P. Wriggers,
-    /// *Computational Contact Mechanics*, Wiley, 2002, as the paper cites it).
+    /// The cells in contact and the halo are elements of the finest size.
     ///
-    /// The paper's numbers at one penetration, 2.75e6 of 4.2e6 = 2048² cells, are the fraction 0.656, which is a
-    /// contact fraction; so the paper's mesh has no halo.
+    /// This is the "adaptive uniform grid", after P. Wriggers, *Computational Contact Mechanics*, Wiley, 2002, as the
+    /// paper cites it. The paper's numbers at one penetration are 2.75e6 of 4.2e6 = 2048² cells. Their ratio 0.656 is a
+    /// contact fraction, so the paper's mesh has no halo.
     AdaptiveUniform,
-    /// The paper's mesh ("adaptive non-uniform grid"): finest along every contact border, doubling inwards.
+    /// The paper's mesh ("adaptive non-uniform grid").
+    ///
+    /// Elements are finest along every contact border, and sizes double inwards.
     Adaptive,
 }
 
-/// How a mesh is made from a contact set.
+/// Parameters of the mesh of a contact set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MeshParams {
-    /// Root squares per side: the largest element has side 1 / base. The mask has `base · 2^k` cells per side.
+    /// Root squares per side. The largest element has side 1 / base.
+    ///
+    /// The mask has `base · 2^k` cells per side.
     pub base: usize,
-    /// A block is one element when it and `ring` blocks of its own size around it are all in contact. 1 is closest to
-    /// the paper; 2 keeps the pressure smoother at half as many elements again.
+    /// Number of blocks around a block that must be in contact with it.
+    ///
+    /// The block is then one element. These blocks have its own size. The value 1 is closest to the paper. The value 2
+    /// gives a smoother pressure, with half as many elements again.
     pub ring: usize,
-    /// Cells out of contact within this many rows and columns of contact are elements too, of the finest size.
-    /// [`MeshKind::Uniform`] has them all anyway.
+    /// Number of rows and columns around contact whose cells are elements too.
+    ///
+    /// These cells out of contact are elements of the finest size. [`MeshKind::Uniform`] has them in any case.
     pub halo: usize,
 }
 
 impl Default for MeshParams {
-    /// The paper's mesh on a grid of 2^k cells per side: one root square, a ring of 1, no halo.
+    /// The paper's mesh on a grid of 2^k cells per side.
+    ///
+    /// It has one root square, a ring of 1, and no halo.
     fn default() -> Self {
         Self { base: 1, ring: 1, halo: 0 }
     }
 }
 
-/// What becomes of one square of one level.
+/// Role of one square of one level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(super) enum Mark {
-    /// No element here: out of contact.
+    /// The square is out of contact and has no element.
     Outside,
-    /// Elements are smaller than this square.
+    /// The elements are smaller than this square.
     Divided,
-    /// This square is an element.
+    /// The square is an element.
     Element,
-    /// This square is a part of a larger element.
+    /// The square is a part of a larger element.
     Covered,
 }
 
-/// A mesh decided but not built: a mark for each square of each level, one byte each, 4/3 bytes a cell of the mask.
+/// The plan of a mesh, with a mark for each square of each level.
+///
+/// A mark takes one byte, so a plan takes 4/3 bytes for each cell of the mask.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct RefinementPlan {
     base: usize,
@@ -60,12 +71,14 @@ pub(super) struct RefinementPlan {
 }
 
 impl RefinementPlan {
-    /// Root squares per side.
+    /// Number of root squares per side.
     pub(super) fn base(&self) -> usize {
         self.base
     }
 
-    /// Marks of the squares of each level, from the roots to the finest, row-major, `base · 2^level` per side.
+    /// Marks of the squares of each level, from the roots to the finest.
+    ///
+    /// They are row-major, with `base · 2^level` squares per side.
     pub(super) fn levels(&self) -> &[Vec<Mark>] {
         &self.levels
     }
@@ -76,8 +89,9 @@ impl RefinementPlan {
     }
 }
 
-/// Decides the mesh of [`Mesh::from_mask`](super::Mesh::from_mask), from nothing but the arguments (test
-/// `plan_is_pure`).
+/// Plans the mesh of [`Mesh::from_mask`](super::Mesh::from_mask).
+///
+/// The plan depends only on the arguments (test `plan_is_pure`).
 pub(super) fn plan(mask: &Mask, kind: MeshKind, params: &MeshParams) -> Result<RefinementPlan, MeshError> {
     let depth = depth_of(mask.side(), params.base)?;
     if params.ring == 0 {
@@ -103,25 +117,29 @@ pub(super) fn plan(mask: &Mask, kind: MeshKind, params: &MeshParams) -> Result<R
     Ok(RefinementPlan { base: params.base, levels })
 }
 
-/// Number of elements of each level of the mesh that [`Mesh::from_mask`](super::Mesh::from_mask) builds, from level 0
-/// to the finest, without building it.
+/// Number of elements of each level, from level 0 to the finest, without building the mesh.
 ///
-/// *Cost*: 4096² cells in about 0.1 s and 4 bytes a cell (`benches/mesh.rs`).
+/// The mesh is the one that [`Mesh::from_mask`](super::Mesh::from_mask) would build.
+///
+/// *Cost*: 4096² cells take about 0.1 s, and 4 bytes for each cell (`benches/mesh.rs`).
 ///
 /// # Errors
-/// [`MeshError::Base`] and [`MeshError::Side`] when the mask has not `base · 2^k` cells per side;
-/// [`MeshError::TooDeep`] when k is above [`MAX_LEVEL`](super::MAX_LEVEL); [`MeshError::ZeroRing`].
+/// - [`MeshError::Base`] and [`MeshError::Side`] when the mask does not have `base · 2^k` cells per side.
+/// - [`MeshError::TooDeep`] when k is above [`MAX_LEVEL`](super::MAX_LEVEL).
+/// - [`MeshError::ZeroRing`] when the ring is 0.
 pub fn count(mask: &Mask, kind: MeshKind, params: &MeshParams) -> Result<Vec<usize>, MeshError> {
     Ok(plan(mask, kind, params)?.counts())
 }
 
-/// The blocks that are in contact together with their ring, for each level above the finest.
+/// The blocks in contact whose ring is in contact too.
+///
+/// They are given for each level above the finest.
 fn inner_blocks(mask: &Mask, params: &MeshParams, depth: u32) -> Vec<Vec<bool>> {
     let full = coarser_levels(mask.cells(), mask.side(), depth, |[a, b, c, d]| a & b & c & d);
     full.iter().enumerate().map(|(level, cells)| eroded(cells, params.base << level, params.ring)).collect()
 }
 
-/// For each level above the finest, every block from its four quarters.
+/// Combines the four quarters of every block, for each level above the finest.
 fn coarser_levels(finest: &[bool], side: usize, depth: u32, combine: fn([bool; 4]) -> bool) -> Vec<Vec<bool>> {
     let mut levels: Vec<Vec<bool>> = Vec::with_capacity(depth as usize + 1);
     for step in 0..depth {
@@ -137,7 +155,9 @@ fn coarser_levels(finest: &[bool], side: usize, depth: u32, combine: fn([bool; 4
     levels
 }
 
-/// Marks of one level of `side` squares per side. `inner` is empty when no square of this level may be an element.
+/// Marks of one level of `side` squares per side.
+///
+/// `inner` is empty when no square of this level may be an element.
 fn mark_level(coarser: Option<&Vec<Mark>>, side: usize, occupied: &[bool], inner: &[bool]) -> Vec<Mark> {
     let mut marks = Vec::with_capacity(occupied.len());
     for (iy, row) in occupied.chunks_exact(side).enumerate() {

@@ -4,7 +4,9 @@ use rc_core::{Field, Grid};
 
 use super::error::{MeshError, check_length};
 
-/// Which cells of a uniform grid of `side` × `side` cells are in contact, row-major, one byte a cell.
+/// The cells of a uniform grid of `side` × `side` cells that are in contact.
+///
+/// They are row-major, with one byte for each cell.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mask {
     side: usize,
@@ -15,14 +17,14 @@ impl Mask {
     /// A mask from its cells, `cells[iy * side + ix]`.
     ///
     /// # Errors
-    /// [`MeshError::Grid`] when `side` is 0 or above [`Grid::MAX_SIDE`]; [`MeshError::Length`] when there are not
-    /// `side · side` cells.
+    /// - [`MeshError::Grid`] when `side` is 0 or above [`Grid::MAX_SIDE`].
+    /// - [`MeshError::Length`] when there are not `side · side` cells.
     pub fn new(side: usize, cells: Vec<bool>) -> Result<Self, MeshError> {
         check_length(Grid::square(side)?.len(), cells.len())?;
         Ok(Self { side, cells })
     }
 
-    /// The cells where a field (a pressure) is positive; NaN is not.
+    /// The cells where a field (a pressure) is positive. NaN is not positive.
     ///
     /// # Errors
     /// [`MeshError::NotSquare`] when the cells of the field are rectangles.
@@ -34,7 +36,7 @@ impl Mask {
         Ok(Self { side: grid.nx(), cells: field.values().iter().map(|&v| v > 0.0).collect() })
     }
 
-    /// Cells per side.
+    /// Number of cells per side.
     #[must_use]
     pub fn side(&self) -> usize {
         self.side
@@ -62,12 +64,12 @@ impl Mask {
     }
 }
 
-/// The cells that are set and have only set cells within `ring` rows and columns, around the periodic cell.
+/// The cells for which all cells within `ring` rows and columns are set.
 ///
-/// The square window is the product of a window along x and one along y; each is a running count of unset cells, so
-/// the cost does not depend on `ring`.
+/// The window continues around the periodic cell. It is the product of a window along x and a window along y. Each is a
+/// running count of unset cells, so the cost does not depend on `ring`.
 pub(super) fn eroded(cells: &[bool], side: usize, ring: usize) -> Vec<bool> {
-    // A window of half the side to each hand already covers everything.
+    // A window that extends by half the side in each direction covers everything.
     let ring = ring.min(side / 2);
     let mut along_x = vec![false; cells.len()];
     let mut padded = vec![false; side + 2 * ring];
@@ -95,7 +97,7 @@ pub(super) fn eroded(cells: &[bool], side: usize, ring: usize) -> Vec<bool> {
     result
 }
 
-/// `out[i]`: are the cells i ..= i + 2·ring of the padded row all set?
+/// Sets `out[i]` if cells i to i + 2·ring of the padded row are set.
 fn erode_row(padded: &[bool], ring: usize, out: &mut [bool]) {
     let mut unset: u32 = padded[..2 * ring].iter().map(|&c| u32::from(!c)).sum();
     for ((o, &entering), &leaving) in out.iter_mut().zip(&padded[2 * ring..]).zip(padded) {
@@ -109,7 +111,7 @@ fn erode_row(padded: &[bool], ring: usize, out: &mut [bool]) {
 mod tests {
     use super::*;
 
-    /// A pseudo-random pattern with mostly set cells: bits of a multiplicative hash.
+    /// A pseudo-random pattern of mostly set cells, from the bits of a multiplicative hash.
     fn pattern(side: usize) -> Vec<bool> {
         (0..side * side).map(|i| !(i as u32).wrapping_mul(2654435761).rotate_left(9).is_multiple_of(23)).collect()
     }

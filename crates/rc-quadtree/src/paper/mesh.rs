@@ -1,15 +1,16 @@
-//! The mesh: sorted keys of the stored squares.
+//! A mesh as sorted keys of its squares.
 
 use rc_core::DVec2;
 
 use super::key::Key;
 
-/// A periodic linear quadtree on the unit cell: squares of side `1 / (base · 2^level)`, sorted along the Morton curve.
+/// A periodic linear quadtree on the unit cell.
 ///
-/// Only the squares of the contact set (and its halo) are stored; everything else is out of contact. Elements never
-/// overlap. Elements that touch, at an edge or a corner, also across the periodic seam, differ by at most one level.
+/// It has squares of side `1 / (base · 2^level)`, sorted along the Morton curve. Only the squares of the contact set
+/// and its halo are stored. All other points are out of contact. Elements never overlap. Elements that touch at an edge
+/// or a corner, also across the periodic seam, differ by at most one level.
 ///
-/// *Memory*: 8 bytes an element.
+/// *Memory*: 8 bytes for each element.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mesh {
     base: usize,
@@ -19,20 +20,20 @@ pub struct Mesh {
 /// One square of the mesh, in units of λ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Square {
-    /// Centre.
+    /// Centre of the square.
     pub centre: DVec2,
-    /// Side, `1 / (base · 2^level)`.
+    /// Side of the square, `1 / (base · 2^level)`.
     pub side: f64,
 }
 
 impl Square {
-    /// Half of the side: the paper's d_j (Eq. 5-6 hold with d_j as the half side).
+    /// Half of the side, the paper's d_j (Eq. 5-6 hold with d_j as the half side).
     #[must_use]
     pub fn half_side(&self) -> f64 {
         0.5 * self.side
     }
 
-    /// Area, in λ².
+    /// Area of the square, in λ².
     #[must_use]
     pub fn area(&self) -> f64 {
         self.side * self.side
@@ -40,12 +41,12 @@ impl Square {
 }
 
 impl Mesh {
-    /// A mesh from keys that already keep every invariant.
+    /// A mesh from keys that satisfy every invariant.
     pub(super) fn from_sorted(base: usize, keys: Vec<Key>) -> Self {
         Self { base, keys }
     }
 
-    /// Root squares per side of the cell.
+    /// Number of root squares per side of the cell.
     #[must_use]
     pub fn base(&self) -> usize {
         self.base
@@ -57,7 +58,7 @@ impl Mesh {
         self.keys.len()
     }
 
-    /// Is nothing in contact?
+    /// Whether there are no elements, and no contact.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.keys.is_empty()
@@ -89,7 +90,7 @@ impl Mesh {
         counts
     }
 
-    /// Place and size of the square `key` in this cell, whether it is an element or not.
+    /// Place and size of the square `key` in this cell. The square need not be an element.
     pub(super) fn square(&self, key: Key) -> Square {
         let per_side = ((self.base as u64) << key.level()) as f64;
         let centre = |i: u32| (f64::from(i) + 0.5) / per_side;

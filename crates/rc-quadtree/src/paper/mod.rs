@@ -1,9 +1,12 @@
-//! The mesh of the paper (text at Fig. 3) and the two meshes that it is compared with, as a periodic linear quadtree.
+//! The mesh of the paper (text at Fig. 3) as a periodic linear quadtree.
+//!
+//! The module also has the two meshes that the paper compares with it.
 //!
 //! 1. A [`Mask`] says which cells of the finest uniform grid are in contact.
-//! 2. A plan decides, purely, which squares become elements ([`MeshKind`], [`MeshParams`]). [`count`] stops here.
-//! 3. [`Mesh::from_mask`] builds the [`Mesh`], a sorted list of [`Key`]s. [`transfer`] brings a pressure to another
-//!    mesh and keeps the load; [`Mesh::to_field`] brings it to a uniform grid.
+//! 2. A plan selects the squares that become elements ([`MeshKind`], [`MeshParams`]). It depends only on these
+//!    arguments. [`count`] stops here.
+//! 3. [`Mesh::from_mask`] builds the [`Mesh`], a sorted list of [`Key`]s. [`transfer`] takes a pressure to another mesh
+//!    and conserves the load. [`Mesh::to_field`] takes it to a uniform grid.
 //!
 //! ```
 //! use rc_core::Grid;
@@ -23,8 +26,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Lengths are in λ, the side of the cell. Everything that is not an element is out of contact. Coordinates of masks
-//! and fields: see [`rc_core`].
+//! Lengths are in λ, the side of the cell. All points outside elements are out of contact. Coordinates of masks and
+//! fields are those of [`rc_core`].
 
 mod build;
 mod check;

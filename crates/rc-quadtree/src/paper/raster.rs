@@ -1,4 +1,4 @@
-//! From values per element to a field on a uniform grid.
+//! Conversion of values per element to a field on a uniform grid.
 
 use rc_core::{Field, Grid};
 
@@ -7,12 +7,15 @@ use super::key::Key;
 use super::mesh::Mesh;
 
 impl Mesh {
-    /// The field of values per element on a uniform grid, 0 where there is no element. Each cell is the mean over its
-    /// area, so the mean of the field is the load Σ value·area to rounding.
+    /// The field of values per element on a uniform grid, 0 where there is no element.
+    ///
+    /// The value of a grid cell is the mean over its area. So the mean of the field is the load Σ value·area, up to
+    /// rounding.
     ///
     /// # Errors
-    /// [`MeshError::Length`] when there is not one value an element; [`MeshError::NotSquare`]; [`MeshError::Side`] when
-    /// the grid has not `base · 2^k` cells per side.
+    /// - [`MeshError::Length`] when there is not one value for each element.
+    /// - [`MeshError::NotSquare`] when the elements of the grid are rectangles.
+    /// - [`MeshError::Side`] when the grid does not have `base · 2^k` cells per side.
     pub fn to_field(&self, values: &[f64], grid: Grid) -> Result<Field, MeshError> {
         check_length(self.len(), values.len())?;
         if !grid.is_square() {
@@ -34,7 +37,7 @@ impl Mesh {
     }
 }
 
-/// The cells of a uniform grid that an element covers, or the one cell that it is a part of.
+/// The cells of a uniform grid that an element covers, or the one cell that contains it.
 struct CoveredCells {
     ix: usize,
     iy: usize,
@@ -52,7 +55,7 @@ impl CoveredCells {
             Self { ix: ix << finer, iy: iy << finer, side: 1 << finer, part_of_cell: 1.0 }
         } else {
             let coarser = key.level() - depth;
-            // A power of two: exact.
+            // The ratio is a power of two, so it is exact.
             let part_of_cell = 1.0 / (1_u64 << (2 * coarser)) as f64;
             Self { ix: ix >> coarser, iy: iy >> coarser, side: 1, part_of_cell }
         }

@@ -1,28 +1,32 @@
-//! Transfer: a pressure from one mesh to another, with the load kept.
+//! Transfer of a pressure from one mesh to another, with conservation of the load.
 
 use super::error::{MeshError, check_length};
 use super::key::Key;
 use super::mesh::Mesh;
 
-/// A pressure brought to another mesh.
+/// A pressure on another mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transferred {
-    /// One value for each element of the new mesh; 0 where the old mesh has no element.
+    /// One value for each element of the new mesh.
+    ///
+    /// It is 0 where the old mesh has no element.
     pub values: Vec<f64>,
-    /// Load of the old elements, or parts of them, that the new mesh does not cover, Σ p·area in E*·λ². Exactly 0
-    /// when it covers all.
+    /// Load that the new mesh does not cover, Σ p·area in E*·λ².
+    ///
+    /// It belongs to elements of the old mesh, or parts of them. It is exactly 0 when the new mesh covers all of them.
     pub lost: f64,
 }
 
-/// Brings values per element (a pressure) from one mesh to another: smaller elements copy, larger ones average by areas
-/// of overlap, new elements get 0.
+/// Transfers values per element (a pressure) from one mesh to another.
 ///
-/// The load is conserved: load of the values + `lost` = load of `old`, to rounding (property test
-/// `transfer_conserves_the_load`). Both meshes are intervals of one Morton curve, so this is one merge of two sorted
-/// lists.
+/// Smaller elements copy a value, larger elements average values by areas of overlap, and new elements get 0. The load
+/// is conserved: the load of the values plus `lost` is the load of `old`, up to rounding (property test
+/// `transfer_conserves_the_load`). Both meshes are intervals of one Morton curve, so a merge of two sorted lists is
+/// enough.
 ///
 /// # Errors
-/// [`MeshError::Length`] when there is not one value for each element of `from`; [`MeshError::DifferentBase`].
+/// - [`MeshError::Length`] when there is not one value for each element of `from`.
+/// - [`MeshError::DifferentBase`] when the meshes have different numbers of root squares per side.
 pub fn transfer(from: &Mesh, to: &Mesh, old: &[f64]) -> Result<Transferred, MeshError> {
     check_length(from.len(), old.len())?;
     if from.base() != to.base() {
@@ -52,7 +56,9 @@ pub fn transfer(from: &Mesh, to: &Mesh, old: &[f64]) -> Result<Transferred, Mesh
     Ok(Transferred { values, lost })
 }
 
-/// Area of the smaller of two nested squares, in Morton codes and relative to the source and to the target.
+/// Area of the smaller of two nested squares.
+///
+/// It is given in Morton codes, and relative to the source and to the target.
 struct Share {
     codes: u64,
     of_source: f64,
@@ -62,7 +68,7 @@ struct Share {
 impl Share {
     fn new(source: Key, target: Key) -> Self {
         let codes = source.span().min(target.span());
-        // Powers of two: both quotients are exact.
+        // Areas are powers of two, so both quotients are exact.
         let part = |of: Key| codes as f64 / of.span() as f64;
         Self { codes, of_source: part(source), of_target: part(target) }
     }

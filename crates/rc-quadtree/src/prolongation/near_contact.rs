@@ -1,24 +1,30 @@
-//! Which tiles are near contact, as patches of the function on three by three coarser tiles show.
+//! Tests of a patch of three by three tiles for contact near the middle.
 
 use crate::patch::Patch;
 use crate::tiles::{TILE, TileSet};
 
-/// Cells around a tile that must be out of contact for it to be left out: contacts may grow a little.
+/// Width in cells of the margin around a tile that must be out of contact.
+///
+/// Only then is the tile omitted, because contacts may grow a little.
 pub(super) const MARGIN: usize = 2;
 
-/// Part of the function that a contact of a single cell keeps when the interpolation leaves nothing of it.
+/// Part of the function that remains on a contact of a single cell.
+///
+/// It is used when the interpolation would remove the contact.
 pub(super) const PART_KEPT_OF_SINGLE_CELL: f64 = 0.25;
 
-/// Side of the patches that hold a tile and its neighbours.
+/// Side of a patch of a tile and its neighbours.
 pub(super) const SIDE: usize = 3 * TILE;
 
-/// Is the function positive anywhere on the tile in the middle of the patch, or within two cells of it?
+/// Whether the function is positive on the middle tile or near it.
+///
+/// Near means within two cells.
 pub(super) fn is_near_contact(patch: &Patch<f64, SIDE>) -> bool {
     let near = TILE - MARGIN..2 * TILE + MARGIN;
     patch[near.clone()].iter().flat_map(|row| &row[near.clone()]).any(|&f| f > 0.0)
 }
 
-/// Fills what of a patch has no tile.
+/// Fills the parts of a patch without a tile.
 pub(super) fn mark_missing(tiles: &TileSet, (column, row): (i64, i64), elsewhere: f64, patch: &mut Patch<f64, SIDE>) {
     for y in 0..3 {
         for x in 0..3 {
@@ -31,7 +37,7 @@ pub(super) fn mark_missing(tiles: &TileSet, (column, row): (i64, i64), elsewhere
     }
 }
 
-/// Is none of the neighbours of this cell in contact?
+/// Whether none of the neighbours of this cell is in contact.
 pub(super) fn is_single(patch: &Patch<f64, SIDE>, x: usize, y: usize) -> bool {
     let around = patch[y - 1..=y + 1].iter().flat_map(|row| &row[x - 1..=x + 1]);
     let positive = around.filter(|&&f| f > 0.0).count();

@@ -1,4 +1,4 @@
-//! Prolongation to a level that has not twice as many cells along a side.
+//! Prolongation to a level without exactly twice as many cells along a side.
 
 use rayon::prelude::*;
 
@@ -6,10 +6,12 @@ use super::near_contact::{MARGIN, PART_KEPT_OF_SINGLE_CELL, SIDE, is_near_contac
 use crate::patch::{Patch, gather};
 use crate::tiles::{CELLS, TILE, TileSet};
 
-/// Cells along an axis of the finer level: a tile, and the margin around it.
+/// Cells of the finer level along an axis, for a tile and its margin.
 const WIDE: usize = TILE + 2 * MARGIN;
 
-/// The tiles of a level of `sides` cells where the function is positive, or nearly, with its positive part.
+/// The tiles of a level of `sides` cells where the function is positive, or nearly.
+///
+/// The values are its positive part.
 pub(super) fn prolong(
     tiles: &TileSet,
     function: &[f64],
@@ -26,7 +28,7 @@ pub(super) fn prolong(
         if is_near_contact(&patch) { places().collect() } else { Vec::new() }
     };
     let candidates: Vec<Vec<[u32; 2]>> = tiles.places().par_iter().map(near_contact).collect();
-    // Sorted, and each once.
+    // Sorts the tiles and removes duplicates.
     let fine = TileSet::new(sides, candidates.into_iter().flatten().collect());
     let of_tile = |&place: &[u32; 2]| {
         let along = [0, 1].map(|axis| Axis::new(place[axis], sides[axis], tiles.sides()[axis]));
@@ -39,7 +41,7 @@ pub(super) fn prolong(
     fine.places().par_iter().filter_map(of_tile).collect()
 }
 
-/// Columns (or rows) of the tiles of the finer level that have a part in a tile of the coarser one.
+/// Columns (or rows) of finer tiles that overlap a tile of the coarser level.
 fn tiles_under(tile: u32, fine: usize, coarse: usize) -> impl Iterator<Item = u32> {
     let first = tile as usize * TILE * fine / coarse / TILE;
     let last = ((tile as usize + 1) * TILE * fine).div_ceil(coarse).min(fine);
@@ -50,7 +52,7 @@ fn tiles_under(tile: u32, fine: usize, coarse: usize) -> impl Iterator<Item = u3
 struct Axis {
     /// The first tile of the patch.
     tile: i64,
-    /// The neighbour before each centre, in the patch, and how far beyond it the centre is.
+    /// For each centre, the neighbour before it in the patch, and the distance of the centre beyond it.
     neighbours: [(usize, f64); WIDE],
 }
 
@@ -58,7 +60,7 @@ impl Axis {
     fn new(tile: u32, fine: usize, coarse: usize) -> Self {
         let ratio = coarse as f64 / fine as f64;
         let place = |i: usize| ((TILE * tile as usize + i) as f64 - MARGIN as f64 + 0.5) * ratio - 0.5;
-        // One more is looked at for cells that are alone.
+        // One more cell is included, to detect cells without neighbours in contact.
         let tile = (place(0).floor() as i64 - 1).div_euclid(TILE as i64);
         let neighbours = std::array::from_fn(|i| {
             let before = place(i).floor();
@@ -68,7 +70,9 @@ impl Axis {
     }
 }
 
-/// As its namesake for quarters; what is beyond `inside` is not on the level.
+/// The positive part of the function on a fine tile, as for quarters.
+///
+/// Cells beyond `inside` are not on the level.
 fn fine_tile(patch: &Patch<f64, SIDE>, along: &[Axis; 2], inside: [usize; 2]) -> Option<Box<[f64; CELLS]>> {
     let [along_x, along_y] = along;
     let nearest = |(before, beyond): (usize, f64)| if beyond < 0.5 { before } else { before + 1 };

@@ -1,10 +1,10 @@
-//! Contact sets for the tests: discs on the periodic cell, and brute-force looks at a mask.
+//! Contact sets for the tests, and brute-force inspection of a mask.
 
 use rc_core::{DVec2, Grid};
 
 use crate::paper::{Mask, Mesh, MeshParams};
 
-/// A disc: centre (x, y) and radius in λ.
+/// A disc with centre (x, y) and radius in λ.
 pub(super) type Disc = (f64, f64, f64);
 
 /// Distance of the nearest images of two coordinates.
@@ -13,7 +13,9 @@ fn apart(a: f64, b: f64) -> f64 {
     d.min(1.0 - d)
 }
 
-/// Contact in any of the `spots`, except in the `holes`, around the periodic cell.
+/// A mask with contact in any of the `spots` except in the `holes`.
+///
+/// Discs continue around the periodic cell.
 pub(super) fn discs(side: usize, spots: &[Disc], holes: &[Disc]) -> Mask {
     let inside = |x: f64, y: f64, &(cx, cy, r): &Disc| apart(x, cx).hypot(apart(y, cy)) < r;
     let contact = |x: f64, y: f64| spots.iter().any(|d| inside(x, y, d)) && !holes.iter().any(|d| inside(x, y, d));
@@ -28,7 +30,9 @@ pub(super) fn at(mask: &Mask, ix: i64, iy: i64) -> bool {
     mask.cells()[(iy.rem_euclid(side) * side + ix.rem_euclid(side)) as usize]
 }
 
-/// Cells of the grid of `side` cells per side that the mesh covers, row-major, each element painted by itself.
+/// Cells of a grid that the mesh covers, row-major.
+///
+/// The grid has `side` cells per side. Each element is painted separately.
 pub(super) fn painted(mesh: &Mesh, side: usize) -> Vec<bool> {
     let mut cells = vec![false; side * side];
     for key in mesh.keys() {
@@ -52,13 +56,17 @@ pub(super) fn with_halo(mask: &Mask, reach: i64) -> Vec<bool> {
     (0..side * side).map(|i| near(i % side, i / side)).collect()
 }
 
-/// The default with the smallest base that suits a grid of `side` cells per side: the odd part of `side`.
+/// The default parameters with the smallest base for a grid of `side` cells per side.
+///
+/// This base is the odd part of `side`.
 pub(super) fn params_for(side: usize) -> MeshParams {
     MeshParams { base: side >> side.trailing_zeros(), ..MeshParams::default() }
 }
 
 impl Mesh {
-    /// Total load Σ p·side² of a pressure per element, in units of E*·λ², summed in Morton order.
+    /// Total load Σ p·side² of a pressure per element, in units of E*·λ².
+    ///
+    /// It is summed in Morton order.
     pub(super) fn load(&self, pressure: &[f64]) -> f64 {
         assert_eq!(pressure.len(), self.len(), "one pressure for each element");
         self.elements().zip(pressure).map(|(element, p)| p * element.area()).sum()

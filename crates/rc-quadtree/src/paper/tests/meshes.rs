@@ -1,4 +1,4 @@
-//! Claims about the three meshes of Fig. 3 and the questions one can ask of them.
+//! Claims about the three meshes of Fig. 3 and their methods.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,7 @@ use crate::paper::{MAX_BASE, Mask, Mesh, MeshError, MeshKind, MeshParams, count}
 
 const KINDS: [MeshKind; 3] = [MeshKind::Uniform, MeshKind::AdaptiveUniform, MeshKind::Adaptive];
 
-/// Two spots, one with a hole, one across the corner of the cell.
+/// Two spots. One has a hole, and one lies across the corner of the cell.
 fn spots(side: usize) -> Mask {
     discs(side, &[(0.45, 0.5, 0.33), (0.98, 0.03, 0.2)], &[(0.5, 0.55, 0.07)])
 }
@@ -60,8 +60,8 @@ fn halving_the_step_doubles_the_adaptive_mesh_and_quadruples_the_others() {
         let counts = count(&spots(side), kind, &MeshParams::default()).expect("a power of two");
         counts.iter().sum::<usize>() as f64
     };
-    // Elements follow the length of the border (∝ n) or the area (∝ n²); the border of a digital disc varies by some
-    // per cent.
+    // Numbers of elements follow the length of the border (∝ n) or the area (∝ n²). The border of a digital disc varies
+    // by some per cent.
     for (kind, factor) in [(MeshKind::Uniform, 4.0), (MeshKind::AdaptiveUniform, 4.0), (MeshKind::Adaptive, 2.0)] {
         let measured = total(1024, kind) / total(512, kind);
         let relative = measured / factor - 1.0;
@@ -168,7 +168,7 @@ fn fields_are_averaged_and_painted() {
     for side in [3, 24, 96, 192] {
         let back = mesh.to_field(&values, Grid::square(side).expect("a grid")).expect("a side of this base");
         let (mean, load) = (back.mean(), mesh.load(&values));
-        // 1e4 additions of numbers of order 1.
+        // The error of 1e4 additions of numbers of order 1.
         assert!((mean - load).abs() < 1e-12, "side {side}: mean {mean}, load {load}, difference {:.2e}", mean - load);
     }
     let painted = mesh.to_field(&vec![1.0; mesh.len()], grid).expect("96 = 3 * 32");

@@ -1,4 +1,4 @@
-//! What the paper's meshes promise.
+//! Tests of the paper's meshes.
 #![expect(
     clippy::float_cmp,
     reason = "areas and lengths are sums of powers of two and nothing lost is exactly zero, so equality is meant"

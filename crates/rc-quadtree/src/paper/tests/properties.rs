@@ -6,7 +6,9 @@ use super::common::{Disc, discs, painted, with_halo};
 use crate::paper::mark::plan;
 use crate::paper::{Mask, Mesh, MeshKind, MeshParams, count, transfer};
 
-/// Seeds are fixed so that every run is the same; a failure prints its smallest case.
+/// A configuration with fixed seeds, so that every run is the same.
+///
+/// A failure prints its smallest case.
 fn config() -> ProptestConfig {
     ProptestConfig {
         cases: 64,
@@ -20,7 +22,7 @@ fn a_disc(largest: f64) -> impl Strategy<Value = Disc> {
     (0.0..1.0, 0.0..1.0, 0.02..largest)
 }
 
-/// A contact set with spots, holes and now and then full contact, and the base of its mesh.
+/// A contact set with spots and holes, sometimes full, and the base of its mesh.
 fn a_mask(side_and_base: (usize, usize)) -> impl Strategy<Value = Mask> {
     let spots = prop::collection::vec(a_disc(0.75), 0..5);
     (spots, prop::collection::vec(a_disc(0.1), 0..4)).prop_map(move |(s, h)| discs(side_and_base.0, &s, &h))
@@ -35,7 +37,7 @@ fn a_kind() -> impl Strategy<Value = MeshKind> {
 }
 
 fn check_load(what: &str, value: f64, reference: f64) -> Result<(), TestCaseError> {
-    // Up to 1e5 additions and as many rounded products; observed 1e-14.
+    // The error of up to 1e5 additions and as many rounded products. Observed: 1e-14.
     let relative = (value - reference).abs() / reference.abs().max(f64::MIN_POSITIVE);
     prop_assert!(relative < 1e-12, "{what}: load {value} for {reference}, relative error {relative:.2e}");
     Ok(())

@@ -1,4 +1,4 @@
-//! Claims about bringing a pressure from one mesh to another.
+//! Claims about the transfer of a pressure from one mesh to another.
 
 use super::common::{discs, params_for};
 use crate::paper::{Mesh, MeshError, MeshKind, MeshParams, transfer};
@@ -8,7 +8,9 @@ fn disc_mesh(radius: f64, kind: MeshKind) -> Mesh {
     Mesh::from_mask(&mask, kind, &MeshParams::default()).expect("a power of two")
 }
 
-/// The pressure of Hertz for contact radius `radius` with peak 1, at the centres of a mesh of [`disc_mesh`].
+/// Hertz's pressure for contact radius `radius` with peak 1, at the centres of a mesh.
+///
+/// The mesh is that of [`disc_mesh`].
 fn hertz(mesh: &Mesh, radius: f64) -> Vec<f64> {
     let from_axis = |x: f64| (x - 0.4).rem_euclid(1.0) - 0.5;
     let pressure = |x: f64, y: f64| (1.0 - (from_axis(x).powi(2) + (y - 0.5).powi(2)) / radius.powi(2)).max(0.0).sqrt();
