@@ -1,12 +1,14 @@
-//! Statistics of a pressure field that was stored, which need no gap and no mesh.
+//! Statistics of a stored pressure field, which need no gap and no mesh.
 
 use rc_core::{Field, Histogram};
 
 /// Bins of the distribution of pressures.
 const BINS: usize = 40;
 
-/// What a pressure field is like, in the unit of the field. [`crate::Observables`] are better estimates where there is
-/// a solution, and [`crate::StressDistribution`] resolves contact edges below the element.
+/// Statistics of a pressure field, in the unit of the field.
+///
+/// [`crate::Observables`] are better estimates where there is a solution. [`crate::StressDistribution`] resolves
+/// contact edges below the element.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PressureStatistics {
