@@ -11,7 +11,9 @@ use crate::factors::has_small_factors;
 /// Fourier transforms of such lengths are fast.
 const GREATEST_FACTOR: usize = 5;
 
-/// L on a grid: the symbol of a kernel on the grid or a larger one.
+/// L on a grid, as the symbol of a kernel.
+///
+/// The symbol is on the grid or on a larger one.
 pub(crate) struct GridResponse {
     grid: Grid,
     /// Number of elements of the transforms along both axes.

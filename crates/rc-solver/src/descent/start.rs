@@ -94,7 +94,7 @@ impl Descent<'_> {
         self.refresh()
     }
 
-    /// Sets the pressure to the overlap with a rigid plane at `floor`, in units of length.
+    /// Sets the pressure to the overlap with a rigid plane at `floor`. Its unit is that of length.
     fn overlap(&mut self, floor: f64) {
         let len = self.layout.len();
         parallel::for_each(self.elements().blocks(len), |block| {
