@@ -148,9 +148,9 @@ impl<'a> Choice<'a, '_> {
         }
     }
 
-    /// The reason why the uniform method solves a problem that the adaptive one refuses with `error`.
+    /// The reason to solve by the uniform method if the adaptive one returns `error`.
     ///
-    /// `None` when the uniform method must refuse it too.
+    /// `None` when the uniform method must refuse the problem too.
     fn obstacle(&self, error: &AdaptiveError) -> Option<MethodReason> {
         let grid = self.problem.heights.grid();
         let is_large = |percent: &f64| *percent > 100.0 * Estimate::GREATEST_ADAPTIVE_AREA;
