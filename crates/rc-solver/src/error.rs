@@ -1,4 +1,4 @@
-//! What is wrong with a contact problem.
+//! Errors in the statement of a contact problem.
 
 use rc_core::Grid;
 use thiserror::Error;
@@ -46,7 +46,7 @@ pub enum ProblemError {
         /// The value.
         value: f64,
     },
-    /// The peak-to-valley height is neither 0 nor of a size that can be solved for.
+    /// The peak-to-valley height is not 0, and too small or too large to solve for.
     ///
     /// Its products with pressures would not be numbers.
     #[error(
@@ -111,7 +111,7 @@ pub enum ProblemError {
         /// Penetration given, in λ.
         value: f64,
     },
-    /// The tolerance is not in (0, 1), or is below what rounding allows.
+    /// The tolerance is not in (0, 1), or is smaller than rounding allows.
     #[error("the tolerance must be between {smallest:e} and 1, not {value:e}")]
     Tolerance {
         /// The tolerance given.
@@ -127,7 +127,7 @@ pub enum ProblemError {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum OperatorFault {
-    /// A displacement is NaN or infinite, or the operator adds to what its output held.
+    /// A displacement is NaN or infinite, or the operator does not overwrite its output.
     #[error("the displacement of element {element} is {value}; it must be finite, whatever the output held before")]
     NotFinite {
         /// Index of the element.

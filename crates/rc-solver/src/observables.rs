@@ -15,7 +15,7 @@ pub struct Observables {
     pub rms_pressure: f64,
     /// Root mean square pressure over the cell, corrected: the best estimate.
     ///
-    /// It adds what the elements at edges of contacts miss ([`ContactArea::missing_square`]).
+    /// The correction is the part that elements at edges of contacts miss ([`ContactArea::missing_square`]).
     pub rms_pressure_corrected: f64,
     /// Estimated discretisation error of `rms_pressure_corrected`.
     ///
@@ -50,7 +50,7 @@ impl Observables {
 
     /// Observables from the contact area and the pressures of the elements.
     ///
-    /// The error bars include what the iteration has left.
+    /// The error bars include the remaining error of the iteration.
     pub(crate) fn new(
         info: &SolveInfo,
         (area, plastic): (ContactArea, Option<PlasticEdges>),
@@ -80,7 +80,7 @@ impl Observables {
         observables.with_energy_error(info.iteration_error)
     }
 
-    /// Adds to the error bars what the tolerance of the solve leaves.
+    /// Adds to the error bars the errors from the tolerance of the solve.
     ///
     /// `energy_error` is √(G/U), the relative error of the pressure in the energy norm. Observables have errors of its
     /// square.
@@ -101,7 +101,7 @@ impl Observables {
     }
 }
 
-/// The rms pressure, with what elements at edges miss.
+/// The rms pressure, with the part that elements at edges miss.
 fn corrected(rms_pressure: f64, area: &ContactArea) -> f64 {
     rms_pressure.mul_add(rms_pressure, area.missing_square).max(0.0).sqrt()
 }

@@ -22,7 +22,7 @@ pub struct PressureStatistics {
     pub rms_pressure: f64,
     /// Maximum pressure.
     pub max_pressure: f64,
-    /// Mean over the contact; 0 without contact.
+    /// Mean over the contact, or 0 without contact.
     pub mean_contact_pressure: f64,
     /// Probability density of the pressure of elements in contact.
     pub distribution: Histogram,

@@ -29,7 +29,7 @@ impl HeightStatistics {
             .par_chunks(nx)
             .map(|row| {
                 row.iter().fold((f64::NEG_INFINITY, f64::INFINITY, 0.0), |(max, min, sum), &h| {
-                    // Faster than f64::max; NaN shows in the sum.
+                    // This is faster than f64::max. NaN shows in the sum.
                     (if h > max { h } else { max }, if h < min { h } else { min }, sum + h)
                 })
             })
@@ -84,7 +84,7 @@ pub(crate) struct Problem {
     pub(crate) h_range: f64,
     /// The length that an overlap is compared with.
     pub(crate) measure: Measure,
-    /// What holds the solid under a uniform pressure.
+    /// The support of the solid under a uniform pressure.
     pub(crate) support: Support,
 }
 

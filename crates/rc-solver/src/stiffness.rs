@@ -14,7 +14,7 @@ use crate::support::Support;
 
 /// The iteration ends when a step adds less than this fraction.
 ///
-/// The sum of what later steps would add is of the same order.
+/// The sum of all later steps is of the same order.
 const SMALLEST_GAIN: f64 = 3e-4;
 
 /// Maximum number of steps, enough for the worst scenes at [`SMALLEST_GAIN`].

@@ -1,4 +1,4 @@
-//! What holds a solid under a uniform pressure.
+//! The support of a solid under a uniform pressure.
 
 use rc_core::{Boundary, Grid, Kernel};
 
@@ -7,7 +7,7 @@ use rc_core::{Boundary, Grid, Kernel};
 /// On the periodic half-space such a pressure displaces nothing (Eq. 3).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Support {
-    /// What is beyond the heights.
+    /// The boundary of the heights.
     pub(crate) boundary: Boundary,
     /// Displacement of a periodic cell under a uniform pressure of 1, in λ/E*.
     ///

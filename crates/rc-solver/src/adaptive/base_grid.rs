@@ -94,8 +94,8 @@ const GREATEST_FACTOR: usize = 7;
 
 /// The best base grid for a finest grid that is about `n` times as large.
 ///
-/// A side of the base grid, times `n`, has at least the elements of the finest grid, and few more. Elements are nearly
-/// squares. Of such grids, it has the fewest elements. `None` if there is no such grid.
+/// A side of the base grid, times `n`, has at least as many elements as the finest grid, and not many more. Elements
+/// are nearly squares. Of such grids, it has the smallest number of elements. `None` if there is no such grid.
 fn uneven_sides(finest: Grid, n: usize) -> Option<[usize; 2]> {
     let candidates = |side: usize| -> Vec<usize> {
         let least = side.div_ceil(n).next_multiple_of(TILE).max(SMALLEST_WIDTH);

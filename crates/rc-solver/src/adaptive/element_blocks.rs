@@ -29,7 +29,7 @@ impl Mesh {
 }
 
 impl ObservedMesh for Mesh {
-    /// Shows the pressure to the observer. Over ranks none has the whole pressure, and nothing is shown.
+    /// Shows the pressure to the observer. Over ranks no rank has the whole pressure, and nothing is shown.
     fn show_pressure(&self, pressure: &[f64], observer: &dyn Observer) {
         if !self.ranks().are_alone() {
             return;

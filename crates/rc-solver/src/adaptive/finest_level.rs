@@ -56,7 +56,8 @@ const EXCLUSION_MARGIN: f64 = 2.0;
 
 /// Solves to the tolerance from `start`, and proves the solution for the whole cell.
 ///
-/// The gap in contact of the start is `contact_gap`. The second result is what the error of an operator depends on.
+/// The gap in contact of the start is `contact_gap`. The second result is the scale on which the error of an operator
+/// depends.
 pub(super) fn solve_finest_level(
     setup: &Setup<'_>,
     grid: Grid,

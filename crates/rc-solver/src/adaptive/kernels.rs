@@ -24,13 +24,13 @@ pub(super) struct Kernels {
 }
 
 impl Kernels {
-    /// Kernels of which none is made yet.
+    /// Kernels that are not made yet.
     pub(super) fn new(base: Grid, border_level: usize) -> Self {
         let (quick, preconditioner, gaps) = Default::default();
         Self { base, border_level, quick, preconditioner, gaps }
     }
 
-    /// Kernels of the same base grid, of which none is made yet.
+    /// Kernels of the same base grid that are not made yet.
     pub(super) fn empty(&self) -> Self {
         Self::new(self.base, self.border_level)
     }

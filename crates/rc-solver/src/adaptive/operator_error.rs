@@ -114,7 +114,7 @@ fn minimum_remaining(bound: ErrorBound) -> f64 {
 
 /// The fastest split, from `split` on, whose error is a small part of the bound.
 ///
-/// It is the most accurate split if there is none.
+/// If no split is good enough, it is the most accurate one.
 pub(super) fn certifying_split(
     split: GapSplit,
     scale: &PressureScale,

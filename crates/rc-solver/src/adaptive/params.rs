@@ -16,7 +16,7 @@ pub(crate) struct AdaptiveParams {
     ///
     /// Elements inside contacts stay as they are.
     pub border_level: usize,
-    /// Elements per side of the base grid. `None` chooses.
+    /// Elements per side of the base grid. `None` chooses the number.
     pub base_side: Option<usize>,
     /// Maximum memory, in bytes. A larger estimate is an error before any work.
     ///

@@ -37,7 +37,7 @@ pub(super) struct Splits {
 pub(crate) struct Place {
     /// Ranks that the mesh is dealt among.
     pub(crate) ranks: Ranks,
-    /// Keeps what each level leaves for the next, if anything does.
+    /// Storage for the start of each level, if a solve is to be continued.
     pub(crate) checkpoint: Option<Arc<dyn Checkpoint>>,
 }
 
@@ -49,7 +49,7 @@ pub(super) struct Setup<'a> {
     pub(super) border_level: usize,
     /// Ranks that elements are dealt among.
     pub(super) ranks: &'a Ranks,
-    /// Keeps what each level leaves for the next, if anything does.
+    /// Storage for the start of each level, if a solve is to be continued.
     pub(super) checkpoint: Option<&'a dyn Checkpoint>,
     /// L for corrections, a few percent off on rough pressures. Its approximate inverse is below.
     pub(super) quick: &'a Prepared<f32>,

@@ -246,8 +246,8 @@ struct Scatter {
 impl Scatter {
     /// The error of an area that differs from the count by `term`.
     ///
-    /// Contacts of single elements may have no area at all. The caller ensures that the `size` of the area is at least
-    /// a part of the count.
+    /// Contacts of single elements may have no area at all. `size` is therefore not only the area. It is at least a
+    /// part of the count.
     fn error(&self, term: f64, size: f64) -> f64 {
         let of_term = ERROR_OF_TERM * term.powi(2) / size.max(f64::MIN_POSITIVE);
         self.of_edges.hypot(of_term).hypot(self.of_directions).min(1.0)

@@ -15,7 +15,7 @@ pub(crate) struct ConjugateDirections {
     pub(super) displacement: Vec<f32>,
     /// The residual, and later the preconditioned residual z.
     ///
-    /// Between a clipped step and the next round it is what clipping has added.
+    /// Between a clipped step and the next round, it has the pressures that clipping has added.
     pub(super) preconditioned: Vec<f32>,
 }
 
@@ -48,7 +48,7 @@ pub(crate) enum Slope<'a> {
 }
 
 impl ConjugateDirections {
-    /// Directions on `n` elements, of which none is active.
+    /// Directions on `n` elements. None of the elements is active.
     pub(crate) fn new(n: usize) -> Self {
         let zeros = || parallel::zeros(n);
         Self { active: vec![false; n], direction: zeros(), displacement: zeros(), preconditioned: zeros() }
@@ -72,9 +72,9 @@ impl ConjugateDirections {
         });
     }
 
-    /// The present direction for a step that is clipped, with room for what clipping adds.
+    /// The present direction for a step that is clipped, with room for added pressures.
     ///
-    /// The room is that of the residual, which is lost.
+    /// Clipping adds these pressures. They take the room of the residual, which is lost.
     pub(super) fn clipped_steps(&mut self, len: usize) -> impl Iterator<Item = ClippedStep<'_>> {
         let Self { active, direction, displacement, preconditioned } = self;
         let along = direction.chunks(len).zip(displacement.chunks(len));
@@ -89,12 +89,12 @@ impl ConjugateDirections {
 
     /// Room for displacements, in blocks.
     ///
-    /// It is the room of what clipping has added, which is lost.
+    /// They take the room of the pressures that clipping has added, which are lost.
     pub(super) fn displacements_mut(&mut self, len: usize) -> impl Iterator<Item = &mut [f32]> {
         self.preconditioned.chunks_mut(len)
     }
 
-    /// What clipping has added, or the displacements that were put there.
+    /// The pressures that clipping has added, or the displacements that were put there.
     pub(super) fn added(&self) -> &[f32] {
         &self.preconditioned
     }

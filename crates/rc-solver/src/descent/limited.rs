@@ -41,7 +41,7 @@ const MAX_HALVINGS: usize = 40;
 
 /// Margin on the factor by which the present projection multiplies pressures.
 ///
-/// If even this multiple stays below the hardness, the hardness is not looked at.
+/// If even this multiple stays below the hardness, the hardness is not considered.
 const MARGIN: f64 = 2.0;
 
 /// Whether a start has reached the hardness.
@@ -52,7 +52,8 @@ pub(crate) fn is_plastic(pressure: &[f64], hardness: f64) -> bool {
 /// Limits the pressure by the hardness and, under load control, restores the load.
 ///
 /// The cell has room for `n_cell` of the smallest elements. If elements between the bounds cannot restore the load,
-/// others do. Those of smallest `order`, a gap, take what is missing. Those of largest `order` lose what is too much.
+/// others do. If load is missing, they are those with the smallest `order`, a gap. If there is too much load, they are
+/// those with the largest `order`.
 pub(crate) fn limit_to_load(
     problem: &Problem,
     n_cell: f64,

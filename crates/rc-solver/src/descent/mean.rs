@@ -20,7 +20,8 @@ impl Descent<'_> {
     ///
     /// The exception is a solid that nothing holds, if all elements press although the penetration is below full
     /// contact. The mean pressure is then too large, by at least the minimum pressure. Subtracting the minimum from all
-    /// pressures displaces nothing and lowers the energy. Scaling would undo what already fits the heights.
+    /// pressures displaces nothing and lowers the energy. Scaling would undo the part of the pressure that already fits
+    /// the heights.
     pub(super) fn meet_penetration(&mut self, sums: GapSums) -> GapSums {
         match sums.scale_to_penetration(self.problem) {
             None => self.settle(sums),

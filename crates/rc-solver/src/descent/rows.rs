@@ -106,8 +106,8 @@ impl ElementValues<'_> {
 
     /// Takes the step `length` along a direction, and clips pressures to 0 and to the hardness.
     ///
-    /// Writes what the clipping has added, in units of `1 / unit`. Returns the number of pressures that clipping or
-    /// joining changed.
+    /// Writes the pressures that clipping has added, in units of `1 / unit`. Returns the number of pressures that
+    /// clipping or joining changed.
     ///
     /// The next active elements are chosen before clipping. They are elements between both bounds, elements outside
     /// that penetrate, and plastic elements with a gap. Those that penetrate get `joining` times their overlap as a
@@ -140,7 +140,7 @@ impl ElementValues<'_> {
 
 /// Multiplies some pressures by `share`, and returns Σ p.
 ///
-/// `written` is the change of the pressures, in units of `1 / unit`, plus what clipping has `added`.
+/// `written` gets the change of the pressures, in units of `1 / unit`, plus the pressures that clipping has `added`.
 pub(super) fn share(pressure: &mut [f64], share: f64, unit: f64, added: &[f32], written: &mut [f32]) -> f64 {
     let mut sum = 0.0;
     for ((p, added), written) in pressure.iter_mut().zip(added).zip(written) {
@@ -157,7 +157,7 @@ pub(super) struct ClippedStep<'a> {
     pub(super) displacement: &'a [f32],
     /// The elements that the step changes, and later the next active elements.
     pub(super) active: &'a mut [bool],
-    /// Room for what clipping adds.
+    /// Room for the pressures that clipping adds.
     pub(super) added: &'a mut [f32],
 }
 
@@ -277,7 +277,7 @@ mod tests {
     /// Five elements after a step of length 1.
     ///
     /// One element stays, one turns tensile, one comes to penetrate, one does not, and one stops penetrating. Returns
-    /// pressures, active elements, what was added, and the number of changes.
+    /// pressures, active elements, added pressures, and the number of changes.
     fn clipped(joining: f64, hardness: f64) -> ([f64; 5], [bool; 5], [f32; 5], u32) {
         let (mut pressure, mut gap) = ([2.0, 1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.5, 0.5, -0.5]);
         let (mut active, mut added) = ([true, true, false, false, true], [0.0; 5]);

@@ -88,7 +88,7 @@ impl<'a> Descent<'a> {
         self.info.grid
     }
 
-    /// What is beyond the heights.
+    /// The boundary of the heights.
     pub(crate) fn boundary(&self) -> Boundary {
         self.problem.support.boundary
     }

@@ -10,8 +10,8 @@ pub struct GaussSeidelParams {
     pub increments: usize,
     /// Relaxation factor ω in (0, 2).
     ///
-    /// 1 is plain Gauss-Seidel, as in the paper, and needs the fewest sweeps: N = 8 on 128² takes 185 sweeps in all
-    /// with ω = 1, 246 with 1.2, 536 with 1.6.
+    /// 1 is plain Gauss-Seidel, as in the paper, and needs the smallest number of sweeps. N = 8 on 128² takes 185
+    /// sweeps in all with ω = 1, 246 with 1.2 and 536 with 1.6.
     pub relaxation: f64,
     /// Maximum number of sweeps for one contact set.
     pub max_sweeps: usize,

@@ -30,7 +30,7 @@ pub struct SolveParams {
     ///
     /// It is relative to the rms displacement. A smaller tolerance lowers it.
     pub operator_error: f64,
-    /// Elements per side of the base grid of the adaptive method. `None` chooses.
+    /// Elements per side of the base grid of the adaptive method. `None` chooses the number.
     pub base_side: Option<usize>,
     /// Parameters of the paper's procedure alone.
     pub gauss_seidel: GaussSeidelParams,

@@ -49,7 +49,7 @@ impl Response<'_> {
         }
     }
 
-    /// What is beyond the heights on `grid`.
+    /// The boundary of the heights on `grid`.
     pub(super) fn boundary(&self, grid: Grid) -> Boundary {
         match self {
             Self::Kernel(kernel) => Support::of(kernel.get(), grid).boundary,

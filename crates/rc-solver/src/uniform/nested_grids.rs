@@ -63,7 +63,9 @@ impl<'a> NestedGrids<'a> {
         FinestGrid { descent, outcome, levels, coarser }
     }
 
-    /// The results of a grid with `above` levels above it. `None` if nobody compares with them.
+    /// The results of a grid with `above` levels above it.
+    ///
+    /// Only the level before the last has results, because only the last one compares with them.
     fn values(&self, descent: &Descent<'_>, outcome: &Outcome, above: usize) -> Option<LevelValues> {
         (above == 1).then(|| LevelValues {
             rms_pressure: rms(descent.pressure()),

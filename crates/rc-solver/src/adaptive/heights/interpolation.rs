@@ -34,7 +34,7 @@ pub(super) type Place<'a> = (&'a Stencil, usize);
 pub(super) struct Interpolation {
     side: usize,
     band_limit: usize,
-    /// Mean height, which is not in the coefficients. Their error is relative to what they hold.
+    /// Mean height, which is not in the coefficients. The error is relative to heights without their mean.
     mean: f64,
     /// rms height about the mean.
     rms: f64,

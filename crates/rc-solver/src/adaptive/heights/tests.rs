@@ -155,7 +155,7 @@ fn tiles_of_all_levels_are_exact_to_nine_digits_of_the_rms_height() {
     // two.
     for (waves, base, finest) in [(32, 32, 1024), (32, 64, 512), (16, 128, 512), (25, 100, 800), (19, 20, 640)] {
         for hurst in [0.1, 0.8, 1.0] {
-            // A thousand times the rms height may only cost three digits of rounding, and none of interpolation.
+            // A mean of a thousand times the rms height may cost three digits by rounding, but not by interpolation.
             let surface = SelfAffine::new(waves, hurst, 1e3);
             let heights = Heights::new(
                 HeightSource::Surface { surface: &surface, grid: Grid::square(finest).expect("a grid") },

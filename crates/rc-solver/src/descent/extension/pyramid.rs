@@ -112,7 +112,7 @@ impl Pyramid {
 
     /// Fᵀ, times the number of elements in a square.
     ///
-    /// It takes values of u, and gives what each active element of a square gets.
+    /// It takes values of u, and gives the values that each active element of a square gets.
     pub(crate) fn gather(&mut self) {
         for k in 1..self.levels.len() {
             let (finer, coarser) = self.levels.split_at_mut(k);
