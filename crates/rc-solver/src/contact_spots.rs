@@ -1,38 +1,46 @@
-//! Contact spots: the connected parts of the contact, with their areas located below the element.
+//! Contact spots: the connected parts of the contact. Their areas are located below the element.
 
 use rc_core::{Boundary, EdgeBias, Field, Grid};
 
 use crate::ContactArea;
 use crate::contact_area::{EdgeSums, around};
 
-/// One connected part of the contact, across edges of elements and the sides of a periodic cell.
+/// One connected part of the contact.
+///
+/// Elements are connected across their edges and across the sides of a periodic cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSpot {
-    /// Elements of it.
+    /// Number of its elements.
     pub elements: usize,
-    /// Ratio of its area to that of the cell, from the edges between the centres of elements, as
-    /// [`ContactArea::fraction`]: the spots add up to the contact area. A spot of one element may be off by half of it.
+    /// Ratio of its area to the area of the cell.
+    ///
+    /// It is located from the edges between the centres of elements, as [`ContactArea::fraction`] is. The spots add up
+    /// to the contact area. A spot of one element may be off by half of it.
     pub area_fraction: f64,
     /// Length of its edge, in λ ([`ContactArea::perimeter`]).
     pub perimeter: f64,
     /// 1 minus the number of its holes.
     pub euler_number: f64,
-    /// Its part of the mean pressure, in E*.
+    /// Its share of the mean pressure, in E*.
     pub mean_pressure: f64,
 }
 
 impl ContactSpot {
-    /// The spots of a contact, largest first; of equal ones, the one that begins in an earlier row. `pressure`, `gap`
-    /// and `bias` are those of [`ContactArea::of`].
+    /// The spots of a contact, largest first.
+    ///
+    /// Of equal spots, the one that begins in an earlier row comes first. `pressure`, `gap` and `bias` are those of
+    /// [`ContactArea::of`].
     ///
     /// # Panics
-    /// When the two are not on the same grid.
+    /// When `pressure` and `gap` are not on the same grid.
     #[must_use]
     pub fn all(pressure: &Field, gap: &Field, bias: EdgeBias) -> Vec<Self> {
         Self::with_boundary(pressure, gap, bias, Boundary::Periodic)
     }
 
-    /// The same on heights with this `boundary`: spots are not connected across free borders.
+    /// The spots of a contact on heights with this `boundary`, as [`ContactSpot::all`].
+    ///
+    /// Spots are not connected across free borders.
     ///
     /// # Panics
     /// As [`ContactSpot::all`].
@@ -65,14 +73,15 @@ impl ContactSpot {
     }
 }
 
-/// The elements in contact of each spot, connected across their edges and the sides of the cell; in the order in which
-/// spots begin.
+/// The elements in contact of each spot, in the order in which spots begin.
+///
+/// They are connected across their edges and the sides of the cell.
 #[must_use]
 pub fn connected_elements(pressure: &Field) -> Vec<Vec<usize>> {
     connected(pressure, Boundary::Periodic)
 }
 
-/// The same on heights with this boundary.
+/// The elements of each spot on heights with this boundary.
 fn connected(pressure: &Field, boundary: Boundary) -> Vec<Vec<usize>> {
     let grid = pressure.grid();
     let mut waiting: Vec<bool> = pressure.values().iter().map(|p| *p > 0.0).collect();
@@ -92,7 +101,9 @@ fn connected(pressure: &Field, boundary: Boundary) -> Vec<Vec<usize>> {
     spots
 }
 
-/// The elements across the four edges of one, around the periodic cell; across a free border it is the element itself.
+/// The elements across the four edges of one element, around the periodic cell.
+///
+/// Across a free border it is the element itself.
 fn neighbours(grid: Grid, [ix, iy]: [usize; 2], boundary: Boundary) -> [usize; 4] {
     let beside = |i: usize, n: usize| match boundary {
         Boundary::Periodic => [(i + 1) % n, (i + n - 1) % n],
@@ -123,7 +134,7 @@ mod tests {
         };
         let pressure = Field::from_fn(grid, |DVec2 { x, y }| depth(x, y).max(0.0).sqrt());
         let gap = Field::from_fn(grid, |DVec2 { x, y }| 4.0 / 3.0 * (-depth(x, y)).max(0.0).powf(1.5));
-        // Values as exact as these have no first-order error to subtract.
+        // Values this exact have no first-order error to subtract.
         let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_deviation: 0.0, per_square: 0.0 };
         let spots = ContactSpot::all(&pressure, &gap, none);
         assert_eq!(spots.len(), 2);
@@ -140,8 +151,9 @@ mod tests {
         assert!((sum(|spot| spot.mean_pressure) / pressure.mean() - 1.0).abs() < 1e-12);
     }
 
-    /// A round contact on elements that are not squares has the area and the edge that it has on squares of the same
-    /// size: each edge is located with the side of the element across it.
+    /// Elements that are not squares locate a round contact as well as squares.
+    ///
+    /// Each edge is located with the side of the element across it. The squares have the same size.
     #[test]
     fn elements_that_are_not_squares_locate_edges_as_well() {
         let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_deviation: 0.0, per_square: 0.0 };

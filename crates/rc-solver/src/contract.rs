@@ -1,29 +1,32 @@
-//! Quick checks, before a solve, that a kernel or an operator of the caller is a half-space. [`rc_core::testing`] has
-//! the thorough ones.
+//! Quick checks, before a solve, that a kernel or an operator is a half-space.
+//!
+//! The kernel or operator is the caller's. [`rc_core::testing`] has the thorough checks.
 
 use rc_core::testing::quasi_random;
 use rc_core::{Grid, Kernel, Operator};
 
 use crate::error::{OperatorFault, ProblemError};
 
-/// Waves per axis, from the longest on, that are always looked at: they are the largest part of any displacement.
+/// Waves per axis that are always checked, from the longest on.
+///
+/// They are the largest part of any displacement.
 const LONG_WAVES: usize = 4;
 
-/// One wave in this many is looked at on large grids, and at least [`FEWEST_WAVES`].
+/// One wave in this many is checked on large grids, and at least [`FEWEST_WAVES`].
 const WAVES_PER_LOOK: usize = 64;
 const FEWEST_WAVES: usize = 512;
 
-/// Difference between the eigenvalues of a wave and of its mirror image, relative to them, that quadrature may leave.
+/// Relative difference that quadrature may leave between the eigenvalues of two mirrored waves.
 const MIRROR_ERROR: f64 = 1e-8;
 
 /// Rounding of an operator in double precision, relative to its maximum displacement.
 const ROUNDING: f64 = 1e-12;
 
-/// Refuses a kernel whose symbol on `grid` is not that of an elastic half-space: finite, zero at the zero wave and
-/// positive elsewhere, symmetric in kx and ky on a square grid, and the same each time it is asked.
+/// Refuses a kernel whose symbol on `grid` is not that of an elastic half-space.
 ///
-/// All waves of small grids are looked at, a sample of those of large ones. A kernel that says it is Love's half-space
-/// is not asked.
+/// The symbol must be finite, zero at the zero wave and positive elsewhere. It must be symmetric in kx and ky on a
+/// square grid, and the same each time it is asked. All waves of small grids are checked, and a sample on large grids.
+/// A kernel that says it is Love's half-space is not checked.
 pub(crate) fn check_kernel(kernel: &dyn Kernel, grid: Grid) -> Result<(), ProblemError> {
     if kernel.is_split_by_scale() {
         return Ok(());
@@ -56,7 +59,7 @@ pub(crate) fn check_kernel(kernel: &dyn Kernel, grid: Grid) -> Result<(), Proble
         if again(kx, ky).to_bits() != value.to_bits() {
             return fault(kx, ky, again(kx, ky), "the same each time it is asked");
         }
-        // On other grids the mirrored wave may be none of the grid.
+        // On other grids the mirrored wave may not be a wave of the grid.
         let is_mirrored = || (symbol(ky, kx) - value).abs() <= MIRROR_ERROR * value;
         if grid.is_square() && kx.max(ky) > 0 && !is_mirrored() {
             return fault(ky, kx, symbol(ky, kx), "that of kx and ky exchanged, since the grid is square");
@@ -65,24 +68,26 @@ pub(crate) fn check_kernel(kernel: &dyn Kernel, grid: Grid) -> Result<(), Proble
     Ok(())
 }
 
-/// The waves that are looked at: the longest, the shortest, and some between them.
+/// The waves that are checked: the longest, the shortest, and some between them.
 fn waves(grid: Grid) -> impl Iterator<Item = (usize, usize)> {
     let (columns, rows) = (grid.nx() / 2 + 1, grid.ny() / 2 + 1);
     let (n, long) = (columns * rows, [columns.min(LONG_WAVES), rows.min(LONG_WAVES)]);
     let looks = n.min(FEWEST_WAVES.max(n / WAVES_PER_LOOK));
     let long_waves = (0..long[0] * long[1]).map(move |i| (i % long[0], i / long[0]));
     let shortest = [(columns - 1, 0), (0, rows - 1), (columns - 1, rows - 1)];
-    // Every wave once, when there are as many looks as waves.
+    // With as many looks as waves, every wave is checked once.
     let place = move |i: usize| if looks == n { i } else { ((quasi_random(i) * n as f64) as usize).min(n - 1) };
     let others = (0..looks).map(move |i| (place(i) % columns, place(i) / columns));
     long_waves.chain(shortest).chain(others)
 }
 
-/// Refuses an operator that is not v = L p of an elastic half-space by more than `tolerance` of its maximum
-/// displacement: finite, of zero mean, symmetric, positive, linear, the same each time, and zero for a uniform
-/// pressure. Takes three applications.
+/// Refuses an operator that is not v = L p of an elastic half-space.
 ///
-/// What is smaller than the tolerance of a solve changes its solution by no more than the tolerance.
+/// The displacement must be finite and of zero mean. L must be symmetric, positive, linear, the same each time, and
+/// zero for a uniform pressure. Each may be wrong by `tolerance` of the maximum displacement. The check takes three
+/// applications.
+///
+/// A fault below the tolerance of a solve changes its solution by no more than the tolerance.
 pub(crate) fn check_operator(operator: &dyn Operator, tolerance: f64) -> Result<(), ProblemError> {
     let n = operator.n_elements();
     if n == 1 {
@@ -92,7 +97,7 @@ pub(crate) fn check_operator(operator: &dyn Operator, tolerance: f64) -> Result<
     probes.check(operator, tolerance.max(ROUNDING)).map_err(ProblemError::NotElastic)
 }
 
-/// Two pressures without a pattern, and what the operator makes of them.
+/// Two pressures without a pattern, and their displacements.
 struct Probes {
     a: Vec<f64>,
     b: Vec<f64>,
@@ -127,8 +132,8 @@ impl Probes {
             return Err(self.why_sums_differ(operator, tolerance, difference));
         }
         let (ab, ba) = (product(a, of_b), product(b, of_a));
-        // The product of vectors without a pattern is smaller than that of their sizes, by √n; so is what noise adds to
-        // it.
+        // For vectors without a pattern, the product is smaller than the product of their norms by √n. The noise in it
+        // is smaller by the same factor.
         if (ab - ba).abs() > tolerance * (product(a, a) * product(of_b, of_b) / n).sqrt() {
             return Err(OperatorFault::Symmetry { ab, ba });
         }
@@ -137,7 +142,9 @@ impl Probes {
         if energy > 0.0 { Ok(()) } else { Err(OperatorFault::Energy { energy }) }
     }
 
-    /// Which of the reasons it is, at the cost of two more applications.
+    /// Finds the reason why displacements of sums differ, with two more applications.
+    ///
+    /// Either the operator changes, or a uniform pressure displaces, or the operator is not linear.
     fn why_sums_differ(&self, operator: &dyn Operator, tolerance: f64, difference: f64) -> OperatorFault {
         let largest_of_a = largest(&self.of_a);
         let again = displacement(operator, &self.a, 0.0);
@@ -158,7 +165,7 @@ impl Probes {
     }
 }
 
-/// L `pressure`, into memory that held `before`.
+/// The displacement L `pressure`, written into memory that held `before`.
 fn displacement(operator: &dyn Operator, pressure: &[f64], before: f64) -> Result<Vec<f64>, OperatorFault> {
     let (mut v, mut scratch) = (vec![before; pressure.len()], vec![before; operator.scratch_len()]);
     operator.apply(pressure, &mut v, &mut scratch);
@@ -186,7 +193,7 @@ mod tests {
     use super::*;
     use crate::{DirectSum, MultilevelOperator, UniformOperator};
 
-    /// Changes what an operator answers, by its count of applications and the largest displacement.
+    /// Changes the displacement of an operator, given the count of applications and the largest displacement.
     type Fault = fn(&mut [f64], usize, f64);
 
     struct Faulty {
@@ -253,7 +260,7 @@ mod tests {
         assert!(matches!(found(|v, _, _| v.fill(0.0)), Some(OperatorFault::Energy { .. })));
     }
 
-    /// Adds the mean pressure to the wave of alternating signs: linear, but a uniform pressure displaces.
+    /// Adds the mean pressure to the wave of alternating signs. It is linear, but a uniform pressure displaces.
     struct UniformDisplaces(DirectSum);
 
     impl Operator for UniformDisplaces {
@@ -291,7 +298,7 @@ mod tests {
         check_operator(&MultilevelOperator::new(32, 128, places, 1e-6).expect("valid"), 1e-6).expect("sound");
     }
 
-    /// Waves' symbol with another value at one wave.
+    /// The symbol of another kernel, with a different value at one wave.
     struct OneWave((usize, usize), f64);
 
     impl Kernel for OneWave {

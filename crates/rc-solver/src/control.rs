@@ -1,25 +1,26 @@
-//! What is prescribed: mean pressure or penetration.
+//! The prescribed quantity: mean pressure or penetration.
 
 use rc_core::Units;
 
 /// The control of a contact problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Control {
-    /// Mean pressure σ0, in E*; the penetration is a result.
+    /// Mean pressure σ0, in E*. The penetration is a result.
     MeanPressure(f64),
-    /// Penetration Δ, in λ (Sec. 2: the greatest displacement v under the rough surface); the mean pressure is a
-    /// result.
+    /// Penetration Δ, in λ. The mean pressure is a result.
+    ///
+    /// Δ is the maximum displacement v under the rough surface (Sec. 2).
     Penetration(f64),
 }
 
 impl Control {
-    /// A mean pressure in Pa.
+    /// Control by a mean pressure in Pa.
     #[must_use]
     pub fn pascals(mean_pressure: f64, units: Units) -> Self {
         Self::MeanPressure(units.pressure(mean_pressure))
     }
 
-    /// A penetration in m.
+    /// Control by a penetration in m.
     #[must_use]
     pub fn metres(penetration: f64, units: Units) -> Self {
         Self::Penetration(units.length(penetration))

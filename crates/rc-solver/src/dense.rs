@@ -1,4 +1,6 @@
-//! The contact problem with a dense matrix and an active set: the slow truth of the solvers.
+//! The contact problem with a dense matrix and an active set.
+//!
+//! It is the slow reference for the solvers.
 
 use rc_core::{Field, Kernel, Operator};
 
@@ -7,11 +9,14 @@ use crate::problem::{Load, Problem};
 use crate::support::Support;
 use crate::{Control, IterationParams, ProblemError};
 
-/// Pressures (in E*) on the grid of `heights` under a given penetration (in λ), by elimination on the elements in
-/// contact: solve `Σ_j L_ij p_j = h_i - h_max + Δ` there, release elements under tension, take in elements that
-/// penetrate, until neither changes the contact. Exact to rounding; O(n³): for tests on small grids.
+/// Pressures under a given penetration, by elimination on the elements in contact.
 ///
-/// `None` when the contact still changes after as many rounds as there are elements, which does not happen for the
+/// The pressures are in E*, on the grid of `heights`. The penetration is in λ. Each round solves `Σ_j L_ij p_j = h_i -
+/// h_max + Δ` on the elements in contact. It then releases elements under tension and takes in elements that penetrate,
+/// until the contact does not change. The result is exact to rounding. The work is O(n³), so this is for tests on small
+/// grids.
+///
+/// `None` when the contact still changes after as many rounds as there are elements. This does not happen for the
 /// positive definite operators of this workspace.
 ///
 /// # Errors
@@ -20,7 +25,7 @@ pub fn solve_dense(heights: &Field, kernel: &dyn Kernel, penetration: f64) -> Re
     solve_dense_with_hardness(heights, kernel, penetration, f64::INFINITY)
 }
 
-/// An element of the active set.
+/// State of an element in the active set.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum State {
     Free,
@@ -29,8 +34,9 @@ enum State {
     Plastic,
 }
 
-/// [`solve_dense`] with pressures of at most `hardness` (in E*): elements that would press more have that pressure,
-/// until they no longer overlap.
+/// [`solve_dense`] with pressures of at most `hardness` (in E*).
+///
+/// Elements that would press more have the pressure `hardness`, until they no longer overlap.
 ///
 /// # Errors
 /// [`ProblemError`] for heights, a penetration or a hardness out of range.

@@ -1,13 +1,13 @@
-//! What is wrong with a contact problem.
+//! Errors in the statement of a contact problem.
 
 use rc_core::Grid;
 use thiserror::Error;
 
-/// Heights, a load or a tolerance that cannot be.
+/// Heights, a load or a tolerance that are not possible.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ProblemError {
-    /// The operator is not for the grid of the heights.
+    /// The operator has another number of elements than the grid of the heights.
     #[error("the operator has {n_elements} elements and the heights are on {grid}")]
     Operator {
         /// Grid of the heights.
@@ -15,10 +15,10 @@ pub enum ProblemError {
         /// Elements of the operator.
         n_elements: usize,
     },
-    /// The operator is not that of an elastic half-space.
+    /// The operator is not one of an elastic half-space.
     #[error("the operator is not that of a half-space: {0}")]
     NotElastic(OperatorFault),
-    /// The kernel is not that of an elastic half-space.
+    /// The kernel is not one of an elastic half-space.
     #[error(
         "the symbol of the kernel {kernel} at the wave ({kx}, {ky}) of {grid} elements is {value}; it must be {wanted}"
     )]
@@ -33,7 +33,7 @@ pub enum ProblemError {
         ky: usize,
         /// The eigenvalue, in λ/E*.
         value: f64,
-        /// What an eigenvalue must be.
+        /// The condition that the eigenvalue must meet.
         wanted: &'static str,
     },
     /// A height is NaN or infinite.
@@ -46,16 +46,18 @@ pub enum ProblemError {
         /// The value.
         value: f64,
     },
-    /// The peak-to-valley height is neither 0 nor of a size whose products with pressures are numbers.
+    /// The peak-to-valley height is not 0, and too small or too large to solve for.
+    ///
+    /// Its products with pressures would not be numbers.
     #[error(
         "the range of the heights must be 0 or from {smallest:e} to {greatest:e} (in units of the cell side), not {value:e}"
     )]
     HeightRange {
         /// h_max - h_min, in λ.
         value: f64,
-        /// The smallest that can be solved for.
+        /// The smallest range that can be solved for, in λ.
         smallest: f64,
-        /// The greatest.
+        /// The largest range that can be solved for, in λ.
         greatest: f64,
     },
     /// The mean pressure is not positive and finite.
@@ -70,7 +72,7 @@ pub enum ProblemError {
         /// Hardness given, in E*.
         value: f64,
     },
-    /// A mean pressure that the hardness does not bear: no pressure is greater than it.
+    /// The mean pressure is not below the hardness, which no pressure exceeds.
     #[error("the mean pressure must be below the hardness, {hardness}, not {value} (in units of E*)")]
     TooSoft {
         /// Mean pressure given, in E*.
@@ -78,8 +80,9 @@ pub enum ProblemError {
         /// Hardness given, in E*.
         hardness: f64,
     },
-    /// The penetration is outside (0, Δ_full]. Under penetration control no unique pressure exists beyond full contact:
-    /// use pressure control there.
+    /// The penetration is outside (0, Δ_full).
+    ///
+    /// Under penetration control no unique pressure exists beyond full contact. Use pressure control there.
     #[error(
         "the penetration must be above 0 and below that of full contact, {full_contact}, not {value} (in units of the cell side)"
     )]
@@ -89,15 +92,17 @@ pub enum ProblemError {
         /// h_max - mean(h), in λ.
         full_contact: f64,
     },
-    /// The penetration is outside (0, h_max - h_min) of a surface with a hardness, whose pressure is the hardness
-    /// everywhere beyond. What the hardness compresses a layer by is added.
+    /// The penetration into a surface with a hardness is outside (0, `deepest`).
+    ///
+    /// Beyond `deepest` the pressure is the hardness everywhere. It is h_max - h_min, plus the compression of a layer
+    /// by the hardness.
     #[error(
         "the penetration must be above 0 and below {deepest}, where all is plastic, not {value} (in units of the cell side)"
     )]
     FullyPlastic {
         /// Penetration given, in λ.
         value: f64,
-        /// h_max - h_min and the compression, in λ.
+        /// h_max - h_min plus the compression, in λ.
         deepest: f64,
     },
     /// The penetration is not positive and finite, on a solid that carries a uniform pressure.
@@ -106,21 +111,23 @@ pub enum ProblemError {
         /// Penetration given, in λ.
         value: f64,
     },
-    /// The tolerance is not in (0, 1), or below what rounding allows.
+    /// The tolerance is not in (0, 1), or is smaller than rounding allows.
     #[error("the tolerance must be between {smallest:e} and 1, not {value:e}")]
     Tolerance {
         /// The tolerance given.
         value: f64,
-        /// The smallest that can be certified.
+        /// The smallest tolerance that can be certified.
         smallest: f64,
     },
 }
 
-/// What is wrong with an operator; `a` and `b` are pressures without a pattern, between -1/2 and 1/2, in E*.
+/// A fault of an operator.
+///
+/// `a` and `b` are pressures without a pattern, between -1/2 and 1/2, in E*.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum OperatorFault {
-    /// A displacement is NaN or infinite, or the operator adds to what its output held.
+    /// A displacement is NaN or infinite, or the operator does not overwrite its output.
     #[error("the displacement of element {element} is {value}; it must be finite, whatever the output held before")]
     NotFinite {
         /// Index of the element.
@@ -146,7 +153,7 @@ pub enum OperatorFault {
         /// Maximum displacement, in λ.
         largest: f64,
     },
-    /// A uniform pressure displaces.
+    /// A uniform pressure displaces the surface.
     #[error("a uniform pressure of E* displaces by up to {displacement:.1e}; it must displace nothing")]
     Uniform {
         /// Maximum displacement, in λ.
@@ -160,7 +167,7 @@ pub enum OperatorFault {
         /// Maximum displacement, in λ.
         largest: f64,
     },
-    /// Element i acts on j otherwise than j on i.
+    /// Element i acts on j differently from j on i.
     #[error("<a, L b> = {ab:.6e} and <b, L a> = {ba:.6e}; it must be symmetric")]
     Symmetry {
         /// Σ a (L b), in E* λ.

@@ -1,31 +1,37 @@
 //! The distribution of the gap, resolved below the element at contact edges.
 //!
-//! Outside an edge the gap is (4c/3E*) s^{3/2}, with s the distance to it, so its density falls as g^{-1/3} from an
-//! infinite value at g = 0, which a histogram of elements cuts off. But g^{2/3} is linear there, as p² is inside: the
-//! same interpolation serves.
+//! At the distance s outside an edge, the gap is (4c/3E*) s^{3/2}. Its density therefore falls as g^{-1/3} from an
+//! infinite value at g = 0, which a histogram of elements cuts off. But g^{2/3} is linear outside an edge, as p² is
+//! inside. The interpolation of [`crate::StressDistribution`] therefore serves here too.
 
 use rayon::prelude::*;
 use rc_core::Field;
 
 use crate::StressDistribution;
 
-/// The density of the gap over the whole nominal area, on bins; contact, where the gap is zero, is not in it.
+/// The density of the gap over the whole nominal area, on bins.
+///
+/// Contact, where the gap is zero, is not in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GapDistribution {
-    /// Ends of the bins, in the unit of the gap: bin k goes from `edges[k]` to `edges[k + 1]`.
+    /// Ends of the bins, in the unit of the gap.
+    ///
+    /// Bin k goes from `edges[k]` to `edges[k + 1]`.
     pub edges: Vec<f64>,
-    /// Part of the nominal area by unit of gap: the mean over each bin.
+    /// Mean over each bin of the part of the nominal area per unit of gap.
     pub density: Vec<f64>,
     /// Part of the nominal area out of contact, where the interpolated gap is positive.
     pub open_fraction: f64,
 }
 
 impl GapDistribution {
-    /// The distribution of `gap`, in λ on a periodic grid and zero in contact within the tolerance, on bins with these
-    /// ends: increasing, from 0 or above. Elements with `pressure` > 0 are in contact.
+    /// The distribution of `gap`, in λ, on bins with the ends `edges`.
+    ///
+    /// The ends increase from 0 or above. The gap is on a periodic grid, and zero in contact within the tolerance.
+    /// Elements with `pressure` > 0 are in contact.
     ///
     /// # Panics
-    /// When the two are not on the same grid.
+    /// When `gap` and `pressure` are not on the same grid.
     #[must_use]
     pub fn of(gap: &Field, pressure: &Field, edges: &[f64]) -> Self {
         assert_eq!(gap.grid(), pressure.grid(), "gap and pressure on the same grid");
@@ -48,7 +54,7 @@ mod tests {
 
     use super::*;
 
-    /// Outside a circle g = (r - a)^{3/2}: the area with gaps up to g is π ((a + g^{2/3})² - a²).
+    /// Outside a circle g = (r - a)^{3/2}. The area with gaps up to g is π ((a + g^{2/3})² - a²).
     #[test]
     fn the_density_beside_a_round_contact_is_that_of_its_gap() {
         let (a, far) = (0.2_f64, 0.25_f64);

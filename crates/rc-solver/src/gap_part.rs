@@ -2,10 +2,12 @@
 
 use rc_core::Field;
 
-/// What is asked for of the gap `v - h` of an element, from the gap of elastic contact.
+/// A part of the gap `v - h` of an element.
+///
+/// v is the elastic displacement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum GapPart {
-    /// What is open: zero where plastic flow has removed the overlap.
+    /// The open gap, which is zero where plastic flow has removed the overlap.
     Open,
     /// The overlap that plastic flow has removed, positive.
     Plastic,
@@ -22,7 +24,9 @@ impl GapPart {
         }
     }
 
-    /// Hands out this part of a gap under a pressure of at most the `hardness`, row by row. Stops at the first error.
+    /// Hands out this part of a gap, row by row.
+    ///
+    /// The pressure is at most the `hardness`. Stops at the first error.
     pub(crate) fn rows<E>(
         self,
         (gap, pressure): (&Field, &Field),

@@ -1,10 +1,11 @@
 //! The adhesionless contact problem on a periodic half-space.
 //!
-//! Find p ≥ 0 on the cell with gap `g = v - (h - h_max + Δ) ≥ 0`, `p·g = 0` and `v = L p` (Eq. 3-4), for a given mean
-//! pressure σ0 (Δ is then the multiplier) or a given penetration Δ (σ0 is then a result). [`solve`] does it. It chooses
-//! between an adaptive mesh whose elements follow the contact and the uniform grid; [`Method`] names them, and the
-//! paper's own procedure. [`ContactProblem`] is the same door for other kernels, observers and plans. Conventions and
-//! units: see [`rc_core`].
+//! Find p ≥ 0 on the cell with the gap `g = v - (h - h_max + Δ) ≥ 0`, `p·g = 0` and `v = L p` (Eq. 3-4). Either the
+//! mean pressure σ0 is given, and Δ is its multiplier. Or the penetration Δ is given, and σ0 is a result.
+//!
+//! [`solve`] solves it. It chooses between an adaptive mesh, whose elements follow the contact, and the uniform grid.
+//! [`Method`] names these two and the paper's own procedure. [`ContactProblem`] takes other kernels, observers and
+//! plans. [`rc_core`] has the conventions and units.
 //!
 //! ```
 //! use std::f64::consts::{PI, TAU};

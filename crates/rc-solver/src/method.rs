@@ -9,12 +9,15 @@ use rc_core::quantity::digits;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Method {
-    /// Preconditioned conjugate gradients on elements that follow the contact: work and memory are those of the
-    /// contact.
+    /// Conjugate gradients on a mesh whose elements follow the contact.
+    ///
+    /// They are preconditioned. Work and memory grow with the contact and not with the cell.
     Adaptive,
-    /// The same on all elements of the grid.
+    /// Preconditioned conjugate gradients on all elements of the grid.
     Uniform,
-    /// The procedure of the paper (Sec. 2): Gauss-Seidel on an adaptive mesh, at the cost of a dense matrix.
+    /// The procedure of the paper (Sec. 2): Gauss-Seidel on an adaptive mesh.
+    ///
+    /// It costs as much as a dense matrix.
     GaussSeidel,
 }
 
@@ -36,11 +39,11 @@ impl fmt::Display for Method {
     }
 }
 
-/// Why a problem is solved by its method.
+/// The reason why a problem is solved by its method.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MethodReason {
-    /// [`crate::SolveParams::method`] names it.
+    /// [`crate::SolveParams::method`] names the method.
     AskedFor(Method),
     /// Only the adaptive method divides elements at contact edges.
     BorderLevel,
@@ -54,7 +57,9 @@ pub enum MethodReason {
         /// Estimated contact area, in percent of the nominal one.
         percent: f64,
     },
-    /// Contact on the base grid of the adaptive method is so scattered that the uniform grid is the cheaper one.
+    /// Contact is so scattered that the uniform grid is the cheaper method.
+    ///
+    /// The contact on the base grid, the coarsest of the adaptive method, shows this.
     ScatteredContact {
         /// Tiles near contact, in percent of all.
         percent: f64,
@@ -66,16 +71,16 @@ pub enum MethodReason {
     },
     /// The base grid of the adaptive method exceeds the memory limit.
     AdaptiveDoesNotFit,
-    /// An operator of the caller is known on its grid only.
+    /// An operator of the caller is known only on its grid.
     OwnOperator,
     /// The kernel has no split by scale.
     NoSplitOfKernel {
         /// Name of the kernel.
         kernel: &'static str,
     },
-    /// The adaptive method is made of the periodic cell, not of a patch with free borders.
+    /// The adaptive method solves the periodic cell, not a patch with free borders.
     FreeBorders,
-    /// The adaptive method is made of the half-space, not of a layer.
+    /// The adaptive method solves the half-space, not a layer.
     Layer,
     /// The adaptive method needs square elements.
     ElementsNotSquare {
@@ -91,7 +96,7 @@ pub enum MethodReason {
     Flat,
     /// The adaptive operator is not accurate enough for the tolerance.
     ToleranceTooSmall {
-        /// The tolerance, as it was given.
+        /// The given tolerance.
         tolerance: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! What users compute from a solution: area, pressure, gap, energy.
+//! Quantities that users compute from a solution: area, pressure, gap, energy.
 
 use rc_core::{Boundary, EdgeBias};
 
@@ -11,28 +11,36 @@ use crate::{ContactArea, PlasticContact, SolveInfo, parallel};
 pub struct Observables {
     /// Contact area.
     pub area: ContactArea,
-    /// Root mean square pressure over the cell, of the elements.
+    /// Root mean square pressure of the elements, over the cell.
     pub rms_pressure: f64,
-    /// The same with what the elements at edges of contacts miss ([`ContactArea::missing_square`]): the best estimate.
+    /// Root mean square pressure over the cell, corrected: the best estimate.
+    ///
+    /// The correction is the part that elements at edges of contacts miss ([`ContactArea::missing_square`]).
     pub rms_pressure_corrected: f64,
-    /// Estimated discretisation error of `rms_pressure_corrected`. `None` in full contact without a coarser level to
-    /// compare with, and where contact reaches a free border: the rms of the singular pressure has no limit.
+    /// Estimated discretisation error of `rms_pressure_corrected`.
+    ///
+    /// `None` in full contact without a coarser level to compare with, and where contact reaches a free border. The rms
+    /// of the singular pressure there has no limit.
     pub rms_pressure_error: Option<f64>,
-    /// Greatest pressure.
+    /// Maximum pressure.
     pub max_pressure: f64,
-    /// Mean gap, h_max - mean(h) - Δ; with a hardness, plus the overlap that plastic flow has removed.
+    /// Mean gap, h_max - mean(h) - Δ.
+    ///
+    /// With a hardness, the overlap that plastic flow has removed is added.
     pub mean_gap: f64,
-    /// Estimated discretisation error of `mean_gap`, and of the penetration.
+    /// Estimated discretisation error of `mean_gap` and of the penetration.
     pub mean_gap_error: f64,
     /// Elastic energy per nominal area, ½ mean(p v).
     pub elastic_energy: f64,
-    /// The plastic part of the contact; none without a hardness.
+    /// The plastic part of the contact. `None` without a hardness.
     pub plastic: Option<PlasticContact>,
 }
 
 impl Observables {
-    /// Evaluates the observables of a solution whose contact edges are shifted by `bias`, and whose pressure is at most
-    /// the `hardness`: one pass over the fields, or two with a hardness.
+    /// Evaluates the observables of a solution.
+    ///
+    /// It passes over the fields once, or twice with a hardness. `bias` shifts the edges of contacts. The pressure is
+    /// at most the `hardness`.
     pub(crate) fn of(solution: &GridSolution, hardness: f64, bias: EdgeBias, boundary: Boundary) -> Self {
         let fields = [&solution.pressure, &solution.gap];
         let area = ContactArea::of_hard(fields, hardness, bias, boundary);
@@ -41,15 +49,17 @@ impl Observables {
         Self::new(&solution.info, (area, plastic), parallel::rms(pressure), parallel::maximum(pressure.values(), 0.0))
     }
 
-    /// From the contact area and the pressures of the elements; the error bars have what the iteration has left.
+    /// Observables from the contact area and the pressures of the elements.
+    ///
+    /// The error bars include the remaining error of the iteration.
     pub(crate) fn new(
         info: &SolveInfo,
         (area, plastic): (ContactArea, Option<PlasticEdges>),
         rms_pressure: f64,
         max_pressure: f64,
     ) -> Self {
-        // At edges of the plastic part the pressure that is left to the hardness is what it is at other edges: p² =
-        // H² - 2 H q + q².
+        // Edges of the plastic part are like other edges for q, the pressure that is left to the hardness: p² = H² - 2
+        // H q + q².
         let rest = plastic.map(|edges| edges.rest);
         let of_rest = |of_area: &dyn Fn(&ContactArea) -> f64| rest.as_ref().map_or(0.0, of_area);
         let missing_square = area.missing_square + of_rest(&|rest| rest.missing_square);
@@ -71,8 +81,10 @@ impl Observables {
         observables.with_energy_error(info.iteration_error)
     }
 
-    /// With the errors that the tolerance of the solve leaves in the error bars; `energy_error` is √(G/U), the relative
-    /// error of the pressure in the energy norm. Those of the observables are of its square.
+    /// Adds to the error bars the errors from the tolerance of the solve.
+    ///
+    /// `energy_error` is √(G/U), the relative error of the pressure in the energy norm. Observables have errors of its
+    /// square.
     fn with_energy_error(self, energy_error: f64) -> Self {
         let with = |bar: f64, value: f64| bar.hypot(energy_error.powi(2) * value);
         Self {
@@ -81,7 +93,7 @@ impl Observables {
                 .rms_pressure_error
                 .map(|bar| with(bar, PRESSURE_OF_SOLVE * self.rms_pressure_corrected)),
             mean_gap_error: with(self.mean_gap_error, GAP_OF_SOLVE * self.mean_gap),
-            // Where the edge of the plastic part moves, that of the contact does.
+            // Where the edge of the plastic part moves, the edge of the contact moves too.
             plastic: self
                 .plastic
                 .map(|plastic| PlasticContact { error: with(plastic.error, self.area.fraction), ..plastic }),
@@ -90,33 +102,38 @@ impl Observables {
     }
 }
 
-/// The rms pressure with what elements at edges miss.
+/// The rms pressure, with the part that elements at edges miss.
 fn corrected(rms_pressure: f64, area: &ContactArea) -> f64 {
     rms_pressure.mul_add(rms_pressure, area.missing_square).max(0.0).sqrt()
 }
 
-/// Errors of rms pressure and mean gap from the tolerance of the solve, relative to their values and to the square of
-/// the energy error.
+/// Errors of rms pressure and mean gap from the tolerance of the solve.
+///
+/// They are relative to the values, and to the square of the energy error.
 const PRESSURE_OF_SOLVE: f64 = 1.0;
 const GAP_OF_SOLVE: f64 = 0.5;
 
-/// 95 % error of the squared pressure at an edge, in the mean over few edges, where they scatter.
+/// 95 % error of the squared pressure at one independent edge. The mean over few edges scatters.
 const SQUARE_SCATTER: f64 = 0.5;
 
 /// 95 % error of [`ContactArea::missing_square`], relative to it.
 const ERROR_OF_SQUARES: f64 = 2.5;
 
-/// 95 % error of ⟨p²⟩ inside of contacts from the kernel's elements: relative to ⟨p²⟩, to the kernel's constant, and to
-/// the ratio of elements at edges to those in contact.
+/// 95 % error of ⟨p²⟩ inside contacts that the kernel's elements cause.
+///
+/// It is relative to ⟨p²⟩, to the kernel's constant, and to the ratio of elements at edges to elements in contact.
 const SQUARE_INSIDE: f64 = 0.2;
 
-/// Error of ⟨p²⟩ from larger elements, which keep their mean pressures only. With p = k √d at the distance d from an
-/// edge, an element of side s at d = 2s has the variance s k²/96; its row along the edges is 2s wide, and the elements
-/// at edges have k² times half their area.
+/// Error of ⟨p²⟩ from larger elements, which keep only their mean pressures.
+///
+/// With p = k √d at the distance d from an edge, an element of side s at d = 2s has the variance s k²/96. Its row along
+/// the edges is 2s wide. The elements at edges have k² times half their area.
 const SQUARE_OF_LARGER: f64 = 1.0 / 24.0;
 
-/// In full contact, where there are no edges: error of the rms pressure relative to what the last halving of the
-/// elements changed. It is of second order, so a third is expected.
+/// Ratio of the error of the rms pressure in full contact to its last change.
+///
+/// That is the change by the last halving of the elements. There are no edges, and the error is of second order, so a
+/// third is expected.
 const OF_CHANGE: f64 = 0.4;
 
 /// Estimated error of the rms pressure, see [`Observables::rms_pressure_error`].
@@ -145,19 +162,23 @@ fn error_of_squares(area: &ContactArea, rms_pressure: f64) -> f64 {
     scatter.hypot(ERROR_OF_SQUARES * area.missing_square).hypot(inside).hypot(larger)
 }
 
-/// 95 % error of the mean gap, in ⟨p²⟩ over mean pressure and element side for each element at an edge per element in
-/// contact: its scatter over few edges, and what is the kernel's, relative to its constant.
+/// 95 % errors of the mean gap, from scatter and from the kernel.
+///
+/// The scatter is over few edges. The part from the kernel is relative to the kernel's constant. Both are multiples of
+/// ⟨p²⟩ times the side of an element over the mean pressure, times the ratio of elements at edges to elements in
+/// contact.
 const GAP_SCATTER: f64 = 0.1;
 const GAP_OF_KERNEL: f64 = 0.48;
 
-/// 95 % error of the mean gap relative to that of the area: it matters for contacts that are few and light.
+/// Ratio of the 95 % error of the mean gap to that of the area. It matters for contacts that are few and light.
 const GAP_OVER_AREA: f64 = 0.025;
 
-/// 95 % error of the mean gap from the singular pressure at free borders, in `Rim::at_border`
-/// over the mean pressure. See the table in docs/measurements.md.
+/// 95 % error of the mean gap from the singular pressure at free borders, in `Rim::at_border` over the mean pressure.
+///
+/// The table is in docs/measurements.md.
 const GAP_AT_BORDER: f64 = 0.7;
 
-/// Estimated error of the mean gap; 0 in full contact of a periodic cell, and without contact.
+/// Estimated error of the mean gap. It is 0 in full contact of a periodic cell and without contact.
 fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f64 {
     let (rim, mean_gap) = (area.rim, info.mean_gap());
     let of_element = rim.side * rms_pressure * rms_pressure / info.mean_pressure.max(f64::MIN_POSITIVE);
@@ -168,7 +189,7 @@ fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f6
     of_edges.hypot(GAP_OVER_AREA * area.relative_error() * mean_gap).hypot(of_border)
 }
 
-/// Relative to the contact area; 0 without contact.
+/// `value` relative to the contact area, and 0 without contact.
 fn per_contact_area(value: f64, area: &ContactArea) -> f64 {
     if area.fraction > 0.0 { value / area.fraction } else { 0.0 }
 }
@@ -179,8 +200,8 @@ mod tests {
 
     use crate::{ContactProblem, Control, Method, SolveParams};
 
-    /// A sphere at loose tolerances, with energy errors up to a fifth: the bars of these alone hold the change to the
-    /// exact solution.
+    /// A sphere at loose tolerances, with energy errors up to a fifth. Their bars alone hold the change to the exact
+    /// solution.
     #[test]
     fn the_energy_error_holds_what_a_loose_tolerance_changes() {
         let n = 128;

@@ -1,8 +1,8 @@
 //! Work on the blocks of vectors, in parallel.
 //!
-//! Iterators of rayon are generic over everything they pass on, and are compiled anew for each combination: four
-//! hundred combinations took most of the time that this crate needed to compile. Here rayon is compiled once. Each
-//! block costs a dynamic call and a lock without contention.
+//! Iterators of rayon are generic over everything they pass on, and are compiled anew for each combination. Four
+//! hundred combinations took most of the time to compile this crate. Here rayon is compiled once. Each block costs a
+//! dynamic call and a lock without contention.
 
 use std::mem;
 use std::sync::{Mutex, PoisonError};
@@ -10,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 use rayon::prelude::*;
 use rc_core::Field;
 
-/// Values in a block where nothing else decides.
+/// Values in a block, unless something else decides.
 const BLOCK: usize = 4096;
 
 /// Calls `work` once for each index below `n`, in any order.
@@ -23,20 +23,20 @@ pub(crate) fn for_each<S: Send>(items: impl Iterator<Item = S>, work: impl Fn(S)
     map(items, work);
 }
 
-/// What `work` makes of each of `items`, in their order.
+/// The results of `work` for each of `items`, in their order.
 pub(crate) fn map<S: Send, R: Send>(items: impl Iterator<Item = S>, work: impl Fn(S) -> R + Sync) -> Vec<R> {
     let tasks = Tasks::new(items);
     for_each_index(tasks.slots.len(), &|i| tasks.run(i, &work));
     tasks.into_results()
 }
 
-/// Largest of `values`, but not less than `at_least`; NaN is passed over.
+/// Maximum of `values`, but not less than `at_least`. NaN is passed over.
 pub(crate) fn maximum(values: &[f64], at_least: f64) -> f64 {
     let blocks = map(values.chunks(BLOCK), |block| block.iter().copied().fold(at_least, f64::max));
     blocks.into_iter().fold(at_least, f64::max)
 }
 
-/// Smallest of `values`; NaN is passed over.
+/// Minimum of `values`. NaN is passed over.
 pub(crate) fn minimum(values: &[f64]) -> f64 {
     let blocks = map(values.chunks(BLOCK), |block| block.iter().copied().fold(f64::INFINITY, f64::min));
     blocks.into_iter().fold(f64::INFINITY, f64::min)
@@ -47,21 +47,23 @@ pub(crate) fn update(values: &mut [f64], change: impl Fn(&mut f64) + Sync) {
     for_each(values.chunks_mut(BLOCK), |block| block.iter_mut().for_each(&change));
 }
 
-/// [`Field::rms`].
+/// Root mean square of a field, as [`Field::rms`].
 pub(crate) fn rms(field: &Field) -> f64 {
     let rows = map(field.values().chunks(field.grid().nx()), |row| row.iter().map(|v| v * v).sum::<f64>());
     (rows.into_iter().sum::<f64>() / field.grid().len() as f64).sqrt()
 }
 
-/// Zeros, in memory that is written at once. What `vec!` gives is mapped page by page when it is first read, and once
-/// more, in all threads, when it is written.
+/// Zeros, in memory that is written at once.
+///
+/// Memory of `vec!` is mapped page by page when it is first read. It is mapped again, in all threads, when it is
+/// written.
 pub(crate) fn zeros<T: Copy + Default + Send>(n: usize) -> Vec<T> {
     let mut values = vec![T::default(); n];
     for_each(values.chunks_mut(BLOCK), |block| block.fill(T::default()));
     values
 }
 
-/// One item for each block, and what was made of it.
+/// One item for each block, and its result.
 pub(crate) struct Tasks<S, R> {
     slots: Vec<Mutex<Slot<S, R>>>,
 }
@@ -80,7 +82,7 @@ impl<S: Send, R: Send> Tasks<S, R> {
     /// Works on item `i`.
     ///
     /// # Panics
-    /// When it was worked on before.
+    /// When item `i` was worked on before.
     pub(crate) fn run(&self, i: usize, work: impl FnOnce(S) -> R) {
         let mut slot = self.slots[i].lock().unwrap_or_else(PoisonError::into_inner);
         let Slot::Waiting(item) = mem::replace(&mut *slot, Slot::Running) else {
@@ -89,10 +91,10 @@ impl<S: Send, R: Send> Tasks<S, R> {
         *slot = Slot::Done(work(item));
     }
 
-    /// The results in the order of items.
+    /// The results, in the order of items.
     ///
     /// # Panics
-    /// When one is missing.
+    /// When a result is missing.
     pub(crate) fn into_results(self) -> Vec<R> {
         let results = self.slots.into_iter().enumerate().map(|(i, slot)| {
             match slot.into_inner().unwrap_or_else(PoisonError::into_inner) {

@@ -2,17 +2,17 @@
 
 use crate::ErrorBound;
 
-/// How accurately, and within which limits, an iteration solves.
+/// The accuracy and the limits of an iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct IterationParams {
-    /// What the certificate has to meet.
+    /// The bound that the certificate must meet.
     pub bound: ErrorBound,
-    /// Largest number of iterations on any one level.
+    /// Maximum number of iterations on any one level.
     pub max_iterations: usize,
 }
 
 impl IterationParams {
-    /// To this part of the height range.
+    /// Solves to a `tolerance` relative to the height range.
     pub(crate) fn relative(tolerance: f64) -> Self {
         Self { bound: ErrorBound::Relative(tolerance), max_iterations: 2000 }
     }

@@ -1,12 +1,14 @@
-//! Statistics of a pressure field that was stored, which need no gap and no mesh.
+//! Statistics of a stored pressure field, which need no gap and no mesh.
 
 use rc_core::{Field, Histogram};
 
 /// Bins of the distribution of pressures.
 const BINS: usize = 40;
 
-/// What a pressure field is like, in the unit of the field. [`crate::Observables`] are better estimates where there is
-/// a solution, and [`crate::StressDistribution`] resolves contact edges below the element.
+/// Statistics of a pressure field, in the unit of the field.
+///
+/// [`crate::Observables`] are better estimates where there is a solution. [`crate::StressDistribution`] resolves
+/// contact edges below the element.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PressureStatistics {
@@ -20,7 +22,7 @@ pub struct PressureStatistics {
     pub rms_pressure: f64,
     /// Maximum pressure.
     pub max_pressure: f64,
-    /// Mean over the contact; 0 without contact.
+    /// Mean over the contact, or 0 without contact.
     pub mean_contact_pressure: f64,
     /// Probability density of the pressure of elements in contact.
     pub distribution: Histogram,

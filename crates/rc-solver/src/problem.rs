@@ -1,4 +1,4 @@
-//! A checked contact problem, in what every level shares.
+//! A checked contact problem, in the quantities that every level shares.
 
 use rayon::prelude::*;
 use rc_core::{Boundary, Field};
@@ -7,7 +7,9 @@ use crate::support::Support;
 use crate::tolerance::{ErrorBound, Measure};
 use crate::{Control, IterationParams, ProblemError};
 
-/// Height ranges, in λ, for which squares of pressures and their products with gaps neither underflow nor overflow.
+/// Range of heights, in λ, that can be solved for.
+///
+/// Squares of pressures and their products with gaps neither underflow nor overflow there.
 const HEIGHT_RANGE: [f64; 2] = [1e-130, 1e130];
 
 /// Extremes and mean of the heights.
@@ -19,7 +21,7 @@ pub(crate) struct HeightStatistics {
 }
 
 impl HeightStatistics {
-    /// In one pass, in parallel over rows.
+    /// Statistics of `heights`, in one pass, in parallel over rows.
     pub(crate) fn of(heights: &Field) -> Result<Self, ProblemError> {
         let nx = heights.grid().nx();
         let rows: Vec<(f64, f64, f64)> = heights
@@ -27,12 +29,12 @@ impl HeightStatistics {
             .par_chunks(nx)
             .map(|row| {
                 row.iter().fold((f64::NEG_INFINITY, f64::INFINITY, 0.0), |(max, min, sum), &h| {
-                    // Faster than f64::max; NaN shows in the sum.
+                    // This is faster than f64::max. NaN shows in the sum.
                     (if h > max { h } else { max }, if h < min { h } else { min }, sum + h)
                 })
             })
             .collect();
-        // A sum that is not finite gives away NaN and infinities; so does an overflow, which finds none.
+        // The sum is not finite if a height is NaN or infinite. It may also overflow, and then no such height is found.
         for (iy, (_, _, sum)) in rows.iter().enumerate() {
             if let Some(ix) = (!sum.is_finite()).then(|| heights.row(iy).iter().position(|h| !h.is_finite())).flatten()
             {
@@ -47,22 +49,22 @@ impl HeightStatistics {
     }
 }
 
-/// The power of two next to a positive number, by which scaling is exact; 1 for what is none.
+/// The power of two next to a positive number, and 1 for other values. Scaling by it is exact.
 pub(crate) fn power_of_two_near(value: f64) -> f64 {
     let exponent = value.log2();
     if exponent.is_finite() { 2.0_f64.powi(exponent.round() as i32) } else { 1.0 }
 }
 
-/// What presses, and the greatest pressure that the rough body bears.
+/// The load, and the maximum pressure that the rough body bears.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Load {
     pub(crate) control: Control,
-    /// H_p in 0 ≤ p ≤ H_p, in E*; infinite for an elastic contact.
+    /// H_p in 0 ≤ p ≤ H_p, in E*. It is infinite for an elastic contact.
     pub(crate) hardness: f64,
 }
 
 impl From<Control> for Load {
-    /// Elastic.
+    /// An elastic contact.
     fn from(control: Control) -> Self {
         Self { control, hardness: f64::INFINITY }
     }
@@ -72,17 +74,17 @@ impl From<Control> for Load {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Problem {
     pub(crate) control: Control,
-    /// The greatest pressure, in E*; infinite for an elastic contact.
+    /// The maximum pressure, in E*. It is infinite for an elastic contact.
     pub(crate) hardness: f64,
-    /// Greatest height, on the finest grid.
+    /// Maximum height, on the finest grid.
     pub(crate) h_max: f64,
     /// Mean height, on the finest grid.
     pub(crate) h_mean: f64,
     /// H = h_max - h_min.
     pub(crate) h_range: f64,
-    /// What an overlap is measured by.
+    /// The length that an overlap is compared with.
     pub(crate) measure: Measure,
-    /// What holds the solid under a uniform pressure.
+    /// The support of the solid under a uniform pressure.
     pub(crate) support: Support,
 }
 
@@ -95,7 +97,7 @@ impl Problem {
         Self::check_on(Support::default(), heights, load, params)
     }
 
-    /// The same for a solid that something may hold.
+    /// [`Problem::check`] for a solid that a base or free borders may hold.
     pub(crate) fn check_on(
         support: Support,
         heights: &Field,
@@ -121,15 +123,15 @@ impl Problem {
         }
         check_load(load)?;
         match control {
-            // The hardness limits the mean pressure beyond full contact. How deep a patch with free borders is when all
-            // is plastic depends on its heights, and any depth is a problem.
+            // With a hardness, the penetration may go beyond full contact. A patch with free borders takes any depth,
+            // because the depth at which all is plastic depends on its heights.
             Control::Penetration(value) if hardness.is_finite() && support.boundary == Boundary::Periodic => {
                 let deepest = h_range + support.compliance * hardness;
                 if !(value > 0.0 && value < deepest) {
                     return Err(ProblemError::FullyPlastic { value, deepest });
                 }
             }
-            // Also refuses every penetration into a flat surface, whose full contact is at zero.
+            // Also refuses every penetration into a flat surface. Its full contact is at zero.
             Control::Penetration(value) if support.is_none() && !(value > 0.0 && value < full_contact) => {
                 return Err(ProblemError::Penetration { value, full_contact });
             }
@@ -141,8 +143,9 @@ impl Problem {
         Ok(Self { control, hardness, h_max, h_mean, h_range, measure: params.bound.measure(), support })
     }
 
-    /// The length that overlaps are compared with, where the pressure does the `work` Σ p v and sums up to `pressure`:
-    /// H, or U/σ0 = Σ p v / 2 Σ p, without what a uniform pressure does; over `n_cell` elements.
+    /// The length that overlaps are compared with: H, or U/σ0 = Σ p v / 2 Σ p.
+    ///
+    /// `work` is Σ p v and `pressure` is Σ p, over `n_cell` elements. The work of a uniform pressure is subtracted.
     pub(crate) fn reference_length(&self, work: f64, pressure: f64, n_cell: f64) -> f64 {
         match self.measure {
             Measure::HeightRange if self.h_range > 0.0 => self.h_range,
@@ -151,7 +154,9 @@ impl Problem {
         }
     }
 
-    /// The length that corrections are multiples of: H, or about what the load displaces on a flat patch.
+    /// The unit of corrections: H, or the prescribed value on a flat patch.
+    ///
+    /// That value is about the displacement by the load.
     pub(crate) fn unit(&self) -> f64 {
         match self.control {
             _ if self.h_range > 0.0 => self.h_range,
@@ -164,14 +169,17 @@ impl Problem {
         0.5 * self.support.compliance * mean_pressure * mean_pressure
     }
 
-    /// How deep a rigid plane may have to go into the surface: the height range, unless that is the depth of a pit.
+    /// The depth that a rigid plane may have to go into the surface.
+    ///
+    /// It is the height range, unless that is the depth of a pit.
     pub(crate) fn depth_range(&self) -> f64 {
         self.h_range.min(4.0 * (self.h_max - self.h_mean))
     }
 
-    /// The constant c in `g = L p - h + c`: h_max - Δ under penetration control. Under pressure control Δ is a
-    /// multiplier, and c is h_max, so that a large constant in the heights is not in the gap, whose sums it would
-    /// drown.
+    /// The constant c in `g = L p - h + c`.
+    ///
+    /// Under penetration control c = h_max - Δ. Under pressure control Δ is a multiplier, and c = h_max. A large
+    /// constant in the heights is therefore not in the gap. It would drown the sums over the gap.
     pub(crate) fn offset(&self) -> f64 {
         match self.control {
             Control::MeanPressure(_) => self.h_max,
@@ -180,7 +188,7 @@ impl Problem {
     }
 }
 
-/// Refuses a mean pressure or a hardness that is out of range whatever the heights are.
+/// Refuses a mean pressure or a hardness that is out of range for all heights.
 pub(crate) fn check_load(load: Load) -> Result<(), ProblemError> {
     let Load { control, hardness } = load;
     if hardness <= 0.0 || hardness.is_nan() {

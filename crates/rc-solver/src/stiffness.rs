@@ -12,13 +12,19 @@ use crate::parallel;
 use crate::problem::power_of_two_near;
 use crate::support::Support;
 
-/// The iteration ends when a step adds less than this fraction; what later steps would add is of the same order.
+/// The iteration ends when a step adds less than this fraction.
+///
+/// The sum of all later steps is of the same order.
 const SMALLEST_GAIN: f64 = 3e-4;
 
-/// Enough for the worst scenes at [`SMALLEST_GAIN`]; reached only when rounding prevents progress.
+/// Maximum number of steps, enough for the worst scenes at [`SMALLEST_GAIN`].
+///
+/// It is reached only when rounding prevents progress.
 const MAX_STEPS: usize = 50;
 
-/// The pressure without that of plastic elements, which stays the `hardness` when the load grows.
+/// The pressure of elements that are not plastic.
+///
+/// The pressure of plastic elements stays the `hardness` when the load grows.
 pub(crate) fn elastic_part(pressure: &[f64], hardness: f64) -> Cow<'_, [f64]> {
     if hardness.is_infinite() {
         return Cow::Borrowed(pressure);
@@ -26,7 +32,7 @@ pub(crate) fn elastic_part(pressure: &[f64], hardness: f64) -> Cow<'_, [f64]> {
     pressure.iter().map(|&p| if p < hardness { p } else { 0.0 }).collect()
 }
 
-/// dσ0/dΔ, in E*/λ, on a uniform grid; see [`stiffness_of`].
+/// dσ0/dΔ, in E*/λ, on a uniform grid, as [`stiffness_of`].
 pub(crate) fn contact_stiffness(pressure: &Field, hardness: f64, kernel: &dyn Kernel) -> f64 {
     let grid = pressure.grid();
     let (pressure, support) = (elastic_part(pressure.values(), hardness), Support::of(kernel, grid));
@@ -37,25 +43,29 @@ pub(crate) fn contact_stiffness(pressure: &Field, hardness: f64, kernel: &dyn Ke
     stiffness_of(&pressure, grid.len() as f64, &mut operator)
 }
 
-/// dσ0/dΔ, in E*/λ, for the contact set {p > 0}: the mean over a cell of `n` of the smallest elements of the pressure x
-/// that displaces every element in contact by 1, `L x = 1` there. The set may be held fixed, since pressure and gap
-/// vanish at its edge, so that moving it is of second order.
+/// dσ0/dΔ, in E*/λ, for the contact set {p > 0}.
 ///
-/// The mean of x is the maximum of 2⟨x⟩ - ⟨x L x⟩, so its error is the square of that of x, and conjugate gradients in
-/// single precision reach 1e-3 in about five steps.
+/// It is the mean of the pressure x that displaces every element in contact by 1: `L x = 1` there. The mean is over a
+/// cell of `n` of the smallest elements. The set may be held fixed: pressure and gap vanish at its edge, so moving it
+/// is of second order.
+///
+/// The mean of x is the maximum of 2⟨x⟩ - ⟨x L x⟩, so its error is the square of the error of x. Conjugate gradients in
+/// single precision therefore reach 1e-3 in about five steps.
 pub(crate) fn stiffness_of(pressure: &[f64], n: f64, operator: &mut dyn PreconditionedOperator) -> f64 {
     search(pressure, n, operator, |_, _| {})
 }
 
-/// x of [`stiffness_of`], as exact as the operator.
+/// The pressure x of [`stiffness_of`], as exact as the operator.
 pub(crate) fn stiffness_pressure(pressure: &[f64], n: f64, operator: &mut dyn PreconditionedOperator) -> Vec<f32> {
     let mut x = vec![0.0_f32; pressure.len()];
     search(pressure, n, operator, |length, directions| directions.add_to(&mut x, length));
     x
 }
 
-/// [`stiffness_of`] from an x that is a few percent off, as ⟨x⟩²/⟨x L x⟩ by one application of a better operator: this
-/// is a maximum over all x, so that the error of x enters squared.
+/// [`stiffness_of`] by one application of a better operator.
+///
+/// x may be a few percent off. The result is ⟨x⟩²/⟨x L x⟩. The stiffness is the maximum of this over all x, so the
+/// error of x enters squared.
 pub(crate) fn stiffness_under(x: &[f32], n: f64, operator: &mut dyn BlockOperator<f32>) -> f64 {
     let layout = operator.layout();
     let len = layout.len();
@@ -71,7 +81,7 @@ pub(crate) fn stiffness_under(x: &[f32], n: f64, operator: &mut dyn BlockOperato
     if work > 0.0 { mean * mean / (work * n) } else { 0.0 }
 }
 
-/// Iterates for x, and gives its mean; `take` gets each step along a direction.
+/// Iterates for x, and returns its mean. `take` gets each step along a direction.
 fn search(
     pressure: &[f64],
     n: f64,
@@ -106,12 +116,15 @@ fn search(
     stiffness
 }
 
-/// The part of the cell in contact from which the first direction is the preconditioned residual.
-/// `docs/measurements-uniform.md` compares both.
+/// Part of the cell in contact from which the first direction is the preconditioned residual.
+///
+/// `docs/measurements-uniform.md` compares it with the pressure.
 const HEAVY_CONTACT: f64 = 0.5;
 
-/// Directions that are along the first one: the pressure itself, whose best multiple has the secant stiffness
-/// σ0²/mean(p v), or, in heavy contact, a uniform pressure in which what would press out of contact is beside it.
+/// Directions that begin with the pressure, or with the preconditioned residual in heavy contact.
+///
+/// The best multiple of the pressure has the secant stiffness σ0²/mean(p v). The preconditioned residual is a uniform
+/// pressure. Its part out of contact is moved to the elements beside it.
 fn first_direction(
     active: Vec<bool>,
     pressure: &[f64],
@@ -132,13 +145,13 @@ fn first_direction(
     directions
 }
 
-/// Minus the pressure, in units of about its maximum: no multiple of it underflows.
+/// Minus the pressure, in units of about its maximum. No multiple of it underflows.
 fn against(pressure: &[f64], layout: &BlockLayout) -> Vec<f32> {
     let size = power_of_two_near(layout.maximum(pressure, 0.0));
     pressure.iter().map(|&p| -((p / size) as f32)).collect()
 }
 
-/// Adds a multiple of the direction to x: writes the residual and keeps it.
+/// Takes a step of this `length` along the direction: writes the residual and keeps it.
 fn take_step(length: f32, directions: &mut ConjugateDirections, residual: &mut [f32], layout: &BlockLayout) {
     let (steps, written) = directions.steps_and_residuals(layout.len());
     let blocks = residual.chunks_mut(layout.len()).zip(steps.zip(written));
@@ -171,7 +184,7 @@ mod tests {
             let (found, exact) = (contact_stiffness(pressure, f64::INFINITY, &Love), eliminated(pressure));
             assert!((found / exact - 1.0).abs() < 1e-3, "{what}: {found} for {exact}");
         };
-        // Contacts of several sizes, with pressures that are no multiple of those of a rigid punch.
+        // Contacts of several sizes, with pressures that are not a multiple of those of a rigid punch.
         let wave = |t: f64| (std::f64::consts::TAU * t).cos();
         for (threshold, waves) in [(0.9, 1.0), (0.3, 2.0), (1.2, 3.0), (-0.6, 1.0), (-1.5, 2.0), (-2.2, 3.0)] {
             let pressure = Field::from_fn(grid, |at| {
@@ -179,7 +192,7 @@ mod tests {
             });
             check(&pressure, &format!("{waves} waves above {threshold}"));
         }
-        // Contacts of one element, of pressures of all sizes, that are dense on one side of the cell.
+        // Contacts of one element, with pressures of all sizes. They are dense on one side of the cell.
         let pressure = (0..grid.len()).map(|i| {
             let threshold = 0.3 + 0.6 * (i % 24) as f64 / 24.0;
             (quasi_random(i) - threshold).max(0.0).powi(4)

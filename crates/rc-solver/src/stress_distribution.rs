@@ -1,43 +1,48 @@
-//! The distribution of the interfacial stress P(σ) (Eq. 7 is Persson's form of it), resolved below the element at
-//! contact edges.
+//! The distribution of the interfacial stress P(σ), resolved below the element at contact edges.
 //!
-//! At an edge the pressure is c√s, with s the distance to it, so P must start linearly at σ = 0. A histogram of
-//! elements cannot show that: the smallest pressures there are of elements that an edge cuts, about c√(element side),
-//! and its first bins stay at 30 to 60 % of the peak. But p² is linear across an edge. Here p² is interpolated linearly
-//! between the centres of elements, and continued linearly beyond those at edges; the area between two stresses is then
-//! exact for the interpolant.
+//! Eq. 7 is Persson's form of it. At the distance s from an edge the pressure is c√s, so P must start linearly at
+//! σ = 0. A histogram of elements cannot show that. Its smallest pressures, about c√(element side), belong to elements
+//! that an edge cuts. Its first bins stay at 30 to 60 % of the peak.
+//!
+//! But p² is linear across an edge. Here p² is interpolated linearly between the centres of elements, and continued
+//! linearly beyond elements at edges. The area between two stresses is then exact for the interpolant.
 
 use rayon::prelude::*;
 use rc_core::Field;
 
-/// Rows of elements that are summed together; sums have this order for any number of threads.
+/// Rows of elements that are summed together.
+///
+/// Sums have this order for any number of threads.
 const ROWS_AT_ONCE: usize = 64;
 
-/// The directions to neighbours: along the axes, then across corners.
+/// The directions to neighbours: along the axes here, and across corners below.
 const AXES: [[isize; 2]; 4] = [[1, 0], [-1, 0], [0, 1], [0, -1]];
 const DIAGONALS: [[isize; 2]; 4] = [[1, 1], [1, -1], [-1, 1], [-1, -1]];
 
 /// The density of the stress over the whole nominal area, P(σ) = (A/A0) p(σ), on bins.
 ///
-/// Accuracy on Hertz contacts solved with 51 elements per radius, in bins of a tenth of the peak pressure
-/// (`tests/it/stress_distribution.rs`): 5 % in every bin, the first included, 0.5 % from a third of the peak on;
-/// area 0.2 %.
+/// Accuracy was tested on Hertz contacts with 51 elements per radius (`tests/it/stress_distribution.rs`). Bins were a
+/// tenth of the peak pressure. The error is at most 5 % in every bin, including the first, and 0.5 % from a third of
+/// the peak on. The error of the area is at most 0.2 %.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StressDistribution {
-    /// Ends of the bins, in E*: bin k goes from `edges[k]` to `edges[k + 1]`.
+    /// Ends of the bins, in E*.
+    ///
+    /// Bin k goes from `edges[k]` to `edges[k + 1]`.
     pub edges: Vec<f64>,
     /// P, in 1/E*: the mean over each bin.
     pub density: Vec<f64>,
-    /// Part of the nominal area where the interpolated pressure is positive: the integral of P over all σ > 0, in bins
-    /// or not.
+    /// Part of the nominal area where the interpolated pressure is positive.
+    ///
+    /// It is the integral of P over all σ > 0, whether in a bin or not.
     pub area_fraction: f64,
 }
 
 impl StressDistribution {
-    /// The distribution of `pressure`, in E* on a periodic grid, on bins with these ends: increasing, from 0 or above.
-    /// A bin that ends before it begins has density 0.
+    /// The distribution of `pressure`, in E*, on bins with the ends `edges`.
     ///
-    /// One pass over the field; only elements in contact and beside it cost more than a look.
+    /// The ends increase from 0 or above. The pressure is on a periodic grid. A bin that ends before it begins has
+    /// density 0. One pass over the field is enough. Only elements in contact and beside it cost more than a look.
     #[must_use]
     pub fn of(pressure: &Field, edges: &[f64]) -> Self {
         let grid = pressure.grid();
@@ -65,7 +70,9 @@ impl StressDistribution {
     }
 }
 
-/// The squares between the centres of elements, with p² at their corners, continued beyond contact edges.
+/// The squares between the centres of elements, with p² at their corners.
+///
+/// p² is continued beyond contact edges.
 struct Squares<'a> {
     pressure: &'a Field,
     nx: isize,
@@ -73,7 +80,7 @@ struct Squares<'a> {
 }
 
 impl Squares<'_> {
-    /// Adds the squares between the centres of row `iy` and of the next.
+    /// Adds the squares between the centres of row `iy` and of the next row.
     fn add_row(&self, iy: usize, exceedance: &mut Exceedance<'_>) {
         let (row, next) = (self.pressure.row(iy), self.pressure.row((iy + 1) % self.ny as usize));
         for ix in 0..row.len() {
@@ -98,7 +105,7 @@ impl Squares<'_> {
         self.pressure.at(x.rem_euclid(self.nx) as usize, y.rem_euclid(self.ny) as usize)
     }
 
-    /// p² in contact; beyond an edge what continues p² linearly, at most 0.
+    /// p² in contact. Beyond an edge, the linear continuation of p², at most 0.
     fn level(&self, x: isize, y: isize) -> f64 {
         let p = self.at(x, y);
         if p > 0.0 {
@@ -107,13 +114,14 @@ impl Squares<'_> {
         self.continued(x, y, AXES).or_else(|| self.continued(x, y, DIAGONALS)).unwrap_or(0.0).min(0.0)
     }
 
-    /// The mean of what the contacts in `directions` continue to; none where there is no contact.
+    /// The mean of the continuations from the contacts in `directions`. `None` where there is no contact.
     fn continued(&self, x: isize, y: isize, directions: [[isize; 2]; 4]) -> Option<f64> {
         let (mut sum, mut n) = (0.0, 0.0);
         for [dx, dy] in directions {
             let [first, second] = [1, 2].map(|step| self.at(x + step * dx, y + step * dy).max(0.0).powi(2));
             if first > 0.0 {
-                // Of a contact one element wide only its middle is known: the edge is taken half an element from it.
+                // If a contact is one element wide, only its middle is known. The edge is taken half an element from
+                // it.
                 sum += if second > 0.0 { 2.0 * first - second } else { -first };
                 n += 1.0;
             }
@@ -128,7 +136,7 @@ struct Exceedance<'a> {
     levels: &'a [f64],
     /// Area above each level, of triangles that it cuts.
     cut: Vec<f64>,
-    /// Area of triangles whose lowest level is above this one and below the next.
+    /// At index k, the area of triangles whose smallest value is above exactly k levels.
     whole: Vec<f64>,
 }
 
@@ -137,8 +145,9 @@ impl<'a> Exceedance<'a> {
         Self { levels, cut: vec![0.0; levels.len()], whole: vec![0.0; levels.len() + 1] }
     }
 
-    /// Adds a square with these values at its corners: four triangles that meet in the middle, where the value is the
-    /// mean.
+    /// Adds a square with these values at its corners.
+    ///
+    /// It is four triangles that meet in the middle, where the value is the mean.
     fn add_square(&mut self, corners: [f64; 4]) {
         let middle = 0.25 * corners.iter().sum::<f64>();
         for i in 0..4 {
@@ -146,7 +155,9 @@ impl<'a> Exceedance<'a> {
         }
     }
 
-    /// Adds a triangle of a quarter of an element with a linear function of these values at its corners.
+    /// Adds a triangle of a quarter of an element, with these values at its corners.
+    ///
+    /// The function is linear in the triangle.
     fn add_triangle(&mut self, mut corners: [f64; 3]) {
         const AREA: f64 = 0.25;
         corners.sort_unstable_by(f64::total_cmp);
@@ -166,7 +177,7 @@ impl<'a> Exceedance<'a> {
         }
     }
 
-    /// Area above each level.
+    /// Returns the area above each level.
     fn finish(self) -> Vec<f64> {
         let mut whole = 0.0;
         let above = self.cut.iter().zip(&self.whole[1..]).rev().map(|(cut, above)| {
@@ -186,7 +197,7 @@ mod tests {
     use super::*;
 
     /// p² = 1 - (r/a)², sampled at the centres, so P = 2πa²σ. The slope of p² at the edge is taken one element inside
-    /// it, so the error is of the order of an element over the radius.
+    /// it. The error is therefore of the order of an element over the radius.
     #[test]
     fn a_paraboloid_of_squared_pressure_has_a_linear_distribution() {
         for (n, bound) in [(128, 5e-2), (512, 1.3e-2)] {
@@ -216,7 +227,7 @@ mod tests {
         assert_eq!((none.area_fraction, none.density), (0.0, vec![0.0, 0.0]));
     }
 
-    /// The middle of one element is all that is known of it.
+    /// The middle of the one element is all that is known of the contact.
     #[test]
     fn a_contact_of_one_element_has_about_its_area() {
         let grid = Grid::square(8).expect("a grid");

@@ -1,18 +1,22 @@
-//! What holds a solid under a uniform pressure.
+//! The support of a solid under a uniform pressure.
 
 use rc_core::{Boundary, Grid, Kernel};
 
-/// What holds a solid under a uniform pressure, which displaces nothing on the periodic half-space (Eq. 3).
+/// The support of a solid under a uniform pressure.
+///
+/// On the periodic half-space such a pressure displaces nothing (Eq. 3).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Support {
-    /// What is beyond the heights.
+    /// The boundary of the heights.
     pub(crate) boundary: Boundary,
-    /// Displacement of a periodic cell under a uniform pressure of 1, in λ/E*: that of a layer on a base.
+    /// Displacement of a periodic cell under a uniform pressure of 1, in λ/E*.
+    ///
+    /// It is not zero on a layer on a base.
     pub(crate) compliance: f64,
 }
 
 impl Support {
-    /// That of the solid of `kernel`, for heights on `grid`.
+    /// The support of the solid of `kernel`, for heights on `grid`.
     pub(crate) fn of(kernel: &dyn Kernel, grid: Grid) -> Self {
         match kernel.free_response(grid) {
             Some(_) => Self { boundary: Boundary::Free, compliance: 0.0 },

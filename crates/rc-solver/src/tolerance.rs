@@ -1,34 +1,44 @@
-//! When a solve is good enough: the tolerance that users give, and the bound on the certificate that follows from it.
+//! When a solve is good enough: the user's tolerance, and the bound on the certificate.
+//!
+//! The bound follows from the tolerance.
 
-/// How accurately a contact problem is solved.
+/// The accuracy to which a contact problem is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tolerance {
-    /// Bound on [`crate::Certificate::energy`], a number between [`Tolerance::SMALLEST_ENERGY`] and 1. It does not
-    /// depend on the height range: a pit, a raised surface and a light load are solved as accurately as any other
-    /// scene.
+    /// Bound on [`crate::Certificate::energy`], from [`Tolerance::SMALLEST_ENERGY`] to 1.
+    ///
+    /// It does not depend on the height range. A pit, a raised surface and a light load are solved as accurately as any
+    /// other scene.
     Energy(f64),
-    /// Bound on [`crate::Certificate::complementarity`] and [`crate::Certificate::penetration`], relative to the
-    /// peak-to-valley height, a number between [`Tolerance::SMALLEST`] and 1. Other programs mean this by a tolerance.
-    /// One deep point in the heights loosens it.
+    /// Bound on [`crate::Certificate::complementarity`] and [`crate::Certificate::penetration`].
+    ///
+    /// They are relative to the peak-to-valley height. The bound is a number between [`Tolerance::SMALLEST`] and 1.
+    /// Other programs mean this by a tolerance. One deep point in the heights loosens it.
     Relative(f64),
-    /// Well below the error of the discretisation: an energy error of 0.06 (m/8)^(-3/4) for m elements per shortest
-    /// wave, 0.03 for a height map.
+    /// An energy error well below the error of the discretisation.
+    ///
+    /// It is 0.06 (m/8)^(-3/4) for m elements per shortest wave, and 0.03 for a height map.
     Auto,
 }
 
 impl Tolerance {
-    /// The smallest relative tolerance that can be certified: below it the rounding of L p in double precision decides.
+    /// The smallest relative tolerance that can be certified.
+    ///
+    /// Below it, the rounding of L p in double precision decides.
     pub const SMALLEST: f64 = 1e-13;
 
-    /// The smallest energy error that can be certified; its square is what rounding bounds.
+    /// The smallest energy error that can be certified. Rounding bounds its square.
     pub const SMALLEST_ENERGY: f64 = 1e-5;
 
-    /// Area, rms pressure and penetration are then those of the discrete problem to about 1e-5: the iteration goes to
-    /// three tenths of the bound.
+    /// The tolerance of the default: an energy error of 1e-2.
+    ///
+    /// The iteration goes to three tenths of the bound. Area, rms pressure and penetration are then those of the
+    /// discrete problem to about 1e-5.
     pub const DEFAULT: Self = Self::Energy(1e-2);
 
-    /// The bound on the certificate, for a grid with this many elements per shortest wave (`None` for a height map,
-    /// whose waves are not known).
+    /// The bound on the certificate, for a grid with this many elements per shortest wave.
+    ///
+    /// `None` stands for a height map, whose waves are not known.
     #[must_use]
     pub fn bound(self, elements_per_wave: Option<f64>) -> ErrorBound {
         match self {
@@ -39,12 +49,12 @@ impl Tolerance {
     }
 }
 
-/// What a certificate has to meet.
+/// The bound that a certificate must meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ErrorBound {
-    /// On [`crate::Certificate::energy`].
+    /// Bound on [`crate::Certificate::energy`].
     Energy(f64),
-    /// On [`crate::Certificate::complementarity`] and [`crate::Certificate::penetration`].
+    /// Bound on [`crate::Certificate::complementarity`] and [`crate::Certificate::penetration`].
     Relative(f64),
 }
 
@@ -66,7 +76,7 @@ impl ErrorBound {
         }
     }
 
-    /// What the deepest overlap is measured by.
+    /// The length that the deepest overlap is compared with.
     pub(crate) fn measure(self) -> Measure {
         match self {
             Self::Energy(_) => Measure::Energy,
@@ -74,8 +84,9 @@ impl ErrorBound {
         }
     }
 
-    /// The bound on the deepest overlap δ, in units of the [`Measure`]'s length: G/U = σ0 δ/U is the square of the
-    /// energy error.
+    /// The bound on the deepest overlap δ, in units of the length of the [`Measure`].
+    ///
+    /// G/U = σ0 δ/U is the square of the energy error.
     pub(crate) fn overlap(self) -> f64 {
         match self {
             Self::Energy(value) => value * value,
@@ -83,9 +94,10 @@ impl ErrorBound {
         }
     }
 
-    /// The overlap of the computed gap that an iteration ends with. An energy error is brought to [`AIM`] of its bound:
-    /// area, pressure and penetration are off by its square, which two or three iterations make a tenth, and the rest
-    /// is left to the error of the operator.
+    /// The overlap of the computed gap at which an iteration ends.
+    ///
+    /// An energy error goes to [`AIM`] of its bound. Area, pressure and penetration have errors of its square, which
+    /// two or three more iterations reduce to a tenth. The rest of the bound is left to the error of the operator.
     pub(crate) fn aim(self) -> f64 {
         match self {
             Self::Energy(value) => (AIM * value).powi(2),
@@ -103,7 +115,7 @@ impl std::fmt::Display for ErrorBound {
     }
 }
 
-/// See [`ErrorBound::aim`].
+/// Ratio of the energy error that an iteration aims at to its bound ([`ErrorBound::aim`]).
 const AIM: f64 = 0.3;
 
 /// The length that the deepest overlap is compared with.
@@ -111,13 +123,15 @@ const AIM: f64 = 0.3;
 pub(crate) enum Measure {
     /// H = h_max - h_min.
     HeightRange,
-    /// U/σ0, the elastic energy over the mean pressure.
+    /// U/σ0, the ratio of elastic energy to mean pressure.
     Energy,
 }
 
 impl Measure {
-    /// Tolerance of the level below the finest: its discretisation error is far above this. Levels further down may be
-    /// solved less accurately by [`COARSENING`] each, up to a limit: they only prepare the next.
+    /// Tolerance of a coarser level, `below` levels under the finest.
+    ///
+    /// The discretisation error of the level just below the finest is far above its tolerance. Levels further down only
+    /// prepare the next one. Each may be solved less accurately by [`COARSENING`], up to a limit.
     pub(crate) fn coarse_tolerance(self, below: usize) -> f64 {
         let (tolerance, coarsest) = match self {
             Self::HeightRange => (1e-4, 1e-3),
@@ -127,7 +141,7 @@ impl Measure {
         (tolerance * COARSENING.powi(below as i32)).min(coarsest)
     }
 
-    /// An overlap in units of the measure's length, as users know it.
+    /// An overlap as users know it, from one in units of the measure's length.
     pub(crate) fn shown(self, overlap: f64) -> f64 {
         match self {
             Self::HeightRange => overlap,
@@ -136,7 +150,7 @@ impl Measure {
     }
 }
 
-/// See [`Measure::coarse_tolerance`].
+/// Ratio of the tolerances of a level and the next finer one ([`Measure::coarse_tolerance`]).
 const COARSENING: f64 = 3.0;
 
 /// Energy error at [`REFERENCE`] elements per shortest wave.
@@ -145,22 +159,27 @@ const AT_REFERENCE: f64 = 6e-2;
 /// Elements per shortest wave to which [`AT_REFERENCE`] belongs.
 const REFERENCE: f64 = 8.0;
 
-/// Order in the element side of the energy error: area and pressure change by its square, and the error of the
-/// discretisation falls with the power 1.5.
+/// Order of the energy error in the element side.
+///
+/// Area and pressure change by the square of the energy error, and the error of the discretisation falls with the power
+/// 1.5.
 const ORDER: f64 = 0.75;
 
-/// Bounds: what any picture needs, and what a grid that fits into memory is never as accurate as.
+/// Bounds of the tolerance.
+///
+/// The largest is enough for any picture. No grid that fits into memory is as accurate as the smallest.
 const LARGEST: f64 = 0.15;
 const SMALLEST: f64 = 3e-3;
 
-/// For a height map, whose shortest wave is not known.
+/// Energy error for a height map. Its shortest wave is not known.
 const OF_MAP: f64 = 3e-2;
 
-/// The energy error at which the error of the iteration is well below that of the discretisation: 0.06 (m/8)^(-3/4)
-/// with m elements per shortest wave, from 3e-3 to 0.15; 0.03 for a height map (`None`).
+/// The energy error at which the iteration is well below the error of the discretisation.
 ///
-/// Area and rms pressure were measured to be off by less than the square of the energy error that is aimed at, and
-/// errors of the discretisation fall about as the power 1.5 of the element side, which the model follows. Test
+/// It is 0.06 (m/8)^(-3/4) with m elements per shortest wave, from 3e-3 to 0.15. It is 0.03 for a height map (`None`).
+///
+/// Errors of area and rms pressure were measured to be less than the square of the energy error that is aimed at.
+/// Errors of the discretisation fall about as the power 1.5 of the element side. The model follows this power. Test
 /// `auto_stops_well_below_the_error_of_the_grid` of the command line compares the two.
 fn auto_tolerance(elements_per_wave: Option<f64>) -> f64 {
     match elements_per_wave {

@@ -1,9 +1,9 @@
-//! An observer whose wish to stop all ranks follow at once.
+//! An observer that stops all ranks at once.
 
 use rc_comm::Ranks;
 use rc_core::{Event, Observer, Snapshot};
 
-/// The observer of this rank. A solve stops on all ranks when it is to stop on one.
+/// The observer of this rank. A solve stops on all ranks if one of them wants to stop.
 pub(super) struct AgreedStop<'a> {
     pub(super) observer: &'a dyn Observer,
     pub(super) ranks: &'a Ranks,

@@ -1,40 +1,42 @@
-//! Rows of a field over ranks: tiles that any rank has are brought together, a band of rows at a time.
+//! Rows of a field over ranks.
+//!
+//! Tiles of any rank are brought together, a band of rows at a time.
 
 use std::ops::Range;
 
 use rc_comm::{Packed, Ranks};
 use rc_quadtree::{CELLS, TILE, TileSet, put_tile};
 
-/// Who gets the rows of a field.
+/// The receiver of the rows of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Receiver {
-    /// Rank 0 gets all of them; alone it is the only one.
+    /// Rank 0 gets all rows. Without other ranks it is the only one.
     First,
-    /// Each rank gets some that follow each other.
+    /// Each rank gets some rows that follow each other.
     Each,
 }
 
-/// Which rows of a field are handed out.
+/// The rows of a field that are handed out.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rows {
-    /// Those of the grid of the smallest elements, which no ranks share.
+    /// Whether they are rows of the grid of the smallest elements. Ranks do not share these.
     pub(crate) finest: bool,
     pub(crate) receiver: Receiver,
 }
 
 impl Rows {
-    /// Those of the grid on which the solution is a mean.
+    /// Rows of the grid on which the solution is a mean.
     pub(crate) fn on_grid(receiver: Receiver) -> Self {
         Self { finest: false, receiver }
     }
 
-    /// Those of the grid of the smallest elements.
+    /// Rows of the grid of the smallest elements.
     pub(crate) fn finest() -> Self {
         Self { finest: true, receiver: Receiver::First }
     }
 }
 
-/// Cells of a band for each rank.
+/// Number of cells of a band for each rank.
 const BAND_CELLS: usize = 1_000_000;
 
 /// The bands of a level: rows of tiles, and the rank that gets them.
@@ -68,8 +70,10 @@ impl TilesByRow {
     }
 }
 
-/// Hands the rows of a band to the rank that gets them, zero where there is no tile: a row of tiles at a time, the
-/// index of the first row of cells with them. `own` are the tiles that this rank has. All ranks call this together.
+/// Hands the rows of a band to the rank that gets them.
+///
+/// `take` gets the rows of cells of one row of tiles at a time, with the index of the first row. They are zero where
+/// there is no tile. `own` are the tiles that this rank has. All ranks call this together.
 pub(super) fn hand_out<'v, E>(
     (tiles, ranks): (&TileSet, &Ranks),
     (band, to): (Range<usize>, usize),

@@ -10,21 +10,28 @@ use crate::descent::BlockLayout;
 use crate::factors::has_small_factors;
 use crate::parallel;
 
-/// Elements of the base grid for the shortest wave: what interpolates heights to other levels needs no more.
+/// Number of elements of the base grid for the shortest wave.
+///
+/// The interpolation of heights to other levels does not need more.
 const BASE_ELEMENTS_PER_WAVE: usize = 4;
 
-/// Fewest elements along the longer side of the base grid.
+/// Minimum number of elements along the longer side of the base grid.
 pub(super) const SMALLEST_BASE: usize = 64;
 
-/// The same along the shorter side, where it does not follow from the finest grid.
+/// Minimum number of elements along the shorter side of an uneven base grid.
+///
+/// Otherwise this number follows from the finest grid.
 const SMALLEST_WIDTH: usize = 16;
 
-/// Part of the mean square slope of a map that differences over the base grid's spacing must keep: four elements for a
-/// wave keep 0.81 of its slope, two keep 0.41.
+/// Part of a map's mean square slope that the base grid must keep.
+///
+/// It is the slope of differences over the base grid's spacing. Four elements for a wave keep 0.81 of its slope, two
+/// keep 0.41.
 const SLOPE_KEPT: f64 = 0.8;
 
-/// Checks or chooses the sides of the base grid in elements. Where its elements along x are `wanted`, those along y are
-/// in proportion.
+/// Checks or chooses the sides of the base grid, in elements.
+///
+/// If the elements along x are `wanted`, those along y are in proportion.
 pub(super) fn base_sides(source: &HeightSource<'_>, wanted: Option<usize>) -> Result<[usize; 2], AdaptiveError> {
     let finest = sides_of(source.grid());
     let waves = source.surface().and_then(HeightField::band_limit);
@@ -33,7 +40,7 @@ pub(super) fn base_sides(source: &HeightSource<'_>, wanted: Option<usize>) -> Re
         return wanted_sides(base, waves.unwrap_or(0), finest).ok_or(error);
     }
     let long = finest[0].max(finest[1]);
-    // Heights may have waves as short as a few elements: two levels above the base grid are safe, and three on large
+    // Heights may have waves as short as a few elements. Two levels above the base grid are safe, and three on large
     // grids.
     let safe = long / if long >= 4096 { 8 } else { 4 };
     let least = match (waves, source.map()) {
@@ -46,7 +53,7 @@ pub(super) fn base_sides(source: &HeightSource<'_>, wanted: Option<usize>) -> Re
         let is_whole = finest.iter().all(|&side| side.is_multiple_of(n * TILE));
         is_whole.then(|| finest.map(|side| side / n))
     };
-    // As many levels as the longer side has halves that are not below `least`; one at least, where that keeps the
+    // The longer side is halved as often as it stays at least `least`. It is halved at least once if that keeps the
     // waves.
     let mut n = 1;
     while long / (2 * n) >= least {
@@ -55,7 +62,7 @@ pub(super) fn base_sides(source: &HeightSource<'_>, wanted: Option<usize>) -> Re
     if n == 1 && long / 2 > 2 * waves.unwrap_or(0) {
         n = 2;
     }
-    // A surface is sampled where it is needed if all levels are halves.
+    // If all levels are halves, a surface is sampled only where it is needed.
     let is_surface = waves.is_some() && source.grid().is_square();
     let mut halves = std::iter::successors(Some(n), |n| Some(n / 2)).take_while(|&n| n > 1);
     let even = if is_surface { halves.find_map(halved) } else { halves.next().and_then(halved) };
@@ -64,25 +71,31 @@ pub(super) fn base_sides(source: &HeightSource<'_>, wanted: Option<usize>) -> Re
     let error = AdaptiveError::Grid { nx, ny, smallest: 2 * least };
     let mut all = std::iter::successors(Some(n), |n| Some(n / 2)).take_while(|&n| n > 1 && long >= SMALLEST_BASE);
     let uneven = all.find_map(|n| uneven_sides(source.grid(), n));
-    // Below uneven grids a surface is sampled on its whole grid, as a map is.
+    // Below uneven grids a surface is sampled on its whole grid, like a map.
     let samples = if is_surface { BYTES_PER_SAMPLE * source.grid().len() as f64 } else { 0.0 };
     let is_larger = |even: &[usize; 2]| uneven.is_some_and(|other| base_bytes(*even) > base_bytes(other) + samples);
     even.filter(|even| !is_larger(even)).or(uneven).or(others).ok_or(error)
 }
 
-/// How many more elements than the finest grid the base grid doubled may have along a side, in parts of the side.
-/// (Patches of the operator are large enough for this.)
+/// Maximum excess of the doubled base grid over the finest grid, relative to a side.
+///
+/// The excess is in elements. Patches of the operator are large enough for it.
 const MOST_ADDED: f64 = 0.15;
 
-/// Elements of the base grid may be longer along one side by this part, or by the second one where there is no other
-/// grid.
+/// Relative amount by which elements of the base grid may be longer along one side.
+///
+/// The second number holds if there is no other grid.
 const OBLONG: [f64; 2] = [0.01, 0.02];
 
-/// Greatest prime factor of the base grid's sides: Fourier transforms of such lengths are fast.
+/// Maximum prime factor of the base grid's sides.
+///
+/// Fourier transforms of such lengths are fast.
 const GREATEST_FACTOR: usize = 7;
 
-/// The base grid with the fewest elements that `n` times as many along a side are not fewer than those of the finest,
-/// nor many more, with elements that are nearly squares; none where there is no such grid.
+/// The best base grid for a finest grid that is about `n` times as large.
+///
+/// A side of the base grid, times `n`, has at least as many elements as the finest grid, and not many more. Elements
+/// are nearly squares. Of such grids, it has the smallest number of elements. `None` if there is no such grid.
 fn uneven_sides(finest: Grid, n: usize) -> Option<[usize; 2]> {
     let candidates = |side: usize| -> Vec<usize> {
         let least = side.div_ceil(n).next_multiple_of(TILE).max(SMALLEST_WIDTH);
@@ -102,7 +115,7 @@ fn uneven_sides(finest: Grid, n: usize) -> Option<[usize; 2]> {
     })
 }
 
-/// The sides of a base grid of `base` elements along x, if they fit.
+/// The sides of a base grid of `base` elements along x, if it fits.
 fn wanted_sides(base: usize, waves: usize, [nx, ny]: [usize; 2]) -> Option<[usize; 2]> {
     let fits = base >= TILE && base > 2 * waves && 2 * base <= nx;
     let n = (fits && nx.is_multiple_of(base)).then(|| nx / base).filter(|n| n.is_power_of_two())?;
@@ -110,7 +123,9 @@ fn wanted_sides(base: usize, waves: usize, [nx, ny]: [usize; 2]) -> Option<[usiz
     (ny.is_multiple_of(n) && sides.iter().all(|side| side.is_multiple_of(TILE))).then_some(sides)
 }
 
-/// Elements along the longer side that keep the slopes of a map, at a spacing of a power of two.
+/// Number of elements along the longer side that keeps the slopes of a map.
+///
+/// The spacing is a power of two.
 fn smooth_side(map: &Field) -> usize {
     let sides = sides_of(map.grid());
     let finest = mean_square_slope(map, 1);
@@ -121,8 +136,10 @@ fn smooth_side(map: &Field) -> usize {
     sides[0].max(sides[1]) / spacing
 }
 
-/// Of differences over so many elements along both axes, in units of the height over the side of an element. All rows
-/// are looked at: on some of them a surface that repeats may look smooth.
+/// Mean square of the differences over `spacing` elements along both axes.
+///
+/// The unit is the height over the side of an element. All rows count, because a repeating surface may look smooth on
+/// some of them.
 fn mean_square_slope(map: &Field, spacing: usize) -> f64 {
     let (nx, ny) = (map.grid().nx(), map.grid().ny());
     let of_row = |iy: usize| {
@@ -163,7 +180,7 @@ mod tests {
         {
             assert_eq!(base(side, waves).ok(), Some([expected; 2]), "{side}, {waves} waves");
         }
-        // Sides that do not divide have a base grid of their own.
+        // Sides that cannot be halved have a base grid of their own.
         for (side, waves, expected) in [(1001, 8, 128), (1000, 62, 256), (997, 8, 128), (1040, 30, 144)] {
             assert_eq!(base(side, waves).ok(), Some([expected; 2]), "{side}, {waves} waves");
         }
@@ -193,7 +210,7 @@ mod tests {
             ([860, 634], [216, 160]),
             ([1001, 1001], [256, 256]),
             ([1000, 1000], [256, 256]),
-            // Eight times as few along both sides would be far from it along x.
+            // An eighth of the elements along both sides would be far from it along x.
             ([130, 520], [72, 288]),
         ] {
             assert_eq!(of_noise(nx, ny), Some(expected), "{nx} x {ny}");

@@ -1,4 +1,6 @@
-//! What the last level that was solved has left for the next one, kept outside of the process.
+//! The data that a solved level leaves for the next one.
+//!
+//! They are kept outside of the process.
 
 use rc_comm::{Packed, Ranks};
 use rc_core::Grid;
@@ -8,17 +10,22 @@ use super::mesh::Mesh;
 use super::prolongation::MeshStart;
 use crate::solution::{LevelInfo, LevelValues};
 
-/// Bytes that outlive the process: a file, as a rule. Over ranks the first writes, and all read.
+/// Bytes that outlive the process, usually a file.
+///
+/// Over ranks, the first one writes and all read.
 pub trait Checkpoint: Send + Sync {
-    /// `len` bytes from `offset` on of what was kept; none where there are fewer, or nothing was kept.
+    /// Reads `len` of the kept bytes, from `offset` on.
+    ///
+    /// `None` if there are fewer, or if nothing was kept.
     fn read(&self, offset: u64, len: usize) -> Option<Vec<u8>>;
 
-    /// Keeps these pieces, one after the other, in place of what was kept before. A failure is the keeper's to tell:
-    /// the solve goes on.
+    /// Keeps these pieces, one after the other, in place of what was kept before.
+    ///
+    /// The checkpoint itself must report a failure. The solve goes on.
     fn replace(&self, pieces: &mut dyn Iterator<Item = Vec<u8>>);
 }
 
-/// What a level above the base grid begins with.
+/// The start of a level above the base grid.
 pub(super) struct LevelStart {
     /// The whole grid of the level's smallest elements.
     pub(super) grid: Grid,
@@ -32,18 +39,22 @@ pub(super) struct LevelStart {
     pub(super) coarser: Option<LevelValues>,
 }
 
-/// Numbers about a start before those of its levels, and numbers of a level.
+/// Number of values about a start before those of its levels.
+///
+/// The number below is that of the values of a level.
 const N_NUMBERS: usize = 10;
 const N_OF_LEVEL: usize = 5;
 
-/// More than any solve has: other numbers are not of a start.
+/// Limits above those of any solve. Larger values do not belong to a start.
 const MOST_LEVELS: f64 = 64.0;
 const MOST_TILES: f64 = 1e12;
 
-/// Tiles in a piece.
+/// Number of tiles in a piece.
 const AT_ONCE: usize = 1 << 14;
 
-/// Keeps a start on elements of one size, and a number. All ranks call this together.
+/// Keeps a start on elements of one size, and a number.
+///
+/// All ranks call this together.
 pub(super) fn keep(checkpoint: &dyn Checkpoint, start: &LevelStart, number: f64) {
     let mesh = &start.mesh.elements;
     if mesh.levels().len() > 1 {
@@ -63,14 +74,16 @@ pub(super) fn keep(checkpoint: &dyn Checkpoint, start: &LevelStart, number: f64)
     let others = others.map(|rank| ranks.exchange(Vec::new(), &[rank]).concat());
     let mut pieces = head.into_iter().chain(own).chain(others);
     checkpoint.replace(&mut pieces);
-    // A keeper that has failed leaves pieces that other ranks have sent.
+    // If the checkpoint has failed, pieces that other ranks have sent are left over.
     pieces.for_each(drop);
 }
 
-/// The start that was kept, with its number; none where there is none. `grid` is any grid of the cell.
+/// The kept start with its number. `None` if no start was kept.
+///
+/// `grid` is any grid of the cell.
 pub(super) fn kept(checkpoint: &dyn Checkpoint, grid: Grid, ranks: &Ranks) -> Option<(LevelStart, f64)> {
     let found = read(checkpoint, grid, ranks);
-    // All go on from the same level, or none.
+    // Either all ranks go on from the same level, or they all start anew.
     if ranks.any(found.is_none()) { None } else { found }
 }
 

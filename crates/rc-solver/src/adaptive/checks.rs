@@ -1,4 +1,4 @@
-//! What a problem must be for the adaptive method, checked before any work.
+//! The conditions that a problem must meet for the adaptive method, checked before any work.
 
 use rc_core::{DVec2, Grid, HeightSource};
 use rc_kernel::SplitParams;
@@ -9,16 +9,20 @@ use super::params::AdaptiveParams;
 use super::split::GapSplit;
 use crate::ErrorBound;
 
-/// Error of L relative to the rms displacement, over a relative tolerance, that descents may have: tolerances are
-/// relative to the height range, which is at least ten times the error's measure on any surface, and the greatest error
-/// of an element is up to five times the rms one. With 10, a third of a cell in contact at λ_min/128 did not converge
-/// to 3e-7.
+/// Error of L that descents may have, as a multiple of a relative tolerance.
+///
+/// The error is relative to the rms displacement, and tolerances to the height range. On any surface, the height range
+/// is at least ten times this measure of the error. The maximum error of an element is up to five times the rms error.
+/// With a multiple of 10, a third of a cell in contact at λ_min/128 did not converge to 3e-7.
 const OPERATOR_ERROR_PER_TOLERANCE: f64 = 3.0;
 
-/// The same over the overlap that an energy error aims at, in units of U/σ0, which is 0.02 to 0.08 of the height range.
+/// Error of L that descents may have, under an energy error.
+///
+/// It is a multiple of the overlap that the energy error aims at. The overlap is in units of U/σ0, which is 0.02 to
+/// 0.08 of the height range.
 const OPERATOR_ERROR_PER_ENERGY: f64 = 0.5;
 
-/// Maximum number of the smallest elements per side: indices of tiles are 32-bit numbers.
+/// Maximum number of the smallest elements per side. Indices of tiles are 32-bit numbers.
 const DEEPEST_SIDE: usize = 1 << 17;
 
 /// Refuses elements that are not squares.
@@ -27,7 +31,7 @@ pub(super) fn check_elements(grid: Grid) -> Result<(), AdaptiveError> {
     if has_squares(grid) { Ok(()) } else { Err(AdaptiveError::Elements { grid, ratio: y / x }) }
 }
 
-/// The operator of descents, by the tolerance alone.
+/// The operator of descents, which follows from the tolerance alone.
 pub(super) fn first_split(params: &AdaptiveParams) -> Result<GapSplit, AdaptiveError> {
     let of_bound = match params.solve.bound {
         ErrorBound::Relative(value) => OPERATOR_ERROR_PER_TOLERANCE * value,
@@ -38,7 +42,7 @@ pub(super) fn first_split(params: &AdaptiveParams) -> Result<GapSplit, AdaptiveE
         .ok_or(AdaptiveError::OperatorError { value: error, smallest: SplitParams::SMALLEST_ERROR })
 }
 
-/// The source on the grid of the smallest elements.
+/// The source of heights on the grid of the smallest elements.
 pub(super) fn with_border_level(
     source: HeightSource<'_>,
     border_level: usize,
@@ -58,7 +62,7 @@ pub(super) fn with_border_level(
     }
 }
 
-/// Refuses what needs more bytes than the limit.
+/// Refuses a problem that needs more bytes than the limit.
 pub(super) fn check_memory(
     grid: Grid,
     limit: Option<u64>,

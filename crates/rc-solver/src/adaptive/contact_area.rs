@@ -11,7 +11,9 @@ use super::mesh::{Mesh, Surroundings};
 use crate::ContactArea;
 use crate::contact_area::{EdgeSums, PlasticEdges, left};
 
-/// Tiles that are summed together; sums have this order for any number of threads.
+/// Number of tiles that are summed together.
+///
+/// Sums have this order for any number of threads.
 const TILES_AT_ONCE: usize = 64;
 
 /// Pressure and gap on elements.
@@ -20,9 +22,9 @@ pub(super) struct Values<'a> {
     pub(super) mesh: &'a Mesh,
     pub(super) pressure: &'a [f64],
     pub(super) gap: &'a [f64],
-    /// The gap of what is in contact.
+    /// The gap of elements in contact.
     pub(super) contact_gap: f64,
-    /// No pressure is greater.
+    /// The maximum pressure.
     pub(super) hardness: f64,
 }
 
@@ -32,14 +34,14 @@ impl Values<'_> {
         ContactArea::from_sums(&self.edge_sums(|at| at), finest, Love.edge_bias())
     }
 
-    /// The plastic part of it; none without a hardness.
+    /// The plastic part of the contact. `None` without a hardness.
     pub(super) fn plastic_edges(&self, finest: Grid) -> Option<PlasticEdges> {
         let Self { mesh, pressure, gap, contact_gap, hardness } = *self;
         if hardness.is_infinite() {
             return None;
         }
         let mut sums = self.edge_sums(|at| left(at, hardness));
-        // Where no element is, nothing presses.
+        // Where there is no element, there is no pressure.
         let covered = |(coarser, tiles): (usize, &TileSet)| tiles.n_inside() << (2 * coarser);
         let covered: usize = mesh.levels().iter().enumerate().map(covered).sum();
         sums[0].n_contact += finest.len() - covered;
@@ -51,7 +53,7 @@ impl Values<'_> {
         Some(PlasticEdges::from_sums(&sums, finest, Love.edge_bias(), flow / finest.len() as f64))
     }
 
-    /// Sums over the elements of each size, of pressure and gap as `seen`.
+    /// Sums over the elements of each size. `seen` changes pressure and gap before they are summed.
     fn edge_sums(&self, seen: impl Fn([f64; 2]) -> [f64; 2] + Sync) -> Vec<EdgeSums> {
         let around = [self.pressure, self.gap].map(|values| self.mesh.surroundings(values));
         self.mesh.own_levels().map(|level| self.sums_of_level(level, &around, &seen)).collect()
@@ -72,10 +74,10 @@ impl Values<'_> {
                 return EdgeSums::default();
             }
             let pressure = pressures.elements.around(&pressures.values, coarser, place, 0.0);
-            // Where no element is the gap is not known.
+            // Where there is no element, the gap is not known.
             let gap = gaps.elements.around(&gaps.values, coarser, place, f64::NAN);
             let mut sums = EdgeSums::default();
-            // What reaches beyond the grid is across the seam.
+            // Cells beyond the grid are across the seam.
             let [width, height] = tiles.inside(place);
             let cells = (0..CELLS).map(|cell| (cell % TILE, cell / TILE)).filter(|&(x, y)| x < width && y < height);
             for (x, y) in cells.map(|(x, y)| (TILE + x, TILE + y)) {

@@ -1,30 +1,35 @@
-//! How the tiles of a level are dealt among ranks: in ranges of their order, along the Morton curve.
+//! The ranges in which the tiles of a level are dealt among ranks.
+//!
+//! They follow the order of the tiles, which is that of the Morton curve.
 
 use std::ops::Range;
 
 use rc_comm::Ranks;
 use rc_quadtree::TileSet;
 
-/// Ranges begin at multiples of so many tiles: sums are over blocks of 16 and of 64 tiles, and a block is never
-/// divided.
+/// Ranges begin at multiples of this number of tiles.
+///
+/// Sums are over blocks of 16 and of 64 tiles, and a block is never divided.
 const AT_ONCE: usize = 64;
 
 /// The ranges of tiles that ranks have.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Deal {
-    /// The first tile of each rank, and the number of tiles.
+    /// The first tile of each rank, and last the number of tiles.
     starts: Vec<usize>,
 }
 
 impl Deal {
-    /// As many of `n` tiles for each rank as for any other, nearly.
+    /// A deal of `n` tiles in nearly equal numbers.
     pub(super) fn equal(n: usize, ranks: &Ranks) -> Self {
         let size = ranks.size();
         let start = |rank: usize| (n as u128 * rank as u128 / size as u128) as usize / AT_ONCE * AT_ONCE;
         Self { starts: (0..size).map(start).chain([n]).collect() }
     }
 
-    /// Of a coarser level: a rank has about the tiles over those that it has of `finer`, whose deal this is.
+    /// The deal of a coarser level. `self` is the deal of the level `finer`.
+    ///
+    /// A rank has about the tiles over those that it has of `finer`.
     pub(super) fn of_coarser(&self, finer: &TileSet, coarser: &TileSet) -> Self {
         let (fine, coarse) = (finer.extent(), coarser.extent());
         let mut next = 0;
@@ -53,7 +58,7 @@ impl Deal {
         self.starts[rank]..self.starts[rank + 1]
     }
 
-    /// The rank that has a tile.
+    /// The rank that has the tile with this index.
     pub(super) fn owner(&self, tile: usize) -> usize {
         self.starts.partition_point(|&start| start <= tile) - 1
     }

@@ -1,4 +1,4 @@
-//! Vectors on elements: how they are divided into blocks, and how an observer sees them.
+//! Vectors on elements: their division into blocks, and their view by an observer.
 
 use std::convert::Infallible;
 
@@ -9,11 +9,11 @@ use super::mesh::Mesh;
 use crate::descent::{BlockLayout, ObservedMesh};
 
 impl Mesh {
-    /// How vectors are divided.
+    /// The division of vectors into blocks.
     pub(crate) fn layout(&self) -> BlockLayout {
         let mut centres = Vec::with_capacity(self.n_own().div_ceil(CELLS));
         for (coarser, places, values) in self.own_levels() {
-            // Levels begin at whole blocks.
+            // Levels begin with whole blocks.
             centres.resize(values.start / CELLS, [0.0; 2]);
             let per_side = self.levels()[coarser].sides().map(|side| side as f32 / TILE as f32);
             let centre = |place: &[u32; 2]| [0, 1].map(|axis| (place[axis] as f32 + 0.5) / per_side[axis]);
@@ -29,7 +29,7 @@ impl Mesh {
 }
 
 impl ObservedMesh for Mesh {
-    /// Over ranks no one has the whole pressure, and nothing is shown.
+    /// Shows the pressure to the observer. Over ranks no rank has the whole pressure, and nothing is shown.
     fn show_pressure(&self, pressure: &[f64], observer: &dyn Observer) {
         if !self.ranks().are_alone() {
             return;

@@ -1,4 +1,4 @@
-//! Heights of elements: at the centres of the smallest ones, means over larger ones.
+//! Heights of elements: at the centres of the smallest elements, and means over larger ones.
 
 use rayon::prelude::*;
 use rc_quadtree::{CELLS, Elements, TileSet, means_of_quarter, quarters};
@@ -7,18 +7,21 @@ use super::heights::Heights;
 use super::mesh::Mesh;
 use crate::problem::HeightStatistics;
 
-/// In units of the height range. Displacements there lack their smooth part, which differs by no more than the height
-/// range from that of elements, so that gaps are at least nine times it.
+/// Depth of places without an element, in units of the height range.
+///
+/// Displacements there lack their smooth part. It differs from the smooth part at elements by at most the height range.
+/// Gaps there are therefore at least nine times the height range.
 const FAR_BELOW: f64 = 10.0;
 
-/// Heights of the elements that this rank has, those of the elements of `known` taken from there. Values that have no
-/// element are never in contact: what fills up a vector has the minimum height, and what is beyond a level is far
-/// below.
+/// Heights of the elements that this rank has.
+///
+/// Heights of elements of `known` are taken from there. Values without an element are never in contact. Those that fill
+/// up a vector have the minimum height, and those beyond a level are far below.
 pub(super) fn element_heights(heights: &Heights<'_>, mesh: &Mesh, known: Option<(&Mesh, &[f64])>) -> Vec<f64> {
     let HeightStatistics { greatest, least, .. } = heights.extremes();
     let none = if mesh.finest().is_whole() { least } else { least - FAR_BELOW * (greatest - least) };
     let over_ranks = known.filter(|(known, _)| !known.ranks().are_alone());
-    // Known heights of other ranks come first; no height is NaN.
+    // Known heights of other ranks come first. A height is never NaN.
     let mut result = match over_ranks {
         Some((known, values)) => known.moved(mesh, values, f64::NAN),
         None => vec![none; mesh.n_own()],
@@ -49,9 +52,11 @@ pub(super) fn element_heights(heights: &Heights<'_>, mesh: &Mesh, known: Option<
     result
 }
 
-/// From heights at centres to means over the centres of the smallest elements, 2^`coarser` of them per side: the
-/// displacement of a larger element is such a mean too. With ⟨·⟩ over n × n centres, `⟨h⟩ - h(0) = Δh/24 (1 - 1/n²) d²`
-/// up to fourth order. The mean over four centres therefore gives the mean over all.
+/// Changes heights at centres to means over the centres of the smallest elements.
+///
+/// There are n = 2^`coarser` of these per side, and the displacement of a larger element is such a mean too. Let ⟨·⟩ be
+/// the mean over n × n centres. Then `⟨h⟩ - h(0) = Δh/24 (1 - 1/n²) d²` up to fourth order. The mean over four centres
+/// therefore gives the mean over all.
 fn to_means(heights: &Heights<'_>, tiles: &TileSet, place: [u32; 2], coarser: usize, cells: &mut [f64; CELLS]) {
     let ratio = (1.0 - 1.0 / Elements::area(coarser)) / (1.0 - 0.25);
     for quarter in quarters(place) {
@@ -97,7 +102,7 @@ mod tests {
                 let (x, y) = (n * (8 * column as usize + cell % 8), n * (8 * row as usize + cell / 8));
                 let sum: f64 = (0..n * n).map(|i| sampled.at(x + i % n, y + i / n)).sum();
                 let error = values[start + cell] - sum / (n * n) as f64;
-                // Fourth order: (2π/16)⁴ / 1920 of a wave, and the interpolation.
+                // The error is of fourth order: (2π/16)⁴ / 1920 of a wave, and the interpolation.
                 assert!(error.abs() < 3e-5, "{n} x {n} elements, cell {cell}: off by {error:e}");
             }
         }

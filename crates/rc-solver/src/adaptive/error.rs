@@ -1,4 +1,4 @@
-//! Why the adaptive method does not fit a problem.
+//! Reasons why the adaptive method does not fit a problem.
 
 use rc_core::Grid;
 use rc_core::quantity::digits;
@@ -10,15 +10,17 @@ use crate::ProblemError;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum AdaptiveError {
-    /// Heights, load or tolerance are out of range. At the front door this is [`crate::SolveError::Problem`].
+    /// Heights, load or tolerance are out of range.
+    ///
+    /// [`crate::solve`] returns it as [`crate::SolveError::Problem`].
     #[error(transparent)]
     Problem(#[from] ProblemError),
-    /// The elements of the mesh are squares.
+    /// The elements of the mesh are not squares.
     #[error("the adaptive method needs square elements, but those of {grid} are {} % longer along {}", digits(100.0 * (ratio.max(ratio.recip()) - 1.0), 2), if *ratio > 1.0 { "y" } else { "x" })]
     Elements {
         /// The grid.
         grid: Grid,
-        /// Side of an element along y, relative to that along x.
+        /// Ratio of the sides of an element, y to x.
         ratio: f64,
     },
     /// The grid is too small for a base grid below it.
@@ -28,7 +30,7 @@ pub enum AdaptiveError {
         nx: usize,
         /// Elements along y.
         ny: usize,
-        /// Fewest elements along the longer side.
+        /// Minimum number of elements along the longer side.
         smallest: usize,
     },
     /// The base grid cannot hold the surface's spectrum, or does not divide the finest grid.
@@ -43,19 +45,19 @@ pub enum AdaptiveError {
         /// Elements per side of the finest grid.
         finest: usize,
     },
-    /// The smallest elements would be smaller than the tables of tiles can be large.
+    /// The smallest elements would be too small for the tables of tiles.
     #[error(
         "border level {border_level} on a grid of {side} elements per side is too deep: {deepest} is the deepest for it"
     )]
     BorderLevel {
-        /// What was asked for.
+        /// The border level that was requested.
         border_level: usize,
         /// Elements per side of the grid.
         side: usize,
-        /// The deepest.
+        /// The maximum border level.
         deepest: u32,
     },
-    /// Elements are divided on grids that are halved down to the base grid.
+    /// A border level on a grid that is not halved down to the base grid.
     #[error(
         "a border level needs a grid that halves: 16 or a larger power of 2 times another number of elements per side, not {grid}"
     )]
@@ -63,7 +65,7 @@ pub enum AdaptiveError {
         /// The grid of the smallest elements.
         grid: Grid,
     },
-    /// A border level for heights that are known on a grid only.
+    /// A border level for heights that are known only on a grid.
     #[error(
         "a border level needs heights between the points of the grid: resample the map on a finer grid, or generate the surface"
     )]
@@ -71,10 +73,10 @@ pub enum AdaptiveError {
     /// The surface is flat, so there is nothing to adapt to.
     #[error("a flat surface needs no adaptive mesh; use the uniform method")]
     Flat,
-    /// What only one rank solves.
+    /// The problem can be solved by one rank only.
     #[error("over several ranks the adaptive method needs {needs}; solve it on one rank")]
     OverRanks {
-        /// What it needs.
+        /// The condition for other ranks.
         needs: &'static str,
     },
     /// The estimated memory is above the limit.
@@ -86,16 +88,17 @@ pub enum AdaptiveError {
         needed: u64,
         /// Limit, in 10^6 bytes.
         limit: u64,
-        /// Estimated contact area, in percent of the nominal one; `None` when the base grid alone is too large, which
-        /// is said before heights are sampled.
+        /// Estimated contact area, in percent of the nominal one.
+        ///
+        /// `None` when the base grid alone is too large. This error comes before heights are sampled.
         area_percent: Option<f64>,
     },
-    /// The accuracy asked of the operator is out of reach.
+    /// The requested accuracy of the operator is out of reach.
     #[error("the error bound of the operator must be between {smallest:e} and 1e-3, not {value:e}")]
     OperatorError {
-        /// What was asked for.
+        /// The accuracy that was requested.
         value: f64,
-        /// The smallest that can be had.
+        /// The smallest error that is possible.
         smallest: f64,
     },
 }

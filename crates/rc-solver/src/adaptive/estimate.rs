@@ -1,4 +1,4 @@
-//! What a scene will cost, before any of it is solved.
+//! The expected cost of a scene, before it is solved.
 
 use rc_core::Field;
 
@@ -8,55 +8,65 @@ use super::memory::base_bytes;
 use crate::Control;
 use crate::problem::Problem;
 
-/// Contact area relative to σ0/(E* · rms slope) at low loads; the literature has 1.6 to 2.5, and this solver 2.0
-/// to 2.2.
+/// Ratio of the contact area to σ0/(E* · rms slope) at low loads.
+///
+/// The literature has 1.6 to 2.5, and this solver 2.0 to 2.2.
 const PROPORTIONALITY: f64 = 2.1;
 
-/// Part of the cell that the tiles of a contact cover beyond the contact itself, measured at 1 % to 60 % contact, from
-/// λ_min/32.
+/// Ratio of the area of the tiles of a contact to the contact area.
+///
+/// Measured at 1 % to 60 % contact, from λ_min/32.
 const TILES_PER_AREA: f64 = 1.9;
 
 /// Bytes for each cell of a tile where contact is possible, at the peak.
 const BYTES_PER_CELL: f64 = 80.0;
 
-/// What each border level adds to the bytes of a cell, relative to those without any, for the larger cells that every
-/// level reaches beyond its own: measured 75 to 150, 96 to 224 and 223 bytes for a cell of this estimate with one, two
-/// and three levels (512² and 1024², 5 % and 26 % contact).
+/// Bytes that each border level adds to a cell, relative to one without.
+///
+/// They are for the larger cells that every level reaches beyond its own. `docs/measurements-adaptive.md` has the
+/// measured bytes.
 const MORE_BYTES_PER_BORDER_LEVEL: f64 = 0.9;
 
-/// The same for the time: measured 2.3e-6 to 4.2e-6, 2.6e-6 to 5.5e-6 and 4.5e-6 seconds with one, two and three
-/// levels.
+/// Time that each border level adds to a cell, relative to one without.
+///
+/// `docs/measurements-adaptive.md` has the measured times.
 const MORE_WORK_PER_BORDER_LEVEL: f64 = 0.8;
 
-/// Cells of tiles with one more border level, relative to those without it: measured 3.1, 2.4 and 2.3 for the first
-/// three levels at 32 elements per shortest wave; edges alone would give 2.
+/// Factor by which one more border level multiplies the cells of tiles.
+///
+/// Edges alone would give 2. `docs/measurements-adaptive.md` has the measured factors.
 const GROWTH_PER_BORDER_LEVEL: f64 = 2.6;
 
-/// Bytes for each place of the smallest elements, used or not: the tables that find tiles, of a few meshes at a time.
+/// Bytes for each place of the smallest elements, used or not.
+///
+/// They are for the tables that find tiles, of a few meshes at a time.
 const BYTES_PER_PLACE: f64 = 0.02;
 
-/// An estimate of area, time and memory, from the surface and the load alone.
+/// An estimate of area, time and memory, from only the surface and the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Estimate {
     /// Contact area relative to the nominal area.
     pub area_fraction: f64,
     /// Part of the cell in tiles where contact is possible, on the grid.
     pub tile_fraction: f64,
-    /// Cells of these tiles, those of border levels included.
+    /// Number of cells of these tiles, including those of border levels.
     pub cells: f64,
-    /// Work on them, in units of that on a cell of a mesh without border levels.
+    /// Work on these cells. Its unit is the work on a cell of a mesh without border levels.
     pub work: f64,
     /// Memory of the adaptive method, in bytes.
     pub adaptive_bytes: f64,
 }
 
 impl Estimate {
-    /// Above this contact area the uniform grid is faster. Measured at 2048², N = 64: ratio of the times of the
-    /// adaptive to the uniform method 0.19 at 1 %, 0.29 at 7 %, 0.9 at 29 %, 1.3 at 61 % and 1.9 at 89 %.
+    /// Maximum contact area for the adaptive method.
+    ///
+    /// Above it the uniform grid is faster. `docs/measurements-adaptive.md` has the times by contact fraction.
     pub(crate) const GREATEST_ADAPTIVE_AREA: f64 = 0.35;
 
-    /// Above this fraction of the cell in tiles near contact, as the base grid finds it, the uniform grid is faster:
-    /// measured on 27 scenes (docs/measurements-adaptive.md).
+    /// Maximum fraction of the cell in tiles near contact for the adaptive method.
+    ///
+    /// Above it the uniform grid is faster. The base grid finds this fraction. The limit was measured on 27 scenes
+    /// (docs/measurements-adaptive.md).
     pub(crate) const GREATEST_TILE_FRACTION: f64 = 0.35;
 
     pub(super) fn new(heights: &Heights<'_>, border_level: usize, problem: &Problem) -> Self {
@@ -65,7 +75,7 @@ impl Estimate {
             Control::MeanPressure(pressure) => {
                 (PROPORTIONALITY * pressure / rms_slope(base)).max(pressure / problem.hardness)
             }
-            // Where the undeformed surfaces overlap is more than where they touch.
+            // The undeformed surfaces overlap on a larger area than they touch on.
             Control::Penetration(penetration) => overlap(base, heights.extremes().greatest - penetration),
         };
         // A flat surface, or one with a single element, touches everywhere.
@@ -86,7 +96,7 @@ impl Estimate {
     }
 }
 
-/// Isotropic rms slope by differences of neighbours, exact enough for an estimate.
+/// Isotropic rms slope from differences of neighbours, accurate enough for an estimate.
 fn rms_slope(heights: &Field) -> f64 {
     let (nx, ny) = (heights.grid().nx(), heights.grid().ny());
     let (along_x, along_y) = (nx as f64, ny as f64 / heights.grid().cell_ratio());

@@ -1,8 +1,9 @@
-//! Where contact is possible: bounds that exclude it everywhere else.
+//! The places where contact is possible. Bounds exclude it everywhere else.
 //!
-//! The displacement is a smooth part, interpolated from the base grid, plus short-range parts, which are not negative
-//! where no pressure is. The smooth part minus the height, both bounded between the points of the base grid, is then a
-//! lower bound of the gap. Fine cells are looked at only where this bound admits contact.
+//! The displacement has a smooth part, which is interpolated from the base grid, and short-range parts. The short-range
+//! parts are not negative where there is no pressure. The smooth part and the height are bounded between the points of
+//! the base grid. Their difference is then a lower bound of the gap. Fine cells are computed only where this bound
+//! admits contact.
 
 use rayon::prelude::*;
 use rc_comm::Ranks;
@@ -15,26 +16,32 @@ use super::ladder::sides_of;
 /// Side of a patch that holds a tile and its neighbours.
 const SIDE: usize = 3 * TILE;
 
-/// Between points of a grid a function is above their minimum less an eighth of its second derivative along either
-/// axis, times the square of the spacing.
+/// Factor of the bound of a function between points of a grid.
+///
+/// Between points, a function is above their minimum, minus an eighth of its second derivative along either axis times
+/// the square of the spacing.
 const SAGITTA: f64 = 0.25;
 
-/// The values on the base grid are the smooth displacement less 1/48 of its Laplacian, times the square of the finest
-/// elements' side, to leading order: the filter to the finest level holds the square root of the mean over an element.
-/// Those elements are at most half as large as the spacing where levels halve.
+/// Factor of the correction of values on the base grid.
+///
+/// To leading order, these values are the smooth displacement, minus 1/48 of its Laplacian times the square of the
+/// finest elements' side. The reason is that the filter to the finest level holds the square root of the mean over an
+/// element. Where levels halve, the side of the finest elements is at most half of the spacing.
 const DECONVOLUTION: f64 = 1.0 / 96.0;
 
 /// The smooth part of the displacement.
 pub(super) struct SmoothDisplacement<'a> {
-    /// Values at the centres of the base grid, tile by tile, tiles row by row, in λ.
+    /// Values at the centres of the base grid, in λ, tile by tile. Tiles are row by row.
     pub(super) values: &'a [f64],
-    /// Bound of its second derivatives along the axes.
+    /// Bound of the second derivatives of the values, along the axes.
     pub(super) curvature: f64,
     /// Bound of the error of the values, in λ.
     pub(super) error: f64,
 }
 
-/// The tiles, of a level of so many columns and rows, where the gap `v - h` may be less than `contact_gap`.
+/// The tiles where the gap `v - h` may be less than `contact_gap`.
+///
+/// They are tiles of a level with the columns and rows of `extent`.
 pub(super) fn possible_contact(
     smooth: &SmoothDisplacement<'_>,
     heights: &Heights<'_>,
@@ -65,7 +72,7 @@ pub(super) fn possible_contact(
         tiles.dedup();
         tiles
     };
-    // Each rank looks at some tiles of the base grid.
+    // Each rank checks some tiles of the base grid.
     let own = Deal::equal(base.len(), ranks).range(ranks.rank());
     let tiles: Vec<Vec<[u32; 2]>> = base.places()[own].par_iter().map(of_tile).collect();
     let tiles = ranks.concatenate(tiles.into_iter().flatten().flatten().collect());
@@ -75,14 +82,14 @@ pub(super) fn possible_contact(
 /// The cells of the base grid over tiles of a level.
 struct Cells {
     base: [usize; 2],
-    /// Columns and rows of tiles.
+    /// Numbers of columns and rows of tiles.
     extent: [usize; 2],
-    /// Sides of the level, where its tiles are not whole parts of cells nor cells of tiles.
+    /// Sides of the level, if tiles are not whole parts of cells, nor cells whole parts of tiles.
     finest: Option<[usize; 2]>,
 }
 
 impl Cells {
-    /// Of the heights in a tile.
+    /// Upper bound of the heights in a tile.
     fn upper_bound(&self, heights: &Heights<'_>, tile: [usize; 2]) -> f64 {
         match self.finest {
             None => heights.upper_bound(self.extent, tile),
@@ -90,7 +97,9 @@ impl Cells {
         }
     }
 
-    /// Appends the tile that a cell of the base grid is in, or those tiles in the cell that pass `may_touch`
+    /// Appends the tiles at a cell of the base grid.
+    ///
+    /// This is the tile that contains the cell. If tiles are smaller, it is those in the cell that pass `may_touch`
     /// themselves.
     fn append_tiles(&self, at: [usize; 2], may_touch: &impl Fn([usize; 2]) -> bool, tiles: &mut Vec<[u32; 2]>) {
         let Self { base, extent, finest } = *self;
@@ -103,7 +112,7 @@ impl Cells {
                 let parts = extent[axis] / base[axis];
                 at[axis] * parts..(at[axis] + 1) * parts
             }
-            // Tiles with a part in the cell.
+            // Tiles that have a part in the cell.
             Some(sides) => {
                 let last = ((at[axis] + 1) * sides[axis]).div_ceil(base[axis]).div_ceil(TILE);
                 at[axis] * sides[axis] / base[axis] / TILE..last
@@ -132,8 +141,9 @@ mod tests {
 
     use super::*;
 
-    /// A displacement whose minimum, at the corner between four points of the base grid, touches a flat surface. At the
-    /// points it does not.
+    /// A displacement that touches a flat surface only between four points of the base grid.
+    ///
+    /// Its minimum is at the corner between them.
     #[test]
     fn a_displacement_that_dips_between_points_is_not_excluded() {
         let (side, extent) = (32_usize, [8, 8]);

@@ -1,8 +1,8 @@
 //! The finest level: solved to the tolerance, and certified for the whole cell.
 //!
-//! Rounds of two steps. A descent improves the pressure on the elements that press, or nearly do. An evaluation then
-//! computes the gap afresh wherever contact is possible, which gives the certificate, and adds elements until bounds
-//! exclude contact everywhere else.
+//! It takes rounds of two steps. A descent improves the pressure on the elements that press, or nearly do. An
+//! evaluation then computes the gap afresh wherever contact is possible. This gives the certificate, and adds elements
+//! until bounds exclude contact everywhere else.
 
 use std::ops::Range;
 
@@ -25,29 +25,39 @@ use crate::descent::{
 };
 use crate::solution::LevelInfo;
 
-/// The finest level is first solved to the tolerance times this, then the gap is computed afresh: corrections are
-/// applied with the quick operator, a few percent off on pressures as rough as corrections are.
+/// Multiple of the tolerance to which the finest level is first solved.
+///
+/// The gap is computed afresh after that. The reason is that corrections come from the quick operator, which is a few
+/// percent off on pressures as rough as corrections.
 const FIRST_TOLERANCE: f64 = 20.0;
 
-/// The error left to the fresh gap, relative to the tolerance, when corrections end. Two fresh gaps of one pressure,
-/// computed on different tiles, differ by about a tenth of the tolerance in the worst of ten million elements.
+/// Error that is left to the fresh gap when corrections end, relative to the tolerance.
+///
+/// Two fresh gaps of one pressure, computed on different tiles, differ a little. The maximum difference over ten
+/// million elements is about a tenth of the tolerance.
 const LAST_TOLERANCE: f64 = 0.7;
 
-/// Rounds of descents and evaluations. Each round but the first starts with elements that the last one has missed; one
-/// is the rule, two are the exception.
+/// Maximum number of rounds of descents and evaluations.
+///
+/// Each round but the first starts with elements that the last one has missed. One round is the rule, and two are the
+/// exception.
 const MAX_ROUNDS: usize = 20;
 
-/// Candidates for contact are chosen with this margin, in units of the penetration, so that small changes of the
-/// pressure do not add others.
+/// Margin for the choice of candidates for contact, in units of the penetration.
+///
+/// Small changes of the pressure then do not add others.
 const CANDIDATE_MARGIN: f64 = 7e-3;
 
-/// The error of the smooth displacement on the base grid that the exclusion of contact allows for, in units of the
-/// bound on the error of displacements ([`OperatorError`]), within which it was measured (test
-/// `the_smooth_displacement_is_as_exact_as_the_others`).
+/// Error of the smooth displacement that the exclusion of contact allows for.
+///
+/// The displacement is that on the base grid. The unit is the bound on the error of displacements ([`OperatorError`]).
+/// The error was measured to be within it (test `the_smooth_displacement_is_as_exact_as_the_others`).
 const EXCLUSION_MARGIN: f64 = 2.0;
 
-/// Solves to the tolerance from `start`, whose gap in contact is `contact_gap`, and proves it for the whole cell. Also
-/// returns what the error of an operator depends on.
+/// Solves to the tolerance from `start`, and proves the solution for the whole cell.
+///
+/// The gap in contact of the start is `contact_gap`. The second result is the scale on which the error of an operator
+/// depends.
 pub(super) fn solve_finest_level(
     setup: &Setup<'_>,
     grid: Grid,
@@ -62,7 +72,7 @@ pub(super) fn solve_finest_level(
         let reached;
         (level, reached) = level.improve(evaluation, round > 0, observer);
         evaluation = level.evaluate_whole_cell();
-        // A later round without a step: the iteration has reached its goal, so the rest is the error of the operator.
+        // In a later round without a step, the iteration has reached its goal. The rest is the error of the operator.
         let is_stuck = !reached || round > 0 && level.info.iterations == before;
         if is_stuck || evaluation.outcome.certificate.meets(setup.params.bound) {
             break;
@@ -81,11 +91,11 @@ struct Candidates {
 struct Evaluation {
     pressure: Vec<f64>,
     gap: Vec<f64>,
-    /// Its certificate has the error of the operator that certifies added.
+    /// Outcome with a certificate that includes the error of the certifying operator.
     outcome: Outcome,
     scale: PressureScale,
     error: OperatorError,
-    /// What pressure and gap were multiplied by after the operator was applied.
+    /// Factor by which pressure and gap were scaled after the application of the operator.
     scaling: f64,
 }
 
@@ -99,12 +109,12 @@ struct OperatorTables {
 /// Tables of the operators for fresh gaps.
 struct TablesForGaps {
     descents: GapTables,
-    /// For certificates, where they are others.
+    /// Tables for certificates, if they differ from those for descents.
     certificates: Option<GapTables>,
 }
 
 impl TablesForGaps {
-    /// The operator for certificates or, if not `certify`, that for descents.
+    /// The operator for certificates if `certify`, otherwise the operator for descents.
     fn choose<'t>(&'t self, setup: &'t Setup<'_>, certify: bool) -> (&'t PreparedGap, &'t GapTables) {
         match &self.certificates {
             Some(certified) if certify => (setup.certified(), certified),
@@ -113,7 +123,9 @@ impl TablesForGaps {
     }
 }
 
-/// The maximum |v| of elements with these heights and gaps, c in `g = v - h + c` being `offset`.
+/// The maximum |v| of elements with these heights and gaps.
+///
+/// c in `g = v - h + c` is `offset`.
 fn maximum_displacement(mesh: &Mesh, heights: &[f64], gap: &[f64], offset: f64) -> f64 {
     let pairs = heights.par_iter().zip(gap);
     let own = pairs.map(|(h, g)| (g + (h - offset)).abs()).reduce(|| 0.0, f64::max);
@@ -124,7 +136,7 @@ struct FinestLevel<'s, 'a> {
     setup: &'s Setup<'a>,
     tables: OperatorTables,
     candidates: Candidates,
-    /// The pressure that the last descent has found; the start before the first one.
+    /// The pressure of the last descent, or the start before the first descent.
     current: MeshStart,
     info: LevelInfo,
 }
@@ -150,8 +162,9 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         Self { setup, tables, candidates, current: start, info }
     }
 
-    /// Improves the pressure on the elements near contact, with fresh gaps of the operator for certificates if
-    /// `certify`: the first round has used that of descents. Returns whether the tolerance was reached there.
+    /// Improves the pressure on the elements near contact. Returns whether it reached the tolerance there.
+    ///
+    /// Fresh gaps come from the operator for certificates if `certify`. The first round uses the operator for descents.
     fn improve(self, evaluation: Evaluation, certify: bool, observer: &dyn Observer) -> (Self, bool) {
         let Self { setup, mut tables, mut candidates, current, mut info } = self;
         let tolerance = evaluation.error.goal(setup.params.bound, &setup.problem);
@@ -170,7 +183,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let goal = |factor: f64| Goal { tolerance: factor * tolerance, max_iterations, certify: None };
         let observer = DescentObserver { observer, mesh: &near.elements };
         descent.run(goal(FIRST_TOLERANCE), &observer);
-        // Without a step the gap is as fresh as it was, and that of a better operator.
+        // Without a step, the gap is as fresh as before, and comes from a better operator.
         if descent.info().iterations > 0 || setup.better.is_none() {
             descent.refresh();
         }
@@ -183,15 +196,16 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         (Self { setup, tables, candidates, current, info }, last.converged)
     }
 
-    /// The gap on all candidates, and the operator that it was computed with: the one for certificates, or that of
-    /// descents.
+    /// The gap on all candidates, and the operator that computed it.
+    ///
+    /// The operator is the one for certificates if `certify`, otherwise the one for descents.
     fn evaluate(&self, certify: bool) -> (Evaluation, Box<dyn GapOperator + '_>) {
         let Self { setup, tables, candidates: Candidates { elements, heights }, current, info } = self;
         let (prepared, tables) = tables.gaps.choose(setup, certify);
         let mut pressure = current.elements.moved(elements, &current.pressure, 0.0);
         let mut gap = vec![0.0; pressure.len()];
         if setup.problem.hardness.is_finite() {
-            // What single precision has changed the load by.
+            // Single precision has changed the load a little.
             limit_to_load(&setup.problem, info.grid.len() as f64, &elements.layout(), &mut pressure, None);
         }
         let hierarchy = setup.hierarchy(elements, prepared.reach());
@@ -208,7 +222,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let size = maximum_displacement(elements, heights, &gap, setup.problem.offset());
         let n_levels = setup.n_levels(info.grid);
         let scale = PressureScale::new((elements, &pressure), n_levels, size, outcome.energy_length());
-        // Descents leave room for the error of the operator that certifies.
+        // Descents leave room for the error of the certifying operator.
         let error = OperatorError::of(setup.certified().split(), &scale, setup.problem.control);
         outcome.iteration_error = outcome.certificate.energy;
         outcome.certificate = error.added_to(outcome.certificate, setup.problem.h_range);
@@ -235,8 +249,10 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         }
     }
 
-    /// The elements of the candidates, divided where they are too coarse, and tiles of the coarsest level wherever
-    /// contact is possible.
+    /// The elements of the candidates, with more elements where they are needed.
+    ///
+    /// Elements are divided where they are too coarse. Tiles of the coarsest level are added wherever contact is
+    /// possible.
     fn with_more_candidates(&self, evaluation: &Evaluation, operator: &dyn GapOperator) -> Mesh {
         let (setup, elements) = (self.setup, &self.candidates.elements);
         let Evaluation { pressure, gap, outcome, error, scaling, .. } = evaluation;
@@ -271,15 +287,15 @@ impl Candidates {
     }
 }
 
-/// Elements where the start may touch, judged by the quick operator.
+/// Elements where the start may touch according to the quick operator.
 fn first_candidates(setup: &Setup<'_>, start: &MeshStart, tables: &Tables<f32>, contact_gap: f64) -> Candidates {
     let MeshStart { elements, pressure } = start;
     let mut quick = setup.quick_operator(setup.hierarchy(elements, setup.quick.reach()), tables, start);
     write_blocks(&mut quick, pressure.chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
     quick.apply();
-    // No contact is nearer than first touch, though coarser heights may reach beyond the highest point.
+    // Contact is not nearer than the first touch, even if coarser heights reach beyond the highest point.
     let first_touch = setup.problem.offset() - setup.problem.h_max;
-    // This is not a proof yet: the margin stands for the quick operator's error too.
+    // This is not a proof yet. The margin also stands for the quick operator's error.
     let gap = contact_gap.max(first_touch) + CANDIDATE_MARGIN * setup.penetration(contact_gap).abs();
     let curvature = setup.quick.remainder_curvature() * elements.layout().maximum(pressure, 0.0);
     let smooth = SmoothDisplacement { values: &quick.base_displacement(), curvature, error: 0.0 };
@@ -287,7 +303,9 @@ fn first_candidates(setup: &Setup<'_>, start: &MeshStart, tables: &Tables<f32>, 
     Candidates::new(setup, Mesh::new(elements.with(&places), setup.ranks))
 }
 
-/// The candidates that a descent works on: those that press somewhere, or nearly do, or did when the round began.
+/// The candidates that a descent works on.
+///
+/// These are elements that press or nearly press, or did so when the round began.
 struct NearContact {
     elements: Mesh,
     heights: Vec<f64>,
@@ -296,13 +314,15 @@ struct NearContact {
 }
 
 impl NearContact {
-    /// `before` are the elements of the last descent. Descents need the memory: the candidates are left without
-    /// heights.
+    /// Chooses the candidates near contact. `before` are the elements of the last descent.
+    ///
+    /// The candidates lose their heights, because descents need the memory.
     fn choose(candidates: &mut Candidates, before: &Mesh, evaluation: Evaluation, setup: &Setup<'_>) -> Self {
         let Evaluation { pressure, gap, outcome, .. } = evaluation;
-        // Elements that are nearer to contact than the error may come into it yet.
+        // Elements that are nearer to contact than the error may still come into contact.
         let error = match outcome.mean_pressure {
-            // Nothing presses when coarser levels have lost a contact that they hardly resolve: it begins anew.
+            // If coarser levels have lost a contact that they hardly resolve, there is no pressure. The contact begins
+            // anew.
             0.0 => CANDIDATE_MARGIN * (setup.problem.h_max - setup.problem.h_mean),
             _ => outcome.certificate.penetration * setup.problem.h_range,
         };
@@ -311,7 +331,7 @@ impl NearContact {
             before.has(sides, place) || cells.any(|i| pressure[i] > 0.0 || gap[i] < near)
         };
         let elements = candidates.elements.chosen(is_near);
-        // One vector after the other. Values that fill up a level are as far from contact as can be.
+        // The vectors follow one after the other. Values that fill up a level are as far from contact as possible.
         let chosen = |values: Vec<f64>, elsewhere: f64| candidates.elements.moved(&elements, &values, elsewhere);
         let heights = chosen(std::mem::take(&mut candidates.heights), f64::MIN);
         let (gap, pressure) = (chosen(gap, f64::MAX), chosen(pressure, 0.0));

@@ -10,10 +10,11 @@ use super::scaled_operator::ScaledOperator;
 use super::split::GapSplit;
 use crate::descent::BlockOperator;
 
-/// L on the elements of one mesh, with the part of its displacement that is smooth on the base grid.
+/// L on the elements of one mesh, with the smooth part of its displacement.
 pub(super) trait GapOperator: BlockOperator<f64> {
-    /// What the last pressure displaces the centres of the base grid by, short-range parts excepted: tile by tile,
-    /// tiles row by row, in λ.
+    /// Displacement of the centres of the base grid by the last pressure, in λ.
+    ///
+    /// Short-range parts are not included. Values are tile by tile, and tiles row by row.
     fn base_displacement(&self) -> Vec<f64>;
 }
 
@@ -23,20 +24,22 @@ impl<T: Real + Into<f64>> GapOperator for ScaledOperator<'_, T> {
     }
 }
 
-/// A split kernel, ready for meshes of any number of levels. Single precision takes half the time and memory.
+/// A split kernel, ready for meshes of any number of levels.
+///
+/// Single precision takes half the time and memory.
 pub(super) enum PreparedGap {
     Single(GapSplit, Prepared<f32>),
     Double(GapSplit, Prepared<f64>),
 }
 
-/// Its tables for one finest grid.
+/// Tables of a split kernel for one finest grid.
 pub(super) enum GapTables {
     Single(Tables<f32>),
     Double(Tables<f64>),
 }
 
 impl PreparedGap {
-    /// For elements up to 2^`n_coarse` times as large as the smallest.
+    /// The split kernel for elements up to 2^`n_coarse` times as large as the smallest.
     pub(super) fn new(split: GapSplit, base: Grid, n_coarse: usize) -> Self {
         let kernel = ScaleSplit::new(split.params);
         if split.is_single_precision() {
@@ -60,7 +63,7 @@ impl PreparedGap {
         }
     }
 
-    /// How far values go on a level.
+    /// The number of cells that values reach on a level.
     pub(super) fn reach(&self) -> Reach {
         match self {
             Self::Single(_, prepared) => prepared.reach(),
@@ -68,7 +71,7 @@ impl PreparedGap {
         }
     }
 
-    /// See [`Prepared::remainder_curvature`].
+    /// Bound of second derivatives on the base grid: see [`Prepared::remainder_curvature`].
     pub(super) fn remainder_curvature(&self) -> f64 {
         match self {
             Self::Single(_, prepared) => prepared.remainder_curvature(),

@@ -1,4 +1,4 @@
-//! What all loads on one surface share.
+//! Data that all loads on one surface share.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use super::params::AdaptiveParams;
 pub(crate) struct Ground<'a> {
     pub(super) heights: Heights<'a>,
     pub(super) kernels: Kernels,
-    /// Of heights that are sampled on the whole grid.
+    /// Bytes of heights that are sampled on the whole grid.
     pub(super) sampled_bytes: f64,
 }
 
@@ -29,7 +29,7 @@ impl<'a> Ground<'a> {
     pub(crate) fn new(source: HeightSource<'a>, params: &AdaptiveParams) -> Result<Self, AdaptiveError> {
         let grid = source.grid();
         check_elements(grid)?;
-        // Before any work.
+        // This check comes before any work.
         first_split(params)?;
         let base = base_sides(&source, params.base_side)?;
         let source = with_border_level(source, params.border_level)?;
@@ -44,7 +44,7 @@ impl<'a> Ground<'a> {
         Ok(Self { heights, kernels, sampled_bytes })
     }
 
-    /// The same without a borrow: a borrowed map is copied.
+    /// The same data without a borrow. A borrowed map is copied.
     pub(super) fn into_owned(shared: Arc<Self>) -> Ground<'static> {
         let Self { heights, kernels, sampled_bytes } = Arc::try_unwrap(shared).unwrap_or_else(|shared| Self {
             heights: shared.heights.clone(),

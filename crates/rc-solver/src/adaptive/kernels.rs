@@ -1,4 +1,6 @@
-//! The split kernels of one base grid: made when they are first asked for, and kept for all loads.
+//! The split kernels of one base grid.
+//!
+//! They are made when they are first needed, and kept for all loads.
 
 use std::sync::OnceLock;
 
@@ -10,7 +12,9 @@ use super::operator::Prepared;
 use super::split::{GapSplit, N_SPLITS};
 use crate::once::made;
 
-/// L and its approximate inverse by all splits, for one base grid and number of border levels.
+/// L and its approximate inverse by all splits.
+///
+/// They are for one base grid and one number of border levels.
 pub(super) struct Kernels {
     base: Grid,
     border_level: usize,
@@ -20,18 +24,18 @@ pub(super) struct Kernels {
 }
 
 impl Kernels {
-    /// Nothing is made yet.
+    /// Kernels that are not made yet.
     pub(super) fn new(base: Grid, border_level: usize) -> Self {
         let (quick, preconditioner, gaps) = Default::default();
         Self { base, border_level, quick, preconditioner, gaps }
     }
 
-    /// Kernels of the same base grid, none of which is made yet.
+    /// Kernels of the same base grid that are not made yet.
     pub(super) fn empty(&self) -> Self {
         Self::new(self.base, self.border_level)
     }
 
-    /// L, a few percent off on rough pressures, for corrections.
+    /// L for corrections, a few percent off on rough pressures.
     pub(super) fn quick(&self) -> &Prepared<f32> {
         made(&self.quick, || {
             Prepared::displacement(&ScaleSplit::new(SplitParams::quick()), self.base, self.border_level)

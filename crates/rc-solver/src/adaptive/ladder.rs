@@ -2,8 +2,10 @@
 
 use rc_core::Grid;
 
-/// A base grid, grids with twice as many elements along both sides one after the other, and the finest grid, which has
-/// twice as many as the last of these or a little less. Level 0 is the base grid.
+/// The base grid, finer grids that double the elements, and the finest grid.
+///
+/// The sides are doubled one grid after the other, starting at the base grid. The finest grid has twice as many
+/// elements along both sides as the last of these grids, or a little less. Level 0 is the base grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ladder {
     base: Grid,
@@ -11,7 +13,9 @@ pub(crate) struct Ladder {
 }
 
 impl Ladder {
-    /// From the sides of the base grid in elements, which are below those of the finest.
+    /// The ladder from the sides of the base grid, in elements, to the finest grid.
+    ///
+    /// The sides are below those of the finest grid.
     pub(crate) fn new(base: [usize; 2], finest: Grid) -> Self {
         let base = finest.with_elements(base[0], base[1]).expect("a base grid is smaller than the finest");
         Self { base, finest }
@@ -25,7 +29,7 @@ impl Ladder {
         self.finest
     }
 
-    /// Levels above the base grid.
+    /// Number of levels above the base grid.
     pub(crate) fn n_levels(self) -> usize {
         n_levels(self.base, self.finest)
     }
@@ -44,18 +48,20 @@ impl Ladder {
         }
     }
 
-    /// Whether the finest grid has twice as many elements along both sides as the level below it.
+    /// Whether the finest grid doubles the level below it along both sides.
     pub(crate) fn is_even(self) -> bool {
         is_even(self.base, self.finest)
     }
 }
 
-/// Elements along x and y.
+/// Number of elements along x and y.
 pub(crate) fn sides_of(grid: Grid) -> [usize; 2] {
     [grid.nx(), grid.ny()]
 }
 
-/// Levels from a base grid to a finer one: the least number of doublings after which it is not the coarser of the two.
+/// Number of levels from a base grid to a finer one.
+///
+/// It is the minimum number of doublings after which the doubled grid is not the coarser one.
 pub(crate) fn n_levels(base: Grid, finest: Grid) -> usize {
     let doublings = |coarse: usize, fine: usize| fine.div_ceil(coarse).next_power_of_two().ilog2() as usize;
     doublings(base.nx(), finest.nx()).max(doublings(base.ny(), finest.ny()))
@@ -71,7 +77,7 @@ pub(crate) fn doubled(base: Grid, level: usize) -> Grid {
     base.with_elements(base.nx() << level, base.ny() << level).expect("a level of a checked grid")
 }
 
-/// Whether elements are squares, but for the rounding of the lengths of the cell.
+/// Whether elements are squares, except for the rounding of the lengths of the cell.
 pub(crate) fn has_squares(grid: Grid) -> bool {
     let spacing = grid.spacing();
     spacing.max_element() < (1.0 + ROUNDING) * spacing.min_element()

@@ -1,4 +1,4 @@
-//! A level on tiles that is not the finest: it prepares the next one.
+//! A level on tiles that is not the finest. It prepares the next one.
 
 use std::sync::Arc;
 
@@ -19,13 +19,15 @@ pub(super) struct SolvedLevel {
     pub(super) pressure: Vec<f64>,
     pub(super) gap: Vec<f64>,
     pub(super) outcome: Outcome,
-    /// Elements whose gap was computed; on the finest level, everything else is proven to be out of contact.
+    /// Number of elements whose gap was computed.
+    ///
+    /// On the finest level, all other elements are proven to be out of contact.
     pub(super) evaluated: usize,
     pub(super) info: LevelInfo,
 }
 
 impl SolvedLevel {
-    /// What the refinement rule needs.
+    /// The fields that the refinement rule needs.
     pub(super) fn fields(&self) -> ContactFields<'_> {
         ContactFields {
             elements: self.elements.elements(),
@@ -44,7 +46,7 @@ pub(super) fn add_work(info: &mut LevelInfo, more: &LevelInfo) {
     info.preconditioner_applications += more.preconditioner_applications;
 }
 
-/// Solves on the elements of the prolonged pressure only.
+/// Solves only on the elements of the prolonged pressure.
 pub(super) fn solve_coarse_level(
     setup: &Setup<'_>,
     grid: Grid,

@@ -9,17 +9,17 @@ use rc_quadtree::{CELLS, Elements, TileSet};
 use super::deal::Deal;
 use super::part::{Part, append_around};
 
-/// The elements of a mesh, which all ranks know, and which of them this rank has.
+/// The elements of a mesh, which all ranks know, and those that this rank has.
 ///
-/// A vector has a value for each element that this rank has: all of them if it is alone. Over ranks all elements are of
-/// one size.
+/// A vector has a value for each element that this rank has. A single rank has all elements. Over ranks, all elements
+/// have one size.
 #[derive(Clone, Debug)]
 pub(crate) struct Mesh {
     elements: Elements,
     ranks: Ranks,
 }
 
-/// The elements that a rank has with those around them, and values.
+/// Values on the elements that a rank has and on those around them.
 pub(super) struct Surroundings<'a> {
     pub(super) elements: Cow<'a, Elements>,
     pub(super) values: Cow<'a, [f64]>,
@@ -28,7 +28,7 @@ pub(super) struct Surroundings<'a> {
 }
 
 impl From<Elements> for Mesh {
-    /// All of them are of this rank.
+    /// A mesh whose elements all belong to this rank.
     fn from(elements: Elements) -> Self {
         Self { elements, ranks: Ranks::alone() }
     }
@@ -43,7 +43,7 @@ impl Deref for Mesh {
 }
 
 impl Mesh {
-    /// Elements that are dealt anew.
+    /// A mesh whose elements are dealt anew.
     pub(super) fn new(elements: Elements, ranks: &Ranks) -> Self {
         debug_assert!(ranks.are_alone() || elements.levels().len() == 1, "elements of one size");
         Self { elements, ranks: ranks.clone() }
@@ -59,7 +59,7 @@ impl Mesh {
         &self.elements
     }
 
-    /// How the tiles of the finest level are dealt.
+    /// The deal of the tiles of the finest level.
     pub(super) fn deal(&self) -> Deal {
         Deal::equal(self.finest().len(), &self.ranks)
     }
@@ -69,7 +69,7 @@ impl Mesh {
         self.deal().range(self.ranks.rank())
     }
 
-    /// The values that this rank has, among those of the whole mesh.
+    /// The range of the values that this rank has among those of the whole mesh.
     pub(super) fn own(&self) -> Range<usize> {
         if self.ranks.are_alone() {
             return 0..self.elements.len();
@@ -83,8 +83,10 @@ impl Mesh {
         self.own().len()
     }
 
-    /// The levels, finest first, of which this rank has something: how much coarser they are than the finest, the
-    /// places of its tiles, and their values in its vectors.
+    /// The levels of which this rank has tiles, finest first.
+    ///
+    /// Each comes with its coarseness relative to the finest, the places of its own tiles, and the range of their
+    /// values in vectors.
     pub(super) fn own_levels(&self) -> impl Iterator<Item = (usize, &[[u32; 2]], Range<usize>)> {
         let levels = self.levels().iter().enumerate();
         levels.map(|(coarser, tiles)| {
@@ -96,8 +98,9 @@ impl Mesh {
         })
     }
 
-    /// Values on the elements of `to`, as [`Elements::moved`] gives them. Over ranks they go to those that have the
-    /// tiles there.
+    /// Values on the elements of `to`, as [`Elements::moved`] gives them.
+    ///
+    /// Over ranks they go to the ranks that have the tiles there.
     pub(super) fn moved(&self, to: &Self, values: &[f64], elsewhere: f64) -> Vec<f64> {
         if self.ranks.are_alone() {
             return self.elements.moved(&to.elements, values, elsewhere);
@@ -106,8 +109,9 @@ impl Mesh {
         to.delivered(places.iter().copied().zip(values.chunks_exact(CELLS)), elsewhere)
     }
 
-    /// The mesh of the tiles for which `wanted` is true; it gets the sides of the level in cells, the place, and where
-    /// the values are.
+    /// The mesh of the tiles for which `wanted` is true.
+    ///
+    /// `wanted` gets the sides of the level in cells, the place, and the range of the values.
     pub(super) fn chosen(&self, wanted: impl Fn([usize; 2], [u32; 2], Range<usize>) -> bool) -> Self {
         if self.ranks.are_alone() {
             return self.elements.filtered(wanted).into();
@@ -119,8 +123,9 @@ impl Mesh {
         Self::new(Elements::uniform(Self::tiles_of_places(sides, places, &self.ranks)), &self.ranks)
     }
 
-    /// A vector from tiles of any rank, and `elsewhere` on all others; tiles that the mesh does not have are dropped.
-    /// All ranks call this together.
+    /// A vector from tiles of any rank, with `elsewhere` on all others.
+    ///
+    /// Tiles that the mesh does not have are dropped. All ranks call this together.
     pub(super) fn delivered<'v>(&self, tiles: impl Iterator<Item = ([u32; 2], &'v [f64])>, elsewhere: f64) -> Vec<f64> {
         let (deal, own) = (self.deal(), self.own_tiles());
         let mut result = vec![elsewhere; self.n_own()];
@@ -145,7 +150,9 @@ impl Mesh {
         result
     }
 
-    /// A vector with the values of the neighbours of all own tiles. All ranks call this together.
+    /// A vector with the values of the neighbours of all own tiles.
+    ///
+    /// All ranks call this together.
     pub(super) fn surroundings<'a>(&'a self, values: &'a [f64]) -> Surroundings<'a> {
         if self.ranks.are_alone() {
             let (elements, values) = (Cow::Borrowed(&self.elements), Cow::Borrowed(values));
@@ -169,7 +176,9 @@ impl Mesh {
         Part::new(&self.ranks, finest, &self.deal(), around)
     }
 
-    /// [`TileSet::on_coarser`] of tiles that all ranks have. Each looks at some of them; all ranks call this together.
+    /// The tiles of [`TileSet::on_coarser`], for tiles that all ranks have.
+    ///
+    /// Each rank checks some of them. All ranks call this together.
     pub(super) fn on_coarser(&self, tiles: &TileSet, sides: [usize; 2], halo: usize) -> TileSet {
         if self.ranks.are_alone() {
             return tiles.on_coarser(sides, halo);
@@ -179,7 +188,9 @@ impl Mesh {
         Self::tiles_of_places(sides, own.on_coarser(sides, halo).places().to_vec(), &self.ranks)
     }
 
-    /// The tiles of all ranks, from those of each. All ranks call this together.
+    /// The tiles of all ranks, from the tiles of each.
+    ///
+    /// All ranks call this together.
     pub(super) fn tiles_of_places(sides: [usize; 2], mine: Vec<[u32; 2]>, ranks: &Ranks) -> TileSet {
         let flat = ranks.concatenate(mine.into_iter().flatten().collect());
         TileSet::new(sides, flat.as_chunks::<2>().0.to_vec())

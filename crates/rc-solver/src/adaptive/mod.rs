@@ -1,8 +1,8 @@
-//! The contact problem on an adaptive mesh: work and memory follow the contact, not the cell.
+//! The contact problem on an adaptive mesh: work and memory follow the contact.
 //!
-//! Uniform grids up to a base grid, as the uniform method; from there on, level by level, only the tiles of 8 × 8 cells
-//! that contact touches or nearly does, with the multilevel operator. What is not stored is out of contact, and the
-//! exclusion proves it.
+//! Levels up to a base grid are uniform grids, as in the uniform method. From there on, each level has only the tiles
+//! of 8 × 8 cells that contact touches or nearly touches. The multilevel operator applies L on them. The rest of the
+//! cell is out of contact, and the exclusion proves it.
 
 mod agreed_stop;
 mod bands;
@@ -71,24 +71,27 @@ use crate::gap_part::GapPart;
 use crate::problem::{Load, Problem};
 use crate::support::Support;
 
-/// A checked contact problem, ready for the adaptive method: heights are sampled, nothing is solved.
+/// A checked contact problem, ready for the adaptive method.
 ///
-/// Displacements are those of Love's squares ([`rc_kernel::Love`]) of the finest side.
+/// Heights are sampled, but nothing is solved. Displacements are those of Love's squares ([`rc_kernel::Love`]) of the
+/// finest side.
 pub(crate) struct AdaptiveProblem<'a> {
     ground: Arc<Ground<'a>>,
     problem: Problem,
     params: AdaptiveParams,
-    /// For fresh gaps in descents.
+    /// Split for fresh gaps in descents.
     split: GapSplit,
     place: Place,
 }
 
-/// Why the uniform grid is better than the adaptive method, which was chosen by an estimate.
+/// The reason why the uniform grid is better than the adaptive method.
+///
+/// An estimate had chosen the adaptive method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Unsuitable {
-    /// Contact is near so large a part of the tiles that the uniform grid is faster.
+    /// Contact is near so many tiles that the uniform grid is faster.
     Scattered {
-        /// That part.
+        /// Part of the tiles that is near contact.
         tile_fraction: f64,
     },
     /// Pressures are so rough that no operator can certify the tolerance.
@@ -102,7 +105,7 @@ impl std::fmt::Debug for AdaptiveProblem<'_> {
 }
 
 impl<'a> AdaptiveProblem<'a> {
-    /// Checks and prepares.
+    /// Checks and prepares the problem.
     ///
     /// # Errors
     /// [`AdaptiveError`].
@@ -115,7 +118,9 @@ impl<'a> AdaptiveProblem<'a> {
         Self::on(&Arc::new(Ground::new(source, params)?), control.into(), params, &Place::default())
     }
 
-    /// The problem of one load, solved in this place. `params` are those that `ground` was made with.
+    /// The problem of one load, solved in this place.
+    ///
+    /// `ground` was made with the same `params`.
     ///
     /// # Errors
     /// [`AdaptiveError`].
@@ -142,14 +147,14 @@ impl<'a> AdaptiveProblem<'a> {
         let prepared = Self { ground: Arc::clone(ground), problem, params: *params, split, place: place.clone() };
         let grid = prepared.grid();
         let Estimate { area_fraction, adaptive_bytes, .. } = prepared.estimate();
-        // Ranks share all but the base grid.
+        // Ranks share all bytes except those of the base grid.
         let base_bytes = base_bytes(sides_of(ground.heights.base().grid())) + ground.sampled_bytes;
         let bytes = base_bytes + (adaptive_bytes - base_bytes) / place.ranks.size() as f64;
         check_memory(grid, params.memory_limit, bytes, Some(100.0 * area_fraction))?;
         Ok(prepared)
     }
 
-    /// What solving it will cost, from the surface and the load alone.
+    /// The expected cost of the solve, from only the surface and the load.
     #[must_use]
     pub(crate) fn estimate(&self) -> Estimate {
         let estimate = Estimate::new(&self.ground.heights, self.params.border_level, &self.problem);
@@ -162,28 +167,28 @@ impl<'a> AdaptiveProblem<'a> {
         finest.with_elements(finest.nx() >> level, finest.ny() >> level).expect("a coarser grid than the finest")
     }
 
-    /// The same problem without a borrow: a borrowed map of heights is copied.
+    /// The same problem without a borrow. A borrowed map of heights is copied.
     pub(crate) fn into_owned(self) -> AdaptiveProblem<'static> {
         let Self { ground, problem, params, split, place } = self;
         AdaptiveProblem { ground: Arc::new(Ground::into_owned(ground)), problem, params, split, place }
     }
 
-    /// What the certificate has to meet.
+    /// The bound that the certificate must meet.
     pub(crate) fn bound(&self) -> crate::ErrorBound {
         self.params.solve.bound
     }
 
-    /// The greatest height over the finest grid, in λ.
+    /// The maximum height over the finest grid, in λ.
     #[must_use]
     pub(crate) fn h_max(&self) -> f64 {
         self.problem.h_max
     }
 
-    /// Solves it.
+    /// Solves the problem.
     ///
-    /// The certificate comes from a fresh application of L on the returned pressure, with bounds on the error of that
-    /// operator added; it covers every cell where a bound does not exclude contact. The result is bitwise the same for
-    /// any number of threads.
+    /// The certificate comes from a fresh application of L on the returned pressure, plus bounds on the error of that
+    /// operator. It covers every cell where a bound does not exclude contact. The result is bitwise the same for any
+    /// number of threads.
     pub(crate) fn solve(&self, observer: &dyn Observer) -> AdaptiveSolution {
         let observer = &AgreedStop { observer, ranks: &self.place.ranks };
         let solver = self.first_solver();
@@ -191,7 +196,9 @@ impl<'a> AdaptiveProblem<'a> {
         self.finish(self.solve_levels(&solver, start, observer))
     }
 
-    /// The same unless the uniform grid is the better one, as the levels below the finest show.
+    /// Solves the problem, unless the uniform grid is better.
+    ///
+    /// The levels below the finest show which method is better.
     ///
     /// # Errors
     /// [`Unsuitable`].
@@ -213,7 +220,7 @@ impl<'a> AdaptiveProblem<'a> {
         self.solver(Splits { fresh: self.split, certified: self.split })
     }
 
-    /// Solves the finest level, with operators as good as the bound needs.
+    /// Solves the finest level, with operators that are as accurate as the bound needs.
     fn solve_levels(&self, solver: &NestedIteration<'_>, start: LevelStart, observer: &dyn Observer) -> NestedSolution {
         let first = solver.splits();
         let certified = self.certifying_split(first.certified, &solver.scale(&start));
@@ -237,12 +244,12 @@ impl<'a> AdaptiveProblem<'a> {
         NestedIteration::new((&self.ground, &self.place), self.problem, &self.params, splits)
     }
 
-    /// The split, from `split` on, that can certify a pressure like this one.
+    /// The first split, from `split` on, that can certify a pressure of this scale.
     fn certifying_split(&self, split: GapSplit, scale: &PressureScale) -> GapSplit {
         certifying_split(split, scale, self.params.solve.bound, &self.problem)
     }
 
-    /// Wraps up what the levels found.
+    /// Makes the solution from the results of the levels.
     fn finish(&self, solved: NestedSolution) -> AdaptiveSolution {
         let NestedSolution { grid, level, levels, coarser, .. } = solved;
         let SolvedLevel { elements, pressure, gap, outcome, evaluated, .. } = level;
@@ -265,10 +272,12 @@ impl<'a> AdaptiveProblem<'a> {
         }
     }
 
-    /// Hands out the displacement of the mean `solution` on the grid, as [`AdaptiveSolution::displacement_rows`] does.
+    /// Hands out the displacement of the mean `solution` on the grid.
+    ///
+    /// The rows are those of [`AdaptiveSolution::displacement_rows`].
     ///
     /// # Errors
-    /// What `take` returns.
+    /// The error that `take` returns.
     pub(crate) fn displacement_rows<E>(
         &self,
         solution: &AdaptiveSolution,
@@ -278,21 +287,23 @@ impl<'a> AdaptiveProblem<'a> {
         solution.displacement_rows(&self.ground.kernels, Rows::on_grid(receiver), take)
     }
 
-    /// The ranks that solve it.
+    /// The ranks that solve the problem.
     pub(crate) fn ranks(&self) -> &Ranks {
         &self.place.ranks
     }
 
-    /// The contact stiffness of `solution`: see [`AdaptiveSolution::contact_stiffness`].
+    /// The contact stiffness of `solution`, as [`AdaptiveSolution::contact_stiffness`].
     pub(crate) fn contact_stiffness(&self, solution: &AdaptiveSolution) -> f64 {
         solution.contact_stiffness(&self.ground.kernels)
     }
 
-    /// Hands out a part of the gap under the mean `solution` on the grid, as [`AdaptiveSolution::displacement_rows`]
-    /// does the displacement. Neither it nor the heights are ever whole in memory.
+    /// Hands out a part of the gap under the mean `solution` on the grid.
+    ///
+    /// The rows are those of [`AdaptiveSolution::displacement_rows`]. Neither the gap nor the heights are ever whole in
+    /// memory.
     ///
     /// # Errors
-    /// What `take` returns.
+    /// The error that `take` returns.
     ///
     /// # Panics
     /// When the solution is on another grid than this problem.

@@ -1,4 +1,4 @@
-//! The multilevel operator as an [`Operator`]: for tests, benchmarks, and forks that want it alone.
+//! The multilevel operator as an [`Operator`], for tests, benchmarks and forks.
 
 use std::sync::{Arc, Mutex};
 
@@ -10,11 +10,11 @@ use super::AdaptiveError;
 use super::operator::{Hierarchy, Prepared, Tables, TileOperator};
 use crate::parallel::Tasks;
 
-/// `v = L p` (Eq. 4) for Love's squares of one size on tiles of 8 × 8 of them, with any tiles left out.
+/// `v = L p` (Eq. 4) for Love's squares of one size on tiles of 8 × 8 of them.
 ///
-/// Pressures are zero on the tiles that are left out, and displacements are not asked for there; the cost is
-/// proportional to the tiles that are there, plus a Fourier transform of the base grid. Element i is cell i % 64 (row
-/// by row) of tile i / 64.
+/// Any tiles may be left out. Pressures are zero there, and displacements are not computed. The cost is proportional to
+/// the number of tiles, plus a Fourier transform of the base grid. Element i is cell i % 64 (row by row) of tile i
+/// / 64.
 pub struct MultilevelOperator {
     tables: Tables<f64>,
     n_elements: usize,
@@ -29,13 +29,16 @@ impl std::fmt::Debug for MultilevelOperator {
 }
 
 impl MultilevelOperator {
-    /// The operator on the tiles at `places` (column, row) of a grid of `side` elements per side, with `base_side` on
-    /// its base grid and an error of at most `error` of the rms displacement (see [`SplitParams::for_error`]). Tiles
-    /// are sorted, and double ones dropped: [`MultilevelOperator::places`].
+    /// The operator on the tiles at `places` (column, row) of a grid.
     ///
-    /// # Errors
-    /// [`AdaptiveError::Base`] when `base_side` is not a multiple of 8, or `side` not 2^k times it, k ≥ 1, or a place
-    /// outside the grid; [`AdaptiveError::OperatorError`].
+    /// The grid has `side` elements per side, and its base grid `base_side`. The error is at most `error` of the rms
+    /// displacement (see [`SplitParams::for_error`]). Tiles are sorted, and duplicates are dropped: see
+    /// [`MultilevelOperator::places`].
+    ///
+    /// Its base grid has `base_side` elements per side. Its error is at most `error` of the rms displacement (see
+    /// [`SplitParams::for_error`]). Tiles are sorted, and duplicates are dropped: see [`MultilevelOperator::places`].
+    /// [`AdaptiveError::Base`] if `base_side` is not a multiple of 8, if `side` is not 2^k times it with k ≥ 1, or if a
+    /// place is outside the grid. [`AdaptiveError::OperatorError`] if `error` is out of reach.
     pub fn new(base_side: usize, side: usize, places: Vec<[u32; 2]>, error: f64) -> Result<Self, AdaptiveError> {
         let bad = AdaptiveError::Base { base: base_side, waves: 0, finest: side };
         let divides = base_side >= TILE && base_side.is_multiple_of(TILE) && side > base_side;

@@ -1,4 +1,6 @@
-//! Nested iteration from the base grid to the finest level: each level prepares the start on the next.
+//! Nested iteration from the base grid to the finest level.
+//!
+//! Each level prepares the start on the next.
 
 use rayon::prelude::*;
 use rc_core::{Event, Grid, Observer};
@@ -21,23 +23,25 @@ use crate::uniform::{self, FinestGrid, NestedGrids};
 
 /// The solved finest level, and the work on all levels.
 pub(super) struct NestedSolution {
-    /// The operators that it was solved with.
+    /// The splits that the level was solved with.
     pub(super) splits: Splits,
     /// The whole grid of the smallest elements.
     pub(super) grid: Grid,
     pub(super) level: SolvedLevel,
-    /// What the error of an operator depends on.
+    /// The scale of the pressure that the error of an operator depends on.
     pub(super) scale: PressureScale,
-    /// Coarsest first.
+    /// The work on all levels, coarsest first.
     pub(super) levels: Vec<LevelInfo>,
     /// Values of the last level but one.
     pub(super) coarser: Option<LevelValues>,
 }
 
-/// What the base grid found, or a finer level that was kept.
+/// The start from the base grid, or from a finer level that was kept.
 pub(super) struct BaseStart {
     start: LevelStart,
-    /// Part of the cell in tiles of the finest level that contact touches or is next to.
+    /// Part of the cell in tiles that contact touches or is next to.
+    ///
+    /// These are tiles of the finest level.
     pub(super) tile_fraction: f64,
 }
 
@@ -57,12 +61,14 @@ impl<'a> NestedIteration<'a> {
         Self { setup: Setup::new(ground, problem, params, splits), splits }
     }
 
-    /// The splits that it solves with.
+    /// The splits of the operators.
     pub(super) fn splits(&self) -> Splits {
         self.splits
     }
 
-    /// Solves the base grid, and the coarser ones that it starts from, or goes on from what was kept.
+    /// Solves the base grid and the coarser grids that it starts from.
+    ///
+    /// If a start was kept, it goes on from that.
     pub(super) fn begin(&self, observer: &dyn Observer) -> BaseStart {
         if let Some(checkpoint) = self.setup.checkpoint
             && let Some((start, tile_fraction)) = kept(checkpoint, self.ladder().finest(), self.setup.ranks)
@@ -109,8 +115,9 @@ impl<'a> NestedIteration<'a> {
         NestedSolution { splits: self.splits, grid, level, scale, levels, coarser }
     }
 
-    /// Solves the finest level where another operator has prepared it. Where sizes of elements differ they suit the
-    /// other operator; all levels are then solved again.
+    /// Solves the finest level, after another operator has prepared it.
+    ///
+    /// If sizes of elements differ, they suit the other operator. All levels are then solved again.
     pub(super) fn take_over(&self, start: LevelStart, observer: &dyn Observer) -> NestedSolution {
         let start = if self.setup.border_level > 0 { self.prepare(self.begin(observer), observer) } else { start };
         self.finish(start, observer)
@@ -170,7 +177,9 @@ impl<'a> NestedIteration<'a> {
         }
     }
 
-    /// The start on the next finer `grid`: on its elements, or on those `at_edges` of contacts only.
+    /// The start on the next finer `grid`.
+    ///
+    /// It is on all elements of the grid, or only on those `at_edges` of contacts.
     fn refined(&self, level: &SolvedLevel, grid: Grid, at_edges: bool) -> MeshStart {
         let SolvedLevel { elements, pressure, gap, outcome, .. } = level;
         let function = prolongation::edge_function(elements, pressure, gap, outcome.contact_gap);
@@ -182,7 +191,9 @@ impl<'a> NestedIteration<'a> {
         }
     }
 
-    /// What the error of an operator depends on, as far as a start tells.
+    /// The scale of a pressure, which the error of an operator depends on.
+    ///
+    /// It is known as far as a start shows it.
     pub(super) fn scale(&self, start: &LevelStart) -> PressureScale {
         let LevelStart { grid, mesh, contact_gap, energy_length, .. } = start;
         let size = self.setup.penetration(*contact_gap).abs();
@@ -197,13 +208,15 @@ impl<'a> NestedIteration<'a> {
     }
 }
 
-/// Tells the observer that a level begins; there are `finer` levels above it.
+/// Tells the observer that a level begins. There are `finer` levels above it.
 fn announce(start: &LevelStart, finer: usize, observer: &dyn Observer) {
     let level = start.levels.len();
     observer.notify(&Event::Level { grid: start.grid, level, n_levels: level + 1 + finer });
 }
 
-/// Part of the squares of `side` × `side` elements in which the edge function of a contact is not zero.
+/// Part of the squares in which the edge function of a contact is not zero.
+///
+/// A square has `side` × `side` elements.
 fn tile_fraction(grid: Grid, function: &[f64], side: usize) -> f64 {
     let touches = |row: &[f64]| row.iter().any(|&value| value != 0.0);
     let rows = function.par_chunks(side * grid.nx()).map(|rows| {

@@ -1,4 +1,4 @@
-//! What the error of the split kernel does to a certificate.
+//! The effect of the split kernel's error on a certificate.
 
 use super::mesh::Mesh;
 use super::roughness::roughness;
@@ -7,19 +7,21 @@ use crate::problem::Problem;
 use crate::tolerance::Measure;
 use crate::{Certificate, Control, ErrorBound};
 
-/// The part of a relative bound that the error of an operator may take; with more, the next better operator certifies.
+/// Maximum part of a relative bound that the error of an operator may take.
+///
+/// With a larger part, the next better operator certifies.
 const LARGEST_PART: f64 = 0.5;
 
-/// A pressure, as far as the error of its displacement depends on it.
+/// The properties of a pressure that the error of its displacement depends on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PressureScale {
-    /// Levels above the base grid.
+    /// Number of levels above the base grid.
     pub(super) n_levels: usize,
-    /// Greatest displacement, in λ.
+    /// Maximum displacement, in λ.
     pub(super) displacement: f64,
-    /// See [`roughness`], in λ.
+    /// Roughness of the pressure, in λ: see [`roughness`].
     pub(super) roughness: f64,
-    /// U/σ0, the elastic energy over the mean pressure, in λ.
+    /// U/σ0, the ratio of elastic energy to mean pressure, in λ.
     pub(super) energy_length: f64,
 }
 
@@ -34,25 +36,27 @@ impl PressureScale {
     }
 }
 
-/// The error of an operator under one pressure at most, as measured with a margin ([`GapSplit`]).
+/// Bound on the error of an operator under one pressure, measured with a margin ([`GapSplit`]).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OperatorError {
-    /// Of the displacement of any element, in λ.
+    /// Error of the displacement of any element, in λ.
     pub(super) displacement: f64,
-    /// Of an energy: G/σ0 of [`Certificate::energy`], in units of U/σ0, the length of [`Measure::Energy`].
+    /// Error of G/σ0 in [`Certificate::energy`], an energy.
+    ///
+    /// The unit is U/σ0, the length of [`Measure::Energy`].
     energy: f64,
-    /// Of the elastic energy, relative.
+    /// Relative error of the elastic energy.
     elastic_energy: f64,
 }
 
 impl OperatorError {
-    /// Under pressures of this scale.
+    /// The error of a split under pressures of this scale.
     pub(super) fn of(split: GapSplit, scale: &PressureScale, control: Control) -> Self {
         let PressureScale { n_levels, displacement, roughness, energy_length } = *scale;
         let displacement = split.error * n_levels as f64 * displacement + split.error_of_roughness * roughness;
         let relative = displacement / energy_length;
-        // The mean of the gap and its minimum may be off to opposite sides; under penetration control G has the mean
-        // once more.
+        // The errors of the mean of the gap and of its minimum may have opposite signs. Under penetration control, G
+        // has the mean once more.
         let of_gap = match control {
             Control::MeanPressure(_) => 2.0,
             Control::Penetration(_) => 3.0,
@@ -60,7 +64,9 @@ impl OperatorError {
         Self { displacement, energy: of_gap * relative, elastic_energy: 0.5 * relative }
     }
 
-    /// The certificate for the exact operator, from that of a gap that was computed with this error.
+    /// The certificate for the exact operator.
+    ///
+    /// `certificate` is that of a gap that was computed with this error.
     pub(super) fn added_to(self, certificate: Certificate, h_range: f64) -> Certificate {
         let relative = 2.0 * self.displacement / h_range;
         Certificate {
@@ -71,13 +77,15 @@ impl OperatorError {
         }
     }
 
-    /// √(G/U), both as far off as they may be.
+    /// √(G/U), with the maximum errors of G and U.
     fn added_to_energy(self, energy: f64) -> f64 {
         let least = 1.0 - self.elastic_energy;
         if least > 0.0 { ((energy.powi(2) + self.energy) / least).sqrt() } else { f64::INFINITY }
     }
 
-    /// What the bound leaves to the computed gap, in units of the measure's length; 0 when the error takes all of it.
+    /// The part of the bound that is left to the computed gap.
+    ///
+    /// It is in units of the measure's length, and 0 if the error takes all of the bound.
     pub(super) fn remaining(self, bound: ErrorBound, problem: &Problem) -> f64 {
         let error = match bound.measure() {
             Measure::HeightRange => 2.0 * self.displacement / problem.h_range,
@@ -86,32 +94,34 @@ impl OperatorError {
         (bound.overlap() - error).max(0.0)
     }
 
-    /// What an iteration has to reach for the bound to be met. Where the error leaves less than that, a better operator
-    /// will certify.
+    /// The error that an iteration must reach to meet the bound.
+    ///
+    /// If the error of the operator leaves less than that, a better operator will certify.
     pub(super) fn goal(self, bound: ErrorBound, problem: &Problem) -> f64 {
         self.remaining(bound, problem).max(minimum_remaining(bound)).min(bound.aim())
     }
 
-    /// Whether the computed gap has enough of the bound to itself.
+    /// Whether the bound leaves enough to the computed gap.
     fn is_small(self, bound: ErrorBound, problem: &Problem) -> bool {
         self.remaining(bound, problem) >= minimum_remaining(bound)
     }
 }
 
-/// What an operator has to leave to the computed gap.
+/// Minimum part of the bound that an operator must leave to the computed gap.
 fn minimum_remaining(bound: ErrorBound) -> f64 {
     bound.aim().min((1.0 - LARGEST_PART) * bound.overlap())
 }
 
-/// The fastest split, from `split` on, whose error is a small part of the bound; the most accurate one where no error
-/// is.
+/// The fastest split, from `split` on, whose error is a small part of the bound.
+///
+/// If no split is good enough, it is the most accurate one.
 pub(super) fn certifying_split(
     split: GapSplit,
     scale: &PressureScale,
     bound: ErrorBound,
     problem: &Problem,
 ) -> GapSplit {
-    // A coarser level that has lost its contact tells nothing; there is a second look after the solve.
+    // A coarser level that has lost its contact says nothing. There is a second check after the solve.
     if scale.energy_length.is_nan() || scale.energy_length <= 0.0 {
         return split;
     }
@@ -123,7 +133,7 @@ pub(super) fn certifying_split(
 /// Whether the error of the most accurate operator is a small part of the bound.
 pub(super) fn can_certify(scale: &PressureScale, bound: ErrorBound, problem: &Problem) -> bool {
     let split = certifying_split(GapSplit::most_accurate(), scale, bound, problem);
-    // A coarser level that has lost its contact tells nothing.
+    // A coarser level that has lost its contact says nothing.
     scale.energy_length.is_nan()
         || scale.energy_length <= 0.0
         || OperatorError::of(split, scale, problem.control).is_small(bound, problem)

@@ -1,4 +1,4 @@
-//! The tiles of a level that a rank has, with those of other ranks that it reads.
+//! The tiles of a level that a rank has, and those that it reads.
 
 use std::ops::Range;
 
@@ -7,29 +7,30 @@ use rc_quadtree::{CELLS, TileSet};
 
 use super::deal::Deal;
 
-/// The tiles of a level that a rank has, and those of other ranks that it reads. Alone it has all of them.
+/// The tiles of a level that a rank has, and those that it reads.
 ///
-/// Values are those of [`Part::tiles`]. The own ones are in one piece, since a rank has a range of the curve that tiles
-/// are sorted along.
+/// It reads tiles of other ranks. A single rank has all tiles. Values are those of [`Part::tiles`]. The own values are
+/// in one piece, since a rank has a range of the curve that tiles are sorted along.
 #[derive(Debug)]
 pub(super) struct Part {
     ranks: Ranks,
     tiles: TileSet,
     own: Range<usize>,
-    /// What other ranks read: which tiles, by rank.
+    /// Tiles that other ranks read, by rank.
     sent: Vec<(usize, Vec<usize>)>,
-    /// What this one reads.
+    /// Tiles that this rank reads, by rank.
     received: Vec<(usize, Vec<usize>)>,
 }
 
 impl Part {
-    /// All tiles of a level: of the only rank, or of each of them.
+    /// All tiles of a level, for a single rank or for each rank.
     pub(super) fn whole(tiles: TileSet) -> Self {
         Self { ranks: Ranks::alone(), own: 0..tiles.len(), tiles, sent: Vec::new(), received: Vec::new() }
     }
 
-    /// The tiles of `level` that this rank has, and those at the `read` places that there are. All ranks call this
-    /// together.
+    /// The tiles of `level` that this rank has, and those that it reads.
+    ///
+    /// It reads the tiles at the `read` places, where there are tiles. All ranks call this together.
     pub(super) fn new(ranks: &Ranks, level: &TileSet, deal: &Deal, read: Vec<[u32; 2]>) -> Self {
         let own = deal.range(ranks.rank());
         let find = |place: [u32; 2]| level.find(place[0].into(), place[1].into());
@@ -47,7 +48,7 @@ impl Part {
             }
             let owner = deal.owner(tile);
             u64::pack(&[tile as u64], &mut wanted[owner]);
-            // Owners follow each other as tiles do.
+            // Owners follow each other in the order of tiles.
             match received.last_mut().filter(|(rank, _)| *rank == owner) {
                 Some((_, tiles)) => tiles.push(here),
                 None => received.push((owner, vec![here])),
@@ -60,22 +61,22 @@ impl Part {
         Self { ranks: ranks.clone(), tiles, own: first..first + own.len(), sent, received }
     }
 
-    /// The tiles that values are of.
+    /// The tiles of the values.
     pub(super) fn tiles(&self) -> &TileSet {
         &self.tiles
     }
 
-    /// The own ones among them.
+    /// The range of the own tiles.
     pub(super) fn own(&self) -> Range<usize> {
         self.own.clone()
     }
 
-    /// The places of the own ones.
+    /// The places of the own tiles.
     pub(super) fn own_places(&self) -> &[[u32; 2]] {
         &self.tiles.places()[self.own()]
     }
 
-    /// Their values, among those of all.
+    /// The range of the own tiles' values among all values.
     pub(super) fn own_cells(&self) -> Range<usize> {
         self.own.start * CELLS..self.own.end * CELLS
     }
@@ -85,7 +86,9 @@ impl Part {
         self.tiles.n_cells()
     }
 
-    /// Fills the values of what is not own from the ranks that have it. All ranks call this together.
+    /// Fills in the values of tiles that other ranks have.
+    ///
+    /// All ranks call this together.
     pub(super) fn exchange<T: Packed>(&self, values: &mut [T]) {
         if self.ranks.are_alone() {
             return;
@@ -107,8 +110,10 @@ impl Part {
     }
 }
 
-/// Appends the places that are at most `margin` tiles from the square of tiles between two places, both included, of a
-/// periodic level of so many tiles.
+/// Appends the places at most `margin` tiles from a square of tiles.
+///
+/// The square is between the places `first` and `last`, both included. The level is periodic, with `extent` tiles along
+/// both axes.
 pub(super) fn append_around(
     places: &mut Vec<[u32; 2]>,
     (first, last): ([u32; 2], [u32; 2]),

@@ -1,7 +1,8 @@
-//! From the pressure on the elements of one level to the start, and the elements it needs, on the next finer one.
+//! From the pressure on one level to the start on the next finer one.
 //!
-//! The edge function φ of [`crate::uniform`]'s prolongation is interpolated: p² inside, and -c² times the distance to
-//! the edge outside, which is linear across the edge of a contact.
+//! The elements of the finer level are found too. The edge function φ of [`crate::uniform`]'s prolongation is
+//! interpolated. It is p² inside, and -c² times the distance to the edge outside, so it is linear across the edge of a
+//! contact.
 
 use std::ops::Range;
 
@@ -15,13 +16,15 @@ use super::ladder::sides_of;
 use super::mesh::Mesh;
 use crate::uniform::edge_function_outside;
 
-/// Elements, and the pressure that an iteration on them starts from; the pressure is zero everywhere else.
+/// Elements, and the pressure on them from which an iteration starts.
+///
+/// The pressure is zero everywhere else.
 pub(super) struct MeshStart {
     pub(super) elements: Mesh,
     pub(super) pressure: Vec<f64>,
 }
 
-/// φ on the elements, from pressure and gap there.
+/// The edge function φ on the elements, from pressure and gap there.
 pub(super) fn edge_function(mesh: &Mesh, pressure: &[f64], gap: &[f64], contact_gap: f64) -> Vec<f64> {
     let mut function = vec![0.0; pressure.len()];
     let around = mesh.surroundings(pressure);
@@ -46,15 +49,16 @@ pub(super) fn edge_function(mesh: &Mesh, pressure: &[f64], gap: &[f64], contact_
     function
 }
 
-/// The start on the elements of the next finer `grid`, where there is contact or nearly, from φ on all tiles of the
-/// base grid, which all ranks have.
+/// The start on the next finer `grid`, from φ on the base grid.
+///
+/// The start has the elements in contact or nearly so. φ is given on all tiles of the base grid, which all ranks have.
 pub(super) fn refine_base(tiles: &TileSet, function: &[f64], grid: Grid, ranks: &Ranks) -> MeshStart {
     let elsewhere = far_from_contact(function, &Ranks::alone());
     let own = Deal::equal(tiles.len(), ranks).range(ranks.rank());
     refined(tiles, own, (function, elsewhere), grid, ranks)
 }
 
-/// The same from φ on elements of one size.
+/// The start on the next finer `grid`, from φ on elements of one size.
 pub(super) fn refine_all(mesh: &Mesh, function: &[f64], grid: Grid) -> MeshStart {
     let elsewhere = far_from_contact(function, mesh.ranks());
     let around = mesh.surroundings(function);
@@ -63,7 +67,7 @@ pub(super) fn refine_all(mesh: &Mesh, function: &[f64], grid: Grid) -> MeshStart
     refined(tiles, own, (&around.values, elsewhere), grid, mesh.ranks())
 }
 
-/// The start under the `own` ones of some tiles.
+/// The start under the `own` tiles among `tiles`.
 fn refined(
     tiles: &TileSet,
     own: Range<usize>,
@@ -86,8 +90,10 @@ fn refined(
     MeshStart { elements, pressure }
 }
 
-/// The start on `refined`, whose smallest elements are quarters of those of `elements`. Elements that stay keep their
-/// `pressure`; that of new ones comes from φ. Elements are of several sizes, so that this rank is alone.
+/// The start on `refined`, whose smallest elements are quarters of those of `elements`.
+///
+/// Elements that stay keep their `pressure`. The pressure of new ones comes from φ. Elements have several sizes, so
+/// this rank is the only one.
 pub(super) fn refine_some(elements: &Elements, pressure: &[f64], function: &[f64], refined: Elements) -> MeshStart {
     let mut start = elements.moved(&refined, pressure, 0.0);
     prolong_onto(elements, function, far_from_contact(function, &Ranks::alone()), &refined, &mut start);
@@ -95,7 +101,7 @@ pub(super) fn refine_some(elements: &Elements, pressure: &[f64], function: &[f64
     MeshStart { elements: refined.into(), pressure: start }
 }
 
-/// φ where no element is: there is no contact for a long way.
+/// The value of φ where there is no element, far from contact.
 fn far_from_contact(function: &[f64], ranks: &Ranks) -> f64 {
     let [sum, n] = ranks.fold([-0.0, 0.0], |sums| {
         let contact = function.iter().copied().filter(|&value| value > 0.0);
@@ -104,7 +110,7 @@ fn far_from_contact(function: &[f64], ranks: &Ranks) -> f64 {
     -sum / n.max(1.0)
 }
 
-/// Inside contact φ is the square of the pressure.
+/// Replaces φ by the pressure. Inside contact φ is its square.
 fn to_pressure(positive_part: &mut [f64]) {
     positive_part.par_iter_mut().for_each(|value| *value = value.sqrt());
 }

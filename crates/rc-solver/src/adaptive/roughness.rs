@@ -1,4 +1,4 @@
-//! The roughness of a pressure, which the split kernel's error grows with.
+//! The roughness of a pressure. The error of the split kernel grows with it.
 
 use std::ops::Range;
 
@@ -7,8 +7,9 @@ use rc_quadtree::{CELLS, TILE};
 
 use super::mesh::Mesh;
 
-/// Maximum, over all elements, of the difference between `pressure` and the mean of its four neighbours, times the
-/// element's side (λ = 1).
+/// Maximum difference between `pressure` and the mean of its four neighbours, times the element's side.
+///
+/// The maximum is over all elements, and λ = 1.
 pub(super) fn roughness(mesh: &Mesh, pressure: &[f64]) -> f64 {
     let around = mesh.surroundings(pressure);
     let of_level = |(coarser, places, values): (usize, &[[u32; 2]], Range<usize>)| {

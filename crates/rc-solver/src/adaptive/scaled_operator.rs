@@ -1,8 +1,8 @@
-//! The multilevel operator on vectors of double precision, for fresh gaps: certificates come from it.
+//! The multilevel operator on vectors of double precision, for fresh gaps.
 //!
-//! Inside it computes in double or in single precision. In single precision the rounding of L p is below 1e-6 of the
-//! rms displacement, as is the error of the split kernel itself; it takes half the time and memory. Heights and gaps
-//! are in double precision either way.
+//! Certificates come from it. Inside, it computes in double or in single precision. In single precision, the rounding
+//! of L p is below 1e-6 of the rms displacement, as is the error of the split kernel itself. It takes half the time and
+//! memory. Heights and gaps are in double precision either way.
 
 use std::sync::Arc;
 
@@ -18,22 +18,24 @@ pub(super) struct ScaledOperator<'a, T> {
     tables: &'a Tables<T>,
     /// Subtracted from every pressure before it is rounded.
     reference: f64,
-    /// The unit of pressures and displacements, a power of two, so that no scene underflows or overflows.
+    /// The unit of pressures and displacements.
+    ///
+    /// It is a power of two, so that no scene underflows or overflows.
     unit: f64,
 }
 
 impl<'a, T: Real + Into<f64>> ScaledOperator<'a, T> {
-    /// The operator of `tables` on `hierarchy`, for pressures about `mean` and displacements of about `size`.
+    /// The operator of `tables` on `hierarchy`.
     ///
-    /// A uniform pressure displaces nothing, so where elements cover the cell the mean is subtracted. Far beyond full
-    /// contact its rounding, and its part of the split kernel's error, would be larger than the pressure that the
-    /// heights add to it.
+    /// Pressures are about `mean`, and displacements about `size`. A uniform pressure displaces nothing, so the mean is
+    /// subtracted if elements cover the cell. Far beyond full contact, the mean would spoil the result: its rounding
+    /// and its part of the split kernel's error would be larger than the pressure from the heights.
     pub(super) fn new(hierarchy: Arc<Hierarchy>, tables: &'a Tables<T>, mean: f64, size: f64) -> Self {
         let reference = if hierarchy.elements().cover_cell() { mean } else { 0.0 };
         Self { operator: TileOperator::new(hierarchy), tables, reference, unit: power_of_two_near(size) }
     }
 
-    /// See [`TileOperator::base_displacement`]; in λ.
+    /// Smooth remainder on the base grid, in λ: see [`TileOperator::base_displacement`].
     pub(super) fn base_displacement(&self) -> Vec<f64> {
         self.operator.base_displacement().iter().map(|&v| self.unit * v.into()).collect()
     }

@@ -1,4 +1,4 @@
-//! What all levels of one problem share.
+//! Data that all levels of one problem share.
 
 use std::sync::Arc;
 
@@ -23,21 +23,21 @@ use crate::parallel;
 use crate::problem::Problem;
 use crate::{Control, IterationParams};
 
-/// The splits of the kernel that gaps are computed with.
+/// The splits of the kernel for gaps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Splits {
-    /// In descents.
+    /// Split in descents.
     pub(super) fresh: GapSplit,
-    /// For certificates: the same or a better one.
+    /// Split for certificates: the same or a better one.
     pub(super) certified: GapSplit,
 }
 
-/// Where a problem is solved.
+/// The place where a problem is solved.
 #[derive(Clone, Default)]
 pub(crate) struct Place {
-    /// Among which the mesh is dealt.
+    /// Ranks that the mesh is dealt among.
     pub(crate) ranks: Ranks,
-    /// Keeps what each level leaves for the next.
+    /// Storage for the start of each level, if a solve is to be continued.
     pub(crate) checkpoint: Option<Arc<dyn Checkpoint>>,
 }
 
@@ -47,16 +47,16 @@ pub(super) struct Setup<'a> {
     pub(super) problem: Problem,
     pub(super) params: IterationParams,
     pub(super) border_level: usize,
-    /// Among which elements are dealt.
+    /// Ranks that elements are dealt among.
     pub(super) ranks: &'a Ranks,
-    /// Keeps what each level leaves for the next.
+    /// Storage for the start of each level, if a solve is to be continued.
     pub(super) checkpoint: Option<&'a dyn Checkpoint>,
-    /// L, a few percent off on rough pressures, and its approximate inverse, for corrections.
+    /// L for corrections, a few percent off on rough pressures. Its approximate inverse is below.
     pub(super) quick: &'a Prepared<f32>,
     pub(super) preconditioner: &'a Prepared<f32>,
     /// L for fresh gaps of descents.
     pub(super) fresh: &'a PreparedGap,
-    /// L for certificates, where that is another one.
+    /// L for certificates, if it differs from that of descents.
     pub(super) better: Option<&'a PreparedGap>,
 }
 
@@ -93,7 +93,7 @@ impl<'a> Setup<'a> {
         self.heights.base().grid()
     }
 
-    /// Levels from the base grid to one whose whole grid is `grid`.
+    /// Number of levels from the base grid to one whose whole grid is `grid`.
     pub(super) fn n_levels(&self, grid: Grid) -> usize {
         ladder::n_levels(self.base(), grid)
     }
@@ -102,7 +102,7 @@ impl<'a> Setup<'a> {
         Arc::new(Hierarchy::new(self.base(), mesh.clone(), reach))
     }
 
-    /// About what pressures like that of `start` have for a mean.
+    /// Approximate mean of pressures like that of `start`.
     pub(super) fn mean_pressure(&self, start: &MeshStart) -> f64 {
         let n_cell = start.elements.finest().sides().into_iter().product::<usize>() as f64;
         match self.problem.control {
@@ -121,7 +121,7 @@ impl<'a> Setup<'a> {
         tables.operator(hierarchy, self.mean_pressure(start), self.problem.h_range)
     }
 
-    /// The same of the quick operator.
+    /// The quick operator under pressures like that of `start`.
     pub(super) fn quick_operator<'t>(
         &self,
         hierarchy: Arc<Hierarchy>,
@@ -131,13 +131,16 @@ impl<'a> Setup<'a> {
         ScaledOperator::new(hierarchy, tables, self.mean_pressure(start), self.problem.h_range)
     }
 
-    /// The penetration at which the gap in contact is `contact_gap`: no displacement of a partial contact is greater.
+    /// The penetration at which the gap in contact is `contact_gap`.
+    ///
+    /// No displacement of a partial contact exceeds it.
     pub(super) fn penetration(&self, contact_gap: f64) -> f64 {
         contact_gap - self.problem.offset() + self.problem.h_max
     }
 
-    /// Tiles, of so many columns and rows, where the gap may be less than `gap` under a displacement whose smooth part
-    /// is `smooth`.
+    /// Tiles where the gap may be less than `gap`, with `extent` columns and rows.
+    ///
+    /// `smooth` is the smooth part of the displacement.
     pub(super) fn possible_contact(
         &self,
         smooth: &SmoothDisplacement<'_>,
@@ -152,18 +155,19 @@ impl<'a> Setup<'a> {
         is_plastic(pressure, self.problem.hardness)
     }
 
-    /// The mesh with elements divided wherever they are too coarse for the pressure and the gap on them; with `deepen`
-    /// the smallest too.
+    /// The mesh with elements divided where they are too coarse for their pressure and gap.
+    ///
+    /// With `deepen`, the smallest elements are divided too.
     pub(super) fn refined(&self, fields: &ContactFields<'_>, deepen: bool) -> Elements {
         let (heights, pressure) = (self.heights.curvature(), parallel::maximum(fields.pressure, 0.0));
         let hardness = self.problem.hardness;
-        // No pressure is nearer than the ring: ∫ p |∂²(1/πr)/∂x²| dA ≤ max p ∫ 2/(π r³) dA.
+        // No pressure is nearer than the ring. So ∫ p |∂²(1/πr)/∂x²| dA ≤ max p ∫ 2/(π r³) dA.
         let of_displacement = |side: f64| 4.0 * pressure / ((RING - 1) as f64 * side);
         let curvature = |coarser| heights + of_displacement(fields.elements.side(coarser));
         let mut chosen = fields.too_coarse(curvature);
         if pressure >= hardness {
-            // The edges of the plastic part are those of what is left to the hardness, of which plastic elements must
-            // hide nothing.
+            // The edges of the plastic part are those of the rest that pressures leave to the hardness. Plastic
+            // elements must not hide any of it.
             let rest: Vec<f64> = fields.pressure.iter().map(|p| hardness - p).collect();
             let gap: Vec<f64> = fields.gap.iter().map(|g| -g).collect();
             let (beyond, contact_gap) = (hardness, -fields.contact_gap);

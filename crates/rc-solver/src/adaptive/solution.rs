@@ -1,4 +1,4 @@
-//! What the adaptive method returns: pressures on tiles, and everything else on request.
+//! The solution of the adaptive method: pressures on tiles, and everything else on request.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ use crate::{ContactArea, ContactElement, Observables, SolveInfo};
 
 /// A contact problem solved on an adaptive mesh.
 ///
-/// Only what contact touches is stored, over ranks by the one that has it; [`AdaptiveSolution::pressure_rows`] gives
+/// Only tiles in contact are stored. Over ranks, each rank has its own tiles. [`AdaptiveSolution::pressure_rows`] gives
 /// the rows of the finest grid one tile high at a time, for files and pictures.
 #[derive(Clone, Debug)]
 pub(crate) struct AdaptiveSolution {
@@ -34,26 +34,32 @@ pub(crate) struct AdaptiveSolution {
     pub(super) elements: Mesh,
     pub(super) pressure: Vec<f64>,
     pub(super) area: ContactArea,
-    /// The greatest pressure; infinite without a hardness.
+    /// The maximum pressure. Infinite without a hardness.
     pub(super) hardness: f64,
     pub(super) plastic: Option<PlasticEdges>,
-    /// How it was found and how good it is. The certificate holds for the whole cell.
+    /// How the solution was found, and how good it is.
+    ///
+    /// The certificate holds for the whole cell.
     pub info: SolveInfo,
-    /// Cells of the finest grid whose gap was computed for the certificate.
+    /// Number of cells of the finest grid whose gap the certificate computed.
     pub evaluated: usize,
-    /// Cells that were proven to be out of contact without computing their gap: all others.
+    /// Number of cells that were proven to be out of contact.
+    ///
+    /// Their gap was not computed. These are all other cells.
     pub proven: usize,
 }
 
 impl AdaptiveSolution {
-    /// The grid: the smallest elements are 2^[`AdaptiveParams::border_level`](super::AdaptiveParams) times smaller than
-    /// its own.
+    /// The grid of the problem.
+    ///
+    /// The smallest elements are 2^[`AdaptiveParams::border_level`](super::AdaptiveParams) times smaller than its
+    /// elements.
     #[must_use]
     pub(crate) fn grid(&self) -> Grid {
         self.grid
     }
 
-    /// Elements in contact; over ranks those of this one.
+    /// Elements in contact. Over ranks they are those of this rank.
     pub(crate) fn elements(&self) -> impl Iterator<Item = ContactElement> + '_ {
         let tiles = self.elements.own_levels().flat_map(|(coarser, places, values)| {
             places.iter().enumerate().map(move |(tile, place)| (coarser, place, values.start + tile * CELLS))
@@ -76,7 +82,7 @@ impl AdaptiveSolution {
         self.elements.ranks().count(self.pressure.par_iter().filter(|&&p| p > 0.0).count())
     }
 
-    /// Whether every element is in contact, and elements are everywhere.
+    /// Whether elements cover the cell and all of them are in contact.
     #[must_use]
     pub(crate) fn is_full_contact(&self) -> bool {
         self.elements.cover_cell() && self.n_elements() == self.elements.n_cells()
@@ -105,8 +111,9 @@ impl AdaptiveSolution {
         (Elements::uniform(tiles).into(), pressure)
     }
 
-    /// Tiles of the smallest elements wherever there are elements, and the pressure on them: a larger element stands
-    /// for its parts.
+    /// Tiles of the smallest elements wherever there are elements, and the pressure on them.
+    ///
+    /// A larger element stands for its parts.
     pub(super) fn on_finest(&self) -> (Mesh, Cow<'_, [f64]>) {
         let levels = self.elements.levels();
         let parts = |coarser: usize, tile: usize| {
@@ -120,7 +127,7 @@ impl AdaptiveSolution {
         for (coarser, tile, start) in self.elements.tiles() {
             for place in parts(coarser, tile) {
                 let Some(part) = tiles.find(place[0].into(), place[1].into()) else { continue };
-                // Which cell of the larger tile is over cell i of the part, along one side.
+                // The cell of the larger tile that is over cell i of the part, along one side.
                 let over = |place: u32, i: usize| ((place as usize * TILE + i) >> coarser) % TILE;
                 for (cell, value) in values[part * CELLS..][..CELLS].iter_mut().enumerate() {
                     *value = self.pressure[start + over(place[1], cell / TILE) * TILE + over(place[0], cell % TILE)];
@@ -130,11 +137,13 @@ impl AdaptiveSolution {
         (Elements::uniform(tiles).into(), Cow::Owned(values))
     }
 
-    /// Hands out the pressure on the grid, in the mean over smaller elements, eight rows at a time, in order: the index
-    /// of the first row, and the rows one after the other. Stops at the first error.
+    /// Hands out the pressure on the grid in order, eight rows at a time.
+    ///
+    /// The pressure is the mean over smaller elements. `take` gets the index of the first row, and the rows one after
+    /// the other. Stops at the first error.
     ///
     /// # Errors
-    /// What `take` returns.
+    /// The error that `take` returns.
     pub(crate) fn pressure_rows<E>(
         &self,
         receiver: Receiver,
@@ -151,13 +160,14 @@ impl AdaptiveSolution {
         Ok(())
     }
 
-    /// Hands out the displacement v of the grid's pressure, rows of tiles at a time as
-    /// [`AdaptiveSolution::pressure_rows`] does, at about the cost of one application of L on the whole grid; with
-    /// `finest` that of the pressure itself, on the grid of the smallest elements. The gap is `v - h + offset`: see
-    /// [`AdaptiveSolution::gap_offset`], and [`super::AdaptiveProblem::gap_rows`].
+    /// Hands out the displacement v of the grid's pressure, rows of tiles at a time.
+    ///
+    /// The rows are those of [`AdaptiveSolution::pressure_rows`]. This costs about one application of L on the whole
+    /// grid. With `finest`, v is that of the pressure itself, on the grid of the smallest elements. The gap is `v - h +
+    /// offset`: see [`AdaptiveSolution::gap_offset`] and [`super::AdaptiveProblem::gap_rows`].
     ///
     /// # Errors
-    /// What `take` returns.
+    /// The error that `take` returns.
     pub(super) fn displacement_rows<E>(
         &self,
         kernels: &Kernels,
@@ -175,7 +185,7 @@ impl AdaptiveSolution {
             let mesh = Mesh::new(Elements::uniform(tiles), ranks);
             let hierarchy = Arc::new(Hierarchy::new(self.base, mesh.clone(), prepared.reach()));
             let mut values = own.moved(&mesh, &pressure, 0.0);
-            // Where the pressure is on part of the cell, the mean over all of it says nothing of its size.
+            // If the pressure is on a part of the cell, the mean over the whole cell does not tell its size.
             let mean = if own.cover_cell() { self.info.mean_pressure } else { 0.0 };
             let size = self.info.penetration_full_contact;
             let mut fresh = ScaledOperator::new(hierarchy, &tables, mean, size);
@@ -190,7 +200,7 @@ impl AdaptiveSolution {
         Ok(())
     }
 
-    /// What the gap is more than v - h: the greatest height less the penetration.
+    /// The difference of the gap to v - h: the maximum height minus the penetration.
     #[must_use]
     pub(crate) fn gap_offset(&self, h_max: f64) -> f64 {
         h_max - self.info.penetration
@@ -205,8 +215,9 @@ impl AdaptiveSolution {
         Observables::new(&self.info, (self.area, self.plastic), rms_pressure, max_pressure)
     }
 
-    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact. Takes a few
-    /// applications of L.
+    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative.
+    ///
+    /// It is infinite in full contact. It takes a few applications of L.
     #[must_use]
     pub(super) fn contact_stiffness(&self, kernels: &Kernels) -> f64 {
         let pressure = elastic_part(&self.pressure, self.hardness);
@@ -225,14 +236,14 @@ impl AdaptiveSolution {
         stiffness_under(&x, n, &mut TileResponse::new(hierarchy, &tables))
     }
 
-    /// What L by this kernel needs on the mesh.
+    /// The hierarchy and tables of L by this kernel on the mesh.
     fn operator_of(&self, prepared: &Prepared<f32>) -> (Arc<Hierarchy>, Tables<f32>) {
         let hierarchy = Hierarchy::new(self.base, self.elements.clone(), prepared.reach());
         (Arc::new(hierarchy), prepared.tables(self.finest))
     }
 }
 
-/// The values in a row of tiles, row by row; zero where there is no tile.
+/// The values in a row of tiles, row by row. They are zero where there is no tile.
 pub(super) fn row_of_tiles(tiles: &TileSet, values: &[f64], row: usize) -> Vec<f64> {
     let ([nx, ny], [columns, _]) = (tiles.sides(), tiles.extent());
     let mut rows = vec![0.0; TILE * nx];

@@ -1,27 +1,30 @@
-//! Where the edge of a contact is, between two neighbouring elements.
+//! The position of a contact edge between two neighbouring elements.
 
-/// Newton steps; four reach rounding from the start that is used.
+/// Maximum number of Newton steps. Four reach rounding from the start that is used.
 const MOST_STEPS: usize = 12;
 
-/// The edge of a contact between the centre of an element in contact and that of a neighbour out of it.
+/// The edge of a contact between an element in contact and one out of it.
 ///
-/// At an edge the pressure is c √s inside and the gap (4c/3E*) s^{3/2} outside, with the same c. With h the distance
-/// between the centres and s the distance of the edge from the first of them, divided by h: p² = c² s h and (3g/4)² =
-/// c² (1 - s)³ h³, so u = s^{1/3} solves u³ + β u = 1, β = (3g/4ph)^{2/3}: the pressure and the gap matter by their
-/// ratio only.
+/// At an edge the pressure is c √s inside and the gap (4c/3E*) s^{3/2} outside, with the same c. Let h be the distance
+/// between the centres of the two elements, and s h the distance of the edge from the first centre. Then p² = c² s h
+/// and (3g/4)² = c² (1 - s)³ h³. So u = s^{1/3} solves u³ + β u = 1 with β = (3g/4ph)^{2/3}. Only the ratio of the gap
+/// to the pressure matters.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
     u: f64,
 }
 
 impl Edge {
-    /// From g E*/(p h); a gap below 0 counts as 0. `None` for a ratio that is not a number.
+    /// The edge from the ratio g E*/(p h). A gap below 0 counts as 0.
+    ///
+    /// `None` for a ratio that is not a number.
     pub(super) fn new(gap_ratio: f64) -> Option<Self> {
         if gap_ratio.is_nan() {
             return None;
         }
         let beta = beta(gap_ratio);
-        // From above, where the function is convex: Newton's steps lead down to the root without passing it.
+        // The start is above the root, where the function is convex. Newton's steps lead down to the root without
+        // passing it.
         let mut u = beta.recip().min(1.0);
         for _ in 0..MOST_STEPS {
             let step = (u * (u * u + beta) - 1.0) / (3.0 * u * u + beta);
@@ -33,21 +36,25 @@ impl Edge {
         Some(Self { u: u.clamp(0.0, 1.0) })
     }
 
-    /// Its distance from the centre in contact, as a fraction of that between the centres.
+    /// Distance of the edge from the centre in contact.
+    ///
+    /// It is a fraction of the distance between the centres.
     pub(super) fn position(self) -> f64 {
         self.u.powi(3)
     }
 
-    /// The deviation of the gap one element further out, as g E*/(p h), from the law: the distance from the edge at
-    /// which the law has this gap, minus the true distance, in elements. It is -2 to about 0 in gaps between contacts,
-    /// where the gap is smaller than the law's. `None` for a ratio that is not a number.
+    /// Deviation from the law of the gap one element further out, in elements.
+    ///
+    /// The gap is given as g E*/(p h). The deviation is the distance from the edge at which the law has this gap, minus
+    /// the true distance. It is -2 to about 0 in gaps between contacts, where the gap is smaller than the gap of the
+    /// law. `None` for a ratio that is not a number.
     pub(super) fn deviation(self, next_gap_ratio: f64) -> Option<f64> {
         let deviation = beta(next_gap_ratio) * self.u - (2.0 - self.position());
         (!next_gap_ratio.is_nan()).then(|| deviation.min(MAX_DEVIATION))
     }
 }
 
-/// A larger deviation is that of heights that jump, not of an edge.
+/// Maximum deviation of an edge. Only heights that jump have a larger one.
 const MAX_DEVIATION: f64 = 2.0;
 
 fn beta(gap_ratio: f64) -> f64 {

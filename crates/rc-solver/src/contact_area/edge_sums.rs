@@ -4,43 +4,52 @@ use std::ops::{Add, AddAssign};
 
 use super::edge::Edge;
 
-/// The neighbours of an element, around it.
+/// The eight neighbours of an element, in order around it.
 const AROUND: [[isize; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
 
 /// Sums over elements of one size.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct EdgeSums {
-    /// Elements in contact.
+    /// Number of elements in contact.
     pub(crate) n_contact: usize,
-    /// Pairs of neighbours, in and out of contact.
+    /// Number of pairs of neighbours of which one is in contact.
     pub(crate) edges: usize,
-    /// Those of them that are neighbours along x.
+    /// Number of these pairs that are neighbours along x.
     pub(crate) along_x: usize,
-    /// The same of neighbours across a corner.
+    /// Number of such pairs across a corner.
     pub(crate) diagonals: usize,
-    /// Edges where the gap beside the contact is known, and those where the next one is too.
+    /// Number of edges with a known gap beside the contact.
+    ///
+    /// The second number counts those where the next gap is known too.
     pub(crate) known: [usize; 2],
-    /// Σ (s - ½) over the first of these, with s as in [`Edge::position`].
+    /// Σ (s - ½) over edges where the gap is known, with s as in [`Edge::position`].
     pub(crate) shift: f64,
-    /// Σ of [`Edge::deviation`] over the second of these.
+    /// Σ of [`Edge::deviation`] over edges where the next gap is known too.
     pub(crate) deviation: f64,
-    /// Edges of plastic elements, where the pressure falls from the hardness to zero within an element. They are in
-    /// none of the sums above but `edges`, `along_x` and `diagonals`.
+    /// Number of edges of plastic elements.
+    ///
+    /// There the pressure falls from the hardness to zero within an element. Of the sums above, these edges are only in
+    /// `edges`, `along_x` and `diagonals`.
     pub(crate) sharp: usize,
-    /// Those of them where the gap beside the contact is known.
+    /// Number of sharp edges where the gap beside the contact is known.
     pub(crate) known_sharp: usize,
-    /// Σ (s - ½) over these: the gap grows in proportion to the distance from a sharp edge, as far as its overlap does.
+    /// Σ (s - ½) over sharp edges with a known gap.
+    ///
+    /// The gap grows in proportion to the distance from a sharp edge, and so does the overlap on the other side.
     pub(crate) shift_of_sharp: f64,
     /// Σ p² of the elements inside, over all edges that are not sharp.
     pub(crate) squares: f64,
-    /// Corners where one of the four elements that meet is in contact, less those where three are: four times the
-    /// number of contacts minus the number of holes in them.
+    /// Corners where one of the four elements is in contact, minus those where three are.
+    ///
+    /// It is four times the number of contacts minus the number of their holes.
     pub(crate) turns: isize,
 }
 
 impl EdgeSums {
-    /// Adds an element in contact, where no pressure is greater than the `hardness`. `at` gives pressure and gap at a
-    /// place from it, in elements; the gap may be NaN where it is not known. `sides` are those of the element.
+    /// Adds an element in contact, where pressures are at most the `hardness`.
+    ///
+    /// `at` gives pressure and gap at a place relative to the element, in elements. A gap that is not known may be NaN.
+    /// `sides` are the sides of the element.
     pub(crate) fn add(&mut self, sides: [f64; 2], hardness: f64, at: &impl Fn(isize, isize) -> [f64; 2]) {
         self.n_contact += 1;
         let free = AROUND.map(|[dx, dy]| at(dx, dy)[0] <= 0.0);
@@ -74,7 +83,7 @@ impl EdgeSums {
         let in_contact = |dx: isize, dy: isize| at(dx, dy)[0] > 0.0;
         for [x, y] in [[-1, -1], [0, -1], [-1, 0], [0, 0]] {
             let corner = [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]];
-            // Each corner once: from the first of its elements in contact.
+            // The first of its elements in contact counts each corner.
             if corner.into_iter().find(|&[x, y]| in_contact(x, y)) == Some([0, 0]) {
                 match corner.into_iter().filter(|&[x, y]| in_contact(x, y)).count() {
                     1 => self.turns += 1,
@@ -87,7 +96,7 @@ impl EdgeSums {
 }
 
 impl EdgeSums {
-    /// The sums as ranks exchange them: counts are exact.
+    /// The sums as ranks exchange them. Counts are exact.
     pub(crate) fn to_values(self) -> [f64; 13] {
         let Self { n_contact, edges, along_x, diagonals, known, shift, deviation, squares, turns, .. } = self;
         let Self { sharp, known_sharp, shift_of_sharp, .. } = self;
@@ -100,7 +109,7 @@ impl EdgeSums {
         values
     }
 
-    /// The reverse of [`EdgeSums::to_values`].
+    /// The sums from [`EdgeSums::to_values`].
     pub(crate) fn from_values(values: [f64; 13]) -> Self {
         let [n_contact, edges, along_x, diagonals, first, second, sharp, known_sharp] =
             std::array::from_fn(|i| values[i] as usize);
@@ -124,7 +133,9 @@ impl EdgeSums {
 }
 
 impl EdgeSums {
-    /// Adds the edge between a plastic element and its neighbour out of contact, of which the gaps are these.
+    /// Adds the edge between a plastic element and a neighbour out of contact.
+    ///
+    /// `inside` and `outside` are their gaps. A negative gap is an overlap.
     fn add_sharp(&mut self, inside: f64, outside: f64) {
         self.sharp += 1;
         if outside.is_nan() {
@@ -136,8 +147,9 @@ impl EdgeSums {
         self.known_sharp += 1;
     }
 
-    /// Shift and deviation summed over all edges: where they are not known, they are the mean of the others of their
-    /// kind.
+    /// Shift and deviation, summed over all edges.
+    ///
+    /// Where they are not known, they are the mean of the other edges of their kind.
     pub(crate) fn of_all(&self) -> [f64; 2] {
         let all = |sum: f64, edges: usize, known: usize| match known {
             0 => 0.0,
@@ -148,7 +160,7 @@ impl EdgeSums {
         [shift + of_sharp, all(self.deviation, self.smooth(), self.known[1])]
     }
 
-    /// Edges that are not sharp.
+    /// Number of edges that are not sharp.
     pub(crate) fn smooth(&self) -> usize {
         self.edges - self.sharp
     }

@@ -1,8 +1,8 @@
 //! The contact area, with edges located between the centres of elements (see `docs/accuracy.md`).
 //!
-//! Counting the elements in contact is first-order accurate only: 1 to 4 % too much on usual meshes. Here the edge is
-//! located between every two neighbours of which one is in contact, from the pressure of the one and the gap of the
-//! other. The rest of the first-order error is the same for all contacts, and is subtracted.
+//! Counting the elements in contact is only first-order accurate: 1 to 4 % too much on usual meshes. Here an edge is
+//! located between every two neighbours of which one is in contact. It follows from the pressure of the one and the gap
+//! of the other. The rest of the first-order error is the same for all contacts, and is subtracted.
 
 mod edge;
 mod edge_sums;
@@ -17,87 +17,111 @@ pub(crate) use self::edge_sums::EdgeSums;
 pub use self::plastic::PlasticContact;
 pub(crate) use self::plastic::{PlasticEdges, left};
 
-/// Contact area relative to the nominal area.
+/// Contact area relative to the nominal area, with its edges and its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactArea {
-    /// Fraction of elements with p > 0. Converges at first order in the element size only, from above.
+    /// Fraction of elements with p > 0.
+    ///
+    /// It converges only at first order in the element size, from above.
     pub cells: f64,
     /// Number of edges of smallest elements between elements in and out of contact.
     pub perimeter_edges: usize,
-    /// Length of the edges of all contacts, in λ: free of the steps of the elements (Crofton's formula for eight
-    /// directions; within 5 % for a straight edge, exact in the mean over directions).
+    /// Length of the edges of all contacts, in λ, without the steps of the elements.
+    ///
+    /// It follows from Crofton's formula for eight directions. It is within 5 % for a straight edge, and exact in the
+    /// mean over directions.
     pub perimeter: f64,
-    /// Number of contacts minus the number of holes in them (where elements touch across a corner only, half of them
-    /// count as joined).
+    /// Number of contacts minus the number of holes in them.
+    ///
+    /// Where elements touch only across a corner, half of them count as joined.
     pub euler_number: f64,
-    /// Sum over edges of the deviation of the gap outside them from the law of an edge, see
-    /// [`EdgeBias::per_deviation`].
+    /// Sum over edges of the deviation from the law of an edge.
+    ///
+    /// The deviation is that of the gap outside, see [`EdgeBias::per_deviation`].
     pub gap_deviation: f64,
-    /// The part of ⟨p²⟩ that is missing from the mean over elements, in E*²: see [`EdgeBias::per_square`].
+    /// Part of ⟨p²⟩ that the mean over elements misses, in E*².
+    ///
+    /// See [`EdgeBias::per_square`].
     pub missing_square: f64,
-    /// Best estimate, from the edges between the centres of elements.
+    /// Best estimate of the area, from the edges between the centres of elements.
     pub fraction: f64,
-    /// Estimated error of `fraction`, above the true one in 95 of 100 scenes (`cargo xtask accuracy` measures it): from
-    /// the number of edges, their directions, and the difference to the count. Slopes that jump are not covered, see
-    /// `docs/accuracy.md`.
+    /// Estimated error of `fraction`, above the true error in 95 of 100 scenes.
+    ///
+    /// `cargo xtask accuracy` measures this. The estimate comes from the number of edges, their directions, and the
+    /// difference to the count. It does not cover slopes that jump, see `docs/accuracy.md`.
     pub error: f64,
-    /// What the error bars of pressure and gap need.
+    /// Sums at edges for the error bars of pressure and gap.
     pub(crate) rim: Rim,
 }
 
-/// The elements at the edges of contacts.
+/// Sums over the elements at the edges of contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rim {
     /// Σ over edges of the area of an element, relative to the nominal area.
     pub(crate) area: f64,
-    /// The same with the squared pressure inside each edge, in E*².
+    /// Σ over edges of the area of an element times the squared pressure inside, in E*².
+    ///
+    /// The area is relative to the nominal area.
     pub(crate) squares: f64,
-    /// Edges that scatter on their own: those in a row that have the same place between elements are one.
+    /// Number of edges that scatter independently.
+    ///
+    /// Edges in a row with the same place between elements count as one.
     pub(crate) independent_edges: f64,
-    /// Σ of (side over smallest side)² over the sizes of larger elements in contact.
+    /// Σ of (side / smallest side)² over the sizes of larger elements in contact.
     pub(crate) larger: f64,
     /// Side of the smallest elements, in λ.
     pub(crate) side: f64,
-    /// Size of [`EdgeBias::per_square`]: how far the kernel's elements are from the half-space at the edges.
+    /// Size of [`EdgeBias::per_square`]: the difference of the kernel's elements to the half-space at edges.
     pub(crate) kernel: f64,
-    /// Pressure at free borders: Σ of squared pressure, area of an element and its side across the border, relative to
-    /// the nominal area, in E*² and λ. Zero where contact does not reach a free border.
+    /// Σ over sides of elements along a free border of p² times area times the side across the border, in E*² λ.
+    ///
+    /// The area is relative to the nominal area. The sum is zero where contact does not reach a free border.
     pub(crate) at_border: f64,
 }
 
-/// 95 % error of the area, in elements, relative to the root of the number of independent edges: the same on every
-/// mesh.
+/// 95 % error of the area, in elements, for one independent edge.
+///
+/// It grows with the root of the number of independent edges, and is the same on every mesh.
 const SCATTER: f64 = 0.17;
 
-/// 95 % error of the bias, relative to the square of (count - `fraction`) over `fraction`: it is of second order, and
-/// the error of scenes with very many edges.
+/// 95 % error of the bias, relative to (count - `fraction`)² / `fraction`.
+///
+/// It is of second order. In scenes with very many edges it is the error.
 const ERROR_OF_TERM: f64 = 0.4;
 
-/// 95 % error for each diagonal that there is more (or less) than [`DIAGONALS`]: the bias is that of edges in all
-/// directions.
+/// 95 % error for each diagonal above or below the expected number [`DIAGONALS`].
+///
+/// The bias is that of edges in all directions.
 const ERROR_OF_DIRECTIONS: f64 = 0.15;
 
-/// Neighbours across a corner for each edge, in the mean over the directions of a contact's edge. There are two where
-/// it is along the elements, one at 45 degrees to them.
+/// Neighbours across a corner for each edge, in the mean over the directions of edges.
+///
+/// There are two where an edge is along the elements, and one where it is at 45 degrees to them.
 const DIAGONALS: f64 = SQRT_2;
 
-/// 95 % error of the area from the tolerance of the solve, relative to the area and to the square of the energy error.
+/// 95 % error of the area from the tolerance of the solve.
+///
+/// It is relative to the area and to the square of the energy error.
 const ERROR_OF_SOLVE: f64 = 1.0;
 
 impl ContactArea {
-    /// The contact area of `pressure` and `gap` (E* = 1, λ = 1; the gap zero in contact) on a uniform grid; `bias` is
-    /// that of the kernel they were found with. One pass; the time is that of the elements in contact.
+    /// The contact area of `pressure` and `gap` on a uniform grid.
     ///
-    /// # Panics
-    /// When the two are not on the same grid.
+    /// E* = 1 and λ = 1. The gap is zero in contact. `bias` is that of the kernel of the solution. The function makes
+    /// one pass, and takes time only for elements in contact.
+    ///
+    /// E* = 1 and λ = 1. The gap is zero in contact. The function makes one pass, and takes time only for elements in
+    /// contact.
+    /// When `pressure` and `gap` are not on the same grid.
     #[must_use]
     pub fn of(pressure: &Field, gap: &Field, bias: EdgeBias) -> Self {
         assert_eq!(pressure.grid(), gap.grid(), "pressure and gap on the same grid");
         Self::with_boundary(pressure, gap, bias, Boundary::Periodic)
     }
 
-    /// The same on heights with this `boundary`. A free border that contact reaches is no edge of it: there the heights
-    /// end.
+    /// The contact area as [`ContactArea::of`], on heights with this `boundary`.
+    ///
+    /// The heights end at a free border. Where contact reaches it, it is not an edge of the contact.
     ///
     /// # Panics
     /// As [`ContactArea::of`].
@@ -107,8 +131,9 @@ impl ContactArea {
         Self::of_hard([pressure, gap], f64::INFINITY, bias, boundary)
     }
 
-    /// The same where no pressure is greater than the `hardness`, and the gap of plastic elements is less than that of
-    /// contact.
+    /// The contact area where pressures are at most the `hardness`.
+    ///
+    /// The gap of plastic elements is below the gap of contact.
     pub(crate) fn of_hard([pressure, gap]: [&Field; 2], hardness: f64, bias: EdgeBias, boundary: Boundary) -> Self {
         let grid = pressure.grid();
         let values = [pressure.values(), gap.values()];
@@ -121,15 +146,16 @@ impl ContactArea {
         area
     }
 
-    /// From the sums over elements of one size each: the smallest ones, those of the grid `finest`, then those twice as
-    /// large, and so on.
+    /// The contact area from sums over elements of one size each.
+    ///
+    /// The smallest elements, those of the grid `finest`, come first. Then come those twice as large, and so on.
     pub(crate) fn from_sums(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> Self {
         let (area, scatter) = Self::with_scatter(sums, finest, bias);
         let error = scatter.error(area.cells - area.fraction, area.fraction.max(0.1 * area.cells));
         Self { error, ..area }
     }
 
-    /// The area without its error, and what the error follows from.
+    /// The area without its error, and the data that the error follows from.
     fn with_scatter(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> (Self, Scatter) {
         let (smallest, sides) = (1.0 / finest.len() as f64, finest.spacing().into());
         let [width, height]: [f64; 2] = sides;
@@ -184,21 +210,24 @@ impl ContactArea {
         (area, Scatter { of_edges: scatter.sqrt(), of_directions: ERROR_OF_DIRECTIONS * excess_diagonals })
     }
 
-    /// With the error that the tolerance of the solve leaves; `energy_error` is √(G/U), the relative error of the
-    /// pressure in the energy norm, below a third. The area's is of its square.
+    /// Adds the error that the tolerance of the solve leaves.
+    ///
+    /// `energy_error` is √(G/U), the relative error of the pressure in the energy norm, below a third. The error of the
+    /// area is of its square.
     pub(crate) fn with_energy_error(self, energy_error: f64) -> Self {
         Self { error: self.error.hypot(ERROR_OF_SOLVE * energy_error.powi(2) * self.fraction), ..self }
     }
 
-    /// Ratio of `error` to `fraction`; 0 without contact.
+    /// Ratio of `error` to `fraction`. It is 0 without contact.
     #[must_use]
     pub fn relative_error(&self) -> f64 {
         if self.fraction > 0.0 { self.error / self.fraction } else { 0.0 }
     }
 }
 
-/// Sums over the elements of a grid that are in contact, with pressure and gap, less that of contact, around each
-/// place.
+/// Sums over the elements of a grid that are in contact.
+///
+/// `at` gives pressure and gap around each place. The gap of contact is subtracted from the gap.
 fn sums_of_rows<A: Fn(isize, isize) -> [f64; 2]>(
     grid: Grid,
     hardness: f64,
@@ -230,32 +259,36 @@ fn at_border(pressure: &Field, hardness: f64) -> f64 {
     (height * bottom_and_top + width * left_and_right) / grid.len() as f64
 }
 
-/// What the error of an area follows from.
+/// The data that the error of an area follows from.
 struct Scatter {
     of_edges: f64,
     of_directions: f64,
 }
 
 impl Scatter {
-    /// The error of an area of which the count differs by `term`. Contacts of single elements may be no area at all:
-    /// the `size` of the area is not less than a part of the count.
+    /// The error of an area that differs from the count by `term`.
+    ///
+    /// Contacts of single elements may have no area at all. `size` is therefore not only the area. It is at least a
+    /// part of the count.
     fn error(&self, term: f64, size: f64) -> f64 {
         let of_term = ERROR_OF_TERM * term.powi(2) / size.max(f64::MIN_POSITIVE);
         self.of_edges.hypot(of_term).hypot(self.of_directions).min(1.0)
     }
 }
 
-/// How many edges in a row have about the same place between elements: 1 for edges in all directions, all of them when
-/// they are along the elements. An edge whose neighbour along the contact is in the same row or column has two
-/// diagonals, at a step there is one.
+/// Number of edges in a row with about the same place between elements.
+///
+/// It is 1 for edges in all directions. For edges along the elements it is the number of all edges. An edge has two
+/// diagonals if its neighbour along the contact is in the same row or column, and one at a step.
 fn edges_that_scatter_together(sums: &EdgeSums) -> f64 {
     let edges = sums.edges.max(1) as f64;
     let steps = (2.0 - sums.diagonals as f64 / edges).max(f64::MIN_POSITIVE);
     ((2.0 - DIAGONALS) / steps).min(edges).max(1.0)
 }
 
-/// Length of all edges of elements with these sides: Crofton's formula for eight directions on squares, for four on
-/// rectangles.
+/// Length of all edges of elements with these sides.
+///
+/// It follows from Crofton's formula, for eight directions on squares and for four on rectangles.
 fn length(sums: &EdgeSums, sides: [f64; 2]) -> f64 {
     let (along_x, along_y) = (sums.along_x as f64, (sums.edges - sums.along_x) as f64);
     let [x, y] = sides;
@@ -266,12 +299,14 @@ fn length(sums: &EdgeSums, sides: [f64; 2]) -> f64 {
     }
 }
 
-/// Whether elements are squares but for rounding.
+/// Whether elements are squares, up to rounding.
 fn are_squares([x, y]: [f64; 2]) -> bool {
     (x / y - 1.0).abs() < 1e-6
 }
 
-/// Pressure and gap at places around an element of a grid; beyond a free border they are those beside it.
+/// Pressure and gap at places around an element of a grid.
+///
+/// Beyond a free border they are the values beside the border.
 pub(crate) fn around(
     [pressure, gap]: [&[f64]; 2],
     [nx, ny]: [usize; 2],
@@ -292,7 +327,9 @@ pub(crate) fn around(
 mod tests {
     use super::*;
 
-    /// A half plane whose edge has this slope against the rows, in a cell of 64 elements, with the sums of its edge.
+    /// Sums of the edge of a half plane, in a cell of 64 elements.
+    ///
+    /// The edge has this slope against the rows.
     fn sums_of_edge(slope: f64) -> EdgeSums {
         let mut sums = EdgeSums::default();
         let at = |x: isize, y: isize| if (y as f64) < slope * x as f64 + 0.5 { [1.0, 0.0] } else { [0.0, 1.0] };

@@ -1,8 +1,8 @@
 //! The plastic part of the contact, where the pressure is the hardness H.
 //!
-//! What is left to the hardness, q = H - p, is zero there and the square root of the distance beyond its edge, and the
-//! overlap that plastic flow removes grows inside as the gap does outside a contact. So the area where q > 0 is found
-//! as a contact area is, with -g for a gap, and has its error.
+//! The rest q = H - p is zero there. Beyond the edge of the plastic part, q is the square root of the distance. Inside,
+//! the overlap that plastic flow removes grows as the gap does outside a contact. The area where q > 0 is therefore
+//! found as a contact area is, with -g as its gap. Its error is the same too.
 
 use rc_core::{Boundary, EdgeBias, Field, Grid};
 
@@ -11,24 +11,29 @@ use super::{ContactArea, EdgeSums, around, sums_of_rows};
 /// The plastic part of a contact with a hardness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlasticContact {
-    /// Fraction of elements whose pressure is the hardness. Converges at first order in the element size only.
+    /// Fraction of elements whose pressure is the hardness.
+    ///
+    /// It converges only at first order in the element size.
     pub cells: f64,
     /// Plastic area relative to the nominal area: the best estimate.
     pub fraction: f64,
-    /// Estimated error of `fraction`, as that of [`ContactArea::error`].
+    /// Estimated error of `fraction`, in the sense of [`ContactArea::error`].
     pub error: f64,
     /// Mean over the cell of the overlap that plastic flow has removed, in λ.
     pub mean_gap: f64,
 }
 
-/// How much wider the error bars of the contact area and of its plastic part are than those of an elastic contact. The
-/// elastic rim of a plastic contact may be thinner than an element, and its edges are then not located as well.
-/// Measured: see `docs/hardness.md`.
+/// Coefficients of wider error bars, here for the contact area.
+///
+/// Those for its plastic part are below. With the plastic part x of the contact area, the bar of the area is 1 +
+/// `WIDER_CONTACT` x² times that of an elastic contact. The bar of the plastic part is a linear function of x times its
+/// own. The elastic rim of a plastic contact may be thinner than an element. Its edges are then located less
+/// accurately. `docs/hardness.md` has the measurements.
 const WIDER_CONTACT: f64 = 2.7;
 const WIDER_PLASTIC: [f64; 2] = [1.2, 3.3];
 
 impl PlasticContact {
-    /// The contact `area` and this plastic part of it, both with the bars of a plastic contact.
+    /// The contact `area` and this plastic part, both with the wider bars.
     pub(crate) fn with_wider_bars(self, area: ContactArea) -> (ContactArea, Self) {
         let part = if area.fraction > 0.0 { (self.fraction / area.fraction).clamp(0.0, 1.0) } else { 0.0 };
         let [least, slope] = WIDER_PLASTIC;
@@ -42,12 +47,12 @@ impl PlasticContact {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlasticEdges {
     pub(crate) contact: PlasticContact,
-    /// The rest of the cell, as the area of a contact.
+    /// The rest of the cell, as if it were the area of a contact.
     pub(crate) rest: ContactArea,
 }
 
 impl PlasticEdges {
-    /// Of pressure and gap on a uniform grid, the gap zero in elastic contact.
+    /// The edges from pressure and gap on a uniform grid. The gap is zero in elastic contact.
     pub(crate) fn of([pressure, gap]: [&Field; 2], hardness: f64, bias: EdgeBias, boundary: Boundary) -> Self {
         let grid = pressure.grid();
         let values = [pressure.values(), gap.values()];
@@ -61,8 +66,9 @@ impl PlasticEdges {
         Self::from_sums(&[sums], grid, bias, flow / grid.len() as f64)
     }
 
-    /// From the sums over elements of one size each, as [`ContactArea::from_sums`] takes them, of q and -g. What no
-    /// element covers is in the count of the smallest.
+    /// The edges from sums of q and -g over elements of one size each.
+    ///
+    /// The sizes are those of [`ContactArea::from_sums`]. Area without an element is in the count of the smallest.
     pub(crate) fn from_sums(sums: &[EdgeSums], finest: Grid, bias: EdgeBias, mean_gap: f64) -> Self {
         let (rest, scatter) = ContactArea::with_scatter(sums, finest, bias);
         let (cells, fraction) = (1.0 - rest.cells, 1.0 - rest.fraction);
@@ -71,7 +77,7 @@ impl PlasticEdges {
     }
 }
 
-/// What a pressure leaves to the hardness, and the gap that belongs to it.
+/// The rest q that a pressure leaves to the hardness, and its gap.
 pub(crate) fn left([pressure, gap]: [f64; 2], hardness: f64) -> [f64; 2] {
     [hardness - pressure, -gap]
 }

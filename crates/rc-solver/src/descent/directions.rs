@@ -1,4 +1,4 @@
-//! Conjugate directions: what the descent and the contact stiffness iterate with.
+//! Conjugate directions, with which the descent and the contact stiffness iterate.
 
 use super::layout::BlockLayout;
 use super::operators::{PreconditionedOperator, read_blocks, write_blocks};
@@ -9,26 +9,27 @@ use crate::parallel;
 pub(crate) struct ConjugateDirections {
     /// Elements that the iteration changes.
     pub(super) active: Vec<bool>,
-    /// The present direction t, zero elsewhere.
+    /// The present direction t. It is zero on elements that are not active.
     pub(super) direction: Vec<f32>,
-    /// Its displacement u = L t.
+    /// The displacement u = L t of the present direction.
     pub(super) displacement: Vec<f32>,
-    /// The residual, then the preconditioned residual z; between a clipped step and the next round what clipping has
-    /// added.
+    /// The residual, and later the preconditioned residual z.
+    ///
+    /// Between a clipped step and the next round, it has the pressures that clipping has added.
     pub(super) preconditioned: Vec<f32>,
 }
 
-/// Sums over the active elements.
+/// Sums of the preconditioned residual z over the active elements.
 pub(crate) struct PreconditionedSums {
     /// Σ z
     pub(crate) preconditioned: f64,
-    /// Σ z u, with the displacement of the last direction.
+    /// Σ z u, with the displacement u of the last direction.
     pub(crate) with_displacement: f64,
     /// Σ u
     pub(crate) displacement: f64,
 }
 
-/// Sums over the active elements.
+/// Sums of a direction t and its displacement u over the active elements.
 pub(crate) struct DirectionSums {
     /// Σ t u
     pub(crate) curvature: f64,
@@ -40,26 +41,28 @@ pub(crate) struct DirectionSums {
 
 /// The gradient of the energy, from which slopes follow.
 pub(crate) enum Slope<'a> {
-    /// Gap above that of elements in contact.
+    /// The gap minus the gap of elements in contact.
     Gap { gap: &'a [f64], zero_gap: f64 },
     /// The residual itself.
     Residual(&'a [f32]),
 }
 
 impl ConjugateDirections {
-    /// On `n` elements, none active.
+    /// Directions on `n` elements. None of the elements is active.
     pub(crate) fn new(n: usize) -> Self {
         let zeros = || parallel::zeros(n);
         Self { active: vec![false; n], direction: zeros(), displacement: zeros(), preconditioned: zeros() }
     }
 
-    /// On the elements of `active`. [`ConjugateDirections::advance`] starts along `-preconditioned`.
+    /// Directions on the elements of `active`.
+    ///
+    /// [`ConjugateDirections::advance`] starts along `-preconditioned`.
     pub(crate) fn along(active: Vec<bool>, preconditioned: Vec<f32>) -> Self {
         let zeros = || parallel::zeros(active.len());
         Self { direction: zeros(), displacement: zeros(), active, preconditioned }
     }
 
-    /// Adds a multiple of the present direction.
+    /// Adds the present direction times `length` to `values`.
     pub(crate) fn add_to(&self, values: &mut [f32], length: f32) {
         const BLOCK: usize = 4096;
         parallel::for_each(values.chunks_mut(BLOCK).zip(self.direction.chunks(BLOCK)), |(values, direction)| {
@@ -69,8 +72,9 @@ impl ConjugateDirections {
         });
     }
 
-    /// The present direction for a step that is clipped, with room for what clipping adds, where no residual is needed
-    /// any more.
+    /// The present direction for a step that is clipped, with room for added pressures.
+    ///
+    /// Clipping adds these pressures. They take the room of the residual, which is lost.
     pub(super) fn clipped_steps(&mut self, len: usize) -> impl Iterator<Item = ClippedStep<'_>> {
         let Self { active, direction, displacement, preconditioned } = self;
         let along = direction.chunks(len).zip(displacement.chunks(len));
@@ -83,18 +87,19 @@ impl ConjugateDirections {
         })
     }
 
-    /// Room for displacements, in blocks, where nothing that clipping has added is needed any more.
+    /// Room for displacements, in blocks.
+    ///
+    /// They take the room of the pressures that clipping has added, which are lost.
     pub(super) fn displacements_mut(&mut self, len: usize) -> impl Iterator<Item = &mut [f32]> {
         self.preconditioned.chunks_mut(len)
     }
 
-    /// What clipping has added, or the displacements that were put there.
+    /// The pressures that clipping has added, or the displacements that were put there.
     pub(super) fn added(&self) -> &[f32] {
         &self.preconditioned
     }
 
-    /// The present direction, its displacement and its elements, with the place of the residual that is preconditioned
-    /// next.
+    /// The present direction, its displacement and its elements, and the place of the next residual.
     pub(crate) fn steps_and_residuals(
         &mut self,
         len: usize,
@@ -121,7 +126,7 @@ impl ConjugateDirections {
         PreconditionedSums { preconditioned, with_displacement, displacement }
     }
 
-    /// The next direction, `t = -z + β t + shift`, and its displacement.
+    /// Moves on to the next direction, `t = -z + β t + shift`, and computes its displacement.
     pub(crate) fn advance(
         &mut self,
         operator: &mut dyn PreconditionedOperator,

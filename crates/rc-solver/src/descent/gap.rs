@@ -1,4 +1,4 @@
-//! The gap under a pressure, and scaling of both.
+//! The gap under a pressure, and the scaling of both.
 
 use super::layout::BlockLayout;
 use super::operators::{BlockOperator, read_blocks, write_blocks};
@@ -24,7 +24,7 @@ pub(crate) fn fresh_gap(
     GapSums::total(&layout, sums)
 }
 
-/// Multiplies the pressure by `scale`; the gap follows, since v is linear in p.
+/// Multiplies the pressure by `scale`. The gap follows, since v is linear in p.
 pub(crate) fn rescale(
     scale: f64,
     layout: &BlockLayout,
@@ -36,14 +36,15 @@ pub(crate) fn rescale(
     GapSums::total(layout, parallel::map(elements.blocks(layout.len()), |block| block.rescale(scale, offset, empty)))
 }
 
-/// Mean of the pressure over a cell of `n_cell` of the smallest elements.
+/// Mean of the pressure over a cell with room for `n_cell` of the smallest elements.
 pub(crate) fn mean_pressure(n_cell: f64, layout: &BlockLayout, pressure: &[f64]) -> f64 {
     let [sum] = layout.total(parallel::map(pressure.chunks(layout.len()), |block| [block.iter().sum()]));
     sum / n_cell
 }
 
-/// Multiplies the pressure so that its mean over a cell of `n_cell` of the smallest elements is the prescribed one, if
-/// one is prescribed and anything presses.
+/// Scales the pressure to the prescribed mean, if one is prescribed and anything presses.
+///
+/// The mean is over a cell with room for `n_cell` of the smallest elements.
 pub(crate) fn scale_to_load(problem: &Problem, n_cell: f64, layout: &BlockLayout, pressure: &mut [f64]) {
     if let Control::MeanPressure(wanted) = problem.control {
         let mean = mean_pressure(n_cell, layout, pressure);

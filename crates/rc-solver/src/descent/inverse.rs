@@ -1,4 +1,6 @@
-//! The approximate inverse of L on a grid: the inverse symbol between an extension of residuals and its transpose.
+//! The approximate inverse of L on a grid.
+//!
+//! It is the inverse symbol between an extension of residuals and its transpose.
 
 use rc_core::Grid;
 use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable};
@@ -18,7 +20,7 @@ impl Inverse {
         Self { symbol, extension: GridExtension::new(grid) }
     }
 
-    /// Applies it to values that are zero elsewhere.
+    /// Applies the inverse to values that are zero where elements are not active.
     pub(super) fn apply(&mut self, convolution: &mut Convolution<f32>, active: &[bool], values: &mut [f32]) {
         let Self { symbol, extension } = self;
         extension.extend(values);

@@ -1,4 +1,4 @@
-//! How the vectors of a mesh are divided into blocks, where their elements are, and sums over them.
+//! The blocks of the vectors of a mesh, the places of their elements, and sums.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -7,56 +7,61 @@ use rc_comm::Ranks;
 
 use crate::parallel;
 
-/// Blocks of so many values; the last may be shorter. All elements of a block are of one size. Over ranks the blocks
-/// are those of this rank, which follow those of the ranks before it.
+/// Blocks of `len` values. The last may be shorter.
+///
+/// All elements of a block have one size. Over ranks, the blocks are those of this rank. They follow the blocks of the
+/// ranks before it.
 #[derive(Clone, Debug)]
 pub(crate) struct BlockLayout {
     len: usize,
-    /// Area of an element of each block, in units of the smallest; empty when all are of that size.
+    /// Area of an element of each block, in units of the smallest. Empty when all have that size.
     areas: Arc<[f64]>,
     places: Places,
     ranks: Ranks,
 }
 
-/// Where elements are.
+/// The places of elements.
 #[derive(Clone, Debug)]
 enum Places {
-    /// Nobody knows.
+    /// Unknown places.
     Anywhere,
-    /// Rows of a grid of so many elements along both axes.
+    /// Rows of a grid with these numbers of elements along both axes.
     Rows([usize; 2]),
-    /// Runs of so many elements, each around its own centre, in a cell of so many of the largest elements along both
-    /// axes.
+    /// Runs of `run` elements, each around its own centre.
+    ///
+    /// The cell has room for `sides` of the largest elements along both axes.
     Runs { run: usize, centres: Arc<[[f32; 2]]>, sides: [usize; 2] },
 }
 
-/// Elements of a row that count as one place.
+/// Number of elements of a row that count as one place.
 const RUN: usize = 8;
 
 impl BlockLayout {
-    /// Of elements of one size that may be anywhere.
+    /// Blocks of elements of one size in unknown places.
     pub(crate) fn of(len: usize) -> Self {
         Self { len, areas: Arc::default(), places: Places::Anywhere, ranks: Ranks::alone() }
     }
 
-    /// Whole rows of a grid of `nx` × `ny` elements.
+    /// Blocks of whole rows of a grid of `nx` × `ny` elements.
     pub(crate) fn of_rows(n_rows: usize, [nx, ny]: [usize; 2]) -> Self {
         Self { places: Places::Rows([nx, ny]), ..Self::of(n_rows * nx) }
     }
 
-    /// With the area of an element of each block; all are of one size where there is none.
+    /// Adds the area of an element of each block. All have one size if `areas` is empty.
     pub(crate) fn with_areas(self, areas: Vec<f64>) -> Self {
         Self { areas: areas.into(), ..self }
     }
 
-    /// With the centres of runs of `run` elements, in parts of a cell of `sides` of the largest elements along both
-    /// axes. What is behind the last of a level has no element, but a centre.
+    /// Adds the centres of runs of `run` elements, in parts of the cell.
+    ///
+    /// The cell has room for `sides` of the largest elements along both axes. Places behind the last element of a level
+    /// have no element, but a centre.
     pub(crate) fn with_runs(self, run: usize, centres: Vec<[f32; 2]>, sides: [usize; 2]) -> Self {
         debug_assert!(self.len.is_multiple_of(run), "blocks of whole runs");
         Self { places: Places::Runs { run, centres: centres.into(), sides }, ..self }
     }
 
-    /// Dealt among these ranks.
+    /// Deals the blocks among these ranks.
     pub(crate) fn over(self, ranks: &Ranks) -> Self {
         Self { ranks: ranks.clone(), ..self }
     }
@@ -66,7 +71,9 @@ impl BlockLayout {
         &self.ranks
     }
 
-    /// The largest elements along both axes of the cell, as far as anybody knows.
+    /// Number of the largest elements along both axes of the cell.
+    ///
+    /// It is 1 if places are unknown.
     pub(super) fn sides(&self) -> [usize; 2] {
         match self.places {
             Places::Anywhere => [1, 1],
@@ -74,8 +81,9 @@ impl BlockLayout {
         }
     }
 
-    /// Calls `take` with runs of neighbours among the first `n` elements of block `i`, and with the centre of each in
-    /// parts of the cell.
+    /// Calls `take` with runs of neighbours among the first `n` elements of block `i`.
+    ///
+    /// It also gets the centre of each run, in parts of the cell.
     pub(crate) fn for_each_run(&self, i: usize, n: usize, mut take: impl FnMut(Range<usize>, [f64; 2])) {
         match &self.places {
             Places::Anywhere => take(0..n, [0.5, 0.5]),
@@ -97,7 +105,7 @@ impl BlockLayout {
         }
     }
 
-    /// Values in a block.
+    /// Number of values in a block.
     pub(crate) fn len(&self) -> usize {
         self.len
     }
@@ -107,7 +115,7 @@ impl BlockLayout {
         self.areas.get(i).copied().unwrap_or(1.0)
     }
 
-    /// Area-weighted sums from those of each block, added in the order of blocks.
+    /// Area-weighted sums from the sums of each block, added in the order of blocks.
     pub(crate) fn total<const N: usize>(&self, blocks: Vec<[f64; N]>) -> [f64; N] {
         self.ranks.fold([0.0; N], |mut sum| {
             for (i, block) in blocks.into_iter().enumerate() {
@@ -120,12 +128,12 @@ impl BlockLayout {
         })
     }
 
-    /// Largest of the values of a vector, but not less than `at_least`; NaN is passed over.
+    /// Maximum of a vector, but not less than `at_least`. NaN is passed over.
     pub(crate) fn maximum(&self, values: &[f64], at_least: f64) -> f64 {
         self.ranks.maximum(parallel::maximum(values, at_least), at_least)
     }
 
-    /// Smallest of the values of a vector; NaN is passed over.
+    /// Minimum of a vector. NaN is passed over.
     pub(crate) fn minimum(&self, values: &[f64]) -> f64 {
         -self.ranks.maximum(-parallel::minimum(values), f64::NEG_INFINITY)
     }

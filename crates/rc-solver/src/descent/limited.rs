@@ -1,8 +1,8 @@
-//! Load and penetration where pressures are limited by a hardness.
+//! Load and penetration where a hardness H limits pressures.
 //!
-//! Scaling would take plastic elements off the hardness, or others beyond it. So pressures p change along p (1 - p/H)
-//! instead, which leaves elements at both bounds where they are, keeps the others between them for multiples from -1 to
-//! 1, and is scaling where p is far below H.
+//! Scaling would move the pressures of plastic elements away from the hardness, or others beyond it. So pressures p
+//! change along p (1 - p/H) instead. Elements at 0 and at H keep their pressure. Others stay between these bounds for
+//! multiples from -1 to 1. Where p is far below H, the change is a scaling.
 
 use super::layout::BlockLayout;
 use super::operators::{read_blocks, write_blocks};
@@ -14,28 +14,34 @@ use crate::Control;
 use crate::parallel;
 use crate::problem::Problem;
 
-/// Pressures that are nearer to the hardness than this part of it are the hardness: prolongation rounds.
+/// Relative distance below the hardness within which pressures count as the hardness: prolongation rounds.
 const SNAP: f64 = 1e-12;
 
-/// Pressures from this part of the hardness on are plastic in a start.
+/// Part of the hardness from which pressures of a start are plastic.
 const NEARLY: f64 = 1.0 - 1e-9;
 
-/// What a mean pressure may be off by: rounding of its sum.
+/// Relative error that a mean pressure may have, from rounding of its sum.
 const ROUNDING: f64 = 1e-12;
 
-/// Steps along p (1 - p/H) before other elements take the rest of the load, where those between the bounds cannot.
+/// Maximum number of steps along p (1 - p/H).
+///
+/// If elements between the bounds cannot take the whole load in these steps, other elements take the rest.
 const MAX_STEPS: usize = 2;
 
-/// Changes of the pressure in one step, relative to p (1 - p/H).
+/// Limits of the change of the pressure in one step, relative to p (1 - p/H).
 const STEPS: [f64; 2] = [-0.5, 1.0];
 
-/// The range of gaps, or heights, in which they are looked for: at first relative to the range of depths, how often it
-/// doubles, and how often it is halved then.
+/// First range of gaps or heights in which elements are looked for.
+///
+/// It is relative to the range of depths. The two numbers below say how often it is doubled at most, and how often it
+/// is halved then.
 const FIRST_RANGE: f64 = 1e-3;
 const MAX_DOUBLINGS: usize = 14;
 const MAX_HALVINGS: usize = 40;
 
-/// Multiplying pressures by this much more than the present projection does is safe without a look at the hardness.
+/// Margin on the factor by which the present projection multiplies pressures.
+///
+/// If even this multiple stays below the hardness, the hardness is not considered.
 const MARGIN: f64 = 2.0;
 
 /// Whether a start has reached the hardness.
@@ -43,9 +49,11 @@ pub(crate) fn is_plastic(pressure: &[f64], hardness: f64) -> bool {
     hardness.is_finite() && parallel::maximum(pressure, 0.0) >= NEARLY * hardness
 }
 
-/// Limits the pressure by the hardness and, under load control, restores the load in a cell of `n_cell` of the smallest
-/// elements. Where elements between the bounds cannot, those of least `order`, a gap, take what is missing, or those of
-/// greatest order lose what is too much.
+/// Limits the pressure by the hardness and, under load control, restores the load.
+///
+/// The cell has room for `n_cell` of the smallest elements. If elements between the bounds cannot restore the load,
+/// others do. If load is missing, they are those with the smallest `order`, a gap. If there is too much load, they are
+/// those with the largest `order`.
 pub(crate) fn limit_to_load(
     problem: &Problem,
     n_cell: f64,
@@ -67,7 +75,7 @@ pub(crate) fn limit_to_load(
         if room <= 0.0 {
             break;
         }
-        // The whole of what is missing when that is less than the bounds allow.
+        // If less is missing than the bounds allow, the factor takes all of it.
         let factor = (missing / room).clamp(-1.0, 1.0);
         parallel::update(pressure, |p| *p = along(*p, factor, hardness));
     }
@@ -79,12 +87,12 @@ pub(crate) fn limit_to_load(
     }
 }
 
-/// A pressure after a step of `factor`.
+/// The pressure `p` after a step of `factor` along p (1 - p/H).
 fn along(p: f64, factor: f64, hardness: f64) -> f64 {
     (p + factor * direction(p, hardness)).clamp(0.0, hardness)
 }
 
-/// p (1 - p/H).
+/// The direction p (1 - p/H).
 fn direction(p: f64, hardness: f64) -> f64 {
     p * (1.0 - p / hardness)
 }
@@ -96,8 +104,10 @@ fn sums_of(layout: &BlockLayout, pressure: &[f64], hardness: f64) -> [f64; 2] {
     }))
 }
 
-/// Adds the load `missing`, which may be negative: elements of least `order`, a gap, get the hardness one after the
-/// other, or those of greatest order nothing, but for the last ones, which get a part.
+/// Adds the load `missing`, which may be negative.
+///
+/// If it is positive, elements get the hardness one after the other, from the smallest `order`, a gap, on. If it is
+/// negative, elements lose their pressure, from the largest `order` on. The last ones get or lose a part.
 fn fill(problem: &Problem, missing: f64, layout: &BlockLayout, (pressure, order): (&mut [f64], &[f64])) {
     let (hardness, adds) = (problem.hardness, missing > 0.0);
     let key = |at: f64| if adds { at } else { -at };
@@ -128,7 +138,7 @@ fn fill(problem: &Problem, missing: f64, layout: &BlockLayout, (pressure, order)
         }
         width *= 2.0;
     }
-    // All below `low` are filled, and part of those between it and `high`.
+    // All elements below `low` are filled, and a part of those between `low` and `high`.
     let (mut low, mut high) = (f64::NEG_INFINITY, least + width);
     for _ in 0..MAX_HALVINGS {
         let middle = 0.5 * (low.max(least) + high);
@@ -154,19 +164,25 @@ fn fill(problem: &Problem, missing: f64, layout: &BlockLayout, (pressure, order)
 }
 
 impl Descent<'_> {
-    /// Whether the hardness may limit pressures when the loads of squares are shared out: never without one.
+    /// Whether the hardness may limit pressures when the loads of squares are shared out.
+    ///
+    /// This is never so without a hardness.
     pub(super) fn is_limited(&self, shares: &Shares) -> bool {
         let hardness = self.problem.hardness;
         hardness.is_finite() && MARGIN * shares.maximum() * parallel::maximum(&self.pressure, 0.0) >= hardness
     }
 
-    /// Limits the pressure and restores the load; `order` are gaps or, where there are none yet, depths.
+    /// Limits the pressure and restores the load, in the order of gaps.
+    ///
+    /// Before gaps are known, depths are in their place.
     pub(super) fn limit_pressure(&mut self) {
         let (n_cell, layout) = (self.n_cell(), self.layout.clone());
         limit_to_load(self.problem, n_cell, &layout, &mut self.pressure, Some(&self.gap));
     }
 
-    /// The same where no gap is known, with the gap from a fresh application of L.
+    /// Limits the pressure of a start and restores its load. No gap is known.
+    ///
+    /// The gap comes from a fresh application of L.
     pub(super) fn limit_start(&mut self) -> GapSums {
         for (g, h) in self.gap.iter_mut().zip(self.heights) {
             *g = -h;
@@ -176,12 +192,14 @@ impl Descent<'_> {
         self.settle(sums)
     }
 
-    /// The same where a start has pressures beyond the hardness.
+    /// Limits a start that has pressures beyond the hardness, as [`Descent::limit_start`].
     pub(super) fn limited(&mut self, sums: GapSums) -> GapSums {
         if sums.max_pressure > self.problem.hardness { self.limit_start() } else { sums }
     }
 
-    /// After a step that was clipped: restores the load, each part of it where it was, or follows the penetration.
+    /// Ends a step that was clipped: restores the load, or follows the penetration.
+    ///
+    /// Each part of the load is restored where it was.
     pub(super) fn project_limited(
         &mut self,
         n_clipped: u64,
@@ -189,7 +207,7 @@ impl Descent<'_> {
         gradient: &Gradient,
     ) -> GapSums {
         if n_clipped == 0 {
-            // What single precision changes the load by waits for a fresh gap.
+            // Single precision changes the load a little. This waits for a fresh gap.
             let sums = self.rescale(1.0);
             return self.follow_penetration(sums);
         }
@@ -215,7 +233,9 @@ impl Descent<'_> {
         self.follow_penetration(sums)
     }
 
-    /// Brings the loads of squares to what they are to have, as far as pressures between the bounds can.
+    /// Brings the loads of squares to the wanted ones, as far as pressures allow.
+    ///
+    /// Pressures are between the bounds.
     fn share_limited(&mut self, loads: &[Load], shares: &Shares) {
         let (len, squares, layout) = (self.layout.len(), self.squares(), &self.layout);
         let hardness = self.problem.hardness;
@@ -245,8 +265,10 @@ impl Descent<'_> {
         });
     }
 
-    /// Brings the pressure nearer to the prescribed penetration, if one is: by scaling where that meets no bound, else
-    /// along p (1 - p/H) to the least energy. The stiffness of that direction preconditions the mean.
+    /// Brings the pressure nearer to the prescribed penetration, if one is prescribed.
+    ///
+    /// It scales the pressure if that meets no bound. Otherwise it moves along p (1 - p/H) to the minimum energy. The
+    /// stiffness of that direction preconditions the mean.
     fn follow_penetration(&mut self, sums: GapSums) -> GapSums {
         if !matches!(self.problem.control, Control::Penetration(_)) || sums.may_scale() {
             return self.meet_penetration(sums);

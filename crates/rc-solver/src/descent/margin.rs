@@ -1,8 +1,9 @@
-//! The approximate inverse of L for heights with free borders: that of a periodic cell with a margin around them.
+//! The approximate inverse of L for heights with free borders.
 //!
-//! Outside of the heights the surface is as free as between contacts, and a residual is extended smoothly over it
-//! ([`super::extension`]). A margin is enough: what is farther away matters to long waves only, of which there are few.
-//! `docs/uniform-solver.md` has what it gives.
+//! It is the inverse of a periodic cell with a margin around the heights. Outside of the heights the surface is as free
+//! as between contacts, and a residual is extended smoothly over it ([`super::extension`]). A margin is enough, because
+//! the surface farther away matters only to long waves, of which there are few. `docs/uniform-solver.md` has the
+//! iterations with and without it.
 
 use rc_core::{Grid, Kernel};
 use rc_fft::{Convolution, SymbolTable};
@@ -11,13 +12,15 @@ use super::inverse::Inverse;
 use crate::factors::has_small_factors;
 use crate::parallel;
 
-/// The margin, in parts of a side of the heights.
+/// Width of the margin, relative to a side of the heights.
 const MARGIN: f64 = 0.25;
 
-/// Greatest prime factor of the sides with their margins: Fourier transforms of such lengths are fast.
+/// Maximum prime factor of the sides with their margins.
+///
+/// Fourier transforms of such lengths are fast.
 const GREATEST_FACTOR: usize = 5;
 
-/// Heights in the corner of a periodic cell that is a margin larger.
+/// Heights in the corner of a periodic cell that is larger by a margin.
 pub(super) struct Margin {
     inner: Grid,
     convolution: Convolution<f32>,
@@ -26,7 +29,7 @@ pub(super) struct Margin {
 }
 
 impl Margin {
-    /// Around heights on `inner`.
+    /// A margin around heights on `inner`.
     pub(super) fn around(inner: Grid) -> Self {
         let [nx, ny] = [inner.nx(), inner.ny()].map(with_margin);
         let ratio = inner.cell_ratio() * (ny as f64 / inner.ny() as f64) / (nx as f64 / inner.nx() as f64);
@@ -39,7 +42,7 @@ impl Margin {
         }
     }
 
-    /// The grid with the margin, whose side is its own unit of length.
+    /// The grid with the margin. Its side is its own unit of length.
     pub(super) fn grid(&self) -> Grid {
         self.convolution.grid()
     }
@@ -51,7 +54,7 @@ impl Margin {
         inverse.map(|value| (scale * value) as f32)
     }
 
-    /// The active elements, with those of the margin.
+    /// Sets the active elements, and returns them with those of the margin.
     pub(super) fn set_active(&mut self, active: &[bool]) -> &[bool] {
         let [from, to] = [self.inner.nx(), self.grid().nx()];
         parallel::for_each(self.active.chunks_mut(to).zip(active.chunks(from)), |(row, active)| {
@@ -74,10 +77,10 @@ impl Margin {
     }
 }
 
-/// A side with its margin.
+/// Length of a side of `n` elements with its margin.
 fn with_margin(n: usize) -> usize {
     let least = ((1.0 + MARGIN) * n as f64).ceil() as usize;
-    // A power of two is among them.
+    // One of these sides is a power of two.
     (least..=2 * least)
         .find(|&side| side.is_multiple_of(2) && has_small_factors(side, GREATEST_FACTOR))
         .unwrap_or(2 * n)

@@ -1,4 +1,6 @@
-//! The mean pressure under penetration control, which is free like any other wave of the pressure.
+//! The mean pressure under penetration control.
+//!
+//! It is free, like any other wave of the pressure.
 
 use super::operators::{read_blocks, write_blocks};
 use super::state::Descent;
@@ -6,17 +8,20 @@ use super::sums::GapSums;
 use crate::Control;
 use crate::parallel;
 
-/// The part of the cell in contact from which a uniform pressure is looked at: below it the present one is the stiffer,
-/// or as good as, and the application of L would gain nothing.
+/// Part of the cell in contact from which the uniform pressure's stiffness is computed.
+///
+/// Below it, the present pressure gives as large a stiffness or a larger one. The application of L would gain nothing.
 const LARGE_CONTACT: f64 = 0.7;
 
 impl Descent<'_> {
-    /// Brings the pressure to the prescribed penetration, if one is: scales it, so that its weighted mean gap is zero,
-    /// or nearer to it.
+    /// Brings the pressure to the prescribed penetration, if one is prescribed, or nearer to it.
     ///
-    /// Where nothing holds the solid and all elements press although the penetration is less than that of full contact,
-    /// the mean pressure is too large by the minimum, at least. Taken off all of them it displaces nothing and lowers
-    /// the energy, while scaling would undo what already fits the heights.
+    /// It scales the pressure so that its weighted mean gap is zero.
+    ///
+    /// The exception is a solid that nothing holds, if all elements press although the penetration is below full
+    /// contact. The mean pressure is then too large, by at least the minimum pressure. Subtracting the minimum from all
+    /// pressures displaces nothing and lowers the energy. Scaling would undo the part of the pressure that already fits
+    /// the heights.
     pub(super) fn meet_penetration(&mut self, sums: GapSums) -> GapSums {
         match sums.scale_to_penetration(self.problem) {
             None => self.settle(sums),
@@ -30,8 +35,10 @@ impl Descent<'_> {
         }
     }
 
-    /// What to take off the mean where all elements press: the minimum, or less than nothing where the penetration is
-    /// beyond that of full contact and the hardness limits the pressure.
+    /// The pressure to subtract from all elements where all of them press.
+    ///
+    /// It is the minimum pressure. It is negative where the penetration is beyond full contact and the hardness limits
+    /// the pressure.
     fn too_much_everywhere(&self) -> f64 {
         match self.problem.control {
             Control::Penetration(penetration) if penetration >= self.problem.h_max - self.problem.h_mean => {
@@ -41,13 +48,14 @@ impl Descent<'_> {
         }
     }
 
-    /// Preconditions the mean by the contact stiffness dσ0/dΔ = max ⟨x⟩²/⟨x L x⟩ over pressures x on the contact, of
-    /// which each gives a lower bound. The present pressure gives σ0²/mean(p v), which stays finite towards full
-    /// contact, where the true one grows without bound; so does that of a uniform pressure, which displaces less the
-    /// less is out of contact.
+    /// Preconditions the mean by the contact stiffness dσ0/dΔ = max ⟨x⟩²/⟨x L x⟩.
+    ///
+    /// The maximum is over pressures x on the contact, so each x gives a lower bound. The present pressure gives
+    /// σ0²/mean(p v). This stays finite towards full contact, where the true stiffness grows without bound. The bound
+    /// of a uniform pressure grows too, because the uniform pressure displaces less when less is out of contact.
     pub(super) fn precondition_mean(&mut self, sums: &GapSums) {
         let Control::Penetration(_) = self.problem.control else { return };
-        // Where elements are plastic, their stiffness was found by the last projection.
+        // Where elements are plastic, the last projection has found their stiffness.
         if sums.has_plastic() {
             return;
         }

@@ -1,14 +1,16 @@
-//! Preconditioned projected conjugate gradients on one level, whatever its mesh ([`LevelOperators`]).
+//! Preconditioned projected conjugate gradients on one level, on any mesh ([`LevelOperators`]).
 //!
-//! One round takes a few conjugate-gradient steps on the active elements, chooses the next ones (those that press, and
-//! those outside that penetrate), clips tensile pressures and restores the load. Directions survive a change of the
-//! active set: β makes the new direction L-orthogonal to the old one as it was (Hestenes and Stiefel), and is kept
-//! non-negative. Clipping in every second step only saves its convolution; clipping rarer costs more steps than it
-//! saves.
+//! One round takes a few conjugate-gradient steps on the active elements. It then chooses the next active elements:
+//! those that press, and those outside that penetrate. It clips tensile pressures and restores the load.
 //!
-//! Corrections (directions, their displacements, residuals) are in single precision, pressure and gap in double: each
-//! correction is added to exact values, as in iterative refinement, and a fresh application of L in double precision
-//! settles what single precision left. All corrections are relative to the height range H, so no scene underflows.
+//! Directions survive a change of the active set. β makes the new direction L-orthogonal to the old one as it was
+//! (Hestenes and Stiefel), and is kept non-negative. Clipping only in every second step saves its convolution. Clipping
+//! less often costs more steps than it saves.
+//!
+//! Corrections are directions, their displacements and residuals. They are in single precision, while pressure and gap
+//! are in double precision. Each correction is added to exact values, as in iterative refinement. A fresh application
+//! of L in double precision then removes the errors of single precision. All corrections are relative to the height
+//! range H, so no scene underflows.
 
 mod directions;
 mod extension;

@@ -1,10 +1,12 @@
-//! How an observer sees the pressure of a mesh.
+//! How an observer looks at the pressure on a mesh.
 
 use rc_core::{Grid, Observer, Snapshot};
 
 /// A mesh whose pressures an observer can see on a uniform grid.
 pub(crate) trait ObservedMesh {
-    /// Lets the observer look at the pressure on the elements; nothing is computed unless it does.
+    /// Lets the observer look at the pressure on the elements.
+    ///
+    /// Nothing is computed unless it looks.
     fn show_pressure(&self, pressure: &[f64], observer: &dyn Observer);
 }
 

@@ -1,4 +1,4 @@
-//! The result of a descent: its certificate and its observables.
+//! The result of a descent: the certificate and the observables.
 
 use super::sums::GapSums;
 use crate::Certificate;
@@ -10,20 +10,22 @@ use crate::solution::{LevelInfo, LevelValues, SolveInfo};
 pub(crate) struct Outcome {
     pub(crate) converged: bool,
     pub(crate) certificate: Certificate,
-    /// [`Certificate::energy`] of the computed gap alone.
+    /// [`Certificate::energy`] of the computed gap, without the error of the operator.
     pub(crate) iteration_error: f64,
     /// Mean pressure.
     pub(crate) mean_pressure: f64,
-    /// Pressure-weighted mean of v - h: penetration minus h_max.
+    /// Pressure-weighted mean of v - h, which is the penetration minus h_max.
     pub(crate) approach: f64,
     /// ½ mean(p v).
     pub(crate) elastic_energy: f64,
-    /// The gap of elements in contact, which a converged solution makes the same for all.
+    /// The gap of elements in contact. In a converged solution it is the same for all of them.
     pub(crate) contact_gap: f64,
 }
 
 impl Outcome {
-    /// From the sums over all elements that may be in contact, in a cell of `n_cell` elements.
+    /// The outcome from sums over all elements that may be in contact.
+    ///
+    /// The cell has room for `n_cell` elements.
     pub(crate) fn new(problem: &Problem, sums: &GapSums, n_cell: f64, converged: bool) -> Self {
         let mean_pressure = sums.load() / n_cell;
         let mean_gap = sums.reference_gap(problem);
@@ -47,13 +49,14 @@ impl Outcome {
         }
     }
 
-    /// U/σ0, the elastic energy over the mean pressure.
+    /// U/σ0, the ratio of elastic energy to mean pressure.
     pub(crate) fn energy_length(&self) -> f64 {
         self.elastic_energy / self.mean_pressure
     }
 
-    /// In the form given to the user, with the work done on the levels, coarsest first, and the values of
-    /// the last but one.
+    /// The outcome in the form that users get.
+    ///
+    /// `levels` is the work on the levels, coarsest first. `coarser` has the values of the last level but one.
     pub(crate) fn info(&self, problem: &Problem, levels: Vec<LevelInfo>, coarser: Option<LevelValues>) -> SolveInfo {
         SolveInfo {
             certificate: self.certificate,

@@ -6,7 +6,7 @@ use rc_fft::{BLOCK_ROWS, Convolution, TransformReal};
 
 use super::layout::BlockLayout;
 
-/// Blocks of rows, as they are transformed.
+/// Blocks of rows, as the convolution transforms them.
 pub(super) fn layout(grid: Grid) -> BlockLayout {
     BlockLayout::of_rows(BLOCK_ROWS, [grid.nx(), grid.ny()])
 }
@@ -15,8 +15,9 @@ fn n_blocks(grid: Grid) -> usize {
     grid.ny().div_ceil(BLOCK_ROWS)
 }
 
-/// Calls `write` once for each block of rows, with its index and the rows to be filled in. (All callers pass closures
-/// in this form, for which the transforms are compiled once.)
+/// Calls `write` once for each block of rows, with its index and the rows.
+///
+/// It fills in the rows. All callers pass closures in this form. The transforms are compiled once for it.
 pub(crate) fn write_rows<T: TransformReal>(convolution: &mut Convolution<T>, write: &(dyn Fn(usize, &mut [T]) + Sync)) {
     let blocks = (0..n_blocks(convolution.grid())).into_par_iter();
     convolution.transform_rows(blocks, write);

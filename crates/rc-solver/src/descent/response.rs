@@ -6,21 +6,25 @@ use rc_fft::{Convolution, SymbolTable, TransformReal, half_plane_values};
 
 use crate::factors::has_small_factors;
 
-/// Greatest prime factor of the periods of padded grids: Fourier transforms of such lengths are fast.
+/// Maximum prime factor of the periods of padded grids.
+///
+/// Fourier transforms of such lengths are fast.
 const GREATEST_FACTOR: usize = 5;
 
-/// L on a grid: the symbol of a kernel, on the grid or on a larger one.
+/// L on a grid, as the symbol of a kernel.
+///
+/// The symbol is on the grid or on a larger one.
 pub(crate) struct GridResponse {
     grid: Grid,
-    /// Elements of the transforms along both axes.
+    /// Number of elements of the transforms along both axes.
     period: [usize; 2],
-    /// Factor of each wave of that period.
+    /// Factor of each wave of the period.
     pub(crate) table: SymbolTable<f64>,
     pub(crate) boundary: Boundary,
 }
 
 impl GridResponse {
-    /// Of `kernel` on `grid`.
+    /// The response of `kernel` on `grid`.
     pub(crate) fn of(grid: Grid, kernel: &dyn Kernel) -> Self {
         if let Some(response) = kernel.free_response(grid) {
             let period = [grid.nx(), grid.ny()].map(padded_side);
@@ -34,20 +38,24 @@ impl GridResponse {
         Self { grid, period: [grid.nx(), grid.ny()], table, boundary: Boundary::Periodic }
     }
 
-    /// What transforms between the grid and the waves of the table.
+    /// A convolution between the grid and the waves of the table.
     pub(crate) fn convolution<T: TransformReal>(&self) -> Convolution<T> {
         Convolution::padded(self.grid, self.period)
     }
 }
 
-/// Elements of a padded side: no element acts on another around the border. 1.25 times as many as needed at most.
+/// Number of elements of a padded side of `n` elements.
+///
+/// No element acts on another around the border. The side has at most 1.25 times the elements that are needed.
 pub(crate) fn padded_side(n: usize) -> usize {
     let is_fast = |side: &usize| side.is_multiple_of(2) && has_small_factors(*side, GREATEST_FACTOR);
-    // A power of two is among them.
+    // One of these sides is a power of two.
     (2 * n - 1..=4 * n).find(is_fast).unwrap_or(4 * n)
 }
 
-/// The transform of the response to one element, which is even along both axes.
+/// The transform of the response to one element.
+///
+/// The response is even along both axes.
 fn free_table(
     grid: Grid,
     [px, py]: [usize; 2],
@@ -67,7 +75,7 @@ fn free_table(
     values.values_mut().par_chunks_mut(px).enumerate().for_each(|(iy, row)| {
         let dy = iy.min(py - iy);
         if dy >= ny {
-            // Between what acts and what is acted upon: nobody looks there.
+            // These rows lie between the pressures and their displacements. They are not read.
             return;
         }
         for (ix, value) in row.iter_mut().enumerate() {

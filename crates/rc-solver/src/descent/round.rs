@@ -1,4 +1,6 @@
-//! One round: conjugate-gradient steps on the active elements, then the projection, which chooses the next ones.
+//! One round: conjugate-gradient steps on the active elements, then the projection.
+//!
+//! The projection chooses the next active elements.
 
 use super::directions::Slope;
 use super::operators::{read_blocks, write_blocks};
@@ -13,26 +15,27 @@ use crate::parallel;
 
 /// The active elements of a round.
 struct ActiveSet {
-    /// Their number, in units of the smallest.
+    /// Number of active elements, in units of the smallest.
     n: f64,
-    /// Whether the mean over them stays as it is.
+    /// Whether the mean over the active elements stays as it is.
     fixed_mean: bool,
-    /// Mean of the last direction over them.
+    /// Mean of the last direction over the active elements.
     direction_mean: f64,
 }
 
-/// The part of the cell in contact above which each step is clipped, and what joins the contact gets a pressure at
-/// once. `docs/measurements-uniform.md` compares both rules.
+/// Part of the cell in contact above which each step is clipped.
+///
+/// Elements that join the contact then get a pressure at once. `docs/measurements-uniform.md` compares both rules.
 const HEAVY_CONTACT: f64 = 0.5;
 
-/// What displaces a square of side 1 by 1 at its centre when it presses on it alone, π / (4 ln(1 + √2)) E*.
+/// Pressure on a square of side 1 alone that displaces its centre by 1: π / (4 ln(1 + √2)) E*.
 const ALONE: f64 = 0.891;
 
 impl Descent<'_> {
-    /// Takes so many steps, clips tensile pressures and restores the load.
+    /// Takes this number of steps, clips tensile pressures and restores the load.
     pub(super) fn round(&mut self, steps: usize, sums: &GapSums) -> GapSums {
-        // Without a start, contact is at first too large at any load. Of operators of the caller nothing is known.
-        // Free borders bend the gap of a start over long distances, and what joins there would press on a whole region.
+        // Without a start, contact is at first too large at any load. Of operators of the caller nothing is known. Free
+        // borders bend the gap of a start over long distances, so whole regions would join and press.
         let is_periodic = self.boundary() == Boundary::Periodic;
         let is_prepared = is_periodic && self.has_start && self.operators.corrections.extends();
         let is_heavy = is_prepared && sums.n_in_contact() > HEAVY_CONTACT * self.n_cell();
@@ -40,8 +43,8 @@ impl Descent<'_> {
         self.precondition_mean(sums);
         let mut set = self.begin_round();
         if set.n == 0.0 && sums.has_plastic() {
-            // The last projection has left every element at one of both bounds, and then changed the gaps that it had
-            // chosen by.
+            // The last projection left every element at one of both bounds. It then changed the gaps by which it had
+            // chosen.
             self.is_chosen = false;
             set = self.begin_round();
         }
@@ -62,7 +65,7 @@ impl Descent<'_> {
     /// Writes the residual of the active elements.
     fn begin_round(&mut self) -> ActiveSet {
         let (len, gradient) = (self.layout.len(), self.gradient());
-        // The choice before clipping goes with the extension.
+        // The choice before clipping goes with the extension of residuals.
         let is_chosen = std::mem::replace(&mut self.is_chosen, self.operators.corrections.extends());
         let directions = &mut self.directions;
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
@@ -74,13 +77,13 @@ impl Descent<'_> {
         let [n, direction] = self.layout.total(sums);
         self.operators.corrections.set_active(&self.directions.active);
         let fixed_load = matches!(self.problem.control, Control::MeanPressure(_));
-        // Where a uniform pressure on the whole cell displaces nothing, no step along it is long enough, and others
+        // If a uniform pressure on the whole cell displaces nothing, no step along it is long enough. Other directions
         // would be scaled with it.
         let is_free = self.problem.support.is_none() && n >= self.n_cell();
         ActiveSet { n, fixed_mean: fixed_load || is_free, direction_mean: direction / n }
     }
 
-    /// The next direction, and the length of the step along it.
+    /// Moves on to the next direction, and returns the length of the step along it.
     fn step_length(&mut self, set: &ActiveSet) -> f64 {
         let corrections = &mut *self.operators.corrections;
         self.info.preconditioner_applications += 1;
@@ -91,7 +94,7 @@ impl Descent<'_> {
         self.info.operator_applications += 1;
         let slope = Slope::Gap { gap: &self.gap, zero_gap: self.zero_gap };
         let sums = self.directions.advance(corrections, &self.layout, [beta, shift], &slope);
-        // A direction that does not lead down would undo progress; it is dropped, and the next one starts afresh.
+        // A direction that does not lead down would undo progress. It is dropped, and the next direction starts afresh.
         let leads_down = sums.curvature > 0.0 && sums.slope < 0.0;
         let length = if leads_down { -sums.slope / sums.curvature } else { 0.0 };
         self.curvature = if leads_down { sums.curvature } else { f64::INFINITY };
@@ -112,7 +115,9 @@ impl Descent<'_> {
         });
     }
 
-    /// Takes a step, clips tensile pressures and restores the load, each part of it where it was, or the penetration.
+    /// Takes a step, clips tensile pressures, and restores the load or the penetration.
+    ///
+    /// Each part of the load is restored where it was.
     fn project(&mut self, length: f64, is_heavy: bool) -> GapSums {
         let gradient = self.gradient();
         let (n_clipped, loads) = self.clip(length, is_heavy, &gradient);
@@ -133,7 +138,7 @@ impl Descent<'_> {
             let sums = self.limited(sums);
             return self.meet_penetration(sums);
         }
-        // Loads are only moved between squares; that of the cell follows by scaling, which is exact.
+        // Loads are only moved between squares. Scaling, which is exact, then sets the load of the cell.
         let (len, offset, range) = (self.layout.len(), self.problem.offset(), self.problem.unit());
         let blocks = self.pressure.chunks_mut(len).zip(self.directions.added().chunks(len)).enumerate();
         let layout = &self.layout;
@@ -159,8 +164,10 @@ impl Descent<'_> {
         self.meet_penetration(sums)
     }
 
-    /// Takes a step and clips tensile pressures; in heavy contact what joins gets its own. Returns how many pressures
-    /// that changed, and the load of each square.
+    /// Takes a step and clips tensile pressures.
+    ///
+    /// In heavy contact, elements that join get a pressure at once. Returns the number of changed pressures, and the
+    /// load of each square.
     fn clip(&mut self, length: f64, is_heavy: bool, gradient: &Gradient) -> (u64, Vec<Load>) {
         let (len, squares, layout) = (self.layout.len(), self.squares(), &self.layout);
         let spacing = self.info.grid.spacing();
@@ -174,7 +181,8 @@ impl Descent<'_> {
                 let (square, pressure) = (squares.at(place), &block.pressure[run.clone()]);
                 let added: f64 = step.added[run].iter().copied().map(f64::from).sum();
                 let load = Load { clipped: pressure.iter().sum(), added: added / gradient.unit };
-                // Runs go on in their square or the next one, and rows of a block begin in the first again.
+                // A run lies in the same square as the one before or in the next. Each row of a block begins in the
+                // first square again.
                 let is_this = |&i: &usize| loads.get(i).is_some_and(|(other, _)| *other == square);
                 let known = [last, last + 1, 0].into_iter().find(is_this).or_else(|| (0..loads.len()).find(is_this));
                 last = known.unwrap_or_else(|| {
@@ -188,7 +196,7 @@ impl Descent<'_> {
         self.add_loads(of_blocks)
     }
 
-    /// How many pressures were changed, and the load of each square, from those of blocks.
+    /// Number of changed pressures, and the load of each square, from those of blocks.
     fn add_loads(&self, of_blocks: Vec<(u32, Vec<(usize, Load)>)>) -> (u64, Vec<Load>) {
         let (layout, ranks) = (&self.layout, self.layout.ranks());
         let mut loads = vec![Load::default(); self.squares().len()];
@@ -200,7 +208,7 @@ impl Descent<'_> {
                 loads[square] = loads[square].plus(load, layout.area(i));
             }
         } else {
-            // In the order of blocks, those of other ranks included. All areas are 1.
+            // The order is that of blocks, including those of other ranks. All areas are 1.
             let mine = all.flat_map(|(_, (square, load))| [square as f64, load.clipped, load.added]).collect();
             for &[square, clipped, added] in ranks.concatenate(mine).as_chunks::<3>().0 {
                 let square = &mut loads[square as usize];

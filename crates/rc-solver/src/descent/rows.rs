@@ -1,13 +1,13 @@
-//! The vector work of the iteration, on one block at a time, with the sums that decide the next step.
+//! The vector work of the iteration on one block.
 //!
-//! Functions that write the block of an operator or read it pass the vectors through the cache once. Sums are in double
-//! precision and in a fixed order: element by element in a block, then block by block. The overlap of the heights with
-//! the rigid plane, h - c, is computed first: a constant in the heights, however large, then cancels before anything is
-//! added to it.
+//! It returns the sums that decide the next step. Functions that write or read the block of an operator pass the
+//! vectors through the cache once. Sums are in double precision and in a fixed order: element by element in a block,
+//! then block by block. The overlap of the heights with the rigid plane, h - c, is computed first. A constant in the
+//! heights, however large, then cancels before anything is added to it.
 
 use super::sums::GapSums;
 
-/// Heights, pressure and gap of the same elements: of a block, or of all.
+/// Heights, pressure and gap of the elements of a block, or of all elements.
 pub(crate) struct ElementValues<'a> {
     pub(crate) heights: &'a [f64],
     pub(crate) pressure: &'a mut [f64],
@@ -15,13 +15,13 @@ pub(crate) struct ElementValues<'a> {
 }
 
 impl ElementValues<'_> {
-    /// Blocks of `len` elements.
+    /// Divides into blocks of `len` elements.
     pub(super) fn blocks(self, len: usize) -> impl Iterator<Item = Self> {
         let pressure_and_gap = self.pressure.chunks_mut(len).zip(self.gap.chunks_mut(len));
         self.heights.chunks(len).zip(pressure_and_gap).map(|(heights, (pressure, gap))| Self { heights, pressure, gap })
     }
 
-    /// `g = L p - h + c` from a fresh `displacement = L p`; c is `offset`.
+    /// Writes `g = L p - h + c` from a fresh `displacement = L p`, where c is `offset`.
     pub(super) fn fresh_gap(self, displacement: &[f64], offset: f64, mut sums: GapSums) -> GapSums {
         for (((&v, &h), &mut p), g) in displacement.iter().zip(self.heights).zip(self.pressure).zip(self.gap) {
             let overlap = h - offset;
@@ -31,7 +31,7 @@ impl ElementValues<'_> {
         sums
     }
 
-    /// Multiplies the pressure by `scale`; the gap follows, since v is linear in p.
+    /// Multiplies the pressure by `scale`. The gap follows, since v is linear in p.
     pub(super) fn rescale(self, scale: f64, offset: f64, mut sums: GapSums) -> GapSums {
         for ((&h, p), g) in self.heights.iter().zip(self.pressure).zip(self.gap) {
             let overlap = h - offset;
@@ -42,8 +42,9 @@ impl ElementValues<'_> {
         sums
     }
 
-    /// Adds the displacement of the pressures that clipping has added, in units of `range`, then multiplies the
-    /// pressure by `scale`.
+    /// Adds the displacement of the pressures that clipping has added, then scales the pressure.
+    ///
+    /// The displacement is in units of `range`. The factor on the pressure is `scale`.
     pub(super) fn add_clipped(
         self,
         displacement: &[f32],
@@ -61,8 +62,10 @@ impl ElementValues<'_> {
         sums
     }
 
-    /// Writes the residual of the active elements: of those that `active` has, or, where nothing has been `chosen` yet,
-    /// those that press or penetrate. Returns their number and the sum of the last `direction` over them.
+    /// Writes the residual of the active elements.
+    ///
+    /// If they are `chosen`, they are those of `active`. Otherwise they are those that press or penetrate. Returns
+    /// their number, and the sum of the last `direction` over them.
     pub(super) fn first_residual(
         self,
         gradient: &Gradient,
@@ -101,10 +104,14 @@ impl ElementValues<'_> {
         }
     }
 
-    /// Takes the step `length` along a direction, clips tensile pressures and those above the hardness, and writes what
-    /// the clipping has added, in units of `1 / unit`. Chooses the next active elements before clipping: those between
-    /// both bounds, those outside that penetrate, which get `joining` times their overlap for a pressure, and plastic
-    /// ones with a gap, which lose as much. Returns the number of pressures that changed so.
+    /// Takes the step `length` along a direction, and clips pressures to 0 and to the hardness.
+    ///
+    /// Writes the pressures that clipping has added, in units of `1 / unit`. Returns the number of pressures that
+    /// clipping or joining changed.
+    ///
+    /// The next active elements are chosen before clipping. They are elements between both bounds, elements outside
+    /// that penetrate, and plastic elements with a gap. Those that penetrate get `joining` times their overlap as a
+    /// pressure. Plastic elements lose as much.
     pub(super) fn clip(&mut self, length: f64, joining: f64, step: &mut ClippedStep<'_>, gradient: &Gradient) -> u32 {
         let ClippedStep { direction, displacement, active, added } = step;
         let hardness = gradient.hardness;
@@ -117,7 +124,7 @@ impl ElementValues<'_> {
             *g += length * f64::from(u);
             *p = stepped.max(0.0).min(hardness);
             let (gap, is_plastic) = (gradient.of_gap(*g), stepped >= hardness);
-            // Without a step, what has just come stays.
+            // If the step did not change an element, it has just become active, and stays so.
             let at_bound = stepped == 0.0 || is_plastic && stepped <= hardness;
             let joins = (!*active || at_bound) && if is_plastic { gap > 0.0 } else { gap < 0.0 };
             if joining > 0.0 && joins && at_bound {
@@ -131,8 +138,9 @@ impl ElementValues<'_> {
     }
 }
 
-/// Multiplies some pressures by `share`, and adds what that adds, in units of `1 / unit`, to what clipping has `added`.
-/// Returns Σ p.
+/// Multiplies some pressures by `share`, and returns Σ p.
+///
+/// `written` gets the change of the pressures, in units of `1 / unit`, plus the pressures that clipping has `added`.
 pub(super) fn share(pressure: &mut [f64], share: f64, unit: f64, added: &[f32], written: &mut [f32]) -> f64 {
     let mut sum = 0.0;
     for ((p, added), written) in pressure.iter_mut().zip(added).zip(written) {
@@ -147,9 +155,9 @@ pub(super) fn share(pressure: &mut [f64], share: f64, unit: f64, added: &[f32], 
 pub(super) struct ClippedStep<'a> {
     pub(super) direction: &'a [f32],
     pub(super) displacement: &'a [f32],
-    /// The elements it changes, then the next ones.
+    /// The elements that the step changes, and later the next active elements.
     pub(super) active: &'a mut [bool],
-    /// Gets what clipping adds.
+    /// Room for the pressures that clipping adds.
     pub(super) added: &'a mut [f32],
 }
 
@@ -161,7 +169,7 @@ pub(crate) struct ConjugateStep<'a> {
 }
 
 impl ConjugateStep<'_> {
-    /// Takes the step `length`: updates the residual on the elements it changes, and writes it.
+    /// Takes the step `length`: updates the residual on active elements, and writes it.
     pub(crate) fn update_residual(&self, length: f32, residual: &mut [f32], written: &mut [f32]) {
         for (((r, &u), &active), written) in residual.iter_mut().zip(self.displacement).zip(self.active).zip(written) {
             *r = if active { *r + length * u } else { 0.0 };
@@ -170,13 +178,13 @@ impl ConjugateStep<'_> {
     }
 }
 
-/// The gradient of the energy: the gap above that of elements in contact.
+/// The gradient of the energy: the gap minus the gap of elements in contact.
 #[derive(Clone, Copy)]
 pub(super) struct Gradient {
     pub(super) zero_gap: f64,
-    /// Residuals are multiples of its inverse: 1/H.
+    /// Factor on residuals: 1/H.
     pub(super) unit: f64,
-    /// The greatest pressure.
+    /// The maximum pressure.
     pub(super) hardness: f64,
 }
 
@@ -190,8 +198,9 @@ impl Gradient {
     }
 }
 
-/// Of the preconditioned residual z: Σ z, Σ z u, Σ u over the active elements, with the displacement u of the last
-/// direction.
+/// Sums over the active elements of the preconditioned residual z: Σ z, Σ z u and Σ u.
+///
+/// u is the displacement of the last direction.
 pub(super) fn sums_of_preconditioned(preconditioned: &[f32], displacement: &[f32], active: &[bool]) -> [f64; 3] {
     let mut sums = [0.0; 3];
     for ((&z, &u), &active) in preconditioned.iter().zip(displacement).zip(active) {
@@ -205,7 +214,9 @@ pub(super) fn sums_of_preconditioned(preconditioned: &[f32], displacement: &[f32
     sums
 }
 
-/// Keeps the displacement u of the direction t. Returns Σ t u, Σ t (gradient) and Σ u over the active elements.
+/// Keeps the displacement u of the direction t.
+///
+/// Returns Σ t u, Σ t (gradient) and Σ u over the active elements.
 pub(super) fn keep_displacement(
     read: &[f32],
     direction: &[f32],
@@ -226,7 +237,9 @@ pub(super) fn keep_displacement(
     sums
 }
 
-/// Σ d, Σ d g and Σ d u for the `direction` d of each pressure and its `displacement` u.
+/// Products with the `direction` d of each pressure: Σ d, Σ d g and Σ d u.
+///
+/// u is the `displacement` of d.
 pub(super) fn products(
     pressure: &[f64],
     gap: &[f64],
@@ -243,7 +256,7 @@ pub(super) fn products(
     sums
 }
 
-/// The next direction, `t = -z + β t + shift` on the active elements, zero elsewhere.
+/// Moves on to the next direction, `t = -z + β t + shift` on the active elements, zero elsewhere.
 pub(super) fn next_direction(
     preconditioned: &[f32],
     [beta, shift]: [f32; 2],
@@ -261,8 +274,10 @@ pub(super) fn next_direction(
 mod tests {
     use super::*;
 
-    /// Pressures, active elements and what was added after a step of length 1 on five elements: one that stays, one
-    /// that turns tensile, one that comes to penetrate, one that does not, and one that stopped penetrating.
+    /// Five elements after a step of length 1.
+    ///
+    /// One element stays, one turns tensile, one comes to penetrate, one does not, and one stops penetrating. Returns
+    /// pressures, active elements, added pressures, and the number of changes.
     fn clipped(joining: f64, hardness: f64) -> ([f64; 5], [bool; 5], [f32; 5], u32) {
         let (mut pressure, mut gap) = ([2.0, 1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.5, 0.5, -0.5]);
         let (mut active, mut added) = ([true, true, false, false, true], [0.0; 5]);

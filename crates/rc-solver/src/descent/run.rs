@@ -1,4 +1,4 @@
-//! Rounds until the error is within the tolerance, or no longer falls.
+//! Rounds, until the error is within the tolerance or no longer falls.
 
 use rc_core::{Event, Observer};
 
@@ -8,44 +8,47 @@ use super::state::Descent;
 use super::sums::GapSums;
 use crate::ErrorBound;
 
-/// Conjugate-gradient steps between two clippings. Measured without extended residuals at 1024², N = 64, σ0/E* = 8.9e-4
-/// to 1e-6: 1, 2, 3 steps need 37, 36, 36 convolutions, but only 2 does it everywhere from 0.1 % to 86 % contact.
+/// Conjugate-gradient steps between two clippings.
+///
+/// `docs/measurements-uniform.md` compares one to three steps.
 const STEPS_PER_ROUND: usize = 2;
 
-/// Rounds without progress before directions are forgotten, and three times as many before the iteration gives up. From
-/// the first of them on tensile pressures are clipped after every step: where pressures are smooth over many contacts,
-/// steps are large, contacts change under them, and two steps between clippings lead astray. Before residuals were
-/// extended, in cells 50 and 100 times as long as wide, 15 of 144 loads did not converge without this rule, and 1 with
-/// it, in half the iterations; N = 1024 on 2304² needs 29 instead of 36, and other scenes are as before.
+/// Rounds without progress before directions are forgotten.
+///
+/// The iteration gives up after three times as many. From the first round without progress on, tensile pressures are
+/// clipped after every step. Where pressures are smooth over many contacts, steps are large and contacts change under
+/// them. Two steps between clippings then lead astray. `docs/measurements-uniform.md` has the loads that converge with
+/// this rule.
 const PATIENCE: usize = 20;
 
-/// An error below this part of the smallest one so far is progress.
+/// An error below this part of the smallest error so far is progress.
 const PROGRESS: f64 = 0.9;
 
-/// When a descent ends.
+/// The condition at which a descent ends.
 #[derive(Clone, Copy)]
 pub(crate) struct Goal {
-    /// The deepest overlap to be reached, or a tenth of the greatest gap well inside contact, in units of the problem's
-    /// length.
+    /// The error to be reached, in units of the problem's length.
+    ///
+    /// It is the deepest overlap, or a tenth of the largest gap well inside contact.
     pub(crate) tolerance: f64,
     pub(crate) max_iterations: usize,
-    /// What a fresh application of L must confirm, if anything.
+    /// The bound that a fresh application of L must confirm, if any.
     pub(crate) certify: Option<ErrorBound>,
 }
 
-/// Who is told about a descent, and how the mesh is shown.
+/// The observer of a descent, and how the mesh is shown to it.
 #[derive(Clone, Copy)]
 pub(crate) struct DescentObserver<'a> {
     pub(crate) observer: &'a dyn Observer,
     pub(crate) mesh: &'a dyn ObservedMesh,
 }
 
-/// How the error has fallen so far.
+/// The course of the error so far.
 struct ErrorHistory {
     smallest_error: f64,
-    /// Rounds since it was reached.
+    /// Number of rounds since the smallest error.
     rounds: usize,
-    /// Conjugate-gradient steps in the next round.
+    /// Number of conjugate-gradient steps in the next round.
     steps: usize,
 }
 
@@ -65,7 +68,7 @@ impl ErrorHistory {
 }
 
 impl Descent<'_> {
-    /// Iterates until the goal is reached, or cannot be.
+    /// Iterates until the goal is reached, or cannot be reached.
     pub(crate) fn run(&mut self, goal: Goal, watch: &DescentObserver<'_>) -> Outcome {
         let mut sums = self.start();
         let mut history = ErrorHistory::new();
@@ -92,7 +95,7 @@ impl Descent<'_> {
             if is_stuck || watch.observer.should_stop() {
                 let sums = self.refresh();
                 let mut outcome = self.outcome(&sums, false);
-                // The goal may be below what has to be certified.
+                // The goal may be smaller than the bound to certify.
                 outcome.converged = goal.certify.is_some_and(|bound| outcome.certificate.meets(bound));
                 return outcome;
             }
@@ -100,8 +103,10 @@ impl Descent<'_> {
         }
     }
 
-    /// The gap from a fresh application of L, in double precision, and the pressure at the prescribed load or
-    /// penetration: the gap follows scaling to rounding, since v is linear in p.
+    /// Computes the gap from a fresh application of L, in double precision.
+    ///
+    /// Scales the pressure to the prescribed load or penetration. The gap follows the scaling to rounding, since v is
+    /// linear in p.
     pub(crate) fn refresh(&mut self) -> GapSums {
         if self.problem.hardness.is_finite() {
             self.limit_pressure();

@@ -1,16 +1,20 @@
 //! Load that stays where it is when tensile pressures are clipped.
 //!
-//! Clipping adds load, which has to go again. Taken from the whole cell it moves load over long distances, and every
-//! step that is long enough for contacts to change would undo what it has gained for long waves. So the load of a step
-//! is kept in squares of the cell, as far as pressures there have one: what is to be shared out in a square is divided
-//! among its quarters by the load they have, down to the smallest squares. Between the centres of these both loads are
-//! interpolated, before and after, whose ratio is the factor on pressures.
+//! Clipping adds load, which must be removed again. Removing it from the whole cell would move load over long
+//! distances. Steps that are long enough for contacts to change would then undo their progress in long waves.
+//!
+//! The load of a step is therefore kept in squares of the cell, as far as there are pressures. The load of a square is
+//! divided among its quarters by the loads that they have, down to the smallest squares. Between the centres of the
+//! smallest squares, the loads before and after are interpolated. Their ratio is the factor on pressures.
 
-/// Elements along a side of the smallest squares, at least: their number is a power of two.
-/// `docs/measurements-uniform.md` compares 8 to 128.
+/// Minimum number of elements along a side of the smallest squares.
+///
+/// The number of squares is a power of two. `docs/measurements-uniform.md` compares 8 to 128.
 const SMALLEST_SQUARE: usize = 64;
 
-/// A square keeps at least this part of its load after clipping: where contacts vanish there may be none before.
+/// Minimum part of its load that a square keeps after clipping.
+///
+/// Where contacts vanish, the load before clipping may be zero.
 const LEAST_PART: f64 = 0.5;
 
 /// The load of a square.
@@ -18,12 +22,12 @@ const LEAST_PART: f64 = 0.5;
 pub(super) struct Load {
     /// Σ p after clipping.
     pub(super) clipped: f64,
-    /// Σ of what clipping has added.
+    /// Sum of the pressures that clipping has added.
     pub(super) added: f64,
 }
 
 impl Load {
-    /// What it is to have.
+    /// The load that it should have.
     fn part(self) -> f64 {
         (self.clipped - self.added).max(LEAST_PART * self.clipped)
     }
@@ -33,15 +37,15 @@ impl Load {
     }
 }
 
-/// Squares of the cell.
+/// The division of the cell into squares.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Squares {
-    /// Along both axes, powers of two.
+    /// Number of squares along both axes, powers of two.
     n: [usize; 2],
 }
 
 impl Squares {
-    /// In a cell of so many elements along both axes.
+    /// Squares of a cell with these numbers of elements along both axes.
     pub(super) fn new(sides: [usize; 2]) -> Self {
         Self { n: sides.map(|side| 1 << (side / SMALLEST_SQUARE).max(1).ilog2()) }
     }
@@ -50,7 +54,7 @@ impl Squares {
         self.n[0] * self.n[1]
     }
 
-    /// The square that a place, in parts of the cell, is in.
+    /// The square around a place, which is in parts of the cell.
     pub(super) fn at(self, place: [f64; 2]) -> usize {
         let [x, y] = [0, 1].map(|axis| ((place[axis] * self.n[axis] as f64) as usize).min(self.n[axis] - 1));
         y * self.n[0] + x
@@ -60,12 +64,12 @@ impl Squares {
 /// Factors on the pressures of a cell.
 pub(super) struct Shares {
     squares: Squares,
-    /// What each square is to have, and what it has.
+    /// The wanted load and the present load of each square.
     loads: Vec<[f64; 2]>,
 }
 
 impl Shares {
-    /// For the `loads` of squares, whose sum stays as it is.
+    /// Factors for the `loads` of squares. The sum of the loads stays as it is.
     pub(super) fn new(squares: Squares, loads: &[Load]) -> Self {
         let mut levels = vec![(squares.n, loads.to_vec())];
         while let Some((n, finer)) = levels.last().filter(|(n, _)| *n != [1, 1]) {
@@ -93,19 +97,19 @@ impl Shares {
         Self { squares, loads: wanted.into_iter().zip(loads).map(|(wanted, load)| [wanted, load.clipped]).collect() }
     }
 
-    /// The greatest factor.
+    /// The maximum factor.
     pub(super) fn maximum(&self) -> f64 {
         let factors = self.loads.iter().filter(|[_, clipped]| *clipped > 0.0).map(|[wanted, clipped]| wanted / clipped);
         factors.fold(1.0, f64::max)
     }
 
-    /// What squares are to gain, relative to the `rooms` that their pressures have.
+    /// The wanted gains of squares, relative to the `rooms` that their pressures have.
     pub(super) fn changes(&self, rooms: &[f64]) -> Self {
         let loads = self.loads.iter().zip(rooms).map(|([wanted, clipped], room)| [wanted - clipped, *room]);
         Self { squares: self.squares, loads: loads.collect() }
     }
 
-    /// The factor at a place, in parts of the cell.
+    /// The factor at a place, which is in parts of the cell.
     pub(super) fn at(&self, place: [f64; 2]) -> f64 {
         let n = self.squares.n;
         let [(x, ax), (y, ay)] = [0, 1].map(|axis| {
@@ -130,10 +134,10 @@ impl Shares {
     }
 }
 
-/// The square over square `i` of a level of `n`.
+/// The square that contains square `i` of a level of `n` squares.
 fn parent(i: usize, n: [usize; 2], half: [usize; 2]) -> usize {
     let [x, y] = [i % n[0], i / n[0]];
-    // Along an axis with a single square nothing is halved.
+    // Along an axis with a single square, nothing is halved.
     let [x, y] = [if n[0] > 1 { x / 2 } else { x }, if n[1] > 1 { y / 2 } else { y }];
     y * half[0] + x
 }
@@ -166,7 +170,7 @@ mod tests {
     fn a_square_without_load_takes_from_the_others_of_its_quarter_first() {
         let squares = Squares::new([256, 256]);
         let mut loads = vec![Load { clipped: 1.0, added: 0.0 }; 16];
-        // All of its pressure is what clipping has added.
+        // Clipping has added all of its pressure.
         loads[0] = Load { clipped: 1.0, added: 1.0 };
         let shares = Shares::new(squares, &loads);
         // The cell keeps 16 where it had 15 before.

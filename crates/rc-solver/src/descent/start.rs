@@ -9,19 +9,20 @@ use crate::parallel;
 #[cfg(doc)]
 use crate::problem::Problem;
 
-/// The pressure of a rigid overlap may miss the prescribed load by this factor before it is scaled to it, and is
-/// computed this often at most. Over 57 cold starts on 64² to 512², 448 iterations and 830 applications of L, the
-/// start's included, where a uniform pressure needs 976 and 1519; 444 to 456 with a factor from 1.1 to 2 and three to
-/// eight tries.
+/// Factor by which the pressure of a rigid overlap may miss the prescribed load.
+///
+/// The pressure is then scaled to the load. It is computed at most `MAX_OVERLAPS` times. `docs/measurements-uniform.md`
+/// compares these values with others.
 const LOAD_FACTOR: f64 = 1.3;
 const MAX_OVERLAPS: usize = 3;
 
-/// The first overlap, as a part of the range of depths ([`Problem::depth_range`]), and the exponent of the load over
-/// the overlap until two are known.
+/// First overlap, as a part of the range of depths ([`Problem::depth_range`]).
+///
+/// The number below is the exponent of the load as a power of the overlap, until two overlaps are known.
 const FIRST_OVERLAP: f64 = 0.25;
 const FIRST_EXPONENT: f64 = 1.5;
 
-/// The exponent of the load over the overlap is kept between these.
+/// Bounds of the exponent of the load as a power of the overlap.
 const EXPONENTS: [f64; 2] = [0.5, 4.0];
 
 /// The depth of a rigid overlap that carries a load, found by trial.
@@ -37,8 +38,10 @@ impl DepthSearch {
         Self { depth: FIRST_OVERLAP * range, exponent: FIRST_EXPONENT, last: None }
     }
 
-    /// The next depth, when the present one carries `load`, which is too small by the factor `missing`. NaN when two
-    /// loads are the same.
+    /// Moves to the next depth.
+    ///
+    /// The present depth carries `load`, which is too small by the factor `missing`. The next depth is NaN when two
+    /// loads are equal.
     fn improve(&mut self, load: f64, missing: f64) {
         if let Some((last_depth, last_load)) = self.last {
             let [least, most] = EXPONENTS;
@@ -50,7 +53,7 @@ impl DepthSearch {
 }
 
 impl Descent<'_> {
-    /// First pressure and gap.
+    /// Computes the first pressure and gap.
     pub(super) fn start(&mut self) -> GapSums {
         let n_cell = self.n_cell();
         let present = mean_pressure(n_cell, &self.layout, &self.pressure);
@@ -62,7 +65,7 @@ impl Descent<'_> {
         self.limited(sums)
     }
 
-    /// First pressure and gap, as if there were no hardness.
+    /// Computes the first pressure and gap, as if there were no hardness.
     fn elastic_start(&mut self, present: f64, usable: bool) -> GapSums {
         let n_cell = self.n_cell();
         if self.has_gap && usable {
@@ -78,11 +81,12 @@ impl Descent<'_> {
             Control::MeanPressure(mean) if !usable => return self.overlap_of_load(mean),
             Control::MeanPressure(_) => scale_to_load(self.problem, n_cell, &self.layout, &mut self.pressure),
             Control::Penetration(_) if usable => {}
-            // The right places; how hard they press is found at once.
+            // The overlap finds the right places. The pressure is scaled at once.
             Control::Penetration(_) => {
                 self.overlap(self.problem.offset());
                 let sums = self.fresh_gap();
-                // Where all of it is beyond the hardness, nothing scales: what is limited to it is the start.
+                // If all pressures are beyond the hardness, nothing can be scaled. The start is then the pressure
+                // limited to the hardness.
                 let scale = sums.scale_to_no_gap().filter(|scale| *scale > 0.0);
                 return scale.map_or(sums, |scale| self.rescale(scale));
             }
@@ -90,7 +94,7 @@ impl Descent<'_> {
         self.refresh()
     }
 
-    /// Sets the pressure to the overlap of the heights with a rigid plane at `floor`, in units of length.
+    /// Sets the pressure to the overlap with a rigid plane at `floor`. Its unit is that of length.
     fn overlap(&mut self, floor: f64) {
         let len = self.layout.len();
         parallel::for_each(self.elements().blocks(len), |block| {
@@ -100,11 +104,13 @@ impl Descent<'_> {
         });
     }
 
-    /// The overlap with a rigid plane that carries the mean pressure `wanted`, nearly, when it is scaled so that its
-    /// weighted mean gap is zero; a uniform pressure where only an overlap of more than the range of depths would.
+    /// Starts from the overlap with a rigid plane that carries about the mean pressure `wanted`.
+    ///
+    /// The load of an overlap is that after scaling its weighted mean gap to zero. If only an overlap beyond the range
+    /// of depths would carry the load, the start is a uniform pressure.
     fn overlap_of_load(&mut self, wanted: f64) -> GapSums {
         let n_cell = self.n_cell();
-        // A coarse level may not reach as high as the finest.
+        // A coarse level may not be as high as the finest.
         let highest = self.layout.maximum(self.heights, f64::NEG_INFINITY);
         let range = self.problem.depth_range();
         let mut search = DepthSearch::new(range);

@@ -1,4 +1,4 @@
-//! Pressure and gap on one level, and what improves them.
+//! Pressure and gap on one level, and the functions that improve them.
 
 use rc_core::{Boundary, Field, Grid};
 
@@ -13,13 +13,13 @@ use crate::parallel;
 use crate::problem::Problem;
 use crate::solution::{GridSolution, LevelInfo, LevelValues, Status};
 
-/// Where a descent starts.
+/// The start of a descent.
 pub(crate) enum Start {
-    /// From the overlap with the rigid surface.
+    /// The overlap with the rigid surface.
     Nothing,
-    /// From this pressure, up to a factor.
+    /// This pressure, up to a factor.
     Pressure(Vec<f64>),
-    /// From this pressure, of which the gap is known.
+    /// This pressure, whose gap is known.
     Known { pressure: Vec<f64>, gap: Vec<f64> },
 }
 
@@ -32,22 +32,24 @@ pub(crate) struct Descent<'a> {
     pub(super) pressure: Vec<f64>,
     pub(super) gap: Vec<f64>,
     pub(super) directions: ConjugateDirections,
-    /// <t, L t> of the last step; infinite when there is no direction to be conjugate to.
+    /// ⟨t, L t⟩ of the last step. Infinite if the next direction need not be conjugate to another.
     pub(super) curvature: f64,
     /// Whether the last projection has chosen the active elements.
     pub(super) is_chosen: bool,
     /// The gap of elements in contact.
     pub(super) zero_gap: f64,
-    /// Elements of more pressure are well inside contact.
+    /// Pressure above which elements are well inside contact.
     pub(super) pressed: f64,
-    /// The pressure is a start, and so is the gap.
+    /// Whether a pressure was given to start from. The flag below says the same of the gap.
     pub(super) has_start: bool,
     pub(super) has_gap: bool,
     pub(super) info: LevelInfo,
 }
 
 impl<'a> Descent<'a> {
-    /// A descent on the level whose elements are those of `grid`, or some of them: `heights` has one value for each.
+    /// A descent on the level whose elements are all or some of those of `grid`.
+    ///
+    /// `heights` has one value for each element.
     pub(crate) fn new(
         heights: &'a [f64],
         grid: Grid,
@@ -86,7 +88,7 @@ impl<'a> Descent<'a> {
         self.info.grid
     }
 
-    /// What is beyond the heights.
+    /// The boundary of the heights.
     pub(crate) fn boundary(&self) -> Boundary {
         self.problem.support.boundary
     }
@@ -103,12 +105,14 @@ impl<'a> Descent<'a> {
         &self.gap
     }
 
-    /// The gap of elements in contact, which a converged solution makes the same for all.
+    /// The gap of elements in contact.
+    ///
+    /// A converged solution makes it the same for all of them.
     pub(crate) fn contact_gap(&self) -> f64 {
         self.zero_gap
     }
 
-    /// The smallest elements that the whole cell has room for.
+    /// Number of the smallest elements that the whole cell has room for.
     pub(super) fn n_cell(&self) -> f64 {
         self.info.grid.len() as f64
     }
@@ -122,7 +126,7 @@ impl<'a> Descent<'a> {
     pub(super) fn fresh_gap(&mut self) -> GapSums {
         self.info.operator_applications += 1;
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
-        // Fresh gaps are rare: neither operator keeps memory for vectors while the other one works.
+        // Fresh gaps are rare. An operator keeps no memory for vectors while the other one works.
         self.operators.corrections.release();
         let sums = fresh_gap(
             &mut *self.operators.fresh,
@@ -135,7 +139,7 @@ impl<'a> Descent<'a> {
         sums
     }
 
-    /// Multiplies the pressure.
+    /// Multiplies the pressure by `scale`. The gap follows.
     pub(super) fn rescale(&mut self, scale: f64) -> GapSums {
         let (layout, problem) = (self.layout.clone(), self.problem);
         let empty = GapSums::empty(self.pressed, problem.hardness);
@@ -154,8 +158,9 @@ impl<'a> Descent<'a> {
         Outcome::new(self.problem, sums, self.n_cell(), converged)
     }
 
-    /// The solution on a uniform grid, with the work on all levels, coarsest first, and the values of the last level
-    /// but one.
+    /// The solution on a uniform grid.
+    ///
+    /// `levels` is the work on all levels, coarsest first. `coarser` has the values of the last level but one.
     pub(crate) fn into_solution(
         self,
         outcome: &Outcome,
@@ -180,7 +185,7 @@ impl<'a> Descent<'a> {
         self.pressure
     }
 
-    /// Pressure, and gap with its pressure-weighted mean at zero.
+    /// The pressure, and the gap with its pressure-weighted mean at zero.
     pub(crate) fn into_vectors(mut self, mean_gap: f64) -> (Vec<f64>, Vec<f64>) {
         parallel::update(&mut self.gap, |g| *g -= mean_gap);
         (self.pressure, self.gap)

@@ -1,13 +1,15 @@
-//! Sums over pressure and gap, which scale the pressure and measure its error.
+//! Sums over pressure and gap. They scale the pressure and measure its error.
 
 use super::layout::BlockLayout;
 use crate::Control;
 use crate::problem::Problem;
 
-/// Scaling of the pressure under penetration control is bounded by this factor per round.
+/// Maximum factor by which a round scales the pressure under penetration control.
 const MAXIMUM_SCALING: f64 = 4.0;
 
-/// Sums over elements in contact or at risk, which the iteration needs after a change of the pressure.
+/// Sums over elements in contact or at risk.
+///
+/// The iteration needs them after a change of the pressure.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GapSums {
     /// Σ p
@@ -26,15 +28,18 @@ pub(crate) struct GapSums {
     pub(super) max_pressure: f64,
     /// max g over p > `pressed`
     pub(super) max_pressed_gap: f64,
-    /// Elements of more pressure are well inside contact.
+    /// Pressure above which elements are well inside contact.
     pub(super) pressed: f64,
-    /// The greatest pressure. Elements that have it are in none of the sums above but `max_pressure` and
-    /// `max_pressed_gap`.
+    /// The maximum pressure.
+    ///
+    /// Of the sums above, elements at this pressure enter only `max_pressure`.
     pub(super) hardness: f64,
     pub(super) plastic: PlasticSums,
 }
 
-/// Sums over plastic elements, whose pressure is the hardness. None of them may have a gap.
+/// Sums over plastic elements, whose pressure is the hardness.
+///
+/// A plastic element may not have a gap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlasticSums {
     /// Σ 1
@@ -57,7 +62,7 @@ impl PlasticSums {
         self.max_gap = -smaller(-self.max_gap, -g);
     }
 
-    /// With those of a block of elements of this area.
+    /// Adds the sums of a block whose elements have this area.
     fn plus(self, block: Self, area: f64) -> Self {
         Self {
             n: self.n + area * block.n,
@@ -68,14 +73,17 @@ impl PlasticSums {
     }
 }
 
-/// Part of the maximum pressure from which elements are well inside contact, and part of their greatest gap that counts
-/// as an overlap.
+/// Part of the maximum pressure above which elements are well inside contact.
+///
+/// The number below is the part of their largest gap that counts as an overlap.
 const PRESSED: f64 = 0.1;
 const OPEN: f64 = 0.1;
 
 impl GapSums {
-    /// Of no element, where no pressure is greater than the `hardness`. What is `pressed` follows from other sums
-    /// ([`GapSums::next_pressed`]); nothing is where it is infinite.
+    /// Sums over no elements, with pressures of at most `hardness`.
+    ///
+    /// The limit `pressed` follows from other sums ([`GapSums::next_pressed`]). If it is infinite, no element is well
+    /// inside contact.
     pub(crate) fn empty(pressed: f64, hardness: f64) -> Self {
         Self {
             pressure: 0.0,
@@ -92,7 +100,7 @@ impl GapSums {
         }
     }
 
-    /// The pressure from which elements of the next sums are well inside contact.
+    /// The pressure above which elements of the next sums are well inside contact.
     pub(super) fn next_pressed(&self) -> f64 {
         PRESSED * self.max_pressure
     }
@@ -117,7 +125,7 @@ impl GapSums {
         }
     }
 
-    /// Adds blocks in their order, weighted by the area of their elements.
+    /// Adds the sums of blocks in their order, weighted by the area of their elements.
     pub(super) fn total(layout: &BlockLayout, sums: Vec<Self>) -> Self {
         let empty = sums
             .first()
@@ -129,7 +137,7 @@ impl GapSums {
         empty.with_values(total)
     }
 
-    /// With a block whose elements have this area.
+    /// Adds a block whose elements have this area.
     fn plus(self, block: &Self, area: f64) -> Self {
         Self {
             pressure: self.pressure + area * block.pressure,
@@ -178,8 +186,10 @@ impl GapSums {
         if self.pressure > 0.0 { self.pressure_gap / self.pressure } else { self.gap_of_plastic(problem) }
     }
 
-    /// The gap of contact where nothing but plastic elements press: any between theirs and those of the others is.
-    /// Where the penetration is prescribed it should be zero.
+    /// The gap of contact where only plastic elements press.
+    ///
+    /// Any value between their gaps and the gaps of the other elements is possible. It should be zero where the
+    /// penetration is prescribed.
     fn gap_of_plastic(&self, problem: &Problem) -> f64 {
         let [inside, outside] = [self.plastic.max_gap, self.min_gap];
         match problem.control {
@@ -195,7 +205,9 @@ impl GapSums {
         self.plastic.n > 0.0
     }
 
-    /// What plastic elements add to a sum over pressures, where `sum` is theirs without the pressure.
+    /// The part of a sum over pressures that plastic elements add.
+    ///
+    /// `sum` is their sum without the factor of the pressure.
     fn of_plastic(&self, sum: f64) -> f64 {
         // The hardness may be infinite.
         if self.has_plastic() { self.hardness * sum } else { 0.0 }
@@ -206,7 +218,7 @@ impl GapSums {
         self.pressure + self.of_plastic(self.plastic.n)
     }
 
-    /// Elements in contact.
+    /// Number of elements in contact.
     pub(super) fn n_in_contact(&self) -> f64 {
         self.n_contact + self.plastic.n
     }
@@ -216,15 +228,17 @@ impl GapSums {
         self.pressure_gap + self.pressure_overlap + self.of_plastic(self.plastic.gap + self.plastic.overlap)
     }
 
-    /// What the plastic element of the greatest gap has more than contact; 0 where it has less.
+    /// Maximum gap of plastic elements minus the gap of contact, at least 0.
     pub(super) fn plastic_gap(&self, contact_gap: f64) -> f64 {
         let gap = self.plastic.max_gap - contact_gap;
         // NaN stays.
         if gap < 0.0 { 0.0 } else { gap }
     }
 
-    /// The gap of contact that certificates and penetrations are from: where the penetration is prescribed and elements
-    /// are plastic, it is exact, since no scaling of the pressure could close the mean gap of the others.
+    /// The gap of contact for certificates and penetrations.
+    ///
+    /// It is exact where the penetration is prescribed and elements are plastic. No scaling of the pressure could close
+    /// the mean gap of the other elements.
     pub(super) fn reference_gap(&self, problem: &Problem) -> f64 {
         match problem.control {
             Control::Penetration(_) if !self.may_scale() => 0.0,
@@ -232,21 +246,23 @@ impl GapSums {
         }
     }
 
-    /// Whether no pressure is the hardness, or would be if the mean gap were closed by scaling.
+    /// Whether no pressure is the hardness, even after scaling closes the mean gap.
     pub(super) fn may_scale(&self) -> bool {
         // An infinite hardness allows everything.
         !self.has_plastic() && self.scale_to_no_gap().is_none_or(|scale| scale * self.max_pressure <= self.hardness)
     }
 
-    /// Bound on G over the mean pressure, where G = max ⟨g, p - p*⟩ over pressures p* that are possible and have the
-    /// mean of p: the weighted mean of g - min g, with min g over elements that could press more. Plastic elements
-    /// below that minimum could press less, which adds nothing; the others count with the greatest gap of them all.
+    /// Bound on G divided by the mean pressure, with G = max ⟨g, p - p*⟩.
+    ///
+    /// The maximum is over possible pressures p* with the mean of p. The bound is the weighted mean of g - min g, with
+    /// min g over elements that could press more. Plastic elements below that minimum could press less, which adds
+    /// nothing. The others count with the largest gap of them all.
     pub(super) fn excess(&self, problem: &Problem) -> f64 {
         let of_elastic = self.mean_gap(problem) - self.min_gap;
         if !self.has_plastic() {
             return of_elastic;
         }
-        // Where everything is plastic, no other pressure of the same mean is possible.
+        // If everything is plastic, no other pressure of the same mean is possible.
         if self.min_gap == f64::INFINITY {
             return 0.0;
         }
@@ -255,7 +271,7 @@ impl GapSums {
         (of_elastic + of_plastic) / self.load()
     }
 
-    /// The gap of elements in contact: its mean, or zero where the penetration is prescribed.
+    /// The gap of elements in contact: their mean, or zero where the penetration is prescribed.
     pub(super) fn zero_gap(&self, problem: &Problem) -> f64 {
         match problem.control {
             Control::MeanPressure(_) if self.n_contact > 0.0 => self.contact_gap / self.n_contact,
@@ -265,8 +281,10 @@ impl GapSums {
         }
     }
 
-    /// The factor on the pressure that makes its weighted mean gap zero, under penetration control; within
-    /// [`MAXIMUM_SCALING`]. None where the hardness forbids it.
+    /// The factor on the pressure that brings it to the prescribed penetration.
+    ///
+    /// It makes the weighted mean gap zero, and is limited by [`MAXIMUM_SCALING`]. `None` under load control, and where
+    /// the hardness forbids scaling.
     pub(crate) fn scale_to_penetration(&self, problem: &Problem) -> Option<f64> {
         let Control::Penetration(_) = problem.control else { return None };
         if !self.may_scale() {
@@ -281,20 +299,22 @@ impl GapSums {
         (scale.is_finite() && self.work() > 0.0).then_some(scale)
     }
 
-    /// The deepest overlap, a tenth of the greatest gap well inside contact, the greatest gap of a plastic element, or
-    /// the mean gap where there should be none, in units of the problem's length, in a cell of `n_cell` elements.
+    /// The error of the pressure, in units of the problem's length.
+    ///
+    /// It is the maximum of the deepest overlap, a tenth of the largest gap well inside contact, and the largest gap of
+    /// a plastic element. Under penetration control, the mean gap is one more. The cell has room for `n_cell` elements.
     pub(super) fn error(&self, problem: &Problem, n_cell: f64) -> f64 {
         let mean_gap = self.mean_gap(problem);
         let length = problem.reference_length(self.work(), self.load(), n_cell);
-        // What is exact is so in any unit, even where the pressure is uniform and U is zero.
+        // An exact pressure is exact in any unit, even if it is uniform and U is zero.
         let ratio = |overlap: f64| match overlap {
             ..=0.0 => 0.0,
             _ if length > 0.0 => overlap / length,
-            // U of a pressure that is all rounding says nothing.
+            // U of a pressure that is only rounding has no meaning.
             _ => f64::NAN,
         };
         let penetration = ratio(mean_gap - self.min_gap);
-        // NaN is in the penetration.
+        // NaN is passed on in the penetration.
         let plastic = ratio(self.plastic_gap(mean_gap));
         let penetration = if penetration.is_nan() || plastic.is_nan() {
             f64::NAN
@@ -303,19 +323,21 @@ impl GapSums {
         };
         positive_part(match problem.control {
             Control::MeanPressure(_) => penetration,
-            // NaN in the mean is in both.
+            // A NaN of the mean gap is in the penetration too.
             Control::Penetration(_) if penetration.is_nan() => penetration,
             Control::Penetration(_) => penetration.max(ratio(mean_gap.abs())),
         })
     }
 }
 
-/// The smaller of two gaps; NaN when one is, which `f64::min` would pass over: NaN must not pass for contact.
+/// The smaller of two gaps, or NaN if either is NaN.
+///
+/// `f64::min` would pass over NaN, which would then pass for contact.
 fn smaller(a: f64, b: f64) -> f64 {
     if b < a || b.is_nan() { b } else { a }
 }
 
-/// The positive part of an error; NaN stays, since it is not a small error.
+/// The positive part of an error. NaN stays, since it is not a small error.
 pub(super) fn positive_part(error: f64) -> f64 {
     if error < 0.0 { 0.0 } else { error }
 }

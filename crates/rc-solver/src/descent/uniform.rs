@@ -10,7 +10,7 @@ use super::operators::{BlockOperator, LevelOperators, PreconditionedOperator};
 use super::passes::{layout, read_rows, write_rows};
 use super::response::GridResponse;
 
-/// L of `kernel` on `grid`.
+/// The operators L of `kernel` on `grid`.
 pub(crate) fn uniform_operators(grid: Grid, kernel: &dyn Kernel) -> LevelOperators<'static> {
     let response = GridResponse::of(grid, kernel);
     LevelOperators {
@@ -19,18 +19,18 @@ pub(crate) fn uniform_operators(grid: Grid, kernel: &dyn Kernel) -> LevelOperato
     }
 }
 
-/// For corrections.
+/// L and its approximate inverse, for corrections.
 pub(crate) struct UniformCorrections {
-    /// Of displacements; where they are periodic, of the approximate inverse too.
+    /// Convolution of displacements. On periodic cells it serves the approximate inverse too.
     convolution: Convolution<f32>,
     displacement: SymbolTable<f32>,
     inverse: Inverse,
-    /// Where borders are free.
+    /// The margin around heights with free borders.
     margin: Option<Margin>,
 }
 
 impl UniformCorrections {
-    /// Of `kernel` with its `response` on `grid`.
+    /// Operators of `kernel` with its `response` on `grid`.
     pub(crate) fn new(grid: Grid, kernel: &dyn Kernel, response: &GridResponse) -> Self {
         let margin = (response.boundary == Boundary::Free).then(|| Margin::around(grid));
         let inverse = match &margin {
@@ -76,25 +76,25 @@ impl PreconditionedOperator for UniformCorrections {
     fn set_mean(&mut self, eigenvalue: f64) {
         let grid = self.convolution.grid();
         let around = self.margin.as_ref().map_or(grid, Margin::grid);
-        // The load on the larger grid is what the grid gets.
+        // The load on the grid is also the load on the larger grid.
         let part = grid.len() as f64 / around.len() as f64;
         self.inverse.symbol.set_mean((part * eigenvalue / around.len() as f64) as f32);
     }
 }
 
-/// An operator of this symbol, in double precision.
+/// An operator with this symbol, in double precision.
 pub(crate) struct SymbolOperator {
     convolution: Convolution<f64>,
     symbol: SymbolTable<f64>,
 }
 
 impl SymbolOperator {
-    /// On `grid`, which `symbol` is the table of.
+    /// An operator on `grid`. `symbol` is the table of its waves.
     pub(crate) fn new(grid: Grid, symbol: SymbolTable<f64>) -> Self {
         Self { convolution: Convolution::new(grid), symbol }
     }
 
-    /// L itself.
+    /// The operator L of a grid.
     pub(crate) fn of(response: GridResponse) -> Self {
         Self { convolution: response.convolution(), symbol: response.table }
     }

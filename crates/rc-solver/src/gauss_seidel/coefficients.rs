@@ -1,31 +1,36 @@
 //! The coefficients L_ij of Eq. 4 between the elements of a mesh, looked up or computed.
 //!
-//! Centres of elements lie on a lattice of half the finest element, so L_ij depends on the size of the source and two
-//! integers. A table for each size of source, over offsets folded into a quarter of the cell, replaces the n² matrix.
+//! Centres of elements lie on a lattice of half the finest element. L_ij therefore depends on the size of the source
+//! and on two integers. A table for each size of source replaces the n² matrix. It has the offsets folded into a
+//! quarter of the cell.
 
 use rayon::prelude::*;
 use rc_core::DVec2;
 use rc_quadtree::paper::Mesh;
 
-/// `coefficient(offset, half_side)`: L_ij of Eq. 4-6 for a source of half-side d and the offset of the target, in λ/E*.
+/// Function `coefficient(offset, half_side)`: L_ij of Eq. 4-6, in λ/E*.
+///
+/// The source has the half-side d. The offset is that of the target.
 pub(crate) type Coefficient<'a> = &'a (dyn Fn(DVec2, f64) -> f64 + Sync);
 
-/// One element as the sums see it: centre on the lattice, and size of the source.
+/// One element as the sums see it.
+///
+/// It has a centre on the lattice, and a size as a source.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Site {
     /// Centre, in half finest elements.
     pub(super) x: u32,
     pub(super) y: u32,
-    /// The side is 2^`doublings` finest elements.
+    /// Number of doublings: the side is 2^`doublings` finest elements.
     pub(super) doublings: u32,
 }
 
 /// L_ij for every pair of elements of meshes whose finest elements are 1/`side` wide.
 pub(super) struct Coefficients<'a> {
     coefficient: Coefficient<'a>,
-    /// Finest elements per side of the cell.
+    /// Number of finest elements per side of the cell.
     side: u32,
-    /// For each size of source, either nothing yet, or a table over (|dx|, |dy|) ≤ `side`.
+    /// For each size of source, nothing yet or a table over (|dx|, |dy|) ≤ `side`.
     tables: Vec<Vec<f64>>,
     /// Bytes that tables may take.
     budget: usize,
@@ -36,8 +41,9 @@ impl<'a> Coefficients<'a> {
         Self { coefficient, side, tables: Vec::new(), budget }
     }
 
-    /// The elements of `mesh` on the lattice, and tables for their sizes as far as the budget goes, smallest sources
-    /// first: they are the most numerous.
+    /// The elements of `mesh` on the lattice. Makes tables for their sizes as far as the budget allows.
+    ///
+    /// Smallest sources come first, because they are the most numerous.
     pub(super) fn prepare(&mut self, mesh: &Mesh) -> Vec<Site> {
         let finest = 1.0 / f64::from(self.side);
         let sites: Vec<Site> = mesh
@@ -65,7 +71,7 @@ impl<'a> Coefficients<'a> {
                 *value = self.compute(dx as u32, dy as u32, doublings);
             }
         });
-        // The other half by symmetry under x ↔ y.
+        // The other half follows by symmetry under x ↔ y.
         for dy in 0..row_len {
             for dx in dy + 1..row_len {
                 table[dy * row_len + dx] = table[dx * row_len + dy];
@@ -76,13 +82,13 @@ impl<'a> Coefficients<'a> {
 
     fn compute(&self, dx: u32, dy: u32, doublings: u32) -> f64 {
         let half = 0.5 / f64::from(self.side);
-        // In one order, so that values with and without a table are the same.
+        // One order makes values with and without a table the same.
         let (long, short) = (dx.max(dy), dx.min(dy));
         let offset = DVec2::new(f64::from(long) * half, f64::from(short) * half);
         (self.coefficient)(offset, half * f64::from(1_u32 << doublings))
     }
 
-    /// Offset of two coordinates, folded to the nearest image.
+    /// Offset between two coordinates, folded to the nearest image.
     fn fold(&self, a: u32, b: u32) -> u32 {
         let distance = a.abs_diff(b);
         distance.min(2 * self.side - distance)

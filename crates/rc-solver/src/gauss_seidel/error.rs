@@ -1,4 +1,4 @@
-//! Why the paper's procedure does not fit a problem.
+//! Reasons why the paper's procedure does not fit a problem.
 
 use rc_core::Grid;
 use rc_quadtree::paper::MeshError;
@@ -10,10 +10,12 @@ use crate::ProblemError;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum GaussSeidelError {
-    /// Heights, load or tolerance are out of range. At the front door this is [`crate::SolveError::Problem`].
+    /// Heights, load or tolerance are out of range.
+    ///
+    /// [`crate::solve`] returns it as [`crate::SolveError::Problem`].
     #[error(transparent)]
     Problem(#[from] ProblemError),
-    /// The elements of the mesh must be squares, in a square cell.
+    /// The elements of the mesh are not squares in a square cell.
     #[error(
         "the mesh needs square elements in a square cell, not {grid} in one of 1 by {ratio}",
         ratio = grid.cell_ratio()
@@ -25,8 +27,9 @@ pub enum GaussSeidelError {
     /// The mesh cannot be made.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// The scene needs more work than the budget allows. The estimate comes from a solution on a coarse grid, before
-    /// any other work.
+    /// The scene needs more work than the budget allows.
+    ///
+    /// The estimate comes from a solution on a coarse grid, before any other work.
     #[error(
         "about {elements} elements in contact need {coefficients:.1e} coefficients a sweep, about {seconds_per_sweep:.0} s, \
          more than the budget of {budget:.1e}; take a coarser grid, another method, or a larger budget"
@@ -34,7 +37,7 @@ pub enum GaussSeidelError {
     Budget {
         /// Estimated number of elements in contact.
         elements: usize,
-        /// Its square.
+        /// Square of the number of elements.
         coefficients: f64,
         /// Rough time of one sweep on one core.
         seconds_per_sweep: f64,
@@ -46,7 +49,7 @@ pub enum GaussSeidelError {
     Parameter {
         /// Name of the parameter.
         what: &'static str,
-        /// What would be right.
+        /// The condition that the value must meet.
         wanted: &'static str,
         /// The value.
         value: f64,

@@ -1,4 +1,4 @@
-//! What is refused before any work: parameters out of range, and scenes beyond the budget.
+//! Refusals before any work: parameters out of range, and scenes beyond the budget.
 
 use rc_core::{Field, Silent};
 use rc_quadtree::paper::{Mask, MeshKind, MeshParams, count};
@@ -7,8 +7,9 @@ use super::{GaussSeidelError, GaussSeidelParams, HalfSpace};
 use crate::uniform::{coarsen_without_pits, solve_uniform};
 use crate::{Control, IterationParams, SolveInfo};
 
-/// Largest element, in finest elements: beyond it coarsening saves nothing and heights at centres would need more
-/// levels.
+/// Maximum number of doublings from the finest to the largest element.
+///
+/// Beyond it coarsening saves nothing, and heights at centres would need more levels.
 pub(super) const LARGEST_DOUBLINGS: u32 = 5;
 
 /// Maximum side of the coarse grid that the cost is estimated on.
@@ -45,15 +46,17 @@ pub(super) fn mesh_kind(params: &GaussSeidelParams) -> MeshKind {
     if params.uniform_elements { MeshKind::AdaptiveUniform } else { MeshKind::Adaptive }
 }
 
-/// What a coarse grid says of a scene, in λ.
+/// Results on a coarse grid, in λ.
 pub(super) struct Estimate {
     /// Penetration Δ.
     pub(super) penetration: f64,
-    /// U/σ0, the elastic energy over the mean pressure.
+    /// U/σ0, the ratio of elastic energy to mean pressure.
     pub(super) length: f64,
 }
 
-/// Solves the scene on a coarse grid, or refuses one whose cost would exceed the budget.
+/// Solves the scene on a coarse grid.
+///
+/// Refuses a scene whose cost would exceed the budget.
 pub(super) fn estimate(
     heights: &Field,
     half_space: HalfSpace<'_>,
@@ -66,7 +69,7 @@ pub(super) fn estimate(
     let coarse = coarse.unwrap_or(heights);
     let full_contact = coarse.max() - coarse.mean();
     let control = match control {
-        // The coarse grid misses the highest point: keep its penetration below its own full contact.
+        // The coarse grid misses the highest point. Its penetration is kept below its own full contact.
         Control::Penetration(value) => Control::Penetration(value.min(0.999 * full_contact)),
         Control::MeanPressure(_) => control,
     };
@@ -77,7 +80,9 @@ pub(super) fn estimate(
     Ok(Estimate { penetration: penetration.max(f64::MIN_POSITIVE), length: elastic_energy / mean_pressure })
 }
 
-/// Refuses a scene that needs more coefficients than the budget allows, by the contact of a coarse solution.
+/// Refuses a scene that needs more coefficients than the budget allows.
+///
+/// The number comes from the contact of a coarse solution.
 fn check_budget(heights: &Field, coarse: &Field, params: &GaussSeidelParams) -> Result<(), GaussSeidelError> {
     let side = heights.grid().nx();
     let ratio = side / coarse.grid().nx();

@@ -49,7 +49,7 @@ impl Procedure<'_> {
         })
     }
 
-    /// The last digits of the load, or of the penetration, by scaling the pressure.
+    /// Sets the last digits of the load, or of the penetration, by scaling the pressure.
     fn scale_to_control(&mut self, wanted: &[f64]) {
         let scale = match self.problem.control {
             Control::MeanPressure(mean) => mean / self.mean_pressure(),
@@ -63,7 +63,7 @@ impl Procedure<'_> {
         sweep::displacement(&self.coefficients, &self.sites, &self.pressure)
     }
 
-    /// ∫ p · values over the cell, for a value of each element.
+    /// ∫ p · values over the cell, with one value for each element.
     fn weighted(&self, values: &[f64]) -> f64 {
         let elements = self.pressure.iter().zip(self.mesh.elements()).zip(values);
         elements.map(|((p, element), value)| p * element.area() * value).sum()

@@ -1,11 +1,12 @@
-//! The half-space as the paper's procedure needs it.
+//! The half-space in the form that the paper's procedure needs.
 
 use rc_core::Kernel;
 
 use super::coefficients::Coefficient;
 
-/// One half-space in two forms: its symbol on uniform grids, and L_ij between squares, as [`rc_kernel::Love`] and
-/// `rc_kernel::PeriodicLove` are.
+/// One half-space in two forms: its symbol on uniform grids, and L_ij between squares.
+///
+/// [`rc_kernel::Love`] and `rc_kernel::PeriodicLove` are such a pair.
 #[derive(Clone, Copy)]
 pub(crate) struct HalfSpace<'a> {
     /// The symbol.

@@ -1,7 +1,7 @@
-//! The paper's own procedure, as written in its Section 2: penetration in increments, contact on an adaptive mesh,
-//! Gauss-Seidel on the elements in contact, and the double check.
+//! The paper's own procedure, as written in its Section 2.
 //!
-//! For each increment of Δ:
+//! It increases the penetration in increments. Contact is on an adaptive mesh, with Gauss-Seidel on the elements in
+//! contact and the double check. For each increment of Δ:
 //!
 //! - (i) fix Δ;
 //! - (ii) first guess of the contact: the deformed layer of the increment before, lowered to the new Δ, meets the
@@ -11,13 +11,13 @@
 //! - (v) find the displacement out of contact;
 //! - (vi) remove elements under tension, add those that penetrate, and mesh the new contact, until neither changes it.
 //!
-//! One departure: step (v) evaluates `Σ_j L_ij σ_j` on all points of the finest grid by FFT. An element of the mesh is
-//! a patch of finest elements under one pressure, so this is the same sum to rounding (test
+//! There is one departure. Step (v) evaluates `Σ_j L_ij σ_j` on all points of the finest grid by FFT. An element of the
+//! mesh is a patch of finest elements under one pressure. The result is therefore the same sum to rounding (test
 //! `displacement_by_fft_is_the_direct_sum`), without its O(n·N) cost.
 //!
-//! On a mesh of unequal elements collocation makes L non-symmetric: Gauss-Seidel tolerates that, conjugate gradients do
-//! not. The cost is that of a dense matrix, n² coefficients a sweep, so there is a budget, and a clear error when a
-//! scene needs more.
+//! On a mesh of unequal elements, collocation makes L non-symmetric. Gauss-Seidel tolerates that, and conjugate
+//! gradients do not. The cost is that of a dense matrix, n² coefficients a sweep. There is therefore a budget, and a
+//! clear error when a scene needs more.
 
 mod coefficients;
 mod error;
@@ -39,11 +39,10 @@ use crate::problem::Problem;
 use crate::solution::GridSolution;
 use crate::{Control, ErrorBound, IterationParams, Tolerance};
 
-/// Solves the contact problem by the paper's procedure (Sec. 2, steps (i)-(vi)) on an adaptive mesh whose finest
-/// elements are those of the grid of `heights`, to a tolerance.
+/// Solves the contact problem by the paper's procedure (Sec. 2, steps (i)-(vi)), to a tolerance.
 ///
-/// A mean pressure is found by a secant search over the penetration, which is what the procedure controls. The result
-/// is bitwise the same for any number of threads.
+/// The finest elements of the adaptive mesh are those of the grid of `heights`. The procedure controls the penetration,
+/// so a secant search over it finds a given mean pressure. The result is bitwise the same for any number of threads.
 pub(crate) fn solve_gauss_seidel(
     heights: &Field,
     half_space: HalfSpace<'_>,
@@ -56,7 +55,7 @@ pub(crate) fn solve_gauss_seidel(
     let Estimate { penetration: expected, length } = estimate::estimate(heights, half_space, control, params)?;
     let tolerance = match bound {
         ErrorBound::Relative(tolerance) => tolerance,
-        // Half of it, since the length is that of a coarse grid.
+        // The factor is a half, since the length comes from a coarse grid.
         ErrorBound::Energy(_) => (0.5 * bound.aim() * length / problem.h_range).max(Tolerance::SMALLEST),
     };
     let mut procedure = Procedure::new(heights, half_space, &problem, (tolerance, params), observer)?;

@@ -1,31 +1,44 @@
 //! Parameters of the paper's procedure.
 
-/// Parameters of the paper's procedure alone. The tolerance is [`crate::SolveParams::tolerance`], evaluated at the
-/// points of collocation: centres of elements in contact, and all points of the finest grid out of contact.
+/// Parameters that only the paper's procedure has.
+///
+/// The tolerance is [`crate::SolveParams::tolerance`]. It is evaluated at the points of collocation: centres of
+/// elements in contact, and all points of the finest grid out of contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaussSeidelParams {
-    /// Increments in which the penetration is reached.
+    /// Number of increments in which the penetration is reached.
     pub increments: usize,
-    /// Relaxation factor ω in (0, 2). 1 is plain Gauss-Seidel, as in the paper, and also what needs the fewest sweeps:
-    /// N = 8 on 128² takes 185 sweeps in all with ω = 1, 246 with 1.2, 536 with 1.6.
+    /// Relaxation factor ω in (0, 2).
+    ///
+    /// 1 is plain Gauss-Seidel, as in the paper, and needs the smallest number of sweeps. N = 8 on 128² takes 185
+    /// sweeps in all with ω = 1, 246 with 1.2 and 536 with 1.6.
     pub relaxation: f64,
-    /// Largest number of sweeps for one contact set.
+    /// Maximum number of sweeps for one contact set.
     pub max_sweeps: usize,
-    /// Largest number of double checks for one increment.
+    /// Maximum number of double checks for one increment.
     pub max_checks: usize,
-    /// Blocks of its own size that a coarse element has around it in contact
-    /// ([`rc_quadtree::paper::MeshParams::ring`]).
+    /// Number of blocks of its own size around a coarse element in contact.
+    ///
+    /// See [`rc_quadtree::paper::MeshParams::ring`].
     pub ring: usize,
-    /// `false`: the paper's mesh; `true`: all elements in contact of the finest size (after Wriggers).
+    /// Whether all elements in contact have the finest size (after Wriggers).
+    ///
+    /// `false` gives the paper's mesh.
     pub uniform_elements: bool,
-    /// Bytes that tables of coefficients may take; sizes of elements without a table are computed afresh each time.
+    /// Maximum memory of the tables of coefficients, in bytes.
+    ///
+    /// Coefficients of element sizes without a table are computed afresh each time.
     pub memory_budget: usize,
-    /// Coefficients that one sweep may need, the square of the number of elements in contact.
+    /// Maximum number of coefficients of one sweep.
+    ///
+    /// The number is the square of the number of elements in contact.
     pub sweep_budget: usize,
 }
 
 impl GaussSeidelParams {
-    /// The paper's mesh, within 1 GiB and 4·10⁸ coefficients (20 000 elements) a sweep.
+    /// The paper's mesh, with at most 1 GiB of tables and 4·10⁸ coefficients a sweep.
+    ///
+    /// That is enough for 20 000 elements.
     #[must_use]
     pub fn paper() -> Self {
         Self {

@@ -1,4 +1,6 @@
-//! Steps (i) to (vi) of the procedure of Sec. 2, which solves Eq. 4 on the elements in contact.
+//! Steps (i) to (vi) of the procedure of Sec. 2.
+//!
+//! The procedure solves Eq. 4 on the elements in contact.
 
 use rc_core::{Event, Field, Observer, Operator, Snapshot};
 use rc_quadtree::paper::{Key, Mask, Mesh, MeshKind, MeshParams, transfer};
@@ -13,24 +15,28 @@ use crate::problem::Problem;
 use crate::solution::LevelInfo;
 use crate::uniform::coarsen;
 
-/// Tolerance of all increments but the last, which only prepare its contact.
+/// Tolerance of all increments but the last. They only prepare the contact of the last one.
 const EARLY_TOLERANCE: f64 = 1e-4;
 
-/// Residual of v that a tolerance leaves to Gauss-Seidel; the rest is for penetration.
+/// Part of a tolerance that Gauss-Seidel may leave as a residual of v.
+///
+/// The rest is for penetration.
 const RESIDUAL_SHARE: f64 = 0.1;
 
 /// First residual of v, relative to the height range, while the contact is being found.
 const FIRST_RESIDUAL: f64 = 1e-4;
 
-/// Steps of the search for the penetration of a given mean pressure.
+/// Maximum number of steps in the search for the penetration of a given mean pressure.
 const MOST_SECANT_STEPS: usize = 30;
 
 /// The state between increments.
 pub(super) struct Procedure<'a> {
-    /// Heights at the centres of elements of 1, 2, 4, … finest elements; the first are the heights themselves.
+    /// Heights at the centres of elements of 1, 2, 4, … finest elements.
+    ///
+    /// The first are the heights themselves.
     pub(super) pyramid: Vec<Field>,
     pub(super) problem: &'a Problem,
-    /// Relative to the height range.
+    /// Tolerance relative to the height range.
     tolerance: f64,
     params: &'a GaussSeidelParams,
     observer: &'a dyn Observer,
@@ -39,7 +45,7 @@ pub(super) struct Procedure<'a> {
     kind: MeshKind,
     mesh_params: MeshParams,
     pub(super) penetration: f64,
-    /// Cells of the finest grid in contact.
+    /// Whether each cell of the finest grid is in contact.
     pub(super) contact: Vec<bool>,
     /// Displacement on the finest grid.
     pub(super) displacement: Field,
@@ -63,7 +69,7 @@ impl<'a> Procedure<'a> {
         let side = grid.nx();
         let mut pyramid = vec![heights.clone()];
         pyramid.extend(coarsen(heights, 1).into_iter().take(LARGEST_DOUBLINGS as usize));
-        // No element larger than heights are known for.
+        // Elements are at most as large as those whose heights are known.
         let mut mesh_params = mesh_params(side, params.ring);
         mesh_params.base = mesh_params.base.max(side >> (pyramid.len() - 1));
         let kind = mesh_kind(params);
@@ -90,8 +96,9 @@ impl<'a> Procedure<'a> {
         })
     }
 
-    /// Step (i): Δ in increments, of which only the last is solved to the tolerance, and that only when Δ is what is
-    /// prescribed.
+    /// Step (i): increases Δ in increments.
+    ///
+    /// Only the last increment is solved to the tolerance, and only if Δ is prescribed.
     pub(super) fn increase_to(&mut self, penetration: f64) -> Result<(), GaussSeidelError> {
         let (grid, steps) = (self.info.grid, self.params.increments);
         for step in 1..=steps {
@@ -106,7 +113,9 @@ impl<'a> Procedure<'a> {
         Ok(())
     }
 
-    /// The penetration at which the mean pressure is `mean`, starting from the `expected` one.
+    /// Finds the penetration at which the mean pressure is `mean`.
+    ///
+    /// The search starts from the `expected` penetration.
     pub(super) fn search(&mut self, mean: f64, expected: f64) -> Result<(), GaussSeidelError> {
         let full = self.problem.h_max - self.problem.h_mean;
         self.increase_to(expected.min(0.999 * full))?;
@@ -121,7 +130,7 @@ impl<'a> Procedure<'a> {
                 return self.settle(here.0, self.tolerance);
             }
             let next = bracket.next(here, mean);
-            // As accurately as the load is known to be off, until it is not.
+            // The tolerance follows the error of the load, until that is small.
             let tolerance = if off < self.tolerance.sqrt() { 0.0 } else { 1e-2 * off };
             self.settle(next, tolerance.clamp(self.tolerance, EARLY_TOLERANCE))?;
         }
@@ -155,7 +164,7 @@ impl<'a> Procedure<'a> {
             self.report_pressure();
             let unchanged = removed + added == 0;
             self.settled = unchanged && residual <= wanted;
-            // After the first sweeps, so that there is something to return.
+            // This comes after the first sweeps, so that there is a result to return.
             if self.observer.should_stop() {
                 self.settled = false;
                 break;
@@ -163,7 +172,7 @@ impl<'a> Procedure<'a> {
             if self.settled {
                 break;
             }
-            // While the contact still changes, v need not be as prescribed to all digits.
+            // While the contact still changes, v is not needed to all digits.
             if removed + added <= self.mesh.len() / 100 {
                 residual = wanted.max(0.1 * residual);
             }
@@ -180,7 +189,9 @@ impl<'a> Procedure<'a> {
         self.observer.look(&Snapshot::new(self.info.grid, &rows));
     }
 
-    /// Steps (iii) and (iv): meshes the contact and relaxes the pressure until v is as prescribed, to `residual`.
+    /// Steps (iii) and (iv): meshes the contact and relaxes the pressure.
+    ///
+    /// v is then as prescribed, to `residual`.
     fn relax(&mut self, residual: f64) -> Result<(), GaussSeidelError> {
         let mask = Mask::new(self.info.grid.nx(), self.contact.clone())?;
         let mesh = Mesh::from_mask(&mask, self.kind, &self.mesh_params)?;
@@ -208,7 +219,7 @@ impl<'a> Procedure<'a> {
         self.mesh.keys().iter().map(height).collect()
     }
 
-    /// Step (v): the displacement everywhere.
+    /// Step (v): computes the displacement everywhere.
     pub(super) fn displace(&mut self) -> Result<(), GaussSeidelError> {
         let pressure = self.mesh.to_field(&self.pressure, self.info.grid)?;
         self.operator.apply(pressure.values(), self.displacement.values_mut(), &mut []);
@@ -231,7 +242,9 @@ impl<'a> Procedure<'a> {
         removed
     }
 
-    /// Brings cells out of contact that penetrate by more than `slack` into it. Returns their number.
+    /// Brings cells out of contact that penetrate by more than `slack` into contact.
+    ///
+    /// Returns their number.
     fn add_penetrating(&mut self, slack: f64) -> usize {
         let lowering = self.penetration - self.problem.h_max;
         let mut added = 0;
@@ -246,15 +259,16 @@ impl<'a> Procedure<'a> {
     }
 }
 
-/// Penetrations with their mean pressures, one of too little load and one of too much.
+/// Two penetrations with their mean pressures: one of too little load and one of too much.
 struct Bracket {
     low: (f64, f64),
     high: (f64, f64),
 }
 
 impl Bracket {
-    /// Narrows the bracket to `here`. Returns the penetration to try next: on the chord to the other end, or to the
-    /// origin while the bracket has no upper end.
+    /// Narrows the bracket to `here`, and returns the penetration to try next.
+    ///
+    /// It lies on the chord to the other end, or to the origin while the bracket has no upper end.
     fn next(&mut self, here: (f64, f64), mean: f64) -> f64 {
         let other = if here.1 < mean && self.high.1.is_finite() { self.high } else { self.low };
         if here.1 < mean {

@@ -4,22 +4,23 @@ use rayon::prelude::*;
 
 use super::coefficients::{Coefficients, Site};
 
-/// Elements relaxed one after the other before the rest hears of it. The order of relaxation is that of the elements
-/// whatever this is; only the work is grouped.
+/// Number of elements that are relaxed before the others get their changes.
+///
+/// It does not change the order of relaxation, which is that of the elements. It only groups the work.
 const BLOCK: usize = 64;
 
-/// Why relaxation ended.
+/// The end of a relaxation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Relaxed {
     pub(super) sweeps: usize,
-    /// Greatest |v_i - prescribed v_i| over the elements.
+    /// Maximum |v_i - prescribed v_i| over the elements.
     pub(super) residual: f64,
 }
 
 /// Limits of a relaxation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
-    /// Greatest |v_i - prescribed v_i| to be left.
+    /// Maximum |v_i - prescribed v_i| that may remain.
     pub(super) residual: f64,
     pub(super) max_sweeps: usize,
     /// Over-relaxation factor.
@@ -28,9 +29,9 @@ pub(super) struct Limits {
 
 /// Relaxes `pressure` until L p equals `prescribed` on the elements.
 ///
-/// Elements are relaxed in their order, each seeing all changes before it, as Gauss-Seidel demands: a block is relaxed
-/// in sequence, then the displacement of all other elements by its changes is added, in parallel over those elements.
-/// The sums do not depend on the number of threads.
+/// Elements are relaxed in their order. Each sees all changes before it, as Gauss-Seidel demands. A block is relaxed in
+/// sequence. Then the displacement of all other elements by its changes is added, in parallel over those elements. The
+/// sums do not depend on the number of threads.
 pub(super) fn relax(
     coefficients: &Coefficients<'_>,
     sites: &[Site],
@@ -40,7 +41,7 @@ pub(super) fn relax(
 ) -> Relaxed {
     let mut sweeps = 0;
     loop {
-        // Fresh sums each sweep's start keep rounding from building up, at the price of one more product.
+        // Fresh sums at the start of some sweeps prevent rounding from building up, at the price of one more product.
         let mut v = displacement(coefficients, sites, pressure);
         for _ in 0..SWEEPS_PER_REFRESH {
             let residual = greatest_difference(&v, prescribed);

@@ -1,4 +1,4 @@
-//! Any operator of the caller, as the iteration wants it.
+//! Any operator of the caller, in the form that the iteration needs.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,9 +10,10 @@ use crate::parallel;
 /// Values in a block.
 const BLOCK: usize = 4096;
 
-/// Eigenvalue of the approximate inverse for one wave along the second axis, which is about the longest: π on a
-/// half-space of E* = 1. Only its ratio to the eigenvalue of the mean matters, so an operator that says nothing usable
-/// gets that of the half-space.
+/// Eigenvalue of the approximate inverse for one wave along the second axis.
+///
+/// This wave is about the longest. The eigenvalue is π on a half-space of E* = 1. Only its ratio to the eigenvalue of
+/// the mean matters. An operator whose answer is not usable therefore gets the value of the half-space.
 fn inverse_of_longest_wave(operator: &dyn Operator) -> f64 {
     let n = operator.n_elements();
     let wave: Vec<f64> = (0..n).map(|i| (TAU * i as f64 / n as f64).cos()).collect();
@@ -23,8 +24,9 @@ fn inverse_of_longest_wave(operator: &dyn Operator) -> f64 {
     if inverse > 0.0 && inverse.is_finite() { inverse } else { PI }
 }
 
-/// L for corrections and for fresh gaps, both in double precision: nothing is known of the rounding of an operator in
-/// single precision.
+/// L for corrections and for fresh gaps, both in double precision.
+///
+/// The rounding of an operator in single precision is not known.
 pub(super) fn operators_of(operator: &dyn Operator) -> LevelOperators<'_> {
     let inverse = inverse_of_longest_wave(operator);
     LevelOperators {
@@ -66,7 +68,9 @@ impl BlockOperator<f64> for AnyOperator<'_> {
     }
 }
 
-/// An operator for corrections, with a multiple of the identity for its inverse, except for the mean.
+/// An operator for corrections.
+///
+/// Its approximate inverse is a multiple of the identity, except for the mean.
 struct AnyCorrections<'a> {
     vectors: AnyOperator<'a>,
     /// Eigenvalue of the approximate inverse for all vectors of zero mean.

@@ -1,13 +1,14 @@
-//! L on a uniform grid, by direct summation: the slow truth.
+//! L on a uniform grid, by direct summation: the slow reference.
 
 use rc_core::{Boundary, Grid, Kernel, Operator};
 
-/// The operator L (Eq. 4) on a uniform grid, with the coefficients from a plain trigonometric sum over the symbol and
-/// the products added one by one. O(n²): for tests.
+/// The operator L (Eq. 4) on a uniform grid, summed product by product.
+///
+/// The coefficients come from a plain trigonometric sum over the symbol. The work is O(n²), so this is for tests.
 pub struct DirectSum {
     grid: Grid,
     boundary: Boundary,
-    /// L between element (0, 0) and element (ix, iy).
+    /// Coefficients of L between element (0, 0) and element (ix, iy).
     coefficients: Vec<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Ways to apply L, and the contact problem with any of them.
+//! Operators that apply L, and the contact problem with any of them.
 
 mod any_operator;
 mod direct_sum;

@@ -1,4 +1,6 @@
-//! The contact problem with any operator: what a research fork solves its own half-space with.
+//! The contact problem with any operator.
+//!
+//! A research fork solves its own half-space with it.
 
 use rc_core::{Field, Grid, Observer, Operator};
 
@@ -10,21 +12,24 @@ use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
 use crate::stiffness::stiffness_of;
 use crate::{Certificate, Control, IterationParams, ProblemError};
 
-/// Largest fault of an operator, relative to its displacements, over the overlap that a solve aims at. A tenth, because
-/// U/σ0 may be a tenth of the displacements.
+/// Maximum fault of an operator, relative to the overlap that a solve aims at.
+///
+/// The fault is relative to the displacements. The ratio is a tenth, because U/σ0 may be a tenth of the displacements.
 const FAULT_PER_AIM: f64 = 0.1;
 
-/// Solves the contact problem on the grid of `heights` (in λ, any mean) with `operator` for v = L p, whatever it is:
-/// symmetric, of zero mean, positive for pressures that are not uniform, and its element i is that of `heights`.
+/// Solves the contact problem on the grid of `heights` (in λ, any mean) with `operator`.
 ///
-/// The pressure is found by projected conjugate gradients on this grid alone. Nothing is known of the operator that
-/// would precondition them or that coarser grids could use, so they need several times the iterations of the uniform
-/// method, which is the one to choose for an operator that a [`rc_core::Kernel`] describes. The certificate is computed
-/// from a fresh application of the operator on the pressure that is returned.
+/// The operator v = L p must be symmetric, of zero mean, and positive for pressures that are not uniform. Its element i
+/// is element i of `heights`.
+///
+/// Projected conjugate gradients on this grid find the pressure. Nothing is known of the operator that would
+/// precondition them or that coarser grids could use. They need several times the iterations of the uniform method,
+/// which fits an operator with a [`rc_core::Kernel`] better. The certificate comes from a fresh application of the
+/// operator on the returned pressure.
 ///
 /// # Errors
-/// [`ProblemError`]: an operator for another number of elements or not of a half-space, heights that are not finite, a
-/// control or tolerance out of range.
+/// [`ProblemError`] for an operator with another number of elements or not of a half-space, for heights that are not
+/// finite, and for a control or tolerance out of range.
 pub(crate) fn solve_on_grid(
     heights: &Field,
     operator: &dyn Operator,
@@ -64,7 +69,9 @@ pub(crate) fn stiffness_with_operator(pressure: &Field, operator: &dyn Operator)
     stiffness_of(pressure.values(), pressure.grid().len() as f64, &mut *operators.corrections)
 }
 
-/// On a flat surface the pressure is uniform, and displaces nothing: no application of the operator is needed.
+/// The solution on a flat surface.
+///
+/// The pressure is uniform, and displaces nothing. The operator is not applied.
 fn flat(grid: Grid, mean_pressure: f64) -> GridSolution {
     let level = LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 };
     let info = SolveInfo {
@@ -96,7 +103,7 @@ mod tests {
     use crate::DirectSum;
     use crate::uniform::solve_uniform;
 
-    /// A half-space that is `factor` times as soft.
+    /// A half-space that is softer by `factor`.
     struct Softer<'a> {
         operator: &'a dyn Operator,
         factor: f64,

@@ -6,10 +6,13 @@ use rc_core::{Grid, Kernel, Operator};
 
 use crate::descent::{BlockOperator, GridResponse, SymbolOperator, read_blocks, write_blocks};
 
-/// `v = L p` (Eq. 4) on a uniform grid: a convolution in Fourier space, in double precision.
+/// The operator `v = L p` (Eq. 4) on a uniform grid.
+///
+/// It is a convolution in Fourier space, in double precision.
 pub struct UniformOperator {
     grid: Grid,
-    /// Has plans and the buffer of spectra, so `apply` needs no scratch of the caller; one application at a time.
+    /// It has plans and the buffer of spectra, so `apply` needs no scratch from the caller. It allows one application
+    /// at a time.
     operator: Mutex<SymbolOperator>,
 }
 

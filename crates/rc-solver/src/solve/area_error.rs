@@ -1,21 +1,24 @@
-//! The coarsest grid that gives the contact area as accurately as wanted.
+//! The coarsest grid on which the contact area is as accurate as wanted.
 
 use rc_core::{Grid, HeightField, HeightSource, Observer};
 
 use super::{ContactProblem, Solution, SolveError, SolveParams};
 
-/// Elements per shortest wave of the first grid, and of the last that is tried.
+/// Elements per shortest wave of the first grid, and of the last grid below.
 const COARSEST: usize = 4;
 const FINEST: usize = 256;
 
-/// Fewest elements per side of the first grid.
+/// Minimum number of elements per side of the first grid.
 const SMALLEST_SIDE: usize = 64;
 
-/// Order at which the error bar falls with the element side: most of it is the scatter of edges, √(edges) element
-/// areas.
+/// Order at which the error bar falls with the element side.
+///
+/// Most of the error is the scatter of edges, √(edges) element areas.
 const ORDER: f64 = 1.5;
 
-/// Solves on finer and finer grids until the error bar of the contact area is at most `wanted` of it.
+/// Solves on finer grids until the contact area is accurate enough.
+///
+/// Its relative error bar is then at most `wanted`.
 pub(super) fn solve<'a>(
     problem: &ContactProblem<'a>,
     wanted: f64,
@@ -40,18 +43,20 @@ pub(super) fn solve<'a>(
     }
 }
 
-/// The coarsest grid that is solved on. The sides of all others are multiples of its own.
+/// The coarsest grid of the search. The sides of all other grids are multiples of its sides.
 pub(super) fn coarsest_grid(heights: &HeightSource<'_>) -> Result<Grid, SolveError> {
     Ok(Grid::square(side(waves_of(heights)?, COARSEST))?)
 }
 
-/// The largest wavenumber of a surface whose grid can be chosen.
+/// The largest wavenumber of the surface, if its grid can be chosen.
 fn waves_of(heights: &HeightSource<'_>) -> Result<usize, SolveError> {
     let surface = heights.surface().filter(|_| heights.grid().has_square_cell());
     surface.and_then(HeightField::band_limit).filter(|&waves| waves > 0).ok_or(SolveError::NoWaves)
 }
 
-/// Elements per side of the grid with this many for the shortest wave, or more where the grid would be tiny.
+/// Elements per side of the grid with this number for the shortest wave.
+///
+/// There are more if the grid would be tiny.
 fn side(waves: usize, elements_per_wave: usize) -> usize {
     let mut side = waves.saturating_mul(elements_per_wave);
     while side < SMALLEST_SIDE * elements_per_wave / COARSEST {
@@ -60,7 +65,7 @@ fn side(waves: usize, elements_per_wave: usize) -> usize {
     side
 }
 
-/// Elements per wave for an error this many times smaller.
+/// Elements per wave for an error smaller by `factor`.
 fn next(elements_per_wave: usize, factor: f64) -> usize {
     let halvings = (factor.log2() / ORDER).ceil().max(1.0) as u32;
     (elements_per_wave << halvings.min(8)).min(FINEST)

@@ -1,4 +1,6 @@
-//! The choice of the method: the one that is asked for, else the adaptive one where it fits and is the cheaper one.
+//! The choice of the method.
+//!
+//! It is the method that is asked for. Otherwise it is the adaptive method, if that fits and is the cheaper one.
 
 use std::sync::Arc;
 
@@ -108,7 +110,7 @@ impl<'a> Choice<'a, '_> {
         is_free(&self.problem.kernel, self.problem.heights.grid())
     }
 
-    /// What to say of a method that the solid has none of.
+    /// The error of a method that does not solve contacts of this solid.
     fn not_the_half_space(&self, method: Method) -> SolveError {
         let kernel = self.problem.kernel.get();
         if self.is_free() || kernel.uniform_displacement().is_some() {
@@ -118,7 +120,7 @@ impl<'a> Choice<'a, '_> {
         }
     }
 
-    /// Why a kernel that is not split by scale is solved on the uniform grid.
+    /// The reason to solve on the uniform grid without a kernel split by scale.
     fn without_split(&self) -> MethodReason {
         let kernel = self.problem.kernel.get();
         match kernel.uniform_displacement() {
@@ -135,19 +137,20 @@ impl<'a> Choice<'a, '_> {
         AdaptiveProblem::on(ground, self.problem.load(), &params, &self.problem.place)
     }
 
-    /// The uniform grid where the adaptive method does not fit, if that helps.
+    /// The uniform grid where the adaptive method does not fit, if the uniform one helps.
     fn without_adaptive(&self, error: AdaptiveError) -> Chosen<'a> {
         let Some(reason) = self.obstacle(&error) else { return Err(error.into()) };
         match self.on_grid(Method::Uniform) {
             Ok(uniform) => Ok((uniform, reason)),
-            // Neither fits; the adaptive method needs less.
+            // Neither method fits. The adaptive one needs less memory.
             Err(_) if matches!(error, AdaptiveError::Memory { .. }) => Err(error.into()),
             Err(other) => Err(other),
         }
     }
 
-    /// Why the uniform method solves a problem that the adaptive one refuses with `error`; `None` when it is refused
-    /// too.
+    /// The reason to solve by the uniform method if the adaptive one returns `error`.
+    ///
+    /// `None` when the uniform method must refuse the problem too.
     fn obstacle(&self, error: &AdaptiveError) -> Option<MethodReason> {
         let grid = self.problem.heights.grid();
         let is_large = |percent: &f64| *percent > 100.0 * Estimate::GREATEST_ADAPTIVE_AREA;
@@ -179,7 +182,7 @@ fn is_free(kernel: &OwnedKernel<'_>, grid: Grid) -> bool {
     Support::of(kernel.get(), grid).boundary == Boundary::Free
 }
 
-/// Refuses a grid whose padded one cannot be counted.
+/// Refuses a grid whose padded grid has too many elements to count.
 fn check_padded(grid: Grid) -> Result<(), SolveError> {
     let [px, py] = [grid.nx(), grid.ny()].map(padded_side);
     Grid::in_cell(px, py, grid.cell_ratio() * (py * grid.nx()) as f64 / (px * grid.ny()) as f64)?;

@@ -1,4 +1,4 @@
-//! What a plan will cost.
+//! The expected cost of a plan.
 
 use rc_core::Boundary;
 
@@ -8,26 +8,35 @@ use crate::ErrorBound;
 use crate::support::Support;
 use crate::uniform::FREE_BYTES_PER_ELEMENT;
 
-/// Processor seconds for each cell of the adaptive method at the default tolerance: measured 1.1e-6 to 1.5e-6 for cells
-/// that are evaluated, of which the estimate counts 0.55 to 0.9 (512² to 4096², 0.9 % to 20 % contact, H = 0.3
-/// and 0.8).
+/// Processor seconds for each cell of the adaptive method at the default tolerance.
+///
+/// Measured 1.1e-6 to 1.5e-6 for cells that are evaluated. The estimate counts 0.55 to 0.9 of these cells (512² to
+/// 4096², 0.9 % to 20 % contact, H = 0.3 and 0.8).
 const SECONDS_PER_ADAPTIVE_CELL: f64 = 1.7e-6;
 
-/// The same for each element of the uniform grid: measured 0.6e-6 to 1.0e-6 (512² and 2048², 7 % to 71 % contact).
+/// Processor seconds for each element of the uniform grid.
+///
+/// Measured 0.6e-6 to 1.0e-6 (512² and 2048², 7 % to 71 % contact).
 const SECONDS_PER_UNIFORM_ELEMENT: f64 = 0.85e-6;
 
-/// The same with free borders: measured two to four times that of a cell at 512² and 2048².
+/// Processor seconds for each element of a uniform grid with free borders.
+///
+/// Measured two to four times the time of a periodic cell at 512² and 2048².
 const SECONDS_PER_FREE_ELEMENT: f64 = 2.5e-6;
 
-/// Work added by each factor of ten in a relative tolerance below 1e-6: measured a factor 2.9 for 1e-9.
+/// Work that each factor of ten in a relative tolerance below 1e-6 adds.
+///
+/// Measured: 1e-9 takes 2.9 times the work.
 const WORK_PER_DECADE: f64 = 0.63;
 
-/// An estimate of what a solve takes, within a factor of about two. `None` is what is not known before the solve.
+/// Estimated cost of a solve, within a factor of about two.
+///
+/// `None` stands for a number that is not known before the solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// Contact area relative to the nominal area; only the adaptive method estimates it.
+    /// Contact area relative to the nominal area. Only the adaptive method estimates it.
     pub area_fraction: Option<f64>,
-    /// Elements that are solved for on the finest level.
+    /// Number of elements that are solved for on the finest level.
     pub elements: Option<f64>,
     /// Memory of the method, in bytes.
     pub bytes: Option<f64>,
@@ -36,7 +45,7 @@ pub struct Cost {
 }
 
 impl Plan<'_> {
-    /// What the solve is expected to take.
+    /// The expected cost of the solve.
     #[must_use]
     pub fn cost(&self) -> Cost {
         Cost::of(self)
@@ -47,7 +56,7 @@ impl Cost {
     fn of(plan: &Plan<'_>) -> Self {
         let digits = match plan.bound {
             ErrorBound::Relative(value) => value.log10(),
-            // 1e-2 takes as many iterations as 1e-6 of the height range.
+            // An energy error of 1e-2 takes as many iterations as 1e-6 of the height range.
             ErrorBound::Energy(value) => 2.0 * (value / 1e-2).log10() - 6.0,
         };
         let decades = (-6.0 - digits).max(0.0);

@@ -12,7 +12,9 @@ use crate::solution::Status;
 use crate::{Control, Method, MethodReason};
 
 impl<'a> ContactProblem<'a> {
-    /// Checks the load, the tolerance and the grid, and chooses the method. Nothing is solved.
+    /// Checks the problem and chooses its method, without solving.
+    ///
+    /// The load, the tolerance and the grid are checked.
     ///
     /// # Errors
     /// [`SolveError`], but not [`SolveError::NotConverged`].
@@ -28,23 +30,26 @@ impl<'a> ContactProblem<'a> {
         self.plan(params)?.solve(observer)
     }
 
-    /// The coarsest grid that [`ContactProblem::solve_to_area_error`] solves on. The sides of all others are multiples
-    /// of its own.
+    /// The coarsest grid of [`ContactProblem::solve_to_area_error`].
+    ///
+    /// The sides of all other grids are multiples of its sides.
     ///
     /// # Errors
-    /// [`SolveError::NoWaves`]; [`SolveError::Grid`] for a surface with too many waves.
+    /// [`SolveError::NoWaves`], and [`SolveError::Grid`] for a surface with too many waves.
     pub fn coarsest_grid(&self) -> Result<Grid, SolveError> {
         area_error::coarsest_grid(&self.heights)
     }
 
-    /// Solves the problem on the coarsest grid whose error bar of the contact area is at most `wanted` of the area. The
-    /// heights must be a band-limited surface; the grid they are wanted on is not used.
+    /// Solves the problem on the coarsest grid that is accurate enough.
     ///
-    /// The bar on a first grid, with four elements for the shortest wave, says where to go next. Mostly two problems
-    /// are solved, of which the last takes longer than all others.
+    /// The error bar of the contact area is then at most `wanted` of the area. The heights must be a band-limited
+    /// surface. The grid that they are wanted on is not used.
+    ///
+    /// The first grid has four elements for the shortest wave. Its error bar determines the next grid. In most cases
+    /// two problems are solved, of which the last takes longer than all others.
     ///
     /// # Errors
-    /// [`SolveError`]; [`SolveError::NoWaves`] for heights that no other grid can have, and [`SolveError::AreaError`]
+    /// [`SolveError`]. [`SolveError::NoWaves`] for heights that no other grid can have, and [`SolveError::AreaError`]
     /// when 256 elements for the shortest wave are not enough.
     pub fn solve_to_area_error(
         self,
@@ -57,9 +62,10 @@ impl<'a> ContactProblem<'a> {
 }
 
 impl Plan<'_> {
-    /// The plan of another load on the same surface, with the same parameters. Heights, their bounds and the tables of
-    /// the operator are shared by the plans, and kept as long as one of them lives; every digit is that of a plan of
-    /// its own.
+    /// The plan of another load on the same surface, with the same parameters.
+    ///
+    /// The plans share heights, their bounds and the tables of the operator, which are kept as long as one of the plans
+    /// lives. Every digit is the same as with a separate plan.
     ///
     /// ```
     /// use rc_core::{Field, Grid, Silent};
@@ -84,7 +90,7 @@ impl Plan<'_> {
 
 /// Solves the contact of `heights` (in λ) with the elastic half-space under a load.
 ///
-/// The method is chosen by the estimated contact area unless `params` name one. The certificate comes from a fresh
+/// The estimated contact area determines the method, unless `params` name one. The certificate comes from a fresh
 /// application of L on the returned pressure. The result is bitwise the same for any number of threads.
 ///
 /// ```
@@ -101,7 +107,7 @@ impl Plan<'_> {
 /// ```
 ///
 /// # Errors
-/// [`SolveError`]. Non-convergence is one, and carries the best solution found.
+/// [`SolveError`]. Non-convergence is an error too, and carries the best solution found.
 pub fn solve<'a>(
     heights: impl Into<HeightSource<'a>>,
     control: Control,
@@ -110,19 +116,25 @@ pub fn solve<'a>(
     ContactProblem::new(heights, control).solve(params, &Silent)
 }
 
-/// Solves the contact of `heights` (in λ) with the half-space of an operator of the caller: v = L p, symmetric, of zero
-/// mean, and positive for pressures that are not uniform. Element i of the operator is element i of the heights.
+/// Solves the contact of `heights` (in λ) with the half-space of the caller's operator.
 ///
-/// The pressure is found by projected conjugate gradients on the grid alone. Nothing is known of the operator that
-/// would precondition them, so they need several times the iterations of the uniform method. A half-space that a
-/// [`rc_core::Kernel`] describes is solved faster by [`ContactProblem::with_kernel`]. Of `params`, tolerance and number
-/// of iterations count. The certificate comes from a fresh application of the operator. [`Solution::stiffness`] is a
-/// lower bound here, mostly within a percent, since its iteration is not preconditioned either.
+/// The operator v = L p must be symmetric, of zero mean, and positive for pressures that are not uniform. Element i of
+/// the operator is element i of the heights.
 ///
-/// # Errors
-/// [`SolveError`]; [`crate::ProblemError::Operator`] for an operator with another number of elements, and
-/// [`crate::ProblemError::NotElastic`] for one that three applications at the start show not to be that of a half-space
-/// ([`Operator`] says what they see).
+/// Projected conjugate gradients on this grid find the pressure. Nothing is known of the operator that would
+/// precondition them, so they need several times the iterations of the uniform method. For a half-space with a
+/// [`rc_core::Kernel`], [`ContactProblem::with_kernel`] is faster. Of `params`, only the tolerance and the number of
+/// iterations count. The certificate comes from a fresh application of the operator. [`Solution::stiffness`] is a lower
+/// bound here, mostly within a percent, since its iteration is not preconditioned either.
+///
+/// Projected conjugate gradients on this grid find the pressure. Nothing is known of the operator that would
+/// precondition them, so they need several times the iterations of the uniform method. For a half-space with a
+/// [`rc_core::Kernel`], [`ContactProblem::with_kernel`] is faster. Of `params`, only the tolerance and the number of
+/// iterations count. The certificate comes from a fresh application of the operator. [`Solution::stiffness`] is a lower
+/// bound here, mostly within a percent, since its iteration is not preconditioned either.
+/// [`SolveError`]. [`crate::ProblemError::Operator`] for an operator with another number of elements.
+/// [`crate::ProblemError::NotElastic`] if three applications at the start show that the operator is not one of a
+/// half-space (see [`Operator`]).
 pub fn solve_with_operator<'a>(
     heights: impl Into<HeightSource<'a>>,
     operator: &'a dyn Operator,

@@ -5,10 +5,12 @@ use rc_core::DVec2;
 
 use crate::ContactElement;
 
-/// Elements of a message.
+/// Number of elements in a message.
 const AT_ONCE: usize = 1 << 16;
 
-/// Hands the elements of all ranks to `take` on the first of them, in the order of ranks. All ranks call this together.
+/// Hands the elements of all ranks to `take` on the first rank.
+///
+/// The order is that of ranks. All ranks call this together.
 pub(super) fn each_of_ranks<E>(
     mut own: impl Iterator<Item = ContactElement>,
     ranks: &Ranks,
@@ -17,7 +19,7 @@ pub(super) fn each_of_ranks<E>(
     if ranks.rank() == 0 {
         own.try_for_each(&mut take)?;
         for other in 1..ranks.size() {
-            // A message that is not full is the last.
+            // The last message is the one that is not full.
             loop {
                 let message = ranks.exchange(Vec::new(), &[other]).into_iter().flatten().collect::<Vec<u8>>();
                 let values = f64::unpack_all(&message);

@@ -1,4 +1,4 @@
-//! Why a contact problem was not solved.
+//! Reasons why a contact problem was not solved.
 
 use rc_core::{Grid, GridError};
 use thiserror::Error;
@@ -13,13 +13,13 @@ pub enum SolveError {
     /// Heights, load or tolerance are out of range.
     #[error(transparent)]
     Problem(ProblemError),
-    /// The adaptive method does not fit the problem, and none other is allowed.
+    /// The adaptive method does not fit the problem, and no other method is allowed.
     #[error(transparent)]
     Adaptive(AdaptiveError),
     /// The paper's procedure does not fit the problem.
     #[error(transparent)]
     GaussSeidel(GaussSeidelError),
-    /// The method is made for Love's squares.
+    /// The method is only for Love's squares.
     #[error("the {method} method needs the kernel love, not {kernel}")]
     Kernel {
         /// The method asked for.
@@ -27,25 +27,25 @@ pub enum SolveError {
         /// Name of the kernel.
         kernel: &'static str,
     },
-    /// A method that does not share its work with other ranks.
+    /// The method does not share its work with other ranks.
     #[error("over several ranks only the adaptive method solves ({reason}); give the method adaptive, or one rank")]
     OneRank {
-        /// The method, and why it would be chosen.
+        /// The method, and the reason to choose it.
         reason: MethodReason,
     },
-    /// The method is made for the periodic half-space.
+    /// The method is only for the periodic half-space.
     #[error("the {method} method solves on the periodic half-space only, not on a layer or a patch with free borders")]
     Solid {
         /// The method asked for.
         method: Method,
     },
-    /// A border level is asked of a method without one.
+    /// A border level was requested of a method without border levels.
     #[error("the {method} method does not divide elements at contact edges; only the adaptive method does")]
     BorderLevel {
         /// The method asked for.
         method: Method,
     },
-    /// A hardness is asked of a method without one.
+    /// A hardness was requested of a method without hardness.
     #[error("the {method} method has no hardness; the adaptive and the uniform ones do")]
     Hardness {
         /// The method asked for.
@@ -91,12 +91,14 @@ pub enum SolveError {
         /// Elements per side of that grid.
         side: usize,
     },
-    /// The iteration limit was reached, the error no longer falls, or the observer ended the solve.
+    /// The solve ended without convergence.
+    ///
+    /// The iteration limit was reached, the error no longer fell, or the observer ended the solve.
     #[error("not converged on {grid} elements after {iterations} iterations: {certificate}")]
     NotConverged {
         /// Grid of the finest level.
         grid: Grid,
-        /// Iterations on it.
+        /// Iterations on that grid.
         iterations: usize,
         /// Residuals of the best pressure found.
         certificate: Certificate,

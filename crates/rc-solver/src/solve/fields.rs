@@ -9,7 +9,7 @@ use crate::adaptive::{Receiver, Rows};
 use crate::gap_part::GapPart;
 
 impl Solution<'_> {
-    /// The pressure on the grid, in E*, ≥ 0. On smaller elements it is their mean.
+    /// The pressure on the grid, in E*, ≥ 0. It is the mean over smaller elements.
     #[must_use]
     pub fn pressure(&self) -> &Field {
         match &self.pressures {
@@ -20,8 +20,9 @@ impl Solution<'_> {
         }
     }
 
-    /// The gap on the grid, in λ, with its pressure-weighted mean at zero; zero in contact within the tolerance. With a
-    /// hardness it is that after plastic flow.
+    /// The gap on the grid, in λ, with its pressure-weighted mean at zero.
+    ///
+    /// It is zero in contact within the tolerance. With a hardness it is the gap after plastic flow.
     #[must_use]
     pub fn gap(&self) -> &Field {
         match &self.pressures {
@@ -30,8 +31,10 @@ impl Solution<'_> {
         }
     }
 
-    /// The gap on the grid of the smallest elements, in λ, as [`Solution::gap`]; `None` where that is
-    /// [`Solution::grid`], which it is without a border level. Takes one application of L on that grid each time.
+    /// The gap on the grid of the smallest elements, in λ, as [`Solution::gap`].
+    ///
+    /// `None` if that grid is [`Solution::grid`], as it is without a border level. Each call takes one application of L
+    /// on the grid of the smallest elements.
     #[must_use]
     pub fn finest_gap(&self) -> Option<Field> {
         match &self.pressures {
@@ -44,15 +47,17 @@ impl Solution<'_> {
         }
     }
 
-    /// The overlap that plastic flow has removed, on the grid, in λ, ≥ 0; zero where the pressure is below the
-    /// hardness, and everywhere without one.
+    /// The overlap that plastic flow has removed, on the grid, in λ, ≥ 0.
+    ///
+    /// It is zero where the pressure is below the hardness, and everywhere without a hardness.
     #[must_use]
     pub fn plastic_gap(&self) -> &Field {
         self.plastic_gap.get_or_init(|| self.collect(self.grid(), |take| self.plastic_gap_rows(take)))
     }
 
-    /// The displacement v on the grid, in λ, of mean zero on the periodic half-space. Takes one application of L the
-    /// first time.
+    /// The displacement v on the grid, in λ. Its mean is zero on the periodic half-space.
+    ///
+    /// The first call takes one application of L.
     #[must_use]
     pub fn displacement(&self) -> &Field {
         self.displacement.get_or_init(|| match &self.pressures {
@@ -63,11 +68,12 @@ impl Solution<'_> {
         })
     }
 
-    /// Hands out [`Solution::pressure`] in order, some rows at a time: the index of the first row, and the rows one
-    /// after the other. Stops at the first error.
+    /// Hands out [`Solution::pressure`] in order, some rows at a time.
+    ///
+    /// `take` gets the index of the first row, and the rows one after the other. Stops at the first error.
     ///
     /// # Errors
-    /// What `take` returns.
+    /// The error that `take` returns.
     pub fn pressure_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         match (&self.pressures, self.pressure.get()) {
             (Pressures::Grid { solution, .. }, _) => take(0, solution.pressure.values()),
@@ -76,11 +82,12 @@ impl Solution<'_> {
         }
     }
 
-    /// The same over ranks, with some rows for each rank: those that it takes follow each other, and those of the next
-    /// rank follow them.
+    /// Hands out the rows of [`Solution::pressure`] that belong to this rank.
+    ///
+    /// The rows of a rank follow each other, and the rows of the next rank follow them.
     ///
     /// # Errors
-    /// What `take` returns.
+    /// The error that `take` returns.
     pub fn own_pressure_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         match &self.pressures {
             Pressures::Grid { .. } => self.pressure_rows(take),
@@ -88,11 +95,12 @@ impl Solution<'_> {
         }
     }
 
-    /// Hands out [`Solution::gap`] as [`Solution::pressure_rows`] does the pressure, for the adaptive method at about
-    /// the cost of one application of L on the whole grid.
+    /// Hands out [`Solution::gap`], as [`Solution::pressure_rows`] does with the pressure.
+    ///
+    /// For the adaptive method this costs about one application of L on the whole grid.
     ///
     /// # Errors
-    /// What `take` returns.
+    /// The error that `take` returns.
     pub fn gap_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         match (&self.pressures, self.gap.get()) {
             (Pressures::Grid { solution, .. }, _) if self.how.hardness.is_infinite() => take(0, solution.gap.values()),
@@ -101,10 +109,10 @@ impl Solution<'_> {
         }
     }
 
-    /// Hands out [`Solution::plastic_gap`] as [`Solution::gap_rows`] does the gap.
+    /// Hands out [`Solution::plastic_gap`], as [`Solution::gap_rows`] does with the gap.
     ///
     /// # Errors
-    /// What `take` returns.
+    /// The error that `take` returns.
     pub fn plastic_gap_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         match self.plastic_gap.get() {
             Some(gap) => take(0, gap.values()),
@@ -112,10 +120,12 @@ impl Solution<'_> {
         }
     }
 
-    /// The same over ranks, as [`Solution::own_pressure_rows`] does it.
+    /// Hands out the rows of [`Solution::gap`] that belong to this rank.
+    ///
+    /// The order is that of [`Solution::own_pressure_rows`].
     ///
     /// # Errors
-    /// What `take` returns.
+    /// The error that `take` returns.
     pub fn own_gap_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         self.part_rows(GapPart::Open, Receiver::Each, take)
     }
@@ -131,7 +141,7 @@ impl Solution<'_> {
             values.extend_from_slice(rows);
             Ok(())
         });
-        // Rows go to the first rank, fields to all.
+        // Rows go to the first rank. Fields go to all ranks.
         let values = self.ranks().concatenate(values);
         Field::new(grid, values).expect("as many values as the grid has elements")
     }

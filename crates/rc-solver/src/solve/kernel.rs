@@ -1,4 +1,4 @@
-//! The kernel of a problem and of its solution, whoever owns it.
+//! The kernel of a problem and of its solution, with any owner.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -8,11 +8,11 @@ use rc_core::{EdgeBias, Grid, Kernel, Symbol};
 /// The kernel that a problem is solved with.
 #[derive(Clone)]
 pub(super) enum OwnedKernel<'a> {
-    /// The caller's.
+    /// A kernel that the caller owns.
     Borrowed(&'a dyn Kernel),
-    /// With several owners.
+    /// A kernel with several owners.
     Shared(Arc<dyn Kernel + Send + Sync>),
-    /// What a solution needs of a borrowed one that it outlives.
+    /// The table that a solution keeps of a borrowed kernel, to outlive it.
     Tabulated(Arc<TabulatedKernel>),
 }
 
@@ -22,14 +22,14 @@ pub(super) struct TabulatedKernel {
     bias: EdgeBias,
     uniform: Option<f64>,
     grid: Grid,
-    /// Eigenvalues for 0 ≤ kx ≤ nx/2, then 0 ≤ ky ≤ ny/2, columns of constant kx contiguous.
+    /// Eigenvalues for 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2. Columns of constant kx are contiguous.
     values: Vec<f64>,
-    /// Displacements of elements by one, row by row, where borders are free.
+    /// Displacements of all elements by one element, row by row, where borders are free.
     free: Option<Vec<f64>>,
 }
 
 impl OwnedKernel<'_> {
-    /// The kernel without a borrow, for `grid` alone where it was borrowed.
+    /// The kernel without a borrow. A borrowed kernel becomes a table for `grid`.
     pub(super) fn into_owned(self, grid: Grid) -> OwnedKernel<'static> {
         match self {
             Self::Borrowed(kernel) => OwnedKernel::Tabulated(Arc::new(TabulatedKernel::new(kernel, grid))),
@@ -67,7 +67,8 @@ impl Kernel for TabulatedKernel {
 
     fn symbol(&self, grid: Grid) -> Symbol<'_> {
         if self.free.is_some() {
-            // With free borders the symbol only preconditions, on a grid with a margin: that of waves does as well.
+            // With free borders the symbol is only a preconditioner, on a grid with a margin. The symbol of waves does
+            // this as well.
             return Box::new(move |kx, ky| match grid.waves(kx, ky) {
                 0.0 => 0.0,
                 waves => 1.0 / (PI * waves),

@@ -5,12 +5,12 @@ use rc_core::Grid;
 use super::SolveError;
 use crate::{Method, UNIFORM_BYTES_PER_ELEMENT};
 
-/// Bytes that a method that stores every element needs.
+/// Bytes of a method that stores every element.
 pub(super) fn uniform_bytes(grid: Grid) -> f64 {
     grid.len() as f64 * UNIFORM_BYTES_PER_ELEMENT as f64
 }
 
-/// Refuses a method that stores every element of the grid where it does not fit into memory.
+/// Refuses a method that stores every element if the grid does not fit into memory.
 pub(super) fn check_uniform(
     grid: Grid,
     bytes_per_element: u64,

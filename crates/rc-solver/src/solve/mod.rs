@@ -1,4 +1,4 @@
-//! The front door: a contact problem, its solution, and nothing in between that a caller has to choose.
+//! The front door: a contact problem, its solution, and no choices in between.
 
 mod area_error;
 mod choice;

@@ -3,36 +3,43 @@
 use crate::adaptive::AdaptiveParams;
 use crate::{ErrorBound, GaussSeidelParams, IterationParams, Method, Tolerance};
 
-/// How accurately, by which method and within which limits a contact problem is solved.
+/// Accuracy, method and limits of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolveParams {
-    /// What the certificate ([`crate::Certificate`]) has to meet.
+    /// Tolerance of the solve, from which the bound on the [`crate::Certificate`] follows.
     pub tolerance: Tolerance,
-    /// Largest number of iterations on any one level.
+    /// Maximum number of iterations on any one level.
     pub max_iterations: usize,
-    /// The method; `None` chooses by the estimated contact area.
+    /// The method. `None` chooses by the estimated contact area.
     pub method: Option<Method>,
-    /// How often elements at contact edges are halved beyond the grid. Only the adaptive method does so, and only on a
-    /// surface.
+    /// Number of times that elements at contact edges are halved beyond the grid.
+    ///
+    /// Only the adaptive method does so, and only on a surface.
     pub border_level: usize,
-    /// Maximum memory, in bytes. A larger estimate is an error before any work, or after the base grid where scattered
-    /// contact turns out to need the uniform grid.
+    /// Maximum memory, in bytes.
+    ///
+    /// A larger estimate is an error before any work. If scattered contact needs the uniform grid, the error comes
+    /// after the base grid.
     pub memory_limit: Option<u64>,
-    /// Whether a method that does not fit into memory gives way to one that does. Their results differ within the error
-    /// bars, so one of many solves, which may run on another machine, sets this to `false`.
+    /// Whether a method that does not fit into memory gives way to one that does.
+    ///
+    /// Their results differ within the error bars. One of many solves may run on another machine, and therefore sets
+    /// this to `false`.
     pub method_follows_memory: bool,
-    /// Bound on the error of one application of the adaptive operator, relative to the rms displacement. A smaller
-    /// tolerance lowers it.
+    /// Bound on the error of one application of the adaptive operator.
+    ///
+    /// It is relative to the rms displacement. A smaller tolerance lowers it.
     pub operator_error: f64,
-    /// Elements per side of the base grid of the adaptive method; `None` chooses.
+    /// Elements per side of the base grid of the adaptive method. `None` chooses the number.
     pub base_side: Option<usize>,
     /// Parameters of the paper's procedure alone.
     pub gauss_seidel: GaussSeidelParams,
 }
 
 impl SolveParams {
-    /// Certified to [`Tolerance::DEFAULT`]: area and rms pressure are then those of the discrete problem to about five
-    /// digits.
+    /// Parameters that certify a solution to [`Tolerance::DEFAULT`].
+    ///
+    /// Area and rms pressure are then those of the discrete problem to about five digits.
     #[must_use]
     pub fn certified() -> Self {
         Self {
@@ -48,7 +55,9 @@ impl SolveParams {
         }
     }
 
-    /// [`SolveParams::certified`] with this tolerance, relative to the peak-to-valley height ([`Tolerance::Relative`]).
+    /// [`SolveParams::certified`] with this tolerance.
+    ///
+    /// It is relative to the peak-to-valley height ([`Tolerance::Relative`]).
     #[must_use]
     pub fn to_tolerance(tolerance: f64) -> Self {
         Self { tolerance: Tolerance::Relative(tolerance), ..Self::certified() }
@@ -60,12 +69,12 @@ impl SolveParams {
         Self { method: Some(method), ..self }
     }
 
-    /// What the iteration needs of them.
+    /// The parameters of the iteration.
     pub(super) fn iteration(&self, bound: ErrorBound) -> IterationParams {
         IterationParams { bound, max_iterations: self.max_iterations }
     }
 
-    /// What the adaptive method needs of them.
+    /// The parameters of the adaptive method.
     pub(super) fn adaptive(&self, bound: ErrorBound) -> AdaptiveParams {
         AdaptiveParams {
             solve: self.iteration(bound),

@@ -15,30 +15,32 @@ use crate::solution::{GridSolution, Status};
 use crate::uniform::solve_uniform;
 use crate::{ErrorBound, GaussSeidelError, GaussSeidelParams, Method, MethodReason, UNIFORM_BYTES_PER_ELEMENT};
 
-/// A contact problem that has been checked and has its method. Nothing is solved yet.
+/// A checked contact problem with its method. It is not solved yet.
 pub struct Plan<'a> {
     pub(super) problem: ContactProblem<'a>,
     pub(super) params: SolveParams,
-    /// What the certificate has to meet.
+    /// The bound that the certificate must meet.
     pub(super) bound: ErrorBound,
     pub(super) chosen: ChosenMethod<'a>,
     pub(super) reason: MethodReason,
     pub(super) shared: Arc<Shared<'a>>,
 }
 
-/// A method with what it needs to start.
+/// A method, and its data at the start.
 pub(super) enum ChosenMethod<'a> {
-    /// Heights are evaluated as they are needed.
+    /// The adaptive method. Heights are evaluated as they are needed.
     Adaptive(Box<AdaptiveProblem<'a>>),
-    /// All heights will be evaluated.
+    /// The uniform method. All heights will be evaluated.
     Uniform,
-    /// All heights will be evaluated.
+    /// The paper's procedure. All heights will be evaluated.
     GaussSeidel,
 }
 
 impl<'a> Plan<'a> {
-    /// The method. An adaptive one that was not asked for gives way to the uniform one when contact on its base grid is
-    /// too scattered: [`Solution::method`] is the one that has solved.
+    /// The chosen method.
+    ///
+    /// An adaptive method that was not asked for gives way to the uniform one when contact on its base grid is too
+    /// scattered. [`Solution::method`] is the method that has solved the problem.
     #[must_use]
     pub fn method(&self) -> Method {
         match self.chosen {
@@ -48,13 +50,13 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Why it is this one.
+    /// The reason for the method.
     #[must_use]
     pub fn reason(&self) -> &MethodReason {
         &self.reason
     }
 
-    /// What the certificate has to meet.
+    /// The bound that the certificate must meet.
     #[must_use]
     pub fn bound(&self) -> ErrorBound {
         self.bound
@@ -63,8 +65,8 @@ impl<'a> Plan<'a> {
     /// Solves the problem.
     ///
     /// # Errors
-    /// [`SolveError::NotConverged`] with the best solution found; [`SolveError::Problem`] for heights that are not
-    /// finite, and [`SolveError::GaussSeidel`] for what the paper's procedure refuses.
+    /// [`SolveError::NotConverged`] with the best solution found. [`SolveError::Problem`] for heights that are not
+    /// finite. [`SolveError::GaussSeidel`] if the paper's procedure refuses the problem.
     pub fn solve(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
         let Self { problem, params, bound, chosen, reason, mut shared } = self;
         let name = problem.kernel.get().name();
@@ -96,8 +98,10 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// The solution of the adaptive method; where that was chosen by an estimate, and contact turns out to be so scattered
-/// that the uniform grid is cheaper and fits into memory, that reason.
+/// The solution of the adaptive method, or the reason to take the uniform method instead.
+///
+/// This reason exists if an estimate chose the method, contact turns out to be so scattered that the uniform grid is
+/// cheaper, and that grid fits into memory.
 fn by_adaptive(
     problem: &ContactProblem<'_>,
     params: &SolveParams,
@@ -107,7 +111,7 @@ fn by_adaptive(
     let uniform_fits =
         check_uniform(problem.heights.grid(), UNIFORM_BYTES_PER_ELEMENT, params.memory_limit, Method::Uniform);
     let may_change = matches!(reason, MethodReason::SmallContact { .. });
-    // Where the method may not follow memory, a row is solved alike on every machine, or refused.
+    // If the method may not follow memory, a load is solved in the same way on every machine, or refused.
     if !may_change || uniform_fits.is_err() && params.method_follows_memory {
         return Ok(Ok(adaptive.solve(observer)));
     }

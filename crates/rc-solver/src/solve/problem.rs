@@ -37,16 +37,19 @@ pub struct ContactProblem<'a> {
 }
 
 impl<'a> ContactProblem<'a> {
-    /// The contact of `heights` (in λ) with the elastic half-space under a load. The kernel is [`Love`].
+    /// The contact of `heights` (in λ) with the elastic half-space under a load.
+    ///
+    /// The kernel is [`Love`].
     #[must_use]
     pub fn new(heights: impl Into<HeightSource<'a>>, control: Control) -> Self {
         let (kernel, place) = (OwnedKernel::Borrowed(&Love), Place::default());
         Self { heights: heights.into(), kernel, control, hardness: f64::INFINITY, place }
     }
 
-    /// The same problem with a hardness, in E*: no pressure is greater. It is the usual first model of plastic contact.
-    /// Where the pressure is the hardness, plastic flow removes the overlap of the surfaces
-    /// ([`crate::Solution::plastic_gap`]).
+    /// The same problem with a hardness, in E*, which no pressure exceeds.
+    ///
+    /// It is the usual first model of plastic contact. Where the pressure is the hardness, plastic flow removes the
+    /// overlap of the surfaces ([`crate::Solution::plastic_gap`]).
     ///
     /// ```
     /// use rc_core::{Field, Grid};
@@ -76,15 +79,19 @@ impl<'a> ContactProblem<'a> {
         Self { kernel: OwnedKernel::Borrowed(kernel), ..self }
     }
 
-    /// The same with a kernel that the problem, its plans and its solutions share, and do not borrow.
+    /// The same problem with a kernel that the problem, its plans and its solutions share.
+    ///
+    /// They do not borrow it.
     #[must_use]
     pub fn with_shared_kernel(self, kernel: Arc<dyn Kernel + Send + Sync>) -> Self {
         Self { kernel: OwnedKernel::Shared(kernel), ..self }
     }
 
-    /// The same problem over ranks, which all solve it together: each has a part of the mesh, and calls the same
-    /// functions in the same order, those of the solution included. Only the adaptive method does so, with elements of
-    /// one size on grids that halve. Digits do not depend on the number of ranks.
+    /// The same problem over ranks, which all solve it together.
+    ///
+    /// Each rank has a part of the mesh. All ranks call the same functions in the same order, including those of the
+    /// solution. Only the adaptive method works over ranks, with elements of one size on grids that halve. Digits do
+    /// not depend on the number of ranks.
     ///
     /// ```
     /// use rc_comm::run_threads;
@@ -108,9 +115,11 @@ impl<'a> ContactProblem<'a> {
         Self { place: Place { ranks, ..self.place }, ..self }
     }
 
-    /// The same problem with a place for what each level leaves for the next. A solve of the same problem goes on from
-    /// the last level that was kept there, on any number of ranks, to the same digits. What is kept is of this problem
-    /// alone: the caller sees to that. Only the adaptive method without a border level keeps anything.
+    /// The same problem, with a place for what each level leaves for the next.
+    ///
+    /// A solve of the same problem continues from the last level that was kept there. It may have any number of ranks,
+    /// and gives the same digits. The caller ensures that the place is for this problem alone. Only the adaptive method
+    /// without a border level keeps anything.
     #[must_use]
     pub fn kept_in(self, checkpoint: Arc<dyn Checkpoint>) -> Self {
         Self { place: Place { checkpoint: Some(checkpoint), ..self.place }, ..self }

@@ -1,4 +1,6 @@
-//! What a solution on a grid needs of its half-space after the solve. It may outlive the caller's.
+//! The half-space of a solution on a grid, for use after the solve.
+//!
+//! It may outlive the caller's half-space.
 
 use rc_core::{Boundary, EdgeBias, Field, Grid, Operator};
 
@@ -14,7 +16,7 @@ pub(super) enum Response<'a> {
     Kernel(OwnedKernel<'a>),
     /// The caller's operator.
     Operator(&'a dyn Operator),
-    /// An operator that the solution has outlived, and what it was needed for.
+    /// The results of an operator that the solution has outlived.
     Outlived {
         /// dσ0/dΔ, in E*/λ.
         stiffness: f64,
@@ -24,12 +26,14 @@ pub(super) enum Response<'a> {
 }
 
 impl Response<'_> {
-    /// The half-space without a borrow, for one solution. What an operator is needed for is computed now.
+    /// The half-space without a borrow, for one solution.
+    ///
+    /// The results of an operator are computed now.
     pub(super) fn into_owned(self, solution: &GridSolution) -> Response<'static> {
         match self {
             Self::Kernel(kernel) => Response::Kernel(kernel.into_owned(solution.pressure.grid())),
             Self::Operator(_) => Response::Outlived {
-                // Operators have no hardness.
+                // Operators do not have a hardness.
                 stiffness: self.stiffness(solution, f64::INFINITY),
                 displacement: self.displacement(&solution.pressure),
             },
@@ -37,7 +41,7 @@ impl Response<'_> {
         }
     }
 
-    /// The shift of contact edges; for an operator the default one.
+    /// The shift of contact edges. For an operator it is the default shift.
     pub(super) fn edge_bias(&self) -> EdgeBias {
         match self {
             Self::Kernel(kernel) => kernel.get().edge_bias(),
@@ -45,7 +49,7 @@ impl Response<'_> {
         }
     }
 
-    /// What is beyond the heights on `grid`.
+    /// The boundary of the heights on `grid`.
     pub(super) fn boundary(&self, grid: Grid) -> Boundary {
         match self {
             Self::Kernel(kernel) => Support::of(kernel.get(), grid).boundary,
@@ -62,7 +66,7 @@ impl Response<'_> {
         }
     }
 
-    /// dσ0/dΔ in full contact, in E*/λ: infinite but for a solid on a base.
+    /// dσ0/dΔ in full contact, in E*/λ. It is infinite unless the solid is on a base.
     pub(super) fn full_contact_stiffness(&self) -> f64 {
         match self {
             Self::Kernel(kernel) => kernel.get().uniform_displacement().unwrap_or(0.0).recip(),

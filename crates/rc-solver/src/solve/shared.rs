@@ -1,4 +1,4 @@
-//! What the plans of all loads on one surface share.
+//! Data that the plans of all loads on one surface share.
 
 use std::sync::{Arc, OnceLock};
 
@@ -8,17 +8,17 @@ use crate::AdaptiveError;
 use crate::adaptive::{AdaptiveParams, Ground};
 use crate::once::made;
 
-/// Heights as the methods need them, evaluated when the first load needs them.
+/// Heights as the methods need them. They are evaluated when the first load needs them.
 #[derive(Default)]
 pub(super) struct Shared<'a> {
-    /// For the adaptive method.
+    /// Heights of the adaptive method.
     ground: OnceLock<Arc<Ground<'a>>>,
-    /// On the whole grid.
+    /// Heights on the whole grid.
     heights: OnceLock<Field>,
 }
 
 impl<'a> Shared<'a> {
-    /// What the adaptive method needs of `source`.
+    /// The heights of `source` as the adaptive method needs them.
     pub(super) fn ground(
         &self,
         source: &HeightSource<'a>,
@@ -26,13 +26,13 @@ impl<'a> Shared<'a> {
     ) -> Result<&Arc<Ground<'a>>, AdaptiveError> {
         if self.ground.get().is_none() {
             let ground = Arc::new(Ground::new(source.clone(), params)?);
-            // Another load may have been faster; its ground is the same.
+            // Another load may have been faster. Its ground is the same.
             let _ = self.ground.set(ground);
         }
         Ok(self.ground.get().expect("it was set"))
     }
 
-    /// Frees what only the adaptive method needs.
+    /// Frees the heights of the adaptive method.
     pub(super) fn forget_ground(&mut self) {
         self.ground.take();
     }

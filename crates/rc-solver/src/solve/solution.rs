@@ -1,4 +1,4 @@
-//! What a solve returns, whatever the method.
+//! The result of a solve, for all methods.
 
 use std::sync::{Arc, OnceLock};
 
@@ -14,12 +14,12 @@ use crate::{Certificate, ContactArea, ContactElement, ErrorBound, Method, Method
 
 /// A solved contact problem.
 ///
-/// Pressures are in E*, lengths in λ, areas relative to the nominal area. Fields are on [`Solution::grid`]. Those of
-/// the adaptive method are made when they are first asked for; [`Solution::pressure_rows`] and [`Solution::gap_rows`]
+/// Pressures are in E*, lengths in λ, areas relative to the nominal area. Fields are on [`Solution::grid`]. The
+/// adaptive method makes fields when they are first requested. [`Solution::pressure_rows`] and [`Solution::gap_rows`]
 /// never hold them whole.
 ///
-/// Over ranks ([`crate::ContactProblem::over`]) each has a part. All of them call the functions of a solution together;
-/// each gets the same numbers, rows go to the first of them, and elements are those of the rank.
+/// Over ranks ([`crate::ContactProblem::over`]), each rank has a part. All ranks call the functions of a solution
+/// together, and get the same numbers. Rows go to the first rank. Elements are those of the rank.
 pub struct Solution<'a> {
     pub(super) how: HowSolved,
     pub(super) status: Status,
@@ -33,14 +33,14 @@ pub struct Solution<'a> {
     stiffness: OnceLock<f64>,
 }
 
-/// What a solution keeps of its plan.
+/// The parts of its plan that a solution keeps.
 #[derive(Clone, Debug)]
 pub(super) struct HowSolved {
     pub(super) method: Method,
     pub(super) reason: MethodReason,
     pub(super) bound: ErrorBound,
     pub(super) kernel: &'static str,
-    /// The greatest pressure; infinite for an elastic contact.
+    /// The maximum pressure. Infinite for an elastic contact.
     pub(super) hardness: f64,
 }
 
@@ -62,18 +62,18 @@ pub(super) enum Pressures<'a> {
     },
     Tiles {
         solution: Box<AdaptiveSolution>,
-        /// What it solves, heights included.
+        /// The problem that was solved, with its heights.
         problem: Box<AdaptiveProblem<'a>>,
     },
 }
 
 impl<'a> Solution<'a> {
-    /// Of a method that stores every element of the grid.
+    /// The solution of a method that stores every element of the grid.
     pub(super) fn on_grid(how: HowSolved, kernel: OwnedKernel<'a>, solution: GridSolution, h_max: f64) -> Self {
         Self::of_grid(how, Response::Kernel(kernel), solution, h_max)
     }
 
-    /// Of an operator of the caller.
+    /// The solution with an operator of the caller.
     pub(super) fn with_operator(
         how: HowSolved,
         operator: &'a dyn Operator,
@@ -88,7 +88,7 @@ impl<'a> Solution<'a> {
         Self::new(how, status, h_max, Pressures::Grid { solution: Box::new(solution), response })
     }
 
-    /// Of the adaptive method.
+    /// The solution of the adaptive method.
     pub(super) fn on_tiles(how: HowSolved, solution: AdaptiveSolution, problem: Box<AdaptiveProblem<'a>>) -> Self {
         let (status, h_max) = (solution.status(), problem.h_max());
         Self::new(how, status, h_max, Pressures::Tiles { solution: Box::new(solution), problem })
@@ -109,8 +109,10 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// The same solution without borrows. The adaptive method's keeps a copy of a map, and that of a grid the symbol of
-    /// its kernel. With an operator, displacement and stiffness are computed now.
+    /// The same solution without borrows.
+    ///
+    /// A solution of the adaptive method keeps a copy of a map. A solution on a grid keeps the symbol of its kernel.
+    /// With an operator, displacement and stiffness are computed now.
     #[must_use]
     pub fn into_owned(self) -> Solution<'static> {
         let pressures = match self.pressures {
@@ -126,7 +128,9 @@ impl<'a> Solution<'a> {
         Solution { how, status, h_max, pressures, pressure, gap, plastic_gap, displacement, observables, stiffness }
     }
 
-    /// The same solution without borrows, with the kernel that it was solved with. Nothing is tabulated then.
+    /// The same solution without borrows, with the kernel that it was solved with.
+    ///
+    /// Nothing is tabulated then.
     #[must_use]
     pub fn into_owned_with(self, kernel: Arc<dyn Kernel + Send + Sync>) -> Solution<'static> {
         match self.pressures {
@@ -158,32 +162,33 @@ impl<'a> Solution<'a> {
         self.status
     }
 
-    /// The method.
+    /// The method that has solved the problem.
     #[must_use]
     pub fn method(&self) -> Method {
         self.how.method
     }
 
-    /// Why it was this one.
+    /// The reason for the method.
     #[must_use]
     pub fn reason(&self) -> &MethodReason {
         &self.how.reason
     }
 
-    /// What the certificate had to meet.
+    /// The bound that the certificate had to meet.
     #[must_use]
     pub fn bound(&self) -> ErrorBound {
         self.how.bound
     }
 
-    /// Name of the kernel; `operator` for an operator of the caller.
+    /// Name of the kernel, or `operator` for an operator of the caller.
     #[must_use]
     pub fn kernel(&self) -> &'static str {
         self.how.kernel
     }
 
-    /// How the solution was found and how good it is: certificate, load, penetration, energy, and the work on each
-    /// level.
+    /// How the solution was found, and how good it is.
+    ///
+    /// This has the certificate, load, penetration, energy, and the work on each level.
     #[must_use]
     pub fn info(&self) -> &SolveInfo {
         match &self.pressures {
@@ -207,7 +212,9 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// The grid of the smallest elements: finer than [`Solution::grid`] where a border level was asked for.
+    /// The grid of the smallest elements.
+    ///
+    /// It is finer than [`Solution::grid`] if a border level was requested.
     pub(super) fn finest_grid(&self) -> Grid {
         match &self.pressures {
             Pressures::Grid { solution, .. } => solution.pressure.grid(),
@@ -227,7 +234,7 @@ impl<'a> Solution<'a> {
         self.observables().area
     }
 
-    /// Area, pressure, gap, energy.
+    /// The observables: area, pressure, gap, energy.
     #[must_use]
     pub fn observables(&self) -> &Observables {
         self.observables.get_or_init(|| match &self.pressures {
@@ -239,8 +246,10 @@ impl<'a> Solution<'a> {
         })
     }
 
-    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative; infinite in full contact with the
-    /// half-space. What is plastic stays so, and adds nothing. Takes a few applications of L the first time.
+    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative.
+    ///
+    /// It is infinite in full contact with the half-space. Plastic elements stay plastic, and add nothing. The first
+    /// call takes a few applications of L.
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         *self.stiffness.get_or_init(|| match &self.pressures {
@@ -250,23 +259,24 @@ impl<'a> Solution<'a> {
         })
     }
 
-    /// Hands out the elements of [`Solution::elements`], over ranks those of all of them to the first, in order. Stops
-    /// at the first error.
+    /// Hands out the elements of [`Solution::elements`] in order.
+    ///
+    /// Over ranks, the first rank gets the elements of all ranks. Stops at the first error.
     ///
     /// # Errors
-    /// What `take` returns.
+    /// The error that `take` returns.
     pub fn each_element<E>(&self, take: impl FnMut(ContactElement) -> Result<(), E>) -> Result<(), E> {
         let elements = self.elements().into_iter().flatten();
         elements::each_of_ranks(elements, &self.ranks(), take)
     }
 
-    /// The greatest pressure, in E*; infinite for an elastic contact.
+    /// The maximum pressure, in E*. Infinite for an elastic contact.
     #[must_use]
     pub fn hardness(&self) -> f64 {
         self.how.hardness
     }
 
-    /// The ranks that have solved it, all of which call its functions together.
+    /// The ranks that have solved the problem. All of them call its functions together.
     #[must_use]
     pub fn ranks(&self) -> Ranks {
         match &self.pressures {
@@ -275,7 +285,9 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// Number of elements that carry unknowns: those in contact on an adaptive mesh, all of a uniform grid.
+    /// Number of elements that carry unknowns.
+    ///
+    /// These are elements in contact on an adaptive mesh, and all elements of a uniform grid.
     #[must_use]
     pub fn n_elements(&self) -> usize {
         match &self.pressures {
@@ -293,8 +305,9 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// The elements of a mesh that is not the grid itself, those in contact with their pressures; `None` for the
-    /// uniform method.
+    /// The elements in contact, with their pressures, if the mesh is not the grid.
+    ///
+    /// `None` for the uniform method.
     #[must_use]
     pub fn elements(&self) -> Option<Box<dyn Iterator<Item = ContactElement> + '_>> {
         match &self.pressures {
@@ -303,7 +316,7 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// Elements of the grid whose gap the certificate computed.
+    /// Number of elements of the grid whose gap the certificate computed.
     #[must_use]
     pub fn n_evaluated(&self) -> usize {
         match &self.pressures {
@@ -312,7 +325,9 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// Elements of the grid that are proven to be out of contact without computing their gap: all others.
+    /// Number of elements of the grid that are proven to be out of contact.
+    ///
+    /// Their gap was not computed. These are all elements that were not evaluated.
     #[must_use]
     pub fn n_proven(&self) -> usize {
         match &self.pressures {

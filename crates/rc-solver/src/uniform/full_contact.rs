@@ -11,8 +11,10 @@ use crate::problem::Problem;
 use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
 use crate::{Control, ErrorBound};
 
-/// The mean pressure that closes every gap at the load of `problem`, if any does: that of the load, or on a layer what
-/// a penetration beyond that of the half-space's full contact compresses it by.
+/// The mean pressure that closes every gap at the load of `problem`, if any.
+///
+/// Under pressure control it is the prescribed one. On a layer, a penetration beyond full contact of the half-space
+/// compresses the layer. The mean pressure is then the one of this compression.
 pub(super) fn mean_pressure(problem: &Problem) -> Option<f64> {
     match problem.control {
         Control::MeanPressure(value) => Some(value),
@@ -23,9 +25,11 @@ pub(super) fn mean_pressure(problem: &Problem) -> Option<f64> {
     }
 }
 
-/// The solution when `mean_pressure` closes every gap: v = h - mean(h) and p = σ0 + L⁻¹ h, provided that is nowhere
-/// tensile nor above the hardness. (For the spectral kernel p̂ = E*|q|ĥ/2.) `None` otherwise, and where rounding or a
-/// faulty kernel leave a larger error than `bound`. Coarser grids have the heights `coarser`, finest first.
+/// The solution when `mean_pressure` closes every gap: v = h - mean(h) and p = σ0 + L⁻¹ h.
+///
+/// (For the spectral kernel p̂ = E*|q|ĥ/2.) `None` if p is tensile or above the hardness anywhere. `None` also if
+/// rounding or a faulty kernel leave a larger error than `bound`. Coarser grids have the heights `coarser`, finest
+/// first.
 pub(super) fn solve(
     (heights, coarser): (&Field, &[Field]),
     kernel: &dyn Kernel,
@@ -62,7 +66,7 @@ fn fluctuation(heights: &Field, kernel: &dyn Kernel, mean: f64) -> SymbolOperato
     let mut inverse = SymbolOperator::new(grid, inverse);
     let block = inverse.layout().len();
     write_blocks(&mut inverse, heights.values().chunks(block), |h, rows| {
-        // The mean would only add rounding.
+        // The mean would add only rounding.
         for (row, h) in rows.iter_mut().zip(h) {
             *row = h - mean;
         }
@@ -71,15 +75,19 @@ fn fluctuation(heights: &Field, kernel: &dyn Kernel, mean: f64) -> SymbolOperato
     inverse
 }
 
-/// Elements of a grid that shows whether contact is partial, at most.
+/// Maximum number of elements of a grid that shows whether contact is partial.
 const SKETCH: usize = 1 << 18;
 
-/// A coarser grid shows it where its pressure of full contact is this many times below the mean that lies above it: the
-/// pressures of the two grids differ by much less.
+/// Ratio to the mean pressure of the fluctuation that shows partial contact.
+///
+/// If full contact on a coarser grid falls this many times the mean below it, contact is partial on the finest grid
+/// too. The pressures of the two grids differ by much less.
 const CLEARLY: f64 = 2.0;
 
-/// Whether full contact would pull on a coarse grid, so clearly that it does on the finest one. Should it not, the
-/// iteration finds full contact.
+/// Whether full contact on a coarse grid shows that contact is partial.
+///
+/// It must pull so clearly there that it also pulls on the finest grid. If it does not, the iteration finds full
+/// contact.
 fn shows_partial_contact(coarser: &[Field], kernel: &dyn Kernel, mean_pressure: f64) -> bool {
     let Some(heights) = coarser.iter().find(|heights| heights.grid().len() <= SKETCH) else { return false };
     let fluctuation = fluctuation(heights, kernel, heights.mean());
@@ -88,9 +96,11 @@ fn shows_partial_contact(coarser: &[Field], kernel: &dyn Kernel, mean_pressure: 
     least.into_iter().fold(f64::INFINITY, f64::min) < -CLEARLY * mean_pressure
 }
 
-/// A pressure p ≥ 0 has no Fourier coefficient above its mean. Full contact prescribes them, and the longest waves are
-/// the largest of a rough surface, so two of them usually prove that contact is partial, at a tenth of a transform's
-/// cost.
+/// Whether one of two Fourier coefficients proves that contact is partial.
+///
+/// A pressure p ≥ 0 has no Fourier coefficient above its mean. Full contact prescribes the coefficients, and the
+/// longest waves of a rough surface are the largest. Two of them are therefore usually a proof, at a tenth of the cost
+/// of a transform.
 fn proves_partial_contact(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64) -> bool {
     let grid = heights.grid();
     if grid.nx() < 3 || grid.ny() < 3 {
@@ -136,7 +146,7 @@ fn certified(
     rc_core::Operator::apply(&operator, pressure.values(), gap.values_mut(), &mut []);
     let (mut weighted, mut total, mut work) = (0.0, 0.0, 0.0);
     for ((g, &p), &h) in gap.values_mut().iter_mut().zip(pressure.values()).zip(heights.values()) {
-        // The mean pressure does no work on a displacement of zero mean but that of its rounding.
+        // The mean pressure does work only on the rounding of a displacement of zero mean.
         work += (p - mean_pressure) * *g;
         *g -= h;
         weighted += p * *g;
@@ -144,7 +154,7 @@ fn certified(
     }
     let approach = weighted / total;
     gap.values_mut().par_iter_mut().for_each(|g| *g -= approach);
-    // A sum that is not a number shows a gap that is not one, which the minimum passes over.
+    // If a gap is not a number, the sum is not a number either. The minimum passes over it.
     let least = if approach.is_finite() { gap.min() } else { f64::NAN };
     let mean = total / grid.len() as f64;
     let elastic_energy = 0.5 * work / grid.len() as f64;
@@ -172,9 +182,10 @@ fn certified(
     GridSolution { pressure, gap, status: Status::FullContact, elements: None, info }
 }
 
-/// Another bound on the energy error, √(⟨r, L⁻¹ r⟩/U), r the gap less its mean: ⟨p - p*, L (p - p*)⟩ ≤ ⟨r, p - p*⟩,
-/// since the means of p and p* are the same. It stays small where the mean pressure is far beyond that of full contact
-/// and multiplies every rounding of the gap.
+/// Another bound on the energy error: √(⟨r, L⁻¹ r⟩/U).
+///
+/// r is the gap minus its mean. ⟨p - p*, L (p - p*)⟩ ≤ ⟨r, p - p*⟩, since p and p* have the same mean. The bound stays
+/// small where the mean pressure is far beyond full contact and multiplies every rounding of the gap.
 fn error_of_residual(gap: &Field, elastic_energy: f64, inverse: &mut SymbolOperator) -> f64 {
     let (block, mean) = (inverse.layout().len(), gap.mean());
     write_blocks(inverse, gap.values().chunks(block), |g, rows| {
@@ -187,7 +198,7 @@ fn error_of_residual(gap: &Field, elastic_energy: f64, inverse: &mut SymbolOpera
         rows.iter().zip(g).map(|(row, g)| row * (g - mean)).sum()
     });
     let product = products.into_iter().sum::<f64>() / gap.grid().len() as f64;
-    // Rounding may leave less than nothing of an exact solution.
+    // For an exact solution, rounding may make it negative.
     if product <= 0.0 { 0.0 } else { (product / elastic_energy).sqrt() }
 }
 
@@ -200,7 +211,7 @@ mod tests {
 
     use super::*;
 
-    /// A wave of amplitude a and length λ/k fluctuates by π k a E* under full contact.
+    /// A wave of amplitude a and length λ/k. Its pressure fluctuates by π k a E* under full contact.
     #[test]
     fn a_coarse_grid_shows_partial_contact_only_far_below_full_contact() {
         let (waves, amplitude) = (8.0, 1e-3);

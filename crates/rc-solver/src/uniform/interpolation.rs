@@ -1,10 +1,14 @@
-//! Values on one grid of a cell from those on another, which is finer or coarser by any ratio.
+//! Interpolation of values from one grid of a cell to another.
+//!
+//! The other grid is finer or coarser by any ratio.
 
 use rayon::prelude::*;
 use rc_core::{Boundary, Grid};
 
-/// Interpolates between `N` neighbours along each axis (Lagrange): each value is `read` before and `written` after. At
-/// free borders the neighbours are the outermost ones, and beyond the last centre a value is that of its centre.
+/// Interpolates between `N` neighbours along each axis (Lagrange).
+///
+/// `read` changes each value before, and `written` after. At free borders the neighbours are the outermost ones. Beyond
+/// the last centre, a value is that of the centre.
 pub(super) fn interpolate<const N: usize>(
     values: &[f64],
     ([from, to], boundary): ([Grid; 2], Boundary),
@@ -39,10 +43,10 @@ struct Taps<const N: usize> {
 }
 
 impl<const N: usize> Taps<N> {
-    /// For each centre of `to` elements on a side that has `from` elements.
+    /// Taps for each centre of `to` elements on a side that has `from` elements.
     fn of_centres(from: usize, to: usize, boundary: Boundary) -> Vec<Self> {
         let ratio = from as f64 / to as f64;
-        // Places of neighbours, in elements from the last one before the centre.
+        // Places of neighbours, in elements from the last centre before.
         let place_of = |tap: usize| tap as f64 - (N / 2 - 1) as f64;
         let is_free = boundary == Boundary::Free;
         let of_centre = |i: usize| {
@@ -65,7 +69,7 @@ impl<const N: usize> Taps<N> {
             });
             let neighbour = |tap: usize| {
                 let index = before + place_of(tap);
-                // A side of fewer than N elements has some neighbours twice.
+                // On a side of fewer than N elements, some neighbours occur twice.
                 let index = if is_free { index.clamp(0.0, (from - 1) as f64) } else { index.rem_euclid(from as f64) };
                 index as usize
             };

@@ -5,25 +5,28 @@ use rc_core::{Boundary, Field, Grid};
 use super::interpolation::interpolate;
 use crate::factors::has_small_factors;
 
-/// Elements across a long cell on its coarsest grid, at least.
+/// Minimum number of elements across a long cell on its coarsest grid.
 const SMALLEST_WIDTH: usize = 8;
 
-/// An odd side is followed by one of 2^k times one of these numbers of elements: FFTs of such lengths are fast, and k
-/// halvings follow.
+/// Factors of the side that follows an odd side.
+///
+/// The next side has 2^k times one of these numbers of elements. FFTs of such lengths are fast, and k halvings follow.
 const MULTIPLES: [usize; 6] = [8, 9, 10, 12, 14, 15];
 
-/// Greatest prime factor of a side that is halved as it is, when the half is odd.
+/// Maximum prime factor of a side that is halved to an odd side.
 const GREATEST_FACTOR: usize = 13;
 
-/// The heights on coarser and coarser grids, finest of them first, each with half the elements per side, as long as
-/// that leaves whole elements, at least `smallest_side` of them along the side with more; a long cell is in need of
-/// coarser grids too.
+/// The heights on nested coarser grids, finest first, each with half the elements per side.
+///
+/// The grids end where halving does not leave whole elements, or leaves less than `smallest_side` of them along the
+/// larger side. A long cell needs coarser grids too.
 pub(crate) fn coarsen(heights: &Field, smallest_side: usize) -> Vec<Field> {
     coarsen_above(heights, smallest_side, (f64::NEG_INFINITY, Boundary::Periodic), half)
 }
 
-/// The heights on coarser grids of any sizes, one after the other, for starts on finer grids: heights below the
-/// [`floor`] count as that.
+/// The heights on coarser grids of any sizes, for starts on finer grids.
+///
+/// Each grid is sampled from the one before. Heights below the [`floor`] count as the floor.
 pub(crate) fn coarsen_to(heights: &Field, coarser: impl Iterator<Item = Grid>) -> Vec<Field> {
     let floor = floor(heights);
     let mut levels: Vec<Field> = Vec::new();
@@ -34,13 +37,16 @@ pub(crate) fn coarsen_to(heights: &Field, coarser: impl Iterator<Item = Grid>) -
     levels
 }
 
-/// The same as [`coarsen`] for starts on finer grids: heights below the [`floor`] count as that.
+/// The heights on nested coarser grids as [`coarsen`], for starts on finer grids.
+///
+/// Heights below the [`floor`] count as the floor.
 pub(crate) fn coarsen_without_pits(heights: &Field, smallest_side: usize) -> Vec<Field> {
     coarsen_above(heights, smallest_side, (floor(heights), Boundary::Periodic), half)
 }
 
-/// The same for grids of any size: the next one has half the elements of an even side, and about half those of an odd
-/// one.
+/// The heights on nested coarser grids of any size, without pits.
+///
+/// The next grid has half the elements of an even side, and about half the elements of an odd one.
 pub(super) fn nest_without_pits(heights: &Field, smallest_side: usize, boundary: Boundary) -> Vec<Field> {
     coarsen_above(heights, smallest_side, (floor(heights), boundary), |n| Some(about_half(n)))
 }
@@ -67,7 +73,9 @@ fn half(side: usize) -> Option<usize> {
     side.is_multiple_of(2).then_some(side / 2)
 }
 
-/// Half the side where that is a side to go on with, else a little more.
+/// Half the side, or a little more.
+///
+/// It is a little more unless the half can be halved again or has small prime factors.
 fn about_half(side: usize) -> usize {
     match half(side) {
         Some(half) if half.is_multiple_of(2) || has_small_factors(half, GREATEST_FACTOR) => half,
@@ -80,17 +88,21 @@ fn about_half(side: usize) -> usize {
     }
 }
 
-/// Heights that are looked at for the quartile, at most.
+/// Maximum number of heights that the quartile is computed from.
 const SAMPLES: usize = 1 << 14;
 
-/// How many times farther below the highest point than the lower quartile the floor is.
+/// Ratio of the depth of the floor to the depth of the lower quartile.
+///
+/// Depths are below the highest point.
 const FLOOR_DEPTH: f64 = 5.0;
 
-/// What only pits are below: interpolation next to a deep pit overshoots, and a summit that is not there would carry
-/// the whole load of a coarse grid. On a plateau, whose quartile is its top, nothing is.
+/// The height that only pits are below.
+///
+/// Interpolation next to a deep pit overshoots. A summit that does not exist would then carry the whole load of a
+/// coarse grid. On a plateau, whose quartile is its top, no height is below the floor.
 fn floor(heights: &Field) -> f64 {
     let values = heights.values();
-    // An odd step, which does not stay in one column of a grid whose sides are even.
+    // An odd step does not stay in one column of a grid with even sides.
     let step = (values.len() / SAMPLES) | 1;
     let mut samples: Vec<f64> = values.iter().copied().step_by(step).collect();
     let highest = heights.max();
@@ -100,9 +112,10 @@ fn floor(heights: &Field) -> f64 {
     if depth > 0.0 { highest - FLOOR_DEPTH * depth } else { f64::NEG_INFINITY }
 }
 
-/// The heights at the centres of a coarser grid of the same cell. Six neighbours keep 99.9 % of a wave of eight
-/// elements at the midpoint of two centres, which is where the centre of an element twice as large lies; averaging
-/// would keep 92 %.
+/// The heights at the centres of a coarser grid of the same cell.
+///
+/// The centre of an element twice as large lies at the midpoint of two centres. There, six neighbours keep 99.9 % of a
+/// wave of eight elements. Averaging would keep 92 %.
 fn sample(finer: &Field, grid: Grid, (floor, boundary): (f64, Boundary)) -> Field {
     let heights =
         interpolate::<6>(finer.values(), ([finer.grid(), grid], boundary), |height| height.max(floor), |height| height);
@@ -126,7 +139,7 @@ mod tests {
         assert_eq!(coarse.len(), 1, "80 x 64 is too small to halve again");
         let exact = Field::from_fn(grid, wave);
         let worst = exact.values().iter().zip(coarse[0].values()).map(|(e, c)| (e - c).abs()).fold(0.0, f64::max);
-        // The interpolation error of a wave of 32 elements, (20/4096)·(2π/32)^6 to leading order, twice.
+        // Twice the interpolation error of a wave of 32 elements, (20/4096)·(2π/32)^6 to leading order.
         assert!(worst < 1e-6, "off by {worst:e}");
     }
 
@@ -179,7 +192,7 @@ mod tests {
         }
     }
 
-    /// A ramp does not meet itself around the border.
+    /// A ramp is not continuous across the border.
     #[test]
     fn a_patch_is_coarsened_without_what_is_across_its_borders() {
         let ramp = |DVec2 { x, y }: DVec2| x - 2.0 * y + 0.1 * (x * y).powi(2);

@@ -1,4 +1,6 @@
-//! The contact problem on uniform grids: nested grids, each solved by preconditioned projected conjugate gradients.
+//! The contact problem on nested uniform grids.
+//!
+//! Preconditioned projected conjugate gradients solve each grid.
 
 mod full_contact;
 mod interpolation;
@@ -18,21 +20,23 @@ use crate::solution::GridSolution;
 use crate::support::Support;
 use crate::{IterationParams, ProblemError};
 
-/// Bytes for each element that the uniform method is assumed to need at its peak, heights included; 58 to 60 were
-/// measured at 2048² and 4096², generated heights.
+/// Bytes for each element that the uniform method needs at its peak, heights included.
+///
+/// 58 to 60 were measured at 2048² and 4096² with generated heights.
 pub const UNIFORM_BYTES_PER_ELEMENT: u64 = 80;
 
-/// The same for heights with free borders, whose transforms are padded to twice as many elements along both axes, or a
-/// few more.
+/// Bytes for each element of heights with free borders.
+///
+/// Their transforms are padded to twice as many elements along both axes, or a few more.
 pub(crate) const FREE_BYTES_PER_ELEMENT: u64 = 180;
 
 /// Solves the contact problem on the grid of `heights` (in λ, any mean).
 ///
 /// Full contact of a periodic cell is returned exactly and without iteration. Otherwise coarser grids, each with about
-/// half the elements per side, prepare the start on the next; on each the pressure is found by conjugate gradients
-/// preconditioned by the inverse symbol between two extensions of residuals (see `docs/uniform-solver.md` and, for
-/// measurements, `docs/measurements-uniform.md`). The certificate is computed from a fresh application of L, in double
-/// precision, on the pressure that is returned.
+/// half the elements per side, prepare the start on the next. On each grid, preconditioned conjugate gradients find the
+/// pressure. The preconditioner is the inverse symbol between two extensions of residuals (see
+/// `docs/uniform-solver.md`, and `docs/measurements-uniform.md` for measurements). The certificate comes from a fresh
+/// application of L, in double precision, on the returned pressure.
 ///
 /// The result is bitwise the same for any number of threads.
 ///

@@ -1,4 +1,6 @@
-//! From the coarsest of nested grids to the finest, each of which prepares the start on the next.
+//! A solve from the coarsest of nested grids to the finest.
+//!
+//! Each grid prepares the start on the next.
 
 use rayon::prelude::*;
 use rc_core::{Event, Field, Kernel, Observer};
@@ -10,15 +12,17 @@ use crate::descent::{Descent, DescentObserver, Goal, Outcome, Start, uniform_ope
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues};
 
-/// Grids with fewer elements per side cost nothing, so no coarser ones prepare them.
+/// Minimum side of the coarsest grid. Smaller grids cost nothing without preparation.
 pub(super) const SMALLEST_SIDE: usize = 64;
 
-/// Nested grids: what their levels share.
+/// The data that the levels of nested grids share.
 pub(crate) struct NestedGrids<'a> {
     pub(crate) kernel: &'a dyn Kernel,
     pub(crate) problem: &'a Problem,
     pub(crate) params: IterationParams,
-    /// Levels that others will add above the last grid; without any, it is solved to the tolerance and certified.
+    /// Number of levels that others will add above the last grid.
+    ///
+    /// If it is 0, the last grid is solved to the tolerance and certified.
     pub(crate) n_above: usize,
     pub(crate) observer: &'a dyn Observer,
 }
@@ -29,17 +33,21 @@ pub(crate) struct FinestGrid<'a> {
     pub(crate) outcome: Outcome,
     /// The work on all grids, coarsest first.
     pub(crate) levels: Vec<LevelInfo>,
-    /// What the level below the finest found, if that halves it; the last grid when there are others above it.
+    /// Results of the level below the finest, if that level halves it.
+    ///
+    /// When there are levels above the last grid, these are the results of the last grid.
     pub(crate) coarser: Option<LevelValues>,
 }
 
 impl<'a> NestedGrids<'a> {
-    /// Solves on coarser grids and then on that of `heights`.
+    /// Solves on coarser grids, and then on the grid of `heights`.
     pub(crate) fn solve(&self, heights: &'a Field) -> FinestGrid<'a> {
         self.solve_from(&nest_without_pits(heights, SMALLEST_SIDE, self.problem.support.boundary), heights)
     }
 
-    /// Solves on coarser grids with these heights, finest first, and then on that of `heights`.
+    /// Solves on the coarser grids, and then on the grid of `heights`.
+    ///
+    /// `coarser` are the heights on the coarser grids, finest first.
     pub(super) fn solve_from(&self, coarser: &[Field], heights: &'a Field) -> FinestGrid<'a> {
         let n_levels = coarser.len() + 1 + self.n_above;
         let finer = coarser.iter().rev().skip(1).chain([heights]).map(Field::grid);
@@ -55,7 +63,9 @@ impl<'a> NestedGrids<'a> {
         FinestGrid { descent, outcome, levels, coarser }
     }
 
-    /// What a grid with `above` levels above it found; nobody asks when there is more than one.
+    /// The results of a grid with `above` levels above it.
+    ///
+    /// Only the level before the last has results, because only the last one compares with them.
     fn values(&self, descent: &Descent<'_>, outcome: &Outcome, above: usize) -> Option<LevelValues> {
         (above == 1).then(|| LevelValues {
             rms_pressure: rms(descent.pressure()),
@@ -95,7 +105,7 @@ impl<'a> NestedGrids<'a> {
     }
 }
 
-/// Root mean square, summed in pieces so that it is the same for any number of threads.
+/// Root mean square, summed in pieces. It is the same for any number of threads.
 fn rms(values: &[f64]) -> f64 {
     let squares: Vec<f64> = values.par_chunks(4096).map(|chunk| chunk.iter().map(|v| v * v).sum()).collect();
     (squares.iter().sum::<f64>() / values.len() as f64).sqrt()

@@ -1,8 +1,8 @@
 //! From the pressure on one grid to a start on the next finer one.
 //!
 //! Interpolating the pressure itself spreads every contact by half a coarse element, which costs the next level six
-//! iterations. At an edge p = c √s inside and g = (4c/3) s^{3/2} outside, with s the distance to it and the same c
-//! (`E* = 1`), so the edge function φ = p² inside, -c² (3g/4c)^{2/3} outside is linear in s across the edge, and
+//! iterations. At the distance s from an edge, p = c √s inside and g = (4c/3) s^{3/2} outside, with the same c (`E* =
+//! 1`). The edge function is φ = p² inside and φ = -c² (3g/4c)^{2/3} outside. It is linear in s across the edge, so
 //! bilinear interpolation puts the edge where it belongs.
 
 use rayon::prelude::*;
@@ -22,7 +22,7 @@ fn pressure_from(function: &[f64], grids: ([Grid; 2], Boundary)) -> Vec<f64> {
     interpolate::<2>(function, grids, |value| value, |value| value.max(0.0).sqrt())
 }
 
-/// φ at the coarse centres.
+/// The edge function φ at the coarse centres.
 pub(crate) fn edge_function(coarse: &Descent<'_>) -> Vec<f64> {
     let (nx, ny) = (coarse.grid().nx(), coarse.grid().ny());
     let (pressure, gap) = (coarse.pressure(), coarse.gap());
@@ -46,12 +46,12 @@ pub(crate) fn edge_function(coarse: &Descent<'_>) -> Vec<f64> {
     function
 }
 
-/// Who is beside whom.
+/// The neighbours of elements at this boundary.
 #[derive(Clone, Copy)]
 struct Neighbours(Boundary);
 
 impl Neighbours {
-    /// The element and those on both sides of it; beyond a free border it is the element itself.
+    /// The element and its two neighbours. Beyond a free border it is its own neighbour.
     fn of(self, i: usize, n: usize) -> [usize; 3] {
         match self.0 {
             Boundary::Periodic => [(i + n - 1) % n, i, (i + 1) % n],
@@ -60,8 +60,10 @@ impl Neighbours {
     }
 }
 
-/// φ of an element out of contact with these pressures around it. c² is estimated from its neighbours in contact, whose
-/// centres are about 0.7 elements inside the edge; without any the value has no influence.
+/// The edge function φ of an element out of contact, with the pressures `near` around it.
+///
+/// c² is estimated from its neighbours in contact, whose centres are about 0.7 elements inside the edge. Without such
+/// neighbours the value has no influence.
 pub(crate) fn edge_function_outside<'a>(near: impl Iterator<Item = &'a f64>, gap: f64, spacing: f64) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for p in near {
@@ -78,19 +80,21 @@ pub(crate) fn edge_function_outside<'a>(near: impl Iterator<Item = &'a f64>, gap
     -c_squared * distance.min(3.0 * spacing)
 }
 
-/// Typical distance to the edge of an element in contact beside one that is not, in elements.
+/// Typical distance to the edge of an element in contact beside a free one.
+///
+/// The unit is an element.
 const EDGE_DISTANCE: f64 = 0.7;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// φ is linear across the straight edges of a strip, so p² on the fine elements is too, and the edges stay where
-    /// they are.
+    /// φ is linear across the straight edges of a strip. So p² on the fine elements is linear too, and the edges stay
+    /// where they are.
     #[test]
     fn edges_of_a_strip_stay_where_they_are() {
         let (nx, ny) = (16, 8);
-        // A strip of width 6.6 along y, then one along x; in coarse elements from the middle.
+        // A strip of width 6.6 along y, then one along x. Places are in coarse elements from the middle.
         let inside = |at: f64, n: usize| 3.3 - (at - 0.5 * n as f64).abs();
         for along_x in [false, true] {
             let linear = |x: f64, y: f64| if along_x { inside(y, ny) } else { inside(x, nx) };
@@ -106,7 +110,7 @@ mod tests {
             });
             for ([x, y], p) in all {
                 let (squared, from_ridge) = (linear(x, y).max(0.0), 3.3 - linear(x, y));
-                // The ridge in the middle, and the valley across the seam, are blunted.
+                // Interpolation blunts the ridge in the middle and the valley across the seam.
                 let valley = if along_x { 0.5 * ny as f64 } else { 0.5 * nx as f64 };
                 if (1.0..valley - 1.0).contains(&from_ridge) {
                     assert!((p * p - squared).abs() < 1e-12, "({x}, {y}): p² = {} for {squared}", p * p);

@@ -1,4 +1,6 @@
-//! The error bar of the contact area against what moving the grid by parts of an element does to it.
+//! The error bar of the contact area against its change when the grid moves.
+//!
+//! The grid moves by parts of an element.
 
 use std::f64::consts::TAU;
 
@@ -22,7 +24,7 @@ fn rough(seed: usize, side: usize, shift: DVec2) -> Field {
     Field::from_fn(Grid::square(side).expect("a grid"), |at| height(at + shift))
 }
 
-/// A bar that holds in 95 % of scenes is two standard deviations: errors are half of it in the rms.
+/// A bar that holds in 95 % of scenes is two standard deviations. The rms of the errors is half of it.
 #[test]
 fn errors_of_the_contact_area_are_about_half_of_their_bars() {
     let params = SolveParams::default().by(Method::Uniform);
@@ -42,7 +44,9 @@ fn errors_of_the_contact_area_are_about_half_of_their_bars() {
     assert!((0.2..0.75).contains(&rms), "the rms error is {rms} of the bar");
 }
 
-/// Σ p² misses a part at the edges; the corrected rms pressure is closer to that of small elements.
+/// Σ p² misses a part at the edges.
+///
+/// The corrected rms pressure is closer to that of small elements.
 #[test]
 fn the_corrected_rms_pressure_is_closer_to_that_of_a_fine_grid() {
     let params = SolveParams::default().by(Method::Uniform);

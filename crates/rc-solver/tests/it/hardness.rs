@@ -1,4 +1,6 @@
-//! Pressures between zero and a hardness: against elimination, a direct certificate, and limits that are known.
+//! Pressures between zero and a hardness.
+//!
+//! They are compared with elimination, a direct certificate, and known limits.
 
 use std::f64::consts::TAU;
 
@@ -37,9 +39,10 @@ fn rough(seed: usize, side: usize, n: i32) -> Field {
     Field::from_fn(Grid::square(side).expect("a grid"), height)
 }
 
-/// What a hardness must not be broken by, from nothing but the pressure: greatest overlap of elements that could press
-/// more, and greatest gap of those that could press less, from the mean gap of those between the bounds, relative to
-/// the height range.
+/// Violations of the conditions of a hardness, from only the pressure.
+///
+/// The first is the maximum overlap of elements that could press more. The second is the maximum gap of elements that
+/// could press less. Both are relative to the mean gap of elements between the bounds, in units of the height range.
 fn violations(heights: &Field, pressure: &Field, hardness: f64) -> [f64; 2] {
     let mut v = vec![0.0; heights.grid().len()];
     DirectSum::new(heights.grid(), &Love).apply(pressure.values(), &mut v, &mut []);
@@ -104,7 +107,7 @@ fn pressures_are_those_of_elimination() {
                     let error = differences.fold(0.0, f64::max) / hardness;
                     assert!(error < 1e-6, "{what}, {control:?}: the pressure is off by {error:e} of the hardness");
                     let penetration = found.info().penetration / (depth * range);
-                    // Where every element is at a bound, a load has penetrations in a range.
+                    // If every element is at a bound, a load has a range of penetrations.
                     let is_unique = exact.values().iter().any(|p| *p > 0.0 && *p < hardness);
                     assert!(
                         !is_unique || (penetration - 1.0).abs() < 1e-7,
@@ -258,8 +261,9 @@ fn a_flat_surface_bears_what_is_below_its_hardness() {
     assert!(solution.observables().plastic.expect("hard").fraction <= 0.0);
 }
 
-/// Heights, load and hardness times any factor are one problem. Another program does not converge from a load of 0.07
-/// E* on.
+/// A contact is the same problem if heights, load and hardness are multiplied by one factor.
+///
+/// Another program does not converge from a load of 0.07 E* on.
 #[test]
 fn pressures_of_the_order_of_e_star_take_no_more_iterations() {
     let gentle = rough(5, 128, 8);

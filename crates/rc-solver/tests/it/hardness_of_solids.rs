@@ -1,4 +1,6 @@
-//! A hardness on layers and on patches with free borders: against elimination, and where everything is plastic.
+//! A hardness on layers and on patches with free borders.
+//!
+//! It is compared with elimination, and where everything is plastic.
 
 use rc_core::{Field, Grid, Kernel, Silent};
 use rc_kernel::{FreeLove, Layer, LoveLayer, SpectralLayer};
@@ -42,7 +44,7 @@ fn pressures_are_those_of_elimination() {
                     };
                     let is_unique = exact.values().iter().any(|p| *p > 0.0 && *p < hardness);
                     let mut controls = vec![Control::Penetration(depth)];
-                    // At the hardness everywhere there is no load that is below it.
+                    // If all pressures are the hardness, the load is not below it.
                     controls.extend((exact.min() < hardness).then(|| Control::MeanPressure(exact.mean())));
                     for control in controls {
                         let found = solve(&heights, kernel, control, hardness).expect(&what);
@@ -53,7 +55,7 @@ fn pressures_are_those_of_elimination() {
                         assert!(error < 1e-6, "{what}, {control:?}: off by {error:e} of the hardness");
                         let penetration = found.info().penetration / depth;
                         assert!(!is_unique || (penetration - 1.0).abs() < 1e-7, "{what}, {control:?}: {penetration}");
-                        // What is open, less what flow has removed, is the elastic mean gap.
+                        // The mean of the open gap, minus the overlap that flow has removed, is the elastic mean gap.
                         let mean_gap = found.observables().mean_gap;
                         assert!((mean_gap - found.gap().mean()).abs() < 1e-7 * range, "{what}: {mean_gap}");
                     }
@@ -77,8 +79,9 @@ fn a_hardness_that_nothing_reaches_changes_no_bit() {
     }
 }
 
-/// A flat punch: pressures without bound at its border become a plastic rim, and far below the surface all of it is
-/// plastic.
+/// A flat punch: pressures without bound at its border become a plastic rim.
+///
+/// Far below the surface all of it is plastic.
 #[test]
 fn the_border_of_a_flat_punch_is_plastic() {
     let heights = Field::zeros(Grid::square(64).expect("a grid"));

@@ -1,4 +1,4 @@
-//! The methods against slow truth and against themselves, in one binary.
+//! The methods against slow references and against themselves, in one binary.
 
 mod error_bars;
 mod gauss_seidel;

@@ -1,4 +1,4 @@
-//! What an observer sees of a running solve, by every method.
+//! The pressures that an observer sees during a solve, by every method.
 
 use std::sync::Mutex;
 
@@ -64,7 +64,7 @@ fn a_watched_solve_finds_the_same_bits_and_shows_them_at_the_end() {
         let last = seen.last().expect("at least one");
         let pairs = last.values().iter().zip(found.values());
         let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        // What comes after the last look is a fresh gap and the last digits of the load.
+        // After the last look there is only a fresh gap and the last digits of the load.
         assert!(worst <= 1e-3 * found.max(), "{name}: off by {:e} of the peak", worst / found.max());
     }
 }
@@ -88,6 +88,6 @@ fn elements_of_several_sizes_are_shown_on_the_grid() {
     let seen = watching.seen.into_inner().expect("one thread");
     let last = seen.last().expect("at least one");
     assert_eq!(last.grid(), solution.grid());
-    // The mean over elements of different sizes is the load; its last digits are set after the last look.
+    // The mean over elements of different sizes is the load. Its last digits are set after the last look.
     assert!((last.mean() / MEAN_PRESSURE - 1.0).abs() < 1e-6, "mean {:e}", last.mean());
 }

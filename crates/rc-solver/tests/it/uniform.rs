@@ -1,4 +1,4 @@
-//! The uniform solver against slow truth and against itself.
+//! The uniform solver against slow references and against itself.
 
 use rc_core::testing::quasi_random;
 use rc_core::{DVec2, Field, Grid, Kernel, Operator, Silent};
@@ -22,7 +22,7 @@ fn solve(
     Ok(problem.solve(&params, &Silent)?.into_owned())
 }
 
-/// The certificate, recomputed by direct summation from nothing but the pressure.
+/// The certificate, recomputed by direct summation from only the pressure.
 fn recomputed(heights: &Field, kernel: &dyn Kernel, pressure: &Field, mean_pressure: f64) -> Certificate {
     let n = heights.grid().len();
     let mut v = vec![0.0; n];
@@ -80,7 +80,7 @@ fn penetration_control_inverts_pressure_control() {
         let penetration = Control::Penetration(by_pressure.info().penetration);
         let by_penetration = solve(&heights, &Spectral, penetration, 1e-10).expect("solvable");
         let stiffness = by_pressure.stiffness();
-        // Both errors are penetrations below 1e-10 of the range 0.02; the stiffness turns them into pressures.
+        // Both errors are penetrations below 1e-10 of the range 0.02. The stiffness turns them into pressures.
         let allowed = 4e-12 * stiffness;
         let difference = (by_penetration.info().mean_pressure - mean_pressure).abs();
         assert!(difference <= allowed, "at {mean_pressure}: differs by {difference:e}, allowed {allowed:e}");
@@ -121,7 +121,7 @@ fn load_just_below_full_contact_leaves_a_gap_and_just_above_none() {
     assert!(below.gap().max() > 0.0 && below.pressure().min() == 0.0, "a gap opens in the deepest valley");
 }
 
-/// Most of the cell in contact: each step is clipped, and what joins the contact presses at once.
+/// Most of the cell is in contact. Each step is clipped, and elements that join the contact press at once.
 #[test]
 fn heavy_contact_takes_few_iterations() {
     let heights = bumps(256, 256);
@@ -152,7 +152,7 @@ fn stiffness_is_the_slope_of_load_over_penetration() {
         let slope =
             (high.info().mean_pressure - low.info().mean_pressure) / (high.info().penetration - low.info().penetration);
         let stiffness = middle.stiffness();
-        // The contact set changes by whole elements between the two loads: a few per mille of the slope.
+        // The contact changes by whole elements between the two loads, which is a few per mille of the slope.
         assert!((stiffness / slope - 1.0).abs() < 5e-3, "at {mean_pressure}: {stiffness} against {slope}");
         let work = high.info().elastic_energy - low.info().elastic_energy;
         let expected = mean_pressure * (high.info().penetration - low.info().penetration);
@@ -160,8 +160,9 @@ fn stiffness_is_the_slope_of_load_over_penetration() {
     }
 }
 
-/// A cell whose copies make a square has the solution of that square: with square elements and with others, on one grid
-/// and on nested ones, by load and by penetration.
+/// A cell whose copies make a square has the solution of that square.
+///
+/// Elements are squares or not, on one grid or on nested ones, by load and by penetration.
 #[test]
 fn a_rectangular_cell_is_a_part_of_the_square_of_its_copies() {
     for (nx, ny, copies) in [(48, 24, 2), (40, 32, 2), (192, 64, 3), (128, 128, 2)] {
@@ -224,7 +225,7 @@ fn white_noise_is_solved_and_scales_exactly() {
     let noise =
         |scale: f64| Field::new(grid, (0..grid.len()).map(|i| scale * quasi_random(i)).collect()).expect("field");
     let solution = solve(&noise(1.0), &Love, Control::MeanPressure(1.0), 1e-8).expect("solvable");
-    // The problem is linear: powers of two change nothing but exponents, at any scale.
+    // The problem is linear. Powers of two change only exponents, at any scale.
     let scale = 2.0_f64.powi(-120);
     let scaled = solve(&noise(scale), &Love, Control::MeanPressure(scale), 1e-8).expect("solvable");
     for (a, b) in solution.pressure().values().iter().zip(scaled.pressure().values()) {
@@ -285,7 +286,7 @@ fn bad_input_is_refused_with_its_value() {
     broken.values_mut()[16 * 3 + 5] = f64::NAN;
     let error = solve(&broken, &Love, Control::MeanPressure(1e-3), 1e-6).expect_err("NaN");
     assert!(matches!(error, SolveError::Problem(ProblemError::Height { ix: 5, iy: 3, .. })), "{error}");
-    // Squares of what such heights lead to underflow, or their range is not a number.
+    // Squares of pressures from such heights underflow, or the range is not a number.
     for size in [1e-305, 1.7e308] {
         let scaled = Field::from_fn(heights.grid(), |at| if at.x < 0.5 { size } else { -size });
         let error = solve(&scaled, &Love, Control::MeanPressure(1e-3), 1e-6).expect_err("a size out of range");

@@ -1,7 +1,7 @@
 //! Proven upper bounds of the heights in squares of the cell.
 //!
-//! For a map they are its maxima. For a band-limited surface each cell of side 2d of a grid is bounded by the expansion
-//! about its centre,
+//! For a map they are its maxima. For a band-limited surface, each cell of side 2d of a grid is bounded by the
+//! expansion about its centre,
 //!
 //! ```text
 //! h(c + t) ≤ h + max_|t|≤d (hx t + hxx t²/2) + max_|t|≤d (hy t + hyy t²/2) + |hxy| d² + R,
@@ -9,11 +9,13 @@
 //! ```
 //!
 //! Third derivatives follow from second ones by Bernstein's inequality: `max |f'| ≤ n max |f|` for a trigonometric
-//! polynomial of degree n in an angle. And the maximum of second derivatives follows from their values at the centres,
-//! d from the nearest of which no point is farther in either direction: where |f| has its maximum F, M. Riesz's lemma
-//! says `|f| ≥ F cos(n t)` at an angle t ≤ π/n from it (Jahresber. Dtsch. Math.-Ver. 23 (1914) 354-368), so with M
-//! centres in a period some centre has |f| ≥ F cos(πn/M) (Ehlich, Zeller, Math. Z. 86 (1964) 41-44), and in two
-//! directions, one after the other, |f| ≥ F cos²(πn/M).
+//! polynomial of degree n in an angle.
+//!
+//! The maximum of second derivatives follows from their values at the centres. In either direction, no point is farther
+//! than d from the nearest centre. Let |f| have its maximum F at some angle. M. Riesz's lemma says `|f| ≥ F cos(n t)`
+//! at an angle t ≤ π/n from there (Jahresber. Dtsch. Math.-Ver. 23 (1914) 354-368). So with M centres in a period, some
+//! centre has |f| ≥ F cos(πn/M) (Ehlich, Zeller, Math. Z. 86 (1964) 41-44). In two directions, one after the other,
+//! this gives |f| ≥ F cos²(πn/M).
 
 use std::f64::consts::{PI, TAU};
 
@@ -27,15 +29,19 @@ use super::stencil::{MAX_WIDTH, Stencils};
 use super::window::{Derivative, ERRORS};
 use crate::problem::HeightStatistics;
 
-/// The remainder R that is small enough, in units of the rms height: heights differ by more than that in a cell of most
-/// surfaces. Where it is larger, cells are quartered, which makes it a tenth or so and costs four times as much.
+/// Remainder R that is small enough, in units of the rms height.
+///
+/// On most surfaces, heights differ by more than that in a cell. Where R is larger, cells are quartered. This reduces R
+/// to about a tenth and costs four times as much.
 const SMALL_REMAINDER: f64 = 0.01;
 
-/// How often cells are quartered at most.
+/// Maximum number of times that cells are quartered.
 const MAX_REFINEMENT: u32 = 1;
 
-/// Upper bounds `offset + (remainder + scale · b)` of the heights (or of their negatives), for the b of a pyramid. The
-/// brackets matter: what is added to a large offset is rounded only as heights themselves are.
+/// Upper bounds of the heights (or of their negatives).
+///
+/// They are `offset + (remainder + scale · b)` for the bounds b of a pyramid. The brackets matter: an addition to a
+/// large offset is rounded only as heights themselves are.
 #[derive(Clone)]
 pub(super) struct Bounds {
     pyramid: MaxPyramid,
@@ -65,8 +71,9 @@ impl Bounds {
         }
     }
 
-    /// Bounds of a band-limited surface everywhere, and of its negative, by cell of its coefficients; `samples` are
-    /// those of any of its samples.
+    /// Bounds of a band-limited surface everywhere, and of its negative, by cell of its coefficients.
+    ///
+    /// `samples` are the statistics of any samples of the surface.
     pub(super) fn of_surface(surface: &Interpolation, samples: &HeightStatistics) -> [Self; 2] {
         let scale = scale(samples);
         let side = surface.side();
@@ -84,7 +91,9 @@ impl Bounds {
         })
     }
 
-    /// Upper bound of the heights in the block at `place`, of `blocks` equal ones along both sides of the cell.
+    /// Upper bound of the heights in the block at `place`.
+    ///
+    /// There are `blocks` equal blocks along both sides of the cell.
     ///
     /// # Panics
     /// When the block is outside the cell.
@@ -92,7 +101,7 @@ impl Bounds {
         self.height(self.pyramid.max(blocks, place))
     }
 
-    /// The same of a tile of a map.
+    /// Upper bound of the heights in a tile of a map.
     ///
     /// # Panics
     /// When the tile is outside the map.
@@ -100,13 +109,14 @@ impl Bounds {
         self.height(self.pyramid.leaf(place))
     }
 
-    /// Upper bound of |∂²h/∂x²| and |∂²h/∂y²| everywhere; infinite for a map, of which nothing is known between
-    /// elements.
+    /// Upper bound of |∂²h/∂x²| and |∂²h/∂y²| everywhere.
+    ///
+    /// It is infinite for a map, whose heights between elements are not known.
     pub(super) fn curvature(&self) -> f64 {
         self.curvature
     }
 
-    /// Leaves along both sides.
+    /// Number of leaves along both sides.
     pub(super) fn sides(&self) -> [usize; 2] {
         self.pyramid.sides()
     }
@@ -121,24 +131,29 @@ impl Bounds {
     }
 }
 
-/// The unit in which bounds are stored: the largest departure from the mean, or 1 for a flat surface.
+/// The unit in which bounds are stored.
+///
+/// It is the largest departure from the mean, or 1 for a flat surface.
 fn scale(extremes: &HeightStatistics) -> f64 {
     let scale = (extremes.greatest - extremes.mean).max(extremes.mean - extremes.least);
     if scale > 0.0 { scale } else { 1.0 }
 }
 
-/// The next single-precision number above, always a larger one: what double precision has rounded before is covered
-/// too.
+/// The next single-precision number above `value`.
+///
+/// It is always larger, which also covers earlier rounding in double precision.
 fn round_up(value: f64) -> f32 {
     (value as f32).next_up()
 }
 
-/// Second-order expansions of a surface about the centres of a grid, in units of its coefficient cells.
+/// Second-order expansions of a surface about the centres of a grid.
+///
+/// The unit of length is a coefficient cell.
 struct Expansions<'a> {
     surface: &'a Interpolation,
-    /// Expansions in a coefficient cell, per side, as a power of two.
+    /// Number of expansions per side of a coefficient cell, as a power of two.
     refinement: u32,
-    /// By order of the derivative.
+    /// Stencils by order of the derivative.
     stencils: [Stencils; 3],
     /// Half the side of the squares that are bounded, in coefficient cells.
     half: f64,
@@ -150,8 +165,10 @@ impl<'a> Expansions<'a> {
         Self { surface, refinement, stencils, half: 0.5 / f64::from(1 << refinement) }
     }
 
-    /// Fills the bounds of coefficient cells, of the heights and of their negatives, in units of `scale`; returns the
-    /// remainder to be added to them, and the bound of second derivatives along the axes.
+    /// Fills the bounds of coefficient cells, of the heights and of their negatives.
+    ///
+    /// They are in units of `scale`. Returns the remainder to add to them, and the bound of second derivatives along
+    /// the axes.
     fn bound(&self, scale: f64, [above, below]: &mut [Vec<f32>; 2]) -> (f64, f64) {
         let len = (TILE >> self.refinement) * self.surface.side();
         let rows = above.par_chunks_mut(len).zip(below.par_chunks_mut(len)).enumerate();
@@ -161,8 +178,9 @@ impl<'a> Expansions<'a> {
         self.remainder([greatest(0), greatest(1), greatest(2)])
     }
 
-    /// The bounds in a row of tiles, for as many rows of cells as the slices hold. Returns the
-    /// greatest |hxx|, |hxy|, |hyy|.
+    /// Fills the bounds in a row of tiles, as far as the slices go.
+    ///
+    /// They hold a number of rows of cells. Returns the maxima of |hxx|, |hxy|, |hyy|.
     fn bound_rows(&self, ty: usize, scale: f64, above: &mut [f32], below: &mut [f32]) -> [f64; 3] {
         let (side, cells) = (self.surface.side(), TILE >> self.refinement);
         let mut greatest = [0.0; 3];
@@ -182,8 +200,9 @@ impl<'a> Expansions<'a> {
         greatest
     }
 
-    /// Raises cells to the bounds of the squares they consist of. There are fewer cells than squares where the last
-    /// tile is larger than what is left of the row.
+    /// Raises cells to the bounds of the squares that they consist of.
+    ///
+    /// If the last tile is larger than the rest of the row, there are fewer cells than squares.
     fn raise(&self, cells: &mut [f32], bounds: &[f64; TILE], scale: f64) {
         for (cell, bounds) in cells.iter_mut().zip(bounds.chunks_exact(1 << self.refinement)) {
             let greatest = bounds.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -208,12 +227,14 @@ impl<'a> Expansions<'a> {
         }
     }
 
-    /// R, from the greatest |hxx|, |hxy| and |hyy| at the centres, and the errors of interpolation: of the expansions,
-    /// and of the tiles that are to be bounded. And the greatest of |hxx| and |hyy| anywhere, in 1/λ.
+    /// The remainder R, and the maximum of |hxx| and |hyy| anywhere, in 1/λ.
+    ///
+    /// They follow from the maxima of |hxx|, |hxy| and |hyy| at the centres. R includes the errors of interpolation, of
+    /// the expansions and of the tiles that are to be bounded.
     fn remainder(&self, curvatures: [f64; 3]) -> (f64, f64) {
         let surface = self.surface;
-        // Angle by which the shortest wave advances in a coefficient cell: a derivative multiplies a wave by this at
-        // most.
+        // Angle by which the shortest wave advances in a coefficient cell. A derivative multiplies a wave by at most
+        // this angle.
         let angle = TAU * surface.band_limit() as f64 / surface.side() as f64;
         let [e0, e1, e2] = ERRORS;
         let curvature_error = (e2 + e0 * angle * angle).max(2.0 * angle * e1) * surface.amplitude();
@@ -228,7 +249,9 @@ impl<'a> Expansions<'a> {
     }
 }
 
-/// Heights less their mean and their derivatives, per coefficient cell, at one row of the centres of a tile.
+/// Heights minus their mean, and their derivatives, at one row of the centres of a tile.
+///
+/// Derivatives are per coefficient cell.
 struct RowOfExpansions {
     h: [f64; TILE],
     x: [f64; TILE],
@@ -239,7 +262,9 @@ struct RowOfExpansions {
 }
 
 impl RowOfExpansions {
-    /// Upper bounds of `sign` times the second-order expansions, over squares of side 2d about their centres.
+    /// Upper bounds of `sign` times the second-order expansions.
+    ///
+    /// They are for squares of side 2d about the centres.
     fn bounds(&self, sign: f64, d: f64) -> [f64; TILE] {
         std::array::from_fn(|i| {
             let along_x = greatest_rise(self.x[i], sign * self.xx[i], d);
@@ -248,17 +273,17 @@ impl RowOfExpansions {
         })
     }
 
-    /// The greatest |hxx|, |hxy| and |hyy| of these and others.
+    /// The maxima of |hxx|, |hxy| and |hyy| of these and `others`.
     fn greatest_curvatures(&self, others: [f64; 3]) -> [f64; 3] {
         let mut values = [&self.xx, &self.xy, &self.yy].into_iter();
         others.map(|other| values.next().into_iter().flatten().fold(other, |max, value| max.max(value.abs())))
     }
 }
 
-/// Greatest value of `slope · t + curvature · t²/2` over |t| ≤ d.
+/// Maximum of `slope · t + curvature · t²/2` over |t| ≤ d.
 fn greatest_rise(slope: f64, curvature: f64, d: f64) -> f64 {
     let slope = slope.abs();
-    // Beyond its summit a parabola falls.
+    // A parabola falls beyond its summit.
     let t = if slope < -curvature * d { slope / -curvature } else { d };
     t * (slope + 0.5 * curvature * t)
 }

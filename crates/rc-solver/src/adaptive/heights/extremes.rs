@@ -1,12 +1,13 @@
-//! The greatest height, without evaluating them all.
+//! The maximum height, without evaluating all heights.
 
 use super::TILE;
 use super::bounds::Bounds;
 
-/// The greatest value at the centres of `tiles_per_side`² tiles, evaluating only tiles that may hold it: those with a
-/// leaf of `bounds` above the greatest value found so far. `tile(tx, ty)` is the greatest value of a tile.
+/// The maximum value at the centres of `tiles_per_side`² tiles.
 ///
-/// That is a few leaves of a rough surface; of a wavy one with a level ridge, all leaves along it.
+/// `tile(tx, ty)` is the maximum value of a tile. Only tiles that may hold the maximum are evaluated: those with a leaf
+/// of `bounds` above the maximum found so far. These are a few leaves of a rough surface. On a wavy surface with a
+/// level ridge, they are all leaves along the ridge.
 pub(super) fn greatest(bounds: &Bounds, tiles_per_side: usize, tile: impl Fn(usize, usize) -> f64) -> f64 {
     let [side, _] = bounds.sides();
     let of_leaf = |leaf: usize| {
@@ -27,7 +28,7 @@ pub(super) fn greatest(bounds: &Bounds, tiles_per_side: usize, tile: impl Fn(usi
     best
 }
 
-/// Greatest of the heights of a tile.
+/// Maximum of the heights of a tile.
 pub(super) fn of_tile(heights: &[f64; TILE * TILE]) -> f64 {
     heights.iter().copied().fold(f64::NEG_INFINITY, f64::max)
 }

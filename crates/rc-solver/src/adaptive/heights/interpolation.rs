@@ -1,4 +1,6 @@
-//! Heights of a band-limited surface at the centres of any fine tile, from one grid that resolves it.
+//! Heights of a band-limited surface at the centres of any fine tile.
+//!
+//! They are interpolated from one grid that resolves the surface.
 
 use rayon::prelude::*;
 use rc_core::Field;
@@ -8,39 +10,45 @@ use super::TILE;
 use super::stencil::{MAX_WIDTH, Stencil, Stencils};
 use super::window::{Derivative, ERRORS, HIGHEST_FREQUENCY, TAPS, transform};
 
-/// Coefficients before the first and after the last of a row (and rows before and after), periodic copies, so that no
-/// tile has to look where the cell ends.
+/// Number of coefficients before the first and after the last of a row.
+///
+/// Rows before the first and after the last are added too. They are periodic copies, so that a tile need not know where
+/// the cell ends.
 const HALO_BEFORE: usize = TAPS / 2;
 const HALO_AFTER: usize = MAX_WIDTH;
 
-/// Fewest elements per side that [`Interpolation`] needs for waves up to the band limit: four for the shortest.
+/// Minimum number of elements per side for waves up to the band limit.
+///
+/// [`Interpolation`] needs four for the shortest wave.
 pub(super) fn smallest_side(band_limit: usize) -> usize {
     (band_limit as f64 / HIGHEST_FREQUENCY) as usize
 }
 
-/// The stencil of a tile along one direction, and the coefficient it counts from.
+/// The stencil of a tile along one direction, and the coefficient that it counts from.
 pub(super) type Place<'a> = (&'a Stencil, usize);
 
-/// The coefficients of the interpolating windows, on a grid of `side` × `side` cells, and stencils for finer levels.
+/// The coefficients of the interpolating windows, and stencils for finer levels.
 ///
-/// Memory: 8 bytes for each element of the grid.
+/// Coefficients are on a grid of `side` × `side` cells. Memory: 8 bytes for each element of the grid.
 #[derive(Clone)]
 pub(super) struct Interpolation {
     side: usize,
     band_limit: usize,
-    /// Mean height, which is not among the coefficients: their error is relative to what they hold.
+    /// Mean height, which is not in the coefficients. The error is relative to heights without their mean.
     mean: f64,
     /// rms height about the mean.
     rms: f64,
-    /// Row-major with halo, rows and columns alike.
+    /// Coefficients with halo, row-major.
     coefficients: Vec<f64>,
-    /// By level: cells of side 1/side, half of it, …
+    /// Stencils by level: cells of side 1/side, half of it, …
     levels: Vec<Stencils>,
 }
 
 impl Interpolation {
-    /// From samples with waves up to `band_limit`, at least [`smallest_side`] per side, on a square grid; for levels of
-    /// side, 2·side, …, 2^(`n_levels` - 1)·side cells per side.
+    /// Interpolation of samples with waves up to `band_limit`, on a square grid.
+    ///
+    /// There are at least [`smallest_side`] samples per side. Levels have side, 2·side, …, 2^(`n_levels` - 1)·side
+    /// cells per side.
     pub(super) fn new(samples: Field, band_limit: usize, n_levels: u32) -> Self {
         let (side, mean) = (samples.grid().nx(), samples.mean());
         let squares =
@@ -68,18 +76,23 @@ impl Interpolation {
         self.rms
     }
 
-    /// Upper bound of Σ |a_k| over all waves but the mean, so of what an error per wave can add up to: there are less
-    /// than (2N + 1)² of them, and Σ |a_k|² is the mean square.
+    /// Upper bound of Σ |a_k| over all waves but the mean.
+    ///
+    /// It bounds the sum of an error per wave. There are less than (2N + 1)² waves, and Σ |a_k|² is the mean square.
     pub(super) fn amplitude(&self) -> f64 {
         (2 * self.band_limit + 1) as f64 * self.rms
     }
 
-    /// Upper bound of the error of the heights of tiles, at any place. A wave is wrong by a factor (1 + δx)(1 + δy).
+    /// Upper bound of the error of the heights of tiles, at any place.
+    ///
+    /// A wave is wrong by a factor (1 + δx)(1 + δy).
     pub(super) fn error(&self) -> f64 {
         (2.0 + ERRORS[0]) * ERRORS[0] * self.amplitude()
     }
 
-    /// Heights at the centres of tile (`tx`, `ty`) of the level with 2^`level`·side cells per side.
+    /// Writes the heights at the centres of tile (`tx`, `ty`).
+    ///
+    /// The level has 2^`level`·side cells per side.
     pub(super) fn tile(&self, level: usize, tx: usize, ty: usize, out: &mut [f64; TILE * TILE]) {
         let [x, y] = [tx, ty].map(|t| self.levels[level].of_tile(t));
         match x.0.width {
@@ -98,8 +111,10 @@ impl Interpolation {
         }
     }
 
-    /// Weighted sums of the coefficients along y, for one row of centres of a tile: one sum for each coefficient column
-    /// that the tile uses. WIDTH is at least the width of the stencil along x, and at most [`MAX_WIDTH`].
+    /// Weighted sums of the coefficients along y, for one row of centres of a tile.
+    ///
+    /// There is one sum for each coefficient column that the tile uses. WIDTH is at least the width of the stencil
+    /// along x, and at most [`MAX_WIDTH`].
     #[inline]
     pub(super) fn blend<const WIDTH: usize>(&self, x: Place<'_>, y: Place<'_>, row: usize) -> [f64; WIDTH] {
         let ((along_x, origin_x), (along_y, origin_y)) = (x, y);
@@ -117,7 +132,7 @@ impl Interpolation {
     }
 }
 
-/// Weighted sums along x of what [`Interpolation::blend`] gives: values at one row of centres.
+/// Weighted sums along x of the sums of [`Interpolation::blend`]: values at one row of centres.
 #[inline]
 pub(super) fn across<const WIDTH: usize>(blended: &[f64; WIDTH], along_x: &Stencil) -> [f64; TILE] {
     let mut sums = [0.0; TILE];
@@ -134,8 +149,9 @@ fn stride(side: usize) -> usize {
     HALO_BEFORE + side + HALO_AFTER
 }
 
-/// Divides the waves of the samples by the transform of the window, and drops what is not a wave of the surface: its
-/// mean, and rounding beyond the band limit.
+/// Divides the waves of the samples by the transform of the window.
+///
+/// Drops everything that is not a wave of the surface: its mean, and rounding beyond the band limit.
 fn coefficients(samples: Field, band_limit: usize) -> Vec<f64> {
     let grid = samples.grid();
     let (side, stride) = (grid.nx(), stride(grid.nx()));
@@ -147,7 +163,7 @@ fn coefficients(samples: Field, band_limit: usize) -> Vec<f64> {
     let mut convolution = Convolution::<f64>::new(grid);
     convolution
         .transform_rows(samples.values().par_chunks(BLOCK_ROWS * side), |source, rows| rows.copy_from_slice(source));
-    // Two grids in memory at a time, not three.
+    // Memory then holds two grids at a time, not three.
     drop(samples);
     convolution.apply_symbol(&symbol);
     let mut padded = vec![0.0; stride * stride];
@@ -172,7 +188,7 @@ fn halo(side: usize) -> impl Iterator<Item = usize> {
     (0..HALO_BEFORE).chain(HALO_BEFORE + side..stride(side))
 }
 
-/// The cell that a place in a padded line is a copy of.
+/// The cell whose copy is at a place in a padded line.
 fn inside(padded: usize, side: usize) -> usize {
     (padded + side * HALO_BEFORE - HALO_BEFORE) % side
 }

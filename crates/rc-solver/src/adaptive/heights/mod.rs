@@ -1,8 +1,8 @@
 //! Heights of the rigid surface, tile by tile, without the finest grid.
 //!
-//! A band-limited surface is sampled once, on a grid with at least four elements for its shortest wave, and
-//! interpolated from there to nine digits on tiles of any finer level; a map is kept as it is. Both give coarser
-//! levels, and upper bounds of the heights in any square, which say where the surface cannot touch.
+//! A band-limited surface is sampled once, on a grid with at least four elements for its shortest wave. From there it
+//! is interpolated to nine digits on tiles of any finer level. A map is kept as it is. Both give coarser levels, and
+//! upper bounds of the heights in any square, which say where the surface cannot touch.
 
 mod bounds;
 mod extremes;
@@ -30,15 +30,16 @@ use interpolation::{Interpolation, smallest_side};
 
 /// Heights at the centres of the levels of a [`Ladder`].
 ///
-/// Memory for a band-limited surface with waves up to N is 16 M² bytes, where M × M is the interpolation grid: M is the
-/// least side of a level that is at least 4N. Of these, 8 are coefficients, 8/3 coarser levels (8 if M is the base),
-/// and 16/3 bounds; making it takes 5 more. Nothing but a few weights depends on the finest level. For a map it is 8/3
-/// bytes an element for coarser levels and 1/12 for bounds.
+/// For a band-limited surface with waves up to N, the memory is 16 M² bytes. M × M is the interpolation grid: M is the
+/// smallest side of a level that is at least 4N. Of these bytes, 8 are coefficients, 8/3 coarser levels (8 if M is the
+/// base), and 16/3 bounds. Making it takes 5 more. Only a few weights depend on the finest level. For a map, the memory
+/// is 8/3 bytes an element for coarser levels and 1/12 for bounds.
 #[derive(Clone)]
 pub(crate) struct Heights<'a> {
     ladder: Ladder,
-    /// Levels that are kept whole, base first. Of a map all, of a band-limited surface those below the interpolation
-    /// grid.
+    /// Levels that are kept whole, base first.
+    ///
+    /// These are all levels of a map, and those below the interpolation grid of a band-limited surface.
     grids: Vec<WholeGrid<'a>>,
     interpolation: Option<Interpolation>,
     bounds: Bounds,
@@ -49,8 +50,8 @@ impl<'a> Heights<'a> {
     /// Prepares the levels from a base grid of these sides to the finest grid.
     ///
     /// # Errors
-    /// [`ProblemError::Height`] for a height that is not finite; of a surface, its element is one of the grid it is
-    /// sampled on.
+    /// [`ProblemError::Height`] for a height that is not finite. For a surface, its element is one of the grid of
+    /// samples.
     pub(crate) fn new(source: HeightSource<'a>, base: [usize; 2]) -> Result<Self, ProblemError> {
         let ladder = Ladder::new(base, source.grid());
         match source {
@@ -61,8 +62,9 @@ impl<'a> Heights<'a> {
         }
     }
 
-    /// Bytes of a surface's samples on its whole grid, and on coarser ones, where they are needed: 0 for a map, whose
-    /// own bytes are not counted.
+    /// Bytes of a surface's samples on its whole grid and on coarser ones.
+    ///
+    /// They are 0 if samples are not needed, and for a map, whose own bytes are not counted.
     pub(crate) fn sampled_bytes(source: &HeightSource<'_>, ladder: Ladder) -> f64 {
         let Some(surface) = source.surface() else { return 0.0 };
         if is_interpolated(surface, source.grid(), ladder).is_some() {
@@ -71,7 +73,7 @@ impl<'a> Heights<'a> {
         BYTES_PER_SAMPLE * source.grid().len() as f64
     }
 
-    /// Of a surface, band-limited or not.
+    /// Heights of a surface, band-limited or not.
     fn of_waves(surface: &dyn HeightField, grid: Grid, ladder: Ladder) -> Result<Self, ProblemError> {
         match is_interpolated(surface, grid, ladder) {
             Some((limit, level)) => Self::of_surface(surface, limit, level, ladder),
@@ -116,13 +118,13 @@ impl<'a> Heights<'a> {
         let extremes = HeightStatistics {
             greatest: extremes::greatest(&bounds, tiles, |tx, ty| values(tx, ty, 1.0)),
             least: -extremes::greatest(&of_negative, tiles, |tx, ty| values(tx, ty, -1.0)),
-            // Samples of whole waves, each more than two elements long, have mean zero.
+            // Samples of whole waves, each more than two elements long, have the mean zero.
             mean: of_samples.mean,
         };
         Ok(Self { ladder, grids, interpolation: Some(interpolation), bounds, extremes })
     }
 
-    /// The same heights without a borrow: a borrowed map is copied.
+    /// The same heights without a borrow. A borrowed map is copied.
     pub(crate) fn into_owned(self) -> Heights<'static> {
         let Self { ladder, grids, interpolation, bounds, extremes } = self;
         let grids = grids.into_iter().map(WholeGrid::into_owned).collect();
@@ -139,11 +141,11 @@ impl<'a> Heights<'a> {
         &self.grids[0]
     }
 
-    /// Heights at the centres of tile (`tx`, `ty`) of the level of these sides in cells, row-major, in λ. What reaches
-    /// beyond the level is left as it is.
+    /// Writes the heights at the centres of tile (`tx`, `ty`), row-major, in λ.
     ///
-    /// A band-limited surface is exact to 1e-9 of its rms height on every level. The coarser levels of a map are
-    /// interpolated at their centres from the next finer ones.
+    /// `sides` are those of its level, in cells. Cells beyond the level are left as they are. A band-limited surface is
+    /// exact to 1e-9 of its rms height on every level. The coarser levels of a map are interpolated at their centres
+    /// from the next finer ones.
     ///
     /// # Panics
     /// When there is no such level, or the tile is outside it.
@@ -164,8 +166,9 @@ impl<'a> Heights<'a> {
         }
     }
 
-    /// Heights of row `ty` of the tiles of the level of these sides in cells: eight rows of cells, or what is left of
-    /// them.
+    /// Heights of row `ty` of the tiles of the level of these sides, in cells.
+    ///
+    /// A row of tiles is eight rows of cells, or the rest of them.
     ///
     /// # Panics
     /// As [`Heights::tile`].
@@ -183,20 +186,26 @@ impl<'a> Heights<'a> {
         rows
     }
 
-    /// Upper bound of the heights at all centres of the finest level in the block at `place`, of `blocks` equal ones
-    /// along both sides of the cell. Of a band-limited surface it bounds every point, and so the tiles of every level.
+    /// Upper bound of the heights in the block at `place`.
     ///
-    /// One look-up when the blocks are the tiles of a level, a few otherwise. Blocks smaller than what is kept (cells
-    /// of the interpolation grid, finest tiles of a map) get the bound of what contains them.
+    /// There are `blocks` equal blocks along both sides of the cell. The bound holds at all centres of the finest
+    /// level. For a band-limited surface it holds at every point, and so for the tiles of every level.
     ///
-    /// # Panics
+    /// It takes one look-up when the blocks are the tiles of a level, and a few otherwise. A block smaller than the
+    /// kept squares (cells of the interpolation grid, finest tiles of a map) gets the bound of the square that contains
+    /// it.
+    ///
+    /// It takes one look-up when the blocks are the tiles of a level, and a few otherwise. A block smaller than the
+    /// kept squares (cells of the interpolation grid, finest tiles of a map) gets the bound of the square that contains
+    /// it.
     /// When the block is outside the cell.
     pub(crate) fn upper_bound(&self, blocks: [usize; 2], place: [usize; 2]) -> f64 {
         self.bounds.of_block(blocks, place)
     }
 
-    /// The same of a tile of the finest level that the finest grid does not divide into evenly: heights are those of a
-    /// map then.
+    /// Upper bound of the heights in a tile of an uneven finest level.
+    ///
+    /// The finest grid does not divide into such tiles evenly. Heights are those of a map then.
     ///
     /// # Panics
     /// When the tile is outside the level.
@@ -204,23 +213,24 @@ impl<'a> Heights<'a> {
         self.bounds.of_leaf(place)
     }
 
-    /// Upper bound of |∂²h/∂x²| and |∂²h/∂y²|, in 1/λ; infinite for a map.
+    /// Upper bound of |∂²h/∂x²| and |∂²h/∂y²|, in 1/λ. Infinite for a map.
     pub(crate) fn curvature(&self) -> f64 {
         self.bounds.curvature()
     }
 
-    /// Greatest and least height at the centres of the finest level, and the mean height.
+    /// Maximum and minimum height at the centres of the finest level, and the mean height.
     pub(crate) fn extremes(&self) -> HeightStatistics {
         self.extremes
     }
 }
 
-/// The band limit of a surface that is interpolated on the finest level, and the level of the grid that it is
-/// interpolated from.
+/// The band limit of a surface that is interpolated on the finest level.
+///
+/// The second number is the level of the grid that it is interpolated from.
 fn is_interpolated(surface: &dyn HeightField, grid: Grid, ladder: Ladder) -> Option<(usize, u32)> {
     let limit = surface.band_limit().filter(|_| grid.is_square() && ladder.is_even())?;
     let level = interpolation_level(limit, ladder.grid(0).nx());
-    // A level finer than the interpolation grid; whole tiles on it are what extremes are searched in.
+    // The level is finer than the interpolation grid. Extremes are searched in whole tiles on it.
     ((level as usize) < ladder.n_levels() && grid.nx().is_multiple_of(TILE)).then_some((limit, level))
 }
 
@@ -255,9 +265,11 @@ impl Deref for WholeGrid<'_> {
     }
 }
 
-/// The smallest level of `base_side` · 2^k elements per side that resolves the band limit for interpolation.
+/// The smallest level that resolves the band limit for interpolation.
+///
+/// A level has `base_side` · 2^k elements per side.
 fn interpolation_level(band_limit: usize, base_side: usize) -> u32 {
-    // What no grid resolves ends above every finest level.
+    // If no grid resolves the waves, the side is above every finest level.
     let smallest = smallest_side(band_limit).min(2 * Grid::MAX_SIDE);
     smallest.div_ceil(base_side.max(1)).next_power_of_two().ilog2()
 }

@@ -1,21 +1,23 @@
 //! Maxima over nested squares of a grid.
 
-/// Maxima of a field of bounds over blocks of 1, 2², 4², … leaves, as long as the numbers of blocks along both sides
-/// are even.
+/// Maxima of a field of bounds over blocks of 1, 2², 4², … leaves.
 ///
-/// Bounds are kept in single precision, rounded up, relative to an offset and in units of the range of heights: 4 bytes
-/// a leaf, and a third more for the larger blocks.
+/// Blocks are doubled as long as their numbers along both sides are even. Bounds are in single precision, rounded up,
+/// relative to an offset and in units of the range of heights. They take 4 bytes a leaf, and a third more for the
+/// larger blocks.
 #[derive(Clone)]
 pub(super) struct MaxPyramid {
-    /// Cells along both sides, and cells of a leaf; the last leaves along a side may reach beyond it.
+    /// Number of cells along both sides, and of a leaf. The last leaves may reach beyond a side.
     cells: [usize; 2],
     of_leaf: usize,
-    /// From the leaves on: blocks along both sides, and their maxima, row-major.
+    /// Numbers of blocks along both sides, and their maxima, row-major, from the leaves on.
     levels: Vec<([usize; 2], Vec<f32>)>,
 }
 
 impl MaxPyramid {
-    /// From the bounds of leaves, row-major, each of `of_leaf` × `of_leaf` cells.
+    /// The pyramid over the bounds of leaves, row-major.
+    ///
+    /// Each leaf has `of_leaf` × `of_leaf` cells.
     pub(super) fn new(cells: [usize; 2], of_leaf: usize, leaves: Vec<f32>) -> Self {
         let mut levels = vec![(cells.map(|n| n.div_ceil(of_leaf)), leaves)];
         let halves = |sides: &[usize; 2]| sides.iter().all(|&side| side.is_multiple_of(2) && side > 0);
@@ -32,7 +34,7 @@ impl MaxPyramid {
         Self { cells, of_leaf, levels }
     }
 
-    /// Leaves along both sides.
+    /// Number of leaves along both sides.
     pub(super) fn sides(&self) -> [usize; 2] {
         self.levels[0].0
     }
@@ -42,9 +44,10 @@ impl MaxPyramid {
         &self.levels[0].1
     }
 
-    /// Greatest bound of the leaves that the block at `place` overlaps, of `blocks` equal ones along both sides of the
-    /// cell. One look-up when a level of the pyramid has this number of blocks, or when they divide its leaves, and a
-    /// few otherwise.
+    /// Maximum bound of the leaves that the block at `place` overlaps.
+    ///
+    /// There are `blocks` equal blocks along both sides of the cell. It takes one look-up when a level of the pyramid
+    /// has this number of blocks, or when they divide its leaves, and a few otherwise.
     ///
     /// # Panics
     /// When the block is outside the cell.
@@ -90,7 +93,7 @@ mod tests {
                     let inside = inside.filter(|&(lx, ly)| overlaps(lx, ix) && overlaps(ly, iy));
                     let expected = inside.map(|(lx, ly)| leaf(lx, ly)).fold(f32::NEG_INFINITY, f32::max);
                     let found = pyramid.max([blocks, blocks], [ix, iy]);
-                    // A coarser level may hold more than the block when their borders do not meet.
+                    // If the borders of blocks do not meet, a coarser level may hold more than the block.
                     let exact = side % blocks == 0 && (side / blocks).is_power_of_two() || blocks % side == 0;
                     // Leaves are whole numbers.
                     let excess = found - expected;

@@ -3,43 +3,52 @@
 use super::TILE;
 use super::window::{Derivative, TAPS, window};
 
-/// Most coefficients, along one direction, that the centres of a tile use: TAPS and the cells between first and last
-/// centre, rounded up to whole vectors.
+/// Maximum number of coefficients that the centres of a tile use along one direction.
+///
+/// These are TAPS, and the cells between first and last centre, rounded up to whole vectors.
 pub(super) const MAX_WIDTH: usize = TAPS + TILE;
 
-/// Weights for the eight centres at one place relative to the coefficients.
+/// Weights for the eight centres of a tile, at one place relative to the coefficients.
 #[derive(Clone)]
 pub(super) struct Stencil {
     /// The first coefficient of each centre, counted from the tile's origin.
     pub(super) starts: [usize; TILE],
-    /// The weights of each centre, from its first coefficient on.
+    /// The weights of each centre, beginning with its first coefficient.
     pub(super) weights: [[f64; TAPS]; TILE],
-    /// The same weights by coefficient, from that of the first centre on, zero where a centre does not use it.
+    /// The same weights by coefficient, beginning with the first one of the first centre.
+    ///
+    /// A weight is zero where a centre does not use the coefficient.
     pub(super) by_coefficient: [[f64; TILE]; MAX_WIDTH],
-    /// Number of coefficients from the first to the last that is used.
+    /// Number of coefficients from the first to the last used one.
     pub(super) width: usize,
 }
 
-/// The stencils of all tiles of one level, whose cells are 2^`refinement` to a coefficient cell.
+/// The stencils of all tiles of one level.
+///
+/// A coefficient cell is 2^`refinement` of its cells.
 #[derive(Clone)]
 pub(super) struct Stencils {
     /// Stencils of consecutive tiles, repeated along the line.
     stencils: Vec<Stencil>,
-    /// Coefficients from the origin of a tile to that of the tile one repetition further.
+    /// Number of coefficients between the origins of a tile and its repetition.
     stride: usize,
 }
 
 impl Stencils {
-    /// Stencils for the heights (or a derivative of them, per coefficient cell) at the centres of the level.
+    /// Stencils for the heights at the centres of the level.
+    ///
+    /// They may also be for a derivative of the heights, per coefficient cell.
     pub(super) fn new(refinement: u32, derivative: Derivative) -> Self {
-        // A tile is 8/2^j coefficient cells long, so all tiles are alike unless it is less than one.
+        // A tile is 8/2^j coefficient cells long. All tiles are alike unless this is less than one.
         let n_stencils = 1_usize << refinement.saturating_sub(TILE.ilog2());
         let stride = (n_stencils * TILE) >> refinement;
         let stencils = (0..n_stencils).map(|tile| Stencil::new(tile, refinement, derivative)).collect();
         Self { stencils, stride }
     }
 
-    /// The stencil of tile `t` along a line, and its origin: the coefficient that its `starts` count from.
+    /// The stencil of tile `t` along a line, and its origin.
+    ///
+    /// The origin is the coefficient that its `starts` count from.
     pub(super) fn of_tile(&self, t: usize) -> (&Stencil, usize) {
         let n_stencils = self.stencils.len();
         (&self.stencils[t % n_stencils], t / n_stencils * self.stride)
@@ -53,7 +62,8 @@ impl Stencil {
         for (i, (start, weights)) in starts.iter_mut().zip(&mut weights).enumerate() {
             // Coefficients sit at the centres of their cells: coefficient 0 at half a cell from the origin.
             let place = ((TILE * tile + i) as f64 + 0.5) * cells - 0.5;
-            // TAPS/2 coefficients on either side. The line begins with a halo of TAPS/2, so this one is at or above 0.
+            // There are TAPS/2 coefficients on either side. The line begins with a halo of TAPS/2, so this coefficient
+            // is at or above 0.
             let left = place.floor();
             *start = (left + 1.0) as usize;
             for (tap, weight) in weights.iter_mut().enumerate() {
@@ -84,7 +94,7 @@ mod tests {
                 let ((stencil, origin), (slope, _)) = (heights.of_tile(tile), slopes.of_tile(tile));
                 assert!(stencil.width <= MAX_WIDTH);
                 for i in 0..TILE {
-                    // Coefficients are their own place on the line (that of the halo's end is 0).
+                    // The value of a coefficient is its own place on the line. The end of the halo is at 0.
                     let place = |tap: usize| (origin + stencil.starts[i] + tap) as f64 - (TAPS / 2) as f64;
                     let sum =
                         |weights: &[f64; TAPS]| weights.iter().enumerate().map(|(tap, w)| w * place(tap)).sum::<f64>();

@@ -10,11 +10,13 @@ use super::{Heights, TILE};
 use crate::ProblemError;
 use crate::uniform::coarsen;
 
-/// A self-affine surface with waves up to |k| ≤ N, rms height 1 but for rounding, on a mean height.
+/// A self-affine surface with waves up to |k| ≤ N on a mean height.
+///
+/// Its rms height is 1, except for rounding.
 struct SelfAffine {
     waves: usize,
     mean: f64,
-    /// `columns[kx][ky + N]`, kx ≥ 0; the other half is conjugate.
+    /// `columns[kx][ky + N]` for kx ≥ 0. The other half is conjugate.
     columns: Vec<Vec<Complex64>>,
 }
 
@@ -25,7 +27,7 @@ impl SelfAffine {
             let k_squared = (kx * kx + ky * ky) as f64;
             let counted = k_squared <= (n * n) as f64 && (kx > 0 || ky > 0);
             let size = if counted { k_squared.powf(-0.5 * (1.0 + hurst)) } else { 0.0 };
-            // Phases linear in k would only shift a surface all of whose waves meet in one point.
+            // Phases linear in k would only shift a surface whose waves all meet in one point.
             let wave = (kx * (2 * n + 1) + ky + n) as usize;
             Complex64::from_polar(size, TAU * quasi_random(wave * wave * wave % 1_000_003))
         };
@@ -86,7 +88,7 @@ impl HeightField for Ridge {
     }
 }
 
-/// The shortest waves alone, with summits between the centres: for these the bound of the maximum by samples is sharp.
+/// Only the shortest waves, with summits between the centres. The bound of the maximum by samples is sharp for them.
 struct EggBox {
     waves: usize,
 }
@@ -105,7 +107,7 @@ fn square(side: usize) -> Grid {
     Grid::square(side).expect("a small grid")
 }
 
-/// Greatest, least and mean height.
+/// Maximum, minimum and mean height.
 fn extremes_of(field: &Field) -> Vec<f64> {
     vec![field.max(), field.min(), field.mean()]
 }
@@ -131,7 +133,9 @@ fn worst_tile(heights: &Heights<'_>, exact: &Field) -> f64 {
     worst
 }
 
-/// Least and mean excess of the bounds of `blocks`² blocks over the greatest value of the finest field inside.
+/// Minimum and mean excess of the bounds of `blocks`² blocks.
+///
+/// The excess is over the maximum value of the finest field inside a block.
 fn excess(heights: &Heights<'_>, finest: &Field, blocks: usize) -> (f64, f64) {
     let n = finest.grid().nx() / blocks;
     let (mut least, mut sum) = (f64::INFINITY, 0.0);
@@ -147,10 +151,11 @@ fn excess(heights: &Heights<'_>, finest: &Field, blocks: usize) -> (f64, f64) {
 
 #[test]
 fn tiles_of_all_levels_are_exact_to_nine_digits_of_the_rms_height() {
-    // 4 and 8 elements of the interpolation grid (32 or 128, 100) to the shortest wave; bases that are no power of two.
+    // The shortest wave has 4 or 8 elements of the interpolation grid (32 or 128, 100). Some bases are not a power of
+    // two.
     for (waves, base, finest) in [(32, 32, 1024), (32, 64, 512), (16, 128, 512), (25, 100, 800), (19, 20, 640)] {
         for hurst in [0.1, 0.8, 1.0] {
-            // A thousand times the rms height must cost three digits of rounding only, not of interpolation.
+            // A mean of a thousand times the rms height may cost three digits by rounding, but not by interpolation.
             let surface = SelfAffine::new(waves, hurst, 1e3);
             let heights = Heights::new(
                 HeightSource::Surface { surface: &surface, grid: Grid::square(finest).expect("a grid") },
@@ -187,8 +192,8 @@ fn tiles_far_below_a_cell_of_the_interpolation_grid_are_exact() {
 
 #[test]
 fn bounds_of_a_surface_hold_in_every_block_and_are_close() {
-    // The last number is how far above the greatest height in a block the bounds are on average, in units of the rms
-    // height, for blocks not smaller than the cells that are bounded. It grows with the share of short waves.
+    // The last number is the average excess of the bounds over the maximum height in a block, in units of the rms
+    // height. Blocks are not smaller than the cells that are bounded. The excess grows with the share of short waves.
     let cases =
         [(32, 32, 1024, 0.8, 0.03), (32, 32, 1024, 0.1, 0.1), (16, 128, 512, 0.8, 0.03), (25, 100, 800, 0.8, 0.03)];
     for (waves, base, finest, hurst, close) in cases {
@@ -279,7 +284,8 @@ fn a_map_keeps_its_values_and_its_bounds_are_its_maxima() {
     assert_eq!(extremes(&heights), extremes_of(&map));
     for blocks in [50, 25, 10, 5, 1] {
         let (least, mean) = excess(&heights, &map, blocks);
-        // Exact but for single precision, relative to the range of heights, when blocks are whole blocks of eight.
+        // The bounds are exact except for single precision, relative to the range of heights, if blocks are whole
+        // blocks of eight.
         let allowed = if [50, 25].contains(&blocks) { 2e-7 } else { 1.0 };
         assert!(least >= 0.0 && mean <= allowed, "{blocks} blocks: least excess {least:e}, mean {mean:e}");
     }

@@ -1,11 +1,13 @@
-//! The base grid over ranks: each computes a part of its tiles, and all have the whole.
+//! The base grid over ranks.
+//!
+//! Each rank computes a part of its tiles, and all ranks have all tiles.
 
 use std::ops::Range;
 
 use rc_comm::{Packed, Ranks};
 use rc_quadtree::{CELLS, TileSet};
 
-/// The tiles of the base grid that have values, and those of them that this rank computes.
+/// The tiles of the base grid that have values, and those that this rank computes.
 #[derive(Debug)]
 pub(super) struct BasePart {
     ranks: Ranks,
@@ -23,12 +25,14 @@ impl BasePart {
         &self.tiles.places()[self.own.clone()]
     }
 
-    /// The values of all tiles, from those that each rank has computed. All ranks call this together.
+    /// The values of all tiles, from the own values of each rank.
+    ///
+    /// All ranks call this together.
     pub(super) fn gathered<T: Packed>(&self, own: Vec<T>) -> Vec<T> {
         self.ranks.concatenate(own)
     }
 
-    /// Copies the `gathered` values at some places, and zeros where there are none.
+    /// Copies the `gathered` values at some places. They are zero where there is no tile.
     pub(super) fn copy<T: Copy + Default>(&self, gathered: &[T], places: &[[u32; 2]], cells: &mut [T]) {
         for (&[column, row], cells) in places.iter().zip(cells.chunks_exact_mut(CELLS)) {
             match self.tiles.find(column.into(), row.into()) {

@@ -1,9 +1,9 @@
 //! Elements coarser than the finest level's ([`rc_kernel::CoarseElement`] has the mathematics).
 //!
-//! They take part in the density and the displacement of their own level through a blur. What finer levels would add is
-//! a stencil between elements of one size; across a border between two sizes, quarters of the coarse elements stand in
-//! for them on the finer level (ghosts). A ghost acts on finer elements and they on it, but ghosts do not act on each
-//! other: that is in the coarse stencil already.
+//! They take part in the density and the displacement of their own level through a blur. Between elements of one size,
+//! a stencil adds what finer levels would add. Across a border between two sizes, quarters of the coarse elements stand
+//! in for them on the finer level (ghosts). A ghost acts on finer elements, and they act on it. Ghosts do not act on
+//! each other, since the coarse stencil has that already.
 
 use pulp::Simd;
 use rc_kernel::CoarseElement;
@@ -13,32 +13,36 @@ use super::real::{Arithmetic, add_product};
 use super::stencil::Taps;
 use super::tile_values::TileValues;
 
-/// What coarse elements do, in the precision of the values.
+/// Blur and stencils of coarse elements, in the precision of the values.
 #[derive(Clone, Debug)]
 pub(crate) struct CoarseTable<T> {
     /// Half of the blur: the element itself, then its neighbours.
     pub(super) blur: Vec<T>,
-    /// Between elements of this level.
+    /// Stencil between elements of this level.
     pub(super) near: Taps<T>,
-    /// Between finer elements and ghosts, on the next finer level.
+    /// Stencil between finer elements and ghosts, on the next finer level.
     pub(super) across: Taps<T>,
 }
 
 impl<T: Arithmetic> CoarseTable<T> {
-    /// `across` is already in its unit; `factor` is that of the element's level, for patches of `side`.
+    /// A table for patches of `side`.
+    ///
+    /// `across` is already in its unit. `factor` is that of the element's level.
     pub(super) fn new(element: &CoarseElement, factor: f64, across: Taps<T>, side: usize) -> Self {
         let blur = element.filter.taps().iter().map(|&tap| T::rounded(tap)).collect();
         Self { blur, near: Taps::new(&element.near, factor, side), across }
     }
 }
 
-/// The tiles of elements on a level that are not the finest, and their quarters next to finer elements.
+/// The tiles of coarse elements on a level, and their quarters next to finer elements.
 pub(super) struct Leaves {
     pub(super) tiles: TileSet,
     pub(super) ghosts: TileSet,
 }
 
 impl Leaves {
+    /// The tiles of a level with their ghosts.
+    ///
     /// `finer` are the tiles of elements half as large, which act over `cutoff` cells.
     pub(super) fn new(tiles: TileSet, finer: &TileSet, cutoff: usize) -> Self {
         let reach = cutoff.div_ceil(TILE) as i64;
@@ -66,7 +70,9 @@ impl Leaves {
     }
 }
 
-/// Adds the blur of values on the tile at a place, or without a table the values themselves, to `out`.
+/// Adds to `out` the blur of values on the tile at a place.
+///
+/// Without a table it adds the values themselves.
 #[inline(always)]
 pub(super) fn add_blur<S: Simd, T: Arithmetic, const SIDE: usize>(
     table: Option<&CoarseTable<T>>,
@@ -93,7 +99,7 @@ pub(super) fn add_blur<S: Simd, T: Arithmetic, const SIDE: usize>(
         let mut line = [T::default(); SIDE];
         for (j, &tap) in table.blur.iter().enumerate() {
             let (low, high) = (&patch[margin + y - j], &patch[margin + y + j]);
-            // The element itself is met once.
+            // The element itself counts once.
             for x in 0..SIDE {
                 line[x] = add_product::<S, T>(line[x], tap, if j == 0 { low[x] } else { low[x] + high[x] });
             }

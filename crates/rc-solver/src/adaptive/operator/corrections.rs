@@ -8,14 +8,14 @@ use super::tables::Tables;
 use super::tile_operator::TileOperator;
 use crate::descent::{BlockLayout, BlockOperator, PreconditionedOperator};
 
-/// L alone.
+/// The operator L without its approximate inverse.
 pub(crate) struct TileResponse<'a> {
     operator: TileOperator<f32>,
     displacement: &'a Tables<f32>,
 }
 
 impl<'a> TileResponse<'a> {
-    /// With the tables of the levels of `hierarchy`.
+    /// The operator with the tables of the levels of `hierarchy`.
     pub(crate) fn new(hierarchy: Arc<Hierarchy>, displacement: &'a Tables<f32>) -> Self {
         Self { operator: TileOperator::new(hierarchy), displacement }
     }
@@ -51,7 +51,7 @@ pub(crate) struct TileCorrections<'a> {
 }
 
 impl<'a> TileCorrections<'a> {
-    /// With tables of the levels of `hierarchy`.
+    /// The operators with tables of the levels of `hierarchy`.
     pub(crate) fn new(
         hierarchy: Arc<Hierarchy>,
         displacement: &'a Tables<f32>,

@@ -1,12 +1,13 @@
-//! The approximate inverse of L among the active elements of a mesh ([`crate::descent`] has the extension F of a
-//! residual to the whole cell).
+//! The approximate inverse of L among the active elements of a mesh.
 //!
-//! On tiles u = F r is kept level by level, as far as there are tiles: u of a level is its own share of the means over
-//! active elements, and for the rest P u of the next coarser level, with P the interpolation. The base grid has u on
-//! the whole cell and |q|/2 by its Fourier transform. Each level above adds its stencil of the difference w = u - P u,
-//! which is zero where nothing is active. The inverse is the sum of all with the transposes around them, so that it is
-//! symmetric. (The filters that L goes through between levels would see the ends of tiles as edges of u.) With the
-//! extension and one grid, residuals fall by ten in an iteration; with two or three levels as here, in one and a half.
+//! [`crate::descent`] has the extension F of a residual to the whole cell. On tiles, u = F r is kept level by level, as
+//! far as there are tiles. One share of u on a level comes from the means over active elements. The other share is P u
+//! of the next coarser level, where P is the interpolation. The base grid has u on the whole cell, and applies |q|/2 by
+//! its Fourier transform. Each level above adds its stencil of the difference w = u - P u, which is zero where nothing
+//! is active. The inverse is the sum of all levels with the transposes around them, so it is symmetric.
+//!
+//! (The filters of L between levels would see the ends of tiles as edges of u.) With the extension and one grid,
+//! residuals fall by ten in an iteration. With two or three levels as here, they do so in one and a half iterations.
 
 use std::sync::Arc;
 
@@ -29,17 +30,17 @@ use crate::parallel::{self, Tasks};
 /// Side of the patch around a tile.
 const AROUND: usize = 3 * TILE;
 
-/// Cells of a level between the base grid and the finest.
+/// Values on a level between the base grid and the finest.
 struct Level {
-    /// What the mean over the finest elements of a cell, active or not, is multiplied by.
+    /// Factor on the mean over the finest elements of a cell, active or not.
     own: Vec<f32>,
-    /// What P u is multiplied by in u; in w it is this less one.
+    /// Factor on P u in u. The factor in w is smaller by one.
     rest: Vec<f32>,
-    /// Means and u on the way up; on the way down what belongs to u.
+    /// Means and u on the way up. On the way down, the values for u.
     values: Vec<f32>,
-    /// w, and on the way down what the coarser level gets.
+    /// Values w. On the way down, the values for the coarser level.
     detail: Vec<f32>,
-    /// The stencil of w.
+    /// The stencil of w, a pressure.
     pressure: Vec<f32>,
 }
 
@@ -48,7 +49,7 @@ pub(super) struct TileExtension {
     hierarchy: Arc<Hierarchy>,
     /// Levels 1 to K - 1.
     levels: Vec<Level>,
-    /// The base grid, row by row and tile by tile.
+    /// The base grid, as rows and as tiles.
     pyramid: Pyramid,
     base: Vec<f32>,
 }
@@ -64,7 +65,9 @@ impl TileExtension {
         Self { levels, pyramid: Pyramid::new(nx, ny), base: vec![0.0; nx * ny], hierarchy }
     }
 
-    /// Prepares for these active elements. `finest` is as for [`TileExtension::precondition`].
+    /// Prepares the extension for these active elements.
+    ///
+    /// `finest` is as for [`TileExtension::precondition`].
     pub(super) fn set_active(&mut self, active: &[bool], finest: &mut [f32]) {
         self.take_means(&|cell| if active[cell] { 1.0 } else { 0.0 }, finest);
         for level in &mut self.levels {
@@ -73,8 +76,10 @@ impl TileExtension {
         self.pyramid.set_active();
     }
 
-    /// z = Fᵀ |q|/2 F r: `values` has r on the active elements and zeros elsewhere, and is left with z. `finest` has
-    /// room for the values of the finest elements, those of other ranks that this one reads included.
+    /// Computes z = Fᵀ |q|/2 F r.
+    ///
+    /// `values` has r on the active elements and zeros elsewhere, and gets z. `finest` has room for the values of the
+    /// finest elements, including those of other ranks that this rank reads.
     pub(super) fn precondition(
         &mut self,
         arch: Arch,
@@ -90,8 +95,9 @@ impl TileExtension {
         self.gather(active, values, finest);
     }
 
-    /// Means over the cells of all levels, from the values of own elements; those of the base grid are left to the
-    /// pyramid.
+    /// Computes means over the cells of all levels, from the values of own elements.
+    ///
+    /// The pyramid takes the means of the base grid.
     fn take_means(&mut self, of_element: &(dyn Fn(usize) -> f32 + Sync), finest: &mut [f32]) {
         if self.hierarchy.base_part.is_none() {
             return self.take_means_of(of_element);
@@ -107,7 +113,9 @@ impl TileExtension {
         self.take_means_of(&|cell| finest[cell]);
     }
 
-    /// The same from the values of all elements that are read.
+    /// Computes means over the cells of all levels, from the values of elements.
+    ///
+    /// Values of other ranks that this rank reads are included.
     fn take_means_of(&mut self, of_element: &(dyn Fn(usize) -> f32 + Sync)) {
         let hierarchy = Arc::clone(&self.hierarchy);
         for level in (1..hierarchy.n_levels()).rev() {
@@ -125,7 +133,7 @@ impl TileExtension {
         parallel::for_each(rows, |(rows, cells)| tiles_to_rows(cells, rows, side));
     }
 
-    /// u and w on all levels; `finest` gets w.
+    /// Computes u and w on all levels. `finest` gets w.
     fn extend(&mut self, active: &[bool], values: &[f32], finest: &mut [f32]) {
         self.take_means(&|cell| values[cell], finest);
         self.pyramid.extend();
@@ -173,7 +181,7 @@ impl TileExtension {
         part.exchange(finest);
     }
 
-    /// The stencils of w; `values` gets that of the finest elements.
+    /// Applies the stencils to w. `values` gets the result on the finest elements.
     fn apply_stencils(&mut self, arch: Arch, tables: &Tables<f32>, finest: &[f32], values: &mut [f32]) {
         let tiles = &self.hierarchy.levels;
         for (level, here) in self.levels.iter_mut().enumerate() {
@@ -192,7 +200,7 @@ impl TileExtension {
         });
     }
 
-    /// |q|/2 of u on the base grid.
+    /// Applies |q|/2 to u on the base grid.
     fn convolve_base(&mut self, convolution: &mut Convolution<f32>, tables: &Tables<f32>) {
         let len = rc_fft::BLOCK_ROWS * self.hierarchy.base().nx();
         let values = self.pyramid.values();
@@ -202,7 +210,9 @@ impl TileExtension {
         read_rows(convolution, &|i, rows| tasks.run(i, |to: &mut [f32]| to.copy_from_slice(rows)));
     }
 
-    /// Fᵀ and the transpose of u - P u; `values` has the stencils of the finest elements, and gets z.
+    /// Applies Fᵀ and the transpose of u - P u.
+    ///
+    /// `values` has the stencils of the finest elements, and gets z.
     fn gather(&mut self, active: &[bool], values: &mut [f32], finest: &mut [f32]) {
         let hierarchy = Arc::clone(&self.hierarchy);
         let elements = active.chunks(BLOCK_CELLS).zip(values.chunks(BLOCK_CELLS));
@@ -248,7 +258,7 @@ impl TileExtension {
         self.hand_down(active, values);
     }
 
-    /// From what each active element of a cell of the base grid gets to z.
+    /// Computes z from the values that active elements of base grid cells get.
     fn hand_down(&mut self, active: &[bool], values: &mut [f32]) {
         let tiles = &self.hierarchy.levels;
         for level in 0..self.levels.len() {

@@ -1,4 +1,6 @@
-//! Values of the extension on the tiles of a level: which of them a rank sets, and means over finer levels.
+//! Values of the extension on the tiles of a level.
+//!
+//! A rank sets its own values, as means over finer levels.
 
 use std::ops::Range;
 
@@ -8,7 +10,7 @@ use super::hierarchy::Hierarchy;
 use crate::adaptive::part::Part;
 use crate::parallel;
 
-/// Tiles, block by block. There may be more values than tiles.
+/// The tiles, block by block. There may be more values than tiles.
 pub(super) fn blocks<'a>(
     places: &'a [[u32; 2]],
     cells: &'a mut [f32],
@@ -16,7 +18,7 @@ pub(super) fn blocks<'a>(
     places.chunks(BLOCK_TILES).zip(cells.chunks_mut(BLOCK_CELLS))
 }
 
-/// The own tiles of a level, from the values of all.
+/// The own tiles of a level, block by block, from the values of all tiles.
 pub(super) fn own_blocks<'a>(
     part: &'a Part,
     cells: &'a mut [f32],
@@ -24,7 +26,7 @@ pub(super) fn own_blocks<'a>(
     blocks(part.own_places(), &mut cells[part.own_cells()])
 }
 
-/// Sets the values of the base grid, each rank those of its tiles.
+/// Sets the values of the base grid. Each rank sets those of its tiles.
 pub(super) fn set_base(hierarchy: &Hierarchy, base: &mut [f32], set: impl Fn(&[[u32; 2]], &mut [f32]) + Sync) {
     let places = hierarchy.levels[0].tiles().places();
     let Some(part) = &hierarchy.base_part else {
@@ -39,10 +41,10 @@ pub(super) fn set_base(hierarchy: &Hierarchy, base: &mut [f32], set: impl Fn(&[[
 
 /// Means over the cells of a level.
 pub(super) struct Means<'a> {
-    /// The next finer level: its tiles, and its values unless it has the finest elements.
+    /// Tiles of the next finer level. The values below are missing if it has the finest elements.
     tiles: &'a TileSet,
     finer: Option<&'a [f32]>,
-    /// Where the elements of the level are, and their tiles.
+    /// Range of the elements of the level in a vector, and their tiles.
     elements: Option<(Range<usize>, &'a TileSet)>,
     of_element: &'a (dyn Fn(usize) -> f32 + Sync),
 }
@@ -64,7 +66,7 @@ impl<'a> Means<'a> {
             None => (self.of_element)(tile * CELLS + cell),
         };
         for (&place, cells) in places.iter().zip(cells.as_chunks_mut::<CELLS>().0) {
-            // Finer levels reach beyond their elements, over larger ones.
+            // Finer levels reach beyond their elements, over larger elements.
             if let Some((range, leaves)) = &self.elements
                 && let Some(tile) = leaves.find(place[0].into(), place[1].into())
             {

@@ -12,34 +12,42 @@ use crate::adaptive::ladder::{self, sides_of};
 use crate::adaptive::mesh::Mesh;
 use crate::adaptive::part::{Part, append_around};
 
-/// The tiles of all levels, coarsest first: the first is the whole base grid, the last has the finest elements.
+/// The tiles of all levels, coarsest first.
+///
+/// The first level is the whole base grid. The last has the finest elements.
 pub(crate) struct Hierarchy {
     base: Grid,
     reach: Reach,
     mesh: Mesh,
-    /// The blocks of a vector: how much coarser than the finest level, and which of its tiles.
+    /// The blocks of a vector: their coarseness and their tiles.
+    ///
+    /// The coarseness is relative to the finest level.
     pub(super) blocks: Vec<(usize, Range<usize>)>,
-    /// The densities of each level, coarser elements included; on the finest level, its elements.
+    /// The parts with the densities of each level, including those of coarser elements.
+    ///
+    /// On the finest level they are its elements.
     pub(super) levels: Vec<Part>,
-    /// What this rank computes of the base grid, if it is not alone.
+    /// The part of the base grid that this rank computes. `None` without other ranks.
     pub(super) base_part: Option<BasePart>,
     /// The elements that are 2, 4, … times as large as the finest.
     pub(super) leaves: Vec<Leaves>,
 }
 
-/// How far, in cells of a level, values go.
+/// Number of cells of a level that values reach.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Reach {
-    /// Filters, between levels and within one.
+    /// Reach of filters, between levels and within one.
     pub(crate) filter: usize,
-    /// Stencils.
+    /// Reach of stencils.
     pub(crate) stencil: usize,
 }
 
 impl Hierarchy {
-    /// The levels over `elements` down to the base grid, whose sides are multiples of 8, each with the tiles that
-    /// filters need. The coarsest elements are finer than the base grid's, and elements whose sizes differ by more than
-    /// a factor of 2 are farther from each other than stencils of the level between them reach.
+    /// The levels over `elements` down to the base grid.
+    ///
+    /// Each has the tiles that filters need. The sides of the base grid are multiples of 8. The coarsest elements are
+    /// finer than the base grid's. Elements whose sizes differ by more than a factor of 2 are so far apart that
+    /// stencils of the level between them do not reach.
     pub(crate) fn new(base: Grid, mesh: impl Into<Mesh>, reach: Reach) -> Self {
         let mesh = mesh.into();
         let elements = mesh.elements();
@@ -68,17 +76,19 @@ impl Hierarchy {
         self.mesh.elements()
     }
 
-    /// The elements, and which of them this rank has.
+    /// The elements, and those of them that this rank has.
     pub(crate) fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// Number of values that operators keep for elements: those of other ranks that this one reads are among them.
+    /// Number of values that operators keep for elements.
+    ///
+    /// Values of other ranks that this rank reads are included.
     pub(super) fn n_values(&self) -> usize {
         if self.mesh.ranks().are_alone() { self.elements().len() } else { self.finest().n_cells() }
     }
 
-    /// The own ones of these values.
+    /// The range of the own values among these.
     pub(super) fn own_values(&self) -> Range<usize> {
         if self.mesh.ranks().are_alone() { 0..self.elements().len() } else { self.finest().own_cells() }
     }
@@ -88,7 +98,7 @@ impl Hierarchy {
         &self.levels[self.n_levels()]
     }
 
-    /// Their values among those of elements.
+    /// The range of the values of the finest level among those of elements.
     pub(super) fn finest_values(&self) -> Range<usize> {
         0..self.finest().n_cells()
     }
@@ -98,8 +108,10 @@ impl Hierarchy {
         self.base
     }
 
-    /// The same for the preconditioner, which halves every level: where the finest has not twice as many elements as
-    /// the level below it, a strip without elements takes the place of what is missing, along the seam.
+    /// The hierarchy for the preconditioner, which halves every level.
+    ///
+    /// The finest level may have fewer than twice the elements of the level below it. A strip without elements, along
+    /// the seam, then takes the place of the missing ones.
     pub(super) fn halved(self: &Arc<Self>) -> Arc<Self> {
         let sides = sides_of(ladder::doubled(self.base, self.n_levels()));
         if self.elements().finest().sides() == sides {
@@ -109,12 +121,12 @@ impl Hierarchy {
         Arc::new(Self::new(self.base, Elements::uniform(tiles), self.reach))
     }
 
-    /// Levels above the base grid.
+    /// Number of levels above the base grid.
     pub(crate) fn n_levels(&self) -> usize {
         self.levels.len() - 1
     }
 
-    /// The elements of a level: where they are in a vector, and their tiles.
+    /// The elements of a level: their range in a vector, and their tiles.
     pub(super) fn elements_of(&self, level: usize) -> Option<(Range<usize>, &TileSet)> {
         let coarser = self.n_levels() - level;
         if coarser == 0 && !self.mesh.ranks().are_alone() {
@@ -124,13 +136,13 @@ impl Hierarchy {
     }
 }
 
-/// What this rank has of all levels, coarsest first, and of the base grid.
+/// The parts of this rank in all levels, coarsest first, and in the base grid.
 fn dealt(levels: Vec<TileSet>, mesh: &Mesh, reach: Reach) -> (Vec<Part>, Option<BasePart>) {
     let ranks = mesh.ranks();
     if ranks.are_alone() {
         return (levels.into_iter().map(Part::whole).collect(), None);
     }
-    // Tiles around one, on its level or a coarser one, and around the four under one.
+    // Tiles around one tile on its level or a coarser one, and around the four tiles under one.
     let near = reach.filter.max(reach.stencil).div_ceil(TILE);
     let under = (2 * reach.filter).div_ceil(TILE);
     // The tiles of the base grid that have a density.

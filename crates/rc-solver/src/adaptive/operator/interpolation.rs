@@ -1,4 +1,6 @@
-//! Interpolation from the cells of a level to those of the next finer one, for the extension, and its transpose.
+//! Interpolation from the cells of a level to the next finer one, and its transpose.
+//!
+//! The extension uses both.
 
 use rc_quadtree::{CELLS, TILE, cell_over, gather};
 
@@ -8,7 +10,7 @@ use super::tile_values::TileValues;
 const AROUND: usize = 3 * TILE;
 const UNDER: usize = 4 * TILE;
 
-/// P: values at the centres of the cells of a tile.
+/// Applies P: values at the centres of the cells of a tile.
 pub(super) fn interpolate(coarser: TileValues<'_, f32>, [column, row]: [u32; 2], out: &mut [f32; CELLS]) {
     let [half_x, half_y] = [column, row].map(|i| i as usize % 2 * (TILE / 2));
     let corner = (i64::from(column / 2) - 1, i64::from(row / 2) - 1);
@@ -32,7 +34,7 @@ pub(super) fn interpolate(coarser: TileValues<'_, f32>, [column, row]: [u32; 2],
     }
 }
 
-/// A quarter of the transpose of P: values of tiles from those of the finer level.
+/// Applies a quarter of the transpose of P, from the values of the finer level.
 pub(super) fn collect(finer: TileValues<'_, f32>, places: &[[u32; 2]], cells: &mut [f32]) {
     let mut patch = [[0.0; UNDER]; UNDER];
     for (&[column, row], out) in places.iter().zip(cells.as_chunks_mut::<CELLS>().0) {
@@ -55,7 +57,9 @@ pub(super) fn collect(finer: TileValues<'_, f32>, places: &[[u32; 2]], cells: &m
     }
 }
 
-/// The values of the coarser cells that the cells of a tile are in; zeros where there is none.
+/// The values of the coarser cells that contain the cells of a tile.
+///
+/// They are zero where there is no coarser cell.
 pub(super) fn cells_over(coarser: TileValues<'_, f32>, place: [u32; 2]) -> [f32; CELLS] {
     let [column, row] = place.map(|i| i64::from(i / 2));
     let Some(tile) = coarser.tiles.find(column, row) else { return [0.0; CELLS] };

@@ -1,9 +1,8 @@
-//! The multilevel operator: L, or its approximate inverse, on the tiles of an adaptive mesh, at a cost proportional to
-//! their number.
+//! The multilevel operator: L, or its approximate inverse, on the tiles of an adaptive mesh.
 //!
-//! Each level adds a short-range stencil; between levels go short filters; the base grid has a Fourier transform
-//! ([`rc_kernel::ScaleSplit`] has the formulas). Everything is summed target by target, so the result does not depend
-//! on the number of threads.
+//! Its cost is proportional to the number of tiles. Each level adds a short-range stencil. Short filters connect the
+//! levels. The base grid has a Fourier transform ([`rc_kernel::ScaleSplit`] has the formulas). Everything is summed
+//! target by target, so the result does not depend on the number of threads.
 
 #![allow(
     clippy::inline_always,

@@ -1,7 +1,8 @@
-//! The passes over the tiles of a level: what each of them reads, and their loops in the machine's vector instructions.
+//! The passes over the tiles of a level: their inputs, and their loops.
 //!
-//! Loops are compiled for a few numbers of taps and sides of patches ([`TilePasses::new`]), which are numbers the
-//! compiler knows; everything else calls them through [`TilePasses`] and does not depend on these numbers.
+//! Loops use the machine's vector instructions. They are compiled for a few numbers of taps and sides of patches
+//! ([`TilePasses::new`]), which the compiler knows. All other code calls them through [`TilePasses`] and does not
+//! depend on these numbers.
 
 use pulp::{Arch, Simd, WithSimd};
 use rc_quadtree::{CELLS, TILE, TileSet, gather, means_of_quarter, quarters};
@@ -13,7 +14,7 @@ use super::tile_values::TileValues;
 use super::transfer::Transfer;
 use super::uneven::Uneven;
 
-/// Tiles to be computed: their places, and their cells one tile after the other.
+/// Tiles to compute: their places, and their cells one tile after the other.
 pub(super) struct Targets<'a, T> {
     pub(super) places: &'a [[u32; 2]],
     pub(super) cells: &'a mut [T],
@@ -26,26 +27,32 @@ impl<'a, T> Targets<'a, T> {
     }
 }
 
-/// The densities of tiles from those of the next finer level.
+/// Computes the densities of tiles from those of the next finer level.
 pub(super) struct Restriction<'a, T> {
     pub(super) transfer: &'a Transfer<T>,
     pub(super) finer: TileValues<'a, T>,
 }
 
-/// The displacements of tiles: the level's stencil on its density, and the prolonged displacement of the coarser level.
+/// Computes the displacements of tiles.
+///
+/// They are the level's stencil on its density, plus the prolonged displacement of the coarser level.
 pub(super) struct Displacement<'a, T> {
     pub(super) table: &'a (Taps<T>, Transfer<T>),
     pub(super) density: TileValues<'a, T>,
     pub(super) coarser: TileValues<'a, T>,
 }
 
-/// [`Restriction`] of a level that has not half as many elements along a side as the finest.
+/// [`Restriction`] to an uneven level.
+///
+/// This level does not have half as many elements along a side as the finest.
 pub(super) struct UnevenRestriction<'a, T> {
     pub(super) uneven: &'a Uneven<T>,
     pub(super) finer: TileValues<'a, T>,
 }
 
-/// [`Displacement`] of the finest level over one that has not half as many elements along a side.
+/// [`Displacement`] of the finest level over an uneven one.
+///
+/// The coarser level does not have half as many elements along a side.
 pub(super) struct UnevenDisplacement<'a, T> {
     pub(super) taps: &'a Taps<T>,
     pub(super) uneven: &'a Uneven<T>,
@@ -53,16 +60,16 @@ pub(super) struct UnevenDisplacement<'a, T> {
     pub(super) coarser: TileValues<'a, T>,
 }
 
-/// The density of coarse elements on their own level.
+/// Computes the density of coarse elements on their own level.
 pub(super) struct CoarseDensity<'a, T> {
     pub(super) table: Option<&'a CoarseTable<T>>,
     pub(super) elements: TileValues<'a, T>,
 }
 
-/// The displacements of tiles of coarse elements.
+/// Computes the displacements of tiles of coarse elements.
 pub(super) struct CoarseDisplacement<'a, T> {
     pub(super) table: Option<&'a CoarseTable<T>>,
-    /// The elements of this level, and those half as large.
+    /// The elements of this level. The elements below are half as large.
     pub(super) elements: TileValues<'a, T>,
     pub(super) finer: TileValues<'a, T>,
     pub(super) ghosts: &'a TileSet,
@@ -70,7 +77,7 @@ pub(super) struct CoarseDisplacement<'a, T> {
     pub(super) level: TileValues<'a, T>,
 }
 
-/// The displacements that ghosts add to the elements around them.
+/// Computes the displacements that ghosts add to the elements around them.
 pub(super) struct GhostDisplacement<'a, T> {
     pub(super) taps: &'a Taps<T>,
     pub(super) ghosts: TileValues<'a, T>,
@@ -79,21 +86,23 @@ pub(super) struct GhostDisplacement<'a, T> {
 /// The loops for one number of taps, and for patches of one size.
 #[derive(Clone, Copy)]
 pub(super) struct TilePasses<T> {
-    /// Sets the targets.
+    /// Pass that sets the targets, like those below.
     pub(super) restrict: fn(Arch, &Restriction<'_, T>, Targets<'_, T>),
     pub(super) displace: fn(Arch, &Displacement<'_, T>, Targets<'_, T>),
     pub(super) restrict_uneven: fn(Arch, &UnevenRestriction<'_, T>, Targets<'_, T>),
     pub(super) displace_uneven: fn(Arch, &UnevenDisplacement<'_, T>, Targets<'_, T>),
     pub(super) displace_coarse: fn(Arch, &CoarseDisplacement<'_, T>, Targets<'_, T>),
-    /// Adds to the targets.
+    /// Pass that adds to the targets, like the one below.
     pub(super) add_coarse: fn(Arch, &CoarseDensity<'_, T>, Targets<'_, T>),
     pub(super) add_ghosts: fn(Arch, &GhostDisplacement<'_, T>, Targets<'_, T>),
 }
 
 impl<T: Arithmetic> TilePasses<T> {
-    /// For filters of `TAPS` taps; patches have `AROUND` cells per side around one tile, and `UNDER` cells around the
-    /// tiles under a coarse one. Where sides are not halved, a fine tile takes from a patch of `OVER` cells per side,
-    /// and a coarse one from `BELOW` cells.
+    /// The passes for filters of `TAPS` taps.
+    ///
+    /// Patches have `AROUND` cells per side around one tile, and `UNDER` cells around the tiles under a coarse one.
+    /// Where sides are not halved, a fine tile takes from a patch of `OVER` cells per side, and a coarse one from
+    /// `BELOW` cells.
     pub(super) const fn new<
         const TAPS: usize,
         const AROUND: usize,
@@ -113,7 +122,7 @@ impl<T: Arithmetic> TilePasses<T> {
     }
 }
 
-/// A function for a pass, with the vector instructions of the machine at hand. (Closures would be compiled twice.)
+/// A function for a pass, with the vector instructions of the machine. (Closures would be compiled twice.)
 macro_rules! dispatched {
     ($($name:ident: $Pass:ident),*) => {$(
         fn $name<T: Arithmetic, const TAPS: usize, const SIDE: usize>(
@@ -136,7 +145,7 @@ dispatched!(
     add_ghosts: GhostDisplacement
 );
 
-/// A pass for filters of `TAPS` taps, if it has any, and patches of `SIDE` cells per side.
+/// A pass for filters of `TAPS` taps, if it has filters, and patches of `SIDE` cells per side.
 struct Loop<'a, P, T, const TAPS: usize, const SIDE: usize> {
     pass: &'a P,
     targets: Targets<'a, T>,
@@ -199,7 +208,7 @@ impl<T: Arithmetic, const TAPS: usize, const SIDE: usize> WithSimd
     }
 }
 
-/// The first number is the side of the patch of the coarser level.
+/// The loop with patches of `OVER` cells per side on the coarser level.
 impl<T: Arithmetic, const OVER: usize, const SIDE: usize> WithSimd
     for Loop<'_, UnevenDisplacement<'_, T>, T, OVER, SIDE>
 {

@@ -1,18 +1,22 @@
-//! The arithmetic of the inner loops, in single or double precision, with or without fused multiply-add.
+//! The arithmetic of the inner loops, in single or double precision.
+//!
+//! It has multiply-add, fused or not.
 
 use pulp::Simd;
 use rc_comm::Packed;
 use rc_fft::TransformReal;
 
-/// `f32` or `f64`.
+/// The number types `f32` and `f64`.
 pub(crate) trait Arithmetic: TransformReal + Packed + Default + From<f32> {
-    /// Rounded from double precision.
+    /// The number nearest to one in double precision.
     fn rounded(value: f64) -> Self;
 
     /// `self · a + b` in one rounding.
     fn fused(self, a: Self, b: Self) -> Self;
 
-    /// Rows of a tile that are summed at once: as many as fit into eight registers of 256 bits.
+    /// Number of rows of a tile that are summed at once.
+    ///
+    /// As many fit into eight registers of 256 bits.
     const ROWS: usize;
 }
 
@@ -42,7 +46,7 @@ impl Arithmetic for f64 {
     const ROWS: usize = 4;
 }
 
-/// `sum + a b`, fused where the machine has the instruction: without it, that is a function call.
+/// `sum + a b`, fused if the machine has the instruction. Without it, a fused one is a function call.
 #[inline(always)]
 pub(super) fn add_product<S: Simd, T: Arithmetic>(sum: T, a: T, b: T) -> T {
     if S::IS_SCALAR { sum + a * b } else { a.fused(b, sum) }

@@ -5,13 +5,14 @@ use rc_kernel::SplitParams;
 use super::passes::TilePasses;
 use super::real::Arithmetic;
 
-/// Filters are filled up to a number of taps for which the inner loops are compiled, and patches are as large as that
-/// needs.
+/// The numbers of taps and the sides of patches of compiled inner loops.
+///
+/// Filters are filled up to such a number of taps, and patches are as large as that needs.
 #[derive(Clone, Copy)]
 pub(crate) struct Sizes<T> {
-    /// Taps of filters.
+    /// Number of taps of filters.
     pub(super) taps: usize,
-    /// Cells that stencils reach, at most.
+    /// Maximum number of cells that stencils reach.
     cutoff: usize,
     /// Side of the patch around one tile.
     pub(super) around: usize,
@@ -19,9 +20,11 @@ pub(crate) struct Sizes<T> {
 }
 
 impl<T: Arithmetic> Sizes<T> {
-    /// `UNDER` is the side of the patch around the four tiles under a coarse one, `OVER` and `BELOW` are those of the
-    /// patches that a fine and a coarse tile take from where sides are not halved: they hold 12 elements more than the
-    /// taps, and 23 more than twice the taps.
+    /// Sizes from the number of taps and the sides of patches.
+    ///
+    /// `UNDER` is the side of the patch around the four tiles under a coarse one. Where sides are not halved, a fine
+    /// tile takes from a patch of side `OVER`, and a coarse one from a patch of side `BELOW`. These hold 12 elements
+    /// more than the taps, and 23 more than twice the taps.
     const fn new<const TAPS: usize, const AROUND: usize, const UNDER: usize, const OVER: usize, const BELOW: usize>(
         cutoff: usize,
     ) -> Self {
@@ -38,7 +41,7 @@ pub(crate) trait Real: Arithmetic {
     /// The smallest compiled sizes that hold the split kernel's filters and stencils.
     ///
     /// # Panics
-    /// When they are of an error that this precision does not reach.
+    /// When the split has an error that this precision does not reach.
     fn sizes(split: SplitParams) -> Sizes<Self> {
         let fits = |sizes: &&Sizes<Self>| split.cutoff <= sizes.cutoff && split.taps <= sizes.taps;
         *Self::SIZES.iter().find(fits).expect("single precision is for errors from 1e-6 on")

@@ -7,16 +7,18 @@ use rc_quadtree::{CELLS, Patch, TILE, gather};
 use super::real::{Arithmetic, add_product};
 use super::tile_values::TileValues;
 
-/// The weights of a stencil with their places in a patch of given side.
+/// The weights of a stencil, with their places in a patch of given side.
 #[derive(Clone, Debug)]
 pub(crate) struct Taps<T> {
-    /// Offset of the weight's first source cell in the patch, and the weight.
+    /// Offset in the patch of the first cell that a weight reads, and the weight.
     taps: Vec<(usize, T)>,
     radius: usize,
 }
 
 impl<T: Arithmetic> Taps<T> {
-    /// `stencil`, times `factor`, for patches of `side`. Weights that cannot matter are omitted.
+    /// Taps of `factor` times the `stencil`, for patches of `side`.
+    ///
+    /// Weights too small to matter are omitted.
     pub(crate) fn new(stencil: &Stencil, factor: f64, side: usize) -> Self {
         let (radius, margin) = (stencil.radius() as i32, (side - TILE) as i32 / 2);
         let negligible = 1e-15 * stencil.weight(0, 0).abs();
@@ -69,7 +71,9 @@ impl<T: Arithmetic> Taps<T> {
     }
 }
 
-/// Adds the sum of a stencil over the values around the tile at a place to `out`; false when there are no values.
+/// Adds the sum of a stencil around the tile at a place to `out`.
+///
+/// Returns false when there are no values.
 #[inline(always)]
 pub(super) fn add_short_range<S: Simd, T: Arithmetic, const SIDE: usize>(
     taps: &Taps<T>,

@@ -1,4 +1,4 @@
-//! What an operator does on each level of a hierarchy: of L, and of its approximate inverse.
+//! Tables of an operator for each level of a hierarchy: L, or its approximate inverse.
 
 use std::f64::consts::PI;
 
@@ -14,17 +14,22 @@ use super::transfer::Transfer;
 use super::uneven::Uneven;
 use crate::adaptive::ladder::{self, has_squares, sides_of};
 
-/// Tables of one operator on levels 0 (the base grid, with its Fourier transform) to K.
+/// Tables of one operator on levels 0 to K.
+///
+/// Level 0 is the base grid, with its Fourier transform.
 #[derive(Clone)]
 pub(crate) struct Tables<T> {
     pub(super) sizes: Sizes<T>,
     pub(super) base: SymbolTable<T>,
-    /// Of levels 1 to K: the stencil on the level, and the transfer between it and the next coarser one.
+    /// Stencils of levels 1 to K, and transfers to the next coarser level.
     pub(super) levels: Vec<(Taps<T>, Transfer<T>)>,
-    /// The transfer between the finest level and the next coarser one, where that has not half as many elements along a
-    /// side.
+    /// The transfer between the finest level and the next coarser one, if they are uneven.
+    ///
+    /// The coarser level does not have half as many elements along a side then.
     pub(super) uneven: Option<Uneven<T>>,
-    /// Of elements 2, 4, … times as large as the finest; empty when they are like any value of their level.
+    /// Tables of elements 2, 4, … times as large as the finest.
+    ///
+    /// Empty when these elements are like any value of their level.
     coarse: Vec<CoarseTable<T>>,
 }
 
@@ -40,12 +45,12 @@ impl<T: Real> Tables<T> {
     }
 }
 
-/// The split kernel of one base grid, from which the tables of any number of levels are made.
+/// The split kernel of one base grid. Tables of any number of levels follow from it.
 pub(crate) struct Prepared<T> {
     sizes: Sizes<T>,
     base: Grid,
     symbol: SymbolTable<T>,
-    /// Stencil and transfer of the finest level, and of those between it and the base grid; sum of the stencil.
+    /// Stencil and transfer of the finest level. Those below are of levels between it and the base grid.
     finest: (Stencil, Transfer<T>),
     between: (Stencil, Transfer<T>),
     coarse: Vec<CoarseElement>,
@@ -54,12 +59,12 @@ pub(crate) struct Prepared<T> {
     split: ScaleSplit,
 }
 
-/// How weights follow from the side h of an element.
+/// The dependence of weights on the side h of an element.
 #[derive(Clone, Copy)]
 enum Scale {
-    /// In proportion: displacements.
+    /// Weights are proportional to h: displacements.
     Side,
-    /// In inverse proportion: pressures.
+    /// Weights are proportional to 1/h: pressures.
     Inverse,
 }
 
@@ -67,7 +72,7 @@ enum Scale {
 const INVERSE_RADIUS: usize = 2;
 
 impl<T: Real> Prepared<T> {
-    /// `v = L p` for Love's squares, and elements up to 2^`n_coarse` times as large.
+    /// Prepares `v = L p` for Love's squares, and elements up to 2^`n_coarse` times as large.
     pub(crate) fn displacement(split: &ScaleSplit, base: Grid, n_coarse: usize) -> Self {
         let cutoff = 0.5 * split.params().cutoff as f64 * base.spacing().min_element();
         let sizes = T::sizes(split.params());
@@ -85,7 +90,7 @@ impl<T: Real> Prepared<T> {
         }
     }
 
-    /// |q|/2, nearly: the inverse of L but for the mean, as a preconditioner.
+    /// Prepares about |q|/2 as a preconditioner: the inverse of L except for the mean.
     pub(crate) fn inverse(split: &ScaleSplit, base: Grid) -> Self {
         let sizes = T::sizes(split.params());
         let part = (split.inverse_stencil(INVERSE_RADIUS), Transfer::new(&split.level_filter(), sizes.taps));
@@ -99,19 +104,20 @@ impl<T: Real> Prepared<T> {
             between: part,
             coarse: Vec::new(),
             scale: Scale::Inverse,
-            // No bound: what comes down from the base grid is not a smooth part of anything.
+            // There is no bound. Values on the base grid are not a smooth part of anything.
             remainder_curvature: f64::INFINITY,
             split: split.clone(),
         }
     }
 
-    /// How far values go on a level.
+    /// The number of cells that values reach on a level.
     pub(crate) fn reach(&self) -> Reach {
         Reach { filter: self.finest.1.reach(), stencil: self.finest.0.radius() }
     }
 
-    /// Bound of the second derivatives, along the axes, of what comes down to the base grid under pressures between 0
-    /// and 1.
+    /// Bound of the second derivatives, along the axes, of values on the base grid.
+    ///
+    /// Pressures are between 0 and 1.
     pub(crate) fn remainder_curvature(&self) -> f64 {
         self.remainder_curvature
     }
@@ -135,10 +141,10 @@ impl<T: Real> Prepared<T> {
         } else {
             self.symbol.clone()
         };
-        // A constant gives zero (Eq. 3): the base grid takes off what the stencils add to it.
+        // A constant gives zero (Eq. 3). The base grid subtracts what the stencils add to it.
         let of_mean = match self.scale {
             Scale::Side => -sum,
-            // Its stencils are of differences between levels, which a constant has none of.
+            // Its stencils act on differences between levels, which are zero for a constant.
             Scale::Inverse => 0.0,
         };
         base.set_mean(T::rounded(of_mean / self.base.len() as f64));
@@ -146,28 +152,30 @@ impl<T: Real> Prepared<T> {
         Tables { sizes: self.sizes, base, levels, uneven, coarse: self.coarse_tables(n_levels) }
     }
 
-    /// In elements of a level.
+    /// The cutoff, in elements of a level.
     fn cutoff(&self) -> f64 {
         self.split.params().cutoff as f64
     }
 
-    /// The stencil of the level below the finest, when that has not twice as many elements: cutoffs differ by less than
-    /// a factor of two.
+    /// The stencil of the level below an uneven finest level.
+    ///
+    /// The finest level does not have twice as many elements. The two cutoffs differ by less than a factor of two.
     fn below_uneven(&self, finest: Grid, n_levels: usize) -> Stencil {
         let spacing = ladder::doubled(self.base, n_levels - 1).spacing();
         let inner = self.cutoff() * finest.spacing().min_element() / spacing.min_element();
         self.split.uneven_level_stencil(inner, (spacing / spacing.min_element()).into())
     }
 
-    /// The transfer to the finest level.
+    /// The transfer to an uneven finest level.
     fn uneven(&self, finest: Grid, n_levels: usize) -> Uneven<T> {
         let (fine, coarse) = (sides_of(finest), sides_of(ladder::doubled(self.base, n_levels - 1)));
         let filters = [0, 1].map(|axis| self.split.uneven_filter(coarse[axis] as f64 / fine[axis] as f64));
         Uneven::new(&filters, fine, coarse)
     }
 
-    /// What a stencil in units of the elements of a level is multiplied by; the level's grid is the base grid doubled
-    /// unless it is another one.
+    /// Factor on a stencil in units of the elements of a level.
+    ///
+    /// The level's grid is the doubled base grid, unless another `grid` is given.
     fn factor(&self, level: usize, grid: Option<Grid>) -> f64 {
         let grid = grid.unwrap_or_else(|| ladder::doubled(self.base, level));
         match self.scale {
@@ -178,7 +186,7 @@ impl<T: Real> Prepared<T> {
 
     fn coarse_tables(&self, n_levels: usize) -> Vec<CoarseTable<T>> {
         let side = self.sizes.around;
-        // Elements of one size act on each other across a border with larger ones as they do anywhere.
+        // Elements of one size act on each other across a border with larger elements as they do anywhere.
         let whole = [&self.finest.0].into_iter().chain(self.coarse.iter().map(|element| &element.whole));
         let levels = (1..n_levels).rev();
         levels
@@ -199,8 +207,9 @@ fn remainder_symbol<T: Real>(split: &ScaleSplit, base: Grid, cutoff: f64) -> Sym
     })
 }
 
-/// The stencil of levels between the base grid and the finest: their elements are squares, or nearly, as those of the
-/// base grid.
+/// The stencil of levels between the base grid and the finest.
+///
+/// Their elements are squares or nearly squares, like those of the base grid.
 fn level_stencil(split: &ScaleSplit, base: Grid) -> Stencil {
     if has_squares(base) {
         return split.level_stencil();

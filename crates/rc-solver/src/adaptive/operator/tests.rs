@@ -80,7 +80,7 @@ fn apply<T: Real + Into<f64>>(split: &ScaleSplit, base: usize, elements: Element
     v
 }
 
-/// Exact sums at some of the cells; returns the rms difference over the rms displacement.
+/// Relative rms difference of displacements to exact sums at some of the cells.
 fn error_against_exact_sums(tiles: &TileSet, p: &[f64], v: &[f64]) -> f64 {
     let exact = PeriodicLove::new();
     let (side, half_side) = (tiles.sides()[0] as f64, 0.5 / tiles.sides()[0] as f64);
@@ -114,7 +114,9 @@ fn one_application_agrees_with_exact_sums() {
     }
 }
 
-/// Elements of three sizes under the spots: the smaller, the nearer to a point, graded as the operator asks.
+/// Elements of three sizes under the spots, graded as the operator needs.
+///
+/// Elements are the smaller the nearer they are to a point.
 fn graded(side: usize, cutoff: usize, seed: u64) -> Elements {
     let mut rng = ChaCha8Rng::seed_from_u64(seed + 200);
     let centre: [f64; 2] = [rng.random(), rng.random()];
@@ -137,7 +139,7 @@ fn graded(side: usize, cutoff: usize, seed: u64) -> Elements {
     Elements::new(levels)
 }
 
-/// The pressures of the spots as each element sees them, and as the finest elements of the whole cell do.
+/// The pressures of the spots on each element, and on the finest elements everywhere.
 fn pressures(elements: &Elements, seed: u64) -> Vec<f64> {
     let mut p = vec![0.0; elements.len()];
     for (coarser, tiles) in elements.levels().iter().enumerate() {
@@ -240,7 +242,8 @@ fn the_preconditioner_is_symmetric_and_positive_among_active_elements() {
             area[first..first + CELLS].fill(Elements::area(coarser));
         }
         let active: Vec<bool> = area.iter().map(|&area| area > 0.0 && rng.random::<f64>() < 0.4).collect();
-        // A residual that is the same everywhere is a change of the penetration, which no pressure of zero mean is for.
+        // A residual that is the same everywhere is a change of the penetration. A pressure of zero mean does not
+        // change it.
         let ones: Vec<f32> = active.iter().map(|&active| if active { 1.0 } else { 0.0 }).collect();
         let of_ones = preconditioned(&elements, base, &active, &ones);
         assert!(of_ones.iter().all(|z| z.abs() < 1e-3), "{of_ones:?}");
@@ -259,7 +262,9 @@ fn the_preconditioner_is_symmetric_and_positive_among_active_elements() {
     }
 }
 
-/// Pressures as rough as can be: noise on every element, on half, on a tenth of them, elements by turns, and one alone.
+/// Pressures that are as rough as possible.
+///
+/// They are noise on every element, on half and on a tenth of them, alternating elements, and one element alone.
 fn rough_pressures(n_elements: usize) -> Vec<Vec<f64>> {
     let mut rng = ChaCha8Rng::seed_from_u64(9);
     let mut pressures: Vec<Vec<f64>> = [0.0, 0.5, 0.9]
@@ -277,7 +282,7 @@ fn on_rough_pressures_the_error_is_in_proportion_to_the_roughness() {
     for (base, side) in [(64, 128), (64, 512)] {
         let elements = Elements::uniform(TileSet::full([side, side]));
         for mut p in rough_pressures(elements.len()) {
-            // As fresh gaps do: a uniform pressure displaces nothing.
+            // The mean is subtracted as for fresh gaps. A uniform pressure displaces nothing.
             let mean = p.iter().sum::<f64>() / p.len() as f64;
             for p in &mut p {
                 *p -= mean;

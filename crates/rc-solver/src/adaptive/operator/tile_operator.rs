@@ -1,4 +1,6 @@
-//! One application of the multilevel operator: up to the base grid, its convolution, and down again.
+//! One application of the multilevel operator.
+//!
+//! It goes up to the base grid, applies its convolution, and goes down again.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -21,8 +23,9 @@ use crate::adaptive::part::Part;
 use crate::descent::{BlockLayout, read_rows, write_rows};
 use crate::parallel::{self, Tasks};
 
-/// Buffers for operators on one hierarchy. Blocks of vectors are of [`BLOCK_CELLS`] cells. Memory for vectors is taken
-/// when pressures are written.
+/// Buffers for operators on one hierarchy.
+///
+/// Blocks of vectors have [`BLOCK_CELLS`] cells. Memory for vectors is taken when pressures are written.
 pub(crate) struct TileOperator<T> {
     hierarchy: Arc<Hierarchy>,
     arch: Arch,
@@ -51,7 +54,7 @@ impl<T: Real> TileOperator<T> {
         }
     }
 
-    /// Takes memory for vectors, unless it has it.
+    /// Takes memory for vectors, if they have none.
     fn reserve(&mut self) {
         let hierarchy = &self.hierarchy;
         if self.source.is_empty() {
@@ -69,14 +72,15 @@ impl<T: Real> TileOperator<T> {
         (self.source, self.densities, self.displacements, self.ghosts) = Default::default();
     }
 
-    /// What another operator on the base grid and the elements may use, and be changed by: vector instructions, the
-    /// convolution, room for a vector.
+    /// Buffers that another operator on the base grid and the elements may use and change.
+    ///
+    /// They are the vector instructions, the convolution, and room for a vector.
     pub(super) fn buffers(&mut self) -> (Arch, &mut Convolution<T>, &mut [T]) {
         self.reserve();
         (self.arch, &mut self.convolution, &mut self.source)
     }
 
-    /// How vectors are divided.
+    /// The division of vectors into blocks.
     pub(crate) fn layout(&self) -> BlockLayout {
         self.hierarchy.mesh().layout()
     }
@@ -86,20 +90,23 @@ impl<T: Real> TileOperator<T> {
         self.hierarchy.base()
     }
 
-    /// The displacement of the cells of the base grid in the last [`TileOperator::apply`], tile by tile, row-major: the
-    /// smooth remainder.
+    /// The smooth remainder: the displacement of the cells of the base grid.
+    ///
+    /// It is that of the last [`TileOperator::apply`], tile by tile, row-major.
     pub(crate) fn base_displacement(&self) -> &[T] {
         &self.displacements[0]
     }
 
-    /// Calls `write` once for each block, with its index and the values to be filled in.
+    /// Calls `write` once for each block, with its index and the values to fill in.
     pub(crate) fn write(&mut self, write: &(dyn Fn(usize, &mut [T]) + Sync)) {
         self.reserve();
         let own = &mut self.source[self.hierarchy.own_values()];
         parallel::for_each(own.chunks_mut(BLOCK_CELLS).enumerate(), |(i, cells)| write(i, cells));
     }
 
-    /// Applies a table, except for the part of the elements' own level, which [`TileOperator::read`] adds.
+    /// Applies a table, except for the part of the elements' own level.
+    ///
+    /// [`TileOperator::read`] adds that part.
     pub(crate) fn apply(&mut self, tables: &Tables<T>) {
         self.hierarchy.finest().exchange(&mut self.source);
         self.set_ghosts();
@@ -108,8 +115,9 @@ impl<T: Real> TileOperator<T> {
         self.prolong(tables);
     }
 
-    /// Calls `read` once for each block, with its index and the result of the last [`TileOperator::apply`], which was
-    /// of the same table.
+    /// Calls `read` once for each block, with its index and the result.
+    ///
+    /// The result is that of the last [`TileOperator::apply`], which must have had the same tables.
     pub(crate) fn read(&self, tables: &Tables<T>, read: &(dyn Fn(usize, &[T]) + Sync)) {
         let (blocks, n_own) = (&self.hierarchy.blocks, self.hierarchy.own_values().len());
         parallel::for_each_index(blocks.len(), &|i| {
@@ -122,7 +130,7 @@ impl<T: Real> TileOperator<T> {
                 self.displace_coarse(tables, *coarser, tiles.clone(), cells);
             }
             self.add_ghosts(tables, *coarser, tiles.clone(), cells);
-            // What fills up the last block of a level has no displacement.
+            // Values that fill up the last block of a level have no displacement.
             read(i, &block[..(n_own - i * BLOCK_CELLS).min(BLOCK_CELLS)]);
         });
     }
@@ -137,7 +145,7 @@ impl<T: Real> TileOperator<T> {
         }
     }
 
-    /// The densities of the levels between the finest and the base grid.
+    /// Computes the densities of the levels between the finest and the base grid.
     fn restrict(&mut self, tables: &Tables<T>) {
         let (n_levels, arch) = (self.hierarchy.n_levels(), self.arch);
         let levels = &self.hierarchy.levels;
@@ -159,7 +167,7 @@ impl<T: Real> TileOperator<T> {
         }
     }
 
-    /// The base grid: its density from level 1, its convolution, its displacement as tiles.
+    /// Computes the base grid: its density from level 1, its convolution, its displacement as tiles.
     fn convolve_base(&mut self, tables: &Tables<T>) {
         let (side, arch, levels) = (self.hierarchy.base().nx(), self.arch, &self.hierarchy.levels);
         let finer = TileValues::new(self.densities.get(1).unwrap_or(&self.source), levels[1].tiles());
@@ -187,7 +195,7 @@ impl<T: Real> TileOperator<T> {
         read_rows(&self.convolution, &|i, rows| blocks.run(i, |cells| rows_to_tiles(rows, cells, side)));
     }
 
-    /// The displacements of the levels between the base grid and the finest.
+    /// Computes the displacements of the levels between the base grid and the finest.
     fn prolong(&mut self, tables: &Tables<T>) {
         let (arch, levels) = (self.arch, &self.hierarchy.levels);
         for level in 1..self.hierarchy.n_levels() {
@@ -204,7 +212,7 @@ impl<T: Real> TileOperator<T> {
         }
     }
 
-    /// The displacement of some tiles of the finest elements.
+    /// Writes the displacement of some tiles of the finest elements.
     fn displace_finest(&self, tables: &Tables<T>, tiles: Range<usize>, cells: &mut [T]) {
         let (levels, level) = (&self.hierarchy.levels, self.hierarchy.n_levels());
         let finest = self.hierarchy.finest_values();
@@ -221,7 +229,7 @@ impl<T: Real> TileOperator<T> {
         }
     }
 
-    /// The displacement of some tiles of elements 2^`coarser` times as large as the finest.
+    /// Writes the displacement of some tiles of elements 2^`coarser` times as large as the finest.
     fn displace_coarse(&self, tables: &Tables<T>, coarser: usize, tiles: Range<usize>, cells: &mut [T]) {
         let Hierarchy { levels, leaves, .. } = self.hierarchy.as_ref();
         let (elements, level) = (self.hierarchy.elements(), self.hierarchy.n_levels() - coarser);
@@ -237,8 +245,9 @@ impl<T: Real> TileOperator<T> {
         (tables.sizes.passes.displace_coarse)(self.arch, &pass, Targets { places: &here.places()[tiles], cells });
     }
 
-    /// Adds what larger elements nearby add to the displacement of some tiles of elements 2^`coarser` times as large as
-    /// the finest.
+    /// Adds the displacement of some tiles that larger elements nearby cause.
+    ///
+    /// The tiles have elements 2^`coarser` times as large as the finest.
     fn add_ghosts(&self, tables: &Tables<T>, coarser: usize, tiles: Range<usize>, cells: &mut [T]) {
         let Some(larger) = self.hierarchy.leaves.get(coarser) else { return };
         let Some(table) = tables.coarse_table(coarser + 1) else { return };
@@ -249,7 +258,9 @@ impl<T: Real> TileOperator<T> {
     }
 }
 
-/// The densities of tiles of a level from those of the next finer one, the last of which is the finest.
+/// Computes the densities of tiles of a level from those of the next finer one.
+///
+/// The last level is the finest.
 fn restrict<T: Real>(
     tables: &Tables<T>,
     (level, n_levels): (usize, usize),
@@ -270,12 +281,12 @@ fn blocks<'a, T>(places: &'a [[u32; 2]], cells: &'a mut [T]) -> impl Iterator<It
     blocks.map(|(cells, places)| Targets { places, cells })
 }
 
-/// The own tiles of a level, block by block, from the values of all.
+/// The own tiles of a level, block by block, from the values of all tiles.
 fn own_blocks<'a, T>(part: &'a Part, cells: &'a mut [T]) -> impl Iterator<Item = Targets<'a, T>> {
     blocks(part.own_places(), &mut cells[part.own_cells()])
 }
 
-/// Whole rows of tiles as rows of `side` cells.
+/// Copies whole rows of tiles to rows of `side` cells.
 pub(super) fn tiles_to_rows<T: Copy>(cells: &[T], rows: &mut [T], side: usize) {
     for (lines, tiles) in rows.chunks_exact_mut(TILE * side).zip(cells.chunks_exact(TILE * side)) {
         for (row, line) in lines.chunks_exact_mut(side).enumerate() {
@@ -286,7 +297,7 @@ pub(super) fn tiles_to_rows<T: Copy>(cells: &[T], rows: &mut [T], side: usize) {
     }
 }
 
-/// The reverse of [`tiles_to_rows`].
+/// Copies rows of cells to tiles: the reverse of [`tiles_to_rows`].
 pub(super) fn rows_to_tiles<T: Copy>(rows: &[T], cells: &mut [T], side: usize) {
     for (tiles, lines) in cells.chunks_exact_mut(TILE * side).zip(rows.chunks_exact(TILE * side)) {
         for (row, line) in lines.chunks_exact(side).enumerate() {

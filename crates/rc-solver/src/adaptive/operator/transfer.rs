@@ -1,5 +1,6 @@
-//! Between two levels: pressures are restricted to the coarser one by a filter, displacements are prolonged by its
-//! transpose.
+//! Transfer between two levels by a filter and its transpose.
+//!
+//! The filter restricts pressures to the coarser level. Its transpose prolongs displacements.
 
 use std::ops::Range;
 
@@ -9,30 +10,33 @@ use rc_quadtree::{CELLS, Patch, TILE};
 
 use super::real::{Arithmetic, add_product};
 
-/// Half a tile: what a fine tile covers of a coarse one.
+/// Half a tile: the coarse cells under a fine tile, along one axis.
 const HALF: usize = TILE / 2;
 
-/// A filter in the precision of the values, filled up with zeros to `N` taps: a number the compiler knows.
+/// A filter in the precision of the values, filled up with zeros to `N` taps.
+///
+/// The compiler knows the number `N`.
 #[derive(Clone, Debug)]
 pub(crate) struct Transfer<T> {
     taps: Vec<T>,
 }
 
 impl<T: Arithmetic> Transfer<T> {
-    /// `n` taps, an even number not below the filter's.
+    /// A filter with `n` taps, an even number that is at least the filter's.
     pub(crate) fn new(filter: &Filter, n: usize) -> Self {
         let more = vec![T::default(); (n - filter.taps().len()) / 2];
         let taps = filter.taps().iter().map(|&tap| T::rounded(tap));
         Self { taps: more.iter().copied().chain(taps).chain(more.iter().copied()).collect() }
     }
 
-    /// Taps on either side of a coarse centre: the halo, in coarse cells.
+    /// Number of taps on either side of a coarse centre. It is the halo, in coarse cells.
     pub(crate) fn reach(&self) -> usize {
         self.taps.len() / 2
     }
 
-    /// Rows of the coarse patch that [`Transfer::prolong`] reads, for a fine tile in the half `half_y` (0 or 1) of its
-    /// parent.
+    /// Rows of the coarse patch that [`Transfer::prolong`] reads for a fine tile.
+    ///
+    /// The tile is in the half `half_y` (0 or 1) of its parent.
     pub(crate) fn rows_to_prolong(&self, side: usize, half_y: usize) -> Range<usize> {
         let start = (side - TILE) / 2 + half_y * HALF;
         start - self.reach()..start + HALF + self.reach()
@@ -49,11 +53,11 @@ impl<T: Arithmetic> Transfer<T> {
         std::array::from_fn(|j| self.taps[j])
     }
 
-    /// Interpolates to a fine tile in the quarter (`half_x`, `half_y`) of the tile in the middle of the coarse patch:
-    /// along y, then along x.
+    /// Interpolates to a fine tile, along y and then along x.
     ///
-    /// The value at the fine centre beyond coarse centre c is `Σ_j tap_j · value(c + 1 - N/2 + j)`; the one before it
-    /// has the taps in reverse, `Σ_j tap_j · value(c - 1 + N/2 - j)`.
+    /// The fine tile is in the quarter (`half_x`, `half_y`) of the tile in the middle of the coarse patch. The value at
+    /// the fine centre beyond coarse centre c is `Σ_j tap_j · value(c + 1 - N/2 + j)`. The value before it has the taps
+    /// in reverse, `Σ_j tap_j · value(c - 1 + N/2 - j)`.
     #[inline(always)]
     pub(crate) fn prolong<S: Simd, const N: usize, const SIDE: usize>(
         &self,
@@ -63,7 +67,7 @@ impl<T: Arithmetic> Transfer<T> {
     ) {
         let taps = self.taps::<N>();
         let margin = (SIDE - TILE) / 2;
-        // The first coarse cell that matters, along either axis.
+        // The first coarse cell that is read, along either axis.
         let (left, below) = (margin + half_x * HALF - N / 2, margin + half_y * HALF - N / 2);
         let mut lines = [[T::default(); SIDE]; TILE];
         prolong_columns::<S, T, N, SIDE>(&taps, &patch[below..][..HALF + N], left, &mut lines);
@@ -73,8 +77,10 @@ impl<T: Arithmetic> Transfer<T> {
         }
     }
 
-    /// The coarse tile under the 16 × 16 cells in the middle of the fine patch: a quarter of the transpose of
-    /// [`Transfer::prolong`], so that a constant stays what it is.
+    /// Sums the cells in the middle of the fine patch to a coarse tile.
+    ///
+    /// They are 16 × 16 cells. This is a quarter of the transpose of [`Transfer::prolong`], so that a constant stays
+    /// the same.
     #[inline(always)]
     pub(crate) fn restrict<S: Simd, const N: usize, const SIDE: usize>(
         &self,
@@ -82,7 +88,7 @@ impl<T: Arithmetic> Transfer<T> {
         out: &mut [T; CELLS],
     ) {
         let taps = self.taps::<N>();
-        // The first fine cell that matters, along either axis; an even number.
+        // The first fine cell that is read, along either axis. It is an even number.
         let start = (SIDE - 2 * TILE) / 2 - N;
         let rows = &patch[start..][..2 * TILE + 2 * N];
         for (c, row) in out.as_chunks_mut::<TILE>().0.iter_mut().enumerate() {
@@ -92,7 +98,9 @@ impl<T: Arithmetic> Transfer<T> {
     }
 }
 
-/// Interpolates to the eight rows of a fine tile along y, in the columns from `left` on.
+/// Interpolates to the eight rows of a fine tile along y.
+///
+/// The columns are those from `left` on.
 #[inline(always)]
 fn prolong_columns<S: Simd, T: Arithmetic, const N: usize, const SIDE: usize>(
     taps: &[T; N],
@@ -120,7 +128,9 @@ fn prolong_columns<S: Simd, T: Arithmetic, const N: usize, const SIDE: usize>(
     }
 }
 
-/// Interpolates to the eight cells of a row along x, from the coarse cells of `line`.
+/// Interpolates to the eight cells of a row along x.
+///
+/// They are interpolated from the coarse cells of `line`.
 #[inline(always)]
 fn prolong_row<S: Simd, T: Arithmetic, const N: usize>(taps: &[T; N], line: &[T], row: &mut [T; TILE]) {
     let (mut before, mut beyond) = ([T::default(); HALF], [T::default(); HALF]);
@@ -138,7 +148,9 @@ fn prolong_row<S: Simd, T: Arithmetic, const N: usize>(taps: &[T; N], line: &[T]
     }
 }
 
-/// Sums fine rows along y for one row of coarse cells, in the columns from `start` on.
+/// Sums fine rows along y for one row of coarse cells.
+///
+/// The columns are those from `start` on.
 #[inline(always)]
 fn restrict_columns<S: Simd, T: Arithmetic, const N: usize, const SIDE: usize>(
     taps: &[T; N],
@@ -151,7 +163,7 @@ fn restrict_columns<S: Simd, T: Arithmetic, const N: usize, const SIDE: usize>(
         let from = (start + chunk).min(SIDE - TILE);
         let mut sums = [T::default(); TILE];
         for j in 0..N {
-            // The even one of two fine cells is the one before the coarse centre.
+            // The even one of two fine cells is before the coarse centre.
             let even = &rows[2 + 2 * j][from..][..TILE];
             let odd = &rows[2 * N - 1 - 2 * j][from..][..TILE];
             for x in 0..TILE {

@@ -1,5 +1,6 @@
-//! Between the finest level and a level that has not half as many elements along a side: each element has its own taps
-//! along each axis.
+//! Transfer between the finest level and an uneven level below it.
+//!
+//! The coarser level does not have half as many elements along a side. Each element has its own taps along each axis.
 
 use std::ops::Range;
 
@@ -12,13 +13,15 @@ use super::real::{Arithmetic, add_product};
 /// The taps of all elements along one axis, both ways.
 #[derive(Clone, Debug)]
 pub(super) struct Axis<T> {
-    /// Of the fine elements: the coarse elements that one takes from.
+    /// Taps of each fine element: the coarse elements that it takes from.
     prolong: Lines<T>,
-    /// Of the coarse elements: the fine elements that one takes from.
+    /// Taps of each coarse element: the fine elements that it takes from.
     restrict: Lines<T>,
 }
 
-/// What the elements of one side take from: neighbours from a first one on, which is counted periodically.
+/// The taps of the elements of one side.
+///
+/// They are for neighbours from a first one on, which is counted periodically.
 #[derive(Clone, Debug)]
 struct Lines<T> {
     n_taps: usize,
@@ -31,13 +34,15 @@ impl<T: Arithmetic> Lines<T> {
         &self.taps[element * self.n_taps..][..self.n_taps]
     }
 
-    /// Of the elements of a tile along the axis, as far as there are any: the first one's index.
+    /// The indices of the elements of a tile along the axis.
+    ///
+    /// The last tile may have fewer elements.
     fn of_tile(&self, tile: u32) -> Range<usize> {
         let first = tile as usize * TILE;
         first..(first + TILE).min(self.first.len())
     }
 
-    /// The first tile, and the places from its corner on, that the elements of a tile take from.
+    /// The first tile that a tile takes from, and the places from its corner on.
     fn under(&self, tile: u32) -> (i64, Range<usize>) {
         let elements = self.of_tile(tile);
         let corner = self.first[elements.start].div_euclid(TILE as i64);
@@ -47,7 +52,7 @@ impl<T: Arithmetic> Lines<T> {
 }
 
 impl<T: Arithmetic> Axis<T> {
-    /// Between `fine` and `coarse` elements on a side.
+    /// The taps between `fine` and `coarse` elements on a side.
     pub(super) fn new(filter: &UnevenFilter, fine: usize, coarse: usize) -> Self {
         let ratio = coarse as f64 / fine as f64;
         let of_fine: Vec<(i64, Vec<f64>)> = (0..fine)
@@ -58,11 +63,11 @@ impl<T: Arithmetic> Axis<T> {
             })
             .collect();
         let n_taps = of_fine[0].1.len();
-        // A quarter of the transpose in two dimensions where sides are halved: a constant stays what it is.
+        // Where sides are halved, this is a quarter of the transpose in two dimensions. A constant stays the same.
         let (mut first, mut rows) = (Vec::with_capacity(coarse), Vec::with_capacity(coarse));
         for c in 0..coarse as i64 {
             let mut row = Vec::with_capacity(2 * n_taps + 2);
-            // More than enough on either side.
+            // The range is more than large enough on either side.
             let least = ((c as f64 - n_taps as f64) / ratio).floor() as i64;
             let most = ((c as f64 + n_taps as f64) / ratio).ceil() as i64;
             let mut start = None;
@@ -98,7 +103,9 @@ pub(crate) struct Uneven<T> {
     axes: [Axis<T>; 2],
 }
 
-/// What one tile takes from: the corner of the patch that holds it, in tiles, and the rows of the patch that matter.
+/// The source of one tile.
+///
+/// It has the corner of its patch, in tiles, and the rows of the patch that matter.
 pub(super) struct Under {
     pub(super) corner: (i64, i64),
     pub(super) rows: Range<usize>,
@@ -106,17 +113,17 @@ pub(super) struct Under {
 }
 
 impl<T: Arithmetic> Uneven<T> {
-    /// Between grids of `fine` and `coarse` elements, with a filter for each axis.
+    /// The taps between grids of `fine` and `coarse` elements, with a filter for each axis.
     pub(super) fn new(filters: &[UnevenFilter; 2], fine: [usize; 2], coarse: [usize; 2]) -> Self {
         Self { axes: [0, 1].map(|axis| Axis::new(&filters[axis], fine[axis], coarse[axis])) }
     }
 
-    /// Of a fine tile.
+    /// The source of a fine tile.
     pub(super) fn to_prolong(&self, place: [u32; 2]) -> Under {
         Self::under([&self.axes[0].prolong, &self.axes[1].prolong], place)
     }
 
-    /// Of a coarse tile.
+    /// The source of a coarse tile.
     pub(super) fn to_restrict(&self, place: [u32; 2]) -> Under {
         Self::under([&self.axes[0].restrict, &self.axes[1].restrict], place)
     }
@@ -126,7 +133,7 @@ impl<T: Arithmetic> Uneven<T> {
         Under { corner: (left, below), rows, columns }
     }
 
-    /// A fine tile from the coarse patch `under` it.
+    /// Computes a fine tile from the coarse patch `under` it.
     #[inline(always)]
     pub(super) fn prolong<S: Simd, const SIDE: usize>(
         &self,
@@ -138,7 +145,7 @@ impl<T: Arithmetic> Uneven<T> {
         apply::<S, T, SIDE>(lines, place, (under, patch), out);
     }
 
-    /// A coarse tile from the fine patch `under` it.
+    /// Computes a coarse tile from the fine patch `under` it.
     #[inline(always)]
     pub(super) fn restrict<S: Simd, const SIDE: usize>(
         &self,
@@ -151,7 +158,7 @@ impl<T: Arithmetic> Uneven<T> {
     }
 }
 
-/// Sums along y and then along x. What is beyond the level is zero.
+/// Sums along y and then along x. Values beyond the level are zero.
 #[inline(always)]
 fn apply<S: Simd, T: Arithmetic, const SIDE: usize>(
     [along_x, along_y]: [&Lines<T>; 2],
@@ -159,7 +166,7 @@ fn apply<S: Simd, T: Arithmetic, const SIDE: usize>(
     (under, patch): (&Under, &Patch<T, SIDE>),
     out: &mut [T; CELLS],
 ) {
-    // Eight rows side by side, so that sums along x are of whole vectors too.
+    // Eight rows lie side by side, so that sums along x take whole vectors too.
     let mut lines = [[T::default(); TILE]; SIDE];
     let corner = under.corner.1 * TILE as i64;
     for (y, element) in along_y.of_tile(row).enumerate() {
@@ -205,7 +212,7 @@ mod tests {
 
     use super::*;
 
-    /// Both ways along one axis are transposes of each other but for the ratio, and keep a constant.
+    /// The two directions along one axis are transposes of each other, up to the ratio. Both keep a constant.
     #[test]
     fn restriction_is_the_transpose_of_prolongation() {
         for (fine, coarse) in [(1001, 512), (43, 24), (100, 56), (64, 32)] {
@@ -227,7 +234,7 @@ mod tests {
                     assert!((tap - ratio * down[i][c]).abs() < 1e-12, "{fine} and {coarse}: ({i}, {c})");
                 }
             }
-            // A constant stays one, but for short waves, which the remainder does not pass.
+            // A constant stays the same, except for short waves, which the remainder does not pass.
             let sums: Vec<f64> = up.iter().map(|row| row.iter().sum()).collect();
             for k in 0..=coarse / 8 {
                 let angle = |c: usize| TAU * (k * c) as f64 / coarse as f64;

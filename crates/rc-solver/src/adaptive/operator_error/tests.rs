@@ -21,7 +21,9 @@ use crate::descent::{BlockOperator, SymbolOperator, read_blocks, write_blocks};
 use crate::operator::UniformOperator;
 use crate::params::IterationParams;
 
-/// Places of the elements of a mesh of one size on its whole grid, row by row; none of what is beyond the grid.
+/// Places of the elements of a mesh of one size on its whole grid.
+///
+/// They are row by row. Elements beyond the grid have no place.
 fn places(elements: &Elements) -> Vec<Option<usize>> {
     let ([nx, ny], tiles) = (elements.finest().sides(), elements.finest().places());
     let place = |i: usize| {
@@ -32,7 +34,7 @@ fn places(elements: &Elements) -> Vec<Option<usize>> {
     (0..elements.len()).map(place).collect()
 }
 
-/// `operator` applied to `values`.
+/// Result of `operator` on `values`.
 fn applied(operator: &mut (impl BlockOperator<f64> + ?Sized), values: &[f64]) -> Vec<f64> {
     let block = operator.layout().len();
     write_blocks(operator, values.chunks(block), |values, block| block.copy_from_slice(values));
@@ -42,8 +44,9 @@ fn applied(operator: &mut (impl BlockOperator<f64> + ?Sized), values: &[f64]) ->
     result
 }
 
-/// ‖L^(-1/2) (L~ - L) L^(-1/2)‖ for the split operator L~ above a base grid on every tile of a grid, from below, by
-/// power iteration.
+/// ‖L^(-1/2) (L~ - L) L^(-1/2)‖ for the split operator L~, from below.
+///
+/// The operator is above a base grid on every tile of a grid. The norm comes from power iteration.
 fn energy_error(split: GapSplit, base_grid: Grid, grid: Grid, rng: &mut impl Rng) -> f64 {
     let elements = Elements::uniform(TileSet::full(sides_of(grid)));
     let places = places(&elements);
@@ -93,16 +96,17 @@ fn the_error_in_the_energy_norm_does_not_grow_with_the_levels() {
     }
 }
 
-/// The error in the energy norm does not depend on whether sides are halves of each other, nor on the shape of the
-/// cell.
+/// The error in the energy norm is the same on any grid.
+///
+/// It depends neither on halved sides nor on the shape of the cell.
 #[test]
 #[expect(clippy::print_stdout, reason = "docs/measurements-adaptive.md has the numbers")]
 fn the_error_in_the_energy_norm_is_the_same_on_any_grid() {
     let mut rng = ChaCha8Rng::seed_from_u64(4);
     for (error, bound) in [(1e-6, 4.5e-5), (2e-9, 4e-7), (1e-10, 4e-9)] {
         let split = GapSplit::for_error(error).expect("a split");
-        // In the last one the elements of coarser levels are 2 % longer along one side, the most that there is: twice
-        // the error of squares.
+        // In the last case the elements of coarser levels are 2 % longer along one side, which is the maximum. The
+        // error is twice that of squares.
         for ([bx, by], [nx, ny], times) in [
             ([64, 32], [128, 64], 1.0),
             ([64, 64], [125, 125], 1.0),
@@ -148,7 +152,7 @@ fn rough(grid: Grid, waves: i32, hurst: f64, rng: &mut impl Rng) -> Field {
 /// A map with its base grid, load and tolerance.
 struct Scene<'a> {
     map: &'a Field,
-    /// Elements of the base grid along x; the method's own choice without it.
+    /// Number of elements of the base grid along x. `None` stands for the method's own choice.
     base: Option<usize>,
     control: Control,
     bound: ErrorBound,
@@ -195,7 +199,7 @@ impl Audited {
         OperatorError::of(self.solved.splits.certified, &self.solved.scale, self.problem.control)
     }
 
-    /// The operator that certified, after the pressure was applied to it, and its displacement.
+    /// Gives `look` the certifying operator, after an application to the pressure, and its displacement.
     fn certified<R>(&self, base: Grid, look: impl FnOnce(&dyn GapOperator, &[f64]) -> R) -> R {
         let level = &self.solved.level;
         let prepared = PreparedGap::new(self.solved.splits.certified, base, 0);
@@ -207,14 +211,14 @@ impl Audited {
         look(&*operator, &displacement)
     }
 
-    /// The penetration by the exact displacement.
+    /// The penetration from the exact displacement.
     fn approach(&self, map: &Field) -> f64 {
         let total: f64 = self.pressure.iter().sum();
         let gap = self.displacement.iter().zip(map.values()).map(|(v, h)| v - h + self.problem.h_max);
         self.pressure.iter().zip(gap).map(|(p, gap)| p / total * gap).sum()
     }
 
-    /// The certificate by the exact displacement, over the whole cell.
+    /// The certificate from the exact displacement, over the whole cell.
     fn certificate(&self, map: &Field) -> Certificate {
         let gap: Vec<f64> =
             self.displacement.iter().zip(map.values()).map(|(v, h)| v - h + self.problem.h_max).collect();
@@ -231,8 +235,10 @@ impl Audited {
     }
 }
 
-/// A rectangle, sides that are not halved, and both, at light and heavy loads under both controls: each with its
-/// solution.
+/// Calls `check` with scenes on any grid, and their solutions.
+///
+/// The grids are a rectangle, one whose sides are not halved, and one with both. Loads are light and heavy, under both
+/// controls.
 fn for_any_grid(bounds: &[ErrorBound], mut check: impl FnMut(&str, &Scene<'_>, &Audited)) {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     let grids = [([256, 64], 16), ([300, 207], 16), ([101, 101], 8), ([250, 250], 30), ([261, 261], 12)];
@@ -252,8 +258,9 @@ fn for_any_grid(bounds: &[ErrorBound], mut check: impl FnMut(&str, &Scene<'_>, &
     }
 }
 
-/// Rough and noise-like maps, light and heavy loads, both controls, both kinds of tolerance: each is given to `check`
-/// with its solution.
+/// Calls `check` with scenes on square grids, and their solutions.
+///
+/// Maps are rough or like noise. Loads are light and heavy, under both controls, with both kinds of tolerance.
 fn for_each_scene(bounds: &[ErrorBound], mut check: impl FnMut(&str, &Scene<'_>, &Audited)) {
     let mut rng = ChaCha8Rng::seed_from_u64(2);
     let mut maps = Vec::new();
@@ -296,7 +303,7 @@ fn an_audit_on_any_grid_finds_no_more_than_is_claimed() {
     for_any_grid(&bounds, |name, scene, audited| println!("{}", audit(name, scene, audited)));
 }
 
-/// Asserts that claims hold; says how near they are.
+/// Asserts that the claims hold, and returns how close they are.
 fn audit(name: &str, scene: &Scene<'_>, audited: &Audited) -> String {
     let claimed = audited.solved.level.outcome.certificate;
     let found = audited.certificate(scene.map);
@@ -338,7 +345,7 @@ fn the_smooth_displacement_is_as_exact_as_the_others() {
                 (tile / per_side * TILE + cell / TILE) as f64 + 0.5,
             ) / audited.base.nx() as f64;
             let distance = |at: &DVec2| (centre - *at - (centre - *at).round()).length();
-            // Nearer to a pressure the short-range parts are missing, which are not negative.
+            // Nearer to a pressure, the short-range parts are missing. They are not negative.
             if pressed.iter().all(|(at, _)| distance(at) > reach) {
                 let sum: f64 =
                     pressed.iter().map(|(at, p)| p * exact.coefficient(centre - *at, 0.5 / side as f64)).sum();

@@ -9,7 +9,7 @@ use crate::parallel;
 /// F and its transpose on a grid.
 pub(crate) struct GridExtension {
     grid: Grid,
-    /// Over squares of 2 × 2 elements.
+    /// The pyramid over squares of 2 × 2 elements.
     pyramid: Pyramid,
 }
 
@@ -19,7 +19,7 @@ impl GridExtension {
         Self { grid, pyramid }
     }
 
-    /// Prepares for these active elements.
+    /// Prepares the extension for these active elements.
     pub(crate) fn set_active(&mut self, active: &[bool]) {
         self.for_each_row_of_squares(|[nx, ny], iy, row| {
             let parts = |y: usize| -> Option<Vec<f32>> {
@@ -40,7 +40,9 @@ impl GridExtension {
         self.pyramid.extend();
     }
 
-    /// F in whole rows of the grid, the first of them `first`: from the values of active elements to u.
+    /// F in whole rows of the grid: from the values of active elements to u.
+    ///
+    /// `first` is the index of the first row.
     pub(crate) fn fill(&self, first: usize, active: &[bool], rows: &mut [f32]) {
         let nx = self.grid.nx();
         let (mut line, mut around) = (Vec::new(), vec![0.0; nx]);
@@ -52,7 +54,9 @@ impl GridExtension {
         }
     }
 
-    /// Fᵀ: adds to the values of active elements what the others have, and leaves zeros there.
+    /// Fᵀ: adds to the values of active elements the shares of the values between them.
+    ///
+    /// Leaves zeros on the other elements.
     pub(crate) fn gather(&mut self, active: &[bool], values: &mut [f32]) {
         let height = self.grid.ny().div_ceil(2);
         self.for_each_row_of_squares(|[nx, ny], iy, row| {
@@ -79,7 +83,9 @@ impl GridExtension {
         });
     }
 
-    /// Sets the values of the squares: `work` gets elements along both axes and a row, with its index.
+    /// Sets the values of the squares.
+    ///
+    /// `work` gets the numbers of elements along both axes, the index of a row of squares, and the row.
     fn for_each_row_of_squares(&mut self, work: impl Fn([usize; 2], usize, &mut [f32]) + Sync) {
         let grid = [self.grid.nx(), self.grid.ny()];
         let nx = grid[0].div_ceil(2);
@@ -98,7 +104,7 @@ mod tests {
 
     use super::*;
 
-    /// F of values on the active elements.
+    /// F of `values` on the active elements.
     fn extended(extension: &mut GridExtension, active: &[bool], values: &[f32]) -> Vec<f32> {
         let mut values = values.to_vec();
         extension.extend(&values);

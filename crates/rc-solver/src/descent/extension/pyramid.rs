@@ -1,25 +1,29 @@
-//! Values on a grid of squares that are active in part, and on coarser and coarser ones.
+//! Values on a grid of squares that are active in part, and on coarser grids.
 
 use super::rows::{gather, interpolate, means};
 use crate::parallel;
 
-/// Values that one task works on, at least.
+/// Minimum number of values that one task works on.
 const TASK: usize = 4096;
 
-/// What a square takes from its own active elements, with x the part of its elements that are active; it has the rest
-/// from larger squares. `docs/measurements-uniform.md` compares x^(3/4) with others.
+/// The part of its value that a square takes from its own active elements.
+///
+/// x is the part of its elements that are active. The square takes the rest from larger squares.
+/// `docs/measurements-uniform.md` compares x^(3/4) with other powers.
 pub(crate) fn own_part(x: f32) -> f32 {
     x.sqrt() * x.sqrt().sqrt()
 }
 
-/// A square's shares: what the mean over all its elements is multiplied by, and what the value around it is.
+/// The two shares of a square.
+///
+/// The first multiplies the mean over all its elements. The second multiplies the value around it.
 fn shares(x: f32) -> [f32; 2] {
     let own = own_part(x);
     // The mean over all elements is x times the mean over the active ones.
     if x > 0.0 { [own / x, 1.0 - own] } else { [0.0, 1.0] }
 }
 
-/// The shares of squares of which these `parts` are active.
+/// Sets the shares of squares, of whose elements these `parts` are active.
 pub(crate) fn set_shares(own: &mut [f32], rest: &mut [f32], parts: &[f32]) {
     let blocks = own.chunks_mut(TASK).zip(rest.chunks_mut(TASK)).zip(parts.chunks(TASK));
     parallel::for_each(blocks, |((own, rest), parts)| {
@@ -29,24 +33,24 @@ pub(crate) fn set_shares(own: &mut [f32], rest: &mut [f32], parts: &[f32]) {
     });
 }
 
-/// One grid.
+/// A grid of squares.
 struct Level {
     nx: usize,
-    /// What the mean over all elements of a square, active or not, is multiplied by.
+    /// Factor on the mean over all elements of a square, active or not.
     own: Vec<f32>,
-    /// What the value that larger squares have at its place is multiplied by.
+    /// Factor on the value that larger squares have at the place of the square.
     rest: Vec<f32>,
     values: Vec<f32>,
 }
 
 /// F and its transpose between a grid of squares and all coarser ones.
 pub(crate) struct Pyramid {
-    /// Finest first; the last is a single square.
+    /// Grids, finest first. The last is a single square.
     levels: Vec<Level>,
 }
 
 impl Pyramid {
-    /// Over a grid of `nx` × `ny` squares.
+    /// A pyramid over a grid of `nx` × `ny` squares.
     pub(crate) fn new(nx: usize, ny: usize) -> Self {
         let (mut levels, mut sides) = (Vec::new(), [nx, ny]);
         loop {
@@ -65,12 +69,12 @@ impl Pyramid {
         &self.levels[0].values
     }
 
-    /// The values on the grid, to be set before the other functions are called.
+    /// The values on the grid, which are set before the other functions are called.
     pub(crate) fn values_mut(&mut self) -> &mut [f32] {
         &mut self.levels[0].values
     }
 
-    /// Takes the values for the parts of squares that are active.
+    /// Takes the values as the parts of squares that are active.
     pub(crate) fn set_active(&mut self) {
         self.take_means();
         for level in &mut self.levels {
@@ -81,7 +85,9 @@ impl Pyramid {
         }
     }
 
-    /// F: from the means over all elements of squares, which are zero where they are not active, to u.
+    /// F: from means over squares to u.
+    ///
+    /// The means are over all elements of a square. Elements that are not active count as zero.
     pub(crate) fn extend(&mut self) {
         self.take_means();
         for k in (0..self.levels.len()).rev() {
@@ -104,7 +110,9 @@ impl Pyramid {
         }
     }
 
-    /// Fᵀ, times the number of elements in a square: from values of u to what each active element of a square gets.
+    /// Fᵀ, times the number of elements in a square.
+    ///
+    /// It takes values of u, and gives the values that each active element of a square gets.
     pub(crate) fn gather(&mut self) {
         for k in 1..self.levels.len() {
             let (finer, coarser) = self.levels.split_at_mut(k);
@@ -144,7 +152,7 @@ impl Pyramid {
         }
     }
 
-    /// Means on all coarser grids.
+    /// Computes the means on all coarser grids.
     fn take_means(&mut self) {
         for k in 1..self.levels.len() {
             let (finer, coarser) = self.levels.split_at_mut(k);
@@ -161,7 +169,7 @@ impl Pyramid {
     }
 }
 
-/// Adds the values of a row of squares to those of their parts.
+/// Adds the values of a row of squares to the values of their parts.
 pub(super) fn add_squares(squares: &[f32], parts: &mut [f32]) {
     for (parts, square) in parts.chunks_mut(2).zip(squares) {
         for part in parts {

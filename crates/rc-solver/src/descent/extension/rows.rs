@@ -1,9 +1,9 @@
 //! Rows of squares and of their parts: means, interpolation, and the transpose of each.
 //!
-//! A square has two parts along each axis. Where the number of parts is odd the last square has one, and the other
-//! counts as one with nothing in it.
+//! A square has two parts along each axis. Where the number of parts is odd, the last square has one part. The missing
+//! part counts as empty.
 
-/// Means over squares from the two rows of their parts, of which the second may be missing.
+/// Means over squares from the two rows of their parts. The second row may be missing.
 pub(super) fn means(rows: [Option<&[f32]>; 2], means: &mut [f32]) {
     means.fill(0.0);
     for row in rows.into_iter().flatten() {
@@ -17,13 +17,14 @@ pub(super) fn means(rows: [Option<&[f32]>; 2], means: &mut [f32]) {
     }
 }
 
-/// Interpolates between the centres of squares along both axes: the parts in row `iy`, from the squares of `values`,
-/// `width` to a row. `line` is scratch.
+/// Interpolates between the centres of squares along both axes.
+///
+/// The parts are those of row `iy`. `values` are those of the squares, `width` to a row. `line` is scratch.
 pub(super) fn interpolate(values: &[f32], width: usize, iy: usize, line: &mut Vec<f32>, parts: &mut [f32]) {
     let height = values.len() / width;
     let (near, far) = (iy / 2, if iy.is_multiple_of(2) { iy / 2 + height - 1 } else { iy / 2 + 1 } % height);
     let (near, far) = (&values[near * width..][..width], &values[far * width..][..width]);
-    // With the last square before the first, and the first after the last.
+    // The last square comes before the first, and the first after the last.
     line.clear();
     line.push(0.0);
     line.extend(near.iter().zip(far).map(|(near, far)| 0.75 * near + 0.25 * far));
@@ -40,8 +41,9 @@ pub(super) fn interpolate(values: &[f32], width: usize, iy: usize, line: &mut Ve
     }
 }
 
-/// A quarter of the transpose of [`interpolate`]: row `iy` of `height` rows of squares. `part(y, line)` adds a multiple
-/// of row `y` of the `n` rows of parts to a line of `width` values.
+/// Row `iy` of `height` rows of squares, by a quarter of the transpose of [`interpolate`].
+///
+/// `add_part(weight, y, line)` adds a multiple of row `y` of the `n` rows of parts to a line of `width` values.
 pub(super) fn gather(
     [width, n]: [usize; 2],
     [iy, height]: [usize; 2],
@@ -49,7 +51,7 @@ pub(super) fn gather(
     add_part: impl Fn(f32, usize, &mut [f32]),
     squares: &mut [f32],
 ) {
-    // Two squares' parts before and after; parts that are missing are zero.
+    // Two squares' parts before and after. Missing parts are zero.
     let padded = 2 * squares.len() + 2;
     line.clear();
     line.resize(padded, 0.0);
