@@ -61,7 +61,7 @@ enum Command {
     Challenge(challenge::Args),
     /// Tabulates and draws the truncation error of the image sums against shells and time
     KernelError(figures::Args),
-    /// Measures errors of area, rms pressure and mean gap on usual meshes, with their error bars
+    /// Measures errors and error bars of area, rms pressure and mean gap on usual meshes
     Accuracy(figures::Args),
     Bench(bench::Args),
     Mpi(mpi::Args),

@@ -11,7 +11,7 @@ use rc_figures::repository;
 
 use crate::process::{Step, path_of};
 
-/// Runs a job array on a Slurm of its own, and kills and requeues a task.
+/// Runs a job array on its own Slurm, and kills and requeues a task.
 ///
 /// The merged result is compared with that of one process. Slurm needs no set-up: controller and node run in a folder
 /// that is removed, with other ports than the system's. Without Slurm it says so and succeeds (Debian: slurm-wlm).
