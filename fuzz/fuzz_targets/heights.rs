@@ -1,4 +1,4 @@
-//! Every reader of height maps; the first byte chooses the format.
+//! Every reader of height maps. The first byte chooses the format.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Scene files: what parses is resolved as well; what does not is one line.
+//! Scene files. A scene that parses is resolved as well; other input must give one line.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -8,7 +8,7 @@ use rc_core::PeriodicCell;
 fuzz_target!(|text: &str| {
     match file::parse(text) {
         Ok(mut scene) => {
-            // Files of the machine are none of this.
+            // Files of the machine must not take part.
             scene.surface.heights = None;
             let _ = resolve::surface(scene.surface);
             let _ = resolve::contact(scene.contact, PeriodicCell::new(1.0).expect("a cell"));

@@ -1,8 +1,10 @@
-//! Whether all ranks compute alike: what every rank computes for itself must have the same digits everywhere.
+//! The check that all ranks compute alike.
+//!
+//! Values that every rank computes for itself must have the same digits everywhere.
 
 use rc_comm::Ranks;
 
-/// What of the processor chooses the code paths of sums and transforms.
+/// The features of the processor that select the code paths of sums and transforms.
 fn processor() -> String {
     #[cfg(target_arch = "x86_64")]
     let features = format!(
@@ -21,7 +23,7 @@ fn processor() -> String {
     format!("rc {} {features} {chosen}", env!("CARGO_PKG_VERSION"))
 }
 
-/// Refuses ranks of different versions of rc, or on processors with different vector instructions.
+/// Refuses ranks of different versions of rc or with different vector instructions.
 pub(crate) fn check(ranks: &Ranks) -> Result<(), String> {
     let all = ranks.all_gather(processor().as_bytes());
     match all.iter().position(|other| *other != all[0]) {

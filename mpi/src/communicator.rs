@@ -1,4 +1,4 @@
-//! The ranks of MPI.
+//! The communicator of MPI.
 
 use mpi::Count;
 use mpi::datatype::PartitionMut;
@@ -6,24 +6,25 @@ use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator as _, CommunicatorCollectives as _, Destination as _, Source as _};
 use rc_comm::Communicator;
 
-/// Bytes of one message at most: counts of MPI are numbers of 31 bits.
+/// Maximum number of bytes of a message, since counts of MPI are numbers of 31 bits.
 const LARGEST: usize = 1 << 30;
 
-/// All processes of the run. An error of MPI ends all of them, with a message: that is how MPI treats errors unless it
-/// is told otherwise.
+/// All processes of the run.
+///
+/// An error of MPI ends all of them with a message, which is MPI's default.
 pub(crate) struct World {
     rank: usize,
     size: usize,
 }
 
 impl World {
-    /// The world, after MPI was initialised for calls of one thread at a time.
+    /// The world. MPI must be initialised for calls of one thread at a time.
     pub(crate) fn new() -> Self {
         let world = SimpleCommunicator::world();
         Self { rank: world.rank() as usize, size: world.size() as usize }
     }
 
-    /// The lengths of what ranks give.
+    /// The lengths of the contributions of all ranks.
     fn lengths(len: usize, size: usize) -> Vec<usize> {
         let mut lengths = vec![0_u64; size];
         SimpleCommunicator::world().all_gather_into(&(len as u64), &mut lengths[..]);
@@ -69,7 +70,7 @@ impl Communicator for World {
 
     fn exchange(&self, outgoing: Vec<(usize, Vec<u8>)>, from: &[usize]) -> Vec<Vec<u8>> {
         let world = SimpleCommunicator::world();
-        // A message that is not of the largest size is the last.
+        // A message that is shorter than the largest size is the last one.
         let pieces = outgoing.iter().flat_map(|(to, bytes)| {
             let n = bytes.len() / LARGEST + 1;
             (0..n).map(move |i| (*to, &bytes[i * LARGEST..((i + 1) * LARGEST).min(bytes.len())]))

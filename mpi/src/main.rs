@@ -1,6 +1,6 @@
 //! `rc-mpi`: one contact problem over the ranks of MPI.
 //!
-//! `mpirun -n 4 rc-mpi solve …` takes the flags of `rc solve` and writes the same files; the digits do not depend on
+//! `mpirun -n 4 rc-mpi solve …` takes the flags of `rc solve` and writes the same files. The digits do not depend on
 //! the number of ranks.
 
 mod alike;
@@ -14,12 +14,12 @@ use rc_comm::Ranks;
 
 use communicator::World;
 
-/// Exit codes of bad input, and of results that could not be written.
+/// Exit code of bad input. The exit code of results that could not be written follows.
 const BAD_INPUT: u8 = 2;
 const NOT_WRITTEN: u8 = 4;
 
 fn main() {
-    // Calls come from one thread at a time.
+    // Calls of MPI come from one thread at a time.
     let started = mpi::initialize_with_threading(Threading::Serialized);
     let code = match &started {
         Some((_, granted)) if *granted >= Threading::Serialized => solve(),
@@ -31,10 +31,10 @@ fn main() {
         }
     };
     if let (NOT_WRITTEN, Some((universe, _))) = (code, &started) {
-        // The others may be waiting for the rank that could not write.
+        // The other ranks may be waiting for the rank that could not write.
         universe.world().abort(code.into());
     }
-    // MPI ends here, and not in `exit`.
+    // MPI has to end here. `exit` would not end it.
     drop(started);
     std::process::exit(code.into());
 }
@@ -56,6 +56,6 @@ fn solve() -> u8 {
 }
 
 fn tell(text: &str) {
-    // There is nowhere left to report that standard error is closed.
+    // If standard error is closed, there is no other place for the message.
     let _ = writeln!(std::io::stderr().lock(), "{text}");
 }

@@ -1,6 +1,6 @@
-//! The multilevel operator per element and per level, and whole solves by contact fraction, beside the uniform method.
+//! Times of the multilevel operator and of whole solves, beside the uniform method.
 //!
-//! `cargo bench -p rc-tests`; items are elements (of the operator) or elements of the finest grid (of a solve).
+//! Run with `cargo bench -p rc-tests`. Items are elements of the operator, or elements of the finest grid of a solve.
 
 use std::sync::LazyLock;
 
@@ -18,7 +18,9 @@ fn main() {
     divan::main();
 }
 
-/// Tiles in the highest 12 % of the surface: as many as σ0/E* = 8.9e-4 touches, and as ragged.
+/// Tiles in the highest 12 % of the surface.
+///
+/// They are as many and as ragged as the tiles in contact at σ0/E* = 8.9e-4.
 fn tiles(side: usize) -> Vec<[u32; 2]> {
     let per_side = side / 8;
     let heights = SURFACE.sample(Grid::square(per_side).expect("a grid"));
@@ -29,7 +31,7 @@ fn tiles(side: usize) -> Vec<[u32; 2]> {
     places.map(|i| [(i % per_side) as u32, (i / per_side) as u32]).collect()
 }
 
-/// One application on a finest grid of `side`, one level to three above the base grid.
+/// One application of the operator, with one to three levels above the base grid.
 #[divan::bench(args = [(1024, 512), (2048, 512), (4096, 512)])]
 fn multilevel_operator(bencher: Bencher<'_, '_>, (side, base): (usize, usize)) {
     let operator = MultilevelOperator::new(base, side, tiles(side), 2e-3).expect("a valid operator");
@@ -40,7 +42,7 @@ fn multilevel_operator(bencher: Bencher<'_, '_>, (side, base): (usize, usize)) {
         .bench_local(|| operator.apply(black_box(&pressure), &mut displacement, &mut []));
 }
 
-/// The same to 1e-6 of the rms displacement.
+/// One application of the operator with an error of 1e-6 of the rms displacement.
 #[divan::bench(args = [(1024, 512), (2048, 512), (4096, 512)])]
 fn certified_multilevel_operator(bencher: Bencher<'_, '_>, (side, base): (usize, usize)) {
     let operator = MultilevelOperator::new(base, side, tiles(side), 1e-6).expect("a valid operator");
@@ -51,7 +53,7 @@ fn certified_multilevel_operator(bencher: Bencher<'_, '_>, (side, base): (usize,
         .bench_local(|| operator.apply(black_box(&pressure), &mut displacement, &mut []));
 }
 
-/// One application on the whole uniform grid, in double precision like the two above.
+/// One application on the whole uniform grid, in double precision like the multilevel operators.
 #[divan::bench(args = [1024, 2048, 4096])]
 fn uniform_operator(bencher: Bencher<'_, '_>, side: usize) {
     let operator = UniformOperator::new(Grid::square(side).expect("a grid"), &Love);

@@ -1,5 +1,6 @@
-//! A random surface, pressed against a half-space: contact area with its error bar, pressures, certificate.
+//! A random surface pressed against a half-space.
 //!
+//! Prints the contact area with its error bar, pressures and the certificate. Run with
 //! `cargo run -p rc-tests --example generate_and_solve`. Units: cell side λ = 1, E* = 1.
 #![expect(clippy::print_stdout, reason = "what an example is for")]
 
@@ -9,7 +10,9 @@ use rc_core::{Grid, HeightField as _};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_solver::{Control, Solution, SolveParams};
 
-/// The paper's surface with 32 waves and seed 1, at the paper's load, on 1024 x 1024 elements.
+/// The contact of the paper's surface with 32 waves at the paper's load.
+///
+/// The seed is 1, and the grid has 1024 x 1024 elements.
 pub(crate) fn solve() -> Result<Solution<'static>, Box<dyn Error>> {
     let surface = Surface::new(&SpectrumParams::paper(32, 1))?;
     println!("rms height {:.4e} λ, rms slope {:.4}", surface.moments().rms_height, surface.moments().rms_slope);

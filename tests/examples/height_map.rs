@@ -1,7 +1,7 @@
-//! A measured height map: read, made periodic, solved.
+//! A measured height map that is read, made periodic and solved.
 //!
-//! `cargo run -p rc-tests --example height_map`, with your file for FILE. Files have metres, solvers have λ = 1 and
-//! E* = 1.
+//! Run with `cargo run -p rc-tests --example height_map`, with your file for FILE. Files have metres, solvers have λ =
+//! 1 and E* = 1.
 #![expect(clippy::print_stdout, reason = "what an example is for")]
 
 use std::error::Error;
@@ -11,10 +11,10 @@ use rc_core::{Elasticity, PeriodicCell, Units};
 use rc_heights::{Crop, Fill, Level, Periodic, Scales, Treatment, apply, read};
 use rc_solver::{Control, Solution, SolveParams};
 
-/// Of any format of `rc_heights::Format`; this one has its heights in units of its side.
+/// A file of any format of `rc_heights::Format`. The heights of this one are in units of its side.
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/reference/heights-256-n32-h0.8-s101.npy");
 
-/// Side of a map that does not say it (m).
+/// Side of a map whose file does not give it (m).
 const SIDE: f64 = 1e-3;
 const E_STAR: f64 = 1e9;
 
@@ -30,7 +30,7 @@ pub(crate) fn solve() -> Result<Solution<'static>, Box<dyn Error>> {
     for effect in &effects {
         println!("{:<18} {}, rms height {:.3e} m", effect.treatment, effect.grid, effect.rms_height);
     }
-    // Mirrored, the map is twice as wide as the file's.
+    // The mirrored map is twice as wide as the file's map.
     let side = map.sides.map_or(2.0 * SIDE, |[x, _]| x);
     let units = Units::new(PeriodicCell::new(side)?, Elasticity::from_e_star(E_STAR)?);
     let heights = units.heights(&map.heights)?;

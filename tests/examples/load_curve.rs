@@ -1,6 +1,6 @@
 //! A load curve: contact area and penetration over three decades of mean pressure.
 //!
-//! `cargo run -p rc-tests --example load_curve`. Units: cell side λ = 1, E* = 1.
+//! Run with `cargo run -p rc-tests --example load_curve`. Units: cell side λ = 1, E* = 1.
 #![expect(clippy::print_stdout, reason = "what an example is for")]
 
 use std::error::Error;

@@ -1,6 +1,6 @@
-//! An own kernel: an elastic layer of finite thickness, bonded to a rigid base, instead of the half-space.
+//! A kernel of one's own: an elastic layer on a rigid base.
 //!
-//! `cargo run -p rc-tests --example own_kernel`. Units: cell side λ = 1, E* = 1 (of the layer's material).
+//! Run with `cargo run -p rc-tests --example own_kernel`. Units: cell side λ = 1, E* = 1 (of the layer's material).
 #![expect(clippy::print_stdout, reason = "what an example is for")]
 
 use std::error::Error;
@@ -11,7 +11,7 @@ use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::Spectral;
 use rc_solver::{ContactProblem, Control, SolveParams};
 
-/// A layer on a rigid base to which it sticks, loaded without friction.
+/// A layer bonded to a rigid base, loaded without friction.
 ///
 /// A pressure wave of wavenumber q displaces it by 2/(E* q) · M(q d), with ξ = q d:
 ///
@@ -19,21 +19,24 @@ use rc_solver::{ContactProblem, Control, SolveParams};
 /// M(ξ) = [(3-4ν) sinh 2ξ - 2ξ] / [(3-4ν) cosh 2ξ + 2ξ² + 5 - 12ν + 8ν²]
 /// ```
 ///
-/// (R. H. Bentall, K. L. Johnson, *An elastic strip in plane rolling contact*, Int. J. Mech. Sci. 10 (1968) 637-663; in
-/// this form G. Carbone, L. Mangialardi, J. Mech. Phys. Solids 56 (2008) 684-706.) M → 1 for short waves, the
-/// half-space, and M → ξ (1-2ν)/(2(1-ν)²) for long ones: there each column of the layer is a spring. The mean
-/// displacement is not part of v (Eq. 3); under a mean pressure σ0 the layer yields by that of these springs in
-/// addition.
+/// Source: R. H. Bentall, K. L. Johnson, *An elastic strip in plane rolling contact*, Int. J. Mech. Sci. 10 (1968)
+/// 637-663; in this form G. Carbone, L. Mangialardi, J. Mech. Phys. Solids 56 (2008) 684-706.
+///
+/// For short waves M → 1, as for the half-space. For long waves M → ξ (1-2ν)/(2(1-ν)²), so that each column of the
+/// layer is a spring. The mean displacement is not part of v (Eq. 3). Under a mean pressure σ0 the layer is displaced
+/// in addition as these springs are.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BondedLayer {
-    /// d, in λ.
+    /// Thickness d, in λ.
     pub(crate) thickness: f64,
-    /// ν of the layer.
+    /// Poisson's ratio ν of the layer.
     pub(crate) poisson: f64,
 }
 
 impl BondedLayer {
-    /// M(ξ), numerator and denominator times 2 exp(-2ξ), so that short waves do not overflow.
+    /// The factor M(ξ).
+    ///
+    /// Numerator and denominator are multiplied by 2 exp(-2ξ), so that they do not overflow for short waves.
     pub(crate) fn factor(self, xi: f64) -> f64 {
         let nu = self.poisson;
         let (decay, stiff) = ((-2.0 * xi).exp(), 3.0 - 4.0 * nu);
@@ -43,8 +46,7 @@ impl BondedLayer {
     }
 }
 
-/// Two methods; `edge_bias` has a default. At the edge of a contact short waves matter, and to these the layer is a
-/// half-space.
+/// `edge_bias` keeps its default. At the edge of a contact short waves matter, and for these the layer is a half-space.
 impl Kernel for BondedLayer {
     fn name(&self) -> &'static str {
         "bonded-layer"

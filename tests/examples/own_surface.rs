@@ -1,5 +1,6 @@
-//! An own surface: Weierstrass's function, ridges along both axes, each octave half as long and 2^-H as high.
+//! A surface of one's own: Weierstrass's function, with ridges along both axes.
 //!
+//! Each octave has half the wavelength and 2^-H times the height. Run with
 //! `cargo run -p rc-tests --example own_surface`. Units: cell side λ = 1, E* = 1.
 #![expect(clippy::print_stdout, reason = "what an example is for")]
 
@@ -9,14 +10,16 @@ use std::f64::consts::TAU;
 use rc_core::{DVec2, Grid, HeightField};
 use rc_solver::{Control, Solution, SolveParams};
 
-/// h(x, y) = a Σ_n 2^(-nH) [cos(2π 2^n x) + cos(2π 2^n y + n)], n from 0.
+/// Weierstrass's heights from a few octaves.
+///
+/// h(x, y) = a Σ_n 2^(-nH) [cos(2π 2^n x) + cos(2π 2^n y + n)], with n from 0.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Weierstrass {
-    /// a, in λ.
+    /// Amplitude a, in λ.
     pub(crate) amplitude: f64,
-    /// H, from 0 to 1.
+    /// Hurst exponent H, from 0 to 1.
     pub(crate) hurst: f64,
-    /// Number of terms.
+    /// Number of terms of the sum.
     pub(crate) octaves: u32,
 }
 

@@ -1,4 +1,4 @@
-//! The adaptive method against the uniform one, exact solutions, and its own proofs.
+//! The adaptive method against the uniform one, against exact solutions, and its own proofs.
 
 use std::f64::consts::PI;
 
@@ -17,12 +17,12 @@ const MEAN_PRESSURE: f64 = 8.9e-4;
 
 fn surface(waves: usize, hurst: f64, seed: u64) -> Surface {
     let params = SpectrumParams { hurst, ..SpectrumParams::paper(waves, seed) };
-    // The same rms slope for every H keeps the contact area comparable.
+    // The same rms slope for every H gives comparable contact areas.
     let params = SpectrumParams { normalisation: Normalisation::RmsSlope(0.026), ..params };
     Surface::new(&params).expect("a valid spectrum")
 }
 
-/// The parameters of the adaptive method, certified.
+/// Certified parameters of the adaptive method.
 fn certified() -> SolveParams {
     SolveParams::default().by(Method::Adaptive)
 }
@@ -31,14 +31,16 @@ fn adaptive<'a>(source: impl Into<HeightSource<'a>>, control: Control, tolerance
     solve(source, control, &SolveParams::to_tolerance(tolerance).by(Method::Adaptive)).expect("a solvable scene")
 }
 
-/// A solution on the uniform grid.
+/// The solution on the uniform grid.
 fn on_uniform_grid(heights: &Field, control: Control, tolerance: f64) -> Solution<'_> {
     solve(heights, control, &SolveParams::to_tolerance(tolerance).by(Method::Uniform)).expect("a solvable scene")
 }
 
-/// Area and pressure to the squares of the energy errors of both iterations, which is what they may be off by: both
-/// methods solve the same discrete problem. Counts may differ by the elements at edges that press by less than that,
-/// and stiffnesses are exact to 1e-3.
+/// Fails unless the solution agrees with the one on the uniform grid.
+///
+/// Both methods solve the same discrete problem. So area and pressure may differ by the squares of the energy errors of
+/// both iterations. Counts may also differ by elements at edges whose pressures are below that error. Stiffnesses are
+/// exact to 1e-3.
 fn assert_agrees_with_uniform(heights: &Field, solution: &Solution<'_>, control: Control) {
     let uniform = on_uniform_grid(heights, control, 1e-6);
     let (of_uniform, of_adaptive) = (uniform.observables(), solution.observables());
@@ -65,7 +67,7 @@ fn agrees_with_the_uniform_grid_for_all_hurst_exponents_and_loads() {
     }
 }
 
-/// Contacts of a few elements, which coarser levels hold as one or none.
+/// Contacts of a few elements have one element on coarser levels, or no element.
 #[test]
 fn the_smallest_loads_are_not_lost() {
     let surface = surface(32, 0.8, 7);
@@ -101,8 +103,9 @@ fn a_map_of_heights_goes_the_same_way() {
     assert_agrees_with_uniform(&heights, &of_map, control);
 }
 
-/// The certificate of the adaptive method, checked on every cell of the finest grid by the uniform operator: what was
-/// proven to be out of contact is.
+/// The uniform operator confirms the certificate of the adaptive method on every cell.
+///
+/// Cells that were proven to be out of contact are out of contact.
 #[test]
 fn nothing_penetrates_where_nothing_was_evaluated() {
     for (seed, pressure) in [(1, 1e-4), (2, MEAN_PRESSURE), (3, 4e-3)] {
@@ -124,7 +127,7 @@ fn nothing_penetrates_where_nothing_was_evaluated() {
         let offset = heights.max() - solution.info().penetration;
         let range = heights.max() - heights.min();
         let least = v.iter().zip(heights.values()).map(|(v, h)| v - h + offset).fold(f64::INFINITY, f64::min);
-        // The tolerance, and the error of the multilevel operator.
+        // The bound allows for the tolerance and for the error of the multilevel operator.
         assert!(least > -1.2e-6 * range, "seed {seed}: a gap of {:e} of the height range", least / range);
         let from_rows = solution.displacement();
         let worst = v.iter().zip(from_rows.values()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -167,7 +170,7 @@ fn tight_tolerances_are_reached() {
 
 #[test]
 fn a_sphere_is_hertzs() {
-    // Contact radius of a tenth of the cell. A paraboloid has no band limit: it goes as a map.
+    // The contact radius is a tenth of the cell. A paraboloid does not have a band limit, so it is solved as a map.
     let exact = PeriodicHertz { radius: 1.0 }.at_contact_radius(0.1).expect("a small contact");
     let n = 1024;
     let grid = Grid::square(n).expect("a grid");
@@ -256,8 +259,9 @@ fn a_pressure_that_is_not_positive_is_refused() {
     }
 }
 
-/// Halving the elements at edges again and again, those inside kept: the area converges as on uniform grids of the
-/// smallest element, with far fewer of them.
+/// With border levels the area converges as on uniform grids of the smallest element.
+///
+/// Border levels halve the elements at edges and keep those inside, so there are far fewer elements.
 #[test]
 fn border_levels_refine_edges_only() {
     let surface = surface(8, 0.8, 1);
@@ -288,7 +292,8 @@ fn border_levels_refine_edges_only() {
             assert!(4 * edges.n_elements() < everywhere.n_elements(), "{}", edges.n_elements());
         }
     }
-    // Towards twice the elements for each halving, not four times; and half the error.
+    // The ratio of the numbers of elements tends to two with each halving, not to four. Each halving also halves the
+    // error.
     let growth: Vec<f64> = counts.windows(2).map(|pair| pair[1].0 / pair[0].0).collect();
     assert!(growth.iter().all(|&growth| growth < 2.8) && growth[2] < 2.5, "{growth:?}");
     let steps: Vec<f64> = counts.windows(2).map(|pair| pair[0].1 - pair[1].1).collect();
@@ -297,14 +302,14 @@ fn border_levels_refine_edges_only() {
     }
 }
 
-/// The certificate with border levels, on every point of the grid of the smallest elements.
+/// The certificate with border levels holds on the whole grid of the smallest elements.
 #[test]
 fn nothing_penetrates_between_coarse_elements() {
     let surface = surface(24, 0.7, 5);
     let control = Control::MeanPressure(MEAN_PRESSURE);
     let params = SolveParams { border_level: 2, ..certified() };
     let solution = solve(surface.on(Grid::square(256).expect("a grid")), control, &params).expect("solvable");
-    // The pressure of every element, on the grid of the smallest.
+    // This grid gets the pressure of every element.
     let grid = Grid::square(1024).expect("a grid");
     let mut pressure = vec![0.0; grid.len()];
     for element in solution.elements().expect("a mesh") {
@@ -324,7 +329,7 @@ fn nothing_penetrates_between_coarse_elements() {
     let free = displacement.iter().zip(heights.values()).zip(&pressure).filter(|&(_, &p)| p == 0.0);
     let least = free.map(|((v, h), _)| v - h + offset).fold(f64::INFINITY, f64::min);
     assert!(least > -2e-6 * range, "a point outside contact penetrates by {:e}", -least / range);
-    // The adaptive operator hands the same gap out; its error is a part of the tolerance.
+    // The adaptive operator gives the same gap. Its error is a part of the tolerance.
     let gap = solution.finest_gap().expect("elements smaller than those of the grid");
     assert_eq!(gap.grid(), grid);
     let expected = displacement.iter().zip(heights.values()).map(|(v, h)| v - h + offset);
@@ -332,7 +337,9 @@ fn nothing_penetrates_between_coarse_elements() {
     assert!(worst < 1e-5 * range, "the gap on the finest grid is off by {:e}", worst / range);
 }
 
-/// Far beyond full contact the mean pressure is so large that its rounding in single precision would hide the heights.
+/// Far beyond full contact, the rounding of the mean pressure does not hide the heights.
+///
+/// In single precision it would.
 #[test]
 fn loads_far_beyond_full_contact_are_solved() {
     let surface = surface(8, 0.8, 1);
@@ -346,12 +353,14 @@ fn loads_far_beyond_full_contact_are_solved() {
         let scale = (exact.max() - exact.min()).max(1e-15 * pressure);
         let differences = solution.pressure().values().iter().zip(exact.values()).map(|(a, b)| (a - b).abs());
         let worst = differences.fold(0.0, f64::max);
-        // The tolerance is on heights; the shortest waves need the largest pressures for the same height.
+        // The tolerance is on heights. For the same height, the shortest waves need the largest pressures.
         assert!(worst <= 1e-3 * scale, "{pressure:e}: off by {worst:e} of {scale:e}");
     }
 }
 
-/// Coarser levels hold a sharp edge as a line of single elements, which interpolation to the next level loses.
+/// A contact with a sharp edge is found again after coarser levels have lost it.
+///
+/// Coarser levels have the edge as a line of single elements, which the interpolation to the next level loses.
 #[test]
 fn a_contact_that_coarser_levels_lose_is_found_again() {
     let grid = Grid::square(128).expect("a grid");
@@ -360,7 +369,8 @@ fn a_contact_that_coarser_levels_lose_is_found_again() {
     let control = Control::MeanPressure(pressure);
     let solution = adaptive(&heights, control, 1e-6);
     assert_close("mean pressure", solution.info().mean_pressure, pressure, 1e-10);
-    // Not the located edges: at a sharp edge the pressure does not end as a root, and only the count means anything.
+    // Located edges are not compared. At a sharp edge the pressure does not end as a square root, so only the count has
+    // a meaning.
     let uniform = on_uniform_grid(&heights, control, 1e-6);
     let (of_uniform, of_adaptive) = (uniform.observables(), solution.observables());
     assert_close("area by counting", of_adaptive.area.cells, of_uniform.area.cells, 2e-3);

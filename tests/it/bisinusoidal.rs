@@ -1,4 +1,6 @@
-//! The bi-sinusoidal surface of Johnson, Greenwood and Higginson, against a table of independent solutions.
+//! The bi-sinusoidal surface of Johnson, Greenwood and Higginson.
+//!
+//! The reference is a table of independent solutions.
 
 use std::f64::consts::TAU;
 

@@ -1,4 +1,4 @@
-//! The estimate of the contact area against exact contacts, beside counting elements.
+//! The estimate of the contact area against exact contacts, compared with counting elements.
 
 use rc_core::{DVec2, Field, Grid, Kernel};
 use rc_kernel::{Love, Spectral};
@@ -9,7 +9,7 @@ use rc_theory::westergaard::Westergaard;
 
 use crate::solved;
 
-/// Heights -(A x² + B y²) about a point near the middle of the cell, turned by `angle`.
+/// Heights -(A x² + B y²) around a point near the middle, rotated by `angle`.
 fn paraboloid(n: usize, [a, b]: [f64; 2], (x0, y0): (f64, f64), angle: f64) -> Field {
     let (sin, cos) = angle.sin_cos();
     Field::from_fn(Grid::square(n).expect("grid"), |DVec2 { x, y }| {
@@ -19,20 +19,22 @@ fn paraboloid(n: usize, [a, b]: [f64; 2], (x0, y0): (f64, f64), angle: f64) -> F
     })
 }
 
-/// Relative errors of the estimate and of the count, and the estimate's bar.
+/// Relative error of the estimate, relative error of the count, and the estimate's bar.
 fn errors(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64, exact: f64) -> [f64; 3] {
     let solution = solved(heights, kernel, Control::MeanPressure(mean_pressure), 1e-8);
     let area = ContactArea::of(solution.pressure(), solution.gap(), kernel.edge_bias());
     [area.fraction / exact - 1.0, area.cells / exact - 1.0, area.relative_error()]
 }
 
-/// Of a single contact the bar may be passed now and then: it is for 95 of 100. The first place is a corner of
-/// elements, about which the eight octants of the circle are alike: only an eighth of the edges is independent, and the
-/// scatter √8 times larger.
+/// Errors of the areas of circles are within the bars, or slightly above them.
+///
+/// Bars hold for 95 of 100 contacts, so a single contact may exceed its bar. The first place is a corner of elements,
+/// around which the eight octants of the circle are alike. Only an eighth of the edges is independent there, and the
+/// scatter is √8 times larger.
 #[test]
 fn circles_are_found_within_their_bars_and_better_than_by_counting() {
     let theory = PeriodicHertz { radius: 1.0 };
-    // 5, 10 and 26 elements per radius, at several places between the elements.
+    // The contacts have 5, 10 and 26 elements per radius, at several places between the elements.
     for radius in [0.02, 0.04, 0.1] {
         let contact = theory.at_contact_radius(radius).expect("small contact");
         let exact = std::f64::consts::PI * radius * radius;
@@ -68,9 +70,11 @@ fn ellipses_are_found_at_every_angle() {
     }
 }
 
-/// Strips whose edges are straight and all along the elements: there are edges across the rows only, so that the mean
-/// of rows and columns takes half of what the count is off; the bias is for edges in all directions, up to a hundredth
-/// of these strips. All edges of a strip are off alike: the bar is of their number then, not of its root, and mostly
+/// On strips along the elements, the estimate has about half of the count's error.
+///
+/// The edges are straight, and all cross the rows only, so the mean over rows and columns removes half of the count's
+/// error. The bias is for edges in all directions, and is wrong by up to a hundredth of these strips. All edges of a
+/// strip have the same error. So the bar is proportional to the number of edges, not to its square root, and mostly
 /// holds.
 #[test]
 fn of_strips_along_the_elements_half_the_count_s_error_is_left() {

@@ -1,4 +1,4 @@
-//! The examples run, and what they print is right.
+//! The examples run, and their results are right.
 
 use std::f64::consts::TAU;
 
@@ -27,7 +27,9 @@ fn every_example_runs() {
     }
 }
 
-/// The paper's A/A0 = 0.0673 is for N = 64; with half the waves slopes are smaller, and the area larger.
+/// With half the waves, the area is larger than the paper's A/A0 = 0.0673 for N = 64.
+///
+/// Fewer waves have smaller slopes.
 #[test]
 fn the_first_example_solves_a_surface_like_the_papers() {
     let solution = generate_and_solve::solve().expect("solvable");
@@ -36,7 +38,9 @@ fn the_first_example_solves_a_surface_like_the_papers() {
     assert!(solution.info().certificate.energy <= 1e-2 && solution.info().certificate.load <= 1e-10);
 }
 
-/// The same numbers in pascals: p = 1e6 Pa at E* = 1e9 Pa is σ0/E* = 1e-3.
+/// The map in pascals gives the same numbers as in units of E*.
+///
+/// p = 1e6 Pa at E* = 1e9 Pa is σ0/E* = 1e-3.
 #[test]
 fn the_height_map_carries_its_load() {
     let solution = height_map::solve().expect("solvable");
@@ -44,12 +48,14 @@ fn the_height_map_carries_its_load() {
     assert_eq!(solution.grid(), Grid::square(512).expect("a grid"), "mirrored once");
 }
 
-/// κ is about 2 at low loads (1.6 in Persson's theory, 2.5 in Bush's), and falls towards full contact.
+/// κ is about 2 at low loads and falls towards full contact.
+///
+/// Theories give 1.6 (Persson) and 2.5 (Bush).
 #[test]
 fn the_load_curve_is_nearly_straight_at_low_loads_and_rises() {
     let (points, slope) = load_curve::curve().expect("solvable");
     assert!(points.windows(2).all(|pair| (0..3).all(|i| pair[0][i] < pair[1][i])), "{points:?}");
-    // Of contacts a few elements large the area is uncertain: from the third load on.
+    // The area of contacts of a few elements is uncertain, so the first two loads are left out.
     let kappa: Vec<f64> = points[2..].iter().map(|[load, area, _]| area * slope / load).collect();
     assert!(kappa.iter().all(|kappa| (1.0..3.0).contains(kappa)), "{kappa:?}");
 }
@@ -61,18 +67,20 @@ fn the_bonded_layer_is_a_half_space_for_short_waves_and_springs_for_long_ones() 
     check_kernel(&layer);
     assert_close("M at ξ = 20", layer.factor(20.0), 1.0, 1e-12);
     assert_close("M far beyond overflow", layer.factor(1e4), 1.0, 1e-15);
-    // Confined compression of a column: d (1+ν)(1-2ν) / (E (1-ν)), and 1/E = (1-ν²)/E* with E* = 1 inverted.
+    // The compliance of a confined column is d (1+ν)(1-2ν) / (E (1-ν)). With E* = 1, 1/E is 1/(1-ν²).
     let thin = own_kernel::BondedLayer { thickness: 1e-4, poisson };
     let young = 1.0 - poisson * poisson;
     let spring = thin.thickness * (1.0 + poisson) * (1.0 - 2.0 * poisson) / (young * (1.0 - poisson));
     let symbol = thin.symbol(Grid::square(16).expect("a grid"));
     assert_close("long waves", symbol(1, 0), spring, 1e-5);
-    // Incompressible: M → 2ξ³/3·… vanishes faster, but stays positive.
+    // The layer is incompressible: M vanishes faster, as 2ξ³/3·…, but stays positive.
     let rubber = own_kernel::BondedLayer { thickness: 0.01, poisson: 0.5 };
     check_kernel(&rubber);
 }
 
-/// On springs the pressure is the overlap over the compliance: a wave in contact everywhere keeps its shape.
+/// On springs the pressure is the overlap divided by the compliance.
+///
+/// A wave that is in contact everywhere keeps its shape.
 #[test]
 fn a_wave_on_a_thin_layer_is_pressed_as_on_springs() {
     let thin = own_kernel::BondedLayer { thickness: 1e-3, poisson: 0.3 };

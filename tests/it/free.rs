@@ -1,4 +1,7 @@
-//! Patches with free borders: closed forms of the infinite half-space, direct sums, and the periodic cell as it grows.
+//! Patches with free borders.
+//!
+//! They are compared with closed forms of the infinite half-space, with direct sums, and with periodic cells of
+//! increasing size.
 
 use std::f64::consts::PI;
 
@@ -14,7 +17,7 @@ use rc_theory::hertz::Hertz;
 
 use crate::{assert_close, solved};
 
-/// A body of revolution with its apex at `place`.
+/// Heights of a body of revolution with its apex at `place`.
 fn body(n: usize, place: DVec2, height: impl Fn(f64) -> f64 + Sync) -> Field {
     Field::from_fn(Grid::square(n).expect("a grid"), |at| height((at - place).length()))
 }
@@ -22,7 +25,7 @@ fn body(n: usize, place: DVec2, height: impl Fn(f64) -> f64 + Sync) -> Field {
 fn rough(n: usize, waves: usize) -> Field {
     let surface = Surface::new(&SpectrumParams::paper(waves, 3)).expect("a surface");
     let waves = surface.sample_on(Grid::square(n).expect("a grid")).expect("heights");
-    // Rounded, and tilted, so that opposite borders do not meet.
+    // The surface is rounded and tilted, so that opposite borders do not fit together.
     let grid = waves.grid();
     let bent = |at: DVec2| 0.01 * at.x - 0.1 * (at - 0.5).length_squared();
     let bent = Field::from_fn(grid, bent);
@@ -30,14 +33,14 @@ fn rough(n: usize, waves: usize) -> Field {
     Field::new(grid, values).expect("a field")
 }
 
-/// Load, radius and peak pressure to 0.1 %, wherever on the patch the sphere is.
+/// Load, radius and peak pressure of a sphere are exact to 0.1 % at any place.
 #[test]
 fn a_sphere_is_that_of_hertz() {
     let sphere = Hertz { radius: 1.0 };
     for (place, radius) in [([0.5, 0.5], 0.2), ([0.3, 0.62], 0.2), ([0.21, 0.79], 0.15)] {
         let heights = body(512, DVec2::from(place), |r| -0.5 * r * r);
         let depth = sphere.penetration(radius);
-        // The highest point on the grid may be below the apex by up to (h/2)².
+        // The highest point of the grid may be below the apex by up to (h/2)².
         let below = -heights.max();
         let by_depth = solved(&heights, &FreeLove, Control::Penetration(depth - below), 1e-8);
         assert_close("load", by_depth.info().mean_pressure, sphere.load(radius), 1e-3);
@@ -63,7 +66,9 @@ fn a_cone_is_that_of_sneddon() {
     assert_close("radius", (solution.area().fraction / PI).sqrt(), radius, 3e-3);
 }
 
-/// Boussinesq: F = 2aδ under a round punch, p = δ/(π √(a² - r²)); a square one is 1.1 to 1.2 times as stiff as a side.
+/// A round punch follows Boussinesq: F = 2aδ and p = δ/(π √(a² - r²)).
+///
+/// The stiffness of a square punch is 1.1 to 1.2 times its side.
 #[test]
 fn flat_punches_are_those_of_boussinesq() {
     let radius = 0.4;
@@ -78,7 +83,7 @@ fn flat_punches_are_those_of_boussinesq() {
         assert_close("pressure inside", solution.pressure().at(n / 2 + n / 8, n / 2), expected, 5e-3);
     }
     assert!(errors[1] < 5e-3, "{errors:?}");
-    // A flat patch: every element presses, and nothing closes its full contact.
+    // On a flat patch every element carries pressure, and there is no full contact as of a periodic cell.
     let flat = Field::zeros(Grid::square(256).expect("a grid"));
     let params = SolveParams::default();
     for control in [Control::Penetration(1e-3), Control::MeanPressure(1.15e-3)] {
@@ -86,7 +91,7 @@ fn flat_punches_are_those_of_boussinesq() {
         let solution = problem.solve(&params, &Silent).expect("a solution");
         assert_eq!((solution.status(), solution.method()), (Status::Converged, Method::Uniform));
         let info = solution.info();
-        // F = 1.1523 E* δ side: π times the capacity of a square, 0.3667875 side.
+        // The stiffness is F = 1.1523 E* δ side: π times the capacity of a square, which is 0.3667875 side.
         assert_close("stiffness of a square", info.mean_pressure / info.penetration, 0.366_787_5 * PI, 3e-3);
         assert_close("incremental stiffness", solution.stiffness(), 0.366_787_5 * PI, 5e-3);
         assert_close("area", solution.area().fraction, 1.0, 1e-12);
@@ -127,8 +132,9 @@ fn a_dense_solver_finds_the_same_pressure() {
     }
 }
 
-/// The same contact in periodic cells of 1, 2 and 4 patches a side: images and the missing mean fall with the third
-/// power.
+/// A contact in periodic cells of 1, 2 and 4 patches per side approaches the half-space.
+///
+/// The effect of the images and of the missing mean falls with the third power.
 #[test]
 fn a_growing_cell_becomes_the_half_space() {
     let patch = rough(64, 6);
@@ -160,7 +166,7 @@ fn a_growing_cell_becomes_the_half_space() {
     assert!(errors[1] < 0.25 * errors[0] && errors[2] < 0.25 * errors[1] && errors[2] < 2e-3, "{errors:?}");
 }
 
-/// √(G/U) bounds the distance to the solution in the energy norm.
+/// √(G/U) is an upper bound of the distance to the solution in the energy norm.
 #[test]
 fn the_certificate_bounds_the_error_on_a_patch() {
     let heights = rough(96, 8);
@@ -181,7 +187,9 @@ fn the_certificate_bounds_the_error_on_a_patch() {
     }
 }
 
-/// The error bar of the area holds its change with the grid, on a patch whose contacts are many.
+/// The error bar of the area covers the change of the area with the grid.
+///
+/// The patch has many contacts.
 #[test]
 fn the_error_bar_of_the_area_holds_the_limit_of_fine_grids() {
     let surface = Surface::new(&SpectrumParams::paper(8, 5)).expect("a surface");

@@ -1,4 +1,4 @@
-//! `rc_solver::solve` and what comes out of it, whatever the method.
+//! The function `rc_solver::solve` and its results, for all methods.
 
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -46,7 +46,7 @@ fn every_method_gives_one_kind_of_solution() {
         let counted = solution.pressure().values().iter().filter(|&&p| p > 0.0).count();
         assert!((counted as f64 / 16384.0 - solution.area().cells).abs() < 1e-12, "{method}");
         assert!(solution.certificate().energy <= 1e-2, "{method}");
-        // Between the points of collocation of its larger elements the paper's procedure leaves more.
+        // Between the points of collocation of its larger elements, the paper's procedure leaves larger overlaps.
         let claimed = solution.certificate().penetration;
         let allowed = if method == Method::GaussSeidel { 1e-2 } else { 1.001 * claimed };
         let range = surface.sample(square(128)).max() - surface.sample(square(128)).min();
@@ -55,7 +55,7 @@ fn every_method_gives_one_kind_of_solution() {
         solution
     });
     let [adaptive, uniform, paper] = &solved;
-    // One operator, one discretisation; the paper's elements are larger inside contacts.
+    // Two methods have one operator and one discretisation. The paper's elements are larger inside contacts.
     let off = |a: f64, b: f64| (a / b - 1.0).abs();
     assert!(off(adaptive.area().fraction, uniform.area().fraction) < 1e-4);
     assert!(off(adaptive.stiffness(), uniform.stiffness()) < 2e-3);
@@ -97,7 +97,7 @@ fn memory_refuses_or_changes_the_method() {
         let problem = ContactProblem::new(surface.on(square(512)), Control::MeanPressure(pressure));
         problem.plan(&params).map(|plan| plan.reason().clone())
     };
-    // 80 bytes an element of the uniform grid are 21 MB; at 40 % the tiles take less than that.
+    // The uniform grid needs 80 bytes an element, 21 MB in all. With 40 % of the tiles the adaptive method needs less.
     assert!(matches!(plan(20_500_000, true, 3.6e-3), Ok(MethodReason::UniformDoesNotFit { .. })));
     assert!(matches!(plan(20_500_000, false, 3.6e-3), Err(SolveError::Memory { method: Method::Uniform, .. })));
     for follows in [true, false] {
@@ -188,7 +188,7 @@ fn loads_that_share_a_surface_have_the_digits_of_their_own_plans() {
     let map = surface.sample(square(128));
     let sources: [HeightSource<'_>; 2] =
         [HeightSource::shared(Arc::<Surface>::clone(&surface), square(256)), (&map).into()];
-    // The last load touches most of the cell, so that the method changes.
+    // The last load brings most of the cell into contact, so that the method changes.
     let loads = [LOAD, Control::MeanPressure(1e-4), Control::Penetration(1.5e-3), Control::MeanPressure(8e-3)];
     for source in sources {
         let own = |load| ContactProblem::new(source.clone(), load).plan(&SolveParams::default()).expect("a plan");
@@ -205,7 +205,7 @@ fn loads_that_share_a_surface_have_the_digits_of_their_own_plans() {
         }
         assert!(methods.contains(&Method::Uniform) && methods.contains(&Method::Adaptive), "{methods:?}");
     }
-    // Side by side in one pool, where a thread that waits takes up another load.
+    // The loads are solved side by side in one pool, where a waiting thread takes up another load.
     let first = ContactProblem::new(HeightSource::shared(surface, square(256)), LOAD);
     let first = first.plan(&SolveParams::default()).expect("a plan");
     let area = |load: &Control| first.under(*load).expect("a plan").solve(&Silent).expect("solvable").area().fraction;
@@ -218,7 +218,7 @@ fn loads_that_share_a_surface_have_the_digits_of_their_own_plans() {
 
 #[test]
 fn scattered_contact_is_solved_on_the_uniform_grid() {
-    // Short waves of one size: contacts of a few elements are all over the cell.
+    // The short waves have nearly the same amplitudes, so that contacts of a few elements are all over the cell.
     let spectrum = SpectrumParams { hurst: 0.3, ..SpectrumParams::paper(64, 1) };
     let surface = Surface::new(&spectrum).expect("a surface");
     let source = || surface.on(square(512));

@@ -1,4 +1,4 @@
-//! Full contact of a rough surface, known exactly: p = σ0 + Σ (E*/2)|q| ĥ.
+//! Full contact of a rough surface, whose exact pressure is p = σ0 + Σ (E*/2)|q| ĥ.
 
 use std::f64::consts::TAU;
 

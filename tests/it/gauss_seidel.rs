@@ -1,4 +1,6 @@
-//! The paper's procedure on its adaptive mesh: Hertz with the paper's parameters, and a rough surface.
+//! The paper's procedure on its adaptive mesh.
+//!
+//! The cases are Hertz's contact with the paper's parameters, and a rough surface.
 
 use rc_core::{DVec2, Field, Grid, Kernel as _};
 use rc_fractal::{SpectrumParams, Surface};
@@ -13,21 +15,22 @@ fn by_the_paper(heights: &Field, control: Control, tolerance: f64) -> Solution<'
     solve(heights, control, &params).unwrap_or_else(|error| panic!("{control:?}: {error}"))
 }
 
-/// Contact area of the adaptive solution, with the edges located on the finest grid.
+/// Contact area of the adaptive solution, with edges located on the finest grid.
 fn contact_area(solution: &Solution<'_>) -> f64 {
     ContactArea::of(solution.pressure(), solution.gap(), Love.edge_bias()).fraction
 }
 
 #[test]
 fn papers_sphere_on_the_adaptive_mesh_matches_periodic_hertz() {
-    // R = 1 cm, Δ = 25 µm in a cell of 1 cm: the radius is 27 finest elements.
+    // R = 1 cm and Δ = 25 µm in a cell of 1 cm give a radius of 27 finest elements.
     let theory = PeriodicHertz { radius: 1.0 };
     let expected = theory.at_penetration(2.5e-3).expect("small contact");
     let grid = Grid::square(512).expect("grid");
-    // At the centre of a block of eight elements, so that a large element sits on the peak and not four around it.
+    // The apex is at the centre of a block of eight elements. So one large element is at the peak, and not four around
+    // it.
     let centre = 260.0 / 512.0;
     let heights = Field::from_fn(grid, |DVec2 { x, y }| -0.5 * ((x - centre).powi(2) + (y - centre).powi(2)));
-    // Centres of elements miss the apex, so h_max of the grid is that much lower.
+    // The centres of elements miss the apex, so h_max of the grid is lower by the same amount.
     let solution = by_the_paper(&heights, Control::Penetration(2.5e-3 + heights.max()), 1e-7);
     let elements: Vec<ContactElement> = solution.elements().expect("a mesh").collect();
     assert!(elements.len() < 1600, "{} elements for 2250 cells", elements.len());
@@ -36,7 +39,7 @@ fn papers_sphere_on_the_adaptive_mesh_matches_periodic_hertz() {
     assert_close("radius", radius, expected.contact_radius, 0.01);
     assert_close("load", solution.info().mean_pressure, expected.load, 0.01);
     assert_close("peak pressure", solution.pressure().max(), expected.peak_pressure, 0.01);
-    // Sections as in Fig. 4: through the centre and beside it.
+    // The sections are those of Fig. 4, through the centre and beside it.
     for element in &elements {
         let r = (element.centre.x - centre).hypot(element.centre.y - centre);
         if r < 0.9 * expected.contact_radius {

@@ -1,4 +1,6 @@
-//! A sphere with a hardness: first yield at Hertz's peak pressure, and a contact that is plastic all over in the end.
+//! A sphere with a hardness.
+//!
+//! First yield is at Hertz's peak pressure. In the end the contact is plastic everywhere.
 
 use std::f64::consts::PI;
 
@@ -30,8 +32,8 @@ fn a_sphere_yields_at_the_peak_pressure_of_hertz_and_at_its_centre() {
     let centre = heights.grid().centre(256, 256);
     let farthest = above.pressure().values().iter().enumerate().filter(|(_, p)| **p >= above.hardness());
     let farthest = farthest.map(|(i, _)| (heights.grid().centre(i % 512, i / 512) - centre).length());
-    // Without the plastic part p = 0.99 p0 at r = a √(1 - 0.99²) = 0.14 a; what it does not bear widens it by about
-    // half.
+    // Without plasticity p = 0.99 p0 at r = a √(1 - 0.99²) = 0.14 a. The load that the plastic part does not bear makes
+    // it about half as wide again.
     let farthest = farthest.fold(0.0, f64::max) / elastic.contact_radius;
     assert!((0.14..0.3).contains(&farthest), "plastic up to {farthest} a");
 }
@@ -52,7 +54,7 @@ fn a_sphere_far_beyond_first_yield_is_plastic_all_over() {
             "area {excess} more than load over hardness at {factor}"
         );
         assert!(plastic.fraction < area.fraction && plastic.fraction * hardness < elastic.load, "{plastic:?}");
-        // The area of a circle.
+        // This is the radius of a circle with the contact area.
         let radius = (area.fraction / PI).sqrt();
         let edge = DVec2::new(radius, 0.0).length();
         assert!((edge / (elastic.contact_radius * (1.0 + excess).sqrt())) > 0.5, "radius {radius}");
@@ -61,7 +63,9 @@ fn a_sphere_far_beyond_first_yield_is_plastic_all_over() {
     assert!(last < 0.03, "the contact is plastic all over but for {last}");
 }
 
-/// The plastic area on coarse grids against that on a fine one, in units of its error bar.
+/// Errors of the plastic area on coarse grids are about half of its error bars.
+///
+/// The reference is the area on a fine grid.
 #[test]
 fn errors_of_the_plastic_area_are_about_half_of_their_bars() {
     let bumps = |shift: DVec2, n: usize| {

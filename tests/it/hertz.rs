@@ -7,7 +7,7 @@ use rc_theory::hertz::PeriodicHertz;
 
 use crate::{assert_close, solved};
 
-/// Paraboloid of radius `radius` with its apex at the centre of an element.
+/// A paraboloid with its apex at the centre of an element.
 fn sphere(n: usize, radius: f64) -> Field {
     let grid = Grid::square(n).expect("grid");
     let centre = grid.centre(n / 2, n / 2).x;
@@ -19,7 +19,7 @@ fn sphere(n: usize, radius: f64) -> Field {
 
 #[test]
 fn sphere_in_the_periodic_cell_matches_corrected_hertz() {
-    // The paper's sphere in a cell of 1 cm, R = λ, with a = 0.1 λ: 51 elements per radius.
+    // This is the paper's sphere in a cell of 1 cm, R = λ, with a = 0.1 λ. It has 51 elements per radius.
     let theory = PeriodicHertz { radius: 1.0 };
     let expected = theory.at_contact_radius(0.1).expect("small contact");
     let heights = sphere(512, 1.0);

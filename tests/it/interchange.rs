@@ -1,4 +1,4 @@
-//! Plain data through serde.
+//! Plain data that serde writes and reads.
 
 use rc_core::{Elasticity, Grid, PeriodicCell, Units};
 use rc_fractal::{Amplitudes, SpectrumParams, Truncation};
@@ -27,7 +27,7 @@ fn plain_data_is_read_as_it_is_written() {
     assert!(text.contains(r#""truncation":"square","amplitudes":"random""#), "{text}");
 }
 
-/// What a constructor refuses cannot be read either.
+/// Data that a constructor refuses cannot be read either.
 #[test]
 fn plain_data_is_checked_when_it_is_read() {
     assert_eq!(serde_json::from_str::<Grid>(r#"{"nx":3,"ny":3}"#).ok(), Grid::square(3).ok());

@@ -16,7 +16,7 @@ fn layer(thickness: f64, poisson: f64) -> Layer {
     Layer { thickness, poisson }
 }
 
-/// Paraboloid of radius `radius` with its apex at the centre of an element.
+/// A paraboloid with its apex at the centre of an element.
 fn sphere(n: usize, radius: f64) -> Field {
     let grid = Grid::square(n).expect("a grid");
     let centre = grid.centre(n / 2, n / 2);
@@ -28,8 +28,9 @@ fn rough(n: usize, waves: usize) -> Field {
     surface.sample_on(Grid::square(n).expect("a grid")).expect("heights")
 }
 
-/// The example is the published formula, written by itself; both solve to the same digits, but for the mean
-/// displacement.
+/// The kernel of the example gives the same result as the library's layer.
+///
+/// The example writes the published formula independently. The two differ by the mean displacement only.
 #[test]
 fn the_own_kernel_of_the_example_is_this_layer() {
     let heights = rough(128, 8);
@@ -70,7 +71,9 @@ fn load_and_penetration_are_two_ways_to_one_contact() {
     }
 }
 
-/// The displacement is v of gap = v - h + h_max - Δ, with the compression under the mean pressure.
+/// The displacement is v in gap = v - h + h_max - Δ.
+///
+/// It includes the compression under the mean pressure.
 #[test]
 fn displacement_and_gap_belong_together() {
     let heights = rough(64, 6);
@@ -97,7 +100,7 @@ fn a_dense_solver_finds_the_same_pressure() {
     }
 }
 
-/// A penetration beyond what the half-space takes compresses the layer.
+/// A penetration beyond the half-space's full contact compresses the layer.
 #[test]
 fn full_contact_is_exact_at_any_depth() {
     let waves = |at: DVec2| 1e-3 * ((TAU * at.x).cos() + (TAU * (2.0 * at.y - at.x)).cos());
@@ -112,7 +115,7 @@ fn full_contact_is_exact_at_any_depth() {
     assert_close("penetration", by_depth.info().penetration, depth, 1e-12);
     assert_close("stiffness", by_depth.stiffness(), solid.uniform_displacement().recip(), 1e-12);
     assert!(by_depth.observables().mean_gap.abs() < 1e-15, "{}", by_depth.observables().mean_gap);
-    // Each wave q of the heights is that of its pressure times 2/q M(q d).
+    // A wave q of the heights is the wave of the pressure times 2/q M(q d).
     let stiffness = [TAU, TAU * 5.0_f64.sqrt()].map(|q| 0.5 * q / solid.factor(q * 0.05));
     let wave =
         |at: DVec2| 1e-3 * (stiffness[0] * (TAU * at.x).cos() + stiffness[1] * (TAU * (2.0 * at.y - at.x)).cos());
@@ -133,8 +136,10 @@ fn a_sphere_on_a_thick_layer_is_that_of_hertz() {
     assert_close("radius", (solution.area().fraction / PI).sqrt(), 0.1, 5e-3);
 }
 
-/// Johnson's columns, and his incompressible layer; corrections are of first order in the thickness over the contact
-/// radius.
+/// A sphere on a thin layer follows Johnson's two limits.
+///
+/// They are columns that act as springs, and an incompressible layer. Corrections are of first order in the ratio of
+/// thickness to contact radius.
 #[test]
 fn a_sphere_on_a_thin_layer_is_on_springs_or_squeezes_it_out() {
     for (poisson, thickness, allowed) in [(0.3, 0.004, 0.06), (0.0, 0.004, 0.06), (0.5, 0.02, 0.3)] {
@@ -167,8 +172,9 @@ fn the_uniform_method_solves_a_layer_and_says_why() {
     assert!(stiff.area().fraction < half_space.area().fraction, "a layer is stiffer than the half-space");
 }
 
-/// √(G/U) bounds the distance to the solution in the energy norm, at loose tolerances too; U has no uniform
-/// compression.
+/// √(G/U) bounds the distance to the solution in the energy norm, also at loose tolerances.
+///
+/// U does not include the uniform compression.
 #[test]
 fn the_certificate_bounds_the_error_on_a_layer() {
     let heights = rough(96, 6);

@@ -1,5 +1,7 @@
-//! Flow through solved rough contacts against effective medium theories, and the contact area at which it ends against
-//! published values.
+//! Flow through solved rough contacts.
+//!
+//! It is compared with effective medium theories. The contact area at which the flow ends is compared with published
+//! values.
 
 use rc_core::{Field, Grid};
 
@@ -13,8 +15,10 @@ use crate::solved;
 /// Elements per shortest wave.
 const ELEMENTS_PER_WAVE: usize = 8;
 
-/// The gap of a rough contact under a mean pressure in units of E* times the rms slope, 0 where they touch; and the
-/// contact area. Wavelengths are from the cell over `waves` to `range` times this.
+/// The gap and the area of a rough contact.
+///
+/// `pressure` is the mean pressure in units of E* times the rms slope. The gap is 0 in contact. Wavelengths go from the
+/// cell's side divided by `waves` to `range` times that.
 fn contact(seed: u64, waves: usize, range: f64, pressure: f64) -> (Field, f64) {
     let params = SpectrumParams { roll_off: waves as f64 / range, ..SpectrumParams::paper(waves, seed) };
     let surface = Surface::new(&params).expect("a surface");
@@ -30,9 +34,10 @@ fn contact(seed: u64, waves: usize, range: f64, pressure: f64) -> (Field, f64) {
     (gap, solution.area().fraction)
 }
 
-/// The conductivity s of a medium in which elements of conductivity g³ are on average no disturbance: Σ (g³ - s)/(g³ +
-/// (D - 1) s) = 0. D = 2 is the theory of Bruggeman (Ann. Phys. 416, 1935) for a plane; its film is cut at A/A0 = 1 -
-/// 1/D.
+/// The conductivity s of an effective medium for the gap g.
+///
+/// Elements of conductivity g³ in the medium are on average not a disturbance: Σ (g³ - s)/(g³ + (D - 1) s) = 0. D = 2
+/// is the theory of Bruggeman for a plane (Ann. Phys. 416, 1935). The flow ends at A/A0 = 1 - 1/D.
 fn effective_medium(gap: &Field, d: f64) -> f64 {
     let disturbance = |s: f64| -> f64 {
         gap.values()
@@ -49,9 +54,11 @@ fn effective_medium(gap: &Field, d: f64) -> f64 {
     low
 }
 
-/// Effective medium theory takes neighbours as independent: it has the threshold at A/A0 = 0.5, and too much flow at
-/// every load. With D such that the threshold is the published one, it has too little flow far from there. The two are
-/// 40 % apart at a light load.
+/// The flow is between the results of two effective medium theories.
+///
+/// These theories treat neighbours as independent. With D = 2 the threshold is at A/A0 = 0.5, and the flow is too large
+/// at every load. With the D of the published threshold, the flow is too small far from it. The two are 40 % apart at a
+/// light load.
 #[test]
 fn the_flow_through_rough_contacts_is_between_effective_medium_theories() {
     for (pressure, area, apart) in [(0.03, 0.08, 1.6), (0.08, 0.19, 2.5)] {
@@ -68,9 +75,10 @@ fn the_flow_through_rough_contacts_is_between_effective_medium_theories() {
     }
 }
 
-/// Dapp, Lücke, Persson and Müser, Phys. Rev. Lett. 108, 2012: the film of self-affine contacts is cut near
-/// A/A0 = 0.42. A cell of a few long waves scatters about it by 0.03; the mean over six of them and both axes is 0.42
-/// to 0.01.
+/// The flow through self-affine contacts ends near A/A0 = 0.42.
+///
+/// Source: Dapp, Lücke, Persson and Müser, Phys. Rev. Lett. 108, 2012. The values of cells with a few long waves
+/// scatter by 0.03. Their mean over six cells and both axes is 0.42 to 0.01.
 #[test]
 fn the_film_is_cut_near_the_published_contact_area() {
     let params = LeakageParams { half_grid: false, ..LeakageParams::default() };

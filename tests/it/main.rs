@@ -1,4 +1,6 @@
-//! What crosses crates, in one binary: exact solutions, independent programs, the paper's statistics, swapped crates.
+//! Tests that cross crates, in one binary.
+//!
+//! They cover exact solutions, independent programs, the paper's statistics, and swapped crates.
 
 mod adaptive;
 mod bisinusoidal;
@@ -28,19 +30,21 @@ use std::path::{Path, PathBuf};
 use rc_core::{Field, Kernel, Silent};
 use rc_solver::{ContactProblem, Control, Method, Solution, SolveParams};
 
-/// A file of the repository's `data/`.
+/// Path of a file in the repository's `data/`.
 fn data_path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../data").join(name)
 }
 
-/// A solution on the uniform grid to `tolerance`, or a failed test.
+/// The solution on the uniform grid to `tolerance`.
+///
+/// Fails the test if there is no solution.
 fn solved(heights: &Field, kernel: &dyn Kernel, control: Control, tolerance: f64) -> Solution<'static> {
     let params = SolveParams::to_tolerance(tolerance).by(Method::Uniform);
     let solution = ContactProblem::new(heights, control).with_kernel(kernel).solve(&params, &Silent);
     solution.unwrap_or_else(|error| panic!("{control:?}: {error}")).into_owned()
 }
 
-/// Fails unless `value` is within `relative` of `reference`.
+/// Fails unless `value` equals `reference` within a relative difference of `relative`.
 #[track_caller]
 fn assert_close(what: &str, value: f64, reference: f64, relative: f64) {
     let error = (value / reference - 1.0).abs();

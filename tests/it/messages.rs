@@ -1,7 +1,8 @@
-//! Every sentence that a library or the command line can say, read from the sources and reviewed as a snapshot.
+//! Every sentence of a library or the command line, as a snapshot to review.
 //!
-//! A sentence is a string of four to eighty words outside tests and documentation. So each error and each warning is
-//! here, beside titles and hints; a new or changed one is read in the snapshot before it is accepted.
+//! The sentences are read from the sources. A sentence is a string of four to eighty words outside tests and
+//! documentation. So each error and each warning is here, beside titles and hints. A reviewer reads a new or changed
+//! sentence in the snapshot before accepting it.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -10,10 +11,10 @@ use std::path::{Path, PathBuf};
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 const FEWEST_WORDS: usize = 4;
-/// Longer texts are pages of help.
+/// Maximum number of words of a sentence. Longer texts are pages of help.
 const MOST_WORDS: usize = 80;
 
-/// What says a sentence only where this program has an error.
+/// Calls and macros whose message appears only if this program has an error.
 const CERTAIN: [&str; 5] = ["expect", "assert", "assert_eq", "debug_assert", "unreachable"];
 
 /// The snapshots of the crates whose sentences users read.
@@ -34,7 +35,7 @@ fn crate_folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates").join(name).join("src")
 }
 
-/// The files of a crate that are not tests, in the order of their paths.
+/// The files of a crate that are not tests, ordered by path.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).expect("a folder of sources") {
@@ -52,8 +53,9 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Adds the sentences of `tokens` to `found`. Documentation, tests, and what an impossible failure would say are left
-/// out.
+/// Adds the sentences of `tokens` to `found`.
+///
+/// Documentation, tests, and messages of impossible failures are left out.
 fn collect(tokens: TokenStream, found: &mut Vec<String>) {
     let tokens: Vec<TokenTree> = tokens.into_iter().collect();
     let mut at = 0;
@@ -69,8 +71,10 @@ fn collect(tokens: TokenStream, found: &mut Vec<String>) {
     }
 }
 
-/// The place of the last token of the attribute at `at`, `#[…]` or `#![…]`, or of the test that it begins. Messages of
-/// errors and help texts are attributes, too.
+/// Index of the last token of the attribute at `at`, `#[…]` or `#![…]`.
+///
+/// If the attribute begins a test, it is the last token of the test. Messages of errors and help texts are in
+/// attributes too.
 fn after_attribute(tokens: &[TokenTree], at: usize, found: &mut Vec<String>) -> usize {
     let group = |token: &TokenTree, delimiter| match token {
         TokenTree::Group(group) if group.delimiter() == delimiter => Some(group.stream()),
@@ -93,11 +97,11 @@ fn after_attribute(tokens: &[TokenTree], at: usize, found: &mut Vec<String>) -> 
     bracket
 }
 
-/// What a literal says, if it is a sentence.
+/// The text of a literal, if it is a sentence.
 fn sentence(literal: &str) -> Option<String> {
     let raw = literal.strip_prefix('r').map(|raw| raw.trim_matches('#'));
     let quoted = raw.unwrap_or(literal).strip_prefix('"')?.strip_suffix('"')?;
-    // A backslash at the end of a line joins it to the next word.
+    // A backslash at the end of a line joins the line to the next word.
     let joined: Vec<&str> =
         quoted.split("\\\n").enumerate().map(|(i, line)| if i == 0 { line } else { line.trim_start() }).collect();
     let text = joined.concat();

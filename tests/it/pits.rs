@@ -1,4 +1,4 @@
-//! What must not loosen a tolerance: pits, offsets, light loads.
+//! Pits, offsets and light loads, which must not loosen a tolerance.
 
 use rc_core::{Field, Grid, HeightField, Silent};
 use rc_fractal::{SpectrumParams, Surface};
@@ -12,7 +12,7 @@ fn rough(seed: u64) -> Field {
     surface.sample(Grid::square(SIDE).expect("a grid"))
 }
 
-/// With the deepest element lowered by this many rms heights.
+/// The heights with the deepest element lowered by `depth` rms heights.
 fn with_pit(heights: &Field, depth: f64) -> Field {
     let mut heights = heights.clone();
     let (rms, least) = (heights.rms(), heights.min());
@@ -21,7 +21,9 @@ fn with_pit(heights: &Field, depth: f64) -> Field {
     heights
 }
 
-/// A paraboloid, Hertz's load for a contact radius of so many elements on it, beside the middle of an element.
+/// A paraboloid, and Hertz's load for a contact radius in elements.
+///
+/// The apex is beside the middle of an element.
 fn sphere(elements: f64) -> (Field, Control) {
     let (n, radius) = (64.0, 50.0);
     let heights = Field::from_fn(Grid::square(64).expect("a grid"), |at| {
@@ -35,7 +37,9 @@ fn solved(heights: &Field, control: Control, method: Method, tolerance: Toleranc
     ContactProblem::new(heights, control).solve(&params, &Silent).expect("a solvable scene")
 }
 
-/// Area and rms pressure within a tenth of the error bars of a solution that is converged a thousand times better.
+/// Fails unless area and rms pressure are within a tenth of their error bars.
+///
+/// The reference solution is converged a thousand times better.
 fn assert_converged(name: &str, heights: &Field, control: Control, method: Method) {
     for tolerance in [Tolerance::DEFAULT, Tolerance::Auto] {
         let solution = solved(heights, control, method, tolerance);

@@ -1,4 +1,4 @@
-//! One solve over several ranks: the digits are those of one rank.
+//! One solve over several ranks, which must give the digits of one rank.
 
 use std::convert::Infallible;
 use std::panic;
@@ -11,8 +11,9 @@ use rc_solver::{
     AdaptiveError, Checkpoint, ContactElement, ContactProblem, Control, Method, Solution, SolveError, SolveParams,
 };
 
-/// What a rank has of a solution: its elements, its rows of pressure and gap, and everything else as text with all
-/// digits.
+/// The results of a solution that one rank has.
+///
+/// They are its elements, its rows of pressure and gap, and everything else as text with all digits.
 #[derive(Clone, Debug, PartialEq)]
 struct Told {
     elements: Vec<[u64; 4]>,
@@ -38,7 +39,7 @@ impl Told {
         Self { elements, rows, text }
     }
 
-    /// Fails unless the ranks have the parts of this together.
+    /// Fails unless the parts of the ranks add up to this result.
     #[track_caller]
     fn assert_is_of(&self, parts: &[Self]) {
         let n = parts.len();
@@ -53,7 +54,7 @@ impl Told {
     }
 }
 
-/// The paper's surface with so many waves on a grid of `side` elements per side.
+/// The paper's surface on a grid, under a load or penetration.
 struct Scene {
     surface: Surface,
     grid: Grid,
@@ -114,7 +115,7 @@ impl Checkpoint for Kept {
     }
 }
 
-/// Counts levels, and ends its rank when the one after `last` begins.
+/// An observer that counts levels and ends its rank when the level after `last` begins.
 struct EndAfter {
     last: usize,
     levels: Mutex<usize>,

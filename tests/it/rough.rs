@@ -1,4 +1,6 @@
-//! The paper's surfaces: statistics of the contact area, and independence of grid and threads from end to end.
+//! Statistics of the contact of the paper's surfaces.
+//!
+//! Grid and number of threads must not change the results.
 
 use rc_core::{Grid, HeightField};
 use rc_fractal::{SpectrumParams, Surface};
@@ -12,8 +14,8 @@ const MEAN_PRESSURE: f64 = 8.9e-4;
 
 #[test]
 fn mean_area_of_seven_realisations_is_the_papers() {
-    // Elements of side λ_min/16 as in the paper, A/A0 by counting; the paper prints 0.0673 for N = 64. Realisations
-    // scatter by 5 %, so a mean of seven by 2 %.
+    // Elements have the side λ_min/16 as in the paper, and A/A0 is counted. The paper prints 0.0673 for N = 64.
+    // Realisations scatter by 5 %, so the mean of seven scatters by 2 %.
     let areas: Vec<f64> = (1..=7)
         .map(|seed| {
             let surface = Surface::new(&SpectrumParams::paper(64, seed)).expect("valid spectrum");
@@ -34,7 +36,7 @@ fn corrected_area_converges_before_the_count_does() {
         *solved(&heights, &Spectral, Control::MeanPressure(MEAN_PRESSURE), 1e-8).observables()
     };
     let (coarse, fine) = (observe(128), observe(1024));
-    // λ_min/8 against λ_min/64.
+    // The elements have sides of λ_min/8 and λ_min/64.
     assert!(coarse.area.cells / fine.area.fraction > 1.02, "counting is too high: {:?}", coarse.area);
     assert!(
         (coarse.area.fraction - fine.area.fraction).abs() < 2.0 * coarse.area.error,

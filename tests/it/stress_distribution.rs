@@ -1,4 +1,4 @@
-//! The stress distribution of solved contacts against exact ones.
+//! The stress distribution of solved contacts against exact distributions.
 
 use std::f64::consts::{PI, TAU};
 
@@ -14,7 +14,9 @@ fn solve(heights: &Field, mean_pressure: f64) -> Solution<'static> {
     solved(heights, &Love, Control::MeanPressure(mean_pressure), 1e-9)
 }
 
-/// A sphere with its apex `offset` elements from a corner of elements, 51 elements per contact radius.
+/// The contact of a sphere with 51 elements per contact radius.
+///
+/// The apex is `offset` elements from a corner of elements.
 fn sphere(offset: f64) -> (Solution<'static>, PeriodicContact) {
     let exact = PeriodicHertz { radius: 1.0 }.at_contact_radius(0.1).expect("a small contact");
     let n = 512;
@@ -25,7 +27,7 @@ fn sphere(offset: f64) -> (Solution<'static>, PeriodicContact) {
     (solve(&heights, exact.load), exact)
 }
 
-/// Hertz: P(σ) = 2πa²σ/p0² up to p0.
+/// Hertz's distribution is P(σ) = 2πa²σ/p0² up to p0.
 #[test]
 fn the_stress_of_a_sphere_starts_linearly() {
     for offset in [0.0, 0.3, 0.5] {
@@ -44,7 +46,7 @@ fn the_stress_of_a_sphere_starts_linearly() {
     }
 }
 
-/// What a histogram of elements shows instead: the smallest pressures are missing or come in heaps.
+/// In a histogram of elements, the smallest pressures are missing or accumulate in single bins.
 #[test]
 fn a_histogram_of_elements_does_not() {
     let (solution, exact) = sphere(0.3);
@@ -58,7 +60,7 @@ fn a_histogram_of_elements_does_not() {
     assert!(!(0.5..2.0).contains(&(counted / expected)), "counting gives {counted:e}, {expected:e} is right");
 }
 
-/// Westergaard: p² is a function of sin² alone, so the area below a stress is known.
+/// Westergaard's p² depends only on sin², so the area below a stress is known.
 #[test]
 fn the_stress_of_a_wave_is_exact_in_every_bin() {
     let wave = Westergaard { amplitude: 1e-3 };
@@ -68,7 +70,7 @@ fn the_stress_of_a_wave_is_exact_in_every_bin() {
     let peak = wave.peak_pressure(mean_pressure);
     let edges: Vec<f64> = (0..10).map(|k| 0.1 * f64::from(k) * peak).collect();
     let found = StressDistribution::of(solution.pressure(), &edges);
-    // The pressure falls from the middle of the contact to its edge: the place of a stress by bisection.
+    // The pressure falls from the middle of the contact to its edge, so bisection finds the place of a stress.
     let place = |stress: f64| {
         let (mut inside, mut outside) = (0.0, 0.5);
         for _ in 0..60 {

@@ -1,4 +1,4 @@
-//! What a research fork does: its own half-space and its own surface, through the traits alone.
+//! A half-space and a surface of a research fork, which use only the traits.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -13,7 +13,7 @@ use rc_solver::{
 use crate::examples::own_kernel::BondedLayer;
 use crate::examples::own_surface::Weierstrass;
 
-/// A surface that nobody has implemented before.
+/// Heights of a surface that is not in the libraries.
 fn heights(side: usize) -> Field {
     Weierstrass::default().sample(Grid::square(side).expect("grid"))
 }
@@ -30,12 +30,12 @@ fn own_surface_and_own_half_space_drive_the_solver() {
     let (thin, thick) = (solve(problem.clone().with_kernel(&layer)), solve(problem.with_kernel(&rc_kernel::Spectral)));
     assert_eq!((thin.status(), thick.status()), (Status::Converged, Status::Converged));
     assert_eq!(thin.reason(), &MethodReason::NoSplitOfKernel { kernel: "bonded-layer" });
-    // A thin layer on a rigid base yields less than a half-space, so the same load penetrates less.
+    // A thin layer on a rigid base is stiffer than a half-space, so the same load penetrates less.
     let (a, b) = (thin.info().penetration, thick.info().penetration);
     assert!(a < 0.9 * b, "layer {a:e}, half-space {b:e}");
 }
 
-/// Love's squares, but for one wave, and from the time on that it has been asked this often.
+/// Love's squares with a wrong value at one wave, after `sound` calls.
 struct Broken {
     eigenvalue: f64,
     sound: usize,
@@ -60,7 +60,7 @@ impl Kernel for Broken {
     }
 }
 
-/// Why a solve with this kernel fails.
+/// The error of a solve with this kernel.
 fn error_with(kernel: &Broken, control: Control) -> Option<SolveError> {
     let heights = heights(32);
     ContactProblem::new(&heights, control).with_kernel(kernel).solve(&SolveParams::default(), &Silent).err()
@@ -84,14 +84,14 @@ fn a_half_space_that_answers_nan_later_is_an_error_and_no_contact() {
     let depth = heights.max() - heights.mean();
     for eigenvalue in [f64::NAN, f64::INFINITY] {
         for control in [Control::MeanPressure(1e-4), Control::MeanPressure(10.0), Control::Penetration(0.3 * depth)] {
-            // The check at the start asks twice.
+            // The check at the start asks for the symbol twice.
             let error = error_with(&Broken::new(eigenvalue, 2), control);
             assert!(matches!(error, Some(SolveError::NotConverged { .. })), "{eigenvalue}, {control:?}: {error:?}");
         }
     }
 }
 
-/// An operator whose displacements are changed.
+/// An operator whose displacements a function changes.
 struct Changed<F>(UniformOperator, F);
 
 impl<F: Fn(&mut [f64]) + Sync> Operator for Changed<F> {
@@ -109,18 +109,20 @@ impl<F: Fn(&mut [f64]) + Sync> Operator for Changed<F> {
     }
 }
 
-/// Multiplies every value.
+/// Multiplies all values by `factor`.
 fn scale(values: &mut [f64], factor: f64) {
     for value in values {
         *value *= factor;
     }
 }
 
-/// The problem is linear in the compliance: half the load on twice the compliance is the same contact.
+/// Half the load on twice the compliance gives the same contact.
+///
+/// The problem is linear in the compliance.
 #[test]
 fn an_own_operator_drives_the_solver() {
     let heights = heights(64);
-    // A half-space twice as soft.
+    // This half-space is twice as compliant.
     let soft = Changed(UniformOperator::new(heights.grid(), &Love), |v: &mut [f64]| scale(v, 2.0));
     rc_core::testing::check_operator(&soft);
     let params = SolveParams::to_tolerance(1e-8);
@@ -143,7 +145,7 @@ fn an_own_operator_drives_the_solver() {
 fn an_operator_of_no_half_space_is_refused_before_the_solve() {
     let heights = heights(64);
     let refused = |part: f64| {
-        // A part more for the elements of the first half.
+        // The elements of the first half have larger displacements.
         let lopsided = |v: &mut [f64]| {
             let (half, n) = (v.len() / 2, v.len() as f64);
             scale(&mut v[..half], 1.0 + part);

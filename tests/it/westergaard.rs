@@ -1,4 +1,4 @@
-//! The wavy surface of Westergaard, whose partial contact is known exactly.
+//! The wavy surface of Westergaard, whose partial contact has an exact solution.
 
 use std::f64::consts::TAU;
 
@@ -26,15 +26,17 @@ fn pressure_error(solution: &Solution<'_>, theory: Westergaard, mean_pressure: f
     Field::new(exact.grid(), difference).expect("same grid").rms() / exact.rms()
 }
 
-/// Contact width with the edges located between centres. Counting elements leaves an uncertainty of an element. At an
-/// edge p = c √s inside and g = (4c/3) s^{3/2} outside, with s the distance and the same c, so the last pressure inside
-/// and the first gap outside, one element apart, determine both.
+/// Contact width with the edges located between centres.
+///
+/// Counting elements would leave an uncertainty of one element. At an edge p = c √s inside and g = (4c/3) s^{3/2}
+/// outside, with the distance s and the same c. The last pressure inside and the first gap outside are one element
+/// apart, so they determine c and the edge.
 fn contact_width(solution: &Solution<'_>, along_x: bool) -> f64 {
     let n = solution.pressure().grid().nx();
     let line =
         |field: &Field| -> Vec<f64> { (0..n).map(|i| if along_x { field.at(i, 0) } else { field.at(0, i) }).collect() };
     let (pressure, gap) = (line(solution.pressure()), line(solution.gap()));
-    // The crest is at the ends of the cell, so contact is [0, a) and (1 - a, 1).
+    // The crest is at the ends of the cell, so contact is in [0, a) and (1 - a, 1).
     let edge = |at: &dyn Fn(usize) -> usize| {
         let first_out = (0..n).find(|&i| pressure[at(i)] <= 0.0).expect("partial contact");
         let (p, g, spacing) = (pressure[at(first_out - 1)], gap[at(first_out)].max(0.0), 1.0 / n as f64);
@@ -63,7 +65,7 @@ fn waves_along_x_and_along_y_match_westergaard() {
                 assert!(error <= 0.01, "{} at P = {fraction}: pressure off by {error:e}", kernel.name());
                 let width = theory.area_fraction(mean_pressure);
                 assert_close("contact width", contact_width(&solution, along_x), width, 5e-3);
-                // The crest lies between two centres: Δ from the crest itself.
+                // The crest is between two centres, and Δ is counted from the crest.
                 let penetration = solution.info().penetration + AMPLITUDE - heights.max();
                 assert_close("penetration", penetration, theory.penetration(mean_pressure), 1e-4);
                 assert_close("energy", solution.info().elastic_energy, theory.energy(mean_pressure), 5e-4);
@@ -78,7 +80,7 @@ fn penetration_control_finds_the_mean_pressure() {
     let heights = wave(256, true);
     for fraction in [0.05, 0.4, 0.95] {
         let mean_pressure = fraction * theory.full_contact_pressure();
-        // The crest of the wave lies between two centres, so h_max of the grid is a little lower than that of the wave.
+        // The crest is between two centres, so h_max of the grid is slightly lower than the crest.
         let missing = AMPLITUDE - heights.max();
         let penetration = theory.penetration(mean_pressure) - missing;
         let solution = solved(&heights, &Spectral, Control::Penetration(penetration), 1e-9);
@@ -95,7 +97,8 @@ fn error_falls_with_the_grid() {
             let solution = solved(&wave(n, true), kernel, Control::MeanPressure(mean_pressure), 1e-9);
             pressure_error(&solution, theory, mean_pressure, true)
         });
-        // The square root at the edge limits the L2 error to first order; eight times finer must gain at least four.
+        // The square root at the edge limits the L2 error to first order. Elements eight times smaller must reduce it
+        // to a fourth or less.
         assert!(errors[3] < 0.25 * errors[0], "{}: {errors:?}", kernel.name());
         let solution = solved(&wave(512, true), kernel, Control::MeanPressure(mean_pressure), 1e-9);
         let area = ContactArea::of(solution.pressure(), solution.gap(), kernel.edge_bias());

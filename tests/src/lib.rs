@@ -1,5 +1,6 @@
-//! What crosses crates: see `it/` and `examples/`. The library itself is empty but for the README, whose program is a
-//! test.
+//! Tests that cross crates, in `it/` and `examples/`.
+//!
+//! The library has only the README, whose program is a test.
 
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]

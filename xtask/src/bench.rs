@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: run time against error, ours and that of other programs.
+//! `cargo xtask bench`: run time against error, of rc and of other programs.
 
 use std::path::PathBuf;
 
@@ -6,51 +6,56 @@ use anyhow::Result;
 use rc_bench::bench::{self, Params, PeerParams, Scene};
 use rc_figures::repository;
 
-/// Scenes, repeats and patience of `--quick`.
+/// Scenes, repeats and longest solve of a peer (s) with `--quick`.
 const QUICK: (&[&str], usize, f64) = (&["waves-16", "hurst-0.3-light"], 2, 0.3);
 
-/// Measures run time against error on ten fixed scenes, by every method, and with --peers that of other programs.
+/// Measures run time against error on ten fixed scenes, by every method.
 ///
-/// Errors are against `data/bench/reference.csv`. Run it on an idle machine. docs/benchmarks.md explains the results.
+/// With --peers it also measures other programs. Errors are relative to `data/bench/reference.csv`. Run it on an idle
+/// machine. docs/benchmarks.md explains the results.
 #[derive(clap::Args)]
 #[expect(clippy::struct_excessive_bools, reason = "flags")]
 pub(crate) struct Args {
-    /// Two small scenes only.
+    /// Only two small scenes.
     #[arg(long)]
     quick: bool,
     /// Only these scenes, separated by commas.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     scenes: Vec<String>,
-    /// Also ASPHER, Tamaas and ContactMechanics, in a Python environment under `target/` that is made from PyPI when
-    /// needed.
+    /// Also measures ASPHER, Tamaas and ContactMechanics.
+    ///
+    /// They are in a Python environment under `target/`, which is made from PyPI when needed.
     #[arg(long)]
     peers: bool,
-    /// A Python that has the peers, instead of that environment.
+    /// A Python that has the peers, instead of the environment under `target/`.
     #[arg(long, value_name = "PATH", requires = "peers")]
     python: Option<PathBuf>,
-    /// Solves of each case, of which the median counts.
+    /// Number of solves of each case. The result is their median.
     #[arg(long, default_value_t = 5)]
     repeats: usize,
-    /// A peer's solves that are expected to take longer are left out; half of it for peers that use one thread.
+    /// Longest expected solve of a peer; longer ones are left out.
+    ///
+    /// Peers that use one thread have half of it.
     #[arg(long, value_name = "SECONDS", default_value_t = 12.0, requires = "peers")]
     peer_seconds: f64,
     /// Folder for the table and the picture.
     #[arg(long, value_name = "DIR", default_value_os_t = repository::root().join("figures"), hide_default_value = true)]
     out: PathBuf,
-    /// Makes this run the archived one: `data/bench/`, `docs/images/`, and the tables in the documents.
+    /// Archives this run in `data/bench/`, `docs/images/` and the tables of the documents.
     #[arg(long, conflicts_with_all = ["quick", "scenes"])]
     archive: bool,
-    /// Goes on where a run into the same folder was interrupted: its finished scenes are not measured again.
+    /// Continues an interrupted run into the same folder, without its finished scenes.
     #[arg(long, conflicts_with = "scale")]
     resume: bool,
-    /// Instead of errors: time, memory and iterations on grids up to 32768² (6 GB), by threads, and by contact area;
-    /// with --peers beside ASPHER.
+    /// Instead of errors: time, memory and iterations on grids up to 32768² (6 GB).
+    ///
+    /// Times are by number of threads and by contact area. With --peers ASPHER is measured too.
     #[arg(long, conflicts_with = "scenes", group = "instead")]
     scale: bool,
     /// Instead of measuring: rewrites the tables in the documents from the archived run.
     #[arg(long, group = "instead")]
     tables: bool,
-    /// Instead of measuring: compares counts of operations with the stored ones; a change is an error.
+    /// Instead of measuring: compares counts of operations with the stored counts. A change is an error.
     #[arg(long, group = "instead")]
     check: bool,
     /// Instead of measuring: stores the counts of operations.
@@ -59,8 +64,9 @@ pub(crate) struct Args {
     /// Instead of measuring: computes the reference values again.
     #[arg(long, group = "instead")]
     make_reference: bool,
-    /// Instead of measuring: saves the heights of each scene here, as paper-2048.npy for instance (cell side 1), for
-    /// other programs.
+    /// Instead of measuring: saves the heights of each scene here, for other programs.
+    ///
+    /// A file is for instance paper-2048.npy, with cell side 1.
     #[arg(long, value_name = "DIR", group = "instead")]
     peer_heights: Option<PathBuf>,
     /// Work for a process that the benchmark starts itself.
@@ -81,7 +87,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     }
 }
 
-/// The scenes that are asked for.
+/// The scenes that `args` selects.
 fn chosen(args: &Args) -> Result<Vec<Scene>> {
     if args.scenes.is_empty() && args.quick { bench::scenes(QUICK.0) } else { bench::scenes(&args.scenes) }
 }

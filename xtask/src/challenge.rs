@@ -8,24 +8,29 @@ use rc_figures::{Challenge, run_one};
 
 use crate::figures;
 
-/// Computes area, gap, stiffness and patches of the Contact-Mechanics Challenge's surface, without adhesion;
-/// docs/challenge.md
+/// Computes area, gap, stiffness and patches of the Contact-Mechanics Challenge's surface.
+///
+/// The problem is without adhesion; docs/challenge.md explains the results.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
     figure: figures::Args,
-    /// The distributed Fourier coefficients, as text, instead of a generated surface; scaled to an rms slope of 1.
+    /// File of the distributed Fourier coefficients, as text, instead of a generated surface.
+    ///
+    /// The surface is scaled to an rms slope of 1.
     #[arg(long, value_name = "FILE")]
     spectrum: Option<PathBuf>,
-    /// High and low of the distributed surface change places: what touches first must be high.
+    /// Changes the sign of the distributed heights. The points that touch first must be high.
     #[arg(long, requires = "spectrum")]
     flip: bool,
-    /// One load on this many elements per side instead of the curve: 65536, the published reference's, takes minutes
-    /// and 12 GB.
+    /// Solves one load on this many elements per side instead of the curve.
+    ///
+    /// 65536, as in the published reference, takes minutes and 12 GB.
     #[arg(long, value_name = "SIDE", num_args = 0..=1, default_missing_value = "65536", conflicts_with = "quick")]
     large: Option<usize>,
-    /// Makes this run the archived one: tables to `data/runs/challenge/`, the picture to `docs/images/`, numbers into
-    /// `docs/challenge.md`.
+    /// Archives this run: tables, picture and numbers of the document.
+    ///
+    /// They are in `data/runs/challenge/`, `docs/images/` and `docs/challenge.md`.
     #[arg(long, conflicts_with_all = ["quick", "spectrum"])]
     archive: bool,
 }

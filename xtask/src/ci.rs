@@ -1,17 +1,17 @@
-//! `cargo xtask ci`: what continuous integration runs, in its order.
+//! `cargo xtask ci`: the steps of continuous integration, in their order.
 
 use anyhow::Result;
 
 use crate::process::Step;
 
-/// Checks format, lints and documentation, then runs every test, swaps crates for forks, and tries the Python package;
-/// stops at the first failure.
+/// Checks format, lints, documentation and tests as continuous integration does.
 ///
-/// The same steps as the script `.ci/run`.
+/// It also swaps crates for forks and tries the Python package. It stops at the first failure. The script `.ci/run` has
+/// the same steps.
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
-/// Cheapest first. The script `.ci/run` must hold the same lines, which `cargo xtask tidy` checks.
+/// The steps, cheapest first. The script `.ci/run` must have the same lines, which `cargo xtask tidy` checks.
 pub(crate) const STEPS: &[Step] = &[
     Step { environment: &[], words: &["fmt", "--all", "--check"] },
     Step {

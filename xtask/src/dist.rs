@@ -1,4 +1,4 @@
-//! `cargo xtask dist`: the binary to hand out.
+//! `cargo xtask dist`: the binary for distribution.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,11 +8,12 @@ use rc_figures::repository;
 
 use crate::process::Step;
 
-/// Builds the stripped binary `rc`, static where the musl target of this machine is installed, and says where it is and
-/// how large.
+/// Builds the stripped binary `rc` and prints its place and size.
+///
+/// The binary is static if the musl target of this machine is installed.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Another profile of cargo, as dev, to try this command quickly
+    /// Another profile of cargo, for instance dev, to try this command quickly
     #[arg(long, default_value = "dist")]
     profile: String,
 }
@@ -42,12 +43,12 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// The musl target of this machine, on Linux.
+/// Name of this machine's musl target; `None` if the system is not Linux.
 fn musl_name() -> Option<String> {
     (std::env::consts::OS == "linux").then(|| format!("{}-unknown-linux-musl", std::env::consts::ARCH))
 }
 
-/// That target, if its standard library is installed.
+/// The musl target of this machine, if its standard library is installed.
 fn musl_target() -> Result<Option<String>> {
     let Some(name) = musl_name() else { return Ok(None) };
     let rustc = Command::new("rustc").args(["--print", "target-libdir", "--target", &name]).output();
@@ -56,10 +57,10 @@ fn musl_target() -> Result<Option<String>> {
     Ok((!folder.is_empty() && Path::new(&folder).is_dir()).then_some(name))
 }
 
-/// Where cargo puts the binary.
+/// Path of the binary that cargo builds.
 fn binary(folder: &Path, target: Option<&str>, profile: &str) -> PathBuf {
     let folder = target.map_or_else(|| folder.to_path_buf(), |target| folder.join(target));
-    // The folder of the profile `dev` is older than its name.
+    // Cargo's folder of the profile `dev` has another name, for historical reasons.
     let profile = if profile == "dev" { "debug" } else { profile };
     folder.join(profile).join("rc").with_extension(std::env::consts::EXE_EXTENSION)
 }

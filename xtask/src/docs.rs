@@ -11,8 +11,9 @@ use rc_figures::repository;
 
 use crate::process::Step;
 
-/// Builds the documentation of all crates, and the guide into target/book, with the mdbook that is installed or else
-/// one of its own in target/tools.
+/// Builds the documentation of all crates, and the guide as a book in target/book.
+///
+/// It uses the installed mdbook, or else installs one in target/tools.
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
@@ -21,7 +22,7 @@ const CRATES: Step = Step {
     words: &["doc", "--release", "--workspace", "--no-deps", "--all-features"],
 };
 
-/// Without the server of `mdbook serve`, and with the search.
+/// Installation of mdbook without the server of `mdbook serve`, but with the search.
 const INSTALL: Step = Step {
     environment: &[],
     words: &[
@@ -39,7 +40,7 @@ const INSTALL: Step = Step {
 
 #[expect(clippy::print_stdout, reason = "the result of the command")]
 pub(crate) fn run(_args: &Args) -> Result<()> {
-    // The crates first: they need no network.
+    // The crates come first, since they do not need a network.
     CRATES.run(&[])?;
     let folder = repository::target();
     println!("{}", folder.join("doc/rc_core/index.html").display());
@@ -56,7 +57,7 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Copies the guide into `folder`; the copy of the paper map has links to lines of code.
+/// Copies the guide into `folder`, with links to lines of code in its paper map.
 fn write_chapters(folder: &Path) -> Result<()> {
     let guide = repository::root().join("docs");
     copy_folder(&guide, folder)
@@ -67,7 +68,7 @@ fn write_chapters(folder: &Path) -> Result<()> {
     fs::write(&path, links::to_lines(map, &sources)).with_context(|| format!("could not write {}", path.display()))
 }
 
-/// Copies a folder with all that is in it; what is there before is replaced.
+/// Copies a folder with all its contents, and replaces files that exist.
 fn copy_folder(from: &Path, to: &Path) -> std::io::Result<()> {
     if to.exists() {
         fs::remove_dir_all(to)?;
@@ -85,7 +86,9 @@ fn copy_folder(from: &Path, to: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// The mdbook of this machine, or else ours, which is installed the first time.
+/// Path of this machine's mdbook, or of one in target/tools.
+///
+/// The latter is installed at the first use.
 fn mdbook() -> Result<PathBuf> {
     let tools = repository::target().join("tools");
     let ours = tools.join("bin").join("mdbook").with_extension(std::env::consts::EXE_EXTENSION);

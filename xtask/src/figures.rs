@@ -1,4 +1,6 @@
-//! `cargo xtask fig1` to `fig8`, `figures`, `reproduction`, and the other commands that write tables with a picture.
+//! `cargo xtask fig1` to `fig8`, `figures` and `reproduction`.
+//!
+//! Other commands that write tables with a picture are here too.
 
 use std::path::PathBuf;
 
@@ -6,19 +8,19 @@ use anyhow::Result;
 use rc_figures::all::{self, Archive};
 use rc_figures::{Figure, Preset, repository, reproduction};
 
-/// Where and how large; the same for every figure.
+/// Folder and size of a figure.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Folder for the tables (CSV) and pictures (SVG, PNG).
     #[arg(long, value_name = "DIR", default_value_os_t = repository::root().join("figures"), hide_default_value = true)]
     pub(crate) out: PathBuf,
-    /// Small surfaces, as the tests compute them, instead of the paper's.
+    /// Computes small surfaces, as the tests do, instead of the paper's.
     #[arg(long)]
     quick: bool,
 }
 
 impl Args {
-    /// The size that is asked for.
+    /// The preset that the arguments select.
     pub(crate) fn preset(&self) -> Preset {
         if self.quick { Preset::Quick } else { Preset::Full }
     }
@@ -34,11 +36,12 @@ pub(crate) fn run<F: Figure>(args: &Args) -> Result<()> {
 pub(crate) struct AllArgs {
     #[command(flatten)]
     figures: Args,
-    /// Compares every table with the archived run in `data/runs/paper/`; a difference is an error.
+    /// Compares every table with the archived run in `data/runs/paper/`. A difference is an error.
     #[arg(long, conflicts_with = "quick")]
     check: bool,
-    /// Makes this run the archived one: tables to `data/runs/paper/`, pictures to `docs/images/`, numbers into
-    /// `docs/reproduction.md`.
+    /// Archives this run: tables, pictures and the numbers of the document.
+    ///
+    /// They are in `data/runs/paper/`, `docs/images/` and `docs/reproduction.md`.
     #[arg(long, conflicts_with_all = ["quick", "check"])]
     archive: bool,
 }
@@ -52,7 +55,9 @@ pub(crate) fn run_all(args: &AllArgs) -> Result<()> {
     all::run(args.figures.preset(), &args.figures.out, archive)
 }
 
-/// Rewrites the numbers of docs/reproduction.md from the archived run, as `cargo xtask figures --archive` does
+/// Rewrites the numbers of docs/reproduction.md from the archived run
+///
+/// `cargo xtask figures --archive` does this too.
 #[derive(clap::Args)]
 pub(crate) struct ReproductionArgs {}
 

@@ -1,4 +1,4 @@
-//! `cargo xtask gfmd`: a published reference with many longest waves in the cell, ours beside it.
+//! `cargo xtask gfmd`: comparison with a published reference with many longest waves in the cell.
 
 use std::path::PathBuf;
 
@@ -7,17 +7,21 @@ use rc_figures::{Figure as _, Gfmd, beside, run_one};
 
 use crate::figures;
 
-/// Compares area, stress, mean gap and energy with the published GFMD reference; docs/gfmd.md. Minutes and 2 GB,
-/// or --quick
+/// Compares area, stress, mean gap and energy with the published GFMD reference; docs/gfmd.md.
+///
+/// It takes minutes and 2 GB without --quick.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
     figure: figures::Args,
-    /// Makes this run the archived one: tables to `data/runs/gfmd/`, the picture to `docs/images/`, numbers into
-    /// `docs/gfmd.md`.
+    /// Archives this run: tables, picture and numbers of the document.
+    ///
+    /// They are in `data/runs/gfmd/`, `docs/images/` and `docs/gfmd.md`.
     #[arg(long, conflicts_with = "quick")]
     archive: bool,
-    /// The folder Data of the published files: tables of energy, mean gap and stress beside them.
+    /// Folder Data of the published files, for tables of their results beside ours.
+    ///
+    /// The results are energy, mean gap and stress.
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
 }

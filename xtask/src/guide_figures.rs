@@ -5,8 +5,9 @@ use rc_figures::guide;
 
 use crate::figures;
 
-/// Draws the figures of the guide: the mesh of a solved contact, the kernel split, one V of levels, the start of a
-/// level; also into docs/images/
+/// Draws the figures of the guide, also into docs/images/
+///
+/// They are the mesh of a solved contact, the kernel split, one V of levels, and the start of a level.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]

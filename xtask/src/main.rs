@@ -51,18 +51,17 @@ enum Command {
     Fig7(figures::Args),
     /// Draws Fig. 8: the stress distribution, the fit of Eq. 7, and the approach to zero
     Fig8(figures::Args),
-    /// Computes what the paper says without a figure: energy and area against N, convergence, Gaussian heights
+    /// Computes statements of the paper without a figure: energy and area, convergence, Gaussian heights
     Statements(figures::Args),
-    /// Draws every figure of the paper; compares with the archived run, or archives the run
+    /// Draws every figure of the paper, and compares with the archived run or replaces it
     Figures(figures::AllArgs),
     Reproduction(figures::ReproductionArgs),
     Gfmd(gfmd::Args),
     GuideFigures(guide_figures::Args),
     Challenge(challenge::Args),
-    /// Tabulates and draws the truncation error of the image sums against shells and time, beside the exact
-    /// coefficients
+    /// Tabulates and draws the truncation error of the image sums against shells and time
     KernelError(figures::Args),
-    /// Measures the error of area, rms pressure and mean gap on usual meshes, and how often their error bars hold it
+    /// Measures errors and error bars of area, rms pressure and mean gap on usual meshes
     Accuracy(figures::Args),
     Bench(bench::Args),
     Mpi(mpi::Args),

@@ -1,5 +1,6 @@
-//! `cargo xtask mpi`: solves over the ranks of MPI, compared with `rc solve` digit by digit; one of them loses a rank
-//! and goes on.
+//! `cargo xtask mpi`: solves over the ranks of MPI, compared with `rc solve` digit by digit.
+//!
+//! One of the solves loses a rank and continues.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -11,16 +12,17 @@ use serde_json::{Map, Value};
 
 use crate::process::{Step, path_of};
 
-/// Builds rc-mpi, solves over 1, 2 and 4 ranks, compares the files with those of `rc solve`, and kills a rank of three.
+/// Builds rc-mpi, compares its results with those of `rc solve`, and kills a rank.
 ///
-/// Without MPI and clang (Debian: libopenmpi-dev openmpi-bin clang libclang-dev) this says so, and ends well.
+/// It solves over 1, 2 and 4 ranks, and kills one of three. Without MPI and clang it says so and succeeds (Debian:
+/// libopenmpi-dev openmpi-bin clang libclang-dev).
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
-/// What is needed.
+/// Programs that are needed.
 const PROGRAMS: [&str; 3] = ["mpirun", "mpicc", "clang"];
 
-/// The scenes: both controls, a second or so each.
+/// The scenes, one for each control, of about a second each.
 const SCENES: [[&str; 8]; 2] = [
     [
         "solve",
@@ -44,7 +46,7 @@ const SCENES: [[&str; 8]; 2] = [
     ],
 ];
 
-/// The scene that loses a rank: its last level takes some seconds.
+/// The scene that loses a rank. Its last level takes some seconds.
 const LONG: [&str; 8] = [
     "solve",
     "--waves=64",
@@ -59,10 +61,12 @@ const LONG: [&str; 8] = [
 /// Files that are compared byte by byte.
 const FILES: [&str; 5] = ["pressure.npy", "gap.npy", "elements.csv", "contact.png", "scene.toml"];
 
-/// Keys of the summary that say how it was computed.
+/// Keys of the summary that depend on the run, not on the result.
 const OF_THE_RUN: [&str; 3] = ["wall_seconds", "peak_memory_bytes", "threads"];
 
-/// Open MPI 4 and 5: more ranks than cores, also as root in a container. Other libraries do not look at these.
+/// Settings of Open MPI 4 and 5 for many ranks and for containers.
+///
+/// They allow more ranks than cores, and root as the user. Other libraries ignore them.
 const ENVIRONMENT: [(&str, &str); 4] = [
     ("OMPI_MCA_rmaps_base_oversubscribe", "1"),
     ("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe"),
@@ -70,7 +74,7 @@ const ENVIRONMENT: [(&str, &str); 4] = [
     ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"),
 ];
 
-/// After this long something has gone wrong.
+/// Time after which the run counts as failed.
 const PATIENCE: Duration = Duration::from_secs(300);
 
 #[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
@@ -83,7 +87,7 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
     }
     let root = repository::root();
     Step { environment: &[], words: &["build", "--release", "--package", "rc-cli"] }.run(&[])?;
-    // What both share is built once.
+    // A common folder lets both builds share their crates.
     let target = format!("--target-dir={}", root.join("target").display());
     Step { environment: &[], words: &["build", "--release"] }.run_in(&root.join("mpi"), &[target])?;
     let folder = tempfile::tempdir()?;
@@ -102,14 +106,14 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Kills one of three ranks when the finest level has begun, and goes on with two.
+/// Kills one of three ranks when the finest level has begun, and continues with two.
 fn lose_a_rank(programs: &Programs) -> Result<()> {
     let words = ["--out", "resumed", "--checkpoint", "levels"];
     programs.solve(&LONG, "alone")?;
     let mut run = programs.mpirun(3, &LONG, &words).stderr(Stdio::null()).spawn()?;
     let checkpoint = programs.folder.join("levels");
     let started = Instant::now();
-    // The base grid has 256 elements per side: four levels are kept before the finest.
+    // The base grid has 256 elements per side, so four levels are kept before the finest.
     let mut kept = 0;
     let mut last = None;
     while kept < 3 {
@@ -131,7 +135,7 @@ fn lose_a_rank(programs: &Programs) -> Result<()> {
     programs.compare("alone", "resumed")
 }
 
-/// The programs, and the folder that they work in.
+/// The programs, and the folder in which they work.
 struct Programs {
     target: PathBuf,
     folder: PathBuf,
@@ -145,7 +149,9 @@ impl Programs {
         Ok(())
     }
 
-    /// The scene over so many ranks, each of which notes its process.
+    /// A command that solves the scene over `ranks` ranks.
+    ///
+    /// Each rank writes its process id.
     fn mpirun(&self, ranks: usize, scene: &[&str], more: &[&str]) -> Command {
         let mut command = Command::new("mpirun");
         let note = "echo $$ > pid-${OMPI_COMM_WORLD_RANK:-${PMI_RANK:-0}}; exec \"$0\" \"$@\"";
@@ -154,7 +160,7 @@ impl Programs {
         command
     }
 
-    /// Fails unless two results are the same.
+    /// Fails unless two result folders agree.
     fn compare(&self, one: &str, other: &str) -> Result<()> {
         for name in FILES {
             let [a, b] = [one, other].map(|folder| self.folder.join(folder).join(name));
@@ -167,7 +173,7 @@ impl Programs {
         Ok(())
     }
 
-    /// The summary of a result but for what depends on the run.
+    /// The summary of a result without the keys that depend on the run.
     fn summary(&self, folder: &str) -> Result<Map<String, Value>> {
         let text = read(&self.folder.join(folder).join("summary.json"))?;
         let mut summary: Map<String, Value> = serde_json::from_slice(&text)?;

@@ -9,23 +9,27 @@ use anyhow::{Context, Result, bail};
 
 use rc_figures::repository;
 
-/// One cargo call, as plain data: what continuous integration runs can be listed, compared and printed.
+/// One call of cargo, as plain data.
+///
+/// So steps can be listed, compared and printed.
 pub(crate) struct Step {
-    /// Environment variables, set for this call only.
+    /// Environment variables of this call.
     pub(crate) environment: &'static [(&'static str, &'static str)],
-    /// The words after `cargo`.
+    /// Arguments of `cargo`.
     pub(crate) words: &'static [&'static str],
 }
 
 impl Step {
-    /// The step as typed in a shell.
+    /// The step as one types it in a shell.
     pub(crate) fn shell_line(&self) -> String {
         let environment = self.environment.iter().map(|(name, value)| format!("{name}=\"{value}\""));
         let words = self.words.iter().map(ToString::to_string);
         environment.chain(["cargo".to_owned()]).chain(words).collect::<Vec<_>>().join(" ")
     }
 
-    /// Runs the step in the root of the repository, with `extra` words at its end, its output going where ours goes.
+    /// Runs the step in the root of the repository.
+    ///
+    /// `extra` arguments follow the step's own. The output goes to the output of this process.
     ///
     /// # Errors
     /// When cargo cannot be started, or fails.
@@ -33,7 +37,7 @@ impl Step {
         self.run_in(&repository::root(), extra)
     }
 
-    /// As [`Step::run`], in another folder.
+    /// Runs the step as [`Step::run`] does, in another folder.
     ///
     /// # Errors
     /// When cargo cannot be started, or fails.
@@ -42,7 +46,7 @@ impl Step {
         let line = [self.shell_line()].into_iter().chain(extra.iter().cloned()).collect::<Vec<_>>().join(" ");
         eprintln!("$ {line}");
         let start = Instant::now();
-        // The cargo that started us, so that a `+toolchain` holds for the steps too.
+        // This is the cargo that started this process, so that a `+toolchain` is valid for the steps too.
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let status = Command::new(cargo)
             .args(self.words)
@@ -67,20 +71,20 @@ pub(crate) struct Program {
 }
 
 impl Program {
-    /// The program with these words.
+    /// The program with these arguments.
     pub(crate) fn new(name: impl Into<OsString>, words: &[&str]) -> Self {
         Self { name: name.into(), words: words.iter().map(ToString::to_string).collect(), path: None }
     }
 
-    /// The same with this for the folders in which programs are found.
+    /// The program with another search path for programs.
     pub(crate) fn with_path(self, path: &str) -> Self {
         Self { path: Some(path.to_owned()), ..self }
     }
 
-    /// Runs it, its output going where ours goes.
+    /// Runs the program. Its output goes to the output of this process.
     ///
     /// # Errors
-    /// When it cannot be started, or fails.
+    /// When the program cannot be started, or fails.
     #[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
     pub(crate) fn run(&self) -> Result<()> {
         let line = format!("{} {}", self.name.display(), self.words.join(" "));
@@ -100,7 +104,7 @@ impl Program {
     }
 }
 
-/// Where a program is, among the folders of programs and those of the system.
+/// Path of a program in the search path or in the system's folders.
 pub(crate) fn path_of(program: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let folders = std::env::split_paths(&path).chain(["/usr/sbin".into(), "/sbin".into()]);

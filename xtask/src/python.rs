@@ -8,21 +8,21 @@ use rc_figures::repository;
 
 use crate::process::Program;
 
-/// Builds the wheel of the Python package, installs it into an environment of its own in target/python, and runs its
-/// tests, type checks, examples and notebooks.
+/// Builds, installs and tests the Python package in an environment in target/python.
 ///
-/// Needs a Python from 3.10 on: `python3`, or what the variable PYTHON names.
+/// It runs tests, type checks, examples and notebooks. It needs a Python from 3.10 on: `python3`, or the one in the
+/// variable PYTHON.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Build its documentation instead, with the notebooks and the guide, into target/python/site
+    /// Builds the documentation into target/python/site instead, with the notebooks and the guide
     #[arg(long)]
     docs: bool,
-    /// Words for pytest, for instance part of a test's name after -k
+    /// Arguments of pytest, for instance part of a test's name after -k
     #[arg(last = true)]
     pytest: Vec<String>,
 }
 
-/// What tests, type checks, notebooks and documentation need, with versions.
+/// Packages with versions for tests, type checks, notebooks and documentation.
 const REQUIREMENTS: &str = "python/requirements-test.txt";
 
 pub(crate) fn run(args: &Args) -> Result<()> {
@@ -42,7 +42,7 @@ struct Environment {
 }
 
 impl Environment {
-    /// Made the first time, and again when the requirements change.
+    /// The environment, which is made at the first use and when the requirements change.
     fn new() -> Result<Self> {
         let folder = folder().join("environment");
         let environment = Self { folder };
@@ -59,10 +59,10 @@ impl Environment {
         Ok(environment)
     }
 
-    /// Builds the wheel with the folder of build results of cargo, and installs it.
+    /// Builds the wheel in cargo's folder of build results, and installs it.
     fn install_package(&self) -> Result<()> {
         let wheels = folder().join("wheels");
-        // Another wheel there might be taken for the new one.
+        // Another wheel there could be mistaken for the new one.
         let _ = fs::remove_dir_all(&wheels);
         let out = path_text(&wheels)?;
         self.python(&["-m", "maturin", "build", "--release", "--locked", "--quiet", "--out", out]).run()?;
@@ -71,13 +71,13 @@ impl Environment {
         self.python(&install).run()
     }
 
-    /// A call of its Python.
+    /// A call of the environment's Python.
     fn python(&self, words: &[&str]) -> Program {
         Program::new(in_environment(&self.folder, "python"), words)
     }
 }
 
-/// Sphinx over the docstrings, the guide and the notebooks.
+/// Builds the documentation from docstrings, guide and notebooks with Sphinx.
 fn documentation(environment: &Environment) -> Result<()> {
     let (source, site) = (folder().join("source"), folder().join("site"));
     for old in [&source, &site] {
@@ -95,21 +95,21 @@ fn documentation(environment: &Environment) -> Result<()> {
     environment.python(&words).run()
 }
 
-/// Where everything of Python goes.
+/// Folder of all build results of Python.
 pub(crate) fn folder() -> PathBuf {
     repository::target().join("python")
 }
 
-/// A program of a virtual environment.
+/// Path of a program in a virtual environment.
 pub(crate) fn in_environment(environment: &Path, name: &str) -> PathBuf {
     let programs = if cfg!(windows) { "Scripts" } else { "bin" };
     environment.join(programs).join(name).with_extension(std::env::consts::EXE_EXTENSION)
 }
 
-/// The one wheel in `folder`.
+/// Path of the only wheel in `folder`.
 ///
 /// # Errors
-/// When there is none, or more than one.
+/// When `folder` has no wheel, or more than one.
 pub(crate) fn only_wheel(folder: &Path) -> Result<PathBuf> {
     let entries = fs::read_dir(folder).with_context(|| format!("no wheel in {}", folder.display()))?;
     let paths = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<PathBuf>>>()?;
@@ -120,7 +120,7 @@ pub(crate) fn only_wheel(folder: &Path) -> Result<PathBuf> {
     }
 }
 
-/// A path as a word of a command line.
+/// A path as an argument of a command.
 ///
 /// # Errors
 /// When it is not UTF-8.
@@ -128,7 +128,7 @@ pub(crate) fn path_text(path: &Path) -> Result<&str> {
     path.to_str().with_context(|| format!("{} is not UTF-8", path.display()))
 }
 
-/// Copies the files of a folder, not those of folders in it.
+/// Copies the files of a folder, without its subfolders.
 fn copy_files(from: &Path, to: &Path) -> Result<()> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {

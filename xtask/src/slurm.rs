@@ -1,4 +1,6 @@
-//! `cargo xtask slurm`: a sweep as a job array on a Slurm of one node, of which a task is killed and requeued.
+//! `cargo xtask slurm`: a sweep as a job array on a Slurm of one node.
+//!
+//! One of the tasks is killed and requeued.
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -9,29 +11,29 @@ use rc_figures::repository;
 
 use crate::process::{Step, path_of};
 
-/// Runs a job array on a Slurm of its own, kills a task, requeues it, merges, and compares with one process.
+/// Runs a job array on its own Slurm, and kills and requeues a task.
 ///
-/// Slurm needs no set-up: controller and node run in a folder that is removed, with other ports than those of the
-/// system's. Without Slurm (Debian: slurm-wlm) this says so, and ends well.
+/// The merged result is compared with that of one process. Slurm needs no set-up: controller and node run in a folder
+/// that is removed, with other ports than the system's. Without Slurm it says so and succeeds (Debian: slurm-wlm).
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
-/// What is needed of Slurm.
+/// Programs of Slurm that are needed.
 const PROGRAMS: [&str; 7] = ["slurmctld", "slurmd", "sinfo", "sbatch", "squeue", "scontrol", "scancel"];
 
-/// The sweep: 4 parts of 15 rows, of some hundredths of a second each.
+/// The sweep: 4 parts of 15 rows, each of some hundredths of a second.
 const SWEEP: [&str; 10] =
     ["sweep", "--waves", "16", "--grid", "256", "--pressures", "1e5:1e6:6", "--seeds", "1..10", "--threads=1"];
 const TASKS: usize = 4;
 const ROWS: usize = 60;
 
-/// The task that is killed.
+/// Number of the task that is killed.
 const KILLED: usize = 2;
 
-/// Columns that say how a row was computed, not what came out.
+/// Columns that depend on the run, not on the result.
 const OF_THE_RUN: [&str; 2] = ["wall_seconds", "peak_memory_bytes"];
 
-/// After this long something has gone wrong.
+/// Time after which the run counts as failed.
 const PATIENCE: Duration = Duration::from_secs(300);
 
 #[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
@@ -50,11 +52,11 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
     let rows = kill_amid(&rc)?;
     eprintln!("slurm: task {KILLED} killed after {rows} rows");
     let task = format!("{job}_{KILLED}");
-    // Slurm takes a moment to see that the task has ended.
+    // Slurm needs a moment to see that the task has ended.
     wait("task is requeued", || Ok(slurm.ask("scontrol", &["requeue", &task]).is_ok()))?;
     wait("job ends", || {
-        // Slurm delays a requeued task by two minutes, from some moment after the request on, if nobody asks. The
-        // request fails where the task has started since.
+        // Slurm delays a requeued task by two minutes, from some moment after the request on. The update ends the
+        // delay; it fails where the task has started since.
         if slurm.ask("squeue", &["--noheader", "--states=PENDING", "--format=%r"])?.contains("BeginTime") {
             slurm.ask("scontrol", &["update", &format!("JobId={task}"), "StartTime=now"]).ok();
         }
@@ -71,7 +73,7 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Kills the process of the task amid its rows, and returns how many it had finished.
+/// Kills the process of the task while rows are left, and returns the finished ones.
 fn kill_amid(rc: &Rc) -> Result<usize> {
     wait("task has finished two rows", || Ok(rc.finished_rows(KILLED) >= 2))?;
     let pid = std::fs::read_to_string(rc.folder.join(format!("pid-{KILLED}")))?;
@@ -81,7 +83,7 @@ fn kill_amid(rc: &Rc) -> Result<usize> {
     Ok(rows)
 }
 
-/// The program with the folder that it works in.
+/// The program, and the folder in which it works.
 struct Rc {
     program: PathBuf,
     folder: PathBuf,
@@ -94,13 +96,13 @@ impl Rc {
         Ok(())
     }
 
-    /// Rows in the journal of a part.
+    /// Number of rows in the journal of a part.
     fn finished_rows(&self, part: usize) -> usize {
         let journal = self.folder.join(format!("parts/part-{part}-of-{TASKS}/sweep.jsonl"));
         std::fs::read_to_string(journal).map_or(0, |text| text.matches('\n').count().saturating_sub(1))
     }
 
-    /// An error with what the tasks have said, if one of them was refused.
+    /// Fails with the output of the tasks if one of them was refused.
     fn log(&self) -> Result<()> {
         for task in 1..=TASKS {
             let log = std::fs::read_to_string(self.folder.join(format!("log-{task}"))).unwrap_or_default();
@@ -125,14 +127,14 @@ impl Rc {
     }
 }
 
-/// A controller and a node, which end with this.
+/// A controller and a node, which end when this is dropped.
 struct Slurm {
     folder: PathBuf,
     daemons: Vec<Child>,
 }
 
 impl Slurm {
-    /// Starts both, and waits until the node takes jobs.
+    /// Starts controller and node, and waits until the node takes jobs.
     fn start(folder: &Path) -> Result<Self> {
         let host = text_of(Command::new("hostname").arg("-s"))?;
         let user = text_of(Command::new("id").arg("-un"))?;
@@ -174,7 +176,7 @@ impl Slurm {
         Ok(command)
     }
 
-    /// What a program of Slurm answers.
+    /// The output of a program of Slurm.
     fn ask(&self, program: &str, words: &[&str]) -> Result<String> {
         text_of(&mut self.command(program, words)?)
     }
@@ -182,7 +184,7 @@ impl Slurm {
 
 impl Drop for Slurm {
     fn drop(&mut self) {
-        // What has ended already cannot be ended.
+        // A task that has ended already cannot be cancelled.
         let _ = self.ask("scancel", &["--quiet", "--state=RUNNING"]);
         for daemon in self.daemons.iter_mut().rev() {
             let _ = daemon.kill();
@@ -191,7 +193,9 @@ impl Drop for Slurm {
     }
 }
 
-/// The configuration of one node that asks nobody who is who: all ports are of this machine, all files in `folder`.
+/// The configuration of one node without authentication.
+///
+/// All ports are on this machine, and all files are in `folder`.
 fn configuration(folder: &Path, host: &str, user: &str, [controller, node]: [u16; 2]) -> String {
     let folder = folder.display();
     format!(
@@ -208,7 +212,7 @@ fn configuration(folder: &Path, host: &str, user: &str, [controller, node]: [u16
     )
 }
 
-/// A port that is free now.
+/// A port that is not in use now.
 fn free_port() -> Result<u16> {
     Ok(std::net::TcpListener::bind(("127.0.0.1", 0))?.local_addr()?.port())
 }
@@ -219,7 +223,7 @@ fn text_of(command: &mut Command) -> Result<String> {
     Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }
 
-/// Asks until the answer is yes.
+/// Repeats a question until the answer is yes.
 fn wait(what: &str, is_so: impl Fn() -> Result<bool>) -> Result<()> {
     let started = Instant::now();
     while !is_so()? {

@@ -6,10 +6,11 @@ use rc_bench::stress::{self, Params};
 
 use crate::figures;
 
-/// Stresses the solvers, kernels and operators on purpose: one line for each scene and property, a picture of all, and
-/// an error when a line fails.
+/// Runs hard scenes against solvers, kernels and operators, one line for each property.
+///
+/// It also draws a picture of all lines. A line that fails is an error.
 #[derive(clap::Args)]
-// Its own name beside that of the arguments it flattens.
+// The group has a name of its own, since it flattens other arguments.
 #[group(id = "stress")]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -17,8 +18,10 @@ pub(crate) struct Args {
     /// Only groups whose name contains this.
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
-    /// Puts faults into a copy of the sources, one at a time, and counts the rows of the reduced set that fail
-    /// (with --only, the faults whose name contains it). Hours.
+    /// Puts faults into a copy of the sources, and counts the rows that fail.
+    ///
+    /// The faults are applied one at a time, and the rows are those of the reduced set. With --only, it takes only
+    /// faults whose name contains it. This takes hours.
     #[arg(long)]
     mutate: bool,
     /// Prints a number that depends on every bit of one solution, for comparison between processes.
@@ -37,7 +40,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     stress::run(&params, &args.figure.out)
 }
 
-/// Runs the command line in this process; the exit code of a failure with its text.
+/// Runs the command line in this process. An error has the exit code and the text.
 fn rc(words: &[String]) -> Result<(), (u8, String)> {
     let words = [&["rc".to_owned()], words].concat();
     let cli = rc_cli::args::Cli::try_parse_from(words).map_err(|error| (2, error.to_string()))?;

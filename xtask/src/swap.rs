@@ -1,8 +1,8 @@
-//! `cargo xtask swap`: crates replaced whole by forks, for real.
+//! `cargo xtask swap`: builds with whole crates replaced by forks.
 //!
-//! A copy of the libraries has forks of three crates in place of the originals, as the guide tells how to. Each fork is
-//! its original with one place that can go wrong on demand. A contact that is solved with sound forks must have the
-//! numbers of the originals, and with each wrong one must not: so the solver really uses each of them.
+//! A copy of the libraries has forks of three crates in place of the originals, as the guide describes. Each fork is
+//! its original with one place that can be made wrong on demand. With sound forks a contact must have the numbers of
+//! the originals. With each wrong fork it must have other numbers. This shows that the solver really uses each fork.
 
 mod scene;
 
@@ -16,12 +16,13 @@ use toml::{Table, Value};
 
 use crate::process::Step;
 
-/// Replaces rc-fractal, rc-kernel and rc-quadtree by forks, in a workspace in target/swap, and shows for each that the
-/// solver uses the fork: wrong ones change the result, sound ones do not.
+/// Replaces rc-fractal, rc-kernel and rc-quadtree by forks, in a workspace in target/swap.
+///
+/// It shows for each that the solver uses the fork: wrong forks change the result, sound ones do not.
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
-/// A crate with a place that can go wrong.
+/// A crate with a place that can be made wrong.
 struct Fork {
     name: &'static str,
     file: &'static str,
@@ -50,7 +51,7 @@ const FORKS: [Fork; 3] = [
     },
 ];
 
-/// The end of each fork's `lib.rs`.
+/// Text at the end of each fork's `lib.rs`.
 const IS_WRONG: &str = r#"
 /// Whether this fork is to be wrong.
 pub(crate) fn is_wrong() -> bool {
@@ -60,10 +61,10 @@ pub(crate) fn is_wrong() -> bool {
 }
 "#;
 
-/// The other libraries that the solver needs.
+/// Names of the other libraries that the solver needs.
 const CRATES: &[&str] = &["rc-comm", "rc-core", "rc-fft", "rc-solver"];
 
-/// The program that solves with the forks.
+/// Source of the program that solves with the forks.
 const SCENE: &str = include_str!("swap/scene.rs");
 const MAIN: &str = r#"//! Prints the numbers of a contact.
 
@@ -89,7 +90,7 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
         fs::remove_dir_all(&copy).with_context(|| format!("could not remove {}", copy.display()))?;
     }
     prepare(&repository::root(), &copy)?;
-    // The folder of the repository, so that nothing but the forks and the solver is built.
+    // This is the folder of the repository's build, so that only the forks and the solver are built.
     BUILD.run_in(&copy, &["--target-dir".to_owned(), repository::target().to_string_lossy().into_owned()])?;
     let program = repository::target().join("release/swapped").with_extension(std::env::consts::EXE_EXTENSION);
     let originals = scene::numbers().map_err(|error| anyhow!("with the originals: {error}"))?;
@@ -104,14 +105,14 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// What the program prints when the fork called `wrong` is wrong.
+/// Output of the program when the fork called `wrong` is wrong.
 fn solved(program: &Path, wrong: &str) -> Result<String> {
     let output = Command::new(program).env("RC_SWAP_WRONG", wrong).output();
     let output = output.with_context(|| format!("could not start {}", program.display()))?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim().to_owned();
     match output.status.code() {
         Some(0) => Ok(text(&output.stdout)),
-        // An error of the solver, which is a result too; anything else is a program that broke.
+        // An error of the solver is a result too. Any other exit code means that the program broke.
         Some(1) => Ok(format!("not solved: {}", text(&output.stderr))),
         _ => bail!("{} broke: {}", program.display(), text(&output.stderr)),
     }
@@ -160,7 +161,7 @@ fn workspace_manifest(mut manifest: Table) -> Result<String> {
         let fork = format!("path = 'crates/my-{name}'\npackage = 'my-{name}'\nversion = '0.1.0'");
         dependencies.insert(name.into(), Value::Table(fork.parse()?));
     }
-    // Quick to compile rather than to run.
+    // The program is compiled quickly, since it runs only briefly.
     let release = manifest.get_mut("profile").and_then(|profile| profile.get_mut("release")?.as_table_mut());
     let release = release.context("no [profile.release]")?;
     let packages = release.entry("package").or_insert_with(|| Value::Table(Table::new()));
@@ -171,8 +172,10 @@ fn workspace_manifest(mut manifest: Table) -> Result<String> {
     Ok(toml::to_string(&manifest)?)
 }
 
-/// The manifest of the program. It names the libraries of others that the crates of the repository use, so that their
-/// features, and with these their builds, are those of the repository.
+/// The manifest of the program.
+///
+/// It names the external libraries of the repository's crates. Their features, and therefore their builds, are then
+/// those of the repository.
 fn program_manifest(root: &Path) -> Result<String> {
     let mut dependencies = Table::new();
     for name in ["rc-cli", "rc-heights", "rc-plot", "rc-solver", "rc-sweep"] {
@@ -194,7 +197,7 @@ fn read(path: &Path) -> Result<String> {
     fs::read_to_string(path).with_context(|| format!("could not read {}", path.display()))
 }
 
-/// Replaces the one place of a file that has this text.
+/// Replaces the only occurrence of `original` in a file.
 fn change(path: &Path, original: &str, changed: &str) -> Result<()> {
     let text = read(path)?;
     let count = text.matches(original).count();
@@ -209,7 +212,7 @@ fn write(path: &Path, text: &str) -> Result<()> {
         .with_context(|| format!("could not write {}", path.display()))
 }
 
-/// Copies a folder with the times of its files, by which cargo knows that a crate is unchanged.
+/// Copies a folder with the times of its files. From these cargo knows that a crate is unchanged.
 fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     fs::create_dir_all(to).with_context(|| format!("could not make {}", to.display()))?;
     for entry in fs::read_dir(from).with_context(|| format!("could not list {}", from.display()))? {

@@ -6,26 +6,27 @@ use crate::process::Step;
 
 /// Runs every test: unit, cross-crate, figure and documentation tests.
 ///
-/// The release profile, so that everything that the binary `rc` needs is built once. Prints the cargo lines it runs.
+/// It uses the release profile, so that the crates of the binary `rc` are built once. It prints the cargo lines that it
+/// runs.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Another build, with overflow checks and debug assertions.
+    /// Makes another build, with overflow checks and debug assertions.
     #[arg(long)]
     checked: bool,
-    /// Words for cargo, for instance part of a test's name, to run only tests that contain it.
+    /// Arguments of cargo, for instance part of a test's name to select tests.
     #[arg(last = true)]
     cargo: Vec<String>,
 }
 
-/// What `--checked` adds to the profile.
+/// Settings of the profile that `--checked` adds.
 const CHECKED: &[(&str, &str)] =
     &[("CARGO_PROFILE_RELEASE_OVERFLOW_CHECKS", "true"), ("CARGO_PROFILE_RELEASE_DEBUG_ASSERTIONS", "true")];
 
 const STEPS: [&[&str]; 3] = [
-    // Examples are modules of a test, so that they need no binaries here.
+    // Examples are modules of a test, so they are not built as binaries here.
     &["test", "--release", "--workspace", "--lib", "--bins", "--tests"],
     &["test", "--release", "--workspace", "--doc"],
-    // A feature that no program of the workspace turns on.
+    // This feature is not used by any program of the workspace.
     &["test", "--release", "--package", "rc-core", "--lib", "--features", "ndarray"],
 ];
 

@@ -21,16 +21,18 @@ use anyhow::{Result, bail};
 use complaint::Complaint;
 use rc_figures::repository::{self, Sources};
 
-/// Checks dependency arrows, circles between modules, licences and versions of dependencies, paper map, guide,
-/// snapshots, house rules and the numbers of docs/reproduction.md, docs/gfmd.md, docs/challenge.md, docs/benchmarks.md
-/// and README.md (also a test, so `cargo xtask test` runs it).
+/// Checks the rules of this repository that the compiler does not know.
+///
+/// They are about dependency arrows, circles between modules, licences and versions of dependencies, paper map, guide,
+/// snapshots and house rules. The numbers of docs/reproduction.md, docs/gfmd.md, docs/challenge.md, docs/benchmarks.md
+/// and README.md are checked too. It is also a test, so `cargo xtask test` runs it.
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
-/// A check: a pure function of the sources.
+/// A check, which is a pure function of the sources.
 type Check = fn(&Sources) -> Vec<Complaint>;
 
-/// The checks by name.
+/// The checks with their names.
 const CHECKS: &[(&str, Check)] = &[
     ("arrows", arrows::check),
     ("circles", circles::check),
@@ -56,7 +58,7 @@ pub(crate) fn run(_args: &Args, xtask: &clap::Command) -> Result<()> {
     Ok(())
 }
 
-/// The texts that are checked: those of the repository, and the licences of what it depends on.
+/// The texts to check: those of the repository, and the licences of its dependencies.
 ///
 /// # Errors
 /// When a file cannot be read, or cargo fails.
@@ -67,7 +69,9 @@ fn sources() -> Result<Sources> {
     Ok(sources)
 }
 
-/// What is untidy; `xtask` is the command line of `cargo xtask`, whose commands texts may name.
+/// All complaints about the repository.
+///
+/// `xtask` is the command line of `cargo xtask`, whose commands texts may name.
 ///
 /// # Errors
 /// When a file cannot be read, or cargo fails.

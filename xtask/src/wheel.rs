@@ -1,4 +1,4 @@
-//! `cargo xtask wheel`: the wheel to hand out, tried without a compiler.
+//! `cargo xtask wheel`: the wheel for distribution, tested without a compiler.
 
 use std::fs;
 use std::path::Path;
@@ -9,11 +9,10 @@ use rc_figures::repository;
 use crate::process::Program;
 use crate::python::{folder, in_environment, only_wheel, path_text};
 
-/// Builds a manylinux wheel of the Python package into target/python/dist, and tests it in a new virtual environment
-/// whose programs have no compiler among them.
+/// Builds a manylinux wheel of the Python package into target/python/dist, and tests it.
 ///
-/// maturin links with zig, which it brings along, against the C library of manylinux 2014. Needs a Python from 3.10 on,
-/// and rustup or a Rust for this target.
+/// The test is in a new virtual environment, in whose search path there is no compiler. maturin links with its own zig
+/// against the C library of manylinux 2014. It needs a Python from 3.10 on, and rustup or a Rust for this target.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Platform tag of the wheel
@@ -21,10 +20,10 @@ pub(crate) struct Args {
     manylinux: String,
 }
 
-/// The tools that make the wheel, with versions.
+/// Tools that make the wheel, with versions.
 const TOOLS: [&str; 2] = ["maturin[zig]==1.16.0", "pip"];
 
-/// What the tests of the wheel need.
+/// Packages that the tests of the wheel need.
 const TEST_TOOLS: [&str; 4] = ["numpy", "pytest==9.2.0", "matplotlib", "tqdm"];
 
 #[expect(clippy::print_stdout, reason = "the result of the command")]
@@ -34,7 +33,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let _ = fs::remove_dir_all(&wheels);
     let build = ["-m", "maturin", "build", "--release", "--locked", "--zig", "--manylinux", &args.manylinux, "--out"];
     let words: Vec<&str> = build.into_iter().chain([path_text(&wheels)?]).collect();
-    // Programs of the environment come first: zig is one of them.
+    // Programs of the environment come first in the search path, since zig is one of them.
     Program::new(in_environment(&tools, "python"), &words).with_path(&programs_before(&tools)?).run()?;
     let wheel = only_wheel(&wheels)?;
     try_wheel(&wheel)?;
@@ -43,7 +42,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Installs the wheel in a new environment, whose own programs are all that is found, and runs tests and command there.
+/// Installs the wheel in a new environment and runs tests and command there.
+///
+/// Only the programs of this environment are found.
 fn try_wheel(wheel: &Path) -> Result<()> {
     let environment = folder().join("wheel-test");
     new_environment(&environment, &TEST_TOOLS)?;
@@ -69,7 +70,7 @@ fn new_environment(environment: &Path, packages: &[&str]) -> Result<()> {
     Program::new(in_environment(environment, "python"), &words).run()
 }
 
-/// The search path of this process after the programs of an environment.
+/// Search path of this process, after the folder of an environment's programs.
 fn programs_before(environment: &Path) -> Result<String> {
     let programs = in_environment(environment, "python").with_file_name("");
     let others = std::env::var_os("PATH").unwrap_or_default();

@@ -1,5 +1,6 @@
-//! `cargo xtask accuracy`: how far the contact area, rms pressure and mean gap of usual meshes are from the limit of
-//! fine ones, and how often the error bars hold that.
+//! `cargo xtask accuracy`: errors of usual meshes, and how often error bars hold.
+//!
+//! The errors are of contact area, rms pressure and mean gap, relative to the limit of fine meshes.
 
 mod case;
 mod coverage;
@@ -16,10 +17,10 @@ use self::case::{Case, cases_of, of_mesh, rms};
 use self::coverage::Bars;
 use self::scenes::Set;
 
-/// Text, in pixels.
+/// Size of the text, in pixels.
 const TEXT: f64 = 24.0;
 
-/// What is solved.
+/// Numbers of scenes and meshes.
 #[derive(Clone, Debug)]
 pub struct Params {
     n_scenes: usize,
@@ -28,7 +29,7 @@ pub struct Params {
     meshes: Vec<usize>,
     /// Elements per side of the reference.
     reference: usize,
-    /// Scenes of each stratum of the error bars, and whether only those with few elements are solved.
+    /// Number of scenes of each stratum of the error bars, and whether only strata with few elements are solved.
     coverage: (usize, bool),
 }
 
@@ -140,7 +141,8 @@ mod tests {
             assert!(error(3) < 0.2 * error(0), "{kernel}: {:e} by edges, {:e} counted", error(3), error(0));
         }
         let bars: Vec<_> = accuracy.bars.iter().filter(|bars| bars.is_covered()).collect();
-        // A little more or less than 95 %: four standard errors of as many scenes, of which some share a surface.
+        // The number of bars that hold may differ from 95 % by four standard errors of independent scenes. Some scenes
+        // share a surface, and are not independent.
         let four_errors = 4.0 * (0.05 * 0.95 * bars.len() as f64).sqrt();
         for quantity in 0..3 {
             let held = bars.iter().filter(|bars| bars.hold()[quantity]).count() as f64;

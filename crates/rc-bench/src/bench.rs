@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: run time against error, ours and that of other programs.
+//! `cargo xtask bench`: run time against error, of rc and of other programs.
 
 mod behind;
 mod child;
@@ -41,36 +41,36 @@ use reference::{Quantity, References};
 use round::{Measurements, Plan};
 use scale::tables as scale_tables;
 
-/// What is measured, and where the results go.
+/// What is measured, and the folder of the results.
 #[derive(Clone, Debug)]
 pub struct Params {
-    /// The scenes.
+    /// The scenes that are solved.
     pub scenes: Vec<Scene>,
-    /// Solves of each case, of which the median counts.
+    /// Number of solves of each case. The result is their median.
     pub repeats: usize,
-    /// Other programs that take part.
+    /// The other programs, if they take part.
     pub peers: Option<PeerParams>,
     /// Folder for the table and the picture.
     pub out: PathBuf,
     /// Whether this run becomes the archived one.
     pub archive: bool,
-    /// Whether scenes that `out` has from a run before are not measured again.
+    /// Whether scenes that a previous run has saved in `out` are skipped.
     pub resume: bool,
 }
 
 /// How the other programs take part.
 #[derive(Clone, Debug)]
 pub struct PeerParams {
-    /// A Python that has them, instead of an environment that is made from PyPI when needed.
+    /// A Python that has the peers. Without it, an environment is made from PyPI when needed.
     pub python: Option<PathBuf>,
-    /// Solves that are expected to take longer (s) are left out.
+    /// Longest expected solve of a peer (s); longer ones are left out.
     pub seconds: f64,
 }
 
-/// The scenes with these names, or all without any.
+/// The scenes with these names, or all scenes if `names` is empty.
 ///
 /// # Errors
-/// When there is no scene of a name.
+/// When no scene has a name.
 pub fn scenes<T: AsRef<str>>(names: &[T]) -> Result<Vec<Scene>> {
     if names.is_empty() {
         return Ok(scenes::SCENES.to_vec());
@@ -78,7 +78,9 @@ pub fn scenes<T: AsRef<str>>(names: &[T]) -> Result<Vec<Scene>> {
     names.iter().map(|name| Scene::named(name.as_ref())).collect()
 }
 
-/// Saves the heights of each scene on its meshes in `folder`, as paper-2048.npy for instance (cell side 1).
+/// Saves the heights of each scene on its meshes in `folder`, with cell side 1.
+///
+/// The name of a file is for instance `paper-2048.npy`.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -109,7 +111,7 @@ pub fn measure(params: &Params) -> Result<()> {
             save(&params.out, &found)?;
         }
     }
-    // A run that went on may have had its scenes in another order.
+    // A resumed run may have its scenes in another order.
     found.rows.sort_by_key(|row| params.scenes.iter().position(|scene| scene.name == row.scene));
     found.rows.retain(|row| params.scenes.iter().any(|scene| scene.name == row.scene));
     let results = Results { rows: &found.rows, references: &references };
@@ -119,8 +121,9 @@ pub fn measure(params: &Params) -> Result<()> {
     if params.archive { archive(&params.out) } else { Ok(()) }
 }
 
-/// Measures time and memory on large grids, by threads and by contact area, prints and saves. `quick` has small scenes
-/// only.
+/// Measures, prints and saves time and memory on large grids.
+///
+/// Times are by number of threads and by contact area. `quick` selects small scenes.
 ///
 /// # Errors
 /// When a solve fails, after the others are saved, or a file cannot be written.
@@ -147,7 +150,9 @@ pub fn measure_scale(params: &Params, quick: bool) -> Result<()> {
     Ok(())
 }
 
-/// The interpreter with the peers; when there is none, the run goes on without them.
+/// The interpreter that has the peers; `None` if it cannot be made.
+///
+/// The run then goes on without peers.
 #[expect(clippy::print_stderr, reason = "peers are left out")]
 fn interpreter(peers: &PeerParams) -> Option<PathBuf> {
     let found = python::interpreter(peers.python.as_deref());
@@ -211,7 +216,7 @@ fn make_folder(out: &Path) -> Result<()> {
     fs::create_dir_all(out).with_context(|| format!("could not make {}; give another --out", out.display()))
 }
 
-/// Files of a run.
+/// Names of the files of a run.
 const LINES: &str = "bench.csv";
 const RUN: &str = "bench.toml";
 
@@ -223,10 +228,10 @@ fn save(out: &Path, found: &Measurements) -> Result<()> {
     record::write(&out.join(RUN), &machine)
 }
 
-/// What a run that was interrupted has saved; nothing when there is none.
+/// The measurements that an interrupted run has saved; empty when it has saved nothing.
 ///
 /// # Errors
-/// When a file is not as this version writes it.
+/// When a file does not have the format of this version.
 fn measured_before(out: &Path) -> Result<Measurements> {
     let [lines, run] = [LINES, RUN].map(|name| fs::read_to_string(out.join(name)).unwrap_or_default());
     let rows: Vec<Row> = record::from_csv(&lines, LINES)?;
@@ -237,7 +242,7 @@ fn measured_before(out: &Path) -> Result<Measurements> {
     Ok(Measurements { rows, peers, seconds })
 }
 
-/// Draws the first scene.
+/// Draws the results of the first scene.
 fn draw(out: &Path, results: Results<'_>) -> Result<()> {
     let Some(&scene) = results.scenes().first() else { return Ok(()) };
     make_folder(out)?;

@@ -1,4 +1,4 @@
-//! `cargo xtask kernel-error`: what truncating the sums of Eq. 5 and 6 costs in accuracy, and what it takes in time.
+//! `cargo xtask kernel-error`: errors and times of the truncated sums of Eq. 5 and 6.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -13,7 +13,7 @@ use rc_figures::{Figure, Preset, Rule, Table, number};
 
 const FORMS: [(LoadForm, &str, RGBColor); 2] =
     [(LoadForm::Plain, "plain", RGBColor(30, 90, 160)), (LoadForm::Printed, "printed", RGBColor(200, 60, 30))];
-/// Names and colours of the lines: form, offset.
+/// The lines of the drawing: name, form, offset and colour.
 const LINES: [(&str, &str, &str, RGBColor); 6] = [
     ("plain, near", "plain", "near", RGBColor(30, 90, 160)),
     ("plain, mid", "plain", "mid", RGBColor(90, 150, 210)),
@@ -22,16 +22,16 @@ const LINES: [(&str, &str, &str, RGBColor); 6] = [
     ("printed, mid", "printed", "mid", RGBColor(230, 130, 60)),
     ("printed, far", "printed", "far", RGBColor(245, 195, 140)),
 ];
-/// The half side that is drawn: elements of λ/64.
+/// Half side of the source in the drawing, for elements of λ/64.
 const DRAWN: f64 = 1.0 / 128.0;
-/// Accuracy that is documented for the exact coefficients, relative to the area of the source.
+/// Documented accuracy of the exact coefficients, relative to the area of the source.
 const EXACT: f64 = 1e-12;
-/// Text, in pixels.
+/// Size of the text, in pixels.
 const TEXT: f64 = 24.0;
-/// How long one coefficient is timed.
+/// Duration of the timing of one coefficient.
 const SAMPLE: Duration = Duration::from_millis(20);
 
-/// Sources, numbers of shells, and how the time is taken.
+/// Sizes of the source, and numbers of shells.
 #[derive(Clone, Debug)]
 pub struct Params {
     half_sides: Vec<f64>,
@@ -49,7 +49,7 @@ struct Case {
     bound: f64,
 }
 
-/// Where the target is seen from the source.
+/// Position of the target relative to the source.
 #[derive(Clone, Copy, Debug)]
 struct Offset {
     name: &'static str,
@@ -57,7 +57,7 @@ struct Offset {
 }
 
 impl Offset {
-    /// The neighbour, a point midway, and the corner of the cell.
+    /// The offsets of a neighbour, a point midway, and the corner of the cell.
     fn all(half_side: f64) -> [Self; 3] {
         [
             Self { name: "near", at: DVec2::new(2.0 * half_side, 0.0) },
@@ -76,7 +76,7 @@ struct Timing {
     nanoseconds: f64,
 }
 
-/// Truncation errors and times.
+/// Truncation errors and times of the coefficients.
 #[derive(Clone, Debug)]
 pub struct KernelErrors {
     cases: Vec<Case>,
@@ -135,7 +135,7 @@ fn case(
 }
 
 fn exact_time(love: PeriodicLove, half_side: f64, offset: Offset) -> Timing {
-    // Targets in a small square around the offset, a thousand at a time.
+    // The targets are a thousand points in a small square around the offset.
     let targets: Vec<DVec2> =
         (0..1000).map(|i| offset.at + 1e-5 * DVec2::new(f64::from(i % 32), f64::from(i / 32))).collect();
     let row = || targets.iter().map(|&at| love.coefficient(at, black_box(half_side))).sum::<f64>();
@@ -150,7 +150,7 @@ fn truncated_time(shells: usize) -> Result<Timing> {
     Ok(Timing { half_side: DRAWN, offset: offset.name, shells: Some(shells), nanoseconds })
 }
 
-/// Time of one call: the fastest of many.
+/// Nanoseconds of one call, the fastest of many.
 fn nanoseconds<T>(call: impl Fn() -> T) -> f64 {
     let start = Instant::now();
     let mut fastest = Duration::MAX;
@@ -170,7 +170,7 @@ impl KernelErrors {
             let [half_side, dx, dy, error, bound] = [case.half_side, at.x, at.y, case.error, case.bound].map(number);
             vec![case.form.to_owned(), half_side, name.to_owned(), dx, dy, case.shells.to_string(), error, bound]
         });
-        // Small errors are differences of sums of rounded terms.
+        // Small errors are differences of large sums with rounding.
         Table::new("errors", &header, rows).rest(Rule::STRICT.plus(1e-9))
     }
 
@@ -183,13 +183,13 @@ impl KernelErrors {
         Table::new("times", &header, rows)
     }
 
-    /// The drawn size, one form and one offset: shells, error, bound.
+    /// Shells, error and bound of one form at one offset, for the drawn size.
     fn line(&self, form: &str, offset: &str) -> Vec<(f64, f64, f64)> {
         let is_drawn = |case: &&Case| case.form == form && case.offset.name == offset && case.half_side == DRAWN;
         self.cases.iter().filter(is_drawn).map(|case| (case.shells as f64, case.error, case.bound)).collect()
     }
 
-    /// The drawn size in the middle of the cell, truncated: time, error.
+    /// Time and error of one form midway in the cell, for the drawn size.
     fn timed_line(&self, form: &str) -> Vec<(f64, f64)> {
         let times = self.timings.iter().filter(|timing| timing.shells.is_some()).map(|timing| timing.nanoseconds);
         times.zip(self.line(form, "mid")).map(|(time, (_, error, _))| (time, error)).collect()
@@ -201,7 +201,9 @@ impl Picture for KernelErrors {
         (1800, 800)
     }
 
-    /// Error against shells on the left, against time on the right, for elements of λ/64; decades on both axes.
+    /// Draws error against shells on the left, and error against time on the right.
+    ///
+    /// The elements are λ/64, and both axes are logarithmic.
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
         let (left, right) = area.split_horizontally(self.size().0 / 2);
         draw_lines(&left, &self.against_shells(), TEXT)?;
@@ -255,7 +257,7 @@ impl KernelErrors {
     }
 }
 
-/// Logarithms of both coordinates.
+/// Decimal logarithms of both coordinates.
 fn decades(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
     points.map(|(x, y)| (x.log10(), y.log10())).collect()
 }
@@ -275,7 +277,7 @@ mod tests {
         for case in &figure.cases {
             assert!(case.error <= case.bound, "{case:?}");
         }
-        // Times differ from run to run, so their table is not compared.
+        // The table of times is not compared, since times differ from run to run.
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/snapshots");
         assert_table(&folder, "kernel-error-errors", &figure.errors(), &format!("{params:?}"));
         let folder = tempfile::tempdir().expect("a temporary folder");

@@ -1,5 +1,6 @@
-//! Measurements and hard tests of rc: time against error, accuracy of usual meshes, truncation error of the kernels,
-//! stress.
+//! Benchmarks and stress tests of rc.
+//!
+//! They measure time against error, the accuracy of usual meshes, the truncation error of the kernels, and hard scenes.
 
 pub mod bench;
 pub mod stress;

@@ -32,24 +32,24 @@ pub use commands::{Refusal, RunRc};
 pub use mutate::run as mutate;
 use row::{Row, Rows, guarded};
 
-/// What is stressed.
+/// Selection of the scenes.
 #[derive(Clone, Debug)]
 pub struct Params {
     /// The full set, or the reduced one.
     pub preset: Preset,
-    /// Only groups whose name contains this.
+    /// Part of the names of the groups that run; all groups if it is absent.
     pub only: Option<String>,
-    /// The command line; without it, the group `rc solve` is left out.
+    /// The command line `rc`; without it, the group `rc solve` is left out.
     pub rc: Option<RunRc>,
 }
 
-/// The table.
+/// The stress table.
 #[derive(Clone, Debug)]
 pub struct Stress {
     rows: Vec<Row>,
 }
 
-/// Makes the lines of one group or several.
+/// Makes the lines of one or more groups.
 type MakeRows = fn(&Params) -> Result<Vec<Row>>;
 
 const GROUPS: &[(&str, MakeRows)] = &[
@@ -67,25 +67,28 @@ const GROUPS: &[(&str, MakeRows)] = &[
     ("long runs", |params| long_runs::rows(params.preset)),
 ];
 
-/// Prints a number that depends on every bit of the solution of a scene of the long runs, for comparison between
-/// processes.
+/// Prints a number that depends on every bit of a solution, for comparison between processes.
+///
+/// `scene` is the index of a scene of the long runs.
 ///
 /// # Errors
-/// When there is no such scene.
+/// When the scene does not exist.
 #[expect(clippy::print_stdout, reason = "the answer")]
 pub fn print_fingerprint(scene: usize) -> Result<()> {
     println!("{:016x}", long_runs::fingerprint(scene)?);
     Ok(())
 }
 
-/// Stresses, writes the tables and the picture into `folder`, and prints how each group fared.
+/// Runs the scenes and writes the tables and the picture into `folder`.
+///
+/// It also prints a line for each group.
 ///
 /// # Errors
 /// When a row fails, or a file cannot be written.
 #[expect(clippy::print_stdout, reason = "the result of the command")]
 pub fn run(params: &Params, folder: &Path) -> Result<()> {
     let started = Instant::now();
-    // Panics are rows of the table; what they print would be in its way.
+    // A panic becomes a row of the table, so its message is not printed.
     std::panic::set_hook(Box::new(|_| {}));
     let stress = Stress::compute(params)?;
     for file in write(&stress, folder)? {
@@ -102,10 +105,10 @@ pub fn run(params: &Params, folder: &Path) -> Result<()> {
 }
 
 impl Stress {
-    /// Whether every row passes.
+    /// Checks that every row passes.
     ///
     /// # Errors
-    /// When one fails, with a sentence for each.
+    /// When a row fails. The text has a sentence for each row that fails.
     pub fn check(&self) -> Result<()> {
         ensure!(self.failed().next().is_none(), "{}", self.complaint());
         Ok(())
@@ -121,7 +124,7 @@ impl Stress {
         self.rows.iter().filter(|row| !row.passed)
     }
 
-    /// The lines that failed, one sentence each.
+    /// The rows that failed, one sentence each.
     fn complaint(&self) -> String {
         let sentence = |row: &Row| {
             format!(
@@ -144,7 +147,7 @@ impl Stress {
         names
     }
 
-    /// How each group fared.
+    /// Table of the results of each group.
     fn groups(&self) -> Table {
         let line = |name: &&'static str| {
             let of_group: Vec<&Row> = self.rows.iter().filter(|row| row.group == *name).collect();

@@ -1,4 +1,6 @@
-//! `cargo xtask figures`: every figure of the paper in one run, compared with the archived one or archived itself.
+//! `cargo xtask figures`: every figure of the paper in one run.
+//!
+//! The run is compared with the archived one, or replaces it.
 
 use std::path::Path;
 use std::time::Instant;
@@ -9,14 +11,14 @@ use crate::archive::{self, Run};
 use crate::figure::{Figure, Preset, report, write};
 use crate::{fig1, fig2, fig3, fig4, fig5, fig6, fig7, fig8, reproduction, statements};
 
-/// What becomes of the archived run in `data/runs/paper/`.
+/// What happens to the archived run in `data/runs/paper/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Archive {
-    /// It is not looked at.
+    /// It is not read.
     Ignored,
-    /// Every table is compared with it; a difference is an error.
+    /// Every table is compared with the archived one. A difference is an error.
     Compared,
-    /// This run replaces it: tables, pictures in `docs/images/`, numbers in `docs/reproduction.md`.
+    /// This run replaces it: tables, pictures in `docs/images/`, and numbers in `docs/reproduction.md`.
     Replaced,
 }
 
@@ -60,7 +62,7 @@ fn replace(run: &Run, folder: &Path) -> Result<()> {
     reproduction::update()
 }
 
-/// The figures so far.
+/// The figures that are computed so far.
 struct All<'a> {
     preset: Preset,
     folder: &'a Path,
@@ -72,7 +74,7 @@ impl All<'_> {
         self.add(|params| F::compute(params))
     }
 
-    /// Makes, writes and records one figure.
+    /// Computes, writes and records one figure.
     fn add<F: Figure>(&mut self, make: impl FnOnce(&F::Params) -> Result<F>) -> Result<F> {
         let params = F::params(self.preset)?;
         let start = Instant::now();
@@ -88,7 +90,7 @@ impl All<'_> {
 mod tests {
     use std::process::{Command, Output};
 
-    /// The tests of the reduced figures again, in a process with these vector instructions.
+    /// Runs the tests of the reduced figures in a process with these vector instructions.
     fn reviewed_with(instructions: &str) -> Output {
         let tests = std::env::current_exe().expect("this program");
         let mut command = Command::new(tests);
@@ -96,8 +98,10 @@ mod tests {
         command.output().expect("the tests are run")
     }
 
-    /// Stands in for other processors: every reduced figure is solved, compared and drawn with fewer vector
-    /// instructions. The tests of the figures themselves use the widest of this one.
+    /// Solves, compares and draws every reduced figure with fewer vector instructions.
+    ///
+    /// This stands in for other processors. The tests of the figures themselves use all vector instructions of the
+    /// present processor.
     #[test]
     fn figures_are_the_same_with_fewer_vector_instructions() {
         for instructions in ["scalar", "sse"] {
@@ -106,7 +110,7 @@ mod tests {
             assert!(status.success(), "RC_SIMD={instructions}:\n{report}");
             assert_eq!(report.matches("... ok").count(), 15, "RC_SIMD={instructions}:\n{report}");
         }
-        // And the variable is what decides.
+        // An unknown value fails, which shows that the variable is read.
         let Output { status, stdout, .. } = reviewed_with("mmx");
         let report = String::from_utf8_lossy(&stdout);
         assert!(!status.success() && report.contains("RC_SIMD is mmx"), "{report}");

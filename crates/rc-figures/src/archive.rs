@@ -1,4 +1,6 @@
-//! The archived run of the figures: its tables, and what they were computed from, by which version, in which time.
+//! The archived run of the figures.
+//!
+//! It has the tables, the parameters, the version and the times.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +15,7 @@ use crate::{Figure, Preset, Table, repository};
 /// File with the parameters of a run.
 pub(crate) const RUN_FILE: &str = "run.toml";
 
-/// Where the archived run is.
+/// Folder of the archived run.
 pub(crate) fn folder() -> PathBuf {
     repository::root().join("data/runs/paper")
 }
@@ -43,7 +45,7 @@ impl Run {
         self.figures.push(Record { name: F::NAME, parameters, seconds, tables });
     }
 
-    /// Names of files with their tables.
+    /// File names and tables of the figure.
     fn tables(&self) -> impl Iterator<Item = (String, &Table)> {
         let named = |record: &'static str, table: &Table| format!("{record}-{}.csv", table.name);
         self.figures
@@ -51,7 +53,7 @@ impl Run {
             .flat_map(move |record| record.tables.iter().map(move |table| (named(record.name, table), table)))
     }
 
-    /// Writes what was run into `folder`.
+    /// Writes the tables and the parameters of the run into `folder`.
     pub(crate) fn save(&self, folder: &Path) -> Result<()> {
         fs::create_dir_all(folder).with_context(|| format!("could not make {}", folder.display()))?;
         let path = folder.join(RUN_FILE);
@@ -79,7 +81,7 @@ impl Run {
         Ok(())
     }
 
-    /// What differs from the tables in `folder`, a sentence a table.
+    /// Differences from the tables in `folder`, one sentence for each table.
     pub(crate) fn differences(&self, folder: &Path) -> Result<Vec<String>> {
         let mut differences = Vec::new();
         for (name, table) in self.tables() {
@@ -116,12 +118,14 @@ impl Run {
     }
 }
 
-/// Seconds with one decimal.
+/// Seconds, rounded to one decimal.
 fn tenths(seconds: f64) -> Value {
     Value::Float((10.0 * seconds).round() / 10.0)
 }
 
-/// Processor time of this process, all threads: what the run costs on a machine that does other things too.
+/// Processor time of this process over all threads (s).
+///
+/// Unlike the elapsed time, it tells the cost of the run on a machine that does other things too.
 #[cfg(unix)]
 fn processor_seconds() -> Option<f64> {
     use nix::sys::resource::{UsageWho, getrusage};
@@ -139,7 +143,7 @@ fn processor_seconds() -> Option<f64> {
 /// The version in the root manifest.
 ///
 /// # Errors
-/// When the manifest has none.
+/// When the manifest does not have a version.
 pub fn version() -> Result<String> {
     let manifest: Toml = include_str!("../../../Cargo.toml").parse()?;
     let version = manifest.get("workspace").and_then(|workspace| workspace.get("package")?.get("version")?.as_str());

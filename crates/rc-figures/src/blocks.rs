@@ -1,5 +1,6 @@
-//! Documents whose words are people's and whose numbers are a program's: blocks between `<!-- numbers: name -->` and
-//! `<!-- end of numbers -->`.
+//! Documents with blocks of numbers that a program writes.
+//!
+//! People write the text. A block is between `<!-- numbers: name -->` and `<!-- end of numbers -->`.
 
 use std::fs;
 
@@ -7,15 +8,15 @@ use anyhow::{Context, Result};
 
 use crate::repository::{self, Sources};
 
-/// Begins a block; the name and ` -->` follow.
+/// Beginning of a block, which the name and ` -->` follow.
 pub const BEGIN: &str = "<!-- numbers: ";
-/// Ends a block.
+/// End of a block.
 pub const END: &str = "<!-- end of numbers -->";
 
-/// The document at `path` with each block filled by `block`, which is given its name.
+/// The document at `path`, with each block filled by `block` from its name.
 ///
 /// # Errors
-/// When the document or a marker is missing, or with what `block` says.
+/// When the document or a marker is missing, and the errors of `block`.
 pub fn fill(path: &str, sources: &Sources, block: impl Fn(&str) -> Result<String, String>) -> Result<String, String> {
     let document = sources.get(path).ok_or_else(|| format!("{path} is missing; restore it from history"))?;
     let mut text = String::new();
@@ -30,11 +31,12 @@ pub fn fill(path: &str, sources: &Sources, block: impl Fn(&str) -> Result<String
     Ok(text + rest)
 }
 
-/// Rewrites the documents at the paths `documents` of this repository by `render`, which is given a path and the
-/// sources.
+/// Rewrites the documents at the paths `documents` of this repository.
+///
+/// `render` makes the text of a document from its path and the sources.
 ///
 /// # Errors
-/// With what `render` says, or when a document cannot be written.
+/// Those of `render`, and when a document cannot be written.
 pub fn rewrite<'a>(
     documents: impl IntoIterator<Item = &'a str>,
     render: impl Fn(&str, &Sources) -> Result<String, String>,
@@ -48,8 +50,9 @@ pub fn rewrite<'a>(
     Ok(())
 }
 
-/// The complaint about the document at `path` that differs from what `render` makes of it; `cure` says which run it
-/// shall agree with and which command rewrites it.
+/// A complaint if the document at `path` differs from its rendered text.
+///
+/// `cure` says which run the document has to agree with, and which command rewrites it.
 #[must_use]
 pub fn complaint(path: &str, sources: &Sources, rendered: Result<String, String>, cure: &str) -> Option<String> {
     match rendered {

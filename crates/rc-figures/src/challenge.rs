@@ -1,4 +1,6 @@
-//! The surface of the Contact-Mechanics Challenge without adhesion: area, gap, stiffness and patches against the load.
+//! The surface of the Contact-Mechanics Challenge without adhesion.
+//!
+//! The results are area, gap, stiffness and patches against the load.
 //!
 //! Problem: M. H. Müser, W. B. Dapp, *The contact mechanics challenge: problem definition*, arXiv:1512.02403 (2015); M.
 //! H. Müser et al., *Meeting the contact-mechanics challenge*, Tribol. Lett. 65 (2017) 118. The published problem is
@@ -24,41 +26,41 @@ use crate::{Figure, Preset, Table};
 
 pub use large::{Large, archive_large};
 
-/// The cell (µm) and E* (MPa).
+/// Side of the cell (µm); E* (MPa) follows.
 const CELL_UM: f64 = 100.0;
 const E_STAR_MPA: f64 = 25.0;
-/// Of the whole gradient.
+/// Rms slope of the whole gradient.
 const RMS_SLOPE: f64 = 1.0;
-/// The mean pressure of most published data, over E*.
+/// Mean pressure of most published data, in E*.
 pub const REFERENCE_LOAD: f64 = 0.01;
 
-/// Where the surface comes from.
+/// Origin of the surface.
 #[derive(Clone, Debug)]
 pub enum Source {
-    /// Generated: as the distributed one, but for its random phases.
+    /// A generated surface with the spectrum of the distributed one and other random phases.
     Generated {
-        /// Waves per cell of the shortest wave, λ/`λ_s`.
+        /// Number of the shortest waves in the cell, λ/`λ_s`.
         waves: usize,
         /// Seed of the phases.
         seed: u64,
     },
-    /// The distributed coefficients, scaled to the rms slope of the problem.
+    /// A surface from the distributed coefficients, scaled to the rms slope of the problem.
     File {
-        /// The file.
+        /// File of the coefficients.
         path: PathBuf,
-        /// Whether high and low change places.
+        /// Whether the heights change their sign.
         is_flipped: bool,
     },
 }
 
-/// What is computed.
+/// Surface, grid, loads and tolerance.
 #[derive(Clone, Debug)]
 pub struct Params {
-    /// The surface.
+    /// Origin of the surface.
     pub source: Source,
-    /// Elements along a side.
+    /// Elements along a side of the cell.
     side: usize,
-    /// σ0/E*.
+    /// Mean pressures σ0/E*.
     loads: Vec<f64>,
     /// Certified relative error of the pressure in the energy norm.
     energy_tolerance: f64,
@@ -75,7 +77,7 @@ pub struct Challenge {
     points: Vec<Point>,
 }
 
-/// One load, in units of λ and E*.
+/// The contact under one load, in units of λ and E*.
 #[derive(Clone, Debug)]
 struct Point {
     load: f64,
@@ -84,7 +86,7 @@ struct Point {
     patches: Vec<f64>,
 }
 
-/// What is known of a solved contact without its fields.
+/// Results of a solved contact without its fields.
 #[derive(Clone, Copy, Debug)]
 struct Solved {
     area: ContactArea,
@@ -132,7 +134,9 @@ impl Source {
     }
 }
 
-/// Presses `surface` with a mean pressure `load`; what is taken of the solution besides is up to `with`.
+/// Solves the contact of `surface` under the mean pressure `load`.
+///
+/// `with` takes further results from the solution.
 fn press<T>(
     surface: &Surface,
     (side, load, energy_tolerance): (usize, f64, f64),
@@ -152,7 +156,9 @@ impl Figure for Challenge {
     const NAME: &'static str = "challenge";
     type Params = Params;
 
-    /// The generated surface: 1000 waves on 4096² elements up to 15 % contact (full); 40 on 320² (quick).
+    /// The generated surface with 1000 waves on 4096² elements, up to 15 % contact (full).
+    ///
+    /// The quick preset has 40 waves on 320² elements.
     fn params(preset: Preset) -> Result<Params> {
         Ok(match preset {
             Preset::Full => Params {
@@ -165,7 +171,7 @@ impl Figure for Challenge {
                 source: Source::Generated { waves: 40, seed: 1 },
                 side: 320,
                 loads: vec![2e-3, REFERENCE_LOAD, 0.04],
-                // Tighter, so that other vector instructions change little.
+                // A tighter tolerance makes the effect of other vector instructions small.
                 energy_tolerance: 1e-4,
             },
         })
@@ -229,8 +235,7 @@ mod tests {
         let source = Challenge::params(Preset::Full).expect("parameters").source;
         let moments = source.surface().expect("a surface").moments();
         assert!((moments.rms_slope - 1.0).abs() < 1e-12, "{moments:?}");
-        // The integral over the plateau and the power law gives 0.7765 µm, the sum over a lattice of waves a little
-        // more.
+        // The integral over plateau and power law gives 0.7765 µm. The sum over a lattice of waves is slightly larger.
         assert!((moments.rms_height * CELL_UM / 0.7765 - 1.0).abs() < 0.01, "{moments:?}");
     }
 
@@ -254,7 +259,7 @@ mod tests {
         let figure = Challenge::compute(&params).expect("the quick figure is solved");
         for Point { load, solved, patches } in &figure.points {
             let sum = patches.iter().sum::<f64>() / solved.area.fraction - 1.0;
-            // The fields of the adaptive method are rounded where its own sums are not.
+            // The fields of the adaptive method are rounded, but the sums within the method are not.
             assert!(sum.abs() < 1e-6, "σ0 = {load}: the patches add up to the area but for {sum:e}");
         }
         assert_reviewed(&figure, &params, &["challenge-surface", "challenge-curve", "challenge-patches"]);

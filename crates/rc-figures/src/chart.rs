@@ -1,4 +1,4 @@
-//! What line figures share: colours, axes, words at a point, and dimension arrows.
+//! Elements that line figures share: colours, axes, text at a point, and dimension arrows.
 
 use plotters::chart::DualCoordChartContext;
 use plotters::coord::types::RangedCoordf64;
@@ -10,22 +10,22 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{BLACK, Color, TextStyle, WHITE};
 use rc_plot::{Area, FONT};
 
-/// Text, in pixels.
+/// Size of the text, in pixels.
 pub(crate) const TEXT: f64 = 30.0;
-/// Height of the numbers and the name along x, in pixels.
+/// Height of the space for numbers and the name of the x axis, in pixels.
 const LABELS: u32 = 84;
-/// Colours that stay apart in print and for colour-blind readers (after Okabe and Ito).
+/// Colours that colour-blind readers can tell apart, also in print (after Okabe and Ito).
 pub(crate) const BLUE: RGBColor = RGBColor(0, 90, 160);
 pub(crate) const RED: RGBColor = RGBColor(200, 60, 20);
 pub(crate) const GREEN: RGBColor = RGBColor(0, 130, 100);
 pub(crate) const GREY: RGBColor = RGBColor(110, 110, 110);
-/// Lines that only guide the eye.
+/// Colour of lines that only guide the eye.
 const PALE: RGBColor = RGBColor(228, 228, 228);
 
 /// A chart with linear axes.
 pub(crate) type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// A chart with a second scale along its top; series are drawn on the first.
+/// A chart with a second scale along its top. Series use the first scale.
 pub(crate) type TwoScales<'a, B> = DualCoordChartContext<
     'a,
     B,
@@ -33,7 +33,7 @@ pub(crate) type TwoScales<'a, B> = DualCoordChartContext<
     Cartesian2d<RangedCoordf64, RangedCoordf64>,
 >;
 
-/// What drawing returns.
+/// Result of drawing.
 pub(crate) type Drawn<T, B> = Result<T, DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
 /// Ranges and names of the axes of a chart.
@@ -43,7 +43,7 @@ pub(crate) struct Axes<'a> {
     pub(crate) y: (f64, f64),
     pub(crate) x_label: &'a str,
     pub(crate) y_label: &'a str,
-    /// About how many numbers along x and along y.
+    /// Approximate number of labels along x and along y.
     pub(crate) n_labels: (usize, usize),
 }
 
@@ -56,7 +56,9 @@ impl Axes<'_> {
         Ok(chart)
     }
 
-    /// A chart with its axes and a second scale along its top: `factor` times x, named `x_label`.
+    /// A chart with its axes and a second scale along its top.
+    ///
+    /// The second scale is `factor` times x, and its name is `x_label`.
     pub(crate) fn with_top<'a, B: DrawingBackend>(
         &self,
         area: &'a Area<B>,
@@ -85,7 +87,7 @@ impl Axes<'_> {
     }
 }
 
-/// A chart with room for numbers and names.
+/// A builder of charts with space for numbers and names.
 fn builder<'b, B: DrawingBackend>(area: &Area<B>) -> ChartBuilder<'_, 'b, B> {
     let mut builder = ChartBuilder::on(area);
     builder.margin_left(10).margin_right((1.5 * TEXT) as u32).margin_bottom(10);
@@ -93,7 +95,9 @@ fn builder<'b, B: DrawingBackend>(area: &Area<B>) -> ChartBuilder<'_, 'b, B> {
     builder
 }
 
-/// A number on an axis. Ticks are sums of steps, so their last digits are rounding.
+/// Text of a number on an axis.
+///
+/// Ticks are sums of steps, so rounding removes their last digits.
 fn label(value: f64) -> String {
     // Adding zero turns -0 into 0.
     rc_core::quantity::label(1e-9 * (1e9 * value).round() + 0.0)
@@ -104,12 +108,12 @@ fn words(size: f64, colour: RGBColor) -> TextStyle<'static> {
     (FONT, size).into_font().color(&colour)
 }
 
-/// Where a text stands about its point.
+/// Position of a text relative to its point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Side {
     Left,
     Right,
-    /// This many pixels to the right.
+    /// To the right by this many pixels.
     RightOf(i32),
     Above,
     RightAbove,
@@ -128,7 +132,7 @@ pub(crate) fn write<B: DrawingBackend>(
     let (offset, horizontal, vertical) = match side {
         Side::Left => ((-gap, 0), HPos::Right, VPos::Center),
         Side::Right => ((gap, 0), HPos::Left, VPos::Center),
-        // The backends centre the line box, not the digits.
+        // The backends centre the box of the line, not the digits.
         Side::RightOf(pixels) => ((gap + pixels, (0.14 * TEXT) as i32), HPos::Left, VPos::Center),
         Side::RightAbove => ((gap, -gap), HPos::Left, VPos::Bottom),
         Side::Above => ((0, -gap), HPos::Center, VPos::Bottom),
@@ -139,7 +143,7 @@ pub(crate) fn write<B: DrawingBackend>(
     Ok(())
 }
 
-/// A vertical dimension arrow with heads at both ends, as in drawings.
+/// Draws a vertical dimension arrow with heads at both ends.
 pub(crate) fn dimension<B: DrawingBackend>(
     chart: &mut Chart<'_, B>,
     x: f64,
@@ -149,7 +153,7 @@ pub(crate) fn dimension<B: DrawingBackend>(
     chart.draw_series([PathElement::new([(x, from), (x, to)], colour.stroke_width(2))])?;
     let up = if to > from { 1 } else { -1 };
     for (end, sign) in [(from, -up), (to, up)] {
-        // Pixels count downwards.
+        // Coordinates in pixels increase downwards.
         let head = [(0, 0), (-7, 18 * sign), (7, 18 * sign)];
         chart.draw_series([EmptyElement::at((x, end)) + Polygon::new(head, colour.filled())])?;
     }

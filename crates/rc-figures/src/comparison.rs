@@ -1,67 +1,75 @@
-//! How a table is compared with an earlier one: what may differ is said beside what writes the table, column by column.
+//! Comparison of a table with an earlier one, by rules for its columns.
 //!
-//! Processors have different vector instructions, which round sums in another order, so a solve to the same tolerance
-//! ends at a slightly other solution. What that changes is known by the scale of a column, and not by a number itself:
-//! a pressure beside a contact edge moves by a small part of the peak pressure, which may be all of it. Text and the
-//! numbers of cells and rows must agree.
+//! The code that writes a table states the allowed differences. Processors have different vector instructions, which
+//! round sums in another order. A solve to the same tolerance then ends at a slightly different solution. The scale of
+//! a column determines this difference, a single number does not. For instance, a pressure beside a contact edge moves
+//! by a small fraction of the peak pressure, which may be the whole pressure there. Text and the numbers of cells and
+//! rows must agree.
 
-/// A number `b` agrees with the reference `a` when |a - b| ≤ absolute + relative·|a| + of_scale·s, with s the largest
-/// magnitude of its column.
+/// The allowed difference of a number from its reference.
+///
+/// A number `b` agrees with the reference `a` when |a - b| ≤ absolute + relative·|a| + of_scale·s. s is the largest
+/// magnitude in the column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rule {
     absolute: f64,
     relative: f64,
     of_scale: f64,
-    /// Part of |v|, with v the number in column `value` of the same row.
+    /// Fraction of |v|, where v is the number in column `value` of the same row.
     of_value: f64,
-    /// The column that counts what the number is made of, and the part of √n by which a count n may differ.
+    /// Column with a count n behind the number, and the allowed difference over √n.
+    ///
+    /// Without a column, the number itself is the count.
     count: Option<(Option<&'static str>, f64)>,
 }
 
 impl Rule {
-    /// Seven digits, of which the last may turn on rounding: what nothing is said about.
+    /// The default rule: seven digits, of which the last may differ by rounding.
     pub const STRICT: Self = Self::relative(1e-6);
 
     const NOTHING: Self = Self { absolute: 0.0, relative: 0.0, of_scale: 0.0, of_value: 0.0, count: None };
 
-    /// Within `part` of the reference.
+    /// A difference of at most `part` times the reference.
     #[must_use]
     pub const fn relative(part: f64) -> Self {
         Self { relative: part, ..Self::NOTHING }
     }
 
-    /// Within `difference`, in the unit of the number.
+    /// A difference of at most `difference`, in the unit of the number.
     #[must_use]
     pub const fn absolute(difference: f64) -> Self {
         Self { absolute: difference, ..Self::NOTHING }
     }
 
-    /// Within `difference` more.
+    /// Allows a further `difference`.
     #[must_use]
     pub const fn plus(self, difference: f64) -> Self {
         Self { absolute: self.absolute + difference, ..self }
     }
 
-    /// Within `part` of the largest magnitude in the column.
+    /// A difference of at most `part` times the largest magnitude in the column.
     #[must_use]
     pub const fn of_scale(part: f64) -> Self {
         Self { of_scale: part, ..Self::NOTHING }
     }
 
-    /// Within `part` of the number in column `value` of the same row: for standard errors.
+    /// A difference of at most `part` times the number in column `value`.
+    ///
+    /// The number is in the same row. This rule is for standard errors.
     #[must_use]
     pub const fn of_value(part: f64) -> Self {
         Self { of_value: part, ..Self::NOTHING }
     }
 
-    /// A count n of elements, within 1 + `part`·√n: a few of them cross the ends of a bin or the edge of a contact, at
-    /// random.
+    /// A count n of elements, which may differ by 1 + `part`·√n.
+    ///
+    /// A few elements cross the ends of a bin or the edge of a contact at random.
     #[must_use]
     pub const fn count(part: f64) -> Self {
         Self { count: Some((None, part)), ..Self::NOTHING }
     }
 
-    /// A number in proportion to the count in `column`, as [`Rule::count`] of that.
+    /// A number in proportion to the count in `column`, to which [`Rule::count`] applies.
     #[must_use]
     pub const fn of_count(column: &'static str, part: f64) -> Self {
         Self { count: Some((Some(column), part)), ..Self::NOTHING }
@@ -71,10 +79,10 @@ impl Rule {
 /// The rules of one table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// Rules of rows, by their first cell, and of columns; those of rows come first.
+    /// Rules of rows, by the first cell of a row, and of columns. Rules of rows take precedence.
     rows: Vec<(String, Rule)>,
     columns: Vec<(&'static str, Rule)>,
-    /// What nothing is said about.
+    /// The rule of all other numbers.
     rest: Rule,
 }
 
@@ -84,7 +92,7 @@ impl Default for Comparison {
     }
 }
 
-/// A table cut into cells, its header first.
+/// The cells of a table, row by row, with the header first.
 struct Cells<'a>(Vec<Vec<&'a str>>);
 
 impl<'a> Cells<'a> {
@@ -100,7 +108,7 @@ impl<'a> Cells<'a> {
         self.0.get(row)?.get(column?)?.parse().ok()
     }
 
-    /// The largest magnitude of a column.
+    /// Largest magnitude of the numbers in a column.
     fn scale(&self, column: usize) -> f64 {
         (1..self.0.len())
             .filter_map(|row| self.number(row, Some(column)))
@@ -121,7 +129,7 @@ impl Comparison {
         self.rest = rule;
     }
 
-    /// The first difference between two tables, as a sentence.
+    /// The first difference between two tables, as a sentence; `None` if they agree.
     #[must_use]
     pub fn difference(&self, reference: &str, test: &str) -> Option<String> {
         let (reference, test) = (Cells::of(reference), Cells::of(test));
@@ -158,7 +166,8 @@ impl Comparison {
         let of_count = rule.count.map_or(0.0, |(counted, part)| {
             let counted = counted.map_or(Some(column), |name| reference.column(name));
             let (n, sum) = (number(reference, counted), number(reference, counted) + number(test, counted));
-            // What one of them stands for, from both tables, since a count may be zero in either.
+            // The amount that one counted element stands for. It is taken from both tables, since a count may be zero
+            // in one of them.
             let one = (a + number(test, Some(column))) / sum.max(1.0);
             one * (1.0 + part * n.sqrt())
         });
@@ -175,9 +184,11 @@ pub(crate) mod tests {
 
     const REAL: f64 = 1e-3;
 
-    /// What the rules of `table` do not notice, though it is no matter of rounding: a change by a thousandth of the
-    /// largest number of a column, or, where that is less than a rule resolves in a count or in the unit of the number,
-    /// by twice as much; a sign swapped; a row left out.
+    /// The first real change of `table` that its rules do not notice.
+    ///
+    /// Rounding cannot cause a real change. The changes are a swapped sign, a row left out, and a change by a
+    /// thousandth of the largest number of a column. The last one is twice the resolution of a rule if a count or the
+    /// unit of the number is coarser than a thousandth.
     pub(crate) fn unnoticed(table: &Table) -> Option<String> {
         let cells = Cells::of(&table.csv);
         let text = |cells: &[Vec<&str>]| cells.iter().map(|row| row.join(",") + "\n").collect::<String>();
@@ -204,8 +215,10 @@ pub(crate) mod tests {
         })
     }
 
-    /// Row, column and value of the largest number of each column; in a summary, which has a column `value`, of every
-    /// number, since its rows are different quantities.
+    /// Row, column and value of the numbers that are changed.
+    ///
+    /// They are the largest number of each column. A summary has a column `value`, and its rows are different
+    /// quantities, so there they are all numbers.
     fn scales(cells: &Cells<'_>) -> Vec<(usize, usize, f64)> {
         let is_summary = cells.column("value").is_some();
         let of_column = |column: usize| {
@@ -236,12 +249,12 @@ pub(crate) mod tests {
             table.comparison.difference(&table.csv, &table.csv.replacen(from, to, 1))
         };
         for (from, to) in [
-            // Any number of a column within 1e-4 of its largest.
+            // A number of the column may differ by 1e-4 of the largest one.
             ("10.0", "10.0009"),
             ("1e-3", "2e-3"),
             ("1e-3", "1e-5"),
             ("2.0", "2.0009"),
-            // Two elements of four, fifty of ten thousand.
+            // Counts may differ by two of four, and by fifty of ten thousand.
             ("4", "6"),
             ("10000", "10050"),
             ("2e-3", "1.3e-3"),

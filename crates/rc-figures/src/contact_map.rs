@@ -1,4 +1,4 @@
-//! Where a pressure is positive: blocks and runs of elements.
+//! Elements with positive pressure, as runs and as fractions of blocks.
 
 use rc_core::Field;
 
@@ -18,7 +18,7 @@ pub(crate) struct Run {
 }
 
 impl ContactMap {
-    /// The elements of `pressure` (n × n) that carry load.
+    /// The map of the elements of `pressure` (n × n) that carry load.
     pub(crate) fn of(pressure: &Field) -> Self {
         Self { n: pressure.grid().nx(), inside: pressure.values().iter().map(|&p| p > 0.0).collect() }
     }
@@ -39,7 +39,9 @@ impl ContactMap {
         runs
     }
 
-    /// Fraction in contact of each of `m` × `m` equal blocks, row by row. Side `m` divides the side of the map.
+    /// Fraction in contact of each of `m` × `m` equal blocks, row by row.
+    ///
+    /// `m` must divide the side of the map.
     pub(crate) fn block_fractions(&self, m: usize) -> Vec<f64> {
         let block = self.n / m;
         let mut counts = vec![0_usize; m * m];
@@ -58,7 +60,7 @@ mod tests {
 
     use super::*;
 
-    /// A map from rows of text, `#` in contact.
+    /// A map from rows of text, in which `#` is contact.
     fn map(rows: &[&str]) -> ContactMap {
         let values = rows.iter().flat_map(|row| row.bytes()).map(|byte| if byte == b'#' { 1.0 } else { 0.0 });
         let grid = Grid::square(rows.len()).expect("small grid");

@@ -1,7 +1,7 @@
-//! docs/gfmd.md and docs/challenge.md: words by people, numbers from the archived runs.
+//! docs/gfmd.md and docs/challenge.md, with numbers from the archived runs.
 //!
-//! Blocks as in [`crate::blocks`]. `cargo xtask gfmd --archive` and `cargo xtask challenge --archive` write them,
-//! `cargo xtask tidy` compares.
+//! People write the text around the blocks of [`crate::blocks`]. `cargo xtask gfmd --archive` and
+//! `cargo xtask challenge --archive` write the blocks, and `cargo xtask tidy` compares them.
 
 use anyhow::Result;
 use rc_core::quantity::digits;
@@ -10,18 +10,18 @@ use toml::Table as Toml;
 use crate::blocks;
 use crate::repository::Sources;
 
-/// A document and the command that archives its run.
+/// Path of a document, and the command that archives its run.
 const DOCUMENTS: [(&str, &str); 2] = [("docs/gfmd.md", "gfmd"), ("docs/challenge.md", "challenge")];
 
 /// Rewrites the numbers of the documents from the archived runs.
 ///
 /// # Errors
-/// When an archived run lacks a number, or a document cannot be written.
+/// When a number is missing in an archived run, or a document cannot be written.
 pub(crate) fn update() -> Result<()> {
     blocks::rewrite(DOCUMENTS.map(|(document, _)| document), render)
 }
 
-/// Complains when a document has other numbers than its archived run.
+/// Complaints about documents whose numbers differ from their archived run.
 #[must_use]
 pub fn check(sources: &Sources) -> Vec<String> {
     let complaint = |(document, command): (&str, &str)| {
@@ -52,11 +52,12 @@ fn render(document: &str, sources: &Sources) -> Result<String, String> {
     })
 }
 
-/// A column of a table in a document: its name in the archived table, its title, a factor, and its digits (0: as it
-/// is).
+/// A column of a table in a document: archived name, title, factor, and digits.
+///
+/// Zero digits leave the text as it is.
 type Column = (&'static str, &'static str, f64, usize);
 
-/// A table of a document that is an archived one with other titles.
+/// A table of a document that repeats an archived table with other titles.
 struct Shown {
     block: &'static str,
     path: &'static str,
@@ -157,7 +158,7 @@ impl<'a> Csv<'a> {
     }
 }
 
-/// Our areas beside the published ones.
+/// Table of our areas beside the published ones.
 fn areas(sources: &Sources) -> Result<String, String> {
     let csv = Csv::read("data/runs/gfmd/gfmd-areas.csv", sources)?;
     let names = [

@@ -1,7 +1,8 @@
-//! Fig. 1: a section of a solved contact: rigid rough surface, deformed half-space, penetration Δ and mean planes.
+//! Fig. 1: a section of a solved contact.
 //!
-//! The paper's figure is a sketch; this one is a solution, along the row of elements through the highest peak, because
-//! there the displacement v takes its largest value, which is Δ (Sec. 2).
+//! It shows the rigid rough surface, the deformed half-space, the penetration Δ and the mean planes. The paper's figure
+//! is a sketch, while this one is a solution. The section is the row of elements through the highest peak. There the
+//! displacement v has its largest value, which is Δ (Sec. 2).
 
 use std::f64::consts::TAU;
 
@@ -16,16 +17,16 @@ use rc_solver::{Control, Method, Solution, SolveParams, solve};
 use crate::chart::{Axes, BLUE, Chart, Drawn, GREY, RED, Side, dimension, write};
 use crate::{Figure, Preset, Rule, Table, number, paper};
 
-/// The two bodies.
+/// Colour of the rigid body. The colour of the half-space follows.
 const RIGID: RGBColor = RGBColor(214, 214, 214);
 const SOFT: RGBColor = RGBColor(203, 223, 242);
 /// Width of the enlarged part, in λ.
 const WINDOW: f64 = 0.25;
-/// Micrometres and millimetres in a metre.
+/// Micrometres in a metre. Millimetres in a metre follow.
 const MICRO: f64 = 1e6;
 const MILLI: f64 = 1e3;
 
-/// What Fig. 1 is computed from.
+/// Parameters of Fig. 1.
 #[derive(Clone, Debug)]
 pub struct Params {
     /// Number of waves N.
@@ -42,12 +43,12 @@ pub struct Params {
     cell: f64,
 }
 
-/// One element of the section. Displacements are positive into the half-space (m).
+/// One element of the section, with displacements (m) that are positive into the half-space.
 #[derive(Clone, Copy, Debug)]
 struct Point {
     /// Distance from the highest peak (m).
     x: f64,
-    /// Displacement that would touch the rigid surface, h - h_max + Δ.
+    /// Displacement at which the half-space touches the rigid surface, h - h_max + Δ.
     rigid: f64,
     /// Displacement v of the half-space.
     deformed: f64,
@@ -55,18 +56,18 @@ struct Point {
     pressure: f64,
 }
 
-/// The section and what is measured at it, SI.
+/// The section with its measured lengths, in SI units.
 #[derive(Clone, Debug)]
 pub struct Fig1 {
     cell: f64,
     mean_pressure: f64,
-    /// Elements of the section, the highest peak in the middle.
+    /// Elements of the section, with the highest peak in the middle.
     points: Vec<Point>,
-    /// Δ.
+    /// Penetration Δ.
     penetration: f64,
     /// Height of the highest peak above the mean plane of the roughness.
     h_max: f64,
-    /// Mean and maximum displacement over the whole cell.
+    /// Mean displacement over the whole cell. The maximum follows.
     mean_displacement: f64,
     max_displacement: f64,
     /// A/A0 of the whole cell.
@@ -77,7 +78,9 @@ impl Figure for Fig1 {
     const NAME: &'static str = "fig1";
     type Params = Params;
 
-    /// The paper's surface with 64 waves on 32 elements per shortest wave (full), and 8 waves on 16 (quick).
+    /// 64 waves of the paper's surface on 32 elements per shortest wave (full).
+    ///
+    /// The quick preset has 8 waves on 16 elements per shortest wave.
     fn params(preset: Preset) -> Result<Params> {
         let (waves, grid, tolerance) = match preset {
             Preset::Full => (paper::value("waves_a")? as usize, 2048, 1e-6),
@@ -131,7 +134,7 @@ impl Picture for Fig1 {
 }
 
 impl Fig1 {
-    /// The row through the highest peak, shifted around the cell so that the peak is in its middle.
+    /// The row through the highest peak, shifted so that the peak is in its middle.
     fn of(params: &Params, heights: &Field, solution: &Solution<'_>) -> Self {
         let (n, cell, penetration) = (params.grid, params.cell, solution.info().penetration);
         let (pressure, displacement) = (solution.pressure(), solution.displacement());
@@ -172,7 +175,7 @@ impl Fig1 {
             row("h_max", "um", MICRO * self.h_max),
             row("mean gap", "um", MICRO * (self.h_max - self.penetration)),
         ];
-        // The mean of a displacement of 17 µm, by an operator that is exact to 1e-6 of it.
+        // The mean is of displacements up to 17 µm, from an operator that is exact to 1e-6 of them.
         Table::new("summary", &["quantity", "unit", "value"], rows)
             .column("value", Rule::relative(1e-5))
             .row("mean displacement", Rule::absolute(5e-5))
@@ -192,7 +195,9 @@ impl Fig1 {
             .column("pressure_over_e_star", Rule::of_scale(3e-4))
     }
 
-    /// The profiles within `half_width` (m) of the peak; the cell ends with the image of its first point.
+    /// The profiles within `half_width` (m) of the peak.
+    ///
+    /// The last point of the cell is the image of its first point.
     fn profile(&self, half_width: f64) -> Vec<Heights> {
         let image = self.points.first().map(|point| Point { x: 0.5 * self.cell, ..*point });
         let inside = self.points.iter().copied().chain(image).filter(|point| point.x.abs() <= half_width);
@@ -205,7 +210,7 @@ impl Fig1 {
         heights.collect()
     }
 
-    /// The whole section with planes and dimensions.
+    /// Draws the whole section with planes and dimensions.
     fn draw_whole<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
         let profile = self.profile(0.5 * self.cell);
         let top = profile.iter().map(|at| at.rigid).fold(0.0, f64::max);
@@ -233,7 +238,7 @@ impl Fig1 {
         write(&mut chart, (0.42 * half, 0.75 * depth), Side::Below, "contact", RED)
     }
 
-    /// The surroundings of the peak.
+    /// Draws the surroundings of the peak.
     fn draw_part<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
         let half = 0.5 * WINDOW * self.cell;
         let profile = self.profile(half);
@@ -245,7 +250,7 @@ impl Fig1 {
     }
 }
 
-/// Heights above the mean plane of the half-space, -v, as they are drawn.
+/// Heights for the drawing, above the mean plane of the half-space: -v.
 #[derive(Clone, Copy, Debug)]
 struct Heights {
     /// Distance from the peak (mm).
@@ -257,7 +262,7 @@ struct Heights {
     touching: bool,
 }
 
-/// Both bodies and their contact, with axes and the exaggeration of heights.
+/// Draws both bodies and their contact, with axes and the exaggeration of heights.
 fn bodies<'a, B: DrawingBackend>(
     area: &'a Area<B>,
     profile: &[Heights],
@@ -280,7 +285,7 @@ fn bodies<'a, B: DrawingBackend>(
         let line: Vec<(f64, f64)> = run.iter().map(|at| (at.x, at.soft)).collect();
         chart.draw_series([PathElement::new(line, RED.stroke_width(6))])?;
     }
-    // µm per pixel up against mm per pixel along.
+    // Ratio of µm per pixel along y to mm per pixel along x.
     let (width, height) = chart.plotting_area().dim_in_pixel();
     let exaggeration = MICRO / MILLI * (f64::from(height) / (y.1 - y.0)) / (f64::from(width) / (2.0 * half_width));
     let corner = (half_width, y.0 + 0.05 * (y.1 - y.0));
@@ -293,8 +298,9 @@ mod tests {
     use super::*;
     use crate::figure::tests::{assert_reviewed, assert_written};
 
-    /// Displacements come from an operator that is exact to 1e-6 of their rms, which is below h_max; at single points a
-    /// few times that.
+    /// Allowed difference of displacements relative to h_max.
+    ///
+    /// The operator is exact to 1e-6 of their rms, which is below h_max. Single points have errors of a few times that.
     const DISPLACEMENT_ERROR: f64 = 5e-6;
 
     fn quick() -> (Params, Fig1) {

@@ -1,7 +1,7 @@
-//! Fig. 2: the self-balanced load on the elementary cell, and the displacement L that it causes there (Eq. 3-6).
+//! Fig. 2: the self-balanced load on the elementary cell and its displacement L (Eq. 3-6).
 //!
-//! The load is σ = 1 on a square of half side d less its mean (2d/λ)² everywhere, so that it carries no net force and
-//! its displacement has a mean of zero.
+//! The load is σ = 1 on a square of half side d minus the constant (2d/λ)². So it has no net force, and its
+//! displacement has a mean of zero.
 
 use anyhow::Result;
 use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, PathElement};
@@ -14,15 +14,15 @@ use crate::chart::{Axes, BLUE, Drawn, GREY, RED, Side, write};
 use crate::{Figure, Preset, Rule, Table, number};
 
 const COLOURS: [RGBColor; 2] = [BLUE, RED];
-/// Range of the response per load that is drawn: the peaks, which grow as 1/d, are cut off.
+/// Range of the response per load in the drawing. It cuts the peaks off, which grow as 1/d.
 const SHOWN: (f64, f64) = (-0.75, 6.25);
 
-/// What Fig. 2 is computed from.
+/// Parameters of Fig. 2.
 #[derive(Clone, Debug)]
 pub struct Params {
-    /// One over the half sides d/λ of the loaded squares.
+    /// λ/d for each half side d of the loaded squares.
     inverse_half_sides: Vec<usize>,
-    /// Intervals along the cell, a power of two so that the edges of the squares are points.
+    /// Number of intervals along the cell. It is a power of two, so that the edges of the squares are points.
     n_intervals: usize,
 }
 
@@ -31,10 +31,10 @@ pub struct Params {
 struct Case {
     /// λ/d.
     inverse_half_side: usize,
-    /// σ and L E*/λ at each x.
+    /// σ at each x. L E*/λ follows.
     stress: Vec<f64>,
     response: Vec<f64>,
-    /// Means over the cell.
+    /// Mean of σ over the cell. The mean of L follows.
     mean_stress: f64,
     mean_response: f64,
 }
@@ -50,8 +50,9 @@ impl Figure for Fig2 {
     const NAME: &'static str = "fig2";
     type Params = Params;
 
-    /// Half sides of λ/8, to be seen, and λ/32, closer to the use in the method; only the number of points depends on
-    /// the preset.
+    /// Half sides of λ/8, which is easy to see, and λ/32, which is closer to the method.
+    ///
+    /// The preset changes only the number of points.
     fn params(preset: Preset) -> Result<Params> {
         let n_intervals = match preset {
             Preset::Full => 1024,
@@ -118,7 +119,7 @@ impl Case {
         (self.inverse_half_side as f64).recip()
     }
 
-    /// Force of the loaded square in σ λ².
+    /// Force of the loaded square, in σ λ².
     fn load(&self) -> f64 {
         (2.0 * self.half_side()).powi(2)
     }
@@ -128,11 +129,11 @@ impl Case {
     }
 }
 
-/// The mean of L over the cell.
+/// The mean of L over the cell, without an error of quadrature.
 ///
-/// The targets seen from one square are those of the whole tiling of the cell by such squares, seen from one target, so
-/// the mean is the average over one tile of (2d)² Σ_j L_ij: loading every square alike is a uniform load, which
-/// displaces nothing. The largest such sum on a few points of a tile bounds the mean without any error of quadrature.
+/// Squares of side 2d tile the cell, and equal loads on all of them are a uniform load, which displaces nothing. The
+/// mean of L over the cell is therefore the average over one tile of (2d)² Σ_j L_ij, where the sum is over all tiles.
+/// The result is the largest such sum on a few points of a tile, which bounds the mean.
 fn mean_response(kernel: PeriodicLove, inverse_half_side: usize) -> f64 {
     let half_side = (inverse_half_side as f64).recip();
     let (side, n_tiles) = (2.0 * half_side, inverse_half_side / 2);
@@ -145,7 +146,7 @@ fn mean_response(kernel: PeriodicLove, inverse_half_side: usize) -> f64 {
     sums.fold(0.0, |largest: f64, sum| if sum.abs() > largest.abs() { sum } else { largest })
 }
 
-/// The displacement of a point load of 1 in E* λ²: 𝓛 of Eq. 3.
+/// The displacement of a unit point load, in E* λ²: 𝓛 of Eq. 3.
 fn point_response(x: f64) -> f64 {
     std::f64::consts::FRAC_1_PI * ewald_phi(DVec2::new(x, 0.0))
 }
@@ -180,7 +181,7 @@ impl Fig2 {
         Table::new("lines", &header, rows).rest(Rule::of_scale(1e-6))
     }
 
-    /// Every so many points are drawn: shorter pieces of a line look rough.
+    /// Step between drawn points, since shorter pieces of a line look rough.
     fn stride(&self) -> usize {
         (self.x.len() / 256).max(1)
     }
@@ -236,7 +237,7 @@ impl Fig2 {
     }
 }
 
-/// Axes along the cell.
+/// The axes of a panel along the cell.
 fn axes(y_label: &str, y: (f64, f64)) -> Axes<'_> {
     Axes { x: (-0.5, 0.5), y, x_label: "x / λ", y_label, n_labels: (11, 7) }
 }
@@ -258,7 +259,7 @@ mod tests {
         for case in quick().cases {
             let rounding = f64::EPSILON * case.load();
             assert!(case.mean_stress.abs() <= rounding, "{}: mean load {:e}", case.name(), case.mean_stress);
-            // A coefficient is exact to 1e-12 of the largest one, which is about d; the mean averages them.
+            // A coefficient is exact to 1e-12 of the largest one, which is about d. The mean averages coefficients.
             let bound = 1e-12 * case.half_side();
             assert!(case.mean_response.abs() < bound, "{}: mean {:e} above {bound:e}", case.name(), case.mean_response);
         }
@@ -268,7 +269,7 @@ mod tests {
     fn far_from_the_square_only_the_load_counts() {
         for case in quick().cases {
             let (numeric, point) = (case.response[0] / case.load(), point_response(0.5));
-            // The next term is d²/6 times the Laplacian, and far from the square the slowest wave leads, whose
+            // The next term is d²/6 times the Laplacian. Far from the square the longest wave dominates, whose
             // Laplacian is (2π)² times its value.
             let bound = (TAU * case.half_side()).powi(2) / 6.0;
             let difference = (numeric / point - 1.0).abs();

@@ -1,9 +1,9 @@
 //! Fig. 3: elements against penetration for the three meshes, from touch to full contact.
 //!
-//! The meshes are counted on contact sets of elements that are the smallest of all three meshes. A tolerance of 1e-5 of
-//! the height of the surface is enough for the picture: only elements at borders of contact can still change, and
-//! `a_tolerance_of_1e_5_is_enough_for_counts` asserts on the quick figure that nobody would see it. Counts on another
-//! processor are the same within [`NOISE`].
+//! The meshes are counted on sets of the smallest elements of all three meshes. A tolerance of 1e-5 of the height of
+//! the surface is enough for the picture, since only elements at edges of contact can still change. The test
+//! `a_tolerance_of_1e_5_is_enough_for_counts` shows on the quick figure that this change is not visible. Counts on
+//! another processor are the same within [`NOISE`].
 
 use std::f64::consts::TAU;
 
@@ -19,27 +19,32 @@ use rc_solver::{Control, Method, SolveParams, Status, solve};
 use crate::chart::{Axes, BLUE, Chart, Drawn, GREEN, RED, Side, write};
 use crate::{Figure, Preset, Rule, Table, number, paper};
 
-/// The meshes, their names in the paper and in tables, and their colours; most elements first.
+/// Kind, name in the paper, name in tables, and colour of each mesh.
+///
+/// The mesh with most elements is first.
 const MESHES: [(MeshKind, &str, &str, RGBColor); 3] = [
     (MeshKind::Uniform, "uniform grid", "uniform", BLUE),
     (MeshKind::AdaptiveUniform, "adaptive uniform grid", "adaptive_uniform", GREEN),
     (MeshKind::Adaptive, "adaptive non-uniform grid", "adaptive", RED),
 ];
-/// Mean pressures, over E* times the rms slope of the surface: in these units the contact fraction depends little on
-/// the surface.
+/// Mean pressures, divided by E* and the rms slope of the surface.
+///
+/// In these units the contact fraction depends little on the surface.
 const LOADS: [f64; 14] = [4e-4, 2e-3, 8e-3, 0.025, 0.06, 0.12, 0.2, 0.28, 0.36, 0.42, 0.48, 0.6, 0.8, 1.1];
-/// A mean pressure, in E*, that closes every gap of any surface with slopes far below 1.
+/// A mean pressure, in E*, that closes all gaps if slopes are far below 1.
 const CRUSHING: f64 = 1.0;
-/// Smallest elements per side in the paper, 4.2 million in all.
+/// Smallest elements per side in the paper. There are 4.2 million in all.
 const PAPER_GRID: usize = 2048;
-/// The contact fraction at which the meshes are compared.
+/// Contact fraction at which the meshes are compared.
 const TWO_THIRDS: f64 = 2.0 / 3.0;
-/// How far counts may be from those of another processor: the tolerance lets some elements at borders turn either way.
+/// Allowed relative difference of counts between processors.
+///
+/// Within the tolerance some elements at edges of contact may be in or out of contact.
 const NOISE: f64 = 5e-4;
 const MICRO: f64 = 1e6;
 const MILLION: f64 = 1e6;
 
-/// What Fig. 3 is computed from.
+/// Parameters of Fig. 3.
 #[derive(Clone, Debug)]
 pub struct Params {
     /// Number of waves N.
@@ -54,7 +59,7 @@ pub struct Params {
     cell: f64,
 }
 
-/// One contact.
+/// The contact at one load.
 #[derive(Clone, Copy, Debug)]
 struct State {
     /// σ0/E*.
@@ -63,20 +68,22 @@ struct State {
     penetration: f64,
     /// Fraction of the smallest elements in contact.
     fraction: f64,
-    /// Elements of the meshes, in their order.
+    /// Numbers of elements of the meshes, in the order of [`MESHES`].
     elements: [f64; 3],
-    /// Elements of the adaptive mesh when a coarse element needs two rings of its size around it in contact.
+    /// Elements of the adaptive mesh under a stricter rule.
+    ///
+    /// A coarse element then needs two rings of its size around it in contact.
     two_rings: f64,
 }
 
-/// The three printed numbers of elements.
+/// The numbers of elements that the paper prints.
 #[derive(Clone, Copy, Debug)]
 struct Printed {
     penetration: f64,
     elements: [f64; 3],
 }
 
-/// The contacts from touch to full contact, in order.
+/// The contacts from touch to full contact, by increasing load.
 #[derive(Clone, Debug)]
 pub struct Fig3 {
     params: Params,
@@ -91,7 +98,9 @@ impl Figure for Fig3 {
     const NAME: &'static str = "fig3";
     type Params = Params;
 
-    /// The paper's surface on 2048² elements, 16 for a shortest wave; 16 waves on as many in the quick one.
+    /// The paper's surface on 2048² elements, 16 for a shortest wave (full).
+    ///
+    /// The quick preset has 16 waves on as many elements for a shortest wave.
     fn params(preset: Preset) -> Result<Params> {
         let (waves, grid, tolerance) = match preset {
             Preset::Full => (paper::value("waves_b")? as usize, 2048, 1e-5),
@@ -150,8 +159,10 @@ fn partial_contact(params: &Params, surface: &Surface, mean_pressure: f64) -> Re
     State::of(params, solution.pressure(), solution.info().penetration, mean_pressure)
 }
 
-/// The smallest load of full contact. A larger load only shifts the pressure, so the smallest one is that of any full
-/// contact minus the minimum of its pressure.
+/// The contact at the smallest load of full contact.
+///
+/// A larger load only adds a constant to the pressure. So the smallest load is any load of full contact minus the
+/// minimum of its pressure.
 fn full_contact(params: &Params, heights: &Field) -> Result<State> {
     let control = Control::MeanPressure(CRUSHING);
     let solution = solve(heights, control, &SolveParams::default().by(Method::Uniform))?;
@@ -160,7 +171,7 @@ fn full_contact(params: &Params, heights: &Field) -> Result<State> {
 }
 
 impl State {
-    /// The rough surface just touches with its highest peak.
+    /// The state in which only the highest peak touches.
     fn touch(params: &Params) -> Self {
         let elements = [(params.grid * params.grid) as f64, 0.0, 0.0];
         Self { mean_pressure: 0.0, penetration: 0.0, fraction: 0.0, elements, two_rings: 0.0 }
@@ -183,7 +194,7 @@ impl State {
         })
     }
 
-    /// The state at `part` of the way to `other`, every number linear.
+    /// Linear interpolation from this state to `other`, at the fraction `part` of the way.
     fn towards(&self, other: &Self, part: f64) -> Self {
         let mix = |a: f64, b: f64| a + part * (b - a);
         Self {
@@ -197,7 +208,9 @@ impl State {
 }
 
 impl Fig3 {
-    /// The contact with this fraction, between the two computed next to it; none outside their range.
+    /// The contact with this fraction, interpolated between two computed contacts.
+    ///
+    /// `None` outside their range.
     fn at_fraction(&self, fraction: f64) -> Option<State> {
         let mut pairs = self.states.windows(2);
         let pair = pairs.find(|pair| (pair[0].fraction..=pair[1].fraction).contains(&fraction))?;
@@ -205,8 +218,9 @@ impl Fig3 {
         Some(pair[0].towards(&pair[1], part))
     }
 
-    /// The contact fraction that the printed numbers imply: the adaptive uniform mesh has the elements in contact, of
-    /// 2048².
+    /// The contact fraction of the printed numbers.
+    ///
+    /// The number of elements of the adaptive uniform mesh is the number of elements in contact, out of 2048².
     fn printed_fraction(&self) -> f64 {
         self.printed.elements[1] / (PAPER_GRID * PAPER_GRID) as f64
     }
@@ -295,17 +309,17 @@ impl Fig3 {
         )
     }
 
-    /// Range of the axes of elements: all of them, and room for a name.
+    /// Range of the axes of elements, with space for a name.
     fn y(&self) -> (f64, f64) {
         (0.0, 1.16 * (self.params.grid * self.params.grid) as f64 / self.unit())
     }
 
-    /// Elements are shown in millions, or in thousands when there are fewer.
+    /// Unit of the numbers of elements: a million, or a thousand when there are fewer.
     fn unit(&self) -> f64 {
         if self.params.grid > 1000 { MILLION } else { 1e3 }
     }
 
-    /// Elements against Δ, in µm below and in h_max above.
+    /// Draws elements against Δ, with a scale in µm below and one in h_max above.
     fn draw_penetration<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
         let h_max = MICRO * self.h_max;
         let axes = self.axes((0.0, 1.03 * h_max), "penetration Δ (µm)");
@@ -313,9 +327,9 @@ impl Fig3 {
         self.draw_curves(&mut chart, |state| MICRO * state.penetration)
     }
 
-    /// Elements against the contact fraction, with the printed numbers.
+    /// Draws elements against the contact fraction, with the printed numbers.
     fn draw_fraction<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
-        // An empty second scale keeps the panels level.
+        // An empty second scale gives both panels the same height.
         let mut chart = self.axes((0.0, 1.03), "contact fraction A/A0").with_top(area, 1.0, "")?;
         self.draw_curves(&mut chart, |state| state.fraction)?;
         let uniform = self.states.last().map_or(0.0, |state| state.elements[0] / self.unit());

@@ -1,8 +1,9 @@
-//! Fig. 4: a rigid sphere on the half-space, its contact circle and three pressure sections against Hertz.
+//! Fig. 4: a rigid sphere on the half-space, compared with Hertz's theory.
 //!
-//! The paper gives the penetration Δ = 25 µm but no cell. In a periodic cell, where displacements have zero mean, the
-//! same Δ is another contact than on an infinite half-space (4.6 % in radius at λ = 1 cm), so the comparison is with
-//! Hertz's solution in the periodic cell; the infinite half-space is in the table too.
+//! It shows the contact circle and three sections of the pressure. The paper gives the penetration Δ = 25 µm, but not
+//! the cell. In a periodic cell displacements have zero mean, so the same Δ is another contact than on an infinite
+//! half-space. The difference is 4.6 % in radius at λ = 1 cm. The comparison is therefore with Hertz's solution in the
+//! periodic cell. The infinite half-space is in the table too.
 
 use anyhow::Result;
 use plotters::coord::types::RangedCoordf64;
@@ -18,18 +19,20 @@ use rc_theory::hertz::{Hertz, PeriodicHertz};
 use crate::contact_map::{ContactMap, Run};
 use crate::{Figure, Preset, Rule, Table, number, paper};
 
-/// Distances of the three sections from the centre, in contact radii, before they are moved to the nearest row.
+/// Distances of the three sections from the centre, in contact radii.
+///
+/// The sections are the rows nearest to these distances.
 const SECTIONS: [f64; 3] = [0.0, 1.0 / 3.0, 2.0 / 3.0];
-/// Elements in contact, theory, computed pressures.
+/// Colour of elements in contact. The colours of theory and of computed pressures follow.
 const SHADE: RGBColor = RGBColor(205, 215, 225);
 const LINE: RGBColor = RGBColor(30, 90, 160);
 const DOT: RGBColor = RGBColor(200, 60, 30);
-/// Text, in pixels.
+/// Size of the text, in pixels.
 const TEXT: f64 = 20.0;
-/// Half-width of what is shown, in contact radii.
+/// Half-width of the drawn region, in contact radii.
 const VIEW: f64 = 1.25;
 
-/// What Fig. 4 is computed from, in SI units.
+/// Parameters of Fig. 4, in SI units.
 #[derive(Clone, Debug)]
 pub struct Params {
     /// Radius R (m).
@@ -38,15 +41,15 @@ pub struct Params {
     penetration: f64,
     /// E* (Pa).
     e_star: f64,
-    /// Side λ of the cell (m); the contact radius must stay below a tenth of it for the periodic formula.
+    /// Side λ of the cell (m). The periodic formula needs a contact radius below a tenth of it.
     cell: f64,
     /// Elements per side.
     grid: usize,
-    /// Tolerance, relative to the height of the sphere within the cell (a hundred times Δ).
+    /// Tolerance relative to the height of the sphere within the cell. This height is a hundred times Δ.
     tolerance: f64,
 }
 
-/// Contact radius, load, peak pressure and penetration of one solution, SI.
+/// Contact radius, load, peak pressure and penetration of one solution, in SI units.
 #[derive(Clone, Copy, Debug)]
 struct Contact {
     radius: f64,
@@ -60,24 +63,24 @@ struct Contact {
 struct Section {
     /// Distance of the row from the centre (m).
     y: f64,
-    /// x (m), pressure (Pa), pressure in theory (Pa).
+    /// x (m), pressure (Pa), and pressure of theory (Pa).
     points: Vec<[f64; 3]>,
 }
 
-/// The sphere's contact with its theory, SI.
+/// The sphere's contact and its theory, in SI units.
 #[derive(Clone, Debug)]
 pub struct Fig4 {
     numeric: Contact,
-    /// Hertz in the periodic cell, at the same Δ.
+    /// Hertz's contact in the periodic cell, at the same Δ.
     periodic: Contact,
-    /// Hertz on the infinite half-space, at the same Δ.
+    /// Hertz's contact on the infinite half-space, at the same Δ.
     infinite: Contact,
     sections: Vec<Section>,
-    /// Rows of elements in contact.
+    /// Runs of elements in contact.
     runs: Vec<Run>,
     /// Side of an element (m).
     side: f64,
-    /// The element under the apex, in x and in y.
+    /// Index of the element under the apex, the same in x and in y.
     apex: usize,
 }
 
@@ -85,8 +88,9 @@ impl Figure for Fig4 {
     const NAME: &'static str = "fig4";
     type Params = Params;
 
-    /// 107 elements per contact radius (full) and 13 (quick), in a cell of 1 cm, the side of the paper's rough
-    /// surfaces.
+    /// 107 elements per contact radius (full) and 13 (quick), in a cell of 1 cm.
+    ///
+    /// The cell is that of the paper's rough surfaces.
     fn params(preset: Preset) -> Result<Params> {
         let elasticity = Elasticity::from_young_poisson(paper::value("young")?, paper::value("poisson")?)?;
         Ok(Params {
@@ -139,9 +143,10 @@ impl Picture for Fig4 {
     }
 }
 
-/// The sphere as Hertz takes it, h = -r²/2R in units of λ, and the element (the same in x and y) whose centre is its
-/// apex: then the maximum of the sampled heights is the apex, and Δ is counted from there. r is the distance to the
-/// nearest image.
+/// The paraboloid of Hertz's theory, h = -r²/2R in units of λ, and its apex.
+///
+/// r is the distance to the nearest image of the apex. The apex is the centre of the element with the returned index,
+/// which is the same in x and y. So the maximum of the sampled heights is the apex, from which Δ is counted.
 fn sphere(params: &Params) -> Result<(Field, usize)> {
     let grid = Grid::square(params.grid)?;
     let apex = params.grid / 2;
@@ -151,7 +156,7 @@ fn sphere(params: &Params) -> Result<(Field, usize)> {
     Ok((Field::from_fn(grid, |DVec2 { x, y }| -0.5 * curvature * to_image(x).hypot(to_image(y)).powi(2)), apex))
 }
 
-/// Hertz at the given Δ: in the periodic cell, and on the infinite half-space.
+/// Hertz's contacts at the given Δ, in the periodic cell and on the infinite half-space.
 fn theory(params: &Params) -> Result<(Contact, Contact)> {
     let Params { cell, e_star, .. } = *params;
     let (radius, penetration) = (params.radius / cell, params.penetration / cell);
@@ -170,7 +175,9 @@ fn theory(params: &Params) -> Result<(Contact, Contact)> {
     ))
 }
 
-/// The contact that was found: its radius from the area, its load from the mean pressure.
+/// The computed contact.
+///
+/// Its radius is from the area, and its load from the mean pressure.
 fn measure(params: &Params, solution: &Solution<'_>) -> Result<Contact> {
     let area = solution.area();
     let nominal_area = PeriodicCell::new(params.cell)?.nominal_area();
@@ -182,7 +189,7 @@ fn measure(params: &Params, solution: &Solution<'_>) -> Result<Contact> {
     })
 }
 
-/// The row nearest to `y_over_a` radii from the centre.
+/// The section along the row nearest to `y_over_a` contact radii from the centre.
 fn section(params: &Params, solution: &Solution<'_>, theory: &Contact, apex: usize, y_over_a: f64) -> Section {
     let side = params.cell / params.grid as f64;
     let row = apex + (y_over_a * theory.radius / side).round() as usize;
@@ -197,7 +204,7 @@ fn section(params: &Params, solution: &Solution<'_>, theory: &Contact, apex: usi
 }
 
 impl Contact {
-    /// Hertz's pressure at distance `r` from the centre: p0 √(1 - r²/a²).
+    /// Hertz's pressure at distance `r` from the centre, p0 √(1 - r²/a²).
     fn pressure(&self, r: f64) -> f64 {
         self.peak * (1.0 - (r / self.radius).powi(2)).max(0.0).sqrt()
     }
@@ -230,13 +237,13 @@ impl Fig4 {
                 move |&[x, numeric, theory]: &[f64; 3]| [section.y / a, x / a, numeric / p0, theory / p0].map(number);
             section.points.iter().map(move |point| row(point).into())
         });
-        // Positions beside the centre are of the scale of the radius.
+        // Positions of zero have errors relative to the radius.
         Table::new("sections", &header, rows)
             .column("x_over_a", Rule::of_scale(1e-6))
             .column("pressure_over_p0", Rule::of_scale(1e-5))
     }
 
-    /// The elements in contact, the circle of theory, and the lines of the sections.
+    /// Draws the elements in contact, the circle of theory, and the lines of the sections.
     fn draw_map<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
         let a = self.periodic.radius;
         let mut chart = axes(area, "elements in contact, circle of theory", "y / a", (-VIEW, VIEW))?;
@@ -253,7 +260,9 @@ impl Fig4 {
         Ok(())
     }
 
-    /// The pressure of one section, as in the paper: dots computed, line theory.
+    /// Draws the pressure of one section as in the paper.
+    ///
+    /// Dots are computed values, and a line is theory.
     fn draw_section<B: DrawingBackend>(
         &self,
         area: &Area<B>,
@@ -265,7 +274,7 @@ impl Fig4 {
         let theory = (-500..=500).map(|i| VIEW * f64::from(i) / 500.0);
         let theory = theory.map(|x| (x, to_mpa * self.periodic.pressure((x * a).hypot(section.y))));
         chart.draw_series(LineSeries::new(theory, LINE.stroke_width(2)))?;
-        // More dots than this hide the line.
+        // More dots would hide the line.
         let stride = section.points.len().div_ceil(64);
         let dots = section.points.iter().step_by(stride).filter(|[_, pressure, _]| *pressure > 0.0);
         chart.draw_series(dots.map(|&[x, pressure, _]| Circle::new((x / a, to_mpa * pressure), 4, DOT.filled())))?;

@@ -1,6 +1,7 @@
-//! Fig. 5: contact area against mean pressure for both surfaces, with straight lines and Persson's curve.
+//! Fig. 5: contact area against mean pressure for both surfaces.
 //!
-//! Averages are over realisations at the same load, bars are standard deviations of one realisation.
+//! It has straight lines and Persson's curve. Averages are over realisations at the same load, and bars are standard
+//! deviations of one realisation.
 
 mod procedure;
 
@@ -17,16 +18,18 @@ use crate::marks::{self, STYLES, Style, error_bars, legend, square};
 use crate::sweep::{self, Sweep};
 use crate::{Figure, Preset, Rule, Table, number, paper};
 
-/// Loads σ0/E* that the straight line is fitted to.
+/// Range of loads σ0/E* to which the straight line is fitted.
 const FITTED: (f64, f64) = (1e-4, 1.5e-3);
-/// The end of a longer range, where contact is a quarter of the cell, for comparison.
+/// Upper end of a longer range for comparison. Contact there is a quarter of the cell.
 const LONGER: f64 = 4e-3;
-/// κ of bearing-area theory at vanishing load, √(2π) (Bush, Gibson, Thomas, Wear 35 (1975) 87).
+/// κ of bearing-area theory at vanishing load, √(2π).
+///
+/// Source: Bush, Gibson, Thomas, Wear 35 (1975) 87.
 const KAPPA_ASPERITIES: f64 = 2.506_628_274_631_000_2;
-/// Loads are shown in thousandths of E*.
+/// Factor from E* to the unit of the drawn loads, a thousandth of E*.
 const MILLI: f64 = 1e3;
 
-/// What Fig. 5 is computed from.
+/// Parameters of Fig. 5.
 #[derive(Clone, Debug)]
 pub struct Params {
     sweep: sweep::Params,
@@ -34,25 +37,25 @@ pub struct Params {
     printed: Printed,
 }
 
-/// What the paper prints.
+/// The values that the paper prints.
 #[derive(Clone, Copy, Debug)]
 struct Printed {
-    /// σ0/E* of the two areas.
+    /// σ0/E* of the two printed areas.
     load: f64,
     areas: [f64; 2],
     r_squared: f64,
 }
 
-/// Contact areas with their fits.
+/// Contact areas of both surfaces with their fits.
 #[derive(Clone, Debug)]
 pub struct Fig5 {
     sweep: Sweep,
     curves: Vec<Curve>,
-    /// Reduced contacts by the paper's procedure too.
+    /// Contacts of reduced size that the paper's procedure solves too.
     pairs: Vec<Pair>,
     procedure: procedure::Params,
     printed: Printed,
-    /// Whether the surfaces are those of the paper.
+    /// Whether the surfaces are the paper's.
     full: bool,
 }
 
@@ -63,12 +66,12 @@ struct Curve {
     rms_slope: f64,
     style: Style,
     points: Vec<Point>,
-    /// Through the mean areas of the fitted loads, and of the longer range.
+    /// Line through the mean areas of the fitted loads. The line of the longer range follows.
     line: Line,
     longer: Line,
 }
 
-/// One load.
+/// Averages at one load.
 #[derive(Clone, Copy, Debug)]
 struct Point {
     load: f64,
@@ -80,7 +83,7 @@ impl Figure for Fig5 {
     const NAME: &'static str = "fig5";
     type Params = Params;
 
-    /// The sweep of `sweep::Params::of`.
+    /// The parameters of `sweep::Params::of`.
     fn params(preset: Preset) -> Result<Params> {
         let printed = Printed {
             load: paper::value("load")?,
@@ -147,7 +150,7 @@ impl Curve {
         Self { waves, rms_slope: surface.rms_slope, style, points, line, longer }
     }
 
-    /// κ of an area at a load.
+    /// κ of a contact area at a load.
     fn kappa(&self, area: f64, load: f64) -> f64 {
         area * self.rms_slope / load
     }
@@ -165,7 +168,7 @@ impl Curve {
 }
 
 impl Fig5 {
-    /// The figure of a sweep that is solved.
+    /// The figure of a solved sweep.
     pub(crate) fn of(params: &Params, sweep: Sweep) -> Result<Self> {
         let curve = |(&surface, style)| Curve::of(&sweep, &params.sweep.loads, surface, style);
         let curves = sweep.surfaces.iter().zip(STYLES).map(curve).collect();
@@ -174,7 +177,7 @@ impl Fig5 {
         Ok(Self { curves, sweep, pairs, procedure, printed: params.printed, full })
     }
 
-    /// What the figure was drawn from.
+    /// The sweep of this figure.
     pub(crate) fn into_sweep(self) -> Sweep {
         self.sweep
     }
@@ -227,8 +230,9 @@ impl Fig5 {
             .row("R squared up to 4e-3", Rule::absolute(1e-5))
     }
 
-    /// The areas of both surfaces compared realisation by realisation, and the largest difference that the paper's
-    /// procedure makes.
+    /// Rows that compare areas realisation by realisation.
+    ///
+    /// They are the ratio of the areas of both surfaces, and the largest difference that the paper's procedure makes.
     fn ratio_rows(&self) -> Vec<Vec<String>> {
         let [first, second] = &self.curves[..] else { return Vec::new() };
         let ratio = self.sweep.area_ratio(second.waves, first.waves, self.printed.load);
@@ -363,11 +367,12 @@ mod tests {
             for pair in curve.points.windows(2) {
                 assert!(pair[1].area.mean > pair[0].area.mean, "area falls with load: {pair:?}");
             }
-            // Between the two theories, as all simulations (literature: 1.9 to 2.3 at these loads).
+            // All simulations give values between the two theories; the literature has 1.9 to 2.3 at these loads.
             let kappa = curve.line.slope * curve.rms_slope;
             assert!((Persson::KAPPA..KAPPA_ASPERITIES).contains(&kappa), "N = {}: κ = {kappa}", curve.waves);
         }
-        // The paper's mesh has one pressure for many of the smallest elements inside a contact, and the same edges.
+        // Inside a contact, the paper's mesh has one pressure for many of the smallest elements. The edges are the
+        // same.
         for pair in &figure.pairs {
             assert!(pair.difference().abs() < 2e-2, "{pair:?}");
             assert!(pair.difference_of_penetration().abs() < 5e-3, "{pair:?}");

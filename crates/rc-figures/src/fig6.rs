@@ -1,7 +1,8 @@
-//! Fig. 6: the contact spots of the paper's surface with 64 and with 128 waves under the same load.
+//! Fig. 6: contact spots of the paper's surface with 64 and 128 waves under one load.
 //!
-//! The paper shows one realisation each, so its areas are compared within the scatter between realisations (5 %); both
-//! surfaces here have one seed, so they share their long waves, as the paper's two maps seem to.
+//! The paper shows one realisation of each surface. So its areas are compared within the scatter between realisations,
+//! which is 5 %. Both surfaces here have one seed and share their long waves. The paper's two maps seem to do so as
+//! well.
 
 use std::f64::consts::TAU;
 
@@ -15,14 +16,14 @@ use rc_solver::{Control, SolveParams, connected_elements, solve};
 use crate::contact_map::ContactMap;
 use crate::{Figure, Preset, Rule, Table, number, paper};
 
-/// Side of a map, space around it, and text, in pixels.
+/// Side of a map, in pixels. The space around it and the size of the text follow.
 const PANEL: u32 = 1024;
 const MARGIN: u32 = 32;
 const TEXT: u32 = 28;
 /// Blocks per side of the coarse table of contact fractions.
 const N_BLOCKS: usize = 32;
 
-/// What Fig. 6 is computed from.
+/// Parameters of Fig. 6.
 #[derive(Clone, Debug)]
 pub struct Params {
     /// Mean pressure σ0/E*.
@@ -35,14 +36,14 @@ pub struct Params {
     cases: Vec<Case>,
 }
 
-/// One surface.
+/// One surface and its grid.
 #[derive(Clone, Debug)]
 struct Case {
     /// Number of waves N.
     waves: usize,
     /// Elements per side.
     grid: usize,
-    /// A/A0 in the paper, when this N is there.
+    /// A/A0 in the paper, if the paper has this N.
     paper_area: Option<f64>,
 }
 
@@ -75,7 +76,9 @@ impl Figure for Fig6 {
     const NAME: &'static str = "fig6";
     type Params = Params;
 
-    /// 32 elements per shortest wave, twice the paper's, at full size; fewer waves with 32 and 16 in the quick one.
+    /// 32 elements per shortest wave, twice as many as the paper's (full).
+    ///
+    /// The quick preset has fewer waves with 32 and 16 elements.
     fn params(preset: Preset) -> Result<Params> {
         let case = |name: &str, grid| -> Result<Case> {
             let waves = paper::value(&format!("waves_{name}"))? as usize;
@@ -165,13 +168,15 @@ impl Fig6 {
                 row("rms pressure", "E*", contact.rms_pressure, ""),
             ]
         });
-        // A spot of one element may come or go.
+        // A spot of one element may appear or vanish.
         Table::new("summary", &header, rows)
             .column("value", Rule::relative(1e-4))
             .row("contact spots", Rule::count(0.0))
     }
 
-    /// Fractions in contact of `N_BLOCKS` × `N_BLOCKS` blocks, one row of blocks a line, first surface above second.
+    /// Table of the fractions in contact of `N_BLOCKS` × `N_BLOCKS` blocks.
+    ///
+    /// A line is a row of blocks. The lines of the first surface come first.
     fn blocks(&self) -> Table {
         let columns: Vec<String> = (0..N_BLOCKS).map(|column| format!("x{column}")).collect();
         let header: Vec<&str> = ["waves"].into_iter().chain(columns.iter().map(String::as_str)).collect();
@@ -183,7 +188,7 @@ impl Fig6 {
             };
             fractions.chunks_exact(N_BLOCKS).map(row).collect::<Vec<_>>()
         });
-        // One or two elements of a block of 64² may turn either way.
+        // One or two elements of a block of 64² may be in or out of contact.
         Table::new("blocks", &header, rows).rest(Rule::absolute(5e-4))
     }
 }

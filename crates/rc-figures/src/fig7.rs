@@ -1,9 +1,9 @@
-//! Fig. 7: the logarithm of the mean pressure against Δ/h_max for both surfaces, with exponential fits where they hold,
-//! and Persson's decay length.
+//! Fig. 7: logarithm of the mean pressure against Δ/h_max for both surfaces.
 //!
-//! h_max has a standard deviation of 10 % between realisations, so averages need a rule. Here the load is given and
-//! Δ/h_max, with the h_max of its own realisation, is averaged over realisations at each load. The decay length u0 of
-//! σ0 ∝ exp(-ū/u0), with the mean gap ū = h_max - Δ, is fitted to each realisation and then averaged.
+//! It has exponential fits in the range where they apply, and Persson's decay length. h_max has a standard deviation of
+//! 10 % between realisations, so averages need a rule. Here the load is given. Δ/h_max is averaged over realisations at
+//! each load, with the h_max of its own realisation. The decay length u0 is defined by σ0 ∝ exp(-ū/u0) with the mean
+//! gap ū = h_max - Δ. It is fitted to each realisation and then averaged.
 
 use anyhow::Result;
 use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, RGBColor, Rectangle};
@@ -17,24 +17,26 @@ use crate::marks::{self, STYLES, Style, error_bars, legend};
 use crate::sweep::{self, State, Sweep};
 use crate::{Figure, Preset, Rule, Table, number, paper};
 
-/// Δ/h_max where log σ0 is linear: below it the highest asperities are few, above it contact is nearly full.
+/// Range of Δ/h_max in which log σ0 is linear.
+///
+/// Below it the highest asperities are few. Above it contact is nearly full.
 const WINDOW: (f64, f64) = (0.28, 0.9);
-/// Persson's γ: values that the literature fits to simulations.
+/// Values of Persson's γ that the literature fits to simulations.
 const GAMMAS: [f64; 2] = [0.40, 0.45];
-/// The window, single realisations.
+/// Colour of the window. The colour of single realisations follows.
 const SHADE: RGBColor = RGBColor(240, 240, 240);
 const PALE: f64 = 0.25;
 
-/// What Fig. 7 is computed from.
+/// Parameters of Fig. 7.
 #[derive(Clone, Debug)]
 pub struct Params {
     sweep: sweep::Params,
     hurst: f64,
-    /// q0 h_rms.
+    /// Rms height times the smallest wavenumber, q0 h_rms.
     rms_height: f64,
 }
 
-/// Loads against penetrations with their fits.
+/// Loads against penetrations of both surfaces with their fits.
 #[derive(Clone, Debug)]
 pub struct Fig7 {
     sweep: Sweep,
@@ -47,15 +49,15 @@ struct Curve {
     waves: usize,
     style: Style,
     points: Vec<Point>,
-    /// Fits of log10 σ0 to Δ/h_max: of each realisation, and of the averages.
+    /// Fit of log10 σ0 to Δ/h_max for each realisation. The fit of the averages follows.
     fits: Vec<Fit>,
     average: Line,
-    /// Persson's u0/(γ h_rms) and β.
+    /// Persson's u0/(γ h_rms). His β follows.
     decay_length: f64,
     prefactor: f64,
 }
 
-/// One load: averages over realisations.
+/// Averages over realisations at one load.
 #[derive(Clone, Copy, Debug)]
 struct Point {
     load: f64,
@@ -67,13 +69,13 @@ struct Point {
 #[derive(Clone, Copy, Debug)]
 struct Fit {
     seed: u64,
-    /// h_max/h_rms.
+    /// Ratio h_max/h_rms of the realisation.
     h_max: f64,
     line: Line,
 }
 
 impl Fit {
-    /// u0/h_rms: ln σ0 grows by h_max/u0 as Δ/h_max grows by 1.
+    /// The decay length u0/h_rms: ln σ0 grows by h_max/u0 when Δ/h_max grows by 1.
     fn decay_length(&self) -> f64 {
         self.h_max / (self.line.slope * std::f64::consts::LN_10)
     }
@@ -83,7 +85,7 @@ impl Figure for Fig7 {
     const NAME: &'static str = "fig7";
     type Params = Params;
 
-    /// The sweep of `sweep::Params::of`.
+    /// The parameters of `sweep::Params::of`.
     fn params(preset: Preset) -> Result<Params> {
         let rms_height = paper::value("q0")? * paper::value("rms_height")?;
         Ok(Params { sweep: sweep::Params::of(preset)?, hurst: paper::value("hurst")?, rms_height })
@@ -135,7 +137,7 @@ impl Picture for Fig7 {
     }
 }
 
-/// Fits log10 σ0 to Δ/h_max inside the window.
+/// The line through log10 σ0 against Δ/h_max inside the window.
 fn fit(points: impl Iterator<Item = (f64, f64)>) -> Line {
     let inside = points.filter(|at| (WINDOW.0..=WINDOW.1).contains(&at.0));
     Line::fit(&inside.collect::<Vec<_>>())
@@ -170,7 +172,7 @@ impl Curve {
         }
     }
 
-    /// u0/h_rms of the realisations.
+    /// Decay lengths u0/h_rms of the realisations.
     fn decay_lengths(&self) -> Sample {
         Sample::of(&self.fits.iter().map(Fit::decay_length).collect::<Vec<_>>())
     }
@@ -179,7 +181,7 @@ impl Curve {
         Sample::of(&self.fits.iter().map(|fit| fit.h_max).collect::<Vec<_>>())
     }
 
-    /// Persson's log10 σ0 at a Δ/h_max, with the mean h_max.
+    /// Persson's log10 σ0 at a given Δ/h_max, with the mean h_max.
     fn persson(&self, gamma: f64, penetration: f64) -> f64 {
         let mean_gap = self.h_max().mean * (1.0 - penetration);
         self.prefactor.log10() - mean_gap / (gamma * self.decay_length * std::f64::consts::LN_10)
@@ -187,13 +189,13 @@ impl Curve {
 }
 
 impl Fig7 {
-    /// The figure of a sweep that is solved.
+    /// The figure of a solved sweep.
     pub(crate) fn of(params: &Params, sweep: Sweep) -> Self {
         let curve = |(surface, style): (&sweep::SurfaceOf, Style)| Curve::of(&sweep, params, surface.waves, style);
         Self { curves: sweep.surfaces.iter().zip(STYLES).map(curve).collect(), sweep }
     }
 
-    /// The largest difference of the mean Δ/h_max between the surfaces at one load.
+    /// Largest difference of the mean Δ/h_max between the two surfaces at one load.
     fn difference(&self) -> f64 {
         let [first, second] = &self.curves[..] else { return 0.0 };
         let pairs = first.points.iter().zip(&second.points);
@@ -330,7 +332,7 @@ mod tests {
             for pair in curve.points.windows(2) {
                 assert!(pair[1].penetration.mean > pair[0].penetration.mean, "Δ falls with load: {pair:?}");
             }
-            // The independent sweep of the paper's surface has 0.35 to 0.58 over seven realisations.
+            // The independent sweep of the paper's surface gives 0.35 to 0.58 over seven realisations.
             for fit in &curve.fits {
                 assert!((0.25..0.75).contains(&fit.decay_length()), "u0 far from h_rms/2: {fit:?}");
             }

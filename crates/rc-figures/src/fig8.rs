@@ -1,7 +1,8 @@
-//! Fig. 8: the distribution of the interfacial stress for both surfaces, the fit of Eq. 7, and the approach to zero.
+//! Fig. 8: distribution of the interfacial stress for both surfaces.
 //!
-//! The distribution is resolved below the element at contact edges ([`StressDistribution`]); what a histogram of the
-//! same elements shows is drawn beside it. Realisations are averaged bin by bin.
+//! It has the fit of Eq. 7 and the approach to zero. At contact edges the distribution is resolved below the element
+//! ([`StressDistribution`]). The histogram of the same elements is drawn beside it. Realisations are averaged bin by
+//! bin.
 
 use anyhow::Result;
 use rc_core::{Field, Grid, HeightField as _};
@@ -20,10 +21,12 @@ use crate::{Figure, Preset, Table, paper};
 mod drawing;
 mod tables;
 
-/// The decades of stress, over the stress of the peak, in which the slope of log P against log σ is measured.
+/// Ranges of stress for the slope of log P against log σ.
+///
+/// Stresses are relative to the stress of the peak. Each range is a decade.
 const DECADES: [(f64, f64); 2] = [(0.01, 0.1), (0.004, 0.04)];
 
-/// What Fig. 8 is computed from.
+/// Parameters of Fig. 8.
 #[derive(Clone, Debug)]
 pub struct Params {
     /// Numbers of waves N.
@@ -36,64 +39,64 @@ pub struct Params {
     seeds: Vec<u64>,
     /// Relative tolerance of the solves.
     tolerance: f64,
-    /// Width of the bins, in E*, and their number.
+    /// Width of the bins, in E*. Their number follows.
     bin_width: f64,
     n_bins: usize,
-    /// Bins for the approach to zero: the first edge, in E*, bins per decade, number.
+    /// First edge of the bins for the approach to zero, in E*. Bins per decade and their number follow.
     first_edge: f64,
     per_decade: usize,
     n_small: usize,
-    /// N and elements per shortest wave of one realisation on finer and finer elements.
+    /// N of the realisation on finer and finer elements. Its elements per shortest wave follow.
     refined_waves: usize,
     refined: Vec<usize>,
 }
 
-/// The distributions with their fits.
+/// The distributions of both surfaces with their fits.
 #[derive(Clone, Debug)]
 pub struct Fig8 {
     curves: Vec<Curve>,
-    /// Elements per shortest wave, and one realisation on them.
+    /// Elements per shortest wave, and the distribution of one realisation on them.
     refined: Vec<(usize, Curve)>,
     load: f64,
-    /// Areas that the paper prints, for its own surfaces.
+    /// Areas that the paper prints; `None` for surfaces other than the paper's.
     printed: Option<[f64; 2]>,
 }
 
-/// One surface: averages over realisations, in units of E*.
+/// Averages over realisations of one surface, in units of E*.
 #[derive(Clone, Debug)]
 struct Curve {
     waves: usize,
     rms_slope: f64,
     style: Style,
-    /// Equal bins, and bins with equal ratios of their ends, towards zero.
+    /// Bins of equal width. Bins with equal ratios of their ends, towards zero stress, follow.
     bins: Vec<Bin>,
     small: Vec<Bin>,
-    /// A/A0: the best estimate from counting, and the integral of P.
+    /// A/A0 as the best estimate from counting. The integral of P follows.
     area: Sample,
     integral: Sample,
     /// ∫ σ P dσ over all bins.
     mean_stress: Sample,
-    /// Eq. 7, fitted to the averages, and Λ fitted to each realisation.
+    /// The fit of Eq. 7 to the averages. The Λ of each realisation follows.
     fit: Persson,
     lambda: Sample,
 }
 
-/// One bin.
+/// Averages in one bin.
 #[derive(Clone, Copy, Debug)]
 struct Bin {
     stress: f64,
     density: Sample,
-    /// Number of elements of all realisations, and P from them.
+    /// Number of elements in all realisations. The P that follows from it comes next.
     elements: usize,
     of_elements: f64,
 }
 
-/// One realisation.
+/// Distributions of one realisation.
 struct Realisation {
     area: f64,
     equal: StressDistribution,
     small: StressDistribution,
-    /// Elements in the same bins, and in all.
+    /// Numbers of elements in the equal bins and in the small ones. The number of all elements follows.
     equal_elements: Vec<usize>,
     small_elements: Vec<usize>,
     n_elements: usize,
@@ -104,7 +107,9 @@ impl Figure for Fig8 {
     const NAME: &'static str = "fig8";
     type Params = Params;
 
-    /// The paper's surfaces, load and realisations (full); 8 and 16 waves and three realisations (quick).
+    /// The paper's surfaces, load and realisations (full).
+    ///
+    /// The quick preset has 8 and 16 waves and three realisations.
     fn params(preset: Preset) -> Result<Params> {
         let full = Params {
             waves: paper::both_waves()?.into(),
@@ -124,7 +129,8 @@ impl Figure for Fig8 {
             Preset::Full => full,
             Preset::Quick => Params {
                 waves: vec![8, 16],
-                // With the tolerance of the full figure, so that other vector instructions make differences like its.
+                // The tolerance is that of the full figure, so that other vector instructions make differences of the
+                // same size.
                 seeds: vec![1, 2, 3],
                 bin_width: 1e-3,
                 n_bins: 80,
@@ -189,7 +195,7 @@ impl Picture for Fig8 {
     }
 }
 
-/// Elements of which the pressure is in each bin.
+/// Number of elements whose pressure is in each bin.
 fn histogram(pressure: &Field, edges: &[f64]) -> Vec<usize> {
     let mut counts = vec![0_usize; edges.len().saturating_sub(1)];
     for &p in pressure.values().iter().filter(|&&p| p > 0.0) {
@@ -229,13 +235,13 @@ impl Realisation {
     }
 }
 
-/// One realisation on elements of another size.
+/// The distribution of one realisation on elements of another size.
 fn refined(params: &Params, elements_per_wave: usize) -> Result<Curve> {
     let params = Params { elements_per_wave, seeds: vec![1], ..params.clone() };
     Curve::solve(&params, params.refined_waves, STYLES[0])
 }
 
-/// Averages of a distribution over realisations.
+/// Averages of the distributions of realisations.
 fn average(
     all: &[Realisation],
     of: impl Fn(&Realisation) -> &StressDistribution,
@@ -301,7 +307,9 @@ impl Curve {
         densities.fold((0.0, 0.0), |peak, at| if at.1 > peak.1 { at } else { peak })
     }
 
-    /// The slope of log P against log σ where σ over the stress of the peak is in `decade`.
+    /// Slope of log P against log σ in a decade of σ.
+    ///
+    /// σ is relative to the stress of the peak.
     fn small_slope(&self, decade: (f64, f64), density: impl Fn(&Bin) -> f64) -> f64 {
         let peak = self.peak().0;
         let inside = self.small.iter().filter(|bin| (decade.0..=decade.1).contains(&(bin.stress / peak)));

@@ -1,4 +1,4 @@
-//! The figures of the paper: numbers first, then a picture of these numbers.
+//! The interface of all figures: numbers first, then a picture of these numbers.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,22 +8,22 @@ use rc_plot::{Picture, save_png, save_svg};
 
 use crate::Table;
 
-/// How large a figure is computed.
+/// Size of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Preset {
-    /// The size that the paper's statement needs; minutes at most.
+    /// The size that the paper's statement needs. It takes minutes at most.
     Full,
-    /// A small version of the same, as the tests run it; seconds.
+    /// A small version of the same, which the tests run in seconds.
     Quick,
 }
 
-/// A figure: plain data that knows its tables and, as a [`Picture`], how to draw itself.
+/// A figure: plain data with tables and a drawing ([`Picture`]).
 ///
 /// All functions are pure; `write` does the files.
 pub trait Figure: Picture + Sized {
-    /// File name, as in the paper.
+    /// Name of the files, as in the paper.
     const NAME: &'static str;
-    /// What it is computed from.
+    /// Parameters of the computation.
     type Params: std::fmt::Debug;
 
     /// The parameters of a preset.
@@ -38,13 +38,15 @@ pub trait Figure: Picture + Sized {
     fn compute(params: &Self::Params) -> Result<Self>;
     /// The numbers as tables.
     fn tables(&self) -> Vec<Table>;
-    /// What the picture shows, in Markdown, for figures that a title cannot explain.
+    /// What the picture shows, in Markdown, if a title cannot explain it.
     fn caption(&self) -> Option<String> {
         None
     }
 }
 
-/// Computes one figure, writes it into `folder`, and prints its short tables and the names of its files.
+/// Computes one figure and writes it into `folder`.
+///
+/// Prints its short tables and the names of its files.
 ///
 /// # Errors
 /// When the figure cannot be computed, or the folder cannot be written.
@@ -66,7 +68,9 @@ pub(crate) fn report(figure: &impl Figure, files: &[PathBuf]) {
     }
 }
 
-/// Writes the tables, the caption and both pictures of a figure into `folder`; returns the files.
+/// Writes the tables, the caption and both pictures of a figure into `folder`.
+///
+/// Returns the files.
 ///
 /// # Errors
 /// When the folder cannot be made, or a file cannot be written or drawn.
@@ -97,8 +101,9 @@ pub(crate) mod tests {
     use crate::comparison::tests::unnoticed;
     use crate::snapshot;
 
-    /// Asserts that the tables of `figure` have these names, that each is as in the snapshot of its name, and that its
-    /// rules would notice if it were not.
+    /// Asserts that the tables of `figure` agree with their snapshots.
+    ///
+    /// `names` are the names of the tables. The rules of each table must also notice a change.
     pub(crate) fn assert_reviewed<F: Figure>(figure: &F, params: &F::Params, names: &[&str]) {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/snapshots");
         let tables = figure.tables();
@@ -109,7 +114,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// Writes `figure` into a temporary folder and checks that every file is what its name says.
+    /// Writes `figure` into a temporary folder and checks the type of every file.
     pub(crate) fn assert_written<F: Figure>(figure: &F) {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let files = write(figure, folder.path()).expect("the figure is written");

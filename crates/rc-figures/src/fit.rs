@@ -10,7 +10,7 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    /// Through at least two points with different x; NaN otherwise.
+    /// The line through at least two points with different x; NaN otherwise.
     pub(crate) fn fit(points: &[(f64, f64)]) -> Self {
         let n = points.len() as f64;
         let (x_mean, y_mean) =
@@ -30,7 +30,7 @@ impl Line {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sample {
     pub(crate) mean: f64,
-    /// Standard deviation of one value, with n - 1.
+    /// Standard deviation of one value, with the divisor n - 1.
     pub(crate) deviation: f64,
     n: usize,
 }
@@ -65,7 +65,7 @@ mod tests {
         assert!((line.r_squared - 1.0).abs() < 1e-14 && (line.at(10.0) - 23.0).abs() < 1e-13, "{line:?}");
     }
 
-    /// About the line y = x the residuals are -1, 2, -1: 6 of a sum of squares of 8.
+    /// The residuals from the line y = x are -1, 2, -1, so their squares add up to 6. The total sum of squares is 8.
     #[test]
     fn r_squared_is_the_part_that_a_line_explains() {
         let line = Line::fit(&[(-1.0, -2.0), (0.0, 2.0), (1.0, 0.0)]);

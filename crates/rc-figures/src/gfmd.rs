@@ -1,9 +1,9 @@
-//! A published reference with many longest waves in the cell: area, stress, gap and energy against pressure, ours
-//! beside theirs.
+//! Our results beside a published reference with many longest waves in the cell.
 //!
-//! The reference is Green's function molecular dynamics by Y. Zhou and M. H. Müser, published with the comparison of
-//! Persson's theories of Y. Xu (`PerssonModelFudgeFactor`). Numbers of it that this project quotes are in
-//! `data/gfmd.csv`; [`beside`] reads the others from a copy of its files.
+//! The results are area, stress, gap and energy against pressure. The reference is Green's function molecular dynamics
+//! by Y. Zhou and M. H. Müser, published with the comparison of Persson's theories of Y. Xu
+//! (`PerssonModelFudgeFactor`). The numbers that this project quotes are in `data/gfmd.csv`. [`beside`] reads the
+//! others from a copy of the reference's files.
 
 mod beside;
 mod drawing;
@@ -26,25 +26,26 @@ use published::Published;
 
 pub use beside::beside;
 
-/// Elastic energy of full contact per nominal area, over E* and the longest wavelength: 2.2349e-7 m for 2π/1e4 m. The
-/// one number of the reference that says how large its heights are on its own lattice of waves; its rms slope is not
-/// given.
+/// Elastic energy of full contact per nominal area, divided by E* and the longest wavelength.
+///
+/// The reference gives 2.2349e-7 m for a wavelength of 2π/1e4 m. It is the reference's only number that determines the
+/// heights on its lattice of waves. The rms slope is not given.
 const FULL_ENERGY: f64 = 2.2349e-7 * 1e4 / std::f64::consts::TAU;
 const HURST: f64 = 0.8;
 
-/// What the comparison is computed from.
+/// Parameters of the comparison.
 #[derive(Clone, Debug)]
 pub struct Params {
-    /// Longest waves in the cell.
+    /// Number of the longest waves in the cell.
     longest: usize,
     /// Ratio of the longest wavelength to the shortest.
     ratio: usize,
-    /// Elements along a side.
+    /// Elements along a side of the cell.
     side: usize,
     seed: u64,
-    /// σ0/E*.
+    /// Mean pressures σ0/E*.
     loads: Vec<f64>,
-    /// Those of which the distribution of the stress is kept, with the width of its bins (E*) and their number.
+    /// Loads with a stress distribution, and the widths of its bins (E*). The number of bins follows.
     distributions: Vec<(f64, f64)>,
     n_bins: usize,
     /// Certified relative error of the pressure in the energy norm.
@@ -62,19 +63,19 @@ pub struct Gfmd {
     distributions: Vec<Distribution>,
 }
 
-/// One load.
+/// Results at one load.
 #[derive(Clone, Copy, Debug)]
 struct Point {
     load: f64,
     area: ContactArea,
-    /// Over the rms height, with its error bar.
+    /// Mean gap over the rms height, with its error bar.
     mean_gap: (f64, f64),
-    /// Over that of full contact.
+    /// Elastic energy over that of full contact.
     energy: f64,
     published: Option<Published>,
 }
 
-/// The stress under one load.
+/// The stress distribution under one load.
 #[derive(Clone, Debug)]
 struct Distribution {
     load: f64,
@@ -83,7 +84,7 @@ struct Distribution {
 }
 
 impl Params {
-    /// A surface with the band, the exponent and the energy of full contact of the reference's.
+    /// A surface with the reference's band, exponent, and energy of full contact.
     fn surface(&self) -> Result<Surface> {
         let surface = Surface::new(&SpectrumParams {
             hurst: HURST,
@@ -101,7 +102,9 @@ impl Figure for Gfmd {
     const NAME: &'static str = "gfmd";
     type Params = Params;
 
-    /// Eight longest waves of 100 shortest each on 4096² elements (full); 4 of 16 on 512² (quick).
+    /// Eight longest waves of 100 shortest waves each on 4096² elements (full).
+    ///
+    /// The quick preset has 4 of 16 on 512² elements.
     fn params(preset: Preset) -> Result<Params> {
         let all: Vec<f64> = published::all()?.iter().map(|one| one.load).collect();
         Ok(match preset {
@@ -123,7 +126,7 @@ impl Figure for Gfmd {
                 loads: vec![1e-3, 0.025, 0.113],
                 distributions: vec![(0.025, 0.02), (0.113, 0.04)],
                 n_bins: 20,
-                // Tighter, so that other vector instructions change little.
+                // A tighter tolerance makes the effect of other vector instructions small.
                 energy_tolerance: 1e-4,
             },
         })
@@ -196,19 +199,19 @@ impl Gfmd {
         Ok(())
     }
 
-    /// What is published of this load; nothing for a smaller surface than the reference's.
+    /// The published areas at this load; `None` for a surface smaller than the reference's.
     fn published(&self, load: f64) -> Result<Option<Published>> {
         let is_reference = self.params.ratio == 100;
         Ok(published::all()?.into_iter().find(|one| is_reference && one.load.total_cmp(&load).is_eq()))
     }
 
-    /// Persson's area of a load.
+    /// Persson's contact area at this load.
     fn theory(&self, load: f64) -> f64 {
         Persson::from_rms_slope(load, self.rms_slope).area_fraction()
     }
 }
 
-/// Elastic energy of full contact per nominal area, from all waves.
+/// Elastic energy of full contact per nominal area, summed over all waves.
 fn full_energy(surface: &Surface) -> f64 {
     let n = surface.waves() as i64;
     let column = |kx: i64| -> f64 {
@@ -223,7 +226,7 @@ mod tests {
     use super::*;
     use crate::figure::tests::{assert_reviewed, assert_written};
 
-    /// 6 µm and 0.2766 are what integrals over the reference's spectrum give; sums over a lattice of waves differ.
+    /// Integrals over the reference's spectrum give 6 µm and 0.2766. Sums over a lattice of waves differ from them.
     #[test]
     fn the_surface_is_that_of_the_reference() {
         let params = Gfmd::params(Preset::Full).expect("published loads");
@@ -246,7 +249,7 @@ mod tests {
             let of_stress = distribution.stress.area_fraction / area.fraction - 1.0;
             assert!(of_stress.abs() < 3e-2, "the area of the distribution is off by {of_stress:e}");
         }
-        // At a fifteenth of contact and above, the energy grows with the load and the gap closes.
+        // From a fifteenth of contact on, the energy grows with the load and the gap closes.
         assert!(
             figure.points.windows(2).all(|two| two[0].energy < two[1].energy && two[0].mean_gap.0 > two[1].mean_gap.0)
         );

@@ -1,8 +1,7 @@
-//! The figures of the guide that the paper does not have: the mesh, the kernel split, the levels of the operator and
-//! the start of a level.
+//! The figures of the guide that the paper does not have.
 //!
-//! Each is computed by the crates that the solver is made of. [`write_all`] writes them, and puts the pictures where
-//! the guide has them.
+//! They show the mesh, the kernel split, the levels of the operator and the start of a level. The crates of the solver
+//! compute them. [`write_all`] writes them, and puts the pictures where the guide has them.
 
 mod levels;
 mod mesh;
@@ -23,8 +22,9 @@ pub use start::Start;
 use crate::figure::{report, write};
 use crate::{Figure, Preset, repository};
 
-/// Computes every figure of the guide and writes it into `folder`. At full size the pictures in `docs/images/` are
-/// replaced.
+/// Computes every figure of the guide and writes it into `folder`.
+///
+/// At full size it replaces the pictures in `docs/images/`.
 ///
 /// # Errors
 /// When a figure cannot be computed, or a file cannot be written.

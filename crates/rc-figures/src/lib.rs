@@ -1,9 +1,10 @@
-//! The figures of the paper, one file per figure: numbers first, then a picture of these numbers.
+//! The figures of the paper, one file each: numbers first, then a picture of them.
 //!
-//! A [`Figure`] computes itself from its parameters, and knows its tables and how to draw itself. [`run`] writes one,
-//! [`all::run`] every figure of the paper, and [`reproduction`] puts their numbers into docs/reproduction.md. [`Gfmd`]
-//! and [`Challenge`] are published references instead, archived by [`run_one`], their numbers in [`documents`].
-//! `rc-bench` uses [`Table`], [`comparison`], [`numeric`], [`snapshot`], [`blocks`] and [`repository`] too.
+//! A [`Figure`] computes itself from its parameters, and has tables and a drawing. [`run`] writes one figure,
+//! [`all::run`] writes every figure of the paper, and [`reproduction`] puts their numbers into docs/reproduction.md.
+//! [`Gfmd`] and [`Challenge`] are published references. [`run_one`] archives them, and their numbers are in
+//! [`documents`]. `rc-bench` uses [`Table`], [`comparison`], [`numeric`], [`snapshot`], [`blocks`] and [`repository`]
+//! too.
 
 pub mod all;
 pub mod archive;

@@ -1,4 +1,4 @@
-//! Marks of data points with their scatter, dashed lines, and a legend of them.
+//! Marks of data points with their scatter, dashed lines, and their legend.
 
 use plotters::prelude::{
     Circle, DashedLineSeries, DrawingBackend, EmptyElement, LineSeries, PathElement, Rectangle, TriangleMarker,
@@ -10,8 +10,10 @@ use crate::chart::{BLUE, Chart, Drawn, RED, Side, TEXT, write};
 /// Half the size of a mark, in pixels.
 const SIZE: i32 = 8;
 
-/// How one surface is drawn in all figures that show both: as in the paper, red dots and solid lines for N = 64, blue
-/// triangles and dashed lines for N = 128. Shape and dashes tell them apart without colour.
+/// Style of one surface in all figures that show both surfaces.
+///
+/// As in the paper, N = 64 has red dots and solid lines, and N = 128 has blue triangles and dashed lines. Shape and
+/// dashes distinguish them without colour.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Style {
     pub(crate) colour: RGBColor,
@@ -22,7 +24,7 @@ pub(crate) struct Style {
 pub(crate) const STYLES: [Style; 2] = [Style { colour: RED, dot: true }, Style { colour: BLUE, dot: false }];
 
 impl Style {
-    /// Marks at `points`.
+    /// Draws marks at `points`.
     pub(crate) fn marks<B: DrawingBackend>(
         self,
         chart: &mut Chart<'_, B>,
@@ -31,7 +33,7 @@ impl Style {
         self.marks_of(chart, points, SIZE)
     }
 
-    /// Marks of half-size `size`, in pixels.
+    /// Draws marks with the half-size `size`, in pixels.
     pub(crate) fn marks_of<B: DrawingBackend>(
         self,
         chart: &mut Chart<'_, B>,
@@ -48,7 +50,7 @@ impl Style {
         Ok(())
     }
 
-    /// A line through `points`: solid, or dashed.
+    /// Draws a solid or dashed line through `points`.
     pub(crate) fn line<B: DrawingBackend>(
         self,
         chart: &mut Chart<'_, B>,
@@ -64,7 +66,9 @@ impl Style {
     }
 }
 
-/// Bars from each point, `half_width` long to both sides, across x or along it, with caps.
+/// Draws error bars with caps, along x or across it.
+///
+/// A bar extends by `half_width` to both sides of its point.
 pub(crate) fn error_bars<B: DrawingBackend>(
     chart: &mut Chart<'_, B>,
     points: impl IntoIterator<Item = ((f64, f64), f64)>,
@@ -80,7 +84,7 @@ pub(crate) fn error_bars<B: DrawingBackend>(
     Ok(())
 }
 
-/// What a line of the legend shows.
+/// The sample in a line of the legend.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Sample {
     /// A mark of a style, with a bar across it.
@@ -94,15 +98,16 @@ pub(crate) enum Sample {
     Square(RGBColor),
 }
 
-/// Writes a legend, its first line at `corner`, in the coordinates of the chart; each line is `step` below the one
-/// before.
+/// Writes a legend with its first line at `corner`.
+///
+/// `corner` is in the coordinates of the chart. Each line is `step` below the previous one.
 pub(crate) fn legend<B: DrawingBackend>(
     chart: &mut Chart<'_, B>,
     corner: (f64, f64),
     step: f64,
     lines: &[(Sample, String)],
 ) -> Drawn<(), B> {
-    // Pixels from the left end of the sample to the text.
+    // This is the distance in pixels from the left end of the sample to the text.
     let width = (1.8 * TEXT) as i32;
     for (i, (sample, text)) in lines.iter().enumerate() {
         let at = (corner.0, corner.1 - step * i as f64);
@@ -135,14 +140,14 @@ pub(crate) fn legend<B: DrawingBackend>(
     Ok(())
 }
 
-/// An open square, `right` pixels right of `at`: a printed value.
+/// Draws an open square for a printed value, `right` pixels right of `at`.
 pub(crate) fn square<B: DrawingBackend>(
     chart: &mut Chart<'_, B>,
     at: (f64, f64),
     right: i32,
     colour: RGBColor,
 ) -> Drawn<(), B> {
-    // Hollow: what is compared with it is under it.
+    // The square is open, since the value under it is compared with it.
     let frame = Rectangle::new([(right - 11, -11), (right + 11, 11)], colour.stroke_width(4));
     chart.draw_series([EmptyElement::at(at) + frame])?;
     Ok(())

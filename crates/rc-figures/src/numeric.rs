@@ -1,6 +1,8 @@
 //! Medians.
 
-/// The middle of values, or the mean of the two in the middle; NaN without any.
+/// The median of `values`; NaN without values.
+///
+/// For an even number of values it is the mean of the two in the middle.
 #[must_use]
 pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! The values printed in the paper, read from `data/paper.csv`.
+//! The values that the paper prints, read from `data/paper.csv`.
 
 use anyhow::{Context, Result};
 
@@ -7,7 +7,7 @@ const VALUES: &str = include_str!("../../../data/paper.csv");
 /// The value called `name`, in the unit that the file gives.
 ///
 /// # Errors
-/// When the file has no such name, or no number there.
+/// When the file does not have the name, or its value is not a number.
 pub(crate) fn value(name: &str) -> Result<f64> {
     let row = VALUES.lines().map(|line| line.split(',')).find(|cells| cells.clone().next() == Some(name));
     let cell = row.and_then(|mut cells| cells.nth(1));

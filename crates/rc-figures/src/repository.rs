@@ -1,4 +1,4 @@
-//! The files of the repository, as text in memory, for checks that are pure functions.
+//! The text files of the repository in memory, for checks that are pure functions.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -6,8 +6,9 @@ use std::{fs, io};
 
 use anyhow::{Context, Result};
 
-/// Entries of the root that are not sources: history and results. Folders that a tool marks as its cache
-/// (`CACHEDIR.TAG`) are not sources either.
+/// Entries of the root that are not sources, since they are history or results.
+///
+/// Folders that a tool marks as its cache (`CACHEDIR.TAG`) are not sources either.
 const RESULTS: &[&str] = &[".git", "figures", "rc-result", "target"];
 
 /// The root of the repository.
@@ -16,14 +17,15 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).map(Path::to_path_buf).unwrap_or_default()
 }
 
-/// Where cargo puts what it builds.
+/// Folder of cargo's build results.
 #[must_use]
 pub fn target() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |folder| root().join(folder))
 }
 
-/// Text files by path from the root, with `/` between folders. Files that are not UTF-8 (arrays, pictures, fonts) are
-/// left out.
+/// Text files by path from the root, with `/` between folders.
+///
+/// Files that are not UTF-8 (arrays, pictures, fonts) are left out.
 pub type Sources = BTreeMap<String, String>;
 
 /// Whether the file at `path` has the extension `extension`.
@@ -32,7 +34,7 @@ pub fn has_extension(path: &str, extension: &str) -> bool {
     Path::new(path).extension().is_some_and(|found| found == extension)
 }
 
-/// Reads every text file under `root`, results apart.
+/// Reads every text file under `root`, except results.
 ///
 /// # Errors
 /// When a folder or file cannot be read.

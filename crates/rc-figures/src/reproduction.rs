@@ -1,8 +1,8 @@
-//! docs/reproduction.md: words by people, numbers from the archived run.
+//! docs/reproduction.md, with numbers from the archived run.
 //!
-//! The document has blocks between `<!-- numbers: fig5 -->` and `<!-- end of numbers -->`; what stands between them is
-//! made here from `data/runs/paper/` and `data/paper.csv`. `cargo xtask figures --archive` and `cargo xtask
-//! reproduction` write it, `cargo xtask tidy` compares.
+//! People write the text around blocks between `<!-- numbers: fig5 -->` and `<!-- end of numbers -->`. This module
+//! makes the blocks from `data/runs/paper/` and `data/paper.csv`. `cargo xtask figures --archive` and
+//! `cargo xtask reproduction` write them, and `cargo xtask tidy` compares them.
 
 mod rows;
 
@@ -21,19 +21,19 @@ const PAPER: &str = "data/paper.csv";
 /// Rewrites the numbers of docs/reproduction.md from the archived run.
 ///
 /// # Errors
-/// When the archived run lacks a number, or the document cannot be written.
+/// When a number is missing in the archived run, or the document cannot be written.
 pub fn update() -> Result<()> {
     blocks::rewrite([DOCUMENT], |_, sources| render(sources))
 }
 
-/// Complains when the document has other numbers than the archived run.
+/// Complaints if the numbers of the document differ from the archived run.
 #[must_use]
 pub fn check(sources: &Sources) -> Vec<String> {
     let cure = format!("{RUN}; run `cargo xtask reproduction`, and review what changed");
     blocks::complaint(DOCUMENT, sources, render(sources), &cure).into_iter().collect()
 }
 
-/// The document with its blocks filled in.
+/// The text of the document with its blocks filled in.
 fn render(sources: &Sources) -> Result<String, String> {
     blocks::fill(DOCUMENT, sources, |name| if name == "run" { run_block(sources) } else { figure_block(name, sources) })
 }
@@ -101,7 +101,7 @@ fn line(row: &Row, sources: &Sources) -> Result<String, String> {
     ))
 }
 
-/// A number that the paper prints.
+/// The value of a number that the paper prints.
 fn published(name: &str, sources: &Sources) -> Result<f64, String> {
     let text = sources.get(PAPER).ok_or_else(|| format!("{PAPER} is missing; restore it from history"))?;
     let row = text.lines().map(|line| line.split(',').collect::<Vec<_>>()).find(|cells| cells[0] == name);
@@ -109,7 +109,9 @@ fn published(name: &str, sources: &Sources) -> Result<f64, String> {
     cell.ok_or_else(|| format!("{PAPER} has no number called `{name}`; add the line"))
 }
 
-/// A number of the archived run, and its standard error where the table has one.
+/// The value of a number in the archived run, with its standard error.
+///
+/// The error is `None` if the table does not have one.
 fn ours(row: &Row, sources: &Sources) -> Result<(f64, Option<f64>), String> {
     let path = format!("{RUN}{}.csv", row.table);
     let text =
@@ -167,7 +169,8 @@ mod tests {
         assert_eq!((check(&sources(&text)).len(), check(&sources(&document)).len()), (0, 1));
     }
 
-    /// What the archived run has to show: snapshots of the reduced set and `--check` allow small changes, these do not.
+    /// Claims about the archived run. Snapshots of the reduced set and `--check` allow small changes, these assertions
+    /// do not.
     #[test]
     fn the_archived_run_keeps_its_promises() {
         let sources = repository::read_sources(&repository::root()).expect("the repository");
@@ -188,7 +191,7 @@ mod tests {
             let [of_fit, area] = [of_fit, area].map(|row| ours(row.expect("a row"), &sources).expect("a number").0);
             assert!((of_fit / area - 1.0).abs() < 0.02, "N = {waves}: {of_fit} and {area}");
         }
-        // The paper's two areas are those of single maps.
+        // The two areas of the paper are those of single maps.
         for (waves, printed) in [("64", 0.0673), ("128", 0.0588)] {
             let (mean, _) = number(&format!("the same, mean of 28 realisations, N = {waves}"));
             let (scatter, _) = number(&format!("scatter of one realisation, N = {waves}"));

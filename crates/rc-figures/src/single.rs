@@ -9,8 +9,10 @@ use crate::archive::Run;
 use crate::figure::{Figure, Preset, report, write};
 use crate::{documents, repository};
 
-/// Computes one figure and writes it into `folder`. With `archive`, this run becomes the archived one of the figure:
-/// its tables in `data/runs/NAME/`, its picture in `docs/images/`, its numbers in the documents.
+/// Computes one figure and writes it into `folder`.
+///
+/// With `archive`, this run becomes the archived one of the figure. Its tables go to `data/runs/NAME/`, its picture to
+/// `docs/images/`, and its numbers into the documents.
 ///
 /// # Errors
 /// When the figure cannot be computed, or a file cannot be written.

@@ -20,10 +20,12 @@ impl Comparator for Comparison {
     }
 }
 
-/// Asserts that `table` is as in the snapshot `name` in `folder`, and records in it where the numbers come from.
+/// Asserts that `table` agrees with the snapshot `name` in `folder`.
+///
+/// The snapshot also records `parameters`, the origin of the numbers.
 ///
 /// # Panics
-/// When the table differs, as assertions do.
+/// When the table differs from the snapshot.
 pub fn assert_table(folder: &Path, name: &str, table: &Table, parameters: &str) {
     let mut settings = Settings::clone_current();
     settings.set_comparator(Box::new(table.comparison.clone()));

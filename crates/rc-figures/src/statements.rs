@@ -1,5 +1,6 @@
-//! Statements of the paper that have no figure: energy and area against the number of waves, convergence, Gaussian
-//! heights.
+//! Statements of the paper that have no figure.
+//!
+//! They are energy and area against the number of waves, convergence, and Gaussian heights.
 
 use anyhow::Result;
 use plotters::prelude::{DrawingBackend, LineSeries};
@@ -20,7 +21,7 @@ use cutoff::Cutoff;
 use heights::{Heights, gaussian};
 use params::Params;
 
-/// What was found.
+/// Results for all statements.
 #[derive(Clone, Debug)]
 pub struct Statements {
     cutoffs: Vec<Cutoff>,
@@ -208,7 +209,7 @@ mod tests {
             let errors = mesh.errors(finest);
             assert!(errors.located.abs() < errors.counting.abs(), "{mesh:?}: {errors:?}");
         }
-        // Ten realisations of few waves scatter about the sum over all phases.
+        // Ten realisations of few waves scatter around the sum over all phases.
         let heights = &figure.heights;
         let bound = 4.0 * heights.one_kurtosis.error();
         assert!((heights.kurtosis - heights.exact_kurtosis).abs() < bound, "{heights:?}");

@@ -1,7 +1,7 @@
-//! Loads times realisations of the paper's surfaces: what Fig. 5 and Fig. 7 are drawn from.
+//! Contacts of the paper's surfaces at many loads, for Fig. 5 and Fig. 7.
 //!
-//! Realisation s of each N has seed s, so those of N = 64 and N = 128 share their long waves, and their difference is
-//! that of the short ones.
+//! Realisation s of each N has seed s. So realisations of N = 64 and N = 128 share their long waves, and their
+//! difference is due to the short waves.
 
 use anyhow::{Context, Result};
 use rc_core::{Grid, HeightField as _};
@@ -11,10 +11,10 @@ use rc_solver::{Control, SolveParams, solve};
 use crate::fit::Sample;
 use crate::{Preset, Rule, Table, number, paper};
 
-/// Elements for the shortest wave: side λ_min/32, twice as fine as the paper's.
+/// Elements for the shortest wave. Their side is λ_min/32, half as large as the paper's.
 pub(crate) const ELEMENTS_PER_WAVE: usize = 32;
 
-/// What is solved.
+/// Surfaces, loads and tolerance.
 #[derive(Clone, Debug)]
 pub(crate) struct Params {
     /// Numbers of waves N.
@@ -25,17 +25,19 @@ pub(crate) struct Params {
     pub(crate) loads: Vec<f64>,
     /// Seeds of the realisations.
     seeds: Vec<u64>,
-    /// Further seeds, for one load alone: they tell how far an average of seven may be from that of all surfaces.
+    /// Further seeds for one load. They tell how far an average of seven may be from that of all surfaces.
     more_seeds: Vec<u64>,
-    /// That load.
+    /// Load of the further seeds.
     more_load: f64,
     /// Relative tolerance of the solves.
     tolerance: f64,
 }
 
 impl Params {
-    /// The paper's surfaces and its number of realisations, loads from first touches to nearly full contact (full); 8
-    /// and 16 waves, three realisations, fewer loads (quick).
+    /// The parameters of a preset.
+    ///
+    /// The full one has the paper's surfaces and number of realisations, with loads from first touch to nearly full
+    /// contact. The quick one has 8 and 16 waves, three realisations and fewer loads.
     pub(crate) fn of(preset: Preset) -> Result<Self> {
         let load = paper::value("load")?;
         let realisations = paper::value("realisations")? as u64;
@@ -62,7 +64,7 @@ impl Params {
     }
 }
 
-/// One contact. Lengths are relative: to the rms height or the highest point of the surface.
+/// Results of one contact, with lengths relative to the rms height or the highest point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct State {
     pub(crate) waves: usize,
@@ -75,22 +77,24 @@ pub(crate) struct State {
     pub(crate) area_cells: f64,
     /// Δ/h_max.
     pub(crate) penetration: f64,
-    /// Mean gap over rms height.
+    /// Mean gap divided by the rms height.
     pub(crate) mean_gap: f64,
-    /// h_max over rms height.
+    /// h_max divided by the rms height.
     pub(crate) h_max: f64,
 }
 
-/// All contacts: by N, realisation, load.
+/// All contacts, ordered by N, realisation and load.
 #[derive(Clone, Debug)]
 pub(crate) struct Sweep {
     pub(crate) states: Vec<State>,
-    /// The further realisations.
+    /// Contacts of the further realisations.
     more: Vec<State>,
     pub(crate) surfaces: Vec<SurfaceOf>,
 }
 
-/// What the realisations of one N share: amplitudes are fixed, so all have the same rms slope.
+/// Properties that all realisations of one N share.
+///
+/// Amplitudes are fixed, so all have the same rms slope.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SurfaceOf {
     pub(crate) waves: usize,
@@ -98,7 +102,7 @@ pub(crate) struct SurfaceOf {
 }
 
 impl Sweep {
-    /// Solves everything, one contact after the other: one solve uses all threads.
+    /// Solves all contacts one after the other, since one solve uses all threads.
     pub(crate) fn solve(params: &Params) -> Result<Self> {
         let mut sweep = Self { states: Vec::new(), more: Vec::new(), surfaces: Vec::new() };
         for &waves in &params.waves {
@@ -119,13 +123,15 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// As [`Sweep::sample`] at the load of the further realisations, with them.
+    /// Mean and scatter as in [`Sweep::sample`], with the further realisations of that load.
     pub(crate) fn larger_sample(&self, waves: usize, load: f64, of: impl Fn(&State) -> f64) -> Sample {
         let more = self.more.iter().filter(|state| state.waves == waves && state.load.total_cmp(&load).is_eq());
         Sample::of(&self.at(waves, load).chain(more).map(of).collect::<Vec<_>>())
     }
 
-    /// The area of one N over that of another, realisation by realisation: pairs share their long waves.
+    /// Ratio of the areas of two N, realisation by realisation.
+    ///
+    /// The two surfaces of a pair share their long waves.
     pub(crate) fn area_ratio(&self, waves: usize, over: usize, load: f64) -> Sample {
         let all = |waves: usize| {
             let more =
@@ -141,7 +147,7 @@ impl Sweep {
         self.states.iter().filter(move |state| state.waves == waves && state.load.total_cmp(&load).is_eq())
     }
 
-    /// Mean and scatter over the realisations.
+    /// Mean and scatter of a result over the realisations.
     pub(crate) fn sample(&self, waves: usize, load: f64, of: impl Fn(&State) -> f64) -> Sample {
         Sample::of(&self.at(waves, load).map(of).collect::<Vec<_>>())
     }
@@ -151,7 +157,7 @@ impl Sweep {
         self.states.chunk_by(|a, b| (a.waves, a.seed) == (b.waves, b.seed)).filter(move |run| run[0].waves == waves)
     }
 
-    /// Every contact.
+    /// Table of all contacts.
     pub(crate) fn table(&self) -> Table {
         let header = [
             "waves",

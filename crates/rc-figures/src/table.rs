@@ -1,20 +1,22 @@
-//! Tables as CSV text: the numbers of a figure, for people, for snapshots and for other programs.
+//! Tables as CSV text, for people, for snapshots and for other programs.
 
 use crate::comparison::{Comparison, Rule};
 
-/// A table with a name, which is also the end of its file's name, and how it is compared with an earlier one.
+/// A table with a name and the rules of its comparison with an earlier table.
+///
+/// The name is also the end of its file's name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// The end of its file's name.
+    /// Name of the table and end of its file's name.
     pub name: &'static str,
-    /// Header and rows.
+    /// Header and rows as CSV text.
     pub csv: String,
-    /// What may differ from an earlier table.
+    /// Rules of the comparison with an earlier table.
     pub comparison: Comparison,
 }
 
 impl Table {
-    /// A table from its header and rows. Cells hold no commas, so nothing is quoted.
+    /// A table from its header and rows. Cells must not contain commas, since nothing is quoted.
     #[must_use]
     pub fn new(name: &'static str, header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Self {
         let rows = rows.into_iter().map(|row| row.join(","));
@@ -22,7 +24,7 @@ impl Table {
         Self { name, csv: lines.map(|line| line + "\n").collect(), comparison: Comparison::default() }
     }
 
-    /// The same table, the numbers of a column compared by `rule`.
+    /// The table with `rule` as the rule of a column.
     ///
     /// # Panics
     /// When no column has this name.
@@ -34,14 +36,16 @@ impl Table {
         self
     }
 
-    /// The same table, the numbers of the rows that begin with `first` compared by `rule`, in every column.
+    /// The table with `rule` as the rule of all rows that begin with `first`.
+    ///
+    /// The rule holds in every column.
     #[must_use]
     pub fn row(mut self, first: &str, rule: Rule) -> Self {
         self.comparison.row(first, rule);
         self
     }
 
-    /// The same table, everything else compared by `rule`.
+    /// The table with `rule` for everything that has no other rule.
     #[must_use]
     pub fn rest(mut self, rule: Rule) -> Self {
         self.comparison.rest(rule);
@@ -64,7 +68,7 @@ impl Table {
     }
 }
 
-/// A number with seven digits, as in every table of this project.
+/// A number with seven digits, as in all tables of this project.
 #[must_use]
 pub fn number(value: f64) -> String {
     format!("{value:.6e}")

@@ -1,4 +1,4 @@
-//! Fields of the libraries as arrays of NumPy, and the reverse.
+//! Conversions between fields of the libraries and arrays of NumPy.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods as _, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
@@ -7,10 +7,14 @@ use rc_heights::{HeightMap, Unit};
 
 use crate::errors::bad_input;
 
-/// Heights (m) of shape (ny, nx), row by row in memory: the package hands in nothing else.
+/// Heights (m) of shape (ny, nx), row by row in memory.
+///
+/// The Python package converts all arrays into this form.
 pub(crate) type Heights<'py> = PyReadonlyArray2<'py, f64>;
 
-/// Signals are looked at after so many values of a large array, a few milliseconds.
+/// Number of values of a large array between two looks for signals.
+///
+/// They take a few milliseconds.
 const VALUES_BETWEEN_LOOKS: usize = 1 << 22;
 
 /// The grid of an array.
@@ -24,7 +28,9 @@ pub(crate) fn values_of<'a>(heights: &'a Heights<'_>) -> PyResult<&'a [f64]> {
     heights.as_slice().map_err(|_| bad_input("heights: the array must be contiguous, row by row"))
 }
 
-/// The heights as a map in metres, the only copy that is made of them: it becomes the heights in units of the cell.
+/// The heights as a map in metres.
+///
+/// This is the only copy of the caller's heights. It becomes the heights in units of the cell.
 pub(crate) fn map_of(heights: &Heights<'_>, sides: Option<[f64; 2]>) -> PyResult<HeightMap> {
     let field = Field::new(grid_of(heights)?, divided(heights, 1.0)?).map_err(bad_input)?;
     Ok(HeightMap { heights: field, height_unit: Unit::Metre, sides, side_unit: Unit::Metre })
@@ -46,7 +52,7 @@ pub(crate) fn array_of(py: Python<'_>, grid: Grid, values: Vec<f64>) -> PyResult
     PyArray1::from_vec(py, values).reshape([grid.ny(), grid.nx()])
 }
 
-/// What tells two arrays apart: it depends on each value and on its place.
+/// A number that distinguishes arrays. It depends on each value and on its place.
 pub(crate) fn fingerprint(heights: &Heights<'_>) -> PyResult<u64> {
     let mut sum = 0_u64;
     for (part, values) in values_of(heights)?.chunks(VALUES_BETWEEN_LOOKS).enumerate() {

@@ -1,10 +1,14 @@
-//! Errors of the command line as exceptions: the same sentences, with keywords of Python for flags and types.
+//! Errors of the command line as exceptions of Python.
+//!
+//! The sentences are the same, with keywords and types of Python in place of flags and types of Rust.
 
 use pyo3::PyErr;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use rc_cli::error::CliError;
 
-/// Bad input is a `ValueError`, a file that could not be written an `OSError`.
+/// The exception for an error of the command line.
+///
+/// Bad input is a `ValueError`, and a file that could not be written an `OSError`.
 pub(crate) fn raised(error: CliError) -> PyErr {
     match error {
         CliError::Input(message) => PyValueError::new_err(in_keywords(&message)),
@@ -13,12 +17,14 @@ pub(crate) fn raised(error: CliError) -> PyErr {
     }
 }
 
-/// Bad input.
+/// The exception for bad input.
 pub(crate) fn bad_input(message: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(in_keywords(&message.to_string()))
 }
 
-/// A key whose value has the wrong type, or is not among those that there are.
+/// The exception for a key with a wrong value.
+///
+/// The value has the wrong type, or is not among the allowed ones.
 pub(crate) fn wrong_value(error: CliError) -> PyErr {
     match error {
         CliError::Input(message) => bad_input(in_words(&message)),
@@ -26,7 +32,7 @@ pub(crate) fn wrong_value(error: CliError) -> PyErr {
     }
 }
 
-/// What the command line says of its flags, and what stands for it here.
+/// Phrases of the command line about its flags, and their replacements in Python.
 const SAID_OF_FLAGS: [(&str, &str); 6] = [
     ("rc surface --fill laplace fills", "roughcontact.prepare(heights, fill=\"laplace\") fills"),
     ("give --heights FILE or --spectrum FILE", "give heights or spectrum"),
@@ -36,7 +42,7 @@ const SAID_OF_FLAGS: [(&str, &str); 6] = [
     ("--resume", "resume=True"),
 ];
 
-/// A message with keywords for flags.
+/// The message with keywords in place of flags.
 fn in_keywords(message: &str) -> String {
     let message = SAID_OF_FLAGS.iter().fold(message.to_owned(), |text, (said, here)| text.replace(said, here));
     let mut parts = message.split("--");
@@ -50,13 +56,14 @@ fn in_keywords(message: &str) -> String {
     text
 }
 
-/// What a reader of keys says of a value, without the names of its types: as `threads: invalid value: integer -1,
-/// expected usize`.
+/// The message of the reader of keys without the names of Rust types.
+///
+/// An example of `message` is `threads: invalid value: integer -1, expected usize`.
 fn in_words(message: &str) -> String {
     let Some((key, said)) = message.split_once(": ") else { return message.to_owned() };
     let Some((found, expected)) = said.split_once(", expected ") else { return message.to_owned() };
     if let Some(name) = found.strip_prefix("unknown variant ") {
-        // The kernel of a function has its name in results only.
+        // The name of a kernel that is a function appears in results only.
         let names = expected.split('`').skip(1).step_by(2).filter(|name| *name != "own");
         let names: Vec<String> = names.map(|name| format!("'{name}'")).collect();
         return format!("{key}: must be {}, not {}", names.join(" or "), name.replace('`', "'"));

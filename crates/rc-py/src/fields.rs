@@ -1,4 +1,4 @@
-//! What is computed from the fields of a result, live or stored.
+//! Results that are computed from the fields of a live or stored result.
 
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -11,17 +11,23 @@ use crate::arrays::{self, Heights};
 use crate::errors::{bad_input, raised};
 use crate::running::on_threads;
 
-/// A spot: elements, part of the cell, perimeter (m), Euler number, part of the mean pressure (Pa).
+/// A contact spot as a tuple.
+///
+/// Elements, fraction of the cell, perimeter (m), Euler number, and contribution to the mean pressure (Pa).
 type Spot = (usize, f64, f64, f64, f64);
 
-/// An array as a field on a cell of these sides, each value divided by `unit`.
+/// The field of an array, with each value divided by `unit`.
+///
+/// Its cell has the sides `sides`.
 fn field_of(array: &Heights<'_>, sides: [f64; 2], unit: f64) -> PyResult<Field> {
     let grid = arrays::grid_of(array)?;
     let grid = Grid::in_cell(grid.nx(), grid.ny(), sides[1] / sides[0]).map_err(bad_input)?;
     Field::new(grid, arrays::divided(array, unit)?).map_err(bad_input)
 }
 
-/// Of the text of `scene.toml`: sides of the cell along x and y (m), E* (Pa), and the seed of a random surface.
+/// Numbers in the text of `scene.toml`.
+///
+/// They are the sides of the cell along x and y (m), E* (Pa), and the seed of a random surface.
 #[pyfunction]
 pub(crate) fn scene_numbers(scene: &str) -> PyResult<([f64; 2], f64, Option<u64>)> {
     let scene = rc_cli::scene::file::parse(scene).map_err(|cause| bad_input(format!("scene.toml: {cause}")))?;
@@ -31,8 +37,9 @@ pub(crate) fn scene_numbers(scene: &str) -> PyResult<([f64; 2], f64, Option<u64>
     Ok((cell.sides(), contact.units.elasticity().e_star(), scene.surface.seed))
 }
 
-/// Density (1/Pa) of a pressure (Pa) over the nominal area on bins with these ends (Pa), and the contact area of the
-/// same interpolation.
+/// Density (1/Pa) of a pressure (Pa) over the nominal area, and the contact area.
+///
+/// `edges` are the ends of the bins (Pa). Both results are from the same interpolation.
 #[pyfunction]
 pub(crate) fn stress_distribution<'py>(
     py: Python<'py>,
@@ -47,7 +54,9 @@ pub(crate) fn stress_distribution<'py>(
     Ok((PyArray1::from_vec(py, density), found.area_fraction))
 }
 
-/// Contact spots of a pressure (Pa) and a gap (m), largest first; `scene` is the text of their `scene.toml`.
+/// Contact spots of a pressure (Pa) and a gap (m), largest first.
+///
+/// `scene` is the text of their `scene.toml`.
 #[pyfunction]
 pub(crate) fn spots(
     py: Python<'_>,
@@ -72,13 +81,15 @@ pub(crate) fn spots(
     Ok(spots.into_iter().map(in_si).collect())
 }
 
-/// Runs a command of `rc` that writes files; its error is an exception.
+/// Runs a command of `rc` that writes files. An error becomes an exception.
 #[pyfunction]
 pub(crate) fn run(py: Python<'_>, words: Vec<String>) -> PyResult<()> {
     py.detach(|| rc_cli::run_words(words.into_iter().map(Into::into))).map_err(raised)
 }
 
-/// A summary as the cells of a row of a sweep, both as JSON, with the columns that the scene asks for.
+/// The cells of a row of a sweep from a summary, both as JSON.
+///
+/// The columns are those that the scene asks for.
 #[pyfunction]
 pub(crate) fn cells(summary: &str, scene: &str) -> PyResult<String> {
     let scene = rc_cli::scene::file::parse(scene).map_err(|cause| bad_input(format!("scene.toml: {cause}")))?;

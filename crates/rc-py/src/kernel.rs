@@ -10,35 +10,42 @@ use rc_core::{Grid, Kernel, Symbol, Units};
 
 use crate::errors::bad_input;
 
-/// Waves whose mirror images the function is asked for too, at most.
+/// Maximum number of waves for which the function is also called with mirror images.
 const MIRRORED: usize = 64;
 
-/// Difference between the values of a wave and of its mirror image, relative to them, that quadrature may leave.
+/// Allowed relative difference between the values of a wave and of its mirror image.
+///
+/// It allows for the errors of a quadrature.
 const MIRROR_ERROR: f64 = 1e-8;
 
-/// Difference of short waves to those of the half-space of E*, relative to them, that is not worth a warning.
+/// Relative difference of short waves from the half-space of E* that causes a warning.
 const HALF_SPACE_ERROR: f64 = 0.05;
 
-/// Calls between the warning and the caller: `solve_keys` and `solve`.
+/// Number of calls between the warning and the caller: `solve_keys` and `solve`.
 const STACK_LEVEL: i32 = 3;
 
-/// The symbol on a grid and on all coarser ones, whose waves are among its own.
+/// The symbol of the caller on a grid. The waves of all coarser grids are among those of the grid.
 pub(crate) struct OwnKernel {
-    /// Waves per cell along y, at most.
+    /// Maximum number of waves per cell along y.
     max_ky: usize,
-    /// In λ/E*, for 0 ≤ kx, then 0 ≤ ky; zero at the zero wave.
+    /// Values in λ/E* for all kx ≥ 0 and, for each kx, all ky ≥ 0. The value of the zero wave is zero.
     values: Vec<f64>,
 }
 
-/// Waves per cell, and the wavenumbers (rad/m) of one.
+/// The waves of a grid, with the wavenumber (rad/m) of one wave per cell.
 struct Waves {
     grid: Grid,
     per_wave: [f64; 2],
 }
 
 impl OwnKernel {
-    /// Calls `symbol(kx, ky)` once with all waves of `grid` but the zero wave, and mirror images of some: two arrays of
-    /// wavenumbers (rad/m). It returns as many displacements (m) for a pressure of 1 Pa.
+    /// Calls `symbol(kx, ky)` once and tabulates its values.
+    ///
+    /// The arguments are two arrays of wavenumbers (rad/m). They have all waves of `grid` except the zero wave, and
+    /// mirror images of some waves. The function returns one displacement (m) for each wave, for a pressure of 1 Pa.
+    ///
+    /// # Errors
+    /// When the function raises, returns another shape, or is not symmetric.
     pub(crate) fn new(symbol: &Bound<'_, PyAny>, grid: Grid, units: Units) -> PyResult<Self> {
         let waves = Waves { grid, per_wave: units.cell().sides().map(|side| TAU / side) };
         let (own, mirrored) = (waves.all(), waves.mirrored());
@@ -47,7 +54,7 @@ impl OwnKernel {
             own.iter().map(number).chain(mirrored.iter().map(|(_, wave)| number(wave))).collect::<Vec<f64>>()
         });
         let mut found = call(symbol, kx, ky)?;
-        // One metre for one pascal, in units of the libraries.
+        // This is one metre per pascal in units of the libraries.
         let unit = units.length(1.0) / units.pressure(1.0);
         for value in &mut found {
             *value *= unit;
@@ -64,14 +71,15 @@ impl OwnKernel {
         self.values[kx * (self.max_ky + 1) + ky]
     }
 
-    /// Refuses values that differ for waves that are mirror images of each other: in kx, in ky, and on a square grid in
-    /// their diagonal.
+    /// Refuses values that differ between a wave and its mirror image.
+    ///
+    /// The images are in kx, in ky, and on a square grid in the diagonal.
     fn check_symmetry(
         &self,
         waves: &Waves,
         mirrored: impl Iterator<Item = (([usize; 2], [i64; 2]), f64)>,
     ) -> PyResult<()> {
-        // Values that are not numbers are for the solver to refuse.
+        // A value that is not a number passes here, since the solver refuses it.
         let differ = |a: f64, b: f64| (a - b).abs() > MIRROR_ERROR * a.abs();
         let refuse = |[a, b]: [[i64; 2]; 2], why: &str| {
             let [a, b] = [a, b].map(|[kx, ky]| {
@@ -97,8 +105,10 @@ impl OwnKernel {
         Ok(())
     }
 
-    /// Warns where short waves, of the outer half of the grid's, are all of another half-space than that of E*: contact
-    /// edges are located with it.
+    /// Warns if short waves behave as on another half-space than that of E*.
+    ///
+    /// Contact edges are located with E*. Short waves are those in the outer half of the grid's waves. The warning is
+    /// given only if all of them differ.
     fn warn_of_another_material(&self, py: Python<'_>, waves: &Waves, e_star: f64) -> PyResult<()> {
         let number = |[kx, ky]: [i64; 2]| waves.grid.waves(kx as usize, ky as usize);
         let (max_kx, max_ky) = (waves.grid.nx() as i64 / 2, waves.grid.ny() as i64 / 2);
@@ -120,13 +130,13 @@ impl OwnKernel {
 }
 
 impl Waves {
-    /// All but the zero wave, in the order of the values of a kernel.
+    /// All waves except the zero wave, in the order of the values of a kernel.
     fn all(&self) -> Vec<[i64; 2]> {
         let [max_kx, max_ky] = [self.grid.nx() as i64 / 2, self.grid.ny() as i64 / 2];
         (0..=max_kx).flat_map(|kx| (0..=max_ky).map(move |ky| [kx, ky])).skip(1).collect()
     }
 
-    /// Some of them, each with its image in kx and with that in ky.
+    /// Some of the waves, each with its mirror images in kx and in ky.
     fn mirrored(&self) -> Vec<([usize; 2], [i64; 2])> {
         let all = self.all();
         let step = (all.len() / MIRRORED).max(1);
@@ -135,7 +145,7 @@ impl Waves {
     }
 }
 
-/// What the function returns for these wavenumbers.
+/// The values of the function for these wavenumbers.
 fn call(symbol: &Bound<'_, PyAny>, kx: Vec<f64>, ky: Vec<f64>) -> PyResult<Vec<f64>> {
     let (py, n_waves) = (symbol.py(), kx.len());
     let returned = symbol.call1((PyArray1::from_vec(py, kx), PyArray1::from_vec(py, ky)))?;
@@ -153,7 +163,7 @@ impl Kernel for OwnKernel {
     }
 
     fn symbol(&self, _grid: Grid) -> Symbol<'_> {
-        // A wave that is not in the table is refused by the solver, as any symbol that is not a number.
+        // The solver refuses a wave that is not in the table, like any symbol that is not a number.
         Box::new(|kx, ky| {
             let row = self.values.chunks_exact(self.max_ky + 1).nth(kx);
             row.and_then(|row| row.get(ky)).copied().unwrap_or(f64::NAN)

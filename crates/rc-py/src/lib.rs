@@ -1,8 +1,8 @@
-//! The extension module `roughcontact._core`: conversions between Python and the libraries, and nothing else.
+//! The extension module `roughcontact._core`: conversions between Python and the libraries.
 //!
-//! What a user calls is in `python/roughcontact`, which documents it. A call takes the keys of a scene and perhaps
-//! heights (`scene`), solves without the lock of the interpreter (`running`), and returns a `Solved`, whose arrays are
-//! made when they are asked for.
+//! Users call the package in `python/roughcontact`, which has the documentation. A call takes the keys of a scene and
+//! perhaps heights (`scene`). It solves without the lock of the interpreter (`running`) and returns a `Solved`. The
+//! arrays of a `Solved` are made when they are asked for.
 
 #![expect(clippy::needless_pass_by_value, reason = "Python hands arguments in by value")]
 
@@ -20,7 +20,9 @@ mod solve;
 mod solved;
 mod sweep;
 
-/// Runs the command `rc` with these words, the name of the program first, and returns its exit code.
+/// Runs the command `rc` with these arguments and returns its exit code.
+///
+/// The first argument is the name of the program.
 #[pyfunction]
 fn main(py: Python<'_>, words: Vec<String>) -> u8 {
     py.detach(|| rc_cli::main_with(words.into_iter().map(Into::into)))

@@ -18,7 +18,7 @@ use crate::errors::{bad_input, raised};
 use crate::running::on_threads;
 use crate::scene::scene_of;
 
-/// An array (m) and the sides of its rectangle along x and y (m), where they are known.
+/// An array (m), and the known sides of its rectangle along x and y (m).
 type MapParts<'py> = (Bound<'py, PyArray2<f64>>, Option<[f64; 2]>);
 
 fn parts(py: Python<'_>, map: HeightMap) -> PyResult<MapParts<'_>> {
@@ -26,14 +26,14 @@ fn parts(py: Python<'_>, map: HeightMap) -> PyResult<MapParts<'_>> {
     Ok((arrays::array_of(py, grid, map.heights.into_values())?, map.sides))
 }
 
-/// Names of the channels of a file, and whether they are heights.
+/// Names of the channels of a file, each with whether it has heights.
 #[pyfunction]
 pub(crate) fn channels(py: Python<'_>, path: PathBuf) -> PyResult<Vec<(String, bool)>> {
     let channels = on_threads(py, 0, move || rc_heights::channels(&path))?.map_err(|error| raised(error.into()))?;
     Ok(channels.into_iter().map(|channel| (channel.name, channel.is_height)).collect())
 }
 
-/// Reads a height map of any format, in metres; `NaN` where nothing was measured.
+/// Reads a height map of any format, in metres. Unmeasured points are `NaN`.
 #[pyfunction]
 pub(crate) fn read<'py>(py: Python<'py>, path: PathBuf, keys: &Bound<'py, PyDict>) -> PyResult<MapParts<'py>> {
     let surface = scene_of(keys, None)?.surface;
@@ -42,7 +42,7 @@ pub(crate) fn read<'py>(py: Python<'py>, path: PathBuf, keys: &Bound<'py, PyDict
     parts(py, map)
 }
 
-/// A random surface that has been checked, with the threads to be used.
+/// A checked random surface, with its memory limit and number of threads.
 fn checked(keys: &Bound<'_, PyDict>) -> PyResult<(SurfaceSetup, Budget, usize)> {
     let Scene { surface, run, .. } = scene_of(keys, None)?;
     resolve::check_size(&surface).map_err(raised)?;
@@ -51,7 +51,7 @@ fn checked(keys: &Bound<'_, PyDict>) -> PyResult<(SurfaceSetup, Budget, usize)> 
     Ok((setup, Budget::new(run.memory_limit), threads))
 }
 
-/// Heights (m) of a random surface on its grid, and the sides of its cell (m).
+/// Heights (m) of a random surface on its grid, and its cell's sides (m).
 #[pyfunction]
 pub(crate) fn surface<'py>(py: Python<'py>, keys: &Bound<'py, PyDict>) -> PyResult<MapParts<'py>> {
     let (setup, budget, threads) = checked(keys)?;
@@ -65,7 +65,7 @@ pub(crate) fn surface<'py>(py: Python<'py>, keys: &Bound<'py, PyDict>) -> PyResu
     Ok((arrays::array_of(py, heights.grid(), heights.into_values())?, Some(cell.sides())))
 }
 
-/// Heights in m, as `rc surface` writes them.
+/// Heights (m) with the same digits as in the files of `rc surface`.
 fn in_metres(surface: &LoadedSurface, side: f64) -> Result<Field, rc_cli::error::CliError> {
     let mut heights = surface.heights()?.into_owned();
     match surface.map() {
@@ -75,7 +75,7 @@ fn in_metres(surface: &LoadedSurface, side: f64) -> Result<Field, rc_cli::error:
     Ok(heights)
 }
 
-/// The keys of a random surface as they are resolved, as JSON.
+/// The resolved keys of a random surface, as JSON.
 #[pyfunction]
 pub(crate) fn resolved_surface(keys: &Bound<'_, PyDict>) -> PyResult<String> {
     Ok(rc_sweep::to_json(&checked(keys)?.0.keys))
@@ -93,7 +93,9 @@ pub(crate) fn inspect_surface(py: Python<'_>, keys: &Bound<'_, PyDict>) -> PyRes
     record.map_err(raised)
 }
 
-/// Statistics of a height map as JSON; the size of its cell is among the keys where the map does not know it.
+/// Statistics of a height map as JSON.
+///
+/// If the map does not have the size of its cell, it is among the keys.
 #[pyfunction]
 pub(crate) fn inspect_map(
     py: Python<'_>,
@@ -115,7 +117,7 @@ pub(crate) fn inspect_result(py: Python<'_>, folder: PathBuf) -> PyResult<String
     on_threads(py, 0, move || inspect::result(&folder))?.map_err(raised)
 }
 
-/// A height map after treatments, which are named as the flags of `rc surface`.
+/// The height map after treatments, which have the names of the flags of `rc surface`.
 #[pyfunction]
 pub(crate) fn treat<'py>(
     py: Python<'py>,

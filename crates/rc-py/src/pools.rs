@@ -1,22 +1,25 @@
-//! Worker threads: a pool for each call that runs, kept for the next one.
+//! Pools of worker threads.
+//!
+//! Each running call has a pool, which is kept for the next call.
 
 use std::sync::{Mutex, PoisonError};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// Idle pools, each with the process that started it and the number of threads that were asked for; 0 for all cores.
+/// Idle pools, each with its process and the requested number of threads.
 ///
-/// A child process after a fork has the list but not the threads, so it starts its own.
+/// The number is 0 for all cores. A child process after a fork has the list but not the threads, so it starts pools of
+/// its own.
 static IDLE: Mutex<Vec<(u32, usize, ThreadPool)>> = Mutex::new(Vec::new());
 
-/// A pool that is back among the idle ones when it is dropped.
+/// A pool that becomes idle again when it is dropped.
 pub(crate) struct Pool {
     key: (u32, usize),
     pool: Option<ThreadPool>,
 }
 
 impl Pool {
-    /// A pool of `threads`, 0 for all cores. Two calls at once have two.
+    /// A pool of `threads` threads, 0 for all cores. Two calls at once get two pools.
     pub(crate) fn take(threads: usize) -> Result<Self, rayon::ThreadPoolBuildError> {
         let key = (std::process::id(), threads);
         let mut idle = IDLE.lock().unwrap_or_else(PoisonError::into_inner);
@@ -27,12 +30,12 @@ impl Pool {
         Ok(Self { key, pool: Some(pool) })
     }
 
-    /// The threads.
+    /// The threads of the pool.
     pub(crate) fn threads(&self) -> &ThreadPool {
         self.pool.as_ref().expect("it is there until it is dropped")
     }
 
-    /// Leaves the threads alone: they end when what they do is done.
+    /// Gives the pool up. Its threads end when their work is done.
     pub(crate) fn leave(mut self) {
         self.pool = None;
     }

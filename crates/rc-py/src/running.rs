@@ -1,4 +1,6 @@
-//! A running computation: without the lock of the interpreter, ended by Ctrl-C, seen by a function of the caller.
+//! Running computations, without the lock of the interpreter.
+//!
+//! Ctrl-C ends them, and a function of the caller sees their progress.
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
@@ -13,32 +15,36 @@ use rc_core::{Event, Observer};
 
 use crate::pools::Pool;
 
-/// How often the calling thread looks for signals.
+/// Time between two looks for signals on the calling thread.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// How long it waits, after a signal, for a solve that was told to stop.
+/// Time to wait, after a signal, for a solve that was told to stop.
 pub(crate) const GRACE: Duration = Duration::from_millis(100);
 
-/// How a computation is run.
+/// Settings of a computation.
 pub(crate) struct Run<'py> {
     /// Worker threads; 0 for all cores.
     pub(crate) threads: usize,
-    /// When it ends with what there is.
+    /// Time at which it ends with what it has.
     pub(crate) end: Option<Instant>,
-    /// Called with numbers of each event: level, levels, nx, ny, iteration, error, tolerance, elements in contact.
+    /// Function that is called with the numbers of each event.
+    ///
+    /// These are level, levels, nx, ny, iteration, error, tolerance, and elements in contact.
     pub(crate) progress: Option<Bound<'py, PyAny>>,
-    /// How long it may go on after a signal before it is left alone.
+    /// Time for which it may continue after a signal.
+    ///
+    /// Then the caller no longer waits for it.
     pub(crate) grace: Duration,
 }
 
-/// What ends a computation early, and where its events go.
+/// The observer of a computation, which can stop it and passes on its events.
 pub(crate) struct Watched<T> {
     stop: Arc<AtomicBool>,
     end: Option<Instant>,
     events: Option<Sender<Message<T>>>,
 }
 
-/// What comes from the threads of a computation.
+/// Messages from the threads of a computation.
 enum Message<T> {
     Event(Event),
     Done(Outcome<T>),
@@ -47,7 +53,7 @@ enum Message<T> {
 impl<T: Send> Observer for Watched<T> {
     fn notify(&self, event: &Event) {
         if let Some(events) = &self.events {
-            // Nobody listens any more to a computation that goes on alone.
+            // If the caller no longer waits for the computation, nobody receives the event.
             let _ = events.send(Message::Event(*event));
         }
     }
@@ -57,20 +63,22 @@ impl<T: Send> Observer for Watched<T> {
     }
 }
 
-/// How a computation ended.
+/// The end of a computation.
 pub(crate) enum Ended<T> {
-    /// With a value. The exception is what ended it early: that of a signal handler, as `KeyboardInterrupt`, or of the
-    /// function that sees progress.
+    /// It ended with a value.
+    ///
+    /// `early` is the exception that ended it early, if any. It is from a signal handler, for instance
+    /// `KeyboardInterrupt`, or from the function that sees progress.
     Done { value: T, early: Option<PyErr> },
-    /// A signal came, and the computation has not yet seen that it was told to stop. It goes on alone until it does.
+    /// A signal came, but the computation has not yet seen that it must stop. It continues on its own until it does.
     Left { early: PyErr, rest: Rest<T> },
 }
 
-/// A computation that goes on alone.
+/// A computation that continues on its own.
 pub(crate) struct Rest<T>(Receiver<Message<T>>);
 
 impl<T: Send> Rest<T> {
-    /// Waits for it; another signal ends the wait.
+    /// Waits for the value. Another signal ends the wait.
     pub(crate) fn wait(&mut self, py: Python<'_>) -> PyResult<T> {
         let receiver = &mut self.0;
         py.detach(move || {
@@ -86,11 +94,12 @@ impl<T: Send> Rest<T> {
     }
 }
 
-/// Runs `work` on its threads, without the lock of the interpreter, and tells it to stop when a signal comes or
-/// `progress` raises. Returns how it ended, and the number of threads.
+/// Runs `work` on threads, without the lock of the interpreter.
+///
+/// A signal or an exception of `progress` tells it to stop. Returns how it ended, and the number of threads.
 ///
 /// # Errors
-/// When there are no threads to be had.
+/// When threads cannot be started.
 pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
     run: Run<'_>,
@@ -105,7 +114,7 @@ pub(crate) fn run<T: Send + 'static>(
         let (sender, receiver) = mpsc::channel();
         let watched = Watched { stop: Arc::clone(&stop), end, events: progress.is_some().then(|| sender.clone()) };
         pool.threads().spawn(move || {
-            // A panic is handed to the caller: here it would end the process.
+            // A panic is passed on to the caller. In this thread it would end the process.
             let outcome = catch_unwind(AssertUnwindSafe(|| work(&watched)));
             let _ = sender.send(Message::Done(outcome));
         });
@@ -117,7 +126,9 @@ pub(crate) fn run<T: Send + 'static>(
     })
 }
 
-/// Runs `work` on `threads`, 0 for all cores, and returns its value, unless a signal comes first.
+/// Runs `work` on `threads` threads, 0 for all cores, and returns its value.
+///
+/// A signal ends the wait for it.
 pub(crate) fn on_threads<T: Send + 'static>(
     py: Python<'_>,
     threads: usize,
@@ -129,7 +140,9 @@ pub(crate) fn on_threads<T: Send + 'static>(
     }
 }
 
-/// Runs `work`, which borrows, on `threads` to its end: signals are seen after it.
+/// Runs `work`, which may borrow, on `threads` threads to its end.
+///
+/// Signals are handled after it.
 pub(crate) fn to_end<T: Send>(py: Python<'_>, threads: usize, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     py.detach(|| Ok(take_pool(threads)?.threads().install(work)))
 }
@@ -142,12 +155,12 @@ fn without_a_result() -> PyErr {
     PyRuntimeError::new_err("the computation ended without a result")
 }
 
-/// Runs the handlers of signals that have come; that of Ctrl-C raises an exception.
+/// Runs the handlers of signals that have come. The handler of Ctrl-C raises an exception.
 fn look_for_signals(py: Python<'_>) -> PyResult<()> {
     py.check_signals()
 }
 
-/// Hands events to `progress` and looks for signals, until the computation ends or is left alone.
+/// Passes events to `progress` and looks for signals, until the computation ends or is left.
 fn wait<T>(
     receiver: Receiver<Message<T>>,
     (stop, grace): (&AtomicBool, Duration),
@@ -180,7 +193,9 @@ fn wait<T>(
     }
 }
 
-/// Calls of the function that sees progress; an iteration does not say on which level it is.
+/// Calls of the function that sees progress.
+///
+/// It keeps the level, since the event of an iteration does not have it.
 struct Calls<'a> {
     progress: Option<&'a Py<PyAny>>,
     level: (usize, usize),
@@ -188,8 +203,9 @@ struct Calls<'a> {
 }
 
 impl Calls<'_> {
-    /// Tells of an event, and runs the handlers of signals that have come. The exception of either, and whether it is
-    /// of a signal.
+    /// Reports an event, and runs the handlers of signals that have come.
+    ///
+    /// An error has the exception of either, and whether it is from a signal.
     fn look(&mut self, py: Python<'_>, event: Option<Event>) -> Result<(), (PyErr, bool)> {
         if let Some(event) = event {
             self.tell(py, event).map_err(|error| {

@@ -1,4 +1,4 @@
-//! Keys of a scene, from keyword arguments.
+//! Scenes from keyword arguments.
 
 use std::path::Path;
 
@@ -12,25 +12,31 @@ use toml::{Table, Value};
 
 use crate::errors::{bad_input, raised, wrong_value};
 
-/// The keys of a scene file.
+/// Names of the keys of a scene file.
 #[pyfunction]
 pub(crate) fn known_keys() -> Vec<String> {
     file::known_keys().to_vec()
 }
 
-/// Loads of a sweep, as the command line reads them: `first:last:count`, or values with commas between them.
+/// Loads of a sweep: `first:last:count`, or values with commas between them.
+///
+/// The command line reads them in the same way.
 #[pyfunction]
 pub(crate) fn loads(text: &str) -> PyResult<Vec<f64>> {
     text.parse().map(|Loads(values)| values).map_err(bad_input)
 }
 
-/// Seeds of a sweep, as the command line reads them: `1..7`, or a list with commas.
+/// Seeds of a sweep: `1..7`, or a list with commas.
+///
+/// The command line reads them in the same way.
 #[pyfunction]
 pub(crate) fn seeds(text: &str) -> PyResult<Vec<u64>> {
     text.parse().map(|Seeds(values)| values).map_err(bad_input)
 }
 
-/// The scene of keyword arguments, laid over a scene file if there is one. `None` is no value.
+/// The scene of keyword arguments, laid over a scene file if there is one.
+///
+/// A keyword with the value `None` counts as absent.
 pub(crate) fn scene_of(keys: &Bound<'_, PyDict>, path: Option<&Path>) -> PyResult<Scene> {
     let mut table = Table::new();
     for (key, value) in keys {
@@ -43,8 +49,10 @@ pub(crate) fn scene_of(keys: &Bound<'_, PyDict>, path: Option<&Path>) -> PyResul
     resolve::layers(path, scene).map_err(raised)
 }
 
-/// The same where the call may hold a height map: it takes the place of the surface in a scene file, as a file would.
-/// What else the call says of a surface is refused later.
+/// The scene as in [`scene_of`], for a call that may have a height map.
+///
+/// The map replaces the surface of a scene file, as a file of heights would. Other keys of the call that describe a
+/// surface are refused later.
 pub(crate) fn with_map(keys: &Bound<'_, PyDict>, path: Option<&Path>, holds_map: bool) -> PyResult<Scene> {
     let mut scene = scene_of(keys, path)?;
     if holds_map {
@@ -57,7 +65,7 @@ pub(crate) fn with_map(keys: &Bound<'_, PyDict>, path: Option<&Path>, holds_map:
     Ok(scene)
 }
 
-/// The value of a key; none for `None`.
+/// The value of a key; `None` for Python's `None`.
 fn value_of(key: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<Value>> {
     if value.is_none() {
         return Ok(None);

@@ -1,4 +1,4 @@
-//! `solve`: keys and heights in, a solution out.
+//! The function `solve`: from keys and heights to a solution.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -21,25 +21,25 @@ use crate::running::{self, Ended, Run, on_threads};
 use crate::scene;
 use crate::solved::{HeldMap, Parts, Solved, Unfinished};
 
-/// Where heights come from that are not named by keys.
+/// Inputs of a solve that are not keys.
 #[derive(FromPyObject)]
 pub(crate) struct Given<'py> {
     /// Heights (m), row by row.
     #[pyo3(item)]
     heights: Option<Heights<'py>>,
-    /// Sides of their cell along x and y (m), where they know them.
+    /// Sides of the cell of the heights along x and y (m), if they are known.
     #[pyo3(item)]
     sides: Option<[f64; 2]>,
-    /// A scene file.
+    /// Path of a scene file.
     #[pyo3(item)]
     scene: Option<PathBuf>,
-    /// The symbol of the half-space.
+    /// Function for the symbol of the half-space.
     #[pyo3(item)]
     kernel: Option<Bound<'py, PyAny>>,
-    /// A function that sees progress.
+    /// Function that sees progress.
     #[pyo3(item)]
     progress: Option<Bound<'py, PyAny>>,
-    /// Whether it is a row of a sweep, of which the memory of the machine decides nothing.
+    /// Whether this is a row of a sweep. The memory of the machine then does not decide anything.
     #[pyo3(item)]
     is_row: bool,
 }
@@ -53,11 +53,13 @@ struct Prepared {
     started: Instant,
 }
 
-/// What a solve returns: the solution, or what waits for it, and the exception that ended it early.
+/// The solution or an unfinished solve, and the exception that ended it early.
 type Returned = (Option<Solved>, Option<Unfinished>, Option<Py<PyAny>>);
 
-/// Solves. There is no solution yet where a signal came and the solve goes on alone until it sees that it was told to
-/// stop.
+/// Solves a scene.
+///
+/// There is no solution if a signal came and the solve has not yet seen that it was told to stop. It then continues on
+/// its own.
 #[pyfunction]
 pub(crate) fn solve(py: Python<'_>, keys: &Bound<'_, PyDict>, given: Given<'_>) -> PyResult<Returned> {
     let scene = scene_of(keys, &given)?;
@@ -112,7 +114,7 @@ impl Prepared {
         Ok(Self { scene, kernel, map, budget: Budget::new(run.memory_limit), started })
     }
 
-    /// Solves, on the threads of the caller.
+    /// Solves on the threads of the caller.
     fn solve(self, observer: &dyn Observer) -> Result<Parts, CliError> {
         let Self { scene, kernel, map, budget, started } = self;
         let surface = load(&scene, map)?;
@@ -124,7 +126,7 @@ impl Prepared {
         let SolvedParts { solution, failure, flow, wall } = solved.into_parts();
         let solution =
             if own.is_some() { solution.into_owned() } else { solution.into_owned_with(scene.contact.kernel()?) };
-        // Of a map only this is kept: the heights are those of the caller.
+        // This is all that is kept of a map, since its heights are the caller's.
         let height_and_slope = surface.height_and_slope(scene.contact.boundary);
         let waves = surface.wave_file().cloned();
         let contact = scene.contact;
@@ -132,7 +134,7 @@ impl Prepared {
     }
 }
 
-/// Reads or realises the surface; heights of the caller become those in units of the cell.
+/// Reads or generates the surface. Heights of the caller are converted into units of the cell.
 fn load(scene: &CheckedScene, map: Option<HeightMap>) -> Result<LoadedSurface, CliError> {
     let expected = match &scene.surface.source {
         Source::File { expected, .. } => *expected,

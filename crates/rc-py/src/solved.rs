@@ -1,4 +1,4 @@
-//! A solution as Python sees it.
+//! Solutions as Python sees them.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -19,16 +19,16 @@ use crate::arrays::{self, Heights};
 use crate::errors::{bad_input, raised};
 use crate::running::{Rest, on_threads, to_end};
 
-/// What a solve leaves, without borrows.
+/// The result of a solve without borrows.
 pub(crate) struct Parts {
     pub(crate) surface: SurfaceKeys,
-    /// The file of waves that was solved, if one was.
+    /// The file of waves that was solved, if the surface is from one.
     pub(crate) waves: Option<Arc<WaveFile>>,
     pub(crate) contact: ContactSetup,
     pub(crate) solution: Solution<'static>,
-    /// What is said of a solution that did not reach the tolerance.
+    /// Message about a solution that did not reach the tolerance.
     pub(crate) failure: Option<String>,
-    /// The flow through the gap, where it was asked for and converged.
+    /// The flow through the gap, if it was asked for and converged.
     pub(crate) flow: Option<SolvedFlow>,
     pub(crate) wall: Duration,
     /// Rms height (λ) and rms slope.
@@ -38,7 +38,7 @@ pub(crate) struct Parts {
 /// The caller's heights, for `heights.npy` of a result folder.
 pub(crate) struct HeldMap {
     array: Py<PyArray2<f64>>,
-    /// By which a change since the solve is noticed.
+    /// Fingerprint that reveals a change since the solve.
     fingerprint: u64,
 }
 
@@ -56,7 +56,7 @@ pub(crate) struct Solved {
     map: Option<HeldMap>,
 }
 
-/// A solution and its summary, which threads share that go on alone.
+/// A solution and its summary, shared with threads that continue on their own.
 struct Found {
     parts: Parts,
     threads: usize,
@@ -90,7 +90,7 @@ impl Solved {
         self.found.parts.contact.units.cell().side()
     }
 
-    /// Computes something on the threads of the solve.
+    /// Computes a value on the threads of the solve.
     fn compute<T: Send + 'static>(
         &self,
         py: Python<'_>,
@@ -100,7 +100,7 @@ impl Solved {
         on_threads(py, found.threads, move || work(&found))
     }
 
-    /// A field as an array, each value multiplied by `unit`, as it is written into files.
+    /// The array of a field, with each value multiplied by `unit`, as in the files.
     fn array<'py>(
         &self,
         py: Python<'py>,
@@ -125,7 +125,7 @@ impl Solved {
         self.found.parts.solution.status() != Status::NotConverged
     }
 
-    /// What is said of a solution that did not reach the tolerance.
+    /// Message about a solution that did not reach the tolerance.
     #[getter]
     fn failure(&self) -> Option<&str> {
         self.found.parts.failure.as_deref()
@@ -142,7 +142,7 @@ impl Solved {
         self.compute(py, |found| found.summary().to_json())
     }
 
-    /// The scene as it was solved, as in `scene.toml`.
+    /// The solved scene, as in `scene.toml`.
     fn scene(&self) -> String {
         self.found.files(None).scene()
     }
@@ -157,7 +157,9 @@ impl Solved {
         self.array(py, self.side(), Solution::gap)
     }
 
-    /// Gap (m) on the grid of the smallest elements; none where that is the grid of the fields.
+    /// Gap (m) on the grid of the smallest elements.
+    ///
+    /// `None` if that is the grid of the fields.
     fn finest_gap<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         let side = self.side();
         let gap: Option<(Grid, Vec<f64>)> = self.compute(py, move |found| {
@@ -167,7 +169,7 @@ impl Solved {
         gap.map(|(grid, values)| arrays::array_of(py, grid, values)).transpose()
     }
 
-    /// The overlap that plastic flow has removed (m), shape (ny, nx); `None` without a hardness.
+    /// Overlap (m) that plastic flow has removed, shape (ny, nx); `None` without a hardness.
     fn plastic_gap<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         if self.found.parts.contact.hardness.is_infinite() {
             return Ok(None);
@@ -180,7 +182,9 @@ impl Solved {
         self.array(py, self.side(), Solution::displacement)
     }
 
-    /// Fluxes along x and y (m²), shape (ny, nx); `None` where nothing flows, or no flow was asked for.
+    /// Fluxes along x and y (m²), shape (ny, nx).
+    ///
+    /// `None` if there is no flow, or the flow was not asked for.
     fn flux<'py>(&self, py: Python<'py>) -> PyResult<Option<[Bound<'py, PyArray2<f64>>; 2]>> {
         let (grid, area) = (self.found.parts.solution.grid(), self.side() * self.side());
         let flux: Option<[Vec<f64>; 2]> = self.compute(py, move |found| {
@@ -191,7 +195,9 @@ impl Solved {
         Ok(Some([arrays::array_of(py, grid, x)?, arrays::array_of(py, grid, y)?]))
     }
 
-    /// Columns of the elements that are not those of the grid: x, y, size (m), pressure (Pa).
+    /// Columns of the elements of a mesh: x, y, size (m), pressure (Pa).
+    ///
+    /// `None` if the elements are those of the grid.
     fn elements<'py>(&self, py: Python<'py>) -> Option<[Bound<'py, PyArray1<f64>>; 4]> {
         let units = self.found.parts.contact.units;
         let mut columns: [Vec<f64>; 4] = Default::default();
@@ -218,7 +224,7 @@ impl Solved {
 }
 
 impl Solved {
-    /// The caller's heights, if they are still those that were solved.
+    /// The caller's heights, if they have not changed since the solve.
     fn map_heights<'a>(&self, heights: &'a Heights<'_>) -> PyResult<MapHeights<'a>> {
         let values = arrays::values_of(heights)?;
         if self.map.as_ref().map(|map| map.fingerprint) != Some(arrays::fingerprint(heights)?) {
@@ -230,7 +236,7 @@ impl Solved {
     }
 }
 
-/// A solve that goes on alone after a signal.
+/// A solve that continues on its own after a signal.
 #[pyclass(frozen, module = "roughcontact._core")]
 pub(crate) struct Unfinished {
     rest: Mutex<Rest<Result<Parts, CliError>>>,
@@ -246,7 +252,7 @@ impl Unfinished {
 
 #[pymethods]
 impl Unfinished {
-    /// Waits for its solution, of which there is one.
+    /// Waits for the solution. It can be taken only once.
     fn wait(&self, py: Python<'_>) -> PyResult<Solved> {
         let mut rest = self.rest.try_lock().map_err(|_| bad_input("the solution is waited for already"))?;
         let parts = rest.wait(py)?.map_err(raised)?;

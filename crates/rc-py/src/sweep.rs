@@ -1,4 +1,6 @@
-//! A sweep whose rows Python has solved somewhere: its plan, and its journal where it has a folder.
+//! A sweep whose rows Python solves.
+//!
+//! It has a plan, and a journal if it has a folder.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -13,10 +15,10 @@ use crate::errors::{bad_input, raised};
 use crate::running::{on_threads, to_end};
 use crate::scene;
 
-/// What a sweep is over, and where it goes.
+/// Loads and surfaces of a sweep, and its folder.
 #[derive(FromPyObject)]
 pub(crate) struct Wanted<'py> {
-    /// Whether loads are penetrations (m), not pressures (Pa).
+    /// Whether loads are penetrations (m) and not pressures (Pa).
     #[pyo3(item)]
     penetrations: bool,
     #[pyo3(item)]
@@ -26,16 +28,16 @@ pub(crate) struct Wanted<'py> {
     /// Heights (m), row by row.
     #[pyo3(item)]
     heights: Option<Heights<'py>>,
-    /// Sides of their cell along x and y (m), where they know them.
+    /// Sides of the cell of the heights along x and y (m), if they are known.
     #[pyo3(item)]
     sides: Option<[f64; 2]>,
-    /// A scene file.
+    /// Path of a scene file.
     #[pyo3(item)]
     scene: Option<PathBuf>,
     /// The folder of the journal, if there is one.
     #[pyo3(item)]
     folder: Option<PathBuf>,
-    /// Whether it goes on with what is there.
+    /// Whether an existing journal is continued.
     #[pyo3(item)]
     resume: bool,
     /// Whether each row has a result folder there.
@@ -43,15 +45,15 @@ pub(crate) struct Wanted<'py> {
     fields: bool,
 }
 
-/// The rows of a sweep, and those that are kept.
+/// The plan of a sweep and the rows that are finished.
 #[pyclass(frozen, module = "roughcontact._core")]
 pub(crate) struct Planned {
     plan: SweepPlan,
-    /// Until the sweep ends; no other process may write to its folder as long as it is there.
+    /// The journal until the sweep ends. While it exists, no other process may write to its folder.
     journal: Mutex<Option<rc_sweep::Sweep>>,
 }
 
-/// Checks a sweep, and starts its journal or goes on with it.
+/// Checks a sweep, and starts or continues its journal.
 #[pyfunction]
 pub(crate) fn plan_sweep(py: Python<'_>, keys: &Bound<'_, PyDict>, wanted: Wanted<'_>) -> PyResult<Planned> {
     let Wanted { penetrations, loads, seeds, heights, sides, scene: file, folder, resume, fields } = wanted;
@@ -63,13 +65,13 @@ pub(crate) fn plan_sweep(py: Python<'_>, keys: &Bound<'_, PyDict>, wanted: Wante
     let name = file.as_deref().and_then(Path::file_stem).unwrap_or_default().to_string_lossy().into_owned();
     let plan = on_threads(py, 0, move || plan(&name, &scene, &lists, map))?.map_err(raised)?;
     let plan = SweepPlan { keeps_fields: fields, ..plan };
-    // Not among what a signal leaves alone: a journal would appear later.
+    // A signal must not leave this running, since a journal would then appear later.
     let start = |folder: PathBuf| py.detach(|| rc_sweep::Sweep::start(plan.clone(), Shard::WHOLE, &folder, resume));
     let journal = folder.map(start).transpose().map_err(|error| raised(error.into()))?;
     Ok(Planned { plan, journal: Mutex::new(journal) })
 }
 
-/// By what a map is recognised, which matters to a journal alone.
+/// The mark that identifies a map. Without a journal it is not needed, and marks no values.
 fn mark(py: Python<'_>, heights: &Heights<'_>, has_journal: bool) -> PyResult<FileMark> {
     let values = if has_journal { arrays::values_of(heights)? } else { &[] };
     to_end(py, 1, || FileMark::of_values(values))
@@ -80,7 +82,7 @@ impl Planned {
         self.plan.shape().rows()
     }
 
-    /// What a call that panicked leaves is whole.
+    /// The journal. A call that panicked leaves it whole, so a poisoned lock is ignored.
     fn journal(&self) -> MutexGuard<'_, Option<rc_sweep::Sweep>> {
         self.journal.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -94,17 +96,17 @@ impl Planned {
         (0..self.n_rows()).map(row).map(|row| (self.plan.surfaces[row.surface].seed, row.load)).collect()
     }
 
-    /// A row as a message names it.
+    /// Description of a row for messages.
     fn describe(&self, index: usize) -> String {
         self.plan.describe(&self.plan.row(index))
     }
 
-    /// Indices of the rows that are not kept, in order.
+    /// Indices of the unfinished rows, in order.
     fn todo(&self) -> Vec<usize> {
         self.journal().as_ref().map_or_else(|| (0..self.n_rows()).collect(), rc_sweep::Sweep::todo)
     }
 
-    /// The rows that are kept: their indices and their cells as JSON.
+    /// The finished rows: indices and cells as JSON.
     fn kept(&self) -> Vec<(usize, String)> {
         let journal = self.journal();
         let kept = journal.as_ref().map(rc_sweep::Sweep::kept);
@@ -112,7 +114,7 @@ impl Planned {
         kept.map_or_else(Vec::new, |kept| kept.rows().iter().map(|(index, cells)| (*index, json(cells))).collect())
     }
 
-    /// Keeps a row, whose summary is given as JSON. It is on disk when this returns.
+    /// Stores a row from its summary as JSON. The row is on disk when this returns.
     fn keep(&self, py: Python<'_>, index: usize, summary: &str) -> PyResult<()> {
         let cells: Cells = serde_json::from_str(summary).map_err(bad_input)?;
         let row = self.plan.row(index);
@@ -120,12 +122,14 @@ impl Planned {
         kept.map_err(|error| raised(error.into()))
     }
 
-    /// The folder for the result of a row, where each has one.
+    /// Folder for the result of a row, if each row has one.
     fn fields_folder(&self, index: usize) -> Option<PathBuf> {
         self.journal().as_ref()?.fields_folder(index)
     }
 
-    /// Ends the sweep: writes the table of the rows that are kept; one without any leaves nothing behind.
+    /// Ends the sweep and writes the table of its finished rows.
+    ///
+    /// A sweep without finished rows leaves nothing behind.
     fn end(&self, py: Python<'_>) -> PyResult<()> {
         let Some(journal) = self.journal().take() else { return Ok(()) };
         to_end(py, 1, || journal.end())?.map(drop).map_err(|error| raised(error.into()))

@@ -1,9 +1,11 @@
-//! Names of items in the paper map as links to their lines in the documentation of the crates.
+//! Links from items in the paper map to their lines in the crates' documentation.
 
 use rc_figures::repository::Sources;
 
-/// `page` with each item that follows the path of a library's file, as in `` `crates/rc-core/src/grid.rs`: `Grid` ``,
-/// linked to its line in the sources that rustdoc shows, which are in `doc` beside the book.
+/// `page` with links at the items that follow the path of a library's file.
+///
+/// An example is `` `crates/rc-core/src/grid.rs`: `Grid` ``. A link leads to the item's line in the sources that
+/// rustdoc shows. These sources are in `doc` beside the book.
 pub(super) fn to_lines(page: &str, sources: &Sources) -> String {
     let mut linked = String::new();
     let mut file = None;
@@ -23,13 +25,15 @@ pub(super) fn to_lines(page: &str, sources: &Sources) -> String {
     linked
 }
 
-/// Where rustdoc shows the file at `path`, seen from the book: files of libraries alone.
+/// Path from the book to rustdoc's page of the source file at `path`.
+///
+/// `None` if the file is not a library's.
 fn shown(path: &str) -> Option<String> {
     let (name, file) = path.strip_prefix("crates/")?.split_once("/src/")?;
     Some(format!("../doc/src/{}/{file}.html", name.replace('-', "_")))
 }
 
-/// The line on which `item` is defined, from 1.
+/// Number of the line that defines `item`, from 1.
 fn line_of(text: &str, item: &str) -> Option<usize> {
     const KEYWORDS: &[&str] = &["fn", "struct", "enum", "trait", "const", "type", "mod"];
     let defines = |line: &str| {

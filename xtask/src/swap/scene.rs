@@ -1,5 +1,6 @@
-//! A contact whose numbers depend on all crates that `cargo xtask swap` replaces. It is compiled into xtask, with the
-//! originals, and into the program that the forks are built into.
+//! A contact whose numbers depend on all crates that `cargo xtask swap` replaces.
+//!
+//! This file is compiled into xtask, with the originals, and into the program with the forks.
 
 use std::error::Error;
 

@@ -1,11 +1,13 @@
-//! Which crate may depend on which: the arrows of ARCHITECTURE.md.
+//! The allowed dependencies between crates: the arrows of ARCHITECTURE.md.
 
 use rc_figures::repository::Sources;
 use toml::{Table, Value};
 
 use super::complaint::Complaint;
 
-/// What each crate may use; crates that are not listed here may use nothing until ARCHITECTURE.md gives them an arrow.
+/// The crates that each crate may use.
+///
+/// A crate that is not listed may use nothing until ARCHITECTURE.md gives it an arrow.
 const ARROWS: &[(&str, &[&str])] = &[
     ("rc-core", &[]),
     ("rc-comm", &[]),
@@ -21,7 +23,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("rc-sweep", &["rc-core", "rc-solver"]),
 ];
 
-/// Crates that may use every library, and these crates beside.
+/// Crates that may use every library, and further crates that they may use.
 const ABOVE_THE_LIBRARIES: &[(&str, &[&str])] = &[
     ("rc-figures", &[]),
     ("rc-bench", &["rc-figures"]),
@@ -34,7 +36,7 @@ const ABOVE_THE_LIBRARIES: &[(&str, &[&str])] = &[
     ("rc-mpi", &["rc-cli"]),
 ];
 
-/// Whether `name` may use `dependency`; nothing where `name` is not listed.
+/// Whether `name` may use `dependency`; `None` if `name` is not listed.
 fn allows(name: &str, dependency: &str) -> Option<bool> {
     let of = |list: &'static [(&str, &[&str])]| list.iter().find(|(crate_name, _)| *crate_name == name);
     let listed = of(ARROWS).map(|(_, uses)| uses.contains(&dependency));
@@ -44,8 +46,9 @@ fn allows(name: &str, dependency: &str) -> Option<bool> {
     })
 }
 
-/// Checks the manifest of every member. Tests count: an arrow that only tests need is drawn in `tests/`, not in a
-/// crate.
+/// Checks the manifest of every member.
+///
+/// Dependencies of tests count. If only a test needs an arrow, the test belongs into `tests/`.
 pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     let manifests = sources.iter().filter(|(path, _)| path.ends_with("/Cargo.toml"));
     manifests.flat_map(|(path, text)| check_manifest(path, text)).collect()

@@ -1,8 +1,8 @@
-//! No circles between the modules of a crate.
+//! Modules of a crate must not use each other in a circle.
 //!
-//! A file uses another when a path in it (`use`, or in the code) names something that the other one defines; re-exports
-//! lead to the file that defines the item. A module that declares a child and re-exports from it does not use it by
-//! that. What is compiled for tests only does not count.
+//! A file uses another when a path in it (`use`, or in the code) names an item that the other file defines. A re-export
+//! leads to the file that defines the item. A module that declares a child and re-exports from it does not thereby use
+//! it. Code that is compiled for tests only does not count.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
@@ -11,7 +11,7 @@ use rc_figures::repository::Sources;
 use super::complaint::Complaint;
 use super::rust::{Token, closing, tokens, without_tests};
 
-/// Words before the name of an item.
+/// Keywords before the name of an item.
 const KEYWORDS: &[&str] = &["fn", "struct", "enum", "trait", "type", "const", "static", "union", "macro_rules", "mod"];
 
 /// Checks the modules below each `lib.rs` and `main.rs`.
@@ -25,12 +25,12 @@ struct Crate<'a> {
     modules: Vec<Module<'a>>,
 }
 
-/// One file.
+/// A file of the crate.
 #[derive(Default)]
 struct Module<'a> {
     path: String,
     parent: usize,
-    /// Modules in other files that it declares.
+    /// Modules that it declares and that are in other files.
     children: BTreeMap<&'a str, usize>,
     /// Names of its items.
     items: BTreeSet<&'a str>,
@@ -46,7 +46,7 @@ struct Module<'a> {
 struct Import<'a> {
     path: Vec<&'a str>,
     name: &'a str,
-    /// Whether others see it too.
+    /// Whether other modules see it too.
     is_public: bool,
 }
 
@@ -80,7 +80,9 @@ impl<'a> Crate<'a> {
         found
     }
 
-    /// The file that defines what `path` in `module` names; none for other crates.
+    /// Index of the file that defines the item at `path` in `module`.
+    ///
+    /// `None` for items of other crates.
     fn resolve(&self, module: usize, path: &[&str], depth: usize) -> Option<usize> {
         let mut at = match path[0] {
             "crate" => 0,
@@ -99,10 +101,10 @@ impl<'a> Crate<'a> {
         Some(at)
     }
 
-    /// The file that defines `name`, which is seen in `module`.
+    /// Index of the file that defines the item `name`, which is visible in `module`.
     fn item(&self, module: usize, name: &str, depth: usize) -> Option<usize> {
         let Module { items, imports, .. } = &self.modules[module];
-        // Deeper than any honest chain of re-exports.
+        // Real chains of re-exports are shorter.
         if items.contains(name) || depth > 8 {
             return Some(module);
         }
@@ -112,12 +114,12 @@ impl<'a> Crate<'a> {
         let globs = imports.iter().filter(|import| import.name == "*");
         let of_globs = globs.filter_map(|glob| self.resolve(module, &glob.path, depth + 1));
         let mut defining = of_globs.filter(|file| self.modules[*file].items.contains(name));
-        // A macro that is exported is seen in the root, wherever it is defined.
+        // An exported macro is visible in the root, wherever it is defined.
         let exported = || self.modules.iter().position(|module| module.items.contains(name));
         defining.next().or_else(|| if module == 0 { exported() } else { None }).or(Some(module))
     }
 
-    /// The files that each file uses, with a path that says so.
+    /// The files that each file uses, each with a path that shows the use.
     fn arrows(&self) -> Vec<BTreeMap<usize, String>> {
         let arrows_of = |(index, module): (usize, &Module<'a>)| {
             let imports = module.imports.iter();
@@ -129,7 +131,9 @@ impl<'a> Crate<'a> {
         self.modules.iter().enumerate().map(arrows_of).collect()
     }
 
-    /// A complaint for each set of files of which each uses all others, directly or by way of others.
+    /// A complaint for each set of files that use each other.
+    ///
+    /// Each file of a set uses all others, directly or through others.
     fn circles(&self) -> Vec<Complaint> {
         let arrows = self.arrows();
         let mut complaints = Vec::new();
@@ -155,7 +159,7 @@ impl<'a> Crate<'a> {
     }
 }
 
-/// Files that `start` uses, directly or by way of others.
+/// Files that `start` uses, directly or through others.
 fn reachable(start: usize, arrows: &[BTreeMap<usize, String>]) -> BTreeSet<usize> {
     let (mut reached, mut open) = (BTreeSet::new(), vec![start]);
     while let Some(at) = open.pop() {
@@ -183,11 +187,13 @@ fn shortest_circle(start: usize, arrows: &[BTreeMap<usize, String>]) -> Option<V
 }
 
 impl<'a> Module<'a> {
-    /// Takes in the words of the file; returns the modules in other files that it declares.
+    /// Reads the words of the file, and returns the modules that it declares.
+    ///
+    /// These are the modules in other files.
     fn read(&mut self, tokens: &[Token<'a>]) -> Vec<&'a str> {
         let text = |at: usize| tokens.get(at).map_or("", |token| token.text);
         let mut children = Vec::new();
-        // Ends of the modules within the file that the place is in.
+        // Ends of the modules within the file around the present place.
         let mut inline: Vec<usize> = Vec::new();
         let mut at = 0;
         while at < tokens.len() {
@@ -201,7 +207,7 @@ impl<'a> Module<'a> {
                 }
                 "mod" if text(at + 2) == ";" => children.push(text(at + 1)),
                 "mod" if text(at + 2) == "{" => inline.push(closing(tokens, at + 2)),
-                // Visibility such as `pub(in crate::a)` uses nothing.
+                // A visibility such as `pub(in crate::a)` does not use a module.
                 "in" if at > 1 && text(at - 1) == "(" && text(at - 2) == "pub" => at = closing(tokens, at - 1),
                 _ => {}
             }
@@ -214,7 +220,7 @@ impl<'a> Module<'a> {
                     .take_while(|i| *i == 0 || text(at + 2 * i - 1) == "::" && is_name(at + 2 * i))
                     .count();
                 let path: Vec<&str> = (0..n_names).map(|i| text(at + 2 * i)).collect();
-                // In a module within the file, the first `super` is the file.
+                // In a module within the file, the first `super` is the file itself.
                 let inner = inline.len().min(path.iter().take_while(|name| **name == "super").count());
                 let path = [&["self"][..usize::from(inner > 0)], &path[inner..]].concat();
                 if n_names > 1 && path.len() > 1 {
@@ -230,7 +236,9 @@ impl<'a> Module<'a> {
     }
 }
 
-/// Reads the names of a `use` from `at` on, after the path `before`; returns where they end.
+/// Reads the names of a `use` from `at` on, and returns their end.
+///
+/// `before` is the path before these names.
 fn import_tree<'a>(
     tokens: &[Token<'a>],
     at: usize,
@@ -299,7 +307,7 @@ mod tests {
         let found = complaints(&files);
         assert_eq!(found.len(), 1, "{found:?}");
         assert!(found[0].contains("src/a.rs uses src/b/mod.rs (`crate::U`)"), "{found:?}");
-        // V is that of d.rs, which uses nothing.
+        // V is the one of d.rs, which uses nothing.
         let found = complaints(&[files[0], ("a.rs", "use crate::V; pub struct S;"), files[2], files[3], files[4]]);
         assert_eq!(found, Vec::<String>::new());
     }

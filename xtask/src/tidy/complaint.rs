@@ -1,4 +1,4 @@
-//! What a check finds.
+//! The result of a check.
 
-/// A rule that a file breaks, with what fixes it.
+/// A sentence that says which rule a file breaks, and how to correct it.
 pub(super) type Complaint = String;

@@ -1,4 +1,4 @@
-//! House rules that hold in every file.
+//! House rules for all files.
 
 use rc_figures::repository::{Sources, has_extension};
 
@@ -6,17 +6,19 @@ use super::complaint::Complaint;
 use super::rust::{item_end, tokens, without_tests};
 use crate::ci;
 
-/// Longest Rust file, and longest function outside of tests, in lines.
+/// Maximum length of a Rust file, in lines. The maximum for a function outside tests follows.
 const LONGEST_FILE: usize = 400;
 const LONGEST_FUNCTION: usize = 60;
 
-/// Attributes that hide a failing test. A test that is not run, or that is content with any panic, claims nothing.
+/// Attributes that hide a failing test.
+///
+/// A test that does not run, or that accepts any panic, claims nothing.
 const HIDING: &[(&str, &str)] = &[
     (concat!("#[ig", "nore"), "assert the wrong behaviour and say why, or delete the test"),
     (concat!("should_", "panic"), "return an error and assert on it, or catch the panic and assert on its message"),
 ];
 
-/// Where people keep checkouts: in the repository they would be paths of one machine.
+/// Folders in which people keep checkouts. In the repository they would be paths of one machine.
 const MACHINE_FOLDERS: &[&str] = &[
     concat!("/", "work"),
     concat!("/", "root"),
@@ -25,8 +27,10 @@ const MACHINE_FOLDERS: &[&str] = &[
     concat!("C:", "\\Users"),
 ];
 
-/// Checks every Rust file for its first line, its length, long functions and hidden tests, every text for machine
-/// paths, and `.ci/run`.
+/// Checks the house rules in all sources.
+///
+/// Every Rust file is checked for its first line, its length, long functions and hidden tests. Every text is checked
+/// for machine paths. `.ci/run` is compared with the steps.
 pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     let per_file = sources.iter().flat_map(|(path, text)| {
         let rust = if has_extension(path, "rs") { check_rust(path, text) } else { Vec::new() };
@@ -81,7 +85,9 @@ fn check_machine_paths(path: &str, text: &str) -> Vec<Complaint> {
     found.map(complaint).collect()
 }
 
-/// The machine folder that `line` names: at the start of an absolute path, not inside a longer word or an address.
+/// The machine folder that `line` names.
+///
+/// It must be at the start of an absolute path, not inside a longer word or an address.
 fn machine_folder(line: &str) -> Option<&'static str> {
     let joins_before = |c: char| c.is_alphanumeric() || "._-/}".contains(c);
     let joins_after = |c: char| c.is_alphanumeric() || "_-.".contains(c);

@@ -1,4 +1,4 @@
-//! What the libraries of others may be: licences that ours go with, and one version of each.
+//! Rules for external libraries: compatible licences, and one version of each.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -12,7 +12,9 @@ use toml::{Table, Value};
 
 use super::complaint::Complaint;
 
-/// Licences under which a dependency may be used, by their SPDX identifiers: they ask for no more than to be named.
+/// Licences of dependencies that are allowed, by their SPDX identifiers.
+///
+/// They demand no more than attribution.
 const LICENCES: &[&str] = &[
     "0BSD",
     "Apache-2.0",
@@ -28,7 +30,7 @@ const LICENCES: &[&str] = &[
     "Zlib",
 ];
 
-/// Crates that are there in several versions, and why that is so.
+/// Crates that may have several versions, each with the reason.
 const SEVERAL_VERSIONS: &[(&str, &str)] = &[
     ("bitflags", "png 0.17, which plotters brings along, is from before its second version"),
     ("hashbrown", "the cache of hdf5-reader has the older one, toml the newer"),
@@ -37,10 +39,10 @@ const SEVERAL_VERSIONS: &[(&str, &str)] = &[
     ("syn", "the macros of divan and zerocopy have the second version, those of serde and clap the third"),
 ];
 
-/// Name among the sources of what `cargo metadata` says of licences.
+/// Name among the sources of the licences from `cargo metadata`.
 pub(super) const LICENCES_FILE: &str = "licences of dependencies";
 
-/// What `cargo metadata` says, as far as it is looked at.
+/// The parts of the output of `cargo metadata` that are used.
 #[derive(Serialize, Deserialize)]
 struct Metadata {
     packages: Vec<Package>,
@@ -69,7 +71,7 @@ pub(super) fn licences(root: &Path) -> Result<String> {
     Ok(serde_json::to_string(&metadata)?)
 }
 
-/// Checks licences in the output of `cargo metadata`, and versions in `Cargo.lock`.
+/// Checks the licences from `cargo metadata` and the versions in `Cargo.lock`.
 pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     let text = |name: &str| sources.get(name).map_or("", String::as_str);
     [check_licences(text(LICENCES_FILE)), check_versions(text("Cargo.lock"))].concat()
@@ -89,7 +91,7 @@ fn check_licence(Package { name, version, license }: &Package) -> Option<Complai
     let Some(license) = license else {
         return Some(format!("{name} {version} names no licence; {cure}"));
     };
-    // Crates of before 2018 may write MIT/Apache-2.0.
+    // Crates from before 2018 may write MIT/Apache-2.0.
     match Expression::parse_mode(license, spdx::ParseMode::LAX) {
         Ok(expression) if expression.evaluate(is_allowed) => None,
         Ok(_) => Some(format!("{name} {version} is under {license}; {cure}")),
@@ -97,7 +99,7 @@ fn check_licence(Package { name, version, license }: &Package) -> Option<Complai
     }
 }
 
-/// Whether a licence is on the list; exceptions give more than the licence does.
+/// Whether a licence is on the list. An exception only adds permissions to a licence.
 fn is_allowed(licence: &LicenseReq) -> bool {
     licence.license.id().is_some_and(|id| LICENCES.contains(&id.name))
 }

@@ -1,4 +1,6 @@
-//! The guide: every document is a chapter, no link leads nowhere, and those of chapters hold in the book.
+//! Rules for the guide: every document is a chapter, and links lead somewhere.
+//!
+//! Links of chapters must work in the book too.
 
 use rc_figures::repository::{Sources, has_extension};
 
@@ -6,7 +8,7 @@ use super::complaint::Complaint;
 
 const SUMMARY: &str = "docs/SUMMARY.md";
 
-/// Checks that each document is in the summary, and links between texts.
+/// Checks that each document is in the summary, and that links between texts work.
 pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     let summary = sources.get(SUMMARY).map_or("", String::as_str);
     let documents =
@@ -20,7 +22,7 @@ pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
 fn check_links(path: &str, text: &str, sources: &Sources) -> Vec<Complaint> {
     let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
     let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
-    // Folders and pictures are not texts, other addresses are not ours.
+    // Folders and pictures are not texts, and other addresses are outside of the repository.
     let files = links.map(|link| link.split('#').next().unwrap_or_default());
     let ours = files.filter(|link| !link.contains("://"));
     let complaint = |link: &str| {
@@ -34,7 +36,7 @@ fn check_links(path: &str, text: &str, sources: &Sources) -> Vec<Complaint> {
     ours.filter_map(complaint).collect()
 }
 
-/// The path of a link from a file in `folder`.
+/// Path of the target of a link from a file in `folder`.
 fn joined(folder: &str, link: &str) -> String {
     let mut parts: Vec<&str> = folder.split('/').filter(|part| !part.is_empty()).collect();
     for part in link.split('/') {

@@ -1,6 +1,6 @@
-//! What texts name exists: files of this repository, commands of `cargo xtask`, and flags.
+//! Rules for names in texts: files, commands of `cargo xtask` and flags must exist.
 //!
-//! The commands and flags of `rc` in README and guide are run and checked by the tests of rc-cli.
+//! The tests of rc-cli run and check the commands and flags of `rc` in README and guide.
 
 use std::collections::BTreeSet;
 
@@ -9,14 +9,16 @@ use rc_figures::repository::{self, Sources, has_extension};
 
 use super::complaint::Complaint;
 
-/// The folders whose files are named by their paths from the root.
+/// Folders whose files texts name by their paths from the root.
 const FOLDERS: &[&str] = &["crates/", "data/", "docs/", "fuzz/", "python/", "tests/", "xtask/"];
-/// History names what is gone.
+/// The file that may name things which no longer exist.
 const HISTORY: &str = "CHANGELOG.md";
-/// Flags of other programs (cargo, rc-mpi) that the guide names by themselves.
+/// Flags of other programs (cargo, rc-mpi) that the guide names without the program.
 const FOREIGN: &[&str] = &["all-features", "checkpoint", "features", "help", "locked", "release"];
 
-/// Checks guide, front pages and the comments in code; `xtask` is the command line of `cargo xtask`.
+/// Checks guide, front pages and the comments in code.
+///
+/// `xtask` is the command line of `cargo xtask`.
 pub(super) fn check(sources: &Sources, xtask: &clap::Command) -> Vec<Complaint> {
     let mut flags: BTreeSet<String> = FOREIGN.iter().map(|flag| (*flag).to_owned()).collect();
     collect_flags(xtask, &mut flags);
@@ -40,7 +42,7 @@ fn collect_flags(command: &clap::Command, flags: &mut BTreeSet<String>) {
     }
 }
 
-/// All of a document, and the comments of code.
+/// The whole text of a document, or the comments of code.
 fn read_by_people(path: &str, text: &str) -> Option<String> {
     if has_extension(path, "md") {
         return Some(text.to_owned());
@@ -49,7 +51,9 @@ fn read_by_people(path: &str, text: &str) -> Option<String> {
     has_extension(path, "rs").then(|| text.lines().filter(is_comment).collect::<Vec<_>>().join("\n"))
 }
 
-/// Names of files, from the root or from the crate that the text belongs to.
+/// Complaints about names of files that do not exist.
+///
+/// Names are relative to the root or to the text's crate.
 fn check_files(path: &str, text: &str, sources: &Sources) -> Vec<Complaint> {
     let crate_folder = path.match_indices('/').nth(1).map_or("", |(at, _)| &path[..=at]);
     let there = |name: &str| sources.contains_key(name) || repository::root().join(name).exists();
@@ -63,7 +67,9 @@ fn check_files(path: &str, text: &str, sources: &Sources) -> Vec<Complaint> {
     missing.map(|name| format!("{path}: there is no {name}; correct the name")).collect()
 }
 
-/// `cargo xtask NAME --flag …`, up to the end of the line or of the quotation.
+/// Complaints about `cargo xtask NAME --flag …` with an unknown command or flag.
+///
+/// The command ends at the end of the line or of the quotation.
 fn check_commands(path: &str, text: &str, xtask: &clap::Command) -> Vec<Complaint> {
     let mut complaints = Vec::new();
     for line in text.split("cargo xtask ").skip(1) {
@@ -84,7 +90,7 @@ fn check_commands(path: &str, text: &str, xtask: &clap::Command) -> Vec<Complain
     complaints
 }
 
-/// A flag by itself, as in `--threads 2`.
+/// Complaints about unknown flags that a text names alone, as in `--threads 2`.
 fn check_flags(path: &str, text: &str, flags: &BTreeSet<String>) -> Vec<Complaint> {
     let named = text
         .split("`--")

@@ -1,18 +1,19 @@
-//! What a crate needs to be published, and to build from what is published.
+//! Rules for published crates: manifests, and sources that build from a package.
 
 use rc_figures::repository::{Sources, has_extension};
 use toml::{Table, Value};
 
 use super::complaint::Complaint;
 
-/// Fields of `[package]` that each crate takes from the workspace; its description is its own.
+/// Fields of `[package]` that each crate takes from the workspace. Its description is its own.
 const FIELDS: &[&str] = &["version", "edition", "rust-version", "license", "readme", "keywords", "categories"];
 
-/// Macros that read a file of the sources.
+/// Macros that read a file from the sources.
 const INCLUDES: &[&str] = &[concat!("include_", "str!(\""), concat!("include_", "bytes!(\"")];
 
-/// Checks manifests in `crates/`, and that sources there include nothing from outside of their crate: a package would
-/// lack it. Crates with `publish = false` are left out.
+/// Checks the manifests in `crates/` and the files that sources include.
+///
+/// An included file outside its crate would be missing in the package. Crates with `publish = false` are left out.
 pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     let files = sources.iter().filter(|(path, _)| path.starts_with("crates/") && is_published(path, sources));
     files
@@ -24,7 +25,7 @@ pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
         .collect()
 }
 
-/// Whether the crate of the file at `path` is one that is published.
+/// Whether the crate of the file at `path` is published.
 fn is_published(path: &str, sources: &Sources) -> bool {
     let name = path.split('/').nth(1).unwrap_or_default();
     let manifest = sources.get(&format!("crates/{name}/Cargo.toml")).map_or("", String::as_str);
@@ -47,7 +48,7 @@ fn check_manifest(path: &str, text: &str) -> Vec<Complaint> {
 }
 
 fn check_includes(path: &str, text: &str) -> Vec<Complaint> {
-    // From a file so many folders deep in its crate, one `..` more leads out of it.
+    // A path with more `..` than the depth of its file leads out of the crate.
     let depth = path.split('/').count() - 3;
     let included = INCLUDES.iter().flat_map(|name| text.split(name).skip(1));
     let outside = included.filter_map(|rest| rest.split('"').next()).filter(|file| file.matches("../").count() > depth);

@@ -1,4 +1,6 @@
-//! docs/paper-map.md against the code: every equation and figure of the paper has its place, and every place exists.
+//! Rules for docs/paper-map.md: every equation and figure of the paper has a place.
+//!
+//! Every place in the map must exist.
 
 use rc_figures::repository::{Sources, has_extension};
 use std::collections::BTreeSet;
@@ -6,12 +8,12 @@ use std::collections::BTreeSet;
 use super::complaint::Complaint;
 
 const MAP: &str = "docs/paper-map.md";
-/// Rows below this heading are promises, so they carry no links.
+/// Heading of the rows that are promises, which have no links.
 const NOT_YET: &str = "## Not there yet";
 const LAST_EQUATION: usize = 14;
 const LAST_FIGURE: usize = 8;
 
-/// What a row of the map or a comment points to.
+/// An equation or figure that a row of the map or a comment names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Tag {
     Equation(usize),
@@ -27,7 +29,9 @@ impl std::fmt::Display for Tag {
     }
 }
 
-/// Checks that the map is complete, that its links exist, and that the equations named in code exist in the paper.
+/// Checks that the map is complete and that its links exist.
+///
+/// Equations that the code names must exist in the paper.
 pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     let Some(map) = sources.get(MAP) else {
         return vec![format!("{MAP} is missing; restore it from history")];
@@ -45,7 +49,7 @@ pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     complaints
 }
 
-/// Table rows that start with a tag.
+/// Table rows that begin with an equation or figure.
 fn rows(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter(|line| line.starts_with('|') && !tags_of(cell(line, 0)).is_empty())
 }
@@ -61,8 +65,10 @@ fn check_complete(map: &str) -> Vec<Complaint> {
     missing.map(|tag| format!("{MAP}: no row for {tag}; add one, under `{NOT_YET}` if it is not built")).collect()
 }
 
-/// Checks that a code file of the row names one of its equations or figures, and the cells "code" and "test": `path`:
-/// `Item`, `other item`; `another path`: `Item`.
+/// Checks the cells "code" and "test" of a row.
+///
+/// Their format is: `path`: `Item`, `other item`; `another path`: `Item`. A code file of the row must name one of the
+/// row's equations or figures.
 fn check_links(row: &str, sources: &Sources) -> Vec<Complaint> {
     let tag = cell(row, 0);
     let mut complaints = Vec::new();
@@ -94,7 +100,7 @@ fn check_links(row: &str, sources: &Sources) -> Vec<Complaint> {
     complaints
 }
 
-/// Whether `text` defines `item`; `Type::item` needs both.
+/// Whether `text` defines `item`. For `Type::item` it must define both.
 fn defines(text: &str, item: &str) -> bool {
     const KEYWORDS: &[&str] = &["fn", "struct", "enum", "trait", "const", "type", "mod", "impl"];
     item.split("::").all(|name| {
@@ -118,8 +124,9 @@ fn check_tags(path: &str, text: &str) -> Vec<Complaint> {
         .collect()
 }
 
-/// The tags in `text`: "Eq. 3", "Eq. (3)", "Eq. 3-5", "Eqs. (3), (4)", "Fig. 4". Numbers like 3.25 belong to other
-/// sources.
+/// The equations and figures that `text` names.
+///
+/// Examples are "Eq. 3", "Eq. (3)", "Eq. 3-5", "Eqs. (3), (4)" and "Fig. 4". Numbers like 3.25 belong to other sources.
 fn tags_of(text: &str) -> BTreeSet<Tag> {
     let mut tags = BTreeSet::new();
     for (prefix, tag) in [
@@ -135,7 +142,7 @@ fn tags_of(text: &str) -> BTreeSet<Tag> {
     tags
 }
 
-/// The numbers that `text` starts with: single, in parentheses, ranges, lists.
+/// The numbers at the start of `text`: single, in parentheses, ranges, lists.
 fn numbers(mut text: &str) -> Vec<usize> {
     let mut found: Vec<usize> = Vec::new();
     let mut in_range = false;

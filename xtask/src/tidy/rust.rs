@@ -1,13 +1,17 @@
-//! Rust sources as words: enough to see modules, imports and the lengths of functions, without a parser.
+//! Words of Rust sources, without a parser.
+//!
+//! They are enough to see modules, imports and the lengths of functions.
 
-/// A word, a sign or `::`, and its line (from 1).
+/// A word, a sign or `::`, with its line (from 1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Token<'a> {
     pub(super) text: &'a str,
     pub(super) line: usize,
 }
 
-/// The words and signs of `text`. Comments and lifetimes are left out, literals of text are `""`.
+/// The words and signs of `text`.
+///
+/// Comments and lifetimes are left out, and literals of text become `""`.
 pub(super) fn tokens(text: &str) -> Vec<Token<'_>> {
     let mut tokens = Vec::new();
     let (mut at, mut line) = (0, 1);
@@ -20,7 +24,7 @@ pub(super) fn tokens(text: &str) -> Vec<Token<'_>> {
     tokens
 }
 
-/// Length of what `rest` begins with, and its token, if it is one.
+/// Length of the first piece of `rest`, and its token if the piece is one.
 fn next(rest: &str) -> (usize, Option<&str>) {
     let first = rest.chars().next().unwrap_or(' ');
     let word = rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len());
@@ -40,7 +44,9 @@ fn next(rest: &str) -> (usize, Option<&str>) {
     }
 }
 
-/// Length of a literal of text, after a prefix of `word` bytes; none where `rest` begins with something else.
+/// Length of a literal of text that begins after a prefix of `word` bytes.
+///
+/// `None` if `rest` does not begin with such a literal.
 fn literal(rest: &str, word: usize) -> Option<usize> {
     let (prefix, after) = rest.split_at(word);
     let raw = prefix.ends_with('r');
@@ -63,13 +69,13 @@ fn literal(rest: &str, word: usize) -> Option<usize> {
     Some(end.map_or(rest.len(), |at| start + at + 1))
 }
 
-/// Length of a character in quotes, or of a lifetime.
+/// Length of a character literal or of a lifetime.
 fn quoted(rest: &str) -> usize {
     let mut chars = rest.char_indices().skip(1);
     let is_escape = chars.next().is_some_and(|(_, c)| c == '\\');
     let second = chars.next();
     if is_escape {
-        // What is escaped may be a quote itself.
+        // The escaped character may be a quote itself.
         return chars.find(|(_, c)| *c == '\'').map_or(rest.len(), |(at, _)| at + 1);
     }
     match second {
@@ -78,7 +84,7 @@ fn quoted(rest: &str) -> usize {
     }
 }
 
-/// `tokens` without items that are compiled for tests only.
+/// `tokens` without the items that are compiled for tests only.
 pub(super) fn without_tests<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     let mut kept = Vec::new();
     let mut at = 0;
@@ -104,7 +110,7 @@ fn attribute_end(tokens: &[Token<'_>], at: usize) -> Option<usize> {
     starts.then(|| closing(tokens, at + 1) + 1).filter(|end| *end > at + 3)
 }
 
-/// End of the item that begins at `at`: after its `;`, or after its braces.
+/// End of the item that begins at `at`, after its `;` or its braces.
 pub(super) fn item_end(tokens: &[Token<'_>], at: usize) -> usize {
     let mut at = at;
     while at < tokens.len() {
@@ -118,7 +124,7 @@ pub(super) fn item_end(tokens: &[Token<'_>], at: usize) -> usize {
     at
 }
 
-/// Index of what closes the bracket at `open`.
+/// Index of the bracket that closes the one at `open`.
 pub(super) fn closing(tokens: &[Token<'_>], open: usize) -> usize {
     let mut depth = 0;
     let found = tokens[open..].iter().position(|token| {

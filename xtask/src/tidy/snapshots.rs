@@ -1,13 +1,15 @@
-//! Snapshots: small, wanted by a test, and accepted by a person.
+//! Rules for snapshots: small, with a test, and reviewed by a person.
 
 use rc_figures::repository::{Sources, has_extension};
 
 use super::complaint::Complaint;
 
-/// Largest snapshot, in bytes: what a reviewer can still read.
+/// Maximum size of a snapshot in bytes, so that a reviewer can read it.
 const LARGEST: usize = 20 * 1024;
 
-/// Checks every `.snap` file for its size and its test, and for snapshots that wait for review.
+/// Checks the size and the test of every `.snap` file.
+///
+/// It also finds snapshots that wait for review.
 pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     let mut complaints = Vec::new();
     for (path, text) in sources {
@@ -28,7 +30,7 @@ pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     complaints
 }
 
-/// Whether a Rust file quotes the snapshot's name, or has a test function of that name.
+/// Whether a Rust file contains the snapshot's name, or a test function has that name.
 fn has_test(path: &str, sources: &Sources) -> bool {
     let file = path.rsplit('/').next().unwrap_or(path).trim_end_matches(".snap");
     let name = file.rsplit("__").next().unwrap_or(file);

@@ -1,5 +1,6 @@
-//! The tags `Eq. (n)` in code: each equation of the paper has one, at the function that evaluates it and that the paper
-//! map names.
+//! Rules for the tags `Eq. (n)` in code.
+//!
+//! Each equation of the paper has one tag, at the function that evaluates it and that the paper map names.
 
 use rc_figures::repository::{Sources, has_extension};
 
@@ -8,16 +9,16 @@ use super::complaint::Complaint;
 const MAP: &str = "docs/paper-map.md";
 const LAST_EQUATION: usize = 14;
 
-/// A tag and the function that it stands at.
+/// A tag and the function to which it belongs.
 #[derive(Debug, PartialEq, Eq)]
 struct Tag<'a> {
     equation: usize,
     path: &'a str,
-    /// `None` where the tag is not in the documentation of a function.
+    /// `None` if the tag is not in the documentation of a function.
     function: Option<&'a str>,
 }
 
-/// Checks that each equation has one tag, at a function, and that the map names this function.
+/// Checks that each equation has one tag, at the function that the map names.
 pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     let code = sources.iter().filter(|(path, _)| path.starts_with("crates/") && has_extension(path, "rs"));
     let tags: Vec<Tag<'_>> = code.flat_map(|(path, text)| tags(path, text)).collect();
@@ -49,7 +50,7 @@ fn check_equation(equation: usize, tags: &[Tag<'_>], map: &str) -> Vec<Complaint
     vec![format!("{MAP}: the row of Eq. ({equation}) does not name {named}, which has its tag; add it")]
 }
 
-/// The tags in a file.
+/// All tags in a file.
 fn tags<'a>(path: &'a str, text: &'a str) -> Vec<Tag<'a>> {
     let mut found = Vec::new();
     let mut after = text;
@@ -63,7 +64,7 @@ fn tags<'a>(path: &'a str, text: &'a str) -> Vec<Tag<'a>> {
     found
 }
 
-/// The name of the function whose documentation goes on with `text`.
+/// Name of the function whose documentation continues with `text`.
 fn documented_function(text: &str) -> Option<&str> {
     let apart = |line: &&str| line.starts_with("///") || line.starts_with("#[");
     let item = text.lines().skip(1).map(str::trim_start).find(|line| !apart(line))?;
@@ -79,7 +80,7 @@ mod tests {
 
     const PATH: &str = "crates/rc-kernel/src/love.rs";
 
-    /// Complaints about equation 5 alone.
+    /// Complaints about equation 5 only.
     fn complaints(code: &str) -> Vec<Complaint> {
         let tags = tags(PATH, code);
         check_equation(5, &tags, &format!("| Eq. (5) | Love | `{PATH}`: `love` | test |\n"))

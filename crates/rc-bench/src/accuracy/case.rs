@@ -1,4 +1,6 @@
-//! One mesh of one scene, its errors against the limit of fine meshes, and sets of such cases.
+//! One mesh of one scene with its errors, and sets of such cases.
+//!
+//! Errors are relative to the limit of fine meshes.
 
 use anyhow::Result;
 use rc_core::{EdgeBias, Kernel, Silent};
@@ -7,7 +9,9 @@ use rc_solver::{ContactProblem, Control, Method, Observables, SolveParams, Stres
 
 use super::scenes::{RMS_SLOPE, Scene, Set};
 
-/// Perimeter correction as published (Yastrebov, Anciaux, Molinari, *Tribol. Int.* 114 (2017) 161): (π - 1 + ln 2)/24.
+/// Published perimeter correction, (π - 1 + ln 2)/24.
+///
+/// Source: Yastrebov, Anciaux, Molinari, *Tribol. Int.* 114 (2017) 161.
 const PUBLISHED: f64 = 0.118_114_159_756_238_73;
 
 /// Observables in the limit of fine meshes.
@@ -18,12 +22,12 @@ pub(super) struct Limit {
     pub(super) mean_gap: f64,
 }
 
-/// How far a stress distribution is from the limit's.
+/// Difference of a stress distribution from the distribution of the limit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Distribution {
-    /// Ratio of its first bin to its highest one.
+    /// Ratio of the first bin of the distribution to its highest bin.
     pub(super) first_bin: f64,
-    /// The same of the limit.
+    /// Ratio of the first bin to the highest bin in the distribution of the limit.
     pub(super) first_bin_of_limit: f64,
     /// ∫ |P - P of the limit| dσ over the contact area.
     pub(super) distance: f64,
@@ -42,11 +46,11 @@ impl Distribution {
     }
 }
 
-/// Bins of the stress distribution: their width over E* and rms slope, and their number.
+/// Width of a bin of the stress distribution, divided by E* and the rms slope.
 const BIN_OVER_RMS_SLOPE: f64 = 0.02;
 const N_BINS: usize = 150;
 
-/// Elements of the limits are this many times smaller than those that are tested, or more.
+/// Smallest ratio of the elements under test to the elements of the limit, by side.
 pub(super) const FINER: usize = 4;
 
 /// One mesh of one scene.
@@ -57,7 +61,7 @@ pub(super) struct Case {
     pub(super) mesh: usize,
     pub(super) limit: Limit,
     pub(super) found: Observables,
-    /// A/A0 of the level set of p² alone.
+    /// A/A0 of the level set that is found from p² alone.
     area_of_pressure: f64,
     pub(super) distribution: Distribution,
     pub(super) side: usize,
@@ -65,25 +69,30 @@ pub(super) struct Case {
 }
 
 impl Case {
-    /// A/A0 by counting, with the published perimeter term, from p² alone, and from p and the gap.
+    /// A/A0 by four estimators.
+    ///
+    /// In this order: counting, counting with the published perimeter term, the level set of p² alone, and the level
+    /// set of p and the gap.
     pub(super) fn areas(&self) -> [f64; 4] {
         let area = &self.found.area;
         let published = area.cells - PUBLISHED * area.perimeter_edges as f64 / (self.side * self.side) as f64;
         [area.cells, published, self.area_of_pressure, area.fraction]
     }
 
-    /// Their relative errors.
+    /// Relative errors of [`Self::areas`].
     pub(super) fn area_errors(&self) -> [f64; 4] {
         self.areas().map(|area| area / self.limit.area - 1.0)
     }
 
-    /// How much greater [`EdgeBias::per_square`] should be for the limit's rms pressure.
+    /// Amount to add to [`EdgeBias::per_square`] to get the limit's rms pressure.
     pub(super) fn more_per_square(&self) -> f64 {
         let squares = self.found.area.missing_square / self.bias.per_square;
         (self.limit.rms_pressure.powi(2) - self.found.rms_pressure_corrected.powi(2)) / squares
     }
 
-    /// Errors over the bars of area, rms pressure and mean gap: at most 1 in size when the bar holds.
+    /// Ratios of error to error bar for area, rms pressure and mean gap.
+    ///
+    /// A bar holds when its ratio is at most 1 in size. A quantity without a bar has NaN.
     pub(super) fn over_bars(&self) -> [f64; 3] {
         let Observables { area, rms_pressure_corrected, rms_pressure_error, mean_gap, mean_gap_error, .. } = self.found;
         let over = |value: f64, limit: f64, bar: Option<f64>| bar.map_or(f64::NAN, |bar| (value - limit) / bar);
@@ -95,10 +104,12 @@ impl Case {
     }
 }
 
-/// A scene on `meshes` (elements for the shortest wave), and its limit from `reference` elements per side.
+/// The cases of a scene on `meshes`, each with the limit from a fine grid.
+///
+/// `meshes` are elements for the shortest wave; `reference` is the number of elements per side of the fine grid.
 pub(super) fn cases_of(scene: Scene, meshes: &[usize], reference: usize) -> Result<Vec<Case>> {
-    // The area's limit is from the other kernel; the errors of pressure and gap are several times smaller with
-    // `spectral`.
+    // The limit of the area is from the other kernel. The errors of pressure and gap are several times smaller with
+    // `spectral`, so the limits of both are from `spectral`.
     let (love, fine) = solve(scene, &Love, reference)?;
     let (spectral, _) = solve(scene, &Spectral, reference)?;
     let mut cases = Vec::new();
@@ -129,7 +140,7 @@ fn solve(scene: Scene, kernel: &dyn Kernel, side: usize) -> Result<(Observables,
     Ok((*solution.observables(), StressDistribution::of(solution.pressure(), &edges)))
 }
 
-/// Root mean square.
+/// Root mean square of the values.
 pub(super) fn rms(values: impl Iterator<Item = f64>) -> f64 {
     let (mut sum, mut n) = (0.0, 0.0);
     for value in values {
@@ -144,7 +155,7 @@ pub(super) fn of_set(cases: &[Case], set: Set) -> impl Iterator<Item = &Case> {
     cases.iter().filter(move |case| case.scene.set == set)
 }
 
-/// Those of a kernel on a mesh.
+/// The cases of a set of scenes with one kernel on one mesh.
 pub(super) fn of_mesh<'a>(cases: &'a [Case], set: Set, kernel: &'a str, mesh: usize) -> impl Iterator<Item = &'a Case> {
     of_set(cases, set).filter(move |case| case.kernel == kernel && case.mesh == mesh)
 }

@@ -1,5 +1,7 @@
-//! How often error bars hold, on scenes that had no part in any constant, with limits from elements at least four times
-//! smaller and from the other kernel.
+//! How often error bars hold.
+//!
+//! No constant was fitted to these scenes. Their limits are from elements at least four times smaller and from the
+//! other kernel.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -13,7 +15,9 @@ use super::case::FINER;
 use super::scenes::{RMS_SLOPE, golden, mean_pressure};
 use super::surfaces::Kind;
 
-/// Tolerance of the limits, relative to the height range; what is tested has the default.
+/// Tolerance of the limits, relative to the height range.
+///
+/// The solves under test have the default tolerance.
 const LIMIT_TOLERANCE: f64 = 1e-8;
 
 /// One discretisation of surfaces of one kind.
@@ -25,11 +29,13 @@ struct Stratum {
     border_level: usize,
     waves: usize,
     elements_per_wave: usize,
-    /// Sides of an element: x over y.
+    /// Ratio of the sides of an element, x to y.
     ratio: usize,
 }
 
-/// What one scene of a stratum gave: relative errors and error bars of area, rms pressure and mean gap.
+/// Relative errors and error bars of one scene of a stratum.
+///
+/// Both are of area, rms pressure and mean gap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bars {
     stratum: Stratum,
@@ -38,7 +44,7 @@ pub(super) struct Bars {
 }
 
 impl Bars {
-    /// Which of the three hold.
+    /// Whether each of the three bars holds.
     pub(super) fn hold(&self) -> [bool; 3] {
         std::array::from_fn(|i| self.errors[i].abs() <= self.limits_of_errors[i])
     }
@@ -75,7 +81,7 @@ fn strata() -> Vec<Stratum> {
     strata
 }
 
-/// `n` scenes of each stratum, or of those with few elements only.
+/// Solves `n` scenes of each stratum; `is_quick` selects only strata with few elements.
 pub(super) fn measure(n: usize, is_quick: bool) -> Result<Vec<Bars>> {
     let strata = strata().into_iter().filter(|stratum| !is_quick || stratum.reference_side() < 512);
     let scenes: Vec<(Stratum, usize)> = strata.flat_map(|stratum| (0..n).map(move |i| (stratum, i))).collect();
@@ -94,9 +100,9 @@ impl Stratum {
 
     fn mean_pressure(&self, i: usize) -> f64 {
         match self.kind {
-            // Hertz: contact radii of 0.02 to 0.2 of the cell.
+            // Loads of Hertz's theory for contact radii of 0.02 to 0.2 of the cell.
             Kind::Ball => 4.0 / 3.0 * (0.02 * 10.0_f64.powf(golden(i))).powi(3),
-            // Full contact is at the mean pressure √2 rms slope / 2.
+            // Contact is full from a mean pressure of √2 rms slope / 2 on.
             Kind::Strips => RMS_SLOPE * (0.01 + 0.6 * golden(i)),
             _ => mean_pressure(i),
         }
@@ -107,8 +113,8 @@ impl Stratum {
         let solve = |kernel: &dyn Kernel, grid: Grid, params: &SolveParams| -> Result<Observables> {
             let heights;
             let control = Control::MeanPressure(self.mean_pressure(i));
-            // Scenes of the adaptive method are evaluated where it needs them; the others are maps, as measured ones
-            // are.
+            // The adaptive method evaluates heights where it needs them. The other methods get a map, like a measured
+            // one.
             let problem = if params.method == Some(Method::Adaptive) {
                 let surface: &dyn HeightField = surface.as_ref();
                 ContactProblem::new(rc_core::HeightSource::Surface { surface, grid }, control)
@@ -125,8 +131,8 @@ impl Stratum {
             _ => (&Spectral, &Love),
         };
         let limit = solve(other, reference, &fine)?;
-        // Rms pressure and mean gap of `love` are less accurate on the fine grid than those of `spectral` on the coarse
-        // one.
+        // The rms pressure and the mean gap are less accurate with `love` on the fine grid than with `spectral` on the
+        // coarse one.
         let smooth = if self.kernel == "love" { limit } else { solve(&Spectral, reference, &fine)? };
         let params = SolveParams { border_level: self.border_level, ..SolveParams::default().by(self.method) };
         let found = solve(kernel, Grid::new(self.side() / self.ratio, self.side())?, &params)?;
@@ -141,8 +147,10 @@ impl Stratum {
     }
 }
 
-/// For each stratum: median errors and bars of the three quantities, and the part of the scenes whose bars hold, with
-/// the standard error of a part of 95 %.
+/// One line for each stratum: median errors and error bars, and how many hold.
+///
+/// Errors and bars are of the three quantities. The last columns are the fraction of the scenes whose bars hold, and
+/// the standard error of a fraction of 95 %.
 pub(super) fn table(bars: &[Bars]) -> Table {
     let header = [
         "surface",
@@ -184,7 +192,7 @@ pub(super) fn table(bars: &[Bars]) -> Table {
     Table::new("coverage", &header, rows)
 }
 
-/// The numbers of one line of [`table`], from the number of scenes on.
+/// The columns of one line of [`table`], without those that name the stratum.
 fn statistics(scenes: &[&Bars]) -> Vec<String> {
     let n = scenes.len() as f64;
     let covered = |i: usize| 100.0 * scenes.iter().filter(|bars| bars.hold()[i]).count() as f64 / n;

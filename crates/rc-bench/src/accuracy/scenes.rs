@@ -4,32 +4,36 @@ use anyhow::Result;
 use rc_core::{Field, Grid};
 use rc_fractal::{Normalisation, SpectrumParams, Surface};
 
-/// Rms slope of all scenes: contact depends on the mean pressure over it only.
+/// Rms slope of all scenes. Contact depends only on the ratio of mean pressure to rms slope.
 pub(super) const RMS_SLOPE: f64 = 0.03;
 
-/// Mean pressures over E* and rms slope: from half a percent to nearly full contact.
+/// Range of mean pressures, divided by E* and the rms slope.
+///
+/// Contact is from half a percent to nearly full.
 const LOADS: (f64, f64) = (3e-3, 0.6);
 
-/// Hurst exponents that scenes go through.
+/// Hurst exponents that the scenes take in turns.
 pub(super) const HURST: [f64; 5] = [0.8, 0.3, 0.5, 1.0, 0.65];
 
-/// σ0/E* of scene number `i`, in an order that does not follow the other cycles: steps of the golden ratio.
+/// σ0/E* of scene number `i`.
+///
+/// The order follows the golden ratio, so that it is not in step with the cycles of the other parameters.
 pub(super) fn mean_pressure(i: usize) -> f64 {
     let (lightest, heaviest) = LOADS;
     RMS_SLOPE * lightest * (heaviest / lightest).powf(golden(i))
 }
 
-/// In [0, 1), spread evenly.
+/// Number `i` of a sequence that fills [0, 1) evenly (multiples of the golden ratio).
 pub(super) fn golden(i: usize) -> f64 {
     (i as f64 * 0.618_033_988_749_895).fract()
 }
 
-/// What scenes are for.
+/// What scenes are used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Set {
-    /// Not used to choose anything.
+    /// Scenes to which no constant was fitted.
     Test,
-    /// Constants were fitted on these.
+    /// Scenes to which constants were fitted.
     Calibration,
 }
 
@@ -61,7 +65,9 @@ pub(super) struct Scene {
 }
 
 impl Set {
-    /// The first `n` scenes of the set whose shortest waves are one of `waves` to the cell.
+    /// The first `n` scenes of the set that have a number of waves in `waves`.
+    ///
+    /// A number of waves is the cell's side over the shortest wavelength.
     pub(super) fn scenes(self, n: usize, waves: &[usize]) -> Vec<Scene> {
         let scene = |i: usize| Scene {
             set: self,
@@ -75,7 +81,7 @@ impl Set {
 }
 
 impl Scene {
-    /// Heights with this many elements per side.
+    /// Heights on a grid of `side` elements per side.
     pub(super) fn heights(&self, side: usize) -> Result<Field> {
         let spectrum = SpectrumParams {
             hurst: self.hurst,

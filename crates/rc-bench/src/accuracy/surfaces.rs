@@ -1,4 +1,4 @@
-//! Surfaces on which error bars are tested, beside those of the paper's kind.
+//! Surfaces on which error bars are tested, in addition to the paper's.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,19 +11,19 @@ use super::scenes::{HURST, RMS_SLOPE};
 /// Kinds of surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// Self-affine, with amplitudes exactly of the spectrum.
+    /// Self-affine, with exactly the amplitudes of the spectrum.
     SelfAffine,
-    /// Random amplitudes, with roll-off or a square of waves: emulates a measured map without noise.
+    /// Random amplitudes with roll-off or in a square of wave vectors. They emulate a measured map without noise.
     RandomAmplitudes,
-    /// The same with waves two or four times longer along y.
+    /// As `RandomAmplitudes`, with waves two or four times longer along y.
     OneDirection,
     /// White noise under a Gaussian filter.
     SmoothedNoise,
-    /// A ball in the cell, alone.
+    /// A single ball in the cell.
     Ball,
-    /// A wave along x, or along y: edges are straight and along the elements.
+    /// One wave, along x or along y. The edges of contact are straight and parallel to the elements.
     Strips,
-    /// A map interpolated between its points by straight lines: slopes jump there.
+    /// A map with linear interpolation between its points. The slope jumps at the points.
     Creases,
 }
 
@@ -40,7 +40,9 @@ impl Kind {
         }
     }
 
-    /// Surface number `i`, with `waves` to the cell and rms slope [`RMS_SLOPE`] (but the ball's).
+    /// Surface number `i`, with `waves` to the cell.
+    ///
+    /// The rms slope is [`RMS_SLOPE`], except for the ball.
     pub(super) fn surface(self, i: usize, waves: usize) -> Result<Box<dyn HeightField>> {
         let seed = 3000 + i as u64;
         let mut random = Random(seed);
@@ -81,11 +83,11 @@ impl Kind {
     }
 }
 
-/// Numbers that follow no pattern (SplitMix64).
+/// Pseudo-random numbers (SplitMix64).
 struct Random(u64);
 
 impl Random {
-    /// In [0, 1).
+    /// A number uniform in [0, 1).
     fn uniform(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -97,14 +99,15 @@ impl Random {
 
 /// Waves with Gaussian amplitudes.
 struct Waves {
-    /// Wave vector, amplitude, phase.
+    /// Wave vector, amplitude and phase of each wave.
     waves: Vec<(DVec2, f64, f64)>,
     limit: usize,
 }
 
 impl Waves {
-    /// Up to `limit` to the cell along each side; `spectrum` gives the standard deviation of an amplitude, but for a
-    /// factor.
+    /// Waves up to `limit` to the cell along each side.
+    ///
+    /// `spectrum` gives the standard deviation of an amplitude, up to a common factor.
     fn new(limit: usize, random: &mut Random, spectrum: impl Fn(DVec2) -> f64) -> Self {
         let numbers = -(limit as i32)..=limit as i32;
         let vectors = numbers.clone().flat_map(|ky| numbers.clone().map(move |kx| [kx, ky]));
@@ -136,7 +139,7 @@ impl HeightField for Waves {
     }
 }
 
-/// Of radius λ.
+/// A ball of radius λ.
 struct Ball {
     centre: DVec2,
 }
@@ -169,7 +172,7 @@ impl HeightField for Strips {
     }
 }
 
-/// Bilinear between the values at the points of a map.
+/// Bilinear interpolation between the points of a map.
 struct Creases {
     map: Field,
 }

@@ -1,4 +1,4 @@
-//! The numbers as tables.
+//! The tables of `cargo xtask accuracy`.
 
 use rc_figures::numeric::median;
 use rc_figures::{Table, number};
@@ -6,8 +6,10 @@ use rc_figures::{Table, number};
 use super::case::{Case, of_mesh, of_set, rms};
 use super::scenes::Set;
 
-/// For each set, kernel and mesh: rms error of each estimator of the area, and the part of the scenes whose bars hold
-/// the error.
+/// Errors of the area and coverage of its bars by set, kernel and mesh.
+///
+/// The columns are the rms error of each estimator of the area, and the fraction of the scenes whose bars cover the
+/// error.
 pub(super) fn summary(cases: &[Case], meshes: &[usize]) -> Table {
     let header = [
         "set",
@@ -49,7 +51,7 @@ fn statistics(cases: &[&Case]) -> Vec<f64> {
     let mean = |values: &dyn Fn(&Case) -> f64| percent(values).iter().sum::<f64>() / cases.len() as f64;
     let median_size = |values: &dyn Fn(&Case) -> f64| median(percent(&|case| values(case).abs()));
     let rms_error = |estimator: usize| rms(percent(&|case| case.area_errors()[estimator]).into_iter());
-    // Of the scenes that have a bar.
+    // The fraction is of the scenes that have a bar.
     let covered = |quantity: usize| {
         let ratios = cases.iter().map(|case| case.over_bars()[quantity]).filter(|ratio| !ratio.is_nan());
         let ratios: Vec<f64> = ratios.collect();
@@ -126,11 +128,13 @@ fn line(case: &Case) -> Vec<String> {
     first.chain(numbers.chain(rest).chain(stress).map(number)).collect()
 }
 
-/// For each kernel, the change of [`rc_core::EdgeBias`] that would fit the scenes for calibration best: in the
-/// least-squares sense, and in the median of the scenes for the squares.
+/// One line for each kernel: changes of [`rc_core::EdgeBias`] that fit the calibration scenes best.
+///
+/// Edges, contacts and deviation are fitted by least squares. The change for the squares is the median over the scenes.
 pub(super) fn calibration(cases: &[Case]) -> Table {
     let rows = ["love", "spectral"].into_iter().map(|kernel| {
-        // Normal equations of (area - limit) n = a edges + b contacts + c deviation, each scene weighed by its edges.
+        // Normal equations of (area - limit) n = a edges + b contacts + c deviation. Each scene has its number of edges
+        // as its weight.
         let mut equations = [[0.0; 4]; 3];
         for case in of_set(cases, Set::Calibration).filter(|case| case.kernel == kernel) {
             let area = &case.found.area;
@@ -154,8 +158,9 @@ pub(super) fn calibration(cases: &[Case]) -> Table {
     )
 }
 
-/// Solves three linear equations, the last column being the right-hand side, by elimination; they are symmetric and
-/// definite.
+/// Solves three linear equations by elimination.
+///
+/// The last column is the right-hand side. The matrix is symmetric and positive definite.
 fn solve(mut equations: [[f64; 4]; 3]) -> [f64; 3] {
     for pivot in 0..3 {
         for row in (0..3).filter(|&row| row != pivot) {

@@ -1,23 +1,27 @@
-//! Where rc is not ahead, as sentences from the lines of the run, so that they stay true.
+//! The comparisons in which rc is not ahead, as sentences.
+//!
+//! They are computed from the lines of the run, so that they stay true.
 
 use super::levels::{Asked, Choice, Comparison, Ratio, Results, levels};
 use super::readings::Reading;
 use super::tables::{EQUAL_MESHES, equal_ratios, percent, ratio};
 
-/// A ratio of times below which a comparison is listed.
+/// Ratio of times below which a comparison is listed.
 const LISTED: f64 = 2.0;
 
-/// Behind a ratio whose peer states an error that is not true.
+/// Text behind a ratio when the error that the peer states is wrong.
 const WRONG: &str = ", what the peer states is wrong";
 
-/// Comparisons of one kind that are not clearly in our favour: what is compared, then the scenes.
+/// Comparisons of one kind that are not clearly in our favour.
+///
+/// `what` names the kind. The lists have the names of the scenes.
 struct Behind {
     what: String,
-    /// A peer is faster, or gets there alone.
+    /// Scenes in which a peer is faster, or only a peer reaches the error.
     slower: Vec<String>,
-    /// A peer takes less than twice our time.
+    /// Scenes in which a peer takes less than twice our time.
     close: Vec<String>,
-    /// Of all scenes that were compared.
+    /// Number of all scenes that were compared.
     n_compared: usize,
 }
 
@@ -88,8 +92,9 @@ pub(super) fn list(results: &Results<'_>) -> String {
     if lines.is_empty() { "In every comparison a peer takes at least twice our time.\n".to_owned() } else { lines }
 }
 
-/// How many comparisons there are, in how many the fastest peer is faster, and in how many more it takes less than
-/// twice our time.
+/// Number of comparisons, number with a faster peer, and number with a close peer.
+///
+/// A peer is faster when it takes less time than we do. It is close when it takes less than twice our time.
 fn counts(all: &[Behind]) -> [usize; 3] {
     let count = |of: fn(&Behind) -> usize| all.iter().map(of).sum::<usize>();
     [count(|b| b.n_compared), count(|b| b.slower.len()), count(|b| b.close.len())]
@@ -103,7 +108,7 @@ pub(super) fn count(results: &Results<'_>) -> String {
     )
 }
 
-/// The counts, and the kinds of comparisons that are lost most often.
+/// The counts, and the kinds of comparisons that we lose most often.
 pub(super) fn summary(results: &Results<'_>) -> String {
     let all = comparisons(results);
     let [n, slower, close] = counts(&all);
@@ -122,7 +127,7 @@ pub(super) fn summary(results: &Results<'_>) -> String {
     )
 }
 
-/// Kinds of comparisons that the summary names.
+/// Number of kinds of comparisons that the summary names.
 const KINDS: usize = 3;
 
 #[cfg(test)]
@@ -135,10 +140,11 @@ mod tests {
     fn comparisons_that_are_lost_are_listed_and_counted() {
         let (mut rows, references) = (rows(), references("paper", [0.07, 4e-3, 1.0]));
         let listed = |rows: &[_]| list(&Results { rows, references: &references });
-        // The peer's pressures and gaps are the same on both meshes, so it alone states that they have no error.
+        // Only lines of areas are looked at. The peer's pressures and gaps are the same on both meshes, so only the
+        // peer states an error of them, which is zero.
         let slower = |text: &str| text.lines().any(|line| line.starts_with("- area") && line.contains("slower"));
         assert!(!slower(&listed(&rows)), "{}", listed(&rows));
-        // 0.5 s against our 0.75 s, and right.
+        // The peer takes 0.5 s, we take 0.75 s, and the peer's area is right.
         (rows[3].seconds, rows[3].area_counted, rows[4].area_counted) = (0.5, 0.0705, 0.0701);
         let text = listed(&rows);
         let expected = "- area to 1 %, by hindsight, beside peers as they report: slower in paper (0.1).";

@@ -1,4 +1,6 @@
-//! Our own solves, each in a process of its own: peers start fresh too, and only a fresh process knows its peak memory.
+//! Our own solves, each in a process of its own.
+//!
+//! The peers start in new processes too, and only a new process gives the peak memory of one solve.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -14,7 +16,7 @@ use super::measure::{Outcome, measure};
 use super::scenes::Scene;
 use super::setting::{KernelName, Setting, parse_tolerance, typed};
 
-/// What a child process is asked to do; the argument of `--job`.
+/// The job of a child process, which is the argument of `--job`.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum Job {
@@ -24,14 +26,14 @@ enum Job {
     Heights { scene: String, side: usize, path: PathBuf },
 }
 
-/// A [`Setting`] that can be written.
+/// A [`Setting`] that can be serialised.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct PlainSetting {
     adaptive: bool,
     kernel: KernelName,
     border_level: usize,
     elements_per_wave: usize,
-    /// As it is typed.
+    /// The tolerance as a user types it.
     tolerance: String,
 }
 
@@ -53,20 +55,22 @@ impl TryFrom<PlainSetting> for Setting {
     }
 }
 
-/// Solves in a child process with so many threads; with all of the machine's without a number.
+/// Solves in a child process with `threads` threads, or with all of the machine's.
 ///
 /// # Errors
-/// When the process fails, with what it wrote.
+/// When the process fails. The text has what the process wrote.
 pub(super) fn solve(scene: &Scene, setting: &Setting, threads: Option<usize>) -> Result<Outcome> {
     let job = Job::Solve { scene: scene.name.to_owned(), setting: (*setting).into() };
     let answer = start(&job, threads)?;
     serde_json::from_str(&answer).with_context(|| format!("the process for {job:?} answered '{answer}'"))
 }
 
-/// Saves the heights of `scene` on a grid as `.npy`, cell side 1, in a child process.
+/// Saves the heights of `scene` on a grid, as `.npy` with cell side 1.
+///
+/// A child process does it.
 ///
 /// # Errors
-/// When the process fails, with what it wrote.
+/// When the process fails. The text has what the process wrote.
 pub(super) fn save_heights(scene: &Scene, side: usize, path: &Path) -> Result<()> {
     start(&Job::Heights { scene: scene.name.to_owned(), side, path: path.to_path_buf() }, None).map(drop)
 }
@@ -84,7 +88,7 @@ fn start(job: &Job, threads: Option<usize>) -> Result<String> {
     String::from_utf8(output.stdout).with_context(|| format!("the answer to {job:?} is not text"))
 }
 
-/// What the child process does with its job.
+/// Does `job` in the child process.
 ///
 /// # Errors
 /// When the job cannot be read, or fails.

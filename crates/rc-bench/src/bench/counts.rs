@@ -1,4 +1,4 @@
-//! The guard against regressions: counts of operations, which do not depend on the machine as times do.
+//! Guard against regressions: counts of operations, which, unlike times, do not depend on the machine.
 
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
@@ -11,31 +11,33 @@ use super::record::{from_csv, to_csv, write};
 use super::scenes::Scene;
 use super::setting::{KernelName, Setting};
 
-/// Where the counts are.
+/// File of the counts.
 const COUNTS: &str = "data/bench/counts.csv";
 
-/// Relative change of the number of elements that is allowed: on another processor an element at a border may flip.
+/// Allowed relative change of the number of elements. On another processor an element at an edge of contact may flip.
 const SAME_ELEMENTS: f64 = 1e-3;
 
-/// What one solve did, all levels together.
+/// What one solve did, summed over all levels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct CountRow {
     scene: String,
     setting: String,
     levels: usize,
     iterations: usize,
-    /// Of L.
+    /// Applications of L.
     applications: usize,
-    /// Of the preconditioner.
+    /// Applications of the preconditioner.
     preconditionings: usize,
-    /// On the finest level: iterations, and applications of L with the certificate's.
+    /// Iterations on the finest level.
     fine_iterations: usize,
     fine_applications: usize,
-    /// In contact.
+    /// Elements in contact.
     elements: usize,
 }
 
-/// What is counted: small scenes, each method and kernel, border levels, both kinds of tolerance.
+/// The solves whose operations are counted.
+///
+/// They are small scenes with each method and kernel, several border levels, and both kinds of tolerance.
 fn cases() -> Vec<(&'static str, Setting)> {
     let (auto, default) = (Tolerance::Auto, Tolerance::DEFAULT);
     vec![
@@ -62,7 +64,7 @@ fn count((scene, setting): &(&str, Setting)) -> Result<CountRow> {
     let levels = &solved.info.levels;
     Ok(CountRow {
         scene: (*scene).to_owned(),
-        // Cells hold no commas.
+        // Cells of the table have no commas.
         setting: setting.to_string().replace(',', ""),
         levels: levels.len(),
         iterations: levels.iter().map(|level| level.iterations).sum(),
@@ -75,7 +77,7 @@ fn count((scene, setting): &(&str, Setting)) -> Result<CountRow> {
 }
 
 impl CountRow {
-    /// What changed against the stored counts, named.
+    /// Names of the counts that differ from the stored ones.
     fn changes(&self, stored: &Self) -> Vec<String> {
         let exact = [
             ("levels", stored.levels, self.levels),
@@ -95,7 +97,7 @@ impl CountRow {
     }
 }
 
-/// What differs from the stored counts, a sentence each.
+/// Differences from the stored counts, one sentence each.
 fn differences(rows: &[CountRow], stored: &[CountRow]) -> Vec<String> {
     let same = |a: &CountRow, b: &CountRow| (&a.scene, &a.setting) == (&b.scene, &b.setting);
     let changes = rows.iter().flat_map(|row| match stored.iter().find(|stored| same(stored, row)) {
@@ -106,10 +108,10 @@ fn differences(rows: &[CountRow], stored: &[CountRow]) -> Vec<String> {
     changes.chain(gone.map(|row| format!("{}, {} is no longer counted", row.scene, row.setting))).collect()
 }
 
-/// Counts again and compares.
+/// Counts again and compares with the stored counts.
 ///
 /// # Errors
-/// With every change, and how to accept it.
+/// When a count has changed. The text names every change, and says how to accept it.
 pub fn check() -> Result<()> {
     let path = repository::root().join(COUNTS);
     let text = std::fs::read_to_string(&path)
@@ -127,7 +129,7 @@ pub fn check() -> Result<()> {
     Ok(())
 }
 
-/// Stores the counts of now.
+/// Stores the present counts.
 ///
 /// # Errors
 /// When a solve fails or the file cannot be written.

@@ -1,4 +1,4 @@
-//! The tables in README.md and the guide, from `data/bench/`.
+//! The tables in README.md and the guide, made from the files in `data/bench/`.
 
 use anyhow::Result;
 use rc_figures::blocks;
@@ -14,13 +14,13 @@ use super::scale::tables as scale;
 use super::scenes::SCENES;
 use super::tables::{EQUAL_MESHES, equal_meshes, scene, scenes, short, spreads, statements, times};
 
-/// The documents with blocks of ours.
+/// The documents that have blocks of the benchmark.
 const DOCUMENTS: [&str; 4] = ["README.md", "docs/benchmarks.md", "docs/faq.md", "docs/measurements-adaptive.md"];
 /// The lines of the archived run.
 pub(super) const BENCH: &str = "data/bench/bench.csv";
-/// Its machine.
+/// Description of the machine of the archived run.
 pub(super) const MACHINE: &str = "data/bench/bench.toml";
-/// The lines and the machine of the archived run of large grids.
+/// The archived run of large grids: its lines, and below a description of its machine.
 pub(super) const SCALE: &str = "data/bench/scale.csv";
 pub(super) const SCALE_MACHINE: &str = "data/bench/scale.toml";
 
@@ -32,7 +32,7 @@ pub fn update() -> Result<()> {
     blocks::rewrite(DOCUMENTS, render)
 }
 
-/// Complains when a document has other numbers than the archived run.
+/// Complaints about documents whose numbers differ from the archived run.
 #[must_use]
 pub fn check(sources: &Sources) -> Vec<String> {
     let cure = format!("{BENCH}; run `cargo xtask bench --tables`");

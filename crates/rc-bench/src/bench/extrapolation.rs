@@ -1,6 +1,6 @@
 //! Limits of fine meshes, with their uncertainty.
 
-/// A value and how far it may be off.
+/// A value with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limit {
     pub(super) value: f64,
@@ -10,31 +10,33 @@ pub(super) struct Limit {
 /// A counted area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Counted {
-    /// Relative to the cell.
+    /// Area relative to the cell.
     pub(super) area: f64,
     /// Number of edges between elements in and out of contact.
     pub(super) n_edges: usize,
-    /// Smallest elements along a side of the cell.
+    /// Number of smallest elements along a side of the cell.
     pub(super) side: usize,
 }
 
-/// Uncertainty of calibrated perimeter constants.
+/// Uncertainty of the calibrated perimeter constants.
 const CONSTANT_UNCERTAINTY: f64 = 0.003;
 
-/// Scatter of a counted area in √edges · (element area): each edge falls anywhere in its element. Measured on sequences
-/// of meshes.
+/// Scatter of a counted area, in units of √edges · (element area).
+///
+/// Each edge of contact falls anywhere in its element. The value was measured on sequences of meshes.
 const SCATTER: f64 = 0.4;
 
 /// The area in the limit of small elements, from counts on several meshes.
 ///
-/// A count is A + c · edges · (element area) with scatter; A and c are fitted by least squares, c starting from the
-/// calibrated `constant`. The uncertainty is two standard deviations. NaN without counts.
+/// A count is A + c · edges · (element area) with scatter. A and c are fitted by least squares. The calibrated
+/// `constant` counts as a measurement of c. The uncertainty is two standard deviations. Without counts the result is
+/// NaN.
 pub(super) fn area_limit(counts: &[Counted], constant: f64) -> Limit {
     let lines = counts.iter().map(|count| {
         let cell = (count.side as f64).powi(-2);
         (count.n_edges as f64 * cell, count.area, SCATTER * (count.n_edges as f64).sqrt() * cell)
     });
-    // Normal equations of area = A + c x; the calibration is a measurement of c alone.
+    // Normal equations of area = A + c x. The calibration is one more equation, which has c alone.
     let (mut aa, mut ac, mut cc) = (0.0, 0.0, CONSTANT_UNCERTAINTY.powi(-2));
     let (mut right_a, mut right_c) = (0.0, constant * cc);
     for (x, area, scatter) in lines {
@@ -49,11 +51,13 @@ pub(super) fn area_limit(counts: &[Counted], constant: f64) -> Limit {
     Limit { value: (cc * right_a - ac * right_c) / determinant, uncertainty: 2.0 * (cc / determinant).sqrt() }
 }
 
-/// Orders of the error between which quantities that the edges of contacts decide on converge.
+/// Smallest and largest order of convergence of quantities that the edges of contacts determine.
 const ORDERS: [f64; 2] = [1.5, 2.0];
 
-/// The limit of a quantity from its values on two meshes, the second with elements half as large: the middle between
-/// extrapolations of either order, and half their distance.
+/// The limit of a quantity from its values on two meshes.
+///
+/// The elements of the second mesh are half as large. The value is the middle between the extrapolations of the two
+/// orders, and the uncertainty is half the distance between the two.
 pub(super) fn richardson(coarse: f64, fine: f64) -> Limit {
     let [first, second] = ORDERS.map(|order| fine + (fine - coarse) / (2.0_f64.powf(order) - 1.0));
     Limit { value: 0.5 * (first + second), uncertainty: 0.5 * (first - second).abs() }

@@ -1,4 +1,4 @@
-//! Time to an error: what the benchmark is about.
+//! Time to an error, the measure that the benchmark compares.
 
 use rc_figures::numeric::median;
 use std::collections::BTreeMap;
@@ -7,86 +7,88 @@ use super::readings::{Answer, Reading, answers};
 use super::record::{Family, OURS, Row};
 use super::reference::{Quantity, References};
 
-/// The errors that are asked for, by quantity.
+/// The error levels of each quantity.
 const LEVELS: [(Quantity, &[f64]); 3] = [
     (Quantity::Area, &[3e-2, 1e-2, 3e-3, 1e-3]),
     (Quantity::RmsPressure, &[1e-2, 1e-3, 1e-4]),
     (Quantity::MeanGap, &[1e-3, 1e-4]),
 ];
 
-/// Every error that is asked for.
+/// Every quantity with each of its error levels.
 pub(super) fn levels() -> impl Iterator<Item = (Quantity, f64)> {
     LEVELS.into_iter().flat_map(|(quantity, levels)| levels.iter().map(move |&level| (quantity, level)))
 }
 
-/// Which setting counts.
+/// Which setting of a program is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Choice {
-    /// The fastest of those that state an error below the one asked for: a user can choose so.
+    /// The fastest setting that states an error below the level. A user can choose in this way.
     Stated,
-    /// The fastest of those whose true error is below it on this mesh and all finer ones: only the reference value
-    /// tells.
+    /// The fastest setting whose true error is below the level from this mesh on. The error of all finer meshes is
+    /// below the level too. Only the reference value shows this.
     Hindsight,
 }
 
-/// What is asked for.
+/// An error level of a quantity, and the choice of the setting.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Asked {
     pub(super) quantity: Quantity,
-    /// Relative error.
+    /// Relative error to reach.
     pub(super) level: f64,
     pub(super) choice: Choice,
 }
 
-/// The fastest answer to what is asked.
+/// The fastest answer that reaches a level.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found<'a> {
     pub(super) row: &'a Row,
     pub(super) seconds: f64,
-    /// Whether the true error is below the one asked for.
+    /// Whether the true error is below the level.
     pub(super) holds: bool,
 }
 
-/// The results of a run with their references.
+/// The results of a run with the reference values.
 #[derive(Clone, Copy)]
 pub(super) struct Results<'a> {
     pub(super) rows: &'a [Row],
     pub(super) references: &'a References,
 }
 
-/// How many times longer a peer takes than we do.
+/// Ratio of a peer's time to ours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ratio {
     pub(super) value: f64,
-    /// No peer got there in its time and grids: the true ratio is greater.
+    /// Whether the ratio is a lower bound.
+    ///
+    /// It is one when no peer reached the level within its time and grids.
     pub(super) at_least: bool,
 }
 
-/// How we and the fastest peer do in one scene.
+/// Our time and the fastest peer's time in one scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Comparison {
-    /// Both get there, or we alone.
+    /// Both reach the level, or we alone.
     Ratio(Ratio),
-    /// Both state to get there, but the peer's true error is above the one asked for.
+    /// Both state an error below the level, but the peer's true error is above it.
     Wrong(Ratio),
-    /// A peer alone gets there; whether its true error is below the one asked for.
+    /// Only a peer reaches the level. `holds` tells whether its true error is below the level.
     PeerAlone { holds: bool },
-    /// Nobody does, or no peer ran.
+    /// Nobody reaches the level, or no peer ran.
     Nothing,
 }
 
 impl<'a> Results<'a> {
-    /// The lines of one scene by whether they are ours.
+    /// The lines of one scene, either ours or the peers'.
     pub(super) fn of<'s>(&self, scene: &'s str, ours: bool) -> impl Iterator<Item = &'a Row> + use<'a, 's> {
         self.rows.iter().filter(move |row| row.scene == scene && (row.program == OURS) == ours)
     }
 
-    /// Our fastest answer to what is asked in one scene.
+    /// Our fastest answer that reaches the level in one scene.
     pub(super) fn ours(&self, scene: &str, asked: Asked) -> Option<Found<'a>> {
         self.fastest(self.of(scene, true), asked, Reading::Reported)
     }
 
-    /// The fastest answer of any peer.
+    /// The peers' fastest answer that reaches the level in one scene.
     pub(super) fn peers(&self, scene: &str, asked: Asked, reading: Reading) -> Option<Found<'a>> {
         self.fastest(self.of(scene, false), asked, reading)
     }
@@ -97,7 +99,7 @@ impl<'a> Results<'a> {
         found.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }
 
-    /// The answers of one family that count.
+    /// The answers of one family that reach the level.
     fn found(&self, answers: &[Answer<'a>], asked: Asked) -> Vec<Found<'a>> {
         let Asked { quantity, level, choice } = asked;
         let holds = |answer: &Answer<'_>| {
@@ -107,7 +109,7 @@ impl<'a> Results<'a> {
         let finest_first = answers.iter().rev();
         match choice {
             Choice::Hindsight => {
-                // A coarse mesh that is right by accident does not count.
+                // A coarse mesh whose error is small by accident does not count.
                 let good = finest_first.take_while(|answer| holds(answer));
                 good.map(|answer| Found { row: answer.row, seconds: answer.seconds, holds: true }).collect()
             }
@@ -121,10 +123,10 @@ impl<'a> Results<'a> {
         }
     }
 
-    /// The ratio of the fastest peer's time to an error to ours, both in the best of their settings.
+    /// Comparison of the times to an error, with the best setting of both sides.
     pub(super) fn compare(&self, scene: &str, asked: Asked, reading: Reading) -> Comparison {
         let (ours, peer) = (self.ours(scene, asked), self.peers(scene, asked, reading));
-        // A finer mesh than the finest that ran would have taken longer than that.
+        // A mesh finer than the finest one that ran would have taken longer than the finest one.
         let finest = families(self.of(scene, false)).into_values().filter_map(|rows| Some(rows.last()?.seconds));
         let ratio = |seconds: f64, ours: Found<'_>, at_least| Ratio { value: seconds / ours.seconds, at_least };
         match (ours, peer, finest.min_by(f64::total_cmp)) {
@@ -147,12 +149,14 @@ impl<'a> Results<'a> {
         scenes
     }
 
-    /// Our answers over the scenes where there is one.
+    /// Our answers in all scenes where we have one.
     pub(super) fn our_answers(&self, asked: Asked) -> Vec<Found<'a>> {
         self.scenes().into_iter().filter_map(|scene| self.ours(scene, asked)).collect()
     }
 
-    /// Smallest and median ratio over the scenes. The median is a bound when any ratio below or at it is.
+    /// Smallest and median ratio over the scenes.
+    ///
+    /// The median is a lower bound when it, or a ratio that is at most as large, is one.
     pub(super) fn ratios(&self, asked: Asked, reading: Reading) -> Option<[Ratio; 2]> {
         let ratio = |scene| match self.compare(scene, asked, reading) {
             Comparison::Ratio(ratio) | Comparison::Wrong(ratio) => Some(ratio),
@@ -165,7 +169,9 @@ impl<'a> Results<'a> {
         Some([smallest, Ratio { value, at_least }])
     }
 
-    /// Of all answers with a stated error, ours or the peers', how many, and how many whose true error is below it.
+    /// Number of answers with a stated error, and number of correct statements.
+    ///
+    /// A statement is correct when the true error is not above it. The answers are ours or the peers'.
     pub(super) fn statements(&self, ours: bool, quantity: Quantity, reading: Reading) -> (usize, usize) {
         let holds = |answer: &Answer<'_>| {
             let error = self.references.error(&answer.row.scene, quantity, answer.value)?;
@@ -179,7 +185,7 @@ impl<'a> Results<'a> {
     }
 }
 
-/// Lines by family, each by mesh, coarsest first.
+/// Lines by family. The lines of a family go from the coarsest mesh to the finest.
 pub(super) fn families<'a>(rows: impl Iterator<Item = &'a Row>) -> BTreeMap<Family, Vec<&'a Row>> {
     let mut families: BTreeMap<Family, Vec<&Row>> = BTreeMap::new();
     for row in rows {
@@ -201,7 +207,9 @@ pub(super) mod tests {
     use crate::bench::scenes::SCENES;
     use crate::bench::setting::Setting;
 
-    /// Lines of the first scene, where the area should be 0.07: ours at three meshes, a peer at two.
+    /// Lines of the first scene: ours on three meshes, a peer's on two.
+    ///
+    /// The true area is 0.07.
     pub(in crate::bench) fn rows() -> Vec<Row> {
         let family = |mesh| Family::ours(&Setting::adaptive(0, mesh, Tolerance::Auto));
         let ours = [(4, 0.5, 0.07), (8, 1.0, 0.0714), (16, 4.0, 0.07035)];
@@ -233,7 +241,7 @@ pub(super) mod tests {
     #[test]
     fn what_is_stated_decides_and_may_be_wrong() {
         let (mut rows, references) = (rows(), references("paper", [0.07, 4e-3, 1.0]));
-        // The bar of the mesh in the middle is too small: the area is 2 % off.
+        // The bar of the middle mesh is too small: its area is wrong by 2 %.
         rows[1].area_bar = Some(1e-4);
         let results = Results { rows: &rows, references: &references };
         let fastest = |level| {
@@ -242,7 +250,7 @@ pub(super) mod tests {
         };
         assert_eq!([3e-2, 3e-3, 1e-3].map(fastest), [Some((4, true)), Some((8, false)), None]);
         assert_eq!(results.statements(true, Quantity::Area, Reading::Reported), (3, 2));
-        // The peer's two counts are 0.0179 apart, the finer one 0.0021 off, and it took both.
+        // The peer's two counts differ by 0.0179. The finer count has an error of 0.0021, and the time is that of both.
         let peer = |level| results.peers("paper", area(level, Choice::Stated), Reading::Reported);
         let compare = |level| results.compare("paper", area(level, Choice::Stated), Reading::Reported);
         assert_eq!(compare(0.25), Comparison::Ratio(Ratio { value: 120.0 / 0.75, at_least: false }));
@@ -258,7 +266,7 @@ pub(super) mod tests {
             let results = Results { rows, references: &references };
             results.compare("paper", area(level, Choice::Hindsight), Reading::Reported)
         };
-        // 90 s against 0.5 s and the evaluation; then nothing finer ran.
+        // The peer's finest mesh took 90 s, and we take 0.5 s and the evaluation. No finer mesh ran.
         let ratio = |value, at_least| Comparison::Ratio(Ratio { value, at_least });
         assert_eq!(compare(&rows, 3e-2), ratio(90.0 / 0.75, false));
         assert_eq!(compare(&rows, 1e-2), ratio(90.0 / 4.25, true));

@@ -1,4 +1,4 @@
-//! Where and with what a benchmark was run, `data/bench/bench.toml`.
+//! Description of the machine and the programs of a run, `data/bench/bench.toml`.
 
 use std::collections::BTreeMap;
 use std::process::Command;
@@ -8,7 +8,7 @@ use toml::{Table as Toml, Value};
 
 use rc_figures::archive::version;
 
-/// Version, machine, peers, and the time of the whole run.
+/// Version, machine, peers, and the time of the whole run (s).
 ///
 /// # Errors
 /// When the root manifest has no version.
@@ -26,7 +26,7 @@ pub(super) fn description(peers: &BTreeMap<String, String>, seconds: f64) -> Res
     Ok(run)
 }
 
-/// Model of the processor, where the system says.
+/// Model of the processor, if the system tells it.
 fn processor() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));

@@ -1,7 +1,8 @@
-//! `cargo xtask bench --make-reference`: the reference values, from meshes much finer than those that are compared.
+//! `cargo xtask bench --make-reference`: the reference values, from meshes much finer than the meshes under comparison.
 //!
-//! Areas are counted on elements of up to 1/16384 of the cell at the edges of contacts (`love`); rms pressure and mean
-//! gap converge fastest with `spectral` on uniform grids. All are found again with the other kernel on uniform grids.
+//! Areas are counted with `love` on elements of down to 1/16384 of the cell at the edges of contacts. Rms pressure and
+//! mean gap converge fastest with `spectral` on uniform grids. All values are found again with the other kernel on
+//! uniform grids.
 
 use anyhow::{Context, Result};
 use rc_figures::repository;
@@ -15,19 +16,23 @@ use super::reference::{Quantity, REFERENCE, ReferenceRow};
 use super::scenes::{SCENES, Scene};
 use super::setting::{KernelName, Setting};
 
-/// Uniform grids.
+/// Elements per side of the uniform grids.
 const SIDES: [usize; 3] = [1024, 2048, 4096];
 
-/// The grid whose elements are halved at edges, and how often: 2048 to 16384 elements along a side.
+/// Elements per side of the grid that is refined at edges, and the border levels.
+///
+/// Refinement halves the elements, so that the smallest are 2048 to 16384 along a side.
 const BORDER: (usize, [usize; 4]) = (1024, [1, 2, 3, 4]);
 
-/// Of uniform grids: far below what is wanted of rms pressure and gap.
+/// Tolerance on uniform grids, far below the wanted error of rms pressure and gap.
 const TOLERANCE: Tolerance = Tolerance::Relative(1e-8);
 
-/// Of areas: it moves edges by a tenth of the smallest element at most, in either direction.
+/// Tolerance of the areas. It moves edges by at most a tenth of the smallest element, in either direction.
 const AREA_TOLERANCE: Tolerance = Tolerance::Relative(3e-7);
 
-/// Computes the reference values of `scenes` and puts them into `data/bench/reference.csv`; those of other scenes stay.
+/// Computes the reference values of `scenes` and puts them into `data/bench/reference.csv`.
+///
+/// The values of other scenes stay.
 ///
 /// # Errors
 /// When a solve fails or the file cannot be written.
@@ -45,7 +50,7 @@ pub fn run(scenes: &[Scene]) -> Result<()> {
     Ok(())
 }
 
-/// As [`CALIBRATED`], for `love`.
+/// Perimeter correction of `love`; [`CALIBRATED`] is the one of `spectral`.
 const LOVE_PERIMETER: f64 = 0.0872;
 
 fn rows(scene: &Scene) -> Result<Vec<ReferenceRow>> {
@@ -57,7 +62,7 @@ fn rows(scene: &Scene) -> Result<Vec<ReferenceRow>> {
     let (side, levels) = BORDER;
     let deep = levels.iter().map(|&level| on(scene, side, |m| Setting::adaptive(level, m, AREA_TOLERANCE)));
     let deep = deep.collect::<Result<Vec<_>>>()?;
-    // The highest point of the surface, to far less than the uncertainty of a mean gap.
+    // The height of the highest point of the surface. Its error is far below the uncertainty of a mean gap.
     let h_max = deep.last().context("a border level")?.h_max;
     let deep: Vec<Counted> = deep.iter().zip(levels).map(|(solved, level)| counted(solved, side << level)).collect();
     let counts: Vec<Counted> = spectral.iter().zip(SIDES).map(|(solved, side)| counted(solved, side)).collect();
@@ -75,7 +80,7 @@ fn rows(scene: &Scene) -> Result<Vec<ReferenceRow>> {
     Ok(quantities.into_iter().map(|(quantity, limits)| row(scene, quantity, limits)).collect())
 }
 
-/// Numbers with all digits that mean anything, and a few more.
+/// One line of the file. Its numbers have all significant digits, and a few more.
 fn row(scene: &Scene, quantity: Quantity, (limit, check): (Limit, Limit)) -> ReferenceRow {
     ReferenceRow {
         scene: scene.name.to_owned(),
@@ -107,7 +112,7 @@ fn counted(solved: &Solved, side: usize) -> Counted {
     Counted { area: area.cells, n_edges: area.perimeter_edges, side }
 }
 
-/// The limit from the two finest grids.
+/// The limit of a quantity from the two finest grids.
 fn limit(solved: &[Solved], of: fn(&Solved) -> f64) -> Result<Limit> {
     let [.., coarse, fine] = solved else { anyhow::bail!("a limit needs two grids") };
     Ok(richardson(of(coarse), of(fine)))

@@ -17,45 +17,48 @@ pub(super) struct Solved {
     pub(super) observables: Observables,
     /// Elements in contact.
     pub(super) n_in_contact: usize,
-    /// Part of the cells whose gap was computed.
+    /// Fraction of the cells whose gap was computed.
     cells_evaluated: f64,
-    /// Maximum height on the smallest elements.
+    /// Maximum height, sampled at the smallest elements.
     pub(super) h_max: f64,
-    /// Of the solve alone; the adaptive method's heights are part of it, a uniform grid's are given.
+    /// Seconds of the solve alone. They include the heights of the adaptive method, but not the heights of a uniform
+    /// grid, which are given.
     seconds: f64,
-    /// Of the evaluation of all observables.
+    /// Seconds of the evaluation of all observables.
     observables_seconds: f64,
 }
 
-/// What is reported of one solve, ours or a peer's: pressures in E*, lengths in λ, areas relative to the cell.
+/// What is reported of one solve, ours or a peer's.
+///
+/// Pressures are in E*, lengths in λ, areas relative to the cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Outcome {
     pub(super) status: String,
-    /// On the finest level.
+    /// Iterations on the finest level.
     pub(super) iterations: Option<u64>,
-    /// Of the operator, on the finest level.
+    /// Applications of the operator on the finest level.
     pub(super) applications: Option<u64>,
     /// Elements in contact.
     pub(super) elements: Option<u64>,
-    /// Of the solve alone.
+    /// Seconds of the solve alone.
     pub(super) seconds: f64,
-    /// Of the evaluation of the observables.
+    /// Seconds of the evaluation of the observables.
     pub(super) observables_seconds: f64,
-    /// Peak memory of the process less that before its first solve.
+    /// Peak memory of the process, minus its peak memory before its first solve.
     pub(super) memory_mb: Option<f64>,
-    /// By counting elements.
+    /// Area by counting elements.
     pub(super) area_counted: f64,
-    /// Best estimate; a peer has none.
+    /// Best estimate of the area, which a peer does not have.
     pub(super) area: Option<f64>,
-    /// Its error as stated by the program, and so below.
+    /// Error of `area` as the program states it. The other fields `…_bar` are alike.
     pub(super) area_bar: Option<f64>,
-    /// Edges between elements in and out of contact.
+    /// Number of edges between elements in and out of contact.
     pub(super) edges: u64,
     pub(super) rms_pressure: f64,
     pub(super) rms_pressure_bar: Option<f64>,
     pub(super) mean_gap: f64,
     pub(super) mean_gap_bar: Option<f64>,
-    /// Part of the cells of the finest grid whose gap was computed; the others are proven to be free.
+    /// Fraction of the cells of the finest grid whose gap was computed. The others are proven to be free.
     pub(super) cells_evaluated: Option<f64>,
 }
 
@@ -69,7 +72,7 @@ pub(super) fn solve(scene: &Scene, setting: &Setting) -> Result<Solved> {
 
 fn try_solve(scene: &Scene, setting: &Setting) -> Result<Solved> {
     let (surface, grid) = (scene.surface()?, Grid::square(scene.side(setting.elements_per_wave))?);
-    // A uniform grid's heights are given; those of the adaptive method are part of the solve.
+    // A uniform grid gets its heights ready-made. The adaptive method makes its heights within the solve.
     let map = (setting.method == Method::Uniform).then(|| surface.sample_on(grid)).transpose()?;
     let heights = map.as_ref().map_or_else(|| surface.on(grid), HeightSource::from);
     let problem = ContactProblem::new(heights, scene.control()).with_kernel(setting.kernel.kernel());
@@ -94,7 +97,7 @@ fn try_solve(scene: &Scene, setting: &Setting) -> Result<Solved> {
     })
 }
 
-/// Solves `scene` once in this process, which has done nothing else, and reports.
+/// Solves `scene` once in this process, which has done nothing else, and measures it.
 ///
 /// # Errors
 /// Those of [`solve`].

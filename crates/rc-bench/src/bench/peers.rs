@@ -1,4 +1,6 @@
-//! Other programs that solve the same problem: a process each, which runs `crates/rc-bench/peers/peers.py`.
+//! Other programs that solve the same problem.
+//!
+//! Each is a process that runs `crates/rc-bench/peers/peers.py`.
 
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
@@ -12,24 +14,26 @@ use rc_solver::Tolerance;
 use super::measure::Outcome;
 use super::setting::CERTIFIED;
 
-/// A peer and the tolerances it is run with; `None` is its own.
+/// A peer and its tolerances; `None` is the peer's own default.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PeerKind {
     pub(super) name: &'static str,
     pub(super) tolerances: &'static [Option<Tolerance>],
-    /// Whether its packages on PyPI use one thread.
+    /// Whether its packages on PyPI use only one thread.
     pub(super) is_serial: bool,
 }
 
-/// ASPHER's tolerance means what ours does, so it also gets `auto`; that of Tamaas is relative as well;
-/// ContactMechanics derives one from the heights.
+/// The peers with their tolerances.
+///
+/// The tolerance of ASPHER has the same meaning as ours, so ASPHER also gets `auto`. The tolerance of Tamaas is
+/// relative as well. ContactMechanics derives its tolerance from the heights.
 pub(super) const PEERS: [PeerKind; 3] = [
     ASPHER,
     PeerKind { name: "tamaas", tolerances: &[Some(CERTIFIED)], is_serial: true },
     PeerKind { name: "contactmechanics", tolerances: &[None], is_serial: true },
 ];
 
-/// The fastest of them.
+/// The fastest peer.
 pub(super) const ASPHER: PeerKind =
     PeerKind { name: "aspher", tolerances: &[Some(CERTIFIED), Some(Tolerance::Auto)], is_serial: false };
 
@@ -38,22 +42,22 @@ pub(super) struct Peer {
     process: Child,
     questions: ChildStdin,
     answers: BufReader<ChildStdout>,
-    /// With what changes its speed.
+    /// Version, and options that change its speed.
     pub(super) version: String,
 }
 
-/// The first line of a peer.
+/// The first line that a peer writes.
 #[derive(Deserialize)]
 struct Greeting {
     version: String,
     fftw: bool,
 }
 
-/// One problem.
+/// One problem for a peer.
 #[derive(Serialize)]
 pub(super) struct Question<'a> {
     pub(super) heights: &'a Path,
-    /// One of so many points along either side is taken.
+    /// One of `stride` points along either side is taken.
     pub(super) stride: usize,
     pub(super) load: f64,
     pub(super) tolerance: Option<f64>,
@@ -63,7 +67,7 @@ impl Peer {
     /// Starts a peer with as many threads as we have.
     ///
     /// # Errors
-    /// When it cannot be started or imported.
+    /// When the peer cannot be started or imported.
     pub(super) fn start(python: &Path, kind: &PeerKind) -> Result<Self> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from).to_string();
         let mut process = Command::new(python)
@@ -104,7 +108,7 @@ impl Peer {
 
 impl Drop for Peer {
     fn drop(&mut self) {
-        // It may be gone already; either way nothing is left of it.
+        // The process may have ended already. In either case it does not run on.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
@@ -118,7 +122,7 @@ mod tests {
     fn a_peer_that_is_not_installed_is_named() {
         let error = Peer::start(Path::new("no-such-python-anywhere"), &PEERS[1]).err().map(|error| error.to_string());
         assert!(error.as_ref().is_some_and(|text| text.contains("no-such-python-anywhere")), "{error:?}");
-        // A program that says nothing is not a peer.
+        // A program that writes nothing is not a peer.
         let error = Peer::start(Path::new("true"), &PEERS[1]).err().map(|error| error.to_string());
         assert!(error.is_none_or(|text| text.contains("tamaas") || text.contains("true")));
     }

@@ -1,4 +1,6 @@
-//! The picture of the benchmark: error against time, a panel each for area, rms pressure and penetration.
+//! The picture of the benchmark: error against time.
+//!
+//! It has panels for area, rms pressure and penetration.
 
 use plotters::prelude::DrawingBackend;
 use plotters::style::RGBColor;
@@ -17,9 +19,10 @@ pub(super) struct ErrorAgainstTime<'a> {
     pub(super) scene: &'a str,
 }
 
-/// What is drawn of a program: the family, its colour (after Okabe and Ito, apart for colour-blind readers), and how
-/// the quantities are read. Solid lines are best estimates, or what users make of a peer's results; dashed ones counted
-/// areas.
+/// A program in the picture: the family, its colour, and how the quantities are read.
+///
+/// The colours are those of Okabe and Ito, which colour-blind readers can tell apart. Solid lines are best estimates,
+/// or what users compute from a peer's results. Dashed lines are counted areas.
 struct DrawnFamily {
     name: &'static str,
     of: fn(&Family) -> bool,
@@ -85,13 +88,13 @@ const DRAWN: [DrawnFamily; 9] = [
 ];
 
 impl ErrorAgainstTime<'_> {
-    /// Times and absolute relative errors, as decades.
+    /// Decimal logarithms of times and of absolute relative errors.
     fn points(&self, family: &DrawnFamily, quantity: Quantity) -> Vec<(f64, f64)> {
         let rows = self.results.of(self.scene, true).chain(self.results.of(self.scene, false));
         let of_family = families(rows).into_iter().filter(|(other, _)| (family.of)(other));
         let point = |seconds: f64, value: f64| {
             let error = self.results.references.error(self.scene, quantity, value)?.abs();
-            // An error of zero, where the last digits agree, has no logarithm.
+            // An error of zero, when the last digits agree, would have no logarithm.
             Some((seconds.log10(), error.max(1e-9).log10()))
         };
         let answers = of_family.flat_map(|(_, rows)| answers(&rows, quantity, family.reading));
@@ -110,19 +113,19 @@ impl ErrorAgainstTime<'_> {
             }
             let counted = family.name.ends_with("counted") && quantity == Quantity::Area;
             let style = if counted { LineStyle::Dashed } else { LineStyle::Solid };
-            // The area's panel has the legend; all use the same colours.
+            // The legend is in the panel of the area; all panels have the same colours.
             let name = if quantity == Quantity::Area { family.name } else { "" };
             series.push(Series { name: "", points: points.clone(), colour: family.colour, style: LineStyle::Dots });
             series.push(Series { name, points, colour: family.colour, style });
         }
         let (x, y) = (range(&series, |at| at.0, 0.1), range(&series, |at| at.1, 0.2));
-        // Room for the legend above the lines.
+        // The panel needs space for the legend above the lines.
         let top = if quantity == Quantity::Area { y.1 + 0.6 * (y.1 - y.0) } else { y.1 };
         LinePlot { title, x_label: "log10 of time (s)", y_label: "log10 of relative error", x, y: (y.0, top), series }
     }
 }
 
-/// The range of the points of all series, a little wider.
+/// The range of the points of all series, with a margin.
 fn range(series: &[Series<'_>], of: impl Fn(&(f64, f64)) -> f64, margin: f64) -> (f64, f64) {
     let values: Vec<f64> = series.iter().flat_map(|series| series.points.iter().map(&of)).collect();
     let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));

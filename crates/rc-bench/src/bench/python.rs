@@ -1,4 +1,6 @@
-//! The Python environment of the peers: made once, in a folder under `target/`, from pinned versions.
+//! The Python environment of the peers.
+//!
+//! It is made once, from pinned versions, in a folder under `target/`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,19 +10,21 @@ use anyhow::{Context, Result, bail};
 
 use rc_figures::repository;
 
-/// Packages that have wheels, or need nothing special.
+/// Packages that have wheels, or that build without options.
 const REQUIREMENTS: &str = include_str!("../../peers/requirements.txt");
 
-/// Is built from source, against the packages above.
+/// The package that is built from source, against the packages above.
 const ASPHER: &str = "aspher==0.1.3.post1";
 
-/// What makes ASPHER fastest; without the FFTW library it is built with its own transform.
+/// Build options that make ASPHER fastest. Without the FFTW library it is built with its own transform.
 const FASTEST: &str = "-DASPHER_NATIVE=ON -DASPHER_USE_FFTW=ON";
 
-/// The interpreter of an environment with all peers: `given`, or one that is made now unless it is there.
+/// The interpreter of an environment that has all peers.
+///
+/// It is `given`, or an environment that is made now unless it exists.
 ///
 /// # Errors
-/// With what failed, and what to do about it.
+/// When a step fails. The text says which, and what to do about it.
 pub(super) fn interpreter(given: Option<&Path>) -> Result<PathBuf> {
     match given {
         Some(python) => Ok(python.to_path_buf()),
@@ -30,7 +34,7 @@ pub(super) fn interpreter(given: Option<&Path>) -> Result<PathBuf> {
 
 fn environment(folder: &Path) -> Result<PathBuf> {
     let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    // Written last, so an environment whose making was interrupted is made again.
+    // This file is written last, so that an environment is made again when its making was interrupted.
     let (ready, contents) = (folder.join("ready.txt"), format!("{REQUIREMENTS}{ASPHER}\n"));
     if fs::read_to_string(&ready).is_ok_and(|text| text == contents) {
         return Ok(python);

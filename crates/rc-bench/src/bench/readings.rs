@@ -1,38 +1,44 @@
-//! How the numbers of a program are read, how long that takes, and which error the program itself states.
+//! How the results of a program are read: values, times, and stated errors.
 
 use super::extrapolation::richardson;
 use super::record::{OURS, Row};
 use super::reference::Quantity;
 
-/// How a quantity is read. Those other than the first are a user's own work on what a peer returns.
+/// How a quantity is read from a program's results.
+///
+/// All readings except the first are a user's own work on the results of a peer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reading {
-    /// As the program reports it: our best estimates; of a peer, counted areas and what its elements say.
+    /// As the program reports it. We report best estimates, a peer reports counted areas and the values on its
+    /// elements.
     Reported,
-    /// Counted areas less [`PUBLISHED`] elements an edge.
+    /// Counted areas minus [`PUBLISHED`] elements per edge.
     Published,
-    /// Counted areas less [`CALIBRATED`] elements an edge.
+    /// Counted areas minus [`CALIBRATED`] elements per edge.
     Calibrated,
-    /// From two successive meshes, in the limit of small elements.
+    /// Extrapolated from two successive meshes to the limit of small elements.
     Extrapolated,
 }
 
-/// Elements an edge, (π - 1 + ln 2)/24: Yastrebov, Anciaux, Molinari, *Tribol. Int.* 114 (2017) 161.
+/// Published perimeter correction in elements per edge, (π - 1 + ln 2)/24.
+///
+/// Source: Yastrebov, Anciaux, Molinari, *Tribol. Int.* 114 (2017) 161.
 pub(super) const PUBLISHED: f64 = 0.1181141597562;
 
-/// Elements an edge for `spectral`, the peers' discretisation, calibrated on Hertz contacts of 51 elements per radius
-/// at random offsets, to 0.003.
+/// Perimeter correction in elements per edge for `spectral`, the peers' discretisation.
+///
+/// It is calibrated to 0.003 on Hertz contacts of 51 elements per radius at random offsets.
 pub(super) const CALIBRATED: f64 = 0.1013;
 
-/// Orders of the error in the element side: of counted areas, and at least of quantities that are not counted.
+/// Order of the error of counted areas in the element side. The order of other quantities is at least [`SMOOTH_ORDER`].
 const COUNTED_ORDER: f64 = 1.0;
 const SMOOTH_ORDER: f64 = 1.5;
 
 impl Reading {
-    /// Those of a peer, in the order of the tables.
+    /// The readings of a peer's results, in the order of the tables.
     pub(super) const ALL: [Self; 4] = [Self::Reported, Self::Published, Self::Calibrated, Self::Extrapolated];
 
-    /// As in the heads of tables.
+    /// Name in the heads of tables.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Reported => "as it reports",
@@ -42,7 +48,7 @@ impl Reading {
         }
     }
 
-    /// As in sentences.
+    /// Name of the peers in sentences.
     pub(super) fn peers(self) -> &'static str {
         match self {
             Self::Reported => "peers as they report",
@@ -52,42 +58,45 @@ impl Reading {
         }
     }
 
-    /// Whether it differs from the others: edges correct areas alone.
+    /// Whether this reading gives another value of the quantity than the others.
+    ///
+    /// Corrections by edges are for areas only.
     pub(super) fn applies_to(self, quantity: Quantity) -> bool {
         quantity == Quantity::Area || matches!(self, Self::Reported | Self::Extrapolated)
     }
 }
 
-/// A value that a user has after some solves.
+/// A value that a user has after one or more solves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Answer<'a> {
-    /// The finest solve that it needs.
+    /// The finest solve that the value needs.
     pub(super) row: &'a Row,
     pub(super) value: f64,
-    /// Of all solves that it needs.
+    /// Seconds of all solves that the value needs.
     pub(super) seconds: f64,
-    /// With the error that comes with it.
+    /// The error that the user can state with the value.
     pub(super) stated: Option<Stated>,
 }
 
 /// An error that a user can state without knowing the true value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stated {
-    /// Relative to the value.
+    /// Error relative to the value.
     pub(super) error: f64,
-    /// Of all solves that the value and its error need.
+    /// Seconds of all solves that the value and its error need.
     pub(super) seconds: f64,
 }
 
-/// The answers of one family, `rows` from coarse to fine.
+/// The answers of one family, whose `rows` are ordered from coarse to fine.
 ///
-/// We state the error bars of the summary. A peer states none, so its user compares with the next coarser mesh: the
-/// error of the finer one is the change divided by 2^order - 1, with order 1 for counted areas, corrected or not,
-/// and 1.5 for others. That of an extrapolated value is its change from the extrapolation before.
+/// We state the error bars of the summary. A peer does not state errors, so its user compares with the next coarser
+/// mesh. The error of the finer value is then its change divided by 2^order - 1. The order is 1 for counted areas,
+/// corrected or not, and 1.5 for other quantities. The error of an extrapolated value is its change from the previous
+/// extrapolation.
 pub(super) fn answers<'a>(rows: &[&'a Row], quantity: Quantity, reading: Reading) -> Vec<Answer<'a>> {
     let mut answers: Vec<Answer<'a>> = Vec::new();
     for (i, &row) in rows.iter().enumerate() {
-        // A mesh may be missing where a peer failed.
+        // A mesh is missing when a peer failed on it.
         let coarser =
             rows[..i].last().copied().filter(|coarser| 2 * coarser.elements_per_wave == row.elements_per_wave);
         let answer = if row.program == OURS {
@@ -113,7 +122,7 @@ fn ours(row: &Row, quantity: Quantity) -> Answer<'_> {
     Answer { row, value, seconds, stated: bar.map(|bar| Stated { error: bar / value, seconds }) }
 }
 
-/// What a peer returns, of one mesh.
+/// The value of a quantity on one mesh of a peer.
 fn of_peer(row: &Row, quantity: Quantity, reading: Reading) -> f64 {
     match (quantity, reading) {
         (Quantity::Area, Reading::Published) => row.area_counted - PUBLISHED * row.perimeter,
@@ -143,7 +152,7 @@ fn extrapolated<'a>(row: &'a Row, coarser: &Row, quantity: Quantity, before: Opt
     };
     let stated = before.map(|before| Stated {
         error: (value - before.value).abs() / value,
-        // Both extrapolations need the mesh between.
+        // Both extrapolations use the middle mesh.
         seconds: row.total_seconds() + before.seconds,
     });
     Answer { row, value, seconds: row.total_seconds() + coarser.total_seconds(), stated }
@@ -154,7 +163,9 @@ mod tests {
     use super::*;
     use crate::bench::levels::tests::rows;
 
-    /// A peer on three meshes; counts above the area by `c` perimeters, perimeters as those of straight edges.
+    /// A peer on three meshes.
+    ///
+    /// Its counts exceed the area by `c` perimeters, and its perimeters are those of straight edges.
     fn peer(c: f64) -> Vec<Row> {
         let model = rows().pop().expect("a line of a peer");
         let row = |(mesh, seconds): (usize, f64)| {
@@ -175,10 +186,10 @@ mod tests {
         let counted = of(&rows, Quantity::Area, Reading::Reported);
         assert_eq!((counted.len(), counted[0].stated), (3, None));
         let (finest, stated) = (counted[2], counted[2].stated.expect("a coarser mesh"));
-        // Of first order: what is stated is the error.
+        // Counts converge with order 1, so the stated error is the true one.
         assert!((stated.error * finest.value - 0.1 / 16.0).abs() < 1e-12, "{stated:?}");
         assert!((finest.seconds - 25.0).abs() < 1e-12 && (stated.seconds - 30.0).abs() < 1e-12, "{finest:?}");
-        // With the constant of the discretisation nothing is left, with another one a part.
+        // The constant of the discretisation removes the whole error, another constant only a part of it.
         let calibrated = of(&rows, Quantity::Area, Reading::Calibrated)[2];
         let published = of(&rows, Quantity::Area, Reading::Published)[2];
         assert!((calibrated.value - 0.07).abs() < 0.0014 / 16.0, "{calibrated:?}");
@@ -193,12 +204,13 @@ mod tests {
         let stated = areas[1].stated.expect("two extrapolations");
         assert!((areas[1].value - 0.07).abs() < 1e-12 && stated.error < 1e-10, "{areas:?}");
         assert!((areas[1].seconds - 30.0).abs() < 1e-12 && (stated.seconds - 31.0).abs() < 1e-12, "{areas:?}");
-        // Of second order, extrapolated between orders 1.5 and 2: what is left is a part of the finer error.
+        // The pressure converges with order 2, and is extrapolated with orders 1.5 and 2. A part of the finer error
+        // remains.
         let pressure = of(&rows, Quantity::RmsPressure, Reading::Extrapolated)[1];
         let stated = pressure.stated.expect("two extrapolations");
         assert!((pressure.value / 4e-3 - 1.0).abs() < 0.4 / 256.0, "{pressure:?}");
         assert!((pressure.value / 4e-3 - 1.0).abs() < stated.error, "{pressure:?}");
-        // As it reports, order 1.5 is on the safe side.
+        // As reported, the error by order 1.5 is on the safe side.
         let reported = of(&rows, Quantity::RmsPressure, Reading::Reported)[1];
         assert!(reported.stated.expect("two meshes").error > reported.value / 4e-3 - 1.0, "{reported:?}");
     }

@@ -1,4 +1,6 @@
-//! The lines of `data/bench/bench.csv`: one solve of one scene by one program, the median of its repeats.
+//! The lines of `data/bench/bench.csv`.
+//!
+//! A line is one solve of one scene by one program. Its times are medians of the repeats.
 
 use std::path::Path;
 
@@ -10,7 +12,7 @@ use super::measure::Outcome;
 use super::scenes::Scene;
 use super::setting::{KernelName, Setting, typed};
 
-/// One line; columns that a program has nothing for are empty.
+/// One line of the file. Columns for which a program has no value are empty.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Row {
     pub(super) scene: String,
@@ -26,20 +28,20 @@ pub(super) struct Row {
     pub(super) applications: Option<u64>,
     pub(super) elements: Option<u64>,
     pub(super) repeats: usize,
-    /// Of the solve alone: median, fastest, slowest.
+    /// Median seconds of the solve alone; then the fastest and the slowest.
     pub(super) seconds: f64,
     pub(super) seconds_min: f64,
     pub(super) seconds_max: f64,
-    /// Median, of the evaluation of the observables.
+    /// Median seconds of the evaluation of the observables.
     pub(super) observables_seconds: f64,
-    /// Peak memory beyond that of the program without a problem.
+    /// Peak memory minus the peak memory of the program without a problem.
     pub(super) memory_mb: Option<f64>,
     pub(super) area_counted: f64,
     /// Edges between elements in and out of contact, times the area of the smallest element.
     pub(super) perimeter: f64,
-    /// Best estimate; a peer has only its count.
+    /// Best estimate of the area; a peer has only its count.
     pub(super) area: Option<f64>,
-    /// Error of `area` as stated by the program, and so below.
+    /// Error of `area` as the program states it. The other fields `…_bar` are alike.
     pub(super) area_bar: Option<f64>,
     pub(super) rms_pressure: f64,
     pub(super) rms_pressure_bar: Option<f64>,
@@ -47,7 +49,7 @@ pub(super) struct Row {
     pub(super) mean_gap_bar: Option<f64>,
 }
 
-/// What tells the lines of one program apart, other than scene and mesh.
+/// What distinguishes the lines of one program, other than scene and mesh.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Family {
     pub(super) program: String,
@@ -69,7 +71,9 @@ impl Family {
         }
     }
 
-    /// The family of a peer's solves; all have the point-collocated kernel on a uniform grid.
+    /// The family of a peer's solves.
+    ///
+    /// All peers have the point-collocated kernel on a uniform grid.
     pub(super) fn peer(program: &str, tolerance: &str) -> Self {
         Self {
             program: program.to_owned(),
@@ -85,8 +89,9 @@ impl Family {
 pub(super) const OURS: &str = "rc";
 
 impl Row {
-    /// The line of repeated solves; the results are those of the first, since they are all the same. `None` without
-    /// any.
+    /// The line of repeated solves; `None` without a solve.
+    ///
+    /// The results are those of the first solve, since all solves give the same.
     pub(super) fn of(scene: &Scene, family: &Family, elements_per_wave: usize, repeats: &[Outcome]) -> Option<Self> {
         let first = repeats.first()?;
         let Family { program, method, kernel, border_level, tolerance } = family.clone();
@@ -132,13 +137,13 @@ impl Row {
         }
     }
 
-    /// What an answer takes: the solve, and what has to be computed from the pressure.
+    /// Seconds of an answer: the solve, and the evaluation of the observables.
     pub(super) fn total_seconds(&self) -> f64 {
         self.seconds + self.observables_seconds
     }
 }
 
-/// Times of repeated solves.
+/// Median and range of the times of repeated solves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Spread {
     pub(super) median: f64,
@@ -147,7 +152,7 @@ pub(super) struct Spread {
 }
 
 impl Spread {
-    /// NaN and an empty range without any.
+    /// The spread of times; NaN and an empty range without times.
     pub(super) fn of(seconds: impl Iterator<Item = f64>) -> Self {
         let all: Vec<f64> = seconds.collect();
         let (min, max) = all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &s| (l.min(s), h.max(s)));
@@ -160,10 +165,10 @@ pub(super) fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }
 
-/// Records from CSV text; `name` is that of the file, for errors.
+/// Records from CSV text; `name` is the file's name, for errors.
 ///
 /// # Errors
-/// With the line that is not as expected.
+/// When a line is not as expected. The text names the line.
 pub(super) fn from_csv<T: for<'a> Deserialize<'a>>(text: &str, name: &str) -> Result<Vec<T>> {
     let records = csv::Reader::from_reader(text.as_bytes()).into_deserialize().collect::<Result<_, _>>();
     records.with_context(|| format!("{name} is not as `cargo xtask bench` writes it"))
@@ -179,7 +184,7 @@ pub(super) fn to_csv<T: Serialize>(records: &[T]) -> Result<String> {
     Ok(String::from_utf8(writer.into_inner()?)?)
 }
 
-/// Writes a text file and says which.
+/// Writes a text file and prints its name.
 ///
 /// # Errors
 /// Those of the file system.
@@ -197,7 +202,7 @@ pub(super) mod tests {
     use super::*;
     use crate::bench::scenes::SCENES;
 
-    /// An outcome that took some time.
+    /// An outcome of a solve that took `seconds`.
     pub(in crate::bench) fn outcome(seconds: f64, area: Option<f64>) -> Outcome {
         Outcome {
             status: "converged".to_owned(),

@@ -1,4 +1,4 @@
-//! Reference values of the scenes, `data/bench/reference.csv`, and errors against them.
+//! Reference values of the scenes, `data/bench/reference.csv`, and errors relative to them.
 
 use std::collections::BTreeMap;
 
@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 
 use super::record::from_csv;
 
-/// Where the reference values are.
+/// File of the reference values.
 pub(super) const REFERENCE: &str = "data/bench/reference.csv";
 
-/// What is compared.
+/// Quantities that have a reference value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Quantity {
@@ -26,10 +26,10 @@ pub(super) enum Quantity {
 }
 
 impl Quantity {
-    /// Those that errors are shown of. (The error of the mean gap is that of the penetration.)
+    /// The quantities whose errors are shown. The error of the mean gap is the same as that of the penetration.
     pub(super) const COMPARED: [Self; 3] = [Self::Area, Self::RmsPressure, Self::Penetration];
 
-    /// As in sentences.
+    /// Name in sentences.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Area => "area",
@@ -40,7 +40,7 @@ impl Quantity {
     }
 }
 
-/// A reference value; the two kernels have one limit.
+/// A reference value, which is a common limit of the two kernels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ReferenceRow {
     pub(super) scene: String,
@@ -50,12 +50,14 @@ pub(super) struct ReferenceRow {
     pub(super) uncertainty: f64,
     /// The limit of uniform grids with the other kernel, found independently.
     pub(super) other_kernel: f64,
-    /// Estimated error of that.
+    /// Estimated error of `other_kernel`.
     pub(super) other_uncertainty: f64,
 }
 
 impl ReferenceRow {
-    /// The uncertainty that is stated: not below the disagreement of the two kernels, whose limit is one.
+    /// The uncertainty that the documents state.
+    ///
+    /// It is at least the difference between the limits of the two kernels, since both have the same true limit.
     pub(super) fn stated_uncertainty(&self) -> f64 {
         self.uncertainty.max((self.value - self.other_kernel).abs())
     }
@@ -66,10 +68,10 @@ impl ReferenceRow {
 pub(super) struct References(BTreeMap<(String, Quantity), ReferenceRow>);
 
 impl References {
-    /// Reads the file of the repository.
+    /// Reads the reference file of the repository.
     ///
     /// # Errors
-    /// When it cannot be read.
+    /// When the file cannot be read.
     pub(super) fn read() -> Result<Self> {
         let path = repository::root().join(REFERENCE);
         let text = std::fs::read_to_string(&path).with_context(|| {
@@ -78,24 +80,25 @@ impl References {
         Self::from_text(&text)
     }
 
-    /// From the text of the file.
+    /// The reference values in the text of a file.
     ///
     /// # Errors
-    /// With the line that is not as expected.
+    /// When a line is not as expected. The text names the line.
     pub(super) fn from_text(text: &str) -> Result<Self> {
         let rows: Vec<ReferenceRow> = from_csv(text, REFERENCE)?;
         Ok(Self(rows.into_iter().map(|row| ((row.scene.clone(), row.quantity), row)).collect()))
     }
 
-    /// The reference of a scene, if there is one.
+    /// The reference value of a quantity in a scene, if the file has it.
     pub(super) fn row(&self, scene: &str, quantity: Quantity) -> Option<&ReferenceRow> {
         self.0.get(&(scene.to_owned(), quantity))
     }
 
     /// Relative error of a value, with its sign.
     ///
-    /// That of a penetration is the one of the mean gap, which is the value, relative to the penetration: the two add
-    /// up to the height of the highest point, and how well a grid's points meet that point says nothing about a solver.
+    /// For a penetration, `value` is the mean gap, and its error is divided by the penetration. Penetration and mean
+    /// gap add up to the height of the highest point, and how close a grid's points are to that point says nothing
+    /// about a solver.
     pub(super) fn error(&self, scene: &str, quantity: Quantity, value: f64) -> Option<f64> {
         let reference = self.row(scene, quantity)?.value;
         if quantity == Quantity::Penetration {
@@ -116,7 +119,7 @@ pub(super) mod tests {
 
     const MEAN_GAP: f64 = 2.5;
 
-    /// References of one scene.
+    /// Reference values of one scene.
     pub(in crate::bench) fn references(scene: &str, [area, rms_pressure, penetration]: [f64; 3]) -> References {
         let values = [area, rms_pressure, penetration, MEAN_GAP].into_iter().zip(ALL);
         let row = |(value, quantity)| ReferenceRow {
@@ -131,7 +134,7 @@ pub(super) mod tests {
         References::from_text(&text).expect("its own output")
     }
 
-    /// Each scene has its values, and the limits of the two kernels are one within their uncertainties.
+    /// Each scene has its values, and the limits of the two kernels agree.
     #[test]
     fn the_kernels_have_one_limit() {
         let references = References::read().expect("the file of the repository");
@@ -146,7 +149,9 @@ pub(super) mod tests {
         }
     }
 
-    /// What is stated covers the disagreement of the kernels, and is small against every error that is asked for.
+    /// The stated uncertainty covers the difference of the kernels.
+    ///
+    /// It is small compared with every error level.
     #[test]
     fn stated_uncertainties_cover_the_disagreement_of_the_kernels() {
         let references = References::read().expect("the file of the repository");

@@ -1,4 +1,6 @@
-//! A run of the benchmark: scene by scene, repeat by repeat, mesh by mesh, ours and the peers in turns.
+//! A run of the benchmark, scene by scene, repeat by repeat, mesh by mesh.
+//!
+//! Our solves and those of the peers take turns.
 
 use anyhow::{Context, Result};
 use std::collections::BTreeMap;
@@ -15,21 +17,23 @@ use super::record::{Family, Row};
 use super::scenes::Scene;
 use super::setting::{LARGEST_UNIFORM, MESHES, Setting, of_peer, typed};
 
-/// Seconds after which a case is not repeated again.
+/// Total seconds of a case after which it is not repeated.
 const ENOUGH: f64 = 40.0;
 
-/// The coarsest mesh of the peers, from which their users state the errors of the next: every second point of that one.
+/// The coarsest mesh of the peers: every second point of our coarsest mesh.
+///
+/// From it, the peers' users state the errors of the next mesh.
 const COARSEST_OF_PEERS: usize = MESHES[0] / 2;
 
-/// How much longer the next mesh takes, at least.
+/// Smallest ratio of times on a mesh and on the next coarser one.
 const GROWTH: f64 = 5.0;
 
 /// How much is run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
-    /// Most repeats of a case; those above [`ENOUGH`] seconds have fewer.
+    /// Maximum number of repeats of a case. Cases above [`ENOUGH`] seconds have fewer.
     pub(super) repeats: usize,
-    /// Longest solve of a peer that is expected to be worth its time; half of it where a peer uses one thread.
+    /// Longest expected solve of a peer that is still run (s). The limit of a peer with one thread is half of it.
     pub(super) peer_seconds: f64,
 }
 
@@ -39,11 +43,11 @@ pub(super) struct Measurements {
     pub(super) rows: Vec<Row>,
     /// Name and version of each peer that ran.
     pub(super) peers: BTreeMap<String, String>,
-    /// Of the whole run.
+    /// Seconds of the whole run.
     pub(super) seconds: f64,
 }
 
-/// Who solves a case.
+/// The program that solves a case.
 #[derive(Clone, Copy, Debug)]
 enum Solver {
     Ours(Setting),
@@ -51,13 +55,13 @@ enum Solver {
     Peer(usize, Option<f64>),
 }
 
-/// One line of the result on its way.
+/// A future line of the result.
 struct Case {
     family: Family,
     elements_per_wave: usize,
     solver: Solver,
     outcomes: Vec<Outcome>,
-    /// A peer's case that would take too long, or failed.
+    /// Whether the case is left out: a peer's case that would take too long, or that failed.
     dropped: bool,
 }
 
@@ -71,10 +75,12 @@ impl Case {
     }
 }
 
-/// Measures one scene; peers only with an interpreter that has them.
+/// Measures one scene, with the peers if `python` has them.
+///
+/// A peer that fails is reported and left out.
 ///
 /// # Errors
-/// When a solve of ours fails; a peer that fails is reported and left out.
+/// When a solve of ours fails.
 pub(super) fn run(plan: Plan, scene: &Scene, python: Option<&Path>, found: &mut Measurements) -> Result<()> {
     let start = Instant::now();
     let mut peers: Vec<Option<Peer>> = Vec::new();
@@ -100,14 +106,16 @@ pub(super) fn run(plan: Plan, scene: &Scene, python: Option<&Path>, found: &mut 
     Ok(())
 }
 
-/// Whether a peer's case that has not begun is expected to take longer than is worth it.
+/// Whether a peer's case that has not begun would take too long.
 fn is_too_long(cases: &[Case], i: usize, peer_seconds: f64) -> bool {
     let Solver::Peer(peer, _) = cases[i].solver else { return false };
     let patience = if PEERS[peer].is_serial { 0.5 * peer_seconds } else { peer_seconds };
     cases[i].outcomes.is_empty() && expected(cases, i) > patience
 }
 
-/// The cases of a scene by mesh, so that what is compared runs at about the same time.
+/// The cases of a scene, ordered by mesh.
+///
+/// Cases under comparison then run at about the same time.
 fn cases(scene: &Scene, with_peers: bool) -> Vec<Case> {
     let mut cases = Vec::new();
     let mut mesh = if with_peers { COARSEST_OF_PEERS } else { MESHES[0] };
@@ -130,8 +138,10 @@ fn cases(scene: &Scene, with_peers: bool) -> Vec<Case> {
     cases
 }
 
-/// Seconds that a case will take, from the next coarser mesh of its family: 0 on the two coarsest, since the very first
-/// solve of a process takes longer than others; infinite where that was left out.
+/// Expected seconds of a case, from the next coarser mesh of its family.
+///
+/// They are 0 on the two coarsest meshes, since the first solve of a process takes longer than others. They are
+/// infinite when the coarser mesh was left out.
 fn expected(cases: &[Case], i: usize) -> f64 {
     let is_coarser = |case: &&Case| case.family == cases[i].family && case.elements_per_wave > COARSEST_OF_PEERS;
     let coarser = cases[..i].iter().rfind(is_coarser);
@@ -146,13 +156,13 @@ fn solve(scene: &Scene, case: &mut Case, peers: &mut [Option<Peer>], heights: &H
                 case.dropped = true;
                 return Ok(());
             };
-            // A surface is not sampled where its shortest waves would be lost.
+            // A surface is not sampled so coarsely that its shortest waves are lost.
             let stride = MESHES[0].div_ceil(case.elements_per_wave);
             let path = heights.on(scene, stride * case.elements_per_wave)?;
             let question = Question { heights: &path, stride, load: scene.load, tolerance };
             match tell(peer.solve(&question).context(PEERS[i].name)) {
                 Some(outcome) => case.outcomes.push(outcome),
-                // What it was doing is unknown, so it is not asked again.
+                // The state of the peer is unknown, so it is not used again.
                 None => peers[i] = None,
             }
         }
@@ -160,16 +170,20 @@ fn solve(scene: &Scene, case: &mut Case, peers: &mut [Option<Peer>], heights: &H
     Ok(())
 }
 
-/// Says what went wrong with a peer; the run goes on without it.
+/// The value of `result`, or `None` after printing what went wrong with a peer.
+///
+/// The run goes on without the peer.
 #[expect(clippy::print_stderr, reason = "a peer is left out")]
 pub(super) fn tell<T>(result: Result<T>) -> Option<T> {
     result.inspect_err(|error| eprintln!("left out: {error:#}")).ok()
 }
 
-/// Files of heights for the peers, as long as this lives.
+/// Files of heights for the peers, which exist as long as this value.
 pub(super) struct Heights(PathBuf);
 
 impl Heights {
+    /// Makes a folder for the heights of `scene`.
+    ///
     /// # Errors
     /// When the folder cannot be made.
     pub(super) fn of(scene: &Scene) -> Result<Self> {
@@ -178,10 +192,10 @@ impl Heights {
         Ok(Self(folder))
     }
 
-    /// The file of one mesh, which is made when needed.
+    /// The file of heights of one mesh, which is written at its first use.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// When the file cannot be written.
     pub(super) fn on(&self, scene: &Scene, elements_per_wave: usize) -> Result<PathBuf> {
         let path = self.0.join(format!("{elements_per_wave}.npy"));
         if !path.exists() {
@@ -193,7 +207,7 @@ impl Heights {
 
 impl Drop for Heights {
     fn drop(&mut self) {
-        // Left behind, they only take room under `target/`.
+        // Files that are left behind only take space under `target/`.
         let _ = fs::remove_dir_all(&self.0);
     }
 }
@@ -225,7 +239,7 @@ mod tests {
         cases[at[1]].outcomes.push(outcome(2.0, None));
         assert!((expected(&cases, at[2]) - 2.0 * GROWTH).abs() < 1e-12);
         assert!(expected(&cases, at[3]).is_infinite());
-        // Tamaas uses one thread, so its 10 s are worth as much as 20 s of others.
+        // Tamaas uses one thread, so its limit of 10 s corresponds to 20 s of the others.
         assert!(is_too_long(&cases, at[2], 4.0 * GROWTH - 0.1) && !is_too_long(&cases, at[2], 4.0 * GROWTH + 0.1));
         cases[at[1]].outcomes.push(outcome(ENOUGH, None));
         assert!(cases[at[1]].is_done() && !cases[at[2]].is_done());

@@ -1,4 +1,6 @@
-//! `cargo xtask bench --scale`: time and memory on large grids, by threads, and by the area in contact.
+//! `cargo xtask bench --scale`: time and memory on large grids.
+//!
+//! Times are by number of threads and by area in contact.
 
 pub(super) mod row;
 pub(super) mod tables;
@@ -18,10 +20,10 @@ use super::round::{Heights, tell};
 use super::scenes::{SCALE_SCENES, SCENES, Scene};
 use super::setting::{CERTIFIED, KernelName, Setting, of_peer, typed};
 
-/// Seconds after which a case is not repeated again.
+/// Total seconds of a case after which it is not repeated.
 const ENOUGH: f64 = 60.0;
 
-/// One solve.
+/// One problem with one program and one number of threads.
 struct Case {
     part: Part,
     scene: Scene,
@@ -64,20 +66,20 @@ impl Case {
     }
 }
 
-/// Elements for the shortest wave of the grids, and where loads are compared.
+/// Elements for the shortest wave: `FINE` on grids of several sizes, `COARSE` for several loads.
 const FINE: usize = 32;
 const COARSE: usize = 16;
 
-/// Largest grid of a peer, and of solves with fewer threads than there are.
+/// Largest grid of a peer, and of solves with fewer threads than the machine has.
 const LARGEST_COMPARED: usize = 4096;
 
-/// The cases, by scene; `quick` has the two smallest scenes only.
+/// The cases, by scene; `quick` selects the two smallest scenes.
 fn cases(quick: bool, with_peer: bool) -> Vec<Case> {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
     let named = |names: &[&str]| -> Vec<Scene> {
         let scenes = SCENES.into_iter().chain(SCALE_SCENES);
         let mut found: Vec<Scene> = scenes.filter(|scene| names.contains(&scene.name)).collect();
-        // Coarse grids first: only then the peak memory of a peer's process is that of the last solve.
+        // Coarse grids are first. Only then is the peak memory of a peer's process that of its last solve.
         found.sort_by_key(|scene| scene.waves);
         found
     };
@@ -107,7 +109,7 @@ fn cases(quick: bool, with_peer: bool) -> Vec<Case> {
     cases
 }
 
-/// 1, 2, 4, ... and all threads.
+/// Numbers of threads: 1, 2, 4, ... and all.
 fn thread_counts(all: usize) -> Vec<usize> {
     let powers = std::iter::successors(Some(1), |threads| Some(2 * threads));
     powers.take_while(|&threads| threads < all).chain([all]).collect()
@@ -119,14 +121,15 @@ pub(super) struct ScaleRun {
     pub(super) rows: Vec<ScaleRow>,
     /// Version of the peer, if it ran.
     pub(super) peer: Option<String>,
-    /// Solves that failed and were reported.
+    /// Number of solves that failed and were reported.
     pub(super) n_failed: usize,
-    /// Of the whole run.
+    /// Seconds of the whole run.
     pub(super) seconds: f64,
 }
 
-/// Solves every case up to `repeats` times; the peer's only with an interpreter that has it. `quick` has small scenes
-/// only.
+/// Solves every case up to `repeats` times, the peer's only if `python` has it.
+///
+/// `quick` selects small scenes.
 pub(super) fn run(repeats: usize, quick: bool, python: Option<&Path>) -> ScaleRun {
     let start = Instant::now();
     let mut peer = python.and_then(|python| tell(Peer::start(python, &ASPHER)));
@@ -164,7 +167,9 @@ fn solve(case: &Case, peer: Option<&mut Peer>) -> Result<Outcome> {
 pub(super) mod tests {
     use super::*;
 
-    /// Lines of two grids, one with a peer and with two numbers of threads, and of two loads.
+    /// Lines of two grids and of two loads.
+    ///
+    /// One of the grids has a peer and two numbers of threads.
     pub(in crate::bench) fn rows() -> Vec<ScaleRow> {
         let row = |part, waves: usize, program: &str, threads, seconds| ScaleRow {
             part,
@@ -221,7 +226,7 @@ pub(super) mod tests {
         let outcome = |seconds| crate::bench::record::tests::outcome(seconds, Some(0.07));
         case.outcomes = [3.0, 1.0, 2.0].map(outcome).to_vec();
         let row = case.row().expect("a solved case");
-        // The observables take a quarter of a second each time.
+        // The evaluation of the observables takes a quarter of a second each time.
         let times = [row.seconds, row.seconds_min, row.seconds_max];
         assert!(times.iter().zip([2.25, 1.25, 3.25]).all(|(a, b)| (a - b).abs() < 1e-12), "{row:?}");
         assert!(row.repeats == 3 && row.side == 32 * row.waves && !case.is_done(), "{row:?}");

@@ -4,7 +4,9 @@ use anyhow::{Context, Result};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_solver::Control;
 
-/// A surface of the paper's spectrum (rms height 1.3e-3 of the cell), pressed by a mean pressure.
+/// A surface of the paper's spectrum under a mean pressure.
+///
+/// The rms height is 1.3e-3 of the cell.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene {
     pub(super) name: &'static str,
@@ -21,7 +23,7 @@ const fn scene(name: &'static str, waves: usize, hurst: f64, seed: u64, load: f6
     Scene { name, waves, hurst, seed, load }
 }
 
-/// Every scene, from 1 % to 30 % in contact. The first is the paper's (Fig. 6a).
+/// Every scene, with contact areas from 1 % to 30 %. The first scene is the paper's (Fig. 6a).
 pub(super) const SCENES: [Scene; 10] = [
     scene("paper", 64, 0.8, 1, 8.9e-4),
     scene("seed-2", 64, 0.8, 2, 8.9e-4),
@@ -35,7 +37,9 @@ pub(super) const SCENES: [Scene; 10] = [
     scene("hurst-0.3-light", 16, 0.3, 9, 3.4e-4),
 ];
 
-/// Scenes of large grids, and of loads from a thousandth in contact to nearly all, all of the paper's spectrum.
+/// Scenes of large grids, and scenes of several loads, all of the paper's spectrum.
+///
+/// The contact areas of the loads are from a thousandth to nearly full contact.
 pub(super) const SCALE_SCENES: [Scene; 8] = [
     scene("waves-512", 512, 0.8, 1, 8.9e-4),
     scene("waves-1024", 1024, 0.8, 1, 8.9e-4),
@@ -48,10 +52,10 @@ pub(super) const SCALE_SCENES: [Scene; 8] = [
 ];
 
 impl Scene {
-    /// The scene of a name.
+    /// The scene with this name.
     ///
     /// # Errors
-    /// When there is none, with those that there are.
+    /// When no scene has the name. The text lists the names that exist.
     pub(super) fn named(name: &str) -> Result<Self> {
         let names = || SCENES.map(|scene| scene.name).join(", ");
         let found = SCENES.into_iter().chain(SCALE_SCENES).find(|scene| scene.name == name);
@@ -67,7 +71,7 @@ impl Scene {
         Control::MeanPressure(self.load)
     }
 
-    /// Elements per side of the cell, with as many elements for the shortest wave.
+    /// Elements per side of the cell, from elements for the shortest wave.
     pub(super) fn side(&self, elements_per_wave: usize) -> usize {
         elements_per_wave * self.waves
     }

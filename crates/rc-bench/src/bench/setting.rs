@@ -10,13 +10,13 @@ use rc_solver::{Method, Tolerance};
 
 use super::scenes::Scene;
 
-/// Meshes of the benchmark: elements for the shortest wave.
+/// Meshes of the benchmark, in elements for the shortest wave.
 pub(super) const MESHES: [usize; 4] = [4, 8, 16, 32];
 
-/// Largest uniform grid.
+/// Largest number of elements per side of a uniform grid.
 pub(super) const LARGEST_UNIFORM: usize = 2048;
 
-/// Most smallest elements for the shortest wave, and along a side of the cell.
+/// Maximum numbers of smallest elements for the shortest wave and along the cell's side.
 const SMALLEST_ELEMENTS: (usize, usize) = (64, 4096);
 
 /// Deepest border level.
@@ -62,7 +62,7 @@ impl Setting {
         Self { method: Method::Adaptive, kernel: KernelName::Love, border_level, elements_per_wave, tolerance }
     }
 
-    /// Every setting of one mesh of a scene that is small enough.
+    /// Every setting on one mesh of a scene, without those that have too many elements.
     pub(super) fn of_mesh(scene: &Scene, elements_per_wave: usize) -> Vec<Self> {
         let mut settings = Vec::new();
         if scene.side(elements_per_wave) <= LARGEST_UNIFORM {
@@ -73,7 +73,7 @@ impl Setting {
         for border_level in 0..=DEEPEST_BORDER {
             let smallest = elements_per_wave << border_level;
             let (per_wave, per_side) = SMALLEST_ELEMENTS;
-            // The base grid has four elements for the shortest wave, and the grid must be above it.
+            // The base grid has four elements for the shortest wave, and the grid must be finer than it.
             if elements_per_wave < 8 || smallest > per_wave || scene.side(smallest) > per_side {
                 continue;
             }
@@ -86,7 +86,7 @@ impl Setting {
     }
 }
 
-/// A tolerance as it is typed.
+/// A tolerance as a user types it.
 pub(super) fn typed(tolerance: Tolerance) -> String {
     match tolerance {
         Tolerance::Relative(value) => format!("{value:e}"),
@@ -95,13 +95,13 @@ pub(super) fn typed(tolerance: Tolerance) -> String {
     }
 }
 
-/// What a tolerance for the energy error begins with.
+/// First word of a tolerance of the energy error.
 const ENERGY: &str = "energy ";
 
-/// The reverse of [`typed`].
+/// The tolerance that [`typed`] wrote as `text`.
 ///
 /// # Errors
-/// For any other text.
+/// When `text` is not a tolerance.
 pub(super) fn parse_tolerance(text: &str) -> Result<Tolerance> {
     Ok(match text.strip_prefix(ENERGY) {
         Some(number) => Tolerance::Energy(number.parse()?),
@@ -110,8 +110,10 @@ pub(super) fn parse_tolerance(text: &str) -> Result<Tolerance> {
     })
 }
 
-/// The tolerance of a peer as a number, relative to the peak-to-valley height. Its `auto` is 3e-5 (m/8)^(-3/2) for m
-/// elements per shortest wave, well below the error of its grid.
+/// The tolerance of a peer as a number, relative to the peak-to-valley height.
+///
+/// For `auto` it is 3e-5 (m/8)^(-3/2) with m elements per shortest wave. This is well below the error of the peer's
+/// grid.
 pub(super) fn of_peer(tolerance: Tolerance, elements_per_wave: usize) -> f64 {
     match tolerance {
         Tolerance::Relative(value) | Tolerance::Energy(value) => value,

@@ -9,10 +9,10 @@ use super::record::{Row, Spread};
 use super::reference::{Quantity, REFERENCE, References};
 use super::scenes::{SCENES, Scene};
 
-/// In a table, where there is nothing.
+/// Content of a cell of a table without a value.
 pub(super) const NONE: &str = "\u{2013}";
 
-/// An error level, as people write it.
+/// An error level as a percentage.
 pub(super) fn percent(level: f64) -> String {
     format!("{} %", digits(100.0 * level, 3))
 }
@@ -21,7 +21,7 @@ pub(super) fn time(seconds: f64) -> String {
     if seconds < 1.0 { format!("{} ms", digits(1e3 * seconds, 3)) } else { format!("{} s", digits(seconds, 3)) }
 }
 
-/// A median with the fastest and slowest, if there are several.
+/// A median, with the fastest and slowest if there are several times.
 pub(super) fn spread(Spread { median, min, max }: Spread) -> String {
     if min < max { format!("{} ({} to {})", time(median), time(min), time(max)) } else { time(median) }
 }
@@ -32,12 +32,12 @@ pub(super) fn megabytes(memory: Option<f64>) -> String {
 
 pub(super) fn ratio(ratio: Ratio) -> String {
     let sign = if ratio.at_least { "> " } else { "" };
-    // One digit behind the point only where it decides who is faster.
+    // A digit behind the point is shown only for small ratios, where it decides who is faster.
     let digits = usize::from(ratio.value < 9.95);
     format!("{sign}{:.digits$}", ratio.value)
 }
 
-/// Time to an error, ours and the fastest peer's, over all scenes.
+/// Table of times to an error, ours and the fastest peer's, over all scenes.
 pub(super) fn times(results: &Results<'_>, choice: Choice) -> String {
     let ours = match choice {
         Choice::Stated => "rc, median (scenes; where it holds)",
@@ -77,7 +77,9 @@ const SHORT: [(Quantity, f64); 5] = [
     (Quantity::MeanGap, 1e-3),
 ];
 
-/// Time to a stated error in five rows: our median, and the median ratio of the fastest peer's time to ours.
+/// Table of times to a stated error in five rows.
+///
+/// A row has our median time, and the median ratio of the fastest peer's time to ours.
 pub(super) fn short(results: &Results<'_>) -> String {
     let head = "| error below | rc, median time | fastest peer's time / ours | the same, peer's result read in the best of four ways |\n\
                 |---|---|---|---|\n";
@@ -97,7 +99,7 @@ pub(super) fn short(results: &Results<'_>) -> String {
     head.to_owned() + &SHORT.map(line).concat()
 }
 
-/// What is solved, and the reference values.
+/// Table of the scenes with their reference values.
 ///
 /// # Errors
 /// When a scene has no reference value.
@@ -116,13 +118,15 @@ pub(super) fn scenes(references: &References) -> Result<String, String> {
     Ok(head.to_owned() + &SCENES.iter().map(line).collect::<Result<String, String>>()?)
 }
 
-/// One significant digit, never less than the value.
+/// The value rounded up to one significant digit.
 fn rounded_up(value: f64) -> String {
     let unit = 10_f64.powf(value.log10().floor());
     digits((value / unit).ceil() * unit, 1)
 }
 
-/// Which setting reaches an error in which time, for one scene; for peers the same.
+/// Table of one scene: the fastest setting for each error, with its time.
+///
+/// It has our settings and the peers'.
 pub(super) fn scene(results: &Results<'_>, scene: &str, choice: Choice) -> String {
     let head = "| error below | rc | time | fastest peer, as it reports | time | fastest peer, read in any way | time |\n\
                 |---|---|---|---|---|---|---|\n";
@@ -144,7 +148,7 @@ pub(super) fn scene(results: &Results<'_>, scene: &str, choice: Choice) -> Strin
     head.to_owned() + &levels().map(line).collect::<String>()
 }
 
-/// How many of the errors that are stated, on all meshes, are not below the true one.
+/// Table of how often the true error exceeds the stated error, over all meshes.
 pub(super) fn statements(results: &Results<'_>) -> String {
     let quantities = [Quantity::Area, Quantity::RmsPressure, Quantity::MeanGap];
     let names = quantities.map(Quantity::name).join(" | ");
@@ -161,12 +165,14 @@ pub(super) fn statements(results: &Results<'_>) -> String {
     head + &line("rc, error bars of the summary", true, Reading::Reported) + &peers.concat()
 }
 
-/// Scenes of the table of equal meshes, its tolerance, and its coarsest mesh.
+/// Scenes of the table of equal meshes. The tolerance and the coarsest mesh of the table follow.
 pub(super) const EQUAL_MESHES: [&str; 3] = ["paper", "waves-128", "heavy"];
 pub(super) const EQUAL_TOLERANCE: &str = "1e-6";
 const COARSEST_EQUAL: usize = 4;
 
-/// Our time beside the fastest peer's on the same meshes of some scenes, all certified to the same tolerance.
+/// Table of our time and the fastest peer's on equal meshes of some scenes.
+///
+/// All solves are certified to the same tolerance.
 pub(super) fn equal_meshes(results: &Results<'_>, scenes: &[&str]) -> String {
     let head = "| scene, elements | fastest peer | its time, memory | adaptive, `love`: its time / ours; our time, memory | \
                 uniform, `spectral` |\n|---|---|---|---|---|\n";
@@ -185,7 +191,7 @@ pub(super) fn equal_meshes(results: &Results<'_>, scenes: &[&str]) -> String {
     head.to_owned() + &scenes.iter().flat_map(|scene| equal(results, scene)).map(|row| line(&row)).collect::<String>()
 }
 
-/// The ratios of that table by line: adaptive, uniform.
+/// Ratios of times for each line of [`equal_meshes`], of the adaptive and the uniform method.
 pub(super) fn equal_ratios(results: &Results<'_>, scene: &str) -> Vec<(String, [Option<f64>; 2])> {
     let of = |equal: Equal<'_>| {
         (equal.name(), equal.ours.map(|row| row.map(|row| equal.peer.seconds / row.total_seconds())))
@@ -193,10 +199,10 @@ pub(super) fn equal_ratios(results: &Results<'_>, scene: &str) -> Vec<(String, [
     equal(results, scene).into_iter().map(of).collect()
 }
 
-/// The fastest peer on a mesh, and ours.
+/// The fastest peer on a mesh, and our solves.
 struct Equal<'a> {
     peer: &'a Row,
-    /// Adaptive, uniform.
+    /// Our adaptive and uniform solves.
     ours: [Option<&'a Row>; 2],
 }
 
@@ -210,7 +216,7 @@ fn equal<'a>(results: &Results<'a>, scene: &str) -> Vec<Equal<'a>> {
     let same = |row: &&Row| {
         row.tolerance == EQUAL_TOLERANCE && row.border_level == 0 && row.elements_per_wave >= COARSEST_EQUAL
     };
-    // Fastest first, of which each mesh keeps one.
+    // The fastest peer is first, and only the first is kept for each mesh.
     let mut peers: Vec<&Row> = results.of(scene, false).filter(same).collect();
     peers.sort_by(|a, b| a.elements_per_wave.cmp(&b.elements_per_wave).then(a.seconds.total_cmp(&b.seconds)));
     peers.dedup_by_key(|row| row.elements_per_wave);
@@ -225,13 +231,13 @@ fn equal<'a>(results: &Results<'a>, scene: &str) -> Vec<Equal<'a>> {
     peers.into_iter().map(beside).collect()
 }
 
-/// Times with the evaluation of the observables, whose own spread is small.
+/// Seconds of a solve and the evaluation of the observables. The spread of the latter is small and left out.
 fn total(row: &Row) -> Spread {
     let of = |seconds| seconds + row.observables_seconds;
     Spread { median: of(row.seconds), min: of(row.seconds_min), max: of(row.seconds_max) }
 }
 
-/// How much the times of a case differ, as a sentence.
+/// A sentence about the spread of the times of a case.
 pub(super) fn spreads(results: &Results<'_>) -> String {
     let rows = results.rows.iter().filter(|row| row.repeats > 1);
     let mut all: Vec<f64> = rows.map(|row| (row.seconds_max - row.seconds_min) / row.seconds).collect();
@@ -248,7 +254,7 @@ pub(super) fn spreads(results: &Results<'_>) -> String {
     )
 }
 
-/// How a line was made.
+/// Method, kernel, mesh and tolerance of a line.
 fn setting(row: &Row) -> String {
     let Row { program, method, kernel, border_level, elements_per_wave, tolerance, .. } = row;
     let how = match (program.as_str(), *border_level) {
@@ -273,7 +279,7 @@ mod tests {
         assert!(table.contains("| area, 3 % | 750 ms (1 of 1) | 120, 120 |"), "{table}");
         assert!(table.contains("| area, 1 % | 4.25 s (1 of 1) | > 21, > 21 |"), "{table}");
         assert!(table.contains("| area, 0.1 % | \u{2013} (0 of 1) | \u{2013} |"), "{table}");
-        // Our bars are 1 %; the middle mesh, which is 2 % off, is not the fastest.
+        // Our bars are 1 %. The middle mesh has a true error of 2 %, so it does not count as the fastest.
         let table = times(&results, Choice::Stated);
         assert!(table.contains("| area, 3 % | 750 ms (1 of 1; 1) | > 120, > 120 |"), "{table}");
         let table = short(&results);
@@ -290,7 +296,7 @@ mod tests {
         let references = references("paper", [0.07, 4e-3, 1.0]);
         let mut rows: Vec<Row> =
             rows().into_iter().map(|row| Row { tolerance: EQUAL_TOLERANCE.to_owned(), ..row }).collect();
-        // A slower peer on one of the meshes is not shown, and neither is a mesh that only peers have.
+        // A slower peer on one of the meshes is left out, and so is a mesh that only peers have.
         let slower = Row { program: "slower".to_owned(), seconds: 31.0, ..rows[3].clone() };
         let coarser = Row { elements_per_wave: 2, ..rows[3].clone() };
         rows.extend([slower, coarser]);
@@ -308,7 +314,7 @@ mod tests {
             assert_eq!(rounded_up(value), expected, "{value:e}");
         }
         let table = scenes(&References::read().expect("the file of the repository")).expect("every scene");
-        // The kernels' areas of the first scene are 9.7e-6 apart.
+        // The areas of the two kernels differ by 9.7e-6 in the first scene.
         assert!(table.contains("| 0.0700858 ± 1e-5 |"), "{table}");
     }
 

@@ -1,4 +1,4 @@
-//! What different ways to the same result must agree on: operators, methods, kernels, threads.
+//! Agreement of different ways to the same result: operators, methods, kernels, threads.
 
 use anyhow::{Context, Result};
 use rc_core::testing::quasi_random;
@@ -15,7 +15,7 @@ use super::solved::{Method, Solved, eliminated, solve};
 
 const LOAD: Control = Control::MeanPressure(1e-3);
 
-/// The adaptive method's own operator has an error.
+/// Allowed difference of the adaptive method, whose operator has an error of its own.
 const SAME_BY_ADAPTIVE: f64 = 1e-3;
 
 pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
@@ -28,7 +28,7 @@ pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     Ok(rows.finish())
 }
 
-/// L is linear, symmetric, of zero mean, and moves with the load.
+/// L is linear and symmetric, gives displacements of zero mean, and moves with the load.
 fn operators(rows: &mut Rows) -> Result<()> {
     let grid = Grid::square(32)?;
     let places = (0..4).flat_map(|row| (0..4).map(move |column| [column, row])).collect();
@@ -65,7 +65,7 @@ fn operators(rows: &mut Rows) -> Result<()> {
     Ok(())
 }
 
-/// The multilevel operator does what a Fourier transform does, over any number of levels.
+/// The multilevel operator gives the same as a Fourier transform, for any number of levels.
 fn levels(rows: &mut Rows) -> Result<()> {
     for (base, side) in [(16, 32), (16, 64), (16, 128), (32, 256)] {
         let grid = Grid::square(side)?;
@@ -119,7 +119,9 @@ fn methods(rows: &mut Rows) -> Result<()> {
     Ok(())
 }
 
-/// Squares and waves have the same limit of fine grids, and half the elements bring them nearer.
+/// The kernels of squares and waves have one limit.
+///
+/// Their results come closer as the grid is refined.
 fn limits(rows: &mut Rows, preset: Preset) -> Result<()> {
     let sides: &[usize] = if preset == Preset::Full { &[32, 64, 128, 256, 512] } else { &[32, 64, 128] };
     let mut last: Option<f64> = None;

@@ -1,4 +1,4 @@
-//! The certificate again, by another operator than the one a solution was found with.
+//! A second certificate of a solution, from another operator than the one of the solve.
 
 use anyhow::Result;
 use rc_core::{Field, Grid, Operator};
@@ -7,7 +7,7 @@ use rc_solver::{Control, DirectSum, MultilevelOperator, UniformOperator};
 
 use super::solved::{Method, Solved};
 
-/// Most elements whose displacement is summed directly, in half a second.
+/// Maximum number of elements for a direct sum, which then takes half a second.
 const MOST_DIRECT: usize = 64 * 64;
 
 /// Error of the multilevel operator in an audit, relative to the rms displacement.
@@ -16,51 +16,57 @@ const OPERATOR_ERROR: f64 = 1e-9;
 /// Cells per side of a tile of the multilevel operator.
 const TILE: usize = 8;
 
-/// Elements with this part of the maximum pressure are well inside contact: their gap has closed.
+/// Fraction of the maximum pressure above which an element is well inside contact.
+///
+/// The gap of such an element is closed.
 const PRESSED: f64 = 0.1;
 
-/// How far a pressure is from solving a contact problem.
+/// Errors of a pressure as the solution of a contact problem.
+///
+/// In the formulas g is the gap, v the displacement, h the height, and H the peak-to-valley height.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Audit {
-    /// Pressures that are NaN, infinite or negative.
+    /// Number of pressures that are NaN, infinite or negative.
     pub(crate) n_bad: usize,
-    /// |mean p - σ0| / σ0, or |Δ found - Δ| / Δ.
+    /// |mean p - σ0| / σ0 under a prescribed load, |Δ found - Δ| / Δ under a prescribed penetration.
     pub(crate) load: f64,
     /// max(-g) / H, with the pressure-weighted mean of g at zero.
     pub(crate) penetration: f64,
     /// max |g| / H over elements with at least [`PRESSED`] of the maximum pressure.
     pub(crate) open: f64,
-    /// √(G/U), with G = mean of p (g - min g), and the mean of p times the error of Δ where that is prescribed, and U =
-    /// mean of p v / 2: a bound of the pressure's error in the energy norm.
+    /// √(G/U), an upper bound of the pressure's error in the energy norm.
+    ///
+    /// G is the mean of p (g - min g), plus the mean of p times the error of Δ under a prescribed penetration. U is the
+    /// mean of p v / 2.
     pub(crate) energy: f64,
-    /// H times the mean pressure over U.
+    /// H times the mean pressure, divided by U.
     range_per_work: f64,
 }
 
 impl Audit {
-    /// Of a solution; its own certificate is not looked at.
+    /// The audit of a solution. It does not use the solution's own certificate.
     pub(crate) fn of(heights: &Field, solved: &Solved, method: Method, control: Control) -> Result<Self> {
         Ok(Self::of_pressure(heights, &solved.pressure, &displacement(&solved.pressure, method)?, control))
     }
 
-    /// Of a pressure and the displacement that it causes.
+    /// The audit of a pressure and the displacement that it causes.
     pub(crate) fn of_pressure(heights: &Field, pressure: &Field, displacement: &[f64], control: Control) -> Self {
         Self::of_gaps(heights, pressure, &gaps(heights, displacement), control)
     }
 
-    /// The energy error that gaps of this size, over H, can make.
+    /// The energy error that gaps of the size `gap` times H can cause.
     pub(crate) fn energy_of(&self, gap: f64) -> f64 {
         (gap * self.range_per_work).sqrt()
     }
 
-    /// Of a pressure and its gap v - h + max h.
+    /// The audit of a pressure and its gap v - h + max h.
     pub(crate) fn of_gaps(heights: &Field, pressure: &Field, gaps: &[f64], control: Control) -> Self {
         let p = pressure.values();
-        // A flat surface has no range to refer to but the cell's side.
+        // The height range of a flat surface is zero, so its lengths are relative to the cell's side.
         let (top, greatest) = (heights.max(), pressure.max());
         let range = Some(top - heights.min()).filter(|range| *range > 0.0).unwrap_or(1.0);
         let total: f64 = p.iter().sum();
-        // Weights first: products of tiny pressures and gaps underflow.
+        // Weights come first, since products of tiny pressures and gaps underflow.
         let mean_of = |values: &mut dyn Iterator<Item = f64>| p.iter().zip(values).map(|(p, v)| p / total * v).sum();
         let approach: f64 = mean_of(&mut gaps.iter().copied());
         let displacement: f64 = mean_of(&mut gaps.iter().zip(heights.values()).map(|(g, h)| g - (top - h)));
@@ -70,28 +76,31 @@ impl Audit {
             Control::Penetration(wanted) => ((approach / wanted - 1.0).abs(), (approach - wanted).abs()),
         };
         let pressed = p.iter().zip(gaps).filter(|(p, _)| **p > PRESSED * greatest);
-        // Both per pressure.
+        // Both are divided by the total pressure.
         let (gap, work) = ((approach - min_gap).max(0.0) + off, 0.5 * displacement);
         Self {
             n_bad: p.iter().filter(|p| !(p.is_finite() && **p >= 0.0)).count(),
             load,
             penetration: (approach - min_gap) / range,
             open: pressed.map(|(_, g)| (g - approach).abs()).fold(0.0, f64::max) / range,
-            // Nothing is displaced under a flat surface.
+            // Under a flat surface the displacement is zero.
             energy: if gap > 0.0 { (gap / work).sqrt() } else { 0.0 },
             range_per_work: if range > 0.0 && work > 0.0 { range / work } else { 0.0 },
         }
     }
 }
 
-/// v - h + max h: a large constant in the heights would drown the displacement.
+/// The gap v - h + max h.
+///
+/// The heights are subtracted first, since a large constant in them would drown the displacement.
 pub(crate) fn gaps(heights: &Field, displacement: &[f64]) -> Vec<f64> {
     let top = heights.max();
     displacement.iter().zip(heights.values()).map(|(v, h)| v + (top - h)).collect()
 }
 
-/// The mean pressure under a penetration so small that one element alone is in contact, Δ/(n L_ii); `None` where others
-/// would touch too.
+/// The mean pressure Δ/(n L_ii) when only one element is in contact.
+///
+/// `None` if the penetration brings other elements into contact too.
 pub(crate) fn load_of_one_element(heights: &Field, method: Method, penetration: f64) -> Option<f64> {
     let (grid, top) = (heights.grid(), heights.max());
     let highest = heights.values().iter().position(|&h| h >= top)?;
@@ -105,10 +114,12 @@ pub(crate) fn load_of_one_element(heights: &Field, method: Method, penetration: 
     (!touched).then(|| pressure / grid.len() as f64)
 }
 
-/// L p by another way than the method's own: the multilevel operator for the uniform grid where it can be, a direct sum
-/// for small grids, a Fourier transform for the others.
+/// L p by another way than the method's own.
+///
+/// It is the multilevel operator for the uniform grid if the grid allows it. Otherwise it is a direct sum on small
+/// grids, and a Fourier transform on others.
 pub(crate) fn displacement(pressure: &Field, method: Method) -> Result<Vec<f64>> {
-    // A constant displaces nothing, and its rounding would be all that is left of a large one.
+    // A constant pressure displaces nothing. The rounding of a large one would drown the displacement of the rest.
     let (grid, mean) = (pressure.grid(), pressure.mean());
     let p: Vec<f64> = pressure.values().iter().map(|p| p - mean).collect();
     let mut v = vec![0.0; p.len()];
@@ -122,7 +133,9 @@ pub(crate) fn displacement(pressure: &Field, method: Method) -> Result<Vec<f64>>
     Ok(v)
 }
 
-/// L p on a square grid by the multilevel operator, every element a finest one, above a base grid of side `base`.
+/// L p on a square grid by the multilevel operator.
+///
+/// The base grid has `base` elements per side. All elements are on the finest level.
 pub(crate) fn multilevel(grid: Grid, p: &[f64], base: usize) -> Result<Vec<f64>> {
     let side = grid.nx();
     let per_side = (side / TILE) as u32;

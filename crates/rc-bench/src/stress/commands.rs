@@ -1,4 +1,6 @@
-//! `rc solve` itself, in units of every size: results must be those in units of λ and E*, and files must be whole.
+//! The command `rc solve`, in units of every size.
+//!
+//! Results must be the same as in units of λ and E*, and files must be complete.
 
 use std::fs;
 use std::path::Path;
@@ -12,16 +14,18 @@ use serde_json::Value;
 use super::heights::{mapped, rough};
 use super::row::{Row, Rows, guarded};
 
-/// Runs the program `rc` with these words; the exit code of a failure with its text.
+/// Runs the program `rc` with these arguments.
+///
+/// An error has the exit code and the text.
 pub type RunRc = fn(&[String]) -> Result<(), Refusal>;
 
-/// Units change the rounding of the input, and with it the way of the iteration.
+/// Allowed relative difference. Units change the rounding of the input, and thereby the path of the iteration.
 const SAME: f64 = 1e-6;
 
-/// So that the way makes no difference.
+/// A tolerance so tight that the path of the iteration makes no difference.
 const TOLERANCE: &str = "1e-8";
 
-/// Rms height and load of the scene in units of λ and E*.
+/// Rms height of the scene in units of λ. Its load in units of E* follows.
 const RMS: f64 = 1e-3;
 const LOAD: f64 = 1e-3;
 
@@ -38,7 +42,7 @@ struct Units {
 
 const PLAIN: Units = Units { cell: 1.0, e_star: 1.0, rms: RMS };
 
-/// A result in units of λ, E* and the rms height, so that it is the same for all units.
+/// A name, and a result divided by units of λ, E* and the rms height. The result is the same for all units.
 type Quantity = (&'static str, fn(&ResultFolder, Units) -> f64);
 
 const QUANTITIES: [Quantity; 8] = [
@@ -64,12 +68,12 @@ pub(crate) fn rows(preset: Preset, rc: RunRc) -> Result<Vec<Row>> {
 /// A refusal of `rc`: exit code and text.
 pub type Refusal = (u8, String);
 
-/// Runs `rc` with these words; a panic has the exit code 101.
+/// Runs `rc` with these arguments. A panic becomes the exit code 101.
 fn run(rc: RunRc, words: &[String]) -> Result<(), Refusal> {
     guarded(|| Ok(rc(words))).unwrap_or_else(|panic| Err((101, panic.to_string())))
 }
 
-/// The files of a result folder, read back.
+/// The files of a result folder.
 struct ResultFolder {
     summary: Value,
     pressure: Field,
@@ -84,13 +88,13 @@ impl ResultFolder {
         Ok(Self { summary, pressure: field("pressure.npy")?, gap: field("gap.npy")? })
     }
 
-    /// A number of the summary; NaN where it has none.
+    /// A number of the summary; NaN if the summary does not have it.
     fn number(&self, name: &str) -> f64 {
         self.summary.get(name).and_then(Value::as_f64).unwrap_or(f64::NAN)
     }
 }
 
-/// Runs `rc solve` with these words, and reads what it wrote into `folder`.
+/// Runs `rc solve` with these arguments and reads the result folder `folder`.
 fn solved(rc: RunRc, words: &[String], folder: &Path) -> Result<ResultFolder, Refusal> {
     run(rc, words)?;
     ResultFolder::read(folder).map_err(|error| (0, format!("{error:#}")))
@@ -103,7 +107,7 @@ fn solve(rc: RunRc, units: Units, method: &str, folder: &Path) -> Result<ResultF
         ("--cell", units.cell),
         ("--e-star", units.e_star),
         ("--rms", units.rms * units.cell),
-        // In proportion to the heights, so that the contact is the same.
+        // The load is proportional to the heights, so that the contact is the same.
         ("--pressure", LOAD / RMS * units.rms * units.e_star),
     ];
     let numbers = keys.iter().flat_map(|(key, value)| [(*key).to_owned(), format!("{value:e}")]);
@@ -148,19 +152,19 @@ fn bad_values(field: &Field, min: f64) -> usize {
     field.values().iter().filter(|value| !(value.is_finite() && **value >= min)).count()
 }
 
-/// Height maps that are hard to solve, or none at all.
+/// Height maps that are hard to solve or that have no solution.
 fn files(rows: &mut Rows, place: &Path, rc: RunRc) -> Result<()> {
     let rough = rough(8, 0.8, 1, 64)?;
     let single = Field::from_fn(Grid::square(1)?, |_| 3e-4);
     let flat = "2: all heights are";
-    // Name, heights, pressure, status or exit code.
+    // Name, heights, pressure, and the expected status or exit code.
     let maps = [
         ("all heights equal", mapped(&rough, |_| 0.25), "1e-3", flat),
         ("all heights zero", mapped(&rough, |_| 0.0), "1e-3", flat),
         ("a map of one element", single, "1e-3", flat),
         ("heights that are denormal", mapped(&rough, |h| h * 1e-308), "1e-3", "2: heights: their range"),
         ("heights of 1e-125 m", mapped(&rough, |h| h * 1e-122), "1e-125", "converged"),
-        // Pressures have no digits left for such heights, which must be said.
+        // Pressures have no significant digits for such heights, and `rc` must say so.
         ("a load 1e22 times the heights", mapped(&rough, |h| h * 1e-22), "1e-3", "3: not converged"),
         ("heights on a pedestal of 1e8 rms", mapped(&rough, |h| h + 1e5), "1e-3", "converged"),
     ];
@@ -183,7 +187,7 @@ fn solve_map(rc: RunRc, file: &Path, pressure: &str, folder: &Path) -> Result<Re
     solved(rc, &words.map(str::to_owned).collect::<Vec<_>>(), folder)
 }
 
-/// Scenes that cannot be solved: exit code 2 and one line, whatever the numbers are.
+/// Scenes that cannot be solved must give exit code 2 and one line.
 fn refusals(rows: &mut Rows, place: &Path, rc: RunRc) {
     let cases: [(&str, &[&str]); 9] = [
         ("a cell of zero", &["--cell", "0", "--pressure", "1"]),

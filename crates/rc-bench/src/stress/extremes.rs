@@ -1,5 +1,6 @@
-//! Scenes at the ends of every range: loads, penetrations, Hurst exponents, waves, offsets, sizes of numbers, shapes,
-//! grids.
+//! Scenes at the ends of every range.
+//!
+//! The ranges are of loads, penetrations, Hurst exponents, waves, offsets, sizes of numbers, shapes and grids.
 
 use anyhow::Result;
 use rc_core::{DVec2, Field, Grid};
@@ -11,22 +12,23 @@ use super::row::Row;
 use super::scene::{Group, Scene, check};
 use super::solved::{Method, solve};
 
-/// Sides of the grids that the methods are tried on: the smallest the adaptive one takes, and one without coarser
-/// levels.
+/// Sides of the grids: the smallest of the adaptive method, and one without coarser levels.
 const ADAPTIVE_SIDE: usize = 128;
 const UNIFORM_SIDE: usize = 64;
 
-/// Times the median number of iterations that some scenes may take: where the mean pressure is found on a grid that no
-/// coarser one prepares, and hardly changes the penetration; and by the adaptive method, whose approximate inverse is
-/// the rougher one, where one element stands out of a plane or is missing in it, where every element is a peak of its
-/// own, and where all pressure is at the edge of a flat punch. Each is a tenth above what was measured, over the lower
-/// median of both sets.
+/// Allowed ratios of iterations to the median, for scenes that are known to be slow.
+///
+/// `NEAR_FULL_CONTACT` is for scenes whose mean pressure is found on a grid without coarser grids, and where this
+/// pressure hardly changes the penetration. The others are for the adaptive method, whose approximate inverse is the
+/// rougher one. `SINGLE_ELEMENT` is for a plane with one element that stands out or is missing. `WHITE_NOISE` is for
+/// heights where every element is a peak. `PUNCH` is for a flat punch, whose pressure is all at the edge. Each value is
+/// a tenth above the measured ratio to the smaller median of the two sets.
 const NEAR_FULL_CONTACT: f64 = 3.0;
 const SINGLE_ELEMENT: f64 = 2.75;
 const WHITE_NOISE: f64 = 3.3;
 const PUNCH: f64 = 2.5;
 
-/// All scenes of a preset.
+/// The rows of all scenes of a preset.
 pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     let full = preset == Preset::Full;
     let methods: &[Method] = if full {
@@ -44,7 +46,9 @@ pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     Ok(check(&groups))
 }
 
-/// A group, by name, and what makes its scenes for a method: all of them, or the reduced set.
+/// A group's name, and the function that makes its scenes for a method.
+///
+/// The function's second argument selects the full or the reduced set.
 type Maker = (&'static str, fn(Method, bool) -> Result<Vec<Scene>>);
 
 const GROUPS: [Maker; 5] = [
@@ -59,15 +63,17 @@ fn side(method: Method) -> usize {
     if method == Method::Adaptive { ADAPTIVE_SIDE } else { UNIFORM_SIDE }
 }
 
-/// Every other one, when the set is the reduced one.
+/// All values for the full set, every other value for the reduced set.
 fn thinned<T: Copy>(values: &[T], full: bool) -> Vec<T> {
     values.iter().copied().step_by(if full { 1 } else { 2 }).collect()
 }
 
-/// The mean pressure above which contact is full: it lifts the minimum of L⁻¹h to zero.
+/// The mean pressure above which contact is full.
+///
+/// At this pressure the minimum of σ0 + L⁻¹h is zero.
 pub(crate) fn full_contact_pressure(heights: &Field, method: Method) -> Result<f64> {
     let method = if method == Method::Spectral { Method::Spectral } else { Method::Uniform };
-    // Far beyond it the pressure is σ0 + L⁻¹h, and one of about its own size costs no digits.
+    // Far above it the pressure is σ0 + L⁻¹h. A load of about the size of L⁻¹h does not cost digits.
     let load = 1e3 * (heights.max() - heights.min());
     Ok(load - solve(heights, method, Control::MeanPressure(load), 1e-6)?.pressure.min())
 }
@@ -85,7 +91,7 @@ fn loads(method: Method, full: bool) -> Result<Vec<Scene>> {
         let scene = Scene::new(name, &heights, method, Control::MeanPressure(load));
         match method {
             Method::Adaptive => scene,
-            // Within rounding of the limit either is right.
+            // Within rounding of full contact either answer is right.
             _ if load > 1.05 * of_full => scene.exact(),
             _ => scene,
         }
@@ -113,7 +119,7 @@ fn surfaces(method: Method, full: bool) -> Result<Vec<Scene>> {
     let mut scenes = Vec::new();
     for hurst in thinned(&[0.01, 0.1, 0.3, 0.5, 0.8, 1.0], full) {
         let heights = rough(16, hurst, 3, 128)?;
-        // In proportion to the slope, so that about 5 % are in contact.
+        // The load is proportional to the slope, so that about 5 % are in contact.
         let load = 0.02 * slope(&heights);
         scenes.push(Scene::new(format!("H = {hurst}"), &heights, method, Control::MeanPressure(load)));
     }
@@ -136,7 +142,7 @@ fn surfaces(method: Method, full: bool) -> Result<Vec<Scene>> {
     Ok(scenes)
 }
 
-/// Rms slope by differences of neighbours along x.
+/// Rms slope from differences of neighbours along x.
 fn slope(heights: &Field) -> f64 {
     let nx = heights.grid().nx();
     let rows = heights.values().chunks_exact(nx);
@@ -144,7 +150,7 @@ fn slope(heights: &Field) -> f64 {
     nx as f64 * (2.0 * squares.sum::<f64>() / heights.grid().len() as f64).sqrt()
 }
 
-/// The same surface in numbers of every size, on every pedestal.
+/// The same surface with heights of every size and with large constants added.
 fn sizes(method: Method, full: bool) -> Result<Vec<Scene>> {
     let heights = rough(8, 0.8, 5, side(method))?;
     let (rms, load) = (heights.rms(), 1e-3);
@@ -186,7 +192,7 @@ fn shape_scenes(method: Method, full: bool) -> Result<Vec<Scene>> {
     Ok(scenes)
 }
 
-/// Grids without a middle, without neighbours, or of one element.
+/// Grids with an odd number of elements, with one row, or with one element.
 fn grids(full: bool) -> Result<Vec<Scene>> {
     let square = [(1, 1), (2, 2), (1, 64), (64, 1), (3, 5), (63, 63), (48, 80), (61, 7), (128, 2), (2, 128)];
     let rectangles = [

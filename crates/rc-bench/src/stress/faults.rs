@@ -1,5 +1,7 @@
-//! Faulty operators and kernels: the solver itself must refuse them, fail to converge or certify a large error. What it
-//! cannot see, this audit sees, and says so.
+//! Faulty operators and kernels.
+//!
+//! The solver itself must refuse them, fail to converge, or certify a large error. A fault that the solver cannot see
+//! must be found by an audit, and the row says so.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -35,7 +37,7 @@ struct Faulty {
     operator: UniformOperator,
     side: usize,
     fault: Fault,
-    /// Applications before the fault begins.
+    /// Number of applications before the fault begins.
     sound: usize,
     applications: AtomicUsize,
 }
@@ -76,7 +78,7 @@ impl Operator for Faulty {
             }
             Fault::Bias(size) => displacement.iter_mut().for_each(|v| *v += size),
             Fault::Nan => displacement[self.side + 1] = f64::NAN,
-            // Displacements on one side of the cell answer more than those on the other.
+            // Displacements on one side of the cell are larger than on the other.
             Fault::NonSymmetry(size) => {
                 let side = self.side;
                 displacement
@@ -134,7 +136,7 @@ impl Kernel for FaultyKernel {
                 KernelFault::Noise(part) => value * (1.0 + part * (quasi_random(131 * kx + ky) - 0.5)),
                 KernelFault::NonSymmetry(part) if kx > ky => value * (1.0 + part),
                 KernelFault::Moves if (kx, ky) == (0, 0) => 0.1,
-                // Another answer each time it is asked.
+                // The answer differs from call to call.
                 KernelFault::Changes(part) => value * (1.0 + part * call as f64),
                 _ => value,
             }
@@ -151,7 +153,7 @@ pub(crate) fn rows(_preset: Preset) -> Result<Vec<Row>> {
     Ok(rows.finish())
 }
 
-/// Faults of operators, and whether they are larger than the tolerance of a solve.
+/// Faults of operators, with whether they are larger than the tolerance of a solve.
 const OPERATOR_FAULTS: [(Fault, bool); 10] = [
     (Fault::Noise(1e-9), false),
     (Fault::Noise(1e-3), true),
@@ -165,7 +167,9 @@ const OPERATOR_FAULTS: [(Fault, bool); 10] = [
     (Fault::Stale, true),
 ];
 
-/// The conformance check that forks run on their operators finds each fault, and nothing in an operator without one.
+/// The conformance check of operators finds each fault, and accepts an operator without one.
+///
+/// Forks run this check on their operators.
 fn conformance_of_operators(rows: &mut Rows) -> Result<()> {
     let grid = Grid::square(16)?;
     let check = |operator: &dyn Operator| {
@@ -183,8 +187,9 @@ fn conformance_of_operators(rows: &mut Rows) -> Result<()> {
     Ok(())
 }
 
-/// A solve with a faulty operator is an error of the solver; with a fault below the tolerance, an audit with the sound
-/// operator may also find the tolerance met.
+/// A solve with a faulty operator ends with an error of the solver.
+///
+/// If the fault is below the tolerance, it passes too when an audit with the sound operator finds the tolerance met.
 fn operators(rows: &mut Rows) -> Result<()> {
     let heights = rough(4, 0.8, 8, 32)?;
     let control = Control::MeanPressure(1e-3);
@@ -208,7 +213,7 @@ fn operators(rows: &mut Rows) -> Result<()> {
             }
         }
     }
-    // A fault that the check at the start is too early for.
+    // These faults begin after the check at the start of a solve.
     for fault in [Fault::Nan, Fault::Noise(1e-3), Fault::Sign] {
         let solved = solve(&Faulty::new(heights.grid(), fault, 10));
         error_of_solver(rows, &format!("operator with {fault:?} from its 11th application on"), &solved.map(|_| ()));
@@ -216,14 +221,17 @@ fn operators(rows: &mut Rows) -> Result<()> {
     Ok(())
 }
 
-/// A row that passes when the solver has returned an error; a panic is none.
+/// Adds a row that passes if the solver has returned an error.
+///
+/// A panic does not pass.
 fn error_of_solver(rows: &mut Rows, scene: &str, solved: &Result<()>) {
     let is_error = matches!(solved, Err(error) if !error.to_string().starts_with("panic"));
     rows.holds(scene, "detected by the solver", "an error", text(solved), is_error);
 }
 
-/// A solve with a faulty kernel is an error of the solver. A sound symbol of another solid is not, which only an audit
-/// with the right kernel sees.
+/// A solve with a faulty kernel ends with an error of the solver.
+///
+/// A sound symbol of another solid is not an error. Only an audit with the right kernel finds it.
 fn kernels(rows: &mut Rows) -> Result<()> {
     let heights = rough(4, 0.8, 8, 32)?;
     let loads = [Control::MeanPressure(1e-3), Control::Penetration(0.3 * (heights.max() - heights.mean()))];
@@ -260,7 +268,7 @@ fn kernels(rows: &mut Rows) -> Result<()> {
     Ok(())
 }
 
-/// What the conformance check of kernels finds.
+/// The result of the conformance check of kernels.
 fn conformance(kernel: &dyn Kernel) -> Result<()> {
     guarded(|| {
         check_kernel(kernel);
@@ -274,7 +282,7 @@ fn solve<'a>(heights: &'a Field, kernel: &'a dyn Kernel, control: Control, toler
     Ok(ContactProblem::new(heights, control).with_kernel(kernel).solve(&params, &Silent)?)
 }
 
-/// A solve with `kernel`, audited with Love's.
+/// Solves with `kernel` and audits with Love's kernel.
 fn outcome(heights: &Field, kernel: &dyn Kernel, control: Control) -> Result<()> {
     guarded(|| {
         let solution = solve(heights, kernel, control, TOLERANCE)?;
@@ -286,7 +294,7 @@ fn outcome(heights: &Field, kernel: &dyn Kernel, control: Control) -> Result<()>
     })
 }
 
-/// Heights, loads and tolerances that do not make a problem are refused.
+/// Invalid heights, loads and tolerances are refused.
 fn inputs(rows: &mut Rows) -> Result<()> {
     let heights = rough(4, 0.8, 8, 32)?;
     let with = |value: f64| {

@@ -1,4 +1,4 @@
-//! Flows through gaps that are hard on purpose.
+//! Flows through gaps that are hard to solve on purpose.
 
 use anyhow::Result;
 use rc_core::testing::quasi_random;
@@ -9,13 +9,13 @@ use rc_leakage::{LeakageParams, leakage};
 use super::heights::{mapped, rough};
 use super::row::{Row, Rows, guarded};
 
-/// Largest difference of the flow through two sections.
+/// Maximum relative difference of the flows through two sections.
 const CONSERVATION: f64 = 1e-10;
 
-/// Difference of the bounds of the permeance, relative to it.
+/// Maximum difference of the bounds of the permeance, relative to the permeance.
 const BOUNDS: f64 = 1e-9;
 
-/// Two ways to the same flow.
+/// Maximum relative difference of one flow that is computed in two ways.
 const SAME: f64 = 1e-8;
 
 pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
@@ -23,7 +23,7 @@ pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     let side = if preset == Preset::Full { 512 } else { 128 };
     let heights = rough(8, 0.8, 7, side)?;
     for level in [-1.0, -0.5, 0.0, 0.5] {
-        // What is above a level is contact; the gap opens as at the edge of one.
+        // The surface above a level is contact. The gap opens as at the edge of a contact.
         let gap = mapped(&heights, |h| (level - h / heights.rms()).max(0.0).powf(1.5));
         check(&mut rows, &format!("rough; contact above {level} rms"), &gap);
     }
@@ -47,7 +47,9 @@ pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     Ok(rows.finish())
 }
 
-/// Conservation, and the flow of the transposed gap in units a thousand times as small.
+/// Checks conservation, and compares with the flow of the transposed gap in other units.
+///
+/// These units make the gap 1e-3 times as large.
 fn check(rows: &mut Rows, scene: &str, gap: &Field) {
     let n = gap.grid().nx();
     let values = (0..n * n).map(|i| 1e-3 * gap.at(i / n, i % n)).collect();

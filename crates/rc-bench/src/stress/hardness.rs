@@ -1,4 +1,4 @@
-//! Pressures between zero and a hardness: bounds, what an audit finds, and the contact turned inside out.
+//! Pressures between zero and a hardness: bounds, an audit, and the contact turned inside out.
 
 use anyhow::Result;
 use rc_core::Field;
@@ -11,19 +11,24 @@ use super::row::{Row, Rows, guarded};
 use super::scene::TOLERANCE;
 use super::solved::{Method, Solved, solve, solve_hard};
 
-/// Overlaps and gaps that an audit may find over the tolerance: those of pressures well inside are a tenth as exact
-/// (`scene.rs`).
+/// Allowed overlaps and gaps in an audit, as multiples of the tolerance.
+///
+/// The gaps of elements with large pressures are ten times less exact than overlaps (`scene.rs`).
 const AUDIT: [f64; 2] = [1.1, 10.0];
 
-/// Difference of two pressures of one problem, solved to 1e-9 of the height range, and of their penetrations.
+/// Tolerance of solves that are compared, relative to the height range.
+///
+/// The allowed differences of their pressures and of their penetrations follow.
 const TIGHT: f64 = 1e-9;
 const SAME_PRESSURE: f64 = 1e-5;
 const SAME_NUMBER: f64 = 1e-7;
 
-/// Iterations on the finest level, at most: three times what rough surfaces of 512² elements took.
+/// Maximum number of iterations on the finest level.
+///
+/// It is three times the number on rough surfaces of 512² elements.
 const MOST_ITERATIONS: f64 = 60.0;
 
-/// A surface, what presses it, and how hard it is.
+/// A surface, its load or penetration, and its hardness.
 struct Scene<'a> {
     name: String,
     heights: &'a Field,
@@ -57,13 +62,14 @@ pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     Ok(rows.finish())
 }
 
-/// Whether a scene is solved, and again under its penetration, and how well by another operator's word.
+/// Solves a scene, solves it again under its penetration, and audits both with another operator.
 fn check(rows: &mut Rows, method: Method, scene: &Scene<'_>) {
     let Scene { name, heights, control, hardness } = scene;
     let solved = guarded(|| {
         let by_load = solve_hard(heights, method, (*control, *hardness), TOLERANCE)?;
         let depth = Control::Penetration(by_load.info.penetration);
-        // Where everything touches, a pressure more or less displaces nothing: no penetration tells them apart.
+        // When all elements are in contact, a uniform pressure can be added without a displacement. Then a penetration
+        // does not determine the pressure.
         let touches_everywhere = by_load.pressure.values().iter().all(|p| *p > 0.0);
         let by_depth =
             if touches_everywhere { None } else { Some(solve_hard(heights, method, (depth, *hardness), TOLERANCE)?) };
@@ -104,8 +110,10 @@ fn audit(rows: &mut Rows, name: &str, method: Method, (heights, hardness, solved
     rows.at_most(name, "gap of what could press less", gap, AUDIT[1] * TOLERANCE);
 }
 
-/// A uniform pressure displaces nothing: what is left to the hardness, H - p, is the pressure under the surface upside
-/// down and the rest of the load, and gaps change their sign.
+/// A contact and the contact turned inside out have pressures p and H - p.
+///
+/// A uniform pressure displaces nothing. So the pressure H - p, with the rest of the load, solves the problem of the
+/// surface upside down, and gaps change their sign.
 fn turned_inside_out(rows: &mut Rows) -> Result<()> {
     for method in [Method::Uniform, Method::Spectral] {
         let heights = rough(8, 0.8, 52, 64)?;
@@ -117,7 +125,7 @@ fn turned_inside_out(rows: &mut Rows) -> Result<()> {
             let turned = solve_hard(&upside_down, method, load(1.0 - part), TIGHT)?;
             let back = mapped(&turned.pressure, |q| hardness - q);
             rows.at_most(&name, "pressure", plain.distance(&back), SAME_PRESSURE);
-            // Of h_max - Δ, the gap of contact.
+            // Both are h_max - Δ, the gap of elements in contact.
             let approach = (heights.max() - plain.info.penetration) + (upside_down.max() - turned.info.penetration);
             rows.at_most(&name, "gap of contact", approach.abs() / heights.rms(), SAME_NUMBER);
             let energy = (plain.info.elastic_energy / turned.info.elastic_energy - 1.0).abs();

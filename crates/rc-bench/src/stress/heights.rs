@@ -1,4 +1,4 @@
-//! Height maps that are hard on purpose, in units of λ.
+//! Height maps that are hard to solve on purpose, in units of λ.
 
 use std::f64::consts::TAU;
 
@@ -10,31 +10,31 @@ use rc_fractal::{SpectrumParams, Surface};
 /// Peak-to-valley height of the shapes.
 const RANGE: f64 = 1e-2;
 
-/// A scene's heights with their name.
+/// A named height map.
 pub(crate) struct Shape {
     pub(crate) name: &'static str,
     pub(crate) heights: Field,
 }
 
-/// The paper's surface with this many waves.
+/// The paper's surface with `waves` waves.
 pub(crate) fn rough(waves: usize, hurst: f64, seed: u64, side: usize) -> Result<Field> {
     let params = SpectrumParams { hurst, ..SpectrumParams::paper(waves, seed) };
     Ok(Surface::new(&params)?.sample_on(Grid::square(side)?)?)
 }
 
-/// Every value of `heights` through `map`.
+/// The field with `map` applied to every value of `heights`.
 pub(crate) fn mapped(heights: &Field, map: impl Fn(f64) -> f64) -> Field {
     let mut mapped = heights.clone();
     mapped.values_mut().iter_mut().for_each(|h| *h = map(*h));
     mapped
 }
 
-/// Shapes without roughness or with too much of it, on `side` × `side` elements.
+/// Shapes without roughness or with too much roughness, on `side` × `side` elements.
 pub(crate) fn shapes(side: usize) -> Result<Vec<Shape>> {
     let grid = Grid::square(side)?;
     let n = side as f64;
     let from = |name, height: &dyn Fn(DVec2) -> f64| Shape { name, heights: Field::from_fn(grid, height) };
-    // Distance on the periodic cell.
+    // Distance of two points on the periodic cell.
     let distance = |a: DVec2, b: DVec2| {
         let wrap = |t: f64| t - t.round();
         f64::hypot(wrap(a.x - b.x), wrap(a.y - b.y))

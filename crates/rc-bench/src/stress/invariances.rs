@@ -1,4 +1,4 @@
-//! What must not change a result, or must change it in a known way.
+//! Changes of the input with a known effect on the result, or without effect.
 
 use anyhow::Result;
 use rc_core::{DVec2, Field, Grid, HeightField};
@@ -10,15 +10,17 @@ use super::heights::{mapped, rough};
 use super::row::{Row, Rows, guarded};
 use super::solved::{Method, Solved, solve};
 
-/// Tolerance of solutions that are compared with each other, and how far they may then differ: pressures go with the
-/// slope of the gap, so they differ by far more than gaps do.
+/// Tolerance of the solutions that are compared with each other.
+///
+/// The allowed differences of pressures and of numbers follow. Pressures vary with the slope of the gap, so they differ
+/// much more than gaps.
 const TIGHT: f64 = 1e-10;
 const SAME_PRESSURE: f64 = 1e-6;
 const SAME_NUMBER: f64 = 1e-8;
 
 const LOAD: Control = Control::MeanPressure(1e-3);
 
-/// Compares what one group of invariances says.
+/// Checks one group of invariances.
 type Check = fn(&mut Rows, Preset) -> Result<()>;
 
 #[expect(clippy::unnecessary_wraps, reason = "as the other groups")]
@@ -50,7 +52,9 @@ fn side(method: Method) -> usize {
     if method == Method::Adaptive { 128 } else { 64 }
 }
 
-/// Heights and load times a power of two: the same digits. Times anything else: the same but for rounding.
+/// Heights and load times a power of two give the same digits.
+///
+/// Times another factor they give the same result up to rounding.
 fn scaling(rows: &mut Rows, _: Preset) -> Result<()> {
     for method in [Method::Uniform, Method::Spectral, Method::Adaptive] {
         let heights = rough(8, 0.8, 11, side(method))?;
@@ -77,7 +81,9 @@ fn scaling(rows: &mut Rows, _: Preset) -> Result<()> {
     Ok(())
 }
 
-/// A motion of the grid onto itself: where the element (x, y) comes from, on n × n.
+/// A motion of the n × n grid onto itself.
+///
+/// It has a name, and a function from an element (x, y) to the element that moves there.
 type Motion = (&'static str, fn(usize, usize, usize) -> (usize, usize));
 
 const MOTIONS: [Motion; 8] = [
@@ -100,13 +106,13 @@ fn moved(field: &Field, motion: Motion) -> Result<Field> {
     Ok(Field::new(field.grid(), (0..n * n).map(value).collect())?)
 }
 
-/// A rectangular cell has the pressure of the square of its copies.
+/// A rectangular cell has the same pressure as the square of its copies.
 fn copies(rows: &mut Rows, _: Preset) -> Result<()> {
     for method in [Method::Uniform, Method::Spectral] {
         for (nx, ny, n) in [(64, 32, 2), (40, 24, 3), (128, 16, 8)] {
             let wave = |t: f64| (std::f64::consts::TAU * t).cos();
             let bumps = |x: f64, y: f64| 1e-2 * (wave(x + y + 0.1) + wave(2.0 * x - y) + 0.4 * wave(3.0 * x + 0.3));
-            // y in parts of the rectangle's side.
+            // y is relative to the rectangle's side.
             let times = n as f64;
             let part = Field::from_fn(Grid::in_cell(nx, ny, 1.0 / times)?, |DVec2 { x, y }| bumps(x, times * y));
             let whole = Field::from_fn(Grid::new(nx, n * ny)?, |DVec2 { x, y }| bumps(x, times * y));
@@ -121,7 +127,7 @@ fn copies(rows: &mut Rows, _: Preset) -> Result<()> {
     Ok(())
 }
 
-/// Motions of the heights move the pressure, constants added to them change nothing.
+/// Motions of the heights move the pressure, and constants added to the heights change nothing.
 fn motions(rows: &mut Rows, _: Preset) -> Result<()> {
     for method in [Method::Uniform, Method::Spectral, Method::Adaptive] {
         let heights = rough(8, 0.8, 12, side(method))?;
@@ -143,7 +149,9 @@ fn motions(rows: &mut Rows, _: Preset) -> Result<()> {
     Ok(())
 }
 
-/// A surface moved by any part of an element is the same surface: only the grid sees it from elsewhere.
+/// A surface that moves by a part of an element keeps its contact.
+///
+/// The differences are discretisation errors.
 fn fractions(rows: &mut Rows, _: Preset) -> Result<()> {
     struct Moved<'a>(&'a Surface, DVec2);
     impl HeightField for Moved<'_> {
@@ -163,7 +171,7 @@ fn fractions(rows: &mut Rows, _: Preset) -> Result<()> {
         let heights = Moved(&surface, DVec2::new(dx, dy) / n as f64).sample(grid);
         let other = solve(&heights, Method::Uniform, LOAD, 1e-8)?;
         let ratio = |of: fn(&Solved) -> f64| (of(&other) / of(&plain) - 1.0).abs();
-        // Discretisation errors at 32 elements to the shortest wave.
+        // These are discretisation errors at 32 elements for the shortest wave.
         rows.at_most(&scene, "area", ratio(|solved| solved.observables.area.fraction), 1e-2);
         rows.at_most(&scene, "rms pressure", ratio(|solved| solved.observables.rms_pressure), 2e-3);
         rows.at_most(&scene, "penetration", ratio(|solved| solved.info.penetration), 2e-3);
@@ -171,13 +179,13 @@ fn fractions(rows: &mut Rows, _: Preset) -> Result<()> {
     Ok(())
 }
 
-/// One seed is one surface, on every grid; another is another.
+/// A seed gives the same surface on every grid, and another seed gives another surface.
 fn surfaces(rows: &mut Rows, _: Preset) -> Result<()> {
     for waves in [1, 8, 16] {
         let (coarse, fine) = (rough(waves, 0.8, 14, 40)?, rough(waves, 0.8, 14, 120)?);
         let differences = (0..40 * 40).map(|i| {
             let (x, y) = (i % 40, i / 40);
-            // Centres of the coarse grid are centres of one three times as fine.
+            // Centres of the coarse grid are also centres of the grid that is three times as fine.
             (coarse.at(x, y) - fine.at(3 * x + 1, 3 * y + 1)).abs()
         });
         let worst = differences.fold(0.0, f64::max) / coarse.rms();
@@ -194,7 +202,7 @@ pub(super) fn verdict(equal: bool) -> &'static str {
     if equal { "equal" } else { "different" }
 }
 
-/// From a load to its penetration and back, and from a penetration to its load and back.
+/// Solves a load and then its penetration, and a penetration and then its load.
 fn round_trips(rows: &mut Rows, _: Preset) -> Result<()> {
     for method in [Method::Uniform, Method::Spectral, Method::Adaptive] {
         let heights = rough(8, 0.8, 16, side(method))?;
@@ -204,7 +212,7 @@ fn round_trips(rows: &mut Rows, _: Preset) -> Result<()> {
             let there = solve(Control::MeanPressure(load))?;
             let back = solve(Control::Penetration(there.info.penetration))?;
             let scene = format!("{} load {load:.0e} E*", method.name());
-            // At first touch the load falls faster than the depth by which it is found.
+            // Near first touch the load changes faster than the penetration from which it is found.
             let bound = 1e3 * tolerance * (heights.max() - heights.min()) / there.info.penetration.min(1e-3);
             rows.at_most(
                 &scene,
@@ -225,7 +233,7 @@ fn round_trips(rows: &mut Rows, _: Preset) -> Result<()> {
     Ok(())
 }
 
-/// The stiffness is the slope of the load over the penetration.
+/// The stiffness is the derivative of the load with respect to the penetration.
 fn slopes(rows: &mut Rows, _: Preset) -> Result<()> {
     for method in [Method::Uniform, Method::Spectral, Method::Adaptive] {
         let heights = rough(8, 0.8, 16, side(method))?;
@@ -242,8 +250,9 @@ fn slopes(rows: &mut Rows, _: Preset) -> Result<()> {
     Ok(())
 }
 
-/// Load and contact grow with the penetration; elements once in contact need not stay, so only their number is
-/// compared.
+/// Load and contact grow with the penetration.
+///
+/// Elements in contact need not stay in contact, so only their number is compared.
 fn monotony(rows: &mut Rows, preset: Preset) -> Result<()> {
     let steps = if preset == Preset::Full { 40 } else { 12 };
     for method in [Method::Uniform, Method::Adaptive] {

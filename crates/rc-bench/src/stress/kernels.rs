@@ -1,5 +1,4 @@
-//! The kernels over 20 decades of distance and size against stored values of 100-digit arithmetic, and condition
-//! numbers.
+//! The kernels against 100-digit arithmetic over 20 decades of distance and size, and condition numbers.
 
 use std::f64::consts::SQRT_2;
 
@@ -11,7 +10,7 @@ use rc_kernel::{Love, PeriodicLove, Spectral, love_alias_sum, love_displacement}
 
 use super::row::{Row, Rows};
 
-/// Bounds that the kernels' documentation states.
+/// Error bounds that the documentation of the kernels states.
 const FREE: f64 = 1.2e-15;
 const PERIODIC: f64 = 1e-12;
 const SYMBOL: f64 = 4e-15;
@@ -25,7 +24,7 @@ pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     Ok(rows.finish())
 }
 
-/// Lines of a table of numbers in `data/reference`.
+/// Lines of the table `name` in `data/reference`.
 fn table(name: &str) -> Result<Vec<[f64; 4]>> {
     let path = repository::root().join("data/reference").join(name);
     let text = std::fs::read_to_string(&path).with_context(|| format!("could not read {}", path.display()))?;
@@ -43,11 +42,13 @@ fn decade(value: f64) -> i32 {
     value.log10().floor() as i32
 }
 
-/// Worst of the errors of each scene, one row a scene, in the order of first appearance.
+/// Adds a row with the largest error of each scene.
+///
+/// The rows are in the order in which scenes first appear.
 fn worst(rows: &mut Rows, property: &'static str, bound: f64, errors: impl Iterator<Item = (String, f64)>) {
     let mut scenes: Vec<(String, f64)> = Vec::new();
     for (scene, error) in errors {
-        // A NaN is worse than anything.
+        // A NaN counts as the largest error.
         let error = if error.is_nan() { f64::INFINITY } else { error };
         match scenes.iter_mut().find(|(name, _)| *name == scene) {
             Some((_, most)) => *most = most.max(error),
@@ -77,7 +78,7 @@ fn periodic(rows: &mut Rows) -> Result<()> {
     let love = PeriodicLove::new();
     let lines = table("periodic-decades.csv")?;
     let errors = lines.iter().map(|&[dx, dy, half_side, reference]| {
-        // Where the coefficient changes sign only its error relative to the source has a meaning.
+        // Where the coefficient changes its sign, only an error relative to the area of the source has a meaning.
         let scale = reference.abs().max(4.0 * half_side * half_side);
         let error = (love.coefficient(DVec2::new(dx, dy), half_side) - reference).abs() / scale;
         (format!("all images of half side {half_side:e}"), error)
@@ -92,7 +93,7 @@ fn periodic(rows: &mut Rows) -> Result<()> {
     Ok(())
 }
 
-/// The fast symbol against the alias sum, one value at a time.
+/// Compares the fast symbol with the alias sum, value by value.
 fn symbols(rows: &mut Rows, preset: Preset) -> Result<()> {
     let sides: &[(usize, usize)] = if preset == Preset::Full {
         &[(4, 4), (16, 16), (64, 64), (256, 256), (1024, 1024), (31, 31), (16, 64), (7, 100)]
@@ -111,7 +112,7 @@ fn symbols(rows: &mut Rows, preset: Preset) -> Result<()> {
     Ok(())
 }
 
-/// Waves of a grid at distances that grow: all of the long ones, some of the short ones.
+/// Wavenumbers of a grid: all small ones, and large ones at increasing distances.
 fn waves(nx: usize, ny: usize) -> Vec<(usize, usize)> {
     let along = |n: usize| {
         let steps = std::iter::successors(Some(1_usize), |k| Some(k + 1 + k / 3));
@@ -120,7 +121,9 @@ fn waves(nx: usize, ny: usize) -> Vec<(usize, usize)> {
     along(nx).flat_map(|kx| along(ny).map(move |ky| (kx, ky))).filter(|&k| k != (0, 0)).collect()
 }
 
-/// Ratio of the maximum to the minimum eigenvalue of L. The preconditioner removes it.
+/// Condition numbers: the ratio of the maximum to the minimum eigenvalue of L.
+///
+/// The preconditioner removes this ratio.
 fn conditions(rows: &mut Rows, preset: Preset) -> Result<()> {
     let sides: &[usize] = if preset == Preset::Full { &[16, 64, 256, 1024, 4096] } else { &[16, 256] };
     for &side in sides {
@@ -129,8 +132,8 @@ fn conditions(rows: &mut Rows, preset: Preset) -> Result<()> {
         for kernel in [&Love as &dyn Kernel, &Spectral] {
             let symbol = kernel.symbol(grid);
             let condition = symbol(1, 0) / symbol(side / 2, side / 2);
-            // Waves: the ratio of the longest to the shortest wavenumber. Squares are stiffer at the shortest by their
-            // aliases.
+            // For the kernel of waves it is the ratio of the maximum to the minimum wavenumber. Squares are stiffer at
+            // the shortest wave because of aliases.
             let (low, high) = if kernel.name() == "love" { (0.5, 1.0) } else { (1.0 - 1e-14, 1.0 + 1e-14) };
             let passed = (low * of_waves..=high * of_waves).contains(&condition);
             let scene = format!("{} on {grid}", kernel.name());

@@ -1,4 +1,6 @@
-//! Contacts of few elements, and heights with a pit: solved as nobody has asked otherwise, and to a tight tolerance.
+//! Contacts of few elements, and heights with a pit.
+//!
+//! Solves with the default tolerance are compared with solves to a tight tolerance.
 
 use anyhow::Result;
 use rc_core::Field;
@@ -9,20 +11,23 @@ use super::heights::{mapped, rough};
 use super::row::{Row, Rows, guarded};
 use super::solved::{Method, solve, solve_by_default};
 
-/// Tolerance of the solution that is taken for exact: pits and light loads loosen one that is relative to the height
-/// range.
+/// Tolerance of the solution that is taken as exact.
+///
+/// Pits and light loads make a tolerance that is relative to the height range loose.
 const TIGHT: f64 = 1e-11;
 
-/// Part of the stated error bar that the default solve may use up.
+/// Part of the stated error bar that the default solve may use.
 const PART_OF_BAR: f64 = 0.1;
 
-/// Relative error of a load under a prescribed penetration, or of a penetration under a prescribed load.
+/// Allowed relative error of the response: a load, or a penetration.
+///
+/// The other of the two is prescribed.
 const SAME_RESPONSE: f64 = 1e-3;
 
 pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     let mut rows = Rows::of("light contacts");
     let full = preset == Preset::Full;
-    // Six waves of 21 elements: a contact of one asperity has some elements.
+    // Six waves of 21 elements. A contact of one asperity has a few elements.
     let heights = rough(6, 0.8, 41, 128)?;
     let deepest = heights.max() - heights.mean();
     let parts: &[f64] = if full { &[1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1] } else { &[1e-5, 1e-3, 1e-2] };
@@ -47,11 +52,11 @@ pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
     Ok(rows.finish())
 }
 
-/// The default against the tight solution: area, and load or penetration.
+/// Compares the default solution with the tight one in area, and in load or penetration.
 fn compare(rows: &mut Rows, scene: &str, (heights, method, control): (&Field, Method, Control)) {
     let solved = guarded(|| {
-        // The operator of the adaptive method is not as good; without border levels its solution is that of the uniform
-        // grid.
+        // The operator of the adaptive method is less exact. Without border levels the method's solution is that of the
+        // uniform grid.
         let tight = solve(heights, Method::Uniform, control, TIGHT)?;
         Ok((solve_by_default(heights, method, control)?, tight))
     });

@@ -1,4 +1,6 @@
-//! Many solves in one process: memory does not grow, and the last result is the first, and that of a fresh process.
+//! Many solves in one process.
+//!
+//! Memory must not grow. The last result must equal the first, and the result of a new process.
 
 use std::process::Command;
 
@@ -11,11 +13,13 @@ use super::heights::rough;
 use super::row::{Row, Rows};
 use super::solved::{Method, solve};
 
-/// Solves that allocate what is kept for good: plans, tables, threads' stacks.
+/// Number of solves that may allocate memory for good: plans, tables, stacks of threads.
 const WARM_UP: usize = 50;
 
-/// Growth of the peak that is allowed after that, in bytes: fragments of the allocator, not fields of a scene (8 kB to
-/// 131 kB each, twenty of them a solve).
+/// Allowed growth of the peak memory after the warm-up, in bytes.
+///
+/// It allows for fragments of the allocator. A scene has twenty fields a solve, of 8 kB to 131 kB each, and these must
+/// not stay.
 const GROWTH: f64 = 8e6;
 
 /// Scenes that take turns.
@@ -64,12 +68,12 @@ pub(crate) fn fingerprint(i: usize) -> Result<u64> {
     let &(method, side, load) = SCENES.get(i).with_context(|| format!("there is no scene {i}"))?;
     let solved = solve(&rough(4, 0.8, i as u64, side)?, method, Control::MeanPressure(load), 1e-6)?;
     let numbers = [solved.info.penetration, solved.info.elastic_energy, solved.stiffness];
-    // FNV-1a, whose every step can be undone, so that one other bit is another number.
+    // FNV-1a. Each of its steps can be inverted, so a single different bit gives another number.
     let mix = |hash: u64, value: &f64| (hash ^ value.to_bits()).wrapping_mul(0x0100_0000_01b3);
     Ok(solved.pressure.values().iter().chain(&numbers).fold(0xcbf2_9ce4_8422_2325, mix))
 }
 
-/// The fingerprint of scene `i` from this program, started again.
+/// The fingerprint of scene `i` from a new process of this program.
 fn in_fresh_process(i: usize) -> Result<u64> {
     let program = std::env::current_exe().context("the path of this program")?;
     let output = Command::new(program).args(["stress", "--fingerprint", &i.to_string()]).output();

@@ -1,5 +1,6 @@
-//! The adaptive method on many levels and on elements of several sizes, audited on the whole grid of its smallest
-//! elements.
+//! The adaptive method on many levels and on elements of several sizes.
+//!
+//! Its solutions are audited on the whole grid of the smallest elements.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -16,44 +17,47 @@ use super::heights::shapes;
 use super::row::{Row, Rows, guarded};
 use super::scene::TOLERANCE;
 
-/// Error of the heights that the adaptive method interpolates, relative to the rms height: its tests state it.
+/// Documented error of the heights that the adaptive method interpolates, relative to the rms height.
 const HEIGHT_ERROR: f64 = 1e-9;
 
-/// Rounding of the audit's transform and sums, relative to the peak-to-valley height. Measured: below 1e-14.
+/// Rounding of the audit's transform and sums, relative to the peak-to-valley height. The measured value is below
+/// 1e-14.
 const ROUNDING: f64 = 1e-13;
 
-/// What is left out of the height of a larger element, over the peak-to-valley height: fourth derivatives.
+/// Allowed error of the height of a larger element, relative to the peak-to-valley height.
+///
+/// The interpolation omits fourth derivatives.
 const SAME_HEIGHT: f64 = 1e-5;
 
-/// Part of σ0 or Δ by which an audit may find another one.
+/// Allowed relative difference between σ0 or Δ and its value by the audit.
 const SAME_CONTROL: f64 = 1e-6;
 
-/// Heights that a mesh is made on.
+/// Heights on which a mesh is made.
 enum Relief {
     /// The paper's surface with this many waves and Hurst exponent.
     Waves(usize, f64),
     /// Independent values on all elements.
     Noise,
-    /// Elements high and low by turns.
+    /// Alternating high and low elements, like a chequerboard.
     Chequered,
-    /// A few waves on a map of so many elements along x and y.
+    /// A few waves, on a map with these numbers of elements along x and y.
     Map([usize; 2]),
 }
 
 /// A contact problem for the adaptive method.
 struct MeshScene {
     relief: Relief,
-    /// Elements of the base grid per side; 0 where the method chooses.
+    /// Elements of the base grid per side; 0 if the method chooses.
     base: usize,
     side: usize,
     border_level: usize,
-    /// Of the slope or of H, whichever makes a scene of it.
+    /// Mean pressure in E*.
     load: f64,
     tolerance: f64,
 }
 
 impl MeshScene {
-    /// The paper's surface, about 5 % in contact.
+    /// The paper's surface with about 5 % in contact.
     const fn waves(waves: usize, base: usize, side: usize, border_level: usize) -> Self {
         Self { relief: Relief::Waves(waves, 0.8), base, side, border_level, load: 1e-3, tolerance: TOLERANCE }
     }
@@ -75,7 +79,9 @@ impl MeshScene {
     }
 }
 
-/// The reduced set: three and four levels above the base grid, border levels 1 to 3, maps like noise.
+/// The scenes of the reduced set.
+///
+/// They have three and four levels above the base grid, border levels 1 to 3, and maps like noise.
 fn reduced() -> Vec<MeshScene> {
     let waves = MeshScene::waves;
     vec![
@@ -95,7 +101,7 @@ fn reduced() -> Vec<MeshScene> {
     ]
 }
 
-/// What the full set has besides: N = 128 and 512, five levels, border level 4, other tolerances.
+/// The further scenes of the full set: N = 128 and 512, five levels, border level 4, other tolerances.
 fn further() -> Vec<MeshScene> {
     let waves = MeshScene::waves;
     let mut scenes = vec![
@@ -163,7 +169,7 @@ fn check(scene: &MeshScene, name: &str, rows: &mut Rows) -> Result<()> {
     }
 }
 
-/// Waves of many directions, up to 19 along the longer side, on square elements.
+/// Waves of many directions on square elements, with up to 19 waves along the longer side.
 fn waves_on([nx, ny]: [usize; 2]) -> Result<Field> {
     let ratio = ny as f64 / nx as f64;
     let long = ratio.max(1.0);
@@ -171,7 +177,7 @@ fn waves_on([nx, ny]: [usize; 2]) -> Result<Field> {
         [[1.0, 2.0, 0.1], [-3.0, 2.0, 0.7], [5.0, -4.0, 0.3], [7.0, 9.0, 0.9], [-12.0, 6.0, 0.2], [17.0, 13.0, 0.5]];
     let height = |at: DVec2| {
         let of_wave = |&[kx, ky, phase]: &[f64; 3]| {
-            // Whole numbers along both sides, about as many a length.
+            // Numbers of waves are whole along both sides, and about as many per length.
             let [kx, ky] = [(kx / long).round(), (ky * ratio / long).round()];
             let phase = TAU * (kx * at.x + ky * at.y / ratio + phase);
             phase.cos() / (1.0 + kx.hypot(ky / ratio)).powf(1.7)
@@ -181,7 +187,7 @@ fn waves_on([nx, ny]: [usize; 2]) -> Result<Field> {
     Ok(Field::from_fn(Grid::in_cell(nx, ny, ratio)?, height))
 }
 
-/// Solves, and audits on the whole grid of the smallest elements.
+/// Solves a scene and audits it on the whole grid of the smallest elements.
 fn check_solution(
     scene: &MeshScene,
     (name, source): (&str, HeightSource<'_>),
@@ -217,7 +223,7 @@ fn check_mesh(
     let range = heights.max() - heights.min();
     let rounding = HEIGHT_ERROR * heights.rms() / range + ROUNDING;
     let claimed = solution.certificate().penetration;
-    // The gap at which the solve has set the penetration is within the certificate too.
+    // The solve sets the penetration at a gap whose error is within the certificate too.
     let same_control = match control {
         Control::MeanPressure(_) => SAME_CONTROL,
         Control::Penetration(wanted) => (claimed + rounding) * range / wanted,
@@ -237,15 +243,18 @@ fn check_mesh(
 /// The audit of all elements.
 struct MeshAudit {
     audit: Audit,
-    /// max(-g) / H over elements out of contact alone.
+    /// max(-g) / H over the elements out of contact.
     outside: f64,
-    /// Maximum difference between the height of a larger element in contact and the mean over the centres of its parts,
-    /// over H.
+    /// Maximum error of the height of a larger element in contact, over H.
+    ///
+    /// The error is the difference from the mean over the centres of the element's parts.
     means: f64,
 }
 
-/// The audit of a mesh: every element's pressure on its parts, their displacement by a transform of the whole grid,
-/// gaps in contact as means over elements, and gaps elsewhere at the centres of the smallest elements.
+/// The audit of a mesh on the grid of its smallest elements.
+///
+/// Each part of an element has the element's pressure, and a transform of the whole grid gives the displacements. Gaps
+/// in contact are means over elements. Gaps elsewhere are at the centres of the smallest elements.
 fn of_elements(
     solution: &Solution<'_>,
     (source, heights): (HeightSource<'_>, &Field),
@@ -273,14 +282,14 @@ fn of_elements(
         element.rows(n).for_each(|row| gaps[row].fill(gap));
     }
     let audit = Audit::of_gaps(heights, &pressure, &gaps, control);
-    // As if elements in contact had no gap.
+    // Elements in contact are left out of the minimum.
     let approach = solution.info().penetration;
     gaps.iter_mut().zip(pressure.values()).filter(|(_, p)| **p > 0.0).for_each(|(g, _)| *g = approach);
     let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
     Ok(MeshAudit { audit, outside: (approach - least) / range, means })
 }
 
-/// An element in contact, in units of the smallest elements.
+/// An element in contact; lengths are in sides of the smallest elements.
 struct Square {
     corner: [usize; 2],
     side: usize,
@@ -295,17 +304,21 @@ impl Square {
         Self { corner, side: (element.side * n).round() as usize, pressure: element.pressure }
     }
 
-    /// Its parts in each row of the grid of `n` elements per side.
+    /// Index ranges of the element's parts on the grid of `n` elements per side.
+    ///
+    /// There is a range for each row of the grid.
     fn rows(&self, n: usize) -> impl Iterator<Item = Range<usize>> {
         let ([x, y], side) = (self.corner, self.side);
         (y..y + side).map(move |row| row * n + x..row * n + x + side)
     }
 }
 
-/// Heights that the adaptive method gives larger elements: the mean over the centres of the smallest, to fourth order,
-/// from the centre and the centres of the four quarters.
+/// Heights that the adaptive method uses for larger elements.
+///
+/// The height is the mean over the centres of the smallest elements, to fourth order. It is found from the centre of
+/// the element and the centres of its four quarters.
 struct LevelHeights {
-    /// At the centres of elements of 1, 2, 4, … smallest elements per side.
+    /// Heights at the centres of elements of 1, 2, 4, … smallest elements per side.
     levels: Vec<Field>,
 }
 

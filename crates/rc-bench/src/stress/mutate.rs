@@ -1,5 +1,6 @@
-//! Faults in the sources on purpose: which of them the reduced set finds, and which of the others the tests of their
-//! crate.
+//! Deliberate faults in the sources.
+//!
+//! A fault is found by the reduced set, or else by the tests of its crate.
 
 use std::collections::HashSet;
 use std::fs;
@@ -12,10 +13,10 @@ use anyhow::{Context, Result, bail, ensure};
 
 use rc_figures::{Table, repository};
 
-/// What is not copied of the workspace: history and results.
+/// Folders of the workspace that are not copied: history and results.
 const RESULTS: &[&str] = &[".git", "figures", "rc-result", "target"];
 
-/// A mutant that runs longer than this hangs, which is found too.
+/// Time after which a mutant counts as found, because it hangs.
 const LONGEST: Duration = Duration::from_secs(900);
 
 /// A change of one place in the sources.
@@ -27,18 +28,18 @@ struct Mutation {
     mutated: String,
 }
 
-/// What came of a mutation.
+/// Outcome of a mutation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Outcome {
-    /// The reduced set passed, and so did the tests: nothing noticed.
+    /// The reduced set and the tests passed, so nothing noticed the fault.
     Missed,
     /// These rows failed.
     Failed(HashSet<String>),
     /// The reduced set passed, and this test of the crate failed.
     Tested(String),
-    /// It ended without a table, or not at all.
+    /// The run did not end, or ended without a table.
     Broken(&'static str),
-    /// There is nothing to run: the list has to be mended.
+    /// The mutation does not compile, and its entry in the list has to be corrected.
     NotCompiled,
 }
 
@@ -59,14 +60,14 @@ impl Outcome {
     }
 }
 
-/// Builds and stresses each mutation whose name contains one of `only` (separated by commas), in a copy of the
-/// workspace; where no row fails that passes without it, runs the tests of its crate. Writes `mutations.csv` into
-/// `out`.
+/// Builds and stresses each selected mutation in a copy of the workspace.
 ///
-/// What is built is kept in `target/mutations`, so that each mutation is one incremental build.
+/// A mutation is selected when its name contains one of `only` (separated by commas). If the mutation makes no further
+/// row fail, the tests of its crate run too. The result is `mutations.csv` in `out`. The build is kept in
+/// `target/mutations`, so that each mutation is one incremental build.
 ///
 /// # Errors
-/// When the sources as they are do not compile, or a mutation does not.
+/// When the unchanged sources or a mutation do not compile.
 #[expect(clippy::print_stdout, reason = "the result of the command")]
 pub fn run(only: Option<&str>, out: &Path) -> Result<()> {
     let copy = Copy::new()?;
@@ -91,7 +92,7 @@ pub fn run(only: Option<&str>, out: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The list.
+/// The mutations in `mutations.toml`.
 fn mutations() -> Result<Vec<Mutation>> {
     let table: toml::Table = include_str!("mutations.toml").parse().context("mutations.toml")?;
     let list = table.get("mutation").and_then(toml::Value::as_array).context("no [[mutation]]")?;
@@ -117,7 +118,7 @@ impl Mutation {
         folder.with_context(|| format!("{} is not in a crate: mend mutations.toml", self.file))
     }
 
-    /// The text of the file with the fault in it.
+    /// The text of the file with the fault.
     fn applied(&self, text: &str) -> Result<String> {
         let count = text.matches(&self.original).count();
         if count != 1 {
@@ -130,7 +131,7 @@ impl Mutation {
 /// A copy of the workspace.
 struct Copy {
     folder: tempfile::TempDir,
-    /// Where it is built.
+    /// Folder of the build.
     target: PathBuf,
 }
 
@@ -141,7 +142,7 @@ impl Copy {
         Ok(Self { folder, target: repository::root().join("target/mutations") })
     }
 
-    /// Does `work` while the mutation is in the sources.
+    /// Runs `work` while the mutation is in the sources.
     fn with<T>(&self, mutation: &Mutation, work: impl FnOnce() -> Result<T>) -> Result<T> {
         let file = self.folder.path().join(&mutation.file);
         let text = fs::read_to_string(&file).with_context(|| format!("could not read {}", file.display()))?;
@@ -152,7 +153,9 @@ impl Copy {
         result
     }
 
-    /// What the reduced set finds beyond the `known` rows, or else the tests of the crate.
+    /// Rows of the reduced set that find the mutation, or else a failed test.
+    ///
+    /// Rows in `known` fail without the mutation and do not count. The tests are those of the crate.
     fn outcome(&self, mutation: &Mutation, known: &HashSet<String>) -> Result<Outcome> {
         match self.stress()? {
             Outcome::Failed(rows) if rows.is_subset(known) => self.test(mutation.package()?),
@@ -162,7 +165,9 @@ impl Copy {
         }
     }
 
-    /// Cargo in the copy. Built quickly rather than to be quick: each mutation is one run of two minutes at most.
+    /// A command of cargo in the copy.
+    ///
+    /// Its profile makes builds fast rather than runs, since each mutation runs once, for two minutes at most.
     fn cargo(&self) -> Command {
         let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
         cargo
@@ -227,17 +232,17 @@ impl Copy {
     }
 }
 
-/// Group, scene and property of a line of the table: what a row is called whatever came out.
+/// Group, scene and property of a line of the table, which name the row.
 fn scene_of(line: &str) -> String {
     line.split(',').take(3).collect::<Vec<_>>().join(", ")
 }
 
-/// Copies the workspace, but not what is history or result.
+/// Copies the workspace without history and results.
 fn copy_workspace(to: &Path) -> Result<()> {
     copy_folder(&repository::root(), to, RESULTS)
 }
 
-/// Copies a folder, but not its entries with the names in `without`.
+/// Copies a folder without its entries in `without`.
 fn copy_folder(from: &Path, to: &Path, without: &[&str]) -> Result<()> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from).with_context(|| format!("could not list {}", from.display()))? {

@@ -1,4 +1,6 @@
-//! The heat map: a band for each group, in it a line for each property and a square for each scene.
+//! The heat map of the stress table.
+//!
+//! It has a band for each group, a line for each property, and a square for each scene.
 
 use plotters::element::{Rectangle, Text};
 use plotters::prelude::{DrawingBackend, IntoFont as _};
@@ -8,26 +10,26 @@ use rc_plot::{Area, FONT, Palette, PictureError};
 
 use super::row::Row;
 
-/// Sides of a square and of the space for text, in pixels.
+/// Side of a square, in pixels. The sizes of the spaces for text follow.
 const SQUARE: u32 = 14;
 const LABELS: u32 = 380;
 const TITLE: u32 = 40;
 const MARGIN: u32 = 20;
 
-/// Properties in a line at most; longer lines go on below.
+/// Maximum number of squares in a line. The rest of a property is on further lines.
 const PER_LINE: usize = 90;
 
-/// Failures, and properties without a bound.
+/// Colour of failures. The colour of properties without a bound follows.
 const FAILED: RGBColor = RGBColor(220, 40, 30);
 const HOLDS: RGBColor = RGBColor(185, 205, 190);
 
-/// Bounds used to 1e-6 and less are as light as can be.
+/// Number of decades of the colour scale. Values of 1e-6 of their bound and below have the lightest colour.
 const DECADES: f64 = 6.0;
 
-/// A property, and its rows.
+/// A property with its rows.
 type Line<'a> = (&'static str, Vec<&'a Row>);
 
-/// The lines of squares of each group; a property with many scenes has more than one.
+/// The lines of each group; a property with many scenes has more than one line.
 fn lines<'a>(rows: &'a [Row], groups: &[&'static str]) -> Vec<(&'static str, Vec<Line<'a>>)> {
     let of_group = |group: &&'static str| {
         let mut lines: Vec<Line<'_>> = Vec::new();
@@ -50,7 +52,10 @@ pub(super) fn size(rows: &[Row], groups: &[&'static str]) -> (u32, u32) {
     (LABELS + SQUARE * longest as u32 + 2 * MARGIN, height + TITLE + 2 * MARGIN)
 }
 
-/// Draws the squares: pale for properties that hold, darker the more of a bound is used, red for failures.
+/// Draws the squares.
+///
+/// Properties that hold without a bound are pale. Values are darker the closer they are to their bound. Failures are
+/// red.
 pub(super) fn draw<B: DrawingBackend>(
     area: &Area<B>,
     rows: &[Row],
@@ -78,7 +83,7 @@ fn colour(row: &Row) -> RGBColor {
     match row.use_of_bound {
         _ if !row.passed => FAILED,
         None => HOLDS,
-        // From a third of the palette on, so that the smallest value is not white.
+        // The scale begins at a third of the palette, so that the smallest value is not white.
         Some(part) => Palette::Viridis.colour(0.9 - 0.6 * (1.0 + part.max(1e-30).log10() / DECADES).clamp(0.0, 1.0)),
     }
 }

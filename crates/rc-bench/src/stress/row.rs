@@ -1,10 +1,10 @@
-//! One line of the stress table: what was expected of a scene, what came out, and whether that passes.
+//! One line of the stress table: the expected and the obtained result of a scene.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use anyhow::{Result, anyhow};
 
-/// A property of a scene, checked.
+/// A checked property of a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Row {
     pub(crate) group: &'static str,
@@ -12,12 +12,12 @@ pub(crate) struct Row {
     pub(crate) property: &'static str,
     pub(crate) expected: String,
     pub(crate) obtained: String,
-    /// The value over its bound, where the property is a bound: 1 is as bad as is allowed.
+    /// Ratio of the value to its bound, if the property has a bound. At 1 the bound is reached.
     pub(crate) use_of_bound: Option<f64>,
     pub(crate) passed: bool,
 }
 
-/// The lines of one group, in the making.
+/// The lines of one group while they are collected.
 pub(crate) struct Rows {
     group: &'static str,
     rows: Vec<Row>,
@@ -28,7 +28,7 @@ impl Rows {
         Self { group, rows: Vec::new() }
     }
 
-    /// A value that must not be above a bound; NaN is.
+    /// Adds a value that must not exceed a bound. A NaN fails.
     pub(crate) fn at_most(&mut self, scene: &str, property: &'static str, value: f64, bound: f64) {
         self.rows.push(Row {
             group: self.group,
@@ -41,7 +41,7 @@ impl Rows {
         });
     }
 
-    /// Something that holds or does not; `obtained` says what was found.
+    /// Adds a property that holds or not; `obtained` says what was found.
     pub(crate) fn holds(
         &mut self,
         scene: &str,
@@ -66,12 +66,12 @@ impl Rows {
     }
 }
 
-/// Text that fits into a cell of a table: one line, no commas.
+/// Text for a cell of a table, without commas and line breaks.
 fn cell(text: &str) -> String {
     text.replace(['\n', '\r'], " ").replace(',', ";")
 }
 
-/// What `work` returns; a panic in it is an error that says so.
+/// The result of `work`; a panic becomes an error.
 pub(crate) fn guarded<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);

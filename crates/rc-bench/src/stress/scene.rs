@@ -8,20 +8,25 @@ use super::audit::{Audit, load_of_one_element};
 use super::row::{Row, Rows, guarded};
 use super::solved::{Method, Solved, solve};
 
-/// The tolerance of a scene, unless it says otherwise.
+/// Default tolerance of a scene.
 pub(crate) const TOLERANCE: f64 = 1e-6;
 
-/// What an audit may find beyond the tolerance, relative to it: its own rounding, and the error of the other operator.
+/// Amount by which an audit may exceed the tolerance, relative to the tolerance.
+///
+/// It allows for the audit's rounding and for the error of the other operator.
 const AUDIT_SLACK: f64 = 0.1;
 
-/// The part of a prescribed penetration by which an audit may find another one: rounding of heights, and the error of
-/// the other operator.
+/// Allowed relative error of a prescribed penetration in an audit.
+///
+/// It allows for rounding of heights and for the error of the other operator.
 const SAME_PENETRATION: f64 = 1e-6;
 
-/// Gaps of elements that carry a tenth of the maximum pressure or more, over the tolerance. Measured: at most 4.
+/// Allowed gap of elements with large pressures, as a multiple of the tolerance.
+///
+/// A pressure is large from a tenth of the maximum on. The maximum of the measured values is 4.
 const OPEN_PER_TOLERANCE: f64 = 10.0;
 
-/// Iterations may be this many times the median of all scenes of the method.
+/// Allowed ratio of iterations to the median over all scenes of the method.
 const ITERATION_FACTOR: f64 = 2.0;
 
 /// A contact problem with a name.
@@ -43,12 +48,14 @@ impl Scene {
         Self { name, heights: heights.clone(), method, control, tolerance: TOLERANCE, slack, iteration_factor }
     }
 
-    /// Solved exactly, without an iteration.
+    /// Marks the scene as solved exactly, without an iteration.
     pub(crate) fn exact(self) -> Self {
         Self { iteration_factor: 0.0, ..self }
     }
 
-    /// Known to take up to `factor` times the median number of iterations.
+    /// Marks the scene as slow.
+    ///
+    /// It may take up to `factor` times the median number of iterations.
     pub(crate) fn slow(self, factor: f64) -> Self {
         Self { iteration_factor: factor, ..self }
     }
@@ -57,7 +64,7 @@ impl Scene {
         guarded(|| solve(&self.heights, self.method, self.control, self.tolerance))
     }
 
-    /// Whether it is solved, and how well by another operator's word. Returns the work.
+    /// Solves the scene and audits it with another operator. Returns the work.
     fn check(&self, rows: &mut Rows) -> Option<Work> {
         let solved = match self.solve() {
             Ok(solved) => solved,
@@ -90,7 +97,9 @@ impl Scene {
         Some(Work::of(info))
     }
 
-    /// Whether the load, or the penetration, is the one that was asked for, and has the load of a light contact.
+    /// Checks that the load or the penetration is the prescribed one.
+    ///
+    /// Under a small prescribed penetration it also checks the load of a single element in contact.
     fn check_control(&self, rows: &mut Rows, solved: &Solved, audit: &Audit) {
         match self.control {
             Control::MeanPressure(_) => rows.at_most(&self.name, "load by audit", audit.load, 1e-10),
@@ -108,9 +117,9 @@ impl Scene {
 /// The iterations of a solve.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Work {
-    /// On the finest level.
+    /// Iterations on the finest level.
     finest: f64,
-    /// On all levels, each weighted with its grid's part of the finest elements.
+    /// Iterations on all levels, weighted with the ratio of a level's elements to those of the finest level.
     all: f64,
 }
 
@@ -122,7 +131,7 @@ impl Work {
     }
 }
 
-/// Everything a solution says of itself, but the stiffness, which is infinite in full contact.
+/// All numbers of a solution. The stiffness of full contact, which is infinite, is replaced by zero.
 fn numbers_of(solved: &Solved) -> [f64; 11] {
     let (info, observables) = (&solved.info, &solved.observables);
     let stiffness = solved.stiffness;
@@ -141,11 +150,13 @@ fn numbers_of(solved: &Solved) -> [f64; 11] {
     ]
 }
 
-/// Scenes of a group.
+/// The name and the scenes of a group.
 pub(crate) type Group = (&'static str, Vec<Scene>);
 
-/// What is counted of [`Work`], as it is called in the table: ordinary scenes, slow scenes, the median; and what the
-/// bound of a scene is multiplied by. Coarser grids of a slow scene are slow too: 1.06 was measured.
+/// A count of [`Work`], with its names and the factor of its bound.
+///
+/// The names in the table are for ordinary scenes, for slow scenes and for the median. The factor is above 1 for all
+/// levels, since coarser grids of a slow scene are slow too: 1.06 was measured.
 type Count = ([&'static str; 3], fn(&Work) -> f64, f64);
 
 const COUNTS: [Count; 2] = [
@@ -157,7 +168,7 @@ const COUNTS: [Count; 2] = [
     ),
 ];
 
-/// Checks all scenes; iterations are compared with the median over all scenes of the method.
+/// Checks all scenes, and compares iterations with the median over all scenes of the method.
 pub(crate) fn check(groups: &[Group]) -> Vec<Row> {
     let mut rows = Vec::new();
     let mut counted: Vec<(&'static str, &Scene, Work)> = Vec::new();
@@ -189,7 +200,7 @@ pub(crate) fn check(groups: &[Group]) -> Vec<Row> {
     rows
 }
 
-/// The median of the positive values: full contact needs no iteration.
+/// The median of the positive values. Zeros are scenes in full contact, which need no iteration.
 fn median(mut values: Vec<f64>) -> f64 {
     values.retain(|value| *value > 0.0);
     values.sort_by(f64::total_cmp);

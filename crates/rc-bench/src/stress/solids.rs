@@ -1,4 +1,6 @@
-//! Solids other than the periodic half-space: layers on a rigid base, and patches with free borders.
+//! Solids other than the periodic half-space.
+//!
+//! They are layers on a rigid base, and patches with free borders.
 
 use std::f64::consts::PI;
 
@@ -38,13 +40,13 @@ fn off(value: f64, reference: f64) -> f64 {
     (value / reference - 1.0).abs()
 }
 
-/// What every solid must give, from light to heavy loads.
+/// Checks that every solid must pass, from light to heavy loads.
 fn common(rows: &mut Rows, scene: &str, kernel: &dyn Kernel, side: usize) -> Result<()> {
     let heights = rough(8, 0.8, 4, side)?;
     let small = rough(4, 0.8, 4, 20)?;
     let range = small.max() - small.min();
     let [mut worst, mut round_trip, mut gaps, mut bounds] = [0.0_f64; 4];
-    // Below the depth of full contact, beyond which an incompressible layer has no answer.
+    // These depths are below full contact. Beyond it the problem of an incompressible layer has no solution.
     for depth in [0.1 * range, 0.2 * range, 0.3 * range] {
         let exact = solve_dense(&small, kernel, depth)?.context("elimination found no contact")?;
         let found = solve(&small, kernel, Control::Penetration(depth), 1e-5)?;
@@ -68,7 +70,9 @@ fn common(rows: &mut Rows, scene: &str, kernel: &dyn Kernel, side: usize) -> Res
     Ok(())
 }
 
-/// Of a loose pressure to an exact one, in the energy norm, relative to the energy without that of the mean pressure.
+/// Difference of a loose pressure from an exact one in the energy norm.
+///
+/// It is relative to the energy without the part of the mean pressure.
 fn distance(loose: &Solution<'_>, exact: &Solution<'_>, kernel: &dyn Kernel, load: f64) -> f64 {
     let pressures = loose.pressure().values().iter().zip(exact.pressure().values());
     let difference: Vec<f64> = pressures.map(|(a, b)| a - b).collect();
@@ -79,7 +83,7 @@ fn distance(loose: &Solution<'_>, exact: &Solution<'_>, kernel: &dyn Kernel, loa
     (work / difference.len() as f64 / (exact.info().elastic_energy - uniform)).sqrt()
 }
 
-/// Waves of a layer: a penetration beyond full contact compresses it.
+/// A penetration beyond full contact compresses a layer with the kernel of waves.
 fn compressed(rows: &mut Rows, scene: &str, layer: Layer, side: usize) -> Result<()> {
     let heights = rough(4, 0.8, 4, side)?;
     let kernel = SpectralLayer(layer);
@@ -92,7 +96,7 @@ fn compressed(rows: &mut Rows, scene: &str, layer: Layer, side: usize) -> Result
     Ok(())
 }
 
-/// Hertz, wherever on the patch the sphere is.
+/// Hertz contacts of a sphere at any place of the patch.
 fn spheres(rows: &mut Rows, preset: Preset) -> Result<()> {
     let side = if preset == Preset::Full { 512 } else { 256 };
     let (theory, radius) = (Hertz { radius: 1.0 }, 0.15);

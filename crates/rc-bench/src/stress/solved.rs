@@ -1,4 +1,4 @@
-//! One solve of a height map by any method, in one form.
+//! One solve of a height map, with the same types for all methods.
 
 use anyhow::{Context, Result};
 use rc_core::{Field, Kernel, Silent};
@@ -27,8 +27,9 @@ impl Method {
         }
     }
 
-    /// Bound of the median number of iterations over all scenes: a fifth more than the 10, 10, 10.5 (all levels of the
-    /// adaptive method) and 56 that were measured.
+    /// Upper bound of the median number of iterations over all scenes.
+    ///
+    /// It is a fifth above the measured medians: 10, 10, 10.5 (all levels of the adaptive method) and 56.
     pub(crate) fn most_iterations(self) -> f64 {
         match self {
             Self::Uniform | Self::Spectral => 12.0,
@@ -68,17 +69,17 @@ impl Solved {
     }
 }
 
-/// Solves to `tolerance`.
+/// Solves to the tolerance `tolerance`.
 pub(crate) fn solve(heights: &Field, method: Method, control: Control, tolerance: f64) -> Result<Solved> {
     solve_to(heights, method, control, Tolerance::Relative(tolerance))
 }
 
-/// Solves to the tolerance that nobody has asked for.
+/// Solves to the default tolerance.
 pub(crate) fn solve_by_default(heights: &Field, method: Method, control: Control) -> Result<Solved> {
     solve_to(heights, method, control, SolveParams::default().tolerance)
 }
 
-/// Solves to `tolerance` with a hardness.
+/// Solves to the tolerance `tolerance`, with a hardness.
 pub(crate) fn solve_hard(
     heights: &Field,
     method: Method,

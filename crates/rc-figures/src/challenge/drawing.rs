@@ -20,7 +20,7 @@ impl Challenge {
         self.draw_patches(&panels[3])
     }
 
-    /// The range of log10 of the mean pressures (MPa).
+    /// Range of the decimal logarithm of the mean pressures (MPa).
     fn decades(&self) -> (f64, f64) {
         let log = |point: Option<&Point>| point.map_or(0.0, |point| (point.load * E_STAR_MPA).log10());
         (log(self.points.first()) - 0.2, log(self.points.last()) + 0.2)
@@ -87,7 +87,9 @@ impl Challenge {
         write(&mut chart, (x.0, y.1 - 0.05 * (y.1 - y.0)), Side::Right, "(c)", BLACK)
     }
 
-    /// Patches above an area, for the lightest load, the reference's and the heaviest.
+    /// Draws the number of patches above an area for three loads.
+    ///
+    /// The loads are the lightest, the reference's and the heaviest.
     fn draw_patches<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
         let reference = self.points.iter().find(|point| point.load.total_cmp(&REFERENCE_LOAD).is_eq());
         let curves = [self.points.first(), reference, self.points.last()];
@@ -107,7 +109,7 @@ impl Challenge {
         for (point, colour) in curves.into_iter().zip([GREEN, RED, BLUE]) {
             let Some(Point { load, patches, .. }) = point else { continue };
             let ranked = patches.iter().enumerate().map(|(rank, area)| (log_area(*area), ((rank + 1) as f64).log10()));
-            // A few hundred points draw the line.
+            // A few hundred points are enough to draw the line.
             let stride = (patches.len() / 500).max(1);
             let few = ranked.enumerate().filter(|(i, at)| (i % stride == 0 || *i < 100) && at.0 > x.0);
             chart.draw_series(LineSeries::new(few.map(|one| one.1), colour.stroke_width(3)))?;

@@ -25,10 +25,12 @@ impl Large {
     /// Elements along a side of the published reference.
     pub const REFERENCE_SIDE: usize = 65_536;
 
-    /// Solves it. At 65536² this takes about 12 GB; no field is ever whole in memory.
+    /// Solves the contact on a grid of `side` elements per side.
+    ///
+    /// At 65536² this takes about 12 GB. No field is ever stored as a whole.
     ///
     /// # Errors
-    /// When the surface cannot be made, or the contact not be solved.
+    /// When the surface cannot be made, or the contact cannot be solved.
     pub fn compute(params: &Params, side: usize) -> Result<Self> {
         let surface = params.source.surface()?;
         let (solved, ()) = press(&surface, (side, REFERENCE_LOAD, params.energy_tolerance), |_| ())?;
@@ -39,7 +41,7 @@ impl Large {
         Ok(Self { side, solved, megabytes: memory::peak().map_or(f64::NAN, |bytes| bytes as f64 / 1e6), source })
     }
 
-    /// Its line.
+    /// Table with one line, the results of this contact.
     #[must_use]
     pub fn table(&self) -> Table {
         let mut header = vec!["surface", "side"];
@@ -53,7 +55,7 @@ impl Large {
     }
 }
 
-/// Makes `large` the archived one: its line in `data/runs/challenge/`, its numbers in the document.
+/// Archives `large`: its line in `data/runs/challenge/`, and its numbers in the document.
 ///
 /// # Errors
 /// When a file cannot be written.

@@ -3,7 +3,9 @@
 use super::{CELL_UM, Challenge, E_STAR_MPA, Point, Solved};
 use crate::{Rule, Table, number};
 
-/// Bins of patch areas: the ends of the first, in parts of the cell as a power of ten, and bins per decade.
+/// Lower end of the first bin of patch areas, as a power of ten.
+///
+/// Areas are relative to the cell. Bins per decade and their number follow.
 const FIRST_DECADE: i32 = -9;
 const PER_DECADE: i32 = 3;
 const N_BINS: i32 = 27;
@@ -75,7 +77,9 @@ impl Challenge {
             .column("largest_patch_fraction", Rule::of_scale(5e-4))
     }
 
-    /// How many patches have an area in each bin, and which part of the contact area they are.
+    /// Table of the patches in each bin of areas.
+    ///
+    /// It has their number and their fraction of the contact area.
     pub(super) fn patches_table(&self) -> Table {
         let header =
             ["mean_pressure_mpa", "patch_area_from_um2", "patch_area_to_um2", "patches", "part_of_contact_area"];

@@ -11,7 +11,7 @@ fn quick(tolerance: f64) -> Fig3 {
 #[test]
 fn a_tolerance_of_1e_5_is_enough_for_counts() {
     let (coarse, fine) = (quick(1e-5), quick(1e-8));
-    // The axis goes up to the uniform grid; a thousandth of it is below the size of a dot.
+    // The axis ends at the number of elements of the uniform grid. A thousandth of it is below the size of a dot.
     let visible = 1e-3 * fine.states[0].elements[0];
     for (a, b) in coarse.states.iter().zip(&fine.states) {
         for ((a, b), (_, name, ..)) in a.elements.iter().zip(b.elements).zip(MESHES) {
@@ -21,7 +21,7 @@ fn a_tolerance_of_1e_5_is_enough_for_counts() {
     let [a, b] = [coarse, fine].map(|figure| figure.at_fraction(TWO_THIRDS).expect("a range with two thirds"));
     for ((a, b), (_, name, ..)) in a.elements.iter().zip(b.elements).zip(MESHES) {
         let difference = a / b - 1.0;
-        // Ratios of counts are given with three digits.
+        // Ratios of counts are stated with three digits.
         assert!(difference.abs() < 1e-3, "{name} at two thirds: {a} against {b}, relative {difference:e}");
     }
 }

@@ -1,4 +1,6 @@
-//! Fig. 5 at reduced size by the paper's own procedure: adaptive mesh, Gauss-Seidel, double check.
+//! Fig. 5 at reduced size, solved by the paper's own procedure.
+//!
+//! The procedure is adaptive mesh, Gauss-Seidel iteration and double check.
 
 use anyhow::{Context, Result};
 use rc_core::{Grid, HeightField as _};
@@ -7,7 +9,9 @@ use rc_solver::{Control, Method, SolveParams, solve};
 
 use crate::{Rule, Table, number};
 
-/// What is solved by both methods: the paper's d = λ_min/32 is half the side of these elements.
+/// The contacts that both methods solve.
+///
+/// The paper's d = λ_min/32 is half the side of these elements.
 #[derive(Clone, Debug)]
 pub(super) struct Params {
     waves: usize,
@@ -18,7 +22,9 @@ pub(super) struct Params {
 }
 
 impl Params {
-    /// A few waves, since Gauss-Seidel needs the square of the number of elements.
+    /// A case with only a few waves.
+    ///
+    /// The cost of Gauss-Seidel grows as the square of the number of elements.
     pub(super) fn reduced(load: f64) -> Self {
         Self { waves: 8, elements_per_wave: 16, loads: vec![2e-4, load], seeds: vec![1, 2], tolerance: 1e-5 }
     }
@@ -33,7 +39,7 @@ pub(super) struct Pair {
     every_element: Contact,
 }
 
-/// One contact.
+/// One contact by one method.
 #[derive(Clone, Copy, Debug)]
 struct Contact {
     /// A/A0 by counting the smallest elements.
@@ -45,12 +51,12 @@ struct Contact {
 }
 
 impl Pair {
-    /// Area of the procedure over that of the other method, less 1.
+    /// Relative difference of the procedure's area from the other method's.
     pub(super) fn difference(&self) -> f64 {
         self.procedure.area / self.every_element.area - 1.0
     }
 
-    /// The same of the penetration.
+    /// Relative difference of the procedure's penetration from the other method's.
     #[cfg(test)]
     pub(super) fn difference_of_penetration(&self) -> f64 {
         self.procedure.penetration / self.every_element.penetration - 1.0

@@ -8,12 +8,12 @@ use super::{Bin, Curve, Fig8};
 use crate::chart::{Axes, Drawn, GREY, Side, write};
 use crate::marks::{Sample, error_bars, legend};
 
-/// Stresses up to here are shown, in hundredths of E*.
+/// Upper end of the drawn stresses, in hundredths of E*.
 const GREATEST_STRESS: f64 = 5.0;
 const HUNDREDTH: f64 = 1e2;
-/// Lower end of the logarithm of P where it goes to zero.
+/// Lower end of log P in the panel where P goes to zero.
 const LOWEST: f64 = -2.5;
-/// Half-sizes of marks, in pixels.
+/// Half-size of small marks, in pixels. The half-size of large marks follows.
 const SMALL_MARK: i32 = 5;
 const TINY_MARK: i32 = 3;
 
@@ -21,7 +21,7 @@ impl Fig8 {
     pub(super) fn draw_panels<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
         let (left, right) = area.split_horizontally(1080);
         self.draw_distribution(&left)?;
-        // Over the empty upper right of the first panel.
+        // The inset is over the empty upper right of the first panel.
         let (corner, size) = ((600, 40), (450, 440));
         left.draw(&Rectangle::new(
             [(corner.0 + 40, corner.1), (corner.0 + size.0, corner.1 + size.1)],
@@ -31,7 +31,7 @@ impl Fig8 {
         self.draw_start(&right)
     }
 
-    /// The maximum density.
+    /// Maximum of the density P.
     fn peak(&self) -> f64 {
         self.curves.iter().map(|curve| curve.peak().1).fold(0.0, f64::max)
     }
@@ -67,7 +67,7 @@ impl Fig8 {
         legend(&mut chart, (0.08 * GREATEST_STRESS, 0.965 * top), 0.055 * top, &lines)
     }
 
-    /// The tail, semi-logarithmic.
+    /// Draws the tail with a logarithmic axis for P.
     fn draw_tail<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
         let (low, high) = (-3.0, self.top_decade());
         let axes =
@@ -84,7 +84,7 @@ impl Fig8 {
         Ok(())
     }
 
-    /// The approach to zero, on logarithmic axes.
+    /// Draws the approach to zero with two logarithmic axes.
     fn draw_start<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
         let axes = Axes {
             x: (-5.0, -1.9),
@@ -106,7 +106,7 @@ impl Fig8 {
             lines.push((Sample::Thin(curve.style.colour), format!("N = {}, elements counted", curve.waves)));
         }
         if let Some(curve) = self.curves.first() {
-            // A little above the marks.
+            // The line is slightly above the marks.
             let first = curve.small.first().map_or(0.0, |bin| (bin.density.mean / bin.stress).log10());
             let line = [-4.9, -2.9].map(|x| (x, x + first + 0.15));
             chart.draw_series(DashedLineSeries::new(line, 4, 6, GREY.stroke_width(3)))?;
@@ -118,12 +118,12 @@ impl Fig8 {
 }
 
 impl Curve {
-    /// Every so many bins are drawn, so that marks do not hide each other.
+    /// Step between drawn bins, so that marks do not hide each other.
     fn stride(&self) -> usize {
         (self.bins.len() / 80).max(1)
     }
 
-    /// Eq. 7 up to a stress, in the units of the axes.
+    /// Points of Eq. 7 up to the stress `end`, in the units of the axes.
     fn fitted(&self, end: f64) -> Vec<(f64, f64)> {
         let stresses = (1..=300).map(|i| end * f64::from(i) / 300.0);
         stresses.map(|stress| (HUNDREDTH * stress, self.fit.density(stress))).collect()

@@ -50,12 +50,12 @@ impl Fig8 {
         let table = Table::new("summary", &header, rows.chain(self.refined_rows()))
             .column("value", Rule::relative(1e-4))
             .column("standard_error", Rule::of_value(1e-4))
-            // In units of the peak, and powers of σ: of bins of few elements.
+            // These are in units of the peak, and powers of σ, from bins of few elements.
             .row("first bin over peak", Rule::absolute(2e-4))
             .row("first bin over peak by elements", Rule::absolute(5e-3))
             .row("slope from 0.01 to 0.1 of the peak stress", Rule::absolute(2e-3))
             .row("slope from 0.004 to 0.04", Rule::absolute(2e-3))
-            // Elements at edges that flip, in the lowest bins: 5e-3 were measured between sets of vector instructions.
+            // Elements at edges in the lowest bins flip. Sets of vector instructions gave differences of 5e-3.
             .row("slope by elements from 0.01 to 0.1", Rule::absolute(1e-2));
         self.refined.iter().fold(table, |table, (side, _)| {
             let rule = [Rule::absolute(4e-3), Rule::absolute(2e-2), Rule::absolute(1e-2)];
@@ -63,7 +63,7 @@ impl Fig8 {
         })
     }
 
-    /// Counting against interpolating on finer and finer elements.
+    /// Rows that compare counting with interpolation on finer and finer elements.
     fn refined_rows(&self) -> impl Iterator<Item = Vec<String>> {
         self.refined.iter().flat_map(|(side, curve)| {
             let first = curve.bins.first().map_or(f64::NAN, |bin| bin.of_elements / curve.peak().1);
@@ -96,12 +96,13 @@ impl Fig8 {
             |curve: &Curve, bin: &Bin| [curve.waves.to_string()].into_iter().chain(bin.cells()).collect::<Vec<_>>();
         let line = &line;
         let rows = self.curves.iter().flat_map(|curve| curve.small.iter().map(move |bin| line(curve, bin)));
-        // The narrowest of these bins are not much wider than the error of a pressure, so all of their elements may
-        // change.
+        // The narrowest bins are hardly wider than the error of a pressure, so all of their elements may change.
         compared(Table::new("small", &header, rows), 3.0)
     }
 
-    /// The counts of elements of one realisation towards zero stress, on finer and finer elements.
+    /// Table of the approach to zero stress by counting, for one realisation.
+    ///
+    /// It has finer and finer elements.
     pub(super) fn refined_table(&self) -> Table {
         let header = ["waves", "elements_per_wave", "stress_over_e_star", "density", "elements", "by_elements"];
         let rows = self.refined.iter().flat_map(|(side, curve)| {
@@ -118,7 +119,7 @@ impl Fig8 {
     }
 }
 
-/// What [`Fig8::refined_rows`] are called.
+/// Names of the quantities in [`Fig8::refined_rows`].
 fn refined_names(elements_per_wave: usize) -> [String; 3] {
     ["slope from 0.01 to 0.1", "slope by elements from 0.01 to 0.1", "first bin over peak by elements"]
         .map(|name| format!("{name} with {elements_per_wave} elements per wave"))
@@ -131,7 +132,9 @@ impl Bin {
     }
 }
 
-/// How tables of bins are compared: elements cross the ends of bins at random, `part`·√n of n.
+/// Adds the comparison rules of tables of bins.
+///
+/// Elements cross the ends of bins at random. A bin of n elements may differ by `part`·√n.
 fn compared(table: Table, part: f64) -> Table {
     table
         .column("density", Rule::of_scale(2e-4))

@@ -18,12 +18,12 @@ fn quick_figure_8_is_as_reviewed_and_can_be_drawn() {
     let figure = Fig8::compute(&params).expect("the quick figure is solved");
     for curve in &figure.curves {
         let waves = curve.waves;
-        // The stress must add up to the load, and P to the area, whatever its bins.
+        // The integral of stress must be the load, and the integral of P the area, for any bins.
         let load = curve.mean_stress.mean / params.load - 1.0;
         assert!(load.abs() < 3e-3, "N = {waves}: the mean stress of the distribution is off by {load:e}");
         let area = curve.integral.mean / curve.area.mean - 1.0;
         assert!(area.abs() < 1e-2, "N = {waves}: the area of the distribution is off by {area:e}");
-        // Linear in σ, where counting elements is not.
+        // P is linear in σ here, and counting elements would not show it.
         let slope = curve.small_slope(DECADES[1], |bin| bin.density.mean);
         assert!((slope - 1.0).abs() < 0.1, "N = {waves}: P grows as σ^{slope}");
     }

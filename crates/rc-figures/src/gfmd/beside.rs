@@ -1,4 +1,4 @@
-//! Energy, mean gap and stress beside a copy of the files of the published reference.
+//! Energy, mean gap and stress beside the files of the published reference.
 
 use std::f64::consts::TAU;
 use std::fs;
@@ -10,16 +10,18 @@ use rc_heights::{MatArray, mat_arrays};
 use super::{Gfmd, Point};
 use crate::{Table, number};
 
-/// The longest wavelength of the reference (m), whose energies are in N/m for E* = 1 Pa.
+/// The longest wavelength of the reference (m). Its energies are in N/m for E* = 1 Pa.
 const LONGEST: f64 = TAU * 1e-4;
 
-/// Files with distributions of the stress, by load, with the names of their arrays.
+/// Loads with a file of the stress distribution, and the names of the arrays.
 const STRESSES: [(f64, &str); 3] = [(0.025, "0_025"), (0.113, "0_113"), (0.24, "0_24")];
 
-/// Tables of ours beside the files in `folder`, a copy of the folder `Data` of the published reference.
+/// Tables of our results beside the files in `folder`.
+///
+/// `folder` is a copy of the folder `Data` of the published reference.
 ///
 /// # Errors
-/// When a file is missing or is not what it should be.
+/// When a file is missing or does not have the expected arrays.
 pub fn beside(figure: &Gfmd, folder: &Path) -> Result<Vec<Table>> {
     Ok(vec![energies(figure, folder)?, gaps(figure, folder)?, stresses(figure, folder)?])
 }
@@ -41,7 +43,7 @@ impl Data {
     }
 }
 
-/// Our point of a load of theirs.
+/// Our result at a load of the reference.
 fn point(figure: &Gfmd, load: f64) -> Option<&Point> {
     figure.points.iter().find(|point| (point.load / load - 1.0).abs() < 1e-9)
 }
@@ -64,8 +66,9 @@ fn energies(figure: &Gfmd, folder: &Path) -> Result<Table> {
     Ok(Table::new("beside-energy", &header, rows))
 }
 
-/// Mean gaps from histograms of the gap over the rms height. Whether a gap of the files is the lower end of its bin or
-/// its middle is not said, so both means are given.
+/// Table of mean gaps from histograms of the gap over the rms height.
+///
+/// The files do not say whether a gap is the lower end of its bin or its middle, so both means are given.
 fn gaps(figure: &Gfmd, folder: &Path) -> Result<Table> {
     let mut rows = Vec::new();
     for part in ["low", "high"] {
@@ -110,7 +113,7 @@ fn stresses(figure: &Gfmd, folder: &Path) -> Result<Table> {
     Ok(Table::new("beside-stress", &header, rows))
 }
 
-/// The density between the middles of bins.
+/// The density at `stress`, interpolated between the middles of bins.
 fn density_at(edges: &[f64], density: &[f64], stress: f64) -> Option<f64> {
     let middles: Vec<f64> = edges.windows(2).map(|edge| 0.5 * (edge[0] + edge[1])).collect();
     let above = middles.partition_point(|middle| *middle < stress);

@@ -8,10 +8,10 @@ use super::{Gfmd, Point};
 use crate::chart::{Axes, BLUE, Drawn, GREEN, GREY, RED, Side, write};
 use crate::marks::{Sample, Style, error_bars, legend};
 
-/// Located areas and ours throughout; counted ones.
+/// Style of located areas and of all other results of ours. The style of counted areas follows.
 const LOCATED: Style = Style { colour: RED, dot: true };
 const COUNTED: Style = Style { colour: BLUE, dot: false };
-/// The published sets are drawn to the right of ours, so that bars do not hide each other: in decades.
+/// Shift of the published sets to the right, in decades. It keeps bars from hiding each other.
 const ASIDE: f64 = 0.035;
 
 impl Gfmd {
@@ -23,7 +23,7 @@ impl Gfmd {
         self.draw_gap_and_energy(&panels[3])
     }
 
-    /// The range of log10 of the loads.
+    /// Range of the decimal logarithm of the loads.
     fn decades(&self) -> (f64, f64) {
         let first = self.points.first().map_or(-4.0, |point| point.load.log10());
         let last = self.points.last().map_or(0.0, |point| point.load.log10());

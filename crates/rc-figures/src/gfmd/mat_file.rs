@@ -1,11 +1,11 @@
-//! Files as the published reference has them, for tests.
+//! Files in the format of the published reference, for tests.
 
 use std::io::Write as _;
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
-/// Types of elements.
+/// Codes of the types of elements.
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 
@@ -16,7 +16,7 @@ fn tagged(kind: u32, data: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// A file with one array of doubles, compressed.
+/// The bytes of a file with these arrays of doubles, compressed.
 pub(super) fn file(arrays: &[(&str, usize, &[f64])]) -> Vec<u8> {
     let mut bytes = vec![b' '; 124];
     bytes.extend(b"\0\x01IM");

@@ -4,19 +4,19 @@ use anyhow::{Context, Result};
 
 const VALUES: &str = include_str!("../../../../data/gfmd.csv");
 
-/// A/A0 of one load.
+/// Published A/A0 at one load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Published {
-    /// σ0/E*.
+    /// Mean pressure σ0/E*.
     pub(super) load: f64,
-    /// The first set, and the standard deviation of one of its surfaces.
+    /// A/A0 of the first set. The standard deviation of one of its surfaces follows.
     pub(super) first: f64,
     pub(super) deviation: f64,
-    /// The second set, which ends before full contact.
+    /// A/A0 of the second set, which ends before full contact.
     pub(super) second: Option<f64>,
 }
 
-/// All loads, lightest first.
+/// The published areas of all loads, lightest first.
 ///
 /// # Errors
 /// When a cell is not a number.

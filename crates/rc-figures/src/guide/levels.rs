@@ -1,4 +1,6 @@
-//! One application of the multilevel operator, level by level: pressures down to the base grid, displacements up again.
+//! One application of the multilevel operator, level by level.
+//!
+//! Pressures are restricted down to the base grid, then displacements are prolonged up again.
 
 use anyhow::{Context, Result};
 use plotters::prelude::{DrawingBackend, IntoFont, PathElement, Polygon, Rectangle, Text};
@@ -14,7 +16,7 @@ use super::transfer::{displaced, prolonged, restricted};
 use crate::chart::{BLUE, GREY};
 use crate::{Figure, Preset, Rule, Table, number, paper};
 
-/// Side of a map, distance between rows, how far a row is moved towards the middle, and text, in pixels.
+/// Side of a map, in pixels. The following sizes are also in pixels.
 const PANEL: i32 = 224;
 const ROW: i32 = 290;
 const INDENT: i32 = 120;
@@ -23,41 +25,42 @@ const WIDTH: i32 = 1380;
 /// Elements along the side of a tile.
 const TILE: usize = 8;
 
-/// What the figure is computed from.
+/// Parameters of the figure.
 #[derive(Clone, Debug)]
 pub struct Params {
     /// Number of waves N.
     waves: usize,
     /// Elements per side of the finest grid and of the base grid.
     grids: (usize, usize),
-    /// σ0/E*.
+    /// Mean pressure σ0/E*.
     mean_pressure: f64,
     split: SplitParams,
 }
 
-/// One level.
+/// Fields and tiles of one level.
 #[derive(Clone, Debug)]
 struct Level {
     pressure: Field,
     displacement: Field,
-    /// The tiles that the solver would keep, row by row.
+    /// Whether the solver would keep a tile, row by row.
     tiles: Vec<bool>,
 }
 
-/// All levels, the finest first, in units of λ and E*.
+/// All levels in units of λ and E*, the finest first.
 #[derive(Clone, Debug)]
 pub struct Levels {
     levels: Vec<Level>,
-    /// Root mean square of the difference to the exact displacement, relative to that displacement, over the contact.
+    /// Relative rms error of the displacement over the contact.
     error: f64,
 }
 
-/// What the stencils leave to the base grid, as a kernel.
+/// The part of the kernel that the stencils leave to the base grid.
 struct Remainder<'a> {
     split: &'a ScaleSplit,
     cutoff: f64,
-    /// What the stencils displace under a uniform pressure of 1, which the base grid takes off again: a constant gives
-    /// zero (Eq. 3).
+    /// Displacement that the stencils cause under a uniform pressure of 1.
+    ///
+    /// The base grid subtracts it, since a constant pressure displaces nothing (Eq. 3).
     of_constant: f64,
 }
 
@@ -78,7 +81,9 @@ impl Figure for Levels {
     const NAME: &'static str = "guide-levels";
     type Params = Params;
 
-    /// Four waves on 128², 64², 32² and 16² elements; two levels less in the quick one.
+    /// Four waves on 128², 64², 32² and 16² elements (full).
+    ///
+    /// The quick preset has two levels less.
     fn params(preset: Preset) -> Result<Params> {
         let grids = match preset {
             Preset::Full => (128, 16),
@@ -116,7 +121,7 @@ impl Figure for Levels {
     }
 }
 
-/// The filter between level `depth` and the next coarser one; the finest level is 0.
+/// Weights of the filter between level `depth` and the next coarser level. The finest level is 0.
 fn taps(split: &ScaleSplit, depth: usize) -> Vec<f64> {
     let filter = if depth == 0 { split.love_filter() } else { split.level_filter() };
     filter.taps().to_vec()
@@ -166,7 +171,10 @@ fn relative_error(test: &Field, exact: &Field, pressure: &Field) -> f64 {
     (difference / sum(&|i| exact.values()[i])).sqrt()
 }
 
-/// The tiles of each level: those that the contact touches, then those that the filters reach from them.
+/// The tiles of each level.
+///
+/// On the finest level they are the tiles that the contact touches. On coarser levels they are the tiles that the
+/// filters reach from the finer level.
 fn tiles(pressures: &[Field], split: &ScaleSplit) -> Result<Vec<Vec<bool>>> {
     let mut marks = pressures[0].clone();
     let mut levels = Vec::new();
@@ -225,7 +233,9 @@ impl Levels {
     }
 }
 
-/// A map of a field in the tiles that are kept, one square for each element, with the outlines of these tiles.
+/// Draws a field in the kept tiles, with the outlines of these tiles.
+///
+/// Each element is one square.
 fn draw_field<B: DrawingBackend>(
     area: &Area<B>,
     (left, top): (i32, i32),
@@ -292,7 +302,7 @@ mod tests {
         (Levels::compute(&params).expect("the contact is solved"), params)
     }
 
-    /// The sums over levels are L, with the error that the split promises.
+    /// The sums over levels give L, with the error that the split promises.
     #[test]
     fn one_v_of_levels_is_the_operator() {
         for (split, bound) in [(SplitParams::quick(), 2e-2), (SplitParams::certified(), 5e-6)] {

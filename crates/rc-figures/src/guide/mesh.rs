@@ -1,4 +1,6 @@
-//! The adaptive mesh of a solved contact: elements halved at the edges of contacts, and coarser ones inside.
+//! The adaptive mesh of a solved contact.
+//!
+//! Elements are halved at the edges of contacts, and coarser inside.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -15,25 +17,25 @@ use rc_solver::{ContactElement, Control, Method, SolveParams, solve};
 use crate::chart::{GREY, RED};
 use crate::{Figure, Preset, Rule, Table, number, paper};
 
-/// Side of a map, space around it, and text, in pixels.
+/// Side of a map, in pixels. The space around it and the size of the text follow.
 const PANEL: u32 = 768;
 const MARGIN: u32 = 24;
 const TEXT: u32 = 24;
 
-/// What the figure is computed from.
+/// Parameters of the figure.
 #[derive(Clone, Debug)]
 pub struct Params {
     /// Number of waves N.
     waves: usize,
     /// Elements per side of the grid.
     grid: usize,
-    /// How often elements at edges are halved beyond the grid.
+    /// Number of times that elements at edges are halved.
     border_level: usize,
-    /// σ0/E*.
+    /// Mean pressure σ0/E*.
     mean_pressure: f64,
     /// Relative tolerance of the solve.
     tolerance: f64,
-    /// Side of the part that is drawn larger, in λ.
+    /// Side of the enlarged part, in λ.
     window: f64,
 }
 
@@ -41,7 +43,7 @@ pub struct Params {
 #[derive(Clone, Copy, Debug, Default)]
 struct Size {
     count: usize,
-    /// Part of the cell that they cover.
+    /// Fraction of the cell that they cover.
     area: f64,
     load: f64,
 }
@@ -52,7 +54,7 @@ pub struct Mesh {
     params: Params,
     pressure: Field,
     elements: Vec<ContactElement>,
-    /// Lower left corner of the part that is drawn larger.
+    /// Lower left corner of the enlarged part.
     corner: DVec2,
     /// Side of the cell (m), for the scale bar.
     cell: f64,
@@ -62,7 +64,9 @@ impl Figure for Mesh {
     const NAME: &'static str = "guide-mesh";
     type Params = Params;
 
-    /// Four waves on 256² elements and two border levels; on 128² and one border level in the quick one.
+    /// Four waves on 256² elements with two border levels (full).
+    ///
+    /// The quick preset has 128² elements and one border level.
     fn params(preset: Preset) -> Result<Params> {
         let (grid, border_level) = match preset {
             Preset::Full => (256, 2),
@@ -91,14 +95,14 @@ impl Figure for Mesh {
         let rows = self.sizes().into_iter().map(|(per_side, size)| {
             vec![per_side.to_string(), size.count.to_string(), number(size.area), number(size.load)]
         });
-        // A tile of 64 elements at the edge of a contact may be divided or not.
+        // A tile of 64 elements at the edge of a contact may or may not be divided.
         let table = Table::new("sizes", &header, rows).column("count", Rule::count(1.0));
         vec![table.column("area", Rule::of_count("count", 1.0)).column("load", Rule::of_count("count", 1.0))]
     }
 }
 
 impl Mesh {
-    /// By the number of such elements along the cell, coarsest first.
+    /// Sizes of elements by their number along the cell, coarsest first.
     fn sizes(&self) -> BTreeMap<usize, Size> {
         let mut sizes = BTreeMap::<usize, Size>::new();
         for element in &self.elements {
@@ -154,7 +158,7 @@ impl Mesh {
             .map_err(PictureError::new)
     }
 
-    /// Whether a part of the element is in the window.
+    /// Whether a part of the element is in the enlarged part.
     fn is_drawn(&self, element: &ContactElement) -> bool {
         let from_middle = (element.centre - self.corner - 0.5 * self.params.window).abs();
         from_middle.max_element() < 0.5 * (self.params.window + element.side)

@@ -1,4 +1,6 @@
-//! The kernel split by scale: the displacement by one element, as the sum of what each level of the operator adds.
+//! The kernel split by scale.
+//!
+//! The displacement of one element is the sum of what each level of the operator adds.
 
 use std::f64::consts::PI;
 
@@ -13,16 +15,16 @@ use crate::chart::{Axes, BLUE, Chart, Drawn, GREEN, RED, Side, write};
 use crate::{Figure, Preset, Rule, Table, number};
 
 const COLOURS: [RGBColor; 3] = [BLUE, GREEN, RGBColor(200, 130, 0)];
-/// Lowest power of ten that is drawn of displacements, and of transforms.
+/// Lowest power of ten in the drawings of displacements and of transforms.
 const FLOOR: [f64; 2] = [-5.0, -7.0];
 
-/// What the figure is computed from.
+/// Parameters of the figure.
 #[derive(Clone, Debug)]
 pub struct Params {
     split: SplitParams,
-    /// Levels above the base grid.
+    /// Number of levels above the base grid.
     n_levels: usize,
-    /// Wavenumbers of the transforms.
+    /// Number of wavenumbers of the transforms.
     n_waves: usize,
 }
 
@@ -31,7 +33,7 @@ pub struct Params {
 pub struct Split {
     tables: ScaleSplit,
     params: Params,
-    /// Angular wavenumbers, and the transform of each level's part at them, finest level first; the remainder last.
+    /// Angular wavenumbers. The transforms of the levels' parts at them follow, finest level first, remainder last.
     waves: Vec<f64>,
     transforms: Vec<Vec<f64>>,
 }
@@ -69,7 +71,7 @@ impl Figure for Split {
     }
 }
 
-/// Side of an element of a level, in those of the finest, level 0.
+/// Side of an element of a level, in sides of the finest level's element (level 0).
 fn side(level: usize) -> f64 {
     f64::from(1_u32 << level)
 }
@@ -79,8 +81,9 @@ impl Split {
         if level == 0 { self.tables.love_stencil() } else { self.tables.level_stencil() }
     }
 
-    /// What a level adds to the displacement of the point at `r` along x; `None` where it has no point, zero beyond its
-    /// stencil.
+    /// The part of a level in the displacement of the point at `r` along x.
+    ///
+    /// `None` where the level does not have a point, and zero beyond its stencil.
     fn part(&self, level: usize, r: usize) -> Option<f64> {
         let step = 1 << level;
         let stencil = self.stencil(level);
@@ -89,7 +92,7 @@ impl Split {
         r.is_multiple_of(step).then(|| if inside { stencil.weight(offset as i32, 0) / side(level) } else { 0.0 })
     }
 
-    /// What the base grid adds: the rest.
+    /// The part of the base grid, which is the rest.
     fn rest(&self, r: usize) -> Option<f64> {
         let parts: Option<f64> = (0..self.params.n_levels).map(|level| self.part(level, r)).sum();
         parts.map(|parts| whole(r) - parts)
@@ -100,7 +103,9 @@ impl Split {
         (2 * self.params.split.cutoff) << (self.params.n_levels - 1)
     }
 
-    /// Points from which the tables and pictures are made: those of the finest stencil, then the points of every level.
+    /// Points of the tables and pictures.
+    ///
+    /// They are the points of the finest stencil, then the points that all levels have.
     fn distances(&self) -> Vec<usize> {
         let reach = self.reach();
         let last = 1 << (self.params.n_levels - 1);
@@ -193,13 +198,15 @@ fn whole(r: usize) -> f64 {
     love_displacement(DVec2::new(r as f64, 0.0), 0.5)
 }
 
-/// Decimal logarithms of both coordinates, where the second is positive and above the floor.
+/// Decimal logarithms of both coordinates, up to the first point below the floor.
+///
+/// Points whose second coordinate is not positive are left out.
 fn logarithms(points: impl Iterator<Item = (f64, f64)>, floor: f64) -> Vec<(f64, f64)> {
     let points = points.filter(|(_, value)| *value > 0.0).map(|(at, value)| (at.log10(), value.log10()));
     points.take_while(|(_, value)| *value > floor).collect()
 }
 
-/// A thin line with a dot at each of its points, which are the weights of a stencil.
+/// Draws a thin line with a dot at each weight of a stencil.
 fn dotted<B: DrawingBackend>(chart: &mut Chart<'_, B>, points: &[(f64, f64)], colour: RGBColor) -> Drawn<(), B> {
     chart.draw_series(LineSeries::new(points.iter().copied(), colour.stroke_width(2)))?;
     chart.draw_series(points.iter().map(|&at| Circle::new(at, 5, colour.filled())))?;
@@ -237,7 +244,7 @@ mod tests {
         }
     }
 
-    /// Far from the element only the base grid is left.
+    /// Far from the element only the part of the base grid remains.
     #[test]
     fn stencils_end_and_the_remainder_is_smooth() {
         let (figure, params) = quick();

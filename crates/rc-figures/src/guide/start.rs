@@ -1,5 +1,6 @@
-//! The start of a finer grid: the edge function of a solved wave is linear across the edge of the contact, the pressure
-//! is not.
+//! The start of a finer grid, on a solved wave.
+//!
+//! The edge function is linear across the edge of the contact; the pressure is not.
 
 use anyhow::Result;
 use plotters::prelude::{Circle, DashedLineSeries, DrawingBackend, LineSeries, PathElement};
@@ -12,27 +13,29 @@ use rc_theory::westergaard::Westergaard;
 use crate::chart::{Axes, BLUE, Chart, Drawn, GREY, RED, Side, write};
 use crate::{Figure, Preset, Rule, Table, number};
 
-/// Typical distance to the edge of an element in contact beside one that is not, in elements, as the solver assumes it.
+/// Distance from the last element in contact to the edge, in elements.
+///
+/// It is a typical value, which the solver assumes too.
 const EDGE_DISTANCE: f64 = 0.7;
-/// The part of the cell that is drawn.
+/// Range of x in the drawing, in λ.
 const SHOWN: (f64, f64) = (0.0, 0.5);
 
-/// What the figure is computed from.
+/// Parameters of the figure.
 #[derive(Clone, Debug)]
 pub struct Params {
     wave: Westergaard,
     /// Ratio of the mean pressure to that of full contact.
     load: f64,
-    /// Elements along the wave, and points of the exact curve.
+    /// Elements along the wave. The number of points of the exact curve follows.
     grid: usize,
     n_points: usize,
 }
 
-/// A wave in contact, in units of λ and E*, along the wave from its crest.
+/// A wave in contact along a line from its crest, in units of λ and E*.
 #[derive(Clone, Debug)]
 pub struct Start {
     params: Params,
-    /// Centres of elements, and pressure, gap and edge function there.
+    /// Centres of the elements. Pressure, gap and edge function at the centres follow.
     x: Vec<f64>,
     pressure: Vec<f64>,
     gap: Vec<f64>,
@@ -80,7 +83,10 @@ impl Params {
     }
 }
 
-/// p² in contact, -c² (3g/4c)^(2/3) out of it, with c from the elements in contact beside it, and zero without any.
+/// The edge function at element `i`.
+///
+/// It is p² in contact. Out of contact it is -c² (3g/4c)^(2/3), where c is from the neighbours in contact. It is zero
+/// without such neighbours.
 fn edge_function(pressure: &[f64], gap: f64, i: usize, spacing: f64) -> f64 {
     let n = pressure.len();
     let near = [pressure[(i + n - 1) % n], pressure[(i + 1) % n]];
@@ -95,7 +101,7 @@ fn edge_function(pressure: &[f64], gap: f64, i: usize, spacing: f64) -> f64 {
     -c_squared * (0.75 * gap / c_squared.sqrt()).powf(2.0 / 3.0)
 }
 
-/// `values` at `x`, linear between the centres of elements.
+/// `values` at `x` by linear interpolation between the centres of elements.
 fn at(values: &[f64], x: f64) -> f64 {
     let n = values.len();
     let place = x * n as f64 - 0.5;
@@ -104,7 +110,7 @@ fn at(values: &[f64], x: f64) -> f64 {
     value(below) + part * (value(below + 1.0) - value(below))
 }
 
-/// Where `values`, linear between centres, stop being positive.
+/// Position where the linear interpolation of `values` stops being positive.
 fn edge_of(values: &[f64]) -> f64 {
     let points = (0..=50_000).map(|i| 1e-5 * f64::from(i));
     points.take_while(|x| at(values, *x) > 0.0).last().unwrap_or(0.0)

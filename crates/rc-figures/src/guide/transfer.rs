@@ -1,23 +1,24 @@
-//! The operations of the multilevel operator on whole grids: filters between two levels and stencils, cell by cell.
+//! The operations of the multilevel operator on whole grids, cell by cell.
 //!
-//! The solver does the same on tiles, with vector instructions. These are for a picture: their cost does not matter.
+//! They are the filters between two levels and the stencils. The solver does the same on tiles, with vector
+//! instructions. These functions are for a picture, so they need not be fast.
 
 use anyhow::Result;
 use rc_core::{Field, Grid};
 use rc_kernel::Stencil;
 
-/// The cell of the coarser grid that tap number `tap` of `n_taps` reads for the value at cell `fine`, on `n` cells that
-/// repeat.
+/// The coarse cell that a tap of the filter reads for cell `fine`.
 ///
-/// A fine cell of odd index lies a quarter of a coarse cell beyond the centre of its coarse cell, one of even index
-/// before it.
+/// The tap is number `tap` of `n_taps`, and the coarser grid has `n` cells, which repeat. The centre of a fine cell of
+/// odd index is a quarter of a coarse cell beyond the centre of its coarse cell. The centre of a fine cell of even
+/// index is as far before it.
 fn coarse_cell(fine: usize, (tap, n_taps): (usize, usize), n: usize) -> usize {
     let shift = tap as isize - (n_taps as isize / 2 - 1);
     let shift = if fine % 2 == 1 { shift } else { -shift };
     (fine as isize / 2 + shift).rem_euclid(n as isize) as usize
 }
 
-/// Calls `visit` with a fine cell, a coarse cell and the weight between the two, for all pairs.
+/// Calls `visit` with every pair of a fine and a coarse cell, and its weight.
 fn pairs(fine: Grid, coarse: Grid, taps: &[f64], mut visit: impl FnMut(usize, usize, f64)) {
     let n = taps.len();
     for (iy, ix) in (0..fine.ny()).flat_map(|iy| (0..fine.nx()).map(move |ix| (iy, ix))) {
@@ -31,7 +32,7 @@ fn pairs(fine: Grid, coarse: Grid, taps: &[f64], mut visit: impl FnMut(usize, us
     }
 }
 
-/// The pressure of a level on the next coarser one: ρ = ¼ Fᵀ p.
+/// Restriction of a level's pressure to the next coarser level, ρ = ¼ Fᵀ p.
 pub(super) fn restricted(fine: &Field, taps: &[f64]) -> Result<Field> {
     let grid = fine.grid();
     let mut coarse = Field::zeros(grid.with_elements(grid.nx() / 2, grid.ny() / 2)?);
@@ -41,7 +42,7 @@ pub(super) fn restricted(fine: &Field, taps: &[f64]) -> Result<Field> {
     Ok(coarse)
 }
 
-/// The displacement of a level on the next finer one: F u.
+/// Prolongation of a level's displacement to the next finer level, F u.
 pub(super) fn prolonged(coarse: &Field, taps: &[f64]) -> Result<Field> {
     let grid = coarse.grid();
     let mut fine = Field::zeros(grid.with_elements(2 * grid.nx(), 2 * grid.ny())?);
@@ -51,7 +52,9 @@ pub(super) fn prolonged(coarse: &Field, taps: &[f64]) -> Result<Field> {
     Ok(fine)
 }
 
-/// What a stencil adds to the displacement of its level: h S p, with h the side of an element.
+/// The displacement that a stencil adds on its level, h S p.
+///
+/// h is the side of an element.
 pub(super) fn displaced(pressure: &Field, stencil: &Stencil) -> Field {
     let grid = pressure.grid();
     let (reach, side) = (stencil.radius() as i32, grid.spacing().x);

@@ -1,24 +1,24 @@
-//! Which number of the archived run stands beside which number of the paper.
+//! Pairs of a number in the archived run and a number in the paper.
 
 /// One line of a table in docs/reproduction.md.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
-    /// The block it belongs to.
+    /// Block of the row.
     pub(super) figure: &'static str,
-    /// What it is.
+    /// Name of the quantity.
     pub(super) what: &'static str,
-    /// Name in `data/paper.csv`.
+    /// Name of the paper's value in `data/paper.csv`.
     pub(super) paper: Option<&'static str>,
-    /// Table, first cell of its line, and what else tells the line apart.
+    /// Table in the archived run. The keys of the line in that table follow.
     pub(super) table: &'static str,
     pub(super) first: &'static str,
     pub(super) waves: &'static str,
     pub(super) in_unit: &'static str,
-    /// The row of fig5-summary with the standard deviation of one realisation, for what the paper gives of one map.
+    /// Row of fig5-summary with the standard deviation of one realisation. It is for paper values of a single map.
     pub(super) one: Option<&'static str>,
     /// Column of the value.
     pub(super) column: &'static str,
-    /// What both numbers are multiplied by to be shown, and their unit then.
+    /// Factor of both numbers. Their unit after the multiplication follows.
     pub(super) factor: f64,
     pub(super) unit: &'static str,
     /// Significant digits.
@@ -52,7 +52,9 @@ impl Row {
         Self { paper: Some(name), ..self }
     }
 
-    /// The paper's number is that of one realisation: it is compared with their scatter.
+    /// The row with a paper value of one realisation.
+    ///
+    /// It is compared with the scatter of realisations.
     const fn of_one(self, name: &'static str, scatter: &'static str) -> Self {
         Self { paper: Some(name), one: Some(scatter), ..self }
     }
@@ -81,7 +83,7 @@ const CUTOFF: &str = "statements-cutoff";
 const CONVERGENCE: &str = "statements-convergence";
 const MOMENTS: &str = "statements-moments";
 
-/// Every line, in the order of the document.
+/// All rows, in the order of the document.
 pub(super) const ROWS: &[Row] = &[
     row("fig1", "A/A0 of the realisation", "fig1-summary", "contact area"),
     row("fig1", "Δ", "fig1-summary", "penetration").shown(1.0, " µm"),

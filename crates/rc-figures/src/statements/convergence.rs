@@ -1,4 +1,4 @@
-//! Convergence with smaller elements: what the paper's smallest step leaves of the error.
+//! Convergence with smaller elements, and the error at the paper's smallest step.
 
 use anyhow::Result;
 use rc_core::{Grid, HeightField as _};
@@ -8,19 +8,19 @@ use rc_solver::{Control, SolveParams, solve};
 use super::params::Params;
 use crate::{Rule, Table, number};
 
-/// One mesh.
+/// Results on one mesh.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mesh {
     pub(super) elements_per_wave: usize,
-    /// A/A0 by counting elements, and with edges located between their centres.
+    /// A/A0 by counting elements. The A/A0 with edges located between centres follows.
     area_cells: f64,
     area: f64,
-    /// Over E*.
+    /// Rms pressure in E*.
     rms_pressure: f64,
     penetration: f64,
 }
 
-/// Errors of a mesh, relative to the finest.
+/// Errors of a mesh, relative to the values on the finest mesh.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Errors {
     pub(super) counting: f64,
@@ -58,7 +58,7 @@ impl Mesh {
     }
 }
 
-/// Values, and errors relative to the finest mesh.
+/// Table of the values, and of errors relative to the finest mesh.
 pub(super) fn table(meshes: &[Mesh]) -> Table {
     let header = [
         "elements_per_wave",
@@ -79,6 +79,6 @@ pub(super) fn table(meshes: &[Mesh]) -> Table {
         [mesh.elements_per_wave.to_string()].into_iter().chain(numbers).collect()
     });
     let table = Table::new("convergence", &header, rows).rest(Rule::relative(1e-4));
-    // Errors are relative already.
+    // These errors are relative already.
     errors.into_iter().fold(table, |table, name| table.column(name, Rule::absolute(2e-5)))
 }

@@ -1,7 +1,8 @@
-//! Area and elastic energy against the number of waves N, at the paper's load and with the same long waves.
+//! Area and elastic energy against the number of waves N.
 //!
-//! Only differences between values of N matter here, and contact edges are located between the centres of elements, so
-//! coarse elements are enough; N goes beyond the paper's two.
+//! All surfaces have the paper's load and the same long waves, and N exceeds the paper's two values. Only differences
+//! between values of N matter here. Contact edges are located between the centres of elements, so coarse elements are
+//! enough.
 
 use anyhow::{Context, Result};
 use rc_core::{Grid, HeightField as _};
@@ -12,26 +13,26 @@ use super::params::Params;
 use crate::fit::Sample;
 use crate::{Rule, Table, number};
 
-/// One N: averages over realisations.
+/// Averages over realisations for one N.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cutoff {
     pub(super) waves: usize,
     pub(super) rms_slope: f64,
     /// A/A0.
     pub(super) area: Sample,
-    /// Area over that of the fewest waves, realisation by realisation.
+    /// Ratio of the area to the area with the fewest waves, realisation by realisation.
     pub(super) area_ratio: Sample,
-    /// (A/A0) g E*/σ0.
+    /// κ = (A/A0) g E*/σ0 with the rms slope g.
     kappa: f64,
     /// Elastic energy per nominal area, in E* λ.
     energy: Sample,
-    /// The same, over that of the fewest waves.
+    /// Ratio of the elastic energy to that with the fewest waves, realisation by realisation.
     pub(super) energy_ratio: Sample,
     /// Δ/h_max.
     penetration: Sample,
 }
 
-/// One contact.
+/// Results of one contact.
 struct Contact {
     area: f64,
     energy: f64,

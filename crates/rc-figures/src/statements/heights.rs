@@ -1,8 +1,8 @@
-//! The distribution of heights: the paper says that waves of fixed amplitude and random phase add up to Gaussian
-//! heights.
+//! The distribution of heights, which the paper calls Gaussian.
 //!
-//! They do when no few waves have most of the variance. Over all phases, the height is a sum of independent cosines c_i
-//! cos φ_i, for which the excess kurtosis is -(3/2) Σ c_i⁴ / (Σ c_i²)², a number without sampling.
+//! The paper says that waves of fixed amplitude and random phase add up to Gaussian heights. This holds unless few
+//! waves have most of the variance. Over all phases, the height is a sum of independent cosines c_i cos φ_i. Its excess
+//! kurtosis is -(3/2) Σ c_i⁴ / (Σ c_i²)², a number without sampling error.
 
 use anyhow::Result;
 use rc_core::Grid;
@@ -12,36 +12,37 @@ use super::params::Params;
 use crate::fit::Sample;
 use crate::{Rule, Table, number};
 
-/// Bins reach to this many rms heights, each this wide.
+/// Upper end of the bins, in rms heights. The width of a bin follows.
 const END: f64 = 4.0;
 const WIDTH: f64 = 0.25;
 const N_BINS: usize = (2.0 * END / WIDTH) as usize;
 
-/// The heights of all realisations, over their rms height.
+/// The heights of all realisations, divided by their rms height.
 #[derive(Clone, Debug)]
 pub(super) struct Heights {
-    /// Middle of each bin, its density, and that of one realisation.
+    /// Middle of each bin, and the density in it. The scatter is that of realisations.
     pub(super) bins: Vec<(f64, Sample)>,
-    /// Excess kurtosis of all realisations together, exactly for all phases, and of single realisations.
+    /// Excess kurtosis of all realisations together. The exact value over all phases and the values of single
+    /// realisations follow.
     pub(super) kurtosis: f64,
     pub(super) exact_kurtosis: f64,
     pub(super) one_kurtosis: Sample,
     pub(super) one_skewness: Sample,
-    /// Part of the surface that is more than 2 and 3 rms heights from the mean plane.
+    /// Fractions of the surface that are more than 2 and 3 rms heights from the mean plane.
     pub(super) beyond: [f64; 2],
 }
 
-/// One realisation.
+/// Statistics of one realisation.
 struct Realisation {
     density: Vec<f64>,
     skewness: f64,
-    /// Mean of the fourth power.
+    /// Mean of the fourth power of the heights.
     fourth: f64,
     beyond: [f64; 2],
 }
 
 impl Realisation {
-    /// Of heights over their rms height.
+    /// The statistics of heights that are divided by their rms height.
     fn of(heights: &[f64]) -> Self {
         let n = heights.len() as f64;
         let mut density = vec![0.0; N_BINS];
@@ -57,7 +58,7 @@ impl Realisation {
 impl Heights {
     pub(super) fn of(params: &Params) -> Result<Self> {
         let waves = params.converged_waves;
-        // Two elements for the shortest wave say enough about heights.
+        // Two elements per half wave are enough for heights.
         let grid = Grid::square(4 * waves)?;
         let mut all = Vec::new();
         let mut exact_kurtosis = 0.0;
@@ -87,7 +88,7 @@ impl Heights {
             .bins
             .iter()
             .map(|&(height, density)| [height, density.mean, density.deviation, gaussian(height)].map(number).into());
-        // A height on the end of a bin may turn either way.
+        // A height at the end of a bin may fall into either bin.
         Table::new("heights", &header, rows)
             .column("density", Rule::of_scale(1e-4))
             .column("standard_deviation_of_one", Rule::of_scale(1e-4))
@@ -100,7 +101,7 @@ pub(super) fn gaussian(height: f64) -> f64 {
 
 fn kurtosis_of_all_phases(surface: &Surface) -> f64 {
     let n = surface.waves() as i64;
-    // Of each pair ±k the one with kx > 0, or kx = 0 and ky > 0.
+    // Of each pair ±k this takes the one with kx > 0, or with kx = 0 and ky > 0.
     let pairs = (0..=n).flat_map(|kx| (-n..=n).map(move |ky| (kx, ky))).filter(|&(kx, ky)| kx > 0 || ky > 0);
     let (squares, fourths) = pairs.fold((0.0, 0.0), |(squares, fourths), (kx, ky)| {
         let square = surface.amplitude(kx, ky).norm_sqr();

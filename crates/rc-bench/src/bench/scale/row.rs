@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// One solve of one scene by one program with some threads.
+/// One solve of one scene by one program with a given number of threads.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(in crate::bench) struct ScaleRow {
     pub(in crate::bench) part: Part,
@@ -18,24 +18,24 @@ pub(in crate::bench) struct ScaleRow {
     pub(in crate::bench) status: String,
     pub(in crate::bench) iterations: Option<u64>,
     pub(in crate::bench) applications: Option<u64>,
-    /// Part of the cells whose gap was computed.
+    /// Fraction of the cells whose gap was computed.
     pub(in crate::bench) cells_evaluated: Option<f64>,
-    /// By counting, the same for every program.
+    /// Area by counting, which is the same for every program.
     pub(in crate::bench) area_counted: f64,
     pub(in crate::bench) repeats: usize,
-    /// With ours, the evaluation of the observables: median, fastest, slowest.
+    /// Median seconds; then the fastest and the slowest. Our times include the evaluation of the observables.
     pub(in crate::bench) seconds: f64,
     pub(in crate::bench) seconds_min: f64,
     pub(in crate::bench) seconds_max: f64,
     pub(in crate::bench) memory_mb: Option<f64>,
 }
 
-/// What a line is for.
+/// The purpose of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(in crate::bench) enum Part {
-    /// Grids of several sizes, and numbers of threads.
+    /// Grids of several sizes, with several numbers of threads.
     Grids,
-    /// Loads on one grid.
+    /// Several loads on one grid.
     Contact,
 }

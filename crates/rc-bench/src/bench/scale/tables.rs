@@ -10,7 +10,7 @@ fn times(row: &ScaleRow) -> String {
     if row.repeats > 1 { times } else { format!("{times} (once)") }
 }
 
-/// The lines of grids, ours with all threads.
+/// Our lines of grids of several sizes, with all threads.
 fn ours(rows: &[ScaleRow]) -> impl Iterator<Item = &ScaleRow> {
     let of_grids = rows.iter().filter(|row| row.part == Part::Grids && row.program == OURS);
     of_grids.filter(|row| rows.iter().all(|other| other.side != row.side || other.threads <= row.threads))
@@ -20,7 +20,7 @@ fn peer<'a>(rows: &'a [ScaleRow], beside: &ScaleRow) -> Option<&'a ScaleRow> {
     rows.iter().find(|row| row.part == Part::Grids && row.side == beside.side && row.program != OURS)
 }
 
-/// Large grids, beside the peer where it was run.
+/// Table of large grids, with the peer's times where it ran.
 pub(in crate::bench) fn grids(rows: &[ScaleRow]) -> String {
     let head = "| N, grid | iterations | applications of L | cells evaluated | time | memory | ASPHER: time | memory | its time / ours |\n\
                 |---|---|---|---|---|---|---|---|---|\n";
@@ -41,7 +41,7 @@ pub(in crate::bench) fn grids(rows: &[ScaleRow]) -> String {
     head.to_owned() + &ours(rows).map(line).collect::<String>()
 }
 
-/// The paper's larger surface in one sentence; `None` when it was not run.
+/// A sentence about the paper's larger surface; `None` when it was not run.
 pub(in crate::bench) fn sentence(rows: &[ScaleRow]) -> Option<String> {
     let row = ours(rows).find(|row| row.waves == 128)?;
     let (side, memory, threads) = (row.side, megabytes(row.memory_mb), row.threads);
@@ -53,7 +53,7 @@ pub(in crate::bench) fn sentence(rows: &[ScaleRow]) -> Option<String> {
     ))
 }
 
-/// Times by number of threads.
+/// Table of times by number of threads.
 pub(in crate::bench) fn threads(rows: &[ScaleRow]) -> String {
     let head = "| N, grid | threads | time | speed-up |\n|---|---|---|---|\n";
     let of_grids = rows.iter().filter(|row| row.part == Part::Grids && row.program == OURS);
@@ -68,7 +68,7 @@ pub(in crate::bench) fn threads(rows: &[ScaleRow]) -> String {
     head.to_owned() + &of_grids.filter_map(line).collect::<String>()
 }
 
-/// Times of both methods by the area in contact.
+/// Table of times of both methods by the area in contact.
 pub(in crate::bench) fn contact(rows: &[ScaleRow]) -> String {
     let of = |method: &'static str| rows.iter().filter(move |row| row.part == Part::Contact && row.method == method);
     let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
