@@ -1,4 +1,6 @@
-//! Why a file is not a height map. Each message is one line: what, where, and what would be right.
+//! Errors of files that are not height maps.
+//!
+//! Each message is one line that says what is wrong, where, and what would be right.
 
 use std::path::PathBuf;
 
@@ -11,152 +13,152 @@ use crate::Format;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{}: {problem}", path.display())]
 pub struct ReadError {
-    /// The file.
+    /// Path of the file.
     pub path: PathBuf,
-    /// What is wrong with it.
+    /// The problem of the file.
     pub problem: FormatError,
 }
 
-/// What is wrong with the bytes of a file.
+/// A problem of the bytes of a file.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FormatError {
-    /// The file system has no such file, or does not give it.
+    /// The file does not exist or cannot be read.
     #[error("cannot read: {0}")]
     Unreadable(String),
-    /// Neither the first bytes nor the extension say what it is.
+    /// Neither the first bytes nor the extension determine the format.
     #[error(
         "its format is not known, neither from its first bytes nor from its name; a height map is a text (.csv, .txt, .dat, .asc, .xyz), an array (.npy, \
          .mat, .h5, .nc), a file of a program (.gwy, .gsf, .grd, .ibw, .sdf, .x3p) or of an instrument (.sur, .spm, .opd, .dat of \
          MetroPro, .al3d, .plu, .plux, .vk4), a .png or a .tif file"
     )]
     Unknown,
-    /// An archive that is not a height map.
+    /// The file is an archive that is not a height map.
     #[error("it is {what}")]
     Archive {
-        /// What it is, and what to do.
+        /// Kind of the archive, and what to do.
         what: String,
     },
-    /// A text by its name that is not one by its bytes.
+    /// The name is that of a text, but the bytes are not.
     #[error("it contains zero bytes, so it is not a text; save it as UTF-8, or UTF-16 with a byte-order mark")]
     ZeroBytes,
-    /// A file that gzip has packed and that cannot be unpacked.
+    /// The file is compressed with gzip and cannot be decompressed.
     #[error("cannot be unpacked by gzip: {0}; the file is damaged or truncated")]
     Gzip(String),
-    /// The extension promises a format that the first bytes are not of.
+    /// The first bytes do not fit the format of the extension.
     #[error("not a valid {format} file: {expected}")]
     Mark {
         /// The format of the extension.
         format: Format,
-        /// How such a file begins.
+        /// How a file of this format begins.
         expected: &'static str,
     },
-    /// A library that opens containers says no.
+    /// A library that opens containers has refused the file.
     #[error("not a valid {format} file: {reason}")]
     Container {
         /// The format.
         format: Format,
-        /// The library's reason.
+        /// Reason that the library gives.
         reason: String,
     },
-    /// A field of a header has a value that it must not have.
+    /// A field of a header has an invalid value.
     #[error("{format} header: {field} is '{found}'; it must be {expected}")]
     Field {
         /// The format.
         format: Format,
-        /// The field.
+        /// Name of the field.
         field: &'static str,
-        /// Its value.
+        /// Value of the field.
         found: String,
-        /// What it must be.
+        /// Description of a valid value.
         expected: &'static str,
     },
-    /// A header without a field that it must have.
+    /// A header does not have a required field.
     #[error("{format} header: {field} is missing; the header is truncated or of another kind")]
     Missing {
         /// The format.
         format: Format,
-        /// The field.
+        /// Name of the field.
         field: &'static str,
     },
-    /// A part of the format that rc does not read.
+    /// The file uses a part of the format that rc does not read.
     #[error("{format}: {what} cannot be read here; {cure}")]
     Unsupported {
         /// The format.
         format: Format,
-        /// What the file has.
+        /// What the file contains.
         what: String,
         /// What to do.
         cure: &'static str,
     },
-    /// Fewer bytes than the header promises.
+    /// The file has fewer bytes than its header requires.
     #[error(
         "shorter than its header says: {grid} heights need {needed} bytes, {found} are there; the file is truncated"
     )]
     CutShort {
-        /// Points along x and y.
+        /// Number of points along x and y.
         grid: Grid,
-        /// Bytes that the heights need, at least.
+        /// Minimum number of bytes for the heights.
         needed: u64,
-        /// Bytes that are there.
+        /// Number of bytes in the file.
         found: u64,
     },
-    /// More bytes than the header promises.
+    /// The file has more bytes than its header requires.
     #[error(
         "longer than its header says: {grid} heights need {needed} bytes, {found} are there; the header is of another map"
     )]
     Surplus {
-        /// Points along x and y.
+        /// Number of points along x and y.
         grid: Grid,
-        /// Bytes that the heights need.
+        /// Number of bytes for the heights.
         needed: u64,
-        /// Bytes that are there.
+        /// Number of bytes in the file.
         found: u64,
     },
-    /// Fewer bytes than any header has.
+    /// The file is shorter than any header of its format.
     #[error("shorter than the header of a {format} file; the file is truncated")]
     HeaderCutShort {
         /// The format.
         format: Format,
     },
-    /// A word of a text that is not a number.
+    /// A word of a text is not a number.
     #[error("line {line}, value {value}: '{text}' is not a number")]
     NoNumber {
-        /// Line, from 1.
+        /// Number of the line, from 1.
         line: usize,
-        /// Value in the line, from 1.
+        /// Number of the value in the line, from 1.
         value: usize,
         /// The word.
         text: String,
     },
-    /// A line of a text with another number of values.
+    /// A line of a text has a wrong number of values.
     #[error("line {line} has {found} values, {expected}")]
     Columns {
-        /// Line, from 1.
+        /// Number of the line, from 1.
         line: usize,
-        /// Values in it.
+        /// Number of values in the line.
         found: usize,
-        /// What would be right.
+        /// Description of a valid number.
         expected: String,
     },
-    /// A wave vector that is not of a periodic surface.
+    /// A wave vector does not belong to a periodic surface.
     #[error("line {line}: wave number {value} is not an integer; kx and ky are waves per cell")]
     WaveNumber {
-        /// Line, from 1.
+        /// Number of the line, from 1.
         line: usize,
-        /// As read.
+        /// The wavenumber as read.
         value: f64,
     },
-    /// An HDF5 file without the table that is looked for.
+    /// An HDF5 file does not contain the required table.
     #[error("the HDF5 file has neither arrays {names} of one length in one group nor an array of four columns")]
     NoTable {
         /// Names of the columns.
         names: String,
     },
-    /// Points that are not on a regular grid.
+    /// The points are not on a regular grid.
     #[error("the points are not on a regular grid: {0}")]
     Irregular(String),
-    /// A height that is infinite.
+    /// A height is infinite.
     #[error(
         "row {row}, column {column} (from 0) is {value}; heights must be finite, and NaN where nothing was measured"
     )]
@@ -168,29 +170,29 @@ pub enum FormatError {
         /// The height.
         value: f64,
     },
-    /// No point was measured.
+    /// The map has no measured point.
     #[error("all {0} points are missing; nothing was measured")]
     Empty(usize),
-    /// No channel has the name that was asked for.
+    /// No channel has the requested name.
     #[error("no channel is called '{name}'; {}", names(channels))]
     NoChannel {
-        /// As asked for.
+        /// The requested name.
         name: String,
-        /// The names that there are.
+        /// Names of the channels in the file.
         channels: Vec<String>,
     },
-    /// No channel has values that are lengths.
+    /// The values of no channel are lengths.
     #[error("{}", no_heights(channels))]
     NoHeights {
-        /// The names that there are.
+        /// Names of the channels in the file.
         channels: Vec<String>,
     },
-    /// A number of points that no grid has.
+    /// The number of points is not valid for a grid.
     #[error(transparent)]
     Grid(#[from] GridError),
 }
 
-/// Why no channel is read, and how one is.
+/// Says why no channel is read, and how to read one.
 fn no_heights(channels: &[String]) -> String {
     match channels {
         [] => "the file has no 2-D array of numbers".to_owned(),
@@ -206,7 +208,7 @@ fn no_heights(channels: &[String]) -> String {
     }
 }
 
-/// Names of channels, at most as many as a line can have.
+/// Lists the names of channels, as many as fit a line.
 fn names(channels: &[String]) -> String {
     const MOST: usize = 20;
     match channels {

@@ -1,26 +1,32 @@
-//! Measured height maps: what instruments and other programs write, read into a [`HeightMap`], treated and described.
+//! Readers, treatments and descriptions of measured height maps.
 //!
-//! [`read`] knows a file by its first bytes, or by its extension where the format has no mark: text as instruments and
-//! Gwyddion export it, lists of `x y z`, arrays (`.npy`, `.mat`, `.h5`, `.nc`), Gwyddion `.gwy` and `.gsf`, Surfer
-//! `.grd`, Igor `.ibw`, ISO 25178-71 `.sdf`, ISO 5436-2 `.x3p`, files of instruments (Digital Surf `.sur`, Nanoscope
-//! `.spm`, Wyko `.opd`, MetroPro `.dat`, Alicona `.al3d`, Sensofar `.plu` and `.plux`, Keyence `.vk4`), grayscale PNG
-//! and TIFF, and any of them packed with gzip. Of several [`channels`] it reads the first with heights; [`read_with`]
-//! reads another. [`Treatment`]s level, fill, crop, flip, filter and resample it and make it periodic;
-//! [`AreaParameters`] are those of ISO 25178-2.
+//! [`read`] reads a file of an instrument or another program into a [`HeightMap`]. It recognises the format by the
+//! first bytes, or by the extension if the format has no mark:
 //!
-//! [`spectrum`] reads surfaces that are given by their Fourier coefficients instead.
+//! - text as instruments and Gwyddion export it, and lists of `x y z`;
+//! - arrays: `.npy`, `.mat`, `.h5`, `.nc`;
+//! - files of programs and standards: Gwyddion `.gwy` and `.gsf`, Surfer `.grd`, Igor `.ibw`, ISO 25178-71 `.sdf`, ISO
+//!   5436-2 `.x3p`;
+//! - files of instruments: Digital Surf `.sur`, Nanoscope `.spm`, Wyko `.opd`, MetroPro `.dat`, Alicona `.al3d`,
+//!   Sensofar `.plu` and `.plux`, Keyence `.vk4`;
+//! - grayscale PNG and TIFF;
+//! - any of these compressed with gzip.
 //!
-//! Besides the command line, this is the only crate that knows metres: a file carries units, and
-//! [`HeightMap::in_metres`] applies them once. Row `iy` of a file is row `iy` of the field; a missing point is `NaN`.
+//! If a file has several [`channels`], [`read`] takes the first with heights, and [`read_with`] takes a given one.
+//! [`Treatment`]s level, fill, crop, flip, filter and resample a map and make it periodic. [`AreaParameters`] are those
+//! of ISO 25178-2. Module [`spectrum`] reads surfaces that are given by Fourier coefficients instead.
 //!
-//! No input makes a reader panic or take more memory than the file accounts for: what a header promises is compared
-//! with the bytes that are there before memory is taken. `tests/it/robustness.rs` shows it on arbitrary and on mutated
-//! files.
+//! This crate passes on the units of a file, and [`HeightMap::in_metres`] applies them once. Row `iy` of a file is row
+//! `iy` of the field. A missing point is `NaN`.
+//!
+//! A reader neither panics nor takes more memory than the bytes of the file justify, for any input. It compares the
+//! sizes in a header with the available bytes before it takes memory. `tests/it/robustness.rs` tests this with
+//! arbitrary and with mutated files.
 //!
 //! ```
 //! use rc_heights::{AreaParameters, Format, Level, Scales, Treatment, apply, parse};
 //!
-//! // 4 x 3 points 2 µm apart, on a slope, one of them not measured.
+//! // A map of 4 x 3 points 2 µm apart, on a slope. One point is not measured.
 //! let file = "aISO-1.0\nNumPoints = 4\nNumProfiles = 3\nXscale = 2e-6\nYscale = 2e-6\nZscale = 1e-9\nDataType = 7\n*\n\
 //!             0 10 20 30  1 10 BAD 31  0 11 20 30\n*\n";
 //! let map = parse(file.as_bytes(), Format::Sdf)?.in_metres(Scales::default())?;

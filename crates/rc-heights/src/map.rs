@@ -1,35 +1,38 @@
-//! The height map itself.
+//! A height map.
 
 use rc_core::Field;
 
 use crate::{LengthUnitError, Scales, Unit};
 
-/// Heights of a measured rectangle, positive out of the material.
+/// Heights on a measured rectangle, positive out of the material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightMap {
-    /// Heights; `NaN` where nothing was measured.
+    /// Heights. `NaN` where nothing was measured.
     pub heights: Field,
-    /// What the heights are in.
+    /// Unit of the heights.
     pub height_unit: Unit,
-    /// Sides of the rectangle along x and y, each the number of points times their distance; `None` where the file does
-    /// not say.
+    /// Sides of the rectangle along x and y, or `None` if unknown.
+    ///
+    /// A side is the number of points times their distance. Some files do not contain the sides.
     pub sides: Option<[f64; 2]>,
-    /// What the sides are in.
+    /// Unit of the sides.
     pub side_unit: Unit,
 }
 
 impl HeightMap {
-    /// Heights in a unit that is not named, without sides: a bare array.
+    /// A map without sides and without a unit of heights, as from an array.
     #[must_use]
     pub fn bare(heights: Field) -> Self {
         Self { heights, height_unit: Unit::Unnamed, sides: None, side_unit: Unit::Unnamed }
     }
 
-    /// The same map with heights and sides in metres; what the file does not name is taken from `scales`, and is metres
-    /// where these say nothing. Values that are not scaled keep their bits.
+    /// The same map with heights and sides in metres.
+    ///
+    /// Units that the file does not name are taken from `scales`, and are metres if `scales` does not give them. Values
+    /// that are not scaled keep their bits.
     ///
     /// # Errors
-    /// [`LengthUnitError`] when levels of grey have no scale, or when the file names what `scales` gives.
+    /// [`LengthUnitError`] when levels of grey have no scale, or when `scales` gives a unit that the file names.
     pub fn in_metres(mut self, scales: Scales) -> Result<Self, LengthUnitError> {
         let unit = scales.unit.map_or(1.0, crate::LengthUnit::metres);
         let unnamed = |is: Unit| is == Unit::Unnamed;
@@ -51,7 +54,7 @@ impl HeightMap {
             (Unit::Metre, Some(_)) => return Err(LengthUnitError::HeightsInMetres),
             (Unit::Unnamed | Unit::GreyLevel | Unit::NotLength, Some(value)) => value,
             (Unit::Unnamed, None) => unit,
-            // Refused above.
+            // These cases are refused above.
             (Unit::GreyLevel | Unit::NotLength, None) => return Err(LengthUnitError::GreyLevels),
             (Unit::Metre, None) => 1.0,
         };
@@ -69,16 +72,18 @@ impl HeightMap {
         self.heights.values().iter().filter(|height| height.is_nan()).count()
     }
 
-    /// Sides of the rectangle along x and y if that along x is `width` and points are equally far apart along both, as
-    /// of an image.
+    /// Sides of the rectangle along x and y for the side `width` along x.
+    ///
+    /// Points have equal distances along x and y, as in an image.
     #[must_use]
     pub fn sides_of_width(&self, width: f64) -> [f64; 2] {
         let grid = self.heights.grid();
         [width, width * (grid.ny() as f64 / grid.nx() as f64)]
     }
 
-    /// Distances of points along x and y, in the unit of the sides; with no sides, those of
-    /// [`HeightMap::sides_of_width`] 1.
+    /// Distances of points along x and y, in the unit of the sides.
+    ///
+    /// Without sides, they are those of [`HeightMap::sides_of_width`] 1.
     #[must_use]
     pub fn spacing(&self) -> [f64; 2] {
         let (grid, sides) = (self.heights.grid(), self.sides.unwrap_or_else(|| self.sides_of_width(1.0)));
@@ -86,7 +91,7 @@ impl HeightMap {
     }
 }
 
-/// Multiplies by `factor`, which leaves the bits alone when it is 1.
+/// Multiplies values by `factor`. A factor of 1 does not change any bit.
 #[expect(clippy::float_cmp, reason = "a factor of exactly 1 is no change")]
 pub(crate) fn scale(values: &mut [f64], factor: f64) {
     if factor != 1.0 {
@@ -96,17 +101,19 @@ pub(crate) fn scale(values: &mut [f64], factor: f64) {
     }
 }
 
-/// How far a map is from periodic: the step from the last to the first row and column, against those inside.
+/// Deviation of a map from periodicity.
+///
+/// It compares the step from the last to the first row and column with the steps inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BorderStep {
-    /// Rms difference of heights across the border.
+    /// rms difference of heights across the border.
     pub border: f64,
-    /// Rms difference of neighbouring heights inside.
+    /// rms difference of neighbouring heights inside.
     pub inside: f64,
 }
 
 impl BorderStep {
-    /// Of a map without missing points.
+    /// The steps of a map without missing points.
     #[must_use]
     pub fn of(heights: &Field) -> Self {
         let (nx, ny) = (heights.grid().nx(), heights.grid().ny());
@@ -126,14 +133,16 @@ impl BorderStep {
         Self { border, inside }
     }
 
-    /// Whether it is that of a periodic map, whose ratio is about 1: at most 3.
+    /// Whether the steps are those of a periodic map. Their ratio is at most 3 then.
     #[must_use]
     pub fn is_periodic(self) -> bool {
         self.ratio() <= 3.0
     }
 
-    /// Border over inside: about 1 for a periodic map, far more for one that was cut out of a larger surface. 1 where
-    /// both are zero.
+    /// Ratio of the step at the border to the step inside.
+    ///
+    /// It is about 1 for a periodic map, and much larger for a map that was cut out of a larger surface. It is 1 if
+    /// both steps are zero.
     #[must_use]
     pub fn ratio(self) -> f64 {
         if self.border == 0.0 && self.inside == 0.0 { 1.0 } else { self.border / self.inside }
@@ -191,7 +200,7 @@ mod tests {
         let grid = Grid::square(64).expect("a grid");
         let wave =
             BorderStep::of(&Field::from_fn(grid, |DVec2 { x, y }| (std::f64::consts::TAU * (x + 2.0 * y)).sin()));
-        // Differences across the border are those at one phase, inside at all phases: within √2.
+        // Differences across the border have one phase, and differences inside have all phases. The ratio is within √2.
         assert!(wave.ratio() < 1.5, "ratio of a wave {}", wave.ratio());
         let ramp = BorderStep::of(&Field::from_fn(grid, |at| at.x));
         assert!(ramp.ratio() > 40.0, "ratio of a ramp {}", ramp.ratio());

@@ -5,38 +5,40 @@ use serde::Serialize;
 
 use crate::treat::rms_slope;
 
-/// Height and hybrid parameters of ISO 25178-2 of a whole map, without a filter of its own: level and filter before, as
-/// the measurement asks for.
+/// Height and hybrid parameters of ISO 25178-2 for a whole map.
 ///
-/// Heights are counted from their mean. Gradients are differences of neighbours inside the map, never across its
-/// border, so Sdq and Sdr depend on the distance of points, as they do in the standard. Test
-/// `parameters_of_a_wave_are_those_of_a_wave`; an independent program agrees, `tests/it/`.
+/// No filter is applied. Level and filter the map before, as the measurement requires. Heights are relative to their
+/// mean. Gradients are differences of neighbours inside the map, never across its border. So Sdq and Sdr depend on the
+/// distance of points, as they do in the standard.
+///
+/// *Accuracy*: test `parameters_of_a_wave_are_those_of_a_wave`. An independent program gives the same values
+/// (`tests/it/`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AreaParameters {
-    /// Mean height, from which the others count.
+    /// Mean height, the reference of the others.
     pub mean: f64,
-    /// Sa: mean of |h|.
+    /// Mean absolute height Sa.
     pub sa: f64,
-    /// Sq: root mean square of h.
+    /// Root mean square height Sq.
     pub sq: f64,
-    /// Ssk: ⟨h³⟩/Sq³, 0 for a Gaussian surface.
+    /// Skewness Ssk = ⟨h³⟩/Sq³, 0 for a Gaussian surface.
     pub ssk: f64,
-    /// Sku: ⟨h⁴⟩/Sq⁴, 3 for a Gaussian surface.
+    /// Kurtosis Sku = ⟨h⁴⟩/Sq⁴, 3 for a Gaussian surface.
     pub sku: f64,
-    /// Sp: highest peak above the mean.
+    /// Height Sp of the highest peak above the mean.
     pub sp: f64,
-    /// Sv: deepest valley below the mean, positive.
+    /// Depth Sv of the deepest valley below the mean, positive.
     pub sv: f64,
-    /// Sz = Sp + Sv.
+    /// Maximum height Sz = Sp + Sv.
     pub sz: f64,
-    /// Sdq: rms gradient √⟨|∇h|²⟩.
+    /// rms gradient Sdq = √⟨|∇h|²⟩.
     pub sdq: f64,
-    /// Sdr: area of the surface over that of its projection, less 1.
+    /// Developed area Sdr: ratio of the area of the surface to its projection, minus 1.
     pub sdr: f64,
 }
 
 impl AreaParameters {
-    /// The same of a map with all lengths, heights and sides, times `factor`.
+    /// The parameters of the map with all heights and sides multiplied by `factor`.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         let Self { mean, sa, sq, sp, sv, sz, .. } = self;
@@ -44,12 +46,14 @@ impl AreaParameters {
         Self { mean, sa, sq, sp, sv, sz, ..self }
     }
 
-    /// Of `heights` on a rectangle of `sides` along x and y, in one unit; `NaN` where a point is missing.
+    /// The parameters of `heights` on a rectangle of `sides` along x and y.
+    ///
+    /// Heights and sides have the same unit. Parameters are `NaN` if a point is missing.
     #[must_use]
     pub fn of(heights: &Field, sides: [f64; 2]) -> Self {
         let (grid, mean) = (heights.grid(), heights.mean());
         let mut sums = [0.0; 4];
-        // Row by row, so that rounding does not grow with the whole map.
+        // Summed row by row, so that rounding errors do not grow with the whole map.
         for iy in 0..grid.ny() {
             let mut row_sums = [0.0; 4];
             for height in heights.row(iy) {
@@ -70,7 +74,9 @@ impl AreaParameters {
     }
 }
 
-/// Sdr: over each mesh of four points, the mean of the two ways to cut it into two triangles.
+/// Sdr as a mean over meshes of four points.
+///
+/// For each mesh, it is the mean over both divisions into two triangles.
 fn developed(heights: &Field, [dx, dy]: [f64; 2]) -> f64 {
     let grid = heights.grid();
     let mut areas = 0.0;
@@ -81,7 +87,7 @@ fn developed(heights: &Field, [dx, dy]: [f64; 2]) -> f64 {
             let x = [(a[1] - a[0]) / dx, (b[1] - b[0]) / dx];
             let y = [(b[0] - a[0]) / dy, (b[1] - a[1]) / dy];
             for (gx, gy) in [(x[0], y[0]), (x[1], y[1]), (x[0], y[1]), (x[1], y[0])] {
-                // √(1 + s) - 1, without loss for small slopes.
+                // √(1 + s) - 1 without loss of digits for small slopes.
                 let squared = gx * gx + gy * gy;
                 row += squared / (1.0 + (1.0 + squared).sqrt());
             }
@@ -113,12 +119,12 @@ mod tests {
             ("Sku", p.sku, 1.5),
             ("Sz", p.sz, 2.0 * amplitude),
             ("Sdq", p.sdq, slope / 2_f64.sqrt()),
-            // ⟨√(1 + s² cos²)⟩ - 1 to the next order.
+            // ⟨√(1 + s² cos²)⟩ - 1 up to the next order.
             ("Sdr", p.sdr, slope * slope / 4.0 * (1.0 - 3.0 / 16.0 * slope * slope)),
         ];
         for (name, value, reference) in exact {
-            // 256 points a wave: differences are low by (2π/256)²/24 = 2.5e-5, their squares by twice that; the border
-            // is left out, where a wave is steepest: 1 of 1023.
+            // With 256 points in a wave, differences are too small by (2π/256)²/24 = 2.5e-5, and their squares by twice
+            // that. The border, where the wave is steepest, is not included. It is 1 of 1023 differences.
             assert!((value / reference - 1.0).abs() < 1.1e-3, "{name}: {value}, reference {reference}");
         }
         assert!(p.ssk.abs() < 1e-9, "Ssk {}", p.ssk);

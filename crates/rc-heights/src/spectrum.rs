@@ -1,9 +1,11 @@
-//! Surfaces as their Fourier coefficients: what a file of waves holds, read and written.
+//! Readers and writers of surfaces as Fourier coefficients.
 //!
 //! A surface is h(x) = Σ c exp(2πi (kx x/λ + ky y/λ)) with integer kx and ky, in waves per cell. A text has a line of
-//! `kx ky Re(c) Im(c)` for each wave whose coefficient is not zero, an HDF5 file arrays of these names or one array of
-//! four columns. Since heights are real, c of -k is the conjugate of c of k, so a file may have either of them or both.
-//! What of that is wrong is found by who makes a surface of the coefficients.
+//! `kx ky Re(c) Im(c)` for each wave whose coefficient is not zero. An HDF5 file has arrays of these names, or one
+//! array of four columns.
+//!
+//! Heights are real, so c of -k is the conjugate of c of k. A file may have either of them or both. The readers do not
+//! check this. The code that makes a surface from the coefficients does.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Read as _, Write as _};
@@ -12,29 +14,33 @@ use std::path::Path;
 use crate::formats::{data_lines, decoded, hdf5_table, number, shown, words};
 use crate::{FormatError, ReadError};
 
-/// First bytes of an HDF5 file.
+/// The first bytes of an HDF5 file.
 const HDF5_MARK: &[u8] = b"\x89HDF\r\n\x1a\n";
 
-/// Integers up to here are the same as a floating-point number, as which some programs write them.
+/// Largest integer up to which all integers are exact floating-point numbers.
+///
+/// Some programs write integers as floating-point numbers.
 const LARGEST_EXACT: f64 = 9_007_199_254_740_992.0;
 
-/// One wave, as a file has it.
+/// A wave as a file contains it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficient {
     /// Waves per cell along x.
     pub kx: i64,
     /// Waves per cell along y.
     pub ky: i64,
-    /// Real part of c, in the unit of the file; it may be infinite or `NaN`.
+    /// Real part of c, in the unit of the file. It may be infinite or `NaN`.
     pub re: f64,
-    /// Imaginary part.
+    /// Imaginary part of c, in the unit of the file.
     pub im: f64,
 }
 
-/// Reads the coefficients at `path`, in their order. The first bytes say what the file is, whatever its name.
+/// Reads the coefficients at `path`, in their order.
+///
+/// The first bytes determine the format, for any name.
 ///
 /// # Errors
-/// [`ReadError`] when the file cannot be read, or with line and value that are wrong.
+/// [`ReadError`] when the file cannot be read, or when a value is wrong. The error contains its line and value.
 pub fn read(path: &Path) -> Result<Vec<Coefficient>, ReadError> {
     let fail = |problem: FormatError| ReadError { path: path.to_owned(), problem };
     let unreadable = |cause: io::Error| fail(FormatError::Unreadable(cause.to_string()));
@@ -50,12 +56,12 @@ pub fn read(path: &Path) -> Result<Vec<Coefficient>, ReadError> {
 /// Reads coefficients from the bytes of a file.
 ///
 /// # Errors
-/// [`FormatError`].
+/// [`FormatError`] when the bytes are not valid.
 pub fn parse(bytes: &[u8]) -> Result<Vec<Coefficient>, FormatError> {
     if bytes.starts_with(HDF5_MARK) { parse_hdf5(bytes) } else { parse_text(bytes) }
 }
 
-/// Arrays kx, ky, Re and Im, or one array of these columns.
+/// Reads arrays kx, ky, Re and Im, or one array of these columns.
 fn parse_hdf5(bytes: &[u8]) -> Result<Vec<Coefficient>, FormatError> {
     let rows = hdf5_table(bytes, ["kx", "ky", "Re", "Im"])?;
     let of_row = |(i, [kx, ky, re, im]): (usize, [f64; 4])| {
@@ -64,8 +70,9 @@ fn parse_hdf5(bytes: &[u8]) -> Result<Vec<Coefficient>, FormatError> {
     rows.into_iter().enumerate().map(of_row).collect()
 }
 
-/// Lines of kx, ky, Re, Im with commas, semicolons or blanks between them; empty lines and those that start with `#`
-/// are passed over.
+/// Reads lines of kx, ky, Re, Im with commas, semicolons or blanks between them.
+///
+/// Empty lines and lines that start with `#` are ignored.
 fn parse_text(bytes: &[u8]) -> Result<Vec<Coefficient>, FormatError> {
     data_lines(&decoded(bytes), 1).map(|(line, row)| coefficient(line, row)).collect()
 }
@@ -96,7 +103,7 @@ fn wave_number(line: usize, value: f64) -> Result<i64, FormatError> {
 /// Writes coefficients as text, which reads back exactly.
 ///
 /// # Errors
-/// Those of the file system.
+/// Errors of the file system.
 pub fn write(path: &Path, coefficients: &[Coefficient]) -> io::Result<()> {
     let mut out = BufWriter::new(File::create(path)?);
     writeln!(

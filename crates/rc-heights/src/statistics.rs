@@ -4,16 +4,16 @@ use rc_core::{Field, Histogram};
 
 use crate::{AreaParameters, BorderStep};
 
-/// Bins of the distribution of heights.
+/// Number of bins of the distribution of heights.
 const BINS: usize = 40;
 
-/// A mean of less than this part of the rms height is that of a surface of mean zero, but for rounding.
+/// Maximum mean, relative to the rms height, that counts as rounding of a zero mean.
 const ROUNDING: f64 = 1e-12;
 
-/// What a height map is like. All lengths are in the unit of its sides.
+/// Statistics of a height map. All lengths are in the unit of its sides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapStatistics {
-    /// Mean height; 0 where it is no more than rounding.
+    /// Mean height. It is 0 if it is only rounding.
     pub mean: f64,
     /// Minimum height.
     pub min: f64,
@@ -21,14 +21,16 @@ pub struct MapStatistics {
     pub max: f64,
     /// Probability density of heights about the mean.
     pub distribution: Histogram,
-    /// Parameters of ISO 25178-2, from differences of neighbours; skewness and kurtosis are among them.
+    /// Parameters of ISO 25178-2, including skewness and kurtosis, from differences of neighbours.
     pub parameters: AreaParameters,
-    /// Whether opposite borders meet.
+    /// Comparison of opposite borders.
     pub border: BorderStep,
 }
 
 impl MapStatistics {
-    /// Statistics of `heights`, in units of the side of the cell along x, which is `side` long.
+    /// Statistics of `heights`, which are in units of the side of the cell along x.
+    ///
+    /// `side` is the length of that side.
     #[must_use]
     pub fn of(heights: &Field, side: f64) -> Self {
         let parameters = AreaParameters::of(heights, [1.0, heights.grid().cell_ratio()]);

@@ -1,4 +1,4 @@
-//! Units of lengths, as files and users name them.
+//! Units of length, as written in files and by users.
 
 use std::fmt;
 use std::str::FromStr;
@@ -26,7 +26,7 @@ pub enum LengthUnit {
 }
 
 impl LengthUnit {
-    /// Every unit, its names (the first is how rc writes it) and its length in m.
+    /// Every unit with its names and its length in m. rc writes the first name.
     const ALL: [(Self, &[&str], f64); 7] = [
         (Self::Metre, &["m", "metre", "metres", "meter", "meters"], 1.0),
         (Self::Centimetre, &["cm", "centimetre", "centimetres", "centimeter", "centimeters"], 1e-2),
@@ -41,7 +41,7 @@ impl LengthUnit {
         (Self::Picometre, &["pm", "picometre", "picometres", "picometer", "picometers"], 1e-12),
     ];
 
-    /// Its length in m.
+    /// Length of the unit in m.
     #[must_use]
     pub fn metres(self) -> f64 {
         Self::ALL.iter().find(|(unit, ..)| *unit == self).map_or(1.0, |(.., metres)| *metres)
@@ -71,7 +71,7 @@ impl FromStr for LengthUnit {
 
     fn from_str(text: &str) -> Result<Self, LengthUnitError> {
         let name = text.trim();
-        // `mm` and `Mm` are not the same; long names may have any case.
+        // `mm` and `Mm` are different units. Long names may have any case.
         let long = name.to_lowercase();
         let is = |other: &&str| *other == name || other.len() > 4 && *other == long;
         let unit = Self::ALL.iter().find(|(_, names, _)| names.iter().any(is));
@@ -79,64 +79,66 @@ impl FromStr for LengthUnit {
     }
 }
 
-/// What a number of a file means.
+/// Meaning of a number in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
-    /// Metres: the format or the file says so.
+    /// Metres, as the format or the file says.
     Metre,
     /// A length in a unit that the file does not name.
     Unnamed,
     /// A level of grey.
     GreyLevel,
-    /// A quantity that is not a length, as the phase or the voltage of a channel that was picked by name.
+    /// A quantity that is not a length, such as a phase or a voltage.
+    ///
+    /// The channel was chosen by its name.
     NotLength,
 }
 
-/// What a user knows of a file that does not name its units.
+/// Units from the user, for a file that does not name its units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scales {
-    /// The unit of its lengths: of coordinates, and of heights where `height_scale` is not given.
+    /// The unit of coordinates, and of heights if `height_scale` is not given.
     pub unit: Option<LengthUnit>,
-    /// The height (m) of one: of a number, or of a level of grey.
+    /// The height (m) of the number 1, or of one level of grey.
     pub height_scale: Option<f64>,
 }
 
-/// A unit that is not known, or that a file has already.
+/// A unit that is unknown or not applicable.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum LengthUnitError {
-    /// No such unit of length.
+    /// The name is not that of a unit of length.
     #[error("'{name}' is not a unit of length; give m, cm, mm, um, nm, angstrom or pm")]
     Unknown {
-        /// As written.
+        /// The name as written.
         name: String,
     },
-    /// Levels of grey without a scale.
+    /// Levels of grey have no scale.
     #[error("levels of grey have no unit; give the height of one level as height_scale (m)")]
     GreyLevels,
-    /// Values that are not lengths, without a scale.
+    /// Values are not lengths and have no scale.
     #[error(
         "the values of this channel are not lengths; give the height of one as height_scale (m), or pick another channel"
     )]
     NotLength,
-    /// A scale that no height can have.
+    /// A scale is zero or not finite.
     #[error("height_scale: must be finite and not 0 (m), not {value}")]
     Scale {
-        /// As given.
+        /// The scale as given.
         value: f64,
     },
-    /// A scale for heights that are gives its heights in metres.
+    /// A scale is given for heights that are in metres already.
     #[error("height_scale: the file gives its heights in metres; omit height_scale")]
     HeightsInMetres,
-    /// A unit for levels of grey on a map without a size.
+    /// A unit is given for levels of grey on a map without a size.
     #[error("unit: levels of grey have no unit, height_scale (m) gives their height; omit unit")]
     UnitOfLevels,
-    /// A unit for values that are not lengths on a map without a size.
+    /// A unit is given for values that are not lengths, on a map without a size.
     #[error(
         "unit: the values of this channel are not lengths; height_scale (m) says how high one is, so omit unit, or pick another channel"
     )]
     UnitOfNotLength,
-    /// A unit for a file that names its own.
+    /// A unit is given for a file that names its units.
     #[error("unit: the file names its units; omit unit")]
     UnitsNamed,
 }

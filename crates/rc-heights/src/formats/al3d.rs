@@ -1,5 +1,7 @@
-//! Alicona: tags of fixed length, then a depth image of 32-bit floats in metres, rows from top to bottom (the
-//! documentation of Gwyddion describes the format).
+//! Files of Alicona.
+//!
+//! The format has tags of fixed length, then a depth image of 32-bit floats in metres, with rows from top to bottom.
+//! The documentation of Gwyddion describes it.
 
 use rc_core::Grid;
 
@@ -12,7 +14,7 @@ use crate::{Format, FormatError, HeightMap};
 /// The first bytes.
 pub(super) const MARK: &[u8] = b"AliconaImaging\0\r\n";
 
-/// Bytes of the name of a tag, of its value, and of the end of its line.
+/// Bytes of a tag's name, of its value, and of its line end.
 const TAG: [usize; 3] = [20, 30, 2];
 
 pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
@@ -29,7 +31,9 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     Ok(only(move || read(Places::new(bytes, Format::Al3d).rest(at), grid, invalid, sides)))
 }
 
-/// Rows of the depth image are filled up to a multiple of eight bytes; the last need not be.
+/// Reads the depth image.
+///
+/// Rows are padded to a multiple of eight bytes, except possibly the last one.
 fn read(depth: &[u8], grid: Grid, invalid: f64, sides: [f64; 2]) -> Result<HeightMap, FormatError> {
     let row = Grid::new(grid.nx(), 1)?;
     let stored = Number::F32.size() * grid.nx();
@@ -42,12 +46,12 @@ fn read(depth: &[u8], grid: Grid, invalid: f64, sides: [f64; 2]) -> Result<Heigh
     for iy in 0..grid.ny() {
         values.extend(Number::F32.values(&depth[iy * step..], row)?);
     }
-    // The tag has fewer digits than the float, about seven.
+    // The tag has about seven digits, fewer than the float.
     scale_measured(&mut values, 1.0, |value| (value - invalid).abs() <= 1.5e-7 * invalid.abs());
     Ok(map(grid, values, true, Some(sides)))
 }
 
-/// Names and values of the tags; the second says how many follow it.
+/// Names and values of the tags. The second tag says how many tags follow.
 fn tags(bytes: &[u8]) -> Result<Vec<(String, String)>, FormatError> {
     let mut bytes = Bytes::new(bytes, Format::Al3d);
     bytes.take(MARK.len())?;

@@ -1,4 +1,4 @@
-//! Archives: zip archives are told apart by their members, and gzip is unpacked.
+//! Archives: recognition of zip archives by their members, and decompression of gzip.
 
 use std::io::{Cursor, Read as _};
 use std::path::Path;
@@ -15,13 +15,15 @@ pub(super) const ZIP: &[u8] = b"PK\x03\x04";
 /// The first bytes of a gzip file.
 pub(super) const GZIP: &[u8] = b"\x1f\x8b\x08";
 
-/// Longest file that gzip is unpacked to, in bytes. Memory grows with what comes out, not with what is promised.
+/// Maximum length of a decompressed gzip file, in bytes.
+///
+/// Memory grows with the actual length, not with the length in a header.
 const MOST_UNPACKED: u64 = 4 << 30;
 
-/// Ends of members' names by which formats are known.
+/// Formats by the ends of the names of members.
 const FORMATS: &[(&str, Format)] = &[("main.xml", Format::X3p), ("index.xml", Format::Plux)];
 
-/// Members' names by which other archives are known, and what these are.
+/// Other archives by the names of members, with a description.
 const OTHERS: &[(&str, &str)] = &[
     ("xl/workbook.xml", "a workbook of Excel; save the sheet as .csv"),
     ("[Content_Types].xml", "a document of Office; save the numbers as .csv"),
@@ -30,16 +32,18 @@ const OTHERS: &[(&str, &str)] = &[
     ("meta.yml", "a container of several maps; unpack it and give one of them"),
 ];
 
-/// Names of the members of an archive, without those that are not text.
+/// Names of the members of an archive. Names that are not text are omitted.
 pub(super) fn names(archive: &ZipArchive<Cursor<&[u8]>>) -> Vec<String> {
     archive.file_names().filter_map(|name| Some(name.ok()?.into_owned())).collect()
 }
 
-/// The format of a zip archive, by its members; the name of the file says what a damaged one should be.
+/// The format of a zip archive, from its members.
+///
+/// For a damaged archive, the name of the file determines the format in the error.
 pub(super) fn format_of_zip(path: &Path, bytes: &[u8]) -> Result<Format, FormatError> {
     let Ok(archive) = ZipArchive::new(Cursor::new(bytes)) else { return Err(damaged(path)) };
     let names = names(&archive);
-    // Members may lie in a folder of the archive.
+    // Members may be in a folder of the archive.
     let has = |end: &str| {
         let is =
             |name: &String| name.strip_suffix(end).is_some_and(|folder| folder.is_empty() || folder.ends_with('/'));
@@ -57,7 +61,7 @@ pub(super) fn format_of_zip(path: &Path, bytes: &[u8]) -> Result<Format, FormatE
     Err(FormatError::Archive { what: other.unwrap_or_else(listed) })
 }
 
-/// What is wrong with a zip archive that cannot be opened.
+/// The error for a zip archive that cannot be opened.
 fn damaged(path: &Path) -> FormatError {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
     let format = match extension.as_deref() {
@@ -68,15 +72,17 @@ fn damaged(path: &Path) -> FormatError {
     FormatError::Container { format, reason: "the archive is cut off or damaged".to_owned() }
 }
 
-/// The folder of the archive in which `member` lies, with a slash at its end; the uppermost of several. Some programs
-/// pack the folder, not its members.
+/// The folder of the archive that contains `member`, with a slash at its end.
+///
+/// Some programs compress the folder, not its members. If there are several such folders, the result is the outermost
+/// one.
 pub(super) fn folder_of(names: &[String], member: &str) -> String {
     let folders = names.iter().filter_map(|name| name.strip_suffix(member));
     let folders = folders.filter(|folder| folder.is_empty() || folder.ends_with('/'));
     folders.min_by_key(|folder| folder.len()).unwrap_or_default().to_owned()
 }
 
-/// What gzip has packed.
+/// Decompresses a gzip file.
 pub(super) fn unzipped(bytes: &[u8]) -> Result<Vec<u8>, FormatError> {
     let mut unpacked = Vec::new();
     let read = MultiGzDecoder::new(bytes).take(MOST_UNPACKED + 1).read_to_end(&mut unpacked);

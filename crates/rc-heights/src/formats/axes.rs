@@ -1,14 +1,14 @@
-//! Axes of arrays, from the coordinates that a file has beside them.
+//! Axes of arrays, from coordinates in the same file.
 
 use crate::FormatError;
 
-/// Largest distance of a coordinate from an even spacing, in spacings.
+/// Maximum deviation of a coordinate from an even spacing, in spacings.
 const EVEN: f64 = 0.1;
 
-/// Distance of evenly spaced coordinates, negative where they fall.
+/// Spacing of evenly spaced coordinates, negative where they decrease.
 ///
 /// # Errors
-/// [`FormatError::Irregular`].
+/// [`FormatError::Irregular`] when the spacing is not even.
 pub(super) fn step(name: &str, coordinates: &[f64]) -> Result<f64, FormatError> {
     let (Some(first), Some(last), true) = (coordinates.first(), coordinates.last(), coordinates.len() > 1) else {
         return Err(FormatError::Irregular(format!(
@@ -34,8 +34,9 @@ pub(super) fn step(name: &str, coordinates: &[f64]) -> Result<f64, FormatError> 
     }
 }
 
-/// The coordinates along both sides of matrices of coordinates (`meshgrid`) of `nx` columns: x is the same in every
-/// row, y in every column.
+/// The coordinates along x and y, from matrices of coordinates (`meshgrid`) with `nx` columns.
+///
+/// `None` unless x is the same in every row and y is the same in every column.
 pub(super) fn of_meshes(x: &[f64], y: &[f64], nx: usize) -> Option<[Vec<f64>; 2]> {
     let same = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs());
     let first = x.get(..nx)?;

@@ -46,13 +46,13 @@ impl<'a> Bytes<'a> {
         Ok(f64::from_le_bytes(self.array()?))
     }
 
-    /// Everything that is left.
+    /// All remaining bytes.
     pub(crate) fn rest(self) -> &'a [u8] {
         self.rest
     }
 }
 
-/// A type of numbers in a file.
+/// A type of the numbers in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Number {
     U8,
@@ -75,7 +75,7 @@ impl Number {
         }
     }
 
-    /// Bytes of the values of `grid`, which has at most 2^40 points.
+    /// Number of bytes of the values of `grid`, which has at most 2^40 points.
     pub(crate) fn bytes_of(self, grid: Grid) -> u64 {
         grid.len() as u64 * self.size() as u64
     }
@@ -83,7 +83,7 @@ impl Number {
     /// The values of `grid` at the start of `bytes`.
     ///
     /// # Errors
-    /// [`FormatError::CutShort`], before memory is taken.
+    /// [`FormatError::CutShort`] when there are too few bytes. It is returned before memory is taken.
     pub(crate) fn values(self, bytes: &[u8], grid: Grid) -> Result<Vec<f64>, FormatError> {
         let needed = self.bytes_of(grid);
         let cut_short = FormatError::CutShort { grid, needed, found: bytes.len() as u64 };
@@ -100,10 +100,11 @@ impl Number {
         })
     }
 
-    /// The values of `grid`, which are all that `bytes` has.
+    /// The values of `grid`, which must be all of `bytes`.
     ///
     /// # Errors
-    /// [`FormatError::CutShort`], before memory is taken; [`FormatError::Surplus`].
+    /// - [`FormatError::CutShort`] when there are too few bytes. It is returned before memory is taken.
+    /// - [`FormatError::Surplus`] when there are more bytes.
     pub(crate) fn values_alone(self, bytes: &[u8], grid: Grid) -> Result<Vec<f64>, FormatError> {
         let (needed, found) = (self.bytes_of(grid), bytes.len() as u64);
         if found > needed {

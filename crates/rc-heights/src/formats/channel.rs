@@ -1,33 +1,34 @@
-//! What a file holds: one or several channels of values on a grid, read one at a time.
+//! Channels of a file, each with values on a grid, read one at a time.
 
 use super::fields::shown;
 use crate::{FormatError, HeightMap};
 
-/// A channel of a file, whose values are not read yet.
+/// A channel of a file whose values are not read yet.
 pub(crate) struct Channel<'a> {
-    /// Its name in the file, or an empty text where the format has none.
+    /// Name in the file. It is empty if the format has no names.
     pub(crate) name: String,
-    /// Whether it can be a map of heights: its values are lengths, as far as the file says.
+    /// Whether the values are lengths, as far as the file says. Only then they can be heights.
     pub(crate) is_height: bool,
     /// Reads the values.
     pub(crate) read: Box<dyn FnOnce() -> Result<HeightMap, FormatError> + 'a>,
 }
 
-/// The channels of a file, in its order.
+/// The channels of a file, in the order of the file.
 pub(crate) type Channels<'a> = Result<Vec<Channel<'a>>, FormatError>;
 
-/// A channel of a file, as [`crate::channels`] lists it.
+/// A channel of a file, as listed by [`crate::channels`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChannelInfo {
-    /// Its name; empty for the only channel of a format without names.
+    /// Name of the channel. It is empty for the only channel of a format without names.
     pub name: String,
-    /// Whether it can be a map of heights: its values are lengths, as far as the file says. The first such channel is
-    /// what [`crate::read`] reads.
+    /// Whether the values are lengths, as far as the file says.
+    ///
+    /// Only then they can be heights. [`crate::read`] reads the first such channel.
     pub is_height: bool,
 }
 
 impl ChannelInfo {
-    /// Its name as a line can show it: at most 40 characters, none of which controls a terminal.
+    /// The name for a line: at most 40 characters, without control characters.
     #[must_use]
     pub fn shown_name(&self) -> String {
         shown(&self.name)
@@ -40,13 +41,14 @@ impl From<&Channel<'_>> for ChannelInfo {
     }
 }
 
-/// The only channel of a file, which has no name.
+/// The only channel of a file without names.
 pub(super) fn only<'a>(read: impl FnOnce() -> Result<HeightMap, FormatError> + 'a) -> Vec<Channel<'a>> {
     vec![Channel { name: String::new(), is_height: true, read: Box::new(read) }]
 }
 
-/// The same channels with a name of its own for each: its number where it has none, a number behind a name that came
-/// before.
+/// The same channels, each with a unique name.
+///
+/// A channel without a name gets its number. A name that occurred before gets a number at its end.
 pub(super) fn named(mut channels: Vec<Channel<'_>>) -> Vec<Channel<'_>> {
     if channels.len() < 2 {
         return channels;
@@ -66,25 +68,33 @@ pub(super) fn named(mut channels: Vec<Channel<'_>>) -> Vec<Channel<'_>> {
     channels
 }
 
-/// Whether a microscope calls the heights so, and not an error of its feedback loop.
+/// Whether microscopes give this name to heights.
+///
+/// Errors of the feedback loop have other names.
 pub(super) fn is_topography(name: &str) -> bool {
     let name = name.to_lowercase();
     ["height", "zsensor", "z sensor", "topo"].iter().any(|word| name.contains(word))
 }
 
-/// Channels whose headers were read one by one, each with its name: what is wrong with one is said when it is read, and
-/// it counts as heights only where no other channel does.
+/// Channels from headers that were read one by one, each with its name.
+///
+/// The error of a damaged channel is returned when it is read. A damaged channel counts as heights only if no other
+/// channel does.
 pub(super) fn each(found: Vec<(String, Result<Channel<'_>, FormatError>)>) -> Vec<Channel<'_>> {
     let is_height = !found.iter().any(|(_, channel)| channel.as_ref().is_ok_and(|channel| channel.is_height));
     let damaged = |name, error| Channel { name, is_height, read: Box::new(move || Err(error)) };
     found.into_iter().map(|(name, channel)| channel.unwrap_or_else(|error| damaged(name, error))).collect()
 }
 
-/// The channel called `name`, in any case of letters, or the first with heights. A single channel without a name is
-/// called 1 too.
+/// The channel called `name`, without regard to case, or the first channel with heights.
+///
+/// A single channel without a name is also called 1.
 ///
 /// # Errors
-/// [`FormatError::NoChannel`], [`FormatError::NoHeights`], with the names that there are.
+/// Both list the names in the file:
+///
+/// - [`FormatError::NoChannel`] when no channel has this name.
+/// - [`FormatError::NoHeights`] when no channel has heights.
 pub(super) fn chosen<'a>(channels: Vec<Channel<'a>>, name: Option<&str>) -> Result<Channel<'a>, FormatError> {
     let names: Vec<String> = channels.iter().map(|channel| channel.name.clone()).collect();
     let exact = |name: &str| names.iter().position(|other| other == name);

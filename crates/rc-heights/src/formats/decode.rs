@@ -1,9 +1,11 @@
-//! Bytes of a text as characters.
+//! Conversion of the bytes of a text to characters.
 
 use std::borrow::Cow;
 
-/// UTF-8, with a byte-order mark or without; UTF-16 of either byte order with one; else Latin-1, in which old programs
-/// write µ.
+/// Decodes a text.
+///
+/// It is UTF-8 with or without a byte-order mark, or UTF-16 of either byte order with a mark. Other bytes are read as
+/// Latin-1, in which old programs write µ.
 pub(crate) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
     match bytes {
         [0xff, 0xfe, rest @ ..] => Cow::Owned(utf_16(rest, u16::from_le_bytes)),
@@ -25,7 +27,9 @@ fn utf_16(bytes: &[u8], unit: impl Fn([u8; 2]) -> u16) -> String {
         .collect()
 }
 
-/// Whether bytes are those of a text: no zeros, which binary files have, but in UTF-16.
+/// Whether bytes can be a text.
+///
+/// Binary files contain zeros. Texts do not, except in UTF-16.
 pub(super) fn is_text(start: &[u8]) -> bool {
     start.starts_with(&[0xff, 0xfe]) || start.starts_with(&[0xfe, 0xff]) || !start.contains(&0)
 }

@@ -20,7 +20,7 @@ impl Endian {
         bytes
     }
 
-    /// `N` bytes from `at` on, in little-endian order; zeros beyond the end.
+    /// The `N` bytes from `at` on, in little-endian order. Bytes beyond the end are zero.
     fn at<const N: usize>(self, bytes: &[u8], at: usize) -> [u8; N] {
         let stored = bytes.get(at..).and_then(|rest| rest.first_chunk::<N>());
         self.ordered(stored.copied().unwrap_or([0; N]))
@@ -53,7 +53,7 @@ impl Endian {
     /// The values of `grid` at the start of `bytes`.
     ///
     /// # Errors
-    /// [`FormatError::CutShort`], before memory is taken.
+    /// [`FormatError::CutShort`] when there are too few bytes. It is returned before memory is taken.
     pub(super) fn values(self, number: Number, bytes: &[u8], grid: Grid) -> Result<Vec<f64>, FormatError> {
         let (needed, size) = (number.bytes_of(grid), number.size());
         if self == Self::Little || size == 1 || (bytes.len() as u64) < needed {

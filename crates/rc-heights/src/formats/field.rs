@@ -1,13 +1,13 @@
-//! Fields of values whose number is known to be right.
+//! Fields of values whose number is already checked.
 
 use rc_core::{Field, Grid};
 
-/// The field of values that were counted.
+/// The field of values whose number is already checked.
 pub(super) fn field(grid: Grid, values: Vec<f64>) -> Field {
     Field::new(grid, values).expect("as many values as points")
 }
 
-/// Reverses the rows of row-major values (x), their order (y), or both.
+/// Reverses each row of row-major values (x), the order of rows (y), or both.
 pub(super) fn flip(values: &mut [f64], grid: Grid, [x, y]: [bool; 2]) {
     match (x, y) {
         (true, true) => values.reverse(),

@@ -1,11 +1,11 @@
-//! The formats of height maps, by name.
+//! Names of the formats of height maps.
 
 /// A format of height maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Format {
-    /// NumPy array, 2-D.
+    /// NumPy array with two dimensions.
     Npy,
-    /// Numbers as text, a row of the map a line.
+    /// Numbers as text, with one row of the map in each line.
     Csv,
     /// Lines of `x y z`.
     Xyz,
@@ -15,21 +15,21 @@ pub enum Format {
     Gsf,
     /// Gwyddion native file, version 2.
     Gwy,
-    /// HDF5, 2-D arrays.
+    /// HDF5 with arrays of two dimensions.
     Hdf5,
     /// Igor Pro binary wave, version 5.
     Ibw,
-    /// MATLAB 5, 2-D arrays.
+    /// MATLAB 5 with arrays of two dimensions.
     Mat,
-    /// NetCDF: classic and 64-bit.
+    /// NetCDF, classic and 64-bit.
     NetCdf,
-    /// ISO 25178-71, text and binary.
+    /// ISO 25178-71, as text and binary.
     Sdf,
     /// ISO 5436-2, now ISO 25178-72.
     X3p,
     /// PNG, 16-bit grayscale.
     Png,
-    /// TIFF, grayscale of 16 bits, or of 32-bit floats.
+    /// TIFF, grayscale of 16 bits or of 32-bit floats.
     Tiff,
     /// Digital Surf, plain or compressed.
     Sur,
@@ -50,7 +50,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// All of them.
+    /// All formats.
     pub const ALL: [Self; 22] = [
         Self::Npy,
         Self::Csv,

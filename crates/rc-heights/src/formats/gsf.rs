@@ -1,4 +1,6 @@
-//! Gwyddion simple field 1.0: a text header, then 32-bit floats, rows from top to bottom
+//! Gwyddion simple field 1.0.
+//!
+//! The format has a text header, then 32-bit floats with rows from top to bottom
 //! (<http://gwyddion.net/documentation/user-guide-en/gsf.html>).
 
 use super::binary::Number;
@@ -22,7 +24,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
         let length: Option<f64> = fields.optional(name)?;
         length.map(|length| positive(Format::Gsf, name, length * side_factor)).transpose()
     };
-    // Sizes that are not given are 1 of no unit, which is to say that they are not known.
+    // By the format, missing sizes are 1 without a unit, so they are not known.
     let sides = match (side("XReal")?, side("YReal")?) {
         (Some(x), Some(y)) => Some([x, y]),
         (None, None) => None,
@@ -31,7 +33,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
             return Err(FormatError::Missing { format: Format::Gsf, field });
         }
     };
-    // One to four zero bytes fill the header up to a multiple of four.
+    // One to four zero bytes pad the header to a multiple of four.
     let mut values = Number::F32.values_alone(bytes.get(end + 4 - end % 4..).unwrap_or_default(), grid)?;
     crate::map::scale(&mut values, height_factor);
     Ok(HeightMap { heights: field(grid, values), height_unit, sides, side_unit })

@@ -1,7 +1,8 @@
-//! Gwyddion native files, version 2: a tree of named, typed values, little-endian; a channel is the object `/N/data`
-//! (<http://gwyddion.net/documentation/user-guide-en/gwyfile-format.html>).
+//! Gwyddion native files, version 2.
 //!
-//! Masks mark what the user of Gwyddion wanted to mark, not what was not measured: they are not read.
+//! The format is a tree of named, typed, little-endian values. A channel is the object `/N/data`
+//! (<http://gwyddion.net/documentation/user-guide-en/gwyfile-format.html>). Masks are not read: they show what the user
+//! of Gwyddion selected, not what was not measured.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +18,7 @@ use crate::{Format, FormatError, HeightMap, Unit};
 /// The first bytes.
 pub(super) const MARK: &[u8] = b"GWYP";
 
-/// A value of the tree; arrays and objects are not looked into before they are needed.
+/// A value of the tree. Arrays and objects are parsed only when they are needed.
 #[derive(Clone, Copy)]
 enum Value<'a> {
     Integer(i32),
@@ -30,7 +31,7 @@ enum Value<'a> {
 
 type Tree<'a> = Vec<(&'a [u8], Value<'a>)>;
 
-/// A channel of the container, as far as it is found.
+/// The parts of a channel that are found so far.
 #[derive(Default)]
 struct Found<'a> {
     title: Option<&'a [u8]>,
@@ -67,13 +68,13 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     Ok(each(channels.map(channel).collect()))
 }
 
-/// The number of the channel that a key such as `/0/data/title` belongs to, and the rest of the key.
+/// Number of the channel and rest of a key such as `/0/data/title`.
 fn channel_of(key: &[u8]) -> Option<(u32, &str)> {
     let (number, rest) = std::str::from_utf8(key).ok()?.strip_prefix('/')?.split_once('/')?;
     Some((number.parse().ok()?, rest))
 }
 
-/// What a data field says of its values.
+/// Contents of a data field.
 struct DataField<'a> {
     resolution: [i32; 2],
     sides: [f64; 2],
@@ -85,7 +86,8 @@ struct DataField<'a> {
 
 impl<'a> DataField<'a> {
     fn of(content: &'a [u8]) -> Result<Self, FormatError> {
-        // What is not said is 1, or of no unit: numbers without a dimension are not heights.
+        // By the format, missing numbers are 1 and missing units are empty. Numbers without a dimension are not
+        // heights.
         let (side, height) = (String::new(), (Unit::NotLength, 1.0));
         let mut this = Self { resolution: [0; 2], sides: [1.0; 2], side, height, values: &[] };
         for (key, value) in tree(content)? {
@@ -119,7 +121,7 @@ impl<'a> DataField<'a> {
     }
 }
 
-/// The name of a `GwySIUnit`.
+/// The name in a `GwySIUnit`.
 fn unit_name(content: &[u8]) -> Result<String, FormatError> {
     let tree = tree(content)?;
     let name = tree.into_iter().find_map(|(key, value)| match (key, value) {
@@ -196,7 +198,7 @@ fn object<'a>(bytes: &mut Bytes<'a>) -> Result<Value<'a>, FormatError> {
     Ok(Value::Object { name, content: bytes.take(size)? })
 }
 
-/// A text, which a zero byte ends.
+/// A text that ends with a zero byte.
 fn text<'a>(bytes: &mut Bytes<'a>) -> Result<&'a [u8], FormatError> {
     let end = bytes.rest().iter().position(|byte| *byte == 0);
     let text = bytes.take(end.ok_or(FormatError::HeaderCutShort { format: Format::Gwy })?)?;

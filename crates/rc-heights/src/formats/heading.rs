@@ -1,11 +1,13 @@
-//! The lines before the numbers of a text, as instruments and Gwyddion write them: sizes, units, titles of columns.
+//! The lines before the numbers of a text, as instruments and Gwyddion write them.
+//!
+//! They contain sizes, units and titles of columns.
 
 use super::fields::{refused, shown};
 use super::lines::{lines, number, words};
 use super::unit;
 use crate::{Format, FormatError, LengthUnit, Unit};
 
-/// Names of the size along x, in languages that Gwyddion speaks.
+/// Names of the size along x, in the languages of Gwyddion.
 const WIDTHS: [&str; 10] =
     ["width", "breite", "largeur", "larghezza", "ancho", "largura", "šířka", "ширина", "x size", "xreal"];
 /// Names of the size along y.
@@ -16,38 +18,38 @@ const UNITS: [&str; 8] =
     ["value units", "value unit", "z units", "z unit", "zunits", "data unit", "data units", "einheiten der werte"];
 /// Names of the channel.
 const CHANNELS: [&str; 6] = ["channel", "kanal", "canal", "canale", "kanál", "канал"];
-/// Most lines before the first number.
+/// Maximum number of lines before the first number.
 const MOST_LINES: usize = 200;
 
-/// A length with the unit that is named with it.
+/// A length, with the unit that is given beside it.
 type Length = (f64, Option<LengthUnit>);
 
-/// What the lines before the numbers say.
+/// Contents of the lines before the numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Heading {
-    /// The line of the first number, from 1.
+    /// Number of the line with the first number, from 1.
     pub(super) first: usize,
-    /// The name of the channel.
+    /// Name of the channel.
     pub(super) channel: String,
-    /// Sides, with their unit.
+    /// Sides along x and y.
     sides: [Option<Length>; 2],
-    /// Distance of points along both sides.
+    /// Distance of points along x and y.
     pixel: Option<Length>,
-    /// Points along x and y.
+    /// Numbers of points along x and y.
     counts: [Option<usize>; 2],
-    /// Unit of the heights, as named.
+    /// Unit of the heights, as written.
     unit: Option<String>,
-    /// Metres of a number, whatever the unit says.
+    /// Metres per number in the text. It overrides the unit.
     metres: Option<f64>,
     /// Titles of the columns.
     pub(super) titles: Vec<String>,
 }
 
 impl Heading {
-    /// What stands before the numbers of `text`.
+    /// Reads the lines before the numbers of `text`.
     ///
     /// # Errors
-    /// [`FormatError::NoNumber`] when there are no numbers, or when what looks like the first of them is not one.
+    /// [`FormatError::NoNumber`] when there are no numbers, or when the first apparent number is not valid.
     pub(super) fn of(text: &str) -> Result<Self, FormatError> {
         let mut heading = Self::default();
         let mut others: Vec<(usize, &str)> = Vec::new();
@@ -69,7 +71,9 @@ impl Heading {
         Err(FormatError::NoNumber { line: *line, value: 1, text: shown(word) })
     }
 
-    /// Takes the last line before the first `row` of numbers for titles, if it has as many.
+    /// Reads the last line before the first `row` of numbers as titles.
+    ///
+    /// It must have as many words as the row.
     fn with_titles(mut self, others: &[(usize, &str)], row: &str) -> Result<Self, FormatError> {
         let Some((line, last)) = others.last() else { return Ok(self) };
         let (titles, comma) = words(last);
@@ -78,14 +82,14 @@ impl Heading {
             return Ok(self);
         }
         if titles.len() > 1 && titles[1..].iter().all(|word| number(word, comma).is_some()) {
-            // A damaged first number, or numbers of columns, whose rows begin with numbers too.
+            // The first number is damaged, or these are numbers of columns, whose rows begin with numbers too.
             return Err(FormatError::NoNumber { line: *line, value: 1, text: shown(titles[0]) });
         }
         self.titles = titles.into_iter().map(str::to_owned).collect();
         Ok(self)
     }
 
-    /// Takes what a line says: `name: value`, `name = value`, or `a=1 b=2`.
+    /// Reads a line of the form `name: value`, `name = value`, or `a=1 b=2`.
     fn line(&mut self, line: &str) {
         if line.matches('=').count() > 1 {
             for (name, value) in line.split_whitespace().filter_map(|pair| pair.split_once('=')) {
@@ -100,7 +104,7 @@ impl Heading {
 
     fn pair(&mut self, name: &str, value: &str) {
         let (whole, lower, value) = (name.trim(), name.trim().to_lowercase(), value.trim());
-        // A unit may stand behind the name, as in `Width [µm]`.
+        // A unit may follow the name, as in `Width [µm]`.
         let (name, unit) = match whole.split_once(['[', '(']) {
             Some((before, unit)) if !lower.starts_with("height conversion") => {
                 (before.trim().to_lowercase(), unit.trim_end_matches([']', ')']).trim())
@@ -128,12 +132,14 @@ impl Heading {
         }
     }
 
-    /// Whether the lines say how large the map is, or how many points it has: numbers are rows of a map then.
+    /// Whether the lines contain the size of the map or its number of points.
+    ///
+    /// The numbers are then rows of a map.
     pub(super) fn is_of_rows(&self) -> bool {
         self.says_sides() || self.counts.iter().all(Option::is_some)
     }
 
-    /// Whether the lines say how large the map is.
+    /// Whether the lines contain the size of the map.
     pub(super) fn says_sides(&self) -> bool {
         self.pixel.is_some() || self.sides.iter().all(Option::is_some)
     }
@@ -141,7 +147,7 @@ impl Heading {
     /// Sides of a map of `nx` times `ny` points, and their unit.
     ///
     /// # Errors
-    /// [`FormatError::Field`] for a map of other points, or without a positive size.
+    /// [`FormatError::Field`] when the lines have other numbers of points, or a size that is not positive.
     pub(super) fn sides(&self, nx: usize, ny: usize) -> Result<(Option<[f64; 2]>, Unit), FormatError> {
         if let [Some(w), Some(h)] = self.counts
             && (w, h) != (nx, ny)
@@ -168,16 +174,16 @@ impl Heading {
             let found = format!("{:e} x {:e}", lengths[0].0, lengths[1].0);
             return Err(refused(Format::Csv, "width x height", &found, "two positive lengths"));
         }
-        // A unit that only one side has is that of both.
+        // If only one side has a unit, it applies to both.
         let named = lengths.iter().find_map(|(_, unit)| *unit);
         let metres = |(side, unit): Length| side * unit.or(named).map_or(1.0, LengthUnit::metres);
         Ok((Some(lengths.map(metres)), if named.is_some() { Unit::Metre } else { Unit::Unnamed }))
     }
 
-    /// What the numbers are in, and the factor that makes metres of them.
+    /// Unit of the numbers, and the factor that converts them to metres.
     ///
     /// # Errors
-    /// [`FormatError::Field`] for a factor that is not one.
+    /// [`FormatError::Field`] when the factor is not valid.
     pub(super) fn of_heights(&self) -> Result<(Unit, f64), FormatError> {
         match (self.metres, self.unit.as_deref()) {
             (Some(metres), _) => {
@@ -188,7 +194,7 @@ impl Heading {
         }
     }
 
-    /// The units that titles of three columns name, in their order. One that is named alone is that of all three.
+    /// The units in titles of three columns, in their order. A single unit applies to all three.
     pub(super) fn units_of_titles(&self) -> [Option<LengthUnit>; 3] {
         let [a, b, c] = self.titles.as_slice() else { return [None; 3] };
         let units = [a, b, c].map(|title| unit_of_title(title));
@@ -197,7 +203,9 @@ impl Heading {
     }
 }
 
-/// The unit in a title such as `X_(microns)`, `z [nm]`, `y/µm` or `x in mm`: the last of its words, if it has two.
+/// The unit in a title such as `X_(microns)`, `z [nm]`, `y/µm` or `x in mm`.
+///
+/// It is the last word of a title of two or more words.
 fn unit_of_title(title: &str) -> Option<LengthUnit> {
     let is_letter = |c: char| c.is_alphabetic() || c == '\u{b5}' || c == '\u{3bc}';
     let words: Vec<&str> = title.split(|c: char| !is_letter(c)).filter(|word| !word.is_empty()).collect();
@@ -205,7 +213,9 @@ fn unit_of_title(title: &str) -> Option<LengthUnit> {
     if before.is_empty() { None } else { unit::length(last) }
 }
 
-/// A number and the unit behind it, or else that `beside` its name; `None` for points and other quantities.
+/// A number with the unit that follows it, or else the unit `beside` its name.
+///
+/// `None` for numbers of points and other quantities.
 fn length(text: &str, beside: &str) -> Option<Length> {
     let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.,eE".contains(c))).unwrap_or(text.len());
     let (digits, unit) = text.split_at(end);

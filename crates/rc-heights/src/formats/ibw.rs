@@ -1,5 +1,7 @@
-//! Igor Pro binary waves, version 5 (WaveMetrics' technical note PTN003): two headers, values whose first index changes
-//! fastest, then notes and labels. The first index is x, the second y, the third counts channels.
+//! Igor Pro binary waves, version 5 (WaveMetrics' technical note PTN003).
+//!
+//! The format has two headers, values whose first index changes fastest, notes and labels. The first index is x, the
+//! second y, and the third counts channels.
 
 use rc_core::Grid;
 
@@ -12,14 +14,16 @@ use super::instrument::text;
 use super::unit;
 use crate::{Format, FormatError, HeightMap, Unit};
 
-/// Bytes of both headers, over which 16-bit words add up to 0.
+/// Bytes of both headers. The sum of their 16-bit words is 0.
 const HEADERS: usize = FIRST + 320;
 /// Bytes of the first header.
 const FIRST: usize = 64;
 /// Bytes of the label of an element of a dimension.
 const LABEL: usize = 32;
 
-/// Whether a file begins with the headers of a wave, and their byte order.
+/// The byte order of a wave, or `None` for other files.
+///
+/// It follows from the headers.
 pub(super) fn order(start: &[u8]) -> Option<Endian> {
     let headers = start.get(..HEADERS)?;
     let order = match headers[..2] {
@@ -32,7 +36,7 @@ pub(super) fn order(start: &[u8]) -> Option<Endian> {
     (sum == 0).then_some(order)
 }
 
-/// What the headers say.
+/// Contents of the headers.
 struct Wave<'a> {
     order: Endian,
     number: Number,
@@ -53,7 +57,7 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     let channel = |layer: usize| {
         let wave = wave.clone();
         let name = wave.labels.get(layer).cloned().unwrap_or_default();
-        // One unit is given for all layers; it is that of the heights.
+        // The single unit of all layers is the unit of the heights.
         let is_height = is_length && (!is_named || is_topography(&name));
         Channel { name, is_height, read: Box::new(move || wave.map(layer, is_height)) }
     };
@@ -94,14 +98,14 @@ impl<'a> Wave<'a> {
         let values = values.ok_or(FormatError::CutShort { grid, needed, found })?;
         let ascii = |at: usize| text(second.get(at..at + 4).unwrap_or_default());
         let sizes = |at: usize| usize::try_from(order.i32_at(first, at)).unwrap_or(0);
-        // Behind the values: formula, note, long names of units of the values and of four dimensions, labels.
+        // After the values: formula, note, long names of units of the values and of four dimensions, labels.
         let mut at = FIRST
             .saturating_add(sizes(4))
             .max(HEADERS + values.len())
             .saturating_add(sizes(8))
             .saturating_add(sizes(12));
         let mut block = |size: usize| {
-            // Labels say which layer has the heights: a file without them is cut off.
+            // Labels say which layer has the heights, so a file without them is truncated.
             let block = bytes.get(at..).and_then(|rest| rest.get(..size)).ok_or_else(|| cut.clone());
             at = at.saturating_add(size);
             block
@@ -114,7 +118,7 @@ impl<'a> Wave<'a> {
         for i in 0..4 {
             labels.push(block(sizes(36 + 4 * i))?);
         }
-        // The first label is that of the dimension.
+        // The first label belongs to the dimension.
         let labels = labels[2].chunks(LABEL).skip(1).take(layers).map(text).collect();
         let units = [0, 1, 2].map(|i| if long[i].is_empty() { ascii(148 + 4 * i) } else { long[i].clone() });
         let steps = [order.f64_at(second, 84), order.f64_at(second, 92)];
@@ -133,7 +137,7 @@ impl<'a> Wave<'a> {
         let step = |i: usize, name| positive(Format::Ibw, name, self.steps[i].abs() * factors[i]);
         let (x, y) = (step(0, "distance of points along x")?, step(1, "distance of points along y")?);
         flip(&mut values, grid, self.steps.map(|step| step < 0.0));
-        // A wave that was never scaled has a step of 1 in no unit.
+        // A wave that was never scaled has a step of 1 without a unit.
         #[expect(clippy::float_cmp, reason = "the step of a wave that was never scaled is exactly 1")]
         let is_scaled = side_unit == Unit::Metre || self.steps != [1.0, 1.0];
         let sides = is_scaled.then(|| [x * grid.nx() as f64, y * grid.ny() as f64]);
@@ -141,7 +145,7 @@ impl<'a> Wave<'a> {
     }
 }
 
-/// The type of numbers of a wave.
+/// The type of the numbers of a wave.
 fn number(kind: i16) -> Result<Number, FormatError> {
     Ok(match kind {
         0x02 => Number::F32,

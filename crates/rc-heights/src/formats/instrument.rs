@@ -1,4 +1,6 @@
-//! What readers of instruments share: fields at fixed places of a header, texts and units as instruments write them.
+//! Common parts of the readers of instruments.
+//!
+//! They read fields at fixed places of a header, and texts and units as instruments write them.
 
 use rc_core::Grid;
 
@@ -6,7 +8,7 @@ use super::field::field;
 use super::fields::positive;
 use crate::{Format, FormatError, HeightMap, LengthUnit, Unit};
 
-/// Bytes whose fields stand at fixed places; numbers are little-endian unless a name says otherwise.
+/// Bytes with fields at fixed places. Numbers are little-endian unless a name says otherwise.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Places<'a> {
     bytes: &'a [u8],
@@ -46,13 +48,15 @@ impl<'a> Places<'a> {
         Ok(text(&self.array::<N>(at)?))
     }
 
-    /// The bytes from `at` on; none where the file is truncated.
+    /// The bytes from `at` on. They are empty if the file is truncated.
     pub(super) fn rest(self, at: usize) -> &'a [u8] {
         self.bytes.get(at..).unwrap_or_default()
     }
 }
 
-/// A text that ends at a zero byte or is filled up with blanks; in UTF-8, or else in Latin-1.
+/// A text that ends at a zero byte or is padded with blanks.
+///
+/// It is in UTF-8, or else in Latin-1.
 pub(super) fn text(bytes: &[u8]) -> String {
     let bytes = bytes.split(|byte| *byte == 0).next().unwrap_or_default();
     let text =
@@ -60,16 +64,18 @@ pub(super) fn text(bytes: &[u8]) -> String {
     text.trim().to_owned()
 }
 
-/// The length in m of a unit that an instrument wrote, or `None` for what is not a length.
+/// The length in m of a unit, or `None` if it is not a length.
+///
+/// Units are accepted as instruments write them.
 pub(super) fn metres(unit: &str) -> Option<f64> {
     match unit.trim() {
-        // "æ" is the µ of a code page of DOS, and "~" that of Nanoscope.
+        // "æ" is µ in a code page of DOS, and "~" is µ in Nanoscope.
         "æm" | "~m" => Some(LengthUnit::Micrometre.metres()),
         name => super::unit::length(name).map(LengthUnit::metres),
     }
 }
 
-/// Sides of a rectangle whose points are `spacing` (m) apart.
+/// Sides of a rectangle with points at distances of `spacing` (m).
 pub(super) fn sides(
     format: Format,
     fields: [&'static str; 2],
@@ -80,14 +86,14 @@ pub(super) fn sides(
     Ok([side(fields[0], spacing[0], grid.nx())?, side(fields[1], spacing[1], grid.ny())?])
 }
 
-/// The map of `values`, which are in m if `is_height`, on a rectangle of `sides` (m).
+/// The map of `values` on a rectangle of `sides` (m). Values are in m if `is_height`.
 pub(super) fn map(grid: Grid, values: Vec<f64>, is_height: bool, sides: Option<[f64; 2]>) -> HeightMap {
     let height_unit = if is_height { Unit::Metre } else { Unit::NotLength };
     let side_unit = if sides.is_some() { Unit::Metre } else { Unit::Unnamed };
     HeightMap { heights: field(grid, values), height_unit, sides, side_unit }
 }
 
-/// Marks the points as missing whose stored value `is_missing`; multiplies the others by `scale`.
+/// Marks points as missing whose stored value `is_missing`, and multiplies the others by `scale`.
 pub(super) fn scale_measured(values: &mut [f64], scale: f64, is_missing: impl Fn(f64) -> bool) {
     for value in values {
         *value = if is_missing(*value) { f64::NAN } else { *value * scale };

@@ -1,4 +1,4 @@
-//! How the numbers of a text are laid out.
+//! Layout of the numbers of a text.
 
 use std::fmt;
 use std::str::FromStr;
@@ -8,20 +8,20 @@ use thiserror::Error;
 
 use super::Format;
 
-/// How the numbers of a text are laid out.
+/// Layout of the numbers of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
-    /// A row of the map a line.
+    /// Each line is a row of the map.
     Matrix,
-    /// A point a line: x, y, height.
+    /// Each line is a point: x, y, height.
     Xyz,
 }
 
-/// A layout that is not known.
+/// An unknown name of a layout.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("'{name}' is not a layout of text; give matrix (each line is a row of the map) or xyz (each line is a point)")]
 pub struct LayoutError {
-    /// As written.
+    /// The name as written.
     pub name: String,
 }
 
@@ -58,7 +58,7 @@ impl<'de> Deserialize<'de> for Layout {
     }
 }
 
-/// The format of a text that is laid out as the user says; other formats are what they are.
+/// The format of a text in the layout that the user gives. Other formats stay as they are.
 pub(super) fn format(known: Format, layout: Option<Layout>) -> Format {
     match (known, layout) {
         (Format::Csv | Format::Xyz, Some(Layout::Matrix)) => Format::Csv,

@@ -1,9 +1,10 @@
-//! MATLAB 5 files (The MathWorks, "MAT-File Format"): named arrays stored column by column, each alone or compressed
-//! with zlib. Real 2-D arrays are channels; the first index is y, the second x. Vectors or meshes called `x` and `y`
-//! are coordinates.
+//! MATLAB 5 files (The MathWorks, "MAT-File Format").
 //!
-//! Files of version 7.3 are HDF5. The readers on crates.io inflate whatever a compressed array promises; this one does
-//! not.
+//! The format has named arrays, stored column by column, each plain or compressed with zlib. Real 2-D arrays are
+//! channels. Their first index is y, the second x. Vectors or meshes called `x` and `y` are coordinates.
+//!
+//! Files of version 7.3 are HDF5. Readers on crates.io take memory for any size that a compressed array claims. This
+//! reader does not.
 
 use std::borrow::Cow;
 use std::io::Read as _;
@@ -24,16 +25,16 @@ use crate::{Format, FormatError, HeightMap, Unit};
 pub(super) const MARK: &[u8] = b"MATLAB 5.0 MAT-file";
 /// Length of the header.
 const HEADER: usize = 128;
-/// An array.
+/// Type of an array.
 const MATRIX: u32 = 14;
-/// An element compressed with zlib.
+/// Type of an element that is compressed with zlib.
 const COMPRESSED: u32 = 15;
-/// Bytes inflated at once: an array without its values is shorter.
+/// Number of bytes that are decompressed at once. An array without its values is shorter.
 const START: u64 = 512;
-/// Deflate makes at most 1032 bytes of one: what is promised beyond that is not there.
+/// Maximum number of bytes that deflate makes of one byte. Claims beyond that are false.
 const MOST_INFLATION: u64 = 1032;
 
-/// An array in the file, inflated when it is read.
+/// An array in the file, which is decompressed when it is read.
 struct Array<'a> {
     name: String,
     rows: usize,
@@ -51,9 +52,9 @@ enum Stored<'a> {
 /// An array of a MATLAB 5 file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MatArray {
-    /// Its name.
+    /// Name of the array.
     pub name: String,
-    /// Rows, at least 1.
+    /// Number of rows, at least 1.
     pub rows: usize,
     /// Values, column by column.
     pub values: Vec<f64>,
@@ -66,11 +67,12 @@ impl MatArray {
     }
 }
 
-/// All real arrays of numbers with two dimensions in a MATLAB 5 file, vectors too. Arrays without a value are passed
-/// over.
+/// All real arrays of numbers with two dimensions in a MATLAB 5 file.
+///
+/// Vectors are included. Arrays without a value are omitted.
 ///
 /// # Errors
-/// [`FormatError`].
+/// [`FormatError`] when the file is not valid.
 pub fn mat_arrays(bytes: &[u8]) -> Result<Vec<MatArray>, FormatError> {
     let found = arrays(bytes)?;
     let whole = found.iter().filter(|array| array.rows > 0 && array.columns > 0);
@@ -116,7 +118,7 @@ fn arrays(file: &[u8]) -> Result<Vec<Array<'_>>, FormatError> {
         if let Some(stored) = stored {
             arrays.extend(Array::of(stored, order)?);
         }
-        // Elements begin at multiples of eight bytes, but for those behind compressed ones.
+        // Elements begin at multiples of eight bytes, except after compressed ones.
         let padded = if kind == COMPRESSED { size } else { size.next_multiple_of(8) };
         bytes = bytes.get(8 + padded..).unwrap_or_default();
     }
@@ -143,7 +145,7 @@ impl Stored<'_> {
         Ok(Cow::Owned(bytes))
     }
 
-    /// Bytes of the array that there can be.
+    /// Maximum number of bytes that the array can have.
     fn most(&self) -> u64 {
         match self {
             Self::Plain(bytes) => bytes.len() as u64,
@@ -153,13 +155,13 @@ impl Stored<'_> {
 }
 
 impl<'a> Array<'a> {
-    /// Flags, dimensions and name; `None` for what is not a real 2-D array of numbers.
+    /// Reads flags, dimensions and name. `None` if this is not a real 2-D array of numbers.
     fn of(stored: Stored<'a>, order: Endian) -> Result<Option<Self>, FormatError> {
         let start = stored.bytes(START)?;
         let mut elements = Elements { bytes: &start, order };
         let Some([(_, flags), (_, sizes), (_, name)]) = elements.three() else { return Ok(None) };
         let flags = order.u32_at(flags, 0);
-        // Classes 6 to 15 are numbers; bit 11 marks complex ones.
+        // Classes 6 to 15 are numbers. Bit 11 marks complex numbers.
         let is_real = (6..=15).contains(&(flags & 0xff)) && flags & 0x800 == 0;
         if !is_real || sizes.len() != 8 {
             return Ok(None);
@@ -178,7 +180,7 @@ impl<'a> Array<'a> {
     /// The values as they are stored, column by column, and the grid of rows.
     fn stored(&self) -> Result<(Grid, Vec<f64>), FormatError> {
         let grid = Grid::new(self.columns, self.rows)?;
-        // Values may be stored in smaller types than the class says; a byte each is the least.
+        // Values may be stored in smaller types than the class says, with at least one byte each.
         let (needed, found) = (grid.len() as u64, self.stored.most());
         if found < needed {
             return Err(FormatError::CutShort { grid, needed, found });
@@ -197,13 +199,13 @@ impl<'a> Array<'a> {
         Ok((grid, stored))
     }
 
-    /// Which axis the array has coordinates of, by its name.
+    /// The axis whose coordinates are in the array, by its name.
     fn coordinate(&self) -> Option<usize> {
         ["x", "y"].iter().position(|name| self.name.eq_ignore_ascii_case(name))
     }
 }
 
-/// Array `i` as a map, with sides where there are coordinates.
+/// Array `i` as a map, with sides if there are coordinates.
 fn map(arrays: &[Array<'_>], i: usize) -> Result<HeightMap, FormatError> {
     let (grid, mut values) = arrays[i].values()?;
     let mut sides = None;
@@ -215,7 +217,9 @@ fn map(arrays: &[Array<'_>], i: usize) -> Result<HeightMap, FormatError> {
     Ok(HeightMap { heights: field(grid, values), height_unit: Unit::Unnamed, sides, side_unit: Unit::Unnamed })
 }
 
-/// Coordinates of array `i` along x and y, if there are arrays with those names and of the right lengths.
+/// Coordinates of array `i` along x and y.
+///
+/// `None` unless there are arrays with these names and of the right lengths.
 fn coordinates(arrays: &[Array<'_>], i: usize) -> Result<Option<[Vec<f64>; 2]>, FormatError> {
     let of = |axis| arrays.iter().enumerate().find(|(j, array)| *j != i && array.coordinate() == Some(axis));
     let (map, Some((_, x)), Some((_, y))) = (&arrays[i], of(0), of(1)) else { return Ok(None) };
@@ -237,7 +241,7 @@ struct Elements<'a> {
 }
 
 impl<'a> Elements<'a> {
-    /// Type and content of the next element, as far as it is there.
+    /// Type and content of the next element, up to the end of the file.
     fn next(&mut self) -> Option<(u32, &'a [u8])> {
         let tag = self.bytes.get(..8).map(|_| self.order.u32_at(self.bytes, 0))?;
         // A small element has its length in the upper half of the type, and its content in the tag.
@@ -296,7 +300,7 @@ mod tests {
         bytes
     }
 
-    /// A file with one array of doubles, compressed.
+    /// A file with compressed arrays of doubles.
     fn file(arrays: &[(&str, usize, &[f64])]) -> Vec<u8> {
         let mut bytes = vec![b' '; 124];
         bytes.extend(b"\0\x01IM");

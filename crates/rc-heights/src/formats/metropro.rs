@@ -1,5 +1,6 @@
-//! Zygo MetroPro: a big-endian header, intensities, and phases as 32-bit integers, rows from top to bottom (MetroPro
-//! Reference Guide OMP-0347, "Data format").
+//! Zygo MetroPro files (MetroPro Reference Guide OMP-0347, "Data format").
+//!
+//! The format has a big-endian header, intensities, and phases as 32-bit integers with rows from top to bottom.
 
 use rc_core::Grid;
 
@@ -8,13 +9,13 @@ use super::fields::{factor, refused};
 use super::instrument::{Places, map, scale_measured, sides};
 use crate::{Format, FormatError, HeightMap};
 
-/// The first bytes; the last of them says which header follows.
+/// The first bytes. The last of them says which header follows.
 pub(super) const MARKS: [&[u8]; 3] = [b"\x88\x1b\x03\x6f", b"\x88\x1b\x03\x70", b"\x88\x1b\x03\x71"];
 
-/// The lengths that headers have.
+/// The possible lengths of a header.
 const HEADERS: [usize; 2] = [834, 4096];
 
-/// Phases from here on are missing points.
+/// Phases from this value on are missing points.
 const MISSING: f64 = 2_147_483_640.0;
 
 const BYTES: usize = 4;
@@ -40,7 +41,7 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     let scale = factor(Format::MetroPro, "scale of heights", float(164)? * float(176)? * float(168)? / of_phase)?;
     let scale = if short(232)? == 0 { scale } else { -scale };
     let lateral = float(184)?;
-    // 0 is an instrument that was not calibrated along x and y.
+    // A value of 0 means that the instrument was not calibrated along x and y.
     let sides = if lateral == 0.0 {
         None
     } else {

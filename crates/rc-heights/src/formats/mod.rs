@@ -1,4 +1,4 @@
-//! The formats, and how a file is read.
+//! The formats, and functions that read a file.
 
 mod al3d;
 mod archive;
@@ -54,28 +54,29 @@ use self::channel::{Channels, chosen, named, only};
 use self::heading::Heading;
 use crate::{FormatError, HeightMap, ReadError};
 
-/// What is read of a file that could be read in several ways.
+/// Choices for files that can be read in several ways.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ReadParams {
-    /// The name of a channel; `None` is the first that has heights.
+    /// Name of a channel. `None` means the first channel with heights.
     pub channel: Option<String>,
-    /// How a text is laid out; `None` is what its first lines look like.
+    /// Layout of a text. `None` means the layout that its first lines suggest.
     pub layout: Option<Layout>,
 }
 
-/// The format of the file at `path`; of a file that gzip has packed, that of what is in it.
+/// The format of the file at `path`. For a gzip file, it is the format of the contents.
 ///
 /// # Errors
-/// As of [`read`], as far as the first bytes tell.
+/// Those of [`read`], as far as they follow from the first bytes.
 pub fn format_of(path: &Path) -> Result<Format, ReadError> {
     Opened::new(path).map(|file| file.format)
 }
 
-/// Whether the file at `path` may say how large the measured rectangle is: a format without sizes, or a text whose
-/// first lines do not say it, does not.
+/// Whether the file at `path` may contain the size of the measured rectangle.
+///
+/// False for a format without sizes, and for a text whose first lines do not contain the size.
 ///
 /// # Errors
-/// As of [`read`], as far as the first bytes tell.
+/// Those of [`read`], as far as they follow from the first bytes.
 pub fn may_have_sides(path: &Path, params: &ReadParams) -> Result<bool, ReadError> {
     let file = Opened::new(path)?;
     Ok(match layout::format(file.format, params.layout) {
@@ -87,9 +88,9 @@ pub fn may_have_sides(path: &Path, params: &ReadParams) -> Result<bool, ReadErro
 /// A file whose format is known.
 struct Opened {
     format: Format,
-    /// Its first bytes, or all of them.
+    /// The first bytes, or all bytes.
     bytes: Vec<u8>,
-    /// Where the others are.
+    /// Source of the other bytes.
     rest: Option<File>,
 }
 
@@ -118,7 +119,7 @@ impl Opened {
             return Ok(Self { format: Format::of(path, &bytes)?, bytes, rest: None });
         }
         let mut format = Format::of(path, &bytes)?;
-        // The first numbers of a text say how it is laid out; many lines may stand before them.
+        // The first numbers of a text determine its layout. Many lines may precede them.
         while matches!(format, Format::Csv | Format::Xyz) && !xyz::has_numbers(&bytes) {
             let as_many = bytes.len() as u64;
             if file.by_ref().take(as_many).read_to_end(&mut bytes).map_err(unreadable)? == 0 {
@@ -129,7 +130,7 @@ impl Opened {
         Ok(Self { format, bytes, rest: Some(file) })
     }
 
-    /// All bytes.
+    /// Reads all bytes.
     fn whole(mut self) -> Result<Vec<u8>, FormatError> {
         if let Some(mut rest) = self.rest.take() {
             rest.read_to_end(&mut self.bytes).map_err(unreadable)?;
@@ -143,50 +144,52 @@ fn unreadable(cause: std::io::Error) -> FormatError {
     FormatError::Unreadable(cause.to_string())
 }
 
-/// Reads the height map at `path`, in the units of the file ([`HeightMap::in_metres`]). Row `iy` of the file is row
-/// `iy` of the field; `NaN` is a missing point. Of several channels it is the first that has heights.
+/// Reads the height map at `path`, in the units of the file ([`HeightMap::in_metres`]).
+///
+/// Row `iy` of the file is row `iy` of the field, and a missing point is `NaN`. If the file has several channels, the
+/// first with heights is read.
 ///
 /// # Errors
-/// [`ReadError`] when the file cannot be read, is of no known format, damaged, without a measured point, or has an
+/// [`ReadError`] when the file cannot be read, has an unknown format, is damaged, has no measured point, or has an
 /// infinite height.
 pub fn read(path: &Path) -> Result<HeightMap, ReadError> {
     read_with(path, &ReadParams::default())
 }
 
-/// [`read`] of the channel and the layout that `params` name.
+/// Reads the channel and layout that `params` select, as [`read`].
 ///
 /// # Errors
-/// Those of [`read`], and a channel that the file does not have.
+/// Those of [`read`], and [`FormatError::NoChannel`] for a channel that the file does not have.
 pub fn read_with(path: &Path, params: &ReadParams) -> Result<HeightMap, ReadError> {
     let fail = |problem: FormatError| ReadError { path: path.to_owned(), problem };
     let file = Opened::new(path)?;
     if file.format == Format::Npy && file.rest.is_some() && params.channel.is_none() {
-        // Arrays may be as large as memory: they are not read as bytes first.
+        // Arrays may be as large as memory, so they are not read as bytes first.
         return checked(HeightMap::bare(npy::read(path)?)).map_err(fail);
     }
     let format = layout::format(file.format, params.layout);
     file.whole().and_then(|bytes| parse_with(&bytes, format, params)).map_err(fail)
 }
 
-/// The channels of the file at `path`, in its order; their values are not read.
+/// The channels of the file at `path`, in its order. Their values are not read.
 ///
 /// # Errors
-/// [`ReadError`] when the file cannot be read, is of no known format or damaged.
+/// [`ReadError`] when the file cannot be read, has an unknown format, or is damaged.
 pub fn channels(path: &Path) -> Result<Vec<ChannelInfo>, ReadError> {
     let file = Opened::new(path)?;
     let format = file.format;
     if format == Format::Npy {
-        // One array, which may be as large as memory.
+        // The file has one array, which may be as large as memory.
         return Ok(vec![ChannelInfo { name: String::new(), is_height: true }]);
     }
     let channels = file.whole().and_then(|bytes| channels_of(&bytes, format));
     channels.map_err(|problem| ReadError { path: path.to_owned(), problem })
 }
 
-/// [`channels`] of the bytes of a file of the given format.
+/// The channels in the bytes of a file of the given format, as [`channels`].
 ///
 /// # Errors
-/// [`FormatError`].
+/// [`FormatError`] when the bytes are not valid.
 pub fn channels_of(bytes: &[u8], format: Format) -> Result<Vec<ChannelInfo>, FormatError> {
     Ok(named(in_bytes(bytes, format, None)?).iter().map(ChannelInfo::from).collect())
 }
@@ -194,21 +197,21 @@ pub fn channels_of(bytes: &[u8], format: Format) -> Result<Vec<ChannelInfo>, For
 /// Reads a height map from the bytes of a file of the given format.
 ///
 /// # Errors
-/// [`FormatError`].
+/// [`FormatError`] when the bytes are not valid, as for [`read`].
 pub fn parse(bytes: &[u8], format: Format) -> Result<HeightMap, FormatError> {
     parse_with(bytes, format, &ReadParams::default())
 }
 
-/// [`parse`] of the channel that `params` name.
+/// Reads the channel that `params` select, as [`parse`].
 ///
 /// # Errors
-/// [`FormatError`].
+/// [`FormatError`] when the bytes are not valid, as for [`read_with`].
 pub fn parse_with(bytes: &[u8], format: Format, params: &ReadParams) -> Result<HeightMap, FormatError> {
     let channel = chosen(named(in_bytes(bytes, format, params.layout)?), params.channel.as_deref())?;
     checked((channel.read)()?)
 }
 
-/// The channels of a file, one line a format.
+/// The channels of a file of the given format.
 fn in_bytes(bytes: &[u8], format: Format, layout: Option<Layout>) -> Channels<'_> {
     Ok(match format {
         Format::Al3d => al3d::channels(bytes)?,

@@ -1,8 +1,10 @@
-//! Bruker, Veeco and Digital Instruments Nanoscope, from version 4.2 on: a text of lists, then the integers of each
-//! image; the first row has the lowest y (the documentation of Gwyddion describes the format).
+//! Nanoscope files of Bruker, Veeco and Digital Instruments, from version 4.2 on.
 //!
-//! A value is integer / 256^bytes x `Z scale` x the sensitivity that `Z scale` names; it is a length if the unit of the
-//! product is one. Other channels have the unit of the file, which is not named in the map.
+//! The format has a text of lists, then the integers of each image, whose first row has the lowest y. The documentation
+//! of Gwyddion describes it.
+//!
+//! A value is integer / 256^bytes x `Z scale` x the sensitivity that `Z scale` names. It is a length if the unit of the
+//! product is a length. Other channels have a unit of the file that the map does not name.
 
 use rc_core::Grid;
 
@@ -15,7 +17,9 @@ use crate::{Format, FormatError, HeightMap};
 /// The first line.
 pub(super) const MARK: &[u8] = b"\\*File list\r\n";
 
-/// From this version on, integers have four bytes even where `Bytes/pixel` is 2, which then is what scales them.
+/// From this version on, integers always have four bytes.
+///
+/// If `Bytes/pixel` is 2, it only determines the scale.
 const FOUR_BYTES: u32 = 0x0920_0000;
 
 /// A list of the header: `\*name`, then lines of `\key: value`. Names and keys are in lower case.
@@ -35,7 +39,7 @@ impl List {
     }
 }
 
-/// Where and how an image is stored.
+/// Place and form of a stored image.
 struct Image {
     grid: Grid,
     number: Number,
@@ -86,7 +90,7 @@ fn read(data: &[u8], image: &Image) -> Result<HeightMap, FormatError> {
     Ok(map(image.grid, values, image.is_height, Some(image.sides)))
 }
 
-/// The lists at the start of the file; their lines begin with a backslash, what follows them does not.
+/// The lists at the start of the file. Only their lines begin with a backslash.
 fn lists(bytes: &[u8]) -> Vec<List> {
     let mut lists: Vec<List> = Vec::new();
     for line in bytes.split(|byte| *byte == b'\n') {
@@ -106,7 +110,9 @@ fn lists(bytes: &[u8]) -> Vec<List> {
     lists
 }
 
-/// `S [Internal] "Shown"`: the name that is shown to users, and the direction of its lines where that is backwards.
+/// The name of an image from `S [Internal] "Shown"`.
+///
+/// It is the name that users see, with the direction of its lines if they run backwards.
 fn name(list: &List) -> String {
     let text = value_of(list, "image data").unwrap_or_default();
     let shown = text.split('"').nth(1).filter(|name| !name.is_empty());
@@ -116,7 +122,9 @@ fn name(list: &List) -> String {
     direction.map_or_else(|| name.to_owned(), |direction| format!("{name} {direction}"))
 }
 
-/// The value of `key`, which stands behind a number of a channel in all but the oldest versions: `@2:Z scale`.
+/// The value of `key`.
+///
+/// In all but the oldest versions the number of a channel precedes it: `@2:Z scale`.
 fn value_of<'a>(list: &'a List, key: &str) -> Option<&'a str> {
     ["@4:", "@3:", "@2:", "@1:", ""].iter().find_map(|number| list.get(&format!("{number}{key}")))
 }
@@ -132,7 +140,7 @@ fn image(list: &List, globals: &[&List], version: u32) -> Result<Image, FormatEr
         other => return Err(refused(Format::Nanoscope, "Bytes/pixel", &other, "2 or 4")),
     };
     let mut size = size(list, globals, grid)?;
-    // Some images say another size than they have; the size of the scan is right then.
+    // Some images have a wrong size in their list. The size of the scan is then right.
     if let Some(whole) = whole(globals).filter(|whole| *whole != grid)
         && length == number.size() * whole.len()
     {
@@ -151,7 +159,7 @@ fn global<'a>(globals: &[&'a List], key: &str) -> Option<&'a str> {
     globals.iter().find_map(|list| list.get(key))
 }
 
-/// The grid of the whole scan, of which an image may be a part.
+/// The grid of the whole scan. An image may be a part of it.
 fn whole(globals: &[&List]) -> Option<Grid> {
     let count = |key| global(globals, key).and_then(|text| text.parse().ok());
     Grid::new(count("samps/line")?, count("lines")?).ok()
@@ -161,18 +169,18 @@ fn whole(globals: &[&List]) -> Option<Grid> {
 fn size(list: &List, globals: &[&List], grid: Grid) -> Result<[f64; 2], FormatError> {
     let text = list.get("scan size").ok_or(FormatError::Missing { format: Format::Nanoscope, field: "Scan size" })?;
     let size = lengths(text).ok_or_else(|| refused(Format::Nanoscope, "Scan size", text, "lengths along x and y"))?;
-    // Where the scan has the length of its slow axis, the second length of the image may be wrong.
+    // If the scan has the length of its slow axis, the second length of the image may be wrong.
     let scan = |key| global(globals, key).and_then(lengths).map(|[length, _]| length);
     let [x, y] = scan("scan size").zip(scan("slow axis size")).map_or(size, |(x, y)| [x, y]);
     let aspect = list.get("aspect ratio").is_some_and(|aspect| aspect != "1:1");
-    // A scan that was stopped has fewer lines, but the length of all.
+    // A scan that was stopped has fewer lines, but the length of all lines.
     let share = whole(globals)
         .filter(|whole| aspect && grid.ny() < whole.ny())
         .map(|whole| grid.ny() as f64 / whole.ny() as f64);
     Ok([x, y * share.unwrap_or(1.0)])
 }
 
-/// `10 5 ~m`, or `10 ~m` for both, in m.
+/// Lengths in m from a text such as `10 5 ~m`, or `10 ~m` for both.
 fn lengths(text: &str) -> Option<[f64; 2]> {
     let mut words = text.split_ascii_whitespace();
     let x: f64 = words.next()?.parse().ok()?;
@@ -182,7 +190,9 @@ fn lengths(text: &str) -> Option<[f64; 2]> {
     Some([x * unit, y * unit])
 }
 
-/// What 256^bytes is of a scale such as `V [Sens. Zsens] (0.006 V/LSB) 2.9 V`, and whether it is a length, then in m.
+/// The value of 256^bytes for a scale such as `V [Sens. Zsens] (0.006 V/LSB) 2.9 V`.
+///
+/// Also whether it is a length, and then it is in m.
 fn scale(text: &str, globals: &[&List]) -> Option<(f64, bool)> {
     let (sensitivity, hard, hard_unit) = quantity(text)?;
     let soft = sensitivity.and_then(|name| global(globals, &format!("@{}", name.to_ascii_lowercase())));
@@ -191,14 +201,16 @@ fn scale(text: &str, globals: &[&List]) -> Option<(f64, bool)> {
         None => (1.0, ""),
     };
     let length = match soft_unit.split_once('/') {
-        // Metres of a V, and V of the hard unit, which may be mV.
+        // Metres per V, and V of the hard unit, which may be mV.
         Some((length, per)) => metres(length).zip(ratio(hard_unit, per)).map(|(length, ratio)| length * ratio),
         None => metres(hard_unit),
     };
     Some((hard * soft * length.unwrap_or(1.0), length.is_some()))
 }
 
-/// `V [name] (…) number unit`: the name if there is one, the number, and the unit, which may be empty.
+/// Name, number and unit in `V [name] (…) number unit`.
+///
+/// The name is optional, and the unit may be empty.
 fn quantity(text: &str) -> Option<(Option<&str>, f64, &str)> {
     let text = text.trim_start_matches(['V', 'C']).trim_start();
     let (name, text) = match text.strip_prefix('[').and_then(|text| text.split_once(']')) {
@@ -206,7 +218,7 @@ fn quantity(text: &str) -> Option<(Option<&str>, f64, &str)> {
         None => (None, text),
     };
     let mut depth = 0_usize;
-    // Units may have brackets too: (0.0005 log(Arb)/LSB).
+    // Units may contain brackets too: (0.0005 log(Arb)/LSB).
     let text = text.trim_start_matches(|c| {
         let inside = depth > 0 || c == '(';
         depth = match c {
@@ -220,7 +232,7 @@ fn quantity(text: &str) -> Option<(Option<&str>, f64, &str)> {
     Some((name, number.parse().ok()?, unit.trim()))
 }
 
-/// How many of `other` one `unit` is, when they are the same but for a prefix.
+/// The ratio of `unit` to `other`, if they differ only in a prefix.
 fn ratio(unit: &str, other: &str) -> Option<f64> {
     let prefix = |whole: &str, base: &str| match whole.strip_suffix(base)? {
         "" => Some(1.0),

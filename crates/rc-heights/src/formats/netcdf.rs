@@ -1,10 +1,11 @@
-//! HDF5 and NetCDF (classic, 64-bit, NetCDF-4), with the crate netcdf-reader: every array of numbers with two
-//! dimensions longer than 1 is a channel, named with its path.
+//! HDF5 and NetCDF (classic, 64-bit, NetCDF-4), read with the crate netcdf-reader.
 //!
-//! `units` (or `unit`) of an array says what it is in; `scale_factor`, `add_offset`, `_FillValue` and `missing_value`
-//! are applied. Coordinates are the variables of the dimensions of NetCDF, else arrays called `x` and `y` beside the
-//! map. The last index is x, unless the dimensions are called x and y in this order, or MATLAB wrote the array: its
-//! files have dimensions in reverse order, and vectors of two dimensions.
+//! Every array of numbers with two dimensions longer than 1 is a channel. Its name is its path. The attribute `units`
+//! (or `unit`) of an array is its unit. `scale_factor`, `add_offset`, `_FillValue` and `missing_value` are applied.
+//! Coordinates are the variables of the dimensions in NetCDF, and otherwise arrays called `x` and `y` beside the map.
+//!
+//! The last index is x, with two exceptions: the dimensions are called x and y in this order, or MATLAB wrote the
+//! array. Files of MATLAB have dimensions in reverse order, and vectors of two dimensions.
 
 use std::rc::Rc;
 
@@ -19,26 +20,28 @@ use super::field::{field, flip, transposed};
 use super::unit;
 use crate::{Format, FormatError, HeightMap, Unit};
 
-/// Deflate makes at most 1032 bytes of one: what is promised beyond that is not there.
+/// Maximum number of bytes that deflate makes of one byte. Claims beyond that are false.
 const MOST_INFLATION: usize = 1032;
 
-/// What NetCDF has where nothing was written, as 32-bit and as 64-bit float; integers have one by their type.
+/// The value of NetCDF where nothing was written, as 32-bit and as 64-bit float.
+///
+/// Each integer type has a value of its own.
 const NEVER_WRITTEN: f64 = 9.969209968386869e36;
 
-/// Deepest group that is looked into.
+/// Maximum depth of groups.
 const DEEPEST: usize = 32;
 
-/// Most groups of a file.
+/// Maximum number of groups in a file.
 const MOST_GROUPS: usize = 1024;
 
 /// Coordinates along an axis.
 struct Coordinates {
     values: Vec<f64>,
-    /// Name of their unit.
+    /// Name of the unit of the values.
     unit: String,
 }
 
-/// Where coordinates are looked for.
+/// The map whose coordinates are searched.
 struct Beside<'a> {
     path: &'a str,
     /// Names of the dimensions along x and y.
@@ -51,7 +54,7 @@ struct Beside<'a> {
 struct Arrays {
     file: NcFile,
     format: Format,
-    /// Bytes of the file.
+    /// Number of bytes of the file.
     bytes: u64,
 }
 
@@ -67,8 +70,9 @@ pub(super) fn channels(bytes: &[u8], format: Format) -> Channels<'_> {
     Ok(names.into_iter().zip(unit::are_heights(&units)).map(channel).collect())
 }
 
-/// The rows of a table of four columns in an HDF5 file: of the first array of n × 4 numbers, or of the first four
-/// vectors of one length with these names in one group.
+/// The rows of a table of four columns in an HDF5 file.
+///
+/// The table is the first array of n × 4 numbers, or the first group with four vectors of equal length and these names.
 ///
 /// # Errors
 /// [`FormatError::NoTable`] when there is no such table.
@@ -84,7 +88,7 @@ pub(crate) fn hdf5_table(bytes: &[u8], names: [&str; 4]) -> Result<Vec<[f64; 4]>
     }
 }
 
-/// Where a table of four columns is.
+/// Place of a table of four columns.
 enum Table {
     Array(String),
     Vectors([String; 4]),
@@ -106,7 +110,7 @@ fn table_in(group: &NcGroup, path: &str, names: [&str; 4]) -> Option<Table> {
     array.map(|array| Table::Array(path_of(array))).or_else(inner)
 }
 
-/// An open file, whose values are not read yet.
+/// Opens a file. Its values are not read yet.
 fn open(bytes: &[u8], format: Format) -> Result<Arrays, FormatError> {
     let invalid = |cause: &netcdf_reader::Error| container(format, cause);
     let most = bytes.len().saturating_mul(MOST_INFLATION);
@@ -124,7 +128,7 @@ fn open(bytes: &[u8], format: Format) -> Result<Arrays, FormatError> {
     Ok(Arrays { file, format, bytes: bytes.len() as u64 })
 }
 
-/// Refuses groups that contain themselves, which netcdf-reader would follow without an end.
+/// Refuses groups that contain themselves. netcdf-reader would follow them without an end.
 fn check_groups(bytes: &[u8], most: usize) -> Result<(), FormatError> {
     let options = OpenOptions {
         max_chunk_bytes: most,
@@ -139,7 +143,7 @@ fn check_groups(bytes: &[u8], most: usize) -> Result<(), FormatError> {
         .map_err(|cause| container(Format::Hdf5, &cause))
 }
 
-/// Takes the groups in `group`, and itself, off those that are `left`.
+/// Subtracts the group and all groups in it from the number that is `left`.
 fn count(group: &Group, depth: usize, left: &mut usize) -> Result<(), netcdf_reader::Error> {
     let refused = || {
         let message = format!("more than {MOST_GROUPS} groups, or some inside each other more than {DEEPEST} deep");
@@ -150,7 +154,7 @@ fn count(group: &Group, depth: usize, left: &mut usize) -> Result<(), netcdf_rea
     group.groups()?.iter().try_for_each(|inner| count(inner, depth, left))
 }
 
-/// Paths of the maps in a group, and what they are in.
+/// Paths and units of the maps in a group.
 fn list(group: &NcGroup, path: &str, found: &mut Vec<(String, Unit)>) {
     for variable in group.variables.iter().filter(|variable| is_map(variable)) {
         found.push((format!("{path}{}", variable.name()), unit_of(variable).0));
@@ -160,7 +164,7 @@ fn list(group: &NcGroup, path: &str, found: &mut Vec<(String, Unit)>) {
     }
 }
 
-/// Whether a variable has numbers on two dimensions; others have a length of 1.
+/// Whether a variable has numbers along two dimensions. Other dimensions must have length 1.
 fn is_map(variable: &NcVariable) -> bool {
     let is_mesh = ["x", "y"].iter().any(|name| variable.name().eq_ignore_ascii_case(name));
     let is_text = class_of_matlab(variable).is_some_and(|class| class == "char");
@@ -185,12 +189,14 @@ fn unit_name(variable: &NcVariable) -> String {
     name.trim_end_matches('\0').to_owned()
 }
 
-/// What the values of a variable are in.
+/// Unit of the values of a variable, and its factor.
 fn unit_of(variable: &NcVariable) -> (Unit, f64) {
     unit::of_values(&unit_name(variable))
 }
 
-/// What NetCDF has in a variable where nothing was written. Of HDF5 only floats: its integers are 0 there.
+/// The value of NetCDF in a variable where nothing was written.
+///
+/// In HDF5 only floats have it, because unwritten integers are 0 there.
 fn default_fill(variable: &NcVariable, format: Format) -> Option<f64> {
     if variable.attribute("_FillValue").is_some() {
         return None;
@@ -202,13 +208,13 @@ fn default_fill(variable: &NcVariable, format: Format) -> Option<f64> {
         NcType::Int => Some(-2_147_483_647.0),
         NcType::UShort => Some(65535.0),
         NcType::UInt => Some(4_294_967_295.0),
-        // All numbers of a byte are in use; those of 64 bits are not told apart as floats.
+        // All values of a byte are in use. Values of 64 bits cannot be distinguished as floats.
         _ => None,
     }
 }
 
 fn container(format: Format, cause: &netcdf_reader::Error) -> FormatError {
-    // Messages of one line, as short as one.
+    // Messages are one short line.
     FormatError::Container { format, reason: super::fields::shown_as_line(&cause.to_string()) }
 }
 
@@ -255,7 +261,7 @@ impl Arrays {
         Ok(HeightMap { heights: field(grid, values), height_unit, sides, side_unit })
     }
 
-    /// The values of a variable, unpacked; `NaN` where they are marked as missing.
+    /// The values of a variable, unpacked. Values that are marked as missing are `NaN`.
     #[expect(clippy::float_cmp, reason = "the mark of a missing value is one value of the stored type")]
     fn values(&self, path: &str) -> Result<Vec<f64>, FormatError> {
         let array = self.file.read_variable_unpacked_masked(path).map_err(|cause| container(self.format, &cause))?;
@@ -275,7 +281,9 @@ impl Arrays {
         Ok(values)
     }
 
-    /// Coordinates along x and y: the variables of the dimensions, or arrays called x and y in the same group.
+    /// Coordinates along x and y.
+    ///
+    /// They are the variables of the dimensions, or arrays called x and y in the same group.
     fn coordinates(&self, beside: &Beside<'_>) -> Result<Option<[Coordinates; 2]>, FormatError> {
         let Beside { path, dimensions, grid, of_matlab } = *beside;
         let group = path.rsplit_once('/').map_or(String::new(), |(group, _)| format!("{group}/"));

@@ -1,4 +1,4 @@
-//! NumPy files: two-dimensional arrays of real numbers in, `f64` arrays out.
+//! NumPy files: readers of two-dimensional real arrays, and writers of `f64` arrays.
 
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Write as _};
@@ -10,15 +10,19 @@ use rc_core::{Field, Grid};
 use super::field::{field, transposed};
 use crate::{Format, FormatError, ReadError};
 
-/// Longest header that is read; that of a 2-D array has about 120 bytes. The parser of headers goes one call deeper for
-/// each bracket.
+/// Maximum length of a header that is read.
+///
+/// A 2-D array has a header of about 120 bytes. The parser of headers recurses once for each bracket.
 const LONGEST_HEADER: u32 = 4096;
 
-/// Reads a two-dimensional array of real numbers (any float or integer type, either byte order, C or Fortran order) as
-/// a field: the first index is y, the second x. Values may be `NaN` or infinite.
+/// Reads a two-dimensional array of real numbers as a field.
+///
+/// Any float or integer type, byte order, and C or Fortran order are read. The first index is y, the second x. Values
+/// may be `NaN` or infinite.
 ///
 /// # Errors
-/// [`ReadError`] when the file cannot be read, is no npy file, is shorter than it says, or is not 2-D and real.
+/// [`ReadError`] when the file cannot be read, is not an npy file, is shorter than its header says, or is not 2-D and
+/// real.
 pub fn read(path: &Path) -> Result<Field, ReadError> {
     let field = || {
         let file = File::open(path).map_err(unreadable)?;
@@ -28,15 +32,15 @@ pub fn read(path: &Path) -> Result<Field, ReadError> {
     field().map_err(|problem| ReadError { path: path.to_owned(), problem })
 }
 
-/// [`read()`] of the contents of a file that has `bytes` bytes.
+/// Reads the contents of a file of `bytes` bytes, as [`read()`].
 ///
 /// # Errors
-/// [`FormatError`].
+/// [`FormatError`] when the contents are not valid.
 pub fn read_from(mut file: impl Read, bytes: u64) -> Result<Field, FormatError> {
     let mut start = Vec::new();
     file.by_ref().take(12).read_to_end(&mut start).map_err(unreadable)?;
     if let [0x93, b'N', b'U', b'M', b'P', b'Y', version, _, a, b, more @ ..] = start.as_slice() {
-        // Version 1 counts the header with two bytes, later ones with four.
+        // Version 1 has two bytes for the length of the header. Later versions have four.
         let (c, d) = if *version > 1 { more.first_chunk().map_or((0, 0), |[c, d]| (*c, *d)) } else { (0, 0) };
         let length = u32::from_le_bytes([*a, *b, c, d]);
         if length > LONGEST_HEADER {
@@ -49,7 +53,7 @@ pub fn read_from(mut file: impl Read, bytes: u64) -> Result<Field, FormatError> 
     let grid = grid_of(&header)?;
     let (_, size) = real_type(&header.dtype())?;
     let order = header.order();
-    // Said before memory is taken for what a damaged header promises. A grid has at most 2^40 points.
+    // Checked before memory is taken, because a damaged header may claim any size. A grid has at most 2^40 points.
     let needed = size * grid.len() as u64;
     if bytes < needed {
         return Err(FormatError::CutShort { grid, needed, found: bytes });
@@ -75,18 +79,19 @@ fn header(field: &'static str, found: &(impl ToString + ?Sized), expected: &'sta
     FormatError::Field { format: Format::Npy, field, found: found.to_string(), expected }
 }
 
-/// Writes a field as a 2-D `f64` array, C order, little-endian, each value multiplied by `factor`, without a copy of
-/// it.
+/// Writes a field as a 2-D `f64` array, C order, little-endian, multiplied by `factor`.
+///
+/// The field is not copied.
 ///
 /// # Errors
-/// Those of the file system.
+/// Errors of the file system.
 pub fn write(path: &Path, field: &Field, factor: f64) -> io::Result<()> {
     let mut out = RowWriter::create(path, field.grid(), factor)?;
     out.write(field.values())?;
     out.finish()
 }
 
-/// A file as [`write()`] makes it, from rows that come one after the other.
+/// A writer of a file like that of [`write()`], from rows one after the other.
 #[derive(Debug)]
 pub struct RowWriter {
     out: BufWriter<File>,
@@ -98,7 +103,7 @@ impl RowWriter {
     /// Starts a file for a field on `grid`.
     ///
     /// # Errors
-    /// Those of the file system.
+    /// Errors of the file system.
     pub fn create(path: &Path, grid: Grid, factor: f64) -> io::Result<Self> {
         let shape = [grid.ny() as u64, grid.nx() as u64];
         let file = BufWriter::with_capacity(1 << 16, File::create(path)?);
@@ -111,7 +116,7 @@ impl RowWriter {
     /// Writes the next values.
     ///
     /// # Errors
-    /// Those of the file system, and more values than the grid has elements.
+    /// Errors of the file system, and an error for more values than the grid has elements.
     pub fn write(&mut self, values: &[f64]) -> io::Result<()> {
         let missing = self.missing.checked_sub(values.len());
         self.missing = missing.ok_or_else(|| io::Error::other("more values than elements"))?;
@@ -121,10 +126,10 @@ impl RowWriter {
         Ok(())
     }
 
-    /// Ends the file and waits until the system has it.
+    /// Completes the file, and waits until the system has stored it.
     ///
     /// # Errors
-    /// Those of the file system, and fewer values than the grid has elements.
+    /// Errors of the file system, and an error for fewer values than the grid has elements.
     pub fn finish(self) -> io::Result<()> {
         if self.missing > 0 {
             return Err(io::Error::other(format!("{} values are missing", self.missing)));
@@ -143,7 +148,7 @@ fn grid_of(npy: &NpyHeader) -> Result<Grid, FormatError> {
     }
 }
 
-/// A length that no grid accepts when it does not fit.
+/// A number of elements per side. If it does not fit, no grid accepts the result.
 fn to_side(n: u64) -> usize {
     usize::try_from(n).unwrap_or(usize::MAX)
 }
@@ -177,8 +182,9 @@ fn to_f64(npy: NpyFile<impl Read>, n: usize) -> io::Result<Vec<f64>> {
     }
 }
 
-/// The next `n` values of the usual type, of which a large map has so many that reading them one by one takes as long
-/// as a solve.
+/// The next `n` values of the usual type.
+///
+/// In a large map, reading them one by one would take as long as a solve.
 fn doubles(mut file: impl Read, n: usize) -> io::Result<Vec<f64>> {
     let (mut values, mut bytes) = (vec![0.0; n], [[0; 8]; 1 << 11]);
     for values in values.chunks_mut(bytes.len()) {
@@ -191,7 +197,7 @@ fn doubles(mut file: impl Read, n: usize) -> io::Result<Vec<f64>> {
     Ok(values)
 }
 
-/// The next `n` values; memory for all of them is taken once.
+/// The next `n` values. Memory for all of them is taken once.
 fn collect<T: Deserialize>(npy: NpyFile<impl Read>, n: usize, to_f64: impl Fn(T) -> f64) -> io::Result<Vec<f64>> {
     let mut values = Vec::with_capacity(n);
     for value in npy.data::<T>().map_err(io::Error::other)?.take(n) {

@@ -1,6 +1,8 @@
-//! Wyko: a directory of blocks, then the blocks in its order. Heights are multiples of the wavelength (nm) divided by
-//! `Mult`; points stand column by column, each from the lowest y on (the documentation of Gwyddion describes the
-//! format).
+//! Wyko files.
+//!
+//! The format has a directory of blocks, then the blocks in the same order. Heights are multiples of the wavelength
+//! (nm) divided by `Mult`. Points are stored column by column, each from the lowest y on. The documentation of Gwyddion
+//! describes the format.
 
 use rc_core::Grid;
 
@@ -20,12 +22,12 @@ const ENTRY: usize = 24;
 /// The type of a block that is an array.
 const ARRAY: u16 = 3;
 
-/// Names of the arrays that have heights; others are intensities.
+/// Names of the arrays that have heights. Other arrays are intensities.
 const HEIGHTS: [&str; 5] = ["RAW_DATA", "RAW DATA", "OPD", "Raw", "SAMPLE_DATA"];
 
-/// Integers from here on are missing points.
+/// Integers from this value on are missing points.
 const MISSING_INTEGER: f64 = 32766.0;
-/// Floats from here on are missing points, which are 1e38 or what is next to it in 32 bits.
+/// Floats from this value on are missing points. They are 1e38 or the next value in 32 bits.
 const MISSING_FLOAT: f64 = 9.9999e37;
 
 struct Block<'a> {
@@ -50,14 +52,14 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     Ok(channels.collect())
 }
 
-/// The blocks of the directory; those at the end of a file that is cut off have fewer bytes or none.
+/// The blocks of the directory. The last blocks of a truncated file have fewer bytes or none.
 fn blocks(bytes: &[u8]) -> Result<Vec<Block<'_>>, FormatError> {
     let mut directory = Bytes::new(bytes, Format::Opd);
     directory.take(2)?;
     let mut entry = || -> Result<_, FormatError> {
         let (name, kind, length) = (text(directory.take(16)?), directory.u16()?, directory.u32()?);
         directory.take(2)?; // Flags.
-        // A negative length is none.
+        // A negative length counts as 0.
         Ok((name, kind, usize::try_from(length as i32).unwrap_or(0)))
     };
     let (name, _, length) = entry()?;
@@ -80,7 +82,7 @@ fn block<'a>(blocks: &[Block<'a>], name: &str) -> Option<Places<'a>> {
     block.map(|block| Places::new(block.bytes, Format::Opd))
 }
 
-/// Metres of a height of 1.
+/// Metres for a height of 1.
 fn scale(blocks: &[Block<'_>]) -> Result<f64, FormatError> {
     let wavelength =
         block(blocks, "Wavelength").ok_or(FormatError::Missing { format: Format::Opd, field: "Wavelength" })?;
@@ -88,7 +90,7 @@ fn scale(blocks: &[Block<'_>]) -> Result<f64, FormatError> {
     factor(Format::Opd, "Wavelength / Mult", wavelength.f32(0)? / f64::from(mult) * 1e-9)
 }
 
-/// Distances of points (m), where the file has them.
+/// Distances of points (m), or `None` if the file does not have them.
 fn spacing(blocks: &[Block<'_>]) -> Result<Option<[f64; 2]>, FormatError> {
     let Some(pixel) = block(blocks, "Pixel_size") else { return Ok(None) };
     let aspect = block(blocks, "Aspect").map_or(Ok(1.0), |aspect| aspect.f32(0))?;

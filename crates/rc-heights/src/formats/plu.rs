@@ -1,5 +1,7 @@
-//! Sensofar: a header without a mark, then layers of 32-bit floats in µm, rows from top to bottom (the documentation of
-//! Gwyddion describes the format).
+//! Sensofar files.
+//!
+//! The format has a header without a mark, then layers of 32-bit floats in µm with rows from top to bottom. The
+//! documentation of Gwyddion describes it.
 
 use rc_core::Grid;
 
@@ -9,7 +11,7 @@ use super::fields::refused;
 use super::instrument::{Places, map, scale_measured, sides};
 use crate::{Format, FormatError, HeightMap};
 
-/// Place of the calibration, behind a date, a time and a comment.
+/// Place of the calibration, after a date, a time and a comment.
 const CALIBRATION: usize = 388;
 /// Place of the configuration of the measurement.
 const CONFIGURATION: usize = 428;
@@ -34,12 +36,12 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     let [_, layers, _, _] = header.array(LAYERS - 12)?;
     let [images] = header.array(LAYERS - 8)?;
     let (mut channels, mut at) = (Vec::new(), LAYERS);
-    // Of layers that are cut off, the first is an error and the others are left out.
+    // Of truncated layers, the first is an error and the others are omitted.
     while channels.is_empty() || channels.len() < usize::from(layers) && header.rest(at).len() > 8 {
         let name = format!("layer {}", channels.len() + 1);
         let (grid, sides) = match layer(header, at, spacing) {
             Ok(layer) => layer,
-            // Where the layers behind it begin is not known.
+            // It is not known where the next layers begin.
             Err(error) => {
                 channels.push((name, Err(error)));
                 break;
@@ -48,7 +50,7 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
         let heights = header.rest(at + 8);
         let read = Box::new(move || read(heights, grid, sides));
         channels.push((name.clone(), Ok(Channel { name, is_height: true, read })));
-        // Heights, the lowest and the highest, and images of three bytes a point.
+        // Heights, the minimum and the maximum, and images of three bytes for each point.
         at = at.saturating_add(16).saturating_add(grid.len() * (Number::F32.size() + 3 * usize::from(images)));
     }
     let mut channels = each(channels);
@@ -58,7 +60,7 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     Ok(channels)
 }
 
-/// Points and sides of the layer at `at`.
+/// Numbers of points and sides of the layer at `at`.
 fn layer(header: Places<'_>, at: usize, spacing: [f64; 2]) -> Result<(Grid, [f64; 2]), FormatError> {
     let grid = Grid::new(header.size(at.saturating_add(4))?, header.size(at)?)?;
     let fields = ["distance of points along x", "distance of points along y"];

@@ -1,5 +1,7 @@
-//! Sensofar, the newer format: a zip archive with `index.xml`, and for each layer a file of 32-bit floats in µm, rows
-//! from top to bottom; a missing point is not a number.
+//! Newer Sensofar files, which are zip archives.
+//!
+//! The archive has `index.xml`, and for each layer a file of 32-bit floats in µm with rows from top to bottom. A
+//! missing point is NaN.
 
 use std::io::{Cursor, Read as _};
 
@@ -14,10 +16,10 @@ use super::fields::{refused, shown_as_line};
 use super::instrument::{map, sides};
 use crate::{Format, FormatError, HeightMap};
 
-/// Longest `index.xml`; heights are not in it.
+/// Maximum length of `index.xml`. It does not contain heights.
 const LONGEST_XML: u64 = 16 << 20;
 
-/// Deflate makes at most 1032 bytes of one: what is promised beyond that is not there.
+/// Maximum number of bytes that deflate makes of one byte. Claims beyond that are false.
 const MOST_INFLATION: u64 = 1032;
 
 const MICROMETRE: f64 = 1e-6;
@@ -31,13 +33,13 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     let root = document.root_element();
     let general = child(root, "GENERAL").ok_or(FormatError::Missing { format: Format::Plux, field: "GENERAL" })?;
     let grid = Grid::new(number(general, "IMAGE_SIZE_X")?, number(general, "IMAGE_SIZE_Y")?)?;
-    // Despite their name, these are the sides of a pixel.
+    // Despite their names, these are the sides of a pixel.
     let spacing = [number::<f64>(general, "FOV_X")? * MICROMETRE, number::<f64>(general, "FOV_Y")? * MICROMETRE];
     let sides = sides(Format::Plux, ["FOV_X", "FOV_Y"], grid, spacing)?;
     let layers = root.children().filter(|node| node.tag_name().name().starts_with("LAYER_"));
     let mut channels = Vec::new();
     for layer in layers {
-        // Layers without heights have an image alone.
+        // Layers without heights have only an image.
         if let Some(file) = text(layer, "FILENAME_Z") {
             let file = format!("{folder}{}", file.trim_start_matches("./"));
             channels.push(Channel {
@@ -61,7 +63,9 @@ fn read(bytes: &[u8], file: &str, grid: Grid, sides: [f64; 2]) -> Result<HeightM
     Ok(map(grid, values, true, Some(sides)))
 }
 
-/// A file of the archive, of `most` bytes at most. Some names begin with `./` in the archive and others do not.
+/// A file of the archive, of at most `most` bytes.
+///
+/// Some names begin with `./` in the archive, and others do not.
 fn member(bytes: &[u8], name: &str, most: u64) -> Result<Vec<u8>, FormatError> {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|cause| container(&cause))?;
     let bare = name.trim_start_matches("./");

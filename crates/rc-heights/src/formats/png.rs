@@ -1,4 +1,4 @@
-//! Grayscale PNG of 16 bits: levels of grey, rows from top to bottom.
+//! Grayscale PNG of 16 bits, with levels of grey in rows from top to bottom.
 
 use std::io::Cursor;
 
@@ -8,12 +8,12 @@ use rc_core::Grid;
 use super::field::field;
 use crate::{Format, FormatError, HeightMap, Unit};
 
-/// Deflate makes at most 1032 bytes of one: what is promised beyond that is not there.
+/// Maximum number of bytes that deflate makes of one byte. Claims beyond that are false.
 const MOST_INFLATION: u64 = 1032;
 
 pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     let invalid = |cause: png::DecodingError| FormatError::Container { format: Format::Png, reason: cause.to_string() };
-    // Rows are decoded one by one; what the image holds in all is checked below.
+    // Rows are decoded one by one. The total size of the image is checked below.
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: 64 << 20 });
     decoder.set_transformations(Transformations::IDENTITY);
     let mut image = decoder.read_info().map_err(invalid)?;

@@ -1,6 +1,8 @@
-//! ISO 25178-71 surface data files: a header of scales in metres, then heights as text (`a…`) or binary (`b…`).
-//! Versions 1.0, 2.0 (which counts points with 32 bits) and the older proposal BCR, which marks missing points by the
-//! greatest number of a type where the standard takes the lowest.
+//! ISO 25178-71 surface data files.
+//!
+//! The format has a header of scales in metres, then heights as text (`a…`) or binary (`b…`). Versions 1.0 and 2.0 are
+//! read. Version 2.0 has 32 bits for the number of points. The older proposal BCR is read too. It marks missing points
+//! by the maximum of a type, where the standard uses the minimum.
 
 use super::binary::{Bytes, Number};
 use super::field::field;
@@ -12,10 +14,10 @@ use rc_core::Grid;
 /// Length of the names of format and version at the start.
 const MARK: usize = 8;
 
-/// Bytes that Olympus puts between header and heights of binary files of version 1.0.
+/// Number of bytes that Olympus puts between header and heights in binary files of version 1.0.
 const OLYMPUS_EXTRA: usize = 8;
 
-/// What both kinds of header say.
+/// The common contents of both kinds of header.
 struct Header {
     grid: Grid,
     scales: [f64; 3],
@@ -39,7 +41,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
 }
 
 fn binary(mut bytes: Bytes<'_>, mark: &[u8]) -> Result<(Header, Vec<f64>), FormatError> {
-    // Manufacturer, and the dates when the file was made and changed.
+    // Manufacturer, and the dates of creation and of the last change.
     bytes.take(10 + 12 + 12)?;
     let mut count = || if mark.ends_with(b"2.0") { bytes.u32() } else { bytes.u16().map(u32::from) };
     let (nx, ny) = (count()? as usize, count()? as usize);
@@ -62,8 +64,10 @@ fn binary(mut bytes: Bytes<'_>, mark: &[u8]) -> Result<(Header, Vec<f64>), Forma
     Ok((header, values))
 }
 
-/// The stored type, and the value that marks a point as missing: the lowest of a type, and in files of BCR the
-/// greatest. Of unsigned types, where the lowest may be a height, it is the greatest; of bytes the standard has none.
+/// The stored type, and the value that marks a point as missing.
+///
+/// It is the minimum of a signed type, and the maximum of any type in files of BCR. Unsigned types use the maximum too,
+/// because their minimum may be a height. For bytes, the standard has no such value.
 fn number(header: &Header, bcr: bool) -> Result<(Number, f64), FormatError> {
     if header.compression != 0 {
         let what = "compressed data".to_owned();
@@ -87,8 +91,9 @@ fn number(header: &Header, bcr: bool) -> Result<(Number, f64), FormatError> {
     })
 }
 
-/// Header, heights and remarks are ended by a `*` each, which after the header is alone in its line: a name may have
-/// one.
+/// Reads a file with text.
+///
+/// A `*` ends header, heights and remarks. After the header it is alone in its line, because a name may contain one.
 fn text(bytes: &[u8]) -> Result<(Header, Vec<f64>), FormatError> {
     let text = String::from_utf8_lossy(bytes);
     let mut end = 0;
@@ -112,11 +117,13 @@ fn text(bytes: &[u8]) -> Result<(Header, Vec<f64>), FormatError> {
     Ok((header, values))
 }
 
-/// The heights of `grid`, with `BAD` for a missing point; the text starts with line `line`.
+/// The heights of `grid`, where `BAD` is a missing point.
+///
+/// The text begins with line `line`.
 fn words(data: &str, grid: Grid, line: usize) -> Result<Vec<f64>, FormatError> {
     let cut_short =
         |found: usize| FormatError::CutShort { grid, needed: 2 * grid.len() as u64 - 1, found: found as u64 };
-    // A digit for each height and a space between them are the least; said before memory is taken.
+    // The minimum is one digit for each height and a space between them. This is checked before memory is taken.
     if data.len() + 1 < grid.len().saturating_mul(2) {
         return Err(cut_short(data.len()));
     }

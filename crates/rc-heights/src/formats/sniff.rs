@@ -1,4 +1,6 @@
-//! How a file is known: by its first bytes, or by its name where the format has no mark.
+//! Recognition of formats by the first bytes or by the name.
+//!
+//! The name is used if the format has no mark.
 
 use std::path::Path;
 
@@ -7,10 +9,12 @@ use super::decode::is_text;
 use super::{Format, al3d, gsf, gwy, ibw, mat, metropro, nanoscope, opd, sur, vk4, xyz};
 use crate::FormatError;
 
-/// The signature of HDF5, at the start or behind a user block of 512 bytes or a power of two as many.
+/// The signature of HDF5.
+///
+/// It is at the start, or after a user block of 512 bytes or that times a power of two.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
-/// Bytes at the start of a file that say what it is.
+/// First bytes of a file that determine its format.
 const MARKS: &[(&[u8], Format)] = &[
     (b"\x93NUMPY", Format::Npy),
     (b"DSAA", Format::Surfer),
@@ -29,7 +33,7 @@ const MARKS: &[(&[u8], Format)] = &[
     (b"bISO-2.0", Format::Sdf),
     (b"aBCR-1.0", Format::Sdf),
     (b"bBCR-1.0", Format::Sdf),
-    // What Gwyddion makes of the same.
+    // The same marks as written by Gwyddion.
     (b"aBCR-0.0", Format::Sdf),
     (b"bBCR-0.0", Format::Sdf),
     (b"\x89PNG\r\n\x1a\n", Format::Png),
@@ -48,19 +52,24 @@ const MARKS: &[(&[u8], Format)] = &[
 ];
 
 impl Format {
-    /// Whether files of this format may say how large the measured rectangle is. Texts do it in lines before the
-    /// numbers.
+    /// Whether files of this format may contain the size of the measured rectangle.
+    ///
+    /// Texts contain it in lines before the numbers.
     #[must_use]
     pub fn has_sides(self) -> bool {
         !matches!(self, Self::Npy | Self::Png | Self::Tiff)
     }
 
-    /// The format of a file that is called `path` and starts with `start`, of which 4096 bytes are enough but for zip
-    /// archives, which are needed whole. The first bytes count more than the name.
+    /// The format of a file with name `path` and first bytes `start`.
+    ///
+    /// The first 4096 bytes are enough, except for zip archives, which are needed completely. The first bytes take
+    /// precedence over the name.
     ///
     /// # Errors
-    /// [`FormatError::Mark`] for a name that promises another start, [`FormatError::Container`] or
-    /// [`FormatError::Archive`] for a zip archive, [`FormatError::ZeroBytes`], [`FormatError::Unknown`].
+    /// - [`FormatError::Mark`] when the name belongs to a format with other first bytes.
+    /// - [`FormatError::Container`] or [`FormatError::Archive`] for a zip archive that is damaged or not a height map.
+    /// - [`FormatError::ZeroBytes`] when the name is that of a text, and the bytes are not a text.
+    /// - [`FormatError::Unknown`] when the format cannot be determined.
     pub fn of(path: &Path, start: &[u8]) -> Result<Self, FormatError> {
         if let Some((_, format)) = MARKS.iter().find(|(mark, _)| start.starts_with(mark)) {
             return Ok(*format);
@@ -78,7 +87,7 @@ impl Format {
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         match extension.as_deref() {
             Some("xyz") => Ok(Self::Xyz),
-            // Three numbers a line are points; few maps have only three columns.
+            // Lines of three numbers are points. Few maps have only three columns.
             Some("csv" | "txt" | "tsv" | "dat" | "asc") if is_text(start) => {
                 Ok(if xyz::looks_like_points(start) { Self::Xyz } else { Self::Csv })
             }

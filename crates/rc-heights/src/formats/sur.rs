@@ -1,7 +1,8 @@
-//! Digital Surf: objects one behind the other, each a header of 512 bytes, a comment, private bytes, and integers,
-//! plain or compressed by zlib ("Surface file format", Digital Surf; the header is described in the documentation of
-//! Gwyddion and of RosettaSciIO too); rows from top to bottom. Heights are offset + spacing x integer; some programs
-//! count integers from the lowest.
+//! Digital Surf files ("Surface file format", Digital Surf).
+//!
+//! The format has objects one after the other. Each has a header of 512 bytes, a comment, private bytes, and integers,
+//! plain or compressed by zlib. Rows are from top to bottom. The documentation of Gwyddion and of RosettaSciIO
+//! describes the header too. Heights are offset + spacing x integer. Some programs count integers from the lowest.
 
 use std::io::Read as _;
 
@@ -15,9 +16,9 @@ use super::fields::{factor, refused, shown_as_line};
 use super::instrument::{Places, map, metres, scale_measured, sides};
 use crate::{Format, FormatError, HeightMap};
 
-/// The first bytes of an object whose integers are stored as they are.
+/// The first bytes of an object with integers that are not compressed.
 pub(super) const PLAIN: &[u8] = b"DIGITAL SURF";
-/// The first bytes of an object whose integers are compressed.
+/// The first bytes of an object with compressed integers.
 pub(super) const COMPRESSED: &[u8] = b"DSCOMPRESSED";
 
 const HEADER: usize = 512;
@@ -25,27 +26,27 @@ const HEADER: usize = 512;
 /// The type of objects that are profiles.
 const PROFILE: u16 = 1;
 
-/// The types of objects that have a spectrum at each point.
+/// The types of objects with a spectrum at each point.
 const SPECTRA: [u16; 2] = [20, 21];
 
-/// Deflate makes at most 1032 bytes of one: what is promised beyond that is not there.
+/// Maximum number of bytes that deflate makes of one byte. Claims beyond that are false.
 const MOST_INFLATION: u64 = 1032;
 
-/// An object: its header, and the bytes from its integers on.
+/// An object, with its header and the bytes from its integers on.
 struct Object<'a> {
     name: String,
     grid: Grid,
     number: Number,
     is_profile: bool,
-    /// Values of a point: 1, or as many as its spectrum has.
+    /// Number of values at a point: 1, or the length of its spectrum.
     values: usize,
     compressed: bool,
-    /// The integer that stands for a missing point.
+    /// The integer of a missing point.
     missing: Option<f64>,
-    /// The value of an integer of 1, and that of 0.
+    /// The height of an integer of 1 without offset, and the height of an integer of 0.
     scale: [f64; 2],
     is_height: bool,
-    /// Sides (m) where the axes are lengths.
+    /// Sides (m), or `None` if the axes are not lengths.
     sides: Option<[f64; 2]>,
     inversion: u16,
     data: &'a [u8],
@@ -57,7 +58,7 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     loop {
         let object = match object(rest) {
             Ok(object) => object,
-            // Where the objects behind it begin is not known.
+            // It is not known where the next objects begin.
             Err(error) => {
                 channels.push((String::new(), Err(error)));
                 return Ok(each(channels));
@@ -69,7 +70,7 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
         let read = Box::new(move || object.read());
         channels.push((name.clone(), Ok(Channel { name, is_height, read })));
         rest = stored.and_then(|stored| data.get(stored..)).unwrap_or_default();
-        // An object that is cut off before its integers does not take the others away.
+        // A later object that is cut off before its integers does not prevent reading the others.
         if !(rest.starts_with(PLAIN) || rest.starts_with(COMPRESSED)) || rest.len() < HEADER {
             return Ok(each(channels));
         }
@@ -134,7 +135,7 @@ impl Object<'_> {
         }
         let inflated = if self.compressed { Some(self.inflated()?) } else { None };
         let mut values = self.number.values(inflated.as_deref().unwrap_or(self.data), self.grid)?;
-        // Heights of a replica are negative: the file says so, and along which axis the replica is mirrored.
+        // Heights of a replica are negative. The file says so, and along which axis the replica is mirrored.
         let [scale, offset] = self.scale;
         let scale = if matches!(self.inversion, 1..=3) { -scale } else { scale };
         scale_measured(&mut values, scale, |value| Some(value) == self.missing);
@@ -147,7 +148,9 @@ impl Object<'_> {
         Ok(map(self.grid, values, self.is_height, self.sides))
     }
 
-    /// The number of streams, and for each the lengths of what it makes and of what is stored; the streams follow.
+    /// The number of streams, and for each its length after and before decompression.
+    ///
+    /// The streams follow in the file.
     fn streams(&self) -> Result<(Vec<[usize; 2]>, usize), FormatError> {
         let directory = Places::new(self.data, Format::Sur);
         let count = directory.size(0)?;
@@ -158,7 +161,7 @@ impl Object<'_> {
         Ok(((0..count).map(lengths).collect::<Result<_, FormatError>>()?, 4 + 8 * count))
     }
 
-    /// Bytes of the integers in the file, if they can be told.
+    /// Number of bytes of the integers in the file, or `None` if unknown.
     fn stored(&self) -> Option<usize> {
         if !self.compressed {
             return usize::try_from(self.number.bytes_of(self.grid)).ok()?.checked_mul(self.values);
@@ -179,7 +182,7 @@ impl Object<'_> {
         for [_, stored] in lengths {
             let stream = Places::new(self.data, Format::Sur).rest(at);
             let stream = &stream[..stored.min(stream.len())];
-            // A byte more than there is room for: the checksum of a stream is verified at its end.
+            // One byte more than needed is read, because the checksum of a stream is verified at its end.
             let room = (needed + 1).saturating_sub(integers.len() as u64);
             let read = ZlibDecoder::new(stream).take(room).read_to_end(&mut integers);
             read.map_err(|cause| FormatError::Container {

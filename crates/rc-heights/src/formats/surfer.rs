@@ -1,6 +1,7 @@
-//! Surfer grids: version 6 as text (DSAA) and binary (DSBB), version 7 (DSRB); Golden Software's help has the tables.
+//! Surfer grids: version 6 as text (DSAA) and binary (DSBB), and version 7 (DSRB).
 //!
-//! The files give coordinates of the first and last grid line; the first row has the lowest y. Units are not named.
+//! Golden Software's help has the tables. The files contain coordinates of the first and last grid line. The first row
+//! has the lowest y. Units are not given.
 
 use rc_core::Grid;
 
@@ -9,7 +10,9 @@ use super::field::field;
 use super::fields::{positive, refused, shown};
 use crate::{Format, FormatError, HeightMap, Unit};
 
-/// Heights from here on are missing points (1.70141e38 in texts, to fewer digits in some); infinite ones are damage.
+/// Heights from this value on are missing points.
+///
+/// Texts have 1.70141e38, some with fewer digits. Infinite heights are errors.
 const MISSING: f64 = 1.70140e38;
 
 fn is_missing(value: f64) -> bool {
@@ -20,7 +23,7 @@ fn is_missing(value: f64) -> bool {
 const HEADER: u32 = 0x4252_5344;
 /// The tag of a grid, "GRID".
 const GRID: u32 = 0x4449_5247;
-/// The tag of its heights, "DATA".
+/// The tag of the heights of a grid, "DATA".
 const DATA: u32 = 0x4154_4144;
 
 pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
@@ -31,14 +34,14 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     }
 }
 
-/// The map of `values` on grid lines that are `spacing` apart.
+/// The map of `values` on grid lines at distances of `spacing`.
 fn map(grid: Grid, spacing: [f64; 2], mut values: Vec<f64>, missing: impl Fn(f64) -> bool) -> HeightMap {
     values.iter_mut().filter(|value| missing(**value)).for_each(|value| *value = f64::NAN);
     let sides = Some([spacing[0] * grid.nx() as f64, spacing[1] * grid.ny() as f64]);
     HeightMap { heights: field(grid, values), height_unit: Unit::Unnamed, sides, side_unit: Unit::Unnamed }
 }
 
-/// Distance of `n` lines from `low` to `high`.
+/// Distance of `n` grid lines from `low` to `high`.
 fn spacing(field: &'static str, low: f64, high: f64, n: usize) -> Result<f64, FormatError> {
     if n < 2 {
         return Err(refused(Format::Surfer, field, &format!("only one line, at {low}"), "two lines at least"));
@@ -54,12 +57,12 @@ fn version_6(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     let (nx, ny) = (usize::from(bytes.u16()?), usize::from(bytes.u16()?));
     let grid = Grid::new(nx, ny)?;
     let (x, y) = ([bytes.f64()?, bytes.f64()?], [bytes.f64()?, bytes.f64()?]);
-    bytes.take(16)?; // Lowest and greatest height.
+    bytes.take(16)?; // Minimum and maximum height.
     let spacing = [spacing(SPACING_X, x[0], x[1], nx)?, spacing(SPACING_Y, y[0], y[1], ny)?];
     Ok(map(grid, spacing, Number::F32.values_alone(bytes.rest(), grid)?, is_missing))
 }
 
-/// Sections, each with its tag and size; those that are not needed are skipped.
+/// Reads sections, each with its tag and size. Other sections are skipped.
 fn version_7(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     let mut bytes = Bytes::new(bytes, Format::Surfer);
     let (mut version, mut found) = (1, None);
@@ -92,7 +95,7 @@ fn grid_section(mut bytes: Bytes<'_>) -> Result<(Grid, [f64; 2], f64), FormatErr
     bytes.take(16)?; // Lower left corner.
     let x = positive(Format::Surfer, SPACING_X, bytes.f64()?)?;
     let y = positive(Format::Surfer, SPACING_Y, bytes.f64()?)?;
-    bytes.take(24)?; // Lowest and greatest height, and a rotation that is not used.
+    bytes.take(24)?; // Minimum and maximum height, and a rotation that is not used.
     Ok((grid, [x, y], bytes.f64()?))
 }
 
@@ -103,14 +106,14 @@ fn text(bytes: &[u8]) -> Result<HeightMap, FormatError> {
         let word = words.next().ok_or(FormatError::Missing { format: Format::Surfer, field })?;
         word.parse::<f64>().map_err(|_| refused(Format::Surfer, field, word, "a number"))
     };
-    // A cast of what is no count gives 0 or a count that no grid has.
+    // A cast of an invalid count gives 0 or a count that no grid accepts.
     let (nx, ny) = (header("columns")? as usize, header("rows")? as usize);
     let grid = Grid::new(nx, ny)?;
     let (x, y) = ([header("xlo")?, header("xhi")?], [header("ylo")?, header("yhi")?]);
     let spacing = [spacing(SPACING_X, x[0], x[1], nx)?, spacing(SPACING_Y, y[0], y[1], ny)?];
     header("zlo")?;
     header("zhi")?;
-    // A digit for each height and a blank between them are the least; said before memory is taken.
+    // The minimum is one digit for each height and a blank between them. This is checked before memory is taken.
     let needed = 2 * grid.len() as u64 - 1;
     let cut_short = FormatError::CutShort { grid, needed, found: bytes.len() as u64 };
     if (bytes.len() as u64) < needed {

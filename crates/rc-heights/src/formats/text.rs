@@ -1,4 +1,4 @@
-//! Numbers as text, a row of the map a line.
+//! Numbers as text, with one row of the map in each line.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write as _};
@@ -15,10 +15,12 @@ use super::layout::Layout;
 use super::lines::{data_lines, number, words};
 use crate::{Format, FormatError, HeightMap};
 
-/// The numbers of a text, a row of the map a line, which a line feed, a carriage return, or both end. Between numbers
-/// are commas, semicolons, tabs or blanks; where it is none of the first two, or a semicolon, commas may stand for
-/// decimal points, as many countries write them. Lines before the first number, empty lines and lines that start with
-/// `#` or `%` are passed over; `NaN`, `BAD`, `***` and `---` are missing points.
+/// Reads the numbers of a text with one row of the map in each line.
+///
+/// A line feed, a carriage return, or both end a line. Commas, semicolons, tabs or blanks separate numbers. If the
+/// separator is a semicolon, a tab or a blank, a comma may be the decimal point, as in many countries. Lines before the
+/// first number, empty lines and lines that start with `#` or `%` are ignored. `NaN`, `BAD`, `***` and `---` are
+/// missing points.
 ///
 /// # Errors
 /// [`FormatError`] with line and value.
@@ -27,12 +29,12 @@ pub fn parse(bytes: &[u8]) -> Result<Field, FormatError> {
     rows(&text, Heading::of(&text)?.first)
 }
 
-/// The channel of a text, whose lines before the numbers say what it is called.
+/// The channel of a text. Its name is in the lines before the numbers.
 pub(super) fn channels(bytes: &[u8], layout: Option<Layout>) -> Channels<'_> {
     let text = decoded(bytes);
     let heading = Heading::of(&text)?;
     let name = heading.channel.clone();
-    // Of another quantity too: it is the only one.
+    // The only channel counts as heights even if it has another quantity.
     Ok(vec![Channel { name, is_height: true, read: Box::new(move || map(&text, &heading, layout)) }])
 }
 
@@ -75,10 +77,12 @@ fn rows(text: &str, first: usize) -> Result<Field, FormatError> {
     Ok(field(Grid::new(columns, rows)?, values))
 }
 
-/// Writes heights as CSV, one row of the map a line, each value multiplied by `factor`; values read back exactly.
+/// Writes heights as CSV, one row of the map in each line, multiplied by `factor`.
+///
+/// Values read back exactly.
 ///
 /// # Errors
-/// Those of the file system.
+/// Errors of the file system.
 pub fn write(path: &Path, field: &Field, factor: f64) -> io::Result<()> {
     let mut out = BufWriter::new(File::create(path)?);
     for iy in 0..field.grid().ny() {

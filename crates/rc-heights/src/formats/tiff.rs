@@ -1,4 +1,6 @@
-//! Grayscale TIFF of 16 bits, or of 32-bit floats: the first image, rows from top to bottom.
+//! Grayscale TIFF of 16 bits, or of 32-bit floats.
+//!
+//! The first image is read, with rows from top to bottom.
 
 use std::io::Cursor;
 
@@ -11,10 +13,12 @@ use super::field::field;
 use super::fields::shown_as_line;
 use crate::{Format, FormatError, HeightMap, Unit};
 
-/// What LZW makes of one byte at most: 12 bits stand for 4096 bytes. Deflate makes less.
+/// Maximum number of bytes that LZW makes of one byte, since 12 bits may represent 4096 bytes.
+///
+/// Deflate makes fewer.
 const MOST_INFLATION: u64 = 2731;
 
-/// A tag that only files of Park Systems have; the heights are in others of them.
+/// A tag that only files of Park Systems have. Their heights are in other tags.
 const PARK: u16 = 50432;
 
 pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
@@ -48,7 +52,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     }
     let mut limits = Limits::default();
     limits.decoding_buffer_size = usize::try_from(needed).unwrap_or(usize::MAX);
-    // What is stored of a strip or tile: a tile may be larger than the image, but not than the file.
+    // Limit of the stored bytes of a strip or tile. A tile may be larger than the image, but not than the file.
     limits.intermediate_buffer_size = bytes.len().max(1 << 20);
     let levels = decoder.with_limits(limits).read_image().map_err(invalid)?;
     let values: Vec<f64> = match levels {

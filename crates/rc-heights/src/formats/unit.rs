@@ -1,15 +1,16 @@
-//! Units as headers name them.
+//! Units as written in headers.
 
 use super::fields::refused;
 use crate::{Format, FormatError, LengthUnit, Unit};
 
-/// The unit of length that a file names. `A` is an ampere there.
+/// The unit of length with a given name. `A` is an ampere in files.
 pub(super) fn length(name: &str) -> Option<LengthUnit> {
     name.parse().ok().filter(|_| name.trim() != "A")
 }
 
-/// What the values of a channel are in, and the factor that makes metres of lengths: an empty name is a unit that is
-/// not named, a name that is not a unit of length that of another quantity.
+/// Unit of the values of a channel, and the factor that converts lengths to metres.
+///
+/// An empty name means a unit that is not given. A name that is not a unit of length belongs to another quantity.
 pub(super) fn of_values(name: &str) -> (Unit, f64) {
     match (name.trim(), length(name)) {
         ("", _) => (Unit::Unnamed, 1.0),
@@ -18,10 +19,12 @@ pub(super) fn of_values(name: &str) -> (Unit, f64) {
     }
 }
 
-/// What coordinates are in, and the factor that makes metres of them. An empty name is a unit that is not named.
+/// Unit of coordinates, and the factor that converts them to metres.
+///
+/// An empty name means a unit that is not given.
 ///
 /// # Errors
-/// [`FormatError::Field`] for another quantity.
+/// [`FormatError::Field`] when the name belongs to another quantity.
 pub(super) fn of_sides(format: Format, field: &'static str, name: &str) -> Result<(Unit, f64), FormatError> {
     match of_values(name) {
         (Unit::NotLength, _) => Err(refused(format, field, name.trim(), "a unit of length, as m")),
@@ -29,7 +32,7 @@ pub(super) fn of_sides(format: Format, field: &'static str, name: &str) -> Resul
     }
 }
 
-/// The factors of two sides and what both are in: a unit that only one of them names is that of both.
+/// The factors of two sides and their common unit. A unit that only one side has applies to both.
 pub(super) fn of_both([x, y]: [(Unit, f64); 2]) -> ([f64; 2], Unit) {
     match (x.0, y.0) {
         (Unit::Metre, Unit::Metre) => ([x.1, y.1], Unit::Metre),
@@ -39,8 +42,10 @@ pub(super) fn of_both([x, y]: [(Unit, f64); 2]) -> ([f64; 2], Unit) {
     }
 }
 
-/// Whether channels in these units can be heights: those that are lengths, or those in units that are not named where
-/// no channel is a length by its unit.
+/// Whether channels in these units can be heights.
+///
+/// These are the channels that are lengths. If no channel is a length by its unit, they are the channels without a
+/// unit.
 pub(super) fn are_heights(units: &[Unit]) -> Vec<bool> {
     let wanted = if units.contains(&Unit::Metre) { Unit::Metre } else { Unit::Unnamed };
     units.iter().map(|unit| *unit == wanted).collect()

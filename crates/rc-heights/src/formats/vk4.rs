@@ -1,6 +1,8 @@
-//! Keyence: a table of places, the conditions of the measurement, and images, of which up to three have heights, as
-//! integers of as many picometres as the conditions say; rows from top to bottom (the documentation of Gwyddion
-//! describes the format).
+//! Keyence files.
+//!
+//! The format has a table of places, the conditions of the measurement, and images with rows from top to bottom. Up to
+//! three images have heights, as integers in a unit of picometres that the conditions give. The documentation of
+//! Gwyddion describes the format.
 
 use rc_core::Grid;
 
@@ -11,10 +13,10 @@ use super::instrument::{Places, map, sides};
 use crate::map::scale;
 use crate::{Format, FormatError, HeightMap};
 
-/// The first bytes. Files of version 3 have a table with one place less.
+/// The first bytes. The table in files of version 3 has one place fewer.
 pub(super) const MARKS: [&[u8]; 2] = [b"VK4_", b"VK3_"];
 
-/// Place of the table, behind mark, version and four zero bytes.
+/// Place of the table, after mark, version and four zero bytes.
 const TABLE: usize = 12;
 /// Places in the table of the three images of heights.
 const HEIGHTS: [usize; 3] = [TABLE + 24, TABLE + 28, TABLE + 32];
@@ -32,7 +34,7 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     let unit = factor(Format::Vk4, "length of a digit along z", unit)?;
     let mut channels = Vec::new();
     for (i, at) in HEIGHTS.into_iter().enumerate() {
-        // 0 is an image that the file does not have.
+        // A place of 0 means that the file does not have this image.
         let place = file.size(at)?;
         if place != 0 {
             channels.push(Channel {

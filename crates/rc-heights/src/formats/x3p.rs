@@ -1,7 +1,7 @@
-//! ISO 5436-2 (now ISO 25178-72): a zip archive with `main.xml`, heights as binary numbers, and a mask of measured
-//! points.
+//! ISO 5436-2 (now ISO 25178-72) files.
 //!
-//! Lengths are in metres. The checksums of the archive itself are verified; the MD5 sums beside them are not.
+//! The format is a zip archive with `main.xml`, heights as binary numbers, and a mask of measured points. Lengths are
+//! in metres. The checksums of the archive are verified. The MD5 sums in it are not.
 
 use std::io::{Cursor, Read as _};
 
@@ -15,10 +15,10 @@ use super::field::field;
 use super::fields::{factor, positive, refused, shown_as_line};
 use crate::{Format, FormatError, HeightMap, Unit};
 
-/// Longest `main.xml`; heights are not in it.
+/// Maximum length of `main.xml`. It does not contain heights.
 const LONGEST_XML: u64 = 16 << 20;
 
-/// Deflate makes at most 1032 bytes of one: what is promised beyond that is not there.
+/// Maximum number of bytes that deflate makes of one byte. Claims beyond that are false.
 const MOST_INFLATION: u64 = 1032;
 
 type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
@@ -45,14 +45,14 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
         mask(&mut values, &member(&mut archive, &format!("{folder}{link}"), needed)?)?;
     }
     for value in &mut values {
-        // ISO 5436-2 lets infinities stand for missing points as well.
+        // In ISO 5436-2, infinite values mark missing points too.
         *value = if value.is_infinite() { f64::NAN } else { *value * increments[2] + offset };
     }
     let sides = Some([increments[0] * grid.nx() as f64, increments[1] * grid.ny() as f64]);
     Ok(HeightMap { heights: field(grid, values), height_unit: Unit::Metre, sides, side_unit: Unit::Metre })
 }
 
-/// A bit for each point, lowest first; those that are not set were not measured.
+/// Applies a mask with a bit for each point, lowest bit first. Points whose bit is 0 were not measured.
 fn mask(values: &mut [f64], bits: &[u8]) -> Result<(), FormatError> {
     let needed = values.len().div_ceil(8);
     if bits.len() < needed {
@@ -67,7 +67,7 @@ fn mask(values: &mut [f64], bits: &[u8]) -> Result<(), FormatError> {
     Ok(())
 }
 
-/// A file of the archive, of `most` bytes at most.
+/// A file of the archive, of at most `most` bytes.
 fn member(archive: &mut Archive<'_>, name: &str, most: u64) -> Result<Vec<u8>, FormatError> {
     let file = archive.by_name(name).map_err(|cause| container(&format_args!("{name}: {cause}")))?;
     let mut bytes = Vec::new();
@@ -79,7 +79,7 @@ fn member(archive: &mut Archive<'_>, name: &str, most: u64) -> Result<Vec<u8>, F
     Ok(bytes)
 }
 
-/// Type of the heights; increments along x, y and z; offset of the heights.
+/// Type of the heights, increments along x, y and z, and offset of the heights.
 fn axes(root: Node<'_, '_>) -> Result<(Number, [f64; 3], f64), FormatError> {
     for axis in ["CX", "CY"] {
         if text(root, axis, "AxisType")? != "I" {

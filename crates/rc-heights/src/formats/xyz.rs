@@ -1,4 +1,6 @@
-//! Lists of points, `x y z` a line, in any order, on a regular grid; points may be missing.
+//! Lists of points on a regular grid, with `x y z` in each line.
+//!
+//! Points may have any order, and points may be missing.
 
 use super::decode::decoded;
 use super::field::field;
@@ -9,16 +11,20 @@ use crate::{Format, FormatError, HeightMap, Unit};
 
 use rc_core::Grid;
 
-/// Most grid points for each point of the list; scattered points would otherwise make a grid of any size.
+/// Maximum number of grid points for each point of the list.
+///
+/// Scattered points would otherwise make a grid of any size.
 const MOST_MISSING: usize = 16;
 
-/// Coordinates that differ by less than this part of their range are the same grid line; a grid has fewer lines.
+/// Maximum difference of coordinates on one grid line, relative to their range. The lines of a grid are further apart.
 const SAME_LINE: f64 = 2e-7;
 
-/// Whether the first lines of a text have three numbers each, and no line before them says that they are rows of a map.
+/// Whether a text looks like a list of points.
+///
+/// The first lines must have three numbers each, and no line before them may say that they are rows of a map.
 pub(super) fn looks_like_points(start: &[u8]) -> bool {
     let text = decoded(start);
-    // The last line may be cut off.
+    // The last line may be truncated.
     let whole = text.rsplit_once(['\n', '\r']).map_or("", |(whole, _)| whole);
     let Ok(heading) = Heading::of(whole) else { return false };
     let three = |(_, line): (usize, &str)| {
@@ -29,7 +35,7 @@ pub(super) fn looks_like_points(start: &[u8]) -> bool {
     !heading.is_of_rows() && lines.len() + heading.titles.len().min(1) > 2 && lines.iter().all(|three| *three)
 }
 
-/// Whether the first lines of a text have enough numbers to say how they are laid out.
+/// Whether the first lines of a text have enough numbers to show its layout.
 pub(super) fn has_numbers(start: &[u8]) -> bool {
     const ENOUGH: usize = 4;
     let text = decoded(start);
@@ -44,7 +50,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     let points = points(&text, heading.first, order)?;
     let mut map = on_grid(points)?;
     let units = order.map(|i| heading.units_of_titles()[i]);
-    // A unit that only one of them has is that of both.
+    // If only one of them has a unit, it applies to both.
     let both = units[0].or(units[1]).zip(units[1].or(units[0]));
     if let (Some((x, y)), Some(sides)) = (both, &mut map.sides) {
         *sides = [sides[0] * x.metres(), sides[1] * y.metres()];
@@ -59,11 +65,13 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
 /// First words of titles that count points.
 const COUNTS: [&str; 12] = ["index", "idx", "id", "no", "nr", "num", "number", "point", "row", "line", "col", "column"];
 
-/// The columns of x, y and height: those of x and y have titles that begin with these letters, the third is the height;
-/// else the first three.
+/// The columns of x, y and height.
+///
+/// The columns of x and y have titles that begin with these letters, and the third is the height. Without such titles
+/// they are the first three columns.
 ///
 /// # Errors
-/// [`FormatError::Field`] for titles of other columns.
+/// [`FormatError::Field`] when titles belong to other columns.
 fn order(titles: &[String]) -> Result<[usize; 3], FormatError> {
     let [a, b, c] = titles else { return Ok([0, 1, 2]) };
     let at = |letter: &str| titles.iter().position(|title| title.to_lowercase().starts_with(letter));
@@ -73,7 +81,7 @@ fn order(titles: &[String]) -> Result<[usize; 3], FormatError> {
         COUNTS.contains(&word)
     };
     let (x, y) = (at("x"), at("y"));
-    // Words before numbers may also be a remark.
+    // Words before the numbers may also be a remark.
     let in_place = x.is_none_or(|x| x == 0) && y.is_none_or(|y| y == 1);
     match (x, y) {
         _ if titles.iter().any(is_count) => {}
@@ -110,7 +118,7 @@ fn on_grid(points: Vec<[f64; 3]>) -> Result<HeightMap, FormatError> {
     Ok(HeightMap { heights: field(grid, values), height_unit: Unit::Unnamed, sides, side_unit: Unit::Unnamed })
 }
 
-/// The points from line `first` on; `order` has the columns of x, y and height.
+/// The points from line `first` on. `order` has the columns of x, y and height.
 fn points(text: &str, first: usize, order: [usize; 3]) -> Result<Vec<[f64; 3]>, FormatError> {
     let mut points = Vec::new();
     for (line, row) in data_lines(text, first) {
@@ -152,7 +160,7 @@ impl Axis {
         Ok(Self { name, first, step, n })
     }
 
-    /// The grid line that `coordinate` is on.
+    /// The grid line of `coordinate`.
     fn line(&self, coordinate: f64) -> Result<usize, FormatError> {
         let at = (coordinate - self.first) / self.step;
         let line = at.round();

@@ -32,10 +32,10 @@ impl FromStr for Crop {
     }
 }
 
-/// Lengths that differ by less than this part are the same, where a map must be a square.
+/// Maximum relative difference of sides of a map that counts as a square.
 pub const SAME_LENGTH: f64 = 1e-3;
 
-/// The part of `grid` that is kept, points being `spacing` apart: its first point and its grid.
+/// First point and grid of the part of `grid` that is kept. Points have distances of `spacing`.
 pub(super) fn part(grid: Grid, spacing: [f64; 2], crop: Crop) -> Result<([usize; 2], Grid), TreatError> {
     let (nx, ny, from) = match crop {
         Crop::Points { nx, ny, from } => (nx, ny, from),
@@ -54,7 +54,7 @@ pub(super) fn part(grid: Grid, spacing: [f64; 2], crop: Crop) -> Result<([usize;
     Ok(([x, y], Grid::new(nx, ny)?))
 }
 
-/// Points along x and y of the largest part whose sides are the same within [`SAME_LENGTH`].
+/// Numbers of points of the largest part whose sides are equal within [`SAME_LENGTH`].
 fn square(grid: Grid, [dx, dy]: [f64; 2]) -> Option<[usize; 2]> {
     let most = ((dy * grid.ny() as f64 / dx).round() as usize).clamp(1, grid.nx());
     (1..=most).rev().find_map(|nx| {

@@ -1,4 +1,4 @@
-//! Why a treatment is not possible.
+//! Errors of treatments that are not possible.
 
 use rc_core::Grid;
 use thiserror::Error;
@@ -9,35 +9,35 @@ use super::treatment::{Crop, Level, Treatment};
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum TreatError {
-    /// Words that are no treatment.
+    /// The words do not name a treatment.
     #[error("'{found}' is not {expected}")]
     Unknown {
-        /// As written.
+        /// The words as written.
         found: String,
-        /// What can be written.
+        /// Description of valid words.
         expected: &'static str,
     },
-    /// A part that is not inside the map.
+    /// A part is not inside the map.
     #[error("crop: {crop} is not inside the map of {grid} points")]
     Outside {
         /// The part.
         crop: Crop,
-        /// The map.
+        /// The grid of the map.
         grid: Grid,
     },
-    /// Points that are so far apart that no number of them is as long as another.
+    /// The distances of points along x and y are so different that no part is a square.
     #[error(
         "crop: no part of the map of {grid} points, {:e} apart along x and {:e} along y, is a square within 0.1 %",
         spacing[0],
         spacing[1]
     )]
     NoSquare {
-        /// The map.
+        /// The grid of the map.
         grid: Grid,
         /// Distances of points along x and y.
         spacing: [f64; 2],
     },
-    /// Sides of which no whole numbers are as long as each other.
+    /// The sides are such that no whole numbers of copies make a square.
     #[error(
         "repeat: no copies of {grid} points on {:.6e} by {:.6e}, 16 at most along a side, have square points and make a square; \
          crop or resample it first",
@@ -45,41 +45,41 @@ pub enum TreatError {
         sides[1]
     )]
     NoSquareOfCopies {
-        /// The map.
+        /// The grid of the map.
         grid: Grid,
         /// Sides along x and y.
         sides: [f64; 2],
     },
-    /// A treatment that needs every height.
+    /// A treatment needs every height, and points are missing.
     #[error("{treatment}: {missing} points are missing; fill them first (fill)")]
     Missing {
         /// The treatment.
         treatment: Treatment,
-        /// Points without a height.
+        /// Number of points without a height.
         missing: usize,
     },
-    /// Too few points for a form.
+    /// There are too few points for a form.
     #[error("level: the {points} measured points do not determine a {form} form; level less, or fill first")]
     Undetermined {
         /// The form.
         form: Level,
-        /// Measured points.
+        /// Number of measured points.
         points: usize,
     },
-    /// A wavelength that the map does not have.
+    /// The wavelength is outside the range of the map.
     #[error("low_pass: must be from {least:e} (four points) to {most:e} (the shorter side), not {wavelength:e}")]
     Wavelength {
-        /// As given.
+        /// The wavelength as given.
         wavelength: f64,
-        /// Four points.
+        /// Minimum wavelength, four points.
         least: f64,
-        /// The shorter side.
+        /// Maximum wavelength, the shorter side.
         most: f64,
     },
-    /// A window that leaves nothing as it is.
+    /// The window leaves no part of the map unchanged.
     #[error("taper: must be above 0 and at most 0.5, the part of each side that is faded out at each end, not {0}")]
     Taper(f64),
-    /// More points than a grid has.
+    /// The number of points is not valid for a grid.
     #[error(transparent)]
     Grid(#[from] rc_core::GridError),
 }

@@ -18,13 +18,17 @@ impl FromStr for Fill {
     }
 }
 
-/// Most steps of the iteration for [`Fill::Laplace`]: enough for holes of some thousand points across.
+/// Maximum number of steps of the iteration for [`Fill::Laplace`].
+///
+/// It is enough for holes of some thousand points across.
 const MOST_STEPS: usize = 20_000;
 
-/// Part of the first residual at which the iteration ends.
+/// Residual, relative to the first residual, at which the iteration ends.
 const TOLERANCE: f64 = 1e-8;
 
-/// The filled map, and what is to be said of it. A map without a measured point is returned as it is.
+/// The filled map, and a remark about the result.
+///
+/// A map without a measured point is returned unchanged.
 pub(super) fn fill(mut map: HeightMap, how: Fill) -> (HeightMap, String) {
     let mut note = String::new();
     let holes: Vec<usize> = (0..map.heights.values().len()).filter(|i| map.heights.values()[*i].is_nan()).collect();
@@ -50,7 +54,7 @@ pub(super) fn fill(mut map: HeightMap, how: Fill) -> (HeightMap, String) {
     (map, note)
 }
 
-/// The points beside point `i`, those along x first.
+/// The points beside point `i`. Neighbours along x are first.
 fn neighbours(i: usize, nx: usize, ny: usize) -> impl Iterator<Item = (usize, bool)> {
     let (ix, iy) = (i % nx, i / nx);
     let along_x = [(ix > 0).then(|| i - 1), (ix + 1 < nx).then_some(i + 1)];
@@ -59,13 +63,15 @@ fn neighbours(i: usize, nx: usize, ny: usize) -> impl Iterator<Item = (usize, bo
     along(along_x, true).chain(along(along_y, false))
 }
 
-/// Fronts that start at all measured points: a hole gets the height of the point that is nearest to it of those that
-/// fill its neighbours, which is the nearest of all but for differences below a distance of points; ties in a fixed
+/// Fills each hole with the height of a nearest measured point.
+///
+/// Fronts start at all measured points. A hole gets the height of the nearest among the points that fill its
+/// neighbours. This is the nearest of all points, except for differences below a distance of points. Ties have a fixed
 /// order.
 fn nearest(map: &mut HeightMap) {
     let (nx, ny) = (map.heights.grid().nx(), map.heights.grid().ny());
     let [dx, dy] = map.spacing();
-    // Squared lengths are not negative, so their bits have their order.
+    // Squared lengths are not negative, so the order of their bits is their order.
     let squared = |i: usize, j: usize| {
         let [x, y] = [(i % nx).abs_diff(j % nx) as f64 * dx, (i / nx).abs_diff(j / nx) as f64 * dy];
         (x * x + y * y).to_bits()
@@ -85,7 +91,7 @@ fn nearest(map: &mut HeightMap) {
     }
 }
 
-/// The eight points around point `i`, or those of them that there are.
+/// The points among the eight around point `i` that are inside the map.
 fn around(i: usize, nx: usize, ny: usize) -> impl Iterator<Item = usize> {
     let (ix, iy) = (i % nx, i / nx);
     let rows = iy.saturating_sub(1)..(iy + 2).min(ny);
@@ -93,8 +99,10 @@ fn around(i: usize, nx: usize, ny: usize) -> impl Iterator<Item = usize> {
     rows.flat_map(move |y| columns.clone().map(move |x| y * nx + x)).filter(move |j| *j != i)
 }
 
-/// Conjugate gradients for Σ w (h_i - h_j) = 0 over the neighbours of each hole, from the heights that the holes have,
-/// in `most` steps at most. Returns what is left of the first residual.
+/// Solves Σ w (h_i - h_j) = 0 over the neighbours of each hole by conjugate gradients.
+///
+/// The iteration starts from the present heights of the holes and has at most `most` steps. Returns the ratio of the
+/// last to the first residual.
 fn laplace(map: &mut HeightMap, holes: &[usize], most: usize) -> f64 {
     let (nx, ny) = (map.heights.grid().nx(), map.heights.grid().ny());
     let [dx, dy] = map.spacing();
@@ -102,7 +110,7 @@ fn laplace(map: &mut HeightMap, holes: &[usize], most: usize) -> f64 {
     let values = map.heights.values_mut();
     let mut number = vec![u32::MAX; values.len()];
     holes.iter().enumerate().for_each(|(n, i)| number[*i] = n as u32);
-    // Differences to neighbours; of a direction, those to measured points count in full.
+    // Differences to neighbours. For a direction, measured points have the value 0.
     let residual = |values: &[f64]| -> Vec<f64> {
         let at = |i: &usize| neighbours(*i, nx, ny).map(|(j, x)| weight(x) * (values[j] - values[*i])).sum();
         holes.iter().map(at).collect()
@@ -140,7 +148,7 @@ mod tests {
 
     use super::*;
 
-    /// As many steps as there are holes are enough but for rounding.
+    /// A number of steps equal to the number of holes is enough, up to rounding.
     #[test]
     fn an_iteration_that_was_stopped_says_how_far_it_came() {
         let map = || {

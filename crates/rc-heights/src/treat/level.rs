@@ -1,4 +1,6 @@
-//! Forms that are taken away: mean, plane, quadratic, by least squares over the measured points.
+//! Removal of a form: mean, plane or quadratic.
+//!
+//! The form is fitted by least squares to the measured points.
 
 use std::str::FromStr;
 
@@ -10,7 +12,7 @@ use super::treatment::Level;
 use crate::HeightMap;
 
 impl Level {
-    /// Terms of the polynomial.
+    /// Number of terms of the polynomial.
     fn n_terms(self) -> usize {
         match self {
             Self::Mean => 1,
@@ -30,10 +32,12 @@ impl FromStr for Level {
     }
 }
 
-/// Most terms of a form.
+/// Maximum number of terms of a form.
 const MOST: usize = 6;
 
-/// The terms at a point of [-1, 1]²: Legendre polynomials, which are almost orthogonal on a grid.
+/// The terms at a point of [-1, 1]².
+///
+/// They are Legendre polynomials, which are almost orthogonal on a grid.
 fn terms(DVec2 { x, y }: DVec2) -> [f64; MOST] {
     [1.0, x, y, x * y, 1.5 * x * x - 0.5, 1.5 * y * y - 0.5]
 }
@@ -41,7 +45,7 @@ fn terms(DVec2 { x, y }: DVec2) -> [f64; MOST] {
 pub(super) fn level(mut map: HeightMap, form: Level) -> Result<HeightMap, TreatError> {
     let grid = map.heights.grid();
     let at = |i: usize| terms(2.0 * grid.centre(i % grid.nx(), i / grid.nx()) - 1.0);
-    // About the mean: what a fit of nanometres on metres would lose otherwise.
+    // Heights are taken about their mean. Otherwise a fit of nanometres on metres would lose digits.
     let (mean, points) = mean(&map.heights);
     let n = form.n_terms();
     let (mut matrix, mut right) = ([[0.0; MOST]; MOST], [0.0; MOST]);
@@ -62,14 +66,16 @@ pub(super) fn level(mut map: HeightMap, form: Level) -> Result<HeightMap, TreatE
     Ok(map)
 }
 
-/// Solves the symmetric positive system whose lower half is given, by its Cholesky factor; `None` where it is singular.
+/// Solves the symmetric positive system whose lower half is given, by its Cholesky factor.
+///
+/// `None` if the matrix is singular.
 fn solve(matrix: &mut [[f64; MOST]; MOST], mut right: [f64; MOST], n: usize) -> Option<[f64; MOST]> {
     for j in 0..n {
         let diagonal = matrix[j][j];
         for k in 0..j {
             matrix[j][j] -= matrix[j][k] * matrix[j][k];
         }
-        // Points on a line or on a few rows leave nothing but rounding here.
+        // For points on a line or on a few rows, only rounding remains here.
         if matrix[j][j].is_nan() || matrix[j][j] <= 1e-10 * diagonal {
             return None;
         }

@@ -4,14 +4,18 @@ use super::error::TreatError;
 use super::stencil::{Edges, Taps, along_x, along_y};
 use crate::HeightMap;
 
-/// The weight is cut off where it is this many times the width below its peak: exp(-π 2.5²) = 3e-9.
+/// Distance from the peak, in widths, at which the weights are cut off: exp(-π 2.5²) = 3e-9.
 const REACH: f64 = 2.5;
 
-/// Least wavelength in points: shorter waves of the sampled weights are those of longer ones. A wave of four points
-/// keeps 0.5 + 0.002, of longer ones less too much.
+/// Minimum wavelength in points.
+///
+/// Sampled weights for shorter waves equal weights for longer waves. A wave of four points keeps 0.5 + 0.002 of its
+/// amplitude. The error is smaller for longer waves.
 const LEAST_POINTS: f64 = 4.0;
 
-/// Weights exp(-π (x/αλ)²) with α = √(ln 2/π), so that a wave of length λ keeps half of its amplitude.
+/// Filters with weights exp(-π (x/αλ)²), α = √(ln 2/π).
+///
+/// A wave of length λ keeps half of its amplitude.
 pub(super) fn low_pass(mut map: HeightMap, wavelength: f64, edges: Edges) -> Result<HeightMap, TreatError> {
     let (grid, spacing) = (map.heights.grid(), map.spacing());
     let sides = [spacing[0] * grid.nx() as f64, spacing[1] * grid.ny() as f64];
@@ -26,7 +30,7 @@ pub(super) fn low_pass(mut map: HeightMap, wavelength: f64, edges: Edges) -> Res
     Ok(map)
 }
 
-/// Weights for a wavelength in points, sum 1.
+/// Weights for a wavelength in points, with sum 1.
 fn weights(wavelength: f64) -> Vec<f64> {
     let width = (std::f64::consts::LN_2 / std::f64::consts::PI).sqrt() * wavelength;
     let reach = (REACH * width).ceil() as i64;

@@ -1,4 +1,6 @@
-//! What is done to a measured map before it is pressed: pure functions from map to map, and what each of them changes.
+//! Treatments of a measured map before it is pressed.
+//!
+//! They are pure functions from map to map, with a record of what each of them changes.
 
 mod crop;
 mod error;
@@ -25,22 +27,22 @@ pub use periodic::hann;
 pub use stencil::Edges;
 pub use treatment::{Crop, Fill, Flip, Level, MOST_COPIES, Periodic, Repeat, Treatment};
 
-/// What a map is like after a treatment.
+/// The state of a map after a treatment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Effect {
-    /// The treatment, in words, and whether it ended early; "as read" before the first.
+    /// The treatment in words, and whether it ended early. It is "as read" before the first one.
     pub treatment: String,
-    /// Points along x and y.
+    /// Numbers of points along x and y.
     pub grid: Grid,
     /// Sides of the rectangle.
     pub sides: Option<[f64; 2]>,
-    /// Missing points.
+    /// Number of missing points.
     pub missing: usize,
-    /// Rms height about the mean of the measured points.
+    /// rms height about the mean of the measured points.
     pub rms_height: f64,
-    /// Rms gradient, from neighbours that are both measured.
+    /// rms gradient, from pairs of measured neighbours.
     pub rms_slope: f64,
-    /// [`BorderStep::ratio`]; `None` while points are missing.
+    /// [`BorderStep::ratio`], or `None` if points are missing.
     pub border_step: Option<f64>,
 }
 
@@ -61,9 +63,10 @@ impl Effect {
     }
 }
 
-/// Applies treatments in the order given. The second result has the state after each.
+/// Applies treatments in the given order, and returns the state after each.
 ///
-/// Filters and resampling take the map for mirrored at its borders; after [`Treatment::Periodic`], for periodic.
+/// Filters and resampling assume that the map is mirrored at its borders. After [`Treatment::Periodic`] they assume
+/// that it is periodic.
 ///
 /// # Errors
 /// [`TreatError`] of the first treatment that is not possible.
@@ -81,11 +84,12 @@ pub fn apply(map: HeightMap, treatments: &[Treatment]) -> Result<(HeightMap, Vec
     Ok((map, effects))
 }
 
-/// The grid of `map` after each treatment, without treating it: what a program compares with its memory first. No
-/// treatment has a larger one on its way.
+/// The grid of `map` after each treatment, without applying it.
+///
+/// A program can compare it with its memory first. No treatment needs a larger grid internally.
 ///
 /// # Errors
-/// [`TreatError`] of the first treatment whose part is not inside the map, or whose grid is none.
+/// [`TreatError`] of the first treatment whose part is not inside the map, or whose grid is not valid.
 pub fn grids_after(map: &HeightMap, treatments: &[Treatment]) -> Result<Vec<Grid>, TreatError> {
     let (mut grid, mut spacing) = (map.heights.grid(), map.spacing());
     let next = |treatment: &Treatment| -> Result<Grid, TreatError> {
@@ -109,7 +113,7 @@ pub fn grids_after(map: &HeightMap, treatments: &[Treatment]) -> Result<Vec<Grid
     treatments.iter().map(next).collect()
 }
 
-/// The map after `treatment`, and what is to be said of it.
+/// The map after `treatment`, and a remark about the result.
 fn one(map: HeightMap, treatment: Treatment, edges: Edges) -> Result<(HeightMap, String), TreatError> {
     let missing = map.missing();
     let complete = matches!(treatment, Treatment::Periodic(_) | Treatment::LowPass { .. } | Treatment::Resample(_));

@@ -1,27 +1,29 @@
-//! Mean, rms height and rms slope of the points that are there.
+//! Mean, rms height and rms slope of the measured points.
 
 use rc_core::Field;
 
-/// Root mean square about the mean of the values that are there; `NaN` without any.
+/// rms about the mean of the values that are not `NaN`.
+///
+/// It is `NaN` without such values.
 pub(super) fn rms_height(heights: &Field) -> f64 {
     let (mean, n) = mean(heights);
     let squares = sum_rows(heights, |height| (height - mean) * (height - mean));
     (squares / n as f64).sqrt()
 }
 
-/// Mean of the values that are there, and their number.
+/// Mean of the values that are not `NaN`, and their number.
 pub(super) fn mean(heights: &Field) -> (f64, usize) {
     let n = heights.values().iter().filter(|height| !height.is_nan()).count();
     (sum_rows(heights, |height| height) / n as f64, n)
 }
 
-/// Sum over the values that are there, row by row.
+/// Sum over the values that are not `NaN`, row by row.
 fn sum_rows(heights: &Field, term: impl Fn(f64) -> f64) -> f64 {
     let rows = heights.values().chunks_exact(heights.grid().nx());
     rows.map(|row| row.iter().filter(|height| !height.is_nan()).map(|height| term(*height)).sum::<f64>()).sum()
 }
 
-/// √(⟨(∂h/∂x)²⟩ + ⟨(∂h/∂y)²⟩) from differences of neighbours that are there.
+/// √(⟨(∂h/∂x)²⟩ + ⟨(∂h/∂y)²⟩) from differences of measured neighbours.
 pub(crate) fn rms_slope(heights: &Field, [dx, dy]: [f64; 2]) -> f64 {
     let (nx, ny) = (heights.grid().nx(), heights.grid().ny());
     let mean_square = |differences: &mut dyn Iterator<Item = f64>| {

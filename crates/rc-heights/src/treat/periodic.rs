@@ -1,4 +1,4 @@
-//! Maps whose opposite borders meet.
+//! Maps whose opposite borders match.
 
 use rc_core::{Field, Grid};
 
@@ -29,13 +29,17 @@ fn mirror(map: &HeightMap) -> Result<HeightMap, TreatError> {
     Ok(HeightMap { heights, sides: map.sides.map(|sides| sides.map(|side| 2.0 * side)), ..*map })
 }
 
-/// 1 in the middle, down to 0 at both ends within `taper`; `t` in [0, 1].
+/// Tukey's window: 1 in the middle, decreasing to 0 at both ends over the length `taper`.
+///
+/// `t` is in [0, 1].
 fn tukey(t: f64, taper: f64) -> f64 {
     let from_end = t.min(1.0 - t) / taper;
     if from_end >= 1.0 { 1.0 } else { 0.5 - 0.5 * (std::f64::consts::PI * from_end).cos() }
 }
 
-/// Heights about their mean times `weight` of both places along the sides, in [0, 1].
+/// Heights about their mean, multiplied by a window.
+///
+/// The window is the product of `weight` of the places along x and y, which are in [0, 1].
 fn window(mut map: HeightMap, weight: impl Fn(f64) -> f64) -> HeightMap {
     let grid = map.heights.grid();
     let weights = |n: usize| -> Vec<f64> { (0..n).map(|i| weight((i as f64 + 0.5) / n as f64)).collect() };
@@ -47,9 +51,11 @@ fn window(mut map: HeightMap, weight: impl Fn(f64) -> f64) -> HeightMap {
     map
 }
 
-/// Heights about their mean under Hann's window, scaled so that the mean square of the window is 1: what the power
-/// spectrum of a map that is not periodic is taken of, as T. D. B. Jacobs, T. Junge and L. Pastewka recommend (Surf.
-/// Topogr.: Metrol. Prop. 5 (2017) 013001).
+/// Heights about their mean under Hann's window.
+///
+/// The window is scaled so that its mean square is 1. The power spectrum of a map that is not periodic is taken from
+/// these heights. T. D. B. Jacobs, T. Junge and L. Pastewka recommend this (Surf. Topogr.: Metrol. Prop. 5 (2017)
+/// 013001).
 #[must_use]
 pub fn hann(heights: &Field) -> Field {
     // ⟨sin⁴⟩ = 3/8, so the mean square of each factor is 1 after division by √(3/8).

@@ -26,7 +26,7 @@ impl FromStr for Repeat {
     }
 }
 
-/// Copies along x and y of a map with these sides, and the grid of all of them.
+/// Numbers of copies along x and y, and the grid of all copies.
 pub(super) fn copies(grid: Grid, sides: [f64; 2], repeat: Repeat) -> Result<([usize; 2], Grid), TreatError> {
     let [x, y] = match repeat {
         Repeat::Times(times) => times,
@@ -35,7 +35,9 @@ pub(super) fn copies(grid: Grid, sides: [f64; 2], repeat: Repeat) -> Result<([us
     Ok(([x, y], Grid::new(x * grid.nx(), y * grid.ny())?))
 }
 
-/// The fewest copies that are as long along x as along y, within [`SAME_LENGTH`], and have as many points.
+/// The smallest numbers of copies that make a square with equal numbers of points.
+///
+/// The sides of the square are equal within [`SAME_LENGTH`].
 fn square(grid: Grid, [side_x, side_y]: [f64; 2]) -> Option<[usize; 2]> {
     let fits = |&[x, y]: &[usize; 2]| {
         let ratio = x as f64 * side_x / (y as f64 * side_y);

@@ -1,12 +1,14 @@
-//! Other numbers of points on the same rectangle.
+//! Resampling to other numbers of points on the same rectangle.
 
 use rc_core::{Field, Grid};
 
 use super::stencil::{Edges, Taps, along_x, along_y};
 use crate::HeightMap;
 
-/// Fewer points are means over their elements; more points are on cubic curves (Catmull and Rom's) through those
-/// around.
+/// Resamples a map to another grid.
+///
+/// Fewer points are means over their elements. More points are on cubic curves (Catmull and Rom's) through the points
+/// around them.
 pub(super) fn resample(mut map: HeightMap, wanted: Grid, edges: Edges) -> HeightMap {
     let grid = map.heights.grid();
     let across = |field: Field| {
@@ -17,7 +19,7 @@ pub(super) fn resample(mut map: HeightMap, wanted: Grid, edges: Edges) -> Height
         let table = table(grid.ny(), wanted.ny());
         along_y(&field, wanted.ny(), edges, |i| taps(&table[i]))
     };
-    // What is between is not larger than both ends: that becomes shorter first which becomes shorter.
+    // The side that becomes shorter is resampled first. So the intermediate field is not larger than both ends.
     map.heights = match (wanted.nx() != grid.nx(), wanted.ny() != grid.ny()) {
         (true, true) if wanted.ny() < grid.ny() && wanted.nx() > grid.nx() => across(up(map.heights)),
         (true, true) => up(across(map.heights)),
@@ -32,7 +34,7 @@ fn taps((first, weights): &(i64, Vec<f64>)) -> Taps<'_> {
     Taps { first: *first, weights }
 }
 
-/// Weights of the points of `n` for each of `wanted`.
+/// For each of `wanted` points, weights of the `n` points.
 fn table(n: usize, wanted: usize) -> Vec<(i64, Vec<f64>)> {
     let ratio = n as f64 / wanted as f64;
     (0..wanted)
@@ -40,7 +42,7 @@ fn table(n: usize, wanted: usize) -> Vec<(i64, Vec<f64>)> {
         .collect()
 }
 
-/// The mean over [`from`, `from + width`), points being elements of width 1.
+/// The mean over [`from`, `from + width`), where points are elements of width 1.
 fn mean(from: f64, width: f64, n: usize) -> (i64, Vec<f64>) {
     let to = (from + width).min(n as f64);
     let first = from.floor();

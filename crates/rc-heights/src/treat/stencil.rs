@@ -2,17 +2,17 @@
 
 use rc_core::{Field, Grid};
 
-/// What is beyond the borders of a map.
+/// What lies beyond the borders of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edges {
-    /// The mirror image.
+    /// The mirror image of the map.
     Mirrored,
-    /// The map again.
+    /// The map itself again.
     Periodic,
 }
 
 impl Edges {
-    /// The point that stands for point `i`, which may be outside, of `n`.
+    /// The point of `n` points that represents point `i`, which may be outside.
     pub(super) fn inside(self, i: i64, n: usize) -> usize {
         let (n, wide) = (n as i64, n as i64 * 2);
         match self {
@@ -27,13 +27,13 @@ impl Edges {
 
 /// Weights of consecutive points.
 pub(super) struct Taps<'a> {
-    /// The first point; it may be outside.
+    /// The first point. It may be outside.
     pub(super) first: i64,
-    /// Its weight and those of the next.
+    /// Weights of the first point and the following ones.
     pub(super) weights: &'a [f64],
 }
 
-/// A field of `nx` points along x, point `i` the sum with `taps(i)` over its row.
+/// A field of `nx` points along x. Point `i` is the sum with `taps(i)` over its row.
 pub(super) fn along_x<'a>(field: &Field, nx: usize, edges: Edges, taps: impl Fn(usize) -> Taps<'a>) -> Field {
     let grid = field.grid();
     let wanted = Grid::new(nx, grid.ny()).expect("a checked number of points");
@@ -52,7 +52,7 @@ pub(super) fn along_x<'a>(field: &Field, nx: usize, edges: Edges, taps: impl Fn(
     Field::new(wanted, values).expect("as many values as points")
 }
 
-/// The same along y.
+/// A field of `ny` points along y. Point `i` is the sum with `taps(i)` over its column.
 pub(super) fn along_y<'a>(field: &Field, ny: usize, edges: Edges, taps: impl Fn(usize) -> Taps<'a>) -> Field {
     let grid = field.grid();
     let wanted = Grid::new(grid.nx(), ny).expect("a checked number of points");

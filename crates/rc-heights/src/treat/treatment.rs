@@ -7,25 +7,27 @@ use rc_core::Grid;
 /// One treatment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Treatment {
-    /// Keep a part.
+    /// Keep a part of the map.
     Crop(Crop),
-    /// Mirror.
+    /// Mirror the map.
     Flip(Flip),
-    /// Give missing points heights.
+    /// Give heights to missing points.
     Fill(Fill),
-    /// Take a form away.
+    /// Remove a form.
     Level(Level),
-    /// Make opposite borders meet.
+    /// Make opposite borders match.
     Periodic(Periodic),
-    /// Take short waves away with a Gaussian filter that halves waves of this length (ISO 16610-61), which must be four
-    /// points or more: weights at points cannot tell shorter waves from longer ones.
+    /// Remove short waves with a Gaussian filter (ISO 16610-61).
+    ///
+    /// The filter halves waves of length `wavelength`, which must be at least four points. Weights at points cannot
+    /// represent shorter waves.
     LowPass {
-        /// In the unit of the sides.
+        /// Cut-off wavelength, in the unit of the sides.
         wavelength: f64,
     },
-    /// Other numbers of points on the same rectangle.
+    /// Change the numbers of points on the same rectangle.
     Resample(Grid),
-    /// Copies beside each other.
+    /// Put copies beside each other.
     Repeat(Repeat),
 }
 
@@ -47,15 +49,15 @@ impl fmt::Display for Treatment {
 /// The part that is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crop {
-    /// The largest square in the middle, by its lengths: what every method takes.
+    /// The largest square in the middle, by its lengths. Every method accepts it.
     Square,
-    /// So many points, in the middle or from a first point on.
+    /// A number of points, in the middle or from a first point on.
     Points {
         /// Points along x.
         nx: usize,
         /// Points along y.
         ny: usize,
-        /// The first point along x and y; `None` for the middle.
+        /// The first point along x and y, or `None` for the middle.
         from: Option<[usize; 2]>,
     },
 }
@@ -70,14 +72,16 @@ impl fmt::Display for Crop {
     }
 }
 
-/// How missing points get heights.
+/// Method that gives heights to missing points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fill {
-    /// The smoothest membrane through the points around (∇²h = 0): no new peaks, no new valleys.
+    /// A smooth membrane through the points around (∇²h = 0), without new peaks or valleys.
     Laplace,
-    /// The height of the nearest measured point, by length.
+    /// The height of the measured point at the smallest distance.
     Nearest,
-    /// The lowest measured height: what was too deep or too steep to be measured does not touch.
+    /// The lowest measured height.
+    ///
+    /// Points that were too deep or too steep to be measured then have no contact.
     Lowest,
 }
 
@@ -98,7 +102,7 @@ pub enum Flip {
     X,
     /// Top and bottom.
     Y,
-    /// Peaks and valleys, as of a replica.
+    /// Peaks and valleys, as for a replica.
     Z,
 }
 
@@ -112,18 +116,21 @@ impl fmt::Display for Flip {
     }
 }
 
-/// How opposite borders are made to meet.
+/// Method that makes opposite borders match.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Periodic {
-    /// They meet already.
+    /// The borders match already.
     AsIs,
-    /// The map and its mirror images: twice the sides, four times the points. Every height stays, and their
-    /// distribution; slopes change sign at the old borders, and what touches there touches twice as wide.
+    /// The map and its mirror images, with twice the sides and four times the points.
+    ///
+    /// Every height and the distribution of heights stay the same. Slopes change sign at the old borders. A contact
+    /// there is twice as wide.
     Mirror,
-    /// Heights fade to their mean towards the borders (Tukey's window). Sides stay; the outer part of the map is
-    /// flatter than the surface was.
+    /// Heights decrease to their mean towards the borders (Tukey's window).
+    ///
+    /// Sides stay the same. The outer part of the map is flatter than the surface.
     Window {
-        /// The part of each side that fades, at each of its ends: above 0, at most 0.5.
+        /// Part of each side at each end where heights decrease, above 0 and at most 0.5.
         taper: f64,
     },
 }
@@ -138,17 +145,19 @@ impl fmt::Display for Periodic {
     }
 }
 
-/// How often a map is repeated.
+/// Number of copies of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Repeat {
-    /// As often as makes the cell a square, at most [`MOST_COPIES`] times along a side: the same contact, in a cell
-    /// that every method takes.
+    /// The smallest numbers of copies that make the cell a square.
+    ///
+    /// There are at most [`MOST_COPIES`] copies along a side. The contact is the same, and every method accepts the
+    /// cell.
     Square,
-    /// So often along x and along y.
+    /// Given numbers of copies along x and along y.
     Times([usize; 2]),
 }
 
-/// Most copies along a side.
+/// Maximum number of copies along a side.
 pub const MOST_COPIES: usize = 16;
 
 impl fmt::Display for Repeat {
@@ -160,14 +169,14 @@ impl fmt::Display for Repeat {
     }
 }
 
-/// The form that is taken away; each holds the ones before it.
+/// The form that is removed. Each form includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
     /// The mean height.
     Mean,
-    /// A plane: the tilt of the sample.
+    /// A plane, the tilt of the sample.
     Plane,
-    /// A polynomial of degree two: tilt and curvature.
+    /// A polynomial of degree two, tilt and curvature.
     Quadratic,
 }
 

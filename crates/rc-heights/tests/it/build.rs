@@ -1,4 +1,6 @@
-//! Small files of each format, built byte by byte from its specification: 3 x 2 points with the heights 1 to 6.
+//! Small files of each format, built byte by byte from its specification.
+//!
+//! They have 3 x 2 points with the heights 1 to 6.
 
 use rc_heights::Format;
 use zip::CompressionMethod;
@@ -26,7 +28,7 @@ pub(crate) fn npy() -> Vec<u8> {
     [b"\x93NUMPY\x01\x00".as_slice(), &(header.len() as u16).to_le_bytes(), header.as_bytes(), &f64s(HEIGHTS)].concat()
 }
 
-/// Lines at x = 10, 12, 14 and y = 5, 8.
+/// Grid lines at x = 10, 12, 14 and y = 5, 8.
 pub(crate) fn surfer_text(heights: &str) -> Vec<u8> {
     format!("DSAA\n3 2\n10 14\n5 8\n1 6\n{heights}\n").into_bytes()
 }
@@ -36,7 +38,7 @@ pub(crate) fn surfer_6(heights: [f64; 6]) -> Vec<u8> {
     [b"DSBB".to_vec(), counts, f64s([10.0, 14.0, 5.0, 8.0, 1.0, 6.0]), f32s(heights)].concat()
 }
 
-/// `blank` as in the grid section; a section that rc does not know stands before the data.
+/// `blank` is the value in the grid section. A section that rc does not know precedes the data.
 pub(crate) fn surfer_7(version: u32, heights: [f64; 6], blank: f64) -> Vec<u8> {
     let section = |tag: &[u8; 4], content: Vec<u8>| {
         [tag.to_vec(), (content.len() as u32).to_le_bytes().to_vec(), content].concat()
@@ -52,7 +54,7 @@ pub(crate) fn surfer_7(version: u32, heights: [f64; 6], blank: f64) -> Vec<u8> {
     .concat()
 }
 
-/// `fields` as lines; the header is filled up as the specification asks for.
+/// `fields` are lines of the header, which is padded as the specification requires.
 pub(crate) fn gsf(fields: &str) -> Vec<u8> {
     let mut bytes = format!("Gwyddion Simple Field 1.0\n{fields}").into_bytes();
     let zeros = 4 - bytes.len() % 4;
@@ -82,7 +84,9 @@ pub(crate) fn sdf_binary(version: &str, data_type: u8, data: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Heights in each type of numbers of the format, all 0 but the fourth, its lowest number, and the fifth, its greatest.
+/// Heights in each type of numbers of the format.
+///
+/// The fourth is the minimum of the type, the fifth is the maximum, and the others are 0.
 pub(crate) fn sdf_limits() -> Vec<(u8, Vec<u8>)> {
     macro_rules! limits {
         ($type:ident) => {
@@ -130,14 +134,14 @@ pub(crate) fn x3p_xml(kind: &str, size: &str, mask: &str) -> String {
 
 pub(crate) const X3P_SIZE: &str = "<SizeX>3</SizeX><SizeY>2</SizeY><SizeZ>1</SizeZ>";
 
-/// 16-bit integers; point 4 is marked as missing.
+/// 16-bit integers, where point 4 is marked as missing.
 pub(crate) fn x3p(method: CompressionMethod) -> Vec<u8> {
     let xml = x3p_xml("I", X3P_SIZE, "<ValidPointsLink>bindata/valid.bin</ValidPointsLink>");
     let data = concat(HEIGHTS, |v| (v as i16).to_le_bytes());
     zipped(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &data), ("bindata/valid.bin", &[0b0010_1111])], method)
 }
 
-/// 16-bit grayscale, from the png crate's own encoder.
+/// 16-bit grayscale, from the encoder of the png crate.
 pub(crate) fn png(colour: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 3, 2);
@@ -169,7 +173,7 @@ pub(crate) fn tiff() -> Vec<u8> {
     )
 }
 
-/// The same in the corner of one tile of `side` x `side` points.
+/// The same image in the corner of one tile of `side` x `side` points.
 pub(crate) fn tiff_tiled(side: usize) -> Vec<u8> {
     let mut tile = vec![0; 2 * side * side];
     for (i, height) in HEIGHTS.iter().enumerate() {
@@ -207,7 +211,7 @@ fn tiff_of(data: &[u8], entries: &[(u16, u16, u32)]) -> Vec<u8> {
     bytes
 }
 
-/// A file of data/formats, small enough to be damaged byte by byte.
+/// A file of data/formats that is small enough to be damaged byte by byte.
 fn written(name: &str) -> Vec<u8> {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/formats");
     std::fs::read(folder.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))

@@ -1,4 +1,6 @@
-//! Small files of instruments, built byte by byte: 3 x 2 points, 2 µm and 3 µm apart, with the heights 1 to 6 nm.
+//! Small files of instruments, built byte by byte.
+//!
+//! They have 3 x 2 points at distances of 2 µm and 3 µm, with the heights 1 to 6 nm.
 
 use std::io::Write as _;
 
@@ -9,7 +11,7 @@ use zip::CompressionMethod;
 
 use crate::parts::{HEIGHTS, zipped};
 
-/// `bytes` with others at some places.
+/// `bytes` with changes at some places.
 pub(crate) fn with(mut bytes: Vec<u8>, changes: &[(usize, &[u8])]) -> Vec<u8> {
     for (at, change) in changes {
         bytes[*at..at + change.len()].copy_from_slice(change);
@@ -25,7 +27,9 @@ pub(crate) fn i16s(values: [f64; 6]) -> Vec<u8> {
     values.iter().flat_map(|value| (*value as i16).to_le_bytes()).collect()
 }
 
-/// An object of Digital Surf with 16-bit integers of 1 nm, all measured, of which the lowest is 1.
+/// An object of Digital Surf with 16-bit integers of 1 nm.
+///
+/// All points are measured, and the lowest is 1.
 pub(crate) fn sur(integers: [f64; 6]) -> Vec<u8> {
     let (count, texts) = (|n: i32| n.to_le_bytes(), |text: &str| text.as_bytes().to_vec());
     let header = with(
@@ -48,7 +52,7 @@ pub(crate) fn sur(integers: [f64; 6]) -> Vec<u8> {
     [header, b"hi".to_vec(), i16s(integers)].concat()
 }
 
-/// The same, compressed in two streams.
+/// The object of [`sur`], compressed in two streams.
 pub(crate) fn sur_zlib() -> Vec<u8> {
     let plain = sur(HEIGHTS);
     let (header, integers) = plain.split_at(514);
@@ -69,7 +73,7 @@ pub(crate) fn sur_zlib() -> Vec<u8> {
 /// Length of the header of [`nanoscope`].
 pub(crate) const NANOSCOPE_HEADER: usize = 1024;
 
-/// The lines of an image that starts `offset` behind the header.
+/// The lines of an image that starts `offset` bytes after the header.
 pub(crate) fn nanoscope_image(name: &str, z_scale: &str, offset: usize) -> String {
     let offset = NANOSCOPE_HEADER + offset;
     format!(
@@ -81,7 +85,7 @@ pub(crate) fn nanoscope_image(name: &str, z_scale: &str, offset: usize) -> Strin
 
 pub(crate) const Z_SCALE: &str = "V [Sens. Zsens] (0.0001 V/LSB) 6.5536 V";
 
-/// `global` and `images` are lines of the header.
+/// A file with the lines `global` and `images` in its header.
 pub(crate) fn nanoscope(global: &str, images: &str, data: &[u8]) -> Vec<u8> {
     let start = "\\*File list\r\n\\Version: 0x05310001\r\n\\*Scanner list\r\n\\@Sens. Zsens: V 10000.0 nm/V\r\n";
     let mut bytes = format!("{start}{global}{images}\\*File list end\r\n").into_bytes();
@@ -90,14 +94,14 @@ pub(crate) fn nanoscope(global: &str, images: &str, data: &[u8]) -> Vec<u8> {
     [&bytes, data].concat()
 }
 
-/// An image of a phase, and one of heights.
+/// A file with an image of a phase and an image of heights.
 pub(crate) fn nanoscope_two() -> Vec<u8> {
     let images = nanoscope_image("Phase", "V [Sens. Phase] (0.005 deg/LSB) 65536 deg", 0)
         + &nanoscope_image("Height", Z_SCALE, 12);
     nanoscope("\\*Ciao scan list\r\n\\@Sens. Phase: V 1.0 \r\n", &images, &[i16s(HEIGHTS), i16s(HEIGHTS)].concat())
 }
 
-/// Blocks of a Wyko file: name, type, content.
+/// A Wyko file of blocks, each with name, type and content.
 pub(crate) fn opd(blocks: &[(&str, u16, Vec<u8>)]) -> Vec<u8> {
     let entry = |name: &str, kind: u16, length: usize| {
         let mut entry = name.as_bytes().to_vec();
@@ -115,7 +119,7 @@ pub(crate) fn opd(blocks: &[(&str, u16, Vec<u8>)]) -> Vec<u8> {
     bytes
 }
 
-/// Integers of 1 nm, column by column.
+/// Blocks with integers of 1 nm, column by column.
 pub(crate) fn opd_blocks() -> Vec<(&'static str, u16, Vec<u8>)> {
     let size = [3_u16, 2, 2].map(u16::to_le_bytes).concat();
     vec![
@@ -128,7 +132,7 @@ pub(crate) fn opd_blocks() -> Vec<(&'static str, u16, Vec<u8>)> {
     ]
 }
 
-/// Phases of 1 nm, behind intensities of 2 x 1 points.
+/// Phases of 1 nm, after intensities of 2 x 1 points.
 pub(crate) fn metropro(phases: [i32; 6]) -> Vec<u8> {
     let float = |value: f32| value.to_be_bytes();
     let short = |value: u16| value.to_be_bytes();
@@ -150,7 +154,7 @@ pub(crate) fn metropro(phases: [i32; 6]) -> Vec<u8> {
     header.into_iter().chain([0; 4]).chain(phases).collect()
 }
 
-/// Rows are filled up to 16 bytes.
+/// A file whose rows are padded to 16 bytes.
 pub(crate) fn al3d(tags: &[(&str, &str)]) -> Vec<u8> {
     let count = (tags.len() + 1).to_string();
     let offset = (17 + 52 * (tags.len() + 3)).to_string();
@@ -172,7 +176,7 @@ pub(crate) fn al3d(tags: &[(&str, &str)]) -> Vec<u8> {
 pub(crate) const AL3D_TAGS: [(&str, &str); 4] =
     [("Cols", "3"), ("Rows", "2"), ("PixelSizeXMeter", "2e-6"), ("PixelSizeYMeter", "3e-6")];
 
-/// `layers` of the same heights, each with an image.
+/// A file with `layers` of the same heights, each with an image.
 pub(crate) fn plu(layers: u8) -> Vec<u8> {
     let header = with(
         vec![0; 500],
@@ -193,7 +197,7 @@ pub(crate) fn plux(xml: &str, file: &str) -> Vec<u8> {
     zipped(&[("index.xml", xml.as_bytes()), (file, &heights)], CompressionMethod::Deflated)
 }
 
-/// One image of heights of 1 nm, or two, of integers of `bits`.
+/// A file with one or two images of heights of 1 nm, with integers of `bits`.
 pub(crate) fn vk4(bits: u32, images: usize) -> Vec<u8> {
     let size = bits as usize / 8;
     let mut image: Vec<u8> = [3, 2, bits, 0, 6 * bits / 8, 0, 0].map(u32::to_le_bytes).concat();

@@ -1,5 +1,6 @@
-//! Files built byte by byte are read as their specifications say; headers that promise too much or nonsense are
-//! refused.
+//! Tests of readers with files that are built byte by byte from specifications.
+//!
+//! Headers that claim too much or make no sense are refused.
 
 use rc_heights::{Format, HeightMap, LengthUnit, Scales, Unit, parse};
 use zip::CompressionMethod;
@@ -7,7 +8,9 @@ use zip::CompressionMethod;
 use crate::build;
 use crate::parts::HEIGHTS;
 
-/// Heights are `scale` times 1 to 6 plus `offset`, sides as given, both within rounding.
+/// Asserts that heights are `scale` times 1 to 6 plus `offset`, within rounding.
+///
+/// Sides must be as given.
 pub(crate) fn assert_map(name: &str, map: &HeightMap, scale: f64, offset: f64, sides: Option<[f64; 2]>) {
     assert_eq!((map.heights.grid().nx(), map.heights.grid().ny()), (3, 2), "{name}");
     for (found, height) in map.heights.values().iter().zip(HEIGHTS) {
@@ -96,7 +99,7 @@ fn the_standard_marks_missing_points_by_the_lowest_number_and_bcr_by_the_greates
         for (kind, data) in build::sdf_limits() {
             let map = read(version, &build::sdf_binary(version, kind, &data), Format::Sdf);
             let unsigned = kind <= 2;
-            // Of bytes the standard has no mark.
+            // The standard has no mark for bytes.
             let expected = match (greatest || unsigned, kind) {
                 (_, 0) if !greatest => vec![],
                 (true, _) => vec![4],
@@ -117,7 +120,7 @@ fn eight_bytes_that_olympus_adds_to_the_header_are_no_heights() {
     let extra = |version: &str, bytes: &[u8]| build::sdf_binary(version, 5, &[bytes, data].concat());
     let map = read("Olympus", &extra("ISO-1.0", &[5, 0, 0, 0, 1, 0, 0, 0]), Format::Sdf);
     assert_map("Olympus", &map, 1e-9, 0.0, Some([6e-6, 6e-6]));
-    // Other lengths and versions have remarks behind the heights.
+    // Other lengths and versions have remarks after the heights.
     for (version, bytes) in [("ISO-1.0", &[0; 7][..]), ("ISO-2.0", &[0; 8])] {
         let map = read(version, &extra(version, bytes), Format::Sdf);
         assert!(map.heights.values()[0].abs() < 1e-15, "{version}: {:?}", map.heights.values());
@@ -159,7 +162,7 @@ fn images_are_levels_of_grey() {
 fn headers_that_promise_terabytes_are_refused_before_memory_is_taken() {
     let million = "1048576";
     let mut binary = build::sdf_binary("ISO-2.0", 7, &[0; 64]);
-    // The counts stand after mark, manufacturer and dates.
+    // The counts follow mark, manufacturer and dates.
     for at in [42, 46] {
         binary[at..at + 4].copy_from_slice(&(1_u32 << 20).to_le_bytes());
     }
@@ -172,7 +175,7 @@ fn headers_that_promise_terabytes_are_refused_before_memory_is_taken() {
         CompressionMethod::Deflated,
     );
     let mut tiff = build::tiff();
-    // The directory starts after header and heights: a count, then entries of 12 bytes, their values at 8.
+    // The directory follows header and heights. It has a count, then entries of 12 bytes with their values at 8.
     for entry in [0, 1, 7] {
         // Width, height, rows of a strip.
         let at = 22 + 12 * entry;

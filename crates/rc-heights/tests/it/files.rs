@@ -1,4 +1,4 @@
-//! Files that other programs wrote, in data/formats/ (its README says which and how).
+//! Tests with files that other programs wrote, in data/formats/ (its README says which and how).
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +27,7 @@ pub(crate) fn worst(found: &Field, expected: &Field, scale: f64) -> f64 {
 #[test]
 fn surface_formats_of_surfalize_have_heights_and_sides_in_metres() {
     let expected = expected();
-    // The text has ten decimals of heights scaled to at most ten.
+    // The text has ten decimals of heights that are scaled to at most ten.
     for (name, tolerance) in [("surfalize.x3p", 1e-20), ("surfalize-binary.sdf", 1e-20), ("surfalize-text.sdf", 1e-16)]
     {
         let map = map(name);
@@ -53,7 +53,7 @@ fn images_of_pillow_and_tifffile_have_their_levels() {
     let mut levels = expected.clone();
     levels.values_mut().iter_mut().for_each(|height| *height = ((*height - low) / span * 65535.0).round());
     for name in ["pillow.png", "pillow-lzw.tif", "tifffile-be.tif"] {
-        // Half of a level: NumPy rounds halves to even.
+        // The tolerance is half of a level, because NumPy rounds halves to even.
         let worst = worst(&map(name).heights, &levels, 1.0);
         assert!(worst <= 1.0, "{name}: off by {worst} levels");
     }
@@ -79,7 +79,7 @@ fn parameters_are_those_of_surfalize() {
     for (name, value, reference) in others {
         assert!((value / reference - 1.0).abs() < 1e-12, "{name}: {value}, surfalize {reference}");
     }
-    // It cuts the surface into other triangles; at 8 points a wave that is a few percent.
+    // surfalize divides the surface into other triangles. At 8 points per wave the difference is a few percent.
     assert!((p.sdr / 0.03878553951034358 - 1.0).abs() < 0.05, "Sdr {}, surfalize 0.0388", p.sdr);
 }
 
@@ -97,7 +97,7 @@ fn a_file_is_known_by_its_first_bytes_whatever_it_is_called() {
         let error = read(&path).expect_err(name).to_string();
         assert!(error.contains(expected) && error.contains(name), "{error}");
     }
-    // Three numbers a line are points, in a .csv as in a .txt.
+    // Lines of three numbers are points, in a .csv file as in a .txt file.
     for (name, columns) in [("points.csv", 3), ("points.txt", 3), ("rows.csv", 4)] {
         let path = dir.path().join(name);
         let line = |i: u32| format!("{},{},{}{}\n", i % 2, i / 2, i * 7, if columns == 4 { ",1" } else { "" });

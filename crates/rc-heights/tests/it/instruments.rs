@@ -1,4 +1,6 @@
-//! Files of instruments: in data/formats/ as other programs wrote them, and built byte by byte in every variant.
+//! Tests with files of instruments.
+//!
+//! Some are in data/formats/ as other programs wrote them. Others are built byte by byte in every variant.
 
 use rc_heights::{Format, FormatError, HeightMap, ReadParams, Unit, channels_of, parse, parse_with};
 
@@ -7,21 +9,21 @@ use crate::built::{assert_map, read};
 use crate::files::{expected, folder, map};
 use crate::parts::HEIGHTS;
 
-/// The built files have 2 µm x 3 µm between points.
+/// Sides of the built files, which have 2 µm x 3 µm between points.
 const SIDES: Option<[f64; 2]> = Some([6e-6, 6e-6]);
 
 fn parsed(name: &str, bytes: &[u8], format: Format) -> Result<HeightMap, FormatError> {
     parse(bytes, format).inspect(|map| assert_eq!(map.height_unit, Unit::Metre, "{name}"))
 }
 
-/// A file of the folder, what its heights are above those of `expected.csv`, how far they may be off (both nm), and its
-/// sides (µm).
+/// Files of the folder, with expected values.
 ///
-/// Errors are half a digit of the file, or the rounding of its 32-bit floats.
+/// They are the offset of heights from `expected.csv`, the tolerance (both nm), and the sides (µm). Errors are half a
+/// digit of the file, or the rounding of its 32-bit floats.
 const FILES: [(&str, f64, f64, [f64; 2]); 16] = [
     ("surfalize.sur", 0.0, 5e-4, [24.0, 24.0]),
     ("surfalize-zlib.sur", 0.0, 5e-4, [24.0, 24.0]),
-    // It counts heights from the middle of its integers.
+    // The file counts heights from the middle of its integers.
     ("rosettasciio-zlib.sur", -1450.0, 5e-4, [24.0, 24.0]),
     ("python-16bit.sur", 0.0, 1e-9, [24.0, 24.0]),
     ("python-zlib.sur", 0.0, 1e-4, [24.0, 24.0]),
@@ -32,11 +34,11 @@ const FILES: [(&str, f64, f64, [f64; 2]); 16] = [
     ("python-wide.spm", 0.0, 1e-9, [24.0, 24.0]),
     ("python-int16.opd", 0.0, 1e-9, [24.0, 24.0]),
     ("python-float.opd", 0.0, 1e-3, [24.0, 24.0]),
-    // The distance of points is one number for both axes.
+    // The distance of points is a single number for both axes.
     ("python.dat", 0.0, 6e-3, [24.0, 16.0]),
     ("python.plu", 0.0, 2e-4, [24.0, 24.0]),
     ("python.plux", 0.0, 2e-4, [24.0, 24.0]),
-    // Heights are above the lowest.
+    // Heights are relative to the lowest.
     ("python.vk4", 950.0, 1e-9, [24.0, 24.0]),
 ];
 
@@ -60,7 +62,7 @@ fn the_files_of_the_folder_have_their_heights_sides_and_missing_point() {
 
 #[test]
 fn files_that_are_cut_at_any_64th_are_refused_or_the_same_map() {
-    // Missing points are NaN, so maps are compared as bits.
+    // Missing points are NaN, so the bits of maps are compared.
     let bits = |map: &HeightMap| map.heights.values().iter().map(|height| height.to_bits()).collect::<Vec<_>>();
     for (name, ..) in FILES {
         let path = folder().join(name);
@@ -90,7 +92,7 @@ fn channels_are_listed_and_read_by_name() {
     assert_eq!(list, named(&[("Phase", false), ("Height Retrace", true)]));
     let phase = ReadParams { channel: Some("Phase".into()), ..ReadParams::default() };
     let phase = parse_with(&spm, Format::Nanoscope, &phase).expect("a phase");
-    // Integers from -40 on, 360° / 2^16 each.
+    // Integers from -40 on, each 360° / 2^16.
     assert_eq!((phase.height_unit, phase.heights.at(1, 0)), (Unit::NotLength, -39.0 * 360.0 / 65536.0));
     let (_, list) = names("python-16bit.sur", Format::Sur);
     assert_eq!(list, named(&[("Scan", true), ("Grey", false)]));
@@ -100,14 +102,14 @@ fn channels_are_listed_and_read_by_name() {
     assert_eq!(list, named(&[("layer 1", true), ("layer 2", true)]));
     let second = ReadParams { channel: Some("layer 2".into()), ..ReadParams::default() };
     let second = parse_with(&plu, Format::Plu, &second).expect("a layer");
-    // Twice the heights of the first, of which this is 500 nm.
+    // Heights are twice those of the first layer. This one is 500 nm there.
     assert!((second.heights.at(0, 0) - 1000e-9).abs() < 1e-13, "{}", second.heights.at(0, 0));
 }
 
 #[test]
 fn built_files_of_every_instrument_are_the_same_map() {
     for (name, format, bytes) in build::all() {
-        // The distance of points is one number in MetroPro.
+        // In MetroPro the distance of points is a single number.
         let sides = if format == Format::MetroPro { Some([6e-6, 4e-6]) } else { SIDES };
         let map = read(name, &bytes, format);
         assert_map_rounded(name, &map, sides);
@@ -115,7 +117,7 @@ fn built_files_of_every_instrument_are_the_same_map() {
     }
 }
 
-/// Heights of 1 to 6 nm, within the rounding of 32-bit floats.
+/// Asserts heights of 1 to 6 nm, within the rounding of 32-bit floats.
 fn assert_map_rounded(name: &str, map: &HeightMap, sides: Option<[f64; 2]>) {
     assert_eq!((map.heights.grid().nx(), map.heights.grid().ny()), (3, 2), "{name}");
     for (found, height) in map.heights.values().iter().zip(HEIGHTS) {
@@ -131,7 +133,7 @@ fn formats_are_known_by_their_marks_whatever_they_are_called() {
     for (name, format, bytes) in build::all() {
         let found = Format::of("map.bin".as_ref(), &bytes);
         match format {
-            // It has no mark.
+            // This format has no mark.
             Format::Plu => {
                 assert_eq!((found, Format::of("map.PLU".as_ref(), &bytes)), (Err(FormatError::Unknown), Ok(format)));
             }
@@ -156,7 +158,7 @@ fn digital_surf_has_offsets_missing_points_and_replicas() {
     let plain = build::sur(HEIGHTS);
     let shifted = build::with(plain.clone(), &[(474, &build::f32s(&[1000.0]))]);
     assert_map("offset", &read("offset", &shifted, Format::Sur), 1e-9, 1e-6, SIDES);
-    // The lowest integer is 1, so that -1 stands for a missing point where there are such.
+    // The lowest integer is 1, so -1 marks a missing point if there are such points.
     let mut integers = HEIGHTS;
     integers[4] = -1.0;
     for (special, missing) in [(0_u16, 0), (1, 1)] {
@@ -171,7 +173,7 @@ fn digital_surf_has_offsets_missing_points_and_replicas() {
             assert!((found + f64::from(height) * 1e-9).abs() < 1e-20, "{inversion}: {:?}", map.heights.values());
         }
     }
-    // Axes that are not lengths, and a micrometre of several code pages.
+    // Axes that are not lengths, and a micrometre in several code pages.
     let seconds = read("s", &build::with(plain.clone(), &[(180, b"s ")]), Format::Sur);
     assert_map("s", &seconds, 1e-9, 0.0, None);
     for micro in [&b"\xb5m"[..], b"\xe6m", "µm".as_bytes()] {
@@ -193,10 +195,10 @@ fn nanoscope_sizes_follow_the_scan_where_the_image_is_wrong() {
         Some([6e-6, 3e-6]),
     );
     assert_map("one length", &built("", &image.replace("6 6 ~m", "6000 nm")), 1e-9, 0.0, SIDES);
-    // Four lines were to come.
+    // Four lines were planned.
     let stopped = built(&format!("{scan}\\Samps/line: 3\r\n\\Lines: 4\r\n"), &image.replace("1:1", "2:1"));
     assert_map("stopped", &stopped, 1e-9, 0.0, Some([6e-6, 3e-6]));
-    // The image says one line; the length is that of the two of the scan.
+    // The image claims one line. The length is that of the two lines of the scan.
     let wrong =
         built(&format!("{scan}\\Samps/line: 3\r\n\\Lines: 2\r\n"), &image.replace("of lines: 2", "of lines: 1"));
     assert_map("wrong size", &wrong, 1e-9, 0.0, Some([6e-6, 12e-6]));
@@ -215,7 +217,7 @@ fn wyko_arrays_of_every_type_have_their_missing_points() {
     }
     blocks[1].2 = [size(1), vec![1, 4, 2, 5, 3, 6]].concat();
     assert_map_rounded("bytes", &read("bytes", &build::opd(&blocks), Format::Opd), SIDES);
-    // Without its last three blocks the wavelength is not divided, and the size is not known.
+    // Without the last three blocks the wavelength is not divided, and the size is not known.
     blocks.truncate(3);
     blocks[2].2 = build::f32s(&[1.0]);
     assert_map_rounded("few blocks", &read("few blocks", &build::opd(&blocks), Format::Opd), None);
@@ -366,7 +368,7 @@ fn wrong_headers_of_instruments_are_named_with_their_field() {
     }
 }
 
-/// `bytes` with the first `from` as `to`, which is as long.
+/// `bytes` with the first `from` replaced by `to`, which has the same length.
 fn replaced(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
     assert_eq!(from.len(), to.len(), "{from}");
     let at = bytes.windows(from.len()).position(|part| part == from.as_bytes()).expect(from);
@@ -382,7 +384,7 @@ fn a_damaged_channel_leaves_the_others() {
     let phase = ReadParams { channel: Some("Phase".into()), ..ReadParams::default() };
     let error = parse_with(&damaged, Format::Nanoscope, &phase).expect_err("a damaged channel").to_string();
     assert!(error.contains("samps/line is 'no'"), "{error}");
-    // Not a unit of length any more, and a channel without a unit is not heights.
+    // The unit is not a length any more, and a channel without a unit does not have heights.
     let gwy = std::fs::read(folder().join("gwyfile.gwy")).expect("a file");
     let list = |bytes: &[u8]| channels_of(bytes, Format::Gwy).expect("channels");
     assert_eq!(list(&gwy).iter().map(|c| c.is_height).collect::<Vec<_>>(), [false, true]);

@@ -1,5 +1,7 @@
-//! Readers on files of other programs, on files built byte by byte, and on damaged ones; treatments against closed
-//! forms.
+//! Tests of readers and treatments.
+//!
+//! Readers are tested with files of other programs, with files built byte by byte, and with damaged files. Treatments
+//! are compared with closed forms.
 
 mod build;
 mod build_instruments;

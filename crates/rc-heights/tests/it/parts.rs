@@ -1,11 +1,11 @@
-//! What files that are built byte by byte share: their heights, and zip archives.
+//! Common parts of files that are built byte by byte: their heights, and zip archives.
 
 use std::io::{Cursor, Write as _};
 
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-/// The heights of every file here, before scales.
+/// The heights of every file here, before scaling.
 pub(crate) const HEIGHTS: [f64; 6] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
 
 /// An archive with these members.

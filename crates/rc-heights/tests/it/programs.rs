@@ -1,5 +1,6 @@
-//! Files of arrays, of Gwyddion, of Igor and texts that other programs wrote, in data/formats/ (its README says which
-//! and how).
+//! Tests with files of arrays, Gwyddion, Igor and texts, in data/formats/.
+//!
+//! Other programs wrote these files. The README there says which and how.
 
 use rc_heights::{
     ChannelInfo, Format, HeightMap, Layout, ReadParams, Unit, channels, format_of, may_have_sides, parse, read,
@@ -8,13 +9,15 @@ use rc_heights::{
 
 use crate::files::{expected, folder, map, worst};
 
-/// 12 x 8 points 2 µm and 3 µm apart.
+/// Asserts the sides of 12 x 8 points at distances of 2 µm and 3 µm.
 fn assert_sides(name: &str, map: &HeightMap) {
     let [x, y] = map.sides.unwrap_or_else(|| panic!("{name}: no sides"));
     assert!((x / 24e-6 - 1.0).abs() < 1e-12 && (y / 24e-6 - 1.0).abs() < 1e-12, "{name}: {x} x {y}");
 }
 
-/// The heights are those expected (nm) times `scale`, but for the one in row 2, column 3 if it is missing.
+/// Asserts that heights are those expected (nm) times `scale`.
+///
+/// If `is_missing`, the point in row 2, column 3 is missing.
 fn assert_heights(name: &str, map: &HeightMap, [scale, tolerance]: [f64; 2], is_missing: bool) {
     let (mut found, expected) = (map.heights.clone(), expected());
     assert_eq!((found.grid().nx(), found.grid().ny()), (12, 8), "{name}");
@@ -35,10 +38,10 @@ fn heights_units_sizes_axes_and_missing_points_come_from_the_file() {
         ("gwyfile.gwy", [1e-9, 1e-20], true, metre, metre),
         ("h5py-chunked.h5", [1e-9, 1e-20], true, metre, metre),
         ("netcdf4-classic.nc", [1e-9, 1e-20], true, metre, metre),
-        // The first index is x, and y falls.
+        // The first index is x, and y decreases.
         ("netcdf4-64bit.nc", [1e-9, 1e-20], true, metre, metre),
         ("netcdf4-zlib.nc", [1e-9, 1e-20], true, metre, metre),
-        // Meshes, and vectors of which y falls.
+        // Meshes, and vectors whose y decreases.
         ("scipy-mesh.mat", [1e-9, 1e-20], true, unnamed, unnamed),
         ("scipy-vectors.mat", [1.0, 1e-12], false, unnamed, unnamed),
         // Dimensions in reverse order, vectors of two dimensions, and meshes.
@@ -174,7 +177,7 @@ fn arrays_that_promise_terabytes_are_refused_before_memory_is_taken() {
     use std::io::Write as _;
     let gwy = promising("gwyfile.gwy", b"xres\0i", 12);
     let mat = promising("scipy-vectors.mat", &8_u32.to_le_bytes(), 12);
-    // The same in an element that is compressed.
+    // The same claim in an element that is compressed.
     let tag = [14_u32.to_le_bytes(), u32::MAX.to_le_bytes()].concat();
     let flags = [6_u32, 8, 6, 0].map(u32::to_le_bytes).concat();
     let sizes = [5_u32, 8, 1 << 20, 1 << 20].map(u32::to_le_bytes).concat();
@@ -198,7 +201,7 @@ fn arrays_that_promise_terabytes_are_refused_before_memory_is_taken() {
     }
 }
 
-/// The image of Igor with 2^20 x 2^20 points, and the checksum that goes with it.
+/// The image of Igor with a claim of 2^20 x 2^20 points, and the correct checksum.
 fn huge_wave() -> Vec<u8> {
     let mut bytes = std::fs::read(folder().join("igorwriter.ibw")).expect("a file");
     for at in [132, 136] {

@@ -1,4 +1,6 @@
-//! Whatever the bytes, a reader answers with a map or with one line; it never panics.
+//! Tests that a reader answers any bytes with a map or an error.
+//!
+//! An error is one line. A reader never panics.
 
 use proptest::prelude::*;
 use rc_heights::{Format, FormatError, HeightMap, parse};
@@ -11,7 +13,9 @@ fn files() -> &'static [(&'static str, Format, Vec<u8>)] {
     FILES.get_or_init(build::all)
 }
 
-/// One line, and a map only of what the bytes can hold.
+/// Asserts that an answer is valid.
+///
+/// An error is one line. A map is not larger than the bytes allow.
 fn assert_answer(name: &str, bytes: &[u8], answer: &Result<HeightMap, FormatError>) {
     match answer {
         Ok(map) => {
@@ -32,11 +36,11 @@ fn assert_answer(name: &str, bytes: &[u8], answer: &Result<HeightMap, FormatErro
 fn every_truncation_of_every_file_is_refused_or_still_whole() {
     for (name, format, bytes) in build::all() {
         let whole = parse(&bytes, format).unwrap_or_else(|error| panic!("{name}: {error}"));
-        // At every byte of a small file, at every 1/64 of the length of a large one.
+        // Every byte of a small file, and every 1/64 of the length of a large file.
         for length in (0..bytes.len()).step_by(if bytes.len() < 1000 { 1 } else { bytes.len().div_ceil(64) }) {
             let answer = parse(&bytes[..length], format);
             assert_answer(name, &bytes, &answer);
-            // Texts may end anywhere, and what follows the heights (remarks, end marks, directories) may be gone.
+            // Texts may end anywhere. The bytes after the heights (remarks, end marks, directories) may be missing.
             let text = matches!(format, Format::Csv | Format::Xyz);
             if let (Ok(map), false) = (answer, text) {
                 let same = map.heights.grid() == whole.heights.grid() && map.missing() == whole.missing();
@@ -56,7 +60,7 @@ fn a_flipped_bit_of_a_checked_container_is_noticed() {
         let changed = (0..bytes.len()).filter(|at| {
             let mut flipped = bytes.clone();
             flipped[*at] ^= 1;
-            // Missing points are NaN, so maps are compared as bits.
+            // Missing points are NaN, so the bits of maps are compared.
             let bits = |field: &rc_core::Field| field.values().iter().map(|v| v.to_bits()).collect::<Vec<_>>();
             parse(&flipped, format).is_ok_and(|map| bits(&map.heights) != bits(&whole))
         });

@@ -1,4 +1,4 @@
-//! Texts, archives and their names: what is refused, and what stands before the numbers.
+//! Tests of texts, archives and their names: refusals, and lines before the numbers.
 
 use std::fmt::Write as _;
 

@@ -1,4 +1,4 @@
-//! Treatments against what they must do to planes, waves and holes.
+//! Tests of treatments on planes, waves and holes.
 #![expect(clippy::float_cmp, reason = "heights that are moved or copied keep their bits")]
 
 use std::f64::consts::TAU;
@@ -29,7 +29,7 @@ fn largest(map: &HeightMap) -> f64 {
 fn levels_take_their_form_away_and_nothing_else() {
     let form = |x: f64, y: f64| 3.0 + 0.2 * x - 0.1 * y;
     let bowl = move |x: f64, y: f64| form(x, y) + 0.03 * x * x - 0.02 * x * y + 0.05 * y * y;
-    // Rounding of heights near 3, over 40 points a side.
+    // Rounding of heights near 3, over 40 points per side.
     let exact = 1e-13;
     for hole in [false, true] {
         let with_hole = |mut map: HeightMap| {
@@ -46,7 +46,7 @@ fn levels_take_their_form_away_and_nothing_else() {
         assert!(largest(&mean) > 0.3 && effect.rms_height > 0.1, "the mean takes more than the mean away");
         assert_eq!(effect.missing, if hole { 200 } else { 0 });
     }
-    // A wave of whole periods is orthogonal to the mean but not to a tilt: what is left is within its amplitude.
+    // A wave of whole periods is orthogonal to the mean but not to a tilt. The remainder is smaller than its amplitude.
     let wave = map(64, 64, [1.0, 1.0], |x, _| (TAU * 8.0 * x).sin());
     let (left, _) = treated(wave.clone(), Treatment::Level(Level::Mean));
     let change =
@@ -64,7 +64,7 @@ fn a_form_that_the_points_do_not_determine_is_refused() {
 
 #[test]
 fn laplace_fills_a_hole_in_a_harmonic_surface_with_it() {
-    // x² - y² is harmonic for differences as well, where points are equally far apart in both directions.
+    // With equal distances of points in both directions, x² - y² is harmonic for differences too.
     let saddle = |x: f64, y: f64| x * x - y * y + 0.3 * x;
     let whole = map(40, 40, [1.0, 1.0], saddle);
     let mut holed = whole.clone();
@@ -77,7 +77,7 @@ fn laplace_fills_a_hole_in_a_harmonic_surface_with_it() {
     let (filled, effect) = treated(holed.clone(), Treatment::Fill(Fill::Laplace));
     let off =
         filled.heights.values().iter().zip(whole.heights.values()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    // The iteration ends at 1e-8 of its first residual; heights are of order 1.
+    // The iteration ends at 1e-8 of its first residual. Heights are of order 1.
     assert!(off < 1e-7 && effect.missing == 0, "off by {off}");
     let (lowest, _) = treated(holed.clone(), Treatment::Fill(Fill::Lowest));
     assert_eq!(lowest.heights.at(15, 15), holed.heights.min());
@@ -113,7 +113,7 @@ fn a_window_fades_borders_and_leaves_the_middle() {
 fn hann_keeps_the_mean_square_of_a_wave() {
     let wave = map(256, 256, [1.0, 1.0], |x, y| 5.0 + (TAU * (20.3 * x + 7.0 * y)).sin());
     let windowed = hann(&wave.heights);
-    // The product of window and wave has a mean square of ½ up to waves of the window, 20 waves away.
+    // The product of window and wave has a mean square of ½, except for waves of the window, which are 20 waves away.
     assert!((windowed.rms() * 2_f64.sqrt() - 1.0).abs() < 1e-3, "rms {}", windowed.rms());
 }
 
@@ -128,7 +128,8 @@ fn the_filter_halves_waves_of_its_length() {
         // exp(-π (αλq)²) = 2^-(λ/wavelength)², and the weights are cut off at 3e-9.
         assert!((kept - expected).abs() < 1e-6, "{waves} waves: {kept} is kept, expected {expected}");
     }
-    // Four points a wave are the least: what the weights at points make of shorter waves is not what they say.
+    // Four points per wave are the minimum. For shorter waves, the weights at points do not have the effect of the
+    // formula.
     let shortest = map(64, 64, sides, |x, _| (TAU * 16.0 * x / 1e-3).cos());
     let low_pass = Treatment::LowPass { wavelength: 1e-3 / 16.0 };
     let (filtered, _) =
@@ -178,7 +179,7 @@ fn parts_are_where_they_are_asked_for() {
 
 #[test]
 fn the_square_of_any_map_is_one_that_is_accepted() {
-    // Points as many and as far apart as instruments make them, and few points at awkward distances.
+    // Numbers and distances of points as in instruments, and few points at awkward distances.
     let cases = [
         (1024, 768, 1.0, 1.0),
         (640, 480, 1.0, 1.11),
@@ -192,7 +193,7 @@ fn the_square_of_any_map_is_one_that_is_accepted() {
         let (square, _) = treated(map(nx, ny, sides, |x, _| x), Treatment::Crop(Crop::Square));
         let [x, y] = square.sides.expect("sides");
         assert!((x / y - 1.0).abs() <= SAME_LENGTH, "{nx} x {ny}, {dx} x {dy}: {x} x {y}");
-        // Not needlessly small: nothing larger is a square, up to the shorter side.
+        // The part is not needlessly small: up to the shorter side, no larger part is a square.
         let grid = square.heights.grid();
         for larger in grid.nx() + 1..=(sides[0].min(sides[1]) / dx) as usize {
             let fits = |ny: usize| (dx * larger as f64 / (dy * ny as f64) - 1.0).abs() <= SAME_LENGTH;
@@ -241,8 +242,8 @@ fn resampling_in_either_order_is_the_same_map() {
 
 #[test]
 fn the_nearest_height_is_the_nearest_by_length() {
-    // Points are ten times as far apart along x as along y: what is three points away along y is nearer than a
-    // neighbour along x.
+    // The distance of points along x is ten times that along y. So a point three rows away is nearer than a neighbour
+    // along x.
     let mut holed = map(9, 9, [9.0, 0.9], |x, y| 10.0 * x.floor() + (10.0 * y).floor());
     for iy in 3..6 {
         let i = holed.heights.grid().index(4, iy);
@@ -252,7 +253,7 @@ fn the_nearest_height_is_the_nearest_by_length() {
     let [below, above] = [2, 6].map(|iy| holed.heights.at(4, iy));
     assert_eq!([3, 5].map(|iy| filled.heights.at(4, iy)), [below, above]);
     assert!([below, above].contains(&filled.heights.at(4, 4)), "{}", filled.heights.at(4, 4));
-    // A large hole against a search over all points.
+    // A large hole is compared with a search over all points.
     let mut wide = map(30, 40, [3.0, 1.0], |x, y| x + 31.7 * y);
     for i in (0..1200).filter(|i| i % 97 != 0) {
         wide.heights.values_mut()[i] = f64::NAN;
