@@ -1,4 +1,4 @@
-//! Contact spots: the connected parts of the contact. Their areas are located below the element.
+//! Contact spots: the connected parts of the contact. Their areas are resolved below the element.
 
 use rc_core::{Boundary, EdgeBias, Field, Grid};
 

@@ -12,7 +12,9 @@ use crate::error::{OperatorFault, ProblemError};
 /// They are the largest part of any displacement.
 const LONG_WAVES: usize = 4;
 
-/// One wave in this many is checked on large grids, and at least [`FEWEST_WAVES`].
+/// Waves for each one that is checked on large grids.
+///
+/// At least [`FEWEST_WAVES`] are checked.
 const WAVES_PER_LOOK: usize = 64;
 const FEWEST_WAVES: usize = 512;
 

@@ -1,11 +1,11 @@
 //! The adhesionless contact problem on a periodic half-space.
 //!
-//! Find p ≥ 0 on the cell with the gap `g = v - (h - h_max + Δ) ≥ 0`, `p·g = 0` and `v = L p` (Eq. 3-4). Either the
-//! mean pressure σ0 is given, and Δ is its multiplier. Or the penetration Δ is given, and σ0 is a result.
+//! Find p ≥ 0 on the cell with the gap `g = v - (h - h_max + Δ) ≥ 0`, `p·g = 0` and `v = L p` (Eq. 3-4). If the mean
+//! pressure σ0 is given, Δ is its multiplier. If the penetration Δ is given, σ0 is a result.
 //!
-//! [`solve`] solves it. It chooses between an adaptive mesh, whose elements follow the contact, and the uniform grid.
-//! [`Method`] names these two and the paper's own procedure. [`ContactProblem`] takes other kernels, observers and
-//! plans. [`rc_core`] has the conventions and units.
+//! [`solve`] solves this problem. It chooses between an adaptive mesh, whose elements follow the contact, and the
+//! uniform grid. [`Method`] names these two and the paper's own procedure. [`ContactProblem`] takes other kernels,
+//! observers and plans. [`rc_core`] has the conventions and units.
 //!
 //! ```
 //! use std::f64::consts::{PI, TAU};

@@ -9,9 +9,9 @@ use rc_core::quantity::digits;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Method {
-    /// Conjugate gradients on a mesh whose elements follow the contact.
+    /// Preconditioned conjugate gradients on elements that follow the contact.
     ///
-    /// They are preconditioned. Work and memory grow with the contact and not with the cell.
+    /// Work and memory grow with the contact and not with the cell.
     Adaptive,
     /// Preconditioned conjugate gradients on all elements of the grid.
     Uniform,
@@ -57,9 +57,9 @@ pub enum MethodReason {
         /// Estimated contact area, in percent of the nominal one.
         percent: f64,
     },
-    /// Contact is so scattered that the uniform grid is the cheaper method.
+    /// Contact is so scattered that the uniform grid is the cheaper one.
     ///
-    /// The contact on the base grid, the coarsest of the adaptive method, shows this.
+    /// The base grid, the coarsest of the adaptive method, shows the scattered contact.
     ScatteredContact {
         /// Tiles near contact, in percent of all.
         percent: f64,

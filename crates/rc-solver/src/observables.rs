@@ -58,8 +58,7 @@ impl Observables {
         rms_pressure: f64,
         max_pressure: f64,
     ) -> Self {
-        // Edges of the plastic part are like other edges for q, the pressure that is left to the hardness: p² = H² - 2
-        // H q + q².
+        // Where the pressure leaves q = H - p to the hardness, edges of q are like other edges. p² is H² - 2 H q + q².
         let rest = plastic.map(|edges| edges.rest);
         let of_rest = |of_area: &dyn Fn(&ContactArea) -> f64| rest.as_ref().map_or(0.0, of_area);
         let missing_square = area.missing_square + of_rest(&|rest| rest.missing_square);

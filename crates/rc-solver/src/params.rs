@@ -12,7 +12,7 @@ pub(crate) struct IterationParams {
 }
 
 impl IterationParams {
-    /// Solves to a `tolerance` relative to the height range.
+    /// Parameters for a `tolerance` relative to the height range.
     pub(crate) fn relative(tolerance: f64) -> Self {
         Self { bound: ErrorBound::Relative(tolerance), max_iterations: 2000 }
     }

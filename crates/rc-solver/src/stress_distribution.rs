@@ -42,7 +42,7 @@ impl StressDistribution {
     /// The distribution of `pressure`, in E*, on bins with the ends `edges`.
     ///
     /// The ends increase from 0 or above. The pressure is on a periodic grid. A bin that ends before it begins has
-    /// density 0. One pass over the field is enough. Only elements in contact and beside it cost more than a look.
+    /// density 0. The function passes over the field once, and computes only at elements in contact and beside it.
     #[must_use]
     pub fn of(pressure: &Field, edges: &[f64]) -> Self {
         let grid = pressure.grid();

@@ -11,7 +11,7 @@ pub(crate) struct Support {
     pub(crate) boundary: Boundary,
     /// Displacement of a periodic cell under a uniform pressure of 1, in λ/E*.
     ///
-    /// It is not zero on a layer on a base.
+    /// It is zero, except for a layer on a base.
     pub(crate) compliance: f64,
 }
 

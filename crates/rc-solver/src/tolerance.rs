@@ -115,7 +115,7 @@ impl std::fmt::Display for ErrorBound {
     }
 }
 
-/// Ratio of the energy error that an iteration aims at to its bound ([`ErrorBound::aim`]).
+/// Ratio of the aim of an iteration to the bound on its energy error ([`ErrorBound::aim`]).
 const AIM: f64 = 0.3;
 
 /// The length that the deepest overlap is compared with.
@@ -128,10 +128,10 @@ pub(crate) enum Measure {
 }
 
 impl Measure {
-    /// Tolerance of a coarser level, `below` levels under the finest.
+    /// Tolerance of a coarser level. `below` is 0 for the level below the finest.
     ///
-    /// The discretisation error of the level just below the finest is far above its tolerance. Levels further down only
-    /// prepare the next one. Each may be solved less accurately by [`COARSENING`], up to a limit.
+    /// The discretisation error of that level is far above its tolerance. Levels further down only prepare the next
+    /// one. Each may be solved less accurately by [`COARSENING`], up to a limit.
     pub(crate) fn coarse_tolerance(self, below: usize) -> f64 {
         let (tolerance, coarsest) = match self {
             Self::HeightRange => (1e-4, 1e-3),

@@ -136,10 +136,10 @@ fn smooth_side(map: &Field) -> usize {
     sides[0].max(sides[1]) / spacing
 }
 
-/// Mean square of the differences over `spacing` elements along both axes.
+/// Mean square slope from differences over `spacing` elements along both axes.
 ///
-/// The unit is the height over the side of an element. All rows count, because a repeating surface may look smooth on
-/// some of them.
+/// Slopes are in units of the height over the side of an element. All rows count, because a repeating surface may look
+/// smooth on some of them.
 fn mean_square_slope(map: &Field, spacing: usize) -> f64 {
     let (nx, ny) = (map.grid().nx(), map.grid().ny());
     let of_row = |iy: usize| {

@@ -12,8 +12,8 @@ use crate::ErrorBound;
 /// Error of L that descents may have, as a multiple of a relative tolerance.
 ///
 /// The error is relative to the rms displacement, and tolerances to the height range. On any surface, the height range
-/// is at least ten times this measure of the error. The maximum error of an element is up to five times the rms error.
-/// With a multiple of 10, a third of a cell in contact at λ_min/128 did not converge to 3e-7.
+/// is at least ten times the rms displacement. The maximum error of an element is up to five times the rms error. With
+/// a multiple of 10, a third of a cell in contact at λ_min/128 did not converge to 3e-7.
 const OPERATOR_ERROR_PER_TOLERANCE: f64 = 3.0;
 
 /// Error of L that descents may have, under an energy error.

@@ -12,7 +12,7 @@ use crate::ProblemError;
 pub enum AdaptiveError {
     /// Heights, load or tolerance are out of range.
     ///
-    /// [`crate::solve`] returns it as [`crate::SolveError::Problem`].
+    /// [`crate::solve()`] returns it as [`crate::SolveError::Problem`].
     #[error(transparent)]
     Problem(#[from] ProblemError),
     /// The elements of the mesh are not squares.

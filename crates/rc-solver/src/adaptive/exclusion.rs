@@ -1,9 +1,9 @@
 //! The places where contact is possible. Bounds exclude it everywhere else.
 //!
 //! The displacement has a smooth part, which is interpolated from the base grid, and short-range parts. The short-range
-//! parts are not negative where there is no pressure. The smooth part and the height are bounded between the points of
-//! the base grid. Their difference is then a lower bound of the gap. Fine cells are computed only where this bound
-//! admits contact.
+//! parts are not negative where there is no pressure. Between the points of the base grid, the smooth part has a lower
+//! bound and the height an upper bound. The difference of the two bounds is a lower bound of the gap. Fine cells are
+//! computed only where this bound admits contact.
 
 use rayon::prelude::*;
 use rc_comm::Ranks;

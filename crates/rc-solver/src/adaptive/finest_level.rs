@@ -331,7 +331,7 @@ impl NearContact {
             before.has(sides, place) || cells.any(|i| pressure[i] > 0.0 || gap[i] < near)
         };
         let elements = candidates.elements.chosen(is_near);
-        // The vectors follow one after the other. Values that fill up a level are as far from contact as possible.
+        // The vectors are moved one after the other. Values that fill up a level are as far from contact as possible.
         let chosen = |values: Vec<f64>, elsewhere: f64| candidates.elements.moved(&elements, &values, elsewhere);
         let heights = chosen(std::mem::take(&mut candidates.heights), f64::MIN);
         let (gap, pressure) = (chosen(gap, f64::MAX), chosen(pressure, 0.0));

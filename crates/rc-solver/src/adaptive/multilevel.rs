@@ -35,10 +35,9 @@ impl MultilevelOperator {
     /// displacement (see [`SplitParams::for_error`]). Tiles are sorted, and duplicates are dropped: see
     /// [`MultilevelOperator::places`].
     ///
-    /// Its base grid has `base_side` elements per side. Its error is at most `error` of the rms displacement (see
-    /// [`SplitParams::for_error`]). Tiles are sorted, and duplicates are dropped: see [`MultilevelOperator::places`].
-    /// [`AdaptiveError::Base`] if `base_side` is not a multiple of 8, if `side` is not 2^k times it with k ≥ 1, or if a
-    /// place is outside the grid. [`AdaptiveError::OperatorError`] if `error` is out of reach.
+    /// # Errors
+    /// [`AdaptiveError::Base`] if `base_side` is not a multiple of 8, or `side` is not 2^k times it with k ≥ 1. Also if
+    /// a place is outside the grid. [`AdaptiveError::OperatorError`] if `error` is out of reach.
     pub fn new(base_side: usize, side: usize, places: Vec<[u32; 2]>, error: f64) -> Result<Self, AdaptiveError> {
         let bad = AdaptiveError::Base { base: base_side, waves: 0, finest: side };
         let divides = base_side >= TILE && base_side.is_multiple_of(TILE) && side > base_side;

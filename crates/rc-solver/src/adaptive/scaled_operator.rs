@@ -1,8 +1,8 @@
 //! The multilevel operator on vectors of double precision, for fresh gaps.
 //!
 //! Certificates come from it. Inside, it computes in double or in single precision. In single precision, the rounding
-//! of L p is below 1e-6 of the rms displacement, as is the error of the split kernel itself. It takes half the time and
-//! memory. Heights and gaps are in double precision either way.
+//! of L p is below 1e-6 of the rms displacement, as is the error of the split kernel itself. Single precision takes
+//! half the time and memory. Heights and gaps are in double precision either way.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use crate::problem::power_of_two_near;
 pub(super) struct ScaledOperator<'a, T> {
     operator: TileOperator<T>,
     tables: &'a Tables<T>,
-    /// Subtracted from every pressure before it is rounded.
+    /// Pressure that is subtracted from every pressure before it is rounded.
     reference: f64,
     /// The unit of pressures and displacements.
     ///
@@ -28,8 +28,8 @@ impl<'a, T: Real + Into<f64>> ScaledOperator<'a, T> {
     /// The operator of `tables` on `hierarchy`.
     ///
     /// Pressures are about `mean`, and displacements about `size`. A uniform pressure displaces nothing, so the mean is
-    /// subtracted if elements cover the cell. Far beyond full contact, the mean would spoil the result: its rounding
-    /// and its part of the split kernel's error would be larger than the pressure from the heights.
+    /// subtracted if elements cover the cell. Far beyond full contact, the mean is much larger than the pressure from
+    /// the heights. Its rounding and its part of the split kernel's error would then be larger than that pressure.
     pub(super) fn new(hierarchy: Arc<Hierarchy>, tables: &'a Tables<T>, mean: f64, size: f64) -> Self {
         let reference = if hierarchy.elements().cover_cell() { mean } else { 0.0 };
         Self { operator: TileOperator::new(hierarchy), tables, reference, unit: power_of_two_near(size) }

@@ -200,7 +200,7 @@ impl AdaptiveSolution {
         Ok(())
     }
 
-    /// The difference of the gap to v - h: the maximum height minus the penetration.
+    /// Offset of the gap from v - h: the maximum height minus the penetration.
     #[must_use]
     pub(crate) fn gap_offset(&self, h_max: f64) -> f64 {
         h_max - self.info.penetration

@@ -59,7 +59,7 @@ pub struct ContactArea {
 pub(crate) struct Rim {
     /// Σ over edges of the area of an element, relative to the nominal area.
     pub(crate) area: f64,
-    /// Σ over edges of the area of an element times the squared pressure inside, in E*².
+    /// Σ over edges of an element's area times the squared pressure inside, in E*².
     ///
     /// The area is relative to the nominal area.
     pub(crate) squares: f64,
@@ -91,7 +91,7 @@ const ERROR_OF_TERM: f64 = 0.4;
 
 /// 95 % error for each diagonal above or below the expected number [`DIAGONALS`].
 ///
-/// The bias is that of edges in all directions.
+/// The bias is subtracted as for edges in all directions.
 const ERROR_OF_DIRECTIONS: f64 = 0.15;
 
 /// Neighbours across a corner for each edge, in the mean over the directions of edges.
@@ -110,8 +110,7 @@ impl ContactArea {
     /// E* = 1 and λ = 1. The gap is zero in contact. `bias` is that of the kernel of the solution. The function makes
     /// one pass, and takes time only for elements in contact.
     ///
-    /// E* = 1 and λ = 1. The gap is zero in contact. The function makes one pass, and takes time only for elements in
-    /// contact.
+    /// # Panics
     /// When `pressure` and `gap` are not on the same grid.
     #[must_use]
     pub fn of(pressure: &Field, gap: &Field, bias: EdgeBias) -> Self {

@@ -235,7 +235,7 @@ impl Descent<'_> {
 
     /// Brings the loads of squares to the wanted ones, as far as pressures allow.
     ///
-    /// Pressures are between the bounds.
+    /// Only pressures between the bounds change.
     fn share_limited(&mut self, loads: &[Load], shares: &Shares) {
         let (len, squares, layout) = (self.layout.len(), self.squares(), &self.layout);
         let hardness = self.problem.hardness;

@@ -43,7 +43,7 @@ impl Descent<'_> {
         self.precondition_mean(sums);
         let mut set = self.begin_round();
         if set.n == 0.0 && sums.has_plastic() {
-            // The last projection left every element at one of both bounds. It then changed the gaps by which it had
+            // The last projection left every element at one of the two bounds. It then changed the gaps by which it had
             // chosen.
             self.is_chosen = false;
             set = self.begin_round();
@@ -65,7 +65,7 @@ impl Descent<'_> {
     /// Writes the residual of the active elements.
     fn begin_round(&mut self) -> ActiveSet {
         let (len, gradient) = (self.layout.len(), self.gradient());
-        // The choice before clipping goes with the extension of residuals.
+        // The choice before clipping is kept only if residuals are extended.
         let is_chosen = std::mem::replace(&mut self.is_chosen, self.operators.corrections.extends());
         let directions = &mut self.directions;
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };

@@ -106,8 +106,8 @@ impl Descent<'_> {
 
     /// Starts from the overlap with a rigid plane that carries about the mean pressure `wanted`.
     ///
-    /// The load of an overlap is that after scaling its weighted mean gap to zero. If only an overlap beyond the range
-    /// of depths would carry the load, the start is a uniform pressure.
+    /// The pressure of the overlap is first scaled so that its weighted mean gap is zero. The load of this pressure
+    /// counts. If only an overlap beyond the range of depths would carry the load, the start is a uniform pressure.
     fn overlap_of_load(&mut self, wanted: f64) -> GapSums {
         let n_cell = self.n_cell();
         // A coarse level may not be as high as the finest.

@@ -39,7 +39,7 @@ pub(crate) struct GapSums {
 
 /// Sums over plastic elements, whose pressure is the hardness.
 ///
-/// A plastic element may not have a gap.
+/// A plastic element must not have a gap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlasticSums {
     /// Σ 1
@@ -237,8 +237,8 @@ impl GapSums {
 
     /// The gap of contact for certificates and penetrations.
     ///
-    /// It is exact where the penetration is prescribed and elements are plastic. No scaling of the pressure could close
-    /// the mean gap of the other elements.
+    /// It is zero, the exact value, where the penetration is prescribed and elements are plastic. No scaling of the
+    /// pressure could close the mean gap of the other elements there.
     pub(super) fn reference_gap(&self, problem: &Problem) -> f64 {
         match problem.control {
             Control::Penetration(_) if !self.may_scale() => 0.0,

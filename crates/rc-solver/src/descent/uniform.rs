@@ -76,7 +76,7 @@ impl PreconditionedOperator for UniformCorrections {
     fn set_mean(&mut self, eigenvalue: f64) {
         let grid = self.convolution.grid();
         let around = self.margin.as_ref().map_or(grid, Margin::grid);
-        // The load on the grid is also the load on the larger grid.
+        // The grid gets the whole load on the larger grid.
         let part = grid.len() as f64 / around.len() as f64;
         self.inverse.symbol.set_mean((part * eigenvalue / around.len() as f64) as f32);
     }

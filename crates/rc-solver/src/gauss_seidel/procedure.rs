@@ -172,7 +172,7 @@ impl<'a> Procedure<'a> {
             if self.settled {
                 break;
             }
-            // While the contact still changes, v is not needed to all digits.
+            // While the contact still changes, v may differ from the prescribed values in its last digits.
             if removed + added <= self.mesh.len() / 100 {
                 residual = wanted.max(0.1 * residual);
             }

@@ -12,9 +12,10 @@ use crate::solution::{GridSolution, LevelInfo, SolveInfo, Status};
 use crate::stiffness::stiffness_of;
 use crate::{Certificate, Control, IterationParams, ProblemError};
 
-/// Maximum fault of an operator, relative to the overlap that a solve aims at.
+/// Maximum fault of an operator, divided by the overlap that a solve aims at.
 ///
-/// The fault is relative to the displacements. The ratio is a tenth, because U/σ0 may be a tenth of the displacements.
+/// The fault is relative to the displacements, and the overlap to U/σ0. The ratio is a tenth, because U/σ0 may be a
+/// tenth of the displacements.
 const FAULT_PER_AIM: f64 = 0.1;
 
 /// Solves the contact problem on the grid of `heights` (in λ, any mean) with `operator`.
@@ -28,8 +29,8 @@ const FAULT_PER_AIM: f64 = 0.1;
 /// operator on the returned pressure.
 ///
 /// # Errors
-/// [`ProblemError`] for an operator with another number of elements or not of a half-space, for heights that are not
-/// finite, and for a control or tolerance out of range.
+/// [`ProblemError`] for an operator with another number of elements, or one that is not of a half-space. Also for
+/// heights that are not finite, and for a control or tolerance out of range.
 pub(crate) fn solve_on_grid(
     heights: &Field,
     operator: &dyn Operator,

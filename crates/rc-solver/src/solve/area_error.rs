@@ -54,7 +54,7 @@ fn waves_of(heights: &HeightSource<'_>) -> Result<usize, SolveError> {
     surface.and_then(HeightField::band_limit).filter(|&waves| waves > 0).ok_or(SolveError::NoWaves)
 }
 
-/// Elements per side of the grid with this number for the shortest wave.
+/// Elements per side of the grid with `elements_per_wave` for the shortest wave.
 ///
 /// There are more if the grid would be tiny.
 fn side(waves: usize, elements_per_wave: usize) -> usize {

@@ -1,4 +1,4 @@
-//! The ways to a solution.
+//! The functions that lead to a solution.
 
 use std::sync::Arc;
 
@@ -127,11 +127,7 @@ pub fn solve<'a>(
 /// iterations count. The certificate comes from a fresh application of the operator. [`Solution::stiffness`] is a lower
 /// bound here, mostly within a percent, since its iteration is not preconditioned either.
 ///
-/// Projected conjugate gradients on this grid find the pressure. Nothing is known of the operator that would
-/// precondition them, so they need several times the iterations of the uniform method. For a half-space with a
-/// [`rc_core::Kernel`], [`ContactProblem::with_kernel`] is faster. Of `params`, only the tolerance and the number of
-/// iterations count. The certificate comes from a fresh application of the operator. [`Solution::stiffness`] is a lower
-/// bound here, mostly within a percent, since its iteration is not preconditioned either.
+/// # Errors
 /// [`SolveError`]. [`crate::ProblemError::Operator`] for an operator with another number of elements.
 /// [`crate::ProblemError::NotElastic`] if three applications at the start show that the operator is not one of a
 /// half-space (see [`Operator`]).

@@ -100,8 +100,8 @@ impl<'a> Plan<'a> {
 
 /// The solution of the adaptive method, or the reason to take the uniform method instead.
 ///
-/// This reason exists if an estimate chose the method, contact turns out to be so scattered that the uniform grid is
-/// cheaper, and that grid fits into memory.
+/// There is such a reason if an estimate chose the method, and contact turns out to be too scattered. The uniform grid
+/// is then cheaper, and must fit into memory.
 fn by_adaptive(
     problem: &ContactProblem<'_>,
     params: &SolveParams,

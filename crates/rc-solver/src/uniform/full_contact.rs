@@ -78,10 +78,10 @@ fn fluctuation(heights: &Field, kernel: &dyn Kernel, mean: f64) -> SymbolOperato
 /// Maximum number of elements of a grid that shows whether contact is partial.
 const SKETCH: usize = 1 << 18;
 
-/// Ratio to the mean pressure of the fluctuation that shows partial contact.
+/// Ratio of fluctuation to mean of the pressure that shows partial contact.
 ///
-/// If full contact on a coarser grid falls this many times the mean below it, contact is partial on the finest grid
-/// too. The pressures of the two grids differ by much less.
+/// The fluctuation is that of full contact on a coarser grid. If its minimum is below minus this many times the mean,
+/// contact is partial on the finest grid too. The pressures of the two grids differ by much less.
 const CLEARLY: f64 = 2.0;
 
 /// Whether full contact on a coarse grid shows that contact is partial.

@@ -12,7 +12,9 @@ use crate::descent::{Descent, DescentObserver, Goal, Outcome, Start, uniform_ope
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues};
 
-/// Minimum side of the coarsest grid. Smaller grids cost nothing without preparation.
+/// Minimum number of elements per side of the coarsest grid.
+///
+/// A smaller grid costs nothing, so coarser ones do not prepare it.
 pub(super) const SMALLEST_SIDE: usize = 64;
 
 /// The data that the levels of nested grids share.

@@ -8,7 +8,9 @@ use rc_core::testing::quasi_random;
 use rc_core::{DVec2, Field, Grid};
 use rc_solver::{Control, Method, SolveParams, solve};
 
-/// Waves up to four per cell with the amplitudes of a self-affine surface, moved by `shift` (λ).
+/// Waves up to four per cell with the amplitudes of a self-affine surface, and moved.
+///
+/// `shift` is in λ.
 fn rough(seed: usize, side: usize, shift: DVec2) -> Field {
     let waves: Vec<(f64, f64, f64, f64)> = (-4..=4_i32)
         .flat_map(|ky| (0..=4_i32).map(move |kx| (kx, ky)))

@@ -261,7 +261,7 @@ fn a_flat_surface_bears_what_is_below_its_hardness() {
     assert!(solution.observables().plastic.expect("hard").fraction <= 0.0);
 }
 
-/// A contact is the same problem if heights, load and hardness are multiplied by one factor.
+/// A contact is the same problem when heights, load and hardness change by one factor.
 ///
 /// Another program does not converge from a load of 0.07 E* on.
 #[test]

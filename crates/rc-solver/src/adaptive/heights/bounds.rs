@@ -243,7 +243,7 @@ impl<'a> Expansions<'a> {
         let third_derivatives = angle * (xx + 3.0 * xx.min(xy) + 3.0 * yy.min(xy) + yy);
         let gradient_error = (e1 + e0 * angle) * surface.amplitude();
         let d = self.half;
-        // Products of two errors are far below the factor 2.
+        // The factor 2 covers products of two errors, which are far smaller.
         let errors = 2.0 * (2.0 * surface.error() + 2.0 * d * gradient_error + 2.0 * d * d * curvature_error);
         (d * d * d / 6.0 * third_derivatives + errors, xx.max(yy) * (surface.side() as f64).powi(2))
     }

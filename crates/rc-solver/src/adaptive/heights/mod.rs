@@ -191,13 +191,11 @@ impl<'a> Heights<'a> {
     /// There are `blocks` equal blocks along both sides of the cell. The bound holds at all centres of the finest
     /// level. For a band-limited surface it holds at every point, and so for the tiles of every level.
     ///
-    /// It takes one look-up when the blocks are the tiles of a level, and a few otherwise. A block smaller than the
-    /// kept squares (cells of the interpolation grid, finest tiles of a map) gets the bound of the square that contains
+    /// It takes one look-up when the blocks are the tiles of a level, and a few otherwise. The kept squares are cells
+    /// of the interpolation grid, or finest tiles of a map. A smaller block gets the bound of the square that contains
     /// it.
     ///
-    /// It takes one look-up when the blocks are the tiles of a level, and a few otherwise. A block smaller than the
-    /// kept squares (cells of the interpolation grid, finest tiles of a map) gets the bound of the square that contains
-    /// it.
+    /// # Panics
     /// When the block is outside the cell.
     pub(crate) fn upper_bound(&self, blocks: [usize; 2], place: [usize; 2]) -> f64 {
         self.bounds.of_block(blocks, place)

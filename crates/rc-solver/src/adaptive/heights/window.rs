@@ -3,8 +3,8 @@
 //! A wave of frequency ξ (waves per grid cell) with samples `exp(2πi ξ j)` is the sum over cells j of `φ(x - j) c_j`.
 //! The coefficients are `c_j = exp(2πi ξ j) / φ̂(ξ)`. Aliases have the relative size `φ̂(ξ + m) / φ̂(ξ)`, m ≠ 0.
 //!
-//! A Fourier transform divides by φ̂ once. All of the window's width is then left to suppress the aliases. Half as many
-//! taps are enough as for interpolation of the samples themselves: 12 instead of 24 at four samples per wave.
+//! A Fourier transform divides by φ̂ once. All of the window's width is then left to suppress the aliases. An
+//! interpolation of the samples themselves needs twice as many taps: 24 instead of 12 at four samples per wave.
 //!
 //! This is the interpolation step of a non-uniform Fourier transform (Jackson, Meyer, Nishimura, Macovski, IEEE Trans.
 //! Med. Imaging 10 (1991) 473-478; Barnett, Magland, af Klinteberg, SIAM J. Sci. Comput. 41 (2019) C479-C504).
@@ -19,10 +19,10 @@ pub(super) const TAPS: usize = 12;
 /// Maximum frequency that is interpolated, in waves per cell: four samples in a wave.
 pub(super) const HIGHEST_FREQUENCY: f64 = 0.25;
 
-/// Shape parameter β, at which the main lobe of φ̂ ends where the first alias begins.
+/// Shape parameter β. The main lobe of φ̂ ends about where the first alias begins.
 ///
-/// The first alias begins at 1 - [`HIGHEST_FREQUENCY`]. One per cent less reduces the largest error to a third, since
-/// φ̂ is not yet small where its main lobe ends.
+/// The first alias begins at 1 - [`HIGHEST_FREQUENCY`]. β is one per cent below the value for this. The largest error
+/// is then a third, since φ̂ is not yet small where its main lobe ends.
 const SHAPE: f64 = 0.99 * PI * TAPS as f64 * (1.0 - HIGHEST_FREQUENCY);
 
 /// Errors of the interpolated wave of amplitude 1 and of its first and second derivative.

@@ -6,8 +6,9 @@
 //! its Fourier transform. Each level above adds its stencil of the difference w = u - P u, which is zero where nothing
 //! is active. The inverse is the sum of all levels with the transposes around them, so it is symmetric.
 //!
-//! (The filters of L between levels would see the ends of tiles as edges of u.) With the extension and one grid,
-//! residuals fall by ten in an iteration. With two or three levels as here, they do so in one and a half iterations.
+//! The filters that L goes through between levels are not used here. They would see the ends of tiles as edges of u.
+//! With the extension and one grid, residuals fall by ten in an iteration. With two or three levels as here, they do so
+//! in one and a half iterations.
 
 use std::sync::Arc;
 

@@ -45,9 +45,9 @@ pub(crate) struct Reach {
 impl Hierarchy {
     /// The levels over `elements` down to the base grid.
     ///
-    /// Each has the tiles that filters need. The sides of the base grid are multiples of 8. The coarsest elements are
-    /// finer than the base grid's. Elements whose sizes differ by more than a factor of 2 are so far apart that
-    /// stencils of the level between them do not reach.
+    /// Each has the tiles that filters need. The sides of the base grid must be multiples of 8. The coarsest elements
+    /// must be finer than the base grid's. Elements whose sizes differ by more than a factor of 2 must be farther apart
+    /// than stencils of the level between them reach.
     pub(crate) fn new(base: Grid, mesh: impl Into<Mesh>, reach: Reach) -> Self {
         let mesh = mesh.into();
         let elements = mesh.elements();

@@ -245,7 +245,7 @@ impl<T: Real> TileOperator<T> {
         (tables.sizes.passes.displace_coarse)(self.arch, &pass, Targets { places: &here.places()[tiles], cells });
     }
 
-    /// Adds the displacement of some tiles that larger elements nearby cause.
+    /// Adds the displacement that larger elements nearby cause in some tiles.
     ///
     /// The tiles have elements 2^`coarser` times as large as the finest.
     fn add_ghosts(&self, tables: &Tables<T>, coarser: usize, tiles: Range<usize>, cells: &mut [T]) {

@@ -1,9 +1,9 @@
 //! Smooth extension of values on the active elements to the whole grid.
 //!
 //! With it, the approximate inverse of L is a good one for many contacts. |q|/2 is the inverse of L on the whole grid.
-//! The inverse of L among the active elements alone is its Schur complement S. Of all functions u that equal r on the
-//! active elements, one has the minimum of ⟨u, |q|/2 u⟩, and this minimum is ⟨r, S r⟩. Any linear extension u = F r
-//! therefore gives an approximate inverse Fᵀ |q|/2 F that is at least S. It is the closer to S the smoother u is.
+//! The inverse of L among the active elements alone is its Schur complement S. Over all functions u that equal r on the
+//! active elements, the minimum of ⟨u, |q|/2 u⟩ is ⟨r, S r⟩. Any linear extension u = F r therefore gives an
+//! approximate inverse Fᵀ |q|/2 F that is at least S. It is the closer to S the smoother u is.
 //!
 //! With zeros between contacts, u jumps at the edge of each contact. A residual from a coarser grid is smooth over many
 //! contacts. With zeros between them it looks as rough as the contacts are small, and the iterations grow with the
