@@ -1,4 +1,4 @@
-//! What ends a command early, and the exit code that goes with it.
+//! Errors that end a command early, with their exit codes.
 
 use std::path::Path;
 
@@ -6,19 +6,21 @@ use rc_sweep::files::FileError;
 use rc_sweep::memory::{Bound, MemoryError};
 use thiserror::Error;
 
-/// Exit code of a process that was interrupted, as shells have it.
+/// Exit code of an interrupted process, as shells use it.
 pub(crate) const INTERRUPTED: u8 = 130;
 
-/// Why a command did not end well. Each message is one line: what, where, and what would be right.
+/// Why a command failed.
+///
+/// Each message is one line that says what is wrong, where, and what would be right.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum CliError {
-    /// The input cannot be used; nothing was computed or written. Exit code 2.
+    /// The input cannot be used, and nothing was computed or written. Exit code 2.
     #[error("{0}")]
     Input(String),
-    /// The solver did not reach the tolerance; the results are written and marked. Exit code 3.
+    /// The solver did not reach the tolerance. The results are written and marked. Exit code 3.
     #[error("{0}")]
     NotConverged(String),
-    /// The command was interrupted; what there was is written and marked. Exit code 130.
+    /// The command was interrupted. The results up to then are written and marked. Exit code 130.
     #[error("{0}")]
     Interrupted(String),
     /// A result could not be written. Exit code 4.
@@ -27,7 +29,9 @@ pub enum CliError {
 }
 
 impl CliError {
-    /// Exit code of the process: 2 bad input, 3 not converged, 4 could not write, 130 interrupted.
+    /// Exit code of the process.
+    ///
+    /// It is 2 for bad input, 3 for not converged, 4 for could not write, and 130 for interrupted.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
@@ -38,7 +42,7 @@ impl CliError {
         }
     }
 
-    /// The error of another rank, from its exit code.
+    /// The error of another rank, from its exit code and message.
     pub(crate) fn of_code(code: u8, message: String) -> Self {
         match code {
             3 => Self::NotConverged(message),
@@ -48,19 +52,21 @@ impl CliError {
         }
     }
 
-    /// Bad input. Line breaks, which messages of parsers may bring along, become "; ".
+    /// The error for bad input.
+    ///
+    /// Messages of parsers may have line breaks, which become "; ".
     pub(crate) fn input(message: impl std::fmt::Display) -> Self {
         let message = message.to_string();
         let lines: Vec<&str> = message.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
         Self::Input(lines.join("; "))
     }
 
-    /// Bad input in a file.
+    /// The error for bad input in a file.
     pub(crate) fn in_file(path: &Path, message: impl std::fmt::Display) -> Self {
         Self::input(format_args!("{}: {message}", path.display()))
     }
 
-    /// A file that could not be written.
+    /// The error for a file that could not be written.
     pub(crate) fn write(path: &Path, cause: impl std::fmt::Display) -> Self {
         Self::Write(format!("cannot write {}: {cause}", path.display()))
     }
@@ -95,7 +101,7 @@ impl From<MemoryError> for CliError {
     }
 }
 
-/// Words that are not a command line, without the usage that clap adds.
+/// The error for invalid arguments, without the usage that clap adds.
 impl From<&clap::Error> for CliError {
     fn from(error: &clap::Error) -> Self {
         let text = error.to_string();

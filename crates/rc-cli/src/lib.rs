@@ -1,8 +1,8 @@
 //! The command line of rc: scenes, files in SI units, summaries and pictures.
 //!
-//! The way of a solve: arguments and file give a [`scene`], [`scene::resolve`] checks it and turns it into a problem in
-//! units of λ and E*, `rc_solver` solves it, [`rc_sweep::Summary`] is the result in SI, [`rc_sweep::files`] writes
-//! files that are there whole or not at all.
+//! A solve has four steps. Arguments and a file give a [`scene`]. [`scene::resolve`] checks it and turns it into a
+//! problem in units of λ and E*. `rc_solver` solves the problem. [`rc_sweep::Summary`] is the result in SI units, and
+//! [`rc_sweep::files`] writes files completely or not at all.
 //!
 //! ```
 //! use clap::Parser as _;
@@ -52,7 +52,9 @@ pub fn main() -> ExitCode {
     main_with(std::env::args_os()).into()
 }
 
-/// Runs a command line, the name of the program first, and returns the exit code of the process.
+/// Runs a command line and returns the exit code of the process.
+///
+/// The first argument is the name of the program.
 #[must_use]
 pub fn main_with(words: impl IntoIterator<Item = OsString>) -> u8 {
     let cli = match Cli::try_parse_from(words) {
@@ -68,10 +70,12 @@ pub fn main_with(words: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// Runs a command line, the name of the program first, as a program does.
+/// Runs a command line as a program does.
+///
+/// The first argument is the name of the program.
 ///
 /// # Errors
-/// [`CliError`] with the exit code in it.
+/// [`CliError`], which has the exit code.
 pub fn run_words(words: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
     run(Cli::try_parse_from(words).map_err(|error| CliError::from(&error))?)
 }
@@ -79,7 +83,7 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> Result<(), CliErr
 /// Runs one command.
 ///
 /// # Errors
-/// [`CliError`] with the exit code in it.
+/// [`CliError`], which has the exit code.
 pub fn run(cli: Cli) -> Result<(), CliError> {
     match cli.command {
         Command::Solve(args) => solve::run(args),
@@ -94,13 +98,15 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
     }
 }
 
-/// Help and version as clap prints them; anything else as one line, exit code 2.
+/// Prints an error of clap and returns the exit code.
+///
+/// Help and version are printed as clap does. Anything else is one line with exit code 2.
 fn refuse(error: &clap::Error) -> u8 {
     if matches!(
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
     ) {
-        // There is nowhere left to report that the output is closed.
+        // If the output is closed, there is no place to report it.
         let _ = error.print();
         return u8::try_from(error.exit_code()).unwrap_or(2);
     }

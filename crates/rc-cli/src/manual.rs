@@ -1,4 +1,6 @@
-//! `rc completions` and `rc man`: what shells and `man` know of the command line, from the same source as `--help`.
+//! `rc completions` and `rc man`: shell completions and manual pages.
+//!
+//! Their source is that of `--help`.
 
 use std::path::{Path, PathBuf};
 
@@ -47,14 +49,14 @@ pub(crate) fn completions(mut rc: clap::Command, shell: Shell) -> Result<(), Cli
 /// [`CliError`] when the folder cannot be written to.
 pub(crate) fn pages(mut rc: clap::Command, folder: &Path) -> Result<(), CliError> {
     files::check_folder(folder)?;
-    // Gives the commands below their full names.
+    // This gives subcommands their full names.
     rc.build();
     let mut staged = Staged::new(folder)?;
     add_page(&mut staged, &rc)?;
     Ok(staged.commit()?)
 }
 
-/// The page of `command`, and those of the commands below it.
+/// Adds the page of `command`, and those of its subcommands.
 fn add_page(staged: &mut Staged, command: &clap::Command) -> Result<(), CliError> {
     let man = clap_mangen::Man::new(command.clone());
     let (name, mut page) = (man.get_filename(), Vec::new());

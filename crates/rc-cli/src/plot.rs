@@ -21,7 +21,7 @@ use rc_sweep::files::{self, Staged};
 const BLUE: RGBColor = RGBColor(38, 92, 158);
 const RED: RGBColor = RGBColor(190, 60, 50);
 
-/// Font of the line plots, in pixels.
+/// Size of the text of the line plots, in pixels.
 const TEXT: f64 = 26.0;
 
 /// Arguments of `rc plot`.
@@ -54,7 +54,7 @@ fn write(target: &Path, result: &ResultFolder) -> Result<Vec<String>, CliError> 
     let ResultFolder { pressure, gap, side, .. } = result;
     let of_elements = result.is_of_elements();
     let contact = ContactPicture::of(pressure, 1.0, *side);
-    // Of means over blocks, the picture of the solve is the better one, and stays.
+    // For means over blocks, the picture of the solve is better than a new one, and stays.
     let (contact, contact_name) =
         if of_elements { (contact, "contact.png") } else { (contact.of_blocks(), "touched.png") };
     let shade = Shade::Values { range: (0.0, gap.max()), palette: Palette::Viridis, factor: 1.0, unit: "m" };
@@ -73,7 +73,7 @@ fn write(target: &Path, result: &ResultFolder) -> Result<Vec<String>, CliError> 
     Ok(names)
 }
 
-/// Pressure and gap along the row through the greatest pressure.
+/// Pressure and gap along the row through the maximum of the pressure.
 struct Sections {
     pressure: Profile,
     gap: Profile,
@@ -91,7 +91,7 @@ struct Profile {
 }
 
 impl Profile {
-    /// Row `iy` of `field`; `step` is the distance of its points.
+    /// The profile of row `iy` of `field`, whose points have the distance `step`.
     fn of(field: &Field, iy: usize, step: f64, unit: &'static str) -> Self {
         let row = field.row(iy);
         let max = row.iter().copied().fold(0.0, f64::max);
@@ -149,7 +149,7 @@ impl Picture for Sections {
     }
 }
 
-/// The distribution of the pressure in contact, or of the mean pressure of blocks that are touched.
+/// Distribution of the pressure in contact, or of the mean pressures of touched blocks.
 struct Distribution {
     of_elements: bool,
     points: Vec<(f64, f64)>,
@@ -174,7 +174,7 @@ impl Distribution {
         }
     }
 
-    /// The outline of the bins.
+    /// Points on the outline of the bins.
     fn steps(&self) -> Vec<(f64, f64)> {
         let half = self.max.0 / self.points.len() as f64 / 2.0;
         self.points.iter().flat_map(|(p, density)| [(p - half, *density), (p + half, *density)]).collect()
@@ -209,7 +209,7 @@ impl Picture for Distribution {
     }
 }
 
-/// The end of an axis from 0 that has to show `max`.
+/// End of an axis that begins at 0 and has to show `max`.
 fn above(max: f64) -> f64 {
     if max > 0.0 { 1.05 * max } else { 1.0 }
 }

@@ -5,7 +5,9 @@ use std::path::Path;
 
 use crate::error::CliError;
 
-/// Prints the files that a command has written into `folder`, a line each.
+/// Prints the names of the files that a command has written, one per line.
+///
+/// `folder` is their folder.
 ///
 /// # Errors
 /// [`CliError::Write`].
@@ -13,7 +15,9 @@ pub(crate) fn print_names(folder: &Path, names: &[String]) -> Result<(), CliErro
     print(&names.iter().fold(String::new(), |text, name| text + &format!("{}\n", folder.join(name).display())))
 }
 
-/// Prints `text` to standard output. A reader that has closed the pipe has what it wanted.
+/// Prints `text` to standard output.
+///
+/// A reader that has closed the pipe is not an error, since it has what it wanted.
 ///
 /// # Errors
 /// [`CliError::Write`] for any other failure.
@@ -27,8 +31,8 @@ pub(crate) fn print(text: &str) -> Result<(), CliError> {
     }
 }
 
-/// Tells the user something on standard error, as far as it listens.
+/// Prints a line for the user on standard error, if that is open.
 pub(crate) fn tell(text: &str) {
-    // There is nowhere left to report that standard error is closed.
+    // If standard error is closed, there is no place to report it.
     let _ = writeln!(io::stderr().lock(), "{text}");
 }

@@ -1,17 +1,19 @@
-//! Results for people, as aligned lines.
+//! Results as aligned lines of text.
 
 use std::path::Path;
 
 use rc_core::quantity::{digits, engineering};
 use rc_sweep::{LeakageSummary, Summary};
 
-/// A few aligned lines about a solved problem; `side` is λ in m, `e_star` E* in Pa.
+/// A few aligned lines about a solved problem.
+///
+/// `sides` are those of the cell in m, and `e_star` is E* in Pa.
 #[must_use]
 pub(crate) fn solved(summary: &Summary, sides: [f64; 2], e_star: f64) -> String {
     headline(summary) + &aligned(&solved_lines(summary, sides, e_star))
 }
 
-/// The stiffness of the contact.
+/// Text of the stiffness of the contact.
 pub(crate) fn stiffness(s: &Summary) -> String {
     s.contact_stiffness.map_or_else(|| "infinite".into(), |value| engineering(value, "Pa/m"))
 }
@@ -55,7 +57,7 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
     lines
 }
 
-/// The plastic part of the contact; none without a hardness.
+/// Text of the plastic part of the contact; `None` without a hardness.
 pub(crate) fn plastic(s: &Summary) -> Option<String> {
     let (fraction, error) = (s.plastic_area_fraction?, s.plastic_area_fraction_error?);
     Some(format!(
@@ -65,7 +67,9 @@ pub(crate) fn plastic(s: &Summary) -> Option<String> {
     ))
 }
 
-/// The electrical and thermal conductance; none on a layer, whose stiffness does not say it.
+/// Text of the electrical and thermal conductance.
+///
+/// `None` on a layer, whose stiffness does not give the conductance.
 fn conductance(s: &Summary) -> Option<String> {
     match (s.contact_conductance, s.contact_stiffness) {
         (Some(value), _) => Some(format!("{} 1/m per conductivity", digits(value, 4))),
@@ -74,7 +78,7 @@ fn conductance(s: &Summary) -> Option<String> {
     }
 }
 
-/// Permeances and constrictions of a flow.
+/// Lines of the permeances and constrictions of a flow.
 fn leakage_lines(leakage: &LeakageSummary) -> [(&'static str, String); 2] {
     let [x, y] = [0, 1].map(|axis| {
         if !leakage.percolates[axis] {
@@ -90,7 +94,8 @@ fn leakage_lines(leakage: &LeakageSummary) -> [(&'static str, String); 2] {
 
 fn penetration(s: &Summary) -> String {
     let [penetration, full] = [s.penetration, s.penetration_full_contact].map(|length| engineering(length, "m"));
-    // A layer and a patch with free borders are displaced as a whole too; full contact is at no certain depth then.
+    // A layer and a patch with free borders are also displaced as a whole. Full contact then does not have a certain
+    // depth.
     let open = s.mean_gap - s.mean_plastic_gap.unwrap_or(0.0);
     let displacement = open - (s.penetration_full_contact - s.penetration);
     if displacement > ROUNDING * s.penetration_full_contact.max(s.penetration) {
@@ -100,7 +105,7 @@ fn penetration(s: &Summary) -> String {
     }
 }
 
-/// Part of lengths that is rounding.
+/// Ratio of lengths below which a difference is rounding.
 const ROUNDING: f64 = 1e-12;
 
 fn surface_line(s: &Summary) -> String {
@@ -120,7 +125,9 @@ fn levels(n: usize) -> &'static str {
     if n == 1 { "level" } else { "levels" }
 }
 
-/// `7.183 ± 0.008`: both with the last digit that the error leaves certain.
+/// A value with its error, for instance `7.183 ± 0.008`.
+///
+/// Both end with the last digit that the error leaves certain.
 pub(crate) fn with_error(value: f64, error: f64) -> String {
     if error > 0.0 && error.is_finite() {
         let decimals = (-error.log10().floor()).clamp(0.0, 12.0) as usize;
@@ -130,12 +137,12 @@ pub(crate) fn with_error(value: f64, error: f64) -> String {
     }
 }
 
-/// Lines of a name and a value, aligned.
+/// Aligned lines of a name and a value.
 pub(crate) fn aligned(lines: &[(&str, String)]) -> String {
     lines.iter().fold(String::new(), |text, (name, value)| text + &format!("  {name:<19}{value}\n"))
 }
 
-/// Where results went, if anywhere.
+/// A line about the place of the results, if they were written.
 #[must_use]
 pub(crate) fn written(target: Option<&Path>) -> String {
     target.map_or_else(String::new, |target| format!("\nwritten to {}\n", target.display()))
@@ -156,7 +163,9 @@ fn converged(s: &Summary) -> String {
     format!("converged in {} fine iterations, {} nested {}", s.iterations, s.levels, levels(s.levels))
 }
 
-/// The size of a cell: one side of a square, both of a rectangle (m).
+/// Text of the size of a cell (m).
+///
+/// It has one side of a square, and both sides of a rectangle.
 #[must_use]
 pub(crate) fn cell([x, y]: [f64; 2]) -> String {
     let side = engineering(x, "m");

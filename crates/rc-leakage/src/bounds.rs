@@ -1,21 +1,21 @@
-//! Bounds of the permeance, from any pressure and any flow that is conserved.
+//! Bounds of the permeance, from any pressure and any conserved flow.
 //!
-//! The pressure gives an upper bound (Dirichlet's principle): its power is at least that of the solution. The fluxes
-//! that it drives, made conserved along a spanning tree, give a lower bound (Thomson's principle): their power for a
-//! given flow is at least that of the solution.
+//! The pressure gives an upper bound (Dirichlet's principle): its power is at least that of the solution. Its fluxes,
+//! made conserved along a spanning tree, give a lower bound (Thomson's principle): their power for a given flow is at
+//! least that of the solution.
 
 use crate::flow_state::{Correction, FlowState};
 use crate::network::Axis;
 use crate::tree::SpanningTree;
 
-/// What is certain of a flow, for a fall of 1 per element along its axis.
+/// Bounds of a flow, for a pressure that falls by 1 per element along its axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Bounds {
     /// Upper bound of the power of the flow.
     pub(crate) upper: f64,
-    /// Lower bound.
+    /// Lower bound of the power of the flow.
     pub(crate) lower: f64,
-    /// Largest difference of the conserved flow through a section from the mean over all, relative to it.
+    /// Maximum relative difference of the conserved flow between a section and the mean.
     pub(crate) conservation: f64,
 }
 
@@ -36,7 +36,7 @@ impl Bounds {
 
     /// Largest relative error of the upper bound.
     pub(crate) fn relative(&self) -> f64 {
-        // Not below zero by rounding.
+        // This avoids a negative error by rounding.
         if self.upper > 0.0 { (1.0 - self.lower / self.upper).abs() } else { f64::INFINITY }
     }
 }

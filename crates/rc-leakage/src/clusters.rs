@@ -1,29 +1,33 @@
-//! Clusters of open elements on the periodic grid, and how they wind around the cell.
+//! Clusters of open elements on the periodic grid, and their winding around the cell.
 
 use rc_core::Field;
 
 use crate::network::Axis;
 use crate::parallel;
 
-/// Rows of open elements in a row: from `start` to before `end`.
+/// A run of open elements in a row, from `start` to before `end`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Run {
     pub(crate) start: u32,
     pub(crate) end: u32,
 }
 
-/// The open elements of each row as runs, and the clusters that they form through faces.
+/// The runs of open elements in each row, and their clusters.
+///
+/// Runs of a cluster are connected through faces.
 #[derive(Debug)]
 pub(crate) struct Clusters {
     nx: usize,
     /// All runs, row by row.
     pub(crate) runs: Vec<Run>,
-    /// Index of the first run of each row, and their number at the end.
+    /// Index of the first run of each row. The last entry is the number of runs.
     pub(crate) first_of_row: Vec<usize>,
     sets: WindingSets,
 }
 
-/// Two runs that touch, and how often the step from one to the other leaves the cell along x and along y.
+/// Two runs that touch.
+///
+/// `leaves` tells how often the step from the first to the second leaves the cell along x and along y.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact {
     pub(crate) runs: [usize; 2],
@@ -31,7 +35,9 @@ pub(crate) struct Contact {
 }
 
 impl Clusters {
-    /// Of the elements of `gap` above `threshold`, or at it where `inclusive`.
+    /// The clusters of the elements of `gap` above `threshold`.
+    ///
+    /// With `inclusive`, elements at the threshold count too.
     pub(crate) fn above(gap: &Field, threshold: f64, inclusive: bool) -> Self {
         let is_open = |value: f64| value > threshold || (inclusive && value >= threshold);
         let (nx, ny) = (gap.grid().nx(), gap.grid().ny());
@@ -48,7 +54,9 @@ impl Clusters {
         clusters
     }
 
-    /// Calls `visit` with each pair of runs that touch, and with each run that touches itself around the cell.
+    /// Calls `visit` with each pair of runs that touch.
+    ///
+    /// The two runs may be the same run, which touches itself around the cell.
     pub(crate) fn for_each_contact(&self, mut visit: impl FnMut(Contact)) {
         let ny = self.first_of_row.len() - 1;
         for iy in 0..ny {
@@ -72,7 +80,7 @@ impl Clusters {
         }
     }
 
-    /// Whether some cluster winds around the cell along x, and along y.
+    /// Whether a cluster winds around the cell along x, and along y.
     pub(crate) fn percolates(&mut self) -> [bool; 2] {
         (0..self.runs.len()).fold([false; 2], |[x, y], run| {
             let [along_x, along_y] = self.sets.winds(run);
@@ -105,11 +113,11 @@ fn runs_of(row: &[f64], is_open: impl Fn(f64) -> bool) -> Vec<Run> {
     runs
 }
 
-/// Disjoint sets whose members know in which copy of the cell they are, seen from the root.
+/// Disjoint sets whose members know their copy of the cell relative to the root.
 #[derive(Debug)]
 struct WindingSets {
     parent: Vec<u32>,
-    /// Copy of the cell of each member, counted from that of its parent.
+    /// Copy of the cell of each member, relative to that of its parent.
     copy: Vec<[i32; 2]>,
     /// Whether the set of a root winds along x, and along y.
     winds: Vec<[bool; 2]>,
@@ -120,7 +128,7 @@ impl WindingSets {
         Self { parent: (0..n as u32).collect(), copy: vec![[0; 2]; n], winds: vec![[false; 2]; n] }
     }
 
-    /// The root of `member`, and the copy of the cell that it is in, counted from that of the root.
+    /// The root of `member`, and its copy of the cell relative to the root's.
     fn find(&mut self, member: usize) -> (usize, [i32; 2]) {
         let (mut root, mut total) = (member, [0; 2]);
         while self.parent[root] as usize != root {
@@ -137,8 +145,9 @@ impl WindingSets {
         (root, total)
     }
 
-    /// Joins the sets of two members. When they are in one set already, in another copy of the cell than the step leads
-    /// to, it winds.
+    /// Joins the sets of two members.
+    ///
+    /// If both are in one set already, and the step leads to another copy of the cell, the set winds.
     fn join(&mut self, Contact { runs: [a, b], leaves }: Contact) {
         let ((root_a, copy_a), (root_b, copy_b)) = (self.find(a), self.find(b));
         let to_b = add(copy_a, leaves);
@@ -181,14 +190,14 @@ mod tests {
         assert_eq!(percolates(&["#.##", "#.##", "#.##"]), [false, true]);
         assert_eq!(percolates(&["....", "....", "...."]), [true, true]);
         assert_eq!(percolates(&["####", "####"]), [false, false]);
-        // Touches all borders, and closes around none: the openings do not meet.
+        // The cluster touches all borders, but it does not wind around the cell, since the openings do not meet.
         assert_eq!(percolates(&["#.###", "#.###", "...#.", "####.", "####."]), [false, false]);
-        // Elements that touch at corners are apart.
+        // Elements that touch only at corners are not connected.
         assert_eq!(percolates(&[".###", "#.##", "##.#", "###."]), [false, false]);
-        // A staircase winds along both at once.
+        // A staircase winds along both axes at once.
         assert_eq!(percolates(&["..##", "#..#", "##..", ".##."]), [true, true]);
         assert_eq!(percolates(&["."]), [true, true]);
-        // A ring that leaves the cell and comes back winds around nothing.
+        // A ring that leaves the cell and comes back does not wind.
         assert_eq!(percolates(&[".##.", "####", "####", ".##."]), [false, false]);
     }
 }

@@ -1,4 +1,4 @@
-//! The critical constriction: the narrowest place of the widest path through the film.
+//! The critical constriction: the narrowest place on the widest path through the film.
 
 use std::collections::BTreeMap;
 
@@ -7,19 +7,21 @@ use rc_core::{DVec2, Field};
 use crate::clusters::Clusters;
 use crate::network::Axis;
 
-/// Gaps that are tried before those between two of them are sorted.
+/// Number of gaps that are tried before those between two of them are sorted.
 const SAMPLES: usize = 1 << 14;
 
-/// The narrowest place of the widest path that winds around the cell along an axis.
+/// The narrowest place on the widest path that winds around the cell along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constriction {
-    /// Gap there, in λ: the largest threshold above which, inclusively, the film still percolates.
+    /// Gap at the constriction, in λ.
+    ///
+    /// It is the largest threshold for which the elements at or above the threshold percolate.
     pub gap: f64,
-    /// Centre of its element, in λ.
+    /// Centre of the element, in λ.
     pub at: DVec2,
 }
 
-/// Tests of thresholds, each for both axes, kept by the bits of the gap.
+/// Tests of thresholds for both axes, which are kept by the bits of the gap.
 pub(crate) struct Thresholds<'a> {
     gap: &'a Field,
     tested: BTreeMap<u64, [bool; 2]>,
@@ -56,7 +58,7 @@ impl<'a> Thresholds<'a> {
     }
 }
 
-/// Without repetitions.
+/// The sorted values, without repetitions.
 fn sorted(mut values: Vec<f64>) -> Vec<f64> {
     values.sort_by(f64::total_cmp);
     values.dedup();

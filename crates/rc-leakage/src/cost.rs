@@ -1,9 +1,12 @@
-//! What a flow takes.
+//! Estimates of memory and time of a flow.
 
-/// Memory for each element of the grid, the gap included: measured 108 bytes on 6144² elements. Where coarser grids do
-/// not represent the film, close to percolation, it is up to 200.
+/// Bytes of memory per element of the grid, with the gap.
+///
+/// On 6144² elements 108 bytes were measured. Close to percolation, where coarser grids do not represent the film, it
+/// is up to 200.
 pub const BYTES_PER_ELEMENT: f64 = 110.0;
 
-/// Processor seconds for each element of the grid, for both axes and the error of the grid: measured 0.75e-6 on 6144²
-/// elements.
+/// Processor seconds per element of the grid, for both axes and the grid's error.
+///
+/// On 6144² elements 0.75e-6 was measured.
 pub const SECONDS_PER_ELEMENT: f64 = 0.75e-6;

@@ -8,17 +8,17 @@ use crate::preconditioner::Preconditioner;
 use crate::real::Real;
 use crate::tree::SpanningTree;
 
-/// What is solved for: the flow along an axis, and how exactly.
+/// The flow to solve for: its axis and its accuracy.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Target {
     pub(crate) axis: Axis,
-    /// Largest relative difference of the bounds.
+    /// Maximum relative difference of the bounds.
     pub(crate) error: f64,
-    /// Largest difference of the flow through two sections, relative to the flow.
+    /// Maximum difference of the flow through two sections, relative to the flow.
     pub(crate) conservation: f64,
 }
 
-/// A pressure with its flow, and what is known of it.
+/// A pressure with its flow and its bounds.
 #[derive(Debug)]
 pub(crate) struct Solved {
     /// What is added to the mean fall, of 1 per element along the axis.

@@ -1,20 +1,22 @@
-//! A small network with its elements eliminated one after the other.
+//! Elimination of a small network, element by element.
 
 use crate::real::Real;
 
-/// A bond that elimination makes is a sum of products of bonds, and a pivot the sum of the bonds that are left
-/// (Grassmann, Taksar and Heyman, Oper. Res. 33, 1985): nothing cancels, so that weak bonds keep their digits beside
-/// strong ones, and the last element of a cluster is left without a bond exactly.
+/// An eliminated network.
+///
+/// A bond that elimination makes is a sum of products of bonds, and a pivot is the sum of the remaining bonds
+/// (Grassmann, Taksar and Heyman, Oper. Res. 33, 1985). So nothing cancels, and weak bonds keep their digits beside
+/// strong ones. The last element of a cluster has exactly no bond left.
 #[derive(Debug)]
 pub(crate) struct Elimination {
     n: usize,
-    /// In row i, the part of its pivot that each later element has.
+    /// In row i, the share of each later element in the pivot.
     shares: Vec<f64>,
     pivots: Vec<f64>,
 }
 
 impl Elimination {
-    /// Of `n` elements with these bonds: two elements and a conductance.
+    /// Eliminates `n` elements with bonds of two elements and a conductance.
     pub(crate) fn new(n: usize, bonds: impl Iterator<Item = (usize, usize, f64)>) -> Self {
         let mut network = vec![0.0_f64; n * n];
         for (a, b, bond) in bonds.filter(|(a, b, _)| a != b) {
@@ -46,7 +48,7 @@ impl Elimination {
         Self { n, shares: network, pivots }
     }
 
-    /// Writes the solution for `right` to `x`; the last element of each cluster is at level 0.
+    /// Writes the solution for `right` to `x`. The last element of each cluster has the pressure 0.
     pub(crate) fn solve<T: Real>(&self, right: &[T], x: &mut [T]) {
         let n = self.n;
         let mut y: Vec<f64> = right.iter().copied().map(T::to_f64).collect();

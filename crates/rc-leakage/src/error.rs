@@ -1,20 +1,20 @@
-//! What a gap is refused for, and flows that do not converge.
+//! Errors of flows: gaps that are refused, and flows that do not converge.
 
 use rc_core::Grid;
 use thiserror::Error;
 
-/// A gap without a flow that can be computed.
+/// A flow that cannot be computed.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum LeakageError {
     /// A gap is negative or not finite.
     #[error("the gap of element ({ix}, {iy}) is {value}, not a finite number of at least 0")]
     Gap {
-        /// Column.
+        /// Column of the element.
         ix: usize,
-        /// Row.
+        /// Row of the element.
         iy: usize,
-        /// The value.
+        /// Value of the gap.
         value: f64,
     },
     /// The bounds of the permeance, or the flow through sections, still differ after the most iterations.
@@ -25,13 +25,13 @@ pub enum LeakageError {
     NotConverged {
         /// Direction of the flow.
         axis: &'static str,
-        /// Elements.
+        /// Elements of the grid.
         grid: Grid,
-        /// Largest relative error of the permeance.
+        /// Maximum relative error of the permeance.
         error: f64,
-        /// Largest relative difference of the flow.
+        /// Maximum relative difference of the flow through sections.
         conservation: f64,
-        /// Iterations done.
+        /// Number of iterations.
         iterations: usize,
     },
 }

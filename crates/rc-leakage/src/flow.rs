@@ -1,4 +1,4 @@
-//! The front door: permeances, percolation and constrictions of a gap.
+//! The front door of the crate: permeances, percolation and constrictions of a gap.
 
 use rc_core::{Field, Grid};
 
@@ -14,16 +14,18 @@ use crate::multigrid::Multigrid;
 use crate::network::{Axis, Network};
 use crate::tree::SpanningTree;
 
-/// How the flow is computed.
+/// Accuracy and limits of the computation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeakageParams {
-    /// Largest difference of the upper and the lower bound of the permeance, relative to the permeance.
+    /// Maximum relative difference of the upper and the lower bound of the permeance.
     pub error: f64,
-    /// Largest difference of the flow through two sections of the cell, relative to the flow.
+    /// Maximum difference of the flow through two sections of the cell, relative to the flow.
     pub conservation: f64,
-    /// Most iterations of one flow.
+    /// Maximum number of iterations of one flow.
     pub max_iterations: usize,
-    /// Whether the flow is computed on every second element along both axes too, which gives the error bar of the grid.
+    /// Whether the flow is also computed on every second element along both axes.
+    ///
+    /// This gives the error bar of the grid.
     pub half_grid: bool,
 }
 
@@ -36,43 +38,47 @@ impl Default for LeakageParams {
 /// The flow along both axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Leakage {
-    /// Along x, and along y.
+    /// The flow along x, and along y.
     pub flows: [Flow; 2],
-    /// The flux of the axis [`Leakage::flow_axis`]; `None` where nothing flows.
+    /// The flux along the axis [`Leakage::flow_axis`]; `None` without a flow.
     pub flux: Option<Flux>,
 }
 
 /// The flow along one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flow {
-    /// Flow for a pressure that falls by one across the cell and 12 η = 1, in λ³: 0 where nothing percolates. An upper
-    /// bound of the permeance of the network, by the principle of Dirichlet; see [`FlowInfo::error`].
+    /// Flow in λ³, for a pressure that falls by 1 across the cell and 12 η = 1.
+    ///
+    /// It is 0 without percolation. It is an upper bound of the permeance of the network, by the principle of
+    /// Dirichlet; see [`FlowInfo::error`].
     pub permeance: f64,
-    /// Estimated error of the grid: the difference from the permeance of every second element; `None` where it was not
-    /// computed, or the sides are odd.
+    /// Estimated error of the grid, the difference from the permeance of every second element.
+    ///
+    /// `None` if it was not computed, or if the sides are odd.
     pub permeance_error: Option<f64>,
     /// Whether a cluster of elements out of contact winds around the cell along this axis.
     pub percolates: bool,
-    /// The narrowest place of the widest path, where the film percolates.
+    /// The narrowest place on the widest path, if the film percolates.
     pub constriction: Option<Constriction>,
-    /// What was done.
+    /// Information on the computation.
     pub info: FlowInfo,
 }
 
-/// What was done to compute a flow.
+/// Information on the computation of a flow.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FlowInfo {
-    /// Iterations.
+    /// Number of iterations.
     pub iterations: usize,
-    /// Largest error of the permeance of the network, relative to it: the difference of the lower bound, by the
-    /// principle of Thomson.
+    /// Maximum relative error of the network's permeance.
+    ///
+    /// It is the distance of the lower bound, by the principle of Thomson.
     pub error: f64,
-    /// Largest difference of the flow through a section from the mean of all, relative to it.
+    /// Maximum relative difference of the flow through a section from the mean over all sections.
     pub conservation: f64,
 }
 
 impl Leakage {
-    /// The axis with the larger permeance, x if they are equal; `None` where nothing flows.
+    /// The axis with the larger permeance, x if both are equal; `None` without a flow.
     #[must_use]
     pub fn flow_axis(&self) -> Option<Axis> {
         let [x, y] = self.flows.each_ref().map(|flow| flow.permeance);
@@ -117,7 +123,7 @@ fn check(gap: &Field) -> Result<(), LeakageError> {
     }
 }
 
-/// Every second element along both axes, where the sides are even.
+/// Every second element along both axes; `None` if a side is odd.
 fn half(gap: &Field) -> Option<Field> {
     let grid = gap.grid();
     let (nx, ny) = (grid.nx(), grid.ny());
@@ -128,7 +134,7 @@ fn half(gap: &Field) -> Option<Field> {
     Field::new(grid.with_elements(nx / 2, ny / 2).ok()?, rows.collect()).ok()
 }
 
-/// What is known of one grid.
+/// The flows on one grid.
 struct OfGrid {
     /// Permeances along both axes.
     results: [(f64, FlowInfo); 2],
@@ -137,15 +143,19 @@ struct OfGrid {
     flux: Option<Flux>,
 }
 
-/// Gaps below this part of the smaller critical gap are taken as closed: such an element conducts 1e-15 of a
-/// constriction. A pool that only they join to the rest has a pressure that rounding decides.
+/// Ratio of a gap to the smaller critical gap below which it counts as closed.
+///
+/// Such an element conducts 1e-15 of a constriction. Where only such elements connect a pool to the rest, rounding
+/// would decide the pool's pressure.
 const CLOSED: f64 = 1e-5;
 
-/// Gaps above this multiple of the critical gap of an axis are taken as this wide: such an element resists 1e-14 of a
-/// constriction. What drives the flow through a wider one would be lost in the rounding of its pressure.
+/// Limit of gaps, as a multiple of the critical gap of an axis. Wider gaps are replaced by it.
+///
+/// Such an element resists 1e-14 of a constriction. For a wider one, the pressure difference that drives the flow would
+/// be lost in rounding.
 const WIDE: f64 = 5e4;
 
-/// Permeances along both axes, and the flux along that of the larger one.
+/// Permeances along both axes, and the flux along the axis with the larger one.
 fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<OfGrid, LeakageError> {
     let percolates = Clusters::above(gap, 0.0, false).percolates();
     let mut thresholds = Thresholds::new(gap);
@@ -180,7 +190,7 @@ fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<OfGrid,
     Ok(OfGrid { results, percolates, constrictions, flux })
 }
 
-/// The network of the runs that `carries` says carry a flow.
+/// The network of the runs that carry a flow (`carries`).
 fn network_of((gap, widest): (&Field, f64), clusters: &Clusters, carries: &[bool]) -> Network {
     Network::new(gap, widest, &|iy, open: &mut [bool]| {
         let range = clusters.first_of_row[iy]..clusters.first_of_row[iy + 1];
@@ -190,7 +200,7 @@ fn network_of((gap, widest): (&Field, f64), clusters: &Clusters, carries: &[bool
     })
 }
 
-/// What is left of a solved flow.
+/// The stored part of a solved flow.
 struct Kept {
     pressure: Vec<f64>,
     correction: Vec<f64>,
@@ -213,17 +223,21 @@ fn elements_along(grid: Grid, axis: Axis) -> usize {
     }
 }
 
-/// Iterations that grids have before aggregates alone take over: films that are resolved take six to ten.
+/// Number of iterations with coarser grids, after which aggregates alone take over.
+///
+/// Films that are resolved take six to ten.
 const ON_GRIDS: usize = 12;
 
-/// A network with what solves it.
+/// A network with its tree and its preconditioner.
 struct Prepared {
     network: Network,
     tree: SpanningTree,
     preconditioner: Precondition,
 }
 
-/// Coarser grids until a flow shows that they do not represent the network.
+/// The preconditioner of a network.
+///
+/// It uses coarser grids until a flow shows that they do not represent the network.
 enum Precondition {
     Grids(Multigrid<f32>),
     Aggregates(Aggregation),
@@ -244,8 +258,8 @@ impl Prepared {
             solved = descent::solve(of, solved, multigrid, target, params.max_iterations.min(ON_GRIDS));
             if !target.is_met(&solved.bounds) {
                 self.preconditioner = Precondition::Aggregates(Aggregation::new(graph_of(&self.network)));
-                // From no pressure again: single precision may have left pools that hardly anything holds at a level
-                // that takes all digits.
+                // It starts without a pressure again. In single precision, weakly connected pools may have got a
+                // pressure that takes all digits.
                 solved = Solved { iterations: solved.iterations, ..Solved::start(self.network.grid().len()) };
             }
         }
@@ -268,7 +282,7 @@ impl Prepared {
         })
     }
 
-    /// Permeance, and what was done.
+    /// The permeance, and information on the computation.
     fn result(&self, axis: Axis, solved: &Solved) -> (f64, FlowInfo) {
         let bounds = &solved.bounds;
         let info =

@@ -1,5 +1,4 @@
-//! Fluxes through faces: those that a pressure drives, and what is added to them so that each element conserves the
-//! flow.
+//! Fluxes through faces, from a pressure and from a correction that makes the flow conserved.
 
 use crate::network::{Axis, Network};
 use crate::parallel;
@@ -27,23 +26,23 @@ pub(crate) struct Correction<'a> {
 /// Fluxes through the faces of one row of elements.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowFluxes<'a> {
-    /// Row.
+    /// Index of the row.
     pub(crate) iy: usize,
-    /// From each element to the next along x.
+    /// Flux from each element to the next along x.
     pub(crate) east: &'a [f64],
-    /// From each element to the next along y.
+    /// Flux from each element to the next along y.
     pub(crate) north: &'a [f64],
-    /// From each element of the row before to this one.
+    /// Flux from each element of the previous row to this row.
     pub(crate) south: &'a [f64],
 }
 
 impl RowFluxes<'_> {
-    /// Flux into element `ix` from the one before along x.
+    /// Flux into element `ix` from the previous one along x.
     pub(crate) fn west(&self, ix: usize) -> f64 {
         self.east[if ix == 0 { self.east.len() - 1 } else { ix - 1 }]
     }
 
-    /// Writes what flows out of each element in excess of what flows in.
+    /// Writes the outflow of each element minus its inflow.
     pub(crate) fn write_outflow(&self, out: &mut [f64]) {
         let rows = out.iter_mut().zip(self.east).zip(self.north.iter().zip(self.south));
         rows.for_each(|((out, east), (north, south))| *out = east + (north - south));
@@ -54,7 +53,7 @@ impl RowFluxes<'_> {
 }
 
 impl<'a> FlowState<'a> {
-    /// Without a correction.
+    /// The state of a pressure without a correction.
     pub(crate) fn of(network: &'a Network, pressure: &'a [f64], fall: [f64; 2]) -> Self {
         Self { network, pressure, fall, correction: None }
     }

@@ -5,18 +5,21 @@ use rc_core::Field;
 use crate::flow_state::FlowState;
 use crate::parallel;
 
-/// The flux at the centres of elements: the volume that flows across a unit of length, for a pressure that falls by one
-/// across the cell and 12 η = 1, in λ².
+/// The flux at the centres of elements, in λ².
+///
+/// It is the volume that flows across a unit of length, for a pressure that falls by 1 across the cell and 12 η = 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flux {
-    /// Along x.
+    /// Component along x.
     pub x: Field,
-    /// Along y.
+    /// Component along y.
     pub y: Field,
 }
 
 impl Flux {
-    /// Mean of the fluxes through opposite faces of each element; `factor` is that of a unit fall per element.
+    /// The mean of the fluxes through opposite faces of each element.
+    ///
+    /// `factor` converts from a fall of 1 per element.
     pub(crate) fn of(state: FlowState<'_>, factor: f64) -> Self {
         let grid = state.network.grid();
         let (nx, spacing) = (grid.nx(), grid.spacing());
@@ -36,7 +39,7 @@ impl Flux {
         Self { x, y }
     }
 
-    /// |flux| of each element.
+    /// Magnitude of the flux of each element.
     #[must_use]
     pub fn magnitude(&self) -> Field {
         let values = self.x.values().iter().zip(self.y.values()).map(|(x, y)| x.hypot(*y)).collect();

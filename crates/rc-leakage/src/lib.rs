@@ -1,9 +1,9 @@
-//! Leakage: flow of a thin viscous film through the gap of a contact, by the Reynolds equation ∇·(g³ ∇P) = 0 with
-//! contact as walls.
+//! Leakage: flow of a thin viscous film through the gap of a contact.
 //!
-//! Lengths are in λ, the side of the cell along x. [`leakage`] solves for the flow along x and along y on the periodic
-//! cell under a pressure that falls by ΔP across the cell. The permeance K of an axis gives the flow Q = K ΔP / (12 η),
-//! with the viscosity η: K = g³ Ly/Lx along x between plates at a distance g. It is in λ³.
+//! The flow follows the Reynolds equation ∇·(g³ ∇P) = 0 with contact as walls. Lengths are in λ, the side of the cell
+//! along x. [`leakage`] solves for the flow along x and along y on the periodic cell, under a pressure that falls by ΔP
+//! across the cell. The permeance K of an axis gives the flow Q = K ΔP / (12 η), with the viscosity η. K is in λ³.
+//! Between plates at a distance g, K = g³ Ly/Lx along x.
 //!
 //! ```
 //! use rc_core::{Field, Grid};

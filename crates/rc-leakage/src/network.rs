@@ -1,4 +1,6 @@
-//! The network of conductances that stands for the film: elements are nodes, faces between elements are bonds.
+//! The network of conductances that represents the film.
+//!
+//! Elements are nodes, and faces between elements are bonds.
 
 use rc_core::{Field, Grid};
 
@@ -16,10 +18,10 @@ pub enum Axis {
 }
 
 impl Axis {
-    /// Both, x first.
+    /// Both axes, x first.
     pub const BOTH: [Self; 2] = [Self::X, Self::Y];
 
-    /// 0 for x, 1 for y.
+    /// Index of the axis: 0 for x, 1 for y.
     #[must_use]
     pub fn index(self) -> usize {
         match self {
@@ -28,7 +30,7 @@ impl Axis {
         }
     }
 
-    /// A fall of the pressure of 1 per element along it.
+    /// A fall of the pressure of 1 per element along the axis.
     pub(crate) fn unit(self) -> [f64; 2] {
         match self {
             Self::X => [1.0, 0.0],
@@ -36,7 +38,7 @@ impl Axis {
         }
     }
 
-    /// `x` or `y`.
+    /// Name of the axis: `x` or `y`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -46,27 +48,29 @@ impl Axis {
     }
 }
 
-/// Conductances of faces: the harmonic mean of g³ of the elements on both sides, times length over width of the face.
+/// Conductances of faces.
 ///
-/// Gaps are scaled to at most 2^30, so that single precision holds the conductances of gaps that differ by a factor of
-/// 10^20.
+/// A conductance is the harmonic mean of g³ of the elements on both sides, times length over width of the face. Gaps
+/// are scaled to at most 2^30. Single precision then holds the conductances of gaps that differ by a factor of 10^20.
 #[derive(Debug)]
 pub(crate) struct Network {
     grid: Grid,
-    /// 1/(2 g³) of each element, infinite in contact.
+    /// 1/(2 g³) of each element; infinite in contact.
     resistances: Vec<f64>,
-    /// Length over width of faces across x and across y.
+    /// Ratios of length to width of faces across x and across y.
     aspects: [f64; 2],
-    /// Power by which conductances are to be multiplied to be those of the gaps given.
+    /// Power of two that scales conductances back to those of the given gaps.
     scale: f64,
 }
 
 impl Network {
-    /// The network of `gap`, of at most `widest`, of the elements of a row that `is_open` says carry flow.
+    /// The network of `gap`, whose values are limited to `widest`.
+    ///
+    /// `is_open` tells which elements of a row carry flow.
     pub(crate) fn new(gap: &Field, widest: f64, is_open: &(dyn Fn(usize, &mut [bool]) + Sync)) -> Self {
         let grid = gap.grid();
         let (nx, spacing) = (grid.nx(), grid.spacing());
-        // A power of two: scaled gaps keep their digits.
+        // It is a power of two, so that scaled gaps keep their digits.
         let unit = 2.0_f64.powi(30 - gap.max().min(widest).log2().ceil().clamp(-900.0, 900.0) as i32);
         let mut resistances = vec![f64::INFINITY; grid.len()];
         let rows = resistances.chunks_mut(nx).enumerate().collect();
@@ -87,13 +91,15 @@ impl Network {
         self.grid
     }
 
-    /// A conductance of the network as that of the gaps given.
+    /// The conductance of the given gaps from one of the network.
     pub(crate) fn unscaled(&self, conductance: f64) -> f64 {
         conductance * self.scale
     }
 
-    /// Writes the conductances of the faces of row `iy`: of each element to the next along x, and along y. The face of
-    /// an element to itself, where there is only one, has none.
+    /// Writes the conductances of the faces of row `iy`.
+    ///
+    /// They are from each element to the next along x, and along y. The face from an element to itself, on a grid with
+    /// one element along an axis, has the conductance 0.
     pub(crate) fn write_conductances<T: Real>(&self, iy: usize, east: &mut [T], north: &mut [T]) {
         let (nx, ny) = (self.grid.nx(), self.grid.ny());
         let [row, above] = [iy, (iy + 1) % ny].map(|iy| self.resistances(iy));
@@ -107,13 +113,13 @@ impl Network {
         }
     }
 
-    /// 1/(2 g³) of each element of row `iy`, infinite in contact.
+    /// 1/(2 g³) of each element of row `iy`; infinite in contact.
     pub(crate) fn resistances(&self, iy: usize) -> &[f64] {
         let nx = self.grid.nx();
         &self.resistances[iy * nx..(iy + 1) * nx]
     }
 
-    /// Length over width of faces across x and across y.
+    /// Ratios of length to width of faces across x and across y.
     pub(crate) fn aspects(&self) -> [f64; 2] {
         self.aspects
     }
@@ -128,7 +134,7 @@ impl Network {
         })
     }
 
-    /// Blocks of rows: first, and one after the last.
+    /// Blocks of rows, each from its first row to the one after its last.
     pub(crate) fn blocks(&self) -> Vec<[usize; 2]> {
         let rows = parallel::rows_per_block(self.grid.nx());
         (0..self.grid.ny()).step_by(rows).map(|first| [first, (first + rows).min(self.grid.ny())]).collect()

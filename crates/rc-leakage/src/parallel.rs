@@ -1,12 +1,13 @@
-//! Work on blocks of rows, in parallel; sums are over blocks in their order, so that no result depends on the number of
-//! threads.
+//! Parallel work on blocks of rows.
+//!
+//! Sums are over blocks in their order, so results do not depend on the number of threads.
 
 use rayon::prelude::*;
 
-/// Elements in a block of rows where nothing else decides.
+/// Default number of elements in a block of rows.
 const BLOCK: usize = 1 << 16;
 
-/// Rows in a block of a grid with rows of `nx` elements; the grid alone decides.
+/// Number of rows in a block, for rows of `nx` elements. It depends on the grid only.
 pub(crate) fn rows_per_block(nx: usize) -> usize {
     (BLOCK / nx).max(1)
 }
@@ -16,12 +17,12 @@ pub(crate) fn for_each<S: Send>(items: Vec<S>, work: impl Fn(S) + Sync + Send) {
     items.into_par_iter().for_each(work);
 }
 
-/// What `work` makes of each of `items`, in their order.
+/// The results of `work` for each of `items`, in their order.
 pub(crate) fn map<S: Send, R: Send>(items: Vec<S>, work: impl Fn(S) -> R + Sync + Send) -> Vec<R> {
     items.into_par_iter().map(work).collect()
 }
 
-/// Sum of what `work` makes of each of `items`, in their order.
+/// The sum of the results of `work` over `items`, in their order.
 pub(crate) fn sum<S: Send>(items: Vec<S>, work: impl Fn(S) -> f64 + Sync + Send) -> f64 {
     map(items, work).into_iter().sum()
 }

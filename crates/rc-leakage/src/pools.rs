@@ -1,4 +1,6 @@
-//! Pools: the trees that the strongest bond of each element makes, and the bonds that join them.
+//! Pools of elements, and the bonds that join them.
+//!
+//! A pool is a tree of the strongest bonds of its elements.
 
 use rc_core::Grid;
 
@@ -6,7 +8,7 @@ use crate::network::Network;
 use crate::parallel;
 use crate::step::{Step, Strength};
 
-/// Pools of a tree that is not whole yet.
+/// Pools of a forest that is not yet a tree per cluster.
 pub(crate) struct Pools {
     grid: Grid,
     /// Pool of each element.
@@ -14,12 +16,12 @@ pub(crate) struct Pools {
     number: usize,
 }
 
-/// A bond by which a pool hangs on another one.
+/// A bond that connects a pool to its parent pool.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Saddle {
-    /// Element of the pool.
+    /// Element in the pool.
     pub(crate) from: usize,
-    /// To the element that it hangs on.
+    /// Step from this element to the element in the parent pool.
     pub(crate) step: Step,
 }
 
@@ -30,7 +32,7 @@ struct Bond {
     saddle: Saddle,
 }
 
-/// Not labelled yet.
+/// Label of an element without a pool.
 const UNKNOWN: u32 = u32::MAX;
 
 impl Pools {
@@ -60,7 +62,9 @@ impl Pools {
         Self { grid, labels, number: number as usize }
     }
 
-    /// The bonds that make one tree of the pools of each cluster, each pool after the one that it hangs on.
+    /// The bonds that join the pools of each cluster into one tree.
+    ///
+    /// The parent of a pool comes before the pool.
     pub(crate) fn join(&self, network: &Network) -> Vec<Saddle> {
         let mut bonds = self.bonds(network);
         bonds.sort_unstable_by(|a, b| b.strength.cmp(&a.strength));
@@ -106,8 +110,9 @@ impl Pools {
         blocks.concat()
     }
 
-    /// Orders the chosen bonds, each given from both sides with the pool on the other one, from the first pool of each
-    /// cluster outwards.
+    /// The chosen bonds, ordered from the first pool of each cluster outwards.
+    ///
+    /// Each bond is given from both sides, with the pool on the other side.
     fn in_order(&self, chosen: &[[(u32, Saddle); 2]]) -> Vec<Saddle> {
         let of = |saddle: &Saddle| self.labels[saddle.from] as usize;
         let mut first = vec![0_u32; self.number + 1];
@@ -147,7 +152,7 @@ impl Pools {
     }
 }
 
-/// The set of a pool.
+/// The root of the set of a pool.
 fn root(sets: &mut [u32], pool: u32) -> u32 {
     let mut at = pool;
     while sets[at as usize] != at {

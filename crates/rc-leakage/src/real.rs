@@ -1,9 +1,9 @@
-//! Precision of a hierarchy.
+//! Precision of a hierarchy of levels.
 
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul, Sub, SubAssign};
 
-/// `f32`, or `f64` where single precision does not tell a weak bond from rounding.
+/// `f32`, or `f64` if single precision does not distinguish a weak bond from rounding.
 pub(crate) trait Real:
     Copy
     + Default
@@ -21,7 +21,7 @@ pub(crate) trait Real:
 {
     const ZERO: Self;
     const ONE: Self;
-    /// Smallest number of full precision.
+    /// Smallest normal number.
     const TINY: Self;
     /// `value` rounded.
     fn of(value: f64) -> Self;

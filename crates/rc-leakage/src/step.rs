@@ -1,14 +1,14 @@
-//! Steps from elements to their neighbours, and how bonds compare.
+//! Steps from elements to their neighbours, and the comparison of bonds.
 
 use std::cmp::Ordering;
 
 use rc_core::Grid;
 
-/// From an element to its parent, or to a neighbour.
+/// A step from an element to its parent, or to a neighbour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum Step {
-    /// A root, or contact.
+    /// No step: the element is a root or in contact.
     None,
     East,
     West,
@@ -65,25 +65,26 @@ impl Step {
     }
 }
 
-/// A bond for comparison: of bonds of the same conductance a hash decides, so that trees in films of constant gap have
-/// short paths.
+/// Strength of a bond, for comparisons.
+///
+/// A hash orders bonds of the same conductance, so that trees in films of constant gap have short paths.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub(crate) struct Strength(f64, u64);
 
 impl Strength {
-    /// None at all.
+    /// Strength of an absent bond.
     pub(crate) const NONE: Self = Self(0.0, 0);
 
-    /// Of the bond from element `index` along `axis`.
+    /// Strength of the bond from element `index` along `axis`.
     #[inline]
     pub(crate) fn new(conductance: f64, index: usize, axis: usize) -> Self {
         let key = (2 * index + axis) as u64;
-        // Different for different bonds: the factor is odd.
+        // The factor is odd, so different bonds have different hashes.
         let mixed = key.wrapping_mul(0x9e37_79b9_7f4a_7c15);
         Self(conductance, mixed ^ (mixed >> 32))
     }
 
-    /// Weaker bonds first.
+    /// Compares two bonds; weaker ones come first.
     pub(crate) fn cmp(&self, other: &Self) -> Ordering {
         self.0.total_cmp(&other.0).then(self.1.cmp(&other.1))
     }

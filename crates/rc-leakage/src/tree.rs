@@ -1,7 +1,7 @@
-//! A spanning tree of the strongest bonds, along which what a pressure leaves unbalanced flows to where it is missing.
+//! A spanning tree of the strongest bonds, along which unbalanced flow is balanced.
 //!
-//! The path of the tree between two elements has the largest weakest bond of all paths, so that what is unbalanced
-//! within a wide place stays there.
+//! The path of the tree between two elements has the largest weakest bond of all paths. So imbalances within a wide
+//! place are balanced there.
 
 use rc_core::Grid;
 
@@ -14,16 +14,17 @@ use crate::step::{Step, Strength};
 #[derive(Debug)]
 pub(crate) struct SpanningTree {
     grid: Grid,
-    /// To the parent of each element.
+    /// Step from each element to its parent.
     steps: Vec<Step>,
 }
 
-/// Children of an element that has been visited.
+/// Count of children that marks an element as visited.
 const DONE: u8 = u8::MAX;
 
 impl SpanningTree {
-    /// The maximum spanning tree of each cluster of `network`, by Borůvka's first round and Kruskal's algorithm on what
-    /// it leaves.
+    /// The maximum spanning tree of each cluster of `network`.
+    ///
+    /// It takes Borůvka's first round, and then Kruskal's algorithm on the trees of that round.
     pub(crate) fn new(network: &Network) -> Self {
         let mut tree = Self { grid: network.grid(), steps: strongest(network) };
         tree.break_pairs();
@@ -37,13 +38,15 @@ impl SpanningTree {
         &self.steps
     }
 
-    /// Of two elements that are the parents of each other, the first becomes a root.
+    /// Makes one of two elements a root if they are each other's parents.
+    ///
+    /// It is the first of the two.
     fn break_pairs(&mut self) {
         for index in 0..self.steps.len() {
             let step = self.steps[index];
             if step != Step::None {
                 let parent = step.from(index, self.grid);
-                // Between two neighbours that have two bonds, only those that are one bond.
+                // Two neighbours may have two bonds. Only steps along one bond count.
                 if self.steps[parent] == step.back() {
                     self.steps[index] = Step::None;
                 }
@@ -51,7 +54,7 @@ impl SpanningTree {
         }
     }
 
-    /// Makes element `from` the root of its tree, and hangs it on its neighbour.
+    /// Makes element `from` the root of its tree, and then a child of its neighbour.
     fn hang(&mut self, from: usize, to: Step) {
         let (mut at, mut next) = (from, to);
         while next != Step::None {
@@ -61,7 +64,9 @@ impl SpanningTree {
         }
     }
 
-    /// Replaces the excess of each element by what flows from it to its parent when every element passes its excess on.
+    /// Replaces the excess of each element by the flow from it to its parent.
+    ///
+    /// Every element passes its excess on.
     pub(crate) fn route(&self, excess: &mut [f64]) {
         let mut children = vec![0_u8; self.steps.len()];
         for (index, step) in self.steps.iter().enumerate().filter(|(_, step)| **step != Step::None) {
@@ -137,7 +142,9 @@ mod tests {
         })
     }
 
-    /// Bonds and their product, of Kruskal's algorithm with labels that are written anew at each bond.
+    /// Number of bonds and their product, from Kruskal's algorithm.
+    ///
+    /// Labels are rewritten at each bond.
     fn kruskal(network: &Network) -> (usize, f64) {
         let n = network.grid().len();
         let of = |a: usize| network.bonds_of(a).into_iter().map(move |(b, bond)| (a, b, bond));

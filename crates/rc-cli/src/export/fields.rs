@@ -1,4 +1,4 @@
-//! What is exported of a result.
+//! The fields of a result for export.
 
 use std::path::Path;
 
@@ -12,48 +12,52 @@ use crate::scene::surface::HEIGHTS_FILE;
 
 /// The fields of a result, all on one grid.
 pub(super) struct Fields {
-    /// `status` of the summary.
+    /// Value of `status` in the summary.
     pub(super) status: String,
-    /// λ, along x (m).
+    /// Side λ of the cell along x (m).
     pub(super) side: f64,
     /// E* (Pa).
     pub(super) e_star: f64,
-    /// Pa.
+    /// Pressure (Pa).
     pub(super) pressure: Field,
-    /// m.
+    /// Gap (m).
     pub(super) gap: Field,
-    /// m, with a hardness.
+    /// Overlap that plastic flow has removed (m), with a hardness.
     pub(super) plastic_gap: Option<Field>,
-    /// m, of a height map.
+    /// Height (m), of a height map.
     pub(super) height: Option<Field>,
-    /// Fluxes of a flow along x and y, with their names (m²).
+    /// Fluxes along x and y (m²) with their names.
     pub(super) flow: Vec<(&'static str, Field)>,
-    /// What 1 in [`Fields::contact`] says: `contact` of elements, `touched` of means over them, above 0 where any of
-    /// them is in contact.
+    /// Meaning of 1 in [`Fields::contact`].
+    ///
+    /// It is `contact` for elements. It is `touched` for means over elements, which are above 0 if any of the elements
+    /// is in contact.
     pub(super) contact_name: &'static str,
 }
 
 impl Fields {
-    /// Reads them from the folder of a result.
+    /// Reads the fields from the folder of a result.
     pub(super) fn read(folder: &Path) -> Result<Self, CliError> {
         let result = ResultFolder::read_finite(folder)?;
         let contact_name = if result.is_of_elements() { "contact" } else { "touched" };
         let ResultFolder { summary, side, e_star, pressure, gap, plastic_gap } = result;
         let heights = folder.join(HEIGHTS_FILE);
         let height = heights.is_file().then(|| in_cell(&heights, pressure.grid().cell_ratio())).transpose()?;
-        // With --output-grid, pressure and gap are coarser than the heights.
+        // With --output-grid, pressure and gap are on a coarser grid than the heights.
         let height = height.filter(|height| height.grid() == pressure.grid());
         let flow = read_flow(folder, &pressure)?;
         Ok(Self { status: summary.status, side, e_star, pressure, gap, plastic_gap, height, flow, contact_name })
     }
 
-    /// 1 where the pressure is positive, else 0.
+    /// 1 for each element with positive pressure, else 0.
     pub(super) fn contact(&self) -> Vec<u8> {
         self.pressure.values().iter().map(|p| u8::from(*p > 0.0)).collect()
     }
 }
 
-/// The fluxes in the folder of a result, where there are any on the grid of its `pressure`.
+/// The fluxes in the folder of a result.
+///
+/// They must be on the grid of its `pressure`; otherwise the list is empty.
 fn read_flow(folder: &Path, pressure: &Field) -> Result<Vec<(&'static str, Field)>, CliError> {
     let mut flow = Vec::new();
     for (file, name) in FLUX_FILES.into_iter().zip(["flow_x", "flow_y"]) {
@@ -68,7 +72,7 @@ fn read_flow(folder: &Path, pressure: &Field) -> Result<Vec<(&'static str, Field
     Ok(flow)
 }
 
-/// An element as its file has it.
+/// An element with the columns of its file.
 #[derive(Clone, Copy, Debug, serde::Deserialize)]
 pub(super) struct Element {
     pub(super) x: f64,

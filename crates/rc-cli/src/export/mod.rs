@@ -1,4 +1,6 @@
-//! `rc export`: a result as files of other programs: VTK for ParaView, PyVista and VisIt, Zarr for Python and others.
+//! `rc export`: a result as files of other programs.
+//!
+//! VTK is for ParaView, PyVista and VisIt, Zarr for Python and others.
 
 pub(crate) mod args;
 
@@ -16,7 +18,7 @@ use crate::error::CliError;
 use crate::terminal;
 use rc_sweep::files::{self, Staged};
 
-/// Elements of methods that have their own.
+/// File of the elements, of methods with a mesh of their own.
 const ELEMENTS_FILE: &str = "elements.csv";
 
 /// Runs `rc export`.
@@ -43,7 +45,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), CliError> {
     if args.quiet { Ok(()) } else { terminal::print_names(target, &names) }
 }
 
-/// Fields and, if there is one, adaptive mesh as VTK's XML files.
+/// Adds the fields and, if there is one, the adaptive mesh as VTK's XML files.
 fn add_vtk(staged: &mut Staged, folder: &Path, fields: &Fields) -> Result<(), CliError> {
     let elements = folder.join(ELEMENTS_FILE);
     let elements = elements.is_file().then(|| read_elements(&elements)).transpose()?;

@@ -1,4 +1,6 @@
-//! The data sets of a result for ParaView: fields as an image, elements as a mesh.
+//! The data sets of a result for ParaView.
+//!
+//! Fields are an image, and elements are a mesh.
 
 use super::fields::{Element, Fields};
 use super::vtk::{Array, Dataset, Values};
@@ -6,7 +8,9 @@ use super::vtk::{Array, Dataset, Values};
 /// Number of a quadrilateral among VTK's cells.
 const VTK_QUAD: u8 = 9;
 
-/// The fields as values of the cells of an image: a value belongs to the element, not to its corners.
+/// The fields as values of the cells of an image.
+///
+/// A value belongs to an element, not to its corners.
 pub(super) fn image(fields: &Fields) -> Dataset<'_> {
     let Fields { side, pressure, gap, plastic_gap, height, flow, .. } = fields;
     let grid = pressure.grid();
@@ -29,8 +33,9 @@ pub(super) fn image(fields: &Fields) -> Dataset<'_> {
     Dataset { kind: "ImageData", whole, piece: vec![("Extent", extent)], sections: vec![("CellData", cells)] }
 }
 
-/// The elements as quadrilaterals, each with corners of its own, so that elements of different sizes need no common
-/// points.
+/// The elements as quadrilaterals, each with its own corners.
+///
+/// Elements of different sizes then need no common points.
 pub(super) fn mesh(elements: &[Element]) -> Dataset<'static> {
     const CORNERS: [[f64; 2]; 4] = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
     let n = elements.len();

@@ -1,5 +1,6 @@
-//! VTK's XML files: a head of XML that says where each array begins, then the arrays as they are in memory ("appended
-//! raw").
+//! Writer of VTK's XML files.
+//!
+//! A head of XML gives the place of each array. The arrays follow as they are in memory ("appended raw").
 //!
 //! Format: *VTK File Formats*, <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>.
 
@@ -15,12 +16,12 @@ use quick_xml::events::{BytesDecl, Event};
 #[derive(Clone, Debug)]
 pub(super) struct Array<'a> {
     name: &'static str,
-    /// Values for each point or cell.
+    /// Number of values for each point or cell.
     components: usize,
     values: Values<'a>,
 }
 
-/// What an array holds.
+/// The values of an array.
 #[derive(Clone, Debug)]
 pub(super) enum Values<'a> {
     Float64(Cow<'a, [f64]>),
@@ -33,11 +34,11 @@ pub(super) enum Values<'a> {
 pub(super) struct Dataset<'a> {
     /// VTK's name of its kind.
     pub(super) kind: &'static str,
-    /// Attributes of the whole.
+    /// Attributes of the whole data set.
     pub(super) whole: Vec<(&'static str, String)>,
     /// Attributes of its one piece.
     pub(super) piece: Vec<(&'static str, String)>,
-    /// Arrays by the section that they belong to.
+    /// Arrays of each section.
     pub(super) sections: Vec<(&'static str, Vec<Array<'a>>)>,
 }
 
@@ -85,7 +86,7 @@ pub(super) fn write(path: &Path, data: &Dataset<'_>) -> io::Result<()> {
         write_head(xml, data)?;
         xml.create_element("AppendedData").with_attribute(("encoding", "raw")).write_inner_content(|xml| {
             let out = xml.get_mut();
-            // The mark before the first byte, from which offsets are counted.
+            // This mark precedes the first byte, from which offsets are counted.
             out.write_all(b"_")?;
             data.arrays().try_for_each(|array| {
                 out.write_all(&array.values.bytes().to_le_bytes())?;
@@ -98,7 +99,7 @@ pub(super) fn write(path: &Path, data: &Dataset<'_>) -> io::Result<()> {
     file.sync_all()
 }
 
-/// What there is, and where.
+/// Writes the kinds and the places of all arrays.
 fn write_head(xml: &mut Writer<impl Write>, data: &Dataset<'_>) -> io::Result<()> {
     let mut offset = 0;
     let whole = data.whole.iter().map(|(name, value)| (*name, value.as_str()));
@@ -117,7 +118,7 @@ fn write_head(xml: &mut Writer<impl Write>, data: &Dataset<'_>) -> io::Result<()
     Ok(())
 }
 
-/// One array's line; `offset` goes on to the next.
+/// Writes the line of one array, and moves `offset` to the next array.
 fn write_array_head(xml: &mut Writer<impl Write>, array: &Array<'_>, offset: &mut u64) -> io::Result<()> {
     let [components, at] = [array.components.to_string(), offset.to_string()];
     let attributes = [

@@ -1,4 +1,6 @@
-//! The fields of a result as a Zarr group that xarray opens as a data set: variables on the dimensions y and x.
+//! The fields of a result as a Zarr group for xarray.
+//!
+//! xarray opens it as a data set, whose variables have the dimensions y and x.
 
 use rc_core::Grid;
 use serde_json::{Value, json};
@@ -12,7 +14,7 @@ pub(crate) const GROUP: &str = "fields.zarr";
 /// Dimensions of a field: rows, columns.
 const PLANE: &[&str] = &["y", "x"];
 
-/// Pressure, gap, contact, heights if there are any, and the coordinates of the centres of elements.
+/// Pressure, gap, contact, heights if there are any, and coordinates of elements' centres.
 pub(super) fn group(fields: &Fields) -> Group<'_> {
     let Fields { status, side, e_star, pressure, gap, plastic_gap, height, flow, contact_name } = fields;
     let grid = pressure.grid();
@@ -55,7 +57,9 @@ pub(super) fn group(fields: &Fields) -> Group<'_> {
     Group { attributes: attributes(status, grid, *side, *e_star), arrays }
 }
 
-/// The attributes of the group: where it comes from, and the cell (side in m) and the material (E* in Pa).
+/// The attributes of the group: its origin, the cell and the material.
+///
+/// `side` is the cell's side along x in m, and `e_star` is E* in Pa.
 pub(crate) fn attributes(status: &str, grid: Grid, side: f64, e_star: f64) -> Value {
     json!({
         "source": concat!("rc ", env!("CARGO_PKG_VERSION")),

@@ -1,9 +1,11 @@
-//! Zarr groups: a folder for each array, a file for each compressed chunk, and what they are as JSON.
+//! Writer of Zarr groups.
+//!
+//! A group has a folder for each array, a file for each compressed chunk, and descriptions as JSON.
 //!
 //! Format: *Zarr storage specification version 2*, <https://zarr-specs.readthedocs.io/en/latest/v2/v2.0.html>, which
-//! every reader knows; dimensions are named as xarray asks for, in `_ARRAY_DIMENSIONS`. Written by hand, as it is this
-//! page of code: the crate `zarrs` (0.23, default features off) brings more than 70 packages along that are not here
-//! yet and needs a newer compiler than ours.
+//! every reader knows. The names of dimensions are in `_ARRAY_DIMENSIONS`, as xarray expects. The code is written by
+//! hand, since it is short. The crate `zarrs` (0.23, default features off) would add more than 70 packages and need a
+//! newer compiler than ours.
 
 use std::borrow::Cow;
 use std::fs;
@@ -18,13 +20,17 @@ use serde_json::{Value, json};
 use crate::error::CliError;
 use rc_sweep::files::write_synced;
 
-/// Most values of a chunk along each dimension: 8 MiB of `f64`, few files and yet pieces that fit anywhere.
+/// Maximum number of values of a chunk along each dimension.
+///
+/// A chunk has at most 8 MiB of `f64`. So there are few files, and still each fits anywhere.
 const CHUNK: usize = 1024;
 
-/// The file that marks a group.
+/// Name of the file that marks a group.
 const GROUP_FILE: &str = ".zgroup";
 
-/// Level of compression: higher ones take three times as long for 1 % of the size, since digits of fields are noise.
+/// Level of compression.
+///
+/// Higher levels take three times as long for 1 % of the size, since digits of fields are noise.
 const LEVEL: u32 = 1;
 
 /// Arrays with common attributes.
@@ -43,13 +49,13 @@ pub(super) struct Array<'a> {
     pub(super) values: Values<'a>,
 }
 
-/// What an array holds.
+/// The values of an array.
 pub(super) enum Values<'a> {
     Float64(Cow<'a, [f64]>),
     UInt8(Vec<u8>),
 }
 
-/// Refuses a folder at `path` that is no group, and would have to make room for one.
+/// Refuses a folder at `path` that is not a group, since writing would remove it.
 ///
 /// # Errors
 /// [`CliError::Input`].
@@ -63,7 +69,7 @@ pub(crate) fn check_place(path: &Path) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Writes a group to the folder `path`, which it makes.
+/// Makes the folder `path` and writes a group into it.
 ///
 /// # Errors
 /// Those of the file system.
@@ -73,8 +79,9 @@ pub(super) fn write(path: &Path, group: &Group<'_>) -> io::Result<()> {
     group.arrays.iter().try_for_each(|array| array.write_chunks(&path.join(array.name)))
 }
 
-/// Makes the folder of a group and of its arrays, each given by its name, its description and its attributes. Chunks
-/// are to follow.
+/// Makes the folders of a group and of its arrays, with their metadata.
+///
+/// Each array is given by its name, description and attributes. The chunks are written later.
 ///
 /// # Errors
 /// Those of the file system.
@@ -84,7 +91,7 @@ pub(crate) fn write_metadata<'a>(
     arrays: impl Iterator<Item = (&'a str, Value, Value)>,
 ) -> io::Result<()> {
     fs::create_dir(path)?;
-    // All metadata once more in one file: readers need not look for arrays, which they cannot over a network.
+    // One more file has all metadata, so that readers need not search for arrays. Over a network they could not.
     let mut all = serde_json::Map::new();
     let mut describe = |name: String, value: Value| {
         write_synced(&path.join(&name), format!("{value:#}\n").as_bytes())?;
@@ -102,7 +109,7 @@ pub(crate) fn write_metadata<'a>(
     write_synced(&path.join(".zmetadata"), format!("{consolidated:#}\n").as_bytes())
 }
 
-/// The description of an array of this type, shape and shape of chunks.
+/// The description of an array from its type, shape and shape of chunks.
 pub(crate) fn description(kind: &str, shape: &[usize], chunks: &[usize]) -> Value {
     json!({
         "zarr_format": 2,
@@ -110,7 +117,7 @@ pub(crate) fn description(kind: &str, shape: &[usize], chunks: &[usize]) -> Valu
         "chunks": chunks,
         "dtype": kind,
         "compressor": { "id": "zlib", "level": LEVEL },
-        // No value stands for a missing one: xarray would take a zero here for it, and zero pressure for nothing.
+        // No value stands for a missing one. Otherwise xarray would read zero pressure as missing.
         "fill_value": null,
         "order": "C",
         "filters": null,
@@ -149,7 +156,7 @@ impl Array<'_> {
         self.shape.iter().map(|&n| n.min(CHUNK)).collect()
     }
 
-    /// Writes every chunk, named by its place.
+    /// Writes all chunks. The name of a chunk is its place.
     fn write_chunks(&self, folder: &Path) -> io::Result<()> {
         let [ny, nx] = rows_and_columns(&self.shape);
         let [height, width] = rows_and_columns(&self.chunk_shape());
@@ -161,8 +168,9 @@ impl Array<'_> {
         })
     }
 
-    /// The bytes of the chunk that begins at this row and column. What of it is beyond the array is zero: all chunks
-    /// are equally large.
+    /// The bytes of the chunk that begins at this row and column.
+    ///
+    /// All chunks have the same size, so values beyond the array are zero.
     fn chunk(&self, [first_row, first_column]: [usize; 2], [height, width]: [usize; 2]) -> Vec<u8> {
         let [ny, nx] = rows_and_columns(&self.shape);
         let size = match self.values {
@@ -184,7 +192,7 @@ impl Array<'_> {
     }
 }
 
-/// A list is one row.
+/// Numbers of rows and columns. A list is one row.
 fn rows_and_columns(shape: &[usize]) -> [usize; 2] {
     match *shape {
         [n] => [1, n],

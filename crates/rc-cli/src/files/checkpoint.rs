@@ -1,4 +1,6 @@
-//! The file of `rc-mpi --checkpoint`: what the last level that was solved has left for the next one.
+//! The file of `rc-mpi --checkpoint`.
+//!
+//! It keeps what the last solved level leaves for the next level.
 
 use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom, Write as _};
@@ -10,22 +12,25 @@ use rc_sweep::files;
 
 use crate::error::CliError;
 
-/// A file that keeps what each level leaves for the next, of one scene. Every rank reads it, so that it is on a file
-/// system that all of them see.
+/// A file that keeps what each level leaves for the next, for one scene.
+///
+/// Every rank reads it, so it must be on a file system that all ranks see.
 #[derive(Debug)]
 pub struct CheckpointFile {
     path: PathBuf,
-    /// What the file begins with: what it is, and of which scene.
+    /// Beginning of the file, which identifies its format and its scene.
     head: Vec<u8>,
-    /// Why it could not be written.
+    /// Why the file could not be written.
     failure: Mutex<Option<String>>,
 }
 
 impl CheckpointFile {
-    /// The file at `path`, which may not be there yet, of the scene with this text.
+    /// The file at `path` for the scene with the text `scene`.
+    ///
+    /// The file need not exist yet.
     ///
     /// # Errors
-    /// [`CliError::Input`] for a file of another scene, or another file.
+    /// [`CliError::Input`] for a file of another scene, or a file of another kind.
     pub fn new(path: &Path, scene: &str) -> Result<Self, CliError> {
         let head = format!("rc {} checkpoint, {} bytes of scene\n{scene}\n", env!("CARGO_PKG_VERSION"), scene.len());
         let file = Self { path: path.to_owned(), head: head.into_bytes(), failure: Mutex::new(None) };
@@ -38,15 +43,15 @@ impl CheckpointFile {
         Ok(file)
     }
 
-    /// Why the file could not be written, if it could not.
+    /// Why the file could not be written; `None` if it could.
     #[must_use]
     pub fn failure(&self) -> Option<String> {
         self.failure.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Removes the file: its solution is there.
+    /// Removes the file, once its solution exists.
     pub fn remove(&self) {
-        // A file that stays is of the same scene, and does no harm.
+        // If the file stays, it does no harm, since it belongs to the same scene.
         let _ = std::fs::remove_file(&self.path);
     }
 

@@ -5,7 +5,7 @@ use rc_core::{Field, Grid};
 use crate::error::CliError;
 use crate::scene::values::GridSpec;
 
-/// Checks that each side of `spec` divides that of `grid`.
+/// Checks that each number of elements in `spec` divides that of `grid`.
 ///
 /// # Errors
 /// [`CliError::Input`].
@@ -22,8 +22,10 @@ fn divides(grid: Grid, spec: GridSpec) -> bool {
     divides(spec.nx, grid.nx()) && divides(spec.ny, grid.ny())
 }
 
-/// The mean over the elements of each element of a coarser grid, from the rows of the finer one: means over the cell
-/// are kept, and the finer field is never whole in memory.
+/// Averages over the elements of each element of a coarser grid.
+///
+/// It takes the rows of the finer grid one after another, so the finer field is never stored as a whole. Means over the
+/// cell are kept.
 #[derive(Clone, Debug)]
 pub(crate) struct BlockMean {
     grid: Grid,
@@ -32,7 +34,7 @@ pub(crate) struct BlockMean {
 }
 
 impl BlockMean {
-    /// Of fields on `grid`, on `spec`.
+    /// Averages from fields on `grid` to the grid `spec`.
     ///
     /// # Panics
     /// When `spec` does not divide the grid, see [`check_factor`].
@@ -60,7 +62,7 @@ impl BlockMean {
         }
     }
 
-    /// The means.
+    /// The field of the averages.
     #[must_use]
     pub(crate) fn finish(mut self) -> Field {
         let per_element = self.sums.grid().len() as f64 / self.grid.len() as f64;

@@ -1,4 +1,4 @@
-//! Files of results: fields averaged for them, and the folder read back.
+//! Files of results, and reading them back.
 
 pub mod checkpoint;
 pub(crate) mod coarsen;

@@ -1,4 +1,4 @@
-//! A result folder, read back.
+//! Reader of result folders.
 
 use std::path::Path;
 
@@ -11,23 +11,23 @@ use crate::scene::resolve;
 use rc_heights::npy;
 use rc_sweep::Summary;
 
-/// The file of the overlap that plastic flow has removed, with a hardness.
+/// File of the overlap that plastic flow has removed, with a hardness.
 pub const PLASTIC_GAP_FILE: &str = "plastic_gap.npy";
 
-/// What `rc solve --out` wrote.
+/// A folder that `rc solve --out` has written.
 #[derive(Clone, Debug)]
 pub struct ResultFolder {
     /// The summary.
     pub summary: Summary,
-    /// Side λ of the cell along x (m), from the scene as it was solved; the grid of the fields knows the other.
+    /// Side λ of the cell along x (m), from the solved scene. The grid of the fields gives the other side.
     pub side: f64,
-    /// E* (Pa), from the same scene.
+    /// E* (Pa), from the solved scene.
     pub e_star: f64,
     /// Pressure (Pa).
     pub pressure: Field,
     /// Gap (m).
     pub gap: Field,
-    /// The overlap that plastic flow has removed (m), with a hardness.
+    /// Overlap that plastic flow has removed (m), with a hardness.
     pub plastic_gap: Option<Field>,
 }
 
@@ -35,7 +35,7 @@ impl ResultFolder {
     /// Reads a result folder.
     ///
     /// # Errors
-    /// [`CliError::Input`] that names the file that is missing or wrong.
+    /// [`CliError::Input`] with the name of the file that is missing or wrong.
     pub fn read(folder: &Path) -> Result<Self, CliError> {
         if !folder.is_dir() {
             return Err(CliError::in_file(folder, "no such folder; give the --out folder of a solve"));
@@ -71,14 +71,16 @@ impl ResultFolder {
         [self.side, self.side * self.pressure.grid().cell_ratio()]
     }
 
-    /// Whether the fields are those of the elements that were solved, and not their means over blocks (`output_grid`).
+    /// Whether the fields have one value for each element.
+    ///
+    /// Otherwise they are means over blocks of elements (`output_grid`).
     #[must_use]
     pub fn is_of_elements(&self) -> bool {
         let grid = self.pressure.grid();
         self.summary.grid == [grid.nx(), grid.ny()]
     }
 
-    /// Reads a result folder whose fields are to be drawn, or handed on.
+    /// Reads a result folder whose fields must be finite, for drawings and exports.
     ///
     /// # Errors
     /// Those of [`ResultFolder::read`], and [`CliError::Input`] for a value that is not finite.
@@ -93,7 +95,9 @@ impl ResultFolder {
     }
 }
 
-/// Reads a field on a cell whose side along y is `cell_ratio` times that along x.
+/// Reads a field on a cell with the given ratio of sides.
+///
+/// `cell_ratio` is the ratio of the side along y to that along x.
 ///
 /// # Errors
 /// [`CliError::Input`].

@@ -27,7 +27,7 @@ use crate::scene::{file, heights, resolve};
 use crate::terminal;
 use crate::text::{solved, written};
 
-/// Names of files by which a result is recognised.
+/// Names of files that identify a result.
 const RESULT_FILES: [&str; 2] = ["summary.json", "pressure.npy"];
 
 /// Statistics of a result, with its summary.
@@ -71,16 +71,17 @@ fn result_folder(file: &Path) -> Option<PathBuf> {
     (name == "summary.json" || RESULT_FILES.contains(&name) && complete).then(|| folder.to_owned())
 }
 
-/// What `rc inspect --json` says of the result in `folder`.
+/// The text of `rc inspect --json` for the result in `folder`.
 ///
 /// # Errors
-/// [`CliError::Input`] that names the file that is missing or wrong.
+/// [`CliError::Input`] with the name of the file that is missing or wrong.
 pub fn result(folder: &Path) -> Result<String, CliError> {
     inspect_result(folder, true)
 }
 
-/// What `rc inspect --json` says of a height map in metres, which is called `name`; `sides` of its cell (m) are given
-/// where the map does not know them.
+/// The text of `rc inspect --json` for a height map in metres.
+///
+/// `name` is the map's name. `sides` of its cell (m) are used where the map does not know them.
 ///
 /// # Errors
 /// [`CliError::Input`] for a map that has no statistics.
@@ -88,7 +89,7 @@ pub fn height_map(name: &Path, map: HeightMap, sides: [Option<f64>; 2]) -> Resul
     Ok(to_json(&Inspected::new(name, map, sides)?.record))
 }
 
-/// What `rc surface --json` says of a surface in a cell of this side (m).
+/// The text of `rc surface --json` for a surface in a cell of side `side` (m).
 ///
 /// # Errors
 /// [`CliError::Input`] when the grid is too coarse for the waves.
@@ -98,7 +99,7 @@ pub fn surface(surface: &LoadedSurface, side: f64) -> Result<String, CliError> {
 }
 
 fn inspect_result(folder: &Path, json: bool) -> Result<String, CliError> {
-    // A folder that `rc surface` wrote has heights and no pressure.
+    // A folder of `rc surface` has heights, but not pressures.
     let heights = folder.join(HEIGHTS_FILE);
     if !folder.join("summary.json").exists() && heights.is_file() {
         return Err(CliError::in_file(folder, format_args!("not a result; inspect {} instead", heights.display())));
@@ -112,12 +113,12 @@ fn inspect_result(folder: &Path, json: bool) -> Result<String, CliError> {
     Ok(solved(&result.summary, sides, result.e_star) + "\nstored pressure\n" + &text::pressure(&pressure))
 }
 
-/// A height map and what it is like.
+/// A height map with its statistics.
 struct Inspected {
     /// Heights in λ.
     heights: Field,
     record: SurfaceRecord,
-    /// Said before the statistics.
+    /// Note that is printed before the statistics.
     note: &'static str,
 }
 
@@ -139,8 +140,9 @@ impl Inspected {
     }
 }
 
-/// Statistics of a height map; of several channels, a list first, or the names in the message that says why there are
-/// none.
+/// Statistics of a height map, after a list of its channels if it has several.
+///
+/// An error of such a file has the names of its channels.
 fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
     let channels = rc_heights::channels(&args.file)?;
     let several = channels.len() > 1;
@@ -163,7 +165,7 @@ fn list(channels: &[ChannelInfo]) -> String {
     if channels.len() > 1 { text::channels(channels) } else { String::new() }
 }
 
-/// The record of a height map, whose pictures are written, and what is to be said of its cell.
+/// The record of a height map and a note about its cell. Its pictures are written.
 fn statistics(args: &InspectArgs) -> Result<(SurfaceRecord, &'static str), CliError> {
     let params = ReadParams { channel: args.channel.clone(), layout: args.layout };
     let map = heights::read(&args.file, &params, Scales { unit: args.unit, height_scale: args.height_scale })?;
@@ -172,7 +174,9 @@ fn statistics(args: &InspectArgs) -> Result<(SurfaceRecord, &'static str), CliEr
     Ok((record, note))
 }
 
-/// Moments are those of the waves, the distribution of heights is that of a grid.
+/// Statistics of a file of waves.
+///
+/// Moments are those of the waves, and the distribution of heights is that of a grid.
 fn inspect_waves(args: &InspectArgs) -> Result<String, CliError> {
     let keys = SurfaceKeys {
         spectrum: Some(args.file.clone()),
@@ -195,7 +199,7 @@ fn inspect_waves(args: &InspectArgs) -> Result<String, CliError> {
     Ok(if args.json { to_json(&record) } else { text::heights(&record) + &written(args.out.as_deref()) })
 }
 
-/// Writes the pictures that are asked for.
+/// Writes the pictures, if the arguments ask for them.
 fn draw(args: &InspectArgs, heights: &Field, record: &SurfaceRecord) -> Result<(), CliError> {
     if let Some(folder) = &args.out {
         files::check_folder(folder)?;
@@ -204,10 +208,10 @@ fn draw(args: &InspectArgs, heights: &Field, record: &SurfaceRecord) -> Result<(
     Ok(())
 }
 
-/// Elements per shortest wave, of waves.
+/// Elements per shortest wave for files of waves.
 const ELEMENTS_PER_WAVE: usize = 4;
 
-/// Said of a map that could mean two things.
+/// Note for a map whose cell may be meant in two ways.
 const TAKEN: &str = "a map without a size is taken for a square, as rc solve takes it, so its points here are rectangles; --cell-y says \
                      how long its other side is\n\n";
 

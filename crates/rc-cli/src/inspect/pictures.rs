@@ -17,10 +17,12 @@ use rc_sweep::files::{FileError, Staged};
 const BLUE: RGBColor = RGBColor(38, 92, 158);
 const RED: RGBColor = RGBColor(190, 60, 50);
 
-/// Size of text (pixels).
+/// Size of the text, in pixels.
 const TEXT: f64 = 26.0;
 
-/// Writes `surface.png`, and `spectrum` and `distribution` as PNG and SVG, for `heights` (in λ).
+/// Writes pictures of `heights` (in λ) and of the statistics in `record`.
+///
+/// They are `surface.png`, and `spectrum` and `distribution` as PNG and SVG.
 ///
 /// # Errors
 /// [`FileError::Write`].
@@ -38,7 +40,7 @@ pub(crate) fn write(folder: &Path, heights: &Field, record: &SurfaceRecord) -> R
     staged.commit()
 }
 
-/// C(q), both as decimal logarithms.
+/// The spectrum C(q) with decimal logarithms on both axes.
 struct Spectrum<'a>(&'a SurfaceRecord);
 
 impl Picture for Spectrum<'_> {
@@ -98,7 +100,7 @@ impl Picture for Distribution<'_> {
     }
 }
 
-/// The range of values, and a little more.
+/// The range of values, with a margin.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
     let margin = 0.03 * (high - low);

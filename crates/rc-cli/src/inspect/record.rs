@@ -1,11 +1,11 @@
-//! What `rc surface` and `rc inspect` say of a height map, in SI.
+//! Statistics of a height map in SI units, for `rc surface` and `rc inspect`.
 
 use rc_core::{Field, Histogram};
 use rc_fractal::{HurstFit, Moments, SpectrumBin, fit_hurst, radial_spectrum};
 use rc_heights::{AreaParameters, Effect, MapStatistics};
 use serde::Serialize;
 
-/// What a height map is like.
+/// Statistics of a height map.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct SurfaceRecord {
     /// Elements along x and y.
@@ -16,9 +16,9 @@ pub(crate) struct SurfaceRecord {
     pub(crate) cell_y: f64,
     /// Mean height (m).
     pub(crate) mean: f64,
-    /// Lowest height (m).
+    /// Minimum height (m).
     pub(crate) h_min: f64,
-    /// Greatest height (m).
+    /// Maximum height (m).
     pub(crate) h_max: f64,
     /// Rms height about the mean (m).
     pub(crate) rms_height: f64,
@@ -26,28 +26,34 @@ pub(crate) struct SurfaceRecord {
     pub(crate) rms_slope: f64,
     /// Rms of the mean curvature ½∇²h (1/m).
     pub(crate) rms_curvature: f64,
-    /// Nayak's parameter α; 1.5 at least for a Gaussian isotropic surface.
+    /// Nayak's parameter α, which is at least 1.5 for a Gaussian isotropic surface.
     pub(crate) nayak: f64,
-    /// Third central moment over the cube of the rms height; 0 for a Gaussian.
+    /// Ratio of the third central moment to the cube of the rms height.
+    ///
+    /// It is 0 for a Gaussian.
     pub(crate) skewness: f64,
-    /// Fourth central moment over the fourth power of the rms height; 3 for a Gaussian.
+    /// Ratio of the fourth central moment to the fourth power of the rms height.
+    ///
+    /// It is 3 for a Gaussian.
     pub(crate) kurtosis: f64,
     /// Probability density of heights about the mean (1/m).
     pub(crate) distribution: Histogram,
     /// Parameters of ISO 25178-2 (m), from differences of neighbours, without a filter.
     pub(crate) parameters: AreaParameters,
-    /// Rms step of heights across the border of the cell over that between neighbours inside; about 1 when periodic.
+    /// Ratio of rms steps of heights: across the cell's border, to between inner neighbours.
+    ///
+    /// It is about 1 for a periodic map.
     pub(crate) border_step: f64,
-    /// Whether the spectrum is that of the heights under Hann's window, because they are not periodic.
+    /// Whether the spectrum is of the heights under Hann's window, because they are not periodic.
     pub(crate) windowed: bool,
-    /// The power law in the spectrum, if there is one.
+    /// The power law in the spectrum, if it has one.
     pub(crate) hurst_fit: Option<HurstRow>,
     /// Radially averaged power spectral density.
     pub(crate) spectrum: Vec<SpectrumRow>,
-    /// What was done to a measured map, state by state.
+    /// Measured map before its treatments and after each of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) treatments: Vec<TreatmentRow>,
-    /// The channels of the file that the map was read from, where it has several.
+    /// Channels of the map's file, if it has several.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) channels: Vec<ChannelRow>,
 }
@@ -55,7 +61,7 @@ pub(crate) struct SurfaceRecord {
 /// A channel of a file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct ChannelRow {
-    /// Its name, for `--channel`.
+    /// Name for `--channel`.
     pub(crate) name: String,
     /// Whether its values are lengths.
     pub(crate) is_height: bool,
@@ -90,20 +96,20 @@ impl HurstRow {
     }
 }
 
-/// A measured map after a treatment.
+/// Statistics of a measured map after a treatment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct TreatmentRow {
-    /// The treatment.
+    /// Name of the treatment.
     pub(crate) treatment: String,
     /// Points along x and y.
     pub(crate) grid: [usize; 2],
-    /// Points that are missing.
+    /// Number of missing points.
     pub(crate) missing: usize,
     /// Rms height about the mean (m).
     pub(crate) rms_height: f64,
     /// Rms slope from differences of neighbours.
     pub(crate) rms_slope: f64,
-    /// As [`SurfaceRecord::border_step`]; `None` while points are missing.
+    /// Border step as in [`SurfaceRecord::border_step`]; `None` while points are missing.
     pub(crate) border_step: Option<f64>,
 }
 
@@ -115,7 +121,7 @@ impl From<&Effect> for TreatmentRow {
     }
 }
 
-/// One ring of wave vectors.
+/// One ring of wave vectors in the spectrum.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct SpectrumRow {
     /// Waves per cell.
@@ -124,7 +130,7 @@ pub(crate) struct SpectrumRow {
     pub(crate) wavenumber: f64,
     /// C(q) (m⁴).
     pub(crate) psd: f64,
-    /// Wave vectors in the ring.
+    /// Number of wave vectors in the ring.
     pub(crate) modes: usize,
 }
 
@@ -140,8 +146,9 @@ impl SpectrumRow {
 }
 
 impl SurfaceRecord {
-    /// The record of `heights` (in λ) in a cell of side `side` (m). `moments` are exact ones where they are known, else
-    /// [`rc_fractal::moments_of_grid`].
+    /// The record of `heights` (in λ) in a cell of side `side` (m).
+    ///
+    /// `moments` are exact ones if they are known, else [`rc_fractal::moments_of_grid`].
     #[must_use]
     pub(crate) fn of(heights: &Field, side: f64, moments: Moments) -> Self {
         let grid = heights.grid();

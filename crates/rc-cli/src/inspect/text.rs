@@ -1,4 +1,4 @@
-//! Statistics for people: aligned lines, small tables and bars.
+//! Statistics as text: aligned lines, small tables and bars.
 
 use rc_core::Histogram;
 use rc_core::quantity::{digits, engineering};
@@ -8,10 +8,10 @@ use rc_solver::PressureStatistics;
 use super::record::{SpectrumRow, SurfaceRecord, TreatmentRow};
 use crate::text::{aligned, cell};
 
-/// Most channels that are shown.
+/// Maximum number of channels that are listed.
 const MOST: usize = 20;
 
-/// The channels of a file, a line each.
+/// The channels of a file, one per line.
 pub(crate) fn channels(channels: &[ChannelInfo]) -> String {
     let read = channels.iter().position(|channel| channel.is_height);
     let lines = channels.iter().enumerate().filter(|(i, _)| *i < MOST || Some(*i) == read).map(|(i, channel)| {
@@ -22,13 +22,13 @@ pub(crate) fn channels(channels: &[ChannelInfo]) -> String {
     "  channel      name\n".to_owned() + &lines.collect::<String>() + &more("  ", channels, "\n") + "\n"
 }
 
-/// The names of channels in a line.
+/// The names of channels in one line.
 pub(crate) fn names(channels: &[ChannelInfo]) -> String {
     let names: Vec<String> = channels.iter().take(MOST).map(ChannelInfo::shown_name).collect();
     names.join(", ") + &more(" ", channels, "")
 }
 
-/// How many channels are not shown.
+/// A note about the number of channels that are not listed.
 fn more(before: &str, channels: &[ChannelInfo], after: &str) -> String {
     match channels.len().saturating_sub(MOST) {
         0 => String::new(),
@@ -67,7 +67,7 @@ pub(crate) fn heights(record: &SurfaceRecord) -> String {
         + &bars(&s.distribution, "m")
 }
 
-/// A line for each state of a map that was treated.
+/// One line for each state of a treated map.
 fn treatments(rows: &[TreatmentRow]) -> String {
     if rows.is_empty() {
         return String::new();
@@ -82,7 +82,7 @@ fn treatments(rows: &[TreatmentRow]) -> String {
     text + "\n"
 }
 
-/// Parameters of ISO 25178-2.
+/// Lines of the parameters of ISO 25178-2.
 fn area_parameters(p: &AreaParameters) -> String {
     let length = |value| engineering(value, "m");
     let lines = [
@@ -94,7 +94,7 @@ fn area_parameters(p: &AreaParameters) -> String {
     "\n  ISO 25178-2, from differences of neighbours, no filter\n".to_owned() + &aligned(&lines)
 }
 
-/// Whether the map is periodic, and the power law in its spectrum.
+/// Lines about the periodicity of the map and the power law in its spectrum.
 fn spectrum_lines(s: &SurfaceRecord) -> String {
     let state = if s.windowed {
         "not periodic (rc surface --periodic), so the spectrum is under a Hann window"
@@ -133,7 +133,7 @@ pub(crate) fn pressure(statistics: &PressureStatistics) -> String {
     aligned(&lines) + "\n  pressure in contact density\n" + &bars(&s.distribution, "Pa")
 }
 
-/// About a dozen rows of the spectrum, evenly spaced in the logarithm of the wavenumber.
+/// About a dozen rows of the spectrum, at equal ratios of the wavenumber.
 fn spectrum_table(spectrum: &[SpectrumRow]) -> String {
     let mut text = "\n  waves per cell      C(q) (m^4)     modes\n".to_owned();
     // Beyond the shortest wave of a surface there is only rounding.
@@ -149,7 +149,7 @@ fn spectrum_table(spectrum: &[SpectrumRow]) -> String {
     text
 }
 
-/// The density as bars, two bins a line.
+/// The density as bars, two bins per line.
 fn bars(histogram: &Histogram, unit: &'static str) -> String {
     let bins: Vec<(f64, f64)> = histogram.bins().collect();
     let lines: Vec<(f64, f64)> = bins.chunks(2).map(mean_of).collect();

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::Value;
 
-/// ` --key value` for each key that has a value, ` --key` for one that is true.
+/// The flags of the keys: ` --key value`, or ` --key` for a key that is true.
 pub(super) fn flags(keys: &impl Serialize) -> String {
     let keys = serde_json::to_value(keys).unwrap_or(Value::Null);
     let keys = keys.as_object().cloned().unwrap_or_default();
@@ -14,7 +14,7 @@ pub(super) fn flags(keys: &impl Serialize) -> String {
     keys.iter().filter_map(flag).collect()
 }
 
-/// A value as one word of a shell; `None` where there is none.
+/// A value as one word of a shell; `None` for a key without a value.
 fn word(value: &Value) -> Option<String> {
     match value {
         Value::Null => None,
@@ -41,7 +41,7 @@ mod tests {
     use crate::scene::file;
     use crate::scene::keys::Scene;
 
-    /// Every digit comes back: the command repeats the result bit by bit.
+    /// The flags keep every digit, so that the command repeats the result bit by bit.
     #[test]
     fn the_flags_of_a_scene_are_that_scene() {
         let scene = file::parse(

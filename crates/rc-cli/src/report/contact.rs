@@ -22,16 +22,16 @@ use rc_core::quantity::{digits, engineering};
 use rc_plot::Palette;
 use rc_sweep::Summary;
 
-/// Bins of the stress distribution.
+/// Number of bins of the stress distribution.
 const BINS: usize = 80;
 
-/// Gaps below this part of the highest point's height are none.
+/// Ratio of a gap to the maximum height below which the gap counts as zero.
 const ROUNDING: f64 = 1e-9;
 
-/// What the load must be carried to, whatever the tolerance.
+/// Limit of the relative error of the load, for any tolerance.
 const LOAD_LIMIT: f64 = 1e-10;
 
-/// The data of the page that are of this kind only.
+/// The data of a page of a contact, without those of all pages.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Contact {
     maps: Maps,
@@ -47,26 +47,26 @@ pub(super) struct Contact {
 struct Maps {
     /// Sides of the cell along x and y (m).
     sides: [f64; 2],
-    /// Pa.
+    /// Pressure (Pa).
     pressure: EmbeddedField,
-    /// m.
+    /// Gap (m).
     gap: EmbeddedField,
-    /// Part of each pixel in contact, or of the stored means that are above 0.
+    /// Fraction of each pixel in contact, or fraction of its stored means that are above 0.
     contact: EmbeddedField,
-    /// Whether the fields are those of the elements that were solved.
+    /// Whether the fields have one value for each element.
     of_elements: bool,
-    /// Where the pressure is greatest, in parts of the cell.
+    /// Place of the maximum pressure, in fractions of the cell.
     peak: [f64; 2],
-    /// What a pixel is.
+    /// Explanation of the meaning of a pixel.
     averaged: String,
 }
 
-/// P(σ) over the whole nominal area.
+/// Stress distribution P(σ) over the whole nominal area.
 #[derive(Clone, Debug, Serialize)]
 struct Stress {
     /// Middles of bins (Pa).
     values: Vec<f64>,
-    /// 1/Pa.
+    /// Density (1/Pa) in each bin.
     density: Vec<f64>,
     fit: Vec<f64>,
     notes: Vec<String>,
@@ -83,14 +83,14 @@ struct CertificateRow {
     name: &'static str,
     value: String,
     limit: String,
-    /// `None` where there is no limit to compare with.
+    /// Whether the value is below its limit; `None` without a limit.
     holds: Option<bool>,
 }
 
 /// The page of the result in `folder`.
 ///
 /// # Errors
-/// [`CliError::Input`] when it is no result folder.
+/// [`CliError::Input`] when it is not a result folder.
 pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
     let result = ResultFolder::read_finite(folder)?;
     let scene_path = folder.join("scene.toml");
@@ -123,7 +123,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
             certificate: certificate(summary),
             lines: text::solved_lines(summary, result.sides(), result.e_star),
             leakage: FlowPicture::of(folder, summary),
-            // Last: it takes the fields.
+            // This comes last, since it takes the fields.
             spots: SpotSizes::of_result(result, bias, scene.contact.boundary.unwrap_or_default()),
         },
     })
@@ -191,13 +191,13 @@ fn maps(result: &ResultFolder) -> Maps {
     let (grid, of_elements) = (pressure.grid(), result.is_of_elements());
     let (p, g) = (pressure.values(), gap.values());
     let pressures = pixel_means(grid, |i| p[i]);
-    // What a solver leaves of a gap in contact is none; a mean over elements may have both.
+    // In contact, the solver's small remaining gap counts as zero. A mean over elements may have both pressure and gap.
     let gaps = pixel_means(grid, |i| if of_elements && p[i] > 0.0 { 0.0 } else { g[i] });
     let contact = pixel_means(grid, |i| f64::from(u8::from(p[i] > 0.0)));
     let pixels = pressures.grid();
     let peak = (0..pixels.len()).max_by(|a, b| pressures.values()[*a].total_cmp(&pressures.values()[*b])).unwrap_or(0);
     let peak_at = pixels.centre(peak % pixels.nx(), peak / pixels.nx());
-    // In full contact, gaps are rounding.
+    // In full contact, gaps are only rounding.
     let widest = Some(gaps.max()).filter(|gap| *gap > ROUNDING * summary.penetration_full_contact).unwrap_or(0.0);
     let what = if of_elements { "element" } else { "stored value" };
     let pixel = if grid == pixels {
@@ -226,14 +226,16 @@ fn maps(result: &ResultFolder) -> Maps {
     }
 }
 
-/// P(σ) and the Λ of Eq. 7 that fits it; `None` without contact, and without the elements.
+/// P(σ), and the fit of Eq. 7 with its Λ.
+///
+/// `None` without contact, or without values for the elements.
 fn stress(result: &ResultFolder) -> Option<Stress> {
     let ResultFolder { pressure, e_star, summary, .. } = result;
     let max = pressure.max();
     if max <= 0.0 || !result.is_of_elements() {
         return None;
     }
-    // In full contact P is a peak far from zero, which bins from zero would not resolve.
+    // In full contact P is a peak far from zero, which bins from zero on would not resolve.
     let least = pressure.min().max(0.0);
     let edges: Vec<f64> = (0..=BINS).map(|k| least + (max - least) * k as f64 / BINS as f64).collect();
     let distribution = StressDistribution::of(pressure, &edges);
@@ -292,7 +294,7 @@ mod tests {
 
     use super::*;
 
-    /// A summary of numbers that are all the same but for those that a test is about.
+    /// A summary with equal numbers, except those that a test is about.
     fn summary(grid: Grid, mean_pressure: f64, rms_slope: f64, tolerance: Option<f64>) -> Summary {
         let mut keys = serde_json::Map::new();
         for text in ["status", "control", "kernel", "method", "version"] {
@@ -328,14 +330,17 @@ mod tests {
         serde_json::from_value(keys.into()).expect("a summary")
     }
 
-    /// In full contact the stress is normal about its mean, with twice Λ for a variance, however large the mean.
+    /// In full contact the stress is normal about its mean, with the variance 2Λ.
+    ///
+    /// This holds for any mean.
     #[test]
     fn the_fit_of_full_contact_finds_the_variance_of_the_pressure() {
         let grid = Grid::new(512, 4).expect("a grid");
-        // The normal distribution at equal steps of probability, in a smooth order along x: sorted, up and down again.
+        // The values are quantiles of the normal distribution at equal steps of probability. Along x they increase and
+        // then decrease.
         let spread = 1e-3;
         let quantile = |part: f64| {
-            // Found by halving: erf is all that there is.
+            // Bisection finds the quantile, since only erf is available.
             let (mut low, mut high) = (-5.0_f64, 5.0);
             for _ in 0..60 {
                 let middle = 0.5 * (low + high);
@@ -346,15 +351,14 @@ mod tests {
         for mean_pressure in [1e-2, 1e-1, 5.0] {
             let pressure = Field::from_fn(grid, |at| mean_pressure + spread * quantile(1.0 - (2.0 * at.x - 1.0).abs()));
             let gap = Field::zeros(grid);
-            // Of this slope, spread² is the variance of full contact.
+            // With this slope the variance of full contact is spread².
             let summary = summary(grid, mean_pressure, 2.0 * spread, None);
             let result = ResultFolder { summary, side: 1.0, e_star: 1.0, pressure, gap, plastic_gap: None };
             let stress = stress(&result).expect("contact");
             let note = &stress.notes[1];
             let (_, part) = note.split_once("E*², ").expect("the part of the theory");
             let part: f64 = part.split(' ').next().expect("a number").parse().expect("a number");
-            // The ends beyond 2.9 widths are missing, and what is there is 0.4 % higher for it; a bin is 7 % of a
-            // width.
+            // The ends beyond 2.9 widths are missing, which raises the rest by 0.4 %. A bin is 7 % of a width.
             assert!((part - 1.0).abs() < 0.02, "mean {mean_pressure}: {note}");
             assert!(stress.values[0] > 0.5 * mean_pressure, "bins from {}", stress.values[0]);
         }

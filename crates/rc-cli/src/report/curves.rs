@@ -12,7 +12,7 @@ use crate::error::CliError;
 use rc_core::quantity::{Scale, digits, engineering};
 use rc_sweep::{TABLE_FILE, settings_in};
 
-/// The columns of `sweep.csv` that the page uses, in SI.
+/// The columns of `sweep.csv` that the page uses, in SI units.
 #[derive(Clone, Debug, Deserialize)]
 struct Row {
     #[serde(default)]
@@ -36,25 +36,25 @@ struct Row {
     wall_seconds: f64,
 }
 
-/// The data of the page that are of this kind only.
+/// The data of a page of a sweep, without those of all pages.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Curves {
     scenes: Vec<SceneCurves>,
     heads: Vec<&'static str>,
     rows: Vec<Vec<String>>,
     note: &'static str,
-    /// Where percolation is lost, of a sweep with flows.
+    /// Sentence about the end of percolation, for a sweep with flows.
     percolation: Option<String>,
 }
 
 /// The curves of one scene.
 #[derive(Clone, Debug, Serialize)]
 struct SceneCurves {
-    /// Empty when there is only one.
+    /// Name of the scene; empty if there is only one.
     name: String,
-    /// A curve for each seed.
+    /// One curve for each seed.
     seeds: Vec<Vec<Point>>,
-    /// Means over the seeds, under the loads that all of them have.
+    /// Means over the seeds at the loads that all seeds have.
     mean: Vec<Point>,
 }
 
@@ -64,18 +64,18 @@ struct Point {
     area: f64,
     penetration: f64,
     gap: f64,
-    /// Not finite in full contact.
+    /// Stiffness; not finite in full contact.
     stiffness: Option<f64>,
-    /// 1/m; not finite in full contact.
+    /// Conductance (1/m); not finite in full contact.
     conductance: Option<f64>,
-    /// Mean of both axes (m³), where flows were computed.
+    /// Mean permeance of both axes (m³), if flows were computed.
     permeance: Option<f64>,
 }
 
 /// The page of the sweep in `folder`.
 ///
 /// # Errors
-/// [`CliError::Input`] when `sweep.csv` is not what a sweep writes, or has no rows.
+/// [`CliError::Input`] when `sweep.csv` does not have the format of a sweep, or has no rows.
 pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
     let rows = read(&folder.join(TABLE_FILE))?;
     let scenes: Vec<SceneCurves> = groups(&rows, |row| &row.scene).into_iter().map(SceneCurves::of).collect();
@@ -110,8 +110,9 @@ fn read(path: &Path) -> Result<Vec<Row>, CliError> {
     if rows.is_empty() { Err(CliError::in_file(path, "has no rows")) } else { Ok(rows) }
 }
 
-/// Whether all rows that were planned are there and converged. Those of an interrupted sweep, of other shards, and
-/// under loads that a surface cannot take, are missing.
+/// A sentence about the rows, and whether all planned rows exist and converged.
+///
+/// Rows of an interrupted sweep, of other shards, and under loads that a surface cannot take are missing.
 fn status(rows: &[Row], settings: Option<&Value>) -> (String, bool) {
     let surfaces = settings.and_then(|settings| settings["surfaces"].as_array());
     let loads = |surface: &Value| surface["loads"].as_array().map_or(0, Vec::len);
@@ -141,7 +142,7 @@ impl SceneCurves {
         let at = |load: f64| -> Vec<Point> {
             rows.iter().filter(|row| row.control_value.total_cmp(&load).is_eq()).map(Point::of).collect()
         };
-        // Over some of the seeds it would jump where one of them ends.
+        // A mean over a part of the seeds would jump where the curve of a seed ends.
         let of_all = loads.into_iter().map(at).filter(|points| points.len() == seeds.len());
         let mean = of_all.map(|points| Point::mean(&points)).collect();
         Self { name: rows.first().map(|row| row.scene.clone()).unwrap_or_default(), seeds, mean }
@@ -229,7 +230,9 @@ fn table(scenes: Vec<SceneCurves>, rows: &[Row]) -> Curves {
     }
 }
 
-/// The sweep as command lines, one for each scene, from the first line of its journal.
+/// The command lines of the sweep, one for each scene.
+///
+/// `settings` is the first line of its journal.
 fn commands(settings: &Value) -> Vec<Command> {
     let surfaces = settings["surfaces"].as_array().map_or(&[][..], Vec::as_slice);
     let scenes = surfaces.chunk_by(|a, b| a["scene"] == b["scene"]);
@@ -291,7 +294,7 @@ mod tests {
         let areas: Vec<f64> = curves.mean.iter().map(|point| point.area).collect();
         assert!((areas[0] - 0.2).abs() < 1e-15 && (areas[1] - 0.4).abs() < 1e-15, "{areas:?}");
         assert_eq!((curves.mean[0].penetration, curves.mean[0].stiffness), (2.0, None));
-        // One seed without its second row: no mean there.
+        // One seed does not have the second load, so there is no mean at that load.
         let curves = SceneCurves::of(&[row(1, 1.0, 0.1), row(1, 2.0, 0.2), row(2, 1.0, 0.3)]);
         assert_eq!((curves.seeds[0].len(), curves.seeds[1].len(), curves.mean.len()), (2, 1, 1));
     }

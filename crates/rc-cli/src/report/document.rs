@@ -1,4 +1,4 @@
-//! The page as one HTML file: its frame with style, script and data put in.
+//! The page as one HTML file: a frame with style, script and data.
 
 use serde::Serialize;
 
@@ -7,7 +7,7 @@ use super::page::Page;
 const FRAME: &str = include_str!("../../assets/report/page.html");
 const STYLE: &str = include_str!("../../assets/report/page.css");
 
-/// The script, in the order in which its parts need each other.
+/// The script. Its parts are in the order in which they need each other.
 const SCRIPT: &str = concat!(
     include_str!("../../assets/report/dom.js"),
     include_str!("../../assets/report/chart.js"),
@@ -20,12 +20,14 @@ const SCRIPT: &str = concat!(
 /// The HTML of `page`.
 pub(super) fn html<B: Serialize>(page: &Page<B>) -> String {
     let data = serde_json::to_string(page).expect("a record of numbers and text is valid JSON");
-    // In JSON, `<` occurs in text only, where it may be written so; then no text ends the element that holds it.
+    // In JSON, `<` occurs only in text, where it may be escaped. So a text cannot close the element that contains it.
     let data = data.replace('<', "\\u003c");
     fill(FRAME, &[("title", &escaped(&page.title)), ("style", STYLE), ("data", &data), ("script", SCRIPT)])
 }
 
-/// `frame` with each `{{name}}` replaced; what replaces it is not searched again.
+/// `frame` with each `{{name}}` replaced by its text.
+///
+/// Inserted texts are not searched again.
 fn fill(frame: &str, texts: &[(&str, &str)]) -> String {
     let mut parts = frame.split("{{");
     let mut filled = parts.next().unwrap_or_default().to_owned();
@@ -38,7 +40,7 @@ fn fill(frame: &str, texts: &[(&str, &str)]) -> String {
     filled
 }
 
-/// `text` inside an element.
+/// `text` escaped for the inside of an element.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -1,4 +1,6 @@
-//! Fields small enough to be in a page: means over at most 512 x 512 pixels, as whole numbers.
+//! Fields that are small enough to be in a page.
+//!
+//! They are means over at most 512 x 512 pixels, as integers.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -7,32 +9,34 @@ use serde::Serialize;
 
 use rc_plot::{Palette, PixelMean};
 
-/// Most pixels per side.
+/// Maximum number of pixels per side.
 pub(super) const MOST_PIXELS: usize = 512;
 
-/// Whole numbers of this many bits.
+/// Number of bits of the integers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Bits {
     Eight,
     Sixteen,
 }
 
-/// A field as the script reads it.
+/// A field in the form that the script reads.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct EmbeddedField {
     nx: usize,
     ny: usize,
-    /// 8 or 16: a value is its whole number times `max` over the greatest such number.
+    /// Bits of a number, 8 or 16. A value is its number times `max`, divided by the largest number of so many bits.
     bits: u8,
-    /// Greatest value.
+    /// Maximum value.
     max: f64,
-    /// Base64 of the numbers, little-endian, row by row from y = 0.
+    /// The numbers in base64, little-endian, row by row from y = 0.
     data: String,
-    /// Colours from 0 to `max`.
+    /// Colours of the scale from 0 to `max`.
     colours: &'static [(u8, u8, u8)],
 }
 
-/// The mean of `value`, of the number of an element, over the elements of each pixel.
+/// The mean of `value` over the elements of each pixel.
+///
+/// The argument of `value` is the index of an element.
 pub(super) fn pixel_means(grid: Grid, value: impl Fn(usize) -> f64) -> Field {
     let mut means = PixelMean::new(grid, MOST_PIXELS);
     for iy in 0..grid.ny() {
@@ -42,17 +46,21 @@ pub(super) fn pixel_means(grid: Grid, value: impl Fn(usize) -> f64) -> Field {
 }
 
 impl EmbeddedField {
-    /// `pixels`, of values from 0 to `max`. What is above 0 is at least 1 step above it, so that contact stays contact.
+    /// The field of `pixels` with values from 0 to `max`, for pressure or contact.
+    ///
+    /// A value above 0 becomes 1 or more, so that contact is still seen as contact.
     pub(super) fn of_contact(pixels: &Field, max: f64, bits: Bits, palette: Palette) -> Self {
         Self::new(pixels, max, bits, palette, 1.0)
     }
 
-    /// `pixels`, of values from 0 to `max`, each the nearest number.
+    /// The field of `pixels` with values from 0 to `max`, for gaps.
+    ///
+    /// Each value is rounded to the nearest number.
     pub(super) fn of_gap(pixels: &Field, max: f64, bits: Bits, palette: Palette) -> Self {
         Self::new(pixels, max, bits, palette, 0.0)
     }
 
-    /// What is above 0 becomes `least` or more.
+    /// The field of `pixels`, where a value above 0 becomes `least` or more.
     fn new(pixels: &Field, max: f64, bits: Bits, palette: Palette, least: f64) -> Self {
         let greatest = match bits {
             Bits::Eight => f64::from(u8::MAX),

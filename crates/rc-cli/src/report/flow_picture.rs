@@ -16,7 +16,7 @@ pub(super) struct FlowPicture {
 }
 
 impl FlowPicture {
-    /// The picture that `rc solve --leakage` drew, if it did.
+    /// The picture of `rc solve --leakage`, if it exists.
     pub(super) fn of(folder: &Path, summary: &Summary) -> Option<Self> {
         summary.leakage.as_ref()?;
         let png = std::fs::read(folder.join(PICTURE_FILE)).ok()?;

@@ -1,8 +1,7 @@
-//! `rc report`: a result or a sweep as one page that a browser opens without a network.
+//! `rc report`: a result or a sweep as one page, for a browser without a network.
 //!
-//! The page is a frame ([`document`]), a script, and data: [`contact`] makes those of a solve, [`curves`] those of a
-//! sweep. Everything that is text is made here, and shown by the script as text; maps and charts are drawn by the
-//! script from numbers.
+//! The page is a frame ([`document`]), a script, and data. [`contact`] makes the data of a solve, [`curves`] those of a
+//! sweep. All texts are made here, and the script shows them as text. The script draws maps and charts from numbers.
 
 pub(crate) mod args;
 
@@ -23,7 +22,7 @@ use crate::error::CliError;
 use crate::terminal;
 use rc_sweep::{TABLE_FILE, files};
 
-/// The page's name in a folder.
+/// Name of the page in a folder.
 const PAGE_FILE: &str = "report.html";
 
 /// Runs `rc report`.

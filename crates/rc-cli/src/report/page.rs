@@ -1,4 +1,4 @@
-//! The data of a page, as its script reads them.
+//! The data of a page, in the form that its script reads.
 
 use serde::Serialize;
 
@@ -7,18 +7,18 @@ use serde::Serialize;
 pub(super) struct Page<B> {
     pub(super) title: String,
     pub(super) subtitle: String,
-    /// In a word; `good` says whether it is the one that is hoped for.
+    /// Status in one word. `good` says whether it is the desired one.
     pub(super) status: String,
     pub(super) good: bool,
-    /// The numbers that one looks for first.
+    /// The most important numbers.
     pub(super) tiles: Vec<Tile>,
-    /// What repeats the result.
+    /// Commands that repeat the result.
     pub(super) commands: Vec<Command>,
-    /// Texts to unfold.
+    /// Texts that a reader can unfold.
     pub(super) files: Vec<Text>,
-    /// What made the page.
+    /// Program and version that made the page.
     pub(super) made: String,
-    /// `result` or `sweep`: which of its parts the script draws.
+    /// `result` or `sweep`, which tells the script which parts to draw.
     pub(super) kind: &'static str,
     #[serde(flatten)]
     pub(super) body: B,
@@ -45,7 +45,7 @@ pub(super) struct Text {
     pub(super) text: String,
 }
 
-/// Line at the end of a page.
+/// The line at the end of a page.
 pub(super) fn made() -> String {
     format!("Made by rc report {}. This file loads nothing from anywhere.", env!("CARGO_PKG_VERSION"))
 }

@@ -1,12 +1,13 @@
-//! Where a load curve loses percolation.
+//! The area at which a load curve loses percolation.
 
 use rc_core::quantity::digits;
 
-/// A surface, by scene and seed.
+/// Scene and seed of a surface.
 type Surface = (String, Option<u64>);
 
-/// A sentence about the contact areas at which the film of a surface stops to percolate, from area and permeances of
-/// each row; `None` without rows.
+/// A sentence about the contact areas at which the flow ends.
+///
+/// A row has a surface, an area and the permeances along both axes. `None` without rows.
 pub(super) fn note(mut rows: Vec<(Surface, f64, [f64; 2])>) -> Option<String> {
     rows.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let surfaces = rows.chunk_by(|a, b| a.0 == b.0);
@@ -29,7 +30,9 @@ pub(super) fn note(mut rows: Vec<(Surface, f64, [f64; 2])>) -> Option<String> {
     ))
 }
 
-/// The last area with a flow and the first without, of the rows of one surface.
+/// The last area with a flow and the first area without.
+///
+/// All rows are of one surface.
 fn bracket(rows: &[(Surface, f64, [f64; 2])], axis: usize) -> Option<[f64; 2]> {
     let pair = rows.windows(2).find(|pair| pair[0].2[axis] > 0.0 && pair[1].2[axis] <= 0.0)?;
     Some([pair[0].1, pair[1].1])

@@ -1,4 +1,4 @@
-//! Contact spots by size: a histogram over diameters, and a few numbers.
+//! Contact spots by size: a histogram of diameters, and a few numbers.
 
 use std::f64::consts::PI;
 
@@ -9,25 +9,26 @@ use serde::Serialize;
 use crate::files::result::ResultFolder;
 use rc_core::quantity::{digits, engineering};
 
-/// Bins for each factor of ten in the diameter.
+/// Number of bins for each factor of ten in the diameter.
 const BINS_PER_DECADE: f64 = 8.0;
 
-/// Least area of a spot, in elements.
+/// Minimum area of a spot, in elements.
 const SMALLEST_SPOT: f64 = 0.1;
 
-/// What the page says of contact spots.
+/// The data of the page about contact spots.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct SpotSizes {
     rows: Vec<(&'static str, String)>,
-    /// Ends of bins: diameters of circles of the same area (m).
+    /// Ends of the bins (m). A diameter is that of a circle with the spot's area.
     diameters: Vec<f64>,
     counts: Vec<usize>,
     note: String,
 }
 
 impl SpotSizes {
-    /// Spots of the stored fields, in the units in which their edges are located; `None` without contact, and without
-    /// the elements.
+    /// The spots of the stored fields.
+    ///
+    /// Edges are located in units of λ and E*. `None` without contact, or without values for the elements.
     pub(super) fn of_result(result: ResultFolder, bias: EdgeBias, boundary: Boundary) -> Option<Self> {
         if !result.is_of_elements() {
             return None;
@@ -42,11 +43,13 @@ impl SpotSizes {
         Self::of(&spots, pressure.grid(), side)
     }
 
-    /// Of spots, largest first, that were found on `grid` in a cell of this side along x (m); `None` without contact.
+    /// The sizes of `spots`, which are ordered by size, largest first.
+    ///
+    /// They are on `grid` in a cell of side `side` along x (m). `None` without contact.
     pub(super) fn of(spots: &[ContactSpot], grid: Grid, side: f64) -> Option<Self> {
         let (largest, smallest) = (spots.first()?, spots.last()?);
         let element = (grid.len() as f64).recip();
-        // What is located of a spot of one element may be too little for a size.
+        // The located area of a spot of one element may be too small for a diameter.
         let area = |spot: &ContactSpot| spot.area_fraction.max(SMALLEST_SPOT * element);
         let root_of_cell = side * grid.cell_ratio().sqrt();
         let diameter = |spot: &ContactSpot| 2.0 * root_of_cell * (area(spot) / PI).sqrt();
@@ -70,7 +73,9 @@ impl SpotSizes {
     }
 }
 
-/// The numbers below the histogram; there is at least one spot, and the largest is the first.
+/// The numbers below the histogram.
+///
+/// There must be at least one spot, and the largest is the first.
 fn rows(spots: &[ContactSpot], diameter: impl Fn(&ContactSpot) -> f64) -> Vec<(&'static str, String)> {
     let percent = |part: f64| format!("{} %", digits(100.0 * part, 3));
     let across = |spot: &ContactSpot| format!("{} across", engineering(diameter(spot), "m"));

@@ -1,4 +1,4 @@
-//! A running solve: its threads, what is seen of it, and what ends it early.
+//! Running solves: threads, progress, and what ends a solve early.
 
 pub(crate) mod progress;
 pub(crate) mod stop;

@@ -1,4 +1,4 @@
-//! The progress bar of a solve, on standard error, for people at a terminal.
+//! The progress bar of a solve, on standard error if that is a terminal.
 
 use std::io::IsTerminal as _;
 
@@ -8,7 +8,7 @@ use rc_core::{Event, Observer, Snapshot};
 use super::stop::{Reason, Stop};
 use super::watch::Watch;
 
-/// Length of the bar: the steps in which the error is shown to fall.
+/// Length of the bar in steps. The bar shows the fall of the error.
 const STEPS: u64 = 1000;
 
 /// Shows level, iteration and error of a running solve, and vanishes at its end.
@@ -20,29 +20,29 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// A bar on a terminal; nothing when standard error is none, or `quiet`.
+    /// A bar on a terminal, which is hidden with `quiet` or without a terminal.
     #[must_use]
     pub(crate) fn new(quiet: bool) -> Self {
         let hidden = quiet || !std::io::stderr().is_terminal();
         let target = if hidden { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr_with_hz(10) };
         let bar = ProgressBar::with_draw_target(Some(STEPS), target);
-        // A template that does not parse would be seen in the first run; the default bar stands in for it.
+        // A template that does not parse would be noticed in the first run. The default bar then takes its place.
         if let Ok(style) = ProgressStyle::with_template("{prefix} [{bar:20}] {msg}") {
             bar.set_style(style.progress_chars("=> "));
         }
         Self { bar, stop: Stop::default(), watch: None }
     }
 
-    /// The same with what ends the solve early.
+    /// The progress with `stop`, which ends the solve early.
     #[must_use]
     pub(crate) fn until(self, stop: Stop) -> Self {
-        // `Self` has a destructor, so its parts cannot be moved.
+        // `Self` has a destructor, so its fields cannot be moved.
         let mut progress = self;
         progress.stop = stop;
         progress
     }
 
-    /// The same with what draws the solve.
+    /// The progress with `watch`, which draws the solve.
     #[must_use]
     pub(crate) fn watched_by(self, watch: Option<Watch>) -> Self {
         let mut progress = self;
@@ -50,12 +50,12 @@ impl Progress {
         progress
     }
 
-    /// Why the solve had to end, if it had to.
+    /// Why the solve had to end; `None` if it did not have to.
     pub(crate) fn stopped(&self) -> Option<Reason> {
         self.stop.reason()
     }
 
-    /// Says what is done before the first level.
+    /// Shows what is done before the first level.
     pub(crate) fn say(&self, what: &'static str) {
         self.bar.set_message(what);
     }
@@ -93,7 +93,9 @@ impl Drop for Progress {
     }
 }
 
-/// The part of the way from 1 down to `tolerance`, in orders of magnitude, that the error has gone.
+/// The fraction of the way from 1 to `tolerance` that the error has fallen.
+///
+/// The way is in orders of magnitude.
 fn fallen(error: f64, tolerance: f64) -> f64 {
     if error > 0.0 && tolerance < 1.0 { (error.ln() / tolerance.ln()).clamp(0.0, 1.0) } else { 0.0 }
 }

@@ -1,4 +1,6 @@
-//! What ends a solve before its time: a limit of time, or Ctrl-C. What has been found by then is written, and marked.
+//! Limits that end a solve early: a time limit, or Ctrl-C.
+//!
+//! The results up to then are written and marked.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -7,7 +9,7 @@ use crate::error::INTERRUPTED;
 use crate::scene::time_limit::TimeLimit;
 use crate::terminal;
 
-/// Whether Ctrl-C was pressed, or a job system asked the process to end.
+/// Whether Ctrl-C was pressed or a job system asked the process to end.
 static IS_INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// Why a solve ended early.
@@ -17,19 +19,19 @@ pub(crate) enum Reason {
     TimeLimit(TimeLimit),
 }
 
-/// When a solve is to end.
+/// The limits of a solve.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Stop {
     limit: Option<(Instant, TimeLimit)>,
 }
 
 impl Stop {
-    /// At the end of `limit`, which begins at `started`, and when interrupted.
+    /// Ends a solve when interrupted, or when `limit` has passed since `started`.
     pub(crate) fn at(started: Instant, limit: Option<TimeLimit>) -> Self {
         Self { limit: limit.and_then(|limit| Some((started.checked_add(limit.0)?, limit))) }
     }
 
-    /// Whether it is time, and why.
+    /// Why the solve has to end now; `None` if it may go on.
     pub(crate) fn reason(&self) -> Option<Reason> {
         if IS_INTERRUPTED.load(Ordering::Relaxed) {
             return Some(Reason::Interrupted);
@@ -38,7 +40,9 @@ impl Stop {
     }
 }
 
-/// From now on the first interrupt ends the solve with what there is; the second ends the process.
+/// Starts to listen for interrupts.
+///
+/// The first interrupt ends the solve with its results up to then. The second ends the process.
 pub(crate) fn listen() {
     let handler = || {
         if IS_INTERRUPTED.swap(true, Ordering::Relaxed) {
@@ -46,7 +50,7 @@ pub(crate) fn listen() {
         }
         terminal::tell("interrupted: finishing with the results so far; press Ctrl-C again to stop at once");
     };
-    // Without a handler an interrupt ends the process at once, with nothing half-written.
+    // Without a handler an interrupt ends the process at once, and no file is half-written.
     let _ = ctrlc::set_handler(handler);
 }
 

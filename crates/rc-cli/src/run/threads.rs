@@ -2,13 +2,14 @@
 
 use crate::error::CliError;
 
-/// Checks the number of worker threads and starts them. When it is not given, they are all cores, or as many as this
-/// process has already.
+/// Checks the number of worker threads and starts them.
+///
+/// By default the number is that of all cores, or of the threads that this process already has.
 ///
 /// # Errors
-/// [`CliError::Input`]: a number out of range, or another one than this process has already.
+/// [`CliError::Input`] for a number out of range, or one that differs from the threads that this process already has.
 pub(crate) fn start(threads: Option<usize>) -> Result<usize, CliError> {
-    // All cores are started on first use.
+    // Without a number, the threads are started at their first use.
     if let Some(n) = checked(threads)? {
         match rayon::ThreadPoolBuilder::new().num_threads(n).build_global() {
             Err(_) if rayon::current_num_threads() == n => {}
@@ -18,7 +19,7 @@ pub(crate) fn start(threads: Option<usize>) -> Result<usize, CliError> {
     Ok(rayon::current_num_threads())
 }
 
-/// A number of worker threads that there can be.
+/// The number of worker threads, if it is in the allowed range.
 ///
 /// # Errors
 /// [`CliError::Input`] for a number out of range.

@@ -1,13 +1,15 @@
-//! What each rank does for itself: an error on one is an error on all.
+//! Errors over ranks: an error on one rank is an error on all.
 
 use rc_comm::Ranks;
 
 use crate::error::CliError;
 
-/// The result of this rank, or the error of the first rank that has one. All ranks call this together.
+/// The result of this rank, or the error of the first rank that has one.
+///
+/// All ranks call this together.
 ///
 /// # Errors
-/// That error.
+/// The error of that rank.
 pub(crate) fn together<T>(ranks: &Ranks, result: Result<T, CliError>) -> Result<T, CliError> {
     if ranks.are_alone() {
         return result;

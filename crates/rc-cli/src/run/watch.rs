@@ -1,4 +1,4 @@
-//! `rc solve --watch`: a picture of the contact while it is being found.
+//! `rc solve --watch`: a picture of the contact during the solve.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -10,17 +10,18 @@ use crate::terminal;
 use rc_plot::{ContactRows, save_png};
 use rc_sweep::files::{self, FileError};
 
-/// The picture, in the folder of the result. Not contact.png, which belongs to the result that may be there already.
+/// The picture in the folder of the result. `contact.png` may belong to an earlier result, so it has another name.
 const PICTURE: &str = "watch.png";
 
-/// Least time from one picture to the next.
+/// Minimum time from one picture to the next.
 const INTERVAL: Duration = Duration::from_secs(1);
 
-/// The next picture waits this many times as long as the last one took, so that watching costs a tenth of the time at
-/// most.
+/// Ratio of the time to the next picture to the time of the last one.
+///
+/// So pictures take at most a tenth of the time.
 const SPARING: u32 = 10;
 
-/// Draws what it is shown into one file, now and then, and removes the file in the end.
+/// Draws pressures into one file at intervals, and removes the file at the end.
 #[derive(Debug)]
 pub(crate) struct Watch {
     path: PathBuf,
@@ -32,25 +33,26 @@ pub(crate) struct Watch {
     state: Mutex<State>,
 }
 
-/// What becomes of the next picture.
+/// State of the next picture.
 #[derive(Clone, Copy, Debug)]
 enum State {
-    /// It is the first one, and drawn at once.
+    /// It is the first one, and is drawn at once.
     First,
-    /// It is drawn from this moment on.
+    /// It is drawn after this moment.
     Next(Instant),
-    /// One could not be written, and no more are drawn.
+    /// A picture could not be written, so no more are drawn.
     GaveUp,
 }
 
 impl Watch {
-    /// For a solve whose results go to `folder`, with E* in Pa and the side of the cell in m.
+    /// A picture in `folder`, for E* in Pa and the cell's side in m.
     pub(crate) fn new(folder: &Path, e_star: f64, side: f64) -> Self {
         Self { path: folder.join(PICTURE), e_star, side, interval: INTERVAL, state: Mutex::new(State::First) }
     }
 
-    /// Draws the pressure, if it is time. A picture that cannot be written does not end the solve: it is told once, and
-    /// there are no more.
+    /// Draws the pressure, if it is time.
+    ///
+    /// A picture that cannot be written does not end the solve. The user is told once, and no more pictures are drawn.
     pub(crate) fn look(&self, pressure: &Snapshot<'_>) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         let started = Instant::now();
@@ -86,7 +88,7 @@ impl Drop for Watch {
     fn drop(&mut self) {
         let state = self.state.get_mut().unwrap_or_else(PoisonError::into_inner);
         if matches!(state, State::Next(_)) {
-            // It would only be a picture too many.
+            // If it cannot be removed, the only harm is a needless picture.
             let _ = std::fs::remove_file(&self.path);
         }
     }
@@ -98,7 +100,7 @@ mod tests {
 
     use super::*;
 
-    /// A snapshot of a pressure that is `value` everywhere.
+    /// Shows a snapshot of a pressure that is `value` everywhere.
     fn show(watch: &Watch, (nx, ny): (usize, usize), value: f64) {
         let row = vec![value; nx];
         let rows = |take: &mut dyn FnMut(&[f64])| (0..ny).for_each(|_| take(&row));

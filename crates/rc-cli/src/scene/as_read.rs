@@ -1,14 +1,14 @@
-//! Heights as they are in a file, bit by bit, from heights in λ.
+//! The heights of a file, bit by bit, from heights in λ.
 
 use rayon::prelude::*;
 
-/// Heights that one task works on.
+/// Number of heights per task.
 const CHUNK: usize = 1 << 14;
 
-/// What makes heights in λ those of the file (m): the length that they were divided by, and what rounding has changed.
+/// Data that turn heights in λ into the heights of the file (m).
 ///
-/// A result is repeated bit for bit only from the heights in the file. They take a byte for each element instead of
-/// eight.
+/// They are the length by which the heights were divided, and the changes by rounding. A result is repeated bit for bit
+/// only from the heights in the file. The data take one byte per element instead of eight.
 #[derive(Clone, Debug)]
 pub struct AsRead {
     unit: f64,
@@ -17,14 +17,14 @@ pub struct AsRead {
 
 #[derive(Clone, Debug)]
 enum Rounding {
-    /// In units of the last digit: what is added to the product.
+    /// Numbers to add to the products, in units of the last digit.
     Digits(Vec<i8>),
-    /// The heights themselves, where the products are farther off: of numbers that are nearly too small.
+    /// The heights themselves, if a product is farther off. This happens for numbers close to the smallest ones.
     Kept(Vec<f64>),
 }
 
 impl AsRead {
-    /// Divides heights (m) by `unit`.
+    /// Divides `heights` (m) by `unit`, and returns what restores them.
     pub(super) fn divide(heights: &mut [f64], unit: f64) -> Self {
         let mut of_product = vec![0; heights.len()];
         let are_near = heights.par_chunks(CHUNK).zip(of_product.par_chunks_mut(CHUNK)).all(|(heights, of_product)| {
@@ -39,7 +39,7 @@ impl AsRead {
         Self { unit, rounding }
     }
 
-    /// The heights of the file, from those in λ from element `first` on.
+    /// Restores heights in λ to those of the file, from element `first` on.
     pub fn restore(&self, first: usize, heights: &mut [f64]) {
         match &self.rounding {
             Rounding::Digits(digits) => {
@@ -52,7 +52,9 @@ impl AsRead {
     }
 }
 
-/// From `product` to `height`, in units of the last digit; none where they are far apart, or of two signs.
+/// Difference from `product` to `height` in units of the last digit.
+///
+/// `None` if the two are far apart or have different signs.
 fn digits(height: f64, product: f64) -> Option<i8> {
     i8::try_from(height.to_bits().wrapping_sub(product.to_bits()).cast_signed()).ok()
 }

@@ -1,4 +1,6 @@
-//! Reading a scene file: TOML, with errors that name the line and the nearest known key.
+//! Reader of scene files, which are TOML.
+//!
+//! Its errors name the line and the most similar known key.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -11,10 +13,10 @@ use toml::de::DeTable;
 use crate::error::CliError;
 use crate::scene::keys::{ContactKeys, EXAMPLE, RunKeys, Scene, SurfaceKeys};
 
-/// Reads a scene file. Relative paths in it start at its folder.
+/// Reads a scene file. Relative paths in it are relative to its folder.
 ///
 /// # Errors
-/// [`CliError::Input`] when the file cannot be read, is no TOML, has an unknown key or a value of the wrong type.
+/// [`CliError::Input`] when the file cannot be read, is not TOML, has an unknown key or a value of the wrong type.
 pub fn read(path: &Path) -> Result<Scene, CliError> {
     let text = std::fs::read_to_string(path)
         .map_err(|cause| CliError::in_file(path, format_args!("cannot read this scene file: {cause}")))?;
@@ -22,10 +24,10 @@ pub fn read(path: &Path) -> Result<Scene, CliError> {
     Ok(scene.relative_to(path.parent().unwrap_or(Path::new(""))))
 }
 
-/// The embedded example.
+/// The scene of the embedded example.
 ///
 /// # Panics
-/// Never: a test reads it.
+/// Never, since a test reads it.
 #[must_use]
 pub fn example() -> Scene {
     static SCENE: LazyLock<Scene> = LazyLock::new(|| parse(EXAMPLE).expect("the embedded example is a valid scene"));
@@ -35,7 +37,7 @@ pub fn example() -> Scene {
 /// Parses a scene.
 ///
 /// # Errors
-/// One line, without the name of the file: where, what, and what would be right.
+/// One line that says where, what, and what would be right. It does not have the name of the file.
 pub fn parse(text: &str) -> Result<Scene, String> {
     let table = DeTable::parse(text).map_err(|error| at_line(text, &error))?;
     for key in table.get_ref().keys() {
@@ -51,10 +53,10 @@ pub fn parse(text: &str) -> Result<Scene, String> {
     })
 }
 
-/// A scene from keys with their values, as a program gives them.
+/// A scene from a table of keys and values, for programs.
 ///
 /// # Errors
-/// [`CliError::Input`] that names the key which is unknown, or whose value has the wrong type.
+/// [`CliError::Input`] with the key that is unknown or whose value has the wrong type.
 pub fn from_table(table: &Table) -> Result<Scene, CliError> {
     if let Some(key) = table.keys().find(|key| !known_keys().contains(key)) {
         return Err(CliError::input(unknown_key(key, known_keys())));
@@ -62,17 +64,18 @@ pub fn from_table(table: &Table) -> Result<Scene, CliError> {
     Ok(Scene { surface: group_of(table)?, contact: group_of(table)?, run: group_of(table)? })
 }
 
-/// A group of keys as TOML; keys without a value are left out.
+/// A group of keys as TOML, without the keys that have no value.
 ///
 /// # Panics
-/// Never for checked keys: what TOML cannot hold, a seed above 2^63, is refused before.
+/// Never for checked keys. TOML cannot hold a seed above 2^63, which is refused earlier.
 #[must_use]
 pub fn to_toml(group: &impl Serialize) -> String {
     toml::to_string(group).expect("checked keys are numbers and text that TOML holds")
 }
 
-/// One group of keys; the keys of other groups are passed over. (Three passes instead of serde's `flatten`, which would
-/// lose the line of a wrong value.)
+/// One group of keys, without the keys of other groups.
+///
+/// Three passes take the place of serde's `flatten`, which would lose the line of a wrong value.
 fn group<T: for<'de> Deserialize<'de>>(text: &str) -> Result<T, String> {
     toml::from_str(text).map_err(|error| at_line(text, &error))
 }
@@ -80,7 +83,7 @@ fn group<T: for<'de> Deserialize<'de>>(text: &str) -> Result<T, String> {
 /// One group of keys from a table.
 fn group_of<T: for<'de> Deserialize<'de>>(table: &Table) -> Result<T, CliError> {
     T::deserialize(table.clone()).map_err(|error| {
-        // The key is the one that is wrong alone.
+        // The wrong key is the one that fails alone.
         let is_wrong = |key: &str, value: &toml::Value| {
             T::deserialize(Table::from_iter([(key.to_owned(), value.clone())])).is_err()
         };
@@ -90,7 +93,7 @@ fn group_of<T: for<'de> Deserialize<'de>>(table: &Table) -> Result<T, CliError> 
     })
 }
 
-/// The keys of a scene file: the flags of the command line.
+/// The keys of a scene file, which are the flags of the command line.
 #[must_use]
 pub fn known_keys() -> &'static [String] {
     static KEYS: LazyLock<Vec<String>> = LazyLock::new(|| {

@@ -1,4 +1,4 @@
-//! Height maps from files, in metres and checked for what a solver needs.
+//! Height maps from files, in metres, and their checks.
 
 use std::path::Path;
 
@@ -9,8 +9,9 @@ use super::as_read::AsRead;
 use crate::error::CliError;
 use rc_core::quantity::engineering;
 
-/// Reads a height map of any format of `rc-heights`, in metres; `NaN` where nothing was measured. Row `iy` of the file
-/// is row `iy` of the field.
+/// Reads a height map of any format of `rc-heights`, in metres.
+///
+/// Unmeasured points are `NaN`. Row `iy` of the file is row `iy` of the field.
 ///
 /// # Errors
 /// [`CliError::Input`] when the file cannot be read, is damaged or does not have the channel, or when `scales` does not
@@ -41,8 +42,10 @@ pub(crate) fn check_finite(path: &Path, field: &Field) -> Result<(), CliError> {
     }
 }
 
-/// Sides of the cell along x and y (m): those of the map where its file says them, else what is `given`. If both are
-/// there they must be the same. The second is `None` for a square.
+/// Sides of the cell along x and y (m).
+///
+/// They are those of the map if its file has them, else those `given`. If both exist, they must be equal. The second is
+/// `None` for a square.
 ///
 /// # Errors
 /// [`CliError::Input`].
@@ -71,7 +74,7 @@ pub(crate) fn sides(
 /// The heights of a map (m) in λ, on the grid of its points in `cell`.
 ///
 /// # Errors
-/// [`CliError::Input`] when the sides of the cell differ too much.
+/// [`CliError::Input`] when the ratio of the cell's sides is too large.
 pub(crate) fn in_cell(path: &Path, map: Field, cell: PeriodicCell) -> Result<(Field, AsRead), CliError> {
     let grid = Grid::in_cell(map.grid().nx(), map.grid().ny(), cell.ratio())
         .map_err(|cause| CliError::in_file(path, format_args!("cell_y: {cause}")))?;

@@ -1,4 +1,6 @@
-//! The scene: every key of a scene file, which is a flag of the command line as well.
+//! The scene: every key of a scene file.
+//!
+//! Each key is also a flag of the command line.
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +16,9 @@ use super::names::{amplitudes, boundaries, methods, truncations};
 use super::time_limit::TimeLimit;
 use super::values::{Fraction, GridSpec, ToleranceSpec};
 
-/// The embedded example: the paper's surface with N = 64 at σ0/E* = 8.9e-4. Also the source of defaults.
+/// The embedded example: the paper's surface with N = 64 at σ0/E* = 8.9e-4.
+///
+/// It is also the source of defaults.
 pub const EXAMPLE: &str = include_str!("../../assets/paper-n64.toml");
 
 /// The rough surface: a file of heights or of waves, or the parameters of a random one (Eq. 9-14).
@@ -209,15 +213,16 @@ pub struct Scene {
     pub run: RunKeys,
 }
 
-/// `upper` where it says something, else `lower`.
+/// Sets each key that `upper` does not have to the value in `lower`.
 macro_rules! or_lower {
     ($upper:expr, $lower:expr, { $($key:ident),+ $(,)? }) => { $( if $upper.$key.is_none() { $upper.$key = $lower.$key; } )+ };
 }
 
 impl SurfaceKeys {
-    /// These keys laid over `lower`. A key given here also removes its alternatives below: a height map, a file of
-    /// waves and the parameters of a random surface each other, each of `rms`, `rms_slope`, `c0` the other two, and
-    /// `cell` the other side.
+    /// These keys laid over `lower`.
+    ///
+    /// A key given here removes its alternatives in `lower`. A height map, a file of waves and the parameters of a
+    /// random surface are alternatives. So are `rms`, `rms_slope` and `c0`. A `cell` removes the other side.
     #[must_use]
     pub fn over(mut self, mut lower: Self) -> Self {
         if self.heights.is_some() {
@@ -241,20 +246,22 @@ impl SurfaceKeys {
         self
     }
 
-    /// The file that the surface is read from, if it is, with its key.
+    /// The file from which the surface is read, with its key.
+    ///
+    /// `None` for a random surface.
     #[must_use]
     pub fn file(&self) -> Option<(&'static str, &Path)> {
         let heights = self.heights.as_deref().map(|path| ("heights", path));
         heights.or_else(|| self.spectrum.as_deref().map(|path| ("spectrum", path)))
     }
 
-    /// What is known of the units of a height map, or of coefficients.
+    /// The known units of a height map or of coefficients.
     #[must_use]
     pub fn scales(&self) -> Scales {
         Scales { unit: self.unit, height_scale: self.height_scale }
     }
 
-    /// What is read of a height map.
+    /// The channel and the layout to read of a height map.
     #[must_use]
     pub fn read_params(&self) -> ReadParams {
         ReadParams { channel: self.channel.clone(), layout: self.layout }
@@ -270,8 +277,10 @@ impl SurfaceKeys {
 }
 
 impl ContactKeys {
-    /// These keys laid over `lower`. A key given here also removes its alternatives below: `pressure` and `penetration`
-    /// each other, `tolerance` and `energy_tolerance` too, `e_star` the pair `young`, `poisson` and the reverse.
+    /// These keys laid over `lower`.
+    ///
+    /// A key given here removes its alternatives in `lower`. These are `pressure` and `penetration`, `tolerance` and
+    /// `energy_tolerance`, and `e_star` and the pair of `young` and `poisson`.
     #[must_use]
     pub fn over(mut self, mut lower: Self) -> Self {
         if self.pressure.is_some() || self.penetration.is_some() {
@@ -295,7 +304,7 @@ impl ContactKeys {
 }
 
 impl RunKeys {
-    /// These keys laid over `lower`; `quiet` and `json` hold when either says so.
+    /// These keys laid over `lower`. `quiet` and `json` are set if either sets them.
     #[must_use]
     pub fn over(mut self, lower: Self) -> Self {
         or_lower!(self, lower, { out, threads, memory_limit, time_limit });
@@ -321,7 +330,7 @@ impl Scene {
         }
     }
 
-    /// Whether the scene says nothing at all.
+    /// Whether the scene has no key at all.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         *self == Self::default()

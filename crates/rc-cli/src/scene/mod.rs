@@ -1,4 +1,4 @@
-//! The scene: its keys, which are flags as well, its file, and the checked problem that it becomes.
+//! The scene: its keys, which are also flags, its file, and the checked problem.
 
 pub mod as_read;
 pub mod file;

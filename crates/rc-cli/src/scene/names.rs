@@ -1,11 +1,11 @@
-//! Names of choices that the libraries offer, as the command line reads them.
+//! Names of choices that the libraries offer, for the command line.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rc_core::Boundary;
 use rc_fractal::{Amplitudes, Truncation};
 use rc_solver::Method;
 
-/// A name, what it stands for, and what help says of it.
+/// A name, its value, and its text in the help.
 type Named<T> = (&'static str, T, &'static str);
 
 const TRUNCATIONS: [Named<Truncation>; 2] =
@@ -63,7 +63,7 @@ fn parser<T: Copy + Send + Sync>(named: &'static [Named<T>]) -> impl TypedValueP
 mod tests {
     use super::*;
 
-    /// A name on the command line is that in a scene file.
+    /// The command line and scene files have the same names.
     #[test]
     fn names_are_those_of_scene_files() {
         fn check<T: serde::Serialize>(named: &[Named<T>]) {

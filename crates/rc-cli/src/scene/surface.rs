@@ -1,4 +1,6 @@
-//! The rough surface of a scene: realised or read, and its heights on a grid only where a method needs them.
+//! The rough surface of a scene, generated or read from a file.
+//!
+//! Its heights on a grid are evaluated only where a method needs them.
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -17,36 +19,36 @@ use super::values::GridSpec;
 use super::wave_file::{WAVES_FILE, WaveFile};
 use crate::error::CliError;
 
-/// A checked surface, before it is realised or read.
+/// A checked surface, before it is generated or read.
 #[derive(Clone, Debug)]
 pub struct SurfaceSetup {
-    /// The cell (m).
+    /// Sides of the cell (m).
     pub cell: PeriodicCell,
-    /// Where the heights come from.
+    /// Origin of the heights.
     pub source: Source,
-    /// Whether a map whose heights are all the same is a surface: a flat punch, with free borders.
+    /// Whether a map with equal heights is a surface. It is a flat punch with free borders.
     pub may_be_flat: bool,
-    /// The keys as resolved, for `scene.toml`.
+    /// The resolved keys, for `scene.toml`.
     pub keys: SurfaceKeys,
 }
 
-/// Where heights come from.
+/// Origin of the heights.
 #[derive(Clone, Debug)]
 pub enum Source {
-    /// A height map.
+    /// A height map in a file.
     File {
         /// The file.
         path: PathBuf,
-        /// The grid that the user says it has.
+        /// Grid that the user expects of the map.
         expected: Option<Grid>,
-        /// What is read of it.
+        /// Channel and layout to read.
         params: ReadParams,
-        /// What the user knows of its units.
+        /// Units that the user gives.
         scales: Scales,
     },
     /// A random surface.
     Random {
-        /// Its parameters, in units of λ.
+        /// Parameters of the surface, in units of λ.
         spectrum: SpectrumParams,
         /// The finest grid.
         grid: Grid,
@@ -55,50 +57,52 @@ pub enum Source {
     Waves {
         /// The file.
         path: PathBuf,
-        /// What was read from it.
+        /// Content of the file.
         waves: Arc<WaveFile>,
         /// The finest grid.
         grid: Grid,
     },
 }
 
-/// A surface, ready to be evaluated.
+/// A surface whose heights can be evaluated.
 #[derive(Clone, Debug)]
 pub struct LoadedSurface {
-    /// What is known of it.
+    /// The waves or the map.
     pub shape: Shape,
     /// The finest grid.
     pub grid: Grid,
-    /// The keys as resolved: the grid is known now, and a height map is called as in a result folder.
+    /// The resolved keys.
+    ///
+    /// They include the grid, and a height map has the name of a result folder.
     pub keys: SurfaceKeys,
 }
 
 /// A surface as a sum of waves, or as a map.
 #[derive(Clone, Debug)]
 pub enum Shape {
-    /// A random surface; it has heights anywhere.
+    /// A random surface, which has heights anywhere.
     Random(Arc<Surface>),
-    /// A surface of the waves in a file; it too has heights anywhere.
+    /// A surface of the waves in a file, which has heights anywhere.
     Waves(Arc<WaveFile>),
     /// A height map.
     Map {
         /// Heights in λ.
         heights: Arc<Field>,
-        /// What makes them the heights in the file.
+        /// Data that restore the heights of the file.
         as_read: AsRead,
     },
 }
 
-/// The name of a height map in a result folder.
+/// Name of a height map in a result folder.
 pub const HEIGHTS_FILE: &str = "heights.npy";
 
 impl SurfaceKeys {
-    /// The keys of a height map that a program holds, with the sides of its cell (m) where it knows them. The map is
-    /// called as in a result folder.
+    /// The keys of a height map that a program holds.
+    ///
+    /// `sides` are those of its cell (m) if the program knows them. The map has the name of a result folder.
     ///
     /// # Errors
-    /// [`CliError::Input`] when keys of a random surface, or of a file, are given; or another size than that of the
-    /// map.
+    /// [`CliError::Input`] when keys of a random surface or of a file are given, or another size than that of the map.
     pub fn of_map(self, sides: Option<[f64; 2]>) -> Result<Self, CliError> {
         if self.heights.is_some() || self.generates() {
             let message =
@@ -111,17 +115,21 @@ impl SurfaceKeys {
 }
 
 impl SurfaceSetup {
-    /// Elements of the finest grid; at most, for a height map, by the length of its file.
+    /// Number of elements of the finest grid.
+    ///
+    /// For a height map it is an upper bound from the length of its file.
     #[must_use]
     pub fn max_elements(&self) -> f64 {
         match &self.source {
             Source::Random { grid, .. } | Source::Waves { grid, .. } => grid.len() as f64,
-            // Two bytes are the least that a useful map has for a height.
+            // A useful map has at least two bytes per height.
             Source::File { path, .. } => path.metadata().map_or(0.0, |file| file.len() as f64 / 2.0),
         }
     }
 
-    /// Reads the map or realises the random surface. Heights of a sum of waves are not evaluated yet.
+    /// Reads the map or generates the random surface.
+    ///
+    /// Heights of a sum of waves are not evaluated yet.
     ///
     /// # Errors
     /// [`CliError::Input`] when the file is not a height map, is on another grid than the scene says, or is flat.
@@ -144,7 +152,8 @@ impl SurfaceSetup {
     /// A map in metres, read from `path`, as a surface in this cell.
     ///
     /// # Errors
-    /// [`CliError::Input`] when points are missing, when it is flat, or of another grid or size than the scene says.
+    /// [`CliError::Input`] when points are missing, when the map is flat, or when its grid or size differs from the
+    /// scene's.
     pub fn of_map(&self, path: &Path, map: HeightMap, expected: Option<Grid>) -> Result<LoadedSurface, CliError> {
         heights::sides(path, map.sides, [Some(self.cell.side()), self.keys.cell_y])?;
         heights::check_finite(path, &map.heights)?;
@@ -161,7 +170,7 @@ impl SurfaceSetup {
             return Err(CliError::in_file(path, message));
         }
         let spec = GridSpec { nx, ny };
-        // The map in a result folder is an array in metres.
+        // In a result folder the map is an array in metres.
         let keys = SurfaceKeys {
             heights: Some(HEIGHTS_FILE.into()),
             unit: None,
@@ -177,7 +186,7 @@ impl SurfaceSetup {
 }
 
 impl Shape {
-    /// The sum of waves that the surface is, or the map.
+    /// The sum of waves of the surface, or the map as the error.
     fn waves_or_map(&self) -> Result<&Surface, &Field> {
         match self {
             Self::Random(surface) => Ok(surface),
@@ -188,7 +197,9 @@ impl Shape {
 }
 
 impl LoadedSurface {
-    /// Heights on the finest grid, in λ; those of a sum of waves are evaluated for it, 8 bytes each.
+    /// Heights on the finest grid, in λ.
+    ///
+    /// Those of a sum of waves are evaluated now, with 8 bytes each.
     ///
     /// # Errors
     /// [`CliError::Input`] when the grid is too coarse for the waves.
@@ -202,7 +213,9 @@ impl LoadedSurface {
         }
     }
 
-    /// The heights of a contact problem on the finest grid; those of a sum of waves are not evaluated yet.
+    /// The heights of a contact problem on the finest grid.
+    ///
+    /// Those of a sum of waves are not evaluated yet.
     #[must_use]
     pub fn source(&self) -> HeightSource<'static> {
         match &self.shape {
@@ -212,8 +225,10 @@ impl LoadedSurface {
         }
     }
 
-    /// rms height (λ) and rms slope: exact ones of a sum of waves, those of its grid for a height map, which meets
-    /// itself across its borders unless they are free.
+    /// Rms height (λ) and rms slope.
+    ///
+    /// For a sum of waves they are exact. For a height map they are those of its grid, which continues across its
+    /// borders unless the borders are free.
     #[must_use]
     pub fn height_and_slope(&self, boundary: Boundary) -> [f64; 2] {
         match self.shape.waves_or_map() {
@@ -226,7 +241,9 @@ impl LoadedSurface {
         }
     }
 
-    /// Moments, in λ: exact ones of a sum of waves, those of its grid for a height map.
+    /// Moments in units of λ.
+    ///
+    /// They are exact for a sum of waves, and those of the grid for a height map.
     #[must_use]
     pub fn moments(&self) -> Moments {
         match self.shape.waves_or_map() {
@@ -235,7 +252,9 @@ impl LoadedSurface {
         }
     }
 
-    /// The map that the heights are read from, if they are: in λ, and what makes them metres as in the file.
+    /// The map from which the heights are read; `None` for a sum of waves.
+    ///
+    /// The heights are in λ. The other part restores the heights of the file in metres.
     #[must_use]
     pub fn map(&self) -> Option<(&Field, &AsRead)> {
         match &self.shape {
@@ -244,7 +263,7 @@ impl LoadedSurface {
         }
     }
 
-    /// The file that has the waves of the surface, if one has.
+    /// The file that has the waves of the surface; `None` for other surfaces.
     #[must_use]
     pub fn wave_file(&self) -> Option<&Arc<WaveFile>> {
         match &self.shape {

@@ -1,4 +1,4 @@
-//! Limits of time, as people write them: `90`, `90s`, `5min`, `1h 30m`.
+//! Time limits in the form that people write: `90`, `90s`, `5min`, `1h 30m`.
 
 use std::fmt;
 use std::str::FromStr;

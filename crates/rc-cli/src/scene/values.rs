@@ -1,4 +1,4 @@
-//! Values of a scene that are more than a number: a grid, a tolerance.
+//! Values of a scene that are more than a number: grids, tolerances, fractions.
 
 use std::fmt;
 use std::str::FromStr;
@@ -8,7 +8,9 @@ use rc_sweep::number_or_text;
 use serde::de::{self, Deserializer, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
 
-/// Elements per side, as written: `512`, or `512x256` (along x, along y). Checked when the scene is resolved.
+/// Elements per side in their written form: `512`, or `512x256` (along x, along y).
+///
+/// The numbers are checked when the scene is resolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GridSpec {
     /// Elements along x.
@@ -75,10 +77,10 @@ impl<'de> Deserialize<'de> for GridSpec {
     }
 }
 
-/// The tolerance, as written: a number, relative to the peak-to-valley height, or `auto`.
+/// The tolerance in its written form: a number or `auto`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ToleranceSpec {
-    /// Relative to the peak-to-valley height.
+    /// Tolerance relative to the peak-to-valley height.
     Relative(f64),
     /// An energy error well below the error of the grid.
     Auto,
@@ -122,7 +124,7 @@ impl<'de> Deserialize<'de> for ToleranceSpec {
     }
 }
 
-/// A part of something, as written: `0.5%` or `0.005`; above 0 and below 1.
+/// A fraction in its written form, `0.5%` or `0.005`; above 0 and below 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fraction(pub f64);
 

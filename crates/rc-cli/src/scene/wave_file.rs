@@ -9,12 +9,12 @@ use rc_heights::{LengthUnit, Scales};
 
 use crate::error::CliError;
 
-/// The name of a file of coefficients in a result folder.
+/// Name of a file of coefficients in a result folder.
 pub(crate) const WAVES_FILE: &str = "spectrum.txt";
 
-/// A file of coefficients, and the surface that they make.
+/// A file of coefficients and its surface.
 ///
-/// The coefficients are kept as read: a result is repeated bit for bit only from these.
+/// The coefficients are kept as read, since a result is repeated bit for bit only from these.
 #[derive(Clone, Debug)]
 pub struct WaveFile {
     coefficients: Vec<Coefficient>,
@@ -22,10 +22,12 @@ pub struct WaveFile {
 }
 
 impl WaveFile {
-    /// Reads `path`; 1 in it is the height of 1 by `scales`, and `side` is λ (m).
+    /// Reads the coefficients in `path`.
+    ///
+    /// `scales` tells the height of the number 1, and `side` is λ (m).
     ///
     /// # Errors
-    /// [`CliError::Input`] when the file cannot be read, or its waves make no surface.
+    /// [`CliError::Input`] when the file cannot be read, or its waves do not make a surface.
     pub(super) fn read(path: &Path, scales: Scales, side: f64) -> Result<Self, CliError> {
         let one = scales.height_scale.unwrap_or_else(|| scales.unit.map_or(1.0, LengthUnit::metres));
         if !(one.is_finite() && one != 0.0) {

@@ -1,4 +1,4 @@
-//! A scene that has been checked, before its heights are read or evaluated.
+//! Checked scenes, before heights are read or evaluated.
 
 use std::time::Instant;
 
@@ -12,19 +12,21 @@ use crate::scene::resolve::{self, ContactSetup};
 use crate::scene::surface::{LoadedSurface, SurfaceSetup};
 use crate::scene::values::{Fraction, ToleranceSpec};
 
-/// A checked contact problem: the command line and the Python module solve the same one.
+/// A checked contact problem, common to the command line and the Python module.
 #[derive(Clone, Debug)]
 pub struct CheckedScene {
-    /// The surface, not read or realised yet.
+    /// The surface, not yet read or generated.
     pub surface: SurfaceSetup,
     /// Half-space, load and method.
     pub contact: ContactSetup,
-    /// The relative error of the contact area by which the grid is chosen.
+    /// Relative error of the contact area that determines the grid.
     area_error: Option<Fraction>,
 }
 
 impl CheckedScene {
-    /// Checks the keys. With an error of the area that is wanted, the tolerance is `auto` unless it is given.
+    /// Checks the keys.
+    ///
+    /// With a wanted error of the area, the tolerance is `auto` unless it is given.
     ///
     /// # Errors
     /// [`CliError::Input`].
@@ -33,7 +35,9 @@ impl CheckedScene {
         Self::with_surface(contact, surface.heights.is_some(), || resolve::surface(surface))
     }
 
-    /// The same for a height map that a program holds. It has these sides (m), or those of the keys.
+    /// Checks the keys for a height map that a program holds.
+    ///
+    /// The map has the sides `sides` (m), or those of the keys.
     ///
     /// # Errors
     /// [`CliError::Input`].
@@ -68,7 +72,7 @@ impl CheckedScene {
         Ok(Self { surface, contact, area_error })
     }
 
-    /// The problem on `surface`, with this kernel and as much memory.
+    /// The problem on `surface`, with this kernel and this memory.
     #[must_use]
     pub fn problem<'a>(
         &'a self,
@@ -79,10 +83,12 @@ impl CheckedScene {
         ProblemSetup { surface, contact: &self.contact, kernel, budget }
     }
 
-    /// Solves the problem of [`CheckedScene::problem`]; `started` is the moment from which `wall_seconds` counts.
+    /// Solves the problem of [`CheckedScene::problem`].
+    ///
+    /// `wall_seconds` counts from `started`.
     ///
     /// # Errors
-    /// [`CliError::Input`]; a solution that did not converge is not an error, see [`Solved::failure`].
+    /// [`CliError::Input`]. A solution that did not converge is not an error, see [`Solved::failure`].
     pub fn solve<'a>(
         &self,
         problem: ProblemSetup<'a>,

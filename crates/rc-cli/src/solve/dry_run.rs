@@ -1,4 +1,4 @@
-//! `rc solve --dry-run`: what a solve will take, before any of it is solved.
+//! `rc solve --dry-run`: an estimate of the cost of a solve.
 
 use rc_core::quantity::digits;
 use rc_solver::Plan;
@@ -11,29 +11,29 @@ use crate::error::CliError;
 use crate::scene::keys::RunKeys;
 use crate::{terminal, text};
 
-/// Memory of the process besides that of the method.
+/// Memory of the process without that of the method, in bytes.
 const PROCESS_BYTES: f64 = 1e7;
 
-/// What is to be expected of a solve.
+/// Expected numbers of a solve.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct Expected {
     status: &'static str,
     method: String,
     grid: [usize; 2],
-    /// Contact area relative to the cell; only the adaptive method estimates it.
+    /// Contact area relative to the cell. Only the adaptive method estimates it.
     area_fraction: Option<f64>,
-    /// Cells that are solved for on the finest level; `None` where it is not known before.
+    /// Number of unknowns on the finest level; `None` if it is not known before the solve.
     elements: Option<f64>,
     memory_bytes: Option<f64>,
-    /// On an idle machine.
+    /// Time on an idle machine (s).
     wall_seconds: Option<f64>,
     threads: usize,
 }
 
-/// Prints the estimate; nothing is solved or written.
+/// Prints the estimate, without solving or writing anything.
 ///
 /// # Errors
-/// [`CliError::Input`] for whatever a solve would refuse before its first iteration.
+/// [`CliError::Input`] for a problem that a solve would refuse before its first iteration.
 pub(super) fn run(problem: &ProblemSetup<'_>, threads: usize, run: &RunKeys) -> Result<(), CliError> {
     let expected = Expected::of(problem, &problem.plan()?, threads);
     match (run.json, run.quiet) {

@@ -9,10 +9,12 @@ use super::map_file::MapFile;
 use crate::files::flow::{FLUX_FILES, PICTURE_FILE};
 use crate::scene::resolve::ContactSetup;
 
-/// Decades of the flux below and above its mean that the picture tells apart.
+/// Decades below and above the mean flux that the picture distinguishes.
 const DECADES: (f64, f64) = (-4.0, 2.0);
 
-/// Adds the picture, and the fluxes along x and y (m², for ΔP = 1 across the cell and 12 η = 1) where something flows.
+/// Adds the picture and the fluxes along x and y to a result.
+///
+/// Fluxes are in m², for ΔP = 1 across the cell and 12 η = 1. Without a flow there are no files of fluxes.
 pub(super) fn add(staged: &mut Staged, contact: &ContactSetup, leakage: &Leakage, grid: Grid) -> Result<(), FileError> {
     let side = contact.units.cell().side();
     if let Some(flux) = &leakage.flux {

@@ -18,7 +18,7 @@ use crate::run::watch::Watch;
 use crate::scene::keys::{RunKeys, Scene};
 use crate::{terminal, text};
 
-/// A resolved scene and how it is run.
+/// A resolved scene, and how it is run.
 #[derive(Clone, Debug)]
 pub(super) struct Job {
     pub(super) scene: CheckedScene,
@@ -27,7 +27,7 @@ pub(super) struct Job {
     watch: bool,
     /// Whether ranks write the fields together, as a Zarr group.
     zarr: bool,
-    /// The moment from which `wall_seconds` counts.
+    /// Time from which `wall_seconds` counts.
     started: Instant,
 }
 
@@ -43,7 +43,7 @@ impl Job {
         Ok(Self { scene, run, watch, zarr: false, started })
     }
 
-    /// Prints what solving it will take.
+    /// Prints an estimate of the cost of the job.
     ///
     /// # Errors
     /// [`CliError::Input`].
@@ -53,7 +53,7 @@ impl Job {
         dry_run::run(&problem, threads, &self.run)
     }
 
-    /// The same with fields that ranks write together, as a Zarr group.
+    /// The job with fields that the ranks write together, as a Zarr group.
     ///
     /// # Errors
     /// [`CliError::Input`] without a folder, with a coarser grid for the output, and where a folder is in the way.
@@ -68,12 +68,14 @@ impl Job {
         Ok(Self { zarr: true, ..self })
     }
 
-    /// Memory that there is.
+    /// The memory that the job may use.
     fn budget(&self) -> Budget {
         Budget::new(self.run.memory_limit)
     }
 
-    /// Solves, writes and prints; `threads` is what the summary says of them.
+    /// Solves, writes and prints.
+    ///
+    /// `threads` is the number in the summary.
     ///
     /// # Errors
     /// [`CliError`] of every kind.
@@ -92,12 +94,12 @@ impl Job {
         self.finish(&solved, threads, progress)
     }
 
-    /// The ranks that solve it together.
+    /// The ranks that solve the problem together.
     fn ranks(&self) -> &Ranks {
         &self.scene.contact.place.ranks
     }
 
-    /// What tells of the solve, draws it, and ends it early.
+    /// The observer that shows the solve, draws it, and ends it early.
     fn progress(&self) -> Progress {
         let folder = self.run.out.as_deref().filter(|_| self.watch);
         let units = self.scene.contact.units;
@@ -107,7 +109,7 @@ impl Job {
             .watched_by(watch)
     }
 
-    /// Writes and prints.
+    /// Writes and prints the result.
     fn finish(&self, solved: &Solved<'_>, threads: usize, progress: Progress) -> Result<(), CliError> {
         let stopped = progress.stopped();
         let summary = solved.summary(threads);
@@ -118,7 +120,7 @@ impl Job {
                 solved.write(folder, &summary)?;
             }
         }
-        // The bar goes before anything is printed, the picture of --watch not before the result is there.
+        // The bar must vanish before anything is printed. The picture of --watch must stay until the result exists.
         drop(progress);
         self.print(&summary)?;
         let Some(message) = solved.failure() else { return Ok(()) };
@@ -132,7 +134,7 @@ impl Job {
         })
     }
 
-    /// Prints the summary, over ranks on the first of them.
+    /// Prints the summary, on the first rank only.
     fn print(&self, summary: &Summary) -> Result<(), CliError> {
         if self.ranks().rank() > 0 {
             return Ok(());

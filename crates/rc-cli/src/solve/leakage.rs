@@ -10,17 +10,17 @@ use rc_sweep::LeakageSummary;
 
 use crate::scene::keys::ContactKeys;
 
-/// A flow with what its summary says.
+/// A flow and its part of the summary.
 #[derive(Debug)]
 pub struct SolvedFlow {
-    /// In λ.
+    /// The flow in units of λ.
     pub leakage: Leakage,
-    /// As the summary of a solve has it.
+    /// The flow's part of the summary, in SI units.
     pub summary: LeakageSummary,
 }
 
 impl SolvedFlow {
-    /// The flow through the gap of `solution`; contact is where the pressure is positive.
+    /// The flow through the gap of `solution`. An element with positive pressure is in contact.
     ///
     /// # Errors
     /// [`LeakageError`].
@@ -32,12 +32,14 @@ impl SolvedFlow {
     }
 }
 
-/// Memory of a solve with its flow, relative to that of a contact on as many elements.
+/// Ratio of the memory of a solve with its flow to that without it.
+///
+/// Both are on the same number of elements.
 pub(crate) fn memory_factor(keys: &ContactKeys) -> f64 {
     if keys.leakage { 1.0 + rc_leakage::BYTES_PER_ELEMENT / UNIFORM_BYTES_PER_ELEMENT as f64 } else { 1.0 }
 }
 
-/// The gap, zero in contact. What a solver leaves of it below zero is rounding.
+/// The gap with zero in contact. Small negative values of the solver are rounding and become zero.
 fn open_gap(solution: &Solution<'_>) -> Field {
     let mut gap = Field::zeros(solution.grid());
     let nx = solution.grid().nx();

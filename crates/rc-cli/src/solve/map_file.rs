@@ -1,4 +1,4 @@
-//! A field of a result as a file.
+//! Writer of a field of a result.
 
 use std::io;
 use std::path::Path;
@@ -9,14 +9,18 @@ use rc_heights::npy::{self, RowWriter};
 use crate::files::coarsen::BlockMean;
 use crate::scene::values::GridSpec;
 
-/// An npy file from rows of the finest grid, on that grid or averaged to a coarser one.
+/// An npy file that is written from rows of the finest grid.
+///
+/// It is on that grid, or averaged to a coarser one.
 pub(super) enum MapFile<'a> {
     Full(RowWriter),
     Averaged { path: &'a Path, mean: BlockMean, factor: f64 },
 }
 
 impl<'a> MapFile<'a> {
-    /// A file for rows of `grid`, on `output_grid` if there is one, values multiplied by `factor`.
+    /// A file for rows of `grid`, with values multiplied by `factor`.
+    ///
+    /// The file is on `output_grid` if that is given.
     pub(super) fn create(path: &'a Path, grid: Grid, output_grid: Option<GridSpec>, factor: f64) -> io::Result<Self> {
         Ok(match output_grid {
             None => Self::Full(RowWriter::create(path, grid, factor)?),

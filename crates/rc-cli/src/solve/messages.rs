@@ -1,4 +1,4 @@
-//! What the solver says, in the user's units.
+//! Messages of the solver in the user's units.
 
 use rc_core::Grid;
 use rc_core::quantity::digits;
@@ -9,7 +9,9 @@ use crate::error::CliError;
 use crate::scene::resolve::ContactSetup;
 use crate::scene::surface::LoadedSurface;
 
-/// The solver's refusal of a contact on a surface, with this much memory.
+/// The solver's refusal of a contact, as an error in SI units.
+///
+/// `budget` is the memory that was available.
 pub(super) fn in_si(error: &SolveError, surface: &LoadedSurface, contact: &ContactSetup, budget: Budget) -> CliError {
     match error {
         SolveError::Problem(error) => of_problem(error, contact),
@@ -35,7 +37,7 @@ pub(super) fn in_si(error: &SolveError, surface: &LoadedSurface, contact: &Conta
     }
 }
 
-/// The key that the tolerance was given by.
+/// The key that gave the tolerance.
 fn tolerance_key(contact: &ContactSetup) -> &'static str {
     if contact.keys.tolerance.is_some() { "tolerance" } else { "energy_tolerance" }
 }
@@ -105,7 +107,7 @@ fn of_adaptive(error: &AdaptiveError, budget: Budget) -> CliError {
     }
 }
 
-/// What is said of a solution that did not reach the tolerance.
+/// The message about a solution that did not reach the tolerance.
 pub(super) fn not_converged(grid: Grid, iterations: usize, certificate: &Certificate, bound: ErrorBound) -> String {
     format!("not converged to {bound} on {grid} elements after {iterations} iterations: {certificate}")
 }

@@ -31,7 +31,7 @@ use crate::scene::keys::{RunKeys, Scene};
 use crate::scene::{file, resolve};
 use crate::terminal;
 
-/// Where the run without arguments writes.
+/// Folder of the results of a run without arguments.
 const EXAMPLE_FOLDER: &str = "rc-result";
 
 /// Runs `rc solve`.
@@ -61,7 +61,9 @@ pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
     job.execute(threads)
 }
 
-/// The scene of the command line; without any argument the embedded example, into its folder.
+/// The scene of the command line.
+///
+/// Without arguments it is the embedded example, with its own folder.
 fn scene_of(args: SolveArgs) -> Result<Scene, CliError> {
     if args.scene_file.is_some() || !args.scene.is_empty() {
         return resolve::layers(args.scene_file.as_deref(), args.scene);

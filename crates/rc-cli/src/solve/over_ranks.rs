@@ -1,4 +1,6 @@
-//! `rc-mpi solve`: one contact problem over ranks, all of which run this together.
+//! `rc-mpi solve`: one contact problem over ranks.
+//!
+//! All ranks run this together.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -50,8 +52,9 @@ struct RanksArgs {
     zarr: bool,
 }
 
-/// Runs a command line of `rc-mpi`, the name of the program first, and returns the exit code. All ranks call this
-/// together; the first of them prints and writes.
+/// Runs a command line of `rc-mpi` and returns the exit code.
+///
+/// The first argument is the name of the program. All ranks call this together. The first rank prints and writes.
 #[must_use]
 pub fn main_over_ranks(words: impl IntoIterator<Item = OsString>, ranks: &Ranks) -> u8 {
     let is_first = ranks.rank() == 0;
@@ -59,7 +62,7 @@ pub fn main_over_ranks(words: impl IntoIterator<Item = OsString>, ranks: &Ranks)
         Ok(Cli { command: Command::Solve(args) }) => run(*args, ranks),
         Err(error) if !error.use_stderr() => {
             if is_first {
-                // There is nowhere left to report that the output is closed.
+                // If the output is closed, there is no place to report it.
                 let _ = error.print();
             }
             return 0;
@@ -97,7 +100,7 @@ fn run(args: RanksArgs, ranks: &Ranks) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The checked scene, in its place.
+/// The job of the checked scene, with its ranks and its checkpoint file.
 fn prepare(args: SolveArgs, (checkpoint, zarr): (Option<&Path>, bool), ranks: &Ranks) -> Result<Job, CliError> {
     let dry_run = args.dry_run;
     let scene = scene_of(args)?;
@@ -123,7 +126,7 @@ fn prepare(args: SolveArgs, (checkpoint, zarr): (Option<&Path>, bool), ranks: &R
     Ok(job)
 }
 
-/// The keys that determine what is solved, with the size and the time of a file of heights.
+/// The keys that determine the solution, with size and time of the files they name.
 fn scene_text(scene: &Scene) -> String {
     let Scene { surface, contact, .. } = scene;
     let files = surface.heights.iter().chain(&surface.spectrum);

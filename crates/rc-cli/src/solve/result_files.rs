@@ -1,4 +1,4 @@
-//! The files of a result.
+//! Writer of the files of a result.
 
 use std::convert::Infallible;
 use std::io;
@@ -27,45 +27,46 @@ use crate::scene::surface::HEIGHTS_FILE;
 use crate::scene::values::GridSpec;
 use crate::scene::wave_file::{WAVES_FILE, WaveFile};
 
-/// A solution with what its summary and its files need besides.
+/// A solution with the data that its summary and its files need.
 #[derive(Clone, Copy, Debug)]
 pub struct ResultFiles<'a> {
-    /// Keys of the surface as they were resolved.
+    /// Resolved keys of the surface.
     pub surface: &'a SurfaceKeys,
-    /// The height map that was solved; `None` for a random surface.
+    /// The height map of the solve; `None` for a random surface.
     pub map: Option<MapHeights<'a>>,
-    /// The file of waves that was solved, if one was.
+    /// The file of waves of the solve, if the surface is from one.
     pub waves: Option<&'a WaveFile>,
     /// Half-space, load and method.
     pub contact: &'a ContactSetup,
     /// The solution.
     pub solution: &'a Solution<'a>,
-    /// The flow through its gap, where it was asked for.
+    /// The flow through the gap, if it was asked for.
     pub flow: Option<&'a SolvedFlow>,
 }
 
 /// The heights of a map.
 #[derive(Clone, Copy, Debug)]
 pub enum MapHeights<'a> {
-    /// In λ, with what makes them those of the file.
+    /// Heights in λ.
     InCell {
         /// Heights in λ.
         heights: &'a Field,
-        /// What makes them the heights in the file.
+        /// Data that restore the heights of the file.
         as_read: &'a AsRead,
     },
-    /// In m, row by row.
+    /// Heights in m, row by row.
     InMetres {
         /// The grid.
         grid: Grid,
-        /// The heights.
+        /// The heights (m).
         values: &'a [f64],
     },
 }
 
 impl ResultFiles<'_> {
-    /// The summary in SI, with rms height (λ) and rms slope of the surface; `wall` and `threads` are what it says of
-    /// them.
+    /// The summary in SI units.
+    ///
+    /// It needs the surface's rms height (λ) and rms slope, the time `wall` and the number `threads`.
     #[must_use]
     pub fn summary(&self, [rms_height, rms_slope]: [f64; 2], wall: Duration, threads: usize) -> Summary {
         let context = SolveContext {
@@ -78,13 +79,14 @@ impl ResultFiles<'_> {
         };
         let leakage = self.flow.map(|flow| flow.summary.clone());
         let summary = Summary::of(self.solution, self.contact.units, &context);
-        // Conduction and stiffness are the same problem on a half-space only.
+        // Only on a half-space are conduction and stiffness the same problem.
         let contact_conductance = summary.contact_conductance.filter(|_| self.contact.layer.is_none());
         Summary { leakage, contact_conductance, ..summary }
     }
 
-    /// Writes the result folder. The method decides whether pressure and gap are ever whole in memory: they are handed
-    /// out some rows at a time.
+    /// Writes the result folder.
+    ///
+    /// Pressure and gap are handed out some rows at a time. The method decides whether they are ever stored as a whole.
     ///
     /// # Errors
     /// [`CliError::Write`].
@@ -96,8 +98,10 @@ impl ResultFiles<'_> {
         Ok(self.stage(folder, summary)?)
     }
 
-    /// Writes the result folder with pressure and gap as a Zarr group, which ranks write in parallel, in place of the
-    /// files that one rank writes: pressure.npy, gap.npy, elements.csv and contact.png.
+    /// Writes the result folder with pressure and gap as a Zarr group.
+    ///
+    /// Ranks write the group in parallel. It replaces the files that one rank writes: pressure.npy, gap.npy,
+    /// elements.csv and contact.png.
     ///
     /// # Errors
     /// [`CliError::Write`], [`CliError::Input`].
@@ -111,7 +115,7 @@ impl ResultFiles<'_> {
         Ok(self.finish(staged, summary)?)
     }
 
-    /// The scene as it was solved, as the file `scene.toml`.
+    /// The solved scene as the text of `scene.toml`.
     #[must_use]
     pub fn scene(&self) -> String {
         scene_text(self.surface, &self.contact.keys, self.solution)
@@ -126,7 +130,7 @@ impl ResultFiles<'_> {
         self.finish(staged, summary)
     }
 
-    /// Adds what is small, and gives all files their names.
+    /// Adds the small files, and gives all files their names.
     fn finish(&self, mut staged: Staged, summary: &Summary) -> Result<(), FileError> {
         if let Some(map) = self.map {
             staged.add(HEIGHTS_FILE, |path| map.write(path))?;
@@ -141,7 +145,7 @@ impl ResultFiles<'_> {
 }
 
 impl MapHeights<'_> {
-    /// Writes the heights as they were given, row by row.
+    /// Writes the heights of the caller or of the file, row by row.
     fn write(self, path: &Path) -> io::Result<()> {
         let grid = match self {
             Self::InCell { heights, .. } => heights.grid(),
@@ -164,7 +168,7 @@ impl MapHeights<'_> {
     }
 }
 
-/// What the first rank writes in [`add_fields`], as far as this one has it.
+/// Hands over this rank's rows and elements, which the first rank writes in [`add_fields`].
 fn hand_over(solution: &Solution<'_>) {
     let nothing = |_: usize, _: &[f64]| Ok::<_, Infallible>(());
     let Ok(()) = solution.pressure_rows(nothing);
@@ -173,7 +177,7 @@ fn hand_over(solution: &Solution<'_>) {
     let Ok(()) = solution.pressure_rows(nothing);
 }
 
-/// Pressure, gap, its plastic part, elements and the picture of the contact.
+/// Adds pressure, gap, its plastic part, elements and the picture of the contact.
 fn add_fields(staged: &mut Staged, contact: &ContactSetup, solution: &Solution<'_>) -> Result<(), FileError> {
     let (units, grid) = (contact.units, solution.grid());
     let (side, e_star) = (units.cell().side(), units.elasticity().e_star());
@@ -207,7 +211,9 @@ fn add_fields(staged: &mut Staged, contact: &ContactSetup, solution: &Solution<'
     staged.add("contact.png", |path| save_png(&picture, path))
 }
 
-/// Centre (m), side (m) and pressure (Pa) of each element, as `elements.csv`; given in λ and E*.
+/// Writes centre (m), side (m) and pressure (Pa) of each element into `elements.csv`.
+///
+/// The solution has them in λ and E*.
 fn write_elements(path: &Path, solution: &Solution<'_>, units: Units) -> Result<(), csv::Error> {
     let mut out = csv::Writer::from_path(path)?;
     out.write_record(["x", "y", "size", "pressure"])?;
@@ -218,7 +224,9 @@ fn write_elements(path: &Path, solution: &Solution<'_>, units: Units) -> Result<
     Ok(())
 }
 
-/// The scene as it was solved: every key that determines the result, the grid and the method that ran included.
+/// The solved scene as text.
+///
+/// It has every key that determines the result, with the grid and the method that ran.
 fn scene_text(surface: &SurfaceKeys, contact: &ContactKeys, solution: &Solution<'_>) -> String {
     let grid = solution.grid();
     let grid = GridSpec { nx: grid.nx(), ny: grid.ny() };

@@ -1,4 +1,6 @@
-//! Pressure and gap as a Zarr group that all ranks write together, each the chunks of its rows.
+//! Pressure and gap as a Zarr group that all ranks write together.
+//!
+//! Each rank writes the chunks of its rows.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -10,13 +12,15 @@ use crate::error::CliError;
 use crate::export::{xarray, zarr};
 use crate::run::together::together;
 
-/// Rows of a chunk: those of a tile. Columns are all in one chunk.
+/// Rows of a chunk, which are those of a tile. A chunk has all columns.
 const ROWS: usize = 8;
 
 /// Dimensions of a field: rows, columns.
 const PLANE: [&str; 2] = ["y", "x"];
 
-/// Writes the group to the folder `path` of the first rank, which other ranks are told. All ranks call this together.
+/// Writes the group to the folder `path` of the first rank.
+///
+/// Other ranks are told the path. All ranks call this together.
 ///
 /// # Errors
 /// [`CliError::Write`], on all ranks.
@@ -26,7 +30,7 @@ pub(super) fn write(path: Option<&Path>, solution: &Solution<'_>, units: Units) 
     together(&ranks, made.map_err(|cause| not_written(path, &cause)))?;
     let path = path_of_first(path, &ranks);
     let (side, e_star) = (units.cell().side(), units.elasticity().e_star());
-    // A rank that cannot write takes its rows all the same: others have a part in them.
+    // A rank that cannot write still takes its rows, since other ranks take part in handing them out.
     let mut result = Ok(());
     let nx = solution.grid().nx();
     let mut chunk = |name: &str, first: usize, rows: &[f64], factor: f64| {
@@ -44,7 +48,7 @@ fn not_written(path: Option<&Path>, cause: &io::Error) -> CliError {
     CliError::write(path.unwrap_or(Path::new(crate::export::xarray::GROUP)), cause)
 }
 
-/// The path that the first rank has.
+/// The path of the first rank.
 fn path_of_first(path: Option<&Path>, ranks: &rc_comm::Ranks) -> PathBuf {
     let mine = path.and_then(|path| std::path::absolute(path).ok());
     let mine = mine.and_then(|path| path.to_str().map(str::to_owned)).unwrap_or_default();
@@ -66,7 +70,7 @@ fn describe(path: &Path, solution: &Solution<'_>, units: Units) -> io::Result<()
     zarr::write_metadata(path, &attributes, arrays.into_iter())
 }
 
-/// Writes the chunk of some rows of `nx` values; what of it is beyond the grid is zero.
+/// Writes the chunk of some rows of `nx` values. Values beyond the grid are zero.
 fn write_rows(folder: &Path, first: usize, (rows, nx): (&[f64], usize), factor: f64) -> io::Result<()> {
     for (i, rows) in rows.chunks(ROWS * nx).enumerate() {
         let mut bytes: Vec<u8> = rows.iter().flat_map(|value| (factor * value).to_le_bytes()).collect();

@@ -1,4 +1,4 @@
-//! A solved scene with what its files and its summary need.
+//! A problem with its surface and memory, and its solution.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -19,16 +19,16 @@ use crate::scene::resolve::{self, ContactSetup, Place};
 use crate::scene::surface::LoadedSurface;
 use crate::scene::values::Fraction;
 
-/// What is solved: a surface, a contact, and the memory that there is.
+/// A problem: a surface, a contact, and the available memory.
 #[derive(Clone, Copy)]
 pub struct ProblemSetup<'a> {
     /// The surface.
     pub surface: &'a LoadedSurface,
     /// Half-space, load and method.
     pub contact: &'a ContactSetup,
-    /// The half-space's response, that of the contact or another one.
+    /// The response of the solid, which is that of the contact or another one.
     pub kernel: &'a dyn Kernel,
-    /// The memory.
+    /// The memory that the solve may use.
     pub budget: Budget,
 }
 
@@ -36,9 +36,9 @@ pub struct ProblemSetup<'a> {
 pub struct Solved<'a> {
     problem: ProblemSetup<'a>,
     solution: Solution<'a>,
-    /// What is said of a solution that did not reach the tolerance.
+    /// Message about a solution that did not reach the tolerance.
     failure: Option<String>,
-    /// The flow through the gap, where it is asked for.
+    /// The flow through the gap, if it was asked for.
     flow: Option<SolvedFlow>,
     wall: Duration,
 }
@@ -48,9 +48,9 @@ pub struct Solved<'a> {
 pub struct SolvedParts<'a> {
     /// The solution.
     pub solution: Solution<'a>,
-    /// What is said of a solution that did not reach the tolerance, or of a flow that did not converge.
+    /// Message about a solution or a flow that did not converge.
     pub failure: Option<String>,
-    /// The flow through the gap, where it is asked for and converged.
+    /// The flow through the gap, if it was asked for and converged.
     pub flow: Option<SolvedFlow>,
     /// Time to the certified solution.
     pub wall: Duration,
@@ -60,7 +60,7 @@ impl<'a> ProblemSetup<'a> {
     /// Checks the problem and chooses the method.
     ///
     /// # Errors
-    /// [`CliError::Input`] when the scene, the method asked for, or the memory there is do not allow it.
+    /// [`CliError::Input`] when the scene, the requested method or the available memory does not allow it.
     pub(crate) fn plan(&self) -> Result<Plan<'a>, CliError> {
         self.check_grid()?;
         let plan = self.contact_problem().plan(&self.params()).map_err(|error| self.refuse(&error))?;
@@ -68,27 +68,33 @@ impl<'a> ProblemSetup<'a> {
         Ok(plan)
     }
 
-    /// The same with what `other`, a plan on the same surface with the same parameters, has prepared.
+    /// The plan of this problem with what `other` has prepared.
+    ///
+    /// `other` is a plan on the same surface with the same parameters.
     ///
     /// # Errors
-    /// As of [`ProblemSetup::plan`].
+    /// Those of [`ProblemSetup::plan`].
     pub(crate) fn plan_like(&self, other: &Plan<'static>) -> Result<Plan<'static>, CliError> {
         other.under(self.contact.control).map_err(|error| self.refuse(&error))
     }
 
-    /// Solves; `started` is the moment from which `wall_seconds` counts. Nothing is written.
+    /// Solves the problem; nothing is written.
+    ///
+    /// `wall_seconds` counts from `started`.
     ///
     /// # Errors
-    /// [`CliError::Input`]; a solution that did not converge is not an error, see [`Solved::failure`].
+    /// [`CliError::Input`]. A solution that did not converge is not an error, see [`Solved::failure`].
     pub fn solve(self, started: Instant, observer: &dyn Observer) -> Result<Solved<'a>, CliError> {
         let result = self.plan()?.solve(observer);
         self.solved(result, started)
     }
 
-    /// The plan of the first load of many on this surface, by a kernel of rc.
+    /// The plan of the first of many loads on this surface.
+    ///
+    /// The kernel must be one of rc.
     ///
     /// # Errors
-    /// As of [`ProblemSetup::plan`].
+    /// Those of [`ProblemSetup::plan`].
     pub(crate) fn first_plan(&self) -> Result<Plan<'static>, CliError> {
         self.check_grid()?;
         let problem = ContactProblem::new(self.surface.source(), self.contact.control);
@@ -102,7 +108,7 @@ impl<'a> ProblemSetup<'a> {
     /// Solves by a plan of this problem.
     ///
     /// # Errors
-    /// As of [`ProblemSetup::solve`].
+    /// Those of [`ProblemSetup::solve`].
     pub(crate) fn solve_planned(
         self,
         plan: Plan<'static>,
@@ -112,7 +118,9 @@ impl<'a> ProblemSetup<'a> {
         self.solved(plan.solve(observer), started)
     }
 
-    /// The same on the coarsest grid that gives the contact area with a relative error of at most `wanted`.
+    /// Solves on the coarsest grid that is fine enough for the contact area.
+    ///
+    /// The relative error of the area is then at most `wanted`.
     ///
     /// # Errors
     /// [`CliError::Input`].
@@ -131,7 +139,7 @@ impl<'a> ProblemSetup<'a> {
         self.solved(result, started)
     }
 
-    /// What the solve by `plan` takes, with the flow where it is asked for.
+    /// The cost of the solve by `plan`, with the flow if it is asked for.
     pub(crate) fn cost(&self, plan: &Plan<'_>) -> Cost {
         let cost = plan.cost();
         if !self.contact.keys.leakage {
@@ -155,7 +163,7 @@ impl<'a> ProblemSetup<'a> {
         Ok(self.budget.check(&what, self.cost(plan).bytes.unwrap_or(flow), |_| String::new())?)
     }
 
-    /// Checks what the grid of the surface decides.
+    /// Checks that depend on the grid of the surface.
     fn check_grid(&self) -> Result<(), CliError> {
         let ContactSetup { layer, kernel, units, .. } = self.contact;
         resolve::check_thickness(*layer, *kernel, self.surface.grid, units.cell().side())?;
@@ -174,7 +182,7 @@ impl<'a> ProblemSetup<'a> {
     }
 
     fn params(&self) -> SolveParams {
-        // Ranks on several machines refuse together what one of them has no memory for.
+        // If one of the machines does not have the memory, all ranks must refuse.
         let available = self.budget.available().map(|bytes| self.contact.place.ranks.minimum(bytes));
         SolveParams { memory_limit: available, ..self.contact.params }
     }
@@ -203,27 +211,29 @@ impl<'a> ProblemSetup<'a> {
 }
 
 impl<'a> Solved<'a> {
-    /// What it is made of, without the problem.
+    /// The parts of the solution, without the problem.
     #[must_use]
     pub fn into_parts(self) -> SolvedParts<'a> {
         let Self { solution, failure, flow, wall, .. } = self;
         SolvedParts { solution, failure, flow, wall }
     }
 
-    /// What is to be said of a solution that did not reach the tolerance.
+    /// Message about a solution that did not reach the tolerance.
     #[must_use]
     pub fn failure(&self) -> Option<&str> {
         self.failure.as_deref()
     }
 
-    /// The summary in SI; `threads` is what it says of them.
+    /// The summary in SI units, with the number `threads`.
     pub(crate) fn summary(&self, threads: usize) -> Summary {
-        // Not before: the time to the certified solution does not include what the solution does not need.
+        // This is computed only now, so that the time to the certified solution does not include it.
         let height_and_slope = self.problem.surface.height_and_slope(self.problem.contact.boundary);
         self.files().summary(height_and_slope, self.wall, threads)
     }
 
-    /// Writes the result folder; over ranks the first of them does, and all call this together.
+    /// Writes the result folder.
+    ///
+    /// The first rank writes, and all ranks call this together.
     ///
     /// # Errors
     /// [`CliError::Write`].
@@ -231,7 +241,9 @@ impl<'a> Solved<'a> {
         self.files().write(folder, summary)
     }
 
-    /// The same with pressure and gap as a Zarr group that all ranks write.
+    /// Writes the result folder, with pressure and gap as a Zarr group.
+    ///
+    /// All ranks write the group.
     ///
     /// # Errors
     /// [`CliError::Write`].

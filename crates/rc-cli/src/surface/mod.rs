@@ -24,12 +24,12 @@ use crate::scene::surface::LoadedSurface;
 use crate::scene::{heights, resolve};
 use crate::{terminal, text};
 
-/// A surface in its cell, and how it came about.
+/// A surface in its cell, with the effects of its treatments.
 struct Prepared {
     surface: LoadedSurface,
     /// Side of the cell along x (m).
     side: f64,
-    /// What a height map was like before the treatments and after each; empty without any.
+    /// Statistics of a height map before the treatments and after each; empty without treatments.
     effects: Vec<Effect>,
 }
 
@@ -52,7 +52,7 @@ pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
     write(&prepared, &scene.run)
 }
 
-/// Writes and prints.
+/// Writes and prints the surface.
 fn write(Prepared { surface, side, effects }: &Prepared, run: &RunKeys) -> Result<(), CliError> {
     let heights = surface.heights()?;
     let mut record = SurfaceRecord::of(&heights, *side, surface.moments());
@@ -86,7 +86,7 @@ fn treated(keys: SurfaceKeys, treatments: &[Treatment], budget: Budget) -> Resul
     resolve::check_size(&keys)?;
     let mut map = heights::read(&path, &keys.read_params(), keys.scales())?;
     let [cell, cell_y] = heights::sides(&path, map.sides, [keys.cell, keys.cell_y])?;
-    // A map without a size has points that are equally far apart along both sides.
+    // The points of a map without a size have equal distances along both sides.
     let sides = |cell| cell_y.map_or_else(|| map.sides_of_width(cell), |cell_y| [cell, cell_y]);
     map.sides = map.sides.or_else(|| cell.map(sides));
     let grids = rc_heights::grids_after(&map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;

@@ -1,4 +1,4 @@
-//! Files of a surface.
+//! Writer of the files of a surface.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -14,12 +14,14 @@ use crate::scene::file;
 use crate::scene::surface::{HEIGHTS_FILE, LoadedSurface};
 use crate::scene::wave_file::WAVES_FILE;
 
-/// Whether the heights alone are to go into a file of this name.
+/// Whether `target` is the name of a file for the heights alone.
 pub(super) fn is_map(target: &Path) -> bool {
     target.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy") || e.eq_ignore_ascii_case("csv"))
 }
 
-/// Heights and the factor that makes them metres: as read, where they come from a file.
+/// Heights, and the factor that makes them metres.
+///
+/// Heights from a file are returned as in the file.
 fn in_metres<'a>(surface: &LoadedSurface, heights: &'a Field, side: f64) -> (Cow<'a, Field>, f64) {
     match surface.map() {
         None => (Cow::Borrowed(heights), side),
@@ -42,7 +44,7 @@ pub(super) fn write_map(target: &Path, surface: &LoadedSurface, heights: &Field,
     files::write_file(target, |path| write(path, &field, factor))
 }
 
-/// Writes the folder of a surface, from which it can be solved.
+/// Writes the folder of a surface, which `rc solve` can solve.
 ///
 /// # Errors
 /// [`FileError::Write`].

@@ -56,7 +56,9 @@ pub(crate) enum PeriodicName {
     AsIs,
 }
 
-/// The treatments that flags of `rc surface` name, as `["--level", "plane"]`, in the order in which they are applied.
+/// The treatments that flags of `rc surface` name, in the order of their application.
+///
+/// An example of `words` is `["--level", "plane"]`.
 ///
 /// # Errors
 /// [`CliError::Input`] for words that are not such flags.
@@ -68,10 +70,10 @@ pub fn treatments(words: &[String]) -> Result<Vec<Treatment>, CliError> {
 }
 
 impl TreatmentKeys {
-    /// The treatments in their order.
+    /// The treatments in the order of their application.
     ///
     /// # Errors
-    /// When `resample` is no grid.
+    /// When `resample` is not a grid.
     pub(crate) fn treatments(&self) -> Result<Vec<Treatment>, GridError> {
         let periodic = |name| match name {
             PeriodicName::Mirror => Periodic::Mirror,

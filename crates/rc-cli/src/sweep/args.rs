@@ -57,7 +57,7 @@ pub(crate) struct SweepArgs {
 }
 
 impl SweepArgs {
-    /// The mean that is asked for, if any.
+    /// The mean of `--error-of-mean`, if it is given.
     ///
     /// # Errors
     /// [`CliError::Input`] for a quantity without an error.

@@ -1,4 +1,6 @@
-//! Ctrl-C and a job system's signal to end: what is done is put into the table, then the process ends.
+//! Ctrl-C and a job system's signal to end a sweep.
+//!
+//! The finished rows are written into the table, then the process ends.
 
 use rc_sweep::Kept;
 
@@ -6,14 +8,16 @@ use super::bar::RowBar;
 use crate::error::{CliError, INTERRUPTED};
 use crate::terminal;
 
-/// From now on an interrupt runs `end`, which ends the process.
+/// Makes an interrupt run `end`, which ends the process.
 pub(super) fn install(end: impl Fn() + Send + 'static) {
-    // Without a handler an interrupt ends the process at once, which loses no row either.
+    // Without a handler an interrupt ends the process at once, and no row is lost either.
     let _ = ctrlc::set_handler(end);
 }
 
-/// Writes the table of the rows so far, of `n_rows` if that is known, and ends the process. `kept` is held until the
-/// end, so that no row is kept which the table does not have.
+/// Writes the table of the finished rows and ends the process.
+///
+/// `n_rows` is the number of all rows, if it is known. `kept` is locked until the end, so that no row is stored which
+/// is not in the table.
 pub(super) fn end(kept: &Kept<'_>, n_rows: Option<usize>, bar: &RowBar) {
     bar.clear();
     let of_all = n_rows.map_or_else(String::new, |n_rows| format!(" of {n_rows}"));

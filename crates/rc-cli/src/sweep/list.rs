@@ -1,4 +1,6 @@
-//! `rc sweep --list`: the shards of a sweep as command lines, for programs that run lists of commands.
+//! `rc sweep --list`: the shards of a sweep as command lines.
+//!
+//! Other programs run such lists of commands.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -9,16 +11,16 @@ use super::part::folder_of;
 use crate::error::CliError;
 use crate::terminal;
 
-/// Flags with a value that the commands have otherwise.
+/// Flags with a value that each command sets itself.
 const WITH_VALUE: [&str; 2] = ["--out", "--shard"];
 
-/// Flags that the commands do not have, or have once.
+/// Flags that the commands do not have or set themselves.
 const WITHOUT: [&str; 2] = ["--list", "--resume"];
 
-/// Prints the command of each of `count` shards, one a line.
+/// Prints the command of each of `count` shards, one per line.
 ///
 /// # Errors
-/// [`CliError`] when a word of the command line is not text, or nothing can be printed.
+/// [`CliError`] when an argument is not text, or when nothing can be printed.
 pub(super) fn print(words: impl IntoIterator<Item = OsString>, count: usize, out: &Path) -> Result<(), CliError> {
     let words = words.into_iter().map(OsString::into_string).collect::<Result<Vec<_>, _>>();
     let refuse = |word: OsString| CliError::input(format_args!("list: '{}' is not text in UTF-8", word.display()));
@@ -27,7 +29,7 @@ pub(super) fn print(words: impl IntoIterator<Item = OsString>, count: usize, out
     terminal::print(&lines.collect::<String>())
 }
 
-/// The words without flags that each command has of its own.
+/// The arguments without the flags that each command sets itself.
 fn kept(words: Vec<String>) -> Vec<String> {
     let mut kept = Vec::new();
     let mut words = words.into_iter();
@@ -50,7 +52,7 @@ fn line(words: &[String], shard: Shard, out: &Path) -> String {
     words.iter().chain(&own).map(|word| quoted(word)).collect::<Vec<_>>().join(" ") + "\n"
 }
 
-/// `word` as a shell takes it.
+/// `word` quoted for a shell.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {

@@ -1,4 +1,6 @@
-//! `rc sweep --error-of-mean`: a mean over realisations, of which as many are solved as its error asks for.
+//! `rc sweep --error-of-mean`: a mean over realisations.
+//!
+//! It solves as many realisations as the wanted error needs.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -19,10 +21,10 @@ use crate::run::threads;
 use crate::scene::surface::Source;
 use crate::{terminal, text};
 
-/// The means in the folder of an ensemble.
+/// File of the means in the folder of an ensemble.
 const MEAN_FILE: &str = "mean.json";
 
-/// Fewest elements per shortest wave, and per side.
+/// Minimum number of elements per shortest wave, and minimum number per side.
 const COARSEST: [usize; 2] = [4, 64];
 
 /// Runs `rc sweep --error-of-mean`.
@@ -71,7 +73,7 @@ pub(super) fn run(args: &SweepArgs, wanted: &WantedMean) -> Result<(), CliError>
     messages::check_means(&means)
 }
 
-/// Flags that say otherwise which rows there are.
+/// Refuses flags that select the rows in another way.
 fn check_alternatives(args: &SweepArgs) -> Result<(), CliError> {
     let given = [
         ("seeds", args.seeds.is_some(), "it chooses the seeds; --seed gives the first one"),
@@ -88,7 +90,9 @@ fn check_alternatives(args: &SweepArgs) -> Result<(), CliError> {
     }
 }
 
-/// The grids that there may be: that of the scene, and all that halving it makes, as long as they resolve the waves.
+/// The plan of the realisations on several grids.
+///
+/// The grids are that of the scene, and those from halving it as long as they resolve the waves.
 fn plan(surface: &SweptSurface, control: ControlKind) -> Result<EnsemblePlan, CliError> {
     let Source::Random { spectrum, grid } = &surface.setup.source else {
         return Err(CliError::input("error_of_mean: a height map has no other realisations; omit it"));
@@ -107,7 +111,7 @@ fn plan(surface: &SweptSurface, control: ControlKind) -> Result<EnsemblePlan, Cl
             2 * coarsest
         )));
     }
-    // Of the scene, these are not settings of all rows.
+    // Seed and grid of the scene do not apply to all rows.
     if let Some(keys) = planned.surface.as_object_mut() {
         keys.remove("seed");
         keys.remove("grid");
@@ -119,7 +123,7 @@ fn plan(surface: &SweptSurface, control: ControlKind) -> Result<EnsemblePlan, Cl
     }
 }
 
-/// A mean for people.
+/// A mean as aligned lines of text.
 fn lines(mean: &EnsembleMean) -> String {
     let percent = digits(100.0 * mean.relative_error, 2);
     let value = text::with_error(mean.mean, mean.standard_error.hypot(mean.grid_error));
@@ -139,7 +143,7 @@ fn lines(mean: &EnsembleMean) -> String {
     format!("{head}{levels}  {part} of the estimated cost of the finest grid alone\n")
 }
 
-/// A level for people.
+/// The cells of a line about a level.
 fn cells(level: &EnsembleLevel) -> [String; 5] {
     let found = &level.found;
     let grid =

@@ -1,4 +1,4 @@
-//! `rc sweep merge`: the shards of a sweep as if it had been one.
+//! `rc sweep merge`: the shards of a sweep merged into one sweep.
 
 use super::args::MergeArgs;
 use super::messages;
@@ -9,7 +9,7 @@ use crate::terminal;
 ///
 /// # Errors
 /// [`CliError::Input`] when the folders are not all shards of one sweep, complete; [`CliError::Write`];
-/// [`CliError::NotConverged`] as of the whole sweep.
+/// [`CliError::NotConverged`] as for the whole sweep.
 pub(super) fn run(args: &MergeArgs) -> Result<(), CliError> {
     let merged = rc_sweep::merge(&args.folders, &args.out)?;
     if !args.quiet {

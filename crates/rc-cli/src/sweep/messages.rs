@@ -1,4 +1,4 @@
-//! What goes wrong with a sweep, in the words of the command line.
+//! Errors of sweeps in the words of the command line.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ impl From<SweepError> for CliError {
     }
 }
 
-/// Why a row could not be kept, and that the rows before are.
+/// Why a row could not be stored, and that the earlier rows are stored.
 fn not_kept(cause: &str, kept: usize) -> String {
     match kept {
         0 => cause.to_owned(),
@@ -53,7 +53,7 @@ fn refused(error: &SweepError) -> CliError {
     CliError::input(format_args!("{error}{remedy}"))
 }
 
-/// Why a sweep ended before its last row.
+/// The error of a sweep that ended before its last row.
 pub(super) fn of_run(error: RunError<CliError>) -> CliError {
     match error {
         RunError::Refused { error: CliError::Input(message), missing, kept } if kept > 0 => CliError::input(
@@ -65,14 +65,14 @@ pub(super) fn of_run(error: RunError<CliError>) -> CliError {
     }
 }
 
-/// That the time was not enough for all rows.
+/// The error for a time limit that was too short for all rows.
 pub(super) fn out_of_time(limit: TimeLimit, missing: usize, n_rows: usize) -> CliError {
     CliError::NotConverged(format!(
         "time_limit: after {limit} {missing} of {n_rows} rows are not solved; --resume goes on"
     ))
 }
 
-/// That the time was not enough for a mean.
+/// The error for a time limit that was too short for a mean.
 pub(super) fn mean_out_of_time(limit: Option<TimeLimit>, kept: usize) -> CliError {
     let after = limit.map_or_else(String::new, |limit| format!("after {limit} "));
     CliError::NotConverged(format!(
@@ -80,7 +80,7 @@ pub(super) fn mean_out_of_time(limit: Option<TimeLimit>, kept: usize) -> CliErro
     ))
 }
 
-/// An error when a mean does not have the error that was asked for.
+/// Fails when a mean does not have the wanted error.
 pub(super) fn check_means(means: &[EnsembleMean]) -> Result<(), CliError> {
     let Some(mean) = means.iter().find(|mean| mean.status != "converged") else { return Ok(()) };
     let percent = |value: f64| format!("{} %", digits(100.0 * value, 2));
@@ -101,7 +101,7 @@ pub(super) fn check_means(means: &[EnsembleMean]) -> Result<(), CliError> {
     }))
 }
 
-/// An error when a row did not converge.
+/// Fails when a row did not converge.
 pub(super) fn check_converged(rows: &SweepRows, table: &Path) -> Result<(), CliError> {
     match rc_sweep::n_not_converged(rows) {
         0 => Ok(()),

@@ -1,4 +1,4 @@
-//! `rc sweep`: many loads on many surfaces, kept row by row.
+//! `rc sweep`: many loads on many surfaces, stored row by row.
 
 pub(crate) mod args;
 mod bar;
@@ -58,7 +58,7 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     execute(&surfaces, &Arc::new(sweep), threads)
 }
 
-/// Solves what is missing and says what happened.
+/// Solves the missing rows and reports the result.
 fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>, threads: usize) -> Result<(), CliError> {
     let started = Instant::now();
     let n_rows = sweep.n_rows();
@@ -98,7 +98,7 @@ mod tests {
 
     use super::*;
 
-    /// The arguments of `rc sweep` with these words.
+    /// The arguments of `rc sweep` from these words.
     fn parsed(words: &[&std::ffi::OsStr]) -> SweepArgs {
         let command = SweepArgs::augment_args(clap::Command::new("sweep").no_binary_name(true));
         SweepArgs::from_arg_matches(&command.get_matches_from(words)).expect("a command line")

@@ -1,4 +1,4 @@
-//! `--shard`: which part of a sweep this process solves, and in which folder.
+//! `--shard`: the part of a sweep that this process solves, and its folder.
 
 use std::path::{Path, PathBuf};
 
@@ -17,10 +17,12 @@ pub(super) fn folder_of(out: &Path, Shard { index, count }: Shard) -> PathBuf {
     out.join(format!("part-{index}-of-{count}"))
 }
 
-/// The part that `spec` says, and the folder that it goes to: `out`, or a folder of its own there.
+/// The part that `spec` selects, and its folder.
+///
+/// The folder is `out`, or a folder of its own in `out`.
 ///
 /// # Errors
-/// [`CliError::Input`] when no job system says which part this process is.
+/// [`CliError::Input`] when no job system tells the part of this process.
 pub(super) fn resolve(spec: Option<ShardSpec>, out: &Path) -> Result<(Shard, PathBuf), CliError> {
     match spec {
         None => Ok((Shard::WHOLE, out.to_owned())),
@@ -43,7 +45,9 @@ fn refuse(error: &JobError) -> CliError {
     CliError::input(format_args!("shard: {error}; {remedy}"))
 }
 
-/// `plan`, dealt to `shard` and all others by the estimate of `rc solve --dry-run`.
+/// `plan` with its rows dealt to `shard` and all others.
+///
+/// The cost of rows is the estimate of `rc solve --dry-run`.
 pub(super) fn deal(plan: SweepPlan, shard: Shard, surfaces: &Surfaces) -> SweepPlan {
     if shard.count == 1 {
         return plan;
@@ -70,11 +74,13 @@ impl Estimated {
         Some(Self { surface: row.surface, loaded, first: None })
     }
 
-    /// Processor seconds of `row`; `None` where they are not known, or where the row will be refused.
+    /// Processor seconds of `row`.
+    ///
+    /// `None` if they are not known, or if the row will be refused.
     fn seconds(&mut self, surfaces: &Surfaces, row: &SweepRow) -> Option<f64> {
         let contact = surfaces.contact(row).ok()?;
         let kernel = contact.kernel().ok()?;
-        // All machines must come to the same estimate, whatever memory they have.
+        // All machines must get the same estimate, whatever memory they have.
         let problem =
             ProblemSetup { surface: &self.loaded, contact: &contact, kernel: &*kernel, budget: Budget::UNLIMITED };
         let plan = match &self.first {

@@ -1,5 +1,6 @@
-//! The plan of a sweep whose rows a program solves: that of `rc sweep`, so that either goes on with the rows of the
-//! other.
+//! The plan of a sweep whose rows a program solves.
+//!
+//! It is the plan of `rc sweep`, so that each can continue the rows of the other.
 
 use rc_sweep::{ControlKind, FileMark, Loads, Seeds, SweepPlan};
 
@@ -7,28 +8,29 @@ use super::surfaces::{SweptSurface, check_rows, seeded};
 use crate::error::CliError;
 use crate::scene::keys::Scene;
 
-/// What a sweep is over, besides its scene.
+/// Lists of a sweep, in addition to its scene.
 #[derive(Clone, Debug)]
 pub struct SweepLists {
-    /// What the loads are.
+    /// Quantity of the loads.
     pub control: ControlKind,
     /// Pressures (Pa) or penetrations (m).
     pub loads: Loads,
-    /// Seeds of a random surface, if there are several.
+    /// Seeds of a random surface, if the sweep has several.
     pub seeds: Option<Seeds>,
 }
 
-/// A height map that a program holds.
+/// Size and mark of a height map that a program holds.
 #[derive(Clone, Copy, Debug)]
 pub struct MapMark {
-    /// Sides of its cell along x and y (m), where it knows them.
+    /// Sides of its cell along x and y (m), if the program knows them.
     pub sides: Option<[f64; 2]>,
-    /// By which it is recognised.
+    /// Mark that identifies the map.
     pub mark: FileMark,
 }
 
-/// The plan of `rc sweep` for this scene, which is called `name`; of a map that a program holds, `map` says what is
-/// known.
+/// The plan of `rc sweep` for a scene with the name `name`.
+///
+/// `map` describes a map that a program holds.
 ///
 /// # Errors
 /// [`CliError::Input`] for keys that cannot be solved, or a file that cannot be read.

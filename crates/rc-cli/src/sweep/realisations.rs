@@ -1,4 +1,6 @@
-//! How a realisation of an ensemble is solved: as `rc solve` solves it with this seed and grid.
+//! Solver of the realisations of an ensemble.
+//!
+//! A realisation is solved as `rc solve` does with its seed and grid.
 
 use std::time::Instant;
 
@@ -19,7 +21,7 @@ use crate::solve::solved::ProblemSetup;
 pub(super) struct Realisations<'a> {
     surface: &'a SweptSurface,
     control: ControlKind,
-    /// All threads.
+    /// Number of all threads.
     threads: usize,
     run: &'a RunKeys,
     limit: Stop,
@@ -27,7 +29,7 @@ pub(super) struct Realisations<'a> {
 }
 
 impl<'a> Realisations<'a> {
-    /// Those of `surface`, whose limit of time begins now.
+    /// The realisations of `surface`. Their time limit begins now.
     pub(super) fn new(
         surface: &'a SweptSurface,
         control: ControlKind,

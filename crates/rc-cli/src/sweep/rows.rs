@@ -1,4 +1,6 @@
-//! How a row of a sweep is solved: as `rc solve` solves its scene.
+//! Solver of the rows of a sweep.
+//!
+//! A row is solved as `rc solve` solves its scene.
 
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -21,25 +23,25 @@ use crate::solve::solved::{ProblemSetup, Solved};
 pub(super) struct SceneRows<'a> {
     sweep: &'a Sweep,
     surfaces: &'a Surfaces,
-    /// The surface that was loaded last: its loads follow one another.
+    /// The surface that was loaded last. The loads of a surface come one after another.
     loaded: Latest<SurfaceOfLoads>,
-    /// All threads of the sweep.
+    /// Number of all threads of the sweep.
     threads: usize,
     limit: Stop,
     bar: RowBar,
 }
 
-/// A surface, and what its loads share.
+/// A surface, and the data that its loads share.
 struct SurfaceOfLoads {
     surface: LoadedSurface,
-    /// The plan of the load that came first.
+    /// The plan of the first load.
     first: Mutex<Option<Plan<'static>>>,
 }
 
 impl SurfaceOfLoads {
-    /// The plan of `problem`, which is on this surface.
+    /// The plan of `problem`, which must be on this surface.
     fn plan(&self, problem: &ProblemSetup<'_>) -> Result<Plan<'static>, CliError> {
-        // A worker that panicked has stored a whole plan or none.
+        // Even if a worker panicked, the stored plan is complete or absent.
         let mut first = self.first.lock().unwrap_or_else(PoisonError::into_inner);
         if first.is_none() {
             *first = Some(problem.first_plan()?);
@@ -49,14 +51,16 @@ impl SurfaceOfLoads {
 }
 
 impl<'a> SceneRows<'a> {
-    /// The rows of `sweep`, whose limit of time begins now.
+    /// The rows of `sweep`. Their time limit begins now.
     pub(super) fn new(sweep: &'a Sweep, surfaces: &'a Surfaces, threads: usize, bar: RowBar) -> Self {
         let limit = Stop::at(Instant::now(), surfaces.run.time_limit);
         Self { sweep, surfaces, loaded: Latest::default(), threads, limit, bar }
     }
 
-    /// Solves `contact` on the surface of `row`. With fields, the folder of the row is complete when this returns.
-    /// `wall_seconds` includes the time that loading the surface took once.
+    /// Solves `contact` on the surface of `row`.
+    ///
+    /// With fields, the folder of the row is complete when this returns. `wall_seconds` of one row of a surface
+    /// includes the time of loading it.
     pub(super) fn solve_contact(&self, row: &SweepRow, contact: &ContactSetup) -> Result<Cells, CliError> {
         let surface = self.surfaces.surface(row);
         let load = || Ok::<_, CliError>(SurfaceOfLoads { surface: surface.load()?, first: Mutex::default() });

@@ -5,7 +5,9 @@ use std::str::FromStr;
 
 use rc_sweep::Shard;
 
-/// What can be averaged: numbers that every row has, and that converge as grids become finer.
+/// Quantities that can be averaged.
+///
+/// They are numbers that every row has and that converge as grids become finer.
 pub(crate) const QUANTITIES: [&str; 9] = [
     "area_fraction",
     "penetration",
@@ -18,12 +20,14 @@ pub(crate) const QUANTITIES: [&str; 9] = [
     "h_max",
 ];
 
-/// The shard, as written: `2/8`, `auto`, or `auto/8`.
+/// The shard in its written form: `2/8`, `auto`, or `auto/8`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ShardSpec {
-    /// This one.
+    /// The shard with this number.
     Given(Shard),
-    /// The one that job system or MPI launcher say, of so many if given.
+    /// The shard that the job system or MPI launcher tells.
+    ///
+    /// The number is that of all shards, if it is given.
     Auto(Option<usize>),
 }
 
@@ -43,20 +47,20 @@ impl FromStr for ShardSpec {
     }
 }
 
-/// How many commands, as written: a number, or `rows`.
+/// The number of commands in its written form: a number, or `rows`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ListSpec {
-    /// One for each row.
+    /// One command for each row.
     EachRow,
-    /// So many.
+    /// This number of commands.
     Parts(NonZeroUsize),
 }
 
 impl ListSpec {
-    /// What stands for no value.
+    /// Text of the default, one command for each row.
     pub(crate) const ROWS: &'static str = "rows";
 
-    /// The number of commands of a sweep of `rows`.
+    /// The number of commands for a sweep of `rows` rows.
     pub(super) fn count(self, rows: usize) -> usize {
         match self {
             Self::EachRow => rows,

@@ -1,4 +1,6 @@
-//! The surfaces of a sweep: scenes times seeds, resolved and checked before anything is written.
+//! The surfaces of a sweep: scenes times seeds.
+//!
+//! They are resolved and checked before anything is written.
 
 use std::path::{Path, PathBuf};
 
@@ -16,19 +18,21 @@ use crate::solve::memory_factor;
 /// One surface with its loads.
 #[derive(Clone, Debug)]
 pub(super) struct SweptSurface {
-    /// Name of the scene: of its file, without folder and extension.
+    /// Name of the scene, which is its file's name without folder and extension.
     scene: String,
-    /// `None` for a surface from a file.
+    /// Seed; `None` for a surface from a file.
     seed: Option<u64>,
     pub(super) setup: SurfaceSetup,
-    /// The keys as resolved, without a load.
+    /// Resolved keys without a load.
     contact: ContactKeys,
     loads: Vec<f64>,
-    /// By which a height map is recognised that a program holds.
+    /// Mark that identifies a height map which a program holds.
     held: Option<FileMark>,
 }
 
-/// What the scenes and lists of the command line say. Surfaces are ordered by scene, then seed, each as given.
+/// The surfaces from the scenes and lists of the command line.
+///
+/// They are ordered by scene and then by seed, in the given order.
 #[derive(Clone, Debug)]
 pub(super) struct Surfaces {
     control: ControlKind,
@@ -59,7 +63,9 @@ impl Surfaces {
         Ok(Self { control, all: surfaces, n_scenes: scenes.len(), keeps_fields: args.fields, run })
     }
 
-    /// The plan of the sweep, for which height maps are read once to recognise them later.
+    /// The plan of the sweep.
+    ///
+    /// Height maps are read once for marks that identify them later.
     ///
     /// # Errors
     /// [`CliError::Input`] when a map cannot be read.
@@ -80,17 +86,17 @@ impl Surfaces {
     /// The contact of `row`, ready to be solved.
     ///
     /// # Errors
-    /// [`CliError::Input`] for keys of the contact, the same for all rows of a surface.
+    /// [`CliError::Input`] for keys of the contact. They are the same for all rows of a surface.
     pub(super) fn contact(&self, row: &SweepRow) -> Result<ContactSetup, CliError> {
         self.all[row.surface].contact(self.control, row.load)
     }
 
-    /// What the loads are.
+    /// Quantity of the loads.
     pub(super) fn control(&self) -> ControlKind {
         self.control
     }
 
-    /// The surface, where there is only one.
+    /// The surface, if there is only one.
     ///
     /// # Errors
     /// [`CliError::Input`].
@@ -101,7 +107,9 @@ impl Surfaces {
         }
     }
 
-    /// Elements of the largest surface; with a flow, as many as take the same memory without it.
+    /// Number of elements of the largest surface.
+    ///
+    /// With a flow, it is the number of elements that take the same memory without the flow.
     pub(super) fn max_elements(&self) -> f64 {
         let elements = |surface: &SweptSurface| surface.setup.max_elements() * surface.memory_factor();
         self.all.iter().map(elements).fold(0.0, f64::max)
@@ -109,20 +117,21 @@ impl Surfaces {
 }
 
 impl SweptSurface {
-    /// Memory of a row, relative to that of a contact alone.
+    /// Ratio of the memory of a row to that of its contact alone.
     pub(super) fn memory_factor(&self) -> f64 {
         memory_factor(&self.contact)
     }
 
-    /// Checks the keys of `scene`, under the first load: everything but the load is the same for all of them.
+    /// Checks the keys of `scene` under the first load. The loads share all other keys.
     pub(super) fn new(name: &str, scene: Scene, control: ControlKind, loads: &[f64]) -> Result<Self, CliError> {
         resolve::check_size_and_material(&scene.surface, &scene.contact)?;
         let setup = resolve::surface(scene.surface)?;
         Self::on(setup, name, &scene.contact, (control, loads))
     }
 
-    /// The same of a height map that a program holds: the sides of its cell (m), where it knows them, and by what it is
-    /// recognised.
+    /// Checks the keys of a scene with a height map that a program holds.
+    ///
+    /// `sides` are those of its cell (m) if the program knows them, and `mark` identifies it.
     pub(super) fn of_map(
         name: &str,
         scene: Scene,
@@ -156,12 +165,14 @@ impl SweptSurface {
     pub(super) fn contact(&self, control: ControlKind, load: f64) -> Result<ContactSetup, CliError> {
         let keys = with_load(control, &self.contact, Some(load));
         let mut contact = resolve::contact(keys, self.setup.cell)?;
-        // The memory of a machine must not decide on the digits of a row.
+        // The memory of a machine must not change the digits of a row.
         contact.params.method_follows_memory = false;
         Ok(contact)
     }
 
-    /// What determines its rows. Where a file lies does not, so its name and its content count.
+    /// The settings that determine the rows of this surface.
+    ///
+    /// The folder of a file does not, so only its name and its content count.
     pub(super) fn planned(&self) -> Result<PlannedSurface, CliError> {
         let mut surface = self.setup.keys.clone();
         let map = match &self.setup.source {
@@ -186,7 +197,7 @@ impl SweptSurface {
     }
 }
 
-/// `keys` under the load `value`, and no other.
+/// `keys` with the load `value` as their only load.
 fn with_load(control: ControlKind, keys: &ContactKeys, value: Option<f64>) -> ContactKeys {
     let (pressure, penetration) = match control {
         ControlKind::Pressure => (value, None),
@@ -195,7 +206,7 @@ fn with_load(control: ControlKind, keys: &ContactKeys, value: Option<f64>) -> Co
     ContactKeys { pressure, penetration, ..keys.clone() }
 }
 
-/// Refuses more rows than anyone means.
+/// Refuses an unreasonable number of rows.
 pub(super) fn check_rows(n_scenes: usize, seeds: Option<&Seeds>, n_loads: usize) -> Result<(), CliError> {
     let n_seeds = seeds.map_or(1, |Seeds(seeds)| seeds.len());
     if n_scenes.saturating_mul(n_seeds).saturating_mul(n_loads) <= MAX_ROWS {
@@ -206,7 +217,7 @@ pub(super) fn check_rows(n_scenes: usize, seeds: Option<&Seeds>, n_loads: usize)
     )))
 }
 
-/// Flags that exclude each other.
+/// Refuses flags that exclude each other.
 fn check_alternatives(args: &SweepArgs) -> Result<(), CliError> {
     let contact = &args.scene.contact;
     let given = [
@@ -226,7 +237,7 @@ fn check_alternatives(args: &SweepArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The scenes with their names, flags laid over each.
+/// The scenes with their names, with flags laid over each.
 fn scenes(args: &SweepArgs) -> Result<Vec<(String, Scene)>, CliError> {
     let files: Vec<Option<&PathBuf>> =
         if args.scene_files.is_empty() { vec![None] } else { args.scene_files.iter().map(Some).collect() };
@@ -243,7 +254,7 @@ fn scenes(args: &SweepArgs) -> Result<Vec<(String, Scene)>, CliError> {
     Ok(scenes)
 }
 
-/// The one control of the sweep.
+/// The quantity of the loads, which is the same for all scenes.
 fn control(args: &SweepArgs, scenes: &[(String, Scene)]) -> Result<ControlKind, CliError> {
     if args.pressures.is_some() {
         return Ok(ControlKind::Pressure);
@@ -289,7 +300,7 @@ fn loads(args: &SweepArgs, control: ControlKind, keys: &ContactKeys) -> Result<V
     }
 }
 
-/// The scene with each of the seeds; as it is when there are none.
+/// The scene with each of the seeds, or unchanged without seeds.
 pub(super) fn seeded(seeds: Option<&Seeds>, name: &str, scene: &Scene) -> Result<Vec<Scene>, CliError> {
     let Some(Seeds(seeds)) = seeds else { return Ok(vec![scene.clone()]) };
     if let Some((key, _)) = scene.surface.file() {

@@ -1,4 +1,6 @@
-//! The adaptive method on the command line: when it runs, what it writes, and that it agrees with the uniform grid.
+//! The adaptive method on the command line.
+//!
+//! The tests are about when it runs, what it writes, and agreement with the uniform grid.
 
 use std::process::Output;
 
@@ -8,7 +10,7 @@ use serde_json::Value;
 use crate::solve::assert_close;
 use crate::support::{MATERIAL, Place, assert_refused, assert_solved, bumps, f8, map, npy, text};
 
-/// Sixteen waves on 32 elements each; about a tenth of the cell in contact.
+/// Sixteen waves of 32 elements each. About a tenth of the cell is in contact.
 const SCENE: [&str; 6] = ["solve", "--waves", "16", "--grid", "512", "--pressure"];
 const PRESSURE: &str = "3e5";
 
@@ -33,9 +35,9 @@ fn field(place: &Place, name: &str) -> Field {
     rc_heights::npy::read(&place.path(name)).expect("a field")
 }
 
-/// Counted area, rms pressure and penetration of two solutions of one problem.
+/// Fails unless counted area, rms pressure and penetration of two solutions agree.
 fn assert_agree(adaptive: &Value, uniform: &Value) {
-    // Both are solved to an energy error below 1e-2, and the observables are off by less than its square each.
+    // Both are solved to an energy error below 1e-2. Each error of an observable is below its square.
     for key in ["area_fraction_cells", "area_fraction", "rms_pressure", "penetration"] {
         let tolerance = 2e-4;
         assert_close(key, number(adaptive, key), number(uniform, key), tolerance);
@@ -91,7 +93,8 @@ fn the_method_is_chosen_by_what_can_and_what_is_cheaper() {
 #[test]
 fn where_one_method_does_not_fit_into_memory_the_other_is_taken() {
     let place = Place::new();
-    // The uniform grid needs 21.0 MB; the adaptive method 16.6 MB at an estimated 40 % contact, and 21.5 MB at 100 %.
+    // The uniform grid needs 21.0 MB. The adaptive method needs 16.6 MB at an estimated 40 % contact, and 21.5 MB at
+    // 100 %.
     let cases = [("1.7e6", "19MB", "adaptive", "does not fit into memory"), ("1e9", "21MB", "uniform", "is cheaper")];
     for (pressure, limit, method, expected) in cases {
         let summary = summary_of(&place.run(&[&SCENE[..], &[pressure, "--memory-limit", limit, "--json"]].concat()));
@@ -108,8 +111,8 @@ fn the_files_of_an_adaptive_solve_agree_with_its_summary() {
     let (pressure, gap) = (field(&place, "r/pressure.npy"), field(&place, "r/gap.npy"));
     assert_close("mean pressure", pressure.mean(), 3e5, 1e-10);
     assert_close("max pressure", pressure.max(), number(&summary, "max_pressure"), 1e-14);
-    // Gaps are those of single precision, and zero in contact as far as the tolerance demands; the height range is
-    // about 8 rms heights of 13 µm.
+    // Gaps have single precision, and are zero in contact within the tolerance. The height range is about 8 rms heights
+    // of 13 µm.
     let bound = 2e-6 * 8.0 * 13e-6;
     assert!(gap.min() >= -bound, "gap of {:e} m", gap.min());
     let in_contact = pressure.values().iter().zip(gap.values()).filter(|(p, _)| **p > 0.0);
@@ -205,8 +208,10 @@ fn the_finest_grid_is_never_stored() {
     assert!(peak < heights, "a peak of {peak:e} bytes; the heights alone would be {heights:e}");
 }
 
-/// What the iteration leaves and what halving the elements changes, each summed over three surfaces: of one surface
-/// alone the second may vanish by chance.
+/// With `auto`, the error of the iteration is far below that of the grid.
+///
+/// Both errors are summed over three surfaces. The error of the grid is the change from halving the elements, and on a
+/// single surface it may be small by chance.
 #[test]
 fn auto_stops_well_below_the_error_of_the_grid() {
     let place = Place::new();
@@ -243,7 +248,7 @@ fn a_scene_keeps_auto_and_the_method_that_ran() {
     assert_solved(&place.run(&args));
     let scene = text(&place.bytes("r/scene.toml"));
     assert!(scene.contains("tolerance = \"auto\"") && scene.contains("method = \"adaptive\""), "{scene}");
-    // Sixteen elements per wave.
+    // The grid has sixteen elements per wave.
     let energy = number(&place.json("r/summary.json"), "energy_tolerance");
     assert_close("energy_tolerance", energy, 6e-2 * 2_f64.powf(-0.75), 1e-12);
 }
@@ -267,7 +272,7 @@ fn a_border_level_refines_edges_and_keeps_the_grid() {
     let sizes: std::collections::BTreeSet<&str> =
         elements.lines().skip(1).map(|line| line.split(',').nth(2).expect("a side")).collect();
     assert!(sizes.len() >= 2, "sizes: {sizes:?}");
-    // The folder repeats itself.
+    // The folder gives the same result again.
     let again = summary_of(&place.run(&["solve", "fine/scene.toml", "--json"]));
     assert_eq!(again["area_fraction"], fine["area_fraction"]);
 }

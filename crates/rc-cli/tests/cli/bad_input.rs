@@ -1,8 +1,12 @@
-//! Bad input: exit code 2 and one line that says what, where, and what would be right.
+//! Bad input gives exit code 2 and one line.
+//!
+//! The line says what, where, and what would be right.
 
 use crate::support::{Place, SMALL, assert_refused, bumps, f8, map, npy, small, text};
 
-/// Runs the small problem at 1e5 Pa with `flags`, which replace its own of the same name.
+/// Runs the small problem at 1e5 Pa with `flags`.
+///
+/// They replace its own flags of the same name.
 fn run_small_with(place: &Place, flags: &[&str]) -> std::process::Output {
     let mut args = vec!["solve", "--quiet", "--pressure", "1e5"];
     for default in [["--waves", "8"], ["--grid", "128"]] {
@@ -126,7 +130,9 @@ fn bad_scene_files_are_refused_with_line_and_remedy() {
     assert_refused(&place.run(&["solve", "binary.toml"]), "binary.toml");
 }
 
-/// Files that are no height maps, and what the message about each must say.
+/// Writes files that are not height maps.
+///
+/// Returns their names, each with a part of the expected message.
 fn write_bad_maps(place: &Place) -> Vec<(&'static str, &'static str)> {
     let mut holed = bumps(8);
     holed[19] = f32::NAN;

@@ -1,4 +1,4 @@
-//! `rc export`: what other programs read.
+//! `rc export`: files for other programs.
 
 use rc_core::Field;
 use serde_json::json;
@@ -28,7 +28,7 @@ fn a_result_is_exported_for_paraview() {
         "{head}"
     );
     let stored = rc_heights::npy::read(&place.path("r/pressure.npy")).expect("the pressure");
-    // Contact comes first: a length, and a byte for each element; then the length of the pressure.
+    // The contact comes first, as a length and one byte per element. The length of the pressure follows.
     let first = start + 8 + stored.grid().len() + 8;
     for (i, p) in stored.values().iter().enumerate() {
         let at = first + 8 * i;
@@ -84,7 +84,7 @@ fn a_result_is_exported_as_a_zarr_group_digit_by_digit() {
     let (description, attributes, x) = array(&place, &format!("{group}/x"));
     assert_eq!((&description["shape"], &attributes["_ARRAY_DIMENSIONS"]), (&json!([64]), &json!(["x"])));
     assert_eq!(x[..8], (0.5 / 64.0 * 3e-3_f64).to_le_bytes(), "a value belongs to the centre of its element");
-    // The same metadata once more in one file.
+    // One file has the metadata of all arrays.
     let all = place.json(&format!("{group}/.zmetadata"));
     assert_eq!(all["zarr_consolidated_format"], 1);
     for (name, value) in all["metadata"].as_object().expect("an object") {
@@ -96,7 +96,7 @@ fn a_result_is_exported_as_a_zarr_group_digit_by_digit() {
 #[test]
 fn large_fields_are_cut_into_chunks_and_put_together_again() {
     let place = Place::new();
-    // Neither side is a multiple of the chunk, and one is not larger.
+    // Neither side is a multiple of the chunk, and one side is smaller than the chunk.
     let solve = ["solve", "--waves", "4", "--grid", "1500x600", "--pressure", "1e5", "--method", "uniform", "--quiet"];
     assert_solved(&place.run(&[&solve[..], &["--tolerance", "1e-2", "--out", "r"]].concat()));
     assert_solved(&place.run(&["export", "r", "--zarr", "--quiet"]));

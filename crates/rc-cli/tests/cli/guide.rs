@@ -1,4 +1,4 @@
-//! Every command line of README and guide is run, and every flag that they name exists.
+//! Every command line of README and guide runs, and every flag in them exists.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,18 +7,18 @@ use clap::CommandFactory as _;
 
 use crate::support::{Place, bumps, f8, npy, text};
 
-/// Begin of a block of which every line that begins with `rc` is run; `sh,ignore` marks those that take too long.
+/// Beginning of a block whose lines that begin with `rc` are run. `sh,ignore` marks blocks that take too long.
 const RUN: &str = "```sh";
 const IGNORED: &str = "```sh,ignore";
 
-/// Most blocks that may be ignored, of all documents.
+/// Maximum number of ignored blocks in all documents together.
 const MOST_IGNORED: usize = 2;
 
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// README and guide: names and texts.
+/// Names and texts of README and guide.
 fn documents() -> Vec<(String, String)> {
     let mut paths = vec![repository().join("README.md")];
     let entries = fs::read_dir(repository().join("docs")).expect("the guide");
@@ -29,7 +29,7 @@ fn documents() -> Vec<(String, String)> {
     paths.into_iter().map(|path| (path.display().to_string(), fs::read_to_string(&path).expect("a text"))).collect()
 }
 
-/// The lines of blocks that are run, with their numbers.
+/// The lines of blocks that are run, each with its number.
 fn commands(document: &str) -> Vec<(usize, String)> {
     let mut inside = false;
     let mut commands = Vec::new();
@@ -44,7 +44,9 @@ fn commands(document: &str) -> Vec<(usize, String)> {
     commands
 }
 
-/// The files that the documents say one has: measured maps, a sphere, waves, scenes, the file of an instrument.
+/// Makes the files that the documents assume.
+///
+/// They are measured maps, a sphere, waves, scenes, and the file of an instrument.
 fn prepare(place: &Place) {
     place.write("map.npy", npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
     let wide = |i: usize| (0.3 * (i % 128) as f64).sin() * 1e-6 + (0.2 * (i / 128) as f64).cos() * 1e-6;
@@ -79,7 +81,7 @@ fn every_command_line_of_the_documents_ends_well() {
     assert!(ignored <= MOST_IGNORED, "{ignored} blocks are not run");
 }
 
-/// In the text, `rc solve --flag` names a command and flags that there are.
+/// Each `rc solve --flag` in the text has an existing command and existing flags.
 #[test]
 fn commands_and_flags_in_the_text_exist() {
     let rc = rc_cli::args::Cli::command();

@@ -1,4 +1,4 @@
-//! `--hardness` through the commands.
+//! `--hardness` in several commands.
 
 use crate::support::{Place, assert_refused, assert_solved, small, text};
 

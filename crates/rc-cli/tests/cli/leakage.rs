@@ -18,7 +18,8 @@ fn a_flow_is_certified_conserved_and_written() {
     assert!(pair(&summary, "relative_error").iter().all(|error| *error <= 1e-9), "{summary}");
     assert!(pair(&summary, "conservation_error").iter().all(|error| *error <= 1e-10), "{summary}");
     assert!(place.bytes("r/leakage.png").starts_with(b"\x89PNG"));
-    // Every section across the flow carries it: the flux times the width of an element, for a fall of 1.
+    // Every section across the flow carries the whole flow: the flux times the width of an element, for a pressure drop
+    // of 1.
     let name = if y > x { "r/flow_y.npy" } else { "r/flow_x.npy" };
     let flux = rc_heights::npy::read(&place.path(name)).expect("a field");
     let (side, n) = (0.01, flux.grid().nx());
@@ -28,7 +29,7 @@ fn a_flow_is_certified_conserved_and_written() {
         let flow = (0..n).map(at).sum::<f64>() * side / n as f64;
         assert!((flow / x.max(y) - 1.0).abs() < 1e-8, "{flow} for {x}, {y}");
     }
-    // The same contact without the flow has the same numbers and files, but for those of the flow.
+    // Without the flow, the contact has the same numbers and files, except those of the flow.
     assert_solved(&place.run(&small("1e5", &["--out", "plain"])));
     assert_eq!(place.bytes("r/pressure.npy"), place.bytes("plain/pressure.npy"));
     assert!(place.json("plain/summary.json").get("leakage").is_none());
@@ -57,7 +58,7 @@ fn where_nothing_percolates_permeances_are_zero() {
 fn csv_rows(table: &str) -> Vec<std::collections::BTreeMap<String, String>> {
     let mut lines = table.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
     let names = lines.next().unwrap_or_default();
-    // The reason of the method may have commas in quotes; columns of the flow are the last.
+    // The reason of the method may have commas in quotes. The columns of the flow are the last ones.
     let last = |cells: Vec<String>| names.iter().rev().cloned().zip(cells.into_iter().rev()).take(5).collect();
     lines.map(last).collect()
 }

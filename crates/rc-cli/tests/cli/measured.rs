@@ -1,10 +1,10 @@
-//! Measured surfaces on the command line: units, cells, treatments, and what is refused.
+//! Measured surfaces on the command line: units, cells, treatments and refusals.
 
 use std::path::Path;
 
 use crate::support::{MATERIAL, Place, assert_refused, assert_solved, bumps, f8, map, npy, text};
 
-/// A file of data/formats/.
+/// Path of a file of data/formats/.
 fn sample(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/formats").join(name).display().to_string()
 }
@@ -13,7 +13,7 @@ fn sample(name: &str) -> String {
 fn a_measured_map_becomes_a_surface_that_is_solved() {
     let place = Place::new();
     let scan = sample("surfalize-missing.sdf");
-    // 12 x 8 points on 24 µm x 24 µm: a square already, with a hole, and not periodic.
+    // The map has 12 x 8 points on 24 µm x 24 µm. It is a square, has a hole, and is not periodic.
     assert_refused(
         &place.run(&[&["solve", "--heights", &scan, "--pressure", "1e5"], &MATERIAL[..]].concat()),
         "--fill laplace",
@@ -45,7 +45,7 @@ fn a_measured_map_becomes_a_surface_that_is_solved() {
     assert_eq!((treatments[0]["missing"].as_u64(), treatments[1]["missing"].as_u64()), (Some(1), Some(0)));
     let solve = ["solve", "ready/scene.toml", "--e-star", "1e9", "--pressure", "1e6", "--quiet", "--out", "result"];
     assert_solved(&place.run(&solve));
-    // The result is repeated from its own folder, where the map has no units any more.
+    // The result is repeated from its own folder, in which the map no longer has units.
     let again = ["solve", "result/scene.toml", "--quiet", "--out", "again"];
     assert_solved(&place.run(&again));
     assert!(place.bytes("again/pressure.npy") == place.bytes("result/pressure.npy"), "not the same result again");
@@ -60,7 +60,7 @@ fn the_cell_is_that_of_the_file_and_units_are_applied_once() {
         serde_json::from_slice(&output.stdout).expect("valid JSON")
     };
     let from_x3p = json(&[&sample("surfalize.x3p")]);
-    // The same heights as bare numbers, in nm.
+    // These are the same heights as bare numbers, in nm.
     let from_csv = json(&[&sample("expected.csv"), "--unit", "nm", "--cell", "24e-6"]);
     let scaled = json(&[&sample("expected.csv"), "--height-scale", "1e-9", "--cell", "24e-6"]);
     for key in ["cell", "rms_height", "rms_slope", "h_max"] {
@@ -125,7 +125,7 @@ fn a_height_map_never_gets_the_size_or_the_material_of_the_example() {
     place.write("map.toml", "heights = \"map.npy\"\npressure = 1e5\n");
     assert_refused(&place.run(&["solve", "map.toml", "--out", "r"]), all);
     assert_eq!(place.names("."), ["map.npy", "map.toml"], "something was written");
-    // A flag, a scene file or the map itself may say it; what is only looked at has a default.
+    // A flag, a scene file or the map itself may give the size. Commands that only inspect have a default.
     assert_solved(&place.run(&["solve", "map.toml", "--cell", "1e-3", "--e-star", "1e9", "--quiet"]));
     assert_solved(&place.run(&["surface", "--heights", &x3p, "--quiet"]));
     assert_solved(&place.run(&["inspect", "map.npy"]));
@@ -146,7 +146,7 @@ fn points_of_a_map_without_a_size_are_squares_when_it_is_treated() {
     let sides =
         ["cell", "cell_y"].map(|key| place.json("whole/surface.json")[key].as_f64().map(|side| (side * 1e9).round()));
     assert_eq!(sides, [Some(3e6), Some(2e6)]);
-    // Without a treatment it is spread over the cell, as rc solve does, and rc inspect says so.
+    // Without a treatment the map is spread over the cell, as in rc solve, and rc inspect says so.
     assert_solved(&place.run(&[&treat[..], &["--quiet"]].concat()));
     let output = place.run(&["inspect", "map.npy", "--cell", "3e-3"]);
     assert_solved(&output);
@@ -196,7 +196,7 @@ fn inspect_draws_a_map_of_any_shape() {
 fn channels_are_listed_and_one_of_them_is_read() {
     let place = Place::new();
     let stack = sample("igorwriter-stack.ibw");
-    // A point of its heights is missing.
+    // A point of the heights is missing.
     let output = place.run(&["inspect", &stack]);
     assert_refused(&output, "--fill laplace");
     assert_refused(&output, "the file has the channels Phase, Height");
@@ -221,7 +221,7 @@ fn channels_are_listed_and_one_of_them_is_read() {
     for (args, expected) in refused {
         assert_refused(&place.run(args), expected);
     }
-    // The folder that is written has one channel, and its scene names none.
+    // The written folder has one channel, and its scene does not name a channel.
     let key = format!("heights = {stack:?}\nchannel = \"Phase\"\nheight_scale = 1e-9\n");
     place.write("scene.toml", key);
     assert_solved(&place.run(&["surface", "scene.toml", "--fill", "nearest", "--out", "made"]));

@@ -1,4 +1,4 @@
-//! `rc-mpi solve` without MPI: its ranks are threads.
+//! `rc-mpi solve` without MPI, with threads as ranks.
 
 use std::ffi::OsString;
 
@@ -10,7 +10,7 @@ use crate::support::{Place, array, assert_solved};
 /// The scene: contacts on a grid that is divided among three ranks.
 const SCENE: [&str; 7] = ["solve", "--waves=16", "--grid=512", "--method=adaptive", "--quiet", "--pressure", "446395"];
 
-/// Exit codes of a command line over so many ranks.
+/// Exit codes of a command line over `size` ranks.
 fn run(size: usize, place: &Place, words: &[&str], out: Option<&str>) -> Vec<u8> {
     let out = out.map(|out| [OsString::from("--out"), place.path(out).into_os_string()]);
     let words = ["rc-mpi"].iter().chain(words).map(OsString::from).chain(out.into_iter().flatten());
@@ -18,7 +18,7 @@ fn run(size: usize, place: &Place, words: &[&str], out: Option<&str>) -> Vec<u8>
     run_threads(size, |ranks| main_over_ranks(words.clone(), &ranks)).expect("all ranks end")
 }
 
-/// The summary but for what depends on the run.
+/// The summary without the keys that depend on the run.
 fn summary(place: &Place, folder: &str) -> serde_json::Value {
     let mut summary = place.json(&format!("{folder}/summary.json"));
     for key in ["wall_seconds", "peak_memory_bytes", "threads"] {

@@ -1,10 +1,12 @@
-//! Rectangular cells through the whole chain: against the square of their copies, by either method.
+//! Rectangular cells in all commands.
+//!
+//! Both methods must agree with the square of copies of the cell.
 
 use crate::support::{MATERIAL, Place, assert_refused, assert_solved, npy, text};
 
 const TAU: f64 = std::f64::consts::TAU;
 
-/// Smooth periodic bumps on 128 x 64 points (m), in a cell of 2 mm by 1 mm.
+/// Smooth periodic bumps (m) on 128 x 64 points, in a cell of 2 mm by 1 mm.
 fn map() -> Vec<u8> {
     let height = |i: usize| {
         let (x, y) = ((i % 128) as f64 / 128.0, (i / 128) as f64 / 64.0);
@@ -43,7 +45,7 @@ fn a_rectangular_cell_has_the_contact_of_the_square_of_its_copies() {
             assert!((a / b - 1.0).abs() < 1e-4, "{key}: {a:e} of the rectangle, {b:e} of {copies} copies");
         }
     }
-    // The scene of a result knows the cell.
+    // The scene of a result has the cell.
     assert_solved(&place.run(&["solve", "part/scene.toml", "--quiet", "--out", "again"]));
     assert!(place.bytes("again/pressure.npy") == place.bytes("part/pressure.npy"), "not the same result again");
 }
@@ -78,7 +80,7 @@ fn what_does_not_go_with_a_rectangle_is_refused() {
     refused(&["--waves", "8", "--cell-y", "1e-3"], "cell_y: applies to height maps");
     let gauss_seidel = ["--heights", "map.npy", "--method", "gauss-seidel"];
     refused(&[&gauss_seidel[..], &CELL].concat(), "square cell");
-    // A square cell of elements half as long along x as along y.
+    // The cell is a square, and its elements are half as long along x as along y.
     let oblong = ["--heights", "map.npy", "--method", "adaptive", "--cell", "2e-3", "--cell-y", "2e-3"];
     refused(&oblong, "square elements");
     for (side, expected) in [("0", "cell_y"), ("nan", "cell_y"), ("-1", "cell_y"), ("1e9", "factor of 10000")] {

@@ -1,4 +1,4 @@
-//! `rc report`: results for the eyes.
+//! `rc report`: pages of results.
 
 use std::process::Command;
 
@@ -14,7 +14,7 @@ fn data(page: &str) -> Value {
     serde_json::from_str(rest.split("</script>").next().expect("its end")).expect("valid JSON")
 }
 
-/// A page's data, of which the file must need no other.
+/// The data of a page. Fails if its file needs another file.
 fn self_contained(place: &Place, name: &str) -> Value {
     let page = text(&place.bytes(name));
     let addresses = page.matches("http").count();
@@ -27,7 +27,7 @@ fn self_contained(place: &Place, name: &str) -> Value {
     data(&page)
 }
 
-/// Runs a command line of a page.
+/// Runs a command line from a page.
 fn repeat(place: &Place, line: &Value) {
     let line = line["text"].as_str().expect("a command line");
     let words: Vec<&str> = line.split(' ').collect();
@@ -53,7 +53,7 @@ fn the_page_of_a_result_has_its_fields_and_the_commands_that_repeat_it() {
         assert_eq!(shown > 0.0, *p > 0.0, "contact is shown as it is");
     }
     assert_eq!(page["maps"]["of_elements"], true);
-    // The energy error and the load have limits; nobody asked for the others.
+    // The energy error and the load have limits. The other rows were not asked for.
     let rows = page["certificate"]["rows"].as_array().expect("rows");
     let holds: Vec<Option<bool>> = rows.iter().map(|row| row["holds"].as_bool()).collect();
     assert_eq!(holds, [Some(true), None, None, Some(true)]);
@@ -154,7 +154,9 @@ fn what_is_no_result_has_no_page() {
     assert_refused(&place.run(&["report", "r", "--out", "empty"]), "is a folder");
 }
 
-/// Only where there is a Chromium; no other test draws the page.
+/// Draws the page in a browser, if this machine has Chromium.
+///
+/// No other test draws the page.
 #[test]
 #[expect(clippy::print_stderr, reason = "a test that looked at nothing says so")]
 fn a_browser_draws_the_page() {

@@ -1,5 +1,6 @@
-//! Whatever a scene file or a journal of a sweep say: an answer or one line, no panic. `fuzz/` has the same claims for
-//! a fuzzer.
+//! Random scene files and journals of sweeps give an answer or one line.
+//!
+//! They do not cause a panic. `fuzz/` makes the same claims for a fuzzer.
 
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -10,7 +11,7 @@ use rc_sweep::{SweepError, finished_rows};
 
 use crate::support::{Place, assert_solved};
 
-/// What stands in for a value, or anything else of a file.
+/// Replacements for a value or any other word of a file.
 const TOKENS: [&str; 14] = [
     "0",
     "-1",
@@ -28,7 +29,7 @@ const TOKENS: [&str; 14] = [
     "{}",
 ];
 
-/// Text with some of its words replaced by tokens, and cut.
+/// Text with some of its words replaced by tokens, and cut at `cut`.
 fn mutated(text: &str, changes: &[(Index, Index)], cut: Index) -> String {
     let mut words: Vec<&str> = text.split_inclusive([' ', '\n']).collect();
     for (word, token) in changes {
@@ -43,11 +44,11 @@ fn assert_one_line(message: &str) {
     assert!(!message.is_empty() && message.len() < 1000 && !message.contains('\n'), "{message}");
 }
 
-/// A scene is read and resolved, or refused.
+/// Reads and resolves a scene, which may be refused.
 fn read_scene(text: &str) {
     match file::parse(text) {
         Ok(mut scene) => {
-            // Files of the machine are none of this.
+            // Files of the machine must not take part.
             scene.surface.heights = None;
             let surface = resolve::surface(scene.surface);
             let contact = resolve::contact(scene.contact, PeriodicCell::new(1.0).expect("a cell"));
@@ -81,7 +82,7 @@ fn read_journal(bytes: &[u8], most: usize) {
 fn damaged_journals_are_read_or_refused() {
     let whole = journal();
     assert_eq!(finished_rows(&whole).expect("a journal"), 4);
-    // Cut anywhere, no row is invented: only whole lines count.
+    // Wherever the journal is cut, only whole lines count, and no row is invented.
     for length in 0..whole.len() {
         let lines = whole[..length].split(|&byte| byte == b'\n').count() - 1;
         read_journal(&whole[..length], lines.saturating_sub(1));

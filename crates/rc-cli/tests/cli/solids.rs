@@ -16,7 +16,7 @@ fn place() -> Place {
     place
 }
 
-/// The summary of `rc solve` with these words.
+/// The summary of `rc solve` with these arguments.
 fn summary(place: &Place, words: &[&str]) -> Value {
     let solved = place.run(&[&["solve", "--quiet", "--json"], words].concat());
     assert_solved(&solved);
@@ -35,7 +35,7 @@ fn a_layer_is_compressed_by_the_mean_pressure() {
     let on_layer = summary(&place, &[&small[..], &LAYER, &["--out", "layer"]].concat());
     assert_eq!(on_layer["method_reason"], "uniform: a layer has no adaptive form");
     assert!(number(&on_layer, "area_fraction") < number(&on_half_space, "area_fraction"), "a layer is stiffer");
-    // Uniaxial compression with the example's 0.4 GPa and 0.45.
+    // This is uniaxial compression with the example's 0.4 GPa and 0.45.
     let compressed = 4e5 * 3e-4 * (1.45 * 0.1) / (0.55 * 0.4e9);
     let gap = number(&on_layer, "penetration_full_contact") - number(&on_layer, "penetration") + compressed;
     assert_close("mean gap", number(&on_layer, "mean_gap"), gap, 1e-9);
@@ -92,7 +92,9 @@ fn a_patch_has_a_result_like_any_other() {
     assert_close("load", number(&by_depth, "mean_pressure"), 2e6, 1e-3);
 }
 
-/// Nothing closes the full contact of a patch: the flat punch, F = 1.1523 E* δ side.
+/// A flat patch in contact everywhere is a flat punch, with F = 1.1523 E* δ side.
+///
+/// A patch does not have a full contact beyond it.
 #[test]
 fn a_flat_patch_is_a_punch() {
     let place = place();
@@ -151,7 +153,9 @@ fn layers_and_patches_have_a_hardness() {
     assert_refused(&soft, "hardness: 1000000 Pa cannot bear a mean pressure of 2000000 Pa");
 }
 
-/// The stiffness of a layer says nothing of conduction; a film flows over it as over a half-space.
+/// A layer has a flow as a half-space has, but no conductance.
+///
+/// The stiffness of a layer says nothing about conduction.
 #[test]
 fn a_layer_leaks_and_has_no_conductance() {
     let place = place();

@@ -1,4 +1,4 @@
-//! `rc solve`: files, summaries, repeatability, and what survives a failure.
+//! `rc solve`: files, summaries, repeatability, and the state after a failure.
 
 use std::fs;
 use std::process::Command;
@@ -90,13 +90,13 @@ fn fields_and_summary_of_a_solve_agree() {
     let pressure = rc_heights::npy::read(&place.path("r/pressure.npy")).expect("a field");
     let gap = rc_heights::npy::read(&place.path("r/gap.npy")).expect("a field");
     let number = |key: &str| summary[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", summary[key]));
-    // The load is exact to 1e-10 in a certified solution; the rest is rounding of sums over the grid.
+    // The load of a certified solution is exact to 1e-10. The rest is rounding of sums over the grid.
     assert_close("mean of pressure.npy", pressure.mean(), 1e5, 1e-10);
     assert_close("mean_pressure", number("mean_pressure"), 1e5, 1e-10);
     assert_close("rms_pressure", number("rms_pressure"), pressure.rms(), 1e-12);
     assert_close("max_pressure", number("max_pressure"), pressure.max(), 1e-15);
     assert_close("rms_height", number("rms_height"), 13e-6, 1e-12);
-    // v has zero mean, so the mean gap follows from the penetration.
+    // The mean of v is zero, so the mean gap follows from the penetration.
     let by_penetration = number("penetration_full_contact") - number("penetration");
     assert_close("mean_gap", number("mean_gap"), by_penetration, 1e-9);
     assert_close("mean of gap.npy", gap.mean(), by_penetration, 1e-9);
@@ -216,7 +216,7 @@ fn an_interrupted_run_leaves_earlier_results_as_they_were() {
     let place = Place::new();
     assert_solved(&place.run(&small("1e5", &["--out", "r"])));
     let before = place.contents("r");
-    // 2048 x 2048 elements to 1e-12 take seconds, so this run is killed long before it could write.
+    // 2048 x 2048 elements to 1e-12 take seconds, so this run is killed long before it can write.
     let mut long = Command::new(env!("CARGO_BIN_EXE_rc"))
         .args(["solve", "--pressure", "1e5", "--tolerance", "1e-12", "--quiet", "--out", "r"])
         .current_dir(place.folder())

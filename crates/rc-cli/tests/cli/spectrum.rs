@@ -1,14 +1,17 @@
-//! Surfaces from files of waves, and generated ones without their longest waves.
+//! Surfaces from files of waves, and generated surfaces without their longest waves.
 
 use std::f64::consts::TAU;
 
 use crate::solve::assert_close;
 use crate::support::{CELL, MATERIAL, Place, assert_refused, assert_solved, text};
 
-/// kx, ky, Re, Im in m: half of the waves by k, the others by -k, one by both; and a mean height, which does not count.
+/// Lines of kx, ky, Re and Im in m.
+///
+/// Half of the waves are given by k, the others by -k, and one by both. There is also a mean height, which does not
+/// count.
 const WAVES: &str = "# a comment\n0 0 1 0\n1, 0, 2e-6, 1e-6\n0 -2 1e-6 -1e-6\n\n3 -2 4e-7 0\n-3 2 4e-7 -0\n-5;7;0;2e-7\n8 8 -1e-7 1e-7\n";
 
-/// |c|² and |k|² of its waves.
+/// |c|² and |k|² of the waves.
 const POWERS: [(f64, f64); 5] = [(5e-12, 1.0), (2e-12, 4.0), (1.6e-13, 13.0), (4e-14, 74.0), (2e-14, 128.0)];
 
 fn solve<'a>(more: &[&'a str]) -> Vec<&'a str> {
@@ -64,7 +67,7 @@ fn a_result_of_waves_is_repeated_from_its_own_folder_alone() {
     }
 }
 
-/// The file in nm, upside down, is the surface in m.
+/// The file in nm, with the opposite sign, gives the same surface.
 #[test]
 fn coefficients_have_the_unit_that_is_said() {
     let place = place();
@@ -88,7 +91,7 @@ fn coefficients_have_the_unit_that_is_said() {
     for ((height, turned), down) in metres.iter().zip(turned).zip(down) {
         assert!((height - turned).abs() < 1e-18 && (height + down).abs() < 1e-18, "{height:e}, {turned:e}, {down:e}");
     }
-    // At the first centre, by hand.
+    // The height at the first centre is computed by hand.
     let at = |kx: f64, ky: f64, re: f64, im: f64| {
         let phase = TAU * (kx + ky) / 80.0;
         2.0 * (re * phase.cos() - im * phase.sin())

@@ -1,9 +1,11 @@
-//! What ends a command before its time: a limit, or Ctrl-C. What there is by then is written and marked.
+//! Commands that a time limit or Ctrl-C ends early.
+//!
+//! The results up to then are written and marked.
 
 use crate::support::{Place, assert_refused, assert_solved, text};
 use crate::sweep::{result, sweep};
 
-/// A solve of some seconds.
+/// A solve that takes some seconds.
 const LONG: [&str; 10] =
     ["solve", "--waves", "64", "--grid", "2048", "--pressure", "446395", "--tolerance", "1e-9", "--quiet"];
 

@@ -1,4 +1,4 @@
-//! A folder to run `rc` in, and what to say of its answers.
+//! A folder in which tests run `rc`, and checks of its output.
 
 use std::fs;
 use std::io::Read as _;
@@ -8,24 +8,26 @@ use std::process::{Command, Output};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A small problem that every test can afford: 8 waves on 128 x 128 elements.
+/// A problem that is small enough for every test: 8 waves on 128 x 128 elements.
 pub(crate) const SMALL: [&str; 6] = ["solve", "--waves", "8", "--grid", "128", "--quiet"];
 
-/// What a height map must be given: the size and the material of the example.
+/// Size and material of the example, which a height map must be given.
 pub(crate) const CELL: [&str; 2] = ["--cell", "0.01"];
 pub(crate) const MATERIAL: [&str; 4] = ["--young", "0.4e9", "--poisson", "0.45"];
 
-/// Arguments that press the height map in `file`, in the cell and of the material of the example, with more of them.
+/// Arguments for the height map in `file`, with cell and material of the example.
+///
+/// `more` arguments follow.
 pub(crate) fn map<'a>(command: &'a str, file: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     [&[command, "--heights", file], &CELL[..], &MATERIAL, more].concat()
 }
 
-/// Arguments of the small problem at `pressure` Pa, with more of them.
+/// Arguments of the small problem at `pressure` Pa, followed by `more`.
 pub(crate) fn small<'a>(pressure: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     [&SMALL[..], &["--pressure", pressure], more].concat()
 }
 
-/// A folder to run in.
+/// A folder in which commands run.
 pub(crate) struct Place(TempDir);
 
 impl Place {
@@ -49,7 +51,7 @@ impl Place {
         Command::new(env!("CARGO_BIN_EXE_rc")).args(args).current_dir(self.folder()).output().expect("rc runs")
     }
 
-    /// Names in `folder`, sorted, hidden ones included.
+    /// Sorted names of the entries of `folder`, with hidden ones.
     pub(crate) fn names(&self, folder: &str) -> Vec<String> {
         let entries = fs::read_dir(self.path(folder)).expect("a folder");
         let name = |entry: std::io::Result<fs::DirEntry>| entry.expect("an entry").file_name();
@@ -80,7 +82,9 @@ pub(crate) fn assert_solved(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
 }
 
-/// Exit code 2, nothing on standard output, and one line on standard error that holds `expected`.
+/// Fails unless the exit code is 2 and the only output is one line with `expected`.
+///
+/// The line must be on standard error.
 pub(crate) fn assert_refused(output: &Output, expected: &str) {
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{message}");
@@ -101,19 +105,21 @@ pub(crate) fn npy(dtype: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec<u
     [b"\x93NUMPY\x01\x00".as_slice(), &length.to_le_bytes(), header.as_bytes(), data].concat()
 }
 
-/// Heights (m) of a bumpy surface on n x n points; exact in `f32`.
+/// Heights (m) of a bumpy surface on n x n points, exact in `f32`.
 pub(crate) fn bumps(n: usize) -> Vec<f32> {
     let wave = |i: usize, k: f64| (std::f64::consts::TAU * k * (i as f64 + 0.5) / n as f64).cos();
     let height = |i: usize| 1e-5 * (wave(i % n, 2.0) + 0.5 * wave(i / n, 3.0) * wave(i % n, 5.0));
     (0..n * n).map(|i| height(i) as f32).collect()
 }
 
-/// Values as little-endian `f64`.
+/// The bytes of the values as little-endian `f64`.
 pub(crate) fn f8(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|v| f64::from(*v).to_le_bytes()).collect()
 }
 
-/// An array of a Zarr group, version 2, put together from its chunks: description, attributes and bytes, row by row.
+/// Description, attributes and bytes of an array of a Zarr group, version 2.
+///
+/// The bytes are put together from chunks, row by row.
 pub(crate) fn array(place: &Place, folder: &str) -> (Value, Value, Vec<u8>) {
     let description = place.json(&format!("{folder}/.zarray"));
     let numbers = |key: &str| -> Vec<usize> { serde_json::from_value(description[key].clone()).expect("lengths") };

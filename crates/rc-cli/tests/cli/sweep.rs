@@ -5,18 +5,18 @@ use std::path::Path;
 use crate::solve::KEYS;
 use crate::support::{Place, assert_refused, assert_solved, bumps, f8, npy, text};
 
-/// Four waves on 128 x 128 elements: a row takes some hundredths of a second.
+/// Four waves on 128 x 128 elements, so that a row takes some hundredths of a second.
 pub(crate) const TINY: [&str; 6] = ["sweep", "--waves", "4", "--grid", "128", "--quiet"];
 
-/// Columns that say how a row was computed, not what came out.
+/// Columns that depend on the run, not on the result.
 const OF_THE_RUN: [&str; 2] = ["wall_seconds", "peak_memory_bytes"];
 
-/// Arguments of a sweep of four loads and three seeds into `out`, with more of them.
+/// Arguments of a sweep of four loads and three seeds into `out`, followed by `more`.
 pub(crate) fn sweep<'a>(out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     [&TINY[..], &["--pressures", "5e4:4e5:4", "--seeds", "1..3", "--out", out], more].concat()
 }
 
-/// The table in `folder`, column names first.
+/// The table in `folder`, with column names in the first row.
 pub(crate) fn table(folder: &Path) -> Vec<Vec<String>> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_path(folder.join("sweep.csv")).expect("a table");
     let record =
@@ -30,7 +30,9 @@ fn without(table: Vec<Vec<String>>, names: &[&str]) -> Vec<Vec<String>> {
     table.into_iter().map(keep).collect()
 }
 
-/// The table but for time and memory: digit by digit what has to come out of any way to compute it.
+/// The table without time and memory.
+///
+/// Any way to compute it must give the same digits.
 pub(crate) fn result(folder: &Path) -> Vec<Vec<String>> {
     without(table(folder), &OF_THE_RUN)
 }
@@ -111,7 +113,7 @@ fn no_digit_depends_on_the_number_of_threads_or_on_memory() {
     let one = run("one", &["--threads", "1"]);
     assert_eq!(one.len(), 13);
     assert_eq!(run("five", &["--threads", "5"]), one, "five rows side by side");
-    // One row of 128 x 128 elements at a time, on all threads.
+    // Only one row of 128 x 128 elements runs at a time, on all threads.
     assert_eq!(run("tight", &["--threads", "3", "--memory-limit", "2.5MB"]), one, "three threads in each row");
 }
 
@@ -138,7 +140,7 @@ fn merged_shards_are_the_whole_sweep() {
             assert!(place.bytes(&format!("merged/{file}")) == place.bytes(&format!("whole/{file}")), "{file} differs");
         }
     }
-    // What was merged is a sweep like any other.
+    // A merged sweep is a sweep like any other.
     let before = place.bytes("merged/sweep.csv");
     assert_solved(&place.run(&sweep("merged", &[&fields[..], &["--resume"]].concat())));
     assert!(place.bytes("merged/sweep.csv") == before, "a complete sweep was changed by --resume");

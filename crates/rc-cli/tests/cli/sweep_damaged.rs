@@ -1,4 +1,6 @@
-//! `rc sweep`: rows that are impossible, damaged journals and missing fields, and what is left behind.
+//! `rc sweep` with impossible rows, damaged journals and missing fields.
+//!
+//! The tests check what is left behind.
 
 use std::fs;
 
@@ -8,7 +10,7 @@ use crate::sweep::{TINY, result, sweep, table};
 #[test]
 fn a_load_that_a_surface_cannot_carry_costs_its_row_only() {
     let place = Place::new();
-    // Full contact is at another penetration for each seed: 1e-3 is beyond all of them.
+    // Full contact is at another penetration for each seed, and 1e-3 is beyond all of them.
     let penetrations = ["--penetrations", "1e-6,1e-5,1e-3", "--seeds", "1..2", "--threads", "1", "--out", "s"];
     let refused = place.run(&[&TINY[..], &penetrations].concat());
     assert_refused(
@@ -39,7 +41,7 @@ fn memory_decides_whether_a_row_is_solved_but_not_how() {
         [Some("adaptive".to_owned()), Some("uniform".to_owned())],
         "the scene is at the border of both"
     );
-    // `rc solve` would take the adaptive method instead, and other digits come out.
+    // `rc solve` would switch to the adaptive method, which gives other digits.
     let tight = place.run(&[&loads[..], &["tight", "--memory-limit", "20.5MB"]].concat());
     assert_refused(&tight, "memory_limit: ");
     let (whole, tight) = (result(&place.path("whole")), result(&place.path("tight")));
@@ -53,7 +55,7 @@ fn a_changed_digit_in_a_journal_is_found() {
     let journal = text(&place.bytes("s/sweep.jsonl"));
     let (from, to) = ("\"area_fraction\":0.", "\"area_fraction\":9.");
     assert!(journal.contains(from), "{journal}");
-    // In the last line it is taken for torn, and solved again; before, it is named.
+    // A damaged last line counts as torn, and its row is solved again. An earlier damaged line is named.
     let damaged = journal.replacen(from, to, 1);
     place.write("s/sweep.jsonl", &damaged);
     let resume = [&TINY[..], &["--pressures", "1e5,2e5", "--out", "s", "--resume"]].concat();
@@ -100,12 +102,14 @@ fn more_rows_than_anyone_means_are_refused_before_anything_is_made() {
     assert!(!place.path("s").exists(), "a folder was made for nothing");
 }
 
-/// What a full disk leaves when the first fields do not fit is nothing, so that the command can be given again.
+/// If the first fields do not fit on the disk, nothing is left behind.
+///
+/// The command can then be repeated.
 #[cfg(unix)]
 #[test]
 fn a_disk_that_is_full_at_once_leaves_nothing() {
     let place = Place::new();
-    // Blocks have 512 or 1024 bytes; pressure.npy alone has 131 thousand.
+    // Blocks have 512 or 1024 bytes, and pressure.npy alone has 131 thousand bytes.
     let output = std::process::Command::new("sh")
         .args(["-c", "trap '' XFSZ; ulimit -f 64; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_rc")])
         .args(sweep("full", &["--fields", "--threads", "1"]))

@@ -1,4 +1,4 @@
-//! A sweep that is killed, interrupted, cut short or out of disk, and resumed.
+//! Sweeps that are killed, interrupted, cut short or out of disk, and then resumed.
 
 use std::fs;
 use std::io::Read as _;
@@ -18,14 +18,14 @@ fn start(place: &Place, args: &[&str]) -> Child {
     command.args(args).current_dir(place.folder()).stderr(Stdio::piped()).spawn().expect("rc runs")
 }
 
-/// Whole lines of the journal, the first one included.
+/// Number of whole lines of the journal, including the first.
 fn journal_lines(place: &Place, out: &str) -> usize {
     // A killed process may not have made the file yet.
     let journal = fs::read_to_string(place.path(out).join("sweep.jsonl")).unwrap_or_default();
     journal.matches('\n').count()
 }
 
-/// What is there after a sweep was resumed to its end is what the uninterrupted one in `whole` gave.
+/// Fails unless a resumed sweep has the results of the uninterrupted one in `whole`.
 fn assert_same_as_whole(place: &Place, out: &str) {
     assert_eq!(result(&place.path(out)), result(&place.path("whole")));
     assert_eq!(journal_lines(place, out), 1 + ROWS, "not each row once");
@@ -54,10 +54,10 @@ fn a_sweep_killed_at_twenty_random_moments_loses_and_repeats_nothing() {
         while kills < KILLS {
             let mut child = start(&place, &sweep(&out, &flags));
             std::thread::sleep(longest.mul_f64(moments.random()));
-            // SIGKILL; nothing in the process can be done about it.
+            // This is SIGKILL, to which the process cannot react.
             child.kill().expect("a child");
             if child.wait().expect("the child has ended").success() {
-                // It was faster: the next kills hit a new one.
+                // The sweep was faster than the kill. The next kills are for a new sweep.
                 break;
             }
             kills += 1;
@@ -141,7 +141,7 @@ fn settings_that_differ_are_named() {
     for (pressures, more, expected) in cases {
         assert_refused(&run(pressures, &[*more, &["--resume"]].concat()), expected);
     }
-    // What is the default may be said or not.
+    // A default may be given or omitted.
     assert_solved(&run("1e5,2e5", &["--resume", "--kernel", "love", "--seeds", "1"]));
     assert!(place.contents("s") == before, "a refused or complete sweep was changed");
 }
@@ -171,14 +171,16 @@ fn a_folder_of_something_else_is_not_resumed() {
     assert_refused(&place.run(&sweep("t", &[])), "t: has rows already");
 }
 
-/// A limit of the size of files stands in for a full disk: writing stops in the middle of a line with an error, without
-/// rights that only the administrator has.
+/// A full disk does not cost a finished row.
+///
+/// A limit of the size of files stands in for a full disk. It stops writing in the middle of a line with an error, and
+/// does not need the administrator's rights.
 #[cfg(unix)]
 #[test]
 fn a_full_disk_costs_no_finished_row() {
     let place = Place::new();
     assert_solved(&place.run(&sweep("whole", &["--threads", "2"])));
-    // Blocks have 512 or 1024 bytes, as the shell has it; the whole journal has more than either.
+    // Blocks have 512 or 1024 bytes, depending on the shell. The whole journal has more than either.
     let size = place.bytes("whole/sweep.jsonl").len();
     let header = text(&place.bytes("whole/sweep.jsonl")).find('\n').expect("lines");
     let blocks = (header + 3000).div_ceil(512);

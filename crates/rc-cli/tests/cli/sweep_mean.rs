@@ -1,4 +1,6 @@
-//! `rc sweep --error-of-mean`: the mean, its error, and what interruptions do to its digits.
+//! `rc sweep --error-of-mean`: the mean and its error.
+//!
+//! Interruptions must not change the digits.
 
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -8,7 +10,7 @@ use serde_json::Value;
 use crate::support::{Place, assert_refused, assert_solved, bumps, f8, npy, text};
 use crate::sweep::table;
 
-/// A small surface under one load, into `out`.
+/// Arguments for the mean of a small surface under one load, into `out`.
 fn mean<'a>(out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     let small = ["sweep", "--waves", "8", "--grid", "128", "--pressure", "2e5", "--quiet", "--out", out];
     [&small[..], more].concat()
@@ -29,7 +31,7 @@ fn the_mean_is_that_of_many_realisations_within_its_error() {
     assert!(first > 20 && levels[1]["realisations"].as_u64() < Some(first / 3), "{found}");
     let sum: f64 = levels.iter().map(|level| level["mean"].as_f64().expect("a number")).sum();
     assert!((sum - number("mean")).abs() < 1e-15, "{found}");
-    // Others than those of the mean, on the finest grid.
+    // These seeds differ from those of the mean, and the grid is the finest.
     let plain = ["sweep", "--waves", "8", "--grid", "128", "--pressures", "2e5", "--seeds", "5001..5200", "--quiet"];
     assert_solved(&place.run(&[&plain[..], &["--out", "plain"]].concat()));
     let rows = table(&place.path("plain"));
@@ -63,7 +65,7 @@ fn a_killed_mean_goes_on_to_the_same_digits_with_any_number_of_threads() {
     assert_solved(&place.run(&mean("killed", &[&flags[..], &["3"]].concat())));
     assert!(journal().starts_with(kept), "finished solves were touched");
     assert!(place.bytes("killed/mean.json") == place.bytes("whole/mean.json"), "other digits after a kill");
-    // A smaller error goes on from there, and a larger one is found without a solve.
+    // A smaller error continues from the stored rows, and a larger error does not need a solve.
     assert_solved(&place.run(&mean("killed", &["--error-of-mean", "3%", "--resume"])));
     let rows = table(&place.path("killed")).len();
     assert!(rows > table(&place.path("whole")).len(), "nothing was added");

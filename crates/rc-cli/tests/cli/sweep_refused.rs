@@ -1,4 +1,4 @@
-//! Sweeps that are refused: one line, exit code 2, nothing written.
+//! Sweeps that are refused with one line and exit code 2, and write nothing.
 
 use crate::support::{Place, assert_refused, assert_solved, bumps, f8, npy, text};
 use crate::sweep::{TINY, table};

@@ -1,14 +1,14 @@
-//! Shards of a sweep in job arrays, as lists of commands, and from journals of before.
+//! Shards of a sweep in job arrays, as lists of commands, and from old journals.
 
 use std::process::{Command, Output};
 
 use crate::support::{Place, assert_refused, assert_solved, text};
 use crate::sweep::{TINY, result, sweep, table};
 
-/// Begins of the names of variables that a job system around the tests may have set.
+/// Prefixes of variables that a job system around the tests may have set.
 const OF_JOBS: [&str; 5] = ["SLURM_", "PBS_", "OMPI_", "PMI_", "PMIX_"];
 
-/// Runs `rc` as a job system starts it.
+/// Runs `rc` as a job system starts it, with the variables in `environment`.
 fn run_as(place: &Place, environment: &[(&str, &str)], args: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_rc"));
     for (name, _) in std::env::vars_os() {
@@ -33,7 +33,7 @@ fn tasks_of_a_job_array_solve_the_sweep_each_in_its_folder() {
             ("SLURM_ARRAY_TASK_STEP", "2"),
         ];
         assert_solved(&run_as(&place, &task, &auto));
-        // Run again, it goes on, or is done.
+        // A repeated run continues, or has nothing left to do.
         assert_solved(&run_as(&place, &task, &auto));
     }
     assert_eq!(place.names("parts"), ["part-1-of-3", "part-2-of-3", "part-3-of-3"]);
@@ -82,7 +82,9 @@ fn the_listed_commands_solve_the_sweep() {
     assert_refused(&place.run(&sweep("parts", &["--list=2", "--shard", "1/2"])), "--shard");
 }
 
-/// Journals of before have no costs: their rows were dealt load by load.
+/// Shards from old journals are resumed and merged as their rows were dealt.
+///
+/// Old journals do not have costs, and their rows were dealt load by load.
 #[test]
 fn shards_of_before_are_resumed_and_merged_as_they_were_dealt() {
     let place = Place::new();
@@ -103,7 +105,7 @@ fn shards_of_before_are_resumed_and_merged_as_they_were_dealt() {
         assert_eq!(text(&place.bytes(&format!("{folder}/sweep.jsonl"))), old, "a complete shard was changed");
         assert_eq!(table(&place.path(&folder)).len(), 1 + rows.len());
     }
-    // The heaviest row takes longer than both others.
+    // The row of the largest load takes longer than the two others together.
     assert_solved(&run("new-2", &["--shard", "2/2"]));
     let merge = |folders: [&str; 2]| place.run(&[&["sweep", "merge"], &folders[..], &["--out", "merged"]].concat());
     let expected =

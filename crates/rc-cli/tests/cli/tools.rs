@@ -31,7 +31,8 @@ fn inspect_measures_what_surface_made() {
     let measured: serde_json::Value = serde_json::from_slice(&output.stdout).expect("valid JSON");
     for key in ["rms_height", "rms_slope", "rms_curvature", "nayak"] {
         let (a, b) = (made[key].as_f64().expect("a number"), measured[key].as_f64().expect("a number"));
-        // Exact sums against a transform of the grid: rounding, amplified by the fourth power of the wavenumber.
+        // Exact sums are compared with a transform of the grid. The difference is rounding, amplified by the fourth
+        // power of the wavenumber.
         assert!((a / b - 1.0).abs() < 1e-9, "{key}: made {a}, measured {b}");
     }
     assert_refused(&place.run(&["inspect", "s"]), "heights.npy");
@@ -119,7 +120,7 @@ fn a_dry_run_tells_elements_memory_and_time_and_does_nothing() {
     let expected: serde_json::Value = serde_json::from_slice(&output.stdout).expect("valid JSON");
     assert_solved(&place.run(&[&["solve", "--quiet"], &scene[..]].concat()));
     let solved = place.json("r/summary.json");
-    // Times depend on the machine; the others are the claim.
+    // Times depend on the machine, so only the other estimates are claims.
     for (estimate, fact) in
         [("elements", "cells_evaluated"), ("memory_bytes", "peak_memory_bytes"), ("area_fraction", "area_fraction")]
     {

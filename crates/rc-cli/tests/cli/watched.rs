@@ -1,4 +1,4 @@
-//! `rc solve --watch`: a picture during the solve, and nothing else.
+//! `rc solve --watch`: a picture during the solve, and no other change.
 
 use std::collections::BTreeSet;
 use std::process::{Command, Stdio};
@@ -17,7 +17,7 @@ fn a_watched_solve_writes_the_same_bits_and_nothing_more() {
         assert_eq!(watched.len(), alone.len(), "{method}: other files");
         for ((name, watched), (other, alone)) in watched.iter().zip(&alone) {
             assert_eq!(name, other, "{method}");
-            // The summary has times.
+            // The summary differs, since it has times.
             assert!(name == "summary.json" || watched == alone, "{method}: {name} differs");
         }
     }
@@ -47,7 +47,7 @@ fn the_picture_is_there_whole_while_the_solve_runs_and_gone_after_it() {
         let names = place.names(method);
         assert!(names.contains(&"contact.png".to_owned()), "{method}: {names:?}");
         assert!(!names.iter().any(|name| name.contains("watch") || name.starts_with('.')), "{method}: {names:?}");
-        // As large as contact.png: width and height are in the first bytes.
+        // The picture has the size of contact.png. Width and height are in the first bytes.
         let result = place.bytes(&format!("{method}/contact.png"));
         assert!(pictures.iter().all(|picture| picture[16..24] == result[16..24]), "{method}: another size");
     }

@@ -1,9 +1,9 @@
-//! Elements put together, and lists of them.
+//! Aggregates of elements.
 
-/// What an element without a bond belongs to.
+/// Mark of an element without a bond, which is not in an aggregate.
 pub(super) const ALONE: u32 = u32::MAX;
 
-/// Elements put together.
+/// A partition of the elements into aggregates.
 #[derive(Debug)]
 pub(super) struct Aggregates {
     /// Aggregate of each element, or [`ALONE`].
@@ -21,7 +21,10 @@ impl Aggregates {
         sums
     }
 
-    /// First member of each aggregate in the list of members, with their number at the end; and this list.
+    /// The members of all aggregates.
+    ///
+    /// The first list has the index of each aggregate's first member, and at its end the number of members. The second
+    /// list has the members.
     pub(super) fn members(&self) -> (Vec<u32>, Vec<u32>) {
         let mut first = vec![0_u32; self.number + 1];
         let together = || self.of.iter().enumerate().filter(|(_, aggregate)| **aggregate != ALONE);

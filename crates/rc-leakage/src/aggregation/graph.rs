@@ -4,13 +4,15 @@ use crate::parallel;
 
 use super::aggregates::{ALONE, Aggregates};
 
-/// Elements that are relaxed one after the other, and whose products are summed together.
+/// Number of elements that are relaxed one after another, and whose products are summed together.
 pub(super) const BLOCK: usize = 1 << 16;
 
-/// Bonds of each element to its neighbours, in the order of these.
+/// A network that is not on a grid.
+///
+/// It has the bonds of each element to its neighbours, ordered by neighbour.
 #[derive(Debug, Default)]
 pub(crate) struct Graph {
-    /// First bond of each element, and their number at the end.
+    /// Index of the first bond of each element. The last entry is the number of bonds.
     first: Vec<u32>,
     neighbours: Vec<u32>,
     conductances: Vec<f64>,
@@ -18,10 +20,10 @@ pub(crate) struct Graph {
     pub(super) totals: Vec<f64>,
 }
 
-/// Adds the bonds of an element, with its neighbours, to a list.
+/// Function that adds the bonds of an element, each with its neighbour, to a list.
 type WriteBonds<'a> = &'a (dyn Fn(usize, &mut Vec<(u32, f64)>) + Sync);
 
-/// Bonds of the elements of a block, which make a graph one after the other.
+/// Bonds of the elements of a block, from which a graph is put together.
 #[derive(Default)]
 struct Rows {
     lengths: Vec<u32>,
@@ -29,9 +31,9 @@ struct Rows {
 }
 
 impl Rows {
-    /// Adds an element with these bonds; several to one neighbour are summed.
+    /// Adds an element with these bonds. Several bonds to one neighbour are summed.
     fn push(&mut self, bonds: &mut Vec<(u32, f64)>) {
-        // Stable, so that sums have one order.
+        // The sort is stable, so that sums have a fixed order.
         bonds.sort_by_key(|(neighbour, _)| *neighbour);
         let start = self.bonds.len();
         for (neighbour, bond) in bonds.drain(..) {
@@ -45,7 +47,9 @@ impl Rows {
 }
 
 impl Graph {
-    /// Of `n` elements; `write` adds the bonds of an element, with its neighbours, to an empty list.
+    /// The network of `n` elements.
+    ///
+    /// `write` adds the bonds of an element, each with its neighbour, to an empty list.
     pub(crate) fn new(n: usize, write: WriteBonds<'_>) -> Self {
         let blocks = parallel::map((0..n).step_by(BLOCK).collect(), |first| {
             let (mut rows, mut bonds) = (Rows::default(), Vec::new());
@@ -58,7 +62,7 @@ impl Graph {
         Self::of_rows(blocks)
     }
 
-    /// The network of the aggregates under pressures that are constant on each.
+    /// The network of the aggregates, for pressures that are constant on each aggregate.
     pub(super) fn coarse(&self, aggregates: &Aggregates) -> Self {
         let (first, members) = aggregates.members();
         Self::new(aggregates.number, &|aggregate, bonds| {
@@ -111,7 +115,7 @@ impl Graph {
         (0..self.len()).flat_map(of)
     }
 
-    /// Writes `right` less what the network draws under `x`.
+    /// Writes `right` minus the flow that leaves each element under `x`.
     pub(super) fn residual(&self, x: &[f64], right: &[f64], out: &mut [f64]) {
         let blocks = out.chunks_mut(BLOCK).enumerate().collect();
         parallel::for_each(blocks, |(block, out): (usize, &mut [f64])| {
@@ -121,7 +125,7 @@ impl Graph {
         });
     }
 
-    /// Writes what the network draws under `x`.
+    /// Writes the flow that leaves each element under `x`.
     pub(super) fn draw(&self, x: &[f64], out: &mut [f64]) {
         let blocks = out.chunks_mut(BLOCK).enumerate().collect();
         parallel::for_each(blocks, |(block, out): (usize, &mut [f64])| {
@@ -131,7 +135,9 @@ impl Graph {
         });
     }
 
-    /// Relaxes each element once in its order from zero, in blocks that do not see each other.
+    /// Relaxes each element once, in order, starting from zero.
+    ///
+    /// The blocks are independent of each other.
     pub(super) fn relax(&self, right: &[f64], x: &mut [f64]) {
         relax_blocks(x, &|start, x| {
             for k in 0..x.len() {

@@ -1,10 +1,11 @@
-//! Multigrid on aggregates of strongly bound elements, for networks that coarser grids do not represent: films that
-//! hang together by a few elements.
+//! Multigrid on aggregates of strongly bound elements.
+//!
+//! It is for networks that coarser grids do not represent: films that are connected by a few elements.
 //!
 //! An aggregate is a pair of pairs (Notay, Electron. Trans. Numer. Anal. 37, 2010; Napov and Notay, SIAM J. Sci.
-//! Comput. 34, 2012). The coarser network is that of pressures that are constant on each. It is solved by two steps of
-//! conjugate gradients with its own cycle as preconditioner. Bonds of coarser levels are sums of bonds: nothing
-//! cancels, whatever the ratio of their conductances.
+//! Comput. 34, 2012). The coarser network is the one for pressures that are constant on each aggregate. It is solved by
+//! two steps of conjugate gradients with its own cycle as preconditioner. Bonds of coarser levels are sums of bonds, so
+//! nothing cancels for any ratio of conductances.
 
 mod aggregates;
 mod graph;
@@ -17,21 +18,21 @@ use crate::elimination::Elimination;
 use crate::parallel;
 use crate::preconditioner::Preconditioner;
 
-/// Elements that are few enough for elimination.
+/// Number of elements that is small enough for elimination.
 const COARSEST: usize = 256;
 
-/// Most elements of a last level that is eliminated.
+/// Maximum number of elements of a last level that is eliminated.
 const ELIMINATED: usize = 4096;
 
-/// Where aggregates are more than this part of the elements, coarsening has come to its end.
+/// Ratio of aggregates to elements above which coarsening ends.
 const STALLED: f64 = 0.9;
 
 /// All levels of a network.
 #[derive(Debug)]
 pub(crate) struct Aggregation {
-    /// Finest first.
+    /// The levels, finest first.
     levels: Vec<Level>,
-    /// Of the last level; `None` where it has too many elements, and is relaxed.
+    /// Elimination of the last level; `None` if it has too many elements and is relaxed.
     last: Option<Elimination>,
 }
 
@@ -43,7 +44,7 @@ struct Level {
     right: Vec<f64>,
     x: Vec<f64>,
     residual: Vec<f64>,
-    /// The first of two steps, and what the network draws under it; the latter is scratch of the cycle.
+    /// The first of two steps. The flow that leaves under it follows, which is also scratch space of the cycle.
     first: Vec<f64>,
     drawn: Vec<f64>,
 }
@@ -81,7 +82,7 @@ impl Aggregation {
 }
 
 impl Aggregation {
-    /// Approximates the solution for the right side better than one application does.
+    /// Approximates the solution for the right side, better than one application does.
     pub(crate) fn solve(&mut self) -> &[f64] {
         solve(&mut self.levels, self.last.as_ref());
         &self.levels[0].x
@@ -101,7 +102,7 @@ impl Preconditioner for Aggregation {
     }
 }
 
-/// Approximates the solution for the right side of the first level.
+/// Applies one cycle to the right side of the first level.
 fn cycle(levels: &mut [Level], last: Option<&Elimination>) {
     let Some((level, coarser)) = levels.split_first_mut() else { return };
     let Level { graph, aggregates, right, x, residual, drawn, .. } = level;
@@ -130,7 +131,9 @@ fn cycle(levels: &mut [Level], last: Option<&Elimination>) {
     add(x, 1.0, drawn);
 }
 
-/// Two steps of conjugate gradients on the first level; the last is solved.
+/// Solves the first level by two steps of conjugate gradients.
+///
+/// If it is the last level, one cycle solves it.
 fn solve(levels: &mut [Level], last: Option<&Elimination>) {
     cycle(levels, last);
     if levels.len() == 1 {
@@ -149,7 +152,7 @@ fn solve(levels: &mut [Level], last: Option<&Elimination>) {
     add(&mut level.right, -length, &level.residual);
     cycle(levels, last);
     let Level { graph, right, x, residual, first, .. } = &mut levels[0];
-    // The second direction, made conjugate to the first.
+    // The second direction is made conjugate to the first.
     graph.draw(x, residual);
     let along = dot(first, residual) / (length * slope);
     let (slope, curvature) = (dot(x, right), dot(x, residual) - along * dot(first, residual));

@@ -3,19 +3,24 @@
 use super::aggregates::{ALONE, Aggregates};
 use super::graph::Graph;
 
-/// No aggregate yet.
+/// Mark of an element that does not have an aggregate yet.
 const FREE: u32 = u32::MAX - 1;
 
-/// Most that the energy of a pressure may grow when it is replaced by its mean on a pair, in units of what relaxation
-/// takes off: Napov and Notay's quality.
+/// Maximum of Napov and Notay's quality of a pair.
+///
+/// It is the growth of the energy of a pressure that is replaced by its mean on the pair. The unit is the energy that
+/// relaxation removes.
 const WORST: f64 = 8.0;
 
-/// An element that is left without a partner joins the aggregate of its strongest bond, where this has at least this
-/// part of all its bonds.
+/// Smallest dominance of an element's strongest bond, its ratio to the sum of all bonds.
+///
+/// From it on, an element without a partner joins the aggregate of its strongest bond.
 const DOMINANT: f64 = 0.5;
 
-/// Pairs along the strongest bonds, in the order of the elements. `totals` are those of the bonds that relaxation sees:
-/// of the elements themselves, or the sums over what they are made of.
+/// Pairs along the strongest bonds, in the order of the elements.
+///
+/// `totals` are the sums of the bonds that relaxation sees. They are those of the elements, or sums over the elements
+/// of an aggregate.
 pub(super) fn matched(graph: &Graph, totals: &[f64]) -> Aggregates {
     let mut of = vec![FREE; graph.len()];
     let mut number = 0;
@@ -41,7 +46,9 @@ pub(super) fn matched(graph: &Graph, totals: &[f64]) -> Aggregates {
     Aggregates { of, number: number as usize }
 }
 
-/// The free neighbour with the strongest bond of those that make a good pair, the first of several.
+/// The free neighbour with the strongest bond among those that make a good pair.
+///
+/// It is the first one if several bonds are equal.
 fn partner((graph, totals): (&Graph, &[f64]), of: &[u32], element: usize) -> Option<usize> {
     let mut best = (0.0, None);
     for (other, bond) in graph.bonds_of(element).filter(|(other, _)| of[*other] == FREE) {

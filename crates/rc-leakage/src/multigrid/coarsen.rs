@@ -1,4 +1,4 @@
-//! The network of a coarser level: that of the finer one under interpolated pressures (Galerkin).
+//! The network of a coarser level, for interpolated pressures (Galerkin).
 
 use super::interpolation::{Bonds, Interpolation};
 use super::stencil::{Corners, Stencil};
@@ -16,7 +16,7 @@ struct Square<T> {
     top: T,
 }
 
-/// The coarser level.
+/// The network of the coarser level.
 pub(super) fn coarsen<T: Real>(fine: &Stencil<T>, interpolation: &Interpolation<T>) -> Stencil<T> {
     let [nx, ny] = interpolation.coarse;
     let mut squares = vec![Square::default(); nx * ny];
@@ -35,7 +35,7 @@ pub(super) fn coarsen<T: Real>(fine: &Stencil<T>, interpolation: &Interpolation<
         values
     };
     let at = |column: usize, row: usize| &squares[row * nx + column];
-    // A bond of an element to itself carries nothing.
+    // A bond from an element to itself carries no flow.
     let east = |column: usize, row: usize| {
         if nx > 1 { at(column, row).bottom + at(column, (row + ny - 1) % ny).top } else { T::ZERO }
     };
@@ -53,7 +53,9 @@ pub(super) fn coarsen<T: Real>(fine: &Stencil<T>, interpolation: &Interpolation<
     coarse
 }
 
-/// The bonds that the fine bonds of the coarse square at `at` make: those within, at its left and at its bottom.
+/// The bonds that fine bonds contribute to the coarse square at `at`.
+///
+/// The fine bonds are those within it, on its left side and on its lower side.
 fn square<T: Real>(fine: &Stencil<T>, interpolation: &Interpolation<T>, at: [usize; 2]) -> Square<T> {
     let bonds = Bonds(fine);
     let widths = interpolation.widths(at);

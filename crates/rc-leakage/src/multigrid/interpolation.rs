@@ -1,32 +1,43 @@
-//! Interpolation from a coarser level, with weights from the bonds of the finer one (black box multigrid: Dendy, J.
-//! Comput. Phys. 48, 1982).
+//! Interpolation from a coarser level, with weights from the bonds of the finer one.
+//!
+//! Source: black box multigrid, Dendy, J. Comput. Phys. 48, 1982.
 
 use super::stencil::Stencil;
 use crate::parallel;
 use crate::real::Real;
 
-/// A row of weights of elements after coarse ones along x and along y.
+/// A row of weights of the elements after coarse ones, along x and along y.
 type EdgeRows<'a, T> = (usize, (&'a mut [[T; 2]], &'a mut [[T; 2]]));
 
-/// Every second element along the axes that are coarsened is one of the coarser level; the weights of those between.
+/// Weights of an interpolation.
+///
+/// Along a coarsened axis, every second element belongs to the coarser level. The weights are for the elements between.
 #[derive(Debug)]
 pub(super) struct Interpolation<T> {
-    /// Elements of the finer level.
+    /// Numbers of elements of the finer level.
     pub(super) fine: [usize; 2],
-    /// Elements of the coarser level.
+    /// Numbers of elements of the coarser level.
     pub(super) coarse: [usize; 2],
-    /// 2 along an axis that is coarsened, else 1.
+    /// 2 along a coarsened axis, else 1.
     pub(super) factor: [usize; 2],
-    /// Of the element after a coarse one along x: weights of this one, and of the next.
+    /// Weights of the element after a coarse one along x.
+    ///
+    /// They are those of the coarse one and of the next.
     along_x: Vec<[T; 2]>,
-    /// The same along y.
+    /// Weights of the element after a coarse one along y.
+    ///
+    /// They are those of the coarse one and of the next.
     along_y: Vec<[T; 2]>,
-    /// Of the element after it along both: of this one, the next along x, along y, along both.
+    /// Weights of the element after a coarse one along both axes.
+    ///
+    /// They are those of the coarse one, the next along x, the next along y, and the next along both.
     centre: Vec<[T; 4]>,
 }
 
-/// Weights of an element between two coarse ones, from what binds it to both sides. One that is bound to neither is
-/// given to a side that is a wall, so that no element that flows is without a coarse one.
+/// Weights of an element between two coarse ones, from its bonds to both sides.
+///
+/// An element without bonds to either gets the weight of a side that is a wall. So every element with a flow has a
+/// coarse one.
 fn weights<T: Real>(towards: [T; 2], is_wall: [bool; 2]) -> [T; 2] {
     let [first, second] = towards.map(|bond| if bond > T::ZERO { bond } else { T::ZERO });
     let total = first + second;
@@ -40,10 +51,12 @@ fn weights<T: Real>(towards: [T; 2], is_wall: [bool; 2]) -> [T; 2] {
     }
 }
 
-/// Weights below this are none: the network of the coarser level would consist of what rounding leaves of them.
+/// Limit below which a weight becomes zero.
+///
+/// The coarser network of smaller weights would consist of their rounding.
 const SMALLEST: f64 = 1e-3;
 
-/// Weights without those that are too small, of sum 1.
+/// The weights without those that are too small, with the sum 1.
 fn truncated<T: Real, const N: usize>(weights: [T; N]) -> [T; N] {
     let kept = weights.map(|weight| if weight.abs() < T::of(SMALLEST) { T::ZERO } else { weight });
     let total: T = kept.into_iter().sum();
@@ -51,7 +64,7 @@ fn truncated<T: Real, const N: usize>(weights: [T; N]) -> [T; N] {
 }
 
 impl<T: Real> Interpolation<T> {
-    /// Of the elements of `fine`, coarsened by `factor` along x and y.
+    /// The interpolation for the elements of `fine`, coarsened by `factor` along x and y.
     pub(super) fn new(fine: &Stencil<T>, factor: [usize; 2]) -> Self {
         let sides = [fine.nx, fine.ny];
         let coarse = [0, 1].map(|axis| sides[axis].div_ceil(factor[axis]));
@@ -83,7 +96,9 @@ impl<T: Real> Interpolation<T> {
         this
     }
 
-    /// Elements from coarse element `at` to the next along x and y: 2, or 1 where none is between.
+    /// Elements from coarse element `at` to the next along x and y.
+    ///
+    /// There are 2, or 1 if no element is between.
     pub(super) fn widths(&self, at: [usize; 2]) -> [usize; 2] {
         [0, 1].map(|axis| if self.factor[axis] * at[axis] + 1 < self.fine[axis] { self.factor[axis] } else { 1 })
     }
@@ -138,8 +153,9 @@ impl<T: Real> Interpolation<T> {
         if total > T::TINY { truncated(sums.map(|sum| sum / total)) } else { [T::of(0.25); 4] }
     }
 
-    /// Weights of the fine element `offset` after coarse element `at`, of this one, the next along x, along y, along
-    /// both.
+    /// Weights of the fine element `offset` after coarse element `at`.
+    ///
+    /// They are of the coarse element, the next along x, the next along y, and the next along both.
     pub(super) fn corner_weights(&self, at: [usize; 2], offset: [usize; 2]) -> [T; 4] {
         let widths = self.widths(at);
         let ends = [0, 1].map(|axis| offset[axis] == widths[axis]);
@@ -162,7 +178,7 @@ impl<T: Real> Interpolation<T> {
         out
     }
 
-    /// Adds what is interpolated from `coarse` to `fine`.
+    /// Adds the interpolation of `coarse` to `fine`.
     pub(super) fn prolong(&self, coarse: &[T], fine: &mut [T]) {
         let nx = self.fine[0];
         let rows = fine.chunks_mut(nx).enumerate().collect();
@@ -192,8 +208,9 @@ impl<T: Real> Interpolation<T> {
         });
     }
 
-    /// Writes into `coarse` what the adjoint of the interpolation makes of the fine residual, of which `residual`
-    /// writes a row.
+    /// Writes the restriction of the fine residual, by the adjoint of the interpolation, into `coarse`.
+    ///
+    /// `residual` writes a row of the fine residual.
     pub(super) fn restrict(&self, residual: &(dyn Fn(usize, &mut [T]) + Sync), coarse: &mut [T]) {
         let (nc, rows_per_block) = (self.coarse[0], (parallel::rows_per_block(self.fine[0]) / 2).max(4));
         let blocks = coarse.chunks_mut(rows_per_block * nc).enumerate().collect();
@@ -233,7 +250,7 @@ impl<T: Real> Interpolation<T> {
         for (column, out) in out.iter_mut().enumerate() {
             let before = if column == 0 { nc - 1 } else { column - 1 };
             let x = self.factor[0] * column;
-            // Where no element is between, its weights are zero.
+            // If no element is between, its weights are zero.
             let between = |column: usize| (self.factor[0] * column + 1).min(nx - 1);
             let (after, earlier) = (between(column), between(before));
             let [at, at_before] = [self.index([column, row]), self.index([before, row])];
@@ -255,7 +272,7 @@ impl<T: Real> Interpolation<T> {
     }
 }
 
-/// Bonds by place, on the periodic grid.
+/// Bonds by the place of their elements, on the periodic grid.
 pub(super) struct Bonds<'a, T>(pub(super) &'a Stencil<T>);
 
 impl<T: Real> Bonds<'_, T> {

@@ -13,19 +13,19 @@ use crate::parallel;
 use crate::preconditioner::Preconditioner;
 use crate::real::Real;
 
-/// Elements that are few enough for elimination.
+/// Number of elements that is small enough for elimination.
 const COARSEST: usize = 256;
 
-/// Coarser grids; what they no longer resolve is left to aggregates.
+/// Number of coarser grids. Aggregates take over what these do not resolve.
 const GRIDS: usize = 3;
 
-/// Elements with sides of more than this ratio are coarsened along the shorter one only.
+/// Ratio of an element's sides above which only the shorter side is coarsened.
 const LONGEST: f64 = 2.0;
 
 /// All levels of a network.
 #[derive(Debug)]
 pub(crate) struct Multigrid<T> {
-    /// Finest first.
+    /// The levels, finest first.
     levels: Vec<Level<T>>,
     coarsest: Aggregation,
 }
@@ -33,7 +33,7 @@ pub(crate) struct Multigrid<T> {
 #[derive(Debug)]
 struct Level<T> {
     stencil: Stencil<T>,
-    /// To the next coarser level; `None` on the coarsest.
+    /// Interpolation from the next coarser level; `None` on the coarsest.
     interpolation: Option<Interpolation<T>>,
     x: Vec<T>,
     right: Vec<T>,
@@ -85,7 +85,7 @@ impl<T: Real> Preconditioner for Multigrid<T> {
     }
 }
 
-/// The finest level: the network itself, with bonds across faces.
+/// The finest level, which is the network with its bonds across faces.
 fn finest<T: Real>(network: &Network) -> Stencil<T> {
     let (nx, ny) = (network.grid().nx(), network.grid().ny());
     let (mut east, mut north) = (vec![T::ZERO; nx * ny], vec![T::ZERO; nx * ny]);
@@ -143,7 +143,7 @@ mod tests {
 
     use super::*;
 
-    /// The cycle as a matrix, column by column.
+    /// The columns of the cycle as a matrix.
     fn columns(nx: usize, ny: usize, walls: f64, decades: f64) -> Vec<Vec<f64>> {
         let grid = Grid::new(nx, ny).expect("a grid");
         let random = |i: usize| quasi_random(7919 * (i + 1));
@@ -159,14 +159,16 @@ mod tests {
             multigrid.right_mut()[i] = 1.0;
             multigrid.apply().to_vec()
         };
-        // Walls have no residual.
+        // Walls do not have a residual.
         let (is_open, columns) = (|i: usize| gap.values()[i] > 0.0, (0..grid.len()).map(unit));
         let open = |column: Vec<f64>| (0..grid.len()).filter(|&i| is_open(i)).map(|i| column[i]).collect();
         let columns: Vec<Vec<f64>> = columns.map(open).collect();
         columns.into_iter().enumerate().filter(|(i, _)| is_open(*i)).map(|(_, column)| column).collect()
     }
 
-    /// Conjugate gradients need both. Odd sides have neighbours of one colour.
+    /// The cycle is symmetric and positive, as conjugate gradients need.
+    ///
+    /// On odd sides, there are neighbours of one colour.
     #[test]
     fn the_cycle_is_symmetric_and_positive() {
         for (nx, ny, walls, decades) in

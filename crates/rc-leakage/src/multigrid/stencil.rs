@@ -1,37 +1,39 @@
-//! A level: bonds of each element to its neighbours, and sweeps of relaxation over them.
+//! A level: bonds of each element to its neighbours, and sweeps of relaxation.
 
 use crate::parallel;
 use crate::real::Real;
 
-/// Rows that are relaxed one after the other; the next block sees their values from before the sweep.
+/// Number of rows in a block. Rows of a block are relaxed one after another, while other blocks have values from before
+/// the sweep.
 const BLOCK_ROWS: usize = 32;
 
-/// Conductances between the elements of a periodic grid. A bond is kept by the lower left of the elements that it
-/// belongs to.
+/// Conductances between the elements of a periodic grid.
+///
+/// A bond is stored with the lower left one of its elements.
 #[derive(Debug)]
 pub(super) struct Stencil<T> {
     pub(super) nx: usize,
     pub(super) ny: usize,
-    /// To the next element along x.
+    /// Bonds to the next element along x.
     pub(super) east: Vec<T>,
-    /// To the next element along y.
+    /// Bonds to the next element along y.
     pub(super) north: Vec<T>,
-    /// Across corners, on all levels but the finest.
+    /// Bonds across corners, on all levels except the finest.
     pub(super) corners: Option<Corners<T>>,
-    /// One over the sum of the conductances of an element; 0 where there are none.
+    /// Reciprocal of the sum of an element's conductances; 0 without conductances.
     pub(super) inverse: Vec<T>,
 }
 
 /// Bonds across corners of elements.
 #[derive(Debug)]
 pub(super) struct Corners<T> {
-    /// From (ix, iy) to (ix + 1, iy + 1).
+    /// Bonds from (ix, iy) to (ix + 1, iy + 1).
     pub(super) rising: Vec<T>,
-    /// From (ix + 1, iy) to (ix, iy + 1).
+    /// Bonds from (ix + 1, iy) to (ix, iy + 1).
     pub(super) falling: Vec<T>,
 }
 
-/// Order of a sweep: one is the adjoint of the other, so that both together are symmetric.
+/// Order of a sweep. Each order is the adjoint of the other, so both together are symmetric.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
     Forward,
@@ -63,7 +65,7 @@ impl<T: Real> RowBonds<'_, T> {
             *out += *north * pull(above, own) + *south * pull(below, own);
         }
         let Some(corners) = &self.corners else { return };
-        // From the elements before to those after, and the reverse; around the cell by themselves.
+        // The first loops go from earlier elements to later ones and the reverse. Bonds around the cell are separate.
         let to_after = corners.rising.iter().zip(&above[1..]).zip(corners.falling_below.iter().zip(&below[1..]));
         for ((out, &own), ((rising, &above), (falling, &below))) in out.iter_mut().zip(row).zip(to_after) {
             *out += *rising * pull(above, own) + *falling * pull(below, own);
@@ -78,9 +80,10 @@ impl<T: Real> RowBonds<'_, T> {
         out[0] += corners.rising_below[last] * pull(below[last], row[0]);
     }
 
-    /// Relaxes every second element from `first` on; `pull` is the right side and what the rows below and above add to
-    /// it. Of an odd number of elements the first and the last are neighbours: the later one goes first on the way
-    /// back.
+    /// Relaxes every second element from `first` on.
+    ///
+    /// `pull` is the right side plus the contributions of the rows below and above. For an odd number of elements the
+    /// first and the last are neighbours, so the last one comes first on the way back.
     fn relax_along(&self, row: &mut [T], pull: &[T], inverse: &[T], (order, first): (Order, usize)) {
         let (n, east) = (row.len(), self.east);
         let relax = |row: &mut [T], [before, i, after]: [usize; 3]| {
@@ -112,7 +115,7 @@ impl<T: Real> RowBonds<'_, T> {
         out[0] -= around;
     }
 
-    /// Σ conductance of the bonds of element `i`.
+    /// Sum of the conductances of the bonds of element `i`.
     fn total(&self, [before, i, _]: [usize; 3]) -> T {
         let mut total = self.east[i] + self.east[before] + self.north[i] + self.south[i];
         if let Some(corners) = &self.corners {
@@ -123,7 +126,9 @@ impl<T: Real> RowBonds<'_, T> {
     }
 }
 
-/// Calls `visit` with each index from `first` in steps of `step`, and with those of its neighbours on a ring of `n`.
+/// Calls `visit` with indices on a ring of `n`, each between its two neighbours.
+///
+/// The indices go from `first` in steps of `step`.
 #[inline]
 fn for_ring(n: usize, first: usize, step: usize, mut visit: impl FnMut([usize; 3])) {
     if first >= n {
@@ -177,8 +182,9 @@ impl<T: Real> Stencil<T> {
         self.inverse = inverse;
     }
 
-    /// One sweep of Gauss and Seidel in four colours over blocks of rows: every second row, and in it every second
-    /// element.
+    /// One Gauss-Seidel sweep in four colours over blocks of rows.
+    ///
+    /// A colour is every second element in every second row.
     pub(super) fn relax(&self, x: &mut [T], right: &[T], order: Order) {
         let nx = self.nx;
         let borders: Vec<[Vec<T>; 2]> = (0..self.ny)
@@ -237,8 +243,9 @@ impl<T: Real> Stencil<T> {
     }
 }
 
-/// Rows that are relaxed together, from row `first` on, and the rows before and after them as they were before the
-/// sweep.
+/// Rows that are relaxed together, from row `first` on.
+///
+/// It also has the rows before and after them, with values from before the sweep.
 struct RowBlock<'a, T> {
     first: usize,
     x: &'a mut [T],

@@ -1,10 +1,12 @@
-//! The slow reference: elimination on the network, written anew.
+//! The slow reference: an independent elimination of the network.
 
 use rc_core::testing::quasi_random;
 use rc_core::{Field, Grid};
 use rc_leakage::{LeakageParams, leakage};
 
-/// Power of the network of `gap` under a unit fall across the cell along x (`axis` 0) or y, by elimination.
+/// Power of the network of `gap` under a unit fall across the cell, by elimination.
+///
+/// The fall is along x (`axis` 0) or y.
 fn eliminated(gap: &Field, axis: usize) -> f64 {
     let grid = gap.grid();
     let (nx, ny, n) = (grid.nx(), grid.ny(), grid.len());
@@ -34,7 +36,7 @@ fn eliminated(gap: &Field, axis: usize) -> f64 {
     bonds.iter().map(|&(a, b, conductance, fall)| conductance * (pressure[a] - pressure[b] + fall).powi(2)).sum()
 }
 
-/// Elimination without pivoting; a pivot that is rounding is a level that is free.
+/// Elimination without pivoting. A pivot that is rounding belongs to a free pressure level.
 fn solve(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
     let n = right.len();
     let diagonal: Vec<f64> = (0..n).map(|i| matrix[i][i]).collect();
@@ -62,7 +64,8 @@ fn solve(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
 
 #[test]
 fn permeances_are_those_of_elimination() {
-    // Sides that are odd, even, and more than one level; walls from none to nearly all; gaps over three decades.
+    // Sides are odd, even, or large enough for several levels. Walls are from none to nearly all, and gaps extend over
+    // three decades.
     for (nx, ny, ratio, walls) in
         [(24, 24, 1.0, 0.0), (24, 24, 1.0, 0.3), (25, 18, 0.6, 0.35), (31, 17, 4.0, 0.2), (24, 26, 1.0, 0.42)]
     {
@@ -88,7 +91,7 @@ fn permeances_are_those_of_elimination() {
     }
 }
 
-/// The bounds hold for any pressure, long before it has converged.
+/// The bounds are valid for any pressure, long before convergence.
 #[test]
 fn the_permeance_of_elimination_is_between_the_bounds() {
     let mut widest = 0.0_f64;

@@ -1,4 +1,4 @@
-//! Closed forms.
+//! Flows with closed forms.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ fn permeances(gap: &Field) -> [f64; 2] {
     leakage(gap, &LeakageParams::default()).expect("a flow").flows.map(|flow| flow.permeance)
 }
 
-/// Rounding of a sum over the elements and of a solve to 1e-10.
+/// Fails unless `value` is `exact` within rounding and the error of a solve to 1e-10.
 fn check(value: f64, exact: f64, what: &str) {
     assert!((value / exact - 1.0).abs() < 1e-9, "{what}: {value} for {exact}");
 }
@@ -40,9 +40,11 @@ fn a_channel_with_a_step_adds_resistances_and_channels_side_by_side_add_conducta
     check(permeances(&channel)[0], 0.5 / (0.5 / 1e-6 + 0.5 / 8e-6), "a step between walls");
 }
 
-/// By Keller's theorem (J. Math. Phys. 5, 1964) K_x of g³ times K_y of 1/g³ is 1. Shifting this gap by half a cell
-/// along both axes makes 1/g³ of g³, and x and y may change places: K = 1, which effective medium theory gives as well.
-/// The network has the same symmetry.
+/// A gap that is its own dual has the permeance K = 1.
+///
+/// By Keller's theorem (J. Math. Phys. 5, 1964) K_x of g³ times K_y of 1/g³ is 1. A shift of this gap by half a cell
+/// along both axes turns g³ into 1/g³, and exchanging x and y does not change it. So K = 1, as in effective medium
+/// theory. The network has the same symmetry.
 #[test]
 fn a_medium_that_is_its_own_dual_has_the_geometric_mean() {
     for n in [32, 64, 128] {
@@ -58,7 +60,7 @@ fn a_medium_that_is_its_own_dual_has_the_geometric_mean() {
 #[test]
 fn the_error_bar_holds_the_error_of_the_grid_and_halves_at_least_with_the_element() {
     let solved = |n: usize| {
-        // Round islands of contact, off the lines of any grid.
+        // The contact is round islands, which are not along the lines of any grid.
         let gap = Field::from_fn(Grid::square(n).expect("a grid"), |at| {
             let island = |x: f64, y: f64, r: f64| ((at.x - x).hypot(at.y - y) - r).max(0.0);
             island(0.31, 0.47, 0.173).min(island(0.74, 0.22, 0.131)).powf(1.5)
@@ -78,7 +80,7 @@ fn the_error_bar_holds_the_error_of_the_grid_and_halves_at_least_with_the_elemen
 
 #[test]
 fn the_critical_constriction_is_the_saddle_of_the_gap() {
-    // Walls but for two openings, at x = 0.5 and x = 0.75; the wider one decides, and its narrowest place.
+    // Walls have two openings, at x = 0.5 and x = 0.75. The narrowest place of the wider one decides.
     let gap = Field::from_fn(Grid::square(64).expect("a grid"), |at| {
         let opening = |centre: f64, gap: f64| if (at.x - centre).abs() < 0.05 { gap + at.y } else { 0.0 };
         if at.y > 0.4 && at.y < 0.6 { opening(0.5, 0.1).max(opening(0.75, 0.2)) } else { 10.0 }

@@ -1,4 +1,4 @@
-//! Flows against closed forms, elimination, and properties that every flow has.
+//! Flows against closed forms and elimination, and properties of every flow.
 
 mod dense;
 mod exact;

@@ -58,7 +58,7 @@ fn the_flow_is_conserved_near_the_threshold_and_through_a_pinhole() {
             assert!(!flow.percolates || flow.info.iterations <= 40, "{level}: {flow:?}");
         }
     }
-    // Wide pools joined by a slit a hundred times narrower: six decades of conductance.
+    // A slit joins wide pools and is a hundred times narrower, which gives six decades of conductance.
     let pinhole =
         Field::from_fn(Grid::square(128).expect("a grid"), |at| match (at.x > 0.5, at.y > 0.5 && at.y < 0.52) {
             (true, _) => 1.0,
@@ -67,12 +67,12 @@ fn the_flow_is_conserved_near_the_threshold_and_through_a_pinhole() {
         });
     let flow = &solved(&pinhole).flows[0];
     assert!(flow.percolates && flow.info.conservation <= 1e-10, "{flow:?}");
-    // The pools resist next to nothing.
+    // The resistance of the pools is negligible.
     let slit = 1e-6 * (3.0 / 128.0) / 0.5;
     assert!((flow.permeance / slit - 1.0).abs() < 0.02, "{} for {slit}", flow.permeance);
 }
 
-/// From 0 to 1, without correlation (SplitMix64).
+/// A number from 0 to 1, without correlation (SplitMix64).
 fn random(i: usize) -> f64 {
     let mut bits = (i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -80,8 +80,9 @@ fn random(i: usize) -> f64 {
     ((bits ^ (bits >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Elements that are walls with this probability, and gaps over so many decades. The film percolates up to 0.4073
-/// walls.
+/// Random elements, of which a fraction `walls` is walls, with gaps over `decades` decades.
+///
+/// The film percolates up to a fraction of 0.4073.
 fn noise(n: usize, walls: f64, decades: f64) -> Field {
     let grid = Grid::square(n).expect("a grid");
     let of = |i: usize| 10.0_f64.powf(-decades * random(i + grid.len()));
@@ -101,7 +102,7 @@ fn white_noise_with_walls_is_solved_up_to_the_threshold() {
 
 #[test]
 fn wide_pools_in_series_with_slits_a_hundred_million_times_narrower_have_the_resistance_of_the_slits() {
-    // Conductances differ by 24 decades.
+    // The conductances differ by 24 decades.
     let slits = 4.0;
     let gap = Field::from_fn(Grid::square(128).expect("a grid"), |at| match ((slits * at.x).fract() < 0.25, at.y) {
         (false, _) => 1.0,
@@ -111,7 +112,7 @@ fn wide_pools_in_series_with_slits_a_hundred_million_times_narrower_have_the_res
     let flow = &solved(&gap).flows[0];
     assert!(flow.info.error <= 1e-9 && flow.info.conservation <= 1e-10, "{flow:?}");
     let wide = gap.values().iter().filter(|gap| **gap > 0.0 && **gap < 1.0).count() as f64 / 32.0 / 128.0;
-    // The flow does not spread in the slits, and half of an element at each end of a slit resists next to nothing.
+    // The flow does not spread in the slits. Half of an element at each end of a slit has a negligible resistance.
     let exact = 1e-24 * wide / 0.25;
     assert!((flow.permeance / exact - 1.0).abs() < 1e-6, "{} for {exact}", flow.permeance);
 }
@@ -136,7 +137,7 @@ fn the_flux_carries_the_permeance_and_contact_carries_nothing() {
 
 #[test]
 fn results_do_not_depend_on_the_number_of_threads() {
-    // The second takes aggregates.
+    // The second gap needs aggregates.
     for gap in [rough(200, -0.5), noise(200, 0.38, 4.0)] {
         let with = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");

@@ -1,11 +1,13 @@
-//! Checks that several groups of keys need.
+//! Checks for several groups of keys.
 
 use rc_core::Grid;
 
 use crate::error::CliError;
 use crate::scene::values::GridSpec;
 
-/// A grid that the libraries can count; what memory it needs depends on the method.
+/// A grid that the libraries can count.
+///
+/// Its memory is not checked here, since that depends on the method.
 ///
 /// # Errors
 /// [`CliError::Input`].
@@ -21,7 +23,9 @@ pub(super) fn positive(key: &str, unit: &str, value: Option<f64>) -> Result<f64,
     }
 }
 
-/// A key that neither the user nor the example gives: only after an edit of the example.
+/// The error for a key that neither the user nor the example gives.
+///
+/// It occurs only after an edit of the example.
 pub(super) fn missing(key: &str) -> CliError {
     CliError::input(format_args!("{key}: is missing; give it"))
 }

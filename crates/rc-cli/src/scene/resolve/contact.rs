@@ -1,4 +1,4 @@
-//! From keys to a checked contact.
+//! The step from keys to a checked contact.
 
 use std::sync::Arc;
 
@@ -15,40 +15,40 @@ use crate::scene::file;
 use crate::scene::keys::{ContactKeys, KernelName};
 use crate::scene::values::ToleranceSpec;
 
-/// What is pressed against the surface, how hard, and how the problem is solved.
+/// A checked contact: half-space, load and method.
 #[derive(Clone, Debug)]
 pub struct ContactSetup {
     /// The cell and the half-space.
     pub units: Units,
     /// Mean pressure in E*, or penetration in λ.
     pub control: Control,
-    /// Greatest pressure in E*; infinite for an elastic contact.
+    /// Maximum pressure in E*; infinite for an elastic contact.
     pub hardness: f64,
     /// Discretisation.
     pub kernel: KernelName,
-    /// What is beyond the heights.
+    /// What is beyond the borders of the heights.
     pub boundary: Boundary,
-    /// The layer that takes the place of the half-space, if one does.
+    /// The layer in place of the half-space, if there is one.
     pub layer: Option<Layer>,
-    /// Method, tolerance and limits, but for the memory there is.
+    /// Method, tolerance and limits, without the available memory.
     pub params: SolveParams,
-    /// The keys as resolved, for `scene.toml`.
+    /// The resolved keys, for `scene.toml`.
     pub keys: ContactKeys,
-    /// The ranks that solve it together, and what keeps its levels.
+    /// The ranks of the solve and the file that keeps its levels.
     pub place: Place,
 }
 
-/// Where a problem is solved.
+/// The ranks of a solve, and its checkpoint file.
 #[derive(Clone, Debug, Default)]
 pub struct Place {
-    /// The ranks that solve it together.
+    /// The ranks that solve the problem together.
     pub ranks: Ranks,
     /// The file that keeps what each level leaves for the next.
     pub checkpoint: Option<Arc<CheckpointFile>>,
 }
 
 impl ContactSetup {
-    /// The kernel itself.
+    /// The kernel of the contact.
     ///
     /// # Errors
     /// [`CliError::Input`] for a kernel that only a program knows.
@@ -68,7 +68,7 @@ impl ContactSetup {
     }
 }
 
-/// The kernel of this name; `None` for one that only a program knows.
+/// The kernel with this name; `None` for one that only a program knows.
 #[must_use]
 pub fn kernel(name: KernelName) -> Option<&'static dyn Kernel> {
     match name {
@@ -78,8 +78,9 @@ pub fn kernel(name: KernelName) -> Option<&'static dyn Kernel> {
     }
 }
 
-/// Checks the keys of half-space, load and method, with the embedded example for defaults; control and method have
-/// none.
+/// Checks the keys of half-space, load and method.
+///
+/// Defaults are those of the embedded example. Control and method do not have a default.
 ///
 /// # Errors
 /// [`CliError::Input`].
@@ -117,7 +118,9 @@ fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {
     }
 }
 
-/// In E*, at most what is given when it is in Pa again; infinite where none is given.
+/// The hardness in E*; infinite if it is not given.
+///
+/// Converted back to Pa, it is at most the given value.
 fn hardness(keys: &ContactKeys, units: Units) -> Result<f64, CliError> {
     let Some(given) = keys.hardness else { return Ok(f64::INFINITY) };
     let given = positive("hardness", "Pa", Some(given))?;

@@ -8,9 +8,9 @@ use super::checks::positive;
 use crate::error::CliError;
 use crate::scene::keys::{ContactKeys, KernelName};
 
-/// The keys with one Poisson's ratio: that of the layer is that of the material.
+/// The keys with a single Poisson's ratio. The ratio of the layer becomes that of the material.
 pub(super) fn with_poisson(keys: ContactKeys) -> Result<ContactKeys, CliError> {
-    // Before it is that of the material, which messages would name.
+    // This check comes first, since later messages would name the key of the material.
     keys.layer_poisson.map_or(Ok(()), check_ratio)?;
     match (keys.poisson, keys.layer_poisson) {
         (_, Some(ratio)) if keys.layer_thickness.is_none() => Err(CliError::input(format_args!(
@@ -32,7 +32,7 @@ fn check_ratio(poisson: f64) -> Result<(), CliError> {
     }
 }
 
-/// The layer, in units of the cell side; `None` for a half-space.
+/// The layer in units of the cell side; `None` for a half-space.
 pub(super) fn layer(keys: &ContactKeys, kernel: KernelName, side: f64) -> Result<Option<Layer>, CliError> {
     let Some(thickness) = keys.layer_thickness else { return Ok(None) };
     let thickness = positive("layer_thickness", "m", Some(thickness))? / side;
@@ -56,8 +56,9 @@ pub(super) fn layer(keys: &ContactKeys, kernel: KernelName, side: f64) -> Result
     Ok(Some(Layer { thickness, poisson }))
 }
 
-/// Refuses a layer that is thinner than elements, of kernel love: it is a bed of springs for them, at a high cost.
-/// `side` is λ in m.
+/// Refuses a layer that is thinner than elements, for the kernel love.
+///
+/// For such elements it would be a bed of springs, at a high cost. `side` is λ in m.
 pub(crate) fn check_thickness(layer: Option<Layer>, kernel: KernelName, grid: Grid, side: f64) -> Result<(), CliError> {
     let spacing = grid.spacing().max_element();
     match (layer, kernel) {

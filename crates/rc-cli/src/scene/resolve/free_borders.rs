@@ -1,4 +1,4 @@
-//! What goes with free borders.
+//! Rules for free borders.
 
 use rc_core::Boundary;
 use rc_solver::Method;
@@ -6,7 +6,9 @@ use rc_solver::Method;
 use crate::error::CliError;
 use crate::scene::keys::{ContactKeys, KernelName};
 
-/// The boundary; refuses what is for a periodic cell only where borders are free.
+/// The boundary of the keys.
+///
+/// With free borders it refuses keys that are for a periodic cell only.
 pub(super) fn boundary(keys: &ContactKeys, kernel: KernelName) -> Result<Boundary, CliError> {
     let boundary = keys.boundary.unwrap_or_default();
     if boundary == Boundary::Periodic {

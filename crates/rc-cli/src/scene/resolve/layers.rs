@@ -6,7 +6,9 @@ use crate::error::CliError;
 use crate::scene::file;
 use crate::scene::keys::Scene;
 
-/// Flags laid over the scene file, each checked for alternatives given together. No defaults yet.
+/// Flags laid over the scene file, without defaults.
+///
+/// Flags and file are each checked for alternatives that exclude each other.
 ///
 /// # Errors
 /// [`CliError::Input`].
@@ -18,7 +20,7 @@ pub fn layers(file: Option<&Path>, flags: Scene) -> Result<Scene, CliError> {
     Ok(flags.over(scene))
 }
 
-/// Keys that exclude each other must not stand side by side in one place.
+/// Refuses keys that exclude each other in one place.
 fn check_alternatives(scene: &Scene) -> Result<(), String> {
     let Scene { surface, contact, .. } = scene;
     if contact.pressure.is_some() && contact.penetration.is_some() {

@@ -1,12 +1,16 @@
-//! What a surface from a file must be given: the example's size and material are those of another surface.
+//! Keys that a surface from a file needs.
+//!
+//! The example's size and material belong to another surface.
 
 use crate::error::CliError;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
 
-/// Refuses a surface from a file without a size: neither the keys nor a file of its format say it.
+/// Refuses a surface from a file without a size.
+///
+/// The keys or a file of a format with sizes must give it.
 ///
 /// # Errors
-/// [`CliError::Input`] that names what is missing.
+/// [`CliError::Input`] with the missing key.
 pub fn check_size(surface: &SurfaceKeys) -> Result<(), CliError> {
     check(surface, size(surface)?)
 }
@@ -14,15 +18,17 @@ pub fn check_size(surface: &SurfaceKeys) -> Result<(), CliError> {
 /// Refuses a surface from a file without a size or without a material.
 ///
 /// # Errors
-/// [`CliError::Input`] that names what is missing.
+/// [`CliError::Input`] with the missing keys.
 pub fn check_size_and_material(surface: &SurfaceKeys, contact: &ContactKeys) -> Result<(), CliError> {
     check(surface, size(surface)?.into_iter().chain(material(contact)))
 }
 
-/// The same where the map is not in a file, so that only the keys say its size.
+/// Refuses a map outside a file without a size or without a material.
+///
+/// For such a map only the keys can give the size.
 ///
 /// # Errors
-/// [`CliError::Input`] that names what is missing.
+/// [`CliError::Input`] with the missing keys.
 pub fn check_cell_and_material(surface: &SurfaceKeys, contact: &ContactKeys) -> Result<(), CliError> {
     check(surface, surface.cell.is_none().then_some(CELL).into_iter().chain(material(contact)))
 }
@@ -39,10 +45,12 @@ fn check(surface: &SurfaceKeys, missing: impl IntoIterator<Item = &'static str>)
     }
 }
 
-/// What a map without a size needs.
+/// Key that a map without a size needs.
 const CELL: &str = "cell (m)";
 
-/// What is missing of the size. Whether a file of a format with sizes says it is known when it has been read.
+/// The missing key of the size.
+///
+/// For a file of a format with sizes, only reading it tells whether it has them.
 fn size(surface: &SurfaceKeys) -> Result<Option<&'static str>, CliError> {
     let is_known = match &surface.heights {
         Some(path) => surface.cell.is_some() || rc_heights::may_have_sides(path, &surface.read_params())?,
@@ -51,7 +59,7 @@ fn size(surface: &SurfaceKeys) -> Result<Option<&'static str>, CliError> {
     Ok((!is_known).then_some(CELL))
 }
 
-/// What is missing of the material.
+/// The missing keys of the material.
 fn material(contact: &ContactKeys) -> Option<&'static str> {
     match (contact.e_star, contact.young, contact.poisson) {
         (Some(_), ..) | (None, Some(_), Some(_)) => None,

@@ -1,4 +1,6 @@
-//! From scene file and flags to a checked problem in the units of the libraries (λ = 1, E* = 1).
+//! The step from scene file and flags to a checked problem.
+//!
+//! The problem is in the units of the libraries (λ = 1, E* = 1).
 
 mod checks;
 mod contact;

@@ -1,4 +1,4 @@
-//! From keys to a checked surface.
+//! The step from keys to a checked surface.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -16,22 +16,26 @@ use crate::scene::surface::{Source, SurfaceSetup};
 use crate::scene::values::GridSpec;
 use crate::scene::wave_file::WaveFile;
 
-/// Elements per shortest wave of a surface made of waves, when no grid is given: element side `λ_min/32`.
+/// Default number of elements per shortest wave, for surfaces made of waves.
+///
+/// The side of an element is then `λ_min/32`.
 const ELEMENTS_PER_WAVE: usize = 32;
 
-/// Checks the keys of the surface, with the embedded example for defaults.
+/// Checks the keys of the surface, with defaults from the embedded example.
 ///
 /// # Errors
 /// [`CliError::Input`].
 pub fn surface(mut keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
-    // Read for its size alone: such files are small against what a solve takes.
+    // The file is read for its size only. Such files are small compared with a solve.
     if let Some(path) = keys.heights.as_deref() {
         [keys.cell, keys.cell_y] = sides_of_map(path, &keys)?;
     }
     surface_in_cell(keys)
 }
 
-/// The same where a height map has no other sides than the keys say. It has the size that these give, or none.
+/// Checks the keys of a surface whose size is in the keys only.
+///
+/// A height map gets the size of the keys, or no size.
 ///
 /// # Errors
 /// [`CliError::Input`].
@@ -52,7 +56,7 @@ pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
     }
 }
 
-/// A random surface, on a grid that resolves its waves.
+/// The setup of a random surface, on a grid that resolves its waves.
 fn random(keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Result<SurfaceSetup, CliError> {
     if keys.scales() != Scales::default() {
         return Err(CliError::input(
@@ -71,8 +75,9 @@ fn random(keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Result<S
     Ok(SurfaceSetup { cell, source: Source::Random { spectrum, grid }, may_be_flat: false, keys })
 }
 
-/// The surface that a file has the waves of, on a grid that resolves them. The file is read here, since the grid
-/// depends on it.
+/// The setup of a surface from a file of waves.
+///
+/// The grid resolves the waves. The file is read here, since the grid depends on it.
 fn of_waves(keys: SurfaceKeys, path: &Path, cell: PeriodicCell, grid: Option<Grid>) -> Result<SurfaceSetup, CliError> {
     if keys.cell_y.is_some() {
         return Err(CliError::input(
@@ -85,7 +90,7 @@ fn of_waves(keys: SurfaceKeys, path: &Path, cell: PeriodicCell, grid: Option<Gri
     Ok(SurfaceSetup { cell, source: Source::Waves { path: path.to_owned(), waves, grid }, may_be_flat: false, keys })
 }
 
-/// The grid that is given, or one that resolves `waves` per cell well.
+/// The given grid, or one that resolves `waves` waves per cell well.
 fn resolving_grid(grid: Option<Grid>, waves: usize) -> Result<Grid, CliError> {
     let default = GridSpec::square(waves.saturating_mul(ELEMENTS_PER_WAVE));
     let grid = grid.map_or_else(|| checked_grid(default), Ok)?;
@@ -100,7 +105,7 @@ fn resolving_grid(grid: Option<Grid>, waves: usize) -> Result<Grid, CliError> {
     Ok(grid)
 }
 
-/// Sides of the cell of a height map (m), where its file or the keys say them.
+/// Sides of the cell of a height map (m), from its file or the keys.
 fn sides_of_map(path: &Path, keys: &SurfaceKeys) -> Result<[Option<f64>; 2], CliError> {
     let given = [keys.cell, keys.cell_y];
     if !rc_heights::may_have_sides(path, &keys.read_params())? {
@@ -109,13 +114,15 @@ fn sides_of_map(path: &Path, keys: &SurfaceKeys) -> Result<[Option<f64>; 2], Cli
     heights::sides(path, heights::read(path, &keys.read_params(), keys.scales())?.sides, given)
 }
 
-/// The parameters of a random surface on the unit cell; `side` is λ in m.
+/// The parameters of a random surface on the unit cell.
+///
+/// `side` is λ in m.
 fn spectrum(keys: &SurfaceKeys, side: f64) -> Result<SpectrumParams, CliError> {
     let waves = keys.waves.ok_or_else(|| missing("waves"))?;
     if !(1..=MAX_WAVES).contains(&waves) {
         return Err(CliError::input(format_args!("waves: must be from 1 to {MAX_WAVES}, not {waves}")));
     }
-    // The spectrum is per wave vector: C0 has the unit m⁴ (Eq. 9 with C(q) = (2π)⁻² ∫⟨h h⟩ e^{-iqx} dx).
+    // The spectrum is per wave vector, so C0 has the unit m⁴ (Eq. 9 with C(q) = (2π)⁻² ∫⟨h h⟩ e^{-iqx} dx).
     let normalisation = match (keys.rms, keys.rms_slope, keys.c0) {
         (Some(rms), None, None) => Normalisation::RmsHeight(positive("rms", "m", Some(rms))? / side),
         (None, Some(slope), None) => Normalisation::RmsSlope(positive("rms_slope", "no unit", Some(slope))?),
@@ -138,7 +145,7 @@ fn spectrum(keys: &SurfaceKeys, side: f64) -> Result<SpectrumParams, CliError> {
     }
     let seed = keys.seed.ok_or_else(|| missing("seed"))?;
     if i64::try_from(seed).is_err() {
-        // Larger ones could not be written to the scene file that repeats the result.
+        // A larger seed cannot be written to the scene file that repeats the result.
         return Err(CliError::input(format_args!("seed: must be at most {}, not {seed}", i64::MAX)));
     }
     Ok(SpectrumParams {
