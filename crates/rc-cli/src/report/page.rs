@@ -18,7 +18,7 @@ pub(super) struct Page<B> {
     pub(super) files: Vec<Text>,
     /// What made the page.
     pub(super) made: String,
-    /// `result` or `sweep`: which of its parts the script draws.
+    /// `result`, `sweep` or `mean`: which of its parts the script draws.
     pub(super) kind: &'static str,
     #[serde(flatten)]
     pub(super) body: B,
@@ -30,6 +30,9 @@ pub(super) struct Tile {
     pub(super) name: &'static str,
     pub(super) value: String,
 }
+
+/// What a command line does that has all parameters in it.
+pub(super) const WITHOUT_FILES: &str = "Without any file, digit by digit:";
 
 /// A command line and what it does.
 #[derive(Clone, Debug, Serialize)]

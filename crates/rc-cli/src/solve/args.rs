@@ -31,8 +31,8 @@ const SOLVE_HELP: &str = "\
 Give --pressure or --penetration, exactly one. Flags override the keys of the scene file.
 A height map has no default cell or material: give --cell, unless the file has a size, and --e-star, or --young and --poisson.
 
-DIR receives summary.json, pressure.npy (Pa), gap.npy (m), contact.png, and scene.toml, from which the result can be repeated.
-The manual page has longer texts: rc man --out man";
+DIR receives summary.json, pressure.npy (Pa), gap.npy (m), contact.png and scene.toml.
+Manual pages with longer texts: rc man --out man";
 
 const SOLVE_MANUAL: &str = "\
 The embedded example gives what neither scene file nor flags say: cell 0.01 m, E = 0.4 GPa, ν = 0.45, N = 64, H = 0.8, \

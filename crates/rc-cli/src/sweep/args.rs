@@ -103,7 +103,7 @@ pub(crate) struct MergeArgs {
 
 const SWEEP_HELP: &str = "\
 DIR receives sweep.csv, a line for each solve. Without lists, each scene is solved for its own load and seed.
-The manual page has longer texts: rc man --out man";
+Manual pages with longer texts: rc man --out man";
 
 const SWEEP_MANUAL: &str = "\
 DIR (--out) receives sweep.csv: a line for each solve, by scene, seed, load. Its columns are scene (where there are several), seed, \

@@ -20,7 +20,7 @@ use crate::scene::surface::Source;
 use crate::{terminal, text};
 
 /// The means in the folder of an ensemble.
-const MEAN_FILE: &str = "mean.json";
+pub(crate) const MEAN_FILE: &str = "mean.json";
 
 /// Fewest elements per shortest wave, and per side.
 const COARSEST: [usize; 2] = [4, 64];

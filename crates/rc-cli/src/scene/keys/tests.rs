@@ -1,3 +1,5 @@
+//! Scenes laid over each other.
+
 use super::*;
 
 #[test]
