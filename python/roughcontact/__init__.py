@@ -1,16 +1,16 @@
-"""Contact of rough elastic surfaces: what the command ``rc`` has, with arrays in and out.
+"""Contact of rough elastic surfaces: the functions of the command ``rc``, with arrays in and out.
 
 A rigid rough surface is pressed into an elastic half-space, on a periodic cell, without friction or adhesion.
-All quantities are in SI units; a cell of 1 and an E* of 1 give dimensionless results. Arrays have the shape
-``(ny, nx)``, row by row; heights are positive towards the half-space.
+All quantities are in SI units. A cell of 1 and an E* of 1 give dimensionless results. Arrays have the shape
+``(ny, nx)``, row by row. Heights are positive towards the half-space.
 
 >>> import roughcontact as rc
 >>> result = rc.solve(rc.Surface(waves=8, seed=1), grid=64, pressure=1e5)
 >>> result.converged, result.pressure.shape
 (True, (64, 64))
 
-:func:`solve` solves one problem and :func:`sweep` many; :class:`Surface` is a random surface, :func:`surface` its
-heights; :func:`read` reads a measured map, :func:`prepare` treats it and :func:`inspect` describes it.
+:func:`solve` solves one problem and :func:`sweep` many. :class:`Surface` is a random surface, and :func:`surface`
+returns its heights. :func:`read` reads a measured map, :func:`prepare` treats it, and :func:`inspect` describes it.
 :func:`load` reads a result folder. Errors are ``ValueError`` with the sentence of the command line.
 """
 

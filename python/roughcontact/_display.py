@@ -41,7 +41,7 @@ _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"
 
 
 def scale(value: float, unit: str) -> tuple[str, float]:
-    """The unit with a prefix that suits the value, and how much of the unit it is."""
+    """The unit with a prefix that suits the value, and the factor of this prefix."""
     if value == 0.0 or not np.isfinite(value):
         return unit, 1.0
     power = int(np.clip(3 * np.floor(np.log10(abs(value)) / 3), -12, 9))

@@ -1,4 +1,4 @@
-"""Height maps: arrays with the size of what was measured."""
+"""Height maps: arrays with the size of the measured area."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ Sides = tuple[float, float]
 
 
 class HeightMap:
-    """A measured map: heights in m, and the size of its cell where it is known.
+    """A measured map: heights in m, and the size of its cell if it is known.
 
-    It takes the place of an array everywhere, and brings its size along.
+    It can be used wherever an array of heights can, and brings its size along.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class HeightMap:
 
     #: Heights (m), shape (ny, nx).
     heights: Floats
-    #: Sides along x and y (m), or None where they are not known.
+    #: Sides along x and y (m), or None if they are not known.
     sides: Sides | None
 
     def __init__(self, heights: ArrayLike, sides: Sides | None = None) -> None:
@@ -79,7 +79,7 @@ Heights = Union[ArrayLike, HeightMap, "Surface", Path]
 
 
 def as_heights(heights: Any) -> Floats:
-    """Heights as an array of float64, row by row; what is that already is not copied."""
+    """Heights as an array of float64, row by row. Such an array is not copied."""
     if isinstance(heights, np.ma.MaskedArray):
         heights = np.ma.filled(heights.astype(np.float64), np.nan)
     try:
@@ -130,7 +130,7 @@ _SAME_LENGTH = 1e-3
 
 
 def _sides_of(shape: tuple[int, ...], known: Sides | None, cell: float | None, cell_y: float | None) -> Sides | None:
-    """The size of a map: the one that it knows, which must not be contradicted, or the one that is given."""
+    """The size of a map: its own, which ``cell`` and ``cell_y`` must not contradict, or the given one."""
     given = [None if side is None else length(name, side) for name, side in (("cell", cell), ("cell_y", cell_y))]
     if known is not None:
         for name, extent, side, own in zip(("cell", "cell_y"), ("wide", "high"), given, known, strict=True):
@@ -165,7 +165,7 @@ def channels(path: Path) -> dict[str, bool]:
     Returns
     -------
     dict
-        The names, in the order of the file, and whether the values are lengths. :func:`read` takes the first of those.
+        The names in the order of the file, and whether the values are lengths. :func:`read` takes the first with lengths.
     """
     return dict(_core.channels(os.fspath(path)))
 
@@ -187,16 +187,16 @@ def read(
     unit : {"m", "mm", "um", "nm"}, optional
         Unit of the lengths of a file that names none. Default: m.
     height_scale : float, optional
-        Height (m) of 1 in a file that names no unit, as of one level of grey of an image.
+        Height (m) of 1 in a file that names no unit. In an image, 1 is one level of grey.
     channel : str, optional
-        Of a file with several, as :func:`channels` lists them. Default: the first with heights.
+        Channel of a file with several; :func:`channels` lists them. Default: the first with heights.
     layout : {"matrix", "xyz"}, optional
-        How a text of numbers is laid out, where it could be either: a row of the map a line, or a point a line.
+        Layout of an ambiguous text of numbers: a row of the map in each line, or a point in each line.
 
     Returns
     -------
     HeightMap
-        Heights in m, NaN where nothing was measured, and the size where the file has it.
+        Heights (m), with NaN where nothing was measured, and the size if the file has it.
     """
     keys = plain({"unit": unit, "height_scale": height_scale, "channel": channel, "layout": layout})
     heights, sides = _core.read(os.fspath(path), keys)
@@ -230,23 +230,23 @@ def prepare(
         Sides (m) along x and y, where the map does not know them. A map that has as many points along x as along y needs no
         ``cell_y``; any other does.
     crop : str, optional
-        ``"square"``, or points as ``"512"``, ``"512x256"``, ``"512x256+100+50"``.
+        The part that is kept: ``"square"``, or points as ``"512"``, ``"512x256"``, ``"512x256+100+50"``.
     flip : str or sequence of str, optional
-        Axes ``"x"``, ``"y"``, ``"z"``: several as ``"x,y"`` or ``("x", "y")``.
+        Axes that are mirrored, ``"x"``, ``"y"`` or ``"z"``. Several are ``"x,y"`` or ``("x", "y")``.
     fill : {"laplace", "nearest", "lowest"}, optional
-        Give missing points heights.
+        How missing points get heights.
     level : {"mean", "plane", "quadratic"}, optional
-        Take a form away.
+        The form that is subtracted.
     periodic : {"mirror", "window", "as-is"}, optional
-        Make opposite borders meet; ``mirror`` doubles the sides.
+        How opposite borders are made to meet. ``mirror`` doubles the sides.
     taper : float, optional
         Part of each side that ``window`` fades. Default: 0.1.
     low_pass : float, optional
-        Gaussian filter: waves of this length (m) keep half of their height.
+        Gaussian filter. Waves of this length (m) keep half of their height.
     resample : int, (int, int) or str, optional
-        Other numbers of points along x and y on the same area.
+        New numbers of points along x and y on the same area.
     repeat : str, optional
-        Copies of a periodic map: ``"square"``, or ``"3x4"``.
+        Copies of a periodic map side by side: ``"square"``, or ``"3x4"``.
 
     Returns
     -------
@@ -288,8 +288,8 @@ def inspect(
     Returns
     -------
     dict
-        Of a surface: rms height (m), slope and curvature (1/m), parameters of ISO 25178, spectrum, distribution.
-        Of a result: ``summary`` and ``pressure``.
+        For a surface: rms height (m), slope and curvature (1/m), parameters of ISO 25178, spectrum, distribution.
+        For a result: ``summary`` and ``pressure``.
     """
     from roughcontact._result import Result
     from roughcontact._surface import Surface

@@ -1,4 +1,4 @@
-"""Parts of what a result says."""
+"""Records of a result: certificate, flow, spots, distribution, elements."""
 
 from __future__ import annotations
 
@@ -28,23 +28,23 @@ class Certificate(NamedTuple):
 
 
 class Leakage(NamedTuple):
-    """Flow of a thin film through the gap; lists are of the axes x and y."""
+    """Flow of a thin film through the gap. Lists have a value for x and one for y."""
 
-    #: K of the flow Q = K ΔP/(12 η) (m³): 0 where nothing percolates.
+    #: K of the flow Q = K ΔP/(12 η) (m³). It is 0 where nothing percolates.
     permeance: list[float]
-    #: Certified relative error of the solver: K of the network is at most ``permeance``, and at least this part below it.
+    #: Certified relative error of the solver. K of the network is between ``permeance`` (1 - ``relative_error``) and ``permeance``.
     relative_error: list[float]
     #: Estimated error of the grid (m³).
     permeance_error: list[float | None]
-    #: Axis with the larger permeance, ``x`` or ``y``, of which :attr:`Result.flux` is; None where nothing flows.
+    #: Axis with the larger permeance, ``x`` or ``y``, which :attr:`Result.flux` belongs to. None where nothing flows.
     flow_direction: str | None
     #: Whether the film winds around the cell.
     percolates: list[bool]
     #: Gap of the narrowest place of the widest path (m).
     critical_gap: list[float | None]
-    #: Where it is (m).
+    #: Place of the critical gap (m).
     critical_place: list[list[float] | None]
-    #: Largest relative difference of the flow through a section of the cell.
+    #: Maximum relative difference between the flows through sections of the cell and their mean.
     conservation_error: list[float]
     #: Iterations.
     iterations: list[int]
@@ -55,31 +55,31 @@ class Leakage(NamedTuple):
 class ContactSpot(NamedTuple):
     """One connected part of the contact."""
 
-    #: Elements of it.
+    #: Number of its elements.
     elements: int
-    #: Its part of the nominal area.
+    #: Its area, relative to the nominal area.
     area_fraction: float
     #: Length of its edge (m).
     perimeter: float
     #: 1 minus the number of its holes.
     euler_number: float
-    #: Its part of the mean pressure (Pa).
+    #: Its load, divided by the nominal area (Pa).
     mean_pressure: float
 
 
 class StressDistribution(NamedTuple):
     """The density of the interfacial stress over the nominal area."""
 
-    #: Ends of the bins (Pa), one more than bins.
+    #: Ends of the bins (Pa), one more than there are bins.
     edges: Floats
     #: P(σ) (1/Pa), the mean over each bin.
     density: Floats
-    #: Part of the nominal area under stress, the integral of P over all σ > 0.
+    #: Area under stress, relative to the nominal area: the integral of P over all σ > 0.
     area_fraction: float
 
 
 class Elements(NamedTuple):
-    """Elements in contact of a mesh that is not the grid."""
+    """Elements in contact of an adaptive mesh."""
 
     #: Centres (m).
     x: Floats

@@ -31,8 +31,8 @@ def _locked(field: Floats) -> Floats:
 class Result:
     """A solved contact problem.
 
-    Every key of the summary is an attribute: pressures in Pa, lengths in m, areas as parts of the nominal area. Arrays have
-    the shape (ny, nx), and are made when they are first asked for.
+    Every key of the summary is an attribute. Pressures are in Pa, lengths in m, and areas relative to the nominal area.
+    Arrays have the shape (ny, nx), and are computed at first use.
     """
 
     #: ``converged``, ``full_contact`` or ``not_converged``.
@@ -43,13 +43,13 @@ class Result:
     kernel: str
     #: ``adaptive``, ``uniform`` or ``gauss-seidel``.
     method: str
-    #: Why it was this method.
+    #: The reason for this method.
     method_reason: str
     #: Elements along x and y.
     grid: list[int]
     #: How often elements at edges were halved beyond the grid.
     border_level: int
-    #: Elements in contact on an adaptive mesh; all for the uniform method. Their values are in :attr:`mesh`.
+    #: Elements in contact on an adaptive mesh, whose values are in :attr:`mesh`. All elements for the uniform method.
     elements: int
     #: Nested levels.
     levels: int
@@ -67,7 +67,7 @@ class Result:
     area_fraction_error: float
     #: Length of the edges of all contacts (m).
     contact_perimeter: float
-    #: Rms pressure over the cell (Pa), of the elements.
+    #: Rms pressure of the elements over the cell (Pa).
     rms_pressure: float
     #: Rms pressure (Pa), best estimate.
     rms_pressure_corrected: float
@@ -134,7 +134,7 @@ class Result:
 
     @property
     def cells(self) -> dict[str, Any]:
-        """The summary as the cells of a row of a sweep: what is known of a flow is in columns of its own."""
+        """The summary as the cells of a row of a sweep. A flow has columns of its own."""
         cells: dict[str, Any] = json.loads(_core.cells(self._source.summary_json(), self.scene))
         return cells
 
@@ -152,7 +152,7 @@ class Result:
 
     @property
     def failure(self) -> str | None:
-        """What is to be said of a result that did not converge; None of one that did."""
+        """A sentence that says why the result did not converge. None if it did."""
         return self._source.failure
 
     @property
@@ -182,33 +182,33 @@ class Result:
 
     @property
     def seed(self) -> int | None:
-        """Seed of a random surface; None of a height map."""
+        """Seed of a random surface. None for a height map."""
         return self._numbers[2]
 
     @cached_property
     def pressure(self) -> Floats:
-        """Pressure (Pa), shape (ny, nx), ≥ 0; read-only."""
+        """Pressure (Pa), shape (ny, nx), ≥ 0, read-only."""
         return _locked(self._source.pressure())
 
     @cached_property
     def gap(self) -> Floats:
-        """Gap (m), shape (ny, nx), with its pressure-weighted mean at zero; zero in contact within the tolerance; read-only."""
+        """Gap (m), shape (ny, nx), read-only. Its pressure-weighted mean is zero; in contact it is zero within the tolerance."""
         return _locked(self._source.gap())
 
     @cached_property
     def plastic_gap(self) -> Floats | None:
-        """Overlap that plastic flow has removed (m), shape (ny, nx), ≥ 0; read-only. None without a hardness."""
+        """Overlap that plastic flow has removed (m), shape (ny, nx), ≥ 0, read-only. None without a hardness."""
         field = self._source.plastic_gap()
         return None if field is None else _locked(field)
 
     @property
     def hardness(self) -> float | None:
-        """Greatest pressure that the contact bears (Pa); None for an elastic contact."""
+        """Maximum pressure that the contact bears (Pa). None for an elastic contact."""
         return self.summary.get("hardness")
 
     @property
     def plastic_area_fraction(self) -> float | None:
-        """Plastic area, where the pressure is the hardness, best estimate; None without a hardness."""
+        """Area where the pressure equals the hardness, best estimate. None without a hardness."""
         return self.summary.get("plastic_area_fraction")
 
     @property
@@ -218,25 +218,26 @@ class Result:
 
     @property
     def mean_plastic_gap(self) -> float | None:
-        """Mean over the cell of the overlap that plastic flow has removed (m); None without a hardness."""
+        """Mean over the cell of the overlap that plastic flow has removed (m). None without a hardness."""
         return self.summary.get("mean_plastic_gap")
 
     @cached_property
     def displacement(self) -> Floats:
-        """Displacement of the elastic surface (m), shape (ny, nx), of mean zero; read-only."""
+        """Displacement of the elastic surface (m), shape (ny, nx), with mean zero, read-only."""
         return _locked(self._source.displacement())
 
     @property
     def leakage(self) -> Leakage | None:
-        """Flow through the gap; None where it was not asked for (``leakage=True``) or did not converge."""
+        """Flow through the gap. None without ``leakage=True``, and if the flow did not converge."""
         flow = self.summary.get("leakage")
         return None if flow is None else Leakage(**flow)
 
     @cached_property
     def flux(self) -> tuple[Floats, Floats] | None:
-        """Fluxes along x and y (m²), shape (ny, nx), for ΔP = 1 across the cell along ``leakage.flow_direction`` and 12 η = 1; read-only.
+        """Fluxes along x and y (m²), shape (ny, nx), read-only.
 
-        None where nothing flows, or no flow was asked for.
+        They are for ΔP = 1 across the cell along ``leakage.flow_direction``, and 12 η = 1. None if nothing flows, or without
+        ``leakage=True``.
         """
         fields = self._source.flux()
         if fields is None:
@@ -246,11 +247,14 @@ class Result:
 
     @property
     def contact(self) -> NDArray[np.bool_]:
-        """Where the surfaces touch, shape (ny, nx); with a border level on the grid of the smallest elements, (ny 2ⁿ, nx 2ⁿ)."""
+        """Where the surfaces touch, shape (ny, nx).
+
+        With the border level n it is on the grid of the smallest elements, shape (ny 2ⁿ, nx 2ⁿ).
+        """
         return self._finest_pressure("contact") > 0.0
 
     def _finest_pressure(self, wanted: str) -> Floats:
-        """Pressure on the grid of the smallest elements; one of a larger element is that of all its parts."""
+        """Pressure on the grid of the smallest elements. All parts of a larger element have its pressure."""
         nx, ny = self.grid
         finer = 2**self.border_level
         if finer > 1 and self.mesh is not None:
@@ -272,7 +276,7 @@ class Result:
 
     @cached_property
     def mesh(self) -> Elements | None:
-        """Elements in contact with their pressures; None where the elements are those of the grid (uniform method)."""
+        """Elements in contact with their pressures. None if the elements are those of the grid (uniform method)."""
         columns = self._source.elements()
         return None if columns is None else Elements(*columns)
 
@@ -283,7 +287,7 @@ class Result:
 
     @cached_property
     def spots(self) -> list[ContactSpot]:
-        """Contact spots, largest first; with a border level those of the smallest elements."""
+        """Contact spots, largest first. With a border level they consist of the smallest elements."""
         if isinstance(self._source, Stored) and self._source.spots is not None:
             return self._source.spots
         pressure = self._finest_pressure("spots")
@@ -294,12 +298,12 @@ class Result:
     def stress_distribution(self, bins: int | Sequence[float] | Floats = 50) -> StressDistribution:
         """The density P(σ) of the interfacial stress, resolved below the element at contact edges.
 
-        With a border level it is that of the smallest elements.
+        With a border level it is computed from the smallest elements.
 
         Parameters
         ----------
         bins : int or sequence of float, default 50
-            Number of equal bins from 0 to the maximum pressure, or the ends of the bins (Pa), increasing.
+            Number of equal bins from 0 to the maximum pressure, or the increasing ends of the bins (Pa).
         """
         wrong = ValueError("bins: must be a positive number, or increasing and finite ends of bins (Pa) from 0 on")
         if isinstance(bins, (int, np.integer)):
@@ -317,11 +321,11 @@ class Result:
         return StressDistribution(edges, density, area)
 
     def save(self, folder: Path) -> None:
-        """Write the files of ``rc solve --out``: summary, scene, fields, elements and the picture of the contact."""
+        """Write the files of ``rc solve --out``: summary, scene, fields, elements and a picture of the contact."""
         self._source.save(os.fspath(folder))
 
     def report(self, path: Path) -> None:
-        """Write the page of ``rc report``: one HTML file that needs no network."""
+        """Write the page of ``rc report``, one HTML file that needs no network."""
         target = os.path.abspath(os.fspath(path))
         with tempfile.TemporaryDirectory() as folder:
             stored = os.path.join(folder, pathlib.Path(target).stem)
@@ -378,7 +382,7 @@ def load(folder: Path) -> Result:
     Raises
     ------
     ValueError
-        For a folder that is not one, with the sentence of the command line.
+        For any other folder, with the sentence of the command line.
     """
     folder = os.fspath(folder)
     _core.inspect_result(folder)

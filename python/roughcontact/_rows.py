@@ -49,7 +49,7 @@ class Job(NamedTuple):
 
 
 class Row(NamedTuple):
-    """A row that was solved: small, so that it travels."""
+    """A row that was solved, small enough to send to another process."""
 
     #: The cells of the row, as JSON.
     cells: str
@@ -63,7 +63,7 @@ Found = Union[Row, ValueError]
 
 
 def solve_row(job: Job) -> Row:
-    """Solves a row, in whatever process this is."""
+    """Solves a row in this process."""
     result = solve_keys(job.heights, job.keys, is_row=True, **job.options)
     if job.folder is not None:
         _replace(job.folder, result.save)
@@ -76,7 +76,7 @@ def solve_row(job: Job) -> Row:
 
 
 def _replace(final: str, write: Callable[[str], None]) -> None:
-    """Writes a folder beside its place, then puts it there: it is there whole or not at all."""
+    """Writes a folder beside its place and then moves it there, so it is never half-written."""
     place = pathlib.Path(final)
     place.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".rc-partial-", dir=place.parent) as hidden:
@@ -113,7 +113,7 @@ _ENDED = frozenset({"KilledWorker", "WorkerCrashedError", "NodeDiedError", "RayA
 
 
 def by_workers(workers: Workers, jobs: list[Job]) -> Iterator[tuple[int, Found]]:
-    """Solves rows in the workers of an executor; yields them as they finish. Rows whose worker ended are solved again."""
+    """Solves rows in the workers of an executor, and yields them as they finish. Rows whose worker ended are solved again."""
     pool = _Pool(workers)
     waiting = {job.row: job for job in jobs}
     rounds = 0
@@ -141,7 +141,7 @@ def by_workers(workers: Workers, jobs: list[Job]) -> Iterator[tuple[int, Found]]
 
 
 def _round(executor: Executor, jobs: Mapping[int, Job]) -> Iterator[tuple[int, Found | Exception]]:
-    """Hands every row to the executor once; yields a row, why it cannot be solved, or how its worker ended."""
+    """Hands every row to the executor once. Yields the row, the reason why it cannot be solved, or how its worker ended."""
     done: queue.SimpleQueue[Future[Row]] = queue.SimpleQueue()
     places: dict[Future[Row], int] = {}
     try:
@@ -182,7 +182,7 @@ def _found(future: Future[Row]) -> Found | Exception:
 
 
 class _Pool:
-    """An executor, and how to come by another one."""
+    """An executor, and a way to replace it."""
 
     def __init__(self, workers: Workers) -> None:
         self._make: Callable[[], Executor] | None = None
@@ -197,11 +197,11 @@ class _Pool:
 
     @property
     def size(self) -> int:
-        """Rows that are solved at once, as far as it is known."""
+        """Number of rows that are solved at once, if it is known."""
         return int(getattr(self.executor, "_max_workers", None) or os.cpu_count() or 1)
 
     def renew(self, cause: Exception) -> bool:
-        """Replaces an executor that takes no more work; whether there is one that does."""
+        """Replaces an executor that takes no more work. Returns whether there is a usable one."""
         if not isinstance(cause, BrokenExecutor):
             return True
         another = _like(self.executor) if self._make is None else self._make()
@@ -218,7 +218,7 @@ class _Pool:
 
 
 def _like(executor: Executor) -> Executor | None:
-    """A pool of processes like this one, as a broken one cannot be repaired."""
+    """A new pool of processes like this one. A broken pool cannot be repaired."""
     if type(executor) is not ProcessPoolExecutor:
         return None
     known = vars(executor)

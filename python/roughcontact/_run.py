@@ -1,4 +1,4 @@
-"""What a running solve tells, and how it may end."""
+"""Progress of a solve, and the ways in which it may end."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class NotConvergedWarning(UserWarning):
-    """A solve ended above its tolerance; the result says ``converged = False``."""
+    """A solve ended above its tolerance. Its result has ``converged = False``."""
 
 
 class NotConvergedError(RuntimeError):
@@ -37,7 +37,7 @@ class NotConvergedError(RuntimeError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during a solve. It is raised within 0.2 s, also where the solve goes on for longer until it sees that it is to stop."""
+    """Ctrl-C during a solve. It is raised within 0.2 s, even if the solve itself takes longer to stop."""
 
     def __init__(self, find: Callable[[], Result]) -> None:
         super().__init__()
@@ -45,7 +45,7 @@ class Interrupted(KeyboardInterrupt):
 
     @cached_property
     def result(self) -> Result:
-        """What was found so far, not converged; waits for it where the solve is between two looks, which Ctrl-C ends too."""
+        """The solution so far, not converged. Waits until the solve has stopped; Ctrl-C ends the wait."""
         return self._find()
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -54,7 +54,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 class Progress(NamedTuple):
-    """Where a solve is."""
+    """The progress of a solve."""
 
     #: Number of the level, from 1.
     level: int
@@ -64,9 +64,9 @@ class Progress(NamedTuple):
     grid: tuple[int, int]
     #: Iterations on this level; 0 when it starts.
     iteration: int
-    #: Estimated error, relative as the tolerance is; NaN when a level starts.
+    #: Estimated error, in the units of the tolerance. NaN when a level starts.
     error: float
-    #: What the error is to reach on this level; NaN when a level starts.
+    #: Tolerance of the error on this level. NaN when a level starts.
     tolerance: float
     #: Elements in contact.
     in_contact: int
@@ -89,7 +89,7 @@ def checked(progress: ProgressOption) -> ProgressOption:
 
 
 class Bar:
-    """A bar of tqdm; nothing where tqdm is not installed."""
+    """A bar of tqdm. Does nothing if tqdm is not installed."""
 
     def __init__(self) -> None:
         try:
@@ -115,7 +115,7 @@ class Bar:
 
 
 class RowBar:
-    """A bar of tqdm over rows; nothing where tqdm is not installed."""
+    """A bar of tqdm over rows. Does nothing if tqdm is not installed."""
 
     def __init__(self, done: int, rows: int) -> None:
         try:
@@ -137,7 +137,7 @@ class RowBar:
 
 
 def _fallen(error: float, tolerance: float) -> float:
-    """The part of the way from 1 down to the tolerance, in orders of magnitude, that the error has gone."""
+    """How far the error has fallen from 1 (0) to the tolerance (1), in orders of magnitude."""
     if not (error > 0.0 and tolerance < 1.0):
         return 0.0
     return min(max(math.log(error) / math.log(tolerance), 0.0), 1.0)

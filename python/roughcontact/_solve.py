@@ -69,68 +69,70 @@ def solve(
     progress: ProgressOption = False,
     check: bool = False,
 ) -> Result:
-    """Solve one contact problem, as ``rc solve`` does: the numbers are the same, bit by bit.
+    """Solve one contact problem. The numbers are those of ``rc solve``, bit by bit.
 
     Parameters
     ----------
     heights : array_like of shape (ny, nx), HeightMap, Surface or path, optional
-        The rough surface, in m, positive towards the half-space. Arrays of float64, row by row, are read in place; others
-        are converted. A topography of SurfaceTopography and a map from :func:`read` bring their size along. A
-        :class:`Surface` is evaluated where the solver needs it, never as a whole array. A path is a height map. Default: a
-        random surface of the keywords, which are those of :class:`Surface`.
+        The rough surface (m), positive towards the half-space. Arrays of float64, row by row, are read in place. Other
+        arrays are converted. A topography of SurfaceTopography and a map from :func:`read` bring their size along. A
+        :class:`Surface` is evaluated only where the solver needs it. A path names the file of a height map. Default: the
+        random surface of the keywords below, as for :class:`Surface`.
     scene : path, optional
-        A scene file; keywords override it.
+        A scene file. Keywords override its keys.
     cell, cell_y : float, optional
         Sides of the periodic cell along x and y (m). An array needs ``cell``. Default of ``cell_y``: ``cell``.
     unit, height_scale, channel, layout : optional
-        Of a file, as for :func:`read`.
+        How a file is read, as for :func:`read`.
     spectrum, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, low_cut, amplitudes : optional
-        A random surface instead of ``heights``, as for :class:`Surface`.
+        A surface of waves instead of ``heights``, as for :class:`Surface`.
     grid : int, (int, int) or str, optional
-        Finest elements along x and y. Default: 32 per shortest wave; a map has its own.
+        Finest elements along x and y. Default: 32 per shortest wave, or the points of a map.
     young, poisson : float, optional
-        Young's modulus (Pa) and Poisson's ratio. A map needs them, or ``e_star``. Default of a random surface: those of the
-        paper, 0.4 GPa and 0.45.
+        Young's modulus (Pa) and Poisson's ratio. A map needs them, or ``e_star``. Default of a random surface: 0.4 GPa and
+        0.45, as in the paper.
     e_star : float, optional
         E* = E/(1-ν²) (Pa), instead of ``young`` and ``poisson``.
     pressure, penetration : float
-        Mean pressure (Pa) or penetration (m): exactly one.
+        Mean pressure (Pa) or penetration (m). Give exactly one.
     hardness : float, optional
-        No pressure (Pa) is greater, the usual first model of plastic contact. Default: none, an elastic contact.
+        Upper limit of the pressure (Pa), the usual first model of plastic contact. Default: no limit, an elastic contact.
     kernel : {"love", "spectral"} or callable, default "love"
         Discretisation of the half-space. A function ``f(kx, ky)`` of two arrays of wavenumbers (rad/m) returns the
-        displacement (m) of a pressure wave of 1 Pa, ``2 / (E* |k|)`` for a half-space: it must be positive, and even in kx and ky; on
-        a square grid also that of kx and ky exchanged. E* must be that of its shortest waves, since contact edges are located with it; a warning names another one. It
-        is called once, with all waves of the grid but the zero wave, and with mirror images of some.
+        displacement (m) of a pressure wave of 1 Pa, which is ``2 / (E* |k|)`` for a half-space. It must be positive, and even
+        in kx and in ky. On a square grid it must also stay the same when kx and ky are exchanged. It is called once, with all
+        waves of the grid except the zero wave, and with mirror images of some. Contact edges are located with E*, so E* must
+        be that of its shortest waves. A warning names the E* of the function where it differs.
     boundary : {"periodic", "free"}, default "periodic"
-        What is beyond the heights: the same heights again, or the free surface of the half-space. With "free" the heights are a patch
-        of sides ``cell`` and ``cell_y``, ``pressure`` is the load over its area, and the penetration is the displacement of a rigid
-        body since first touch (kernel love, uniform method).
+        What is beyond the heights: the same heights again, or the free surface of the half-space. With "free" the heights are
+        a patch with the sides ``cell`` and ``cell_y``. Then ``pressure`` is the load divided by its area, and the penetration
+        is the displacement of a rigid body since first touch (kernel love, uniform method).
     layer_thickness, layer_poisson : float, optional
-        An elastic layer of this thickness (m) on a rigid base to which it sticks, instead of the half-space. Its Poisson's ratio is
-        ``poisson``; with ``e_star`` it must be given (uniform method).
+        An elastic layer of this thickness (m), bonded to a rigid base, instead of the half-space. Its Poisson's ratio is
+        ``poisson``. With ``e_star``, ``layer_poisson`` must be given (uniform method).
     method : {"adaptive", "uniform", "gauss-seidel"}, optional
-        Default: adaptive, or uniform where that is cheaper.
+        How the problem is solved. Default: adaptive, or uniform where that is cheaper.
     border_level : int, default 0
-        Halve elements at the edges of contacts this many times beyond the grid (adaptive method, random surfaces).
+        How often elements at the edges of contacts are halved beyond the grid (adaptive method, random surfaces).
     energy_tolerance : float, default 0.01
         Certified relative error of the pressure in the energy norm.
     tolerance : float or "auto", optional
-        Instead: relative to the peak-to-valley height; or an energy error well below the error of the grid.
+        Instead of ``energy_tolerance``: a tolerance relative to the peak-to-valley height. With "auto", the energy error is
+        well below the error of the grid.
     leakage : bool, optional
-        Compute the flow of a thin film through the gap too: :attr:`Result.leakage` and :attr:`Result.flux`.
+        Also compute the flow of a thin film through the gap: :attr:`Result.leakage` and :attr:`Result.flux`.
     area_error : float or str, optional
-        Choose the grid so that the relative error of the contact area is at most this (random surfaces).
+        Wanted relative error of the contact area, which chooses the grid (random surfaces).
     output_grid : int, (int, int) or str, optional
-        :meth:`Result.save` writes pressure and gap averaged to so many elements.
+        Elements along x and y to which :meth:`Result.save` averages pressure and gap.
     threads : int, optional
-        Worker threads of this call. Default: all cores. No result depends on it.
+        Worker threads of this call. Results do not depend on it. Default: all cores.
     memory_limit : int or str, optional
-        Most memory, in bytes or as ``"2GB"``.
+        Maximum memory, in bytes or as ``"2GB"``. What is estimated to need more is refused.
     time_limit : float or str, optional
-        Most time, in seconds or as ``"5min"``; a solve that takes longer is not converged.
+        Maximum time, in seconds or as ``"5min"``. A solve that takes longer is not converged.
     progress : bool or callable, default False
-        True draws a bar of tqdm if it is installed; a function is called with :class:`Progress`.
+        True draws a bar, if tqdm is installed. A function is called with :class:`Progress`.
     check : bool, default False
         Raise :class:`NotConvergedError` instead of warning with :class:`NotConvergedWarning`.
 
@@ -145,7 +147,7 @@ def solve(
     NotConvergedError
         With ``check=True``.
     KeyboardInterrupt
-        After Ctrl-C, within 0.2 s: an :class:`Interrupted`, whose attribute ``result`` is what was found so far.
+        After Ctrl-C, within 0.2 s. It is an :class:`Interrupted`, whose attribute ``result`` is the solution so far.
     """
     given = locals()
     keys = plain({name: value for name, value in given.items() if name not in _OPTIONS})

@@ -35,7 +35,10 @@ class Source(Protocol):
 
 
 class Stored:
-    """The files of a result, byte by byte: what a pickle holds. Beside them what the files have averaged, and spots where they need more."""
+    """The files of a result, byte by byte, as a pickle holds them.
+
+    Beside them are fields that the files have averaged, and spots that need more than the files.
+    """
 
     def __init__(self, files: dict[str, bytes], fields: dict[str, Floats], spots: list[ContactSpot] | None) -> None:
         self.files = files
@@ -96,7 +99,7 @@ class Stored:
 
 
 def files_in(folder: str) -> dict[str, bytes]:
-    """The files in a folder by their names."""
+    """The files in a folder, by name."""
     return {path.name: path.read_bytes() for path in sorted(pathlib.Path(folder).iterdir()) if path.is_file()}
 
 

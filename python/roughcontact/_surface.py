@@ -1,4 +1,4 @@
-"""Surfaces as sums of waves: random ones with a power-law spectrum, and those of Fourier coefficients."""
+"""Surfaces as sums of waves: random ones with a power-law spectrum, and given Fourier coefficients."""
 
 from __future__ import annotations
 
@@ -32,16 +32,17 @@ _KEYS = (
 
 
 class Surface:
-    """A random surface (Eq. 9-14 of the paper), or one of Fourier coefficients, evaluated only where a solver needs it.
+    """A random surface (Eq. 9-14 of the paper), or a sum of given waves, evaluated only where a solver needs it.
 
-    What is not given has the value of the paper's surface.
+    Missing parameters have the values of the paper's surface.
 
     Parameters
     ----------
     cell : float, default 0.01
         Side of the periodic cell (m).
     spectrum : path, optional
-        Fourier coefficients instead of a random surface: a text with a line of kx, ky, Re and Im for each wave. It needs ``cell``.
+        A file of Fourier coefficients, instead of a random surface. It has a line of kx, ky, Re and Im for each wave, and
+        needs ``cell``.
     unit, height_scale : optional
         Unit of the coefficients, m by default, or the height (m) of 1 in them.
     waves : int, default 64
@@ -49,17 +50,17 @@ class Surface:
     hurst : float, default 0.8
         Hurst exponent, above 0 and at most 1.
     rms, rms_slope, c0 : float, optional
-        Rms height (m), or rms slope, or C0 of Eq. 9 (m⁴): one of the three. Default: an rms height of 13 µm.
+        Rms height (m), rms slope, or C0 of Eq. 9 (m⁴). Give at most one. Default: an rms height of 13 µm.
     seed : int, default 1
         Seed of the random phases.
     truncation : {"disc", "square"}, default "disc"
-        Which waves take part: ``|k| <= N``, or ``max(|kx|, |ky|) <= N``.
+        Which waves there are: ``|k| <= N``, or ``max(|kx|, |ky|) <= N``.
     roll_off : float, default 1
-        Below this number of waves per cell the spectrum is flat.
+        Number of waves per cell below which the spectrum is flat.
     low_cut : float, optional
-        There are no waves below this number of waves per cell.
+        Number of waves per cell below which there are no waves.
     amplitudes : {"fixed", "random"}, default "fixed"
-        Amplitudes exactly of the spectrum, or random about it.
+        Amplitudes exactly those of the spectrum, or Gaussian about it.
     grid : int, (int, int) or str, optional
         Finest elements along x and y. Default: 32 per shortest wave.
     """
@@ -144,7 +145,7 @@ def surface(
 ) -> NDArray[np.float64]:
     """Heights (m) of a random surface on its grid, as ``rc surface --out heights.npy`` writes them.
 
-    The parameters are those of :class:`Surface`; ``threads`` are worker threads, by default all cores.
+    The parameters are those of :class:`Surface`, and ``threads``, the worker threads (default: all cores).
 
     Returns
     -------

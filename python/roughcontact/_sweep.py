@@ -87,30 +87,31 @@ def sweep(
     heights, scene, and all keywords that are not below
         As for :func:`solve`.
     pressures, penetrations : sequence of float, or str
-        Mean pressures (Pa) or penetrations (m), rising or falling; or a range as ``"1e4:1e6:8"``, geometric, or
-        ``"1e-6:3e-5:8:linear"``. Exactly one of the two.
+        Mean pressures (Pa) or penetrations (m), rising or falling. A range is text: ``"1e4:1e6:8"`` is geometric,
+        ``"1e-6:3e-5:8:linear"`` is linear. Give exactly one of the two.
     seeds : iterable of int, or str, optional
         A random surface for each seed: ``range(1, 8)`` or ``"1..7"``. Default: the seed of the surface.
     threads : int, optional
-        Worker threads of each solve. Default: all cores; one with an executor.
+        Worker threads of each solve. Default: all cores, or one with an executor.
     time_limit : float or str, optional
-        Of each solve.
+        Maximum time of each solve.
     out : path, optional
-        A folder that keeps each row as it is finished, as ``rc sweep --out`` does: journal and table are the same, and either program
-        goes on with the rows of the other.
+        A folder that keeps each row as soon as it is finished. Journal and table are those of ``rc sweep --out``, and each
+        program continues the sweeps of the other.
     resume : bool, default False
-        Go on with the sweep in ``out``; start it, if there is none yet.
+        Continue the sweep in ``out``, or start it.
     fields : bool or path, default False
-        True keeps a result folder for each row in ``out``. A folder takes a Zarr group for each row, ``0001.zarr`` and so on, which
-        stays on the machine that solved it: :attr:`Table.fields` says where.
+        True keeps a result folder for each row in ``out``. A path is a folder for a Zarr group of each row, ``0001.zarr`` and
+        so on. The groups stay on the machines that solved them, and :attr:`Table.fields` says where.
     executor : concurrent.futures.Executor or callable, optional
-        Solves rows side by side: anything with ``submit``, as pools of processes or threads, ``Client.get_executor()`` of Dask, or
-        ``MPIPoolExecutor`` of mpi4py; or a function without arguments that makes one. The digits do not depend on it. Rows whose worker
-        was killed are solved again; a pool of processes, which does not outlive a worker, is made anew.
+        Solves rows side by side. It may be anything with ``submit``: a pool of processes or threads,
+        ``Client.get_executor()`` of Dask, or ``MPIPoolExecutor`` of mpi4py. It may also be a function without arguments that
+        makes one. The digits do not depend on it. Rows whose worker was killed are solved again. A pool of processes breaks
+        when it loses a worker, and is then replaced by a new one.
     keep_results : bool, default False
         Keep the :class:`Result` of each row in :attr:`Table.results`.
     progress : bool or callable, default False
-        As for :func:`solve`, for each row; with an executor True is a bar over rows.
+        As for :func:`solve`, for each row. With an executor, True is a bar over rows.
     check : bool, default False
         Raise :class:`NotConvergedError` at the first row that does not converge, instead of warning at the end.
 
@@ -121,11 +122,11 @@ def sweep(
     Raises
     ------
     KeyboardInterrupt
-        After Ctrl-C; its attribute ``table`` has the rows so far, as that of every exception once rows are solved.
+        After Ctrl-C. Its attribute ``table`` has the rows so far. Other exceptions have it too once rows are solved.
     ValueError
-        For input that cannot be used; for a load that a surface cannot carry after all others are solved.
+        For input that cannot be used. For a load that a surface cannot carry, it is raised after all other rows are solved.
     RuntimeError
-        When workers of an executor end three times without a row.
+        When workers of an executor end three times without a finished row.
     """
     given = locals()
     keys = plain({name: value for name, value in given.items() if name not in _OPTIONS})
@@ -197,7 +198,7 @@ def _seeds(seeds: Seeds | None, heights: Any) -> list[int] | None:
 
 
 class _Places(NamedTuple):
-    """Where a sweep writes, and whether it goes on with what is there."""
+    """Where a sweep writes, and whether it continues an earlier one."""
 
     out: str | None
     resume: bool

@@ -29,9 +29,9 @@ class Table:
 
     #: A dict for each solve, by seed, then load.
     rows: list[dict[str, Any]]
-    #: The results of the rows where ``keep_results=True``, else None.
+    #: The results of the rows. None without ``keep_results=True``.
     results: list[Result] | None
-    #: Where the Zarr groups of the rows are with ``fields="DIR"``, else None; None for a row from before.
+    #: The places of the rows' Zarr groups, with None for a row from before. None without ``fields="DIR"``.
     fields: list[FieldsAt | None] | None
 
     def __init__(
@@ -68,7 +68,7 @@ class Table:
         return self.rows[key]
 
     def mean(self, column: str) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """Loads, mean of a column over the seeds at each load, and its standard error (NaN for one seed)."""
+        """Return the loads, the mean of a column over the seeds at each load, and its standard error (NaN for one seed)."""
         loads, place = np.unique(self["control_value"], return_inverse=True)
         groups = [self[column][place == k] for k in range(len(loads))]
         means = np.array([group.mean() for group in groups])
@@ -76,7 +76,7 @@ class Table:
         return loads, means, np.array(errors)
 
     def to_csv(self, path: Path) -> None:
-        """Write the table; numbers read back as they were."""
+        """Write the table as CSV. Numbers read back without loss."""
         with open(os.fspath(path), "w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, self.columns)
             writer.writeheader()

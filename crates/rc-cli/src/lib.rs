@@ -30,6 +30,7 @@ pub mod scene;
 
 mod export;
 mod files;
+mod help;
 pub mod inspect;
 mod manual;
 mod plot;

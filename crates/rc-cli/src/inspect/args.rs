@@ -10,39 +10,42 @@ use crate::scene::values::GridSpec;
 /// Arguments of `rc inspect`.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InspectArgs {
-    /// A height map of any format that rc surface reads, a result folder, or its summary.json or pressure.npy;
-    /// with --spectrum, a file of waves
+    /// A height map, a result folder, or its summary.json or pressure.npy; with --spectrum, a file of waves
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
-    /// FILE has Fourier coefficients, as rc solve --spectrum reads them, and not heights
+    /// FILE has Fourier coefficients, as rc solve --spectrum reads them
     #[arg(long)]
     pub(crate) spectrum: bool,
-    /// Elements per side on which the heights of waves are evaluated for their distribution; moments are exact
-    /// [default: 4 per shortest wave]
+    /// Elements per side for the distribution [default: 4 per shortest wave]
+    ///
+    /// The heights of a file of waves are evaluated on them. Moments are exact.
     #[arg(long, value_name = "N", requires = "spectrum", allow_hyphen_values = true)]
     pub(crate) grid: Option<GridSpec>,
-    /// Side λ of the periodic cell of a height map (m) [default: that of its file if it says it, else 0.01; of a
-    /// result, that of its scene.toml]
-    #[arg(long, allow_hyphen_values = true)]
+    /// Side λ of the cell, along x (m) [default: that in the file, or 0.01]
+    ///
+    /// Of a result, it is that of its scene.toml.
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) cell: Option<f64>,
-    /// Side of a rectangular cell along y (m) [default: that of its file if it says it, else that along x]
+    /// Side of the cell along y (m) [default: that in the file, or --cell]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) cell_y: Option<f64>,
-    /// Unit of the lengths of a height map that names none, or of coefficients: m, mm, um, nm [default: m]
+    /// Unit of lengths in a file that names none: m, mm, um or nm [default: m]
     #[arg(long, value_name = "UNIT")]
     pub(crate) unit: Option<LengthUnit>,
-    /// Height (m) of 1 in a height map that names no unit, as of one level of grey of an image, or in coefficients;
-    /// goes before --unit
+    /// Height of 1 (m) in a file without a unit; overrides --unit
+    ///
+    /// In an image, 1 is one level of grey.
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) height_scale: Option<f64>,
-    /// Channel of a height map that has several; they are listed first [default: the first with heights]
+    /// Channel of a file with several [default: the first with heights]
+    ///
+    /// The channels are listed first.
     #[arg(long, value_name = "NAME")]
     pub(crate) channel: Option<String>,
-    /// How a text of numbers is laid out, where it could be either: matrix (a row of the map a line) or xyz (a point a
-    /// line)
+    /// Layout of an ambiguous text: a row of the map a line, or a point a line
     #[arg(long, value_name = "matrix|xyz")]
     pub(crate) layout: Option<Layout>,
-    /// Folder for pictures of a height map: heights, spectrum with its power law, distribution
+    /// Folder for pictures of a height map: heights, spectrum, distribution
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print the statistics as JSON, with the whole spectrum

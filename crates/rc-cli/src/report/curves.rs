@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::command::{flags, quoted};
-use super::page::{Command, Page, Text, Tile, made};
+use super::page::{Command, Page, Text, Tile, WITHOUT_FILES, made};
 use super::percolation;
 use crate::error::CliError;
 use rc_core::quantity::{Scale, digits, engineering};
-use rc_sweep::{TABLE_FILE, settings_in};
+use rc_sweep::TABLE_FILE;
 
 /// The columns of `sweep.csv` that the page uses, in SI units.
 #[derive(Clone, Debug, Deserialize)]
@@ -72,22 +72,16 @@ struct Point {
     permeance: Option<f64>,
 }
 
-/// The page of the sweep in `folder`.
+/// The page of the sweep in `folder`, whose journal has `settings`.
 ///
 /// # Errors
 /// [`CliError::Input`] when `sweep.csv` does not have the format of a sweep, or has no rows.
-pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
+pub(super) fn page(folder: &Path, settings: Option<&Value>) -> Result<Page<Curves>, CliError> {
     let rows = read(&folder.join(TABLE_FILE))?;
     let scenes: Vec<SceneCurves> = groups(&rows, |row| &row.scene).into_iter().map(SceneCurves::of).collect();
     let surfaces: usize = scenes.iter().map(|scene| scene.seeds.len()).sum();
-    let settings = settings_in(folder);
-    if settings.as_ref().is_some_and(|settings| !settings["ensemble"].is_null()) {
-        let message =
-            "holds the solves of a mean on several grids; rc report has no page for a mean, read mean.json instead";
-        return Err(CliError::in_file(folder, message));
-    }
-    let (status, good) = status(&rows, settings.as_ref());
-    let text = settings.as_ref().and_then(|settings| serde_json::to_string_pretty(settings).ok());
+    let (status, good) = status(&rows, settings);
+    let text = settings.and_then(|settings| serde_json::to_string_pretty(settings).ok());
     let files = text.map(|text| Text { title: "Settings of the sweep", text }).into_iter().collect();
     Ok(Page {
         title: format!("Sweep of {}", folder.file_name().unwrap_or(folder.as_os_str()).display()),
@@ -95,7 +89,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
         status,
         good,
         tiles: tiles(&rows),
-        commands: settings.as_ref().map_or_else(Vec::new, commands),
+        commands: settings.map_or_else(Vec::new, commands),
         files,
         made: made(),
         kind: "sweep",
@@ -258,7 +252,7 @@ fn commands(settings: &Value) -> Vec<Command> {
         let note = match (surface["heights"].as_str(), surface["spectrum"].as_str()) {
             (Some(map), _) => format!("In the folder of the height map {map}:"),
             (None, Some(waves)) => format!("In the folder of the file of waves {waves}:"),
-            (None, None) => "Without any file, digit by digit:".to_owned(),
+            (None, None) => WITHOUT_FILES.to_owned(),
         };
         Command { note, text }
     };

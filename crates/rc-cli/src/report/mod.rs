@@ -1,7 +1,8 @@
-//! `rc report`: a result or a sweep as one page, for a browser without a network.
+//! `rc report`: a result, a sweep or a mean as one page, for a browser without a network.
 //!
 //! The page is a frame ([`document`]), a script, and data. [`contact`] makes the data of a solve, [`curves`] those of a
-//! sweep. All texts are made here, and the script shows them as text. The script draws maps and charts from numbers.
+//! sweep, and [`mean`] those of a mean over realisations. All texts are made here, and the script shows them as text.
+//! The script draws maps and charts from numbers.
 
 pub(crate) mod args;
 
@@ -11,6 +12,7 @@ mod curves;
 mod document;
 mod embedded;
 mod flow_picture;
+mod mean;
 mod page;
 mod percolation;
 mod spot_sizes;
@@ -20,10 +22,22 @@ use std::path::Path;
 use self::args::ReportArgs;
 use crate::error::CliError;
 use crate::terminal;
-use rc_sweep::{TABLE_FILE, files};
+use rc_sweep::{TABLE_FILE, files, settings_in};
 
 /// Name of the page in a folder.
 const PAGE_FILE: &str = "report.html";
+
+/// The page of what is in `folder`.
+fn html(folder: &Path) -> Result<String, CliError> {
+    if !folder.join(TABLE_FILE).is_file() {
+        return Ok(document::html(&contact::page(folder)?));
+    }
+    let settings = settings_in(folder);
+    match settings.as_ref() {
+        Some(settings) if !settings["ensemble"].is_null() => Ok(document::html(&mean::page(folder, settings)?)),
+        settings => Ok(document::html(&curves::page(folder, settings)?)),
+    }
+}
 
 /// Runs `rc report`.
 ///
@@ -34,12 +48,7 @@ pub(crate) fn run(args: &ReportArgs) -> Result<(), CliError> {
     if target.is_dir() {
         return Err(CliError::in_file(&target, format_args!("is a folder; give --out FILE, as {PAGE_FILE}")));
     }
-    let is_sweep = args.folder.join(TABLE_FILE).is_file();
-    let page = if is_sweep {
-        document::html(&curves::page(&args.folder)?)
-    } else {
-        document::html(&contact::page(&args.folder)?)
-    };
+    let page = html(&args.folder)?;
     files::check_folder(target.parent().unwrap_or(Path::new("")))?;
     files::write_file(&target, |path| files::write_synced(path, page.as_bytes()))?;
     if args.quiet { Ok(()) } else { terminal::print(&format!("{}\n", target.display())) }

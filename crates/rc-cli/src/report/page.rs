@@ -18,7 +18,7 @@ pub(super) struct Page<B> {
     pub(super) files: Vec<Text>,
     /// Program and version that made the page.
     pub(super) made: String,
-    /// `result` or `sweep`, which tells the script which parts to draw.
+    /// `result`, `sweep` or `mean`, which tells the script which parts to draw.
     pub(super) kind: &'static str,
     #[serde(flatten)]
     pub(super) body: B,
@@ -30,6 +30,9 @@ pub(super) struct Tile {
     pub(super) name: &'static str,
     pub(super) value: String,
 }
+
+/// What a command line does that has all parameters in it.
+pub(super) const WITHOUT_FILES: &str = "Without any file, digit by digit:";
 
 /// A command line and what it does.
 #[derive(Clone, Debug, Serialize)]

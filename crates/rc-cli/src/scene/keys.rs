@@ -4,7 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum};
 use rc_core::Boundary;
 use rc_fractal::{Amplitudes, Truncation};
 use rc_heights::{Layout, LengthUnit, ReadParams, Scales};
@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::names::{amplitudes, boundaries, methods, truncations};
 use super::time_limit::TimeLimit;
 use super::values::{Fraction, GridSpec, ToleranceSpec};
+use crate::help;
 
 /// The embedded example: the paper's surface with N = 64 at σ0/E* = 8.9e-4.
 ///
@@ -23,164 +24,184 @@ pub const EXAMPLE: &str = include_str!("../../assets/paper-n64.toml");
 
 /// The rough surface: a file of heights or of waves, or the parameters of a random one (Eq. 9-14).
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[command(next_help_heading = "Surface")]
+#[command(next_help_heading = help::SURFACE)]
 pub struct SurfaceKeys {
-    /// Side λ of the periodic cell (m), along x [default: that of the height map if its file says it; 0.01 of a random
-    /// surface]
-    #[arg(long, allow_hyphen_values = true)]
-    pub cell: Option<f64>,
-    /// Side of a rectangular cell along y (m), of a height map [default: that of the height map if its file says it,
-    /// else that along x]
+    /// Side λ of the cell, along x (m) [default: the file's; random surface: 0.01]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub cell: Option<f64>,
+    /// Side of the cell along y (m) [default: that in the file, or --cell]
+    #[arg(long, value_name = "M", help_heading = help::FILES, allow_hyphen_values = true)]
     pub cell_y: Option<f64>,
-    /// Height map instead of a random surface: text, .xyz, .npy, .mat, .h5, .nc, .gwy, .gsf, .grd, .ibw, .sdf, .x3p,
-    /// .sur, .spm, .opd, .dat, .al3d, .plu, .plux, .vk4, 16-bit .png or .tif; positive towards the half-space
+    /// Height map: text, .npy, instrument files; positive towards the half-space
+    ///
+    /// Formats: text, .xyz, .npy, .mat, .h5, .nc, .gwy, .gsf, .grd, .ibw, .sdf, .x3p, .sur, .spm, .opd, .dat, .al3d,
+    /// .plu, .plux, .vk4, 16-bit .png or .tif.
     #[arg(long, value_name = "FILE")]
     pub heights: Option<PathBuf>,
-    /// Fourier coefficients instead of a random surface: text, a line of kx ky Re Im for each wave, kx and ky in waves
-    /// per cell, Re and Im in m
-    #[arg(long, value_name = "FILE")]
+    /// Fourier coefficients: lines kx ky Re Im (waves per cell; m)
+    #[arg(long, value_name = "FILE", help_heading = help::FILES)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spectrum: Option<PathBuf>,
-    /// Unit of the lengths of a height map that names none, or of coefficients: m, mm, um, nm [default: m]
-    #[arg(long, value_name = "UNIT")]
+    /// Unit of lengths in a file that names none: m, mm, um or nm [default: m]
+    #[arg(long, value_name = "UNIT", help_heading = help::FILES)]
     pub unit: Option<LengthUnit>,
-    /// Height (m) of 1 in a height map that names no unit, as of one level of grey of an image, or in coefficients;
-    /// goes before --unit
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    /// Height of 1 (m) in a file without a unit; overrides --unit
+    ///
+    /// In an image, 1 is one level of grey.
+    #[arg(long, value_name = "M", help_heading = help::FILES, allow_hyphen_values = true)]
     pub height_scale: Option<f64>,
-    /// Channel of a height map that has several, as rc inspect lists them [default: the first with heights]
-    #[arg(long, value_name = "NAME")]
+    /// Channel of a file with several [default: the first with heights]
+    ///
+    /// rc inspect lists the channels of a file.
+    #[arg(long, value_name = "NAME", help_heading = help::FILES)]
     pub channel: Option<String>,
-    /// How a text of numbers is laid out, where it could be either: matrix (a row of the map a line) or xyz (a point a
-    /// line)
-    #[arg(long, value_name = "matrix|xyz")]
+    /// Layout of an ambiguous text: a row of the map a line, or a point a line
+    #[arg(long, value_name = "matrix|xyz", help_heading = help::FILES)]
     pub layout: Option<Layout>,
-    /// N, waves per cell of the shortest wave
-    #[arg(long, allow_hyphen_values = true)]
+    /// N of a random surface: waves per cell of the shortest wave [default: 64]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub waves: Option<usize>,
-    /// Hurst exponent H
-    #[arg(long, allow_hyphen_values = true)]
+    /// Hurst exponent H [default: 0.8]
+    #[arg(long, value_name = "H", allow_hyphen_values = true)]
     pub hurst: Option<f64>,
-    /// Rms height (m); or give --rms-slope or --c0
-    #[arg(long, allow_hyphen_values = true)]
+    /// Rms height (m) [default: 13e-6]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub rms: Option<f64>,
-    /// Rms slope of the surface, instead of --rms
-    #[arg(long, allow_hyphen_values = true)]
+    /// Rms slope, instead of --rms
+    #[arg(long, value_name = "SLOPE", help_heading = help::RANDOM, allow_hyphen_values = true)]
     pub rms_slope: Option<f64>,
     /// C0 of Eq. 9 (m⁴), instead of --rms
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long, value_name = "C0", help_heading = help::RANDOM, allow_hyphen_values = true)]
     pub c0: Option<f64>,
-    /// Seed of the random phases
-    #[arg(long, allow_hyphen_values = true)]
+    /// Seed of the random phases [default: 1]
+    #[arg(long, value_name = "SEED", allow_hyphen_values = true)]
     pub seed: Option<u64>,
-    /// Which waves take part: |k| ≤ N or max(|kx|, |ky|) ≤ N
-    #[arg(long, value_parser = truncations())]
+    /// disc: waves with |k| ≤ N; square: with |kx| and |ky| ≤ N [default: disc]
+    #[arg(long, value_name = "NAME", help_heading = help::RANDOM, value_parser = truncations(), hide_possible_values = true)]
     pub truncation: Option<Truncation>,
-    /// Below this number of waves per cell the spectrum is flat (1: no roll-off)
-    #[arg(long, allow_hyphen_values = true)]
+    /// Flat spectrum below this number of waves per cell [default: 1]
+    #[arg(long, value_name = "N", help_heading = help::RANDOM, allow_hyphen_values = true)]
     pub roll_off: Option<f64>,
     /// No waves below this number of waves per cell [default: 1]
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", help_heading = help::RANDOM, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub low_cut: Option<f64>,
-    /// Amplitudes exactly of the spectrum (Eq. 14), or random about it
-    #[arg(long, value_parser = amplitudes())]
+    /// fixed: those of the spectrum (Eq. 14); random: Gaussian [default: fixed]
+    #[arg(long, value_name = "NAME", help_heading = help::RANDOM, value_parser = amplitudes(), hide_possible_values = true)]
     pub amplitudes: Option<Amplitudes>,
-    /// Finest elements per side: 512, or 512x256 along x and y [default: 32 per shortest wave; a height map has its
-    /// own]
+    /// Elements per side, 512 or 512x256 [default: the map's; 32 per shortest wave]
+    ///
+    /// 512x256 is along x and y. The adaptive method has larger elements, too; these are its finest.
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub grid: Option<GridSpec>,
 }
 
 /// The elastic half-space, the load, and how the problem is solved.
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[command(next_help_heading = "Contact")]
+#[command(next_help_heading = help::CONTACT)]
 pub struct ContactKeys {
-    /// Young's modulus (Pa)
-    #[arg(long, allow_hyphen_values = true)]
+    /// Young's modulus (Pa) [default, random surface: 0.4e9]
+    #[arg(long, value_name = "PA", allow_hyphen_values = true)]
     pub young: Option<f64>,
-    /// Poisson's ratio
-    #[arg(long, allow_hyphen_values = true)]
+    /// Poisson's ratio [default, random surface: 0.45]
+    #[arg(long, value_name = "NU", allow_hyphen_values = true)]
     pub poisson: Option<f64>,
     /// E* = E/(1-ν²) (Pa), instead of --young and --poisson
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long, value_name = "PA", allow_hyphen_values = true)]
     pub e_star: Option<f64>,
     /// Mean pressure σ0 (Pa)
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long, value_name = "PA", allow_hyphen_values = true)]
     pub pressure: Option<f64>,
     /// Penetration Δ (m), instead of --pressure
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub penetration: Option<f64>,
-    /// Hardness (Pa): no pressure is greater, the usual first model of plastic contact [default: none, an elastic
-    /// contact]
-    #[arg(long, allow_hyphen_values = true)]
+    /// Plastic contact: no pressure above this hardness (Pa)
+    ///
+    /// It is the usual first model of plastic contact. Without a hardness the contact is elastic.
+    #[arg(long, value_name = "PA", help_heading = help::PHYSICS, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hardness: Option<f64>,
-    /// Discretisation of the half-space: the paper's uniformly loaded square, or the Fourier symbol
-    #[arg(long)]
+    /// love (the paper's loaded square) or spectral [default: love]
+    ///
+    /// love: pressure constant on each element, displacement at its centre (Eq. 5). spectral: the symbol 2/(E* q), as
+    /// FFT codes have it.
+    #[arg(long, value_name = "NAME", help_heading = help::MACHINE, hide_possible_values = true)]
     pub kernel: Option<KernelName>,
-    /// What is beyond the heights: the same heights again, or the free surface of the half-space, for a patch
-    #[arg(long, value_parser = boundaries())]
+    /// periodic, or free: a patch on a half-space [default: periodic]
+    ///
+    /// periodic: the heights repeat. free: beyond the heights, nothing presses on the half-space.
+    #[arg(long, value_name = "NAME", help_heading = help::PHYSICS, value_parser = boundaries(), hide_possible_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub boundary: Option<Boundary>,
-    /// Thickness (m) of an elastic layer on a rigid base to which it sticks, instead of the half-space
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    /// Elastic layer of this thickness (m), bonded to a rigid base
+    #[arg(long, value_name = "M", help_heading = help::PHYSICS, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layer_thickness: Option<f64>,
     /// Poisson's ratio of the layer [default: --poisson]
-    #[arg(long, value_name = "NU", allow_hyphen_values = true)]
+    #[arg(long, value_name = "NU", help_heading = help::PHYSICS, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layer_poisson: Option<f64>,
-    /// How the problem is solved [default: adaptive, or uniform where that is cheaper; the summary says which and why]
-    #[arg(long, value_parser = methods())]
+    /// adaptive, uniform or gauss-seidel [default: cheaper of the first two]
+    ///
+    /// adaptive: on elements that follow the contact; work and memory grow with the contact area (kernel love, square
+    /// elements). uniform: FFT on the whole grid. gauss-seidel: the procedure of the paper. The default follows from
+    /// the estimated contact area; the summary gives the reason. A method that is named is used as given.
+    #[arg(long, value_name = "NAME", help_heading = help::MACHINE, value_parser = methods(), hide_possible_values = true)]
     pub method: Option<Method>,
-    /// Halve elements at the edges of contacts this many times beyond --grid (adaptive method, generated surfaces)
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    /// Times to halve elements at edges of contacts, beyond --grid (adaptive)
+    ///
+    /// For generated surfaces.
+    #[arg(long, value_name = "N", help_heading = help::MACHINE, allow_hyphen_values = true)]
     pub border_level: Option<usize>,
-    /// Certified relative error of the pressure in the energy norm, which pits, offsets and light loads do not loosen
-    /// [default: 0.01]
-    #[arg(long, value_name = "ERROR", allow_hyphen_values = true)]
+    /// Certified relative energy error of the pressure [default: 0.01]
+    ///
+    /// Pits, offsets and light loads do not loosen it.
+    #[arg(long, value_name = "ERROR", help_heading = help::ACCURACY, allow_hyphen_values = true)]
     pub energy_tolerance: Option<f64>,
-    /// Instead: certified tolerance relative to the peak-to-valley height, as other programs have it; or auto, an
-    /// energy error well below the error of the grid
-    #[arg(long, allow_hyphen_values = true)]
+    /// Instead: tolerance relative to the peak-to-valley height, or auto
+    ///
+    /// Other programs have a tolerance relative to the height. auto is an energy error well below the error of the
+    /// grid.
+    #[arg(long, value_name = "ERROR", help_heading = help::ACCURACY, allow_hyphen_values = true)]
     pub tolerance: Option<ToleranceSpec>,
-    /// Choose the grid so that the relative error of the contact area is at most this, as 0.5% or 0.005, and no finer
-    /// than needed; the tolerance is auto then, unless it is given (random surfaces, instead of --grid)
-    #[arg(long, value_name = "ERROR", allow_hyphen_values = true)]
+    /// Wanted relative error of the contact area, as 0.5%: sets the grid
+    ///
+    /// The grid is no finer than needed. The tolerance is auto, unless it is given. For random surfaces, instead of
+    /// --grid.
+    #[arg(long, value_name = "ERROR", help_heading = help::ACCURACY, allow_hyphen_values = true)]
     pub area_error: Option<Fraction>,
-    /// Compute the flow of a thin film through the gap too: permeance, percolation, critical constriction
-    #[arg(long)]
+    /// Flow through the gap: permeance, percolation, critical constriction
+    #[arg(long, help_heading = help::PHYSICS)]
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub leakage: bool,
-    /// Write pressure and gap averaged to this many elements per side
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    /// Average pressure and gap to this many elements per side in the files
+    #[arg(long, value_name = "N", help_heading = help::RESULTS, display_order = 100, allow_hyphen_values = true)]
     pub output_grid: Option<GridSpec>,
 }
 
 /// How the command runs, and where its results go.
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[command(next_help_heading = "Run")]
+#[command(next_help_heading = help::RESULTS)]
 pub struct RunKeys {
-    /// Folder that receives the results; without it nothing is written
+    /// Folder for the results; without it nothing is written
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Worker threads [default: all cores]; results do not depend on it
-    #[arg(long, allow_hyphen_values = true)]
+    /// Worker threads; results do not depend on it [default: all cores]
+    #[arg(long, value_name = "N", help_heading = help::MACHINE, allow_hyphen_values = true)]
     pub threads: Option<usize>,
-    /// Most memory, as 500MB, 2GB or bytes: what is estimated to need more is refused before any work
-    #[arg(long, value_name = "SIZE", allow_hyphen_values = true)]
+    /// Refuse what is estimated to need more: 500MB, 2GB, or bytes
+    #[arg(long, value_name = "SIZE", help_heading = help::MACHINE, allow_hyphen_values = true)]
     pub memory_limit: Option<ByteSize>,
-    /// Most time, in seconds or as 90s, 5min, 1h: a solve that takes longer ends with what there is, marked
-    /// not_converged; a sweep begins no further row
-    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    /// Stop after this time with what there is: seconds, or 90s, 5min, 1h
+    ///
+    /// A solve that takes longer is marked not_converged. A sweep begins no further row.
+    #[arg(long, value_name = "TIME", help_heading = help::MACHINE, allow_hyphen_values = true)]
     pub time_limit: Option<TimeLimit>,
-    /// Print nothing but errors and what --json asks for
+    /// Print only errors, and what --json asks for
     #[arg(long)]
     #[serde(default)]
     pub quiet: bool,
-    /// Print the summary as JSON, whatever else is said
+    /// Print the summary as JSON, also with --quiet
     #[arg(long)]
     #[serde(default)]
     pub json: bool,
@@ -200,17 +221,42 @@ pub enum KernelName {
 }
 
 /// A scene: the three groups of keys.
-#[derive(Args, Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
     /// The rough surface.
-    #[command(flatten)]
     pub surface: SurfaceKeys,
     /// Half-space, load, method.
-    #[command(flatten)]
     pub contact: ContactKeys,
     /// Run and output.
-    #[command(flatten)]
     pub run: RunKeys,
+}
+
+// By hand, for the order of headings.
+impl Args for Scene {
+    fn augment_args(command: Command) -> Command {
+        let keys = RunKeys::augment_args(ContactKeys::augment_args(SurfaceKeys::augment_args(Command::new("keys"))));
+        help::add_by_heading(command, &keys)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for Scene {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        Ok(Self {
+            surface: SurfaceKeys::from_arg_matches(matches)?,
+            contact: ContactKeys::from_arg_matches(matches)?,
+            run: RunKeys::from_arg_matches(matches)?,
+        })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        self.surface.update_from_arg_matches(matches)?;
+        self.contact.update_from_arg_matches(matches)?;
+        self.run.update_from_arg_matches(matches)
+    }
 }
 
 /// Sets each key that `upper` does not have to the value in `lower`.
@@ -347,46 +393,4 @@ impl Scene {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_upper_key_removes_its_alternatives_below() {
-        let lower = Scene {
-            surface: SurfaceKeys { waves: Some(8), rms: Some(1.0), cell: Some(2.0), ..Default::default() },
-            contact: ContactKeys { pressure: Some(1.0), e_star: Some(3.0), ..Default::default() },
-            run: RunKeys::default(),
-        };
-        let upper = Scene {
-            surface: SurfaceKeys { c0: Some(4.0), ..Default::default() },
-            contact: ContactKeys { penetration: Some(5.0), young: Some(6.0), ..Default::default() },
-            run: RunKeys { json: true, ..Default::default() },
-        };
-        let merged = upper.over(lower);
-        assert_eq!((merged.surface.c0, merged.surface.rms, merged.surface.waves), (Some(4.0), None, Some(8)));
-        assert_eq!((merged.contact.penetration, merged.contact.pressure), (Some(5.0), None));
-        assert_eq!((merged.contact.young, merged.contact.e_star), (Some(6.0), None));
-        assert!(merged.run.json);
-    }
-
-    #[test]
-    fn a_height_map_replaces_a_random_surface_and_the_reverse() {
-        let map = SurfaceKeys { heights: Some("h.npy".into()), ..Default::default() };
-        let random =
-            SurfaceKeys { waves: Some(8), grid: Some(GridSpec::square(64)), cell: Some(2.0), ..Default::default() };
-        let merged = map.clone().over(random.clone());
-        assert_eq!((merged.waves, merged.grid, merged.cell), (None, None, Some(2.0)));
-        let rectangle = || SurfaceKeys { cell: Some(2.0), cell_y: Some(1.0), ..Default::default() };
-        let other = SurfaceKeys { cell: Some(4.0), ..Default::default() }.over(rectangle());
-        assert_eq!((other.cell, other.cell_y), (Some(4.0), None), "the other side was that of another cell");
-        let same = SurfaceKeys { grid: Some(GridSpec::square(64)), ..Default::default() }.over(rectangle());
-        assert_eq!((same.cell, same.cell_y), (Some(2.0), Some(1.0)));
-        assert_eq!(random.clone().over(map.clone()).heights, None);
-        let waves = SurfaceKeys { spectrum: Some("waves.txt".into()), ..Default::default() };
-        for lower in [&random, &map] {
-            let merged = waves.clone().over(lower.clone());
-            assert_eq!((merged.waves, merged.heights, merged.cell), (None, None, lower.cell));
-            assert_eq!(lower.clone().over(waves.clone()).spectrum, None);
-        }
-    }
-}
+mod tests;

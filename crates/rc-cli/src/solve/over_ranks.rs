@@ -14,6 +14,7 @@ use super::job::Job;
 use super::scene_of;
 use crate::error::CliError;
 use crate::files::checkpoint::CheckpointFile;
+use crate::help;
 use crate::run::together::together;
 use crate::run::{stop, threads};
 use crate::scene::file;
@@ -27,6 +28,7 @@ use crate::terminal;
 /// the mesh; all of them have the base grid. Exit codes: 0 solved, 2 bad input, 3 not converged, 4 could not write.
 #[derive(Parser, Clone, Debug)]
 #[command(name = "rc-mpi", version, max_term_width = 120, disable_help_subcommand = true)]
+#[command(disable_help_flag = true, arg = help::help_flag())]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -42,13 +44,16 @@ enum Command {
 struct RanksArgs {
     #[command(flatten)]
     solve: SolveArgs,
-    /// File that keeps what the last level has left for the next one: a run that was ended goes on from there, on any
-    /// number of ranks, to the same digits. It is removed when the result is there
-    #[arg(long, value_name = "FILE", help_heading = "Run")]
+    /// File from which a run that was ended continues, on any number of ranks
+    ///
+    /// It keeps what the last level has left for the next one. The digits are the same. It is removed when the result is
+    /// there.
+    #[arg(long, value_name = "FILE", help_heading = help::MACHINE)]
     checkpoint: Option<PathBuf>,
-    /// Write pressure and gap as the Zarr group DIR/fields.zarr, all ranks at once, in place of pressure.npy, gap.npy,
-    /// elements.csv and contact.png, which one rank writes
-    #[arg(long, help_heading = "Run")]
+    /// All ranks write pressure and gap as the Zarr group DIR/fields.zarr
+    ///
+    /// It replaces pressure.npy, gap.npy, elements.csv and contact.png, which one rank writes.
+    #[arg(long, help_heading = help::RESULTS)]
     zarr: bool,
 }
 

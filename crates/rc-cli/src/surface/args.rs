@@ -11,7 +11,7 @@ use crate::scene::keys::{RunKeys, SurfaceKeys};
 #[derive(Args, Clone, Debug)]
 #[command(after_help = SURFACE_HELP)]
 pub(crate) struct SurfaceArgs {
-    /// Scene file; its keys of the contact are passed over
+    /// Scene file; its keys of the contact are ignored
     #[arg(value_name = "SCENE.toml")]
     pub(crate) scene_file: Option<PathBuf>,
     /// What is given here overrides the scene file.
@@ -26,8 +26,8 @@ pub(crate) struct SurfaceArgs {
 }
 
 const SURFACE_HELP: &str = "\
---out DIR receives heights.npy (m), scene.toml, surface.png and surface.json; --out FILE.npy or --out FILE.csv the heights \
-alone; without --out nothing is written. Heights are written in m.
+--out DIR receives heights.npy (m), scene.toml, surface.png and surface.json. --out FILE.npy or FILE.csv receives the heights \
+alone (m).
 
-A measured map mostly needs --crop square --fill laplace --level plane --periodic mirror. What each treatment changes is printed \
+Most measured maps need --crop square --fill laplace --level plane --periodic mirror. What each treatment changes is printed \
 and goes into surface.json.";

@@ -11,36 +11,40 @@ use crate::scene::values::GridSpec;
 #[derive(Args, Clone, Debug, Default, PartialEq)]
 #[command(next_help_heading = "Treatment of a height map, in this order")]
 pub(crate) struct TreatmentKeys {
-    /// Keep a part: square (the largest in the middle; points of a map without a size are squares), or points as 512,
-    /// 512x256, or 512x256+100+50 from a first point on
+    /// Keep a part: square (the largest in the middle), 512, 512x256, or 512x256+100+50
+    ///
+    /// Numbers are points along x and y, and the first point along x and y. Points of a map without a size are squares.
     #[arg(long, value_name = "PART")]
     pub(crate) crop: Option<Crop>,
-    /// Mirror along these axes: x, y, or z (peaks become valleys, for replicas); with commas between them
+    /// Mirror along axes: x, y, z (peaks become valleys, for replicas), or x,z
     #[arg(long, value_name = "AXES", value_delimiter = ',')]
     pub(crate) flip: Vec<Flip>,
-    /// Give missing points heights: laplace (the smoothest membrane through those around), nearest (by length), or
-    /// lowest
+    /// Fill missing points: laplace (a membrane through those around), nearest, or lowest
     #[arg(long, value_name = "HOW")]
     pub(crate) fill: Option<Fill>,
-    /// Take a form away, by least squares over the measured points: mean, plane or quadratic
+    /// Subtract a form, fitted by least squares: mean, plane or quadratic
     #[arg(long, value_name = "FORM")]
     pub(crate) level: Option<Level>,
-    /// Make opposite borders meet: mirror (four times the points on twice the side; slopes change sign at the seams),
-    /// window (heights fade to their mean towards the borders), or as-is (they meet already)
-    #[arg(long, value_name = "HOW")]
+    /// Make opposite borders meet: mirror (twice the side), window, or as-is (they meet)
+    ///
+    /// mirror has four times the points on twice the side; slopes change sign at the seams. With window, heights fade
+    /// to their mean towards the borders.
+    #[arg(long, value_name = "HOW", hide_possible_values = true)]
     pub(crate) periodic: Option<PeriodicName>,
-    /// The part of each side that --periodic window fades, at each of its ends
+    /// Part of a side that --periodic window fades, at each of its ends
     #[arg(long, value_name = "PART", default_value_t = 0.1, allow_hyphen_values = true)]
     pub(crate) taper: f64,
-    /// Gaussian filter (ISO 16610-61): waves of this length (m), of four points or more, keep half of their height,
-    /// shorter ones less
+    /// Gaussian filter (ISO 16610-61) that halves waves of this length (m)
+    ///
+    /// Shorter waves lose more. The length is four points or more.
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub(crate) low_pass: Option<f64>,
-    /// Other numbers of points on the same area: 512, or 512x256; fewer are means, more are on cubic curves
+    /// Points on the same area: 512, or 512x256; by means, or cubic interpolation
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) resample: Option<GridSpec>,
-    /// Copies of a periodic map beside each other: square (as many as make the cell a square, which the adaptive method
-    /// needs), or 3x4
+    /// Copies of a periodic map side by side: 3x4, or square (makes the cell a square)
+    ///
+    /// The adaptive method needs a square.
     #[arg(long, value_name = "COPIES")]
     pub(crate) repeat: Option<Repeat>,
 }

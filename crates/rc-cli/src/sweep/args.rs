@@ -12,44 +12,49 @@ use crate::scene::values::Fraction;
 
 /// Arguments of `rc sweep`.
 #[derive(Args, Clone, Debug)]
-#[command(after_help = SWEEP_HELP, args_conflicts_with_subcommands = true)]
+#[command(after_help = SWEEP_HELP, after_long_help = SWEEP_MANUAL, args_conflicts_with_subcommands = true)]
 pub(crate) struct SweepArgs {
     /// What else there is to do with sweeps.
     #[command(subcommand)]
     pub(crate) command: Option<SweepCommand>,
-    /// Scene files; every seed and load is solved for each
+    /// Scene files; each is solved for all seeds and loads
     #[arg(value_name = "SCENE.toml")]
     pub(crate) scene_files: Vec<PathBuf>,
-    /// Mean pressures (Pa): first:last:count, geometric; first:last:count:linear; or values with commas between them
+    /// Mean pressures (Pa): 1e4:1e6:8 (geometric), 1e4:1e6:8:linear, 1e4,1e5
+    ///
+    /// first:last:count is geometric, first:last:count:linear is linear; or values with commas between them.
     #[arg(long, value_name = "LIST", help_heading = "Sweep", allow_hyphen_values = true)]
     pub(crate) pressures: Option<Loads>,
-    /// Penetrations (m), in the same way, instead of --pressures
+    /// Penetrations (m), in the same forms, instead of --pressures
     #[arg(long, value_name = "LIST", help_heading = "Sweep", allow_hyphen_values = true)]
     pub(crate) penetrations: Option<Loads>,
     /// Seeds: 1..7 (both included), or a list with commas
     #[arg(long, value_name = "LIST", help_heading = "Sweep", allow_hyphen_values = true)]
     pub(crate) seeds: Option<Seeds>,
-    /// Keep a result folder for each row, rows/0001 and so on
+    /// Keep a result folder for each row: rows/0001 and so on
     #[arg(long, help_heading = "Sweep")]
     pub(crate) fields: bool,
-    /// Go on with the sweep in --out; start it, if there is none yet
+    /// Continue the sweep in --out, or start it
     #[arg(long, help_heading = "Sweep")]
     pub(crate) resume: bool,
-    /// Solve part i of n, of about equal work; `rc sweep merge` puts the parts together. With auto, the part that the
-    /// task of a job array (Slurm, PBS) or the MPI rank says, in a folder of its own in --out; auto/N where only the
-    /// task is known
+    /// Solve part i of n; auto: the part of this task of a job array
+    ///
+    /// rc sweep merge puts the parts together. auto is the part that the task of a job array (Slurm, PBS) or the MPI
+    /// rank says, in a folder of its own in --out. auto/N is for where only the task is known.
     #[arg(long, value_name = "I/N", help_heading = "Sweep", allow_hyphen_values = true)]
     pub(crate) shard: Option<ShardSpec>,
-    /// Print the commands of N parts, one a line, for HyperQueue or GNU parallel, and solve nothing [default: a part
-    /// for each row]
+    /// Print the commands of N parts, one a line, and solve nothing
+    ///
+    /// The lines are for HyperQueue or GNU parallel. Without N there is a part for each row.
     #[arg(long, value_name = "N", help_heading = "Sweep", num_args = 0..=1, default_missing_value = ListSpec::ROWS, require_equals = true, conflicts_with = "shard")]
     pub(crate) list: Option<ListSpec>,
-    /// Solve as many realisations, on as coarse grids, as the mean of the contact area needs for this relative rms
-    /// error, as 0.5%; --seed is the first, --grid the finest
+    /// Wanted relative rms error of the mean over surfaces, as 0.5%
+    ///
+    /// Chooses how many realisations are solved on which grids. --seed is the first, --grid the finest.
     #[arg(long, value_name = "ERROR", help_heading = "Sweep", allow_hyphen_values = true)]
     pub(crate) error_of_mean: Option<Fraction>,
-    /// What --error-of-mean is of, instead of area_fraction
-    #[arg(long, value_name = "KEY", help_heading = "Sweep", value_parser = QUANTITIES)]
+    /// Key of the summary for --error-of-mean [default: area_fraction]
+    #[arg(long, value_name = "KEY", help_heading = "Sweep", value_parser = QUANTITIES, hide_possible_values = true)]
     pub(crate) mean_of: Option<String>,
     /// What is given here overrides the scene files.
     #[command(flatten)]
@@ -78,14 +83,14 @@ impl SweepArgs {
 /// Commands of `rc sweep`.
 #[derive(Subcommand, Clone, Debug)]
 pub(crate) enum SweepCommand {
-    /// Put the shards of a sweep together
+    /// Put the parts of a sweep (--shard) together
     Merge(MergeArgs),
 }
 
 /// Arguments of `rc sweep merge`.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct MergeArgs {
-    /// Folders of all shards of one sweep
+    /// Folders of all parts of one sweep
     #[arg(value_name = "DIR", required = true)]
     pub(crate) folders: Vec<PathBuf>,
     /// Folder for the whole sweep
@@ -97,23 +102,26 @@ pub(crate) struct MergeArgs {
 }
 
 const SWEEP_HELP: &str = "\
-DIR (--out) receives sweep.csv: a line for each solve, by scene, seed, load; its columns are scene (of more than one), seed, \
-control_value (Pa or m), and the keys of the summary of rc solve; --leakage \
-adds permeance_x, permeance_y (m³) and percolates (along x, along y). In it, threads are those of the whole sweep, and \
-peak_memory_bytes that of its process. Finished rows are kept in sweep.jsonl at once: whatever ends the sweep, --resume \
-goes on after them.
+DIR receives sweep.csv, a line for each solve. Without lists, each scene is solved for its own load and seed.
+Manual pages with longer texts: rc man --out man";
+
+const SWEEP_MANUAL: &str = "\
+DIR (--out) receives sweep.csv: a line for each solve, by scene, seed, load. Its columns are scene (where there are several), seed, \
+control_value (Pa or m), and the keys of the summary of rc solve. --leakage adds permeance_x, permeance_y (m³) and percolates \
+(along x, along y). threads is the number of the whole sweep, and peak_memory_bytes that of its process. Finished rows are kept \
+in sweep.jsonl at once: whatever ends the sweep, --resume continues after them.
 
 --threads is the number of all threads. As many rows as fit into memory (--memory-limit, or half of the machine's) are \
-solved side by side; no result depends on it.
+solved side by side. No result depends on it.
 
 Parts of a sweep are of about equal work, by the estimate of rc solve --dry-run. In a job array, rc sweep ... --shard auto \
---resume --out DIR is the command of every task; a task that is run again goes on after its finished rows. Each has a folder \
-DIR/part-i-of-n, and rc sweep merge DIR/part-* --out ALL makes the sweep of them.
+--resume --out DIR is the command of every task. A task that is run again continues after its finished rows. Each task has a \
+folder DIR/part-i-of-n, and rc sweep merge DIR/part-* --out ALL makes the sweep of them.
 
 --error-of-mean chooses realisations and grids by multilevel Monte Carlo: many realisations on a coarse grid, and few \
-differences to finer ones. DIR receives mean.json: mean, standard error and error of the grid for each load, and for each \
-level its grids, realisations, variance and cost; sweep.csv has the solves. Only results decide what is solved next, so it \
+differences to finer ones. DIR receives mean.json: mean, standard error and error of the grid for each load, and grids, \
+realisations, variance and cost of each level. sweep.csv has the solves. Only results decide what is solved next, so the sweep \
 can be interrupted, and resumed also with a smaller error.
 
-Without lists, a scene is solved for its own load and seed. Rows that did not converge are marked, and make exit code 3 at \
-the end; a row whose input is refused ends the sweep.";
+Without lists, a scene is solved for its own load and seed. Rows that did not converge are marked, and the exit code is 3 at \
+the end. A row whose input is refused ends the sweep.";

@@ -22,7 +22,7 @@ use crate::scene::surface::Source;
 use crate::{terminal, text};
 
 /// File of the means in the folder of an ensemble.
-const MEAN_FILE: &str = "mean.json";
+pub(crate) const MEAN_FILE: &str = "mean.json";
 
 /// Minimum number of elements per shortest wave, and minimum number per side.
 const COARSEST: [usize; 2] = [4, 64];

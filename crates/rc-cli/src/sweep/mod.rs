@@ -14,6 +14,7 @@ mod rows;
 mod specs;
 mod surfaces;
 
+pub(crate) use mean::MEAN_FILE;
 pub use planned::{MapMark, SweepLists, plan};
 
 use std::sync::Arc;

@@ -177,3 +177,30 @@ fn a_browser_draws_the_page() {
     assert_eq!(page.matches("<canvas").count(), 3, "maps");
     assert_eq!(page.matches("<svg").count(), 4, "two sections, the distribution and the spots");
 }
+
+#[test]
+fn the_page_of_a_mean_has_its_levels_and_the_command_that_repeats_it() {
+    let place = Place::new();
+    let mean = ["sweep", "--waves", "8", "--grid", "128", "--pressures", "2e5,4e5", "--error-of-mean", "10%"];
+    assert_solved(&place.run(&[&mean[..], &["--quiet", "--out", "m"]].concat()));
+    assert_solved(&place.run(&["report", "m"]));
+    let page = self_contained(&place, "m/report.html");
+    assert_eq!((&page["kind"], &page["status"], &page["good"]), (&"mean".into(), &"converged".into(), &true.into()));
+    let means = place.json("m/mean.json");
+    for (drawn, mean) in page["means"].as_array().expect("means").iter().zip(means.as_array().expect("means")) {
+        assert_eq!((&drawn["load"], &drawn["mean"]), (&mean["control_value"], &mean["mean"]));
+        let [error, statistics, grid] = [&drawn["error"], &mean["standard_error"], &mean["grid_error"]]
+            .map(|value| value.as_f64().expect("a number"));
+        assert!((error / statistics.hypot(grid) - 1.0).abs() < 1e-12, "{error}: {statistics}, {grid}");
+        let variances: Vec<&Value> =
+            mean["levels"].as_array().expect("levels").iter().map(|level| &level["variance"]).collect();
+        assert_eq!(drawn["variances"].as_array().expect("variances").iter().collect::<Vec<_>>(), variances);
+        assert_eq!(drawn["levels"].as_array().map(Vec::len), Some(variances.len()));
+    }
+    assert_eq!(page["rows"].as_array().map(Vec::len), Some(2));
+    repeat(&place, &page["commands"][0]);
+    assert!(place.bytes("again/mean.json") == place.bytes("m/mean.json"), "{} gives other means", page["commands"][0]);
+    // Interrupted: there are solves, and no mean.
+    std::fs::remove_file(place.path("m/mean.json")).expect("a file");
+    assert_refused(&place.run(&["report", "m"]), "has no mean.json yet: the mean is not finished");
+}

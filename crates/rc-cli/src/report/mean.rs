@@ -1,0 +1,247 @@
+//! The page of a mean over realisations (`rc sweep --error-of-mean`): means with error bars, and their levels.
+
+use std::fs;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::command::{flags, quoted};
+use super::page::{Command, Page, Text, Tile, WITHOUT_FILES, made};
+use crate::error::CliError;
+use crate::sweep::MEAN_FILE;
+use crate::text::with_error;
+use rc_core::quantity::{Scale, digits, engineering};
+
+/// A mean under one load, as `mean.json` has it; null stands for what is not finite.
+#[derive(Clone, Debug, Deserialize)]
+struct Estimate {
+    status: String,
+    mean_of: String,
+    control: String,
+    control_value: f64,
+    mean: f64,
+    standard_error: f64,
+    grid_error: f64,
+    relative_error: Option<f64>,
+    wanted_error: f64,
+    cost: f64,
+    cost_of_plain_mean: Option<f64>,
+    levels: Vec<Level>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct Level {
+    grid: usize,
+    coarser_grid: Option<usize>,
+    first_seed: u64,
+    realisations: usize,
+    mean: f64,
+    variance: f64,
+    cost: f64,
+}
+
+/// The data of the page that are of this kind only.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Body {
+    quantity: Named,
+    load: Named,
+    means: Vec<Curve>,
+    heads: [&'static str; 7],
+    rows: Vec<[String; 7]>,
+    level_heads: [&'static str; 6],
+    note: &'static str,
+}
+
+/// A quantity with its unit, as axes have them.
+#[derive(Clone, Debug, Serialize)]
+struct Named {
+    label: String,
+    unit: &'static str,
+}
+
+/// What is drawn of one mean, and the table of its levels.
+#[derive(Clone, Debug, Serialize)]
+struct Curve {
+    /// The load.
+    name: String,
+    load: f64,
+    mean: f64,
+    error: f64,
+    grids: Vec<usize>,
+    variances: Vec<f64>,
+    costs: Vec<f64>,
+    levels: Vec<[String; 6]>,
+}
+
+/// The page of the mean in `folder`, whose journal has `settings`.
+///
+/// # Errors
+/// [`CliError::Input`] when there is no `mean.json` yet, or when it is not what `rc sweep` writes.
+pub(super) fn page(folder: &Path, settings: &Value) -> Result<Page<Body>, CliError> {
+    let means = read(folder)?;
+    let (first, open) = (&means[0], means.iter().filter(|mean| mean.status != "converged").count());
+    let status = if open == 0 { "converged".to_owned() } else { format!("{open} not converged") };
+    let files = serde_json::to_string_pretty(settings).ok();
+    Ok(Page {
+        title: format!("Mean of {}", folder.file_name().unwrap_or(folder.as_os_str()).display()),
+        subtitle: format!("Mean of {} over realisations, given {}", first.mean_of, first.control),
+        status,
+        good: open == 0,
+        tiles: tiles(&means),
+        commands: vec![command(settings, first)],
+        files: files.map(|text| Text { title: "Settings of the sweep", text }).into_iter().collect(),
+        made: made(),
+        kind: "mean",
+        body: body(&means),
+    })
+}
+
+fn read(folder: &Path) -> Result<Vec<Estimate>, CliError> {
+    let path = folder.join(MEAN_FILE);
+    if !path.exists() {
+        let message = format!("has no {MEAN_FILE} yet: the mean is not finished; run its rc sweep again with --resume");
+        return Err(CliError::in_file(folder, message));
+    }
+    let text = fs::read_to_string(&path).map_err(|cause| CliError::in_file(&path, cause))?;
+    let means: Vec<Estimate> = serde_json::from_str(&text)
+        .map_err(|cause| CliError::in_file(&path, format_args!("not the means of rc sweep: {cause}")))?;
+    if means.iter().any(|mean| mean.levels.is_empty()) || means.is_empty() {
+        return Err(CliError::in_file(&path, "not the means of rc sweep: a mean or its levels are missing"));
+    }
+    Ok(means)
+}
+
+impl Estimate {
+    fn unit(&self) -> &'static str {
+        match self.mean_of.as_str() {
+            "penetration" | "mean_gap" | "contact_perimeter" | "h_max" => "m",
+            "mean_pressure" | "rms_pressure_corrected" => "Pa",
+            "contact_stiffness" => "Pa/m",
+            "elastic_energy" => "J",
+            _ => "",
+        }
+    }
+
+    fn load_unit(&self) -> &'static str {
+        if self.control == "pressure" { "Pa" } else { "m" }
+    }
+
+    fn load(&self) -> String {
+        engineering(self.control_value, self.load_unit())
+    }
+
+    /// Of statistics and grid together.
+    fn error(&self) -> f64 {
+        self.standard_error.hypot(self.grid_error)
+    }
+
+    fn realisations(&self) -> usize {
+        self.levels.iter().map(|level| level.realisations).sum()
+    }
+
+    /// The mean with its error bar.
+    fn text(&self) -> String {
+        let scale = Scale::of(self.mean.abs(), self.unit());
+        format!("{} {}", with_error(self.mean / scale.factor, self.error() / scale.factor), scale.unit())
+            .trim_end()
+            .to_owned()
+    }
+
+    fn row(&self) -> [String; 7] {
+        let part = |error: f64| format!("{} %", digits(100.0 * error / self.mean.abs(), 2));
+        [
+            self.load(),
+            self.text(),
+            part(self.error()),
+            part(self.standard_error),
+            part(self.grid_error),
+            self.realisations().to_string(),
+            self.status.replace('_', " "),
+        ]
+    }
+}
+
+impl Curve {
+    fn of(mean: &Estimate) -> Self {
+        let total: f64 = mean.levels.iter().map(|level| level.cost * level.realisations as f64).sum();
+        Self {
+            name: mean.load(),
+            load: mean.control_value,
+            mean: mean.mean,
+            error: mean.error(),
+            grids: mean.levels.iter().map(|level| level.grid).collect(),
+            variances: mean.levels.iter().map(|level| level.variance).collect(),
+            costs: mean.levels.iter().map(|level| level.cost).collect(),
+            levels: mean.levels.iter().map(|level| level.row(mean.unit(), total)).collect(),
+        }
+    }
+}
+
+impl Level {
+    /// Its cells; `total` is the cost of all levels.
+    fn row(&self, unit: &'static str, total: f64) -> [String; 6] {
+        let seeds = format!("{} – {}", self.first_seed, self.first_seed + (self.realisations as u64).saturating_sub(1));
+        [
+            self.coarser_grid.map_or_else(|| self.grid.to_string(), |coarser| format!("{} − {coarser}", self.grid)),
+            format!("{} (seeds {seeds})", self.realisations),
+            engineering(self.mean, unit).trim_end().to_owned(),
+            engineering(self.variance.sqrt(), unit).trim_end().to_owned(),
+            digits(self.cost, 3),
+            format!("{} %", digits(100.0 * self.cost * self.realisations as f64 / total, 2)),
+        ]
+    }
+}
+
+fn tiles(means: &[Estimate]) -> Vec<Tile> {
+    let percent = |part: f64| format!("{} %", digits(100.0 * part, 2));
+    let largest = means.iter().map(|mean| mean.relative_error.unwrap_or(f64::INFINITY)).fold(0.0, f64::max);
+    let [cost, plain] =
+        [|mean: &Estimate| mean.cost, |mean: &Estimate| mean.cost_of_plain_mean.unwrap_or(f64::INFINITY)]
+            .map(|of| means.iter().map(of).sum::<f64>());
+    let value = match means {
+        [one] => Tile { name: "mean", value: one.text() },
+        several => Tile { name: "loads", value: several.len().to_string() },
+    };
+    vec![
+        value,
+        Tile { name: "largest relative error", value: percent(largest) },
+        Tile { name: "wanted error", value: percent(means[0].wanted_error) },
+        Tile { name: "realisations", value: means.iter().map(Estimate::realisations).sum::<usize>().to_string() },
+        Tile { name: "cost, relative to the finest grid alone", value: percent(cost / plain) },
+    ]
+}
+
+fn body(means: &[Estimate]) -> Body {
+    let first = &means[0];
+    Body {
+        quantity: Named { label: format!("mean {}", first.mean_of.replace('_', " ")), unit: first.unit() },
+        load: Named { label: first.control.clone(), unit: first.load_unit() },
+        means: means.iter().map(Curve::of).collect(),
+        heads: ["load", "mean", "error", "of statistics", "of the grid", "realisations", "status"],
+        rows: means.iter().map(Estimate::row).collect(),
+        level_heads: ["grid", "realisations", "mean", "standard deviation", "cost of each", "part of the cost"],
+        note: "A mean is the sum over its levels: the coarsest grid, and the differences from each grid to the next coarser one. Its \
+               error is the root mean square of standard error and error of the finest grid. Costs are elements times \
+               applications of the operator.",
+    }
+}
+
+/// The command line that computes the means again.
+fn command(settings: &Value, mean: &Estimate) -> Command {
+    let list =
+        |values: &Value| values.as_array().into_iter().flatten().map(Value::to_string).collect::<Vec<_>>().join(",");
+    let surface = &settings["surfaces"][0];
+    let (ensemble, control) = (&settings["ensemble"], settings["control"].as_str().unwrap_or("pressure"));
+    let grid = ensemble["grids"].as_array().and_then(|grids| grids.last()).map_or_else(String::new, Value::to_string);
+    let text = format!(
+        "rc sweep{}{} --{control}s {} --seed {} --grid {grid} --error-of-mean {} --mean-of {} --out again",
+        flags(&surface["surface"]),
+        flags(&surface["contact"]),
+        list(&surface["loads"]),
+        ensemble["first_seed"],
+        mean.wanted_error,
+        quoted(&mean.mean_of),
+    );
+    Command { note: WITHOUT_FILES.to_owned(), text }
+}
