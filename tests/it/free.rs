@@ -210,8 +210,8 @@ fn the_error_bar_of_the_area_holds_the_limit_of_fine_grids() {
 fn the_error_bar_of_the_gap_holds_where_contact_reaches_a_border() {
     let beside = |n: usize| body(n, DVec2::new(0.1, 0.2), |r| -0.5 * r * r);
     let inside = |n: usize| body(n, DVec2::splat(0.5), |r| -0.5 * r * r);
-    let bodies: [(fn(usize) -> Field, f64); 3] = [(beside, 0.1), (inside, 0.5), (|n| rough(n, 4), 0.03)];
-    for (heights, load) in bodies {
+    let bodies: [&dyn Fn(usize) -> Field; 3] = [&beside, &inside, &|n| rough(n, 4)];
+    for (heights, load) in bodies.into_iter().zip([0.1, 0.5, 0.03]) {
         let [coarse, fine, finest] =
             [128, 256, 512].map(|n| solved(&heights(n), &FreeLove, Control::MeanPressure(load), 1e-8));
         let limit = 2.0 * finest.info().penetration - fine.info().penetration;
