@@ -112,10 +112,8 @@ pub fn draw_lines<B: DrawingBackend>(area: &Area<B>, plot: &LinePlot<'_>, font: 
 
 /// The sample of a series in the legend.
 ///
-/// It consists of two line pieces and the radius of a dot.
-///
-/// Positions are relative to the left end of the sample. The dot is at the start of the first piece. Some pieces have
-/// no length, and some dots no radius.
+/// It consists of two line pieces and the radius of a dot. Positions are relative to the left end of the sample. The
+/// dot is at the start of the first piece. Some pieces have no length, and some dots no radius.
 fn sample(style: LineStyle, length: i32, stroke: u32) -> ([(i32, i32); 2], u32) {
     match style {
         LineStyle::Solid => ([(0, length / 2), (length / 2, length)], 0),
