@@ -50,7 +50,7 @@ pub enum Shade {
         palette: Palette,
         /// Factor that converts values of the field to `unit`.
         factor: f64,
-        /// SI unit of the colour bar, without a prefix.
+        /// SI unit of the colour bar, to which a prefix is added.
         unit: &'static str,
     },
 }
