@@ -48,7 +48,7 @@ pub enum GridError {
         /// Elements along y, as given.
         ny: usize,
     },
-    /// A cell is too long and narrow.
+    /// The sides of a cell differ by more than a factor of [`Grid::MAX_CELL_RATIO`].
     #[error("the sides of a cell may differ by a factor of {} at most", Grid::MAX_CELL_RATIO)]
     CellRatio,
 }

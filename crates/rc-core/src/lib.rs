@@ -4,7 +4,7 @@
 //!
 //! - **Units.** Libraries compute in `f64` with cell side λ = 1 and E* = E/(1-ν²) = 1. On a rectangular cell, λ is the
 //!   side along x. Lengths are multiples of λ, pressures multiples of E*. Metres and pascals are at the edge of the
-//!   program, in `rc-cli` for example; [`Units`] converts.
+//!   program, for example in `rc-cli`. [`Units`] converts.
 //! - **Signs.** Pressure p ≥ 0 is compression. h is the height of the rigid surface, positive towards the half-space.
 //!   Gap g ≥ 0. The interface displacement v has zero mean over the cell, and `g = v - (h - h_max + Δ)` with
 //!   penetration Δ.

@@ -2,7 +2,7 @@
 
 use crate::Grid;
 
-/// Something that happened in a solve.
+/// An event in a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Event {

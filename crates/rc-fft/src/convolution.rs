@@ -1,8 +1,7 @@
 //! Convolutions of real fields, `field → inverse FFT( symbol · FFT(field) )`.
 //!
-//! A convolution is periodic on the grid of the field, or on a larger grid where the field is zero elsewhere.
-//!
-//! There are three passes over memory:
+//! A convolution is periodic on the grid of the field, or on a larger grid where the field is zero elsewhere. There are
+//! three passes over memory:
 //!
 //! 1. Rows are transformed block by block and stored in tiles.
 //! 2. Panels of a few columns are gathered from the tiles, transformed, multiplied by the symbol, transformed back and
@@ -22,18 +21,15 @@ use rustfft::num_complex::Complex;
 
 use crate::{SymbolTable, TransformReal};
 
-/// Number of rows in a block of a [`Convolution`].
-///
-/// A convolution requests and returns one block at a time. The last block of a grid may have fewer rows.
+/// Number of rows in a block of a [`Convolution`]. A convolution requests and returns one block at a time. The last
+/// block of a grid may have fewer rows.
 pub const BLOCK_ROWS: usize = 16;
 
 /// Columns per panel. Sixteen complex values of f32 are two cache lines.
 const PANEL_COLUMNS: usize = 16;
 
-/// Unused values after each column of a panel.
-///
-/// Without them, if the number of rows is a power of two, all columns would compete for a few cache lines. This happens
-/// while a panel is gathered or scattered.
+/// Unused values after each column of a panel. Without them, if the number of rows is a power of two, all columns would
+/// compete for a few cache lines. This happens while a panel is gathered or scattered.
 const PANEL_PADDING: usize = 16;
 
 /// Plans and buffers for convolutions on one grid.
@@ -170,9 +166,7 @@ impl<T: TransformReal> Convolution<T> {
         self.read_rows(sinks, read)
     }
 
-    /// First pass, which transforms the rows that `write` writes.
-    ///
-    /// Returns what `write` returns, in the order of blocks.
+    /// First pass, which transforms the rows that `write` writes. Returns what `write` returns, in the order of blocks.
     ///
     /// # Panics
     /// As for [`Convolution::apply`].
@@ -203,9 +197,8 @@ impl<T: TransformReal> Convolution<T> {
             .collect()
     }
 
-    /// Second pass, which transforms columns, multiplies by `symbol`, and transforms back.
-    ///
-    /// `symbol` is the table for the same grid.
+    /// Second pass, which transforms columns, multiplies by `symbol`, and transforms back. `symbol` is the table for
+    /// the same grid.
     pub fn apply_symbol(&mut self, symbol: &SymbolTable<T>) {
         let (n_rows, [nx, ny]) = (self.grid.ny(), self.period);
         let n_columns = nx / 2 + 1;
@@ -236,9 +229,8 @@ impl<T: TransformReal> Convolution<T> {
         });
     }
 
-    /// Third pass, which transforms rows back and passes them to `read`.
-    ///
-    /// The return values of `read` are collected in the order of blocks.
+    /// Third pass, which transforms rows back and passes them to `read`. The return values of `read` are collected in
+    /// the order of blocks.
     ///
     /// # Panics
     /// As for [`Convolution::apply`].
@@ -283,9 +275,7 @@ impl<T> std::fmt::Debug for Convolution<T> {
     }
 }
 
-/// The workspace of the calling thread.
-///
-/// A thread waits for a lock only if more threads run than when the plan was made.
+/// The workspace of the calling thread. A thread waits for a lock only if more threads run than when the plan was made.
 fn lock<T>(workspaces: &[Mutex<Workspace<T>>]) -> std::sync::MutexGuard<'_, Workspace<T>> {
     let thread = rayon::current_thread_index().unwrap_or(0) % workspaces.len();
     workspaces[thread].lock().unwrap_or_else(std::sync::PoisonError::into_inner)

@@ -76,8 +76,8 @@ pub fn field_of_columns(columns: &[Vec<Complex64>], grid: Grid) -> Field {
 
 /// First pass: the sums over ky of each column, at the ny centres y.
 ///
-/// A sum is Σ `a_k` exp(2πi (ky y + kx/(2 nx))). The last term shifts by half an element, from the corner of the cell
-/// to the first centre.
+/// A sum is Σ `a_k` exp(2πi (ky y + kx/(2 nx))). The term kx/(2 nx) shifts by half an element, from the corner of the
+/// cell to the first centre.
 fn transformed_columns(columns: &[Vec<Complex64>], grid: Grid) -> Vec<Complex64> {
     let ny = grid.ny();
     let fft = f64::complex_inverse(ny);

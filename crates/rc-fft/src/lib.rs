@@ -1,7 +1,7 @@
-//! Fourier transforms of real fields on a grid: plans, row and column passes, scratch.
+//! Fourier transforms of real fields on a grid.
 //!
-//! A two-dimensional transform is a pass over rows and a pass over columns. Each pass is parallel over blocks that stay
-//! in cache. Only this crate contains such passes:
+//! The crate has plans, row and column passes, and scratch. A two-dimensional transform is a pass over rows and a pass
+//! over columns. Each pass is parallel over blocks that stay in cache. Only this crate contains such passes:
 //!
 //! | item | what it does |
 //! |---|---|

@@ -28,7 +28,7 @@ pub(crate) fn draw_column(seed: u64, kx: usize, reach: usize, amplitudes: Amplit
     if amplitudes == Amplitudes::Random {
         let mut sizes = stream(seed, 2 * kx as u64 + 1);
         for place in 0..column.len() {
-            // |a|² of a complex Gaussian is exponentially distributed; 1 - u is never 0.
+            // |a|² of a complex Gaussian number is exponentially distributed. 1 - u is never 0.
             column[index_of_place(place, reach)] *= (-(1.0 - uniform(&mut sizes)).ln()).sqrt();
         }
     }

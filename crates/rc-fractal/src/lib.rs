@@ -9,7 +9,7 @@
 //! ```
 //!
 //! The wave vectors k = (kx, ky) are integers (waves per cell). H is the Hurst exponent, and `k_r` the roll-off
-//! wavenumber; the paper has `k_r` = 1, which means no plateau. N = [`SpectrumParams::waves`] is the largest
+//! wavenumber. The paper has `k_r` = 1, which means no plateau. N = [`SpectrumParams::waves`] is the largest
 //! wavenumber. In a periodic cell of side λ the δ(0) of Eq. 12 is 1/q0² with q0 = 2π/λ, which gives the factor (2π)²
 //! for λ = 1. C is in λ⁴, a in λ.
 //!

@@ -52,9 +52,8 @@ pub(crate) fn phase(k: usize, n: usize) -> f64 {
 
 /// The alias sum and its parts, for elements of sides (hx, hy).
 ///
-/// An accelerated sum has `N` terms.
-///
-/// θ = (θx, θy) lies in [0, π/2]². It is not (0, 0), except for the parts without the term m = n = 0.
+/// An accelerated sum has `N` terms. θ = (θx, θy) lies in [0, π/2]². It is not (0, 0), except for the parts without the
+/// term m = n = 0.
 pub(crate) struct AliasSum<const N: usize> {
     inverse_spacing: (f64, f64),
     weights: [f64; N],

@@ -112,9 +112,8 @@ impl Series {
 
 /// Coefficients of x^i y^j of a polynomial with Chebyshev coefficients `c`.
 ///
-/// Both are row-major in i.
-///
-/// In powers of low degree on [-1, 1], only the *high* coefficients lose a factor (1 + √2)^degree, and these are small.
+/// Both are row-major in i. In powers of low degree on [-1, 1], only the *high* coefficients lose a factor (1 +
+/// √2)^degree, and these are small.
 pub(crate) fn to_powers<const N: usize>(c: &[f64]) -> [[f64; N]; N] {
     let powers = powers::<N>();
     let mut half = [[0.0; N]; N];

@@ -91,7 +91,7 @@ fn images_and_waves(DVec2 { x, y }: DVec2) -> f64 {
 ///
 /// It is the slow reference for [`PeriodicLove`](crate::PeriodicLove), with the same arguments. The contribution of the
 /// nearest image is [`love_displacement`]. The other images and the background are averaged over the source by 24 × 24
-/// Gauss-Legendre points. Squares above λ/4 are divided into quarters first. `half_side` must be in (0, 1/2]; otherwise
+/// Gauss-Legendre points. Squares above λ/4 are divided into quarters first. `half_side` must be in (0, 1/2]. Otherwise
 /// the result is NaN.
 ///
 /// *Accuracy*: 2e-14 of the larger of |L| and (2d)², by comparison with a 17-digit table (test

@@ -33,7 +33,7 @@ const FAR: f64 = 2.5;
 ///
 /// *Cost*: 60 ns near the square, 95 ns at 2.5 half-sides, 40 ns at 8, 25 ns at 50.
 ///
-/// `half_side` must be positive, and `offset` finite. Otherwise the result is NaN or whatever the formula gives.
+/// `half_side` must be positive, and `offset` finite. Otherwise the result has no meaning, and may be NaN.
 #[inline]
 #[must_use]
 pub fn love_displacement(offset: DVec2, half_side: f64) -> f64 {

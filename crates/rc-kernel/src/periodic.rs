@@ -219,9 +219,8 @@ fn assembled(long: f64, short: f64, half_side: f64, mean: f64) -> f64 {
 
 /// The sum of `of` over the centres of four quarters.
 ///
-/// They are `half` from the centre along each axis.
-///
-/// The offset is folded first, so that symmetric offsets add the same numbers in the same order.
+/// They are `half` from the centre along each axis. The offset is folded first, so that symmetric offsets add the same
+/// numbers in the same order.
 fn quarters(offset: DVec2, half: f64, of: impl Fn(DVec2) -> f64) -> f64 {
     let (folded, diagonal, other_diagonal) =
         (DVec2::from(folded(offset.x, offset.y)), DVec2::splat(half), DVec2::new(half, -half));

@@ -1,11 +1,13 @@
-//! Colour maps with even steps for the eye (viridis and magma of matplotlib, CC0, by N. Smith and S. van der Walt).
+//! Colour maps with visually even steps.
+//!
+//! They are viridis and magma of matplotlib, CC0, by N. Smith and S. van der Walt.
 
 use plotters::style::RGBColor;
 
 /// A sequence of colours for values from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Palette {
-    /// White to black through yellow, red and purple: zero vanishes into the paper.
+    /// White to black through yellow, red and purple. Zero has the colour of the paper.
     Heat,
     /// Dark blue through green to yellow.
     Viridis,
@@ -56,7 +58,9 @@ const VIRIDIS: [(u8, u8, u8); 17] = [
 const INK: [(u8, u8, u8); 2] = [(238, 240, 242), (23, 28, 40)];
 
 impl Palette {
-    /// Colours (red, green, blue) at equal steps of the value, the first at 0 and the last at 1; linear between them.
+    /// Colours (red, green, blue) at equal steps of the value.
+    ///
+    /// The first is at 0 and the last at 1, and colours are linear between them.
     #[must_use]
     pub fn anchors(self) -> &'static [(u8, u8, u8)] {
         match self {
@@ -66,7 +70,9 @@ impl Palette {
         }
     }
 
-    /// The colour of `value`; values outside [0, 1] get the colour of the nearest end, `NaN` that of 0.
+    /// The colour of `value`.
+    ///
+    /// Values outside [0, 1] get the colour of the nearest end, and `NaN` the colour of 0.
     #[must_use]
     pub fn colour(self, value: f64) -> RGBColor {
         let table = self.anchors();

@@ -17,15 +17,16 @@ pub fn save_png(picture: &impl Picture, path: &Path) -> Result<(), PictureError>
     save(path, &png_bytes(&pixels(picture)?, picture.size(), |_| ())?)
 }
 
-/// Saves a picture of few colours as a PNG that is several times smaller than that of [`save_png`], and takes longer to
-/// write: for files that are kept.
+/// Saves a picture of few colours as a small PNG, for files that are archived.
+///
+/// The file is several times smaller than that of [`save_png`], but takes longer to write.
 ///
 /// # Errors
 /// [`PictureError`] of the drawing or of the file.
 pub fn save_small_png(picture: &impl Picture, path: &Path) -> Result<(), PictureError> {
     let smallest = |encoder: &mut png::Encoder<'_, &mut Vec<u8>>| {
         encoder.set_compression(png::Compression::Best);
-        // Rows of plain colours compress best as they are.
+        // Rows of plain colours compress best without a filter.
         encoder.set_filter(png::FilterType::NoFilter);
     };
     save(path, &png_bytes(&pixels(picture)?, picture.size(), smallest)?)
@@ -39,7 +40,7 @@ fn pixels(picture: &impl Picture) -> Result<Vec<u8>, PictureError> {
     Ok(rgb)
 }
 
-/// Saves a picture as SVG. Maps in it are embedded bitmaps.
+/// Saves a picture as SVG. Maps are embedded as bitmaps.
 ///
 /// # Errors
 /// [`PictureError`] of the drawing or of the file.
@@ -50,7 +51,7 @@ pub fn save_svg(picture: &impl Picture, path: &Path) -> Result<(), PictureError>
     save(path, with_bitmaps(&text, &bitmaps)?.as_bytes())
 }
 
-/// The document with the bitmaps in place of their placeholders.
+/// The document with bitmaps in place of their placeholders.
 fn with_bitmaps(text: &str, bitmaps: &[String]) -> Result<String, PictureError> {
     let (mut document, mut rest) = (String::with_capacity(text.len()), text);
     for (number, image) in bitmaps.iter().enumerate() {
@@ -66,7 +67,7 @@ fn with_bitmaps(text: &str, bitmaps: &[String]) -> Result<String, PictureError> 
     Ok(document)
 }
 
-/// Width and height of the rectangle that keeps the place of a bitmap. No picture draws a rectangle of this size.
+/// Width and height of the placeholder of a bitmap. No picture draws a rectangle of this size.
 fn placeholder_size(number: usize) -> i32 {
     -1_000_000 - number as i32
 }
@@ -82,8 +83,9 @@ fn save(path: &Path, bytes: &[u8]) -> Result<(), PictureError> {
     std::fs::write(path, bytes).map_err(PictureError::new)
 }
 
-/// Bytes of a PNG file with these pixels, three bytes each, rows from top to bottom, by an encoder that `configure`
-/// sets up.
+/// Bytes of a PNG file with these pixels.
+///
+/// Pixels have three bytes each, with rows from top to bottom. `configure` sets up the encoder.
 fn png_bytes(
     rgb: &[u8],
     (width, height): (u32, u32),
@@ -99,15 +101,17 @@ fn png_bytes(
     Ok(bytes)
 }
 
-/// An SVG backend that embeds bitmaps as PNG. The plotting library does so with an image library of its own, which
-/// takes longer to compile than everything else that pictures need.
+/// An SVG backend that embeds bitmaps as PNG.
+///
+/// The plotting library would use an image library for this. That library takes longer to compile than everything else
+/// that pictures need.
 struct SvgWithBitmaps<'a> {
     svg: SVGBackend<'a>,
-    /// The `image` elements, in the order in which they are drawn.
+    /// The `image` elements, in the order of drawing.
     bitmaps: &'a mut Vec<String>,
 }
 
-/// What a drawing command returns.
+/// Result of a drawing command.
 type Drawn<E> = Result<(), DrawingErrorKind<E>>;
 
 impl<'a> DrawingBackend for SvgWithBitmaps<'a> {
@@ -181,7 +185,9 @@ impl<'a> DrawingBackend for SvgWithBitmaps<'a> {
         self.svg.estimate_text_size(text, style)
     }
 
-    /// Draws the placeholder where the bitmap belongs, so that what is drawn later lies above it.
+    /// Draws a placeholder for a bitmap.
+    ///
+    /// It is at the place of the bitmap, so that later drawings lie above it.
     fn blit_bitmap(&mut self, (x, y): BackendCoord, size: (u32, u32), rgb: &[u8]) -> Drawn<Self::ErrorType> {
         use base64::Engine as _;
 

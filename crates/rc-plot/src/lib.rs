@@ -1,7 +1,7 @@
 //! Pictures: maps of fields and line plots, as PNG or SVG, with an embedded font.
 //!
-//! A [`Picture`] draws itself on any backend; [`save_png`], [`save_small_png`] and [`save_svg`] write it. [`draw_map`]
-//! and [`draw_lines`] fill an area of a larger picture, so figures are put together from them.
+//! A [`Picture`] draws itself on any backend. [`save_png`], [`save_small_png`] and [`save_svg`] write it to a file.
+//! [`draw_map`] and [`draw_lines`] fill an area of a larger picture, so a figure is assembled from them.
 
 mod colour;
 mod file;
@@ -23,7 +23,7 @@ pub use map::{Map, Shade, bitmap_size, draw_map, map_extent};
 pub use maps::{ContactPicture, ContactRows, MapPicture};
 pub use raster::{PixelMean, Raster};
 
-/// A picture that could not be drawn or saved; the text is that of the plotting library.
+/// A picture that could not be drawn or saved. The text comes from the plotting library.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{0}")]
 pub struct PictureError(String);
@@ -38,12 +38,12 @@ impl PictureError {
 /// The area of a picture to draw in.
 pub type Area<B> = DrawingArea<B, Shift>;
 
-/// Something that draws itself on any backend.
+/// A picture that draws itself on any backend.
 pub trait Picture {
     /// Width and height in pixels.
     fn size(&self) -> (u32, u32);
 
-    /// Draws on `area`, which has the size and is white.
+    /// Draws on `area`, which has this size and is white.
     ///
     /// # Errors
     /// [`PictureError`] of the backend.

@@ -14,32 +14,32 @@ use rc_core::quantity::label;
 pub struct LinePlot<'a> {
     /// Text above the plot.
     pub title: &'a str,
-    /// Text along x.
+    /// Label of the x axis.
     pub x_label: &'a str,
-    /// Text along y.
+    /// Label of the y axis.
     pub y_label: &'a str,
     /// Range along x.
     pub x: (f64, f64),
     /// Range along y.
     pub y: (f64, f64),
-    /// What is drawn, first at the bottom.
+    /// The series, drawn from first to last.
     pub series: Vec<Series<'a>>,
 }
 
 /// A series of points.
 #[derive(Clone, Debug)]
 pub struct Series<'a> {
-    /// Name in the legend; empty for none.
+    /// Name in the legend, or an empty text without an entry.
     pub name: &'a str,
     /// The points, in the units of the axes.
     pub points: Vec<(f64, f64)>,
-    /// Colour.
+    /// Colour of the series.
     pub colour: RGBColor,
-    /// How it is drawn.
+    /// Style of the series.
     pub style: LineStyle,
 }
 
-/// How a series is drawn.
+/// Style of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineStyle {
     /// A continuous line.
@@ -110,8 +110,10 @@ pub fn draw_lines<B: DrawingBackend>(area: &Area<B>, plot: &LinePlot<'_>, font: 
     Ok(())
 }
 
-/// The pieces of a series' sample in the legend, from its left end, and the radius of the dot at the first: every style
-/// is two pieces and a dot, some of them of no length.
+/// The sample of a series in the legend.
+///
+/// It consists of two line pieces and the radius of a dot. Positions are relative to the left end of the sample. The
+/// dot is at the start of the first piece. Some pieces have no length, and some dots no radius.
 fn sample(style: LineStyle, length: i32, stroke: u32) -> ([(i32, i32); 2], u32) {
     match style {
         LineStyle::Solid => ([(0, length / 2), (length / 2, length)], 0),

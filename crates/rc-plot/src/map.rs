@@ -1,4 +1,4 @@
-//! A map of a field over the cell: title, bitmap, scale bar and colour bar.
+//! A map of a field, with title, bitmap, scale bar and colour bar.
 
 use plotters::element::{BitMapElement, Rectangle, Text};
 use plotters::prelude::{DrawingBackend, IntoFont as _};
@@ -14,45 +14,49 @@ use rc_core::quantity::{Scale, engineering, label, round_below, ticks};
 pub struct Map<'a> {
     /// Text above the map.
     pub title: &'a str,
-    /// What is shown.
+    /// The field to show.
     pub field: &'a Field,
-    /// How it is shown.
+    /// Conversion of values to colours.
     pub shade: Shade,
     /// Side of the cell along x, for the scale bar (m).
     pub side: f64,
 }
 
-/// How values become colours.
+/// Conversion of values to colours.
 #[derive(Clone, Copy, Debug)]
 pub enum Shade {
-    /// Positive values dark, others light; a pixel with several elements has the grey of the positive part.
+    /// Positive values are dark, and others are light.
+    ///
+    /// A pixel of several elements has a grey that shows the positive part.
     Contact,
-    /// Values are parts of contact already, from 0 (light) to 1 (dark).
+    /// Values are parts of contact, from 0 (light) to 1 (dark).
     PartOfContact,
-    /// A colour for each power of ten, from black for zero, with a colour bar of logarithms.
+    /// Colours of a logarithmic scale, with a colour bar of powers of ten.
+    ///
+    /// Zero is black.
     Decades {
-        /// log10 of value over `unit` at the ends of the colour bar.
+        /// log10 of value divided by `unit` at the ends of the colour bar.
         range: (f64, f64),
-        /// Colours.
+        /// Colours of the scale.
         palette: Palette,
         /// The value whose logarithm is 0.
         unit: f64,
     },
-    /// A colour for each value, with a colour bar.
+    /// Colours of a linear scale, with a colour bar.
     Values {
-        /// Values (of the field) at the ends of the colour bar.
+        /// Values of the field at the ends of the colour bar.
         range: (f64, f64),
-        /// Colours.
+        /// Colours of the scale.
         palette: Palette,
-        /// A value of 1 of the field in `unit`.
+        /// Factor that converts values of the field to `unit`.
         factor: f64,
-        /// SI unit of the colour bar; it gets a prefix.
+        /// SI unit of the colour bar, to which a prefix is added.
         unit: &'static str,
     },
 }
 
 impl Shade {
-    /// Whether a colour bar stands beside the map.
+    /// Whether the map has a colour bar beside it.
     #[must_use]
     pub fn has_colour_bar(&self) -> bool {
         matches!(self, Self::Values { .. } | Self::Decades { .. })
@@ -67,7 +71,9 @@ const BAR_GAP: f64 = 0.6;
 const BAR_WIDTH: f64 = 0.9;
 const BAR_LABELS: f64 = 3.2;
 
-/// Width of a map without and with a colour bar for a bitmap of this size, and its height, all in pixels.
+/// Width and height of a map in pixels, for a bitmap of this size.
+///
+/// The width includes the colour bar if there is one.
 #[must_use]
 pub fn map_extent((width, height): (u32, u32), font: f64, colour_bar: bool) -> (u32, u32) {
     let bar = if colour_bar { BAR_GAP + BAR_WIDTH + BAR_LABELS } else { 0.0 };
@@ -75,10 +81,12 @@ pub fn map_extent((width, height): (u32, u32), font: f64, colour_bar: bool) -> (
     ((width + (bar * font) as u32).max(least), height + ((TITLE + FOOT) * font) as u32)
 }
 
-/// Longest picture of a cell: one that is longer is drawn shorter than it is, or nothing would be seen of its width.
+/// Maximum ratio of the sides of a cell's picture.
+///
+/// A longer cell is drawn shorter than it is. Otherwise its width would not be visible.
 const LONGEST: f64 = 4.0;
 
-/// Size of the bitmap of a cell, as large as `most` allows.
+/// Size of the bitmap of a cell, as large as fits into `most`.
 #[must_use]
 pub fn bitmap_size(grid: Grid, most: (u32, u32)) -> (u32, u32) {
     let ratio = grid.cell_ratio().clamp(LONGEST.recip(), LONGEST);
@@ -142,7 +150,9 @@ fn rasterise(map: &Map<'_>, size: (u32, u32)) -> Raster {
     }
 }
 
-/// A bar of round length, about a quarter of the cell, below the map at its left.
+/// A bar of round length at the lower left of the map.
+///
+/// It is about a quarter of the cell long.
 fn scale_bar<B: DrawingBackend>(
     area: &Area<B>,
     side: f64,
@@ -159,7 +169,7 @@ fn scale_bar<B: DrawingBackend>(
     text(area, &engineering(length, "m"), (right + (0.5 * font) as i32, middle), HPos::Left, font)
 }
 
-/// A colour bar with ticks at its right.
+/// A colour bar with tick marks at its right.
 struct ColourBar {
     low: f64,
     high: f64,
@@ -200,13 +210,13 @@ impl ColourBar {
     }
 }
 
-/// A thin frame just around the rectangle, so that it covers none of it.
+/// A thin frame just outside the rectangle.
 fn frame<B: DrawingBackend>(area: &Area<B>, from: (i32, i32), to: (i32, i32)) -> Result<(), PictureError> {
     let grey = RGBColor(90, 90, 90);
     area.draw(&Rectangle::new([(from.0, from.1 - 1), to], grey.stroke_width(1))).map_err(PictureError::new)
 }
 
-/// Text with the middle of its digits at `at`.
+/// Draws text with the middle of its digits at `at`.
 fn text<B: DrawingBackend>(
     area: &Area<B>,
     text: &str,
@@ -214,7 +224,8 @@ fn text<B: DrawingBackend>(
     anchor: HPos,
     font: f64,
 ) -> Result<(), PictureError> {
-    // The backends centre the line box, not the digits; this offset is within a fifteenth of the font size for both.
+    // Backends centre the line box, not the digits. This offset is correct within a fifteenth of the font size for
+    // both.
     let at = (at.0, at.1 + (0.14 * font) as i32);
     let style: TextStyle<'_> = (FONT, font).into_font().color(&BLACK).pos(Pos::new(anchor, VPos::Center));
     area.draw(&Text::new(text.to_owned(), at, style)).map_err(PictureError::new)

@@ -1,31 +1,33 @@
-//! Pictures of maps: `contact.png` (where the surfaces touch, and how hard), and one map alone.
+//! Pictures of maps: `contact.png` with contact and pressure, and a single map.
 
 use plotters::prelude::DrawingBackend;
 use rc_core::{Field, Grid};
 
 use crate::{Area, Map, Palette, Picture, PictureError, PixelMean, Shade, bitmap_size, draw_map, map_extent};
 
-/// Contact map and pressure side by side, at the resolution of the picture.
+/// Contact map and pressure beside each other, at the resolution of the picture.
 #[derive(Clone, Debug)]
 pub struct ContactPicture {
-    /// Part of each pixel in contact.
+    /// Part of each pixel that is in contact.
     contact: Field,
     /// Mean pressure of each pixel.
     pressure: Field,
-    /// Part of the values that are above zero.
+    /// Part of the values that is above zero.
     fraction: f64,
-    /// Whether the values are those of elements, and not means over blocks of them.
+    /// Whether the values belong to elements, and not to blocks of elements.
     of_elements: bool,
-    /// Greatest pressure of a value.
+    /// Maximum pressure.
     greatest: f64,
-    /// A pressure of 1, in Pa.
+    /// Pressure of the value 1, in Pa.
     pressure_unit: f64,
     /// Side λ of the cell (m).
     side: f64,
 }
 
 impl ContactPicture {
-    /// The picture of a pressure field; `pressure_unit` is a pressure of 1 of the field in Pa, `side` is λ in m.
+    /// The picture of a pressure field.
+    ///
+    /// `pressure_unit` is the pressure of the value 1 in Pa, and `side` is λ in m.
     #[must_use]
     pub fn of(pressure: &Field, pressure_unit: f64, side: f64) -> Self {
         let mut rows = ContactRows::new(pressure.grid());
@@ -33,14 +35,18 @@ impl ContactPicture {
         rows.finish(pressure_unit, side)
     }
 
-    /// The same picture of means over blocks: a block with a pressure is touched, not in contact as a whole.
+    /// The same picture for means over blocks.
+    ///
+    /// A block with a pressure is touched, but not in contact everywhere.
     #[must_use]
     pub fn of_blocks(self) -> Self {
         Self { of_elements: false, ..self }
     }
 }
 
-/// A [`ContactPicture`] in the making, from the rows of a pressure field that need never be whole in memory.
+/// A [`ContactPicture`] that is made from the rows of a pressure field.
+///
+/// The field need not be in memory completely.
 #[derive(Clone, Debug)]
 pub struct ContactRows {
     grid: Grid,
@@ -51,14 +57,14 @@ pub struct ContactRows {
 }
 
 impl ContactRows {
-    /// For a field on `grid`.
+    /// An empty picture of a field on `grid`.
     #[must_use]
     pub fn new(grid: Grid) -> Self {
         let mean = PixelMean::new(grid, SIDE as usize);
         Self { grid, contact: mean.clone(), pressure: mean, in_contact: 0, greatest: f64::NEG_INFINITY }
     }
 
-    /// Takes the next rows of pressures.
+    /// Adds the next rows of pressures.
     ///
     /// # Panics
     /// When there are more rows than the grid has.
@@ -71,7 +77,7 @@ impl ContactRows {
         }
     }
 
-    /// The picture, when all rows are in; `pressure_unit` and `side` as in [`ContactPicture::of`].
+    /// The picture after the last row. `pressure_unit` and `side` as in [`ContactPicture::of`].
     #[must_use]
     pub fn finish(self, pressure_unit: f64, side: f64) -> ContactPicture {
         ContactPicture {
@@ -79,7 +85,7 @@ impl ContactRows {
             pressure: self.pressure.finish(),
             fraction: self.in_contact as f64 / self.grid.len() as f64,
             of_elements: true,
-            // What is still being solved may have no finite pressure, or none above zero.
+            // The pressure of an unfinished solve may have no finite value, or no positive value.
             greatest: if self.greatest.is_finite() { self.greatest.max(0.0) } else { 0.0 },
             pressure_unit,
             side,
@@ -87,13 +93,13 @@ impl ContactRows {
     }
 }
 
-/// Longer side of a map, its text, and the space around it, in pixels.
+/// Longer side of a map, size of its text, and space around it, in pixels.
 const SIDE: u32 = 900;
 const TEXT: f64 = 30.0;
 const MARGIN: u32 = 36;
 
 impl ContactPicture {
-    /// Sizes of the two maps with their text.
+    /// Sizes of the two maps including text.
     fn panels(&self) -> [(u32, u32); 2] {
         let bitmap = bitmap_size(self.contact.grid(), (SIDE, SIDE));
         [false, true].map(|colour_bar| map_extent(bitmap, TEXT, colour_bar))
@@ -124,7 +130,7 @@ impl Picture for ContactPicture {
     }
 }
 
-/// One map as a picture of its own.
+/// A single map as a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct MapPicture<'a>(pub Map<'a>);
 

@@ -3,20 +3,22 @@
 use plotters::style::RGBColor;
 use rc_core::{Field, Grid};
 
-/// A bitmap, rows from top to bottom, three bytes a pixel.
+/// A bitmap with rows from top to bottom, and three bytes for each pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Raster {
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Red, green, blue of each pixel.
+    /// Red, green and blue of each pixel.
     pub rgb: Vec<u8>,
 }
 
 impl Raster {
-    /// A picture of `field` with y upwards. A pixel has the colour of the mean of `value` over the elements that it
-    /// shows; where pixels are smaller than elements, that of its element.
+    /// A picture of `field` with y upwards.
+    ///
+    /// A pixel has the colour of the mean of `value` over the elements in it. A pixel that is smaller than an element
+    /// has the colour of its element.
     #[must_use]
     pub fn of(
         field: &Field,
@@ -40,8 +42,10 @@ impl Raster {
     }
 }
 
-/// The mean of a value over the elements of each pixel, from the rows of a field that need never be whole in memory.
-/// Its [`Raster`] of as many pixels is bit for bit that of the field.
+/// Means of a value over the elements of pixels, from rows of a field.
+///
+/// The field need not be in memory completely. The [`Raster`] of the means, with the same number of pixels, equals that
+/// of the field bit for bit.
 #[derive(Clone, Debug)]
 pub struct PixelMean {
     grid: Grid,
@@ -50,7 +54,9 @@ pub struct PixelMean {
 }
 
 impl PixelMean {
-    /// Of fields on `grid`, on at most `most` pixels per side; where elements are fewer, each is a pixel.
+    /// Means of fields on `grid`, with at most `most` pixels per side.
+    ///
+    /// If there are fewer elements, each element is a pixel.
     ///
     /// # Panics
     /// When `most` is 0.
@@ -61,13 +67,13 @@ impl PixelMean {
         Self { grid, sums: Field::zeros(pixels), next_row: 0 }
     }
 
-    /// Takes the next row.
+    /// Adds the next row.
     ///
     /// # Panics
     /// When there are more rows than the grid has.
     pub fn take(&mut self, row: impl Fn(usize) -> f64) {
         let pixels = self.sums.grid();
-        // The one pixel whose span holds the row.
+        // The pixel whose range contains the row.
         let start = pixels.index(0, ((self.next_row + 1) * pixels.ny() - 1) / self.grid.ny());
         for (i, sum) in self.sums.values_mut()[start..start + pixels.nx()].iter_mut().enumerate() {
             let (first, end) = span(i, pixels.nx(), self.grid.nx());
@@ -76,7 +82,7 @@ impl PixelMean {
         self.next_row += 1;
     }
 
-    /// The means.
+    /// The mean of each pixel.
     #[must_use]
     pub fn finish(mut self) -> Field {
         let pixels = self.sums.grid();
@@ -92,7 +98,9 @@ impl PixelMean {
     }
 }
 
-/// First and one past the last of the `elements` that pixel `i` of `pixels` shows; never empty.
+/// Range of the elements that pixel `i` of `pixels` shows, as first and last + 1.
+///
+/// It is never empty.
 fn span(i: usize, pixels: usize, elements: usize) -> (usize, usize) {
     let first = i * elements / pixels;
     (first, ((i + 1) * elements / pixels).max(first + 1))

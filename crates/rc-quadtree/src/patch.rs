@@ -52,9 +52,8 @@ pub fn gather<T: Copy + Default, const SIDE: usize>(
 
 /// As [`gather`], cell by cell.
 ///
-/// It serves tiles that extend beyond their level, and patches across their seams.
-///
-/// Values are `missing` where there is no tile.
+/// It serves tiles that extend beyond their level, and patches across their seams. Values are `missing` where there is
+/// no tile.
 #[cold]
 #[inline(never)]
 pub(crate) fn gather_cells<T: Copy, const SIDE: usize>(

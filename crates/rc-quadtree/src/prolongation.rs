@@ -18,8 +18,8 @@ use near_contact::{MARGIN, PART_KEPT_OF_SINGLE_CELL, SIDE, is_near_contact, is_s
 
 /// Interpolates the positive part of `function` to the next finer level, of `sides` cells.
 ///
-/// Returns the tiles of the finer level where `function` is positive, or within two cells of such a tile, and the
-/// values on their cells. The finer level has twice as many cells along both sides, or slightly fewer.
+/// Returns the tiles of the finer level on which, or within two cells of which, `function` is positive. The second
+/// result has the values on their cells. The finer level has twice as many cells along both sides, or slightly fewer.
 ///
 /// `function` has a value for each cell of `tiles`. None of these tiles may extend beyond the level. `elsewhere` is the
 /// value of the function where there is no tile.
@@ -101,9 +101,8 @@ fn quarters_in_contact(
 
 /// The positive part of the function on a fine tile.
 ///
-/// The tile is a quarter of the middle of the patch.
-///
-/// `None` when the function is not positive anywhere on the tile or near it.
+/// The tile is a quarter of the middle of the patch. `None` when the function is not positive anywhere on the tile or
+/// near it.
 fn fine_tile(patch: &Patch<f64, SIDE>, (half_x, half_y): (usize, usize)) -> Option<Box<[f64; CELLS]>> {
     const WIDE: usize = TILE + 2 * MARGIN;
     // A coarse cell and its neighbour on the side of the fine cell. Fine cells are counted from the corner of the

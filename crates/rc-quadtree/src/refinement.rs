@@ -38,7 +38,7 @@ impl ContactFields<'_> {
     /// divided if the gap between centres of elements may be as small as the gap of contact.
     ///
     /// `curvature` returns a bound of the second derivatives of the gap along the axes, in 1/λ, for the elements of
-    /// each level. It applies to tiles without pressure on them and within [`RING`] cells of them.
+    /// each level. It applies to tiles that have no pressure on them or within [`RING`] cells of them.
     #[must_use]
     pub fn too_coarse(&self, curvature: impl Fn(usize) -> f64) -> Vec<Vec<bool>> {
         let levels = self.elements.levels().iter().enumerate();

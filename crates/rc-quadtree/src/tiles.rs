@@ -14,8 +14,8 @@ pub const CELLS: usize = TILE * TILE;
 /// The tiles of one level, sorted along the Morton curve.
 ///
 /// Neighbours are thus near in memory. A value of the level is at `tile · 64 + row · 8 + column`. The index of a tile
-/// is looked up in a table with 16 bytes for every 64 possible tiles, or 1/256 byte for each cell of the level. No
-/// other memory grows with the level instead of the contact.
+/// is looked up in a table with 16 bytes for every 64 possible tiles, or 1/256 byte for each cell of the level. All
+/// other memory grows with the contact only.
 ///
 /// Where a side is not a multiple of 8, the last tiles along it extend beyond the level. Cells there are not part of
 /// the level. [`crate::gather`] and [`Elements::around`](crate::Elements::around) continue the level periodically and
@@ -108,7 +108,7 @@ impl TileSet {
         [0, 1].map(|axis| TILE.min(self.sides[axis] - TILE * place[axis] as usize))
     }
 
-    /// Whether no tile reaches beyond the level.
+    /// Whether no tile extends beyond the level.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.sides.iter().all(|side| side.is_multiple_of(TILE))
@@ -147,9 +147,8 @@ impl TileSet {
 
     /// Whether a patch contains tiles that extend beyond the level.
     ///
-    /// Also true if it crosses a seam of such tiles.
-    ///
-    /// The patch has `n` × `n` tiles. The lower left one is at a place of the periodically continued level.
+    /// Also true if it crosses a seam of such tiles. The patch has `n` × `n` tiles. The lower left one is at a place of
+    /// the periodically continued level.
     #[must_use]
     #[inline]
     pub(crate) fn is_cut(&self, (column, row): (i64, i64), n: usize) -> bool {

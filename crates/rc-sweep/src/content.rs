@@ -1,4 +1,4 @@
-//! What a journal says: its first line, its rows, and how they are read back.
+//! Contents of a journal: its first line, its rows, and how to read them.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,11 +12,12 @@ use crate::folder::JOURNAL_FILE;
 use crate::settings;
 use crate::shard::{MAX_ROWS, Shard, SweepShape};
 
-/// First key of the first line, by which a journal is recognised: of a whole sweep, or of a shard that is dealt load by
-/// load.
+/// Value of the first key of the first line, which identifies a journal.
+///
+/// It belongs to a whole sweep, or to a shard that is dealt load by load.
 const FORMAT: u32 = 2;
 
-/// The same of a shard that is dealt by costs, which programs that deal load by load must not read.
+/// As [`FORMAT`], for a shard that is dealt by costs. Programs that deal load by load must not read it.
 const DEALT_BY_COST: u32 = 3;
 
 /// The cells of a row by the names of their columns, in order.
@@ -36,7 +37,7 @@ pub(crate) struct Header {
     pub(crate) settings: Value,
 }
 
-/// Any other line.
+/// Any other line, which holds a row.
 #[derive(Serialize, Deserialize)]
 struct Line {
     row: usize,
@@ -52,19 +53,19 @@ impl Line {
 }
 
 impl Header {
-    /// Of a whole sweep.
+    /// The first line of a whole sweep.
     pub(crate) fn whole(shape: SweepShape, settings: Value) -> Self {
         Self { rc_sweep: FORMAT, shape, shard: Shard::WHOLE, deal: Deal::default(), settings }
     }
 
-    /// Of a shard, dealt in this way.
+    /// The first line of a shard, with the way in which rows are dealt.
     pub(crate) fn of_shard(shape: SweepShape, shard: Shard, deal: Deal, settings: Value) -> Self {
         let deal = if shard == Shard::WHOLE { Deal::default() } else { deal };
         let rc_sweep = if deal.is_by_load() { FORMAT } else { DEALT_BY_COST };
         Self { rc_sweep, shape, shard, deal, settings }
     }
 
-    /// Whether it is one that this program understands.
+    /// Whether this program understands the line.
     fn is_sound(&self) -> bool {
         let format = if self.deal.is_by_load() { FORMAT } else { DEALT_BY_COST };
         self.rc_sweep == format && self.shape.rows() <= MAX_ROWS && self.deal.fits(self.shape)
@@ -75,15 +76,15 @@ impl Header {
         self.deal.rows(self.shard, self.shape)
     }
 
-    /// As a line of the journal.
+    /// The line of the journal.
     pub(crate) fn to_line(&self) -> String {
         to_line(self)
     }
 
-    /// Refuses to go on with the sweep in `folder` when it is not this one.
+    /// Refuses to continue the sweep in `folder` when it is another one.
     ///
     /// # Errors
-    /// What differs.
+    /// [`SweepError`] with the first difference.
     pub(crate) fn check_same(&self, there: &Self, folder: &Path) -> Result<(), SweepError> {
         let folder = folder.to_owned();
         if let Some(difference) = settings::difference(&there.settings, &self.settings) {
@@ -98,13 +99,13 @@ impl Header {
         Ok(())
     }
 
-    /// Whether rows keep their fields.
+    /// Whether the fields of rows are stored.
     pub(crate) fn keeps_fields(&self) -> bool {
         self.settings["fields"] == true
     }
 }
 
-/// A line of the journal for the row `row`.
+/// The line of the journal for row `row`.
 pub(crate) fn row_line(row: usize, cells: &Cells) -> String {
     to_line(&Line::new(row, cells.clone()))
 }
@@ -115,34 +116,38 @@ fn to_line(value: &impl Serialize) -> String {
     line
 }
 
-/// Finished rows in the journal of a sweep (`sweep.jsonl`), whose last line may be incomplete.
+/// Number of finished rows in the journal of a sweep (`sweep.jsonl`).
+///
+/// The last line may be incomplete.
 ///
 /// # Errors
-/// [`SweepError`] when it is not a journal, or a line before the last is damaged.
+/// [`SweepError`] when the file is not a journal, or a line before the last is damaged.
 pub fn finished_rows(journal: &[u8]) -> Result<usize, SweepError> {
     Content::of_bytes(journal, Path::new(JOURNAL_FILE)).map(|content| content.rows.len())
 }
 
-/// The settings of the sweep in `folder`, from its journal, if there is one that can be read.
+/// The settings of the sweep in `folder`, or `None` without a valid journal.
 #[must_use]
 pub fn settings_in(folder: &Path) -> Option<Value> {
     Some(Content::read(folder).ok()?.header.settings)
 }
 
-/// What a journal holds.
+/// Contents of a journal.
 #[derive(Debug)]
 pub(crate) struct Content {
     pub(crate) header: Header,
     pub(crate) rows: SweepRows,
-    /// Bytes up to the end of the last whole line.
+    /// Number of bytes up to the end of the last complete line.
     pub(crate) whole: u64,
 }
 
 impl Content {
-    /// Reads the journal in `folder`, but for what a process that was ended left of its last line.
+    /// Reads the journal in `folder`.
+    ///
+    /// A process that was killed may have left an incomplete last line, which is ignored.
     ///
     /// # Errors
-    /// When there is none, it is not one, or a line before the last is damaged.
+    /// When there is no journal, the file is not one, or a line before the last is damaged.
     pub(crate) fn read(folder: &Path) -> Result<Self, SweepError> {
         let path = folder.join(JOURNAL_FILE);
         let bytes = std::fs::read(&path)
@@ -150,10 +155,10 @@ impl Content {
         Self::of_bytes(&bytes, &path)
     }
 
-    /// What `bytes` say, those of the journal at `path`.
+    /// Reads `bytes`, the contents of the journal at `path`.
     ///
     /// # Errors
-    /// As [`Content::read`].
+    /// Those of [`Content::read`].
     pub(crate) fn of_bytes(bytes: &[u8], path: &Path) -> Result<Self, SweepError> {
         let mut lines = bytes.split_inclusive(|&byte| byte == b'\n').peekable();
         let first = lines.next().filter(|line| line.ends_with(b"\n"));
@@ -174,7 +179,7 @@ impl Content {
         Ok(content)
     }
 
-    /// A whole line with a row of this sweep.
+    /// Reads a complete line with a row of this sweep.
     fn parse(&self, line: &[u8]) -> Option<Line> {
         let whole = line.strip_suffix(b"\n")?;
         let line: Line = serde_json::from_slice(whole).ok()?;

@@ -1,4 +1,4 @@
-//! Which rows a shard solves: rows are dealt by what they are expected to take.
+//! Distribution of rows to shards by their expected cost.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -7,22 +7,25 @@ use serde::{Deserialize, Serialize};
 
 use crate::shard::{Shard, SweepShape};
 
-/// Shards get whole surfaces where the heaviest surface is at most this part of what a shard has to do.
+/// Minimum cost of a shard, in costs of the heaviest surface, for whole surfaces.
+///
+/// If shards have a lower cost, they get single rows.
 const SMALLEST_PART: u128 = 10;
 
-/// How the rows of a sweep are dealt to shards. Any process that knows the shape and the costs deals alike.
+/// Distribution of the rows of a sweep to shards.
 ///
-/// The default deals load by load, without costs, as the first journals of shards have it.
+/// All processes that know the shape and the costs obtain the same distribution. The default has no costs and deals
+/// load by load, as in the first journals of shards.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Deal {
     scenes: Vec<SceneCosts>,
 }
 
-/// What the rows of one scene are expected to take.
+/// Expected costs of the rows of one scene.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct SceneCosts {
-    /// Surfaces of the scene.
+    /// Number of surfaces of the scene.
     surfaces: usize,
     /// Processor time (µs) of each load, the same for all surfaces of the scene.
     costs: Vec<u64>,
@@ -37,10 +40,11 @@ struct Portion {
 }
 
 impl Deal {
-    /// Rows that take these processor seconds: for each scene its number of surfaces, and a value for each load, the
-    /// same for all surfaces. `None` is not known, and taken as the mean of the known values.
+    /// A distribution by processor time.
     ///
-    /// Values are rounded to two digits, so that processors that differ in the last digit deal alike.
+    /// Each scene has a number of surfaces, and the seconds of each load, the same for all its surfaces. `None` means
+    /// unknown, and is replaced by the mean of the known values. Values are rounded to two digits, so that processors
+    /// whose values differ in the last digit obtain the same distribution.
     pub(crate) fn by_cost(scenes: Vec<(usize, Vec<Option<f64>>)>) -> Self {
         let known: Vec<f64> = scenes.iter().flat_map(|(_, seconds)| seconds.iter().flatten().copied()).collect();
         let mean = if known.is_empty() { 1.0 } else { known.iter().sum::<f64>() / known.len() as f64 };
@@ -56,7 +60,7 @@ impl Deal {
         self.scenes.is_empty()
     }
 
-    /// Whether it deals the rows of a sweep of this shape.
+    /// Whether the distribution fits a sweep of this shape.
     pub(crate) fn fits(&self, shape: SweepShape) -> bool {
         let surfaces = self.scenes.iter().fold(0_usize, |sum, scene| sum.saturating_add(scene.surfaces));
         let loads = |scene: &SceneCosts| scene.costs.len() == shape.loads;
@@ -74,7 +78,7 @@ impl Deal {
         }
         let mut portions = self.portions(shard.count);
         portions.sort_by_key(|portion| (Reverse(portion.cost), portion.first));
-        // More shards than portions are empty.
+        // If there are more shards than portions, some are empty.
         let mut shards: BinaryHeap<Reverse<(u128, usize)>> =
             (1..=shard.count.min(portions.len())).map(|index| Reverse((0, index))).collect();
         let mut rows = Vec::new();
@@ -89,8 +93,10 @@ impl Deal {
         rows
     }
 
-    /// What is dealt: whole surfaces, whose loads share their heights, where they are small enough for equal shards;
-    /// else single rows.
+    /// The portions that are dealt: whole surfaces, or single rows.
+    ///
+    /// The loads of a surface share its heights, so whole surfaces are preferred. They must be small enough for shards
+    /// of equal cost.
     fn portions(&self, count: usize) -> Vec<Portion> {
         let sum = |scene: &SceneCosts| scene.costs.iter().map(|&cost| u128::from(cost)).sum::<u128>();
         let heaviest = self.scenes.iter().map(sum).max().unwrap_or(0);
@@ -114,7 +120,7 @@ impl Deal {
     }
 }
 
-/// Seconds as whole microseconds of two digits, at least 1.
+/// Seconds as whole microseconds, rounded to two digits, at least 1.
 fn rounded(seconds: f64) -> u64 {
     let micros = (1e6 * seconds).clamp(1.0, 1e15);
     format!("{micros:.1e}").parse::<f64>().map_or(1, |micros| micros.round() as u64)
@@ -148,12 +154,14 @@ mod tests {
             let (sizes, weights): (Vec<usize>, Vec<usize>) = sums.unzip();
             let spread = |values: &[usize]| values.iter().max().unwrap_or(&0) - values.iter().min().unwrap_or(&0);
             assert!(spread(&sizes) <= 1, "{shape:?} in {count}: {sizes:?} rows");
-            // Unlike sizes, and the place in the deal, make up to one step of the load for each row.
+            // Different sizes, and the order of the deal, cause up to one step of the load for each row.
             assert!(spread(&weights) <= sizes[0] + loads, "{shape:?} in {count}: loads {weights:?}");
         }
     }
 
-    /// The longest row goes first to the shard with least to do, so no two shards differ by more than one row.
+    /// The costs of two shards differ by at most one row.
+    ///
+    /// The longest remaining row always goes to the shard with the lowest cost.
     #[test]
     fn with_costs_no_two_shards_differ_by_more_than_the_heaviest_portion() {
         let seconds = [0.01, 0.02, 0.05, 0.2, 1.0];

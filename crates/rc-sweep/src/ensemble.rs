@@ -1,4 +1,4 @@
-//! A mean over realisations with an error that was asked for, kept row by row as a sweep is.
+//! A mean over realisations with a wanted error, stored row by row like a sweep.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -16,38 +16,40 @@ use crate::row_solver::{RowSolver, RunError, Workers};
 use crate::shard::{MAX_ROWS, SweepShape};
 use crate::workers;
 
-/// The surfaces and loads of an ensemble. Which realisations and grids are solved follows from the results.
+/// The surfaces and loads of an ensemble.
+///
+/// The results determine which realisations and grids are solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnsemblePlan {
-    /// What the loads are.
+    /// Quantity that the loads prescribe.
     pub control: ControlKind,
-    /// The surface without seed and grid; each of its loads has a mean of its own.
+    /// The surface without seed and grid. Each of its loads has its own mean.
     pub surface: PlannedSurface,
-    /// Elements per side of the grids that there may be, coarsest first.
+    /// Elements per side of the possible grids, coarsest first.
     pub sides: Vec<usize>,
-    /// Seed of the first realisation. Level l has those from here + 10000 l on.
+    /// Seed of the first realisation. The seeds of level l begin here plus 10000 l.
     pub first_seed: u64,
 }
 
-/// One realisation on one grid under one load.
+/// A realisation on one grid under one load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Realisation {
-    /// Of its row.
+    /// Index of the row.
     pub index: usize,
     /// Pressure (Pa) or penetration (m).
     pub load: f64,
-    /// Elements per side.
+    /// Elements per side of the grid.
     pub side: usize,
     /// Seed of the surface.
     pub seed: u64,
 }
 
-/// What is asked for.
+/// The wanted mean and its error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WantedMean {
-    /// A numeric cell of the rows, as `area_fraction`.
+    /// Name of a numeric cell of the rows, such as `area_fraction`.
     pub quantity: String,
-    /// Relative rms error: of statistics and grid together.
+    /// Relative rms error of statistics and grid together.
     pub error: f64,
 }
 
@@ -56,27 +58,27 @@ pub struct WantedMean {
 pub struct EnsembleMean {
     /// `converged` or `not_converged`.
     pub status: String,
-    /// The cell of the rows that was averaged.
+    /// Name of the cell of the rows that was averaged.
     pub mean_of: String,
     /// `pressure` or `penetration`.
     pub control: String,
-    /// Its value (Pa or m).
+    /// Prescribed value (Pa or m).
     pub control_value: f64,
     /// The mean.
     pub mean: f64,
-    /// Its standard error, from the variances of the levels.
+    /// Standard error of the mean, from the variances of the levels.
     pub standard_error: f64,
     /// Estimated error of the finest grid.
     pub grid_error: f64,
-    /// Root of the sum of the squares of the two, relative to the mean.
+    /// Square root of the sum of squares of both errors, relative to the mean.
     pub relative_error: f64,
-    /// What this was to be at most.
+    /// Wanted maximum of `relative_error`.
     pub wanted_error: f64,
-    /// Rows that did not converge among those that were used.
+    /// Number of rows in the mean that did not converge.
     pub not_converged: usize,
-    /// Elements times applications of the operator, of all realisations.
+    /// Elements times applications of the operator, for all realisations.
     pub cost: f64,
-    /// The same for this standard error on the finest grid alone, estimated.
+    /// Estimated cost of the same standard error on the finest grid alone.
     pub cost_of_plain_mean: f64,
     /// The levels, coarsest first.
     pub levels: Vec<EnsembleLevel>,
@@ -85,18 +87,20 @@ pub struct EnsembleMean {
 /// One level of a mean.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EnsembleLevel {
-    /// Elements per side.
+    /// Elements per side of the grid.
     pub grid: usize,
-    /// Those of the grid whose results are subtracted; none on the coarsest.
+    /// Elements per side of the coarser grid whose results are subtracted.
+    ///
+    /// `None` on the coarsest level.
     pub coarser_grid: Option<usize>,
-    /// Seed of its first realisation; the others follow it.
+    /// Seed of the first realisation. The others follow it.
     pub first_seed: u64,
-    /// What was found.
+    /// The results on the level.
     #[serde(flatten)]
     pub found: LevelMean,
 }
 
-/// An ensemble in its folder, which no other process may write to as long as this lives.
+/// An ensemble in its folder. No other process may write to the folder during its lifetime.
 #[derive(Debug)]
 pub struct Ensemble {
     plan: EnsemblePlan,
@@ -105,7 +109,7 @@ pub struct Ensemble {
 }
 
 impl EnsemblePlan {
-    /// Rows are numbered by load, level, realisation, and grid: the finer one first.
+    /// Numbers of rows. They are numbered by load, level, realisation and grid, with the finer grid first.
     fn shape(&self) -> SweepShape {
         SweepShape { surfaces: 2 * MOST_REALISATIONS * self.sides.len(), loads: self.surface.loads.len() }
     }
@@ -124,13 +128,15 @@ impl EnsemblePlan {
         self.first_seed.wrapping_add((level * MOST_REALISATIONS) as u64)
     }
 
-    /// Greatest seed that there may be; `None` beyond all numbers.
+    /// Upper bound of the seeds, or `None` if it is too large for `u64`.
     #[must_use]
     pub fn greatest_seed(&self) -> Option<u64> {
         self.first_seed.checked_add((self.sides.len() * MOST_REALISATIONS) as u64)
     }
 
-    /// Realisation `i` of a level on its grid, or on the `coarser` one.
+    /// Realisation `i` of a level.
+    ///
+    /// It is on the grid of the level, or on the coarser grid if `coarser` is 1.
     fn realisation(&self, load: usize, level: usize, i: usize, coarser: usize) -> Realisation {
         Realisation {
             index: 2 * ((load * self.sides.len() + level) * MOST_REALISATIONS + i) + coarser,
@@ -140,7 +146,7 @@ impl EnsemblePlan {
         }
     }
 
-    /// The rows of so many realisations of each level, those of finer grids first.
+    /// The rows for `counts` realisations of each level. Rows of finer grids are first.
     fn rows(&self, load: usize, counts: &[usize]) -> Vec<Realisation> {
         let of_level = |(level, &count): (usize, &usize)| {
             let grids = if level > 0 { 2 } else { 1 };
@@ -153,11 +159,13 @@ impl EnsemblePlan {
 }
 
 impl Ensemble {
-    /// Starts a new ensemble in `folder`, or with `resume` goes on with what is there of the same one.
+    /// Starts a new ensemble in `folder`, or continues an ensemble with `resume`.
+    ///
+    /// An ensemble to continue must have the same plan.
     ///
     /// # Errors
-    /// [`SweepError`] when there are too many loads, when the folder holds something else, or when it cannot be written
-    /// to.
+    /// [`SweepError`] when there are too many loads, when the folder contains something else, or when it cannot be
+    /// written.
     pub fn start(plan: EnsemblePlan, folder: &Path, resume: bool) -> Result<Self, SweepError> {
         let shape = plan.shape();
         if shape.rows() > MAX_ROWS {
@@ -167,19 +175,20 @@ impl Ensemble {
         Ok(Self { plan, folder: folder.to_owned(), journal: Mutex::new(journal) })
     }
 
-    /// The rows that are kept so far.
+    /// The rows that are stored so far.
     #[must_use]
     pub fn kept(&self) -> Kept<'_> {
         Kept::new(&self.folder, self.locked())
     }
 
-    /// Solves what the means of all loads need, writes the table of the rows, and returns the means; `None` when the
-    /// solver stopped before. `workers` are those for grids with this many elements.
+    /// Solves the rows that the means of all loads need, and returns the means.
     ///
-    /// What is solved depends on results only, so a run that goes on after an interruption ends with the same digits.
+    /// The table of the rows is written too. The result is `None` if the solver stopped before the end. `workers`
+    /// returns the workers for grids with a given number of elements. The selection of rows depends only on results, so
+    /// a run that continues after an interruption gives the same digits.
     ///
     /// # Errors
-    /// [`RunError`]; the rows that were solved are kept, and in the table.
+    /// [`RunError`]. The solved rows are stored, and in the table.
     pub fn run<S: RowSolver<Realisation>>(
         &self,
         wanted: &WantedMean,
@@ -196,7 +205,7 @@ impl Ensemble {
         Ok(Some(means).filter(|means| means.len() == self.plan.surface.loads.len()))
     }
 
-    /// The mean under one load; `None` when the solver stopped before.
+    /// The mean under one load, or `None` if the solver stopped before the end.
     fn mean<S: RowSolver<Realisation>>(
         &self,
         load: usize,
@@ -227,7 +236,7 @@ impl Ensemble {
         }
     }
 
-    /// The values of these realisations, from the rows that are kept.
+    /// The values of these realisations, from the stored rows.
     fn samples(&self, load: usize, counts: &[usize], quantity: &str) -> Result<Vec<Samples>, SweepError> {
         let journal = self.locked();
         let number = |row: &Realisation, of: &dyn Fn(&Cells) -> Option<f64>, name: &str| {
@@ -293,14 +302,17 @@ impl Ensemble {
         self.locked().append(row.index, all)
     }
 
-    /// Every row in the journal is whole, so a worker that panicked leaves it usable.
+    /// The journal, also after a worker has panicked.
+    ///
+    /// Every row in it is complete, so it is still usable.
     fn locked(&self) -> MutexGuard<'_, Journal> {
         self.journal.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// What a row took: elements of the finest level that were solved for, times applications of the operator to them.
-/// Unlike a time it is the same on every machine.
+/// Cost of a row: elements of the finest level times applications of the operator.
+///
+/// Only elements for which the row was solved count. Unlike a time, the cost is the same on every machine.
 fn cost_of(cells: &Cells) -> Option<f64> {
     let grid = || Some(cells.get("grid")?.as_array()?.iter().filter_map(Value::as_f64).product());
     let elements: f64 = cells.get("cells_evaluated").and_then(Value::as_f64).or_else(grid)?;

@@ -1,4 +1,4 @@
-//! Why a sweep cannot be started, continued, kept or merged.
+//! Errors of sweeps.
 
 use std::path::PathBuf;
 
@@ -8,29 +8,31 @@ use crate::files::FileError;
 use crate::folder::{JOURNAL_FILE, TABLE_FILE};
 use crate::shard::Shard;
 
-/// Why a sweep cannot be started, continued, kept or merged. Folders are those of sweeps.
+/// Reasons why a sweep cannot be started, continued, stored or merged.
+///
+/// Folders are those of sweeps.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum SweepError {
     /// A file could not be written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A row could not be appended to the journal; the rows before are in it.
+    /// A row could not be appended to the journal. The rows before it are stored.
     #[error("cannot write {}: {cause}; {kept} rows before are kept", path.display())]
     Append {
-        /// The journal.
+        /// Path of the journal.
         path: PathBuf,
-        /// Why not.
+        /// Cause of the failure.
         cause: String,
-        /// Rows that are in it.
+        /// Number of rows in the journal.
         kept: usize,
     },
-    /// A file that a surface is made of cannot be read.
+    /// The file of a surface cannot be read.
     #[error("{}: cannot read: {cause}", path.display())]
     Read {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why not.
+        /// Cause of the failure.
         cause: String,
     },
     /// The threads could not be started.
@@ -38,86 +40,86 @@ pub enum SweepError {
     Threads {
         /// Number of threads.
         threads: usize,
-        /// Why not.
+        /// Cause of the failure.
         cause: String,
     },
-    /// A shard without rows.
+    /// A shard has no rows.
     #[error("shard {shard} of a sweep of {rows} rows is empty")]
     EmptyShard {
         /// The shard.
         shard: Shard,
-        /// Rows of the whole sweep.
+        /// Number of rows of the whole sweep.
         rows: usize,
     },
-    /// An ensemble has more loads than rows can be numbered for.
+    /// An ensemble has too many loads for numbers of rows.
     #[error("{loads} loads are too many for means with an error, at most {most}")]
     TooManyMeans {
-        /// The loads.
+        /// Number of loads.
         loads: usize,
-        /// Most of them.
+        /// Maximum number of loads.
         most: usize,
     },
-    /// A row has no number for what is averaged.
+    /// The cell of a row that is to be averaged is not a number.
     #[error("{quantity} of seed {seed} on grid {grid} is not a number")]
     NoNumber {
-        /// The cell.
+        /// Name of the cell.
         quantity: String,
         /// Seed of the row.
         seed: u64,
-        /// Its elements per side.
+        /// Elements per side of the row's grid.
         grid: usize,
     },
-    /// Another process has the sweep.
+    /// Another process is writing the sweep.
     #[error("{}: another process is writing this sweep", folder.display())]
     AnotherProcess {
-        /// Its folder.
+        /// Folder of the sweep.
         folder: PathBuf,
     },
-    /// A new sweep was to go where one is.
+    /// The folder for a new sweep contains a sweep already.
     #[error("{}: holds a sweep already", folder.display())]
     HoldsSweep {
-        /// Its folder.
+        /// Folder of the sweep.
         folder: PathBuf,
     },
-    /// A sweep was to be resumed where there is something else.
+    /// The folder of a sweep to resume contains something else.
     #[error("{}: no sweep to resume: it has {name}, but no {JOURNAL_FILE}", folder.display())]
     NothingToResume {
         /// The folder.
         folder: PathBuf,
-        /// What it has.
+        /// Name of a file in it.
         name: String,
     },
-    /// The folder has a file of a name that a sweep uses.
+    /// The folder contains a file whose name a sweep uses.
     #[error("{}: has {name} already", folder.display())]
     InTheWay {
         /// The folder.
         folder: PathBuf,
-        /// The file.
+        /// Name of the file.
         name: String,
     },
-    /// The folder has no journal that can be read.
+    /// The folder does not contain a readable journal.
     #[error("{}: no sweep of rc here ({JOURNAL_FILE} cannot be read: {cause})", folder.display())]
     NoJournal {
         /// The folder.
         folder: PathBuf,
-        /// Why not.
+        /// Cause of the failure.
         cause: String,
     },
     /// The file is not a journal, or its first line is damaged.
     #[error("{}: not a journal of rc sweep", path.display())]
     NotAJournal {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
     },
     /// A line before the last one is damaged.
     #[error("{}: line {line} is damaged", path.display())]
     DamagedLine {
-        /// The journal.
+        /// Path of the journal.
         path: PathBuf,
-        /// Counted from 1.
+        /// Number of the line, from 1.
         line: usize,
     },
-    /// The folder holds a sweep of other settings.
+    /// The folder contains a sweep with other settings.
     #[error("{}: this folder holds another sweep: {difference}", folder.display())]
     OtherSettings {
         /// The folder.
@@ -125,82 +127,82 @@ pub enum SweepError {
         /// The first setting that differs, with both values.
         difference: String,
     },
-    /// The journal has another number of rows than its settings say.
+    /// The number of rows in the journal does not agree with its settings.
     #[error("{}: the number of rows in its journal is not that of its settings: it is damaged", folder.display())]
     DamagedShape {
         /// The folder.
         folder: PathBuf,
     },
-    /// The folder holds another shard of the sweep.
+    /// The folder contains another shard of the sweep.
     #[error("{}: holds shard {there}, not {here}", folder.display())]
     OtherShard {
         /// The folder.
         folder: PathBuf,
-        /// The shard in it.
+        /// The shard in the folder.
         there: Shard,
-        /// The shard that was wanted.
+        /// The requested shard.
         here: Shard,
     },
-    /// Nothing to merge.
+    /// There are no folders to merge.
     #[error("no folder to merge")]
     NoShards,
-    /// Two folders to be merged are not of one sweep.
+    /// Two folders to merge belong to different sweeps.
     #[error("{}: belongs to another sweep than {}: {difference}", folder.display(), first.display())]
     NotSameSweep {
         /// The folder.
         folder: PathBuf,
-        /// The folder before.
+        /// The previous folder.
         first: PathBuf,
         /// The first setting that differs, with both values.
         difference: String,
     },
-    /// Two folders to be merged are of different divisions into shards.
+    /// Two folders to merge belong to different divisions into shards.
     #[error("{}: is shard {here}, but {} is shard {there}", folder.display(), first.display())]
     OtherDivision {
         /// The folder.
         folder: PathBuf,
-        /// Its shard.
+        /// Shard in the folder.
         here: Shard,
-        /// The folder before.
+        /// The previous folder.
         first: PathBuf,
-        /// The shard of that one.
+        /// Shard in the previous folder.
         there: Shard,
     },
-    /// The rows of two folders to be merged were not dealt in the same way.
+    /// The rows of two folders to merge were dealt in different ways.
     #[error("{}: its rows were dealt differently from those of {}", folder.display(), first.display())]
     OtherDeal {
         /// The folder.
         folder: PathBuf,
-        /// The folder before.
+        /// The previous folder.
         first: PathBuf,
     },
-    /// A shard was given twice.
+    /// Two folders contain the same shard.
     #[error("{}: is shard {shard}, as is {}", folder.display(), other.display())]
     SameShard {
         /// The folder.
         folder: PathBuf,
-        /// The folder before.
+        /// The previous folder.
         other: PathBuf,
-        /// The shard of both.
+        /// The shard in both folders.
         shard: Shard,
     },
-    /// A shard to be merged is not finished.
+    /// A shard to merge is not finished.
     #[error("{}: {missing} rows of shard {shard} are missing", folder.display())]
     MissingRows {
         /// The folder.
         folder: PathBuf,
-        /// Its shard.
+        /// The shard in the folder.
         shard: Shard,
-        /// Rows that are not in it.
+        /// Number of rows that are missing.
         missing: usize,
     },
-    /// Not all shards were given.
+    /// A shard is missing.
     #[error("shard {shard} is missing")]
     MissingShard {
-        /// The first one that is missing.
+        /// The first shard that is missing.
         shard: Shard,
     },
-    /// The result folder of a finished row is gone.
+    /// The result folder of a finished row is missing.
     #[error("{}: the fields of this row are missing", folder.display())]
     MissingFields {
         /// The folder of the row.
@@ -209,7 +211,7 @@ pub enum SweepError {
 }
 
 impl SweepError {
-    /// The table could not be made of its rows.
+    /// The error of a table that could not be made from its rows.
     pub(crate) fn table(folder: &std::path::Path, cause: impl std::fmt::Display) -> Self {
         FileError::write(&folder.join(TABLE_FILE), cause).into()
     }

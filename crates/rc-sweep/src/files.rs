@@ -1,4 +1,4 @@
-//! Files that are there whole or not at all.
+//! Files that are written completely or not at all.
 
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -6,52 +6,54 @@ use std::path::{Path, PathBuf};
 use tempfile::{NamedTempFile, TempDir};
 use thiserror::Error;
 
-/// Why files are not there.
+/// Reasons why files were not written.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum FileError {
-    /// No file can be made in this folder; nothing was written.
+    /// Files cannot be created in a folder. Nothing was written.
     #[error("cannot write to the folder {}: {cause}", folder.display())]
     Folder {
         /// The folder.
         folder: PathBuf,
-        /// Why not.
+        /// Cause of the failure.
         cause: String,
     },
-    /// This file or folder could not be written.
+    /// A file or folder could not be written.
     #[error("cannot write {}: {cause}", path.display())]
     Write {
-        /// The file or folder under its final name.
+        /// Final path of the file or folder.
         path: PathBuf,
-        /// Why not.
+        /// Cause of the failure.
         cause: String,
     },
 }
 
 impl FileError {
-    /// `path` could not be written.
+    /// The error of a `path` that could not be written.
     pub fn write(path: &Path, cause: impl std::fmt::Display) -> Self {
         Self::Write { path: path.to_owned(), cause: cause.to_string() }
     }
 }
 
-/// Begin of the names of what is on its way to a final name. A process that is killed may leave it behind.
+/// First part of the names of temporary files. A process that is killed may leave such files.
 const PARTIAL: &str = ".rc-partial-";
 
-/// Begin of the names of what has made room, among the hidden files.
+/// First part of the names of replaced files, inside the hidden folder.
 const EARLIER: &str = "earlier-";
 
-/// Begin of the name of the folder that [`check_folder`] makes for a moment.
+/// First part of the name of the temporary folder that [`check_folder`] creates.
 const PROBE: &str = ".rc-probe-";
 
-/// Checks that files can be made in `folder`, or that `folder` itself can be made, and leaves nothing behind.
+/// Checks that files can be created in `folder`, or that `folder` can be created.
+///
+/// Nothing remains afterwards.
 ///
 /// # Errors
-/// [`FileError::Folder`].
+/// [`FileError::Folder`] when this is not possible.
 pub fn check_folder(folder: &Path) -> Result<(), FileError> {
     let refuse =
         |cause: &dyn std::fmt::Display| FileError::Folder { folder: folder.to_owned(), cause: cause.to_string() };
-    // Of a folder that does not exist yet, the nearest one above it that does must take it.
+    // If the folder does not exist yet, the nearest existing folder above it must accept a new folder.
     let existing = folder.ancestors().map(or_here).find(|path| path.symlink_metadata().is_ok());
     let existing = existing.ok_or_else(|| refuse(&"no such folder"))?;
     if !existing.is_dir() {
@@ -61,13 +63,15 @@ pub fn check_folder(folder: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-/// The current folder for the empty path.
+/// The current folder if the path is empty.
 fn or_here(path: &Path) -> &Path {
     if path.as_os_str().is_empty() { Path::new(".") } else { path }
 }
 
-/// A set of files, or of folders with files, on their way into a folder. They are written into a hidden folder inside
-/// it, and get their final names together in [`Staged::commit`]; dropped before that, they vanish.
+/// A set of files, or of folders with files, that is not yet complete.
+///
+/// They are written into a hidden folder inside the target folder, and get their final names together in
+/// [`Staged::commit`]. They are removed if the set is dropped before.
 #[derive(Debug)]
 pub struct Staged {
     folder: PathBuf,
@@ -76,10 +80,10 @@ pub struct Staged {
 }
 
 impl Staged {
-    /// Starts a set of files for `folder`, which is made when it does not exist.
+    /// Starts a set of files for `folder`, which is created if it does not exist.
     ///
     /// # Errors
-    /// [`FileError::Write`].
+    /// [`FileError::Write`] when this is not possible.
     pub fn new(folder: &Path) -> Result<Self, FileError> {
         let folder = or_here(folder).to_owned();
         let fail = |cause: io::Error| FileError::write(&folder, cause);
@@ -88,7 +92,7 @@ impl Staged {
         Ok(Self { folder, hidden, names: Vec::new() })
     }
 
-    /// Adds the file or folder `name`, which `write` writes to the path that it is given.
+    /// Adds the file or folder `name`. `write` writes it to the path in its argument.
     ///
     /// # Errors
     /// [`FileError::Write`] with the error of `write`.
@@ -105,7 +109,7 @@ impl Staged {
     /// Adds the text file `name`.
     ///
     /// # Errors
-    /// [`FileError::Write`].
+    /// [`FileError::Write`] when the file cannot be written.
     pub fn add_text(&mut self, name: &str, text: &str) -> Result<(), FileError> {
         self.add(name, |path| write_synced(path, text.as_bytes()))
     }
@@ -116,11 +120,13 @@ impl Staged {
         &self.names
     }
 
-    /// Gives them their final names, in the order in which they were added. The last one is the mark of a complete
-    /// set: an earlier file of its name goes first, so that it never describes files of another run.
+    /// Gives the files their final names, in the order in which they were added.
+    ///
+    /// The last file marks a complete set. An earlier file of its name is removed first, so that it never describes
+    /// files of another run.
     ///
     /// # Errors
-    /// [`FileError::Write`].
+    /// [`FileError::Write`] when a file cannot be renamed.
     pub fn commit(self) -> Result<(), FileError> {
         if let Some(mark) = self.names.last() {
             self.make_room(mark)?;
@@ -128,7 +134,7 @@ impl Staged {
         for name in &self.names {
             let (from, path) = (self.hidden.path().join(name), self.folder.join(name));
             if from.is_dir() {
-                // A file replaces another by itself.
+                // A renamed file replaces another file by itself. A folder does not.
                 self.make_room(name)?;
             }
             std::fs::rename(from, &path).map_err(|cause| FileError::write(&path, cause))?;
@@ -136,7 +142,9 @@ impl Staged {
         Ok(())
     }
 
-    /// Moves what has the name of a staged file or folder to where it vanishes; a folder for a folder only.
+    /// Moves an existing file or folder with a staged name to the hidden folder.
+    ///
+    /// A folder is moved only if the staged one is a folder too.
     fn make_room(&self, name: &str) -> Result<(), FileError> {
         let path = self.folder.join(name);
         let Ok(earlier) = path.symlink_metadata() else { return Ok(()) };
@@ -149,10 +157,12 @@ impl Staged {
     }
 }
 
-/// Writes one file that appears whole or not at all; `write` gets the path of a temporary file beside it.
+/// Writes a file completely or not at all.
+///
+/// `write` gets the path of a temporary file beside it.
 ///
 /// # Errors
-/// [`FileError::Write`].
+/// [`FileError::Write`] with the error of `write`.
 pub fn write_file<E: std::fmt::Display>(
     path: &Path,
     write: impl FnOnce(&Path) -> Result<(), E>,
@@ -166,10 +176,12 @@ pub fn write_file<E: std::fmt::Display>(
     std::fs::rename(&temporary, path).map_err(|cause| fail(&cause))
 }
 
-/// A hidden file in `folder`, to be filled and given its final name. Others may read it as far as the user lets them.
+/// A hidden file in `folder`, which is to be filled and renamed.
+///
+/// Its permissions for others follow the settings of the user.
 ///
 /// # Errors
-/// Those of the file system.
+/// Errors of the file system.
 pub fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
@@ -177,8 +189,9 @@ pub fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     builder.prefix(PARTIAL).tempfile_in(folder)
 }
 
-/// Removes what processes that were killed have left in `folder`, as far as it can be removed. No other process may be
-/// writing there.
+/// Removes the files that killed processes have left in `folder`, where possible.
+///
+/// No other process may write to the folder.
 pub fn remove_leftovers(folder: &Path) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
@@ -186,16 +199,16 @@ pub fn remove_leftovers(folder: &Path) {
         let name = name.to_string_lossy();
         if name.starts_with(PARTIAL) || name.starts_with(PROBE) {
             let (path, is_folder) = (entry.path(), entry.file_type().is_ok_and(|kind| kind.is_dir()));
-            // What stays is hidden, and does no harm.
+            // Files that cannot be removed are hidden and harmless.
             let _ = if is_folder { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
         }
     }
 }
 
-/// Writes a file and waits until the system has it.
+/// Writes a file, and waits until the system has stored it.
 ///
 /// # Errors
-/// Those of the file system.
+/// Errors of the file system.
 pub fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = std::fs::File::create(path)?;
     file.write_all(bytes)?;

@@ -1,37 +1,37 @@
-//! Which shard a process is, by the variables of the job system or of the MPI launcher that started it.
+//! The shard of a process, from variables of a job system or an MPI launcher.
 
 use thiserror::Error;
 
 use crate::shard::Shard;
 
-/// Why a process cannot tell which shard it is. Each message says what was found.
+/// Reasons why a process cannot determine its shard. Each message says what was found.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum JobError {
-    /// Nothing started the process that numbers its tasks.
+    /// The process was not started by a system that numbers its tasks.
     #[error("found neither a job array nor an MPI launcher: none of {} is set", NUMBERS.join(", "))]
     None,
-    /// A variable does not have a number.
+    /// The value of a variable is not a number.
     #[error("{name} is '{value}', not a number")]
     NotANumber {
-        /// The variable.
+        /// Name of the variable.
         name: String,
-        /// Its value.
+        /// Value of the variable.
         value: String,
     },
-    /// It is known which task this is, not of how many.
+    /// The number of the task is known, but the number of tasks is not.
     #[error("{found} does not say how many tasks there are")]
     NoCount {
         /// The variables with their values.
         found: String,
     },
-    /// The numbers of an array do not follow one another, or contradict its size.
+    /// The numbers of an array have gaps, or contradict the size of the array.
     #[error("{found} do not number the tasks evenly")]
     Uneven {
         /// The variables with their values.
         found: String,
     },
-    /// The task is not one of the array.
+    /// The task does not belong to the array.
     #[error("{found} is outside 1 to {count}")]
     Outside {
         /// The variable with its value.
@@ -45,17 +45,17 @@ pub enum JobError {
         /// The variable with its value.
         found: String,
     },
-    /// Two of them number the tasks differently.
+    /// Two sources number the tasks differently.
     #[error("{one} contradicts {other}")]
     Contradiction {
-        /// Variables with their values.
+        /// Variables of one source with their values.
         one: String,
-        /// Others.
+        /// Variables of the other source with their values.
         other: String,
     },
 }
 
-/// The variables that number a task.
+/// The variables with the number of a task.
 const NUMBERS: [&str; 7] = [
     "SLURM_ARRAY_TASK_ID",
     "PBS_ARRAY_INDEX",
@@ -66,7 +66,7 @@ const NUMBERS: [&str; 7] = [
     "SLURM_STEP_ID",
 ];
 
-/// The tasks of a job array of Slurm: id, first, last, number, step.
+/// Variables of a job array of Slurm: id, first, last, number, step.
 const SLURM_ARRAY: [&str; 5] = [
     "SLURM_ARRAY_TASK_ID",
     "SLURM_ARRAY_TASK_MIN",
@@ -75,17 +75,17 @@ const SLURM_ARRAY: [&str; 5] = [
     "SLURM_ARRAY_TASK_STEP",
 ];
 
-/// Indices of the arrays of PBS Pro and of Torque. Neither tells the number of tasks.
+/// Indices of the arrays of PBS Pro and of Torque. The number of tasks is not available.
 const PBS_ARRAYS: [&str; 2] = ["PBS_ARRAY_INDEX", "PBS_ARRAYID"];
 
-/// Ranks with the number of ranks: Open MPI; MPICH, Intel MPI and srun; PMIx.
+/// Variables of rank and number of ranks: Open MPI; MPICH, Intel MPI and srun; PMIx.
 const MPI: [(&str, &str); 3] =
     [("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"), ("PMI_RANK", "PMI_SIZE"), ("PMIX_RANK", "PMIX_SIZE")];
 
-/// The tasks that srun starts. A batch script itself has SLURM_PROCID too, but no step.
+/// Variables of the tasks that srun starts. A batch script has SLURM_PROCID too, but no step.
 const SLURM_STEP: [&str; 3] = ["SLURM_STEP_ID", "SLURM_PROCID", "SLURM_STEP_NUM_TASKS"];
 
-/// What one source says: task `number` of `count`, counted from `base`.
+/// The information of one source: task `number` of `count`, counted from `base`.
 struct Claim {
     number: usize,
     base: usize,
@@ -97,12 +97,14 @@ struct Claim {
 struct Job<'a>(&'a dyn Fn(&str) -> Option<String>);
 
 impl Shard {
-    /// The shard of this process: its task of a job array (Slurm, PBS, Torque), or its rank (Open MPI, MPICH, Intel
-    /// MPI, PMIx, srun). With `count` there are so many shards, and the tasks of arrays are numbered from 1 to it;
-    /// without, the job system must say how many. `variable` gives the value of an environment variable.
+    /// The shard of this process, from its task in a job array or its rank.
+    ///
+    /// Job arrays are those of Slurm, PBS and Torque. Ranks are those of Open MPI, MPICH, Intel MPI, PMIx and srun. If
+    /// `count` is given, it is the number of shards, and the tasks of arrays are numbered from 1 to `count`. Otherwise
+    /// the job system must provide the number. `variable` returns the value of an environment variable.
     ///
     /// # Errors
-    /// [`JobError`], when nothing numbers the process, or when two sources contradict each other.
+    /// [`JobError`] when no system numbers the process, or when two sources contradict each other.
     pub fn of_job(count: Option<usize>, variable: &dyn Fn(&str) -> Option<String>) -> Result<Self, JobError> {
         let job = Job(variable);
         let array = job.array(count.is_none())?;
@@ -110,7 +112,7 @@ impl Shard {
             Some(rank) => Some(rank),
             None => job.step(array.is_some())?,
         };
-        // Whatever has one task divides nothing.
+        // A source with one task does not divide the work.
         let divides = |claim: &Claim| claim.count != Some(1);
         let claim = match (array, rank) {
             (Some(array), Some(rank)) if divides(&array) && divides(&rank) => {
@@ -130,18 +132,18 @@ impl Shard {
 }
 
 impl Claim {
-    /// The shard, of `count` if that is given.
+    /// The shard, of `count` shards if `count` is given.
     fn shard(self, count: Option<usize>) -> Result<Shard, JobError> {
         let Self { number, base, count: own, found } = self;
         match (own, count) {
-            // Of an array only a part may have been submitted again; ranks are always complete.
+            // A part of an array may have been submitted again. Ranks are always complete.
             (Some(own), Some(count)) if own != count && base == 0 => {
                 Err(JobError::Contradiction { one: format!("auto/{count}"), other: found })
             }
             (None, None) => Err(JobError::NoCount { found }),
             (own, given) => {
                 let count = given.or(own).unwrap_or(1);
-                // Bases are 0 and 1.
+                // The base is 0 or 1.
                 let index = number.saturating_add(1 - base);
                 if (1..=count).contains(&index) {
                     Ok(Shard { index, count })
@@ -166,7 +168,7 @@ impl Job<'_> {
         set.collect::<Vec<_>>().join(", ")
     }
 
-    /// The task of a job array; with `places` its place in the array of Slurm, else its id.
+    /// The task of a job array. With `places`, its number is its place in the array of Slurm, and otherwise its id.
     fn array(&self, places: bool) -> Result<Option<Claim>, JobError> {
         if let Some(id) = self.number(SLURM_ARRAY[0])? {
             let found = self.found(&SLURM_ARRAY);
@@ -196,8 +198,9 @@ impl Job<'_> {
         Ok(None)
     }
 
-    /// The rank that an MPI launcher gave; all launchers that are there must agree. What srun says is not asked: the
-    /// launcher may have been started by it, once on each node.
+    /// The rank from MPI launchers, which must all agree.
+    ///
+    /// Variables of srun do not count here, because srun may have started the launcher once on each node.
     fn rank(&self) -> Result<Option<Claim>, JobError> {
         let mut agreed: Option<Claim> = None;
         for (rank, size) in MPI {
@@ -240,7 +243,7 @@ impl Job<'_> {
 mod tests {
     use super::*;
 
-    /// The shard in an environment written as `A=1 B=2`.
+    /// The shard in an environment that is written as `A=1 B=2`.
     fn shard(count: Option<usize>, environment: &str) -> Result<String, String> {
         let value = |name: &str| {
             let pairs = environment.split_whitespace().filter_map(|pair| pair.split_once('='));
@@ -264,12 +267,12 @@ mod tests {
             (slurm(0, 0, 7, 8, 1), "1/8"),
             (slurm(7, 0, 7, 8, 1), "8/8"),
             (slurm(6, 2, 8, 4, 2), "3/4"),
-            // The batch script of a task that may start four more; those of an array of one task.
+            // The batch script of a task that may start four more, and the tasks of an array of one task.
             (format!("{} {batch}", slurm(2, 1, 3, 3, 1)), "2/3"),
             (format!("{} PMI_RANK=2 PMI_SIZE=5", slurm(4, 4, 4, 1, 1)), "3/5"),
             ("SLURM_STEP_ID=0 SLURM_PROCID=2 SLURM_NTASKS=4 SLURM_STEP_NUM_TASKS=4".to_owned(), "3/4"),
             ("OMPI_COMM_WORLD_RANK=3 OMPI_COMM_WORLD_SIZE=4 PMIX_RANK=3".to_owned(), "4/4"),
-            // Daemons of Open MPI are started by srun, once a node.
+            // srun starts the daemons of Open MPI, once on each node.
             (format!("OMPI_COMM_WORLD_RANK=0 OMPI_COMM_WORLD_SIZE=16 {batch}"), "1/16"),
             ("PMI_RANK=0 PMI_SIZE=2".to_owned(), "1/2"),
             ("PMIX_RANK=1 SLURM_STEP_ID=0 SLURM_PROCID=1 SLURM_STEP_NUM_TASKS=2".to_owned(), "2/2"),
@@ -283,7 +286,7 @@ mod tests {
         for (environment, expected) in [
             ("PBS_ARRAY_INDEX=3".to_owned(), "3/8"),
             ("PBS_ARRAYID=8".to_owned(), "8/8"),
-            // One task submitted again.
+            // One task that was submitted again.
             (slurm(5, 5, 5, 1, 1), "5/8"),
             ("PMIX_RANK=0".to_owned(), "1/8"),
             ("PMI_RANK=7 PMI_SIZE=8".to_owned(), "8/8"),

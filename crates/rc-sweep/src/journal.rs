@@ -1,7 +1,7 @@
-//! The rows of a sweep on disk as they finish: one line each, appended and synced.
+//! The finished rows of a sweep on disk, with one line each, appended and synced.
 //!
-//! The first line says what sweep it is; it appears together with the file. A process that ends at any moment can only
-//! cut the last line, which is then taken off.
+//! The first line identifies the sweep, and appears together with the file. If a process ends at any moment, only the
+//! last line can be incomplete. That line is then removed.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write as _};
@@ -18,24 +18,26 @@ use crate::lock::Lock;
 pub(crate) struct Journal {
     path: PathBuf,
     file: File,
-    /// Bytes of whole lines.
+    /// Number of bytes of complete lines.
     length: u64,
     /// The first line.
     pub(crate) header: Header,
     pub(crate) rows: SweepRows,
-    /// Whether the folder was not there before.
+    /// Whether this process created the folder.
     made_folder: bool,
-    /// Why a row could not be kept; after that none is.
+    /// Reason why a row could not be stored. No row is stored after that.
     failure: Option<SweepError>,
-    /// Held as long as this process may write.
+    /// Lock that is held while this process may write.
     _lock: Lock,
 }
 
 impl Journal {
-    /// Starts the journal of a new sweep in `folder`, or with `resume` goes on with what is there of the same sweep.
+    /// Starts the journal of a new sweep in `folder`, or continues a sweep with `resume`.
+    ///
+    /// A sweep to continue must have the same first line.
     ///
     /// # Errors
-    /// When the folder holds something else, or cannot be written to.
+    /// When the folder contains something else, or cannot be written.
     pub(crate) fn start(folder: &Path, header: Header, resume: bool) -> Result<Self, SweepError> {
         let path = folder.join(JOURNAL_FILE);
         let journal = match (path.symlink_metadata().is_ok(), resume) {
@@ -61,7 +63,8 @@ impl Journal {
         let mut new = files::temporary_in(folder).map_err(fail)?;
         let line = header.to_line();
         new.write_all(line.as_bytes()).and_then(|()| new.as_file().sync_all()).map_err(fail)?;
-        // Whoever made one in the meantime keeps it (and may have taken this temporary file for a leftover).
+        // If another process has created the journal meanwhile, that process keeps it. It may have removed this
+        // temporary file as a leftover.
         let file = new.persist_noclobber(&path).map_err(|error| {
             if path.exists() { SweepError::AnotherProcess { folder: folder.to_owned() } } else { fail(error.error) }
         })?;
@@ -83,7 +86,7 @@ impl Journal {
         let path = folder.join(JOURNAL_FILE);
         let fail = |cause: io::Error| SweepError::from(FileError::write(&path, cause));
         let file = OpenOptions::new().append(true).open(&path).map_err(fail)?;
-        // Before reading: another process may still be writing.
+        // The lock is taken before reading, because another process may still be writing.
         let lock = Lock::take(&file, folder)?;
         let content = Content::read(folder)?;
         header.check_same(&content.header, folder)?;
@@ -100,18 +103,19 @@ impl Journal {
         })
     }
 
-    /// Keeps a row. When it returns, the row is on disk; after an error the rows before still are, and no part of this
-    /// one.
+    /// Stores a row.
+    ///
+    /// After success, the row is on disk. After an error, the rows before it are on disk, and no part of this row is.
     ///
     /// # Errors
-    /// [`SweepError::Append`].
+    /// [`SweepError::Append`] when the line cannot be written.
     pub(crate) fn append(&mut self, row: usize, cells: Cells) -> Result<(), SweepError> {
         if let Some(failure) = &self.failure {
             return Err(failure.clone());
         }
         let line = row_line(row, &cells);
         if let Err(cause) = self.file.write_all(line.as_bytes()).and_then(|()| self.file.sync_data()) {
-            // What cannot be cut now is cut when the sweep is resumed.
+            // An incomplete line that cannot be removed now is removed when the sweep is resumed.
             let _ = self.file.set_len(self.length);
             let (path, kept) = (self.path.clone(), self.rows.len());
             let failure = SweepError::Append { path, cause: cause.to_string(), kept };
@@ -123,11 +127,13 @@ impl Journal {
         Ok(())
     }
 
-    /// Takes away a sweep without rows, and its folder if this process made it: there is nothing to go on with.
+    /// Removes a sweep without rows, and its folder if this process created it.
+    ///
+    /// There is nothing to continue.
     pub(crate) fn discard_empty(&self, folder: &Path) {
         if self.rows.is_empty() {
-            // What cannot be removed does no harm: --resume takes it. The journal goes last, as long as it is there so
-            // does the rest.
+            // Files that cannot be removed are harmless, because --resume accepts them. The journal is removed last, so
+            // that it exists as long as the other files.
             let _ = std::fs::remove_dir_all(folder.join(ROWS_FOLDER));
             let _ = std::fs::remove_file(folder.join(TABLE_FILE));
             let _ = std::fs::remove_file(&self.path);
@@ -138,12 +144,13 @@ impl Journal {
     }
 }
 
-/// Refuses a folder that would mix the files of a sweep with others of the same names, or, to resume, one with any
-/// files.
+/// Refuses a folder with files that do not belong to a new sweep.
+///
+/// Without `resume`, no file may have a name that a sweep uses. With `resume`, there may be no files at all.
 fn check_unused(folder: &Path, resume: bool) -> Result<(), SweepError> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Ok(()) };
     let names = entries.filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()));
-    // Hidden files are what a process that was ended before its first row may have left.
+    // Hidden files may remain from a process that was killed before its first row.
     let in_the_way = |name: &String| if resume { !name.starts_with('.') } else { FILES.contains(&name.as_str()) };
     match names.into_iter().find(in_the_way) {
         None => Ok(()),

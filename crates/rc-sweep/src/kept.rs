@@ -1,4 +1,4 @@
-//! The rows of a running sweep that are finished.
+//! The finished rows of a running sweep.
 
 use std::path::{Path, PathBuf};
 use std::sync::MutexGuard;
@@ -8,7 +8,7 @@ use crate::error::SweepError;
 use crate::journal::Journal;
 use crate::table;
 
-/// The rows that are kept so far. No other row is kept as long as this lives.
+/// The rows that are stored so far. No other row is stored during its lifetime.
 #[derive(Debug)]
 pub struct Kept<'a> {
     folder: &'a Path,
@@ -16,7 +16,7 @@ pub struct Kept<'a> {
 }
 
 impl<'a> Kept<'a> {
-    /// Those of the journal in `folder`.
+    /// The rows of the journal in `folder`.
     pub(crate) fn new(folder: &'a Path, journal: MutexGuard<'a, Journal>) -> Self {
         Self { folder, journal }
     }
@@ -30,12 +30,12 @@ impl<'a> Kept<'a> {
     /// Writes the table of the rows, if there are any, and returns its path.
     ///
     /// # Errors
-    /// [`SweepError::File`]; an earlier table is left as it was.
+    /// [`SweepError::File`] when it cannot be written. An earlier table is not changed.
     pub fn write_table(&self) -> Result<PathBuf, SweepError> {
         table::write(self.folder, &self.journal.rows)
     }
 
-    /// Takes away a sweep without rows.
+    /// Removes a sweep without rows.
     pub(crate) fn discard_empty(&self) {
         self.journal.discard_empty(self.folder);
     }

@@ -1,14 +1,16 @@
-//! Something costly that rows which follow one another share.
+//! A costly value that consecutive rows share.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The value that was made last, by its key: a surface, whose loads follow one another, so that one at a time serves
-/// all workers.
+/// The value that was made last, with its key.
+///
+/// The value is, for example, a surface. Its loads follow one another, so one surface at a time is enough for all
+/// workers.
 #[derive(Debug)]
 pub struct Latest<T>(Mutex<Option<Made<T>>>);
 
-/// A value with the time that it took to make.
+/// A value, with the time that was needed to make it.
 #[derive(Debug)]
 struct Made<T> {
     key: usize,
@@ -23,18 +25,20 @@ impl<T> Default for Latest<T> {
 }
 
 impl<T> Latest<T> {
-    /// The value of `key`, and the time that it took to make once; `make` is called unless it is the latest.
+    /// The value for `key`, and the time that was needed to make it.
+    ///
+    /// `make` is called unless the last value has this key.
     ///
     /// # Errors
     /// Those of `make`.
     pub fn get<E>(&self, key: usize, make: impl FnOnce() -> Result<T, E>) -> Result<(Arc<T>, Duration), E> {
-        // A worker that panicked has stored nothing: the lock is as good as before.
+        // A worker that panicked has stored nothing, so the value is still valid.
         let mut latest = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(made) = latest.as_ref().filter(|made| made.key == key) {
             return Ok((Arc::clone(&made.value), made.time));
         }
         let started = Instant::now();
-        // The one before is let go of first.
+        // The previous value is released first.
         *latest = None;
         let value = Arc::new(make()?);
         let time = started.elapsed();

@@ -1,33 +1,42 @@
-//! The flow through the gap, as a summary has it.
+//! Summary of the flow through the gap.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::content::Cells;
 
-/// Flow of a thin film along x and along y under a pressure that falls by ΔP across the cell. Lists are of these two.
+/// Flow of a thin film along x and along y, as lists of two values.
+///
+/// The pressure decreases by ΔP across the cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeakageSummary {
-    /// K of the flow Q = K ΔP/(12 η) with the viscosity η (m³): 0 where nothing percolates.
+    /// K of the flow Q = K ΔP/(12 η) with the viscosity η (m³). It is 0 without percolation.
     pub permeance: [f64; 2],
-    /// Certified error of the solver, relative: the permeance of the network is at most `permeance`, and at least this
-    /// part below it.
+    /// Certified relative error of the solver.
+    ///
+    /// The permeance of the network is between `permeance` times (1 - this error) and `permeance`.
     pub relative_error: [f64; 2],
-    /// Estimated error of the grid (m³): the difference from the permeance of every second element.
+    /// Estimated error of the grid (m³).
+    ///
+    /// It is the difference from the permeance of every second element.
     pub permeance_error: [Option<f64>; 2],
-    /// Axis with the larger permeance, whose flow is drawn and written: `x` or `y`; null where nothing flows.
+    /// Axis with the larger permeance, `x` or `y`, or null without flow.
+    ///
+    /// The flow along this axis is drawn and written.
     pub flow_direction: Option<String>,
     /// Whether the film winds around the cell.
     pub percolates: [bool; 2],
-    /// Gap of the narrowest place of the widest path (m).
+    /// Gap (m) at the narrowest place of the widest path.
     pub critical_gap: [Option<f64>; 2],
-    /// Where it is (m).
+    /// Position (m) of that place.
     pub critical_place: [Option<[f64; 2]>; 2],
-    /// Largest difference of the flow through a section from the mean over all, relative to it.
+    /// Maximum relative difference of the flow through a section from the mean.
+    ///
+    /// The mean is over all sections, and the difference is relative to it.
     pub conservation_error: [f64; 2],
-    /// Iterations.
+    /// Number of iterations.
     pub iterations: [usize; 2],
-    /// Seconds for both flows.
+    /// Time for both flows, in seconds.
     pub wall_seconds: f64,
 }
 
@@ -42,7 +51,9 @@ impl LeakageSummary {
         COLUMNS.into_iter().zip(values)
     }
 
-    /// Adds empty cells to the row of a flow that did not converge: every row has the same columns.
+    /// Adds empty cells to the row of a flow that did not converge.
+    ///
+    /// Every row then has the same columns.
     pub fn complete(cells: &mut Cells) {
         for column in COLUMNS {
             cells.entry(column).or_insert(Value::Null);

@@ -1,54 +1,65 @@
-//! Multilevel Monte Carlo: a mean over realisations from many on coarse grids and few differences to finer ones.
+//! Multilevel Monte Carlo, a mean over realisations on several grids.
 //!
-//! M. B. Giles, Acta Numerica 24 (2015), 259-328: the mean on the finest grid is that on the coarsest one plus the
-//! means of the differences from grid to grid, each of the same realisation. The differences vary little, so they need
-//! few realisations. The number on each level makes the variance of the sum small enough at the smallest cost.
+//! There are many realisations on coarse grids, and few differences to finer grids. Source: M. B. Giles, Acta Numerica
+//! 24 (2015), 259-328.
+//!
+//! The mean on the finest grid is the mean on the coarsest grid plus the means of the differences from grid to grid.
+//! Both values of a difference have the same realisation. The differences vary little, so they need few realisations.
+//! The numbers of realisations on the levels make the variance of the sum small enough at minimum cost.
 
 use serde::Serialize;
 
-/// Realisations with which a level begins: the coarsest one, and differences.
+/// Numbers of realisations at the start of the coarsest and of other levels.
 const PILOT: [usize; 2] = [16, 5];
 
-/// Levels of the beginning, where there are so many grids: fewer do not show how differences fall.
+/// Number of levels at the start, if there are so many grids.
+///
+/// Fewer levels do not show how differences decrease.
 const FIRST_LEVELS: usize = 3;
 
-/// Most growth of a level at once: the variance of a few realisations may be far too large.
+/// Maximum growth of a level in one step. The variance from a few realisations may be much too large.
 const GROWTH: usize = 4;
 
-/// Most realisations of a level; beyond it an error was mistyped.
+/// Maximum number of realisations of a level. A larger number means that an error was mistyped.
 pub(crate) const MOST_REALISATIONS: usize = 10_000;
 
-/// Part of the wanted error that the bias may have before a finer grid is taken; on the last grid.
+/// Maximum ratio of the bias to the wanted error.
+///
+/// The first value applies while finer grids are left. Above it, a finer grid is added. The second value applies on the
+/// last grid.
 const BIAS_SHARE: [f64; 2] = [0.5, 0.9];
 
-/// Smallest ratio of the variance of a difference to that of the difference before: elements half as large divide it by
-/// 8, and few realisations may look as if they did not vary at all (Giles, Sec. 3.3).
+/// Minimum ratio of the variance of a difference to the variance of the previous difference.
+///
+/// Elements of half the side divide the variance by 8. A few realisations may appear not to vary at all (Giles, Sec.
+/// 3.3).
 const SMALLEST_RATIO: f64 = 1.0 / 16.0;
 
-/// The realisations of one level so far, by their seeds.
+/// The realisations of one level so far, in the order of seeds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Samples {
-    /// The quantity on the grid of the level, minus that on the next coarser grid; on the coarsest grid the quantity
-    /// itself.
+    /// Quantity on the grid of the level minus quantity on the next coarser grid.
+    ///
+    /// On the coarsest grid it is the quantity itself.
     pub(crate) differences: Vec<f64>,
-    /// What each took: elements times applications of the operator, of both grids.
+    /// Cost of each realisation: elements times applications of the operator, on both grids.
     pub(crate) costs: Vec<f64>,
-    /// The same on the grid of the level alone.
+    /// Cost of each realisation on the grid of the level alone.
     pub(crate) fine_costs: Vec<f64>,
 }
 
-/// What was found on one level.
+/// Results on one level.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LevelMean {
     /// Number of realisations.
     pub realisations: usize,
-    /// Mean of the difference to the next coarser grid; on the coarsest grid, of the quantity itself.
+    /// Mean of the difference to the next coarser grid. On the coarsest grid, mean of the quantity.
     pub mean: f64,
-    /// Variance of the same from one realisation to the next.
+    /// Variance of the difference, or of the quantity, between realisations.
     pub variance: f64,
-    /// What a realisation takes, in elements times applications of the operator.
+    /// Mean cost of a realisation, in elements times applications of the operator.
     pub cost: f64,
-    /// What it takes on the finer of the two grids alone.
+    /// Mean cost of a realisation on the finer of the two grids alone.
     #[serde(skip)]
     fine_cost: f64,
 }
@@ -60,27 +71,30 @@ pub(crate) struct Estimate {
     pub(crate) standard_error: f64,
     /// Estimated error of the finest grid.
     pub(crate) bias: f64,
-    /// Whether the root of the sum of their squares is as small as wanted.
+    /// Whether the wanted error is reached.
+    ///
+    /// It is compared with the square root of the sum of both squared errors.
     pub(crate) is_reached: bool,
     pub(crate) levels: Vec<LevelMean>,
 }
 
-/// What comes next.
+/// The next step of the procedure.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Step {
-    /// So many realisations of each level.
+    /// More realisations are needed. These are the total numbers for each level.
     More(Vec<usize>),
-    /// Nothing.
+    /// The wanted error is reached, or cannot be reached.
     Done(Estimate),
 }
 
-/// Realisations of each level at the beginning, of at most `n_grids` levels.
+/// Numbers of realisations at the start, for at most `n_grids` levels.
 pub(crate) fn pilot(n_grids: usize) -> Vec<usize> {
     (0..n_grids.min(FIRST_LEVELS)).map(|level| PILOT[level.min(1)]).collect()
 }
 
-/// What comes after these levels, coarsest first, of at most `n_grids`, for a mean with the relative rms error
-/// `wanted`.
+/// The next step after these levels, coarsest first.
+///
+/// There are at most `n_grids` levels. `wanted` is the relative rms error of the mean.
 pub(crate) fn next(samples: &[Samples], n_grids: usize, wanted: f64) -> Step {
     let levels: Vec<LevelMean> = samples.iter().map(LevelMean::of).collect();
     let variances = guarded(&levels);
@@ -104,7 +118,9 @@ pub(crate) fn next(samples: &[Samples], n_grids: usize, wanted: f64) -> Step {
     Step::Done(Estimate { mean, standard_error: variance.sqrt(), bias, is_reached, levels })
 }
 
-/// The numbers of realisations that give this variance at the smallest cost, as far as levels may grow at once.
+/// The numbers of realisations that give a variance at minimum cost.
+///
+/// The growth of a level in one step is limited.
 fn grown(levels: &[LevelMean], variances: &[f64], most_variance: f64) -> Vec<usize> {
     let sum: f64 = levels.iter().zip(variances).map(|(level, variance)| (variance * level.cost).sqrt()).sum();
     let number = |(level, variance): (&LevelMean, &f64)| {
@@ -114,7 +130,7 @@ fn grown(levels: &[LevelMean], variances: &[f64], most_variance: f64) -> Vec<usi
     levels.iter().zip(variances).map(number).collect()
 }
 
-/// Variances of the levels, none implausibly small.
+/// Variances of the levels, with a lower bound that excludes implausibly small values.
 fn guarded(levels: &[LevelMean]) -> Vec<f64> {
     let mut variances: Vec<f64> = levels.iter().map(|level| level.variance).collect();
     for level in 2..variances.len() {
@@ -123,8 +139,10 @@ fn guarded(levels: &[LevelMean]) -> Vec<f64> {
     variances
 }
 
-/// Estimated error of the finest grid: that of a quantity that converges at first order, so that what is missing is as
-/// large as the last difference, or half of the one before.
+/// Estimated error of the finest grid.
+///
+/// The quantity is assumed to converge at first order. The remaining error is then as large as the last difference, or
+/// half of the difference before.
 fn bias(levels: &[LevelMean]) -> f64 {
     match levels {
         [_, .., before, last] => last.mean.abs().max(0.5 * before.mean.abs()),
@@ -146,12 +164,14 @@ impl LevelMean {
 }
 
 impl Estimate {
-    /// Elements times applications of the operator, of all realisations.
+    /// Elements times applications of the operator, for all realisations.
     pub(crate) fn cost(&self) -> f64 {
         self.levels.iter().map(|level| level.realisations as f64 * level.cost).sum()
     }
 
-    /// What the same standard error would take on the finest grid alone, with the variance of the coarsest one.
+    /// Cost of the same standard error on the finest grid alone.
+    ///
+    /// The variance is that of the coarsest level.
     pub(crate) fn cost_of_plain_mean(&self) -> f64 {
         match self.levels[..] {
             [coarsest, .., finest] => coarsest.variance / self.standard_error.powi(2) * finest.fine_cost,
@@ -164,8 +184,9 @@ impl Estimate {
 mod tests {
     use super::*;
 
-    /// A quantity of mean 1 and standard deviation 0.1 on an infinitely fine grid; each grid adds `bias` and noise that
-    /// fall by half and by √8.
+    /// A quantity with mean 1 and standard deviation 0.1 on an infinitely fine grid.
+    ///
+    /// Each grid adds `bias` and noise, which decrease by factors of 2 and √8 from grid to grid.
     fn level(level: usize, n: usize, bias: f64) -> Samples {
         let unit = |i: usize, salt: f64| (12.0_f64).sqrt() * ((i as f64 * 0.618_033_988_75 + salt).fract() - 0.5);
         let on = |grid: usize, i: usize| {
@@ -205,8 +226,8 @@ mod tests {
             let error = estimate.standard_error.hypot(estimate.bias);
             assert!(estimate.is_reached && error <= wanted * estimate.mean, "{wanted}: {estimate:?}");
             assert!((estimate.mean - 1.0).abs() < 3.0 * error, "{wanted}: {estimate:?}");
-            // The differences alone cost little: less than a third of the finest grid's, when there are enough
-            // realisations.
+            // The cost of differences is small. With enough realisations, the total cost is less than a third of the
+            // cost on the finest grid.
             assert!(wanted > 0.005 || 3.0 * estimate.cost() < estimate.cost_of_plain_mean(), "{wanted}: {estimate:?}");
         }
     }

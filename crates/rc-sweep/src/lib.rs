@@ -1,14 +1,15 @@
-//! Load curves over realisations: many loads on many surfaces, kept row by row.
+//! Load curves over realisations: many loads on many surfaces, stored row by row.
 //!
-//! A [`SweepPlan`] is what is to be solved, the journal what is done, workers do the difference, and a table is the
-//! result. No row depends on another one, so that resumed and sharded sweeps give the rows of an uninterrupted one. How
-//! a row is solved is handed in as a [`RowSolver`]; this crate prints nothing and knows no command line.
+//! A [`SweepPlan`] says which rows are to be solved, and a journal holds the finished rows. Workers solve the rest, and
+//! the result is a table. No row depends on another row, so resumed and sharded sweeps give the rows of an
+//! uninterrupted sweep. The caller provides a [`RowSolver`] that solves a row. This crate does not print and does not
+//! know a command line.
 //!
-//! An [`Ensemble`] is the mean over as many realisations, on as fine grids, as its error asks for, kept in the same
-//! way.
+//! An [`Ensemble`] is a mean over realisations with a wanted error. The error determines the number of realisations and
+//! the fineness of grids. Rows are stored in the same way.
 //!
-//! [`Summary`] is what a row of a contact problem holds, in SI, and what `summary.json` holds. [`files`] writes files
-//! that are there whole or not at all, [`memory`] knows how many solves fit side by side.
+//! [`Summary`] is the result of a contact problem in SI units. A row and `summary.json` hold it. Module [`files`]
+//! writes each file completely or not at all. Module [`memory`] computes how many solves fit into memory at once.
 //!
 //! ```
 //! use rc_sweep::{Cells, ControlKind, SweepPlan, PlannedSurface, SweepRow, RowError, RowSolver, Shard, Sweep, Workers};

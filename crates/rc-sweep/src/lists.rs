@@ -1,15 +1,15 @@
-//! Lists on the command line: loads as a range or one by one, seeds.
+//! Lists on the command line: loads as a range or as single values, and seeds.
 
 use std::str::FromStr;
 
-/// Most values of one list; beyond it a number was mistyped.
+/// Maximum number of values in a list. A larger number means that a number was mistyped.
 const MOST: usize = 100_000;
 
-/// Loads: positive, finite, strictly rising or strictly falling.
+/// Loads that are positive, finite, and strictly increasing or strictly decreasing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loads(pub Vec<f64>);
 
-/// How the values of a range are spaced.
+/// Spacing of the values of a range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Spacing {
     Geometric,
@@ -19,7 +19,8 @@ enum Spacing {
 impl FromStr for Loads {
     type Err = String;
 
-    /// `first:last:count`, geometric; `first:last:count:linear`; or values with commas between them.
+    /// Reads a geometric range `first:last:count`, a range `first:last:count:linear`, or values with commas between
+    /// them.
     fn from_str(text: &str) -> Result<Self, String> {
         let values =
             if text.contains(':') { range(text)? } else { text.split(',').map(load).collect::<Result<_, _>>()? };
@@ -50,7 +51,9 @@ fn range(text: &str) -> Result<Vec<f64>, String> {
     Ok(spaced(load(first)?, load(last)?, count, spacing))
 }
 
-/// `count` ≥ 2 values, both ends exact, the others rounded to 15 digits. `libm` makes them the same on every machine
+/// A range of `count` ≥ 2 values.
+///
+/// Both ends are exact, and the other values are rounded to 15 digits. `libm` gives the same values on every machine
 /// that takes part in a sweep.
 fn spaced(first: f64, last: f64, count: usize, spacing: Spacing) -> Vec<f64> {
     let end = count - 1;
@@ -63,7 +66,7 @@ fn spaced(first: f64, last: f64, count: usize, spacing: Spacing) -> Vec<f64> {
     (0..count).map(value).collect()
 }
 
-/// 0.0001 instead of 0.00009999999999999998.
+/// The value rounded to 15 digits, such as 0.0001 for 0.00009999999999999998.
 fn rounded(value: f64) -> f64 {
     format!("{value:.14e}").parse().unwrap_or(value)
 }
@@ -75,14 +78,14 @@ fn load(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Seeds, each once, in the order in which they were given.
+/// Distinct seeds, in the order in which they were given.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Seeds(pub Vec<u64>);
 
 impl FromStr for Seeds {
     type Err = String;
 
-    /// `first..last`, both included; single ones; or several of these with commas between them.
+    /// Reads `first..last` (both included), a single seed, or several of these with commas between them.
     fn from_str(text: &str) -> Result<Self, String> {
         let mut seeds = Vec::new();
         for part in text.split(',') {

@@ -1,11 +1,11 @@
-//! One process at a time writes into the folder of a sweep.
+//! A lock that lets only one process write to the folder of a sweep.
 
 use std::fs::File;
 use std::path::Path;
 
 use crate::error::SweepError;
 
-/// Held until dropped; it goes with the process, however that ends.
+/// A lock that is held until it is dropped or the process ends.
 #[derive(Debug)]
 pub(crate) struct Lock {
     #[cfg(unix)]
@@ -13,10 +13,12 @@ pub(crate) struct Lock {
 }
 
 impl Lock {
-    /// Locks `file`, of the sweep in `folder`. On a file system without locks nothing is held.
+    /// Locks `file` of the sweep in `folder`.
+    ///
+    /// On a file system without locks there is no lock.
     ///
     /// # Errors
-    /// [`SweepError::AnotherProcess`] when another process has it.
+    /// [`SweepError::AnotherProcess`] when another process holds the lock.
     #[cfg(unix)]
     pub(crate) fn take(file: &File, folder: &Path) -> Result<Self, SweepError> {
         use nix::errno::Errno;
@@ -29,7 +31,7 @@ impl Lock {
         }
     }
 
-    /// Nothing is held where the system has no such locks.
+    /// Returns without a lock, because the system has no such locks.
     #[cfg(not(unix))]
     #[expect(clippy::unnecessary_wraps, reason = "the same signature on every system")]
     pub(crate) fn take(_file: &File, _folder: &Path) -> Result<Self, SweepError> {

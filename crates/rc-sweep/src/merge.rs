@@ -1,4 +1,4 @@
-//! The shards of a sweep as if it had been one.
+//! Merging of the shards of a sweep.
 
 use std::path::{Path, PathBuf};
 
@@ -9,20 +9,20 @@ use crate::folder::{FILES, JOURNAL_FILE, ROWS_FOLDER, TABLE_FILE, fields_folder,
 use crate::shard::Shard;
 use crate::{settings, table};
 
-/// A sweep that was put together.
+/// A sweep that was merged from shards.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Merged {
     /// All rows.
     pub rows: SweepRows,
-    /// The table.
+    /// Path of the table.
     pub table: PathBuf,
 }
 
-/// Puts the shards in `folders` together as one sweep in `out`.
+/// Merges the shards in `folders` to one sweep in `out`.
 ///
 /// # Errors
-/// [`SweepError`] when the folders are not all shards of one sweep, complete, or when `out` has a sweep or cannot be
-/// written; nothing is left behind then.
+/// [`SweepError`] when the folders are not all shards of one sweep, or a shard is not complete. Also when `out`
+/// contains a sweep or cannot be written. Nothing remains in `out` then.
 pub fn merge(folders: &[PathBuf], out: &Path) -> Result<Merged, SweepError> {
     if let Some(name) = FILES.iter().find(|name| out.join(name).symlink_metadata().is_ok()) {
         return Err(SweepError::InTheWay { folder: out.to_owned(), name: (*name).to_owned() });
@@ -38,7 +38,7 @@ pub fn merge(folders: &[PathBuf], out: &Path) -> Result<Merged, SweepError> {
     Ok(Merged { rows, table: out.join(TABLE_FILE) })
 }
 
-/// The shards, checked to be all those of one sweep, and complete.
+/// Reads the shards, and checks that they are complete and form one sweep.
 fn read(folders: &[PathBuf]) -> Result<Vec<(&Path, Content)>, SweepError> {
     let mut shards: Vec<(&Path, Content)> = Vec::new();
     for folder in folders {
@@ -79,7 +79,7 @@ fn check_same_sweep(first: &Path, there: &Header, folder: &Path, here: &Header) 
     Ok(())
 }
 
-/// Writes the sweep in one go: nothing of it appears unless all of it can be copied.
+/// Writes the sweep in one step. No file appears unless all files can be copied.
 fn write(out: &Path, header: &Header, shards: &[(&Path, Content)]) -> Result<SweepRows, SweepError> {
     let rows: SweepRows = shards.iter().flat_map(|(_, content)| content.rows.clone()).collect();
     let lines = rows.iter().map(|(&row, cells)| row_line(row, cells));
@@ -95,7 +95,7 @@ fn write(out: &Path, header: &Header, shards: &[(&Path, Content)]) -> Result<Swe
     Ok(rows)
 }
 
-/// The result folder of each row must be there before any is copied.
+/// Checks that the result folder of each row exists, before any is copied.
 fn check_fields(shards: &[(&Path, Content)]) -> Result<(), SweepError> {
     for (folder, content) in shards {
         if let Some(row) = content.rows.keys().find(|&&row| !has_fields(folder, row)) {

@@ -1,4 +1,4 @@
-//! Reading a value that may be written as a number or as text.
+//! Values that may be written as a number or as text.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -6,10 +6,11 @@ use std::str::FromStr;
 
 use serde::de::{self, Deserializer, Visitor};
 
-/// Deserialises a number, or text, as the text is read on a command line.
+/// Deserialises a number, or text in the form of the command line.
 ///
 /// # Errors
-/// When it is neither, with `expected`, which says what would be right; or the error of [`FromStr`].
+/// When the value is neither of both, with `expected`, which describes a valid value. Otherwise the error of
+/// [`FromStr`].
 pub fn number_or_text<'de, D, T>(deserializer: D, expected: &'static str) -> Result<T, D::Error>
 where
     D: Deserializer<'de>,

@@ -1,4 +1,4 @@
-//! What a sweep solves: surfaces and the loads on each.
+//! The plan of a sweep: surfaces, and the loads on each.
 
 use std::io;
 use std::path::Path;
@@ -14,7 +14,7 @@ use crate::shard::{Shard, SweepShape};
 
 pub use crate::shard::MAX_ROWS;
 
-/// What is prescribed in every row of a sweep.
+/// Quantity that is prescribed in every row of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ControlKind {
     /// The mean pressure (Pa).
@@ -24,7 +24,7 @@ pub enum ControlKind {
 }
 
 impl ControlKind {
-    /// Its key in scenes and summaries.
+    /// Key of the quantity in scenes and summaries.
     #[must_use]
     pub fn key(self) -> &'static str {
         match self {
@@ -43,38 +43,40 @@ impl From<Control> for ControlKind {
     }
 }
 
-/// One surface with its loads, and the settings that determine its rows.
+/// A surface with its loads, and the settings that determine its rows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PlannedSurface {
-    /// Name of the scene that it is of; empty where there is only one.
+    /// Name of the scene of the surface. It is empty if there is only one scene.
     pub scene: String,
     /// Seed of a random surface.
     #[serde(skip)]
     pub seed: Option<u64>,
-    /// The settings of the surface, an object.
+    /// The settings of the surface, as an object.
     pub surface: Value,
-    /// The settings of the contact without the load, an object.
+    /// The settings of the contact without the load, as an object.
     pub contact: Value,
-    /// Pressures (Pa) or penetrations (m); every surface of a sweep has the same number of them.
+    /// Pressures (Pa) or penetrations (m).
+    ///
+    /// Every surface of a sweep has the same number of loads.
     pub loads: Vec<f64>,
-    /// The height map, where the surface is one. Its place does not determine the rows, its content does.
+    /// The height map, if the surface is one. Its content determines the rows, but its path does not.
     pub map: Option<FileMark>,
 }
 
-/// By which a file is recognised.
+/// Length and checksum, which identify a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct FileMark {
-    /// Its length.
+    /// Length of the file.
     pub bytes: u64,
-    /// Its checksum.
+    /// Checksum of the file.
     pub crc32: u32,
 }
 
 impl FileMark {
-    /// Reads the file.
+    /// Reads the file at `path`.
     ///
     /// # Errors
-    /// [`SweepError::Read`].
+    /// [`SweepError::Read`] when it cannot be read.
     pub fn of(path: &Path) -> Result<Self, SweepError> {
         let fail = |cause: io::Error| SweepError::Read { path: path.to_owned(), cause: cause.to_string() };
         let mut file = std::fs::File::open(path).map_err(fail)?;
@@ -85,7 +87,7 @@ impl FileMark {
 }
 
 impl FileMark {
-    /// Of numbers that are in no file, as they are in memory.
+    /// The mark of numbers in memory that are not in a file.
     #[must_use]
     pub fn of_values(values: &[f64]) -> Self {
         let mut checksum = crc32fast::Hasher::new();
@@ -96,7 +98,7 @@ impl FileMark {
     }
 }
 
-/// A checksum that is written to.
+/// A checksum as a writer.
 struct Checksum(crc32fast::Hasher);
 
 impl io::Write for Checksum {
@@ -110,43 +112,46 @@ impl io::Write for Checksum {
     }
 }
 
-/// A sweep. Rows are ordered by surface, then load, each as given.
+/// A sweep. Rows are ordered by surface, then by load, each in the given order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepPlan {
-    /// What the loads are.
+    /// Quantity that the loads prescribe.
     pub control: ControlKind,
     /// The surfaces.
     pub surfaces: Vec<PlannedSurface>,
-    /// Whether rows say which scene they are of.
+    /// Whether rows contain the name of their scene.
     pub names_scenes: bool,
-    /// Whether each row keeps its fields, in a folder of its own.
+    /// Whether the fields of each row are stored, in a folder for each row.
     pub keeps_fields: bool,
-    /// How rows are dealt to shards.
+    /// Distribution of rows to shards.
     pub deal: Deal,
 }
 
 /// One row of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweepRow {
-    /// From 0.
+    /// Index of the row, from 0.
     pub index: usize,
-    /// Which of the surfaces of the plan, from 0.
+    /// Index of the surface in the plan, from 0.
     pub surface: usize,
     /// Pressure (Pa) or penetration (m).
     pub load: f64,
 }
 
 impl SweepPlan {
-    /// These surfaces under their loads; rows neither say which scene they are of nor keep fields, and
-    /// shards are dealt load by load.
+    /// A sweep of these surfaces under their loads.
+    ///
+    /// Rows do not contain the name of their scene, and their fields are not stored. Shards are dealt load by load.
     #[must_use]
     pub fn new(control: ControlKind, surfaces: Vec<PlannedSurface>) -> Self {
         Self { control, surfaces, names_scenes: false, keeps_fields: false, deal: Deal::default() }
     }
 
-    /// Deals the rows to shards by the processor seconds that they are expected to take: the longest first, each to the
-    /// shard with the least to do. `seconds` is asked for the loads of the first surface of each scene, and stands for
-    /// all its surfaces; what it does not know is taken as the mean.
+    /// Distributes the rows to shards by their expected processor time in seconds.
+    ///
+    /// The longest row comes first, and each row goes to the shard with the lowest total. `seconds` is called for the
+    /// loads of the first surface of each scene, and applies to all surfaces of the scene. Where it returns `None`, the
+    /// mean is used.
     #[must_use]
     pub fn dealt_by(mut self, mut seconds: impl FnMut(&SweepRow) -> Option<f64>) -> Self {
         let (mut scenes, mut first) = (Vec::new(), 0);
@@ -163,7 +168,7 @@ impl SweepPlan {
     /// Refuses a shard without rows.
     ///
     /// # Errors
-    /// [`SweepError::EmptyShard`].
+    /// [`SweepError::EmptyShard`] for such a shard.
     pub fn check_shard(&self, shard: Shard) -> Result<(), SweepError> {
         let rows = self.shape().rows();
         if (1..=rows).contains(&shard.count) { Ok(()) } else { Err(SweepError::EmptyShard { shard, rows }) }
@@ -189,7 +194,9 @@ impl SweepPlan {
         SweepRow { index, surface, load: self.surfaces[surface].loads[index % loads] }
     }
 
-    /// Row `index` as a message names it, counted from 1 as in the table: `row 3 (seed 1, pressure 1e5)`.
+    /// Name of a row in a message: `row 3 (seed 1, pressure 1e5)`.
+    ///
+    /// It counts from 1, as in the table.
     ///
     /// # Panics
     /// When there is no such row.
@@ -199,7 +206,7 @@ impl SweepPlan {
         format!("row {} ({seed}{} {:e})", row.index + 1, self.control.key(), row.load)
     }
 
-    /// The first columns of a row: scene, if there are several, seed, load.
+    /// The first columns of a row: scene if there are several, seed, load.
     pub(crate) fn leading_cells(&self, row: &SweepRow) -> Cells {
         let surface = &self.surfaces[row.surface];
         let mut cells = Map::new();
@@ -211,8 +218,9 @@ impl SweepPlan {
         cells
     }
 
-    /// The settings that determine the rows: the fingerprint of a sweep, in plain text so that a difference can be
-    /// named.
+    /// The settings that determine the rows, which identify a sweep.
+    ///
+    /// They are plain text, so that a difference can be named.
     pub(crate) fn settings(&self) -> Value {
         json!({
             "version": env!("CARGO_PKG_VERSION"),

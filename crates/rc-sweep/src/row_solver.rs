@@ -1,4 +1,6 @@
-//! How a row is solved: what the caller of a sweep hands in.
+//! The interface of the code that solves a row.
+//!
+//! The caller of a sweep provides this code.
 
 use thiserror::Error;
 
@@ -6,57 +8,61 @@ use crate::content::Cells;
 use crate::error::SweepError;
 use crate::plan::SweepRow;
 
-/// What solves the rows of a sweep, or those of an ensemble. Workers call it side by side.
+/// Solves the rows of a sweep or of an ensemble. Workers call it in parallel.
 pub trait RowSolver<Row = SweepRow>: Sync {
-    /// Why a row could not be solved.
+    /// Error of a row that could not be solved.
     type Error: Send;
 
-    /// The cells of `row`, but for scene, seed and load, which the sweep knows. A row that did not converge is no
-    /// error: its cell `status` is `not_converged`. With fields, the folder of the row is complete when this returns.
+    /// The cells of `row`, without scene, seed and load, which the sweep adds.
+    ///
+    /// A row that did not converge is not an error. Its cell `status` is `not_converged`. If fields are stored, the
+    /// folder of the row is complete when this returns.
     ///
     /// # Errors
-    /// [`RowError`].
+    /// [`RowError`] when the row cannot be solved.
     fn solve(&self, row: &Row) -> Result<Cells, RowError<Self::Error>>;
 
-    /// Called after each row that was solved and kept.
+    /// Called after each row that was solved and stored.
     fn row_kept(&self) {}
 
-    /// Whether no further row is to be begun. Rows that have begun are finished.
+    /// Whether to begin no more rows. Rows that have begun are finished.
     fn should_stop(&self) -> bool {
         false
     }
 }
 
-/// Why a row could not be solved.
+/// Reasons why a row could not be solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowError<E> {
-    /// This row cannot be solved, as with a load that its surface cannot carry; that says nothing about the others.
+    /// This row cannot be solved, for example because the surface cannot carry the load.
+    ///
+    /// Other rows may be solvable.
     Refused(E),
-    /// No further row is begun.
+    /// The solver failed, and no more rows are begun.
     Failed(E),
 }
 
-/// Threads, and the rows that they solve side by side.
+/// Numbers of threads, and of rows that they solve in parallel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Workers {
-    /// All threads together.
+    /// Total number of threads.
     pub threads: usize,
-    /// Rows at once, at most: as many as fit into memory.
+    /// Maximum number of rows at once, as many as fit into memory.
     pub at_once: usize,
 }
 
-/// Why a sweep ended before its last row.
+/// Reasons why a sweep ended before its last row.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum RunError<E> {
-    /// Rows were refused; all others are solved.
+    /// Rows were refused. All other rows are solved.
     #[error("{error} ({missing} rows cannot be solved, {kept} are kept)")]
     Refused {
-        /// The first one's error.
+        /// Error of the first refused row.
         error: E,
-        /// Rows without a result.
+        /// Number of rows without a result.
         missing: usize,
-        /// Rows in the table.
+        /// Number of rows in the table.
         kept: usize,
     },
     /// A row failed.

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-/// The first setting that differs, as `surfaces[0].surface.waves is 8 there and 16 here`.
+/// The first setting that differs, such as `surfaces[0].surface.waves is 8 there and 16 here`.
 pub(crate) fn difference(there: &Value, here: &Value) -> Option<String> {
     find_difference("", there, here)
 }

@@ -5,15 +5,15 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
-/// Most rows of a sweep; beyond it a number was mistyped.
+/// Maximum number of rows of a sweep. A larger number means that a number was mistyped.
 pub const MAX_ROWS: usize = 1_000_000;
 
-/// How many rows a sweep has: row s·L + l is surface s under load l, of S surfaces and L loads.
+/// Numbers of surfaces S and loads L of a sweep. Row s·L + l is surface s under load l.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SweepShape {
-    /// S: scenes times seeds.
+    /// Number of surfaces S, which is scenes times seeds.
     pub surfaces: usize,
-    /// L: loads of each.
+    /// Number of loads L of each surface.
     pub loads: usize,
 }
 
@@ -28,7 +28,7 @@ impl SweepShape {
 /// Part `index` of `count`, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// From 1 to `count`.
+    /// Number of the part, from 1 to `count`.
     pub index: usize,
     /// Number of shards.
     pub count: usize,

@@ -1,4 +1,4 @@
-//! The summary of a result: what `summary.json` and `--json` hold, in SI.
+//! The summary of a result in SI units, as in `summary.json` and `--json`.
 
 use std::time::Duration;
 
@@ -12,28 +12,30 @@ use crate::leakage::LeakageSummary;
 use crate::memory;
 use crate::plan::ControlKind;
 
-/// One solved contact problem. Pressures in Pa, lengths in m; fractions are of the nominal area.
+/// One solved contact problem. Pressures are in Pa, lengths in m, and fractions relative to the nominal area.
 ///
-/// Keys that the first summaries did not have are `None` when such a summary is read; new ones always have them.
+/// Some keys are missing in the oldest summaries, and are `None` after reading these. New summaries have them all.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// `converged`, `full_contact` or `not_converged`.
     pub status: String,
-    /// What was prescribed: `pressure` or `penetration`.
+    /// Prescribed quantity, `pressure` or `penetration`.
     pub control: String,
-    /// `love` or `spectral`.
+    /// Kernel, for example `love` or `spectral`.
     pub kernel: String,
-    /// The method that ran: `adaptive`, `uniform` or `gauss-seidel`.
+    /// Method that was used: `adaptive`, `uniform` or `gauss-seidel`.
     pub method: String,
-    /// Why it was this one.
+    /// Reason for this method.
     pub method_reason: Option<String>,
     /// Elements per side of the grid, along x and y.
     pub grid: [usize; 2],
-    /// How often elements at the edges of contacts are halved beyond the grid.
+    /// Number of times that elements at the edges of contacts are halved beyond the grid.
     pub border_level: Option<usize>,
-    /// Elements in contact on an adaptive mesh; all of the grid for the uniform method.
+    /// Number of elements in contact on an adaptive mesh.
+    ///
+    /// For the uniform method it is the number of all elements.
     pub elements: usize,
-    /// Nested levels; 0 when full contact needed no iteration.
+    /// Number of nested levels. It is 0 when full contact needed no iteration.
     pub levels: usize,
     /// Mean pressure σ0 (Pa).
     pub mean_pressure: f64,
@@ -41,16 +43,20 @@ pub struct Summary {
     pub penetration: f64,
     /// Penetration of full contact, max(h) - mean(h) (m).
     pub penetration_full_contact: f64,
-    /// Contact area A/A0, best estimate: edges of contacts are located between the centres of elements.
+    /// Best estimate of the contact area A/A0. Edges of contacts are located between the centres of elements.
     pub area_fraction: f64,
-    /// Contact area A/A0 by counting elements with p > 0.
+    /// Contact area A/A0 from the number of elements with p > 0.
     pub area_fraction_cells: f64,
     /// Estimated error of `area_fraction`.
     pub area_fraction_error: f64,
-    /// Greatest pressure that the contact bears (Pa); this key and the next three are there only with a hardness.
+    /// Maximum pressure that the contact bears (Pa).
+    ///
+    /// This key and the next three exist only with a hardness.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hardness: Option<f64>,
-    /// Plastic area, where the pressure is the hardness, of the nominal area, best estimate.
+    /// Best estimate of the plastic area, relative to the nominal area.
+    ///
+    /// In this area the pressure is the hardness.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plastic_area_fraction: Option<f64>,
     /// Estimated error of `plastic_area_fraction`.
@@ -61,87 +67,102 @@ pub struct Summary {
     pub mean_plastic_gap: Option<f64>,
     /// Length of the edges of all contacts (m).
     pub contact_perimeter: Option<f64>,
-    /// Root mean square of the pressure over the cell (Pa), of the elements.
+    /// rms pressure over the cell (Pa), from the pressures of elements.
     pub rms_pressure: f64,
-    /// The same with what the elements at edges of contacts miss (Pa): the best estimate.
+    /// Best estimate of the rms pressure (Pa).
+    ///
+    /// It includes the part that elements at edges of contacts miss.
     pub rms_pressure_corrected: Option<f64>,
-    /// Estimated discretisation error of `rms_pressure_corrected` (Pa); null when no coarser grid was solved.
+    /// Estimated discretisation error of `rms_pressure_corrected` (Pa).
+    ///
+    /// It is null when no coarser grid was solved.
     pub rms_pressure_error: Option<f64>,
-    /// Greatest pressure (Pa).
+    /// Maximum pressure (Pa).
     pub max_pressure: f64,
     /// Mean gap (m).
     pub mean_gap: f64,
     /// Estimated discretisation error of `mean_gap` and of `penetration` (m).
     pub mean_gap_error: Option<f64>,
-    /// dσ0/dΔ (Pa/m); null where it is infinite, in full contact.
+    /// Contact stiffness dσ0/dΔ (Pa/m). It is null in full contact, where it is infinite.
     pub contact_stiffness: Option<f64>,
-    /// Electrical and thermal contact conductance of the nominal area for a conductivity of 1 (1/m): dσ0/dΔ / E*, to be
-    /// multiplied with the harmonic mean 2 k1 k2/(k1 + k2) of the conductivities of the bodies (Barber, Proc. R. Soc. A
-    /// 459, 2003); null in full contact, where it is infinite, and on a layer, whose stiffness does not say it.
+    /// Electrical and thermal contact conductance of the nominal area for unit conductivity (1/m).
+    ///
+    /// It is dσ0/dΔ / E*. Multiply it by the harmonic mean 2 k1 k2/(k1 + k2) of the conductivities of the bodies
+    /// (Barber, Proc. R. Soc. A 459, 2003). It is null in full contact, where it is infinite, and on a layer, whose
+    /// stiffness does not determine it.
     pub contact_conductance: Option<f64>,
     /// Elastic energy of the cell (J).
     pub elastic_energy: f64,
-    /// Rms height about the mean (m).
+    /// rms height about the mean (m).
     pub rms_height: f64,
-    /// Rms slope √⟨|∇h|²⟩.
+    /// rms slope √⟨|∇h|²⟩.
     pub rms_slope: f64,
-    /// Greatest height on the grid (m).
+    /// Maximum height on the grid (m).
     pub h_max: f64,
-    /// Σ p (g - min g) / (H Σ p), with H = max(h) - min(h) and g of pressure-weighted mean 0.
+    /// Complementarity error Σ p (g - min g) / (H Σ p).
+    ///
+    /// H = max(h) - min(h), and the pressure-weighted mean of g is 0.
     pub complementarity_error: f64,
-    /// max(-g) / H.
+    /// Maximum overlap max(-g) / H.
     pub penetration_error: f64,
-    /// √(G/U), a bound on the relative error of the pressure in the energy norm, with G = mean p (g - min g) and U =
-    /// mean p v / 2.
+    /// Bound √(G/U) of the relative error of the pressure in the energy norm.
+    ///
+    /// G = mean p (g - min g) and U = mean p v / 2.
     pub energy_error: Option<f64>,
-    /// |mean p - σ0| / σ0, or the deviation of Δ over H under penetration control.
+    /// Error of the prescribed quantity: |mean p - σ0| / σ0, or the deviation of Δ divided by H.
     pub load_error: f64,
-    /// What `complementarity_error` and `penetration_error` were to reach; null where `energy_error` was.
+    /// Tolerance of `complementarity_error` and `penetration_error`.
+    ///
+    /// It is null where the tolerance applied to `energy_error`.
     pub tolerance: Option<f64>,
-    /// What `energy_error` was to reach.
+    /// Tolerance of `energy_error`.
     pub energy_tolerance: Option<f64>,
-    /// Elements of the grid whose gap was computed for the certificate.
+    /// Number of grid elements whose gap was computed for the certificate.
     pub cells_evaluated: Option<usize>,
-    /// Elements that were proven to be out of contact without computing their gap: all others.
+    /// Number of elements that were proven to be out of contact without their gap.
+    ///
+    /// These are all other elements.
     pub cells_proven: Option<usize>,
-    /// Iterations on each level, coarsest first.
+    /// Numbers of iterations on each level, coarsest first.
     pub level_iterations: Option<Vec<usize>>,
-    /// Iterations on the finest level.
+    /// Number of iterations on the finest level.
     pub iterations: usize,
-    /// Applications of L on the finest level, the certificate's included.
+    /// Number of applications of L on the finest level, including the certificate's.
     pub operator_applications: usize,
-    /// Flow through the gap, where it was asked for.
+    /// Flow through the gap, if it was requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub leakage: Option<LeakageSummary>,
-    /// Seconds from the parsed scene to the certified solution, evaluation of heights included.
+    /// Time from the parsed scene to the certified solution, in seconds.
+    ///
+    /// It includes the evaluation of heights.
     pub wall_seconds: f64,
-    /// Peak resident memory of the process; null where the system does not say.
+    /// Peak resident memory of the process, or null if unknown.
     pub peak_memory_bytes: Option<u64>,
-    /// Worker threads.
+    /// Number of worker threads.
     pub threads: usize,
     /// Version of rc.
     pub version: String,
 }
 
-/// What a summary says besides the solution.
+/// Information for a summary besides the solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolveContext {
-    /// What was prescribed.
+    /// Prescribed quantity.
     pub control: ControlKind,
-    /// How often elements at the edges of contacts were halved beyond the grid.
+    /// Number of times that elements at the edges of contacts were halved beyond the grid.
     pub border_level: usize,
-    /// Rms height of the surface about its mean, in λ.
+    /// rms height of the surface about its mean, in λ.
     pub rms_height: f64,
-    /// Rms slope of the surface.
+    /// rms slope of the surface.
     pub rms_slope: f64,
     /// Time from the parsed scene to the certified solution.
     pub wall: Duration,
-    /// Worker threads.
+    /// Number of worker threads.
     pub threads: usize,
 }
 
 impl Summary {
-    /// The summary of `solution` in SI. Its memory is that of the process so far.
+    /// The summary of `solution` in SI units. Its memory is the peak of the process so far.
     #[must_use]
     pub fn of(solution: &Solution<'_>, units: Units, context: &SolveContext) -> Self {
         let (info, observables, grid) = (solution.info(), solution.observables(), solution.grid());
@@ -202,11 +223,13 @@ impl Summary {
         }
     }
 
-    /// The summary as the cells of a row. Of a flow, those are `permeance_x`, `permeance_y` (m³) and `percolates`
-    /// (along x and along y).
+    /// The summary as the cells of a row.
+    ///
+    /// The cells of a flow are `permeance_x`, `permeance_y`, their errors (all in m³), and `percolates` (along x and
+    /// along y).
     ///
     /// # Panics
-    /// Never: a record of numbers and text is an object.
+    /// Never, because a record of numbers and text is an object.
     #[must_use]
     pub fn cells(&self) -> Cells {
         let Ok(Value::Object(mut cells)) = serde_json::to_value(self) else { unreachable!("a record is an object") };
@@ -216,7 +239,9 @@ impl Summary {
         cells
     }
 
-    /// The summary as JSON, one key a line, with a line break at the end.
+    /// The summary as JSON, with one key in each line.
+    ///
+    /// It ends with a line break.
     #[must_use]
     pub fn to_json(&self) -> String {
         to_json(self)

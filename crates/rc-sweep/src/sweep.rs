@@ -1,4 +1,4 @@
-//! A running sweep: its plan, its journal, and what is left to do.
+//! A running sweep with its plan, its journal, and its remaining rows.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -13,23 +13,24 @@ use crate::row_solver::{RowSolver, RunError, Workers};
 use crate::shard::Shard;
 use crate::workers;
 
-/// A sweep in its folder, which no other process may write to as long as this lives.
+/// A sweep in its folder. No other process may write to the folder during its lifetime.
 #[derive(Debug)]
 pub struct Sweep {
     plan: SweepPlan,
-    /// Those of this shard.
+    /// Indices of the rows of this shard.
     rows: Vec<usize>,
     folder: PathBuf,
     journal: Mutex<Journal>,
 }
 
 impl Sweep {
-    /// Starts the shard of a new sweep in `folder`, or with `resume` goes on with what is there of the same sweep,
-    /// whose rows are those that were dealt to it when it was started.
+    /// Starts the shard of a new sweep in `folder`, or continues a sweep with `resume`.
+    ///
+    /// A sweep to continue must be the same. Its rows are those that were dealt to it when it was started.
     ///
     /// # Errors
-    /// [`SweepError`] when the shard has no rows, when the folder holds something else, or when it cannot be written
-    /// to.
+    /// [`SweepError`] when the shard has no rows, when the folder contains something else, or when it cannot be
+    /// written.
     pub fn start(plan: SweepPlan, shard: Shard, folder: &Path, resume: bool) -> Result<Self, SweepError> {
         let shape = plan.shape();
         plan.check_shard(shard)?;
@@ -39,7 +40,7 @@ impl Sweep {
         Ok(Self { plan, rows, folder: folder.to_owned(), journal: Mutex::new(journal) })
     }
 
-    /// What is to be solved.
+    /// The plan of the sweep.
     #[must_use]
     pub fn plan(&self) -> &SweepPlan {
         &self.plan
@@ -51,7 +52,7 @@ impl Sweep {
         self.rows.len()
     }
 
-    /// The rows of this shard that are not finished, in the order in which they are solved.
+    /// The unfinished rows of this shard, in the order of solution.
     #[must_use]
     pub fn todo(&self) -> Vec<usize> {
         let journal = self.locked();
@@ -60,34 +61,36 @@ impl Sweep {
         self.rows.iter().copied().filter(|row| !is_done(row)).collect()
     }
 
-    /// The folder for the fields of row `index`, if they are kept.
+    /// The folder for the fields of row `index`, or `None` if fields are not stored.
     #[must_use]
     pub fn fields_folder(&self, index: usize) -> Option<PathBuf> {
         self.plan.keeps_fields.then(|| fields_folder(&self.folder, index))
     }
 
-    /// Keeps a row with these cells beside its scene, seed and load. When it returns, the row is on disk; after an
-    /// error the rows before still are, and no part of this one.
+    /// Stores a row with these cells and its scene, seed and load.
+    ///
+    /// After success, the row is on disk. After an error, the rows before it are on disk, and no part of this row is.
     ///
     /// # Errors
-    /// [`SweepError::Append`].
+    /// [`SweepError::Append`] when the row cannot be written.
     pub fn keep(&self, row: &SweepRow, cells: Cells) -> Result<(), SweepError> {
         let mut all = self.plan.leading_cells(row);
         all.extend(cells);
         self.locked().append(row.index, all)
     }
 
-    /// The rows that are kept so far.
+    /// The rows that are stored so far.
     #[must_use]
     pub fn kept(&self) -> Kept<'_> {
         Kept::new(&self.folder, self.locked())
     }
 
-    /// Solves what is left to do and writes the table, whose path is returned. A sweep of which no row could be solved
-    /// leaves nothing behind.
+    /// Solves the remaining rows, writes the table, and returns its path.
+    ///
+    /// If no row could be solved, no files remain.
     ///
     /// # Errors
-    /// [`RunError`]; the rows that were solved are kept, and in the table.
+    /// [`RunError`]. The solved rows are stored, and in the table.
     pub fn run<S: RowSolver>(&self, solver: &S, workers: Workers) -> Result<PathBuf, RunError<S::Error>> {
         let todo = self.todo();
         if !todo.is_empty() {
@@ -99,7 +102,7 @@ impl Sweep {
         let kept = self.kept();
         let written = kept.write_table();
         let Err(error) = solved else { return Ok(written?) };
-        // What it says comes first: on a full disk, for one, the table fails as well.
+        // The error of the run takes precedence. On a full disk, for example, the table fails as well.
         kept.discard_empty();
         Err(match error {
             RunError::Refused { error, .. } => {
@@ -110,11 +113,12 @@ impl Sweep {
         })
     }
 
-    /// Ends a sweep whose rows a caller solved and kept: writes the table, whose path is returned. One of which no row
-    /// is kept leaves nothing behind.
+    /// Ends a sweep whose rows the caller has solved and stored.
+    ///
+    /// Writes the table and returns its path. If no row is stored, no files remain.
     ///
     /// # Errors
-    /// [`SweepError::File`]; an earlier table is left as it was.
+    /// [`SweepError::File`] when the table cannot be written. An earlier table is not changed.
     pub fn end(&self) -> Result<PathBuf, SweepError> {
         let kept = self.kept();
         let written = kept.write_table();
@@ -122,8 +126,9 @@ impl Sweep {
         written
     }
 
-    /// The journal, which workers and a handler of interrupts share. Every row in it is whole, so a worker that
-    /// panicked leaves it usable.
+    /// The journal, which workers share with a handler of interrupts.
+    ///
+    /// Every row in it is complete, so it is usable after a worker has panicked.
     fn locked(&self) -> MutexGuard<'_, Journal> {
         self.journal.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -137,7 +142,7 @@ mod tests {
     use crate::plan::{ControlKind, PlannedSurface};
     use crate::row_solver::RowError;
 
-    /// Refuses one load, fails at another, and stops after some rows.
+    /// A solver that refuses one load, fails at another, and stops after some rows.
     struct Toy {
         refused: f64,
         failed: f64,
@@ -179,7 +184,7 @@ mod tests {
         let refused = Toy { refused: 2.0, ..SOUND };
         let error = sweep(&folder, false).run(&refused, ALONE).expect_err("a load is refused");
         assert_eq!(error, RunError::Refused { error: "no 2".to_owned(), missing: 2, kept: 4 });
-        // Resumed with a solver that can, the rows are those of an uninterrupted sweep.
+        // After it is resumed with a solver that succeeds, the rows are those of an uninterrupted sweep.
         let table = sweep(&folder, true).run(&SOUND, ALONE).expect("a table");
         let text = std::fs::read_to_string(table).expect("the table");
         assert_eq!(text.lines().nth(5), Some("8,2.0,4.0"), "{text}");

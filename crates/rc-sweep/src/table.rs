@@ -9,10 +9,10 @@ use crate::error::SweepError;
 use crate::files;
 use crate::folder::TABLE_FILE;
 
-/// Writes the table of `rows`, if there are any.
+/// Writes the table of `rows`, if there are any rows.
 ///
 /// # Errors
-/// [`SweepError::File`]; an earlier table is left as it was.
+/// [`SweepError::File`] when it cannot be written. An earlier table is not changed.
 pub(crate) fn write(folder: &Path, rows: &SweepRows) -> Result<PathBuf, SweepError> {
     let path = folder.join(TABLE_FILE);
     if !rows.is_empty() {
@@ -34,14 +34,14 @@ pub(crate) fn to_csv(rows: &SweepRows) -> Result<Vec<u8>, String> {
     out.into_inner().map_err(|cause| cause.to_string())
 }
 
-/// Rows that are marked `not_converged`.
+/// Number of rows with the status `not_converged`.
 #[must_use]
 pub fn n_not_converged(rows: &SweepRows) -> usize {
     let failed = |cells: &&Cells| cells.get("status").is_some_and(|status| status == "not_converged");
     rows.values().filter(failed).count()
 }
 
-/// A value as one cell: empty for none, a space between the values of a list.
+/// A value as one cell. Null is empty, and the values of a list have spaces between them.
 fn cell(value: &Value) -> String {
     match value {
         Value::Null => String::new(),

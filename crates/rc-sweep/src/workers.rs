@@ -1,4 +1,4 @@
-//! Rows side by side: who solves which with how many threads.
+//! Parallel solution of rows: distribution of rows and threads to workers.
 
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -7,17 +7,17 @@ use crate::content::Cells;
 use crate::error::SweepError;
 use crate::row_solver::{RowError, RowSolver, RunError, Workers};
 
-/// What keeps a row that is done.
+/// A function that stores a finished row.
 type Keep<'a, R> = dyn Fn(&R, Cells) -> Result<(), SweepError> + Sync + 'a;
 
-/// Solves the rows `todo` and hands each to `keep` as it is done. After a failure no row is begun; a row that is
-/// refused is left out.
+/// Solves the rows `todo`, and passes each finished row to `keep`.
 ///
-/// Rows are solved side by side as far as memory allows. That is faster than all threads on one row for small surfaces,
-/// and no slower for large ones (docs/measurements.md).
+/// After a failure no more rows are begun. A refused row is omitted. Rows are solved in parallel as far as memory
+/// allows. For small surfaces this is faster than all threads on one row, and for large ones it is not slower
+/// (docs/measurements.md).
 ///
 /// # Errors
-/// The first one of a row, failures first; the counts of [`RunError::Refused`] are those of the caller.
+/// The first error of a row, where failures take precedence. The caller sets the counts of [`RunError::Refused`].
 pub(crate) fn run<R: Sync, S: RowSolver<R>>(
     todo: &[R],
     solver: &S,
@@ -38,12 +38,12 @@ pub(crate) fn run<R: Sync, S: RowSolver<R>>(
     others.into_iter().chain(refused).collect()
 }
 
-/// The result of a worker; a panic goes on here.
+/// The result of a worker. A panic of the worker continues here.
 fn join<T>(worker: std::thread::ScopedJoinHandle<'_, T>) -> T {
     worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
 }
 
-/// Threads of each worker: all of them, in parts as equal as can be.
+/// Numbers of threads of the workers, as equal as possible, with all threads in use.
 fn share(threads: usize, n_workers: usize) -> impl Iterator<Item = NonZeroUsize> {
     let part = move |i| threads / n_workers + usize::from(i < threads % n_workers);
     (0..n_workers).map(move |i| NonZeroUsize::new(part(i)).unwrap_or(NonZeroUsize::MIN))
@@ -54,7 +54,7 @@ fn pool(threads: usize) -> Result<rayon::ThreadPool, SweepError> {
     pool.map_err(|cause| SweepError::Threads { threads, cause: cause.to_string() })
 }
 
-/// What the workers share.
+/// Data that the workers share.
 struct Work<'a, R, S> {
     todo: &'a [R],
     solver: &'a S,
@@ -64,7 +64,7 @@ struct Work<'a, R, S> {
 }
 
 impl<R, S: RowSolver<R>> Work<'_, R, S> {
-    /// Takes rows until there are none, or a row failed.
+    /// Takes rows until there are no more rows, or a row failed.
     fn run(&self) -> Result<(), RunError<S::Error>> {
         let mut refused = Ok(());
         while !self.stop.load(Ordering::Relaxed) && !self.solver.should_stop() {

@@ -103,7 +103,7 @@ fn a_rectangle_has_the_moments_of_its_copies_and_all_of_the_power() {
         let whole = if ratio < 1.0 {
             Field::from_fn(Grid::new(nx, copies * ny).expect("a grid"), |DVec2 { x, y }| wave(x, y / ratio))
         } else {
-            // In units of the longer side.
+            // Lengths are in units of the longer side.
             Field::from_fn(Grid::new(copies * nx, ny).expect("a grid"), |DVec2 { x, y }| wave(ratio * x, y) / ratio)
         };
         let unit = ratio.max(1.0);

@@ -52,7 +52,7 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
     Ok(channels.collect())
 }
 
-/// The blocks of the directory. The last blocks of a truncated file have fewer bytes or none.
+/// The blocks of the directory. The last blocks of a truncated file have fewer or zero bytes.
 fn blocks(bytes: &[u8]) -> Result<Vec<Block<'_>>, FormatError> {
     let mut directory = Bytes::new(bytes, Format::Opd);
     directory.take(2)?;

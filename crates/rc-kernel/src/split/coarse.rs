@@ -154,7 +154,8 @@ mod tests {
             assert!((element.filter.response(0.0) - 1.0).abs() < 1e-9);
             for q in [0.2, 0.6, 1.2] {
                 let (n, side) = (1 << m, 1.0 / f64::from(1 << m));
-                // The mean of a wave over the centres of the finest elements. Each of these is itself half of a square.
+                // The mean of a wave over the centres of the finest elements. Each of these has the square root of the
+                // blur of a square.
                 let centres = (0..n).map(|i| (q * (f64::from(i) + 0.5 - 0.5 * f64::from(n)) * side).cos());
                 let mean = centres.sum::<f64>() / f64::from(n);
                 let finest = ((0.5 * q * side).sin() / (0.5 * q * side)).sqrt();

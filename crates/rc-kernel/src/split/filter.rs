@@ -42,7 +42,8 @@ impl Filter {
 
 /// Target of the filter for the finest level, √sinc(q/2) along each axis.
 ///
-/// This filter is half of the difference between an element and a point. Its transpose is the other half.
+/// sinc(q/2) is the factor between an element and a point. The filter and its transpose contribute one square root
+/// each.
 pub(super) fn love_target(q: f64) -> f64 {
     ((0.5 * q).sin() / (0.5 * q)).sqrt()
 }

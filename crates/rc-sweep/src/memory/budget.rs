@@ -1,4 +1,4 @@
-//! What a solve may need of memory: the limit that the user gives, and what the machine has.
+//! Memory for a solve: the limit of the user, and the memory of the machine.
 
 use rc_core::Grid;
 use rc_solver::UNIFORM_BYTES_PER_ELEMENT;
@@ -6,14 +6,14 @@ use thiserror::Error;
 
 use super::ByteSize;
 
-/// Memory that there is for a command.
+/// Memory that is available to a command.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     limit: Option<ByteSize>,
     machine: Option<ByteSize>,
 }
 
-/// What bounds the memory of a command.
+/// Source of a limit of memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bound {
     /// The limit that the user gave.
@@ -22,43 +22,44 @@ pub enum Bound {
     Machine,
 }
 
-/// Something needs more memory than there is.
+/// Error of a command that needs more memory than is available.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{what} needs about {needed} of memory, but {available} is available{remedy}")]
 pub struct MemoryError {
-    /// What needs it.
+    /// Name of what needs the memory.
     pub what: String,
-    /// Estimate of what it needs.
+    /// Estimate of the needed memory.
     pub needed: ByteSize,
-    /// What there is.
+    /// Available memory.
     pub available: ByteSize,
-    /// Who says so.
+    /// Source of the limit.
     pub bound: Bound,
-    /// What would fit, as the end of a sentence; may be empty.
+    /// Description of what would fit, as the end of a sentence. It may be empty.
     pub remedy: String,
 }
 
 impl Budget {
-    /// No limit: for estimates that must be the same on every machine.
+    /// A budget without a limit, for estimates that must be the same on every machine.
     pub const UNLIMITED: Self = Self { limit: None, machine: None };
 
-    /// The memory of this machine, and the limit of the user, if there is one.
+    /// The memory of this machine, with the limit of the user if there is one.
     #[must_use]
     pub fn new(limit: Option<ByteSize>) -> Self {
         Self { limit, machine: super::physical().map(ByteSize) }
     }
 
-    /// Bytes that there are, as far as that is known.
+    /// Number of bytes that are available, or `None` if it is not known.
     #[must_use]
     pub fn available(&self) -> Option<u64> {
         self.limit.into_iter().chain(self.machine).map(|bytes| bytes.0).min()
     }
 
-    /// Refuses `what`, which needs about `needed` bytes, when there are fewer; `remedy` (may be empty) gets the bytes
-    /// that there are.
+    /// Refuses `what` when it needs more bytes than are available.
+    ///
+    /// `needed` is the approximate number of bytes. `remedy` gets the available bytes and may return an empty text.
     ///
     /// # Errors
-    /// [`MemoryError`].
+    /// [`MemoryError`] when the memory does not suffice.
     pub fn check(&self, what: &str, needed: f64, remedy: impl Fn(u64) -> String) -> Result<(), MemoryError> {
         let bounds = [(Bound::Limit, self.limit), (Bound::Machine, self.machine)];
         let exceeded = bounds.into_iter().find_map(|(bound, bytes)| {
@@ -74,15 +75,19 @@ impl Budget {
         exceeded.map_or(Ok(()), Err)
     }
 
-    /// How many solves fit side by side, the largest on `n_elements` elements, whatever their method: within the limit,
-    /// or half of the machine's memory; at least one.
+    /// Number of solves that fit into memory at once, at least one.
+    ///
+    /// The largest solve has `n_elements` elements, with any method. The limit is that of the user, or half of the
+    /// memory of the machine.
     #[must_use]
     pub fn solves_at_once(&self, n_elements: f64) -> usize {
         let available = self.limit.map(|limit| limit.0 as f64).or(self.machine.map(|machine| 0.5 * machine.0 as f64));
         available.map_or(1, |bytes| (bytes / (n_elements * UNIFORM_BYTES_PER_ELEMENT as f64)) as usize).max(1)
     }
 
-    /// Refuses a grid on which a method that stores every element, here called `what`, would not fit.
+    /// Refuses a grid that is too large for a method that stores every element.
+    ///
+    /// `what` is the name of the method.
     ///
     /// # Errors
     /// [`MemoryError`] with the largest grid that fits.

@@ -1,4 +1,4 @@
-//! Sizes of memory, as people write them: `500MB`, `2 GiB`, `1000000`.
+//! Sizes of memory in readable form: `500MB`, `2 GiB`, `1000000`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -11,7 +11,7 @@ use crate::number_or_text::number_or_text;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ByteSize(pub u64);
 
-/// Units by their names in lower case; decimal ones first, for writing.
+/// Units by their names in lower case. Decimal units are first, for writing.
 const UNITS: [(&str, f64); 10] = [
     ("", 1.0),
     ("b", 1.0),
@@ -49,7 +49,7 @@ impl FromStr for ByteSize {
         let number: f64 = number.parse().map_err(|_| wrong())?;
         let (_, factor) = UNITS.iter().find(|(name, _)| *name == unit).ok_or_else(wrong)?;
         let bytes = number * factor;
-        // Beyond 2^53 a count of bytes is no longer exact, and no machine has them.
+        // Beyond 2^53 a count of bytes is not exact, and no machine has such memory.
         if (1.0..=9e15).contains(&bytes) { Ok(Self(bytes as u64)) } else { Err(wrong()) }
     }
 }

@@ -1,4 +1,4 @@
-//! Memory: what this process used at most, what the machine has, and what a command may need.
+//! Memory: peak of this process, memory of the machine, and budget of a command.
 
 mod budget;
 mod byte_size;
@@ -6,19 +6,19 @@ mod byte_size;
 pub use budget::{Bound, Budget, MemoryError};
 pub use byte_size::ByteSize;
 
-/// Peak resident memory of the process, in bytes; `None` where the system does not say.
+/// Peak resident memory of the process, in bytes, or `None` if unknown.
 #[cfg(unix)]
 #[must_use]
 pub fn peak() -> Option<u64> {
     use nix::sys::resource::{UsageWho, getrusage};
-    // What Linux accounts to a process begins with what its parent had when it started it; the status is of this
-    // program alone.
+    // On Linux, `getrusage` includes the memory of the parent process at the start. The status contains only this
+    // program.
     if cfg!(target_os = "linux")
         && let Some(peak) = std::fs::read_to_string("/proc/self/status").ok().as_deref().and_then(peak_of_status)
     {
         return Some(peak);
     }
-    // Linux counts in KiB, Apple's systems in bytes.
+    // Linux counts in KiB, systems of Apple in bytes.
     let unit = if cfg!(target_vendor = "apple") { 1 } else { 1024 };
     let usage = getrusage(UsageWho::RUSAGE_SELF).ok()?;
     u64::try_from(usage.max_rss()).ok().map(|value| value * unit)
@@ -31,7 +31,7 @@ fn peak_of_status(status: &str) -> Option<u64> {
     line.trim().strip_suffix("kB")?.trim_end().parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// Physical memory of the machine, in bytes; `None` where the system does not say.
+/// Physical memory of the machine, in bytes, or `None` if unknown.
 #[cfg(target_os = "linux")]
 #[must_use]
 pub fn physical() -> Option<u64> {
@@ -41,14 +41,14 @@ pub fn physical() -> Option<u64> {
     Some(pages.saturating_mul(page))
 }
 
-/// Peak resident memory of the process, in bytes; `None` where the system does not say.
+/// Peak resident memory of the process, in bytes, or `None` if unknown.
 #[cfg(not(unix))]
 #[must_use]
 pub fn peak() -> Option<u64> {
     None
 }
 
-/// Physical memory of the machine, in bytes; `None` where the system does not say.
+/// Physical memory of the machine, in bytes, or `None` if unknown.
 #[cfg(not(target_os = "linux"))]
 #[must_use]
 pub fn physical() -> Option<u64> {
