@@ -55,7 +55,8 @@ impl<'a> ContactProblem<'a> {
     /// use rc_core::{Field, Grid};
     /// use rc_solver::{ContactProblem, Control, SolveParams};
     ///
-    /// // Half of Westergaard's wave touches when the contact is elastic. The mean pressure in contact is then twice the load.
+    /// // Half of Westergaard's wave touches when the contact is elastic.
+    /// // The mean pressure in contact is then twice the load.
     /// let wave = Field::from_fn(Grid::square(128)?, |at| 1e-3 * (std::f64::consts::TAU * at.x).cos());
     /// let load = 0.5e-3 * std::f64::consts::PI;
     /// let problem = ContactProblem::new(&wave, Control::MeanPressure(load)).with_hardness(2.5 * load);
