@@ -83,7 +83,8 @@ fn flat_punches_are_those_of_boussinesq() {
         assert_close("pressure inside", solution.pressure().at(n / 2 + n / 8, n / 2), expected, 5e-3);
     }
     assert!(errors[1] < 5e-3, "{errors:?}");
-    // On a flat patch every element carries pressure, and there is no full contact as of a periodic cell.
+    // On a flat patch every element carries pressure. Unlike a periodic cell, a patch then has no state of full
+    // contact.
     let flat = Field::zeros(Grid::square(256).expect("a grid"));
     let params = SolveParams::default();
     for control in [Control::Penetration(1e-3), Control::MeanPressure(1.15e-3)] {

@@ -41,7 +41,7 @@ use reference::{Quantity, References};
 use round::{Measurements, Plan};
 use scale::tables as scale_tables;
 
-/// What is measured, and the folder of the results.
+/// Scenes, repeats and peers of a run, and the folder of its results.
 #[derive(Clone, Debug)]
 pub struct Params {
     /// The scenes that are solved.
@@ -58,7 +58,7 @@ pub struct Params {
     pub resume: bool,
 }
 
-/// How the other programs take part.
+/// Settings of the other programs.
 #[derive(Clone, Debug)]
 pub struct PeerParams {
     /// A Python that has the peers. Without it, an environment is made from PyPI when needed.

@@ -11,10 +11,10 @@ use crate::archive::{self, Run};
 use crate::figure::{Figure, Preset, report, write};
 use crate::{fig1, fig2, fig3, fig4, fig5, fig6, fig7, fig8, reproduction, statements};
 
-/// What happens to the archived run in `data/runs/paper/`.
+/// Use of the archived run in `data/runs/paper/`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Archive {
-    /// It is not read.
+    /// The archived run is not read.
     Ignored,
     /// Every table is compared with the archived one. A difference is an error.
     Compared,

@@ -1,10 +1,10 @@
 //! Comparison of a table with an earlier one, by rules for its columns.
 //!
 //! The code that writes a table states the allowed differences. Processors have different vector instructions, which
-//! round sums in another order. A solve to the same tolerance then ends at a slightly different solution. The scale of
-//! a column determines this difference, a single number does not. For instance, a pressure beside a contact edge moves
-//! by a small fraction of the peak pressure, which may be the whole pressure there. Text and the numbers of cells and
-//! rows must agree.
+//! round sums in another order. A solve to the same tolerance then ends at a slightly different solution. The size of
+//! this difference depends on the scale of a column, not on a number itself. For instance, a pressure beside a contact
+//! edge moves by a small fraction of the peak pressure, which may be the whole pressure there. Text and the numbers of
+//! cells and rows must agree.
 
 /// The allowed difference of a number from its reference.
 ///

@@ -38,7 +38,7 @@ pub trait Figure: Picture + Sized {
     fn compute(params: &Self::Params) -> Result<Self>;
     /// The numbers as tables.
     fn tables(&self) -> Vec<Table>;
-    /// What the picture shows, in Markdown, if a title cannot explain it.
+    /// Explanation of the picture in Markdown, if a title is not enough.
     fn caption(&self) -> Option<String> {
         None
     }

@@ -178,7 +178,7 @@ impl<'a> Correction<'a> {
     }
 }
 
-/// Power of a flux through a resistance; walls have none.
+/// Power of a flux through a resistance; walls do not have a flux.
 fn work(flux: f64, resistance: f64) -> f64 {
     if flux == 0.0 { 0.0 } else { flux * flux * resistance }
 }

@@ -1,6 +1,6 @@
 //! A spanning tree of the strongest bonds, along which unbalanced flow is balanced.
 //!
-//! The path of the tree between two elements has the largest weakest bond of all paths. So imbalances within a wide
+//! Of all paths between two elements, the path in the tree has the strongest weakest bond. So imbalances within a wide
 //! place are balanced there.
 
 use rc_core::Grid;

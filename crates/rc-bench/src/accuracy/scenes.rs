@@ -28,7 +28,7 @@ pub(super) fn golden(i: usize) -> f64 {
     (i as f64 * 0.618_033_988_749_895).fract()
 }
 
-/// What scenes are used for.
+/// The purpose of a set of scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Set {
     /// Scenes to which no constant was fitted.

@@ -17,7 +17,7 @@ const COUNTS: &str = "data/bench/counts.csv";
 /// Allowed relative change of the number of elements. On another processor an element at an edge of contact may flip.
 const SAME_ELEMENTS: f64 = 1e-3;
 
-/// What one solve did, summed over all levels.
+/// Counts of one solve, summed over all levels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct CountRow {
     scene: String,

@@ -28,7 +28,7 @@ pub(super) struct Solved {
     observables_seconds: f64,
 }
 
-/// What is reported of one solve, ours or a peer's.
+/// Reported results of one solve, ours or a peer's.
 ///
 /// Pressures are in E*, lengths in λ, areas relative to the cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,10 +1,10 @@
-//! How the results of a program are read: values, times, and stated errors.
+//! Readings of a program's results: values, times, and stated errors.
 
 use super::extrapolation::richardson;
 use super::record::{OURS, Row};
 use super::reference::Quantity;
 
-/// How a quantity is read from a program's results.
+/// A way to get a quantity from a program's results.
 ///
 /// All readings except the first are a user's own work on the results of a peer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

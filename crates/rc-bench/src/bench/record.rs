@@ -49,7 +49,7 @@ pub(super) struct Row {
     pub(super) mean_gap_bar: Option<f64>,
 }
 
-/// What distinguishes the lines of one program, other than scene and mesh.
+/// Properties that distinguish the lines of one program, other than scene and mesh.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Family {
     pub(super) program: String,

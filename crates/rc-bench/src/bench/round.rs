@@ -28,7 +28,7 @@ const COARSEST_OF_PEERS: usize = MESHES[0] / 2;
 /// Smallest ratio of times on a mesh and on the next coarser one.
 const GROWTH: f64 = 5.0;
 
-/// How much is run.
+/// Limits of a run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
     /// Maximum number of repeats of a case. Cases above [`ENOUGH`] seconds have fewer.
@@ -37,7 +37,7 @@ pub(super) struct Plan {
     pub(super) peer_seconds: f64,
 }
 
-/// What a run measured.
+/// Measurements of a run.
 #[derive(Debug, Default)]
 pub(super) struct Measurements {
     pub(super) rows: Vec<Row>,

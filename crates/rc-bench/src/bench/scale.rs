@@ -115,7 +115,7 @@ fn thread_counts(all: usize) -> Vec<usize> {
     powers.take_while(|&threads| threads < all).chain([all]).collect()
 }
 
-/// What a run measured.
+/// Measurements of a run on large grids.
 #[derive(Debug, Default)]
 pub(super) struct ScaleRun {
     pub(super) rows: Vec<ScaleRow>,

@@ -1,4 +1,4 @@
-//! How a scene is solved: method, kernel, mesh, tolerance.
+//! Settings of a solve: method, kernel, mesh, tolerance.
 
 use anyhow::Result;
 use rc_core::Kernel;
@@ -46,7 +46,7 @@ impl KernelName {
 pub(super) struct Setting {
     pub(super) method: Method,
     pub(super) kernel: KernelName,
-    /// How often elements at edges of contacts are halved.
+    /// Number of times that elements at edges of contacts are halved.
     pub(super) border_level: usize,
     /// Elements of the grid for the shortest wave.
     pub(super) elements_per_wave: usize,

@@ -17,7 +17,7 @@ use super::heights::{mapped, rough};
 use super::row::{Row, Rows, guarded};
 use super::scene::TOLERANCE;
 
-/// What goes wrong in an application of L.
+/// Faults in an application of L.
 #[derive(Clone, Copy, Debug)]
 enum Fault {
     Noise(f64),

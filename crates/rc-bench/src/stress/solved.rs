@@ -7,7 +7,7 @@ use rc_solver::{
     ContactProblem, Control, GaussSeidelParams, Observables, SolveInfo, SolveParams, Tolerance, solve_dense,
 };
 
-/// How a contact is solved.
+/// Methods of solving a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Method {
     Uniform,

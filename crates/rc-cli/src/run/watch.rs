@@ -36,9 +36,9 @@ pub(crate) struct Watch {
 /// State of the next picture.
 #[derive(Clone, Copy, Debug)]
 enum State {
-    /// It is the first one, and is drawn at once.
+    /// The picture is the first one, and is drawn at once.
     First,
-    /// It is drawn after this moment.
+    /// The picture is drawn after this moment.
     Next(Instant),
     /// A picture could not be written, so no more are drawn.
     GaveUp,

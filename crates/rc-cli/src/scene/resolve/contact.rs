@@ -26,7 +26,7 @@ pub struct ContactSetup {
     pub hardness: f64,
     /// Discretisation.
     pub kernel: KernelName,
-    /// What is beyond the borders of the heights.
+    /// The boundary, which is what is beyond the heights.
     pub boundary: Boundary,
     /// The layer in place of the half-space, if there is one.
     pub layer: Option<Layer>,
