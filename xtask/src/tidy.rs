@@ -12,6 +12,7 @@ mod guide;
 mod named;
 mod packages;
 mod paper_map;
+mod prose;
 mod rust;
 mod snapshots;
 mod tags;
@@ -39,6 +40,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("paper map", paper_map::check),
     ("equations", tags::check),
     ("snapshots", snapshots::check),
+    ("prose", prose::check),
     ("culture", culture::check),
     ("dependencies", dependencies::check),
     ("guide", guide::check),
