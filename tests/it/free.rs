@@ -206,7 +206,7 @@ fn the_error_bar_of_the_area_holds_the_limit_of_fine_grids() {
     }
 }
 
-/// The limit is extrapolated, as the error of the singular pressure falls with the side of elements.
+/// The limit is extrapolated: errors at borders fall with the side of elements.
 #[test]
 fn the_error_bar_of_the_gap_holds_where_contact_reaches_a_border() {
     let beside = |n: usize| body(n, DVec2::new(0.1, 0.2), |r| -0.5 * r * r);

@@ -1,4 +1,4 @@
-//! Pages of help: the flag that prints one, and the headings of flags, what most need first.
+//! Pages of help: the flag that prints one, and the order of its headings.
 
 use clap::{Arg, ArgAction, Command};
 
@@ -24,8 +24,9 @@ pub(crate) fn help_flag() -> Arg {
         .help("Print help")
 }
 
-/// `command` with the arguments of `group`, heading by heading: clap prints headings in the order of their first
-/// arguments, which for keys is that of scene files.
+/// Adds the arguments of `group` to `command`, heading by heading.
+///
+/// Clap prints headings in the order of their first arguments. For keys that is the order of scene files.
 pub(crate) fn add_by_heading(command: Command, group: &Command) -> Command {
     let mut arguments: Vec<Arg> = group.get_arguments().cloned().collect();
     arguments.sort_by_key(|argument| ORDER.iter().position(|heading| argument.get_help_heading() == Some(heading)));

@@ -27,7 +27,8 @@
 //! use rc_heights::{AreaParameters, Format, Level, Scales, Treatment, apply, parse};
 //!
 //! // A map of 4 x 3 points 2 µm apart, on a slope. One point is not measured.
-//! let file = "aISO-1.0\nNumPoints = 4\nNumProfiles = 3\nXscale = 2e-6\nYscale = 2e-6\nZscale = 1e-9\nDataType = 7\n*\n\
+//! let file = "aISO-1.0\nNumPoints = 4\nNumProfiles = 3\nXscale = 2e-6\nYscale = 2e-6\nZscale = 1e-9\n\
+//!             DataType = 7\n*\n\
 //!             0 10 20 30  1 10 BAD 31  0 11 20 30\n*\n";
 //! let map = parse(file.as_bytes(), Format::Sdf)?.in_metres(Scales::default())?;
 //! assert_eq!((map.sides, map.missing()), (Some([8e-6, 6e-6]), 1));

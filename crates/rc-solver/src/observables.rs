@@ -172,9 +172,9 @@ const GAP_OF_KERNEL: f64 = 0.48;
 /// Ratio of the 95 % error of the mean gap to that of the area. It matters for contacts that are few and light.
 const GAP_OVER_AREA: f64 = 0.025;
 
-/// 95 % error of the mean gap from the singular pressure at free borders, in `Rim::at_border` over the mean pressure.
+/// 95 % error of the mean gap from singular pressure at free borders.
 ///
-/// The table is in docs/measurements.md.
+/// Its unit is the ratio of `Rim::at_border` to the mean pressure. The table is in docs/measurements.md.
 const GAP_AT_BORDER: f64 = 0.7;
 
 /// Estimated error of the mean gap. It is 0 in full contact of a periodic cell and without contact.

@@ -23,7 +23,7 @@
 //! use rc_theory::hertz::{Hertz, PeriodicHertz};
 //! use rc_theory::persson::Persson;
 //!
-//! // A sphere of radius λ pressed until the contact has the radius λ/10: in a periodic cell it carries nearly the same load.
+//! // A sphere of radius λ, pressed until the contact has the radius λ/10. Its copies hardly change its load.
 //! let (free, periodic) = (Hertz { radius: 1.0 }, PeriodicHertz { radius: 1.0 });
 //! let contact = periodic.at_contact_radius(0.1)?;
 //! assert!((contact.load / free.load(0.1) - 1.0).abs() < 0.02);

@@ -22,7 +22,7 @@ use crate::help;
 /// It is also the source of defaults.
 pub const EXAMPLE: &str = include_str!("../../assets/paper-n64.toml");
 
-/// The rough surface: a file of heights or of waves, or the parameters of a random one (Eq. 9-14).
+/// The rough surface: a file, or the parameters of a random one (Eq. 9-14).
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[command(next_help_heading = help::SURFACE)]
 pub struct SurfaceKeys {

@@ -46,8 +46,8 @@ struct RanksArgs {
     solve: SolveArgs,
     /// File from which a run that was ended continues, on any number of ranks
     ///
-    /// It keeps what the last level has left for the next one. The digits are the same. It is removed when the result is
-    /// there.
+    /// It keeps what the last level has left for the next one. The digits are the same. It is removed when the result
+    /// is there.
     #[arg(long, value_name = "FILE", help_heading = help::MACHINE)]
     checkpoint: Option<PathBuf>,
     /// All ranks write pressure and gap as the Zarr group DIR/fields.zarr

@@ -73,9 +73,10 @@ pub(crate) struct Rim {
     pub(crate) side: f64,
     /// Size of [`EdgeBias::per_square`]: the difference of the kernel's elements to the half-space at edges.
     pub(crate) kernel: f64,
-    /// Σ over sides of elements along a free border of p² times area times the side across the border, in E*² λ.
+    /// Squared pressure at free borders, in E*² λ.
     ///
-    /// The area is relative to the nominal area. The sum is zero where contact does not reach a free border.
+    /// It is the sum of p² a s over elements along a border, with their area a and their side s across the border. The
+    /// area is relative to the nominal area. The sum is zero where contact does not reach a free border.
     pub(crate) at_border: f64,
 }
 
