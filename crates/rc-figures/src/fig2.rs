@@ -50,9 +50,9 @@ impl Figure for Fig2 {
     const NAME: &'static str = "fig2";
     type Params = Params;
 
-    /// Half sides of λ/8, which is easy to see, and λ/32, which is closer to the method.
+    /// Half sides of λ/8 and λ/32.
     ///
-    /// The preset changes only the number of points.
+    /// The first is easy to see, and the second is closer to the method. The preset changes only the number of points.
     fn params(preset: Preset) -> Result<Params> {
         let n_intervals = match preset {
             Preset::Full => 1024,

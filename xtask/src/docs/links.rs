@@ -4,8 +4,8 @@ use rc_figures::repository::Sources;
 
 /// `page` with links at the items that follow the path of a library's file.
 ///
-/// An example is `` `crates/rc-core/src/grid.rs`: `Grid` ``. A link leads to the item's line in the sources that
-/// rustdoc shows. These sources are in `doc` beside the book.
+/// An example is `` `crates/rc-core/src/grid.rs`: `Grid` ``. A link leads to the item's line in rustdoc's page of the
+/// source. These pages are in the folder `doc` beside the book.
 pub(super) fn to_lines(page: &str, sources: &Sources) -> String {
     let mut linked = String::new();
     let mut file = None;

@@ -1,4 +1,6 @@
-//! The page of a mean over realisations (`rc sweep --error-of-mean`): means with error bars, and their levels.
+//! The page of a mean over realisations (`rc sweep --error-of-mean`).
+//!
+//! It has means with error bars, and their levels.
 
 use std::fs;
 use std::path::Path;
@@ -13,7 +15,7 @@ use crate::sweep::MEAN_FILE;
 use crate::text::with_error;
 use rc_core::quantity::{Scale, digits, engineering};
 
-/// A mean under one load, as `mean.json` has it; null stands for what is not finite.
+/// A mean under one load, as in `mean.json`. A number that is not finite is null there.
 #[derive(Clone, Debug, Deserialize)]
 struct Estimate {
     status: String,
@@ -41,7 +43,7 @@ struct Level {
     cost: f64,
 }
 
-/// The data of the page that are of this kind only.
+/// The data of a page of a mean, without those of all pages.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Body {
     quantity: Named,
@@ -53,17 +55,17 @@ pub(super) struct Body {
     note: &'static str,
 }
 
-/// A quantity with its unit, as axes have them.
+/// A quantity with its unit, for an axis.
 #[derive(Clone, Debug, Serialize)]
 struct Named {
     label: String,
     unit: &'static str,
 }
 
-/// What is drawn of one mean, and the table of its levels.
+/// The points and the table of the levels of one mean.
 #[derive(Clone, Debug, Serialize)]
 struct Curve {
-    /// The load.
+    /// Text of the load.
     name: String,
     load: f64,
     mean: f64,
@@ -77,7 +79,7 @@ struct Curve {
 /// The page of the mean in `folder`, whose journal has `settings`.
 ///
 /// # Errors
-/// [`CliError::Input`] when there is no `mean.json` yet, or when it is not what `rc sweep` writes.
+/// [`CliError::Input`] when `mean.json` does not exist yet, or when it does not have the format of `rc sweep`.
 pub(super) fn page(folder: &Path, settings: &Value) -> Result<Page<Body>, CliError> {
     let means = read(folder)?;
     let (first, open) = (&means[0], means.iter().filter(|mean| mean.status != "converged").count());
@@ -131,7 +133,7 @@ impl Estimate {
         engineering(self.control_value, self.load_unit())
     }
 
-    /// Of statistics and grid together.
+    /// Error of statistics and grid together.
     fn error(&self) -> f64 {
         self.standard_error.hypot(self.grid_error)
     }
@@ -179,7 +181,7 @@ impl Curve {
 }
 
 impl Level {
-    /// Its cells; `total` is the cost of all levels.
+    /// Cells of the level's line in the table; `total` is the cost of all levels.
     fn row(&self, unit: &'static str, total: f64) -> [String; 6] {
         let seeds = format!("{} – {}", self.first_seed, self.first_seed + (self.realisations as u64).saturating_sub(1));
         [

@@ -71,7 +71,9 @@ pub(crate) fn sides(
     Ok([Some(given[0].unwrap_or(x)), (!same(x, y)).then(|| given[1].unwrap_or(y))])
 }
 
-/// The heights of a map (m) in λ, on the grid of its points in `cell`.
+/// The heights of a map (m) in λ, on the grid of its points.
+///
+/// The grid has the sides of `cell`.
 ///
 /// # Errors
 /// [`CliError::Input`] when the ratio of the cell's sides is too large.

@@ -31,7 +31,9 @@ pub struct Params {
     n_points: usize,
 }
 
-/// A wave in contact along a line from its crest, in units of λ and E*.
+/// A wave in contact along a line from its crest.
+///
+/// Units are λ and E*.
 #[derive(Clone, Debug)]
 pub struct Start {
     params: Params,
