@@ -18,8 +18,9 @@ const MOST_WORDS: usize = 80;
 const CERTAIN: [&str; 5] = ["expect", "assert", "assert_eq", "debug_assert", "unreachable"];
 
 /// The snapshots of the crates whose sentences users read.
-const SNAPSHOTS: [&str; 10] = [
+const SNAPSHOTS: [&str; 11] = [
     "sentences-rc-cli",
+    "sentences-rc-cli-report",
     "sentences-rc-core",
     "sentences-rc-fractal",
     "sentences-rc-heights",
@@ -31,8 +32,13 @@ const SNAPSHOTS: [&str; 10] = [
     "sentences-rc-theory",
 ];
 
-fn crate_folder(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates").join(name).join("src")
+/// The sources of a snapshot. Those of `rc report` have a snapshot of their own, for its size.
+fn source_folder(name: &str) -> PathBuf {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
+    match name.strip_suffix("-report") {
+        Some(name) => crates.join(name).join("src/report"),
+        None => crates.join(name).join("src"),
+    }
 }
 
 /// The files of a crate that are not tests, ordered by path.
@@ -111,9 +117,9 @@ fn sentence(literal: &str) -> Option<String> {
 }
 
 fn sentences_of(name: &str) -> String {
-    let folder = crate_folder(name);
+    let folder = source_folder(name);
     let mut listing = String::new();
-    for path in sources(&folder) {
+    for path in sources(&folder).into_iter().filter(|path| !path.starts_with(folder.join("report"))) {
         let text = fs::read_to_string(&path).expect("a source");
         let tokens: TokenStream = text.parse().expect("Rust");
         let mut found = Vec::new();

@@ -109,7 +109,7 @@ impl Sections {
         let scale = Scale::of(side, "m");
         let step = side / scale.factor / grid.nx() as f64;
         let y = rc_core::quantity::engineering(grid.centre(0, iy).y * side, "m");
-        let greatest = if of_elements { "greatest pressure" } else { "greatest mean pressure of a block" };
+        let greatest = if of_elements { "maximum pressure" } else { "maximum mean pressure of a block" };
         Self {
             pressure: Profile::of(pressure, iy, step, "Pa"),
             gap: Profile::of(gap, iy, step, "m"),

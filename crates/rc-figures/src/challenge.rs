@@ -208,8 +208,9 @@ impl Figure for Challenge {
             Source::File { .. } => "from the distributed coefficients",
         };
         Some(format!(
-            "**The Challenge's surface without adhesion**, {surface}, {}² elements, λ_s = λ/{}. (a) Contact area against mean pressure, with error \
-             bars, and Persson's theory without a fit. (b) Mean gap. (c) Contact stiffness. (d) Number of patches with an area above a.\n",
+            "**The Challenge's surface without adhesion**, {surface}, {}² elements, λ_s = λ/{}. (a) Contact area against mean \
+             pressure, with error bars, and Persson's theory without a fit. (b) Mean gap. (c) Contact stiffness. (d) Number of \
+             patches that are larger than the area a.\n",
             self.side, self.waves
         ))
     }

@@ -105,13 +105,13 @@ impl Figure for Fig1 {
     fn caption(&self) -> Option<String> {
         let um = |length: f64| format!("{:.1} µm", MICRO * length);
         Some(format!(
-            "**Fig. 1.** Section of a solved contact through the highest peak of the rigid surface, at σ0/E* = \
-             {:.2e}, where A/A0 = {:.4}. The deformed surface of the half-space touches the rigid surface where v = h \
-             − h_max + Δ (red). The displacement v has zero mean over the cell, so the undeformed mean plane is v = 0, \
-             and v is greatest under the highest peak, where it is the penetration Δ = {}. The mean plane of the \
-             roughness lies h_max = {} above that peak and ū = h_max − Δ = {} above the mean plane of the half-space. \
-             Below, the quarter of the cell around the peak. Heights are exaggerated by the factors in the \
-             corners.\n",
+            "**Fig. 1.** Section of a solved contact through the highest peak of the rigid surface, at σ0/E* = {:.2e}, \
+             where A/A0 = {:.4}. The deformed surface of the half-space touches the rigid surface where \
+             v = h − h_max + Δ (red). The displacement v has zero mean over the cell, so the undeformed mean plane is \
+             v = 0. The maximum of v is the penetration Δ = {}, under the highest peak. The mean plane of the \
+             roughness is h_max = {} above that peak, and ū = h_max − Δ = {} above the mean plane of the half-space. \
+             The lower panel shows the quarter of the cell around the peak. Heights are exaggerated by the factors in \
+             the corners.\n",
             self.mean_pressure,
             self.area,
             um(self.penetration),

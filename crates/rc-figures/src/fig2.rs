@@ -75,12 +75,13 @@ impl Figure for Fig2 {
     fn caption(&self) -> Option<String> {
         let means: Vec<String> = self.cases.iter().map(|case| format!("{:.1e}", case.mean_response.abs())).collect();
         Some(format!(
-            "**Fig. 2.** (a) The self-balanced load on the elementary cell along its centre line: σ on a square of \
-             half side d, less σ (2d/λ)² everywhere. (b) Its displacement v, the coefficient L_ij of Eq. 4 to 6 as a \
-             function of the distance from the square, summed over all images without truncation. Both have zero mean \
-             over the cell; that of L is {} and {} of σ λ/E*, which is rounding. (c) The same per load F = σ (2d)²: \
-             away from the square the responses agree with the point response of Eq. 3 (dashed), and beneath it they \
-             differ. The peak of the smaller square, outside the panel, is in the table `fig2-summary.csv`.\n",
+            "**Fig. 2.** (a) The self-balanced load on the elementary cell along its centre line: σ on a square of half \
+             side d, minus σ (2d/λ)² everywhere. (b) Its displacement v as a function of the distance from the square. It \
+             is the coefficient L_ij of Eq. 4 to 6, summed over all images without truncation. Both have zero mean over \
+             the cell. The mean of L is {} and {} of σ λ/E*, which is rounding. (c) The same divided by the load \
+             F = σ (2d)². Away from the square the responses agree with the point response of Eq. 3 (dashed). Beneath \
+             the square they differ. The peak of the smaller square is outside the panel, and in the table \
+             `fig2-summary.csv`.\n",
             means.first().map_or("", String::as_str),
             means.last().map_or("", String::as_str),
         ))

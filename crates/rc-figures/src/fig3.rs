@@ -282,19 +282,19 @@ impl Fig3 {
         let short_of_full = printed_state.map_or(0.0, |state| self.h_max - state.penetration);
         let um = |length: f64| format!("{:.3} µm", MICRO * length);
         format!(
-            "**Fig. 3.** Elements of the three meshes against penetration Δ (left) and contact fraction (right), for \
-             one realisation (seed {seed}) of the paper's surface: H = 0.8, rms height {rms:.0} µm, N = {waves}, λ = \
-             {mm:.0} mm, from touch to full contact. The smallest element has side λ/{grid} = λ_min/{per_wave}; the \
-             step λ_min/32 in the text is its half side, as d in Eq. 5, for 4.2 million elements are 2048². At \
-             two-thirds contact the meshes adaptive : adaptive uniform : uniform have {ours} million elements; the \
-             paper prints {theirs} (squares).\n\n\
-             The paper prints these numbers at \"Δ = 400 µm\". No contact has that Δ: v has zero mean and equals h − \
-             h_max + Δ in contact, so full contact is reached at Δ = h_max, here {h_max} = {h_over_rms:.2} rms \
-             heights, and 400 µm would be {printed_over_rms:.0} rms heights. Read as 40 µm it needs a realisation with \
-             h_max of at least 40 µm = 3.1 rms heights. The adaptive uniform mesh has the elements in contact only, so \
-             the numbers themselves say the contact fraction, 2.75e6 / 2048² = {fraction:.3}, and the squares are \
-             drawn there. At that fraction Δ is already within {short} of h_max, where the counts change much within a \
-             fraction of a micrometre: Δ does not fix the numbers, and the fraction does.\n\n\
+            "**Fig. 3.** Elements of the three meshes against penetration Δ (left) and contact fraction (right), for one \
+             realisation (seed {seed}) of the paper's surface: H = 0.8, rms height {rms:.0} µm, N = {waves}, λ = {mm:.0} mm, \
+             from touch to full contact. The smallest element has side λ/{grid} = λ_min/{per_wave}. The step λ_min/32 in \
+             the text is its half side, as d in Eq. 5, because 4.2 million elements are 2048². At two-thirds contact the \
+             meshes adaptive : adaptive uniform : uniform have {ours} million elements. The paper prints {theirs} \
+             (squares).\n\n\
+             The paper prints these numbers at \"Δ = 400 µm\". No contact has that Δ. Since v has zero mean and equals \
+             h − h_max + Δ in contact, full contact is reached at Δ = h_max. Here h_max is {h_max} = {h_over_rms:.2} rms \
+             heights, and 400 µm would be {printed_over_rms:.0} rms heights. If 40 µm is meant, the realisation needs an h_max \
+             of at least 40 µm = 3.1 rms heights. The adaptive uniform mesh has only the elements in contact, so the numbers \
+             give the contact fraction, 2.75e6 / 2048² = {fraction:.3}. The squares are drawn there. At that fraction Δ is \
+             within {short} of h_max, where the counts change much within a fraction of a micrometre. The fraction therefore \
+             determines the numbers, and Δ does not.\n\n\
              In full contact no border is left, and the rule gives one element for the whole cell.\n",
             rms = MICRO * self.rms_height,
             mm = 1e3 * cell,

@@ -107,11 +107,11 @@ impl Figure for Fig5 {
         let n = self.sweep.realisations(self.curves.first()?.waves).count();
         let lines: Vec<String> = self.curves.iter().map(Curve::description).collect();
         Some(format!(
-            "**Fig. 5.** (a) Contact area against mean pressure, averages of {n} realisations; bars, where they are larger \
-             than the mark, are the standard deviation of one realisation. Straight lines are fitted to the averages for σ0/E* \
+            "**Fig. 5.** (a) Contact area against mean pressure, averages of {n} realisations. Bars are the standard deviation \
+             of one realisation, where they are larger than the mark. Straight lines are fitted to the averages for σ0/E* \
              from {:.0e} to {:.1e}: {}. Thin lines: Persson's theory, erf(√2 σ0/(E* g)) with the rms slope g, without a fit. \
-             Squares: the areas of the paper's two maps. (b) κ = (A/A0) g E*/σ0 against the load: the rms slope explains the difference \
-             between the surfaces, and κ falls slowly, which a straight line hides.\n",
+             Squares: the areas of the paper's two maps. (b) κ = (A/A0) g E*/σ0 against the load. The rms slope explains \
+             the difference between the surfaces. κ falls slowly, which a straight line hides.\n",
             FITTED.0,
             FITTED.1,
             lines.join("; "),

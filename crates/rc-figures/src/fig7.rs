@@ -112,11 +112,12 @@ impl Figure for Fig7 {
         let theory = GAMMAS.map(|gamma| format!("{:.3} (γ = {gamma:.2})", gamma * first.decay_length));
         Some(format!(
             "**Fig. 7.** Mean pressure against penetration. Marks: averages of Δ/h_max over {n} realisations at the same load, \
-             each with its own h_max; bars: standard deviation of one realisation; pale lines: realisations. Straight \
-             lines are fitted to the averages where {low} ≤ Δ/h_max ≤ {high} (shaded): log10 σ0 is linear there, falls faster \
-             below, because a finite surface has a highest asperity, and rises faster above, towards full contact. Decay \
-             length u0/h_rms of σ0 ∝ exp(−ū/u0), fitted to each realisation and averaged (± standard error): {lengths}. \
-             Persson's theory: {theory}. Grey: its line for γ = {gamma:.2}, with its own prefactor and the mean h_max.\n",
+             each with its own h_max. Bars: standard deviation of one realisation. Pale lines: realisations. Straight \
+             lines are fitted to the averages where {low} ≤ Δ/h_max ≤ {high} (shaded), because log10 σ0 is linear there. Below, \
+             it falls faster, because a finite surface has a highest asperity. Above, it rises faster, towards full \
+             contact. Decay length u0/h_rms of σ0 ∝ exp(−ū/u0), fitted to each realisation and averaged (± standard \
+             error): {lengths}. Persson's theory: {theory}. Grey: its line for γ = {gamma:.2}, with its own prefactor and \
+             the mean h_max.\n",
             n = first.fits.len(),
             low = WINDOW.0,
             high = WINDOW.1,

@@ -162,7 +162,7 @@ impl Figure for Fig8 {
             .iter()
             .map(|curve| {
                 format!(
-                    "N = {}: Λ = {:.3e} E*², that is {:.3} of the theory's g²/8, and erf(σ0/2√Λ) = {:.4} where A/A0 = {:.4}",
+                    "N = {}: Λ = {:.3e} E*², {:.3} times the theory's g²/8; erf(σ0/2√Λ) = {:.4}, A/A0 = {:.4}",
                     curve.waves,
                     curve.fit.lambda,
                     curve.lambda_over_theory(),
@@ -174,9 +174,9 @@ impl Figure for Fig8 {
         let first = self.curves.first()?;
         Some(format!(
             "**Fig. 8.** (a) Distribution of the interfacial stress at σ0/E* = {:.2e}, averages of {} realisations in bins of \
-             {:.0e} E*; lines: Eq. 7 with Λ fitted ({}). Inset: the same, semi-logarithmic. (b) The approach to zero on \
-             logarithmic axes: p² is linear across a contact edge, and interpolated so, P falls linearly with σ (grey guide: slope \
-             1), while a histogram of the same elements (thin lines) stays up.\n",
+             {:.0e} E*. Lines: Eq. 7 with Λ fitted ({}). Inset: the same, semi-logarithmic. (b) The approach to zero on \
+             logarithmic axes. p² is linear across a contact edge. Interpolated in this way, P falls linearly with σ (grey \
+             guide: slope 1). A histogram of the same elements (thin lines) does not fall.\n",
             self.load,
             first.n_realisations(),
             first.bin_width(),

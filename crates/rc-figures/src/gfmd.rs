@@ -153,10 +153,11 @@ impl Figure for Gfmd {
 
     fn caption(&self) -> Option<String> {
         Some(format!(
-            "**A published reference.** A self-affine surface with {} longest waves of {} shortest in the cell, on {}² elements. (a) κ = (A/A0) \
-             g E*/σ0 against the load: located and counted areas, both sets of the reference (the first with its standard deviation), Persson's \
-             theory. (b) The differences of the areas; bars are our error bar with the standard deviation of the reference. (c) The distribution \
-             of the stress, and Persson's without a fit. (d) Mean gap over rms height, and elastic energy over that of full contact.\n",
+            "**A published reference.** A self-affine surface with {} longest waves of {} shortest waves in the cell, on {}² \
+             elements. (a) κ = (A/A0) g E*/σ0 against the load: located and counted areas, both sets of the reference (the first \
+             with its standard deviation), Persson's theory. (b) The differences of the areas. Bars contain our error bar and \
+             the standard deviation of the reference. (c) The distribution of the stress, and Persson's without a fit. (d) Mean \
+             gap relative to the rms height, and elastic energy relative to that of full contact.\n",
             self.params.longest, self.params.ratio, self.params.side,
         ))
     }

@@ -83,11 +83,12 @@ impl Figure for Statements {
     fn caption(&self) -> Option<String> {
         let (first, last) = (self.cutoffs.first()?, self.cutoffs.last()?);
         Some(format!(
-            "**Statements without a figure.** (a) Contact area (dots) and elastic energy (triangles) at the paper's load against the \
-             number of waves N, over those of N = {}, with the same long waves; line: the rms slope to the power −1. (b) Error of the \
-             area against the elements per shortest wave, N = {}: by counting (dots) and with located edges (triangles). (c) \
-             Distribution of heights over the rms height of {} waves: all realisations (dots), bars: the standard deviation of one; \
-             line: Gaussian.\n\nFrom N = {} to {} the area falls by {:.0} % and the energy changes by {:+.2} %.\n",
+            "**Statements without a figure.** (a) Contact area (dots) and elastic energy (triangles) at the paper's load against \
+             the number of waves N. They are relative to their values at N = {}, with the same long waves. Line: the rms \
+             slope to the power −1. (b) Error of the area against the elements per shortest wave, N = {}, by counting (dots) \
+             and with located edges (triangles). (c) Distribution of heights, relative to the rms height, for {} waves. Dots: \
+             all realisations. Bars: the standard deviation of one realisation. Line: Gaussian.\n\nFrom N = {} to {} the area \
+             falls by {:.0} % and the energy changes by {:+.2} %.\n",
             first.waves,
             self.converged_waves,
             self.converged_waves,

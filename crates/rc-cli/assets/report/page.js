@@ -7,14 +7,14 @@ function copyButton(text) {
         await navigator.clipboard.writeText(text);
         event.target.textContent = "copied";
       } catch {
-        event.target.textContent = "not allowed here: mark it and copy";
+        event.target.textContent = "not allowed here; select the text and copy it";
       }
     },
   }, "copy");
 }
 
 function commands(list) {
-  if (list.length === 0) return [make("p", {}, "Not known: the folder has no journal (sweep.jsonl) that this version of rc reads.")];
+  if (list.length === 0) return [make("p", {}, "Unknown, because the folder has no journal (sweep.jsonl) that this version of rc reads.")];
   return list.flatMap(({ text, note }) => [
     make("p", {}, note), make("pre", {}, text), make("div", { class: "controls" }, copyButton(text)),
   ]);

@@ -29,10 +29,10 @@ function mapsAndSections({ sides, pressure, gap, contact, of_elements: ofElement
     make("span", {}, along("section along x", "x"), " ", along("along y", "y")), place);
   view.listeners.push(() => {
     const wrapped = view.cursor.map((part, axis) => si((part - Math.floor(part)) * sides[axis], "m"));
-    place.textContent = `x = ${wrapped[0]}, y = ${wrapped[1]}${view.pinned ? " (held: click to let go)" : ""}`;
+    place.textContent = `x = ${wrapped[0]}, y = ${wrapped[1]}${view.pinned ? " (held; click to release)" : ""}`;
   });
   view.change();
-  const help = "The wheel zooms, dragging moves (the cell is periodic), a click holds the cursor; arrow keys move the cursor, + and − zoom. ";
+  const help = "The wheel zooms, and dragging moves. A click holds the cursor, arrow keys move it, + and − zoom. ";
   return [
     make("h2", {}, "Maps"),
     make("div", { class: "columns" }, ...maps.map((one) => one.element)),
@@ -103,7 +103,7 @@ function contactSpots({ rows, diameters, counts, note }) {
 /** The certificate: each error beside what it may be. */
 function certificate({ rows, note }) {
   const line = ({ name, value, limit, holds }) => [name, value, limit, [holds === false ? "bad" : "good", { true: "holds", false: "exceeded" }[holds] || ""]];
-  return make("section", {}, make("h2", {}, "Certificate"), table(rows.map(line), ["", "error", "may be", ""]), make("p", { class: "quiet" }, note));
+  return make("section", {}, make("h2", {}, "Certificate"), make("div", { class: "scroll" }, table(rows.map(line), ["", "error", "limit", ""])), make("p", { class: "quiet" }, note));
 }
 
 /** The picture of the flow through the gap. */

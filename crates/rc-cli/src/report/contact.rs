@@ -164,7 +164,7 @@ fn tiles(s: &Summary) -> Vec<Tile> {
         tile("mean pressure", engineering(s.mean_pressure, "Pa")),
         tile("penetration", engineering(s.penetration, "m")),
         tile("mean gap", engineering(s.mean_gap, "m")),
-        tile("greatest pressure", engineering(s.max_pressure, "Pa")),
+        tile("maximum pressure", engineering(s.max_pressure, "Pa")),
         tile("stiffness", text::stiffness(s)),
     ];
     if let (Some(fraction), Some(error)) = (s.plastic_area_fraction, s.plastic_area_fraction_error) {
@@ -210,9 +210,9 @@ fn maps(result: &ResultFolder) -> Maps {
         pixel
     } else {
         format!(
-            "Stored are means over blocks (output_grid): {grid} values of {nx} x {ny} elements. A block is touched where any of its \
-             elements is in contact. Stress distribution and contact spots need the elements, and are left out; the numbers are of \
-             the elements. {pixel}"
+            "The files have means over blocks (output_grid): {grid} values of {nx} x {ny} elements. A block is touched if any of its \
+             elements is in contact. Stress distribution and contact spots need the elements, and are not shown. The numbers \
+             are those of the elements. {pixel}"
         )
     };
     Maps {
@@ -244,15 +244,15 @@ fn stress(result: &ResultFolder) -> Option<Stress> {
     let fit = Persson::fit(summary.mean_pressure, &points);
     let theory = Persson::from_rms_slope(summary.mean_pressure / e_star, summary.rms_slope);
     let over = if least > 0.0 {
-        "Over the whole nominal area: every element is in contact, and the first bin begins at the least pressure."
+        "The density is over the whole nominal area. Every element is in contact, and the first bin begins at the minimum pressure."
     } else {
-        "Over the whole nominal area, resolved below the element at contact edges, where it begins at zero."
+        "The density is over the whole nominal area. Contact edges are resolved below the element, so it begins at zero."
     };
     let notes = vec![
         over.to_owned(),
         format!(
-            "The fit of one constant: Λ = {} E*², {} of the theory's g²/8 with the rms slope g. Its area, erf(σ0/2√Λ) = {} %, is \
-             what the fit says; solved were {} %.",
+            "The fit has one constant: Λ = {} E*², {} times the theory's g²/8 with the rms slope g. The area of the fit is \
+             erf(σ0/2√Λ) = {} %, and the solved area is {} %.",
             digits(fit.lambda / (e_star * e_star), 4),
             digits(fit.lambda / (e_star * e_star) / theory.lambda, 3),
             digits(100.0 * fit.area_fraction(), 3),
@@ -281,10 +281,10 @@ fn certificate(s: &Summary) -> Certificate {
     ]);
     Certificate {
         rows,
-        note: "From a fresh application of the elastic operator to the pressure that is shown, not from what the iteration \
-               believed: relative to the pressure, to the range of heights and to the load. It bounds how far the pressure is \
-               from solving the discrete problem; how far that is from the continuous one is the error bar of the area. The \
-               limit is that of the tolerance which the solve was asked for.",
+        note: "All errors come from a fresh application of the elastic operator to the pressure that is shown. They are relative to \
+               the pressure, to the range of heights and to the load. They bound how far the pressure is from the solution of \
+               the discrete problem. The error bar of the area says how far that solution is from the continuous one. The limit \
+               follows from the tolerance of the solve.",
     }
 }
 

@@ -219,8 +219,8 @@ fn table(scenes: Vec<SceneCurves>, rows: &[Row]) -> Curves {
         scenes,
         heads,
         rows: rows.iter().map(cells).collect(),
-        note: "Thin lines are single surfaces, thick ones with dots their means under the loads that all of them have. Penetration is counted from \
-               first touch. Zero is on linear axes only.",
+        note: "Thin lines are single surfaces. Thick lines with dots are means over the surfaces, at loads that all surfaces have. \
+               Penetration is counted from first touch. Linear axes begin at zero, logarithmic ones do not.",
     }
 }
 

@@ -144,10 +144,11 @@ impl Estimate {
 
     /// The mean with its error bar.
     fn text(&self) -> String {
+        if self.unit().is_empty() {
+            return with_error(self.mean, self.error());
+        }
         let scale = Scale::of(self.mean.abs(), self.unit());
         format!("{} {}", with_error(self.mean / scale.factor, self.error() / scale.factor), scale.unit())
-            .trim_end()
-            .to_owned()
     }
 
     fn row(&self) -> [String; 7] {
@@ -187,12 +188,17 @@ impl Level {
         [
             self.coarser_grid.map_or_else(|| self.grid.to_string(), |coarser| format!("{} − {coarser}", self.grid)),
             format!("{} (seeds {seeds})", self.realisations),
-            engineering(self.mean, unit).trim_end().to_owned(),
-            engineering(self.variance.sqrt(), unit).trim_end().to_owned(),
+            in_unit(self.mean, unit),
+            in_unit(self.variance.sqrt(), unit),
             digits(self.cost, 3),
             format!("{} %", digits(100.0 * self.cost * self.realisations as f64 / total, 2)),
         ]
     }
+}
+
+/// Four digits; with a decimal prefix where there is a unit.
+fn in_unit(value: f64, unit: &'static str) -> String {
+    if unit.is_empty() { digits(value, 4) } else { engineering(value, unit) }
 }
 
 fn tiles(means: &[Estimate]) -> Vec<Tile> {

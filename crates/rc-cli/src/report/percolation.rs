@@ -16,13 +16,13 @@ pub(super) fn note(mut rows: Vec<(Surface, f64, [f64; 2])>) -> Option<String> {
         return None;
     }
     if brackets.is_empty() {
-        return Some("Percolation is lost at none of these loads.".to_owned());
+        return Some("Percolation is not lost between any of these loads.".to_owned());
     }
     let mean = brackets.iter().map(|[low, high]| 0.5 * (low + high)).sum::<f64>() / brackets.len() as f64;
     let low = brackets.iter().map(|bracket| bracket[0]).fold(f64::INFINITY, f64::min);
     let high = brackets.iter().map(|bracket| bracket[1]).fold(0.0, f64::max);
     Some(format!(
-        "Percolation is lost at a contact area of {} %: the mean of {} flows, each along one axis of one surface, between {} and {} %.",
+        "Percolation is lost at a contact area of {} %. This is the mean of {} flows, each along one axis of one surface; they are between {} and {} %.",
         digits(100.0 * mean, 3),
         brackets.len(),
         digits(100.0 * low, 3),

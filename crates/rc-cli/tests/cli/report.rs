@@ -19,7 +19,10 @@ fn self_contained(place: &Place, name: &str) -> Value {
     let page = text(&place.bytes(name));
     let addresses = page.matches("http").count();
     assert_eq!(addresses, page.matches("\"http://www.w3.org/2000/svg\"").count() + 1, "an address that is no name");
-    assert!(page.contains("http-equiv=\"Content-Security-Policy\""), "the last of them");
+    let (_, policy) = page.split_once("http-equiv=\"Content-Security-Policy\" content=\"").expect("the last of them");
+    let policy = policy.split('"').next().expect("its end");
+    assert!(policy.starts_with("default-src 'none';"), "{policy}");
+    assert!(policy.ends_with("img-src data:"), "the picture of the leakage is data: {policy}");
     for word in ["src=", "href=", "@import", "url(data", "fetch("] {
         assert!(!page.contains(word), "{word} in the page");
     }
@@ -198,6 +201,9 @@ fn the_page_of_a_mean_has_its_levels_and_the_command_that_repeats_it() {
         assert_eq!(drawn["levels"].as_array().map(Vec::len), Some(variances.len()));
     }
     assert_eq!(page["rows"].as_array().map(Vec::len), Some(2));
+    let first = means[0]["mean"].as_f64().expect("a number");
+    let shown = page["rows"][0][1].as_str().and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
+    assert!(shown.is_some_and(|shown| (shown / first - 1.0).abs() < 0.2), "{first} is shown as {shown:?}");
     repeat(&place, &page["commands"][0]);
     assert!(place.bytes("again/mean.json") == place.bytes("m/mean.json"), "{} gives other means", page["commands"][0]);
     // Interrupted: there are solves, and no mean.

@@ -87,7 +87,7 @@ const MOMENTS: &str = "statements-moments";
 pub(super) const ROWS: &[Row] = &[
     row("fig1", "A/A0 of the realisation", "fig1-summary", "contact area"),
     row("fig1", "Δ", "fig1-summary", "penetration").shown(1.0, " µm"),
-    row("fig1", "greatest displacement v", "fig1-summary", "greatest displacement").shown(1.0, " µm"),
+    row("fig1", "maximum displacement v", "fig1-summary", "greatest displacement").shown(1.0, " µm"),
     row("fig1", "mean displacement", "fig1-summary", "mean displacement").shown(1.0, " µm"),
     row("fig3", "contact fraction", "fig3-summary", "contact fraction").column("at_printed_fraction"),
     row("fig3", "elements, uniform", "fig3-summary", "elements uniform")
@@ -104,12 +104,12 @@ pub(super) const ROWS: &[Row] = &[
         .paper("fig3_elements_adaptive"),
     row("fig3", "Δ there", "fig3-summary", "penetration").in_unit("um").column("at_printed_fraction").shown(1.0, " µm"),
     row("fig4", "contact radius", "fig4-summary", "contact radius").column("numeric").shown(1e3, " mm"),
-    row("fig4", "contact radius, less Hertz in the cell, relative", "fig4-summary", "contact radius")
+    row("fig4", "contact radius minus Hertz in the cell, relative", "fig4-summary", "contact radius")
         .column("relative_difference"),
     row("fig4", "load", "fig4-summary", "load").column("numeric").shown(1.0, " N"),
-    row("fig4", "load, less Hertz in the cell, relative", "fig4-summary", "load").column("relative_difference"),
+    row("fig4", "load minus Hertz in the cell, relative", "fig4-summary", "load").column("relative_difference"),
     row("fig4", "peak pressure", "fig4-summary", "peak pressure").column("numeric").shown(1e-6, " MPa"),
-    row("fig4", "peak pressure, less Hertz in the cell, relative", "fig4-summary", "peak pressure")
+    row("fig4", "peak pressure minus Hertz in the cell, relative", "fig4-summary", "peak pressure")
         .column("relative_difference"),
     row("fig5", "A/A0 at σ0/E* = 8.9e-4, N = 64", FIG5, "area fraction").waves("64").of_one("area_fraction_a", SCATTER),
     row("fig5", "A/A0 at σ0/E* = 8.9e-4, N = 128", FIG5, "area fraction")
@@ -141,12 +141,12 @@ pub(super) const ROWS: &[Row] = &[
     row("fig5", "R² (the paper: above), N = 128", FIG5, "R squared").waves("128").paper("fig5_r_squared").digits(5),
     row("fig5", "R² up to σ0/E* = 4e-3, N = 64", FIG5, "R squared up to 4e-3").waves("64").digits(5),
     row("fig5", "R² up to σ0/E* = 4e-3, N = 128", FIG5, "R squared up to 4e-3").waves("128").digits(5),
-    row("fig5", "A/A0 of N = 128 over that of N = 64, mean of 28 pairs", FIG5, "ratio of areas")
+    row("fig5", "ratio of A/A0, N = 128 to N = 64, mean of 28 pairs", FIG5, "ratio of areas")
         .of_one("area_ratio", "scatter of the ratio of areas"),
     row("fig5", "scatter of one pair", FIG5, "scatter of the ratio of areas"),
     row(
         "fig5",
-        "greatest difference of areas by the paper's procedure (reduced)",
+        "maximum difference of areas by the paper's procedure (reduced)",
         FIG5,
         "greatest relative difference of areas by the paper's procedure",
     ),
@@ -171,7 +171,7 @@ pub(super) const ROWS: &[Row] = &[
     row("fig7", "Persson's u0/h_rms, γ = 0.45", FIG7, "Persson's u0 for gamma 0.45").waves("64"),
     row(
         "fig7",
-        "greatest difference of Δ/h_max between N = 64 and 128",
+        "maximum difference of Δ/h_max between N = 64 and 128",
         FIG7,
         "greatest difference of penetration/h_max between surfaces",
     ),
@@ -183,8 +183,9 @@ pub(super) const ROWS: &[Row] = &[
     row("fig8", "Λ that A/A0 stands for, N = 128", FIG8, "Lambda from the area fraction")
         .waves("128")
         .shown(1e5, "·10⁻⁵ E*²"),
-    row("fig8", "Λ of the fit over the theory's g²/8, N = 64", FIG8, "fitted Lambda over slope^2/8").waves("64"),
-    row("fig8", "Λ of the fit over the theory's g²/8, N = 128", FIG8, "fitted Lambda over slope^2/8").waves("128"),
+    row("fig8", "ratio of the fitted Λ to the theory's g²/8, N = 64", FIG8, "fitted Lambda over slope^2/8").waves("64"),
+    row("fig8", "ratio of the fitted Λ to the theory's g²/8, N = 128", FIG8, "fitted Lambda over slope^2/8")
+        .waves("128"),
     row("fig8", "A/A0, N = 64", FIG8, "area fraction").waves("64").of_one("area_fraction_a", SCATTER),
     row("fig8", "∫P dσ, N = 64", FIG8, "integral of P").waves("64").of_one("area_fraction_a", SCATTER),
     row("fig8", "erf(σ0/2√Λ) of the fit, N = 64", FIG8, "erf(load/2 sqrt(Lambda)) of the fit")
@@ -195,8 +196,8 @@ pub(super) const ROWS: &[Row] = &[
     row("fig8", "erf(σ0/2√Λ) of the fit, N = 128", FIG8, "erf(load/2 sqrt(Lambda)) of the fit")
         .waves("128")
         .of_one("area_fraction_b", SCATTER),
-    row("fig8", "first bin (2e-4 E*) over the peak, N = 64", FIG8, "first bin over peak").waves("64"),
-    row("fig8", "first bin (2e-4 E*) over the peak, N = 128", FIG8, "first bin over peak").waves("128"),
+    row("fig8", "ratio of the first bin (2e-4 E*) to the peak, N = 64", FIG8, "first bin over peak").waves("64"),
+    row("fig8", "ratio of the first bin (2e-4 E*) to the peak, N = 128", FIG8, "first bin over peak").waves("128"),
     row("fig8", "the same from counting elements, N = 64", FIG8, "first bin over peak by elements").waves("64"),
     row("fig8", "the same from counting elements, N = 128", FIG8, "first bin over peak by elements").waves("128"),
     row("fig8", "d log P/d log σ from 0.01 to 0.1 of the peak stress, N = 64", FIG8, SLOPE).waves("64"),
@@ -217,7 +218,7 @@ pub(super) const ROWS: &[Row] = &[
     ),
     row(
         "fig8",
-        "first bin over the peak from counting elements",
+        "ratio of the first bin to the peak, from counting elements",
         FIG8,
         "first bin over peak by elements with 32 elements per wave",
     ),
@@ -235,7 +236,7 @@ pub(super) const ROWS: &[Row] = &[
     ),
     row(
         "fig8",
-        "first bin over the peak from counting elements",
+        "ratio of the first bin to the peak, from counting elements",
         FIG8,
         "first bin over peak by elements with 64 elements per wave",
     ),
@@ -253,22 +254,24 @@ pub(super) const ROWS: &[Row] = &[
     ),
     row(
         "fig8",
-        "first bin over the peak from counting elements",
+        "ratio of the first bin to the peak, from counting elements",
         FIG8,
         "first bin over peak by elements with 128 elements per wave",
     ),
-    row("statements", "area over that of N = 8, N = 16", CUTOFF, "16").column("area_over_first"),
-    row("statements", "area over that of N = 8, N = 64", CUTOFF, "64").column("area_over_first"),
-    row("statements", "area over that of N = 8, N = 128", CUTOFF, "128").column("area_over_first"),
-    row("statements", "area over that of N = 8, N = 256", CUTOFF, "256").column("area_over_first"),
+    row("statements", "ratio of the area to that of N = 8, N = 16", CUTOFF, "16").column("area_over_first"),
+    row("statements", "ratio of the area to that of N = 8, N = 64", CUTOFF, "64").column("area_over_first"),
+    row("statements", "ratio of the area to that of N = 8, N = 128", CUTOFF, "128").column("area_over_first"),
+    row("statements", "ratio of the area to that of N = 8, N = 256", CUTOFF, "256").column("area_over_first"),
     row("statements", "κ, N = 8", CUTOFF, "8").column("kappa"),
     row("statements", "κ, N = 64", CUTOFF, "64").column("kappa"),
     row("statements", "κ, N = 128", CUTOFF, "128").column("kappa"),
     row("statements", "κ, N = 256", CUTOFF, "256").column("kappa"),
-    row("statements", "elastic energy over that of N = 8, N = 16", CUTOFF, "16").column("energy_over_first"),
-    row("statements", "elastic energy over that of N = 8, N = 64", CUTOFF, "64").column("energy_over_first"),
-    row("statements", "elastic energy over that of N = 8, N = 128", CUTOFF, "128").column("energy_over_first"),
-    row("statements", "elastic energy over that of N = 8, N = 256", CUTOFF, "256").column("energy_over_first"),
+    row("statements", "ratio of the elastic energy to that of N = 8, N = 16", CUTOFF, "16").column("energy_over_first"),
+    row("statements", "ratio of the elastic energy to that of N = 8, N = 64", CUTOFF, "64").column("energy_over_first"),
+    row("statements", "ratio of the elastic energy to that of N = 8, N = 128", CUTOFF, "128")
+        .column("energy_over_first"),
+    row("statements", "ratio of the elastic energy to that of N = 8, N = 256", CUTOFF, "256")
+        .column("energy_over_first"),
     row("statements", "Δ/h_max, N = 8", CUTOFF, "8").column("penetration_over_h_max"),
     row("statements", "Δ/h_max, N = 64", CUTOFF, "64").column("penetration_over_h_max"),
     row("statements", "Δ/h_max, N = 128", CUTOFF, "128").column("penetration_over_h_max"),
