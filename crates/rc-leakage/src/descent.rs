@@ -80,6 +80,8 @@ pub(crate) fn solve<P: Preconditioner>(
             if is_last || target.is_met(&bounds) {
                 return iteration.solved;
             }
+            iteration.drawn = std::mem::take(&mut iteration.solved.correction);
+            iteration.draw(preconditioner);
             look = left.unwrap_or(0.0).min(look) * (NEXT_LOOK * target.error / bounds.relative()).clamp(1e-6, 0.3);
         }
     }
@@ -144,8 +146,8 @@ impl<'a, T: Real> Iteration<'a, T> {
 
     /// Bounds of the pressure so far.
     fn look<P: Preconditioner<Value = T>>(&mut self, tree: &SpanningTree, preconditioner: &mut P) -> Bounds {
-        let mut excess = std::mem::take(&mut self.solved.correction);
-        excess.resize(self.direction.len(), 0.0);
+        // The largest of all times for memory: what is drawn makes room.
+        let mut excess = std::mem::take(&mut self.drawn);
         let power = self.state().write_excess(&mut excess);
         if self.drift(&excess) > DRIFT {
             self.residual.copy_from_slice(&excess);

@@ -199,11 +199,8 @@ mod tests {
         let mut before = energy(&x, &mut drawn);
         for sweep in 0..20 {
             let right: Vec<f64> = drawn.iter().map(|drawn| -drawn).collect();
-            if sweep % 2 == 0 {
-                graph.relax(&right, &mut step)
-            } else {
-                graph.relax_back(&right, &mut step)
-            }
+            let relax = if sweep % 2 == 0 { Graph::relax } else { Graph::relax_back };
+            relax(&graph, &right, &mut step);
             x.iter_mut().zip(&step).for_each(|(x, step)| *x += step);
             let after = energy(&x, &mut drawn);
             assert!(after < before, "sweep {sweep}: energy {after:e} after {before:e}");
