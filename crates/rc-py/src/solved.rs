@@ -157,7 +157,8 @@ impl Solved {
         self.array(py, self.side(), Solution::gap)
     }
 
-    /// Gap (m) on the grid of the smallest elements; none where that is the grid of the fields.
+    /// Gap (m) on the grid of the smallest elements, less the overlap that plastic flow has removed; none where that is
+    /// the grid of the fields.
     fn finest_gap<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         let side = self.side();
         let gap: Option<(Grid, Vec<f64>)> = self.compute(py, move |found| {

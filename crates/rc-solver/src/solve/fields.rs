@@ -30,14 +30,14 @@ impl Solution<'_> {
         }
     }
 
-    /// The gap on the grid of the smallest elements, in λ, as [`Solution::gap`]; `None` where that is
-    /// [`Solution::grid`], which it is without a border level. Takes one application of L on that grid each time.
+    /// The gap on the grid of the smallest elements, in λ, as [`Solution::gap`], but less than that of contact where
+    /// plastic flow has removed an overlap; `None` where that is [`Solution::grid`], which it is without a border level. Takes one application of L on that grid each time.
     #[must_use]
     pub fn finest_gap(&self) -> Option<Field> {
         match &self.pressures {
             Pressures::Tiles { solution, problem } if self.finest_grid() != self.grid() => {
                 Some(self.collect(self.finest_grid(), |take| {
-                    problem.gap_rows(solution, GapPart::Open, Rows::finest(), take)
+                    problem.gap_rows(solution, GapPart::Both, Rows::finest(), take)
                 }))
             }
             _ => None,
