@@ -292,7 +292,10 @@ class Result:
             return self._source.spots
         pressure = self._finest_pressure("spots")
         gap = self._source.finest_gap() if self.border_level else None
-        found = _core.spots(pressure, self.gap if gap is None else gap, self.sides, self.e_star, self.scene)
+        if gap is None:
+            # With a hardness, edges follow from the overlap that plastic flow has removed.
+            gap = self.gap if self.plastic_gap is None else self.gap - self.plastic_gap
+        found = _core.spots(pressure, gap, self.sides, self.e_star, self.scene)
         return [ContactSpot(*spot) for spot in found]
 
     def stress_distribution(self, bins: int | Sequence[float] | Floats = 50) -> StressDistribution:

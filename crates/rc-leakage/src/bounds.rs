@@ -15,23 +15,28 @@ pub(crate) struct Bounds {
     pub(crate) upper: f64,
     /// Lower bound of the power of the flow.
     pub(crate) lower: f64,
+    /// Conserved flow through a section.
+    pub(crate) flow: f64,
     /// Maximum relative difference of the conserved flow between a section and the mean.
     pub(crate) conservation: f64,
 }
 
 impl Bounds {
-    /// Of the pressure in `state`, and of its flow with the excess of each element in `excess`, which becomes the flow
-    /// along the tree.
-    pub(crate) fn of(state: FlowState<'_>, tree: &SpanningTree, axis: Axis, excess: &mut [f64]) -> Self {
+    /// Of the pressure in `state`; `excess` is written the flow along the tree that makes its flow conserved.
+    pub(crate) fn of(
+        (state, upper): (FlowState<'_>, f64),
+        tree: &SpanningTree,
+        axis: Axis,
+        excess: &mut [f64],
+    ) -> Self {
         tree.route(excess);
-        let (upper, _) = state.power_and_sections(axis);
         let conserved = FlowState { correction: Some(Correction { tree, flow: excess }), ..state };
         let (dissipation, sections) = conserved.power_and_sections(axis);
         let n = sections.len() as f64;
         let flow = sections.iter().sum::<f64>() / n;
         let lower = if flow > 0.0 { (n * flow).powi(2) / dissipation } else { 0.0 };
         let largest = sections.iter().map(|section| (section - flow).abs()).fold(0.0, f64::max);
-        Self { upper, lower, conservation: if flow > 0.0 { largest / flow } else { f64::INFINITY } }
+        Self { upper, lower, flow, conservation: if flow > 0.0 { largest / flow } else { f64::INFINITY } }
     }
 
     /// Largest relative error of the upper bound.

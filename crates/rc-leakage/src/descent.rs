@@ -5,6 +5,7 @@ use crate::flow_state::FlowState;
 use crate::network::{Axis, Network};
 use crate::parallel;
 use crate::preconditioner::Preconditioner;
+use crate::products::dot;
 use crate::real::Real;
 use crate::tree::SpanningTree;
 
@@ -23,7 +24,7 @@ pub(crate) struct Target {
 pub(crate) struct Solved {
     /// What is added to the mean fall, of 1 per element along the axis.
     pub(crate) pressure: Vec<f64>,
-    /// Flow from each element along the tree, which makes the flow conserved.
+    /// Flow from each element along the tree, which makes the flow conserved; empty before the first look.
     pub(crate) correction: Vec<f64>,
     pub(crate) bounds: Bounds,
     pub(crate) iterations: usize,
@@ -32,8 +33,8 @@ pub(crate) struct Solved {
 impl Solved {
     /// No pressure but the mean fall, on `n` elements.
     pub(crate) fn start(n: usize) -> Self {
-        let bounds = Bounds { upper: f64::INFINITY, lower: 0.0, conservation: f64::INFINITY };
-        Self { pressure: vec![0.0; n], correction: vec![0.0; n], bounds, iterations: 0 }
+        let bounds = Bounds { upper: f64::INFINITY, lower: 0.0, flow: 0.0, conservation: f64::INFINITY };
+        Self { pressure: vec![0.0; n], correction: Vec::new(), bounds, iterations: 0 }
     }
 }
 
@@ -43,11 +44,15 @@ impl Target {
     }
 }
 
-/// A gain of the last iteration below this part of the wanted error makes a look at the bounds worth its time.
-const FIRST_LOOK: f64 = 0.1;
+/// Part of the wanted difference of the bounds that is to be left, by what the last two iterations gained, when a look at
+/// the bounds is worth its time.
+const FIRST_LOOK: f64 = 0.3;
 
-/// What the gain is to fall to after a look, as a part of what the difference of the bounds has to.
-const NEXT_LOOK: f64 = 0.1;
+/// What is to be left after a look that found too much, as a part of what was left then and of the ratio that is wanted.
+const NEXT_LOOK: f64 = 0.3;
+
+/// Most that an iteration is taken to leave of what the one before left.
+const SLOWEST: f64 = 0.5;
 
 /// A recurrence that differs from the true residual by more than this part of it begins anew.
 const DRIFT: f64 = 0.1;
@@ -68,51 +73,70 @@ pub(crate) fn solve<P: Preconditioner>(
     let mut look = FIRST_LOOK * target.error;
     let end = iteration.solved.iterations + most;
     loop {
-        let gain = iteration.advance(preconditioner);
-        let is_last = gain.is_none() || iteration.solved.iterations >= end;
-        if is_last || gain.is_some_and(|gain| gain <= look) {
+        let left = iteration.advance(preconditioner);
+        let is_last = left.is_none() || iteration.solved.iterations >= end;
+        if is_last || left.is_some_and(|left| left <= look) {
             let bounds = iteration.look(tree, preconditioner);
             if is_last || target.is_met(&bounds) {
                 return iteration.solved;
             }
-            // The look took the place of what the direction was applied to.
-            iteration.apply();
-            look = gain.unwrap_or(0.0).min(look) * (NEXT_LOOK * target.error / bounds.relative()).clamp(1e-6, 0.3);
+            iteration.drawn = std::mem::take(&mut iteration.solved.correction);
+            iteration.draw(preconditioner);
+            look = left.unwrap_or(0.0).min(look) * (NEXT_LOOK * target.error / bounds.relative()).clamp(1e-6, 0.3);
         }
     }
 }
 
-/// Conjugate gradients under way.
-struct Iteration<'a> {
+/// Conjugate gradients under way. Directions have the precision of the preconditioner. The residual is in double
+/// precision: what rounding adds to a pool has to leave it by the weakest bonds.
+struct Iteration<'a, T> {
     network: &'a Network,
     target: Target,
-    /// Its `correction` is scratch between looks.
     solved: Solved,
     residual: Vec<f64>,
-    direction: Vec<f64>,
+    direction: Vec<T>,
+    /// What the network draws under the direction.
+    drawn: Vec<f64>,
     /// Power at the start, or when it was last summed, and what was gained since.
     power: [f64; 2],
-    /// Product of the direction and of what it was applied to; 0 before the first iteration.
+    /// What the last iteration gained of the power; 0 before the first.
+    gain: f64,
+    /// Product of the direction and of what is drawn under it; 0 before the first iteration.
     curvature: f64,
     block: usize,
 }
 
-impl<'a> Iteration<'a> {
-    fn new<P: Preconditioner>(network: &'a Network, solved: Solved, target: Target, preconditioner: &mut P) -> Self {
+impl<'a, T: Real> Iteration<'a, T> {
+    fn new<P: Preconditioner<Value = T>>(
+        network: &'a Network,
+        solved: Solved,
+        target: Target,
+        preconditioner: &mut P,
+    ) -> Self {
         let (n, nx) = (network.grid().len(), network.grid().nx());
         let block = parallel::rows_per_block(nx) * nx;
-        let [residual, direction] = [(); 2].map(|()| vec![0.0; n]);
-        let mut this = Self { network, target, solved, residual, direction, power: [0.0; 2], curvature: 0.0, block };
+        let [residual, drawn] = [(); 2].map(|()| vec![0.0; n]);
+        let direction = vec![T::ZERO; n];
+        let (power, gain, curvature) = ([0.0; 2], 0.0, 0.0);
+        let mut this = Self { network, target, solved, residual, direction, drawn, power, gain, curvature, block };
         this.renew(preconditioner);
         this
     }
 
     /// Computes the residual and the power of the pressure so far, and begins anew from there.
-    fn renew<P: Preconditioner>(&mut self, preconditioner: &mut P) {
-        let state = FlowState::of(self.network, &self.solved.pressure, self.target.axis.unit());
-        state.write_excess(&mut self.residual);
-        self.power = [state.power_and_sections(self.target.axis).0, 0.0];
-        self.write_right(preconditioner.right_mut());
+    fn renew<P: Preconditioner<Value = T>>(&mut self, preconditioner: &mut P) {
+        let mut residual = std::mem::take(&mut self.residual);
+        self.power = [self.state().write_excess(&mut residual), 0.0];
+        self.residual = residual;
+        self.begin(preconditioner);
+    }
+
+    /// Begins anew from the residual.
+    fn begin<P: Preconditioner<Value = T>>(&mut self, preconditioner: &mut P) {
+        let blocks = self.residual.chunks(self.block).zip(preconditioner.right_mut().chunks_mut(self.block)).collect();
+        parallel::for_each(blocks, |(residual, right): (&[f64], &mut [T])| {
+            right.iter_mut().zip(residual).for_each(|(right, residual)| *right = T::of(*residual));
+        });
         self.curvature = 0.0;
     }
 
@@ -121,17 +145,17 @@ impl<'a> Iteration<'a> {
     }
 
     /// Bounds of the pressure so far.
-    fn look<P: Preconditioner>(&mut self, tree: &SpanningTree, preconditioner: &mut P) -> Bounds {
-        let mut excess = std::mem::take(&mut self.solved.correction);
-        self.state().write_excess(&mut excess);
+    fn look<P: Preconditioner<Value = T>>(&mut self, tree: &SpanningTree, preconditioner: &mut P) -> Bounds {
+        // The largest of all times for memory: what is drawn makes room.
+        let mut excess = std::mem::take(&mut self.drawn);
+        let power = self.state().write_excess(&mut excess);
         if self.drift(&excess) > DRIFT {
             self.residual.copy_from_slice(&excess);
-            self.write_right(preconditioner.right_mut());
-            self.curvature = 0.0;
+            self.begin(preconditioner);
         }
-        self.solved.bounds = Bounds::of(self.state(), tree, self.target.axis, &mut excess);
+        self.solved.bounds = Bounds::of((self.state(), power), tree, self.target.axis, &mut excess);
         self.solved.correction = excess;
-        self.power = [self.solved.bounds.upper, 0.0];
+        self.power = [power, 0.0];
         self.solved.bounds
     }
 
@@ -146,11 +170,12 @@ impl<'a> Iteration<'a> {
         if all > 0.0 { (off / all).sqrt() } else { 0.0 }
     }
 
-    /// One iteration; what it gained of the power, relative to it, or `None` where nothing is left to descend along.
-    fn advance<P: Preconditioner>(&mut self, preconditioner: &mut P) -> Option<f64> {
+    /// One iteration; what it is taken to leave to be gained of the power, relative to it, or `None` where nothing is
+    /// left to descend along.
+    fn advance<P: Preconditioner<Value = T>>(&mut self, preconditioner: &mut P) -> Option<f64> {
         let step = preconditioner.apply();
         self.turn(step);
-        let [slope, curvature] = self.apply();
+        let [slope, curvature] = self.draw(preconditioner);
         self.curvature = curvature;
         if !(slope > 0.0 && curvature > 0.0 && curvature.is_finite()) {
             return None;
@@ -158,72 +183,61 @@ impl<'a> Iteration<'a> {
         let length = slope / curvature;
         self.step(length, preconditioner.right_mut());
         self.solved.iterations += 1;
-        self.power[1] += length * slope;
+        let (gain, before) = (length * slope, std::mem::replace(&mut self.gain, length * slope));
+        self.power[1] += gain;
         if self.power[0] - self.power[1] < CANCELLED * self.power[0] {
             self.renew(preconditioner);
         }
-        Some(length * slope / (self.power[0] - self.power[1]))
-    }
-
-    /// Writes the residual as the right side of the preconditioner.
-    fn write_right<T: Real>(&self, right: &mut [T]) {
-        let blocks = self.residual.chunks(self.block).zip(right.chunks_mut(self.block)).collect();
-        parallel::for_each(blocks, |(residual, right): (&[f64], &mut [T])| {
-            right.iter_mut().zip(residual).for_each(|(right, residual)| *right = T::of(*residual));
-        });
+        let ratio = if before > 0.0 { (gain / before).min(SLOWEST) } else { SLOWEST };
+        Some(gain * ratio / (1.0 - ratio) / (self.power[0] - self.power[1]))
     }
 
     /// The next direction: what the preconditioner found, made conjugate to the last. It need not be linear for that.
-    fn turn<T: Real>(&mut self, step: &[T]) {
+    fn turn(&mut self, step: &[T]) {
         let block = self.block;
-        let mut along = 0.0;
+        let mut along = T::ZERO;
         if self.curvature > 0.0 {
-            let blocks = self.solved.correction.chunks(block).zip(step.chunks(block)).collect();
-            let dot = parallel::sum(blocks, |(applied, step): (&[f64], &[T])| {
-                applied.iter().zip(step).map(|(a, z)| a * z.to_f64()).sum()
-            });
-            along = -dot / self.curvature;
+            let blocks = self.drawn.chunks(block).zip(step.chunks(block)).collect();
+            let product = parallel::sum(blocks, |(drawn, step): (&[f64], &[T])| dot(drawn, step));
+            along = T::of(-product / self.curvature);
         }
         let blocks = self.direction.chunks_mut(block).zip(step.chunks(block)).collect();
-        parallel::for_each(blocks, |(direction, step): (&mut [f64], &[T])| {
-            direction.iter_mut().zip(step).for_each(|(p, z)| *p = z.to_f64() + along * *p);
+        parallel::for_each(blocks, |(direction, step): (&mut [T], &[T])| {
+            direction.iter_mut().zip(step).for_each(|(p, z)| *p = *z + along * *p);
         });
     }
 
-    /// Applies the network to the direction: products of it with the residual and with what it was applied to.
-    fn apply(&mut self) -> [f64; 2] {
-        let (nx, direction, residual) = (self.network.grid().nx(), &self.direction, &self.residual);
-        let state = FlowState::of(self.network, direction, [0.0; 2]);
-        let blocks = self.solved.correction.chunks_mut(self.block).zip(self.network.blocks()).collect();
-        let sums = parallel::map(blocks, |(applied, rows): (&mut [f64], [usize; 2])| {
+    /// Draws under the direction: its products with the residual and with what is drawn.
+    fn draw<P: Preconditioner<Value = T>>(&mut self, preconditioner: &P) -> [f64; 2] {
+        let (network, direction, nx) = (self.network, &self.direction, self.network.grid().nx());
+        let blocks = self.drawn.chunks_mut(self.block).zip(self.residual.chunks(self.block)).zip(network.blocks());
+        let sums = parallel::map(blocks.collect(), |((drawn, residual), rows): DrawBlock<'_>| {
             let mut sums = [0.0; 2];
-            state.visit(rows, &mut |row| {
-                let out = &mut applied[(row.iy - rows[0]) * nx..][..nx];
-                row.write_outflow(out);
-                let range = row.iy * nx..(row.iy + 1) * nx;
-                sums[0] +=
-                    residual[range.clone()].iter().zip(&direction[range.clone()]).map(|(r, p)| r * p).sum::<f64>();
-                sums[1] += out.iter().zip(&direction[range]).map(|(a, p)| a * p).sum::<f64>();
-            });
+            for (iy, (drawn, residual)) in (rows[0]..).zip(drawn.chunks_mut(nx).zip(residual.chunks(nx))) {
+                preconditioner.draw(network, direction, iy, drawn);
+                let here = &direction[iy * nx..][..nx];
+                sums = [sums[0] + dot(residual, here), sums[1] + dot(drawn, here)];
+            }
             sums
         });
         sums.into_iter().fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y])
     }
 
     /// A step of `length` along the direction; writes the residual as the right side of the preconditioner.
-    fn step<T: Real>(&mut self, length: f64, right: &mut [T]) {
+    fn step(&mut self, length: f64, right: &mut [T]) {
         let block = self.block;
         let moved = self.solved.pressure.chunks_mut(block).zip(self.direction.chunks(block));
-        let left = self.residual.chunks_mut(block).zip(self.solved.correction.chunks(block));
+        let left = self.residual.chunks_mut(block).zip(self.drawn.chunks(block));
         let blocks = moved.zip(left).zip(right.chunks_mut(block)).collect();
-        parallel::for_each(blocks, |(((values, direction), (residual, applied)), right): StepBlock<'_, T>| {
-            values.iter_mut().zip(direction).for_each(|(u, p)| *u += length * p);
-            for ((r, a), right) in residual.iter_mut().zip(applied).zip(right) {
-                *r -= length * a;
+        parallel::for_each(blocks, |(((values, direction), (residual, drawn)), right): StepBlock<'_, T>| {
+            values.iter_mut().zip(direction).for_each(|(u, p)| *u += length * p.to_f64());
+            for ((r, drawn), right) in residual.iter_mut().zip(drawn).zip(right) {
+                *r -= length * drawn;
                 *right = T::of(*r);
             }
         });
     }
 }
 
-type StepBlock<'a, T> = (((&'a mut [f64], &'a [f64]), (&'a mut [f64], &'a [f64])), &'a mut [T]);
+type DrawBlock<'a> = ((&'a mut [f64], &'a [f64]), [usize; 2]);
+type StepBlock<'a, T> = (((&'a mut [f64], &'a [T]), (&'a mut [f64], &'a [f64])), &'a mut [T]);

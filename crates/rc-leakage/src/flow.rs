@@ -98,7 +98,8 @@ pub fn leakage(gap: &Field, params: &LeakageParams) -> Result<Leakage, LeakageEr
     check(gap)?;
     let solved = flows(gap, params, true)?;
     let half = half(gap).filter(|_| params.half_grid && solved.percolates != [false; 2]);
-    let half = half.and_then(|half| flows(&half, params, false).ok());
+    let of_half = LeakageParams { error: params.error.max(ERROR_OF_HALF), ..*params };
+    let half = half.and_then(|half| flows(&half, &of_half, false).ok());
     let flows = Axis::BOTH.map(|axis| {
         let i = axis.index();
         let (permeance, info) = solved.results[i];
@@ -114,6 +115,9 @@ pub fn leakage(gap: &Field, params: &LeakageParams) -> Result<Leakage, LeakageEr
     });
     Ok(Leakage { flows, flux: solved.flux })
 }
+
+/// Largest relative difference of the bounds on every second element: an error bar needs a few digits.
+const ERROR_OF_HALF: f64 = 1e-6;
 
 fn check(gap: &Field) -> Result<(), LeakageError> {
     let nx = gap.grid().nx();
@@ -168,25 +172,31 @@ fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<OfGrid,
     let widest = constrictions.map(|place| place.map_or(largest, |place| largest.min(WIDE * place.gap)));
     let network = |i: usize| network_of((gap, widest[i]), &clusters, &masks[i]);
     let mut results = [(0.0, FlowInfo::default()); 2];
-    let mut kept: Option<(Axis, Kept)> = None;
+    let mut kept: Option<(Axis, Solved)> = None;
     let mut prepared: Option<(usize, Prepared)> = None;
+    let serves = |of: usize, i: usize| masks[of] == masks[i] && widest[of].total_cmp(&widest[i]).is_eq();
     for axis in Axis::BOTH.into_iter().filter(|axis| percolates[axis.index()]) {
         let i = axis.index();
         let (of, mut network) = match prepared.take() {
-            Some((of, network)) if masks[of] == masks[i] && widest[of] >= widest[i] && widest[of] <= widest[i] => {
-                (of, network)
-            }
+            Some((of, network)) if serves(of, i) => (of, network),
             _ => (i, Prepared::new(network(i))),
         };
+        // Made again from the pressure if this flow turns out to be the larger one.
+        if let Some((_, solved)) = &mut kept {
+            solved.correction = Vec::new();
+        }
         let solved = network.solved(axis, params)?;
         results[i] = network.result(axis, &solved);
         if with_flux && (kept.is_none() || results[1].0 > results[0].0) {
-            kept = Some((axis, Kept { pressure: solved.pressure, correction: solved.correction }));
+            kept = Some((axis, solved));
         }
         prepared = Some((of, network));
     }
-    drop(prepared);
-    let flux = kept.map(|(axis, kept)| kept.flux(&network(axis.index()), axis));
+    let flux = kept.zip(prepared).map(|((axis, solved), (of, prepared))| {
+        let i = axis.index();
+        let (network, tree) = if serves(of, i) { (prepared.network, prepared.tree) } else { with_tree(network(i)) };
+        flux(solved, &network, &tree, axis)
+    });
     Ok(OfGrid { results, percolates, constrictions, flux })
 }
 
@@ -200,19 +210,23 @@ fn network_of((gap, widest): (&Field, f64), clusters: &Clusters, carries: &[bool
     })
 }
 
-/// The stored part of a solved flow.
-struct Kept {
-    pressure: Vec<f64>,
-    correction: Vec<f64>,
+fn with_tree(network: Network) -> (Network, SpanningTree) {
+    let tree = SpanningTree::new(&network);
+    (network, tree)
 }
 
-impl Kept {
-    fn flux(&self, network: &Network, axis: Axis) -> Flux {
-        let tree = SpanningTree::new(network);
-        let correction = Some(Correction { tree: &tree, flow: &self.correction });
-        let state = FlowState { correction, ..FlowState::of(network, &self.pressure, axis.unit()) };
-        Flux::of(state, network.unscaled(1.0) / elements_along(network.grid(), axis) as f64)
+/// The flux of a solved flow, scaled to carry the permeance: the flow has the root of its error.
+fn flux(solved: Solved, network: &Network, tree: &SpanningTree, axis: Axis) -> Flux {
+    let Solved { pressure, correction: mut flow, bounds, .. } = solved;
+    let state = FlowState::of(network, &pressure, axis.unit());
+    if flow.is_empty() {
+        flow.resize(pressure.len(), 0.0);
+        state.write_excess(&mut flow);
+        tree.route(&mut flow);
     }
+    let state = FlowState { correction: Some(Correction { tree, flow: &flow }), ..state };
+    let n = elements_along(network.grid(), axis) as f64;
+    Flux::of(state, network.unscaled(bounds.upper / (n * bounds.flow)) / n)
 }
 
 /// Elements along `axis`.

@@ -2,6 +2,7 @@
 
 use crate::network::{Axis, Network};
 use crate::parallel;
+use crate::real::Real;
 use crate::step::Step;
 use crate::tree::SpanningTree;
 
@@ -113,20 +114,21 @@ impl<'a> FlowState<'a> {
         }
     }
 
-    /// Writes what flows into each element in excess of what flows out.
-    pub(crate) fn write_excess(&self, out: &mut [f64]) {
-        let nx = self.network.grid().nx();
+    /// Writes what flows into each element in excess of what flows out; returns the dissipation.
+    pub(crate) fn write_excess<T: Real>(&self, out: &mut [T]) -> f64 {
+        let (nx, ny) = (self.network.grid().nx(), self.network.grid().ny());
         let block = parallel::rows_per_block(nx) * nx;
         let blocks = out.chunks_mut(block).zip(self.network.blocks()).collect();
-        parallel::for_each(blocks, |(excess, rows): (&mut [f64], [usize; 2])| {
+        parallel::sum(blocks, |(excess, rows): (&mut [T], [usize; 2])| {
+            let (mut outflow, mut power) = (vec![0.0; nx], 0.0);
             self.visit(rows, &mut |row| {
-                let out = &mut excess[(row.iy - rows[0]) * nx..][..nx];
-                row.write_outflow(out);
-                for out in out.iter_mut() {
-                    *out = -*out;
-                }
+                power += self.power_of(&row, (row.iy + 1) % ny);
+                row.write_outflow(&mut outflow);
+                let excess = &mut excess[(row.iy - rows[0]) * nx..][..nx];
+                excess.iter_mut().zip(&outflow).for_each(|(excess, outflow)| *excess = T::of(-*outflow));
             });
-        });
+            power
+        })
     }
 
     /// Dissipation Σ flux²/conductance, and the flow through each section across `axis`, summed over the section in its

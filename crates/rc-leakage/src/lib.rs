@@ -35,6 +35,7 @@ mod network;
 mod parallel;
 mod pools;
 mod preconditioner;
+mod products;
 mod real;
 mod step;
 mod tree;

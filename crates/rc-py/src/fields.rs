@@ -54,9 +54,13 @@ pub(crate) fn stress_distribution<'py>(
     Ok((PyArray1::from_vec(py, density), found.area_fraction))
 }
 
+/// Relative error of a hardness that was a number of Pa.
+const ROUNDING: f64 = 1e-12;
+
 /// Contact spots of a pressure (Pa) and a gap (m), largest first.
 ///
-/// `scene` is the text of their `scene.toml`.
+/// `scene` is the text of their `scene.toml`. With a hardness, the overlap that plastic flow has removed is subtracted
+/// from the gap.
 #[pyfunction]
 pub(crate) fn spots(
     py: Python<'_>,
@@ -73,7 +77,8 @@ pub(crate) fn spots(
         return Err(bad_input(format_args!("gap: {} elements, but the pressure has {}", gap.grid(), pressure.grid())));
     }
     let boundary = keys.boundary.unwrap_or_default();
-    let spots = on_threads(py, 0, move || ContactSpot::with_boundary(&pressure, &gap, bias, boundary))?;
+    let hardness = keys.hardness.map_or(f64::INFINITY, |hardness| (1.0 - ROUNDING) * hardness / e_star);
+    let spots = on_threads(py, 0, move || ContactSpot::with_hardness([&pressure, &gap], hardness, bias, boundary))?;
     let in_si = |spot: ContactSpot| {
         let ContactSpot { elements, area_fraction, perimeter, euler_number, mean_pressure } = spot;
         (elements, area_fraction, perimeter * sides[0], euler_number, mean_pressure * e_star)

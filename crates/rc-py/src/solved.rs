@@ -157,7 +157,7 @@ impl Solved {
         self.array(py, self.side(), Solution::gap)
     }
 
-    /// Gap (m) on the grid of the smallest elements.
+    /// Gap (m) on the grid of the smallest elements, minus the overlap that plastic flow has removed.
     ///
     /// `None` if that is the grid of the fields.
     fn finest_gap<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {

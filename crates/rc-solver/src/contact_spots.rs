@@ -46,6 +46,16 @@ impl ContactSpot {
     /// As [`ContactSpot::all`].
     #[must_use]
     pub fn with_boundary(pressure: &Field, gap: &Field, bias: EdgeBias, boundary: Boundary) -> Vec<Self> {
+        Self::with_hardness([pressure, gap], f64::INFINITY, bias, boundary)
+    }
+
+    /// The same where no pressure is greater than the `hardness`, in E*: edges of plastic elements are located as those
+    /// of the contact area are. The gap of plastic elements is that of contact less what plastic flow has removed.
+    ///
+    /// # Panics
+    /// As [`ContactSpot::all`].
+    #[must_use]
+    pub fn with_hardness([pressure, gap]: [&Field; 2], hardness: f64, bias: EdgeBias, boundary: Boundary) -> Vec<Self> {
         assert_eq!(pressure.grid(), gap.grid(), "pressure and gap on the same grid");
         let grid = pressure.grid();
         let (nx, ny) = (grid.nx(), grid.ny());
@@ -56,7 +66,7 @@ impl ContactSpot {
                 load += pressure.values()[element];
                 let at = [element % nx, element / nx];
                 let around = around([pressure.values(), gap.values()], [nx, ny], at, boundary);
-                sums.add(sides, f64::INFINITY, &around);
+                sums.add(sides, hardness, &around);
             }
             let area = ContactArea::from_sums(&[sums], grid, bias);
             Self {
@@ -170,6 +180,25 @@ mod tests {
             assert!((others.fraction / squares.fraction - 1.0).abs() < 1.5e-3, "{nx} x {ny}: {others:?}, {squares:?}");
             assert!((others.perimeter / squares.perimeter - 1.0).abs() < 5e-3, "{nx} x {ny}: {others:?}, {squares:?}");
         }
+    }
+
+    /// The spot of one contact is the contact, with plastic edges too: the middle of a sharp edge is where the overlap
+    /// would end.
+    #[test]
+    fn a_spot_with_plastic_edges_has_the_area_of_the_contact() {
+        let (grid, hardness, radius) = (Grid::square(64).expect("a grid"), 1e-2, 0.231);
+        let depth = |DVec2 { x, y }| radius - (x - 0.5_f64).hypot(y - 0.5);
+        let pressure = Field::from_fn(grid, |at| if depth(at) > 0.0 { hardness } else { 0.0 });
+        let gap = Field::from_fn(grid, |at| -depth(at));
+        let bias = Love.edge_bias();
+        let spots = ContactSpot::with_hardness([&pressure, &gap], hardness, bias, Boundary::Periodic);
+        let area = ContactArea::of_hard([&pressure, &gap], hardness, bias, Boundary::Periodic);
+        assert_eq!(spots.len(), 1);
+        assert!((spots[0].area_fraction / area.fraction - 1.0).abs() < 1e-12, "{spots:?}, {area:?}");
+        let exact = std::f64::consts::PI * radius * radius;
+        assert!((spots[0].area_fraction / exact - 1.0).abs() < 5e-3, "{spots:?} for {exact}");
+        let elastic = ContactSpot::all(&pressure, &gap, bias);
+        assert!((elastic[0].area_fraction / exact - 1.0).abs() > 1e-2, "{elastic:?} for {exact}");
     }
 
     #[test]

@@ -11,6 +11,8 @@ pub(crate) enum GapPart {
     Open,
     /// The overlap that plastic flow has removed, positive.
     Plastic,
+    /// The open one less the plastic one: negative where the overlap was removed.
+    Both,
 }
 
 impl GapPart {
@@ -18,7 +20,7 @@ impl GapPart {
     pub(crate) fn of(self, gap: f64, pressure: f64, hardness: f64) -> f64 {
         match (self, pressure >= hardness) {
             (Self::Open, true) => gap.max(0.0),
-            (Self::Open, false) => gap,
+            (Self::Open, false) | (Self::Both, _) => gap,
             (Self::Plastic, true) => (-gap).max(0.0),
             (Self::Plastic, false) => 0.0,
         }

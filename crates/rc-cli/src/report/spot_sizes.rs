@@ -15,6 +15,9 @@ const BINS_PER_DECADE: f64 = 8.0;
 /// Minimum area of a spot, in elements.
 const SMALLEST_SPOT: f64 = 0.1;
 
+/// Relative error of a hardness that was a number of Pa.
+const ROUNDING: f64 = 1e-12;
+
 /// The data of the page about contact spots.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct SpotSizes {
@@ -33,13 +36,18 @@ impl SpotSizes {
         if !result.is_of_elements() {
             return None;
         }
-        let ResultFolder { side, e_star, pressure, gap, .. } = result;
+        let ResultFolder { side, e_star, pressure, mut gap, plastic_gap, summary } = result;
+        // Where the hardness limits the pressure, edges follow from the overlap that plastic flow has removed.
+        for (gap, overlap) in gap.values_mut().iter_mut().zip(plastic_gap.iter().flat_map(Field::values)) {
+            *gap -= overlap;
+        }
+        let hardness = summary.hardness.map_or(f64::INFINITY, |hardness| (1.0 - ROUNDING) * hardness / e_star);
         let over = |mut field: Field, unit: f64| {
             field.values_mut().iter_mut().for_each(|value| *value /= unit);
             field
         };
         let (pressure, gap) = (over(pressure, e_star), over(gap, side));
-        let spots = ContactSpot::with_boundary(&pressure, &gap, bias, boundary);
+        let spots = ContactSpot::with_hardness([&pressure, &gap], hardness, bias, boundary);
         Self::of(&spots, pressure.grid(), side)
     }
 

@@ -15,6 +15,8 @@ use self::aggregates::ALONE;
 use self::graph::BLOCK;
 pub(crate) use self::graph::Graph;
 use crate::elimination::Elimination;
+use crate::flow_state::FlowState;
+use crate::network::Network;
 use crate::parallel;
 use crate::preconditioner::Preconditioner;
 
@@ -99,6 +101,10 @@ impl Preconditioner for Aggregation {
     fn apply(&mut self) -> &[f64] {
         cycle(&mut self.levels, self.last.as_ref());
         &self.levels[0].x
+    }
+
+    fn draw(&self, network: &Network, x: &[f64], iy: usize, out: &mut [f64]) {
+        FlowState::of(network, x, [0.0; 2]).visit([iy, iy + 1], &mut |row| row.write_outflow(out));
     }
 }
 

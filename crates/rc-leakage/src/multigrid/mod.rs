@@ -83,6 +83,10 @@ impl<T: Real> Preconditioner for Multigrid<T> {
         cycle(&mut self.levels, &mut self.coarsest);
         &self.levels[0].x
     }
+
+    fn draw(&self, _: &Network, x: &[T], iy: usize, out: &mut [f64]) {
+        self.levels[0].stencil.draw_finest(x, iy, out);
+    }
 }
 
 /// The finest level, which is the network with its bonds across faces.

@@ -232,12 +232,37 @@ impl<T: Real> Stencil<T> {
         }
     }
 
+    /// Writes what the finest network draws under `x`, of row `iy`: sums in double precision of fluxes that are rounded
+    /// alike for both elements of a face.
+    pub(super) fn draw_finest(&self, x: &[T], iy: usize, out: &mut [f64]) {
+        let bonds = self.bonds(iy);
+        let [below, row, above] = self.rows_around(x, iy);
+        let flux = |bond: T, from: T, to: T| (bond * (from - to)).to_f64();
+        let vertical = bonds.north.iter().zip(above).zip(bonds.south.iter().zip(below));
+        for ((out, &own), ((&north, &above), (&south, &below))) in out.iter_mut().zip(row).zip(vertical) {
+            *out = flux(north, own, above) - flux(south, below, own);
+        }
+        for ((out, pair), &east) in out.iter_mut().zip(row.windows(2)).zip(bonds.east) {
+            *out += flux(east, pair[0], pair[1]);
+        }
+        for ((out, pair), &east) in out[1..].iter_mut().zip(row.windows(2)).zip(bonds.east) {
+            *out -= flux(east, pair[0], pair[1]);
+        }
+        let last = row.len() - 1;
+        let around = flux(bonds.east[last], row[last], row[0]);
+        out[last] += around;
+        out[0] -= around;
+    }
+
+    fn rows_around<'x>(&self, x: &'x [T], iy: usize) -> [&'x [T]; 3] {
+        [iy + self.ny - 1, iy, iy + 1].map(|iy| &x[iy % self.ny * self.nx..][..self.nx])
+    }
+
     /// Writes `right` less what the network draws under `x`, of row `iy`.
     pub(super) fn residual(&self, x: &[T], right: &[T], iy: usize, out: &mut [T]) {
-        let row = |iy: usize| &x[iy * self.nx..(iy + 1) * self.nx];
-        let rows = [row((iy + self.ny - 1) % self.ny), row(iy), row((iy + 1) % self.ny)];
-        let bonds = self.bonds(iy);
         out.copy_from_slice(&right[iy * self.nx..(iy + 1) * self.nx]);
+        let rows = self.rows_around(x, iy);
+        let bonds = self.bonds(iy);
         bonds.add_across(rows, out, |neighbour, own| neighbour - own);
         bonds.add_along(rows[1], out);
     }

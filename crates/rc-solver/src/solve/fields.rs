@@ -33,14 +33,14 @@ impl Solution<'_> {
 
     /// The gap on the grid of the smallest elements, in λ, as [`Solution::gap`].
     ///
-    /// `None` if that grid is [`Solution::grid`], as it is without a border level. Each call takes one application of L
-    /// on the grid of the smallest elements.
+    /// It is negative where plastic flow has removed an overlap. `None` if that grid is [`Solution::grid`], as it is
+    /// without a border level. Each call takes one application of L on the grid of the smallest elements.
     #[must_use]
     pub fn finest_gap(&self) -> Option<Field> {
         match &self.pressures {
             Pressures::Tiles { solution, problem } if self.finest_grid() != self.grid() => {
                 Some(self.collect(self.finest_grid(), |take| {
-                    problem.gap_rows(solution, GapPart::Open, Rows::finest(), take)
+                    problem.gap_rows(solution, GapPart::Both, Rows::finest(), take)
                 }))
             }
             _ => None,

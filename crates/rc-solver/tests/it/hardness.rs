@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 
 use rc_core::testing::quasi_random;
-use rc_core::{DVec2, Field, Grid, Operator, Silent};
+use rc_core::{DVec2, Field, Grid, HeightField as _, Operator, Silent};
 use rc_kernel::Love;
 use rc_solver::{
     ContactProblem, Control, DirectSum, Method, ProblemError, Solution, SolveError, SolveParams,
@@ -228,6 +228,43 @@ fn every_load_below_the_hardness_is_borne() {
         let again = solve(&heights, depth, hardness, &params).expect("solvable");
         let found = again.info().mean_pressure;
         assert!((found / mean - 1.0).abs() < 1e-3, "{part}: {found} for {mean}");
+    }
+}
+
+/// Elements that fill up the tiles of a border level are none: they bear nothing, and their area counts nowhere.
+#[test]
+fn near_full_contact_with_border_levels_bears_its_load() {
+    struct Waves;
+    impl rc_core::HeightField for Waves {
+        fn height(&self, DVec2 { x, y }: DVec2) -> f64 {
+            5e-3 * (TAU * x).cos() + 4e-3 * (TAU * (x + 2.0 * y)).cos() + 6e-4 * (TAU * (5.0 * x - 4.0 * y)).cos()
+        }
+        fn band_limit(&self) -> Option<usize> {
+            Some(7)
+        }
+    }
+    let grid = Grid::square(320).expect("a grid");
+    let solve = |control: Control, hardness: f64, params: &SolveParams| {
+        ContactProblem::new(Waves.on(grid), control).with_hardness(hardness).solve(params, &Silent)
+    };
+    let hardness = 2e-2;
+    let params = SolveParams { border_level: 2, ..SolveParams::default().by(Method::Adaptive) };
+    for part in [0.5, 0.9, 0.99, 0.9999] {
+        let mean = part * hardness;
+        let on_grid = SolveParams::default().by(Method::Uniform);
+        let on_grid = solve(Control::MeanPressure(mean), hardness, &on_grid).expect("solvable");
+        let solution = solve(Control::MeanPressure(mean), hardness, &params).expect("solvable");
+        let (found, expected) = (solution.observables(), on_grid.observables());
+        let (pressure, plastic) = (solution.pressure(), found.plastic.expect("hard"));
+        assert!((pressure.mean() / mean - 1.0).abs() < 1e-9, "{part}: mean {}", pressure.mean());
+        assert!(pressure.max() <= hardness && pressure.min() >= 0.0, "{part}: up to {}", pressure.max());
+        let sides: Vec<f64> = solution.elements().expect("tiles").map(|element| element.side).collect();
+        let [least, most] = [sides.iter().copied().fold(1.0, f64::min), sides.iter().copied().fold(0.0, f64::max)];
+        assert!(least < 0.3 * grid.spacing().x && most > 1.5 * least, "{part}: sides from {least} to {most}");
+        let [area, of_grid] = [found.area.cells, expected.area.cells];
+        assert!(area >= part && area <= 1.0 && (area / of_grid - 1.0).abs() < 5e-3, "{part}: {area} for {of_grid}");
+        let of_grid = expected.plastic.expect("hard").cells;
+        assert!(plastic.cells <= part && (plastic.cells - of_grid).abs() < 1e-2, "{part}: {plastic:?} for {of_grid}");
     }
 }
 
