@@ -20,9 +20,9 @@ use crate::solution::GridSolution;
 use crate::support::Support;
 use crate::{IterationParams, ProblemError};
 
-/// Bytes for each element that the uniform method needs at its peak, heights included.
+/// Bytes for each element that the uniform method is assumed to need, heights included.
 ///
-/// 58 to 60 were measured at 2048² and 4096² with generated heights.
+/// The number is for its peak. 58 to 60 were measured at 2048² and 4096² with generated heights.
 pub const UNIFORM_BYTES_PER_ELEMENT: u64 = 80;
 
 /// Bytes for each element of heights with free borders.
