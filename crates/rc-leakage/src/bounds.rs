@@ -22,7 +22,9 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
-    /// Of the pressure in `state`; `excess` is written the flow along the tree that makes its flow conserved.
+    /// Bounds from the pressure in `state`.
+    ///
+    /// `excess` receives the flow along the tree that conserves the flow of this pressure.
     pub(crate) fn of(
         (state, upper): (FlowState<'_>, f64),
         tree: &SpanningTree,

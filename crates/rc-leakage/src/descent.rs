@@ -24,7 +24,9 @@ pub(crate) struct Target {
 pub(crate) struct Solved {
     /// What is added to the mean fall, of 1 per element along the axis.
     pub(crate) pressure: Vec<f64>,
-    /// Flow from each element along the tree, which makes the flow conserved; empty before the first look.
+    /// Flow from each element along the tree, after which the flow is conserved.
+    ///
+    /// It is empty before the bounds are first computed.
     pub(crate) correction: Vec<f64>,
     pub(crate) bounds: Bounds,
     pub(crate) iterations: usize,
@@ -44,21 +46,27 @@ impl Target {
     }
 }
 
-/// Part of the wanted difference of the bounds that is to be left, by what the last two iterations gained, when a look at
-/// the bounds is worth its time.
+/// Estimated difference of the bounds at which they are computed for the first time.
+///
+/// The estimate is that of the last two iterations. The unit is the wanted difference.
 const FIRST_LOOK: f64 = 0.3;
 
-/// What is to be left after a look that found too much, as a part of what was left then and of the ratio that is wanted.
+/// Reduction of the estimate before the bounds are computed again.
+///
+/// Its unit is the ratio of the wanted difference to the one that was found.
 const NEXT_LOOK: f64 = 0.3;
 
 /// Most that an iteration is taken to leave of what the one before left.
 const SLOWEST: f64 = 0.5;
 
-/// A recurrence that differs from the true residual by more than this part of it begins anew.
+/// Maximum relative difference of the recurrence from the true residual.
+///
+/// Beyond it, the iteration begins anew.
 const DRIFT: f64 = 0.1;
 
-/// Part of the power below which what is left of it, and of the residual, is rounding of what was there before: both
-/// are computed anew.
+/// Part of the power below which power and residual are computed anew.
+///
+/// What is left of them then is rounding of the earlier values.
 const CANCELLED: f64 = 1e-4;
 
 /// Solves from the pressure of `solved` on, in at most `iterations`.
@@ -123,7 +131,7 @@ impl<'a, T: Real> Iteration<'a, T> {
         this
     }
 
-    /// Computes the residual and the power of the pressure so far, and begins anew from there.
+    /// Begins anew, with residual and power of the current pressure.
     fn renew<P: Preconditioner<Value = T>>(&mut self, preconditioner: &mut P) {
         let mut residual = std::mem::take(&mut self.residual);
         self.power = [self.state().write_excess(&mut residual), 0.0];
@@ -170,8 +178,9 @@ impl<'a, T: Real> Iteration<'a, T> {
         if all > 0.0 { (off / all).sqrt() } else { 0.0 }
     }
 
-    /// One iteration; what it is taken to leave to be gained of the power, relative to it, or `None` where nothing is
-    /// left to descend along.
+    /// Advances by one iteration, and estimates the relative power that is still to be gained.
+    ///
+    /// `None` if there is no direction left.
     fn advance<P: Preconditioner<Value = T>>(&mut self, preconditioner: &mut P) -> Option<f64> {
         let step = preconditioner.apply();
         self.turn(step);
@@ -223,7 +232,9 @@ impl<'a, T: Real> Iteration<'a, T> {
         sums.into_iter().fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y])
     }
 
-    /// A step of `length` along the direction; writes the residual as the right side of the preconditioner.
+    /// Takes a step of `length` along the direction.
+    ///
+    /// It writes the residual as the right-hand side of the preconditioner.
     fn step(&mut self, length: f64, right: &mut [T]) {
         let block = self.block;
         let moved = self.solved.pressure.chunks_mut(block).zip(self.direction.chunks(block));

@@ -116,7 +116,9 @@ pub fn leakage(gap: &Field, params: &LeakageParams) -> Result<Leakage, LeakageEr
     Ok(Leakage { flows, flux: solved.flux })
 }
 
-/// Largest relative difference of the bounds on every second element: an error bar needs a few digits.
+/// Maximum relative difference of the bounds on every second element.
+///
+/// An error bar needs a few digits only.
 const ERROR_OF_HALF: f64 = 1e-6;
 
 fn check(gap: &Field) -> Result<(), LeakageError> {
@@ -215,7 +217,9 @@ fn with_tree(network: Network) -> (Network, SpanningTree) {
     (network, tree)
 }
 
-/// The flux of a solved flow, scaled to carry the permeance: the flow has the root of its error.
+/// The flux of a solved flow, scaled to carry the permeance.
+///
+/// Without the scale, the error of the flow is the root of that of the permeance.
 fn flux(solved: Solved, network: &Network, tree: &SpanningTree, axis: Axis) -> Flux {
     let Solved { pressure, correction: mut flow, bounds, .. } = solved;
     let state = FlowState::of(network, &pressure, axis.unit());

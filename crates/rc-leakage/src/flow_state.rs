@@ -131,8 +131,9 @@ impl<'a> FlowState<'a> {
         })
     }
 
-    /// Dissipation Σ flux²/conductance, and the flow through each section across `axis`, summed over the section in its
-    /// order.
+    /// Dissipation Σ flux²/conductance, and the flow through each section across `axis`.
+    ///
+    /// The flow is summed over a section in the order of its elements.
     pub(crate) fn power_and_sections(&self, axis: Axis) -> (f64, Vec<f64>) {
         let (nx, ny) = (self.network.grid().nx(), self.network.grid().ny());
         let blocks = parallel::map(self.network.blocks(), |block| {

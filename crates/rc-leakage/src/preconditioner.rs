@@ -14,7 +14,9 @@ pub(crate) trait Preconditioner: Sync {
     /// Applies the approximate inverse to the right side.
     fn apply(&mut self) -> &[Self::Value];
 
-    /// Writes what the network draws under the pressure `x`, of row `iy`: sums of fluxes that are the same for both
-    /// elements of a face, so that what is drawn balances in a pool as exactly as double precision does.
+    /// Writes the flow out of the elements of row `iy` under the pressure `x`.
+    ///
+    /// A flux is the same for both elements of a face. The flow is therefore conserved in a pool as exactly as double
+    /// precision allows.
     fn draw(&self, network: &Network, x: &[Self::Value], iy: usize, out: &mut [f64]);
 }

@@ -2,7 +2,7 @@
 
 use crate::real::Real;
 
-/// Sums that are added to in turn, so that additions need not wait for each other.
+/// Number of partial sums, so that additions need not wait for each other.
 const LANES: usize = 8;
 
 /// Σ a b in double precision, in an order that the length alone decides.

@@ -157,9 +157,9 @@ impl Solved {
         self.array(py, self.side(), Solution::gap)
     }
 
-    /// Gap (m) on the grid of the smallest elements, minus the overlap that plastic flow has removed.
+    /// Gap (m) on the grid of the smallest elements.
     ///
-    /// `None` if that is the grid of the fields.
+    /// The overlap that plastic flow has removed is subtracted. `None` if that is the grid of the fields.
     fn finest_gap<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         let side = self.side();
         let gap: Option<(Grid, Vec<f64>)> = self.compute(py, move |found| {

@@ -49,8 +49,10 @@ impl ContactSpot {
         Self::with_hardness([pressure, gap], f64::INFINITY, bias, boundary)
     }
 
-    /// The same where no pressure is greater than the `hardness`, in E*: edges of plastic elements are located as those
-    /// of the contact area are. The gap of plastic elements is that of contact less what plastic flow has removed.
+    /// All contact spots of a solution with a `hardness`, in E*.
+    ///
+    /// Edges of plastic elements are located as for the contact area. The gap of plastic elements is that of contact
+    /// minus the overlap that plastic flow has removed.
     ///
     /// # Panics
     /// As [`ContactSpot::all`].
@@ -182,8 +184,9 @@ mod tests {
         }
     }
 
-    /// The spot of one contact is the contact, with plastic edges too: the middle of a sharp edge is where the overlap
-    /// would end.
+    /// A single spot has the area of the contact, with plastic edges too.
+    ///
+    /// A sharp edge is where the overlap would end.
     #[test]
     fn a_spot_with_plastic_edges_has_the_area_of_the_contact() {
         let (grid, hardness, radius) = (Grid::square(64).expect("a grid"), 1e-2, 0.231);

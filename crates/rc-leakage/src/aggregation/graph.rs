@@ -155,10 +155,12 @@ impl Graph {
         });
     }
 
-    /// Element `k` of the block from `start` on, from the neighbours in it that are relaxed already. Bonds to other
-    /// blocks count twice: two elements that are strongly bound across a border would otherwise change places (Baker,
-    /// Falgout, Kolev and Yang, SIAM J. Sci. Comput. 33, 2011). Coarser grids have negative bonds too. They add their
-    /// magnitude, since a smaller total would let relaxation grow what it is to damp.
+    /// Relaxes element `k` of the block from `start` on.
+    ///
+    /// It reads the neighbours in the block that are relaxed already. Bonds to other blocks count twice. Otherwise two
+    /// elements that are strongly bound across a border would change places (Baker, Falgout, Kolev and Yang, SIAM J.
+    /// Sci. Comput. 33, 2011). Coarser grids have negative bonds too. Their magnitude is added, because with a smaller
+    /// total relaxation would amplify errors.
     #[inline]
     fn relaxed(&self, right: &[f64], (start, x): (usize, &[f64]), k: usize, is_done: impl Fn(usize) -> bool) -> f64 {
         let (mut flow, mut total) = (right[start + k], self.totals[start + k]);
@@ -183,8 +185,10 @@ fn relax_blocks(x: &mut [f64], relax: &(dyn Fn(usize, &mut [f64]) + Sync)) {
 mod tests {
     use super::*;
 
-    /// Bonds 0-1, 1-3, 3-2 and a negative one 0-2, of which 0 and 1 are in one block, 2 and 3 in the next. The path
-    /// around conducts 0.4975, so that the network dissipates under any pressure.
+    /// Bonds 0-1, 1-3, 3-2 and a negative bond 0-2.
+    ///
+    /// Elements 0 and 1 are in one block, 2 and 3 in the next. The path around conducts 0.4975, so that the network
+    /// dissipates under any pressure.
     #[test]
     fn relaxation_takes_energy_off_across_a_negative_bond_between_blocks() {
         let places = [0, 1, BLOCK, BLOCK + 1];

@@ -232,8 +232,9 @@ impl<T: Real> Stencil<T> {
         }
     }
 
-    /// Writes what the finest network draws under `x`, of row `iy`: sums in double precision of fluxes that are rounded
-    /// alike for both elements of a face.
+    /// Writes the flow out of the elements of row `iy`.
+    ///
+    /// It is that of the finest network under the pressure `x`. The sums are in double precision, of fluxes that are rounded alike for both elements of a face.
     pub(super) fn draw_finest(&self, x: &[T], iy: usize, out: &mut [f64]) {
         let bonds = self.bonds(iy);
         let [below, row, above] = self.rows_around(x, iy);

@@ -231,7 +231,7 @@ fn every_load_below_the_hardness_is_borne() {
     }
 }
 
-/// Elements that fill up the tiles of a border level are none: they bear nothing, and their area counts nowhere.
+/// Elements that only fill up tiles bear nothing and have no area.
 #[test]
 fn near_full_contact_with_border_levels_bears_its_load() {
     struct Waves;
