@@ -234,7 +234,8 @@ impl<T: Real> Stencil<T> {
 
     /// Writes the flow out of the elements of row `iy`.
     ///
-    /// It is that of the finest network under the pressure `x`. The sums are in double precision, of fluxes that are rounded alike for both elements of a face.
+    /// It is that of the finest network under the pressure `x`. The sums are in double precision, of fluxes that are
+    /// rounded alike for both elements of a face.
     pub(super) fn draw_finest(&self, x: &[T], iy: usize, out: &mut [f64]) {
         let bonds = self.bonds(iy);
         let [below, row, above] = self.rows_around(x, iy);
