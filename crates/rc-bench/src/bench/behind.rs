@@ -104,7 +104,7 @@ fn counts(all: &[Behind]) -> [usize; 3] {
 pub(super) fn count(results: &Results<'_>) -> String {
     let [n, slower, close] = counts(&comparisons(results));
     format!(
-        "The fastest peer is faster in {slower} of {n} comparisons, and takes less than twice our time in {close} more.\n"
+        "Of {n} comparisons on single problems, the fastest peer is faster in {slower}. In {close} more it takes less than twice our time.\n"
     )
 }
 

@@ -81,7 +81,7 @@ const SHORT: [(Quantity, f64); 5] = [
 ///
 /// A row has our median time, and the median ratio of the fastest peer's time to ours.
 pub(super) fn short(results: &Results<'_>) -> String {
-    let head = "| error below | rc, median time | fastest peer's time / ours | the same, peer's result read in the best of four ways |\n\
+    let head = "| error below | time of rc | ratio of the fastest peer's time to ours, results as reported | the same ratio, best of four ways |\n\
                 |---|---|---|---|\n";
     let line = |(quantity, level): (Quantity, f64)| {
         let asked = Asked { quantity, level, choice: Choice::Stated };

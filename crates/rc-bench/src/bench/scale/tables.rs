@@ -46,8 +46,8 @@ pub(in crate::bench) fn sentence(rows: &[ScaleRow]) -> Option<String> {
     let row = ours(rows).find(|row| row.waves == 128)?;
     let (side, memory, threads) = (row.side, megabytes(row.memory_mb), row.threads);
     Some(format!(
-        "The paper's larger surface, N = 128 on {side} x {side}, takes {} and {memory} on {threads} threads of the machine of the archived \
-         run (adaptive, tolerance {}).\n",
+        "The paper's larger surface (shortest wave λ/128, {side} x {side} elements) takes {} and {memory} on {threads} threads. It was solved \
+         by the adaptive method, at the tolerance {}.\n",
         time(row.seconds),
         row.tolerance
     ))
@@ -93,7 +93,7 @@ mod tests {
         assert!(table.contains(expected) && table.lines().count() == 4, "{table}");
         assert!(table.contains("| 512, 16384² |") && table.contains("| \u{2013} | \u{2013} | \u{2013} |"), "{table}");
         let sentence = sentence(&rows()).expect("N = 128");
-        assert!(sentence.contains("4096 x 4096, takes 2 s and 53 MB on 2 threads"), "{sentence}");
+        assert!(sentence.contains("4096 x 4096 elements) takes 2 s and 53 MB on 2 threads"), "{sentence}");
         assert_eq!(super::sentence(&rows()[3..]), None);
     }
 
