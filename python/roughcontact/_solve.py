@@ -105,7 +105,7 @@ def solve(
     boundary : {"periodic", "free"}, default "periodic"
         What is beyond the heights: the same heights again, or the free surface of the half-space. With "free" the heights are a patch
         of sides ``cell`` and ``cell_y``, ``pressure`` is the load over its area, and the penetration is the displacement of a rigid
-        body since first touch (kernel love, uniform method).
+        body since first touch (kernel love).
     layer_thickness, layer_poisson : float, optional
         An elastic layer of this thickness (m) on a rigid base to which it sticks, instead of the half-space. Its Poisson's ratio is
         ``poisson``; with ``e_star`` it must be given (uniform method).

@@ -100,7 +100,8 @@ pub trait Kernel: Sync {
     }
 
     /// Whether this is the half-space whose displacements `rc_kernel::ScaleSplit` splits by scale, under pressures that
-    /// are constant on elements. The adaptive method is made of that split, so it serves only such a kernel.
+    /// are constant on elements: of a periodic cell or, with [`Kernel::free_response`], without images. The adaptive
+    /// method is made of that split, so it serves only such a kernel.
     fn is_split_by_scale(&self) -> bool {
         false
     }

@@ -21,6 +21,7 @@ use near_contact::{MARGIN, PART_KEPT_OF_SINGLE_CELL, SIDE, is_near_contact, is_s
 /// its positive part on their cells. The finer level has twice as many cells along both sides, or a little less.
 ///
 /// `function` has a value for each cell of `tiles`, which are whole; `elsewhere` is its value where there is no tile.
+/// Beyond a free border it goes on as it is there.
 ///
 /// # Panics
 /// When there are fewer values than cells.
@@ -31,7 +32,7 @@ pub fn prolong(tiles: &TileSet, function: &[f64], elsewhere: f64, sides: [usize;
     } else {
         uneven::prolong(tiles, function, elsewhere, sides)
     };
-    let fine = TileSet::new(sides, children.iter().map(|&(place, _)| place).collect());
+    let fine = tiles.of_same_cell(sides, children.iter().map(|&(place, _)| place).collect());
     let mut result = vec![0.0; fine.n_cells()];
     for ([column, row], values) in children {
         let at = fine.find(column.into(), row.into()).expect("it was just put there");

@@ -1,7 +1,7 @@
 //! What the last level that was solved has left for the next one, kept outside of the process.
 
 use rc_comm::{Packed, Ranks};
-use rc_core::Grid;
+use rc_core::{Boundary, Grid};
 use rc_quadtree::{CELLS, Elements, TILE, TileSet};
 
 use super::mesh::Mesh;
@@ -67,14 +67,18 @@ pub(super) fn keep(checkpoint: &dyn Checkpoint, start: &LevelStart, number: f64)
     pieces.for_each(drop);
 }
 
-/// The start that was kept, with its number; none where there is none. `grid` is any grid of the cell.
-pub(super) fn kept(checkpoint: &dyn Checkpoint, grid: Grid, ranks: &Ranks) -> Option<(LevelStart, f64)> {
-    let found = read(checkpoint, grid, ranks);
+/// The start that was kept, with its number; none where there is none. `grid` is any grid of the cell, with its borders.
+pub(super) fn kept(
+    checkpoint: &dyn Checkpoint,
+    (grid, boundary): (Grid, Boundary),
+    ranks: &Ranks,
+) -> Option<(LevelStart, f64)> {
+    let found = read(checkpoint, (grid, boundary), ranks);
     // All go on from the same level, or none.
     if ranks.any(found.is_none()) { None } else { found }
 }
 
-fn read(checkpoint: &dyn Checkpoint, grid: Grid, ranks: &Ranks) -> Option<(LevelStart, f64)> {
+fn read(checkpoint: &dyn Checkpoint, (grid, boundary): (Grid, Boundary), ranks: &Ranks) -> Option<(LevelStart, f64)> {
     let numbers = f64::unpack_all(&checkpoint.read(0, N_NUMBERS * f64::BYTES)?);
     let &[n_tiles, nx, ny, contact_gap, energy_length, number, has_coarser, rms_pressure, penetration, n_levels] =
         numbers.as_slice()
@@ -105,7 +109,7 @@ fn read(checkpoint: &dyn Checkpoint, grid: Grid, ranks: &Ranks) -> Option<(Level
     if places.iter().any(|place| (0..2).any(|axis| place[axis] as usize >= extent[axis])) {
         return None;
     }
-    let tiles = TileSet::new([grid.nx(), grid.ny()], places.to_vec());
+    let tiles = TileSet::new([grid.nx(), grid.ny()], places.to_vec()).with_boundary(boundary);
     let elements = Mesh::new(Elements::uniform(tiles), ranks);
     let own = elements.own();
     offset += (own.start * f64::BYTES) as u64;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
-use rc_core::{Grid, Kernel};
+use rc_core::{Boundary, Grid, Kernel};
 use rc_kernel::Love;
 use rc_quadtree::{BLOCK_CELLS, CELLS, TILE, TileSet};
 
@@ -77,11 +77,12 @@ impl Values<'_> {
             let mut sums = EdgeSums::default();
             // What reaches beyond the grid is across the seam.
             let [width, height] = tiles.inside(place);
+            let patch = Inside::of(tiles, place);
             let cells = (0..CELLS).map(|cell| (cell % TILE, cell / TILE)).filter(|&(x, y)| x < width && y < height);
             for (x, y) in cells.map(|(x, y)| (TILE + x, TILE + y)) {
                 if seen([pressure[y][x], 0.0])[0] > 0.0 {
                     sums.add([side; 2], hardness, &|dx, dy| {
-                        let (x, y) = (x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
+                        let (x, y) = patch.place(x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
                         seen([pressure[y][x], gap[y][x] - contact_gap])
                     });
                 }
@@ -100,5 +101,26 @@ impl Values<'_> {
             chunks.into_iter().fold(EdgeSums::from_values(sum), |a, b| a + b).to_values()
         });
         EdgeSums::from_values(total)
+    }
+}
+
+/// The cells around a tile that are there: beyond a free border are those beside it.
+struct Inside([[usize; 2]; 2]);
+
+impl Inside {
+    /// First and last cells along both axes, of the patch of three by three tiles around the one at a place.
+    fn of(tiles: &TileSet, place: [u32; 2]) -> Self {
+        let is_free = tiles.boundary() == Boundary::Free;
+        Self([0, 1].map(|axis| {
+            // The patch begins a tile before its tile.
+            let place = place[axis] as usize * TILE;
+            let (first, last) = (TILE.saturating_sub(place), tiles.sides()[axis] + TILE - place - 1);
+            if is_free { [first, last.min(3 * TILE - 1)] } else { [0, 3 * TILE - 1] }
+        }))
+    }
+
+    fn place(&self, x: usize, y: usize) -> (usize, usize) {
+        let [[left, right], [below, above]] = self.0;
+        (x.clamp(left, right), y.clamp(below, above))
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use rc_core::Grid;
 use rc_kernel::ScaleSplit;
 
+use super::base::Base;
 use super::operator::{Hierarchy, Prepared, Reach, Real, Tables};
 use super::scaled_operator::ScaledOperator;
 use super::split::GapSplit;
@@ -12,8 +13,8 @@ use crate::descent::BlockOperator;
 
 /// L on the elements of one mesh, with the part of its displacement that is smooth on the base grid.
 pub(super) trait GapOperator: BlockOperator<f64> {
-    /// What the last pressure displaces the centres of the base grid by, short-range parts excepted: tile by tile,
-    /// tiles row by row, in λ.
+    /// What the last pressure displaces the centres of the base grid's period by, short-range parts excepted: tile by
+    /// tile, tiles row by row, in λ.
     fn base_displacement(&self) -> Vec<f64>;
 }
 
@@ -37,8 +38,8 @@ pub(super) enum GapTables {
 
 impl PreparedGap {
     /// For elements up to 2^`n_coarse` times as large as the smallest.
-    pub(super) fn new(split: GapSplit, base: Grid, n_coarse: usize) -> Self {
-        let kernel = ScaleSplit::new(split.params);
+    pub(super) fn new(split: GapSplit, base: impl Into<Base>, n_coarse: usize) -> Self {
+        let (kernel, base) = (ScaleSplit::new(split.params), base.into());
         if split.is_single_precision() {
             Self::Single(split, Prepared::displacement(&kernel, base, n_coarse))
         } else {

@@ -2,9 +2,9 @@
 
 use std::sync::OnceLock;
 
-use rc_core::Grid;
 use rc_kernel::{ScaleSplit, SplitParams};
 
+use super::base::Base;
 use super::gap_operator::PreparedGap;
 use super::operator::Prepared;
 use super::split::{GapSplit, N_SPLITS};
@@ -12,7 +12,7 @@ use crate::once::made;
 
 /// L and its approximate inverse by all splits, for one base grid and number of border levels.
 pub(super) struct Kernels {
-    base: Grid,
+    base: Base,
     border_level: usize,
     quick: OnceLock<Prepared<f32>>,
     preconditioner: OnceLock<Prepared<f32>>,
@@ -21,7 +21,7 @@ pub(super) struct Kernels {
 
 impl Kernels {
     /// Nothing is made yet.
-    pub(super) fn new(base: Grid, border_level: usize) -> Self {
+    pub(super) fn new(base: Base, border_level: usize) -> Self {
         let (quick, preconditioner, gaps) = Default::default();
         Self { base, border_level, quick, preconditioner, gaps }
     }
@@ -29,6 +29,11 @@ impl Kernels {
     /// Kernels of the same base grid, none of which is made yet.
     pub(super) fn empty(&self) -> Self {
         Self::new(self.base, self.border_level)
+    }
+
+    /// The base grid.
+    pub(super) fn base(&self) -> Base {
+        self.base
     }
 
     /// L, a few percent off on rough pressures, for corrections.

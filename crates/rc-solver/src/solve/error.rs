@@ -33,9 +33,15 @@ pub enum SolveError {
         /// The method, and why it would be chosen.
         reason: MethodReason,
     },
-    /// The method is made for the periodic half-space.
-    #[error("the {method} method solves on the periodic half-space only, not on a layer or a patch with free borders")]
+    /// The method is made for the half-space.
+    #[error("the {method} method solves on the half-space only, not on a layer")]
     Solid {
+        /// The method asked for.
+        method: Method,
+    },
+    /// The method is made for the periodic cell.
+    #[error("the {method} method solves on a periodic cell only, not on a patch with free borders")]
+    FreeBorders {
         /// The method asked for.
         method: Method,
     },

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use rc_core::{Field, HeightSource};
+use rc_core::{Boundary, Field, HeightSource};
 
 use crate::AdaptiveError;
 use crate::adaptive::{AdaptiveParams, Ground};
@@ -18,14 +18,15 @@ pub(super) struct Shared<'a> {
 }
 
 impl<'a> Shared<'a> {
-    /// What the adaptive method needs of `source`.
+    /// What the adaptive method needs of `source`, beyond which there is this.
     pub(super) fn ground(
         &self,
         source: &HeightSource<'a>,
+        boundary: Boundary,
         params: &AdaptiveParams,
     ) -> Result<&Arc<Ground<'a>>, AdaptiveError> {
         if self.ground.get().is_none() {
-            let ground = Arc::new(Ground::new(source.clone(), params)?);
+            let ground = Arc::new(Ground::new(source.clone(), boundary, params)?);
             // Another load may have been faster; its ground is the same.
             let _ = self.ground.set(ground);
         }

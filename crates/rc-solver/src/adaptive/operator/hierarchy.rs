@@ -3,20 +3,22 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use rc_core::Grid;
 use rc_quadtree::{BLOCK_TILES, Elements, TILE, TileSet};
 
 use super::base_part::BasePart;
 use super::coarse::Leaves;
+use crate::adaptive::base::Base;
 use crate::adaptive::ladder::{self, sides_of};
 use crate::adaptive::mesh::Mesh;
 use crate::adaptive::part::{Part, append_around};
 
 /// The tiles of all levels, coarsest first: the first is the whole base grid, the last has the finest elements.
 pub(crate) struct Hierarchy {
-    base: Grid,
+    base: Base,
     reach: Reach,
     mesh: Mesh,
+    /// The same tiles, on levels that have the operator's period.
+    elements: Elements,
     /// The blocks of a vector: how much coarser than the finest level, and which of its tiles.
     pub(super) blocks: Vec<(usize, Range<usize>)>,
     /// The densities of each level, coarser elements included; on the finest level, its elements.
@@ -40,32 +42,32 @@ impl Hierarchy {
     /// The levels over `elements` down to the base grid, whose sides are multiples of 8, each with the tiles that
     /// filters need. The coarsest elements are finer than the base grid's, and elements whose sizes differ by more than
     /// a factor of 2 are farther from each other than stencils of the level between them reach.
-    pub(crate) fn new(base: Grid, mesh: impl Into<Mesh>, reach: Reach) -> Self {
-        let mesh = mesh.into();
-        let elements = mesh.elements();
+    pub(crate) fn new(base: impl Into<Base>, mesh: impl Into<Mesh>, reach: Reach) -> Self {
+        let (base, mesh) = (base.into(), mesh.into());
+        let elements = in_period(base, mesh.elements());
         let mut levels = vec![elements.finest().clone()];
-        let [nx, ny] = elements.finest().sides();
-        let finest = base.with_elements(nx, ny).expect("a level of a checked grid");
-        for level in (1..ladder::n_levels(base, finest)).rev() {
-            let sides = sides_of(ladder::doubled(base, level));
+        let [nx, ny] = mesh.elements().finest().sides();
+        let finest = base.grid().with_elements(nx, ny).expect("a level of a checked grid");
+        for level in (1..ladder::n_levels(base.grid(), finest)).rev() {
+            let sides = base.period_of(sides_of(ladder::doubled(base.grid(), level)));
             let parents = mesh.on_coarser(&levels[levels.len() - 1], sides, reach.filter);
             levels.push(match elements.levels().get(levels.len()) {
                 Some(leaves) => parents.with(&leaves.around(reach.filter)),
                 None => parents,
             });
         }
-        levels.push(TileSet::full(sides_of(base)));
+        levels.push(TileSet::full(base.period()));
         levels.reverse();
         debug_assert!(elements.levels().len() < levels.len(), "no elements are on the base grid");
         let pairs = elements.levels().windows(2);
         let leaves = pairs.map(|pair| Leaves::new(pair[1].clone(), &pair[0], reach.stencil)).collect();
         let (levels, base_part) = dealt(levels, &mesh, reach);
-        Self { base, reach, blocks: blocks(&mesh, &levels), mesh, levels, base_part, leaves }
+        Self { base, reach, blocks: blocks(&mesh, &levels), mesh, elements, levels, base_part, leaves }
     }
 
-    /// The elements.
+    /// The elements, on levels that have the operator's period.
     pub(crate) fn elements(&self) -> &Elements {
-        self.mesh.elements()
+        &self.elements
     }
 
     /// The elements, and which of them this rank has.
@@ -94,18 +96,18 @@ impl Hierarchy {
     }
 
     /// The base grid.
-    pub(crate) fn base(&self) -> Grid {
+    pub(crate) fn base(&self) -> Base {
         self.base
     }
 
     /// The same for the preconditioner, which halves every level: where the finest has not twice as many elements as
     /// the level below it, a strip without elements takes the place of what is missing, along the seam.
     pub(super) fn halved(self: &Arc<Self>) -> Arc<Self> {
-        let sides = sides_of(ladder::doubled(self.base, self.n_levels()));
-        if self.elements().finest().sides() == sides {
+        let (sides, finest) = (sides_of(ladder::doubled(self.base.grid(), self.n_levels())), self.mesh.finest());
+        if finest.sides() == sides {
             return Arc::clone(self);
         }
-        let tiles = TileSet::new(sides, self.elements().finest().places().to_vec());
+        let tiles = finest.of_same_cell(sides, finest.places().to_vec());
         Arc::new(Self::new(self.base, Elements::uniform(tiles), self.reach))
     }
 
@@ -122,6 +124,15 @@ impl Hierarchy {
         }
         self.elements().levels().get(coarser).map(|tiles| (self.elements().cells(coarser), tiles))
     }
+}
+
+/// The elements on levels that have the operator's period. Values stay where they are: tiles have the same order.
+fn in_period(base: Base, elements: &Elements) -> Elements {
+    if !base.is_free() {
+        return elements.clone();
+    }
+    let level = |tiles: &TileSet| TileSet::new(base.period_of(tiles.sides()), tiles.places().to_vec());
+    Elements::new(elements.levels().iter().map(level).collect())
 }
 
 /// What this rank has of all levels, coarsest first, and of the base grid.

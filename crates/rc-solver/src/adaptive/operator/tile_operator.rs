@@ -4,7 +4,6 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use pulp::Arch;
-use rc_core::Grid;
 use rc_fft::{BLOCK_ROWS, Convolution, Instructions};
 use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE};
 
@@ -17,6 +16,7 @@ use super::passes::{
 use super::sizes::Real;
 use super::tables::Tables;
 use super::tile_values::TileValues;
+use crate::adaptive::base::Base;
 use crate::adaptive::part::Part;
 use crate::descent::{BlockLayout, read_rows, write_rows};
 use crate::parallel::{self, Tasks};
@@ -42,7 +42,7 @@ impl<T: Real> TileOperator<T> {
                 Instructions::Best => Arch::new(),
                 Instructions::Scalar | Instructions::Sse => Arch::Scalar,
             },
-            convolution: Convolution::new(hierarchy.base()),
+            convolution: Convolution::new(hierarchy.base().periodic_grid()),
             source: Vec::new(),
             densities: Vec::new(),
             displacements: Vec::new(),
@@ -82,12 +82,12 @@ impl<T: Real> TileOperator<T> {
     }
 
     /// The base grid.
-    pub(crate) fn base(&self) -> Grid {
+    pub(crate) fn base(&self) -> Base {
         self.hierarchy.base()
     }
 
-    /// The displacement of the cells of the base grid in the last [`TileOperator::apply`], tile by tile, row-major: the
-    /// smooth remainder.
+    /// The displacement of the cells of the base grid's period in the last [`TileOperator::apply`], tile by tile,
+    /// row-major: the smooth remainder.
     pub(crate) fn base_displacement(&self) -> &[T] {
         &self.displacements[0]
     }
@@ -161,7 +161,7 @@ impl<T: Real> TileOperator<T> {
 
     /// The base grid: its density from level 1, its convolution, its displacement as tiles.
     fn convolve_base(&mut self, tables: &Tables<T>) {
-        let (side, arch, levels) = (self.hierarchy.base().nx(), self.arch, &self.hierarchy.levels);
+        let (side, arch, levels) = (self.hierarchy.base().period()[0], self.arch, &self.hierarchy.levels);
         let finer = TileValues::new(self.densities.get(1).unwrap_or(&self.source), levels[1].tiles());
         let n_levels = self.hierarchy.n_levels();
         let tiles_per_block = BLOCK_ROWS / TILE * (side / TILE);
