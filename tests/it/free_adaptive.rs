@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use rc_comm::{Ranks, run_threads};
 use rc_core::{DVec2, Field, Grid, HeightField as _, HeightSource, Operator as _, Silent};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::FreeLove;
@@ -158,6 +159,45 @@ fn digits_do_not_depend_on_the_number_of_threads() {
         })
     });
     assert!(one == two);
+}
+
+#[test]
+fn digits_do_not_depend_on_the_number_of_ranks() {
+    let heights = map(16, [256, 128]);
+    let told = |ranks: Ranks| {
+        let problem = ContactProblem::new(&heights, Control::MeanPressure(1e-3)).with_kernel(&FreeLove).over(ranks);
+        let found = problem.solve(&by(Method::Adaptive, 1e-2), &Silent).expect("a solution");
+        let numbers = [found.area().fraction, found.observables().mean_gap, found.info().penetration, found.stiffness()];
+        (numbers.map(f64::to_bits), found.pressure().values().to_vec(), found.gap().values().to_vec())
+    };
+    let alone = told(Ranks::alone());
+    for size in [2, 3] {
+        for of_rank in run_threads(size, told).expect("all ranks end") {
+            assert!(of_rank == alone, "{size} ranks");
+        }
+    }
+}
+
+/// A hardness limits the pressure of a patch on both meshes alike, under both controls.
+#[test]
+fn a_hardness_gives_the_pressure_of_the_uniform_method() {
+    let heights = map(12, [256, 256]);
+    let elastic = solve(&heights, Control::MeanPressure(2e-3), &by(Method::Adaptive, 1e-2));
+    let hardness = 0.3 * elastic.observables().max_pressure;
+    for control in [Control::MeanPressure(2e-3), Control::Penetration(elastic.info().penetration)] {
+        let [adaptive, uniform] = [Method::Adaptive, Method::Uniform].map(|method| {
+            let problem = ContactProblem::new(&heights, control).with_kernel(&FreeLove).with_hardness(hardness);
+            problem.solve(&by(method, 1e-3), &Silent).expect("a solution")
+        });
+        let (a, b) = (adaptive.observables(), uniform.observables());
+        let plastic = [a, b].map(|found| found.plastic.expect("a plastic part").fraction);
+        assert!(plastic[0] > 0.1 * a.area.fraction, "{plastic:?}");
+        assert_close("plastic area", plastic[0], plastic[1], 1e-4);
+        assert_close("area", a.area.fraction, b.area.fraction, 1e-5);
+        assert_close("mean pressure", adaptive.info().mean_pressure, uniform.info().mean_pressure, 1e-5);
+        assert_close("penetration", adaptive.info().penetration, uniform.info().penetration, 1e-5);
+        assert_close("mean gap", a.mean_gap, b.mean_gap, 1e-5);
+    }
 }
 
 /// Elements at edges of contacts, borders of the patch among them, are divided; the load and the gap stay.

@@ -294,7 +294,6 @@ fn for_each_patch(bounds: &[ErrorBound], mut check: impl FnMut(&str, &Scene<'_>,
         let mut map = rough(grid, waves, 0.7, &mut rng);
         for (i, h) in map.values_mut().iter_mut().enumerate() {
             let at = grid.centre(i % nx, i / nx);
-            // The highest places are at a corner.
             *h += 5e-3 * (at.x + 0.5 * at.y) - 2e-3 * at.length_squared();
         }
         for load in [0.003, 0.1] {
