@@ -127,7 +127,8 @@ pub trait Kernel: Sync {
 
     /// Whether `rc_kernel::ScaleSplit` computes the displacements of this kernel.
     ///
-    /// It splits the displacements of the half-space by scale, for pressures that are constant on elements. The
+    /// It splits the displacements of the half-space by scale, for pressures that are constant on elements. The elements
+    /// are those of a periodic cell or, with [`Kernel::free_response`], those of a patch without images. The
     /// adaptive method is built on this split, so it works only with such a kernel.
     fn is_split_by_scale(&self) -> bool {
         false
