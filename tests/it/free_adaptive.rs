@@ -1,4 +1,6 @@
-//! The adaptive method on patches with free borders against the uniform one, direct sums and closed forms.
+//! The adaptive method on patches with free borders.
+//!
+//! It is compared with the uniform method, direct sums and closed forms.
 
 use std::f64::consts::PI;
 
@@ -33,7 +35,9 @@ fn map(waves: usize, [nx, ny]: [usize; 2]) -> Field {
     Field::from_fn(grid, |at| rough.height(at) + 0.01 * at.x - 0.03 * (at - DVec2::new(0.4, 0.3)).length_squared())
 }
 
-/// Area, loads and lengths to the squares of the energy errors of both iterations, which is what they may be off by.
+/// Asserts that area, loads and lengths are those of the uniform method.
+///
+/// They may differ by the squares of the energy errors of both iterations.
 fn assert_agrees(heights: &Field, found: &Solution<'_>, control: Control) {
     let uniform = solve(heights, control, &by(Method::Uniform, 1e-3));
     assert_eq!((found.method(), uniform.method()), (Method::Adaptive, Method::Uniform));
@@ -88,7 +92,7 @@ fn agrees_with_the_uniform_method_on_maps_of_any_size() {
     }
 }
 
-/// Spheres whose contact the border cuts, at a corner, and a cylinder along a whole border.
+/// Spheres at corners and at a border, and a cylinder along a border.
 #[test]
 fn contact_that_touches_the_border_agrees() {
     let grid = Grid::square(256).expect("a grid");
@@ -129,7 +133,7 @@ fn a_sphere_is_that_of_hertz() {
     }
 }
 
-/// The certificate by a sum without images on every element of the patch: what was proven to be out of contact is.
+/// A sum without images on every element finds the certificate and no other contact.
 #[test]
 fn nothing_penetrates_where_nothing_was_evaluated() {
     let grid = Grid::square(512).expect("a grid");
@@ -203,7 +207,9 @@ fn a_hardness_gives_the_pressure_of_the_uniform_method() {
     }
 }
 
-/// Elements at edges of contacts, borders of the patch among them, are divided; the load and the gap stay.
+/// Border levels divide elements at edges of contacts, also along free borders.
+///
+/// Load and gap stay the same.
 #[test]
 fn border_levels_refine_edges_on_a_patch() {
     let surface = surface(12, 3);

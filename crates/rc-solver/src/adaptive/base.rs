@@ -6,19 +6,20 @@ use rc_quadtree::TILE;
 use super::ladder::{Ladder, sides_of};
 use crate::factors::has_small_factors;
 
-/// The base grid, and how many of its elements a period of operators has: as many as it has, or, where borders are
-/// free, so many more that nothing acts on anything around them.
+/// The base grid, and the period of operators in its elements.
 ///
-/// Elements keep their places: what filters reach beyond a free border is on the tiles of the operator's levels that
-/// follow those of the heights, or, before the first of these, are the last of the period.
+/// The period of a periodic cell is the cell. With free borders it is longer, so that no element acts on another one
+/// around the period. Elements keep their places. Filters reach beyond a free border, onto tiles of the operator's
+/// levels. Beyond the last tiles of the heights these are the next ones, before the first tiles the last of the period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Base {
     grid: Grid,
     period: [usize; 2],
 }
 
-/// Elements of the base grid that filters reach beyond a border at most: up to 16 elements of each level, which halve
-/// the reach of the next finer one.
+/// Maximum reach of filters beyond a border, in elements of the base grid.
+///
+/// They reach up to 16 elements of each level, which are half as long on the next finer one.
 const MARGIN: usize = 32;
 
 /// Greatest prime factor of the period: Fourier transforms of such lengths are fast.
@@ -65,7 +66,9 @@ impl Base {
         self.period != sides_of(self.grid)
     }
 
-    /// The elements of a period, as a grid whose side is its own unit of length.
+    /// The elements of a period, as a grid with sides of its own.
+    ///
+    /// The unit of length is the side of the period.
     pub(crate) fn periodic_grid(self) -> Grid {
         let [along_x, along_y] = self.periods_per_side();
         let ratio = self.grid.cell_ratio() * along_y / along_x;
@@ -79,8 +82,9 @@ impl Base {
     }
 }
 
-/// The fewest elements of a period for heights on `side` of them: what filters reach beyond one border acts on what
-/// they reach beyond the other.
+/// Minimum number of elements of a period, for heights on `side` elements.
+///
+/// Pressures within the reach of filters beyond one border act on displacements within it beyond the other border.
 fn padded_least(side: usize) -> usize {
     2 * (side + 2 * MARGIN)
 }

@@ -46,7 +46,9 @@ impl Values<'_> {
         let covered: usize = mesh.levels().iter().enumerate().map(covered).sum();
         sums[0].n_contact += finest.len() - covered;
         // The pressure along free borders belongs to the whole contact.
-        sums.iter_mut().for_each(|sums| sums.at_border = 0.0);
+        for sums in &mut sums {
+            sums.at_border = 0.0;
+        }
         let blocks = pressure.par_chunks(BLOCK_CELLS).zip(gap.par_chunks(BLOCK_CELLS)).map(|(pressure, gap)| {
             let pairs = pressure.iter().zip(gap).filter(|(p, _)| **p >= hardness);
             [pairs.map(|(_, g)| (contact_gap - g).max(0.0)).sum()]
@@ -117,7 +119,9 @@ impl Values<'_> {
 struct Inside([[usize; 2]; 2]);
 
 impl Inside {
-    /// First and last cells along both axes, of the patch of three by three tiles around the one at a place.
+    /// First and last cells along both axes of the tiles around a place.
+    ///
+    /// They are three by three tiles, with the one at `place` in the middle.
     fn of(tiles: &TileSet, place: [u32; 2]) -> Self {
         let is_free = tiles.boundary() == Boundary::Free;
         Self([0, 1].map(|axis| {

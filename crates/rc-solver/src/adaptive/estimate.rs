@@ -41,7 +41,7 @@ const GROWTH_PER_BORDER_LEVEL: f64 = 2.6;
 /// They are for the tables that find tiles, of a few meshes at a time.
 const BYTES_PER_PLACE: f64 = 0.02;
 
-/// Load of a flat patch with free borders at a penetration of 1, over its area, in E*/λ.
+/// Mean pressure of a flat patch with free borders at a penetration of 1, in E*/λ.
 ///
 /// It is π times the capacity of a square. Rough patches of the same penetration bear less.
 const LOAD_PER_DEPTH: f64 = 1.152;
@@ -79,7 +79,8 @@ impl Estimate {
         let of_load = |pressure: f64| PROPORTIONALITY * pressure / rms_slope(base, boundary);
         let area = match problem.control {
             Control::MeanPressure(pressure) => of_load(pressure).max(pressure / problem.hardness),
-            // Where the undeformed surfaces overlap is more than where they touch. A patch may be deeper than its heights.
+            // The undeformed surfaces overlap on a larger area than they touch on. The penetration of a patch may be
+            // larger than all its heights.
             Control::Penetration(penetration) => {
                 let overlap = overlap(base, heights.extremes().greatest - penetration);
                 let is_free = boundary == Boundary::Free && problem.hardness.is_infinite();

@@ -7,10 +7,10 @@ use rc_quadtree::{BLOCK_CELLS, CELLS, TILE};
 
 use super::mesh::Mesh;
 
-/// Mean displacement, over the grid `finest` of the smallest elements, under a pressure on the elements of `mesh`.
+/// Mean displacement of a patch under a pressure on the elements of `mesh`.
 ///
-/// L is symmetric: it is the mean of the pressure times the displacement under a uniform pressure of 1 on all of the
-/// patch, which is one rectangle.
+/// The mean is over the grid `finest` of the smallest elements. Because L is symmetric, it is the mean of the pressure
+/// times the displacement under a uniform pressure of 1. This pressure acts on the whole patch, which is one rectangle.
 pub(super) fn displacement_of_patch(mesh: &Mesh, pressure: &[f64], finest: Grid) -> f64 {
     let mut products = vec![0.0; pressure.len()];
     let spacing = finest.spacing();

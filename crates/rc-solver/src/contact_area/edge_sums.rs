@@ -136,9 +136,10 @@ impl EdgeSums {
 }
 
 impl EdgeSums {
-    /// Adds the pressure of an element at `place`, if it is along a free border of a grid of `extent` elements.
+    /// Adds the pressure of an element that may be along a free border.
     ///
-    /// Plastic elements are left out, because the hardness ends the singularity of the pressure.
+    /// The element is at `place` of a grid of `extent` elements, and has the sides `sides`. Plastic elements are left
+    /// out, because the hardness ends the singularity of the pressure.
     pub(crate) fn add_at_border(
         &mut self,
         pressure: f64,

@@ -66,8 +66,9 @@ fn places(tiles: &TileSet) -> impl Iterator<Item = Option<[usize; 2]>> + '_ {
     })
 }
 
-/// On noise, on all elements alike, on those of opposite corners and borders alone, on a punch: within what
-/// certificates add for the split.
+/// Errors are within the bound that certificates add for the split.
+///
+/// Pressures are noise, uniform, at opposite corners and borders alone, and under a punch.
 #[test]
 fn one_application_agrees_with_sums_without_images() {
     for (base, finest) in

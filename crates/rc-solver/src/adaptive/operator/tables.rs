@@ -210,7 +210,9 @@ impl<T: Real> Prepared<T> {
     }
 }
 
-/// The remainder of a cutoff, in λ, on the base grid: without images where borders are free.
+/// The remainder of the split at `cutoff`, in λ, on the base grid.
+///
+/// It is that without images where borders are free.
 fn remainder_symbol<T: Real>(split: &ScaleSplit, base: Base, cutoff: f64) -> SymbolTable<T> {
     if base.is_free() {
         let (spacing, reach) = (base.grid().spacing(), base.period().map(|n| n / 2 + 1));
