@@ -8,6 +8,7 @@ mod conductance;
 mod contact_area;
 mod examples;
 mod free;
+mod free_adaptive;
 mod front_door;
 mod full_contact;
 mod gauss_seidel;

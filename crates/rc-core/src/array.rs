@@ -5,7 +5,7 @@ use ndarray::{Array2, ArrayView2};
 use crate::{Field, Grid, GridError};
 
 impl Field {
-    /// A field from an array of shape (ny, nx). Index (iy, ix) is row iy and column ix.
+    /// Converts an array of shape (ny, nx) to a field. Index (iy, ix) is row iy and column ix.
     ///
     /// The side of the cell along y is `cell_ratio` times the side along x. Nothing is copied when the array is
     /// contiguous and row-major.
@@ -47,7 +47,7 @@ impl From<Field> for Array2<f64> {
     }
 }
 
-/// On a square cell.
+/// Converts an array of shape (ny, nx) to a field on the square cell.
 impl TryFrom<Array2<f64>> for Field {
     type Error = GridError;
 

@@ -97,14 +97,15 @@ impl Field {
 
     /// Mean over the cell.
     ///
-    /// It is summed row by row, so that rounding errors do not grow with the whole field.
+    /// Each row is summed first. Rounding errors therefore grow with the side of the grid, not with its number of
+    /// elements.
     #[must_use]
     pub fn mean(&self) -> f64 {
         let rows = self.values.chunks_exact(self.grid.nx());
         rows.map(|row| row.iter().sum::<f64>()).sum::<f64>() / self.values.len() as f64
     }
 
-    /// Root mean square over the cell, about zero.
+    /// Root mean square over the cell. The mean is not subtracted.
     #[must_use]
     pub fn rms(&self) -> f64 {
         let rows = self.values.chunks_exact(self.grid.nx());
@@ -123,7 +124,7 @@ impl Field {
         extreme(&self.values, f64::NEG_INFINITY, |value, greatest| value > greatest)
     }
 }
-/// The most extreme of all values and `start`, where `is_beyond` compares two values.
+/// The extreme of all values and `start`, where `is_beyond` compares two values.
 ///
 /// Several lanes are compared at once, so that they fit a vector register.
 fn extreme(values: &[f64], start: f64, is_beyond: impl Fn(f64, f64) -> bool) -> f64 {

@@ -54,7 +54,9 @@ pub enum GridError {
 }
 
 impl Grid {
-    /// Maximum number of elements per side: 2^20, far beyond memory, so index arithmetic cannot overflow.
+    /// Maximum number of elements per side, 2^20.
+    ///
+    /// A square grid of this size exceeds any memory, and its indices cannot overflow.
     pub const MAX_SIDE: usize = 1 << 20;
 
     /// Maximum ratio of the longer to the shorter side of a cell.
@@ -129,7 +131,7 @@ impl Grid {
         self.nx == self.ny && self.has_square_cell()
     }
 
-    /// This cell with other numbers of elements.
+    /// A grid on the same cell with other numbers of elements.
     ///
     /// # Errors
     /// As [`Grid::new`].

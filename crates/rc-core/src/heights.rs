@@ -7,8 +7,9 @@ use crate::{DVec2, Field, Grid};
 
 /// A rough surface, periodic on the square cell of side 1.
 ///
-/// Implementations are, for example, a realised spectrum, a measured map and a sphere.
-/// [`crate::testing::check_height_field`] checks the contract.
+/// Implementations are, for example, a realised spectrum, a measured map and a sphere. A surface on a rectangular cell
+/// is a [`Field`] instead, for example from [`Field::from_fn`]. [`crate::testing::check_height_field`] checks the
+/// contract.
 pub trait HeightField: Sync {
     /// Height at the point `at`, both in λ. Periodic with period 1 along x and along y.
     fn height(&self, at: DVec2) -> f64;
@@ -20,13 +21,13 @@ pub trait HeightField: Sync {
 
     /// Heights at the element centres of `grid`, in λ.
     ///
-    /// They equal [`HeightField::height`] up to rounding, so they are periodic on a square cell only. Implementations
-    /// that have a fast transform override this method.
+    /// Samples equal [`HeightField::height`] up to rounding. The surface has period 1 along y, so samples on a
+    /// rectangular cell are not periodic. Implementations that have a fast transform override this method.
     fn sample(&self, grid: Grid) -> Field {
         Field::from_fn(grid, |at| self.height(at))
     }
 
-    /// The surface as the heights of a contact problem on `grid`. Nothing is evaluated yet.
+    /// The heights of a contact problem: this surface on `grid`. Nothing is evaluated yet.
     fn on(&self, grid: Grid) -> HeightSource<'_>
     where
         Self: Sized,
@@ -124,9 +125,9 @@ impl HeightSource<'_> {
         }
     }
 
-    /// Number of elements per shortest wave, or `None` for heights without a band limit.
+    /// Number of elements per shortest wave. `None` for maps and for surfaces without a band limit.
     ///
-    /// Elements are counted along the shorter side of the grid. A map has no band limit.
+    /// Elements are counted along the shorter side of the grid.
     #[must_use]
     pub fn elements_per_wave(&self) -> Option<f64> {
         let waves = self.surface()?.band_limit().filter(|&waves| waves > 0)?;

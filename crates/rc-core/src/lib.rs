@@ -3,17 +3,17 @@
 //! # Conventions of all crates of this workspace
 //!
 //! - **Units.** Libraries compute in `f64` with cell side λ = 1 and E* = E/(1-ν²) = 1. On a rectangular cell, λ is the
-//!   side along x. Lengths are multiples of λ, pressures multiples of E*. Metres and pascals are at the edge of the
-//!   program, for example in `rc-cli`. [`Units`] converts.
+//!   side along x. Lengths are multiples of λ, pressures multiples of E*. SI units occur only at the outer interfaces,
+//!   for example in `rc-cli`. [`Units`] converts.
 //! - **Signs.** Pressure p ≥ 0 is compression. h is the height of the rigid surface, positive towards the half-space.
-//!   Gap g ≥ 0. The interface displacement v has zero mean over the cell, and `g = v - (h - h_max + Δ)` with
-//!   penetration Δ.
+//!   Gap g ≥ 0. The displacement v of the elastic surface has zero mean over the cell. The gap is `g = v - (h - h_max +
+//!   Δ)`, with maximum height h_max and penetration Δ.
 //! - **Points**, offsets and wave vectors in floating point are [`DVec2`] of `glam`.
 //! - **Layout.** Fields are row-major, `index = iy * nx + ix`. The origin of the cell is its corner. Point (ix, iy) is
 //!   the **centre** of its element, ((ix + ½)/nx, (iy + ½)/ny) on a square cell ([`Grid::centre`]).
 //! - **Fourier.** Wavenumbers k are integers, waves per cell; q = 2πk on a square cell ([`Grid::waves`]). A forward
 //!   transform carries no factor, the inverse carries 1/(nx·ny). The symbol of an operator is its eigenvalue for the
-//!   wave exp(2πi k·x).
+//!   wave exp(2πi k·x): the ratio of displacement to pressure.
 //! - **Means** are over the whole cell (nominal area A0) unless a name says "contact".
 //! - **rms slope** is the isotropic one, √⟨|∇h|²⟩.
 //!
@@ -48,7 +48,7 @@
 //!
 //! # Features
 //!
-//! - `serde`: plain data (grids, cells, elasticity) serialises. It is checked when it is read.
+//! - `serde`: grids, cells and elasticity serialise. Deserialised values are validated.
 //! - `ndarray`: a [`Field`] converts to and from `ndarray::Array2<f64>` without a copy.
 //!
 //! # Further
@@ -57,8 +57,8 @@
 //!
 //! The paper is Putignano, Afferrante, Carbone, Demelio, *A new efficient numerical method for contact mechanics of
 //! rough surfaces*, Int. J. Solids Struct. 49 (2012) 338-343. A mention such as "Eq. 4" without another source means
-//! equation 4 of this paper. The function that evaluates an equation has its number in parentheses, so a search for
-//! "Eq. (14" finds one place.
+//! equation 4 of this paper. The documentation of the function that evaluates an equation writes its number in
+//! parentheses. Searching for "Eq. (14" leads to that function.
 
 #[cfg(feature = "ndarray")]
 mod array;

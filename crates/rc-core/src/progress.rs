@@ -43,13 +43,15 @@ pub struct Snapshot<'a> {
 }
 
 impl<'a> Snapshot<'a> {
-    /// A snapshot of a pressure (in E*) on `grid`. `rows` passes on its rows.
+    /// A snapshot of a pressure (in E*) on `grid`.
+    ///
+    /// `rows` calls its argument with the rows of the pressure.
     #[must_use]
     pub fn new(grid: Grid, rows: &'a Rows<'a>) -> Self {
         Self { grid, rows }
     }
 
-    /// The grid of the present level. It is the grid of the result on the last level, and coarser before.
+    /// The grid of the present level. On the last level it is the grid of the result, and before that a coarser one.
     #[must_use]
     pub fn grid(&self) -> Grid {
         self.grid
@@ -72,7 +74,9 @@ impl std::fmt::Debug for Snapshot<'_> {
 
 /// Receives [`Event`]s.
 ///
-/// Methods are called from the solving thread, between iterations. They should return quickly.
+/// The solver calls the methods between iterations, from the solving thread. They should return quickly. If several
+/// ranks (processes or threads) share a solve, each rank calls its observer. All ranks stop if the observer of any rank
+/// wants to stop.
 pub trait Observer: Sync {
     /// Receives an event.
     fn notify(&self, event: &Event);
@@ -82,9 +86,9 @@ pub trait Observer: Sync {
     /// The result of the solve does not depend on this method.
     fn look(&self, _pressure: &Snapshot<'_>) {}
 
-    /// Whether to stop the solve now. Asked between iterations.
+    /// Returns whether to stop the solve now. The solver calls this between iterations.
     ///
-    /// The present state is then returned as not converged.
+    /// If it returns true, the present state is returned as not converged.
     fn should_stop(&self) -> bool {
         false
     }

@@ -1,8 +1,8 @@
-//! Numbers with units for people, such as `446.4 kPa` and `13 µm`, and round tick marks.
+//! Formatting of numbers with units, such as `446.4 kPa` and `13 µm`, and round tick marks.
 
 /// A unit with a decimal prefix.
 ///
-/// Numbers that belong together share it, such as the tick marks of an axis.
+/// Related numbers share a scale, such as the tick marks of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     /// Value of one prefixed unit. Divide a value by it to get the number that is written.
@@ -63,7 +63,9 @@ pub fn label(value: f64) -> String {
     digits(value, 4).replace('-', "\u{2212}")
 }
 
-/// The largest value of 1, 2 or 5 times a power of ten up to `limit` (positive).
+/// The largest number of 1, 2 or 5 times a power of ten not above `limit`.
+///
+/// `limit` must be positive.
 #[must_use]
 pub fn round_below(limit: f64) -> f64 {
     let power = 10_f64.powf(limit.log10().floor());

@@ -6,7 +6,7 @@ use crate::{DVec2, Grid, HeightField, Kernel, Operator};
 
 /// A reproducible pseudo-random value in [0, 1) for index `i`.
 ///
-/// It is a Weyl sequence, without a dependency and without a state.
+/// The values form a Weyl sequence. The function has no state and needs no other crate.
 #[must_use]
 pub fn quasi_random(i: usize) -> f64 {
     (i as f64 * 0.754_877_666_246_692_8 + 0.5).fract()
@@ -14,7 +14,7 @@ pub fn quasi_random(i: usize) -> f64 {
 
 /// Checks that a [`HeightField`] is finite and periodic, and that its samples equal its values.
 ///
-/// The grid has different and odd numbers of elements.
+/// The check uses a grid whose sides are odd and unequal, which exposes exchanged axes.
 ///
 /// # Panics
 /// When the contract is broken.
@@ -44,8 +44,9 @@ pub fn check_height_field(surface: &dyn HeightField) {
 
 /// Checks the symbol of a [`Kernel`].
 ///
-/// It must be zero at k = 0, and positive and finite elsewhere. It must be symmetric under x ↔ y on a square grid. A
-/// rectangular cell must have the same symbol as the square that its copies form.
+/// The symbol must be zero at k = 0, and positive and finite elsewhere. It must be symmetric under x ↔ y on a square
+/// grid. Copies of a rectangular cell may form a square. The symbol of the rectangle must equal the symbol of this
+/// square for the same waves.
 ///
 /// # Panics
 /// When the contract is broken.
@@ -86,8 +87,8 @@ pub fn check_kernel(kernel: &dyn Kernel) {
 
 /// Checks a symmetric [`Operator`].
 ///
-/// It must be linear, symmetric, positive on random loads, and zero for a uniform load. The result must not depend on
-/// the previous contents of scratch.
+/// The operator must be linear, symmetric, positive on random loads, and zero for a uniform load. The result must not
+/// depend on the previous contents of scratch.
 ///
 /// # Panics
 /// When the contract is broken.

@@ -46,7 +46,7 @@ fn run_block(sources: &Sources) -> Result<String, String> {
     let run: Toml = text.parse().map_err(|error| format!("{path}: {error}"))?;
     let cell = |key: &str| run.get(key).map_or_else(|| "?".to_owned(), |value| value.to_string().replace('"', ""));
     let head = format!(
-        "Version {}, {} threads: {} s in all on a shared machine, {} s of processor time, {} MB at most.\n\n| figure | seconds |\n|---|---|\n",
+        "Version {} on {} threads of a shared machine took {} s, {} s of processor time and at most {} MB.\n\n| figure | seconds |\n|---|---|\n",
         cell("version"),
         cell("threads"),
         cell("seconds"),
@@ -180,9 +180,9 @@ mod tests {
         };
         for waves in ["64", "128"] {
             let of = |what: &str| number(&format!("{what}, N = {waves}")).0;
-            assert!(of("R² (the paper: above)") > 0.9999, "N = {waves}");
-            assert!(of("first bin (2e-4 E*) over the peak") < 0.05, "N = {waves}");
-            let slope = of("d log P/d log σ from 0.01 to 0.1 of the peak stress");
+            assert!(of("R² of the fitted line (the paper: above 0.9999)") > 0.9999, "N = {waves}");
+            assert!(of("ratio of the first bin (width 2e-4 E*) to the peak of P") < 0.05, "N = {waves}");
+            let slope = of("d log P/d log σ, 0.01 to 0.1 of the peak stress");
             assert!((slope - 1.0).abs() < 0.1, "N = {waves}: {slope}");
             let of_fit =
                 ROWS.iter().find(|row| row.figure == "fig8" && row.what.starts_with("erf") && row.waves == waves);
@@ -193,8 +193,8 @@ mod tests {
         }
         // The two areas of the paper are those of single maps.
         for (waves, printed) in [("64", 0.0673), ("128", 0.0588)] {
-            let (mean, _) = number(&format!("the same, mean of 28 realisations, N = {waves}"));
-            let (scatter, _) = number(&format!("scatter of one realisation, N = {waves}"));
+            let (mean, _) = number(&format!("A/A0 at σ0/E* = 8.9e-4, mean of 28 realisations, N = {waves}"));
+            let (scatter, _) = number(&format!("standard deviation of A/A0 of one realisation, N = {waves}"));
             assert!((mean - printed).abs() < 2.0 * scatter, "N = {waves}: {mean}, one {scatter}");
         }
         let run: Toml = sources["data/runs/paper/run.toml"].parse().expect("run.toml");

@@ -8,14 +8,14 @@
 //! ⟨|a_k|²⟩ = (2π)² C(q),          C(q) = C0 (max(|k|, k_r) / k_r)^(-2(1+H)),   q = 2πk        (Eq. 1, 9, 12, 13)
 //! ```
 //!
-//! The wave vectors k = (kx, ky) are integers (waves per cell). H is the Hurst exponent, and `k_r` the roll-off
-//! wavenumber. The paper has `k_r` = 1, which means no plateau. N = [`SpectrumParams::waves`] is the largest
-//! wavenumber. In a periodic cell of side λ the δ(0) of Eq. 12 is 1/q0² with q0 = 2π/λ, which gives the factor (2π)²
-//! for λ = 1. C is in λ⁴, a in λ.
+//! The wave vectors k = (kx, ky) are integers (waves per cell). H is the Hurst exponent. C is constant (the plateau)
+//! below `k_r`, the roll-off wavenumber. The paper has `k_r` = 1, so there is no constant part. N =
+//! [`SpectrumParams::waves`] is the largest wavenumber. Eq. 12 contains a Dirac delta δ(0). In a periodic cell of side
+//! λ it is 1/q0² with q0 = 2π/λ. This gives the factor (2π)² for λ = 1. C is in λ⁴, a in λ.
 //!
 //! [`Surface`] is a realisation of such a spectrum, or the sum of given waves ([`Surface::from_waves`]). The phase of a
-//! wave depends only on the seed and on k. So a seed determines the surface on every grid, and its long waves for every
-//! N.
+//! wave depends only on the seed and on k. A seed therefore gives the same surface on every grid. Surfaces with
+//! different N share their long waves.
 //!
 //! The other functions measure surfaces. [`Surface::moments`] needs no grid. [`moments_of_grid`] and
 //! [`radial_spectrum`] take any height map.

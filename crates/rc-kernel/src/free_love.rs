@@ -32,4 +32,8 @@ impl Kernel for FreeLove {
             love_rectangle_displacement(distance * DVec2::new(ix as f64, iy as f64), half_sides)
         }))
     }
+
+    fn is_split_by_scale(&self) -> bool {
+        true
+    }
 }

@@ -1,20 +1,20 @@
 //! Elastic half-space kernels on the periodic cell (Eq. 2-6), in units of λ and E*.
 //!
-//! The paper's operator is `v_i = Σ_j L_ij p_j` (Eq. 4). It is the displacement by element j under uniform pressure and
-//! by all its periodic images (Eq. 5), minus the mean displacement (Eq. 6). Both sums diverge, and their difference
-//! converges like 1/(number of images). The paper's truncated sums are here for comparison. All other sums are over all
-//! images:
+//! The paper's operator is `v_i = Σ_j L_ij p_j` (Eq. 4). L_ij is the displacement of i by a uniform pressure on element
+//! j and all its periodic images (Eq. 5). The mean displacement is subtracted (Eq. 6). Both sums diverge, and their
+//! difference converges like 1/(number of images). The crate has the paper's truncated sums for comparison. All other
+//! sums are over all images:
 //!
 //! | item | what it computes | file |
 //! |---|---|---|
-//! | [`love_displacement`] | one term of Eq. 5: one square in free space, at any distance | `love.rs`, far away `multipoles.rs` |
-//! | [`Love`] | Eq. 4-6 on a uniform grid with all images, in Fourier space; the symbol is a sum over aliases, and 0 at k = 0, the zero mean of Eq. 3 | `love_symbol.rs` |
+//! | [`love_displacement`] | one term of Eq. 5: one square without images, at any distance | `love.rs`, far away `multipoles.rs` |
+//! | [`Love`] | Eq. 4-6 on a uniform grid with all images, in Fourier space; the symbol is summed over aliases (waves with the same values at all element centres); it is 0 at k = 0, because the mean is 0 (Eq. 3) | `love_symbol.rs` |
 //! | [`love_alias_sum`] | the same symbol one value at a time: the slow reference for [`Love`] | `alias_sum.rs` |
-//! | [`PeriodicLove`] | Eq. 4-6 between any two squares of the cell, all images, to 1e-12 in 31 to 54 ns | `periodic.rs`, which uses `square.rs` and `averages.rs` |
+//! | [`PeriodicLove`] | Eq. 4-6 for any two squares of the cell with all images; accurate to 1e-12, 31 to 54 ns per value | `periodic.rs`, which uses `square.rs` and `averages.rs` |
 //! | [`ewald_phi`], [`ewald_coefficient`] | the point load and the square by Ewald's sum: the slow reference for [`PeriodicLove`] | `lattice.rs` |
-//! | [`truncated_coefficient`] | Eq. 4-6 as the paper sums them, K shells of images, with a proven bound | `truncated.rs` |
+//! | [`truncated_coefficient`] | Eq. 4-6 as in the paper, with images up to K shells (rings of cells), and a proven bound on the truncation error | `truncated.rs` |
 //! | [`ScaleSplit`] | Eq. 4-6 split by scale, for meshes of many levels: short-range stencils, filters between levels, a smooth remainder | `split/` |
-//! | [`Spectral`] | Eq. 2-3 for waves instead of elements: the half-space without aliases | `spectral.rs` |
+//! | [`Spectral`] | Eq. 2-3 for each Fourier wave: the symbol of the continuous half-space, without aliases | `spectral.rs` |
 //! | [`FreeLove`] | Eq. 4-5 on an infinite half-space, without images | `free_love.rs`, rectangles in `love.rs` |
 //! | [`LoveLayer`], [`SpectralLayer`] | [`Love`] and [`Spectral`] for a layer on a rigid base ([`Layer`]) | `layer.rs` |
 //!
@@ -24,7 +24,8 @@
 //! use rc_core::{Grid, Kernel};
 //! use rc_kernel::{Love, Spectral};
 //!
-//! // At sixteen elements per wave, constant pressures are 0.55 % softer than the continuous half-space.
+//! // With sixteen elements per wave, the response to piecewise constant pressures is 0.55 % smaller than that of the
+//! // continuous half-space.
 //! let grid = Grid::square(16)?;
 //! let ratio = Love.symbol(grid)(1, 0) / Spectral.symbol(grid)(1, 0);
 //! assert!((ratio - 0.99446903).abs() < 1e-8);
@@ -71,9 +72,9 @@ use rc_core::{Grid, Kernel, Symbol};
 
 /// The kernel of the paper's elements.
 ///
-/// The pressure is uniform on each element, and the displacement is taken at its centre. It is summed over all periodic
-/// images (Eq. 4-6) without truncation. Elements and cell are squares or rectangles. The symbol is
-/// `Σ 2/|q| sinc(q_x hx/2) sinc(q_y hy/2)` over the aliases q of the wave, for elements of hx × hy.
+/// The pressure is uniform on each element, and the displacement is taken at its centre. Displacements are summed over
+/// all periodic images (Eq. 4-6) without truncation. Elements and cell are squares or rectangles. The symbol is `Σ
+/// 2/|q| sinc(q_x hx/2) sinc(q_y hy/2)` over the aliases q of the wave, for elements of hx × hy.
 ///
 /// *Accuracy*: every value is within 4e-15 relative of [`love_alias_sum`] (test `fast_symbol_matches_the_alias_sum`).
 /// The coefficients L_ij are accurate to 1e-12 (test `love_symbol_reproduces_the_periodic_coefficients`).

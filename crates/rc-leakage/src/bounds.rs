@@ -41,7 +41,7 @@ impl Bounds {
         Self { upper, lower, flow, conservation: if flow > 0.0 { largest / flow } else { f64::INFINITY } }
     }
 
-    /// Largest relative error of the upper bound.
+    /// Maximum relative error of the upper bound.
     pub(crate) fn relative(&self) -> f64 {
         // This avoids a negative error by rounding.
         if self.upper > 0.0 { (1.0 - self.lower / self.upper).abs() } else { f64::INFINITY }

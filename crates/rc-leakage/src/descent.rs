@@ -22,7 +22,7 @@ pub(crate) struct Target {
 /// A pressure with its flow and its bounds.
 #[derive(Debug)]
 pub(crate) struct Solved {
-    /// What is added to the mean fall, of 1 per element along the axis.
+    /// Pressure of each element, without the mean fall of 1 per element along the axis.
     pub(crate) pressure: Vec<f64>,
     /// Flow from each element along the tree, after which the flow is conserved.
     ///
@@ -33,7 +33,9 @@ pub(crate) struct Solved {
 }
 
 impl Solved {
-    /// No pressure but the mean fall, on `n` elements.
+    /// The state before the first iteration, on `n` elements.
+    ///
+    /// The pressure has only its mean fall.
     pub(crate) fn start(n: usize) -> Self {
         let bounds = Bounds { upper: f64::INFINITY, lower: 0.0, flow: 0.0, conservation: f64::INFINITY };
         Self { pressure: vec![0.0; n], correction: Vec::new(), bounds, iterations: 0 }
@@ -46,30 +48,31 @@ impl Target {
     }
 }
 
-/// Estimated difference of the bounds at which they are computed for the first time.
+/// Estimated power left to gain at which the bounds are first computed.
 ///
-/// The estimate is that of the last two iterations. The unit is the wanted difference.
+/// The estimate is from the last two iterations. It is relative to the power, and the unit is the wanted difference of
+/// the bounds.
 const FIRST_LOOK: f64 = 0.3;
 
 /// Reduction of the estimate before the bounds are computed again.
 ///
-/// Its unit is the ratio of the wanted difference to the one that was found.
+/// Its unit is the ratio of the wanted difference of the bounds to the one that was found.
 const NEXT_LOOK: f64 = 0.3;
 
-/// Most that an iteration is taken to leave of what the one before left.
+/// Maximum ratio of the gains of two successive iterations in the estimate.
 const SLOWEST: f64 = 0.5;
 
-/// Maximum relative difference of the recurrence from the true residual.
+/// Maximum relative difference of the updated residual from the true one.
 ///
-/// Beyond it, the iteration begins anew.
+/// Beyond it, the iteration begins again from the true residual.
 const DRIFT: f64 = 0.1;
 
-/// Part of the power below which power and residual are computed anew.
+/// Fraction of the power below which power and residual are computed again.
 ///
-/// What is left of them then is rounding of the earlier values.
+/// What is left of them is then rounding of the earlier values.
 const CANCELLED: f64 = 1e-4;
 
-/// Solves from the pressure of `solved` on, in at most `iterations`.
+/// Solves from the pressure of `solved` on, in at most `most` iterations.
 pub(crate) fn solve<P: Preconditioner>(
     (network, tree): (&Network, &SpanningTree),
     solved: Solved,
@@ -95,21 +98,23 @@ pub(crate) fn solve<P: Preconditioner>(
     }
 }
 
-/// Conjugate gradients under way. Directions have the precision of the preconditioner. The residual is in double
-/// precision: what rounding adds to a pool has to leave it by the weakest bonds.
+/// The state of conjugate gradients.
+///
+/// Directions have the precision of the preconditioner. The residual is in double precision, since rounding that flows
+/// into a pool can leave it only through its weakest bonds.
 struct Iteration<'a, T> {
     network: &'a Network,
     target: Target,
     solved: Solved,
     residual: Vec<f64>,
     direction: Vec<T>,
-    /// What the network draws under the direction.
+    /// Flow out of each element under the direction.
     drawn: Vec<f64>,
-    /// Power at the start, or when it was last summed, and what was gained since.
+    /// Power when it was last summed, and the gain since then.
     power: [f64; 2],
-    /// What the last iteration gained of the power; 0 before the first.
+    /// Gain of power in the last iteration; 0 before the first.
     gain: f64,
-    /// Product of the direction and of what is drawn under it; 0 before the first iteration.
+    /// Product of the direction and `drawn`; 0 before the first iteration.
     curvature: f64,
     block: usize,
 }
@@ -131,7 +136,7 @@ impl<'a, T: Real> Iteration<'a, T> {
         this
     }
 
-    /// Begins anew, with residual and power of the current pressure.
+    /// Begins again, with residual and power of the current pressure.
     fn renew<P: Preconditioner<Value = T>>(&mut self, preconditioner: &mut P) {
         let mut residual = std::mem::take(&mut self.residual);
         self.power = [self.state().write_excess(&mut residual), 0.0];
@@ -139,7 +144,7 @@ impl<'a, T: Real> Iteration<'a, T> {
         self.begin(preconditioner);
     }
 
-    /// Begins anew from the residual.
+    /// Begins again from the residual.
     fn begin<P: Preconditioner<Value = T>>(&mut self, preconditioner: &mut P) {
         let blocks = self.residual.chunks(self.block).zip(preconditioner.right_mut().chunks_mut(self.block)).collect();
         parallel::for_each(blocks, |(residual, right): (&[f64], &mut [T])| {
@@ -152,9 +157,9 @@ impl<'a, T: Real> Iteration<'a, T> {
         FlowState::of(self.network, &self.solved.pressure, self.target.axis.unit())
     }
 
-    /// Bounds of the pressure so far.
+    /// Computes the bounds of the current pressure.
     fn look<P: Preconditioner<Value = T>>(&mut self, tree: &SpanningTree, preconditioner: &mut P) -> Bounds {
-        // The largest of all times for memory: what is drawn makes room.
+        // This is when most memory is in use, so the flow takes the place of `drawn`.
         let mut excess = std::mem::take(&mut self.drawn);
         let power = self.state().write_excess(&mut excess);
         if self.drift(&excess) > DRIFT {
@@ -167,7 +172,7 @@ impl<'a, T: Real> Iteration<'a, T> {
         self.solved.bounds
     }
 
-    /// Difference of the residual from `excess`, the true one, relative to it.
+    /// Relative difference of the residual from `excess`, the true residual.
     fn drift(&self, excess: &[f64]) -> f64 {
         let blocks = self.residual.chunks(self.block).zip(excess.chunks(self.block)).collect();
         let sums = parallel::map(blocks, |(residual, excess): (&[f64], &[f64])| {
@@ -201,7 +206,9 @@ impl<'a, T: Real> Iteration<'a, T> {
         Some(gain * ratio / (1.0 - ratio) / (self.power[0] - self.power[1]))
     }
 
-    /// The next direction: what the preconditioner found, made conjugate to the last. It need not be linear for that.
+    /// Computes the next direction: the step of the preconditioner, made conjugate to the last direction.
+    ///
+    /// This does not need a linear preconditioner.
     fn turn(&mut self, step: &[T]) {
         let block = self.block;
         let mut along = T::ZERO;
@@ -216,7 +223,9 @@ impl<'a, T: Real> Iteration<'a, T> {
         });
     }
 
-    /// Draws under the direction: its products with the residual and with what is drawn.
+    /// Computes the flow under the direction, `drawn`.
+    ///
+    /// Returns the products of the direction with the residual and with `drawn`.
     fn draw<P: Preconditioner<Value = T>>(&mut self, preconditioner: &P) -> [f64; 2] {
         let (network, direction, nx) = (self.network, &self.direction, self.network.grid().nx());
         let blocks = self.drawn.chunks_mut(self.block).zip(self.residual.chunks(self.block)).zip(network.blocks());

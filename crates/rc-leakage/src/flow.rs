@@ -183,7 +183,8 @@ fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<OfGrid,
             Some((of, network)) if serves(of, i) => (of, network),
             _ => (i, Prepared::new(network(i))),
         };
-        // Made again from the pressure if this flow turns out to be the larger one.
+        // This saves memory while the second flow is solved. If the first flow is the larger one, its correction is
+        // computed again.
         if let Some((_, solved)) = &mut kept {
             solved.correction = Vec::new();
         }
@@ -217,9 +218,9 @@ fn with_tree(network: Network) -> (Network, SpanningTree) {
     (network, tree)
 }
 
-/// The flux of a solved flow, scaled to carry the permeance.
+/// The flux of a solved flow, scaled so that it carries the permeance.
 ///
-/// Without the scale, the error of the flow is the root of that of the permeance.
+/// The flow's relative error is the square root of the permeance's.
 fn flux(solved: Solved, network: &Network, tree: &SpanningTree, axis: Axis) -> Flux {
     let Solved { pressure, correction: mut flow, bounds, .. } = solved;
     let state = FlowState::of(network, &pressure, axis.unit());

@@ -114,7 +114,7 @@ impl<'a> FlowState<'a> {
         }
     }
 
-    /// Writes what flows into each element in excess of what flows out; returns the dissipation.
+    /// Writes the inflow of each element minus its outflow, and returns the dissipation.
     pub(crate) fn write_excess<T: Real>(&self, out: &mut [T]) -> f64 {
         let (nx, ny) = (self.network.grid().nx(), self.network.grid().ny());
         let block = parallel::rows_per_block(nx) * nx;

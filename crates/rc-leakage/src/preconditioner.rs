@@ -1,14 +1,14 @@
-//! What conjugate gradients are preconditioned with.
+//! Preconditioners of conjugate gradients.
 
 use crate::network::Network;
 use crate::real::Real;
 
 /// An approximate inverse of the network, and the network in its precision.
 pub(crate) trait Preconditioner: Sync {
-    /// Its precision, and that of directions.
+    /// Precision of the values and of directions.
     type Value: Real;
 
-    /// The right side, to be written.
+    /// The right side, which the caller writes.
     fn right_mut(&mut self) -> &mut [Self::Value];
 
     /// Applies the approximate inverse to the right side.

@@ -5,7 +5,7 @@ use crate::real::Real;
 /// Number of partial sums, so that additions need not wait for each other.
 const LANES: usize = 8;
 
-/// Σ a b in double precision, in an order that the length alone decides.
+/// Σ a b in double precision, in an order that depends only on the length.
 pub(crate) fn dot<A: Real, B: Real>(a: &[A], b: &[B]) -> f64 {
     let (a_lanes, a_rest) = a.as_chunks::<LANES>();
     let (b_lanes, b_rest) = b.as_chunks::<LANES>();

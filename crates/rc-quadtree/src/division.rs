@@ -24,17 +24,15 @@ pub fn divide(elements: &Elements, mut chosen: Vec<Vec<bool>>, deepen: bool, rea
     let levels = elements.levels();
     let mut result = Vec::with_capacity(levels.len() + 1);
     if deepen {
-        result.push(TileSet::new(
-            levels[0].sides().map(|side| 2 * side),
-            quarters_of_chosen(&levels[0], &chosen[0]).collect(),
-        ));
+        let (sides, quarters) = (levels[0].sides(), quarters_of_chosen(&levels[0], &chosen[0]));
+        result.push(levels[0].of_same_cell(sides.map(|side| 2 * side), quarters.collect()));
     }
     for (coarser, tiles) in levels.iter().enumerate() {
         let mut places: Vec<[u32; 2]> = with_flag(tiles, &chosen[coarser], false).collect();
         if let Some(larger) = levels.get(coarser + 1) {
             places.extend(quarters_of_chosen(larger, &chosen[coarser + 1]));
         }
-        result.push(TileSet::new(tiles.sides(), places));
+        result.push(tiles.of_same_cell(tiles.sides(), places));
     }
     Elements::new(result)
 }

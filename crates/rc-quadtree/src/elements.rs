@@ -106,7 +106,8 @@ impl Elements {
         let last = self.levels.len() - 1;
         let mut levels = self.levels.clone();
         let new = places.iter().filter(|&&[column, row]| !self.cover(last, column, row));
-        levels[last] = TileSet::new(levels[last].sides(), levels[last].places().iter().chain(new).copied().collect());
+        let places = levels[last].places().iter().chain(new).copied().collect();
+        levels[last] = levels[last].of_same_cell(levels[last].sides(), places);
         Self::new(levels)
     }
 
@@ -120,7 +121,7 @@ impl Elements {
             let cells = |tile: usize| start + tile * CELLS..start + (tile + 1) * CELLS;
             let chosen =
                 places.filter(|&(tile, &place)| wanted(tiles.sides(), place, cells(tile))).map(|(_, &place)| place);
-            TileSet::new(tiles.sides(), chosen.collect())
+            tiles.of_same_cell(tiles.sides(), chosen.collect())
         };
         Self::new(self.levels.iter().zip(&self.starts).map(level).collect())
     }

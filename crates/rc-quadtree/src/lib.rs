@@ -5,10 +5,10 @@
 //!
 //! | item | what it is or does |
 //! |---|---|
-//! | [`TileSet`] | the tiles of one level; a tile is a square of 8 × 8 cells |
-//! | [`Elements`] | elements of several sizes: disjoint tiles of several levels, the layout of vectors, values moved to another mesh |
+//! | [`TileSet`] | the tiles of one level (grid of one element size); a tile is a square of 8 × 8 cells |
+//! | [`Elements`] | elements of several sizes, as disjoint tiles of several levels; defines the layout of vectors and moves values to another mesh |
 //! | [`divide`] | divides the elements of chosen tiles into quarters, and keeps neighbours within a factor of 2 |
-//! | [`ContactFields`] | the refinement rule, which says where elements must be divided |
+//! | [`ContactFields`] | the refinement rule, which selects the elements to divide |
 //! | [`prolong`], [`prolong_onto`] | interpolate a function that is positive in contact to elements half as large |
 //! | [`Patch`], [`gather`] | a tile with its neighbourhood, for stencils and filters |
 //!
@@ -23,14 +23,14 @@
 //! let refined = divide(&elements, vec![chosen], true, 8);
 //! assert_eq!(refined.n_cells(), 64 * 64 + 3 * 64);
 //!
-//! // The quarters have the value of the element that they were.
+//! // Each quarter takes the value of the element it came from.
 //! let values: Vec<f64> = (0..elements.len()).map(|i| i as f64).collect();
 //! let moved = elements.moved(&refined, &values, 0.0);
 //! assert_eq!(moved[refined.cells(0)][..2], [values[0]; 2]);
 //! ```
 //!
-//! Lengths are in λ, the side of the periodic cell. The number `coarser` of a level counts levels from the finest,
-//! which has 0. Places are columns and rows of tiles, counted from the lower left corner of the periodic cell.
+//! Lengths are in λ, the side of the periodic cell. The index `coarser` of a level is its distance from the finest
+//! level, which has 0. Places are columns and rows of tiles, counted from the lower left corner of the periodic cell.
 
 mod division;
 mod elements;

@@ -22,7 +22,7 @@ use near_contact::{MARGIN, PART_KEPT_OF_SINGLE_CELL, SIDE, is_near_contact, is_s
 /// result has the values on their cells. The finer level has twice as many cells along both sides, or slightly fewer.
 ///
 /// `function` has a value for each cell of `tiles`. None of these tiles may extend beyond the level. `elsewhere` is the
-/// value of the function where there is no tile.
+/// value of the function where there is no tile. Beyond a free border, the function has its value at the border.
 ///
 /// # Panics
 /// When there are fewer values than cells.
@@ -33,7 +33,7 @@ pub fn prolong(tiles: &TileSet, function: &[f64], elsewhere: f64, sides: [usize;
     } else {
         uneven::prolong(tiles, function, elsewhere, sides)
     };
-    let fine = TileSet::new(sides, children.iter().map(|&(place, _)| place).collect());
+    let fine = tiles.of_same_cell(sides, children.iter().map(|&(place, _)| place).collect());
     let mut result = vec![0.0; fine.n_cells()];
     for ([column, row], values) in children {
         let at = fine.find(column.into(), row.into()).expect("it was just put there");

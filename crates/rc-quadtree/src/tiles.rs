@@ -3,6 +3,8 @@
 use std::ops::{Add, Mul};
 use std::sync::Arc;
 
+use rc_core::Boundary;
+
 use crate::tile_index::{TileIndex, TileMarks};
 
 /// Number of cells per side of a tile.
@@ -19,12 +21,13 @@ pub const CELLS: usize = TILE * TILE;
 ///
 /// Where a side is not a multiple of 8, the last tiles along it extend beyond the level. Cells there are not part of
 /// the level. [`crate::gather`] and [`Elements::around`](crate::Elements::around) continue the level periodically and
-/// never read the values of these cells.
+/// never read the values of these cells. A level with free borders has no tiles beyond them.
 #[derive(Clone, Debug)]
 pub struct TileSet {
     sides: [usize; 2],
     /// Numbers of columns and rows of tiles.
     extent: [usize; 2],
+    boundary: Boundary,
     // Shared, because meshes are cloned often and never changed.
     places: Arc<Vec<[u32; 2]>>,
     /// `None` if all tiles exist, row by row.
@@ -50,7 +53,29 @@ impl TileSet {
     fn marked(sides: [usize; 2], marks: TileMarks) -> Self {
         let (places, index) = marks.into_sorted();
         let extent = sides.map(|side| side.div_ceil(TILE));
-        Self { sides, extent, places: Arc::new(places), index: Some(Arc::new(index)) }
+        let boundary = Boundary::Periodic;
+        Self { sides, extent, boundary, places: Arc::new(places), index: Some(Arc::new(index)) }
+    }
+
+    /// The same tiles of a level with such borders; those of other constructors are of a periodic level.
+    #[must_use]
+    pub fn with_boundary(self, boundary: Boundary) -> Self {
+        Self { boundary, ..self }
+    }
+
+    /// Other tiles of the same cell: on a level of `sides` cells, with the same borders.
+    ///
+    /// # Panics
+    /// As [`TileSet::new`].
+    #[must_use]
+    pub fn of_same_cell(&self, sides: [usize; 2], places: Vec<[u32; 2]>) -> Self {
+        Self::new(sides, places).with_boundary(self.boundary)
+    }
+
+    /// What is beyond the borders of the level.
+    #[must_use]
+    pub fn boundary(&self) -> Boundary {
+        self.boundary
     }
 
     /// All tiles of a level of `sides` cells along x and y, row by row.
@@ -58,7 +83,8 @@ impl TileSet {
     pub fn full(sides: [usize; 2]) -> Self {
         let [columns, rows] = sides.map(|side| side.div_ceil(TILE));
         let places = (0..columns * rows).map(|i| [(i % columns) as u32, (i / columns) as u32]);
-        Self { sides, extent: [columns, rows], places: Arc::new(places.collect()), index: None }
+        let (boundary, places) = (Boundary::Periodic, Arc::new(places.collect()));
+        Self { sides, extent: [columns, rows], boundary, places, index: None }
     }
 
     /// Numbers of columns and rows of tiles of the whole level.
@@ -120,26 +146,35 @@ impl TileSet {
         &self.places
     }
 
-    /// Index of the tile at a place of the periodically continued level, or `None`.
+    /// Index of the tile at a place of the level, or `None`.
+    ///
+    /// The level is continued periodically, unless its borders are free.
     #[must_use]
     #[inline]
     pub fn find(&self, column: i64, row: i64) -> Option<usize> {
         let [columns, rows] = self.extent.map(|n| n as i64);
         // Most places are inside, and a division is slow.
-        let wrap = |i: i64, n: i64| if (0..n).contains(&i) { i } else { i.rem_euclid(n) };
-        let (column, row) = (wrap(column, columns) as usize, wrap(row, rows) as usize);
+        let wrap = |i: i64, n: i64| match self.boundary {
+            _ if (0..n).contains(&i) => Some(i as usize),
+            Boundary::Periodic => Some(i.rem_euclid(n) as usize),
+            Boundary::Free => None,
+        };
+        let (column, row) = (wrap(column, columns)?, wrap(row, rows)?);
         match &self.index {
             Some(index) => index.find(column, row),
             None => Some(row * self.extent[0] + column),
         }
     }
 
-    /// Index of the value of a cell of the periodically continued level.
+    /// Index of the value of a cell of the level.
     ///
-    /// `None` where there is no tile.
+    /// The level is continued periodically, unless its borders are free. `None` where there is no tile.
     #[must_use]
     pub fn find_cell(&self, x: i64, y: i64) -> Option<usize> {
         let [nx, ny] = self.sides.map(|side| side as i64);
+        if self.boundary == Boundary::Free && !((0..nx).contains(&x) && (0..ny).contains(&y)) {
+            return None;
+        }
         let (x, y) = (x.rem_euclid(nx) as usize, y.rem_euclid(ny) as usize);
         let tile = self.find((x / TILE) as i64, (y / TILE) as i64)?;
         Some(tile * CELLS + y % TILE * TILE + x % TILE)
@@ -186,16 +221,24 @@ impl TileSet {
     /// These tiles and all tiles within `halo` cells of them.
     #[must_use]
     pub fn around(&self, halo: usize) -> Self {
-        let ([columns, rows], reach) = (self.extent.map(|n| n as i64), halo.div_ceil(TILE) as i64);
+        let reach = halo.div_ceil(TILE) as i64;
         let mut marks = marks_of(self.sides);
         for &[column, row] in self.places() {
             for y in i64::from(row) - reach..=i64::from(row) + reach {
                 for x in i64::from(column) - reach..=i64::from(column) + reach {
-                    marks.mark([x.rem_euclid(columns) as u32, y.rem_euclid(rows) as u32]);
+                    self.mark(&mut marks, self.extent, [x, y]);
                 }
             }
         }
-        Self::marked(self.sides, marks)
+        Self::marked(self.sides, marks).with_boundary(self.boundary)
+    }
+
+    /// Marks a tile of a level of the same cell, of so many columns and rows, which goes on as the borders do.
+    fn mark(&self, marks: &mut TileMarks, extent: [usize; 2], place: [i64; 2]) {
+        let inside = [0, 1].map(|axis| place[axis].rem_euclid(extent[axis] as i64));
+        if self.boundary == Boundary::Periodic || inside == place {
+            marks.mark(inside.map(|i| i as u32));
+        }
     }
 
     /// These tiles and other tiles of the same level.
@@ -205,7 +248,7 @@ impl TileSet {
         for &place in self.places.iter().chain(others.places()) {
             marks.mark(place);
         }
-        Self::marked(self.sides, marks)
+        Self::marked(self.sides, marks).with_boundary(self.boundary)
     }
 
     /// The tiles of the next coarser level over these tiles and their halo.
@@ -222,7 +265,7 @@ impl TileSet {
     /// the coarser level wide.
     #[must_use]
     pub fn on_coarser(&self, sides: [usize; 2], halo: usize) -> Self {
-        let [columns, rows] = sides.map(|side| (side / TILE) as i64);
+        let extent = sides.map(|side| side / TILE);
         let mut marks = marks_of(sides);
         let tiles = |[column, row]: [u32; 2], axis: usize| {
             let first = TILE * if axis == 0 { column } else { row } as usize;
@@ -235,11 +278,11 @@ impl TileSet {
         for &place in self.places() {
             for y in tiles(place, 1) {
                 for x in tiles(place, 0) {
-                    marks.mark([x.rem_euclid(columns) as u32, y.rem_euclid(rows) as u32]);
+                    self.mark(&mut marks, extent, [x, y]);
                 }
             }
         }
-        Self::marked(sides, marks)
+        Self::marked(sides, marks).with_boundary(self.boundary)
     }
 }
 
@@ -315,6 +358,24 @@ mod tests {
         assert_eq!(set.len(), 3);
         assert_eq!(set.places()[set.find(-1, 6).expect("stored")], [5, 0]);
         assert_eq!(set.find(3, 2), None);
+    }
+
+    #[test]
+    fn beyond_free_borders_there_is_no_tile() {
+        let set = TileSet::new([44, 48], vec![[0, 0], [5, 0], [0, 5]]).with_boundary(Boundary::Free);
+        for (column, row) in [(-1, 0), (6, 0), (0, -1), (0, 6), (5, 6)] {
+            assert_eq!(set.find(column, row), None, "({column}, {row})");
+        }
+        assert!(set.find(5, 0).is_some() && set.find_cell(43, 0).is_some());
+        assert_eq!([set.find_cell(44, 0), set.find_cell(-1, 0), set.find_cell(0, 48)], [None; 3]);
+        let around = set.around(1);
+        // Each tile has four places around it, of which two are common.
+        assert_eq!((around.len(), around.boundary()), (4 + 4 + 4, Boundary::Free));
+        assert!(around.places().iter().all(|&[column, row]| column < 6 && row < 6));
+        let parents = TileSet::new([64, 64], vec![[0, 0]]).with_boundary(Boundary::Free).parents(5);
+        let mut places = parents.places().to_vec();
+        places.sort_unstable();
+        assert_eq!(places, [[0, 0], [0, 1], [1, 0], [1, 1]]);
     }
 
     #[test]

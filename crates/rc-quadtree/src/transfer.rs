@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use rayon::prelude::*;
+use rc_core::Boundary;
 
 use crate::elements::Elements;
 use crate::patch::{Patch, gather_cells};
@@ -33,6 +34,10 @@ impl Elements {
         let Some(finer) = coarser.checked_sub(1) else { return false };
         let mut any = false;
         let [columns, rows] = self.levels()[coarser].extent().map(|n| n as i64);
+        let is_inside = (0..columns).contains(&column) && (0..rows).contains(&row);
+        if !is_inside && self.levels()[coarser].boundary() == Boundary::Free {
+            return false;
+        }
         for quarter in quarters([column.rem_euclid(columns) as u32, row.rem_euclid(rows) as u32]) {
             let Some(start) = self.find(finer, quarter[0].into(), quarter[1].into()) else { continue };
             any = true;

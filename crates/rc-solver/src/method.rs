@@ -78,8 +78,6 @@ pub enum MethodReason {
         /// Name of the kernel.
         kernel: &'static str,
     },
-    /// The adaptive method solves the periodic cell, not a patch with free borders.
-    FreeBorders,
     /// The adaptive method solves the half-space, not a layer.
     Layer,
     /// The adaptive method needs square elements.
@@ -124,7 +122,6 @@ impl fmt::Display for MethodReason {
             Self::AdaptiveDoesNotFit => write!(f, "uniform: the adaptive method does not fit into memory"),
             Self::OwnOperator => write!(f, "uniform: the operator is the caller's"),
             Self::NoSplitOfKernel { kernel } => write!(f, "uniform: the kernel {kernel} has no adaptive form"),
-            Self::FreeBorders => write!(f, "uniform: free borders have no adaptive form"),
             Self::Layer => write!(f, "uniform: a layer has no adaptive form"),
             Self::ElementsNotSquare { grid } => write!(f, "uniform: {grid} elements are not square"),
             Self::NoLevels { grid } => {

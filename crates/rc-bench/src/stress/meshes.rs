@@ -6,10 +6,10 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use anyhow::Result;
-use rc_core::{DVec2, Field, Grid, HeightSource, Operator, Silent};
+use rc_core::{Boundary, DVec2, Field, Grid, HeightSource, Kernel, Operator, Silent};
 use rc_figures::Preset;
 use rc_fractal::{SpectrumParams, Surface};
-use rc_kernel::Love;
+use rc_kernel::{FreeLove, Love};
 use rc_solver::{ContactElement, ContactProblem, Control, Method, Solution, SolveParams, UniformOperator};
 
 use super::audit::{Audit, gaps};
@@ -54,12 +54,14 @@ struct MeshScene {
     /// Mean pressure in E*.
     load: f64,
     tolerance: f64,
+    boundary: Boundary,
 }
 
 impl MeshScene {
     /// The paper's surface with about 5 % in contact.
     const fn waves(waves: usize, base: usize, side: usize, border_level: usize) -> Self {
-        Self { relief: Relief::Waves(waves, 0.8), base, side, border_level, load: 1e-3, tolerance: TOLERANCE }
+        let (relief, boundary) = (Relief::Waves(waves, 0.8), Boundary::Periodic);
+        Self { relief, base, side, border_level, load: 1e-3, tolerance: TOLERANCE, boundary }
     }
 
     /// A map whose base grid the method chooses.
@@ -67,7 +69,24 @@ impl MeshScene {
         Self { relief: Relief::Map(sides), load, ..Self::waves(0, 0, sides[0], 0) }
     }
 
+    /// The same heights as a patch with free borders.
+    const fn free(self) -> Self {
+        Self { boundary: Boundary::Free, ..self }
+    }
+
+    fn kernel(&self) -> &'static dyn Kernel {
+        match self.boundary {
+            Boundary::Periodic => &Love,
+            Boundary::Free => &FreeLove,
+        }
+    }
+
     fn name(&self) -> String {
+        let of_cell = self.name_of_cell();
+        if self.boundary == Boundary::Free { format!("patch: {of_cell}") } else { of_cell }
+    }
+
+    fn name_of_cell(&self) -> String {
         let Self { base, side, border_level, load, tolerance, .. } = self;
         let relief = match self.relief {
             Relief::Waves(waves, hurst) => format!("N = {waves} H = {hurst}"),
@@ -98,6 +117,12 @@ fn reduced() -> Vec<MeshScene> {
         MeshScene::map([256, 64], 1e-3),
         MeshScene::map([300, 207], 1e-2),
         MeshScene { tolerance: 1e-8, ..MeshScene::map([251, 251], 1e-2) },
+        waves(16, 64, 512, 0).free(),
+        MeshScene { load: 1e-5, ..waves(16, 64, 256, 2) }.free(),
+        MeshScene { relief: Relief::Noise, ..waves(0, 32, 256, 0) }.free(),
+        MeshScene { tolerance: 1e-8, ..waves(16, 64, 256, 0) }.free(),
+        MeshScene::map([256, 64], 1e-3).free(),
+        MeshScene::map([300, 207], 1e-2).free(),
     ]
 }
 
@@ -117,8 +142,12 @@ fn further() -> Vec<MeshScene> {
         MeshScene::map([860, 634], 1e-3),
         MeshScene::map([1001, 1001], 1e-3),
         MeshScene::map([130, 520], 1e-2),
+        waves(128, 512, 4096, 0).free(),
+        MeshScene::map([640, 480], 1e-3).free(),
+        MeshScene::map([1001, 1001], 1e-3).free(),
     ];
     for load in [1e-6, 1e-4, 1e-2] {
+        scenes.extend([0, 2].map(|border| MeshScene { load, ..waves(16, 64, 256, border) }.free()));
         scenes.extend([0, 2, 4].map(|border| MeshScene { load, ..waves(16, 64, 256, border) }));
         scenes.extend([0.1, 0.4].map(|hurst| MeshScene {
             relief: Relief::Waves(32, hurst),
@@ -204,10 +233,11 @@ fn check_solution(
         rows.holds(name, "levels above the base grid", ">= 1", n_levels.to_string(), n_levels >= 1);
     }
     let load = Control::MeanPressure(scene.load);
-    let solution = ContactProblem::new(source.clone(), load).solve(&params, &Silent)?;
+    let solution = ContactProblem::new(source.clone(), load).with_kernel(scene.kernel()).solve(&params, &Silent)?;
     check_mesh(scene, (name, source.clone()), (heights, load), &solution, rows)?;
     let penetration = Control::Penetration(solution.info().penetration);
-    let solution = ContactProblem::new(source.clone(), penetration).solve(&params, &Silent)?;
+    let solution =
+        ContactProblem::new(source.clone(), penetration).with_kernel(scene.kernel()).solve(&params, &Silent)?;
     check_mesh(scene, (&format!("{name} by penetration"), source), (heights, penetration), &solution, rows)
 }
 
@@ -218,7 +248,7 @@ fn check_mesh(
     solution: &Solution<'_>,
     rows: &mut Rows,
 ) -> Result<()> {
-    let MeshAudit { audit, outside, means } = of_elements(solution, (source, heights), control)?;
+    let MeshAudit { audit, outside, means } = of_elements((solution, scene.kernel()), (source, heights), control)?;
     rows.at_most(name, "pressures not finite or negative", audit.n_bad as f64, 0.0);
     let range = heights.max() - heights.min();
     let rounding = HEIGHT_ERROR * heights.rms() / range + ROUNDING;
@@ -256,7 +286,7 @@ struct MeshAudit {
 /// Each part of an element has the element's pressure, and a transform of the whole grid gives the displacements. Gaps
 /// in contact are means over elements. Gaps elsewhere are at the centres of the smallest elements.
 fn of_elements(
-    solution: &Solution<'_>,
+    (solution, kernel): (&Solution<'_>, &dyn Kernel),
     (source, heights): (HeightSource<'_>, &Field),
     control: Control,
 ) -> Result<MeshAudit> {
@@ -268,7 +298,7 @@ fn of_elements(
         element.rows(n).for_each(|row| pressure.values_mut()[row].fill(element.pressure));
     }
     let mut v = vec![0.0; grid.len()];
-    UniformOperator::new(grid, &Love).apply(pressure.values(), &mut v, &mut []);
+    UniformOperator::new(grid, kernel).apply(pressure.values(), &mut v, &mut []);
     let (mut gaps, range) = (gaps(heights, &v), heights.max() - heights.min());
     drop(v);
     let (levels, mut means) = (LevelHeights::new(&source, n)?, 0.0_f64);

@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use rc_core::{DVec2, Field, Grid, Kernel, Operator, Silent};
 use rc_figures::Preset;
 use rc_kernel::{FreeLove, Layer, LoveLayer, SpectralLayer};
-use rc_solver::{ContactProblem, Control, Solution, SolveParams, Tolerance, UniformOperator, solve_dense};
+use rc_solver::{ContactProblem, Control, Method, Solution, SolveParams, Tolerance, UniformOperator, solve_dense};
 use rc_theory::hertz::Hertz;
 
 use super::heights::rough;
@@ -31,7 +31,8 @@ pub(crate) fn rows(preset: Preset) -> Result<Vec<Row>> {
 }
 
 fn solve<'a>(heights: &'a Field, kernel: &'a dyn Kernel, control: Control, energy: f64) -> Result<Solution<'a>> {
-    let params = SolveParams { tolerance: Tolerance::Energy(energy), ..SolveParams::default() };
+    // Patches on adaptive meshes are among the meshes.
+    let params = SolveParams { tolerance: Tolerance::Energy(energy), ..SolveParams::default().by(Method::Uniform) };
     let problem = ContactProblem::new(heights, control).with_kernel(kernel);
     problem.solve(&params, &Silent).with_context(|| format!("{control:?} to {energy:e}"))
 }

@@ -48,8 +48,11 @@ mod tests {
         let rows =
             vec![row(1, 0.3, [1.0, 2.0]), row(1, 0.5, [0.0, 0.0]), row(2, 0.5, [0.1, 0.0]), row(2, 0.4, [1.0, 1.0])];
         let text = note(rows).expect("flows");
-        assert!(text.contains("of 41.7 %: the mean of 3 flows") && text.contains("between 30 and 50 %"), "{text}");
+        assert!(
+            text.contains("of 41.7 %. This is the mean of 3 flows") && text.contains("between 30 and 50 %"),
+            "{text}"
+        );
         assert_eq!(note(Vec::new()), None);
-        assert!(note(vec![row(1, 0.3, [1.0, 2.0])]).expect("a flow").contains("none of these loads"));
+        assert!(note(vec![row(1, 0.3, [1.0, 2.0])]).expect("a flow").contains("not lost between any of these loads"));
     }
 }

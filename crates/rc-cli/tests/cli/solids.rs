@@ -175,7 +175,8 @@ fn what_does_not_go_with_a_patch_is_refused() {
     let place = place();
     for (more, expected) in [
         (&["--kernel", "spectral"][..], "kernel: spectral waves are periodic"),
-        (&["--method", "adaptive"], "method: 'adaptive' solves on a periodic cell only"),
+        (&["--method", "gauss-seidel"], "method: 'gauss-seidel' solves on a periodic cell only"),
+        (&["--border-level", "1"], "a border level needs heights between the points of the grid"),
         (&["--layer-thickness", "1e-3", "--layer-poisson", "0.3"], "boundary: a layer has no free borders"),
         (&["--leakage"], "leakage: the flow is computed on a periodic cell only; omit leakage or boundary"),
         (&["--penetration", "-1"], "penetration"),

@@ -125,6 +125,12 @@ impl ScaleSplit {
         2.0 / q - self.short_range_symbol(q, c)
     }
 
+    /// The remainder `Ψ(r/c)/(π r)` itself, at the distance `r` and for the cutoff `c`.
+    #[must_use]
+    pub fn remainder(&self, r: f64, c: f64) -> f64 {
+        self.window.rise_over(r / c) / (std::f64::consts::PI * c)
+    }
+
     /// Transform of `χ(r/c)/(π r)` at the angular wavenumber `q`.
     #[must_use]
     pub fn short_range_symbol(&self, q: f64, c: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! A network without a grid.
+//! Networks that are not on a grid.
 
 use crate::parallel;
 

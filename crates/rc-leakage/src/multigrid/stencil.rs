@@ -56,7 +56,9 @@ struct RowCorners<'a, T> {
 }
 
 impl<T: Real> RowBonds<'_, T> {
-    /// Adds to `out` Σ conductance · `pull`(neighbour, element) over the neighbours in the rows below and above.
+    /// Adds to `out` the sum over neighbours in the rows below and above.
+    ///
+    /// A term is conductance · `pull`(neighbour, element).
     #[inline]
     fn add_across(&self, [below, row, above]: [&[T]; 3], out: &mut [T], pull: impl Fn(T, T) -> T) {
         let last = out.len() - 1;
@@ -260,7 +262,7 @@ impl<T: Real> Stencil<T> {
         [iy + self.ny - 1, iy, iy + 1].map(|iy| &x[iy % self.ny * self.nx..][..self.nx])
     }
 
-    /// Writes `right` less what the network draws under `x`, of row `iy`.
+    /// Writes `right` minus the flow out of the elements of row `iy` under `x`.
     pub(super) fn residual(&self, x: &[T], right: &[T], iy: usize, out: &mut [T]) {
         out.copy_from_slice(&right[iy * self.nx..(iy + 1) * self.nx]);
         let rows = self.rows_around(x, iy);

@@ -1,5 +1,7 @@
 //! Tests of a patch of three by three tiles for contact near the middle.
 
+use rc_core::Boundary;
+
 use crate::patch::Patch;
 use crate::tiles::{TILE, TileSet};
 
@@ -25,6 +27,8 @@ pub(super) fn is_near_contact(patch: &Patch<f64, SIDE>) -> bool {
 }
 
 /// Fills the parts of a patch without a tile.
+///
+/// Beyond a free border, the function has its value at the border.
 pub(super) fn mark_missing(tiles: &TileSet, (column, row): (i64, i64), elsewhere: f64, patch: &mut Patch<f64, SIDE>) {
     for y in 0..3 {
         for x in 0..3 {
@@ -32,6 +36,20 @@ pub(super) fn mark_missing(tiles: &TileSet, (column, row): (i64, i64), elsewhere
                 for line in &mut patch[y * TILE..][..TILE] {
                     line[x * TILE..][..TILE].fill(elsewhere);
                 }
+            }
+        }
+    }
+    if tiles.boundary() == Boundary::Free {
+        let inside = [(column, 0), (row, 1)].map(|(first, axis)| {
+            // Of a patch beside the level nothing is looked at.
+            let place = move |i: usize| (first * TILE as i64 + i as i64).clamp(0, tiles.sides()[axis] as i64 - 1);
+            move |i: usize| (place(i) - first * TILE as i64).clamp(0, SIDE as i64 - 1) as usize
+        });
+        let [along_x, along_y] = inside;
+        let values = *patch;
+        for (y, row) in patch.iter_mut().enumerate() {
+            for (x, value) in row.iter_mut().enumerate() {
+                *value = values[along_y(y)][along_x(x)];
             }
         }
     }

@@ -29,7 +29,7 @@ pub(super) fn prolong(
     };
     let candidates: Vec<Vec<[u32; 2]>> = tiles.places().par_iter().map(near_contact).collect();
     // Sorts the tiles and removes duplicates.
-    let fine = TileSet::new(sides, candidates.into_iter().flatten().collect());
+    let fine = tiles.of_same_cell(sides, candidates.into_iter().flatten().collect());
     let of_tile = |&place: &[u32; 2]| {
         let along = [0, 1].map(|axis| Axis::new(place[axis], sides[axis], tiles.sides()[axis]));
         let corner = (along[0].tile, along[1].tile);

@@ -1,6 +1,6 @@
 //! The base grid: the coarsest whole grid that still has the surface's waves.
 
-use rc_core::{Field, Grid, HeightField, HeightSource};
+use rc_core::{Boundary, Field, Grid, HeightField, HeightSource};
 use rc_quadtree::TILE;
 
 use super::AdaptiveError;
@@ -32,7 +32,11 @@ const SLOPE_KEPT: f64 = 0.8;
 /// Checks or chooses the sides of the base grid, in elements.
 ///
 /// If the elements along x are `wanted`, those along y are in proportion.
-pub(super) fn base_sides(source: &HeightSource<'_>, wanted: Option<usize>) -> Result<[usize; 2], AdaptiveError> {
+pub(super) fn base_sides(
+    source: &HeightSource<'_>,
+    wanted: Option<usize>,
+    boundary: Boundary,
+) -> Result<[usize; 2], AdaptiveError> {
     let finest = sides_of(source.grid());
     let waves = source.surface().and_then(HeightField::band_limit);
     if let Some(base) = wanted {
@@ -45,7 +49,7 @@ pub(super) fn base_sides(source: &HeightSource<'_>, wanted: Option<usize>) -> Re
     let safe = long / if long >= 4096 { 8 } else { 4 };
     let least = match (waves, source.map()) {
         (Some(waves), _) => BASE_ELEMENTS_PER_WAVE * waves,
-        (None, Some(map)) => safe.min(smooth_side(map)),
+        (None, Some(map)) => safe.min(smooth_side(map, boundary)),
         (None, None) => safe,
     };
     let least = least.max(SMALLEST_BASE);
@@ -126,11 +130,12 @@ fn wanted_sides(base: usize, waves: usize, [nx, ny]: [usize; 2]) -> Option<[usiz
 /// Number of elements along the longer side that keeps the slopes of a map.
 ///
 /// The spacing is a power of two.
-fn smooth_side(map: &Field) -> usize {
+fn smooth_side(map: &Field, boundary: Boundary) -> usize {
     let sides = sides_of(map.grid());
-    let finest = mean_square_slope(map, 1);
+    let finest = mean_square_slope(map, 1, boundary);
     let mut spacing = 1;
-    while 4 * spacing <= sides[0].min(sides[1]) && mean_square_slope(map, 2 * spacing) >= SLOPE_KEPT * finest {
+    let is_kept = |spacing| mean_square_slope(map, spacing, boundary) >= SLOPE_KEPT * finest;
+    while 4 * spacing <= sides[0].min(sides[1]) && is_kept(2 * spacing) {
         spacing *= 2;
     }
     sides[0].max(sides[1]) / spacing
@@ -139,17 +144,26 @@ fn smooth_side(map: &Field) -> usize {
 /// Mean square slope from differences over `spacing` elements along both axes.
 ///
 /// Slopes are in units of the height over the side of an element. All rows count, because a repeating surface may look
-/// smooth on some of them.
-fn mean_square_slope(map: &Field, spacing: usize) -> f64 {
+/// smooth on some of them. There are no slopes across free borders.
+fn mean_square_slope(map: &Field, spacing: usize, boundary: Boundary) -> f64 {
     let (nx, ny) = (map.grid().nx(), map.grid().ny());
     let of_row = |iy: usize| {
         let (row, below) = (map.row(iy), map.row((iy + spacing) % ny));
         let squares = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (b - a).powi(2)).sum::<f64>();
         let (near, far) = row.split_at(nx - spacing);
-        [squares(near, &row[spacing..]) + squares(far, &row[..spacing]) + squares(row, below)]
+        match boundary {
+            Boundary::Periodic => [squares(near, &row[spacing..]) + squares(far, &row[..spacing]), squares(row, below)],
+            Boundary::Free if iy + spacing < ny => [squares(near, &row[spacing..]), squares(row, below)],
+            Boundary::Free => [squares(near, &row[spacing..]), 0.0],
+        }
     };
-    let [sum] = BlockLayout::of(nx).total(parallel::map(0..ny, of_row));
-    sum / (map.grid().len() * spacing * spacing) as f64
+    let sums = BlockLayout::of(nx).total(parallel::map(0..ny, of_row));
+    let [along_x, along_y] = match boundary {
+        Boundary::Periodic => sums,
+        // Sums of fewer differences.
+        Boundary::Free => [0, 1].map(|axis| sums[axis] * [nx, ny][axis] as f64 / ([nx, ny][axis] - spacing) as f64),
+    };
+    (along_x + along_y) / (map.grid().len() * spacing * spacing) as f64
 }
 
 #[cfg(test)]
@@ -174,7 +188,8 @@ mod tests {
 
     #[test]
     fn the_base_grid_follows_the_waves_and_the_divisors() {
-        let base = |side, waves| base_sides(&Waves(waves).on(Grid::square(side).expect("a grid")), None);
+        let base =
+            |side, waves| base_sides(&Waves(waves).on(Grid::square(side).expect("a grid")), None, Boundary::Periodic);
         for (side, waves, expected) in
             [(2048, 64, 256), (32768, 1024, 4096), (128, 8, 64), (1_000_000, 8, 125_000), (2032, 8, 128)]
         {
@@ -202,7 +217,7 @@ mod tests {
         let of_noise = |nx: usize, ny: usize| {
             let grid = Grid::in_cell(nx, ny, ny as f64 / nx as f64).expect("a grid");
             let noise = Field::new(grid, (0..nx * ny).map(quasi_random).collect()).expect("a value for each element");
-            base_sides(&HeightSource::Map(&noise), None).ok()
+            base_sides(&HeightSource::Map(&noise), None, Boundary::Periodic).ok()
         };
         for ([nx, ny], expected) in [
             ([640, 480], [160, 120]),
@@ -215,10 +230,18 @@ mod tests {
         ] {
             assert_eq!(of_noise(nx, ny), Some(expected), "{nx} x {ny}");
         }
-        assert_eq!(base_sides(&HeightSource::Map(&grooves(true)), None).ok(), Some([256; 2]));
-        assert_eq!(base_sides(&HeightSource::Map(&grooves(false)), None).ok(), Some([256; 2]));
+        let base = |map: &Field, boundary| base_sides(&HeightSource::Map(map), None, boundary).ok();
+        assert_eq!(base(&grooves(true), Boundary::Periodic), Some([256; 2]));
+        assert_eq!(base(&grooves(false), Boundary::Periodic), Some([256; 2]));
         for (map, expected) in [(wave(8.0), 64), (wave(30.0), 128), (wave(100.0), 256), (noise, 256), (with_pit, 256)] {
-            assert_eq!(base_sides(&HeightSource::Map(&map), None).ok(), Some([expected; 2]));
+            assert_eq!(base(&map, Boundary::Periodic), Some([expected; 2]));
         }
+        // A slope that does not meet itself across the border is as steep as its wave and a jump.
+        let mut tilted = wave(8.0);
+        for (i, h) in tilted.values_mut().iter_mut().enumerate() {
+            *h += 0.1 * (i % 1024) as f64;
+        }
+        assert_eq!(base(&tilted, Boundary::Free), Some([64; 2]));
+        assert_eq!(base(&tilted, Boundary::Periodic), Some([256; 2]));
     }
 }

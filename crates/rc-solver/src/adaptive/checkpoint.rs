@@ -3,7 +3,7 @@
 //! They are kept outside of the process.
 
 use rc_comm::{Packed, Ranks};
-use rc_core::Grid;
+use rc_core::{Boundary, Grid};
 use rc_quadtree::{CELLS, Elements, TILE, TileSet};
 
 use super::mesh::Mesh;
@@ -80,14 +80,18 @@ pub(super) fn keep(checkpoint: &dyn Checkpoint, start: &LevelStart, number: f64)
 
 /// The kept start with its number. `None` if no start was kept.
 ///
-/// `grid` is any grid of the cell.
-pub(super) fn kept(checkpoint: &dyn Checkpoint, grid: Grid, ranks: &Ranks) -> Option<(LevelStart, f64)> {
-    let found = read(checkpoint, grid, ranks);
+/// `grid` is any grid of the cell, with its `boundary`.
+pub(super) fn kept(
+    checkpoint: &dyn Checkpoint,
+    (grid, boundary): (Grid, Boundary),
+    ranks: &Ranks,
+) -> Option<(LevelStart, f64)> {
+    let found = read(checkpoint, (grid, boundary), ranks);
     // Either all ranks go on from the same level, or they all start anew.
     if ranks.any(found.is_none()) { None } else { found }
 }
 
-fn read(checkpoint: &dyn Checkpoint, grid: Grid, ranks: &Ranks) -> Option<(LevelStart, f64)> {
+fn read(checkpoint: &dyn Checkpoint, (grid, boundary): (Grid, Boundary), ranks: &Ranks) -> Option<(LevelStart, f64)> {
     let numbers = f64::unpack_all(&checkpoint.read(0, N_NUMBERS * f64::BYTES)?);
     let &[n_tiles, nx, ny, contact_gap, energy_length, number, has_coarser, rms_pressure, penetration, n_levels] =
         numbers.as_slice()
@@ -118,7 +122,7 @@ fn read(checkpoint: &dyn Checkpoint, grid: Grid, ranks: &Ranks) -> Option<(Level
     if places.iter().any(|place| (0..2).any(|axis| place[axis] as usize >= extent[axis])) {
         return None;
     }
-    let tiles = TileSet::new([grid.nx(), grid.ny()], places.to_vec());
+    let tiles = TileSet::new([grid.nx(), grid.ny()], places.to_vec()).with_boundary(boundary);
     let elements = Mesh::new(Elements::uniform(tiles), ranks);
     let own = elements.own();
     offset += (own.start * f64::BYTES) as u64;

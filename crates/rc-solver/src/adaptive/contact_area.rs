@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
-use rc_core::{Grid, Kernel};
+use rc_core::{Boundary, Grid, Kernel};
 use rc_kernel::Love;
 use rc_quadtree::{BLOCK_CELLS, CELLS, TILE, TileSet};
 
@@ -45,6 +45,8 @@ impl Values<'_> {
         let covered = |(coarser, tiles): (usize, &TileSet)| tiles.n_inside() << (2 * coarser);
         let covered: usize = mesh.levels().iter().enumerate().map(covered).sum();
         sums[0].n_contact += finest.len() - covered;
+        // The pressure along free borders belongs to the whole contact.
+        sums.iter_mut().for_each(|sums| sums.at_border = 0.0);
         let blocks = pressure.par_chunks(BLOCK_CELLS).zip(gap.par_chunks(BLOCK_CELLS)).map(|(pressure, gap)| {
             let pairs = pressure.iter().zip(gap).filter(|(p, _)| **p >= hardness);
             [pairs.map(|(_, g)| (contact_gap - g).max(0.0)).sum()]
@@ -68,6 +70,7 @@ impl Values<'_> {
     ) -> EdgeSums {
         let Self { mesh, pressure, contact_gap, hardness, .. } = *self;
         let (side, tiles) = (mesh.side(coarser), &mesh.levels()[coarser]);
+        let is_free = tiles.boundary() == Boundary::Free;
         let of_tile = |(tile, &place): (usize, &[u32; 2])| {
             let start = values.start + tile * CELLS;
             if pressure[start..start + CELLS].iter().all(|&p| seen([p, 0.0])[0] <= 0.0) {
@@ -79,13 +82,18 @@ impl Values<'_> {
             let mut sums = EdgeSums::default();
             // Cells beyond the grid are across the seam.
             let [width, height] = tiles.inside(place);
+            let patch = Inside::of(tiles, place);
             let cells = (0..CELLS).map(|cell| (cell % TILE, cell / TILE)).filter(|&(x, y)| x < width && y < height);
             for (x, y) in cells.map(|(x, y)| (TILE + x, TILE + y)) {
                 if seen([pressure[y][x], 0.0])[0] > 0.0 {
                     sums.add([side; 2], hardness, &|dx, dy| {
-                        let (x, y) = (x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
+                        let (x, y) = patch.place(x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
                         seen([pressure[y][x], gap[y][x] - contact_gap])
                     });
+                    if is_free {
+                        let at = [place[0] as usize * TILE + x - TILE, place[1] as usize * TILE + y - TILE];
+                        sums.add_at_border(seen([pressure[y][x], 0.0])[0], hardness, [at, tiles.sides()], [side; 2]);
+                    }
                 }
             }
             sums
@@ -102,5 +110,26 @@ impl Values<'_> {
             chunks.into_iter().fold(EdgeSums::from_values(sum), |a, b| a + b).to_values()
         });
         EdgeSums::from_values(total)
+    }
+}
+
+/// The cells around a tile that are there: beyond a free border are those beside it.
+struct Inside([[usize; 2]; 2]);
+
+impl Inside {
+    /// First and last cells along both axes, of the patch of three by three tiles around the one at a place.
+    fn of(tiles: &TileSet, place: [u32; 2]) -> Self {
+        let is_free = tiles.boundary() == Boundary::Free;
+        Self([0, 1].map(|axis| {
+            // The patch begins a tile before its tile.
+            let place = place[axis] as usize * TILE;
+            let (first, last) = (TILE.saturating_sub(place), tiles.sides()[axis] + TILE - place - 1);
+            if is_free { [first, last.min(3 * TILE - 1)] } else { [0, 3 * TILE - 1] }
+        }))
+    }
+
+    fn place(&self, x: usize, y: usize) -> (usize, usize) {
+        let [[left, right], [below, above]] = self.0;
+        (x.clamp(left, right), y.clamp(below, above))
     }
 }

@@ -1,9 +1,8 @@
 //! The expected cost of a scene, before it is solved.
 
-use rc_core::Field;
+use rc_core::{Boundary, Field};
 
 use super::heights::Heights;
-use super::ladder::sides_of;
 use super::memory::base_bytes;
 use crate::Control;
 use crate::problem::Problem;
@@ -42,6 +41,11 @@ const GROWTH_PER_BORDER_LEVEL: f64 = 2.6;
 /// They are for the tables that find tiles, of a few meshes at a time.
 const BYTES_PER_PLACE: f64 = 0.02;
 
+/// Load of a flat patch with free borders at a penetration of 1, over its area, in E*/λ.
+///
+/// It is π times the capacity of a square. Rough patches of the same penetration bear less.
+const LOAD_PER_DEPTH: f64 = 1.152;
+
 /// An estimate of area, time and memory, from only the surface and the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Estimate {
@@ -69,14 +73,18 @@ impl Estimate {
     /// (docs/measurements-adaptive.md).
     pub(crate) const GREATEST_TILE_FRACTION: f64 = 0.35;
 
-    pub(super) fn new(heights: &Heights<'_>, border_level: usize, problem: &Problem) -> Self {
-        let base = heights.base();
+    /// `period` has the elements of the base grid that operators work on.
+    pub(super) fn new(heights: &Heights<'_>, border_level: usize, problem: &Problem, period: [usize; 2]) -> Self {
+        let (base, boundary) = (heights.base(), problem.support.boundary);
+        let of_load = |pressure: f64| PROPORTIONALITY * pressure / rms_slope(base, boundary);
         let area = match problem.control {
-            Control::MeanPressure(pressure) => {
-                (PROPORTIONALITY * pressure / rms_slope(base)).max(pressure / problem.hardness)
+            Control::MeanPressure(pressure) => of_load(pressure).max(pressure / problem.hardness),
+            // Where the undeformed surfaces overlap is more than where they touch. A patch may be deeper than its heights.
+            Control::Penetration(penetration) => {
+                let overlap = overlap(base, heights.extremes().greatest - penetration);
+                let is_free = boundary == Boundary::Free && problem.hardness.is_infinite();
+                if is_free { overlap.min(of_load(LOAD_PER_DEPTH * penetration)) } else { overlap }
             }
-            // The undeformed surfaces overlap on a larger area than they touch on.
-            Control::Penetration(penetration) => overlap(base, heights.extremes().greatest - penetration),
         };
         // A flat surface, or one with a single element, touches everywhere.
         let area_fraction = if area.is_finite() { area.min(1.0) } else { 1.0 };
@@ -91,19 +99,24 @@ impl Estimate {
             tile_fraction,
             cells: n_cells,
             work: with_borders(MORE_WORK_PER_BORDER_LEVEL),
-            adaptive_bytes: cell_bytes + BYTES_PER_PLACE * n_finest + base_bytes(sides_of(base.grid())),
+            adaptive_bytes: cell_bytes + BYTES_PER_PLACE * n_finest + base_bytes(period),
         }
     }
 }
 
 /// Isotropic rms slope from differences of neighbours, accurate enough for an estimate.
-fn rms_slope(heights: &Field) -> f64 {
+fn rms_slope(heights: &Field, boundary: Boundary) -> f64 {
     let (nx, ny) = (heights.grid().nx(), heights.grid().ny());
     let (along_x, along_y) = (nx as f64, ny as f64 / heights.grid().cell_ratio());
     let mut sum = 0.0;
-    for iy in 0..ny {
+    // Opposite free borders are no neighbours.
+    let [columns, rows] = match boundary {
+        Boundary::Periodic => [nx, ny],
+        Boundary::Free => [nx - 1, ny - 1],
+    };
+    for iy in 0..rows {
         let (row, next) = (heights.row(iy), heights.row((iy + 1) % ny));
-        for ix in 0..nx {
+        for ix in 0..columns {
             let (dx, dy) = (row[(ix + 1) % nx] - row[ix], next[ix] - row[ix]);
             sum += (dx * along_x).powi(2) + (dy * along_y).powi(2);
         }

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use rc_comm::Ranks;
 use rc_quadtree::{CELLS, Patch, TILE, TileSet, gather};
 
+use super::base::Base;
 use super::deal::Deal;
 use super::heights::Heights;
 use super::ladder::sides_of;
@@ -31,7 +32,7 @@ const DECONVOLUTION: f64 = 1.0 / 96.0;
 
 /// The smooth part of the displacement.
 pub(super) struct SmoothDisplacement<'a> {
-    /// Values at the centres of the base grid, in λ, tile by tile. Tiles are row by row.
+    /// Values at the centres of the base grid's period, in λ, tile by tile. Tiles are row by row.
     pub(super) values: &'a [f64],
     /// Bound of the second derivatives of the values, along the axes.
     pub(super) curvature: f64,
@@ -44,12 +45,12 @@ pub(super) struct SmoothDisplacement<'a> {
 /// They are tiles of a level with the columns and rows of `extent`.
 pub(super) fn possible_contact(
     smooth: &SmoothDisplacement<'_>,
-    heights: &Heights<'_>,
+    (heights, base): (&Heights<'_>, Base),
     contact_gap: f64,
     (extent, ranks): ([usize; 2], &Ranks),
 ) -> Vec<[u32; 2]> {
     let ladder = heights.ladder();
-    let base = TileSet::full(sides_of(ladder.base()));
+    let (period, base) = (TileSet::full(base.period()), TileSet::full(sides_of(base.grid())));
     let spacing = ladder.base().spacing().max_element();
     let from_half = (2.0 * ladder.finest().spacing().max_element() / spacing).max(1.0);
     let slack = (SAGITTA + DECONVOLUTION * from_half * from_half) * smooth.curvature * spacing * spacing + smooth.error;
@@ -57,7 +58,7 @@ pub(super) fn possible_contact(
     let of_tile = |&[column, row]: &[u32; 2]| {
         let mut patch: Patch<f64, SIDE> = [[0.0; SIDE]; SIDE];
         let corner = (i64::from(column) - 1, i64::from(row) - 1);
-        gather(smooth.values, &base, corner, TILE - 1..2 * TILE + 1, &mut patch);
+        gather(smooth.values, &period, corner, TILE - 1..2 * TILE + 1, &mut patch);
         let mut tiles = Vec::new();
         for cell in 0..CELLS {
             let (x, y) = (cell % TILE, cell / TILE);
@@ -160,12 +161,13 @@ mod tests {
         let values: Vec<f64> = base.places().iter().flat_map(of_tile).collect();
         let smooth = SmoothDisplacement { values: &values, curvature: TAU * TAU, error };
         let minimum = -2.0;
-        let touched = possible_contact(&smooth, &heights, minimum + 0.01 * sagitta, (extent, &Ranks::alone()));
+        let scene = || (&heights, Base::from(heights.ladder().base()));
+        let touched = possible_contact(&smooth, scene(), minimum + 0.01 * sagitta, (extent, &Ranks::alone()));
         for place in [[3, 3], [4, 3], [3, 4], [4, 4]] {
             assert!(touched.contains(&place), "{place:?} is not among {touched:?}");
         }
         assert!(!touched.contains(&[0, 0]), "{touched:?}");
         let below = minimum - 0.01 * sagitta - 2.0 * error;
-        assert!(possible_contact(&smooth, &heights, below, (extent, &Ranks::alone())).is_empty());
+        assert!(possible_contact(&smooth, scene(), below, (extent, &Ranks::alone())).is_empty());
     }
 }

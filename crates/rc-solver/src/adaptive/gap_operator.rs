@@ -5,6 +5,7 @@ use std::sync::Arc;
 use rc_core::Grid;
 use rc_kernel::ScaleSplit;
 
+use super::base::Base;
 use super::operator::{Hierarchy, Prepared, Reach, Real, Tables};
 use super::scaled_operator::ScaledOperator;
 use super::split::GapSplit;
@@ -12,7 +13,7 @@ use crate::descent::BlockOperator;
 
 /// L on the elements of one mesh, with the smooth part of its displacement.
 pub(super) trait GapOperator: BlockOperator<f64> {
-    /// Displacement of the centres of the base grid by the last pressure, in λ.
+    /// Displacement of the centres of the base grid's period by the last pressure, in λ.
     ///
     /// Short-range parts are not included. Values are tile by tile, and tiles row by row.
     fn base_displacement(&self) -> Vec<f64>;
@@ -40,8 +41,8 @@ pub(super) enum GapTables {
 
 impl PreparedGap {
     /// The split kernel for elements up to 2^`n_coarse` times as large as the smallest.
-    pub(super) fn new(split: GapSplit, base: Grid, n_coarse: usize) -> Self {
-        let kernel = ScaleSplit::new(split.params);
+    pub(super) fn new(split: GapSplit, base: impl Into<Base>, n_coarse: usize) -> Self {
+        let (kernel, base) = (ScaleSplit::new(split.params), base.into());
         if split.is_single_precision() {
             Self::Single(split, Prepared::displacement(&kernel, base, n_coarse))
         } else {

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use rc_core::HeightSource;
+use rc_core::{Boundary, HeightSource};
 
+use super::base::Base;
 use super::base_grid::base_sides;
 use super::checks::{check_elements, check_memory, first_split, with_border_level};
 use super::error::AdaptiveError;
@@ -26,22 +27,31 @@ impl<'a> Ground<'a> {
     ///
     /// # Errors
     /// [`AdaptiveError`].
-    pub(crate) fn new(source: HeightSource<'a>, params: &AdaptiveParams) -> Result<Self, AdaptiveError> {
+    pub(crate) fn new(
+        source: HeightSource<'a>,
+        boundary: Boundary,
+        params: &AdaptiveParams,
+    ) -> Result<Self, AdaptiveError> {
         let grid = source.grid();
         check_elements(grid)?;
         // This check comes before any work.
         first_split(params)?;
-        let base = base_sides(&source, params.base_side)?;
+        let base = base_sides(&source, params.base_side, boundary)?;
         let source = with_border_level(source, params.border_level)?;
         let ladder = Ladder::new(base, source.grid());
         if params.border_level > 0 && !ladder.is_even() {
             return Err(AdaptiveError::BorderOfGrid { grid });
         }
         let sampled_bytes = Heights::sampled_bytes(&source, ladder);
-        check_memory(grid, params.memory_limit, base_bytes(base) + sampled_bytes, None)?;
-        let heights = Heights::new(source, base)?;
-        let kernels = Kernels::new(heights.base().grid(), params.border_level);
+        let kernels = Kernels::new(Base::new(ladder, boundary), params.border_level);
+        check_memory(grid, params.memory_limit, base_bytes(kernels.base().period()) + sampled_bytes, None)?;
+        let heights = Heights::with_borders(source, base, boundary)?;
         Ok(Self { heights, kernels, sampled_bytes })
+    }
+
+    /// The boundary of the heights.
+    pub(super) fn boundary(&self) -> Boundary {
+        if self.kernels.base().is_free() { Boundary::Free } else { Boundary::Periodic }
     }
 
     /// The same data without a borrow. A borrowed map is copied.

@@ -4,9 +4,9 @@
 
 use std::sync::OnceLock;
 
-use rc_core::Grid;
 use rc_kernel::{ScaleSplit, SplitParams};
 
+use super::base::Base;
 use super::gap_operator::PreparedGap;
 use super::operator::Prepared;
 use super::split::{GapSplit, N_SPLITS};
@@ -16,7 +16,7 @@ use crate::once::made;
 ///
 /// They are for one base grid and one number of border levels.
 pub(super) struct Kernels {
-    base: Grid,
+    base: Base,
     border_level: usize,
     quick: OnceLock<Prepared<f32>>,
     preconditioner: OnceLock<Prepared<f32>>,
@@ -25,7 +25,7 @@ pub(super) struct Kernels {
 
 impl Kernels {
     /// Kernels that are not made yet.
-    pub(super) fn new(base: Grid, border_level: usize) -> Self {
+    pub(super) fn new(base: Base, border_level: usize) -> Self {
         let (quick, preconditioner, gaps) = Default::default();
         Self { base, border_level, quick, preconditioner, gaps }
     }
@@ -33,6 +33,11 @@ impl Kernels {
     /// Kernels of the same base grid that are not made yet.
     pub(super) fn empty(&self) -> Self {
         Self::new(self.base, self.border_level)
+    }
+
+    /// The base grid.
+    pub(super) fn base(&self) -> Base {
+        self.base
     }
 
     /// L for corrections, a few percent off on rough pressures.

@@ -120,7 +120,8 @@ impl Mesh {
         let tiles = self.finest().places()[own].iter().enumerate();
         let chosen = tiles.filter(|&(tile, &place)| wanted(sides, place, tile * CELLS..(tile + 1) * CELLS));
         let places = chosen.map(|(_, &place)| place).collect();
-        Self::new(Elements::uniform(Self::tiles_of_places(sides, places, &self.ranks)), &self.ranks)
+        let tiles = Self::tiles_of_places(sides, places, &self.ranks).with_boundary(self.finest().boundary());
+        Self::new(Elements::uniform(tiles), &self.ranks)
     }
 
     /// A vector from tiles of any rank, with `elsewhere` on all others.
@@ -184,8 +185,9 @@ impl Mesh {
             return tiles.on_coarser(sides, halo);
         }
         let own = Deal::equal(tiles.len(), &self.ranks).range(self.ranks.rank());
-        let own = TileSet::new(tiles.sides(), tiles.places()[own].to_vec());
-        Self::tiles_of_places(sides, own.on_coarser(sides, halo).places().to_vec(), &self.ranks)
+        let own = tiles.of_same_cell(tiles.sides(), tiles.places()[own].to_vec());
+        let mine = own.on_coarser(sides, halo).places().to_vec();
+        Self::tiles_of_places(sides, mine, &self.ranks).with_boundary(tiles.boundary())
     }
 
     /// The tiles of all ranks, from the tiles of each.

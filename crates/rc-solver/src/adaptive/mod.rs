@@ -6,6 +6,7 @@
 
 mod agreed_stop;
 mod bands;
+mod base;
 mod base_grid;
 mod checkpoint;
 mod checks;
@@ -31,6 +32,7 @@ pub(crate) mod operator;
 mod operator_error;
 mod params;
 mod part;
+mod patch;
 mod prolongation;
 mod roughness;
 mod scaled_operator;
@@ -41,7 +43,7 @@ mod split;
 use std::sync::Arc;
 
 use rc_comm::Ranks;
-use rc_core::{Grid, Observer};
+use rc_core::{Boundary, Grid, Observer};
 use rc_quadtree::TILE;
 
 use self::agreed_stop::AgreedStop;
@@ -60,6 +62,7 @@ pub use self::multilevel::MultilevelOperator;
 use self::nested_iteration::{NestedIteration, NestedSolution};
 use self::operator_error::{PressureScale, can_certify, certifying_split};
 pub(crate) use self::params::AdaptiveParams;
+use self::patch::displacement_of_patch;
 pub(crate) use self::setup::Place;
 use self::setup::Splits;
 pub(crate) use self::solution::AdaptiveSolution;
@@ -115,7 +118,7 @@ impl<'a> AdaptiveProblem<'a> {
         control: Control,
         params: &AdaptiveParams,
     ) -> Result<Self, AdaptiveError> {
-        Self::on(&Arc::new(Ground::new(source, params)?), control.into(), params, &Place::default())
+        Self::on(&Arc::new(Ground::new(source, Boundary::Periodic, params)?), control.into(), params, &Place::default())
     }
 
     /// The problem of one load, solved in this place.
@@ -140,7 +143,8 @@ impl<'a> AdaptiveProblem<'a> {
             return Err(AdaptiveError::OverRanks { needs: "a grid that halves down to its base grid" });
         }
         let split = first_split(params)?;
-        let problem = Problem::of_statistics(ground.heights.extremes(), load, &params.solve, Support::default())?;
+        let support = Support { boundary: ground.boundary(), compliance: 0.0 };
+        let problem = Problem::of_statistics(ground.heights.extremes(), load, &params.solve, support)?;
         if problem.h_range == 0.0 {
             return Err(AdaptiveError::Flat);
         }
@@ -148,7 +152,7 @@ impl<'a> AdaptiveProblem<'a> {
         let grid = prepared.grid();
         let Estimate { area_fraction, adaptive_bytes, .. } = prepared.estimate();
         // Ranks share all bytes except those of the base grid.
-        let base_bytes = base_bytes(sides_of(ground.heights.base().grid())) + ground.sampled_bytes;
+        let base_bytes = base_bytes(ground.kernels.base().period()) + ground.sampled_bytes;
         let bytes = base_bytes + (adaptive_bytes - base_bytes) / place.ranks.size() as f64;
         check_memory(grid, params.memory_limit, bytes, Some(100.0 * area_fraction))?;
         Ok(prepared)
@@ -157,7 +161,8 @@ impl<'a> AdaptiveProblem<'a> {
     /// The expected cost of the solve, from only the surface and the load.
     #[must_use]
     pub(crate) fn estimate(&self) -> Estimate {
-        let estimate = Estimate::new(&self.ground.heights, self.params.border_level, &self.problem);
+        let Ground { heights, kernels, .. } = &*self.ground;
+        let estimate = Estimate::new(heights, self.params.border_level, &self.problem, kernels.base().period());
         Estimate { adaptive_bytes: estimate.adaptive_bytes + self.ground.sampled_bytes, ..estimate }
     }
 
@@ -256,9 +261,13 @@ impl<'a> AdaptiveProblem<'a> {
         let (contact_gap, hardness) = (outcome.contact_gap, self.problem.hardness);
         let values = Values { mesh: &elements, pressure: &pressure, gap: &gap, contact_gap, hardness };
         let (area, plastic) = (values.contact_area(grid), values.plastic_edges(grid));
+        let mut info = outcome.info(&self.problem, levels, coarser);
+        if self.problem.support.boundary == Boundary::Free {
+            info.mean_displacement += displacement_of_patch(&elements, &pressure, grid);
+        }
         AdaptiveSolution {
             converged: outcome.certificate.meets(self.params.solve.bound),
-            base: self.ground.heights.base().grid(),
+            base: self.ground.kernels.base(),
             grid: self.grid(),
             finest: grid,
             elements,
@@ -266,7 +275,7 @@ impl<'a> AdaptiveProblem<'a> {
             area,
             hardness,
             plastic,
-            info: outcome.info(&self.problem, levels, coarser),
+            info,
             evaluated,
             proven: grid.len() - evaluated,
         }

@@ -3,8 +3,8 @@
 //! Each level prepares the start on the next.
 
 use rayon::prelude::*;
-use rc_core::{Event, Grid, Observer};
-use rc_kernel::Love;
+use rc_core::{Boundary, Event, Grid, Kernel, Observer};
+use rc_kernel::{FreeLove, Love};
 use rc_quadtree::{TILE, TileSet};
 
 use super::AdaptiveParams;
@@ -71,7 +71,8 @@ impl<'a> NestedIteration<'a> {
     /// If a start was kept, it goes on from that.
     pub(super) fn begin(&self, observer: &dyn Observer) -> BaseStart {
         if let Some(checkpoint) = self.setup.checkpoint
-            && let Some((start, tile_fraction)) = kept(checkpoint, self.ladder().finest(), self.setup.ranks)
+            && let Some((start, tile_fraction)) =
+                kept(checkpoint, (self.ladder().finest(), self.boundary()), self.setup.ranks)
             && self.ladder().grid(self.setup.n_levels(start.grid)) == start.grid
         {
             return BaseStart { start, tile_fraction };
@@ -85,6 +86,10 @@ impl<'a> NestedIteration<'a> {
         if let Some(checkpoint) = self.setup.checkpoint {
             keep(checkpoint, start, tile_fraction);
         }
+    }
+
+    fn boundary(&self) -> Boundary {
+        self.setup.problem.support.boundary
     }
 
     fn n_above(&self) -> usize {
@@ -142,12 +147,17 @@ impl<'a> NestedIteration<'a> {
     fn solve_base(&self, n_above: usize, observer: &dyn Observer) -> BaseStart {
         let Setup { heights, problem, params, .. } = &self.setup;
         let base = heights.base();
-        let grids = NestedGrids { kernel: &Love, problem, params: *params, n_above, observer };
+        let kernel: &dyn Kernel = match self.boundary() {
+            Boundary::Periodic => &Love,
+            Boundary::Free => &FreeLove,
+        };
+        let grids = NestedGrids { kernel, problem, params: *params, n_above, observer };
         let FinestGrid { descent, outcome, levels, coarser } = grids.solve(base);
         let function = uniform::edge_function(&descent);
         let tile_fraction = tile_fraction(base.grid(), &function, (TILE >> n_above).max(1));
         let function = to_tiles(base.grid(), &function);
-        let (tiles, grid) = (TileSet::full(sides_of(base.grid())), self.ladder().grid(1));
+        let tiles = TileSet::full(sides_of(base.grid())).with_boundary(self.boundary());
+        let grid = self.ladder().grid(1);
         let start = LevelStart {
             grid,
             mesh: prolongation::refine_base(&tiles, &function, grid, self.setup.ranks),

@@ -37,7 +37,7 @@ impl Part {
         let mut places = read;
         places.retain(|&place| find(place).is_some());
         places.extend_from_slice(&level.places()[own.clone()]);
-        let tiles = TileSet::new(level.sides(), places);
+        let tiles = level.of_same_cell(level.sides(), places);
         let first = level.places().get(own.start).filter(|_| !own.is_empty());
         let first = first.and_then(|place| tiles.find(place[0].into(), place[1].into())).unwrap_or(0);
         let mut received: Vec<(usize, Vec<usize>)> = Vec::new();

@@ -83,7 +83,8 @@ fn refined(
     }
     let children = prolong_some(tiles, own, function, elsewhere);
     let places = children.iter().map(|(place, _)| *place).collect();
-    let elements = Mesh::new(Elements::uniform(Mesh::tiles_of_places(sides, places, ranks)), ranks);
+    let fine = Mesh::tiles_of_places(sides, places, ranks).with_boundary(tiles.boundary());
+    let elements = Mesh::new(Elements::uniform(fine), ranks);
     let tiles = children.iter().map(|(place, values)| (*place, values.as_slice()));
     let mut pressure = elements.delivered(tiles, 0.0);
     to_pressure(&mut pressure);

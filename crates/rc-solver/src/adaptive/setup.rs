@@ -7,6 +7,7 @@ use rc_core::Grid;
 use rc_quadtree::{ContactFields, Elements, RING, divide};
 
 use super::AdaptiveParams;
+use super::base::Base;
 use super::checkpoint::Checkpoint;
 use super::exclusion::{SmoothDisplacement, possible_contact};
 use super::gap_operator::{GapOperator, GapTables, PreparedGap};
@@ -44,6 +45,7 @@ pub(crate) struct Place {
 /// Heights, load and operators of a problem.
 pub(super) struct Setup<'a> {
     pub(super) heights: &'a Heights<'a>,
+    base: Base,
     pub(super) problem: Problem,
     pub(super) params: IterationParams,
     pub(super) border_level: usize,
@@ -75,6 +77,7 @@ impl<'a> Setup<'a> {
             fresh: kernels.gap(fresh),
             better: (certified != fresh).then(|| kernels.gap(certified)),
             heights,
+            base: kernels.base(),
             problem,
             params: params.solve,
             border_level: params.border_level,
@@ -88,18 +91,13 @@ impl<'a> Setup<'a> {
         self.better.unwrap_or(self.fresh)
     }
 
-    /// The base grid.
-    pub(super) fn base(&self) -> Grid {
-        self.heights.base().grid()
-    }
-
     /// Number of levels from the base grid to one whose whole grid is `grid`.
     pub(super) fn n_levels(&self, grid: Grid) -> usize {
-        ladder::n_levels(self.base(), grid)
+        ladder::n_levels(self.base.grid(), grid)
     }
 
     pub(super) fn hierarchy(&self, mesh: &Mesh, reach: Reach) -> Arc<Hierarchy> {
-        Arc::new(Hierarchy::new(self.base(), mesh.clone(), reach))
+        Arc::new(Hierarchy::new(self.base, mesh.clone(), reach))
     }
 
     /// Approximate mean of pressures like that of `start`.
@@ -147,7 +145,8 @@ impl<'a> Setup<'a> {
         extent: [usize; 2],
         gap: f64,
     ) -> Vec<[u32; 2]> {
-        possible_contact(smooth, self.heights, gap - self.problem.offset(), (extent, self.ranks))
+        let heights = (self.heights, self.base);
+        possible_contact(smooth, heights, gap - self.problem.offset(), (extent, self.ranks))
     }
 
     /// Whether a pressure has reached the hardness.

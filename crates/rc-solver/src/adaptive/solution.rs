@@ -8,6 +8,7 @@ use rc_core::{DVec2, Grid};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, put_tile};
 
 use super::bands::{Receiver, Rows, TilesByRow, bands, hand_out};
+use super::base::Base;
 use super::kernels::Kernels;
 use super::ladder::sides_of;
 use super::mesh::Mesh;
@@ -27,7 +28,7 @@ use crate::{ContactArea, ContactElement, Observables, SolveInfo};
 pub(crate) struct AdaptiveSolution {
     /// Whether the certificate meets the tolerance.
     pub(super) converged: bool,
-    pub(super) base: Grid,
+    pub(super) base: Base,
     pub(super) grid: Grid,
     /// The grid of the smallest elements.
     pub(super) finest: Grid,
@@ -92,7 +93,7 @@ impl AdaptiveSolution {
     pub(crate) fn status(&self) -> Status {
         match self.converged {
             false => Status::NotConverged,
-            true if self.is_full_contact() => Status::FullContact,
+            true if self.is_full_contact() && !self.base.is_free() => Status::FullContact,
             true => Status::Converged,
         }
     }
@@ -122,7 +123,7 @@ impl AdaptiveSolution {
             (0..across * across).map(move |i| [column + i % across, row + i / across])
         };
         let places = self.elements.tiles().flat_map(|(coarser, tile, _)| parts(coarser, tile)).collect();
-        let tiles = TileSet::new(sides_of(self.finest), places);
+        let tiles = self.elements.finest().of_same_cell(sides_of(self.finest), places);
         let mut values = vec![0.0; Elements::uniform(tiles.clone()).len()];
         for (coarser, tile, start) in self.elements.tiles() {
             for place in parts(coarser, tile) {
@@ -181,7 +182,7 @@ impl AdaptiveSolution {
         let tables = prepared.tables(if rows.finest { self.finest } else { self.grid });
         for (band, to) in bands(own_tiles, ranks, rows.receiver) {
             let more = band.clone().flat_map(|row| (0..columns).map(move |column| [column as u32, row as u32]));
-            let tiles = TileSet::new([nx, ny], own_tiles.places().iter().copied().chain(more).collect());
+            let tiles = own_tiles.of_same_cell([nx, ny], own_tiles.places().iter().copied().chain(more).collect());
             let mesh = Mesh::new(Elements::uniform(tiles), ranks);
             let hierarchy = Arc::new(Hierarchy::new(self.base, mesh.clone(), prepared.reach()));
             let mut values = own.moved(&mesh, &pressure, 0.0);
@@ -221,7 +222,10 @@ impl AdaptiveSolution {
     #[must_use]
     pub(super) fn contact_stiffness(&self, kernels: &Kernels) -> f64 {
         let pressure = elastic_part(&self.pressure, self.hardness);
-        if self.is_full_contact() && self.plastic.is_none_or(|plastic| plastic.contact.cells <= 0.0) {
+        if self.is_full_contact()
+            && !self.base.is_free()
+            && self.plastic.is_none_or(|plastic| plastic.contact.cells <= 0.0)
+        {
             return f64::INFINITY;
         }
         let n = self.finest.len() as f64;

@@ -43,6 +43,8 @@ pub(crate) struct EdgeSums {
     ///
     /// It is four times the number of contacts minus the number of their holes.
     pub(crate) turns: isize,
+    /// Σ p² s over the sides of elements along free borders, with the side s across the border, in E*² λ.
+    pub(crate) at_border: f64,
 }
 
 impl EdgeSums {
@@ -97,24 +99,24 @@ impl EdgeSums {
 
 impl EdgeSums {
     /// The sums as ranks exchange them. Counts are exact.
-    pub(crate) fn to_values(self) -> [f64; 13] {
+    pub(crate) fn to_values(self) -> [f64; 14] {
         let Self { n_contact, edges, along_x, diagonals, known, shift, deviation, squares, turns, .. } = self;
-        let Self { sharp, known_sharp, shift_of_sharp, .. } = self;
+        let Self { sharp, known_sharp, shift_of_sharp, at_border, .. } = self;
         let [n_contact, edges, along_x, diagonals] = [n_contact, edges, along_x, diagonals].map(|n| n as f64);
         let [first, second, sharp, known_sharp] = [known[0], known[1], sharp, known_sharp].map(|n| n as f64);
         let counts = [n_contact, edges, along_x, diagonals, first, second, sharp, known_sharp, turns as f64];
-        let mut values = [0.0; 13];
+        let mut values = [0.0; 14];
         values[..9].copy_from_slice(&counts);
-        values[9..].copy_from_slice(&[shift, deviation, squares, shift_of_sharp]);
+        values[9..].copy_from_slice(&[shift, deviation, squares, shift_of_sharp, at_border]);
         values
     }
 
     /// The sums from [`EdgeSums::to_values`].
-    pub(crate) fn from_values(values: [f64; 13]) -> Self {
+    pub(crate) fn from_values(values: [f64; 14]) -> Self {
         let [n_contact, edges, along_x, diagonals, first, second, sharp, known_sharp] =
             std::array::from_fn(|i| values[i] as usize);
         let (known, turns) = ([first, second], values[8] as isize);
-        let [shift, deviation, squares, shift_of_sharp] = std::array::from_fn(|i| values[9 + i]);
+        let [shift, deviation, squares, shift_of_sharp, at_border] = std::array::from_fn(|i| values[9 + i]);
         Self {
             n_contact,
             edges,
@@ -128,11 +130,31 @@ impl EdgeSums {
             shift_of_sharp,
             squares,
             turns,
+            at_border,
         }
     }
 }
 
 impl EdgeSums {
+    /// Adds the pressure of an element at `place`, if it is along a free border of a grid of `extent` elements.
+    ///
+    /// Plastic elements are left out, because the hardness ends the singularity of the pressure.
+    pub(crate) fn add_at_border(
+        &mut self,
+        pressure: f64,
+        hardness: f64,
+        [place, extent]: [[usize; 2]; 2],
+        sides: [f64; 2],
+    ) {
+        if pressure >= hardness {
+            return;
+        }
+        for axis in [0, 1] {
+            let n = usize::from(place[axis] == 0) + usize::from(place[axis] + 1 == extent[axis]);
+            self.at_border += n as f64 * pressure * pressure * sides[axis];
+        }
+    }
+
     /// Adds the edge between a plastic element and a neighbour out of contact.
     ///
     /// `inside` and `outside` are their gaps. A negative gap is an overlap.
@@ -183,6 +205,7 @@ impl Add for EdgeSums {
             shift_of_sharp: self.shift_of_sharp + other.shift_of_sharp,
             squares: self.squares + other.squares,
             turns: self.turns + other.turns,
+            at_border: self.at_border + other.at_border,
         }
     }
 }

@@ -138,12 +138,11 @@ impl ContactArea {
         let grid = pressure.grid();
         let values = [pressure.values(), gap.values()];
         let at = |place: [usize; 2]| around(values, [grid.nx(), grid.ny()], place, boundary);
-        let sums = sums_of_rows(grid, hardness, |i| values[0][i] > 0.0, at);
-        let mut area = Self::from_sums(&[sums], grid, bias);
+        let mut sums = sums_of_rows(grid, hardness, |i| values[0][i] > 0.0, at);
         if boundary == Boundary::Free {
-            area.rim.at_border = at_border(pressure, hardness);
+            add_borders(&mut sums, pressure, hardness);
         }
-        area
+        Self::from_sums(&[sums], grid, bias)
     }
 
     /// The contact area from sums over elements of one size each.
@@ -200,6 +199,7 @@ impl ContactArea {
             area.missing_square += size * bias.per_square * sums.squares;
             area.rim.area += size * edges;
             area.rim.squares += size * sums.squares;
+            area.rim.at_border += size * sums.at_border;
             if coarser > 0 && sums.n_contact > 0 {
                 area.rim.larger += f64::from(1_u32 << (2 * coarser));
             }
@@ -246,17 +246,18 @@ fn sums_of_rows<A: Fn(isize, isize) -> [f64; 2]>(
     rows.into_iter().fold(EdgeSums::default(), |a, b| a + b)
 }
 
-/// [`Rim::at_border`] of these pressures. Plastic elements are left out: the hardness ends the singularity.
-fn at_border(pressure: &Field, hardness: f64) -> f64 {
+/// Adds the pressures along the borders of a grid.
+fn add_borders(sums: &mut EdgeSums, pressure: &Field, hardness: f64) {
     let grid = pressure.grid();
-    let (nx, ny, [width, height]) = (grid.nx(), grid.ny(), <[f64; 2]>::from(grid.spacing()));
-    let values = pressure.values();
-    let squares = |places: &mut dyn Iterator<Item = usize>| -> f64 {
-        places.map(|i| values[i]).filter(|&p| p < hardness).map(|p| p * p).sum()
-    };
-    let bottom_and_top = squares(&mut (0..nx).chain((ny - 1) * nx..ny * nx));
-    let left_and_right = squares(&mut (0..ny).flat_map(|iy| [iy * nx, iy * nx + nx - 1]));
-    (height * bottom_and_top + width * left_and_right) / grid.len() as f64
+    let (extent, sides) = ([grid.nx(), grid.ny()], grid.spacing().into());
+    let [nx, ny] = extent;
+    let is_border = |iy: usize| iy == 0 || iy + 1 == ny;
+    for iy in 0..ny {
+        // Of a row inside, only the first and the last element.
+        for ix in (0..nx).step_by(if is_border(iy) { 1 } else { (nx - 1).max(1) }) {
+            sums.add_at_border(pressure.at(ix, iy), hardness, [[ix, iy], extent], sides);
+        }
+    }
 }
 
 /// The data that the error of an area follows from.

@@ -43,7 +43,7 @@ pub(crate) use observed::ObservedMesh;
 pub(crate) use operators::{BlockOperator, LevelOperators, PreconditionedOperator, read_blocks, write_blocks};
 pub(crate) use outcome::Outcome;
 pub(crate) use passes::{read_rows, write_rows};
-pub(crate) use response::{GridResponse, padded_side};
+pub(crate) use response::{GridResponse, padded_side, table_of_response};
 pub(crate) use rows::ElementValues;
 pub(crate) use run::{DescentObserver, Goal};
 pub(crate) use state::{Descent, Start};

@@ -28,7 +28,7 @@ impl GridResponse {
     pub(crate) fn of(grid: Grid, kernel: &dyn Kernel) -> Self {
         if let Some(response) = kernel.free_response(grid) {
             let period = [grid.nx(), grid.ny()].map(padded_side);
-            let table = free_table(grid, period, &response);
+            let table = table_of_response(padded_grid(grid, period), [grid.nx(), grid.ny()], &response);
             return Self { grid, period, table, boundary: Boundary::Free };
         }
         let mut table = SymbolTable::new(grid, kernel.symbol(grid));
@@ -53,15 +53,21 @@ pub(crate) fn padded_side(n: usize) -> usize {
     (2 * n - 1..=4 * n).find(is_fast).unwrap_or(4 * n)
 }
 
-/// The transform of the response to one element.
+/// The elements of a period around those of `grid`.
+fn padded_grid(grid: Grid, [px, py]: [usize; 2]) -> Grid {
+    let ratio = grid.cell_ratio() * (py as f64 / grid.ny() as f64) / (px as f64 / grid.nx() as f64);
+    Grid::in_cell(px, py, ratio).expect("a grid whose double can be counted was checked")
+}
+
+/// The transform of the response to one element, on a period of elements `around` it.
 ///
-/// The response is even along both axes.
-fn free_table(
-    grid: Grid,
-    [px, py]: [usize; 2],
-    response: &(dyn Fn(usize, usize) -> f64 + Send + Sync),
-) -> SymbolTable<f64> {
-    let (nx, ny) = (grid.nx(), grid.ny());
+/// The response is even along both axes. It is zero from `nx` and `ny` elements on.
+pub(crate) fn table_of_response<T: TransformReal>(
+    around: Grid,
+    [nx, ny]: [usize; 2],
+    response: &(dyn Fn(usize, usize) -> f64 + Sync),
+) -> SymbolTable<T> {
+    let (px, py) = (around.nx(), around.ny());
     let columns = nx.max(1);
     let mut quadrant = vec![0.0; nx * ny];
     quadrant.par_chunks_mut(columns).enumerate().for_each(|(iy, row)| {
@@ -69,8 +75,6 @@ fn free_table(
             *value = response(ix, iy);
         }
     });
-    let ratio = grid.cell_ratio() * (py as f64 / ny as f64) / (px as f64 / nx as f64);
-    let around = Grid::in_cell(px, py, ratio).expect("a grid whose double can be counted was checked");
     let mut values = Field::zeros(around);
     values.values_mut().par_chunks_mut(px).enumerate().for_each(|(iy, row)| {
         let dy = iy.min(py - iy);

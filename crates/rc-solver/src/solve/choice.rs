@@ -6,8 +6,7 @@ use std::sync::Arc;
 
 use rc_core::{Boundary, Grid, HeightField, HeightSource};
 
-use super::kernel::OwnedKernel;
-use super::memory::check_uniform;
+use super::memory::{bytes_per_element, check_uniform};
 use super::plan::ChosenMethod;
 use super::shared::Shared;
 use super::{ContactProblem, Plan, SolveError, SolveParams};
@@ -15,9 +14,7 @@ use crate::adaptive::AdaptiveProblem;
 use crate::contract::check_kernel;
 use crate::descent::padded_side;
 use crate::problem::{check_load, check_tolerance};
-use crate::support::Support;
-use crate::uniform::FREE_BYTES_PER_ELEMENT;
-use crate::{AdaptiveError, ErrorBound, Estimate, Method, MethodReason, UNIFORM_BYTES_PER_ELEMENT};
+use crate::{AdaptiveError, ErrorBound, Estimate, Method, MethodReason};
 
 /// Checks the problem and chooses its method.
 pub(super) fn plan<'a>(
@@ -30,7 +27,7 @@ pub(super) fn plan<'a>(
     check_tolerance(bound)?;
     check_grid(&problem.heights)?;
     check_kernel(problem.kernel.get(), problem.heights.grid())?;
-    if is_free(&problem.kernel, problem.heights.grid()) {
+    if problem.boundary() == Boundary::Free {
         check_padded(problem.heights.grid())?;
     }
     let choice = Choice { problem: &problem, params, bound, shared: &shared };
@@ -66,6 +63,7 @@ impl<'a> Choice<'a, '_> {
         let kernel = self.problem.kernel.get();
         match method {
             Method::GaussSeidel if self.problem.hardness.is_finite() => Err(SolveError::Hardness { method }),
+            Method::GaussSeidel if self.is_free() => Err(SolveError::FreeBorders { method }),
             Method::Adaptive | Method::GaussSeidel if !kernel.is_split_by_scale() => {
                 Err(self.not_the_half_space(method))
             }
@@ -106,14 +104,18 @@ impl<'a> Choice<'a, '_> {
         }
     }
 
+    fn boundary(&self) -> Boundary {
+        self.problem.boundary()
+    }
+
     fn is_free(&self) -> bool {
-        is_free(&self.problem.kernel, self.problem.heights.grid())
+        self.boundary() == Boundary::Free
     }
 
     /// The error of a method that does not solve contacts of this solid.
     fn not_the_half_space(&self, method: Method) -> SolveError {
         let kernel = self.problem.kernel.get();
-        if self.is_free() || kernel.uniform_displacement().is_some() {
+        if kernel.uniform_displacement().is_some() {
             SolveError::Solid { method }
         } else {
             SolveError::Kernel { method, kernel: kernel.name() }
@@ -124,7 +126,6 @@ impl<'a> Choice<'a, '_> {
     fn without_split(&self) -> MethodReason {
         let kernel = self.problem.kernel.get();
         match kernel.uniform_displacement() {
-            _ if self.is_free() => MethodReason::FreeBorders,
             Some(_) => MethodReason::Layer,
             None => MethodReason::NoSplitOfKernel { kernel: kernel.name() },
         }
@@ -133,7 +134,7 @@ impl<'a> Choice<'a, '_> {
     /// Prepares the adaptive method, if it fits the problem and the memory.
     fn prepare(&self) -> Result<AdaptiveProblem<'a>, AdaptiveError> {
         let params = self.params.adaptive(self.bound);
-        let ground = self.shared.ground(&self.problem.heights, &params)?;
+        let ground = self.shared.ground(&self.problem.heights, self.boundary(), &params)?;
         AdaptiveProblem::on(ground, self.problem.load(), &params, &self.problem.place)
     }
 
@@ -171,15 +172,14 @@ impl<'a> Choice<'a, '_> {
 
     /// A method that stores every element of the grid, if it fits into memory.
     fn on_grid(&self, method: Method) -> Result<ChosenMethod<'a>, SolveError> {
-        let bytes = if self.is_free() { FREE_BYTES_PER_ELEMENT } else { UNIFORM_BYTES_PER_ELEMENT };
-        check_uniform(self.problem.heights.grid(), bytes, self.params.memory_limit, method)?;
+        check_uniform(
+            self.problem.heights.grid(),
+            bytes_per_element(self.boundary()),
+            self.params.memory_limit,
+            method,
+        )?;
         Ok(if method == Method::GaussSeidel { ChosenMethod::GaussSeidel } else { ChosenMethod::Uniform })
     }
-}
-
-/// Whether the borders of the heights are free.
-fn is_free(kernel: &OwnedKernel<'_>, grid: Grid) -> bool {
-    Support::of(kernel.get(), grid).boundary == Boundary::Free
 }
 
 /// Refuses a grid whose padded grid has too many elements to count.

@@ -2,11 +2,9 @@
 
 use rc_core::Boundary;
 
-use super::memory::uniform_bytes;
+use super::memory::bytes_per_element;
 use super::plan::{ChosenMethod, Plan};
 use crate::ErrorBound;
-use crate::support::Support;
-use crate::uniform::FREE_BYTES_PER_ELEMENT;
 
 /// Processor seconds for each cell of the adaptive method at the default tolerance.
 ///
@@ -74,16 +72,15 @@ impl Cost {
             ChosenMethod::Uniform => {
                 let grid = plan.problem.heights.grid();
                 let elements = grid.len() as f64;
-                let is_free = Support::of(plan.problem.kernel.get(), grid).boundary == Boundary::Free;
-                let (bytes, per_element) = if is_free {
-                    (elements * FREE_BYTES_PER_ELEMENT as f64, SECONDS_PER_FREE_ELEMENT)
-                } else {
-                    (uniform_bytes(grid), SECONDS_PER_UNIFORM_ELEMENT)
+                let boundary = plan.problem.boundary();
+                let per_element = match boundary {
+                    Boundary::Periodic => SECONDS_PER_UNIFORM_ELEMENT,
+                    Boundary::Free => SECONDS_PER_FREE_ELEMENT,
                 };
                 Self {
                     area_fraction: None,
                     elements: Some(elements),
-                    bytes: Some(bytes),
+                    bytes: Some(elements * bytes_per_element(boundary) as f64),
                     cpu_seconds: Some(seconds(per_element * elements)),
                 }
             }

@@ -33,9 +33,15 @@ pub enum SolveError {
         /// The method, and the reason to choose it.
         reason: MethodReason,
     },
-    /// The method is only for the periodic half-space.
-    #[error("the {method} method solves on the periodic half-space only, not on a layer or a patch with free borders")]
+    /// The method is only for the half-space.
+    #[error("the {method} method solves on the half-space only, not on a layer")]
     Solid {
+        /// The method asked for.
+        method: Method,
+    },
+    /// The method is only for a periodic cell.
+    #[error("the {method} method solves on a periodic cell only, not on a patch with free borders")]
+    FreeBorders {
         /// The method asked for.
         method: Method,
     },

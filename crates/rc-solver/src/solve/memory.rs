@@ -1,13 +1,17 @@
 //! Memory of the methods that store every element of the grid.
 
-use rc_core::Grid;
+use rc_core::{Boundary, Grid};
 
 use super::SolveError;
+use crate::uniform::FREE_BYTES_PER_ELEMENT;
 use crate::{Method, UNIFORM_BYTES_PER_ELEMENT};
 
 /// Bytes of a method that stores every element.
-pub(super) fn uniform_bytes(grid: Grid) -> f64 {
-    grid.len() as f64 * UNIFORM_BYTES_PER_ELEMENT as f64
+pub(super) fn bytes_per_element(boundary: Boundary) -> u64 {
+    match boundary {
+        Boundary::Periodic => UNIFORM_BYTES_PER_ELEMENT,
+        Boundary::Free => FREE_BYTES_PER_ELEMENT,
+    }
 }
 
 /// Refuses a method that stores every element if the grid does not fit into memory.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rc_core::{Field, Observer};
 use rc_kernel::PeriodicLove;
 
-use super::memory::check_uniform;
+use super::memory::{bytes_per_element, check_uniform};
 use super::shared::Shared;
 use super::solution::HowSolved;
 use super::{ContactProblem, Solution, SolveError, SolveParams};
@@ -13,7 +13,7 @@ use crate::adaptive::{AdaptiveProblem, AdaptiveSolution, Unsuitable};
 use crate::gauss_seidel::{HalfSpace, solve_gauss_seidel};
 use crate::solution::{GridSolution, Status};
 use crate::uniform::solve_uniform;
-use crate::{ErrorBound, GaussSeidelError, GaussSeidelParams, Method, MethodReason, UNIFORM_BYTES_PER_ELEMENT};
+use crate::{ErrorBound, GaussSeidelError, GaussSeidelParams, Method, MethodReason};
 
 /// A checked contact problem with its method. It is not solved yet.
 pub struct Plan<'a> {
@@ -108,8 +108,8 @@ fn by_adaptive(
     (adaptive, reason): (&AdaptiveProblem<'_>, &MethodReason),
     observer: &dyn Observer,
 ) -> Result<Result<AdaptiveSolution, MethodReason>, SolveError> {
-    let uniform_fits =
-        check_uniform(problem.heights.grid(), UNIFORM_BYTES_PER_ELEMENT, params.memory_limit, Method::Uniform);
+    let bytes = bytes_per_element(problem.boundary());
+    let uniform_fits = check_uniform(problem.heights.grid(), bytes, params.memory_limit, Method::Uniform);
     let may_change = matches!(reason, MethodReason::SmallContact { .. });
     // If the method may not follow memory, a load is solved in the same way on every machine, or refused.
     if !may_change || uniform_fits.is_err() && params.method_follows_memory {

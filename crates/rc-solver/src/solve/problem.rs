@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use rc_comm::Ranks;
-use rc_core::{HeightSource, Kernel};
+use rc_core::{Boundary, HeightSource, Kernel};
 use rc_kernel::Love;
 
 use super::kernel::OwnedKernel;
 use crate::Control;
 use crate::adaptive::{Checkpoint, Place};
 use crate::problem::Load;
+use crate::support::Support;
 
 /// A contact problem: heights, half-space and load.
 ///
@@ -68,6 +69,11 @@ impl<'a> ContactProblem<'a> {
     #[must_use]
     pub fn with_hardness(self, hardness: f64) -> Self {
         Self { hardness, ..self }
+    }
+
+    /// What is beyond the heights.
+    pub(super) fn boundary(&self) -> Boundary {
+        Support::of(self.kernel.get(), self.heights.grid()).boundary
     }
 
     pub(super) fn load(&self) -> Load {

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use rc_core::{Field, HeightSource};
+use rc_core::{Boundary, Field, HeightSource};
 
 use crate::AdaptiveError;
 use crate::adaptive::{AdaptiveParams, Ground};
@@ -18,14 +18,15 @@ pub(super) struct Shared<'a> {
 }
 
 impl<'a> Shared<'a> {
-    /// The heights of `source` as the adaptive method needs them.
+    /// The heights of `source` as the adaptive method needs them, with this boundary.
     pub(super) fn ground(
         &self,
         source: &HeightSource<'a>,
+        boundary: Boundary,
         params: &AdaptiveParams,
     ) -> Result<&Arc<Ground<'a>>, AdaptiveError> {
         if self.ground.get().is_none() {
-            let ground = Arc::new(Ground::new(source.clone(), params)?);
+            let ground = Arc::new(Ground::new(source.clone(), boundary, params)?);
             // Another load may have been faster. Its ground is the same.
             let _ = self.ground.set(ground);
         }

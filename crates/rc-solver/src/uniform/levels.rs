@@ -27,11 +27,11 @@ pub(crate) fn coarsen(heights: &Field, smallest_side: usize) -> Vec<Field> {
 /// The heights on coarser grids of any sizes, for starts on finer grids.
 ///
 /// Each grid is sampled from the one before. Heights below the [`floor`] count as the floor.
-pub(crate) fn coarsen_to(heights: &Field, coarser: impl Iterator<Item = Grid>) -> Vec<Field> {
+pub(crate) fn coarsen_to(heights: &Field, boundary: Boundary, coarser: impl Iterator<Item = Grid>) -> Vec<Field> {
     let floor = floor(heights);
     let mut levels: Vec<Field> = Vec::new();
     for grid in coarser {
-        let next = sample(levels.last().unwrap_or(heights), grid, (floor, Boundary::Periodic));
+        let next = sample(levels.last().unwrap_or(heights), grid, (floor, boundary));
         levels.push(next);
     }
     levels

@@ -29,12 +29,9 @@ pub(super) fn boundary(keys: &ContactKeys, kernel: KernelName) -> Result<Boundar
             refuse("boundary: a layer has no free borders; omit boundary, or layer_thickness")
         }
         (KernelName::Love, None) => match keys.method {
-            Some(method @ (Method::Adaptive | Method::GaussSeidel)) => Err(CliError::input(format_args!(
-                "method: '{method}' solves on a periodic cell only; give uniform for free borders, or omit it"
+            Some(method @ Method::GaussSeidel) => Err(CliError::input(format_args!(
+                "method: '{method}' solves on a periodic cell only; give adaptive or uniform for free borders, or omit it"
             ))),
-            _ if keys.border_level.is_some_and(|level| level > 0) => {
-                refuse("border_level: only the adaptive method, on a periodic cell, has it; omit it")
-            }
             _ => Ok(boundary),
         },
     }

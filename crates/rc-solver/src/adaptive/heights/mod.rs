@@ -17,7 +17,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use rc_core::{Field, Grid, HeightField, HeightSource};
+use rc_core::{Boundary, Field, Grid, HeightField, HeightSource};
 use rc_quadtree::{TILE, put_tile};
 
 use super::memory::BYTES_PER_SAMPLE;
@@ -47,19 +47,30 @@ pub(crate) struct Heights<'a> {
 }
 
 impl<'a> Heights<'a> {
-    /// Prepares the levels from a base grid of these sides to the finest grid.
+    /// Prepares the levels from a base grid of these sides to the finest grid. Heights of opposite free borders are not
+    /// interpolated.
     ///
     /// # Errors
     /// [`ProblemError::Height`] for a height that is not finite. For a surface, its element is one of the grid of
     /// samples.
-    pub(crate) fn new(source: HeightSource<'a>, base: [usize; 2]) -> Result<Self, ProblemError> {
-        let ladder = Ladder::new(base, source.grid());
+    pub(crate) fn with_borders(
+        source: HeightSource<'a>,
+        base: [usize; 2],
+        boundary: Boundary,
+    ) -> Result<Self, ProblemError> {
+        let ladder = (Ladder::new(base, source.grid()), boundary);
         match source {
             HeightSource::Map(map) => Self::of_map(WholeGrid::Borrowed(map), ladder),
             HeightSource::SharedMap(map) => Self::of_map(WholeGrid::Shared(map), ladder),
             HeightSource::Surface { surface, grid } => Self::of_waves(surface, grid, ladder),
             HeightSource::SharedSurface { surface, grid } => Self::of_waves(surface.as_ref(), grid, ladder),
         }
+    }
+
+    /// Prepares the levels of a periodic cell.
+    #[cfg(test)]
+    pub(crate) fn new(source: HeightSource<'a>, base: [usize; 2]) -> Result<Self, ProblemError> {
+        Self::with_borders(source, base, Boundary::Periodic)
     }
 
     /// Bytes of a surface's samples on its whole grid and on coarser ones.
@@ -74,18 +85,23 @@ impl<'a> Heights<'a> {
     }
 
     /// Heights of a surface, band-limited or not.
-    fn of_waves(surface: &dyn HeightField, grid: Grid, ladder: Ladder) -> Result<Self, ProblemError> {
+    fn of_waves(
+        surface: &dyn HeightField,
+        grid: Grid,
+        (ladder, boundary): (Ladder, Boundary),
+    ) -> Result<Self, ProblemError> {
         match is_interpolated(surface, grid, ladder) {
             Some((limit, level)) => Self::of_surface(surface, limit, level, ladder),
-            None => Self::of_map(WholeGrid::new(surface.sample(grid)), ladder),
+            None => Self::of_map(WholeGrid::new(surface.sample(grid)), (ladder, boundary)),
         }
     }
 
-    fn of_map(map: WholeGrid<'a>, ladder: Ladder) -> Result<Self, ProblemError> {
+    fn of_map(map: WholeGrid<'a>, (ladder, boundary): (Ladder, Boundary)) -> Result<Self, ProblemError> {
         let extremes = HeightStatistics::of(&map)?;
         let bounds = Bounds::of_map(&map, &extremes);
         let coarser = (0..ladder.n_levels()).rev().map(|level| ladder.grid(level));
-        let mut grids: Vec<WholeGrid<'a>> = coarsen_to(&map, coarser).into_iter().map(WholeGrid::new).collect();
+        let mut grids: Vec<WholeGrid<'a>> =
+            coarsen_to(&map, boundary, coarser).into_iter().map(WholeGrid::new).collect();
         grids.reverse();
         grids.push(map);
         Ok(Self { ladder, grids, interpolation: None, bounds, extremes })

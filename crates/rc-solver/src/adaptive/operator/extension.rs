@@ -23,7 +23,6 @@ use super::stencil::{Taps, add_short_range};
 use super::tables::Tables;
 use super::tile_operator::{rows_to_tiles, tiles_to_rows};
 use super::tile_values::TileValues;
-use crate::adaptive::ladder::sides_of;
 use crate::adaptive::part::Part;
 use crate::descent::{Pyramid, read_rows, set_shares, write_rows};
 use crate::parallel::{self, Tasks};
@@ -57,7 +56,7 @@ pub(super) struct TileExtension {
 
 impl TileExtension {
     pub(super) fn new(hierarchy: Arc<Hierarchy>) -> Self {
-        let [nx, ny] = sides_of(hierarchy.base());
+        let [nx, ny] = hierarchy.base().period();
         let level = |part: &Part| {
             let zeros = || vec![0.0; part.n_cells()];
             Level { own: zeros(), rest: zeros(), values: zeros(), detail: zeros(), pressure: zeros() }
@@ -129,7 +128,7 @@ impl TileExtension {
         }
         let means = Means::new(&hierarchy, 0, self.levels.first().map(|finer| &*finer.values), of_element);
         set_base(&hierarchy, &mut self.base, |places, cells| means.set(places, cells));
-        let side = self.hierarchy.base().nx();
+        let side = self.hierarchy.base().period()[0];
         let rows = self.pyramid.values_mut().chunks_mut(TILE * side).zip(self.base.chunks(TILE * side));
         parallel::for_each(rows, |(rows, cells)| tiles_to_rows(cells, rows, side));
     }
@@ -203,7 +202,7 @@ impl TileExtension {
 
     /// Applies |q|/2 to u on the base grid.
     fn convolve_base(&mut self, convolution: &mut Convolution<f32>, tables: &Tables<f32>) {
-        let len = rc_fft::BLOCK_ROWS * self.hierarchy.base().nx();
+        let len = rc_fft::BLOCK_ROWS * self.hierarchy.base().period()[0];
         let values = self.pyramid.values();
         write_rows(convolution, &|i, rows| rows.copy_from_slice(&values[i * len..][..rows.len()]));
         convolution.apply_symbol(&tables.base);
@@ -245,7 +244,7 @@ impl TileExtension {
         let finer = self.levels.first().map_or(&*finest, |finer| &finer.detail);
         let finer = TileValues::new(finer, tiles[1].tiles());
         set_base(&hierarchy, &mut self.base, |places, cells| collect(finer, places, cells));
-        let side = hierarchy.base().nx();
+        let side = hierarchy.base().period()[0];
         let rows = self.pyramid.values_mut().chunks_mut(TILE * side).zip(self.base.chunks(TILE * side));
         parallel::for_each(rows, |(rows, cells)| {
             let mut collected = vec![0.0; rows.len()];
@@ -307,7 +306,7 @@ impl TileExtension {
     }
 
     fn base_to_tiles(&mut self) {
-        let side = self.hierarchy.base().nx();
+        let side = self.hierarchy.base().period()[0];
         let rows = self.base.chunks_mut(TILE * side).zip(self.pyramid.values().chunks(TILE * side));
         parallel::for_each(rows, |(cells, rows)| rows_to_tiles(rows, cells, side));
     }

@@ -3,11 +3,11 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use rc_core::Grid;
 use rc_quadtree::{BLOCK_TILES, Elements, TILE, TileSet};
 
 use super::base_part::BasePart;
 use super::coarse::Leaves;
+use crate::adaptive::base::Base;
 use crate::adaptive::ladder::{self, sides_of};
 use crate::adaptive::mesh::Mesh;
 use crate::adaptive::part::{Part, append_around};
@@ -16,9 +16,11 @@ use crate::adaptive::part::{Part, append_around};
 ///
 /// The first level is the whole base grid. The last has the finest elements.
 pub(crate) struct Hierarchy {
-    base: Grid,
+    base: Base,
     reach: Reach,
     mesh: Mesh,
+    /// The elements, on levels that have the operator's period.
+    elements: Elements,
     /// The blocks of a vector: their coarseness and their tiles.
     ///
     /// The coarseness is relative to the finest level.
@@ -48,32 +50,32 @@ impl Hierarchy {
     /// Each has the tiles that filters need. The sides of the base grid must be multiples of 8. The coarsest elements
     /// must be finer than the base grid's. Elements whose sizes differ by more than a factor of 2 must be farther apart
     /// than stencils of the level between them reach.
-    pub(crate) fn new(base: Grid, mesh: impl Into<Mesh>, reach: Reach) -> Self {
-        let mesh = mesh.into();
-        let elements = mesh.elements();
+    pub(crate) fn new(base: impl Into<Base>, mesh: impl Into<Mesh>, reach: Reach) -> Self {
+        let (base, mesh) = (base.into(), mesh.into());
+        let elements = in_period(base, mesh.elements());
         let mut levels = vec![elements.finest().clone()];
-        let [nx, ny] = elements.finest().sides();
-        let finest = base.with_elements(nx, ny).expect("a level of a checked grid");
-        for level in (1..ladder::n_levels(base, finest)).rev() {
-            let sides = sides_of(ladder::doubled(base, level));
+        let [nx, ny] = mesh.elements().finest().sides();
+        let finest = base.grid().with_elements(nx, ny).expect("a level of a checked grid");
+        for level in (1..ladder::n_levels(base.grid(), finest)).rev() {
+            let sides = base.period_of(sides_of(ladder::doubled(base.grid(), level)));
             let parents = mesh.on_coarser(&levels[levels.len() - 1], sides, reach.filter);
             levels.push(match elements.levels().get(levels.len()) {
                 Some(leaves) => parents.with(&leaves.around(reach.filter)),
                 None => parents,
             });
         }
-        levels.push(TileSet::full(sides_of(base)));
+        levels.push(TileSet::full(base.period()));
         levels.reverse();
         debug_assert!(elements.levels().len() < levels.len(), "no elements are on the base grid");
         let pairs = elements.levels().windows(2);
         let leaves = pairs.map(|pair| Leaves::new(pair[1].clone(), &pair[0], reach.stencil)).collect();
         let (levels, base_part) = dealt(levels, &mesh, reach);
-        Self { base, reach, blocks: blocks(&mesh, &levels), mesh, levels, base_part, leaves }
+        Self { base, reach, blocks: blocks(&mesh, &levels), mesh, elements, levels, base_part, leaves }
     }
 
-    /// The elements.
+    /// The elements, on levels that have the operator's period.
     pub(crate) fn elements(&self) -> &Elements {
-        self.mesh.elements()
+        &self.elements
     }
 
     /// The elements, and those of them that this rank has.
@@ -104,7 +106,7 @@ impl Hierarchy {
     }
 
     /// The base grid.
-    pub(crate) fn base(&self) -> Grid {
+    pub(crate) fn base(&self) -> Base {
         self.base
     }
 
@@ -113,11 +115,11 @@ impl Hierarchy {
     /// The finest level may have fewer than twice the elements of the level below it. A strip without elements, along
     /// the seam, then takes the place of the missing ones.
     pub(super) fn halved(self: &Arc<Self>) -> Arc<Self> {
-        let sides = sides_of(ladder::doubled(self.base, self.n_levels()));
-        if self.elements().finest().sides() == sides {
+        let (sides, finest) = (sides_of(ladder::doubled(self.base.grid(), self.n_levels())), self.mesh.finest());
+        if finest.sides() == sides {
             return Arc::clone(self);
         }
-        let tiles = TileSet::new(sides, self.elements().finest().places().to_vec());
+        let tiles = finest.of_same_cell(sides, finest.places().to_vec());
         Arc::new(Self::new(self.base, Elements::uniform(tiles), self.reach))
     }
 
@@ -134,6 +136,17 @@ impl Hierarchy {
         }
         self.elements().levels().get(coarser).map(|tiles| (self.elements().cells(coarser), tiles))
     }
+}
+
+/// The elements, on levels that have the operator's period.
+///
+/// Tiles keep their order, so values keep their places.
+fn in_period(base: Base, elements: &Elements) -> Elements {
+    if !base.is_free() {
+        return elements.clone();
+    }
+    let level = |tiles: &TileSet| TileSet::new(base.period_of(tiles.sides()), tiles.places().to_vec());
+    Elements::new(elements.levels().iter().map(level).collect())
 }
 
 /// The parts of this rank in all levels, coarsest first, and in the base grid.

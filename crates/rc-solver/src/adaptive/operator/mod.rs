@@ -33,4 +33,6 @@ pub(crate) use self::tables::{Prepared, Tables};
 pub(crate) use self::tile_operator::TileOperator;
 
 #[cfg(test)]
+mod free_tests;
+#[cfg(test)]
 mod tests;

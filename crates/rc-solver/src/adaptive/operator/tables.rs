@@ -12,7 +12,9 @@ use super::sizes::{Real, Sizes};
 use super::stencil::Taps;
 use super::transfer::Transfer;
 use super::uneven::Uneven;
+use crate::adaptive::base::Base;
 use crate::adaptive::ladder::{self, has_squares, sides_of};
+use crate::descent::table_of_response;
 
 /// Tables of one operator on levels 0 to K.
 ///
@@ -35,8 +37,11 @@ pub(crate) struct Tables<T> {
 
 impl<T: Real> Tables<T> {
     /// Changes the eigenvalue for constant vectors.
-    pub(super) fn set_mean(&mut self, eigenvalue: f64, base: Grid) {
-        self.base.set_mean(T::rounded(eigenvalue / base.len() as f64));
+    pub(super) fn set_mean(&mut self, eigenvalue: f64, base: Base) {
+        let ([nx, ny], n) = (base.period(), base.grid().len() as f64);
+        let n_period = nx as f64 * ny as f64;
+        // The load on the period is what the heights get.
+        self.base.set_mean(T::rounded(n / n_period * eigenvalue / n_period));
     }
 
     /// The table of elements 2^`coarser` times as large as the finest.
@@ -48,7 +53,7 @@ impl<T: Real> Tables<T> {
 /// The split kernel of one base grid. Tables of any number of levels follow from it.
 pub(crate) struct Prepared<T> {
     sizes: Sizes<T>,
-    base: Grid,
+    base: Base,
     symbol: SymbolTable<T>,
     /// Stencil and transfer of the finest level. Those below are of levels between it and the base grid.
     finest: (Stencil, Transfer<T>),
@@ -73,8 +78,9 @@ const INVERSE_RADIUS: usize = 2;
 
 impl<T: Real> Prepared<T> {
     /// Prepares `v = L p` for Love's squares, and elements up to 2^`n_coarse` times as large.
-    pub(crate) fn displacement(split: &ScaleSplit, base: Grid, n_coarse: usize) -> Self {
-        let cutoff = 0.5 * split.params().cutoff as f64 * base.spacing().min_element();
+    pub(crate) fn displacement(split: &ScaleSplit, base: impl Into<Base>, n_coarse: usize) -> Self {
+        let base = base.into();
+        let cutoff = 0.5 * split.params().cutoff as f64 * base.grid().spacing().min_element();
         let sizes = T::sizes(split.params());
         let transfer = |filter: &Filter| Transfer::new(filter, sizes.taps);
         Self {
@@ -82,7 +88,7 @@ impl<T: Real> Prepared<T> {
             base,
             symbol: remainder_symbol(split, base, cutoff),
             finest: (split.love_stencil(), transfer(&split.love_filter())),
-            between: (level_stencil(split, base), transfer(&split.level_filter())),
+            between: (level_stencil(split, base.grid()), transfer(&split.level_filter())),
             coarse: split.coarse_elements(n_coarse),
             scale: Scale::Side,
             remainder_curvature: split.remainder_curvature(cutoff),
@@ -91,11 +97,14 @@ impl<T: Real> Prepared<T> {
     }
 
     /// Prepares about |q|/2 as a preconditioner: the inverse of L except for the mean.
-    pub(crate) fn inverse(split: &ScaleSplit, base: Grid) -> Self {
+    pub(crate) fn inverse(split: &ScaleSplit, base: impl Into<Base>) -> Self {
+        let base = base.into();
         let sizes = T::sizes(split.params());
         let part = (split.inverse_stencil(INVERSE_RADIUS), Transfer::new(&split.level_filter(), sizes.taps));
-        let symbol =
-            SymbolTable::new(base, |kx: usize, ky: usize| PI * (kx as f64).hypot(ky as f64 / base.cell_ratio()));
+        let (periodic, [along_x, _]) = (base.periodic_grid(), base.periods_per_side());
+        let symbol = SymbolTable::new(periodic, |kx: usize, ky: usize| {
+            PI * (kx as f64).hypot(ky as f64 / periodic.cell_ratio()) / along_x
+        });
         Self {
             sizes,
             base,
@@ -124,9 +133,9 @@ impl<T: Real> Prepared<T> {
 
     /// Tables for a finest level of this whole grid.
     pub(crate) fn tables(&self, finest: Grid) -> Tables<T> {
-        let n_levels = ladder::n_levels(self.base, finest);
+        let n_levels = ladder::n_levels(self.base.grid(), finest);
         // A preconditioner halves every level.
-        let is_uneven = matches!(self.scale, Scale::Side) && !ladder::is_even(self.base, finest);
+        let is_uneven = matches!(self.scale, Scale::Side) && !ladder::is_even(self.base.grid(), finest);
         let below = is_uneven.then(|| self.below_uneven(finest, n_levels));
         let (mut levels, mut sum) = (Vec::with_capacity(n_levels), 0.0);
         for level in 1..=n_levels {
@@ -141,13 +150,14 @@ impl<T: Real> Prepared<T> {
         } else {
             self.symbol.clone()
         };
-        // A constant gives zero (Eq. 3). The base grid subtracts what the stencils add to it.
-        let of_mean = match self.scale {
-            Scale::Side => -sum,
+        match self.scale {
+            // With free borders a uniform pressure displaces.
+            Scale::Side if self.base.is_free() => {}
+            // A constant gives zero (Eq. 3). The base grid subtracts what the stencils add to it.
+            Scale::Side => base.set_mean(T::rounded(-sum / self.base.grid().len() as f64)),
             // Its stencils act on differences between levels, which are zero for a constant.
-            Scale::Inverse => 0.0,
-        };
-        base.set_mean(T::rounded(of_mean / self.base.len() as f64));
+            Scale::Inverse => base.set_mean(T::rounded(0.0)),
+        }
         let uneven = is_uneven.then(|| self.uneven(finest, n_levels));
         Tables { sizes: self.sizes, base, levels, uneven, coarse: self.coarse_tables(n_levels) }
     }
@@ -161,14 +171,15 @@ impl<T: Real> Prepared<T> {
     ///
     /// The finest level does not have twice as many elements. The two cutoffs differ by less than a factor of two.
     fn below_uneven(&self, finest: Grid, n_levels: usize) -> Stencil {
-        let spacing = ladder::doubled(self.base, n_levels - 1).spacing();
+        let spacing = ladder::doubled(self.base.grid(), n_levels - 1).spacing();
         let inner = self.cutoff() * finest.spacing().min_element() / spacing.min_element();
         self.split.uneven_level_stencil(inner, (spacing / spacing.min_element()).into())
     }
 
     /// The transfer to an uneven finest level.
     fn uneven(&self, finest: Grid, n_levels: usize) -> Uneven<T> {
-        let (fine, coarse) = (sides_of(finest), sides_of(ladder::doubled(self.base, n_levels - 1)));
+        let levels = [sides_of(finest), sides_of(ladder::doubled(self.base.grid(), n_levels - 1))];
+        let [fine, coarse] = levels.map(|sides| self.base.period_of(sides));
         let filters = [0, 1].map(|axis| self.split.uneven_filter(coarse[axis] as f64 / fine[axis] as f64));
         Uneven::new(&filters, fine, coarse)
     }
@@ -177,7 +188,7 @@ impl<T: Real> Prepared<T> {
     ///
     /// The level's grid is the doubled base grid, unless another `grid` is given.
     fn factor(&self, level: usize, grid: Option<Grid>) -> f64 {
-        let grid = grid.unwrap_or_else(|| ladder::doubled(self.base, level));
+        let grid = grid.unwrap_or_else(|| ladder::doubled(self.base.grid(), level));
         match self.scale {
             Scale::Side => grid.spacing().min_element(),
             Scale::Inverse => grid.nx() as f64,
@@ -199,8 +210,16 @@ impl<T: Real> Prepared<T> {
     }
 }
 
-/// The remainder of a cutoff, in λ, on the base grid.
-fn remainder_symbol<T: Real>(split: &ScaleSplit, base: Grid, cutoff: f64) -> SymbolTable<T> {
+/// The remainder of a cutoff, in λ, on the base grid: without images where borders are free.
+fn remainder_symbol<T: Real>(split: &ScaleSplit, base: Base, cutoff: f64) -> SymbolTable<T> {
+    if base.is_free() {
+        let (spacing, reach) = (base.grid().spacing(), base.period().map(|n| n / 2 + 1));
+        return table_of_response(base.periodic_grid(), reach, &|ix, iy| {
+            let r = (spacing.x * ix as f64).hypot(spacing.y * iy as f64);
+            spacing.x * spacing.y * split.remainder(r, cutoff)
+        });
+    }
+    let base = base.grid();
     SymbolTable::new(base, |kx: usize, ky: usize| {
         let q = 2.0 * PI * (kx as f64).hypot(ky as f64 / base.cell_ratio());
         if q == 0.0 { 0.0 } else { split.remainder_symbol(q, cutoff) }

@@ -9,6 +9,7 @@ use rc_kernel::{PeriodicLove, ScaleSplit, SplitParams};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, quarters};
 
 use super::*;
+use crate::adaptive::base::Base;
 use crate::adaptive::roughness::roughness;
 use crate::adaptive::split::GapSplit;
 use crate::descent::PreconditionedOperator;
@@ -54,9 +55,18 @@ fn tiles_of_spots(side: usize, radii: [f64; 2], seed: u64) -> TileSet {
 }
 
 fn apply<T: Real + Into<f64>>(split: &ScaleSplit, base: usize, elements: Elements, p: &[f64]) -> Vec<f64> {
+    apply_above::<T>(split, Grid::square(base).expect("a grid").into(), elements, p)
+}
+
+pub(super) fn apply_above<T: Real + Into<f64>>(
+    split: &ScaleSplit,
+    base: Base,
+    elements: Elements,
+    p: &[f64],
+) -> Vec<f64> {
     let n_coarse = elements.levels().len() - 1;
-    let base = Grid::square(base).expect("a grid");
-    let finest = Grid::square(elements.finest().sides()[0]).expect("a grid");
+    let [nx, ny] = elements.finest().sides();
+    let finest = base.grid().with_elements(nx, ny).expect("a grid");
     let prepared = Prepared::<T>::displacement(split, base, n_coarse);
     let hierarchy = Arc::new(Hierarchy::new(base, elements, prepared.reach()));
     let tables = prepared.tables(finest);

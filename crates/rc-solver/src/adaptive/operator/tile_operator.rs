@@ -6,7 +6,6 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use pulp::Arch;
-use rc_core::Grid;
 use rc_fft::{BLOCK_ROWS, Convolution, Instructions};
 use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE};
 
@@ -19,6 +18,7 @@ use super::passes::{
 use super::sizes::Real;
 use super::tables::Tables;
 use super::tile_values::TileValues;
+use crate::adaptive::base::Base;
 use crate::adaptive::part::Part;
 use crate::descent::{BlockLayout, read_rows, write_rows};
 use crate::parallel::{self, Tasks};
@@ -45,7 +45,7 @@ impl<T: Real> TileOperator<T> {
                 Instructions::Best => Arch::new(),
                 Instructions::Scalar | Instructions::Sse => Arch::Scalar,
             },
-            convolution: Convolution::new(hierarchy.base()),
+            convolution: Convolution::new(hierarchy.base().periodic_grid()),
             source: Vec::new(),
             densities: Vec::new(),
             displacements: Vec::new(),
@@ -86,11 +86,11 @@ impl<T: Real> TileOperator<T> {
     }
 
     /// The base grid.
-    pub(crate) fn base(&self) -> Grid {
+    pub(crate) fn base(&self) -> Base {
         self.hierarchy.base()
     }
 
-    /// The smooth remainder: the displacement of the cells of the base grid.
+    /// The smooth remainder: the displacement of the cells of the base grid's period.
     ///
     /// It is that of the last [`TileOperator::apply`], tile by tile, row-major.
     pub(crate) fn base_displacement(&self) -> &[T] {
@@ -169,7 +169,7 @@ impl<T: Real> TileOperator<T> {
 
     /// Computes the base grid: its density from level 1, its convolution, its displacement as tiles.
     fn convolve_base(&mut self, tables: &Tables<T>) {
-        let (side, arch, levels) = (self.hierarchy.base().nx(), self.arch, &self.hierarchy.levels);
+        let (side, arch, levels) = (self.hierarchy.base().period()[0], self.arch, &self.hierarchy.levels);
         let finer = TileValues::new(self.densities.get(1).unwrap_or(&self.source), levels[1].tiles());
         let n_levels = self.hierarchy.n_levels();
         let tiles_per_block = BLOCK_ROWS / TILE * (side / TILE);

@@ -5,18 +5,19 @@ use std::sync::Arc;
 
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rc_core::{DVec2, Field, Grid, HeightSource, Kernel, Operator, Silent};
+use rc_core::{Boundary, DVec2, Field, Grid, HeightSource, Kernel, Operator, Silent};
 use rc_fft::SymbolTable;
-use rc_kernel::{Love, PeriodicLove};
+use rc_kernel::{FreeLove, Love, PeriodicLove};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet};
 
 use super::*;
 use crate::Control;
+use crate::adaptive::base::Base;
 use crate::adaptive::gap_operator::{GapOperator, PreparedGap};
 use crate::adaptive::ladder::sides_of;
 use crate::adaptive::nested_iteration::NestedSolution;
 use crate::adaptive::operator::Hierarchy;
-use crate::adaptive::{AdaptiveParams, AdaptiveProblem};
+use crate::adaptive::{AdaptiveParams, AdaptiveProblem, Ground, Place};
 use crate::descent::{BlockOperator, SymbolOperator, read_blocks, write_blocks};
 use crate::operator::UniformOperator;
 use crate::params::IterationParams;
@@ -152,6 +153,7 @@ fn rough(grid: Grid, waves: i32, hurst: f64, rng: &mut impl Rng) -> Field {
 /// A map with its base grid, load and tolerance.
 struct Scene<'a> {
     map: &'a Field,
+    boundary: Boundary,
     /// Number of elements of the base grid along x. `None` stands for the method's own choice.
     base: Option<usize>,
     control: Control,
@@ -160,7 +162,7 @@ struct Scene<'a> {
 
 /// A solution with the exact displacement of its pressure on the whole grid.
 struct Audited {
-    base: Grid,
+    base: Base,
     problem: Problem,
     solved: NestedSolution,
     pressure: Vec<f64>,
@@ -176,8 +178,9 @@ impl Scene<'_> {
             base_side: self.base,
             memory_limit: None,
         };
-        let source = HeightSource::Map(self.map);
-        let problem = AdaptiveProblem::new(source, self.control, &params).expect("a problem");
+        let ground = Ground::new(HeightSource::Map(self.map), self.boundary, &params).expect("heights");
+        let place = Place::default();
+        let problem = AdaptiveProblem::on(&Arc::new(ground), self.control.into(), &params, &place).expect("a problem");
         let solver = problem.first_solver();
         let solved = problem.solve_levels(&solver, solver.prepare(solver.begin(&Silent), &Silent), &Silent);
         let grid = self.map.grid();
@@ -189,8 +192,9 @@ impl Scene<'_> {
             }
         }
         let mut displacement = vec![0.0; grid.len()];
-        UniformOperator::new(grid, &Love).apply(&pressure, &mut displacement, &mut []);
-        Audited { base: problem.ground.heights.base().grid(), problem: problem.problem, solved, pressure, displacement }
+        let kernel: &dyn Kernel = if self.boundary == Boundary::Free { &FreeLove } else { &Love };
+        UniformOperator::new(grid, kernel).apply(&pressure, &mut displacement, &mut []);
+        Audited { base: problem.ground.kernels.base(), problem: problem.problem, solved, pressure, displacement }
     }
 }
 
@@ -200,7 +204,7 @@ impl Audited {
     }
 
     /// Gives `look` the certifying operator, after an application to the pressure, and its displacement.
-    fn certified<R>(&self, base: Grid, look: impl FnOnce(&dyn GapOperator, &[f64]) -> R) -> R {
+    fn certified<R>(&self, base: Base, look: impl FnOnce(&dyn GapOperator, &[f64]) -> R) -> R {
         let level = &self.solved.level;
         let prepared = PreparedGap::new(self.solved.splits.certified, base, 0);
         let hierarchy = Arc::new(Hierarchy::new(base, level.elements.clone(), prepared.reach()));
@@ -248,7 +252,7 @@ fn for_any_grid(bounds: &[ErrorBound], mut check: impl FnMut(&str, &Scene<'_>, &
         for load in [0.003, 0.03, 0.3] {
             for &bound in bounds {
                 let control = Control::MeanPressure(1e-3 * load * f64::from(waves));
-                let scene = Scene { map: &map, base: None, control, bound };
+                let scene = Scene { map: &map, boundary: Boundary::Periodic, base: None, control, bound };
                 let audited = scene.audited();
                 check(&format!("{grid}, load {load}, {bound}"), &scene, &audited);
                 let scene = Scene { control: Control::Penetration(audited.approach(&map)), ..scene };
@@ -277,11 +281,36 @@ fn for_each_scene(bounds: &[ErrorBound], mut check: impl FnMut(&str, &Scene<'_>,
         for load in [0.003, 0.03, 0.3] {
             for &bound in bounds {
                 let base = Some((map.grid().nx() / 4).clamp(32, 64));
-                let scene = Scene { map, base, control: Control::MeanPressure(load * slope), bound };
+                let control = Control::MeanPressure(load * slope);
+                let scene = Scene { map, boundary: Boundary::Periodic, base, control, bound };
                 let audited = scene.audited();
                 check(&format!("{name}, load {load}, {bound}"), &scene, &audited);
                 let scene = Scene { control: Control::Penetration(audited.approach(map)), ..scene };
                 check(&format!("{name}, its penetration, {bound}"), &scene, &scene.audited());
+            }
+        }
+    }
+}
+
+/// Patches whose borders do not meet, on grids that halve and on others.
+fn for_each_patch(bounds: &[ErrorBound], mut check: impl FnMut(&str, &Scene<'_>, &Audited)) {
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let grids = [([256, 256], 16), ([256, 128], 24), ([250, 250], 12), ([300, 207], 16)];
+    for ([nx, ny], waves) in grids {
+        let grid = Grid::in_cell(nx, ny, ny as f64 / nx as f64).expect("a grid");
+        let mut map = rough(grid, waves, 0.7, &mut rng);
+        for (i, h) in map.values_mut().iter_mut().enumerate() {
+            let at = grid.centre(i % nx, i / nx);
+            *h += 5e-3 * (at.x + 0.5 * at.y) - 2e-3 * at.length_squared();
+        }
+        for load in [0.003, 0.1] {
+            for &bound in bounds {
+                let control = Control::MeanPressure(1e-3 * load * f64::from(waves));
+                let scene = Scene { map: &map, boundary: Boundary::Free, base: None, control, bound };
+                let audited = scene.audited();
+                check(&format!("a patch of {grid}, load {load}, {bound}"), &scene, &audited);
+                let scene = Scene { control: Control::Penetration(audited.approach(&map)), ..scene };
+                check(&format!("a patch of {grid}, load {load}, its penetration, {bound}"), &scene, &scene.audited());
             }
         }
     }
@@ -301,6 +330,13 @@ fn an_audit_by_fourier_transform_finds_no_more_than_is_claimed() {
 fn an_audit_on_any_grid_finds_no_more_than_is_claimed() {
     let bounds = [ENERGY[0], RELATIVE[0], RELATIVE[1]];
     for_any_grid(&bounds, |name, scene, audited| println!("{}", audit(name, scene, audited)));
+}
+
+#[test]
+#[expect(clippy::print_stdout, reason = "docs/measurements-adaptive.md has the numbers")]
+fn an_audit_of_patches_finds_no_more_than_is_claimed() {
+    let bounds = [ENERGY[0], RELATIVE[0], RELATIVE[1]];
+    for_each_patch(&bounds, |name, scene, audited| println!("{}", audit(name, scene, audited)));
 }
 
 /// Asserts that the claims hold, and returns how close they are.
@@ -328,30 +364,30 @@ fn the_smooth_displacement_is_as_exact_as_the_others() {
     let mut places = 0;
     for_each_scene(&ENERGY, |name, scene, audited| {
         let side = scene.map.grid().nx();
-        let base = audited.base;
+        let base = audited.base.grid();
         let pressed: Vec<(DVec2, f64)> = (0..side * side)
             .filter(|&i| audited.pressure[i] > 0.0)
             .map(|i| (DVec2::new((i % side) as f64 + 0.5, (i / side) as f64 + 0.5) / side as f64, audited.pressure[i]))
             .collect();
-        let reach = 0.5 * audited.solved.splits.certified.params.cutoff as f64 / audited.base.nx() as f64;
+        let reach = 0.5 * audited.solved.splits.certified.params.cutoff as f64 / base.nx() as f64;
         let bound = audited.error().displacement;
-        let smooth = audited.certified(base, |operator, _| operator.base_displacement());
+        let smooth = audited.certified(audited.base, |operator, _| operator.base_displacement());
         let mut far = 0;
         for (cell, v) in smooth.iter().enumerate().step_by(37) {
-            let per_side = audited.base.nx() / TILE;
+            let per_side = base.nx() / TILE;
             let (tile, cell) = (cell / CELLS, cell % CELLS);
             let centre = DVec2::new(
                 (tile % per_side * TILE + cell % TILE) as f64 + 0.5,
                 (tile / per_side * TILE + cell / TILE) as f64 + 0.5,
-            ) / audited.base.nx() as f64;
+            ) / base.nx() as f64;
             let distance = |at: &DVec2| (centre - *at - (centre - *at).round()).length();
             // Nearer to a pressure, the short-range parts are missing. They are not negative.
             if pressed.iter().all(|(at, _)| distance(at) > reach) {
                 let sum: f64 =
                     pressed.iter().map(|(at, p)| p * exact.coefficient(centre - *at, 0.5 / side as f64)).sum();
-                let spacing = 1.0 / audited.base.nx() as f64;
+                let spacing = 1.0 / base.nx() as f64;
                 let value = |dx: i64, dy: i64| {
-                    let n = audited.base.nx() as i64;
+                    let n = base.nx() as i64;
                     let place = |i: usize, d: i64| (i as i64 + d).rem_euclid(n) as usize;
                     let (x, y) = (tile % per_side * TILE + cell % TILE, tile / per_side * TILE + cell / TILE);
                     let (x, y) = (place(x, dx), place(y, dy));
