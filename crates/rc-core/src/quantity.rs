@@ -63,7 +63,7 @@ pub fn label(value: f64) -> String {
     digits(value, 4).replace('-', "\u{2212}")
 }
 
-/// The largest number of 1, 2 or 5 times a power of ten not above `limit`.
+/// Rounds `limit` down to 1, 2 or 5 times a power of ten.
 ///
 /// `limit` must be positive.
 #[must_use]

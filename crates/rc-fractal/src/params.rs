@@ -13,7 +13,7 @@ pub const MAX_WAVES: usize = 4096;
 pub enum Truncation {
     /// |k| ≤ N, "Fourier components up to q1 = N q0" (below Eq. 1).
     ///
-    /// This is the isotropic choice, and the default of this project.
+    /// This set is isotropic. It is the default of this project.
     Disc,
     /// max(|kx|, |ky|) ≤ N, the double sum of Eq. 10 as written.
     ///
@@ -60,7 +60,7 @@ pub struct SpectrumParams {
     pub hurst: f64,
     /// Wavenumber `k_r` in [1, N] (waves per cell) below which the spectrum is flat.
     ///
-    /// 1 means no plateau.
+    /// 1 means that no part of the spectrum is flat.
     pub roll_off: f64,
     /// Wavenumber in [1, N] (waves per cell) below which there are no waves.
     ///

@@ -51,7 +51,7 @@ pub enum SampleError {
 impl Surface {
     /// The realisation of a spectrum (Eq. 10 to 14).
     ///
-    /// The same parameters give the same surface, bit by bit, for any number of threads.
+    /// The same parameters give bitwise the same surface, for any number of threads.
     ///
     /// The phase and the Rayleigh factor of a wave depend only on (seed, kx, ky). So surfaces with one seed and
     /// different N, roll-off, truncation or kind of amplitude have the same phases of their common waves.

@@ -8,7 +8,7 @@ use crate::{Love, love_rectangle_displacement};
 ///
 /// The pressure is uniform on each element of a finite patch. The displacement is taken at element centres and is zero
 /// far away. The response between two elements is [`love_displacement`](crate::love_displacement), or its form for
-/// rectangles. Each value is computed once. The solver sums the responses by a transform on a padded grid.
+/// rectangles. Each value is computed once. The solver sums the responses by a Fourier transform on a padded grid.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FreeLove;
 

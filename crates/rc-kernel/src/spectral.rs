@@ -6,8 +6,8 @@ use rc_core::{EdgeBias, Grid, Kernel, Symbol};
 
 /// The symbol of the continuous half-space, `2/(E* |q|)`, without aliases.
 ///
-/// It is evaluated at the wavenumbers of the grid, and exact for band-limited pressures. Results can be compared with
-/// other codes digit by digit.
+/// The symbol is evaluated at the wavenumbers of the grid, and exact for band-limited pressures. Results can be
+/// compared digit by digit with codes that use the same symbol.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Spectral;
 

@@ -15,9 +15,9 @@ pub const CELLS: usize = TILE * TILE;
 
 /// The tiles of one level, sorted along the Morton curve.
 ///
-/// Neighbours are thus near in memory. A value of the level is at `tile · 64 + row · 8 + column`. The index of a tile
-/// is looked up in a table with 16 bytes for every 64 possible tiles, or 1/256 byte for each cell of the level. All
-/// other memory grows with the contact only.
+/// Neighbours are therefore near in memory. A value of the level is at `tile · 64 + row · 8 + column`. The index of a
+/// tile is looked up in a table with 16 bytes for every 64 possible tiles, or 1/256 byte for each cell of the level.
+/// All other memory grows with the contact only.
 ///
 /// Where a side is not a multiple of 8, the last tiles along it extend beyond the level. Cells there are not part of
 /// the level. [`crate::gather`] and [`Elements::around`](crate::Elements::around) continue the level periodically and

@@ -1,14 +1,14 @@
-//! The certificate: how far a pressure is from solving the contact problem.
+//! The certificate: bounds on the error of a pressure.
 
 use rc_core::Boundary;
 
 use crate::problem::Problem;
 use crate::{Control, ErrorBound};
 
-/// Bounds on how far a pressure is from solving the discrete contact problem.
+/// Bounds on the error of a pressure in the discrete contact problem.
 ///
-/// They come from a fresh application of L on the returned pressure. For the adaptive method they include the error of
-/// its operator, which is measured with a margin.
+/// The bounds come from a fresh application of the elastic operator L on the returned pressure. For the adaptive method
+/// they include the error of its operator, which is measured with a margin.
 ///
 /// g is the gap, shifted so that its pressure-weighted mean is 0. H is h_max - h_min. On a flat patch with free borders
 /// h_max - h_min is 0, and H is the penetration.

@@ -14,8 +14,8 @@ pub struct ContactSpot {
     pub elements: usize,
     /// Ratio of its area to the area of the cell.
     ///
-    /// It is located from the edges between the centres of elements, as [`ContactArea::fraction`] is. The spots add up
-    /// to the contact area. A spot of one element may be off by half of it.
+    /// Edges are located between the centres of elements, as for [`ContactArea::fraction`]. The areas of all spots add
+    /// up to the contact area. The area of a spot of one element may be wrong by half an element.
     pub area_fraction: f64,
     /// Length of its edge, in λ ([`ContactArea::perimeter`]).
     pub perimeter: f64,
@@ -38,7 +38,7 @@ impl ContactSpot {
         Self::with_boundary(pressure, gap, bias, Boundary::Periodic)
     }
 
-    /// The spots of a contact on heights with this `boundary`, as [`ContactSpot::all`].
+    /// The spots of a contact, as [`ContactSpot::all`], for heights with this `boundary`.
     ///
     /// Spots are not connected across free borders.
     ///
@@ -49,7 +49,7 @@ impl ContactSpot {
         Self::with_hardness([pressure, gap], f64::INFINITY, bias, boundary)
     }
 
-    /// All contact spots of a solution with a `hardness`, in E*.
+    /// The spots of a contact whose pressures are at most `hardness` (in E*).
     ///
     /// Edges of plastic elements are located as for the contact area. The gap of plastic elements is that of contact
     /// minus the overlap that plastic flow has removed.

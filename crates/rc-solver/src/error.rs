@@ -15,10 +15,10 @@ pub enum ProblemError {
         /// Elements of the operator.
         n_elements: usize,
     },
-    /// The operator is not one of an elastic half-space.
+    /// The operator does not describe an elastic half-space.
     #[error("the operator is not that of a half-space: {0}")]
     NotElastic(OperatorFault),
-    /// The kernel is not one of an elastic half-space.
+    /// The kernel does not describe an elastic half-space.
     #[error(
         "the symbol of the kernel {kernel} at the wave ({kx}, {ky}) of {grid} elements is {value}; it must be {wanted}"
     )]
@@ -72,7 +72,7 @@ pub enum ProblemError {
         /// Hardness given, in E*.
         value: f64,
     },
-    /// The mean pressure is not below the hardness, which no pressure exceeds.
+    /// The mean pressure is not below the hardness, the maximum pressure.
     #[error("the mean pressure must be below the hardness, {hardness}, not {value} (in units of E*)")]
     TooSoft {
         /// Mean pressure given, in E*.
@@ -123,7 +123,7 @@ pub enum ProblemError {
 
 /// A fault of an operator.
 ///
-/// `a` and `b` are pressures without a pattern, between -1/2 and 1/2, in E*.
+/// `a` and `b` are irregular pressures between -1/2 and 1/2, in E*.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum OperatorFault {

@@ -11,7 +11,7 @@ use crate::StressDistribution;
 
 /// The density of the gap over the whole nominal area, on bins.
 ///
-/// Contact, where the gap is zero, is not in it.
+/// It does not include contact, where the gap is zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GapDistribution {
     /// Ends of the bins, in the unit of the gap.

@@ -1,11 +1,14 @@
 //! The adhesionless contact problem on a periodic half-space.
 //!
-//! Find p ≥ 0 on the cell with the gap `g = v - (h - h_max + Δ) ≥ 0`, `p·g = 0` and `v = L p` (Eq. 3-4). If the mean
-//! pressure σ0 is given, Δ is its multiplier. If the penetration Δ is given, σ0 is a result.
+//! Find a pressure p ≥ 0 with the displacement `v = L p` (Eq. 3-4). The gap `g = v - (h - h_max + Δ)` must satisfy g ≥
+//! 0 and `p·g = 0`. h_max is the maximum height. If the mean pressure σ0 is given, the penetration Δ is the Lagrange
+//! multiplier of this constraint. If Δ is given, σ0 is a result.
 //!
 //! [`solve`] solves this problem. It chooses between an adaptive mesh, whose elements follow the contact, and the
-//! uniform grid. [`Method`] names these two and the paper's own procedure. [`ContactProblem`] takes other kernels,
-//! observers and plans. [`rc_core`] has the conventions and units.
+//! uniform grid. [`Method`] names these two and the paper's own procedure. [`ContactProblem`] also takes other kernels
+//! and observers, and can make a plan without solving. [`rc_core`] has the conventions and units.
+//!
+//! A solve uses the thread pool of rayon that is current: the global one, or the pool in whose `install` it is called.
 //!
 //! ```
 //! use std::f64::consts::{PI, TAU};

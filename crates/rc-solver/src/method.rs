@@ -9,15 +9,15 @@ use rc_core::quantity::digits;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Method {
-    /// Preconditioned conjugate gradients on elements that follow the contact.
+    /// Preconditioned conjugate gradients on elements near contact only.
     ///
-    /// Work and memory grow with the contact and not with the cell.
+    /// Work and memory grow with the contact area, not with the area of the cell.
     Adaptive,
     /// Preconditioned conjugate gradients on all elements of the grid.
     Uniform,
     /// The procedure of the paper (Sec. 2): Gauss-Seidel on an adaptive mesh.
     ///
-    /// It costs as much as a dense matrix.
+    /// Its work and memory are those of a dense matrix.
     GaussSeidel,
 }
 
@@ -59,7 +59,7 @@ pub enum MethodReason {
     },
     /// Contact is so scattered that the uniform grid is the cheaper one.
     ///
-    /// The base grid, the coarsest of the adaptive method, shows the scattered contact.
+    /// The adaptive method finds this on its base grid, a coarse grid that it stores in full.
     ScatteredContact {
         /// Tiles near contact, in percent of all.
         percent: f64,
@@ -71,7 +71,7 @@ pub enum MethodReason {
     },
     /// The base grid of the adaptive method exceeds the memory limit.
     AdaptiveDoesNotFit,
-    /// An operator of the caller is known only on its grid.
+    /// The caller's operator is known only on one grid.
     OwnOperator,
     /// The kernel has no split by scale.
     NoSplitOfKernel {

@@ -15,7 +15,7 @@ pub struct Observables {
     pub rms_pressure: f64,
     /// Root mean square pressure over the cell, corrected: the best estimate.
     ///
-    /// The correction is the part that elements at edges of contacts miss ([`ContactArea::missing_square`]).
+    /// The correction adds the part of ⟨p²⟩ that elements at contact edges miss ([`ContactArea::missing_square`]).
     pub rms_pressure_corrected: f64,
     /// Estimated discretisation error of `rms_pressure_corrected`.
     ///

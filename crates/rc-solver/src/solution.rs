@@ -57,10 +57,10 @@ pub struct LevelValues {
 pub struct SolveInfo {
     /// Residuals from a fresh application of L on the returned pressure.
     pub certificate: Certificate,
-    /// The part of [`Certificate::energy`] that the iteration has left.
+    /// The part of [`Certificate::energy`] that comes from the iteration.
     ///
-    /// It is computed from the gap of the operator, without the bound on the error of the operator. Errors of area and
-    /// rms pressure were measured to be less than its square.
+    /// It is computed without the bound on the error of the operator. Errors of area and rms pressure were measured to
+    /// be less than its square.
     pub iteration_error: f64,
     /// Mean pressure σ0, in E*.
     pub mean_pressure: f64,

@@ -1,4 +1,4 @@
-//! When a solve is good enough: the user's tolerance, and the bound on the certificate.
+//! The user's tolerance, and the bound on the certificate.
 //!
 //! The bound follows from the tolerance.
 
@@ -13,7 +13,7 @@ pub enum Tolerance {
     /// Bound on [`crate::Certificate::complementarity`] and [`crate::Certificate::penetration`].
     ///
     /// They are relative to the peak-to-valley height. The bound is a number between [`Tolerance::SMALLEST`] and 1.
-    /// Other programs mean this by a tolerance. One deep point in the heights loosens it.
+    /// Many other programs use such a tolerance. A single deep point in the heights makes it less strict.
     Relative(f64),
     /// An energy error well below the error of the discretisation.
     ///
@@ -24,13 +24,13 @@ pub enum Tolerance {
 impl Tolerance {
     /// The smallest relative tolerance that can be certified.
     ///
-    /// Below it, the rounding of L p in double precision decides.
+    /// Below it, rounding of L p in double precision is larger than the tolerance.
     pub const SMALLEST: f64 = 1e-13;
 
     /// The smallest energy error that can be certified. Rounding bounds its square.
     pub const SMALLEST_ENERGY: f64 = 1e-5;
 
-    /// The tolerance of the default: an energy error of 1e-2.
+    /// The default tolerance: an energy error of 1e-2.
     ///
     /// The iteration goes to three tenths of the bound. Area, rms pressure and penetration are then those of the
     /// discrete problem to about 1e-5.
@@ -96,8 +96,9 @@ impl ErrorBound {
 
     /// The overlap of the computed gap at which an iteration ends.
     ///
-    /// An energy error goes to [`AIM`] of its bound. Area, pressure and penetration have errors of its square, which
-    /// two or three more iterations reduce to a tenth. The rest of the bound is left to the error of the operator.
+    /// For a bound on the energy error, the iteration continues to [`AIM`] times the bound. Area, pressure and
+    /// penetration have errors of its square, which two or three more iterations reduce to a tenth. The rest of the
+    /// bound is left to the error of the operator.
     pub(crate) fn aim(self) -> f64 {
         match self {
             Self::Energy(value) => (AIM * value).powi(2),

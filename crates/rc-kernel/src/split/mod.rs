@@ -139,8 +139,8 @@ impl ScaleSplit {
 
     /// Bound of the second derivatives of the remainder's displacement along x and along y.
     ///
-    /// It is for pressures between 0 and 1 and a cutoff `c`. It limits how much a value between two points of a grid
-    /// differs from linear interpolation.
+    /// The bound holds for pressures between 0 and 1 and a cutoff `c`. It limits the error of linear interpolation
+    /// between two points of a grid.
     #[must_use]
     pub fn remainder_curvature(&self, c: f64) -> f64 {
         self.window.curvature() / (std::f64::consts::PI * c)

@@ -1,6 +1,6 @@
-//! The data that a solved level leaves for the next one.
+//! The start values of a level, for a checkpoint.
 //!
-//! They are kept outside of the process.
+//! They come from the solved level before it, and are stored outside of the process.
 
 use rc_comm::{Packed, Ranks};
 use rc_core::{Boundary, Grid};
@@ -10,18 +10,18 @@ use super::mesh::Mesh;
 use super::prolongation::MeshStart;
 use crate::solution::{LevelInfo, LevelValues};
 
-/// Bytes that outlive the process, usually a file.
+/// Storage that outlives the process, usually a file.
 ///
-/// Over ranks, the first one writes and all read.
+/// If several ranks share a solve, the first rank writes and all ranks read.
 pub trait Checkpoint: Send + Sync {
-    /// Reads `len` of the kept bytes, from `offset` on.
+    /// Reads `len` of the stored bytes, from `offset` on.
     ///
-    /// `None` if there are fewer, or if nothing was kept.
+    /// `None` if there are fewer, or if nothing is stored.
     fn read(&self, offset: u64, len: usize) -> Option<Vec<u8>>;
 
-    /// Keeps these pieces, one after the other, in place of what was kept before.
+    /// Stores these pieces, one after the other, and drops all earlier bytes.
     ///
-    /// The checkpoint itself must report a failure. The solve goes on.
+    /// The checkpoint must report a failure itself. The solve continues.
     fn replace(&self, pieces: &mut dyn Iterator<Item = Vec<u8>>);
 }
 

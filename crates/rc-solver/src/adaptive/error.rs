@@ -1,4 +1,4 @@
-//! Reasons why the adaptive method does not fit a problem.
+//! Reasons why the adaptive method cannot solve a problem.
 
 use rc_core::Grid;
 use rc_core::quantity::digits;
@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::ProblemError;
 
-/// A contact problem that the adaptive method does not fit.
+/// A contact problem that the adaptive method cannot solve.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum AdaptiveError {
@@ -73,10 +73,10 @@ pub enum AdaptiveError {
     /// The surface is flat, so there is nothing to adapt to.
     #[error("a flat surface needs no adaptive mesh; use the uniform method")]
     Flat,
-    /// The problem can be solved by one rank only.
+    /// Several ranks (processes or threads) cannot solve this problem.
     #[error("over several ranks the adaptive method needs {needs}; solve it on one rank")]
     OverRanks {
-        /// The condition for other ranks.
+        /// The condition for several ranks.
         needs: &'static str,
     },
     /// The estimated memory is above the limit.
@@ -90,7 +90,7 @@ pub enum AdaptiveError {
         limit: u64,
         /// Estimated contact area, in percent of the nominal one.
         ///
-        /// `None` when the base grid alone is too large. This error comes before heights are sampled.
+        /// `None` when the base grid alone is too large, because heights are not sampled then.
         area_percent: Option<f64>,
     },
     /// The requested accuracy of the operator is out of reach.

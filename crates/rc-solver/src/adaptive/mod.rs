@@ -1,8 +1,9 @@
-//! The contact problem on an adaptive mesh: work and memory follow the contact.
+//! The contact problem on an adaptive mesh: work and memory grow with the contact.
 //!
-//! Levels up to a base grid are uniform grids, as in the uniform method. From there on, each level has only the tiles
-//! of 8 × 8 cells that contact touches or nearly touches. The multilevel operator applies L on them. The rest of the
-//! cell is out of contact, and the exclusion proves it.
+//! From each level to the next finer one, the side of the elements is halved. The coarsest levels, up to the base grid,
+//! are uniform grids, as in the uniform method. Each finer level has only the tiles of 8 × 8 cells that contact touches
+//! or nearly touches. The multilevel operator applies L on them. The module `exclusion` proves that the rest of the
+//! cell is out of contact.
 
 mod agreed_stop;
 mod bands;

@@ -1,8 +1,8 @@
 //! The contact area, with edges located between the centres of elements (see `docs/accuracy.md`).
 //!
-//! Counting the elements in contact is only first-order accurate: 1 to 4 % too much on usual meshes. Here an edge is
-//! located between every two neighbours of which one is in contact. It follows from the pressure of the one and the gap
-//! of the other. The rest of the first-order error is the same for all contacts, and is subtracted.
+//! A count of the elements in contact is only first-order accurate: 1 to 4 % too large on usual meshes. Here an edge is
+//! located between every two neighbours of which one is in contact. Its position follows from the pressure of this
+//! neighbour and the gap of the other. The remaining first-order error is the same for all contacts, and is subtracted.
 
 mod edge;
 mod edge_sums;
@@ -28,8 +28,8 @@ pub struct ContactArea {
     pub perimeter_edges: usize,
     /// Length of the edges of all contacts, in λ, without the steps of the elements.
     ///
-    /// It follows from Crofton's formula for eight directions. It is within 5 % for a straight edge, and exact in the
-    /// mean over directions.
+    /// It follows from Crofton's formula for eight directions. For a straight edge, the error is at most 5 %. In the
+    /// mean over directions, it is zero.
     pub perimeter: f64,
     /// Number of contacts minus the number of holes in them.
     ///
@@ -37,7 +37,7 @@ pub struct ContactArea {
     pub euler_number: f64,
     /// Sum over edges of the deviation from the law of an edge.
     ///
-    /// The deviation is that of the gap outside, see [`EdgeBias::per_deviation`].
+    /// [`EdgeBias::per_deviation`] defines the deviation, which is that of the gap outside.
     pub gap_deviation: f64,
     /// Part of ⟨p²⟩ that the mean over elements misses, in E*².
     ///
@@ -45,7 +45,7 @@ pub struct ContactArea {
     pub missing_square: f64,
     /// Best estimate of the area, from the edges between the centres of elements.
     pub fraction: f64,
-    /// Estimated error of `fraction`, above the true error in 95 of 100 scenes.
+    /// Estimated error of `fraction`. The true error is smaller in 95 % of scenes.
     ///
     /// `cargo xtask accuracy` measures this. The estimate comes from the number of edges, their directions, and the
     /// difference to the count. It does not cover slopes that jump, see `docs/accuracy.md`.
@@ -119,9 +119,9 @@ impl ContactArea {
         Self::with_boundary(pressure, gap, bias, Boundary::Periodic)
     }
 
-    /// The contact area as [`ContactArea::of`], on heights with this `boundary`.
+    /// The contact area, as [`ContactArea::of`], for heights with this `boundary`.
     ///
-    /// The heights end at a free border. Where contact reaches it, it is not an edge of the contact.
+    /// The heights end at a free border. The border is not counted as an edge of the contact where contact reaches it.
     ///
     /// # Panics
     /// As [`ContactArea::of`].

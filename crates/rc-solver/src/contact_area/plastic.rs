@@ -2,7 +2,7 @@
 //!
 //! The rest q = H - p is zero there. Beyond the edge of the plastic part, q is the square root of the distance. Inside,
 //! the overlap that plastic flow removes grows as the gap does outside a contact. The area where q > 0 is therefore
-//! found as a contact area is, with -g as its gap. Its error is the same too.
+//! computed like a contact area, with -g as its gap. Its error is estimated in the same way.
 
 use rc_core::{Boundary, EdgeBias, Field, Grid};
 
@@ -11,7 +11,7 @@ use super::{ContactArea, EdgeSums, around, sums_of_rows};
 /// The plastic part of a contact with a hardness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlasticContact {
-    /// Fraction of elements whose pressure is the hardness.
+    /// Fraction of elements whose pressure equals the hardness.
     ///
     /// It converges only at first order in the element size.
     pub cells: f64,

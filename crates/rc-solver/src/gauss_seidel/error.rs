@@ -1,4 +1,4 @@
-//! Reasons why the paper's procedure does not fit a problem.
+//! Reasons why the paper's procedure cannot solve a problem.
 
 use rc_core::Grid;
 use rc_quadtree::paper::MeshError;
@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::ProblemError;
 
-/// A contact problem that the paper's procedure does not fit.
+/// A contact problem that the paper's procedure cannot solve.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum GaussSeidelError {

@@ -1,23 +1,23 @@
 //! The paper's own procedure, as written in its Section 2.
 //!
-//! It increases the penetration in increments. Contact is on an adaptive mesh, with Gauss-Seidel on the elements in
-//! contact and the double check. For each increment of Δ:
+//! The procedure increases the penetration Δ in increments. It uses an adaptive mesh, Gauss-Seidel on the elements in
+//! contact, and a double check: tension and overlap in step (vi). For each increment:
 //!
 //! - (i) fix Δ;
-//! - (ii) first guess of the contact: the deformed layer of the increment before, lowered to the new Δ, meets the
-//!   surface;
+//! - (ii) guess the contact: the places where the deformed layer of the previous increment, lowered to the new Δ,
+//!   overlaps the surface;
 //! - (iii) prescribe `v_i = h_i - h_max + Δ` on the elements in contact;
 //! - (iv) solve Eq. 4 on them, by Gauss-Seidel;
 //! - (v) find the displacement out of contact;
 //! - (vi) remove elements under tension, add those that penetrate, and mesh the new contact, until neither changes it.
 //!
-//! There is one departure. Step (v) evaluates `Σ_j L_ij σ_j` on all points of the finest grid by FFT. An element of the
-//! mesh is a patch of finest elements under one pressure. The result is therefore the same sum to rounding (test
-//! `displacement_by_fft_is_the_direct_sum`), without its O(n·N) cost.
+//! There is one difference from the paper. Step (v) evaluates `Σ_j L_ij σ_j` on all points of the finest grid by FFT.
+//! An element of the mesh is a patch of finest elements under one pressure. The result is therefore the same sum to
+//! rounding (test `displacement_by_fft_is_the_direct_sum`), without its O(n·N) cost.
 //!
-//! On a mesh of unequal elements, collocation makes L non-symmetric. Gauss-Seidel tolerates that, and conjugate
-//! gradients do not. The cost is that of a dense matrix, n² coefficients a sweep. There is therefore a budget, and a
-//! clear error when a scene needs more.
+//! On a mesh of unequal elements, collocation makes L non-symmetric. Gauss-Seidel converges nevertheless, but conjugate
+//! gradients do not. As for a dense matrix, a sweep costs n² coefficients. There is therefore a budget, and an error
+//! when a scene needs more.
 
 mod coefficients;
 mod error;

@@ -2,8 +2,8 @@
 
 /// Parameters that only the paper's procedure has.
 ///
-/// The tolerance is [`crate::SolveParams::tolerance`]. It is evaluated at the points of collocation: centres of
-/// elements in contact, and all points of the finest grid out of contact.
+/// The tolerance is [`crate::SolveParams::tolerance`]. It applies to the points of collocation: centres of elements in
+/// contact, and all points of the finest grid out of contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaussSeidelParams {
     /// Number of increments in which the penetration is reached.
@@ -17,7 +17,7 @@ pub struct GaussSeidelParams {
     pub max_sweeps: usize,
     /// Maximum number of double checks for one increment.
     pub max_checks: usize,
-    /// Number of blocks of its own size around a coarse element in contact.
+    /// Number of blocks in contact around each coarse element, of the element's size.
     ///
     /// See [`rc_quadtree::paper::MeshParams::ring`].
     pub ring: usize,

@@ -1,6 +1,6 @@
 //! The contact problem with any operator.
 //!
-//! A research fork solves its own half-space with it.
+//! It serves operators that a caller implements.
 
 use rc_core::{Field, Grid, Observer, Operator};
 

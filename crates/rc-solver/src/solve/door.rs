@@ -1,4 +1,4 @@
-//! The functions that lead to a solution.
+//! The functions that solve a contact problem.
 
 use std::sync::Arc;
 
@@ -42,15 +42,15 @@ impl<'a> ContactProblem<'a> {
 
     /// Solves the problem on the coarsest grid that is accurate enough.
     ///
-    /// The error bar of the contact area is then at most `wanted` of the area. The heights must be a band-limited
-    /// surface. The grid that they are wanted on is not used.
+    /// The relative error bar of the contact area is then at most `wanted`. The heights must be a band-limited surface.
+    /// The grid of the given [`HeightSource`] is ignored.
     ///
     /// The first grid has four elements for the shortest wave. Its error bar determines the next grid. In most cases
-    /// two problems are solved, of which the last takes longer than all others.
+    /// two problems are solved. The last takes longer than all others.
     ///
     /// # Errors
-    /// [`SolveError`]. [`SolveError::NoWaves`] for heights that no other grid can have, and [`SolveError::AreaError`]
-    /// when 256 elements for the shortest wave are not enough.
+    /// [`SolveError`]. [`SolveError::NoWaves`] for heights that cannot be sampled on another grid.
+    /// [`SolveError::AreaError`] when 256 elements for the shortest wave are not enough.
     pub fn solve_to_area_error(
         self,
         wanted: f64,
@@ -64,8 +64,9 @@ impl<'a> ContactProblem<'a> {
 impl Plan<'_> {
     /// The plan of another load on the same surface, with the same parameters.
     ///
-    /// The plans share heights, their bounds and the tables of the operator, which are kept as long as one of the plans
-    /// lives. Every digit is the same as with a separate plan.
+    /// The plans share heights, bounds of the heights and tables of the operator. These are kept as long as one of the
+    /// plans lives. Results are bitwise those of a separate plan: a solve does not start from the pressure of another
+    /// load.
     ///
     /// ```
     /// use rc_core::{Field, Grid, Silent};
@@ -81,7 +82,7 @@ impl Plan<'_> {
     /// ```
     ///
     /// # Errors
-    /// As of [`ContactProblem::plan`].
+    /// Those of [`ContactProblem::plan`].
     pub fn under(&self, control: Control) -> Result<Self, SolveError> {
         let problem = ContactProblem { control, ..self.problem.clone() };
         choice::plan(problem, &self.params, Arc::clone(&self.shared))
@@ -90,7 +91,7 @@ impl Plan<'_> {
 
 /// Solves the contact of `heights` (in λ) with the elastic half-space under a load.
 ///
-/// The estimated contact area determines the method, unless `params` name one. The certificate comes from a fresh
+/// The estimated contact area determines the method, unless `params` specifies one. The certificate comes from a fresh
 /// application of L on the returned pressure. The result is bitwise the same for any number of threads.
 ///
 /// ```
@@ -107,7 +108,7 @@ impl Plan<'_> {
 /// ```
 ///
 /// # Errors
-/// [`SolveError`]. Non-convergence is an error too, and carries the best solution found.
+/// [`SolveError`]. Non-convergence is an error too, and contains the best solution found.
 pub fn solve<'a>(
     heights: impl Into<HeightSource<'a>>,
     control: Control,
@@ -121,11 +122,11 @@ pub fn solve<'a>(
 /// The operator v = L p must be symmetric, of zero mean, and positive for pressures that are not uniform. Element i of
 /// the operator is element i of the heights.
 ///
-/// Projected conjugate gradients on this grid find the pressure. Nothing is known of the operator that would
-/// precondition them, so they need several times the iterations of the uniform method. For a half-space with a
-/// [`rc_core::Kernel`], [`ContactProblem::with_kernel`] is faster. Of `params`, only the tolerance and the number of
-/// iterations count. The certificate comes from a fresh application of the operator. [`Solution::stiffness`] is a lower
-/// bound here, mostly within a percent, since its iteration is not preconditioned either.
+/// Projected conjugate gradients on this grid find the pressure. No preconditioner is known for a general operator, so
+/// they need several times the iterations of the uniform method. For a half-space with a [`rc_core::Kernel`],
+/// [`ContactProblem::with_kernel`] is faster. Of `params`, only the tolerance and the number of iterations count. The
+/// certificate comes from a fresh application of the operator. [`Solution::stiffness`] is then a lower bound, usually
+/// low by less than a percent, because its iteration is not preconditioned either.
 ///
 /// # Errors
 /// [`SolveError`]. [`crate::ProblemError::Operator`] for an operator with another number of elements.

@@ -13,10 +13,10 @@ pub enum SolveError {
     /// Heights, load or tolerance are out of range.
     #[error(transparent)]
     Problem(ProblemError),
-    /// The adaptive method does not fit the problem, and no other method is allowed.
+    /// The adaptive method cannot solve this problem, and no other method is allowed.
     #[error(transparent)]
     Adaptive(AdaptiveError),
-    /// The paper's procedure does not fit the problem.
+    /// The Gauss-Seidel method (the paper's procedure) cannot solve this problem.
     #[error(transparent)]
     GaussSeidel(GaussSeidelError),
     /// The method is only for Love's squares.
@@ -27,7 +27,7 @@ pub enum SolveError {
         /// Name of the kernel.
         kernel: &'static str,
     },
-    /// The method does not share its work with other ranks.
+    /// The chosen method cannot run over several ranks (processes or threads).
     #[error("over several ranks only the adaptive method solves ({reason}); give the method adaptive, or one rank")]
     OneRank {
         /// The method, and the reason to choose it.
@@ -45,13 +45,15 @@ pub enum SolveError {
         /// The method asked for.
         method: Method,
     },
-    /// A border level was requested of a method without border levels.
+    /// Smaller elements at contact edges were requested from a method without them.
+    ///
+    /// [`crate::SolveParams::border_level`] requests them.
     #[error("the {method} method does not divide elements at contact edges; only the adaptive method does")]
     BorderLevel {
         /// The method asked for.
         method: Method,
     },
-    /// A hardness was requested of a method without hardness.
+    /// A hardness was given, but the method has no hardness.
     #[error("the {method} method has no hardness; the adaptive and the uniform ones do")]
     Hardness {
         /// The method asked for.

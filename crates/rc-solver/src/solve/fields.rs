@@ -9,7 +9,9 @@ use crate::adaptive::{Receiver, Rows};
 use crate::gap_part::GapPart;
 
 impl Solution<'_> {
-    /// The pressure on the grid, in E*, ≥ 0. It is the mean over smaller elements.
+    /// The pressure on the grid, in E*, ≥ 0.
+    ///
+    /// Where elements are smaller than those of the grid (at a border level), it is their mean.
     #[must_use]
     pub fn pressure(&self) -> &Field {
         match &self.pressures {
@@ -22,7 +24,7 @@ impl Solution<'_> {
 
     /// The gap on the grid, in λ, with its pressure-weighted mean at zero.
     ///
-    /// It is zero in contact within the tolerance. With a hardness it is the gap after plastic flow.
+    /// It is zero in contact within the tolerance. If a hardness is set, it is the gap after plastic flow.
     #[must_use]
     pub fn gap(&self) -> &Field {
         match &self.pressures {
@@ -33,8 +35,9 @@ impl Solution<'_> {
 
     /// The gap on the grid of the smallest elements, in λ, as [`Solution::gap`].
     ///
-    /// It is negative where plastic flow has removed an overlap. `None` if that grid is [`Solution::grid`], as it is
-    /// without a border level. Each call takes one application of L on the grid of the smallest elements.
+    /// It is negative where plastic flow has removed an overlap. `None` without a border level, because the smallest
+    /// elements are then those of [`Solution::grid`]. Each call takes one application of L on the grid of the smallest
+    /// elements.
     #[must_use]
     pub fn finest_gap(&self) -> Option<Field> {
         match &self.pressures {
@@ -68,9 +71,10 @@ impl Solution<'_> {
         })
     }
 
-    /// Hands out [`Solution::pressure`] in order, some rows at a time.
+    /// Passes the rows of [`Solution::pressure`] to `take`, in order.
     ///
-    /// `take` gets the index of the first row, and the rows one after the other. Stops at the first error.
+    /// Each call of `take` gets the index of its first row, and some rows one after the other. Stops at the first
+    /// error.
     ///
     /// # Errors
     /// The error that `take` returns.
@@ -82,7 +86,7 @@ impl Solution<'_> {
         }
     }
 
-    /// Hands out the rows of [`Solution::pressure`] that belong to this rank.
+    /// Passes the rows of [`Solution::pressure`] that belong to this rank to `take`.
     ///
     /// The rows of a rank follow each other, and the rows of the next rank follow them.
     ///
@@ -95,7 +99,7 @@ impl Solution<'_> {
         }
     }
 
-    /// Hands out [`Solution::gap`], as [`Solution::pressure_rows`] does with the pressure.
+    /// Passes the rows of [`Solution::gap`] to `take`, as [`Solution::pressure_rows`] does.
     ///
     /// For the adaptive method this costs about one application of L on the whole grid.
     ///
@@ -109,7 +113,7 @@ impl Solution<'_> {
         }
     }
 
-    /// Hands out [`Solution::plastic_gap`], as [`Solution::gap_rows`] does with the gap.
+    /// Passes the rows of [`Solution::plastic_gap`] to `take`, as [`Solution::gap_rows`] does.
     ///
     /// # Errors
     /// The error that `take` returns.
@@ -120,7 +124,7 @@ impl Solution<'_> {
         }
     }
 
-    /// Hands out the rows of [`Solution::gap`] that belong to this rank.
+    /// Passes the rows of [`Solution::gap`] that belong to this rank to `take`.
     ///
     /// The order is that of [`Solution::own_pressure_rows`].
     ///
@@ -130,7 +134,7 @@ impl Solution<'_> {
         self.part_rows(GapPart::Open, Receiver::Each, take)
     }
 
-    /// A field on `grid` from its rows, which `rows` hands out in order.
+    /// A field on `grid` from its rows, which `rows` passes on in order.
     fn collect(
         &self,
         grid: Grid,
@@ -146,7 +150,7 @@ impl Solution<'_> {
         Field::new(grid, values).expect("as many values as the grid has elements")
     }
 
-    /// Hands out a part of the gap.
+    /// Passes the rows of a part of the gap to a function.
     fn part_rows<E>(
         &self,
         part: GapPart,

@@ -1,4 +1,4 @@
-//! The front door: a contact problem, its solution, and no choices in between.
+//! The entry point: a contact problem and its solution, without choices in between.
 
 mod area_error;
 mod choice;

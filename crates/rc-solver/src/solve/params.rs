@@ -12,27 +12,28 @@ pub struct SolveParams {
     pub max_iterations: usize,
     /// The method. `None` chooses by the estimated contact area.
     pub method: Option<Method>,
-    /// Number of times that elements at contact edges are halved beyond the grid.
+    /// Number of times that elements at contact edges are halved below the grid's.
     ///
-    /// Only the adaptive method does so, and only on a surface.
+    /// Only the adaptive method halves elements, and only on a [`rc_core::HeightField`], not on a map.
     pub border_level: usize,
     /// Maximum memory, in bytes.
     ///
-    /// A larger estimate is an error before any work. If scattered contact needs the uniform grid, the error comes
-    /// after the base grid.
+    /// If the estimated memory is larger, the solve fails before any work. If scattered contact requires the uniform
+    /// grid, it fails only after the base grid has been solved. The base grid is a coarse grid that the adaptive method
+    /// stores in full.
     pub memory_limit: Option<u64>,
-    /// Whether a method that does not fit into memory gives way to one that does.
+    /// Whether another method is chosen if the first does not fit into memory.
     ///
-    /// Their results differ within the error bars. One of many solves may run on another machine, and therefore sets
-    /// this to `false`.
+    /// Results of the methods differ within the error bars. Sweeps set this to `false`, because their solves may run on
+    /// machines with different memory.
     pub method_follows_memory: bool,
     /// Bound on the error of one application of the adaptive operator.
     ///
-    /// It is relative to the rms displacement. A smaller tolerance lowers it.
+    /// The bound is relative to the rms displacement. A smaller tolerance of the solve lowers this bound automatically.
     pub operator_error: f64,
     /// Elements per side of the base grid of the adaptive method. `None` chooses the number.
     pub base_side: Option<usize>,
-    /// Parameters of the paper's procedure alone.
+    /// Parameters that only the Gauss-Seidel method (the paper's procedure) uses.
     pub gauss_seidel: GaussSeidelParams,
 }
 

@@ -39,8 +39,8 @@ pub(super) enum ChosenMethod<'a> {
 impl<'a> Plan<'a> {
     /// The chosen method.
     ///
-    /// An adaptive method that was not asked for gives way to the uniform one when contact on its base grid is too
-    /// scattered. [`Solution::method`] is the method that has solved the problem.
+    /// If the adaptive method was chosen automatically, the uniform one may replace it. This happens if contact is too
+    /// scattered on the base grid, a coarse grid. [`Solution::method`] returns the method that solved the problem.
     #[must_use]
     pub fn method(&self) -> Method {
         match self.chosen {
@@ -66,7 +66,7 @@ impl<'a> Plan<'a> {
     ///
     /// # Errors
     /// [`SolveError::NotConverged`] with the best solution found. [`SolveError::Problem`] for heights that are not
-    /// finite. [`SolveError::GaussSeidel`] if the paper's procedure refuses the problem.
+    /// finite. [`SolveError::GaussSeidel`] if the Gauss-Seidel method cannot solve the problem.
     pub fn solve(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
         let Self { problem, params, bound, chosen, reason, mut shared } = self;
         let name = problem.kernel.get().name();

@@ -47,9 +47,9 @@ impl<'a> ContactProblem<'a> {
         Self { heights: heights.into(), kernel, control, hardness: f64::INFINITY, place }
     }
 
-    /// The same problem with a hardness, in E*, which no pressure exceeds.
+    /// The same problem with a maximum pressure, the hardness (in E*).
     ///
-    /// It is the usual first model of plastic contact. Where the pressure is the hardness, plastic flow removes the
+    /// It is the usual first model of plastic contact. Where the pressure equals the hardness, plastic flow removes the
     /// overlap of the surfaces ([`crate::Solution::plastic_gap`]).
     ///
     /// ```
@@ -80,25 +80,25 @@ impl<'a> ContactProblem<'a> {
         Load { control: self.control, hardness: self.hardness }
     }
 
-    /// The same problem with another half-space, or another discretisation of it.
+    /// The same problem with another elastic solid or another discretisation.
     #[must_use]
     pub fn with_kernel(self, kernel: &'a dyn Kernel) -> Self {
         Self { kernel: OwnedKernel::Borrowed(kernel), ..self }
     }
 
-    /// The same problem with a kernel that the problem, its plans and its solutions share.
+    /// The same problem with a kernel that its plans and solutions share.
     ///
-    /// They do not borrow it.
+    /// None of them borrows the kernel.
     #[must_use]
     pub fn with_shared_kernel(self, kernel: Arc<dyn Kernel + Send + Sync>) -> Self {
         Self { kernel: OwnedKernel::Shared(kernel), ..self }
     }
 
-    /// The same problem over ranks, which all solve it together.
+    /// The same problem, solved jointly by several ranks (threads or MPI processes).
     ///
     /// Each rank has a part of the mesh. All ranks call the same functions in the same order, including those of the
-    /// solution. Only the adaptive method works over ranks, with elements of one size on grids that halve. Digits do
-    /// not depend on the number of ranks.
+    /// solution. Only the adaptive method works over ranks, with elements of one size on grids that can be halved
+    /// several times. Results are bitwise the same for any number of ranks.
     ///
     /// ```
     /// use rc_comm::run_threads;
@@ -122,11 +122,12 @@ impl<'a> ContactProblem<'a> {
         Self { place: Place { ranks, ..self.place }, ..self }
     }
 
-    /// The same problem, with a place for what each level leaves for the next.
+    /// The same problem with a checkpoint.
     ///
-    /// A solve of the same problem continues from the last level that was kept there. It may have any number of ranks,
-    /// and gives the same digits. The caller ensures that the place is for this problem alone. Only the adaptive method
-    /// without a border level keeps anything.
+    /// After each level (grid of one element size), a solve stores the start values of the next finer level. Another
+    /// solve of the same problem continues from the last stored level. It may have any number of ranks, and its results
+    /// are bitwise the same. The caller ensures that no other problem uses the checkpoint. Only the adaptive method
+    /// without a border level stores anything.
     #[must_use]
     pub fn kept_in(self, checkpoint: Arc<dyn Checkpoint>) -> Self {
         Self { place: Place { checkpoint: Some(checkpoint), ..self.place }, ..self }

@@ -14,12 +14,13 @@ use crate::{Certificate, ContactArea, ContactElement, ErrorBound, Method, Method
 
 /// A solved contact problem.
 ///
-/// Pressures are in E*, lengths in λ, areas relative to the nominal area. Fields are on [`Solution::grid`]. The
-/// adaptive method makes fields when they are first requested. [`Solution::pressure_rows`] and [`Solution::gap_rows`]
-/// never hold them whole.
+/// Pressures are in E*, lengths in λ, areas relative to the nominal area. Fields are on [`Solution::grid`]. With the
+/// adaptive method, fields are made when they are first requested. [`Solution::pressure_rows`] and
+/// [`Solution::gap_rows`] never store a whole field.
 ///
 /// Over ranks ([`crate::ContactProblem::over`]), each rank has a part. All ranks call the functions of a solution
-/// together, and get the same numbers. Rows go to the first rank. Elements are those of the rank.
+/// together, and get the same numbers. Only the first rank gets rows. [`Solution::elements`] returns the elements of
+/// the calling rank only.
 pub struct Solution<'a> {
     pub(super) how: HowSolved,
     pub(super) status: Status,
@@ -128,9 +129,9 @@ impl<'a> Solution<'a> {
         Solution { how, status, h_max, pressures, pressure, gap, plastic_gap, displacement, observables, stiffness }
     }
 
-    /// The same solution without borrows, with the kernel that it was solved with.
+    /// The same solution without borrows, with a shared kernel.
     ///
-    /// Nothing is tabulated then.
+    /// It keeps `kernel`, which must be the one of the solve, instead of a table of its symbol.
     #[must_use]
     pub fn into_owned_with(self, kernel: Arc<dyn Kernel + Send + Sync>) -> Solution<'static> {
         match self.pressures {
@@ -168,7 +169,7 @@ impl<'a> Solution<'a> {
         self.how.method
     }
 
-    /// The reason for the method.
+    /// The reason why this method was chosen.
     #[must_use]
     pub fn reason(&self) -> &MethodReason {
         &self.how.reason
@@ -188,7 +189,7 @@ impl<'a> Solution<'a> {
 
     /// How the solution was found, and how good it is.
     ///
-    /// This has the certificate, load, penetration, energy, and the work on each level.
+    /// The result contains the certificate, load, penetration, energy, and the work on each level.
     #[must_use]
     pub fn info(&self) -> &SolveInfo {
         match &self.pressures {
@@ -248,8 +249,8 @@ impl<'a> Solution<'a> {
 
     /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative.
     ///
-    /// It is infinite in full contact with the half-space. Plastic elements stay plastic, and add nothing. The first
-    /// call takes a few applications of L.
+    /// It is infinite in full contact with the half-space. Plastic elements keep their pressure and do not contribute.
+    /// The first call takes a few applications of L.
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         *self.stiffness.get_or_init(|| match &self.pressures {
@@ -259,7 +260,7 @@ impl<'a> Solution<'a> {
         })
     }
 
-    /// Hands out the elements of [`Solution::elements`] in order.
+    /// Passes the elements of [`Solution::elements`] to `take`, in order.
     ///
     /// Over ranks, the first rank gets the elements of all ranks. Stops at the first error.
     ///
@@ -285,7 +286,7 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// Number of elements that carry unknowns.
+    /// Number of elements whose pressures are unknowns.
     ///
     /// These are elements in contact on an adaptive mesh, and all elements of a uniform grid.
     #[must_use]
