@@ -90,13 +90,14 @@ fn agrees_with_the_uniform_method_on_maps_of_any_size() {
 #[test]
 fn contact_that_touches_the_border_agrees() {
     let grid = Grid::square(256).expect("a grid");
-    let bodies: [(&str, fn(DVec2) -> f64); 4] = [
-        ("at a corner", |at| -0.5 * at.length_squared()),
-        ("at two corners", |at| (-0.5 * at.length_squared()).max(-0.5 * (at - 1.0).length_squared())),
-        ("at a border", |at| -0.5 * (at - DVec2::new(1.0, 0.4)).length_squared()),
-        ("along a border", |at| -0.5 * (at.y - 0.02).powi(2)),
+    let bodies: [fn(DVec2) -> f64; 4] = [
+        |at| -0.5 * at.length_squared(),
+        // At opposite corners, which filters would join around a period that is too short.
+        |at| (-0.5 * at.length_squared()).max(-0.5 * (at - 1.0).length_squared()),
+        |at| -0.5 * (at - DVec2::new(1.0, 0.4)).length_squared(),
+        |at| -0.5 * (at.y - 0.02).powi(2),
     ];
-    for (name, body) in bodies {
+    for body in bodies {
         let heights = Field::from_fn(grid, body);
         for control in [Control::MeanPressure(1e-3), Control::Penetration(5e-3)] {
             let found = solve(&heights, control, &by(Method::Adaptive, 1e-3));
@@ -167,7 +168,8 @@ fn digits_do_not_depend_on_the_number_of_ranks() {
     let told = |ranks: Ranks| {
         let problem = ContactProblem::new(&heights, Control::MeanPressure(1e-3)).with_kernel(&FreeLove).over(ranks);
         let found = problem.solve(&by(Method::Adaptive, 1e-2), &Silent).expect("a solution");
-        let numbers = [found.area().fraction, found.observables().mean_gap, found.info().penetration, found.stiffness()];
+        let numbers =
+            [found.area().fraction, found.observables().mean_gap, found.info().penetration, found.stiffness()];
         (numbers.map(f64::to_bits), found.pressure().values().to_vec(), found.gap().values().to_vec())
     };
     let alone = told(Ranks::alone());
