@@ -98,6 +98,7 @@ fn contact_that_touches_the_border_agrees() {
     let grid = Grid::square(256).expect("a grid");
     let bodies: [fn(DVec2) -> f64; 4] = [
         |at| -0.5 * at.length_squared(),
+        // At opposite corners, which filters would join around a period that is too short.
         |at| (-0.5 * at.length_squared()).max(-0.5 * (at - 1.0).length_squared()),
         |at| -0.5 * (at - DVec2::new(1.0, 0.4)).length_squared(),
         |at| -0.5 * (at.y - 0.02).powi(2),
