@@ -14,9 +14,9 @@
 //!
 //! ```text
 //! level K (finest): v_K = h_K  S p_K + F  u_{K-1}  S: [`ScaleSplit::love_stencil`],  F: [`ScaleSplit::love_filter`]
-//! level k:           u_k = h_k  D ρ_k + F' u_{k-1}  D: [`ScaleSplit::level_stencil`],  F': [`ScaleSplit::level_filter`]
-//!                    ρ_k = ¼ F'ᵀ ρ_{k+1}  (F at the finest)
-//! base:              u_0 = inverse FFT( remainder · FFT ρ_0 )    [`ScaleSplit::remainder_symbol`]
+//! level k:          u_k = h_k  D ρ_k + F' u_{k-1}  D: [`ScaleSplit::level_stencil`],  F': [`ScaleSplit::level_filter`]
+//!                   ρ_k = ¼ F'ᵀ ρ_{k+1}  (F at the finest)
+//! base:             u_0 = inverse FFT( remainder · FFT ρ_0 )    [`ScaleSplit::remainder_symbol`]
 //! ```
 //!
 //! The Kaiser-Bessel window is used in particle-mesh sums too (J. F. Kaiser, 1974). The recursion follows the

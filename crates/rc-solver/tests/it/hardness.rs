@@ -231,7 +231,9 @@ fn every_load_below_the_hardness_is_borne() {
     }
 }
 
-/// Elements that fill up the tiles of a border level are none: they bear nothing, and their area counts nowhere.
+/// Cells that only fill the tiles of a border level are not elements.
+///
+/// They bear no pressure, and their area is not counted.
 #[test]
 fn near_full_contact_with_border_levels_bears_its_load() {
     struct Waves;
