@@ -184,9 +184,9 @@ mod tests {
         }
     }
 
-    /// A single spot has the area of the contact, with plastic edges too.
+    /// The spot of a single contact has its area, also with plastic edges.
     ///
-    /// A sharp edge is where the overlap would end.
+    /// The overlap would end at the middle of a sharp edge.
     #[test]
     fn a_spot_with_plastic_edges_has_the_area_of_the_contact() {
         let (grid, hardness, radius) = (Grid::square(64).expect("a grid"), 1e-2, 0.231);

@@ -231,7 +231,9 @@ fn every_load_below_the_hardness_is_borne() {
     }
 }
 
-/// Elements that only fill up tiles bear nothing and have no area.
+/// Cells that only fill the tiles of a border level are not elements.
+///
+/// They bear no pressure, and their area is not counted.
 #[test]
 fn near_full_contact_with_border_levels_bears_its_load() {
     struct Waves;
