@@ -156,7 +156,7 @@ mod tests {
     }
 
     fn words(n: usize) -> String {
-        vec!["a"; n].join(" ")
+        vec!["as"; n].join(" ")
     }
 
     #[test]
