@@ -236,3 +236,17 @@ fn a_small_contact_on_a_patch_is_solved_adaptively_and_a_large_one_is_not() {
     assert!(matches!(plan(1e-5), (Method::Adaptive, MethodReason::SmallContact { .. })));
     assert!(matches!(plan(1.0), (Method::Uniform, MethodReason::LargeContact { .. })));
 }
+
+/// Displacements are then many times the height range. Values without an element must not touch.
+#[test]
+fn heavy_loads_with_border_levels_and_uneven_grids_converge() {
+    let surface = surface(16, 1);
+    for (side, border_level) in [(128, 1), (128, 2), (250, 0)] {
+        for load in [1e-2, 0.1, 1.0] {
+            let params = SolveParams { border_level, ..SolveParams::default().by(Method::Adaptive) };
+            let source = surface.on(Grid::square(side).expect("a grid"));
+            let found = solve(source, Control::MeanPressure(load), &params);
+            assert_eq!(found.status(), Status::Converged, "{side}, {border_level}, {load}: {}", found.certificate());
+        }
+    }
+}

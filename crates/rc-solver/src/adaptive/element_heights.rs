@@ -1,6 +1,7 @@
 //! Heights of elements: at the centres of the smallest elements, and means over larger ones.
 
 use rayon::prelude::*;
+use rc_core::Boundary;
 use rc_quadtree::{CELLS, Elements, TileSet, means_of_quarter, quarters};
 
 use super::heights::Heights;
@@ -13,13 +14,23 @@ use crate::problem::HeightStatistics;
 /// Gaps there are therefore at least nine times the height range.
 const FAR_BELOW: f64 = 10.0;
 
+/// Height of places without an element on a patch with free borders, in λ.
+///
+/// Displacements of a patch may be any multiple of the height range, and those of such places lack their smooth part.
+const BELOW_ALL: f64 = -1e100;
+
 /// Heights of the elements that this rank has.
 ///
 /// Heights of elements of `known` are taken from there. Values without an element are never in contact. Those that fill
-/// up a vector have the minimum height, and those beyond a level are far below.
+/// up a vector have the minimum height, and those beyond a level are far below. On a patch with free borders both are
+/// below all displacements.
 pub(super) fn element_heights(heights: &Heights<'_>, mesh: &Mesh, known: Option<(&Mesh, &[f64])>) -> Vec<f64> {
     let HeightStatistics { greatest, least, .. } = heights.extremes();
-    let none = if mesh.finest().is_whole() { least } else { least - FAR_BELOW * (greatest - least) };
+    let none = match mesh.finest().boundary() {
+        Boundary::Free => BELOW_ALL,
+        Boundary::Periodic if mesh.finest().is_whole() => least,
+        Boundary::Periodic => least - FAR_BELOW * (greatest - least),
+    };
     let over_ranks = known.filter(|(known, _)| !known.ranks().are_alone());
     // Known heights of other ranks come first. A height is never NaN.
     let mut result = match over_ranks {
