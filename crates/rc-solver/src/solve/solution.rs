@@ -250,9 +250,9 @@ impl<'a> Solution<'a> {
 
     /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ.
     ///
-    /// Its relative error is below 1e-3. With an operator of the caller it is larger ([`crate::solve_with_operator`]).
-    /// The stiffness is infinite in full contact with the half-space. Plastic elements keep their pressure and do not
-    /// contribute. The first call takes a few applications of L.
+    /// It is computed to 1e-3 relative, or less accurately with an operator of the caller
+    /// ([`crate::solve_with_operator`]). The stiffness is infinite in full contact with the half-space. Plastic
+    /// elements keep their pressure and do not contribute. The first call takes a few applications of L.
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         *self.stiffness.get_or_init(|| match &self.pressures {
