@@ -126,7 +126,7 @@ impl Field {
 }
 /// The extreme of all values and `start`, where `is_beyond` compares two values.
 ///
-/// Several lanes are compared at once, so that they fit a vector register.
+/// Sixteen lanes are compared independently, so the compiler can use vector instructions.
 fn extreme(values: &[f64], start: f64, is_beyond: impl Fn(f64, f64) -> bool) -> f64 {
     let farther = |value: f64, so_far: f64| if is_beyond(value, so_far) { value } else { so_far };
     let (chunks, rest) = values.as_chunks::<16>();

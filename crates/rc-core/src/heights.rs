@@ -14,9 +14,9 @@ pub trait HeightField: Sync {
     /// Height at the point `at`, both in λ. Periodic with period 1 along x and along y.
     fn height(&self, at: DVec2) -> f64;
 
-    /// The largest wavenumber (waves per cell), or `None` for a surface without a band limit.
+    /// Largest component of a wave vector, or `None` for a surface without a band limit.
     ///
-    /// The limit holds in every direction.
+    /// Its unit is waves per cell. No wave of the surface has |kx| or |ky| above this limit.
     fn band_limit(&self) -> Option<usize>;
 
     /// Heights at the element centres of `grid`, in λ.
@@ -66,7 +66,7 @@ pub enum HeightSource<'a> {
 }
 
 impl HeightSource<'static> {
-    /// The heights of a surface with several owners on `grid`. Nothing is evaluated yet.
+    /// The heights on `grid` of a surface that has several owners. Nothing is evaluated yet.
     #[must_use]
     pub fn shared(surface: Arc<dyn HeightField + Send + Sync>, grid: Grid) -> Self {
         Self::SharedSurface { surface, grid }
@@ -127,7 +127,7 @@ impl HeightSource<'_> {
 
     /// Number of elements per shortest wave. `None` for maps and for surfaces without a band limit.
     ///
-    /// Elements are counted along the shorter side of the grid.
+    /// Elements are counted along the side of the grid that has fewer of them.
     #[must_use]
     pub fn elements_per_wave(&self) -> Option<f64> {
         let waves = self.surface()?.band_limit().filter(|&waves| waves > 0)?;

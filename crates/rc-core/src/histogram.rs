@@ -8,7 +8,7 @@ pub struct Histogram {
     pub low: f64,
     /// Upper end of the last bin.
     pub high: f64,
-    /// Density in each bin. Its integral is 1.
+    /// Density in each bin. Its integral is 1, or 0 if no value is in the range.
     pub density: Vec<f64>,
 }
 

@@ -49,16 +49,18 @@
 //! # Features
 //!
 //! - `serde`: grids, cells and elasticity serialise. Deserialised values are validated.
-//! - `ndarray`: a [`Field`] converts to and from `ndarray::Array2<f64>` without a copy.
+//! - `ndarray`: a [`Field`] converts to `ndarray::Array2<f64>` without a copy. The way back needs none if the array is
+//!   contiguous and row-major.
 //!
 //! # Further
 //!
-//! Module [`testing`] has a check for each trait. More examples are in `tests/examples/` of the repository.
+//! Module [`testing`] has checks for [`HeightField`], [`Kernel`] and [`Operator`]. More examples are in
+//! `tests/examples/` of the repository.
 //!
 //! The paper is Putignano, Afferrante, Carbone, Demelio, *A new efficient numerical method for contact mechanics of
 //! rough surfaces*, Int. J. Solids Struct. 49 (2012) 338-343. A mention such as "Eq. 4" without another source means
-//! equation 4 of this paper. The documentation of the function that evaluates an equation writes its number in
-//! parentheses. Searching for "Eq. (14" leads to that function.
+//! equation 4 of this paper. Only the function that evaluates an equation puts the equation's number in parentheses. A
+//! search for "Eq. (14" therefore finds the function for equation 14.
 
 #[cfg(feature = "ndarray")]
 mod array;

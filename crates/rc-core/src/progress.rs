@@ -28,9 +28,9 @@ pub enum Event {
     },
 }
 
-/// Passes the rows of a field to a function, in order.
+/// A function that passes the rows of a field, in order, to its argument.
 ///
-/// Each call of the function gets one or more whole rows.
+/// Each call of the argument gets one or more whole rows.
 pub type Rows<'a> = dyn Fn(&mut dyn FnMut(&[f64])) + 'a;
 
 /// The pressure of a running solve, between two iterations.

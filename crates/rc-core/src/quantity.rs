@@ -2,7 +2,7 @@
 
 /// A unit with a decimal prefix.
 ///
-/// Related numbers share a scale, such as the tick marks of an axis.
+/// Related numbers, such as the tick marks of an axis, share a scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     /// Value of one prefixed unit. Divide a value by it to get the number that is written.
@@ -40,9 +40,10 @@ pub fn engineering(value: f64, unit: &'static str) -> String {
     format!("{} {}", digits(value / scale.factor, 4), scale.unit()).trim_end().to_owned()
 }
 
-/// Text of `value` with `n` significant digits, without trailing zeros.
+/// Text of `value` with `n` significant digits.
 ///
-/// It is plain between 1e-4 and 1e6, and has an exponent elsewhere.
+/// It is plain between 1e-4 and 1e6, and has an exponent elsewhere. Plain text has no trailing zeros after the point,
+/// and an integer part of more than `n` digits is written in full.
 #[must_use]
 pub fn digits(value: f64, n: usize) -> String {
     if value == 0.0 || !value.is_finite() {

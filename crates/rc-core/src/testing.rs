@@ -4,7 +4,7 @@
 
 use crate::{DVec2, Grid, HeightField, Kernel, Operator};
 
-/// A reproducible pseudo-random value in [0, 1) for index `i`.
+/// A reproducible quasi-random value in [0, 1) for index `i`.
 ///
 /// The values form a Weyl sequence. The function has no state and needs no other crate.
 #[must_use]
@@ -45,8 +45,8 @@ pub fn check_height_field(surface: &dyn HeightField) {
 /// Checks the symbol of a [`Kernel`].
 ///
 /// The symbol must be zero at k = 0, and positive and finite elsewhere. It must be symmetric under x ↔ y on a square
-/// grid. Copies of a rectangular cell may form a square. The symbol of the rectangle must equal the symbol of this
-/// square for the same waves.
+/// grid. The check joins copies of a rectangular cell to a square cell. Both cells must have the same symbol for the
+/// same waves.
 ///
 /// # Panics
 /// When the contract is broken.
@@ -88,7 +88,7 @@ pub fn check_kernel(kernel: &dyn Kernel) {
 /// Checks a symmetric [`Operator`].
 ///
 /// The operator must be linear, symmetric, positive on random loads, and zero for a uniform load. The result must not
-/// depend on the previous contents of scratch.
+/// depend on the previous contents of output or scratch.
 ///
 /// # Panics
 /// When the contract is broken.

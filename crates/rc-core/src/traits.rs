@@ -5,13 +5,14 @@ use crate::Grid;
 /// Eigenvalue of an elastic operator on one grid, as a function of (|kx|, |ky|).
 ///
 /// The wave has |kx| and |ky| periods per side. Arguments go up to half the number of elements along each side.
+/// [`Kernel::free_response`] uses the same type for a displacement as a function of a distance.
 pub type Symbol<'a> = Box<dyn Fn(usize, usize) -> f64 + Send + Sync + 'a>;
 
-/// The surroundings of the heights.
+/// What lies beyond the borders of the heights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Boundary {
-    /// The same heights again, as in a periodic cell.
+    /// The heights repeat themselves: the cell is periodic.
     #[default]
     Periodic,
     /// The free surface of the solid, without pressure.
@@ -34,13 +35,13 @@ pub struct EdgeBias {
     ///
     /// Holes in contacts count as negative.
     pub per_contact: f64,
-    /// Term per unit of the deviation of the gap beside an edge.
+    /// Term per unit of deviation from the gap law beside an edge.
     ///
     /// For a straight edge, gap ∝ s^(3/2) at distance s from the edge. This law converts the gap at the second element
-    /// outside an edge to a distance. The deviation is this distance minus the true distance, in sides of an element.
-    /// It is not zero at curved edges and between contacts that are close to each other.
+    /// outside an edge to a distance. The deviation is this distance minus the distance to the interpolated edge, in
+    /// element sides. It is not zero at curved edges and between contacts that are close to each other.
     pub per_deviation: f64,
-    /// Missing part of Σ p² for each edge.
+    /// Term added to Σ p² for each edge.
     ///
     /// Its unit is the square of the pressure beside the edge.
     pub per_square: f64,
@@ -55,13 +56,14 @@ impl Default for EdgeBias {
     }
 }
 
-/// The elastic response of a periodic half-space to pressure on a uniform grid.
+/// The elastic response of a solid to pressure on a uniform grid.
 ///
-/// Another solid, such as a layered or graded half-space, is another `Kernel`. Only two methods are required, and one
-/// of them returns a name. [`crate::testing::check_kernel`] checks the contract.
+/// The half-space, a layered solid and a graded one are different `Kernel`s. Only two methods are required, and one of
+/// them returns a name. [`crate::testing::check_kernel`] checks the contract.
 ///
 /// # Not every linear solid is a `Kernel`
-/// The solvers minimise an elastic energy, so the symbol has one positive value for a wave and its mirror images.
+/// The solvers minimise an elastic energy, so the symbol is real and positive. They also assume equal values for a wave
+/// and its mirror images.
 ///
 /// - **Viscoelastic solids** have a complex symbol at each frequency. The displacement lags behind the pressure, and
 ///   there is no energy to minimise. Instead, step in time. The response within a step is elastic, and its symbol is
@@ -83,10 +85,10 @@ impl Default for EdgeBias {
 /// - the symbol is not symmetric on a square grid;
 /// - a second evaluation gives another value.
 ///
-/// The check cannot recognise a valid symbol of another solid, such as one with a wrong factor, a wrong thickness or
-/// smooth noise. Compare with a known displacement. A fault at a single wave that was not evaluated is noticed only if
-/// the value is NaN or infinite, because the solve then does not converge. Kernels with [`Kernel::is_split_by_scale`]
-/// are not checked.
+/// The check does not notice a valid symbol of the wrong solid: with a wrong factor, a wrong thickness or smooth noise.
+/// Compare with a known displacement. A fault at a single wave that was not evaluated is noticed only if the value is
+/// NaN or infinite, because the solve then does not converge. Kernels with [`Kernel::is_split_by_scale`] are not
+/// checked.
 pub trait Kernel: Sync {
     /// Short name, as used in result files.
     fn name(&self) -> &'static str;
@@ -159,9 +161,9 @@ pub trait Kernel: Sync {
 ///
 /// A deviation counts as a fault if it exceeds the tolerance of the solve, relative to the maximum displacement.
 ///
-/// The check cannot recognise a valid operator of another solid, such as one with a wrong factor or with its elements
-/// in another order than the heights. It cannot see a fault that comes later either, because the certificate of a
-/// solution uses the same operator.
+/// The check does not notice a valid operator of the wrong solid, for example with a wrong factor or a different order
+/// of elements. A fault that appears after the check also goes unnoticed, because the certificate uses the same
+/// operator.
 pub trait Operator: Sync {
     /// Number of elements, which is the length of pressure and displacement.
     fn n_elements(&self) -> usize;

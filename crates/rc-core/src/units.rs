@@ -242,7 +242,7 @@ impl Units {
 mod tests {
     use super::*;
 
-    /// A spring with given pressures and lengths is the same in SI. Its stiffness is the ratio of both. Its energy is
+    /// A spring has the same properties in both systems of units. Its stiffness is pressure over length, and its energy
     /// half their product times the area.
     #[test]
     fn stiffness_and_energy_follow_from_pressure_and_length() {

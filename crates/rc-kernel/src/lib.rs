@@ -1,9 +1,9 @@
-//! Elastic half-space kernels on the periodic cell (Eq. 2-6), in units of λ and E*.
+//! Elastic kernels of the half-space (Eq. 2-6) and of layers, in units of λ and E*.
 //!
 //! The paper's operator is `v_i = Σ_j L_ij p_j` (Eq. 4). L_ij is the displacement of i by a uniform pressure on element
-//! j and all its periodic images (Eq. 5). The mean displacement is subtracted (Eq. 6). Both sums diverge, and their
-//! difference converges like 1/(number of images). The crate has the paper's truncated sums for comparison. All other
-//! sums are over all images:
+//! j and all its periodic images (Eq. 5). The mean displacement is subtracted (Eq. 6). The sums over images in Eq. 5
+//! and Eq. 6 diverge. Their difference converges like 1/(number of images). The crate has the paper's truncated sums
+//! for comparison. All other periodic sums are over all images. [`love_displacement`] and [`FreeLove`] have no images:
 //!
 //! | item | what it computes | file |
 //! |---|---|---|
@@ -79,7 +79,7 @@ use rc_core::{Grid, Kernel, Symbol};
 /// *Accuracy*: every value is within 4e-15 relative of [`love_alias_sum`] (test `fast_symbol_matches_the_alias_sum`).
 /// The coefficients L_ij are accurate to 1e-12 (test `love_symbol_reproduces_the_periodic_coefficients`).
 ///
-/// *Cost*: 2 ms to make. A value takes 25 ns on square elements, and up to 70 ns on others.
+/// *Cost*: [`Kernel::symbol`] takes 2 ms for a grid. A value takes 25 ns on square elements, and up to 70 ns on others.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Love;
 

@@ -16,14 +16,14 @@
 //! use rc_core::{Field, Grid};
 //! use rc_solver::{Control, SolveParams, solve};
 //!
-//! // Westergaard's wave at half the load of full contact, π E* a/λ: half of it touches.
+//! // The load of full contact of Westergaard's wave is π E* a/λ. At half this load, half of the wave touches.
 //! let amplitude = 1e-3;
 //! let heights = Field::from_fn(Grid::square(128)?, |at| amplitude * (TAU * at.x).cos());
 //! let solution = solve(&heights, Control::MeanPressure(0.5 * PI * amplitude), &SolveParams::default())?;
 //! assert!((solution.area().fraction - 0.5).abs() < 5e-3);
 //! assert!(solution.certificate().meets(solution.bound()));
 //!
-//! // The same contact at a penetration that is given now.
+//! // The same contact, now with the penetration given instead of the load.
 //! let depth = Control::Penetration(solution.info().penetration);
 //! let again = solve(&heights, depth, &SolveParams::default())?;
 //! assert!((again.info().mean_pressure / solution.info().mean_pressure - 1.0).abs() < 1e-4);

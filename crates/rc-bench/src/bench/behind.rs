@@ -104,7 +104,7 @@ fn counts(all: &[Behind]) -> [usize; 3] {
 pub(super) fn count(results: &Results<'_>) -> String {
     let [n, slower, close] = counts(&comparisons(results));
     format!(
-        "Of {n} comparisons on single problems, the fastest peer is faster in {slower}. In {close} more it takes less than twice our time.\n"
+        "In {slower} of {n} comparisons (one error, one problem, one way to read the peers' results), the fastest peer is faster than rc. In {close} more it takes less than twice our time.\n"
     )
 }
 

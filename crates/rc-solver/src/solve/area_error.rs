@@ -4,8 +4,10 @@ use rc_core::{Grid, HeightField, HeightSource, Observer};
 
 use super::{ContactProblem, Solution, SolveError, SolveParams};
 
-/// Elements per shortest wave of the first grid, and of the last grid below.
+/// Elements per shortest wave of the first grid.
 const COARSEST: usize = 4;
+
+/// Elements per shortest wave of the last grid.
 const FINEST: usize = 256;
 
 /// Minimum number of elements per side of the first grid.

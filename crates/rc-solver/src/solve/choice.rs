@@ -1,6 +1,6 @@
 //! The choice of the method.
 //!
-//! It is the method that is asked for. Otherwise it is the adaptive method, if that fits and is the cheaper one.
+//! If the caller asks for a method, it is used. Otherwise the adaptive method is chosen, if it fits and is cheaper.
 
 use std::sync::Arc;
 
@@ -122,7 +122,7 @@ impl<'a> Choice<'a, '_> {
         }
     }
 
-    /// The reason to solve on the uniform grid without a kernel split by scale.
+    /// Why a kernel without a split by scale is solved on the uniform grid.
     fn without_split(&self) -> MethodReason {
         let kernel = self.problem.kernel.get();
         match kernel.uniform_displacement() {
@@ -138,7 +138,9 @@ impl<'a> Choice<'a, '_> {
         AdaptiveProblem::on(ground, self.problem.load(), &params, &self.problem.place)
     }
 
-    /// The uniform grid where the adaptive method does not fit, if the uniform one helps.
+    /// Chooses the uniform grid after the adaptive method has failed with `error`.
+    ///
+    /// Fails if the uniform method cannot solve the problem either.
     fn without_adaptive(&self, error: AdaptiveError) -> Chosen<'a> {
         let Some(reason) = self.obstacle(&error) else { return Err(error.into()) };
         match self.on_grid(Method::Uniform) {
@@ -170,7 +172,7 @@ impl<'a> Choice<'a, '_> {
         }
     }
 
-    /// A method that stores every element of the grid, if it fits into memory.
+    /// A method that stores fields on the whole grid, if they fit into memory.
     fn on_grid(&self, method: Method) -> Result<ChosenMethod<'a>, SolveError> {
         check_uniform(
             self.problem.heights.grid(),

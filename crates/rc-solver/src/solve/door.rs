@@ -14,7 +14,7 @@ use crate::{Control, Method, MethodReason};
 impl<'a> ContactProblem<'a> {
     /// Checks the problem and chooses its method, without solving.
     ///
-    /// The load, the tolerance and the grid are checked.
+    /// Load, tolerance, grid, kernel and estimated memory are checked.
     ///
     /// # Errors
     /// [`SolveError`], but not [`SolveError::NotConverged`].
@@ -42,8 +42,8 @@ impl<'a> ContactProblem<'a> {
 
     /// Solves the problem on the coarsest grid that is accurate enough.
     ///
-    /// The relative error bar of the contact area is then at most `wanted`. The heights must be a band-limited surface.
-    /// The grid of the given [`HeightSource`] is ignored.
+    /// The relative error bar of the contact area is then at most `wanted`. The heights must be a band-limited surface
+    /// in a square cell. Of the grid of the given [`HeightSource`], only the shape of the cell is used.
     ///
     /// The first grid has four elements for the shortest wave. Its error bar determines the next grid. In most cases
     /// two problems are solved. The last takes longer than all others.
@@ -98,7 +98,7 @@ impl Plan<'_> {
 /// use rc_core::{Field, Grid};
 /// use rc_solver::{Control, SolveParams, solve};
 ///
-/// // Westergaard's wave at half the load of full contact, π E* a/λ: half of it touches.
+/// // The load of full contact of Westergaard's wave is π E* a/λ. At half this load, half of the wave touches.
 /// let wave = Field::from_fn(Grid::square(128)?, |at| 1e-3 * (std::f64::consts::TAU * at.x).cos());
 /// let solution = solve(&wave, Control::MeanPressure(0.5e-3 * std::f64::consts::PI), &SolveParams::default())?;
 /// let area = solution.area();
@@ -119,14 +119,15 @@ pub fn solve<'a>(
 
 /// Solves the contact of `heights` (in λ) with the half-space of the caller's operator.
 ///
-/// The operator v = L p must be symmetric, of zero mean, and positive for pressures that are not uniform. Element i of
-/// the operator is element i of the heights.
+/// The operator v = L p must be symmetric, and positive for pressures that are not uniform. The displacement must have
+/// zero mean. Element i of the operator is element i of the heights.
 ///
 /// Projected conjugate gradients on this grid find the pressure. No preconditioner is known for a general operator, so
 /// they need several times the iterations of the uniform method. For a half-space with a [`rc_core::Kernel`],
-/// [`ContactProblem::with_kernel`] is faster. Of `params`, only the tolerance and the number of iterations count. The
-/// certificate comes from a fresh application of the operator. [`Solution::stiffness`] is then a lower bound, usually
-/// low by less than a percent, because its iteration is not preconditioned either.
+/// [`ContactProblem::with_kernel`] is faster. Of `params`, only the tolerance and the number of iterations count. A
+/// border level, or a method other than [`Method::Uniform`], is an error. The certificate comes from a fresh
+/// application of the operator. [`Solution::stiffness`] is then less accurate, because its iteration is not
+/// preconditioned either. It is a lower bound, usually less than a percent too small.
 ///
 /// # Errors
 /// [`SolveError`]. [`crate::ProblemError::Operator`] for an operator with another number of elements.

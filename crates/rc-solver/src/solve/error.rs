@@ -28,7 +28,7 @@ pub enum SolveError {
         kernel: &'static str,
     },
     /// The chosen method cannot run over several ranks (processes or threads).
-    #[error("over several ranks only the adaptive method solves ({reason}); give the method adaptive, or one rank")]
+    #[error("only the adaptive method runs on several ranks ({reason}); choose the adaptive method, or one rank")]
     OneRank {
         /// The method, and the reason to choose it.
         reason: MethodReason,
@@ -53,13 +53,13 @@ pub enum SolveError {
         /// The method asked for.
         method: Method,
     },
-    /// A hardness was given, but the method has no hardness.
-    #[error("the {method} method has no hardness; the adaptive and the uniform ones do")]
+    /// A hardness was given to a method that does not support it.
+    #[error("the {method} method does not support a hardness; the adaptive and uniform methods do")]
     Hardness {
         /// The method asked for.
         method: Method,
     },
-    /// A method that stores every element exceeds the memory limit.
+    /// A method that stores fields on the whole grid exceeds the memory limit.
     #[error("the {method} method on {grid} elements needs about {needed} bytes, more than the limit of {limit}")]
     Memory {
         /// The method.
@@ -84,12 +84,12 @@ pub enum SolveError {
     },
     /// A grid can be chosen only for a band-limited surface in a square cell.
     #[error(
-        "the grid follows an error of the area only for a band-limited surface in a square cell; a height map has its own grid"
+        "a wanted area error can choose the grid only for a band-limited surface in a square cell; a height map has its own grid"
     )]
     NoWaves,
     /// The finest grid that is tried is not accurate enough.
     #[error(
-        "a relative error of the area of {wanted} cannot be reached; with {side} elements per side it is {reached}"
+        "the relative error of the area cannot be reduced to {wanted}; with {side} elements per side it is {reached}"
     )]
     AreaError {
         /// Relative error that was wanted.
@@ -108,7 +108,7 @@ pub enum SolveError {
         grid: Grid,
         /// Iterations on that grid.
         iterations: usize,
-        /// Residuals of the best pressure found.
+        /// Certificate of the best pressure found.
         certificate: Certificate,
         /// The best solution found.
         solution: Box<Solution<'static>>,

@@ -33,11 +33,11 @@ impl Solution<'_> {
         }
     }
 
-    /// The gap on the grid of the smallest elements, in λ, as [`Solution::gap`].
+    /// The gap before plastic flow, on the grid of the smallest elements, in λ.
     ///
-    /// It is negative where plastic flow has removed an overlap. `None` without a border level, because the smallest
-    /// elements are then those of [`Solution::grid`]. Each call takes one application of L on the grid of the smallest
-    /// elements.
+    /// It is shifted like [`Solution::gap`], and negative where plastic flow removed an overlap. `None` without a
+    /// border level, because the smallest elements are then those of [`Solution::grid`]. Each call takes one
+    /// application of L on the grid of the smallest elements.
     #[must_use]
     pub fn finest_gap(&self) -> Option<Field> {
         match &self.pressures {

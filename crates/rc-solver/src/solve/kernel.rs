@@ -24,7 +24,7 @@ pub(super) struct TabulatedKernel {
     grid: Grid,
     /// Eigenvalues for 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2. Columns of constant kx are contiguous.
     values: Vec<f64>,
-    /// Displacements of all elements by one element, row by row, where borders are free.
+    /// For free borders: displacements at each distance from one loaded element, row-major.
     free: Option<Vec<f64>>,
 }
 
@@ -67,8 +67,8 @@ impl Kernel for TabulatedKernel {
 
     fn symbol(&self, grid: Grid) -> Symbol<'_> {
         if self.free.is_some() {
-            // With free borders the symbol is only a preconditioner, on a grid with a margin. The symbol of waves does
-            // this as well.
+            // With free borders, the symbol only preconditions, on a grid with a margin. The symbol of
+            // `rc_kernel::Spectral` serves equally well for this.
             return Box::new(move |kx, ky| match grid.waves(kx, ky) {
                 0.0 => 0.0,
                 waves => 1.0 / (PI * waves),

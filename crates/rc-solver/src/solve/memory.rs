@@ -1,4 +1,4 @@
-//! Memory of the methods that store every element of the grid.
+//! Memory of the methods that store fields on the whole grid.
 
 use rc_core::{Boundary, Grid};
 
@@ -6,7 +6,7 @@ use super::SolveError;
 use crate::uniform::FREE_BYTES_PER_ELEMENT;
 use crate::{Method, UNIFORM_BYTES_PER_ELEMENT};
 
-/// Bytes of a method that stores every element.
+/// Bytes per element of a method that stores fields on the whole grid.
 pub(super) fn bytes_per_element(boundary: Boundary) -> u64 {
     match boundary {
         Boundary::Periodic => UNIFORM_BYTES_PER_ELEMENT,
@@ -14,7 +14,7 @@ pub(super) fn bytes_per_element(boundary: Boundary) -> u64 {
     }
 }
 
-/// Refuses a method that stores every element if the grid does not fit into memory.
+/// Refuses fields on the whole grid that do not fit into memory.
 pub(super) fn check_uniform(
     grid: Grid,
     bytes_per_element: u64,

@@ -1,4 +1,4 @@
-//! The entry point: a contact problem and its solution, without choices in between.
+//! The entry point: it takes a contact problem, chooses the method, and returns the solution.
 
 mod area_error;
 mod choice;

@@ -12,14 +12,15 @@ pub struct SolveParams {
     pub max_iterations: usize,
     /// The method. `None` chooses by the estimated contact area.
     pub method: Option<Method>,
-    /// Number of times that elements at contact edges are halved below the grid's.
+    /// Number of times that elements of the grid are halved at contact edges.
     ///
     /// Only the adaptive method halves elements, and only on a [`rc_core::HeightField`], not on a map.
     pub border_level: usize,
     /// Maximum memory, in bytes.
     ///
-    /// If the estimated memory is larger, the solve fails before any work. If scattered contact requires the uniform
-    /// grid, it fails only after the base grid has been solved. The base grid is a coarse grid that the adaptive method
+    /// If no allowed method fits, the solve fails before any work. Without [`SolveParams::method_follows_memory`], it
+    /// may also fail later, after the base grid has been solved. This happens if the adaptive method turns out not to
+    /// suit the problem, and the uniform grid does not fit. The base grid is a coarse grid that the adaptive method
     /// stores in full.
     pub memory_limit: Option<u64>,
     /// Whether another method is chosen if the first does not fit into memory.

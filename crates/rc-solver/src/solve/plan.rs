@@ -39,8 +39,9 @@ pub(super) enum ChosenMethod<'a> {
 impl<'a> Plan<'a> {
     /// The chosen method.
     ///
-    /// If the adaptive method was chosen automatically, the uniform one may replace it. This happens if contact is too
-    /// scattered on the base grid, a coarse grid. [`Solution::method`] returns the method that solved the problem.
+    /// If the adaptive method was chosen automatically, the uniform one may replace it. The solution on a coarse grid,
+    /// the base grid, decides this. The uniform method takes over if contact is too scattered, or if pressures are too
+    /// rough for the tolerance. [`Solution::method`] returns the method that solved the problem.
     #[must_use]
     pub fn method(&self) -> Method {
         match self.chosen {
@@ -100,8 +101,8 @@ impl<'a> Plan<'a> {
 
 /// The solution of the adaptive method, or the reason to take the uniform method instead.
 ///
-/// There is such a reason if an estimate chose the method, and contact turns out to be too scattered. The uniform grid
-/// is then cheaper, and must fit into memory.
+/// Only a method that an estimate chose is replaced. There are two reasons: contact turns out to be too scattered, or
+/// the adaptive operator cannot certify the tolerance. The uniform grid must then fit into memory.
 fn by_adaptive(
     problem: &ContactProblem<'_>,
     params: &SolveParams,

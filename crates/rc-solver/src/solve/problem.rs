@@ -19,7 +19,7 @@ use crate::support::Support;
 /// use rc_kernel::Spectral;
 /// use rc_solver::{ContactProblem, Control, Method, SolveParams};
 ///
-/// // Westergaard's wave at a quarter of the load of full contact, with another kernel than the default.
+/// // Westergaard's wave at a quarter of the load of full contact, with a kernel other than the default.
 /// let wave = Field::from_fn(Grid::square(64)?, |at| 1e-3 * (std::f64::consts::TAU * at.x).cos());
 /// let load = Control::MeanPressure(0.25 * std::f64::consts::PI * 1e-3);
 /// let plan = ContactProblem::new(&wave, load).with_kernel(&Spectral).plan(&SolveParams::default())?;
@@ -97,8 +97,8 @@ impl<'a> ContactProblem<'a> {
     /// The same problem, solved jointly by several ranks (threads or MPI processes).
     ///
     /// Each rank has a part of the mesh. All ranks call the same functions in the same order, including those of the
-    /// solution. Only the adaptive method works over ranks, with elements of one size on grids that can be halved
-    /// several times. Results are bitwise the same for any number of ranks.
+    /// solution. Only the adaptive method works over ranks, without a border level and without a hardness. The grid
+    /// must halve down to its base grid. Results are bitwise the same for any number of ranks.
     ///
     /// ```
     /// use rc_comm::run_threads;

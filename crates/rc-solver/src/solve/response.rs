@@ -1,6 +1,6 @@
-//! The half-space of a solution on a grid, for use after the solve.
+//! The elastic response that a solution on a grid keeps for use after the solve.
 //!
-//! It may outlive the caller's half-space.
+//! It may outlive the caller's kernel or operator.
 
 use rc_core::{Boundary, EdgeBias, Field, Grid, Operator};
 

@@ -19,8 +19,9 @@ use crate::{Certificate, ContactArea, ContactElement, ErrorBound, Method, Method
 /// [`Solution::gap_rows`] never store a whole field.
 ///
 /// Over ranks ([`crate::ContactProblem::over`]), each rank has a part. All ranks call the functions of a solution
-/// together, and get the same numbers. Only the first rank gets rows. [`Solution::elements`] returns the elements of
-/// the calling rank only.
+/// together, and get the same numbers. [`Solution::pressure_rows`] and the like pass all rows on the first rank, and
+/// none on the others. [`Solution::own_pressure_rows`] and [`Solution::own_gap_rows`] pass the rows of the calling
+/// rank. [`Solution::elements`] returns the elements of the calling rank only.
 pub struct Solution<'a> {
     pub(super) how: HowSolved,
     pub(super) status: Status,
@@ -69,7 +70,7 @@ pub(super) enum Pressures<'a> {
 }
 
 impl<'a> Solution<'a> {
-    /// The solution of a method that stores every element of the grid.
+    /// The solution of a method that stores fields on the whole grid.
     pub(super) fn on_grid(how: HowSolved, kernel: OwnedKernel<'a>, solution: GridSolution, h_max: f64) -> Self {
         Self::of_grid(how, Response::Kernel(kernel), solution, h_max)
     }
@@ -198,7 +199,7 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// Residuals from a fresh application of L on the returned pressure, for the whole cell.
+    /// Bounds on the error, from a fresh application of L on the returned pressure.
     #[must_use]
     pub fn certificate(&self) -> Certificate {
         self.info().certificate
@@ -247,10 +248,11 @@ impl<'a> Solution<'a> {
         })
     }
 
-    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative.
+    /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ.
     ///
-    /// It is infinite in full contact with the half-space. Plastic elements keep their pressure and do not contribute.
-    /// The first call takes a few applications of L.
+    /// It is computed to 1e-3 relative, or less accurately with an operator of the caller
+    /// ([`crate::solve_with_operator`]). The stiffness is infinite in full contact with the half-space. Plastic
+    /// elements keep their pressure and do not contribute. The first call takes a few applications of L.
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         *self.stiffness.get_or_init(|| match &self.pressures {
@@ -277,7 +279,7 @@ impl<'a> Solution<'a> {
         self.how.hardness
     }
 
-    /// The ranks that have solved the problem. All of them call its functions together.
+    /// The ranks that solved the problem. All of them call the functions of this solution together.
     #[must_use]
     pub fn ranks(&self) -> Ranks {
         match &self.pressures {
@@ -288,7 +290,8 @@ impl<'a> Solution<'a> {
 
     /// Number of elements whose pressures are unknowns.
     ///
-    /// These are elements in contact on an adaptive mesh, and all elements of a uniform grid.
+    /// For the uniform method, these are all elements of the grid. For the adaptive and the Gauss-Seidel method, these
+    /// are the elements in contact.
     #[must_use]
     pub fn n_elements(&self) -> usize {
         match &self.pressures {
@@ -308,7 +311,7 @@ impl<'a> Solution<'a> {
 
     /// The elements in contact, with their pressures, if the mesh is not the grid.
     ///
-    /// `None` for the uniform method.
+    /// `None` for the uniform method. The adaptive and the Gauss-Seidel method have a mesh.
     #[must_use]
     pub fn elements(&self) -> Option<Box<dyn Iterator<Item = ContactElement> + '_>> {
         match &self.pressures {
