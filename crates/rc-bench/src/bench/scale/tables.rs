@@ -47,7 +47,7 @@ pub(in crate::bench) fn sentence(rows: &[ScaleRow]) -> Option<String> {
     let (side, memory, threads) = (row.side, megabytes(row.memory_mb), row.threads);
     Some(format!(
         "The paper's larger surface (shortest wave λ/128, {side} x {side} elements) takes {} and {memory} on {threads} threads. It was solved \
-         by the adaptive method, at the tolerance {}.\n",
+         by the adaptive method, with `--tolerance {}`.\n",
         time(row.seconds),
         row.tolerance
     ))
