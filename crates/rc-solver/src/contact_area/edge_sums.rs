@@ -216,3 +216,20 @@ impl AddAssign for EdgeSums {
         *self = *self + other;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The gap is linear across the edge, and negative inside.
+    #[test]
+    fn a_sharp_edge_is_where_the_overlap_ends() {
+        for position in [0.25, 0.5, 0.75] {
+            let at = |dx: isize, _: isize| [if dx <= 0 { 1.0 } else { 0.0 }, 0.1 * (dx as f64 - position)];
+            let mut sums = EdgeSums::default();
+            EdgeSums::add(&mut sums, [1.0; 2], 1.0, &at);
+            assert_eq!((sums.sharp, sums.known_sharp), (1, 1));
+            assert!((sums.shift_of_sharp - (position - 0.5)).abs() < 1e-12, "{position}: {sums:?}");
+        }
+    }
+}
