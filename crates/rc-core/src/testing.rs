@@ -45,8 +45,8 @@ pub fn check_height_field(surface: &dyn HeightField) {
 /// Checks the symbol of a [`Kernel`].
 ///
 /// The symbol must be zero at k = 0, and positive and finite elsewhere. It must be symmetric under x ↔ y on a square
-/// grid. The check joins copies of a rectangular cell to a square cell. Both cells must have the same symbol for the
-/// same waves.
+/// grid. Three copies of a rectangular cell make a square cell. The check requires that both cells have the same symbol
+/// for the same waves.
 ///
 /// # Panics
 /// When the contract is broken.

@@ -21,8 +21,9 @@ pub enum Boundary {
 
 /// Constants of the first-order error that a discretisation makes at the edges of contacts.
 ///
-/// The solver locates contact edges by interpolation between the centres of elements. The first three terms are
-/// subtracted from the resulting contact area, in units of the area of an element. The last term is added to Σ p².
+/// The solver locates contact edges by interpolation between the centres of elements. Each constant gives a term of the
+/// correction. The terms of the first three are subtracted from the resulting contact area, in units of the area of an
+/// element. The term of the last constant is added to Σ p².
 ///
 /// The constants are fitted for each kernel (`docs/accuracy.md`). The default is for kernels similar to Love's squares,
 /// which have a uniform pressure on each element.
@@ -33,7 +34,7 @@ pub struct EdgeBias {
     pub per_edge: f64,
     /// Term for each contact, because the shift of an edge depends on its curvature.
     ///
-    /// Holes in contacts count as negative.
+    /// Each hole in a contact reduces the number of contacts by one.
     pub per_contact: f64,
     /// Term per unit of deviation from the gap law beside an edge.
     ///

@@ -2,8 +2,9 @@
 //!
 //! The paper's operator is `v_i = Σ_j L_ij p_j` (Eq. 4). L_ij is the displacement of i by a uniform pressure on element
 //! j and all its periodic images (Eq. 5). The mean displacement is subtracted (Eq. 6). The sums over images in Eq. 5
-//! and Eq. 6 diverge. Their difference converges like 1/(number of images). The crate has the paper's truncated sums
-//! for comparison. All other periodic sums are over all images. [`love_displacement`] and [`FreeLove`] have no images:
+//! and Eq. 6 diverge. If both are cut after K shells (rings of images), the error of their difference is of order 1/K.
+//! The crate has the paper's truncated sums for comparison. All other periodic sums are over all images.
+//! [`love_displacement`] and [`FreeLove`] have no images:
 //!
 //! | item | what it computes | file |
 //! |---|---|---|
@@ -12,7 +13,7 @@
 //! | [`love_alias_sum`] | the same symbol one value at a time: the slow reference for [`Love`] | `alias_sum.rs` |
 //! | [`PeriodicLove`] | Eq. 4-6 for any two squares of the cell with all images; accurate to 1e-12, 31 to 54 ns per value | `periodic.rs`, which uses `square.rs` and `averages.rs` |
 //! | [`ewald_phi`], [`ewald_coefficient`] | the point load and the square by Ewald's sum: the slow reference for [`PeriodicLove`] | `lattice.rs` |
-//! | [`truncated_coefficient`] | Eq. 4-6 as in the paper, with images up to K shells (rings of cells), and a proven bound on the truncation error | `truncated.rs` |
+//! | [`truncated_coefficient`] | Eq. 4-6 as in the paper, with images up to K shells, and a proven bound on the truncation error | `truncated.rs` |
 //! | [`ScaleSplit`] | Eq. 4-6 split by scale, for meshes of many levels: short-range stencils, filters between levels, a smooth remainder | `split/` |
 //! | [`Spectral`] | Eq. 2-3 for each Fourier wave: the symbol of the continuous half-space, without aliases | `spectral.rs` |
 //! | [`FreeLove`] | Eq. 4-5 on an infinite half-space, without images | `free_love.rs`, rectangles in `love.rs` |

@@ -15,7 +15,9 @@ const SMALLEST_SIDE: usize = 64;
 
 /// Order at which the error bar falls with the element side.
 ///
-/// Most of the error is the scatter of edges, √(edges) element areas.
+/// Most of the error is random, because edges lie at random positions between the centres of elements. If n elements
+/// are at edges, the error is proportional to √n element areas. The number n is inversely proportional to the element
+/// side, so the order is 2 - 1/2.
 const ORDER: f64 = 1.5;
 
 /// Solves on finer grids until the contact area is accurate enough.

@@ -153,7 +153,8 @@ impl<'a> Choice<'a, '_> {
 
     /// The reason to solve by the uniform method if the adaptive one returns `error`.
     ///
-    /// `None` when the uniform method must refuse the problem too.
+    /// `None` if the uniform method must refuse the problem too. Also `None` if only memory is lacking, and
+    /// [`SolveParams::method_follows_memory`] is `false`.
     fn obstacle(&self, error: &AdaptiveError) -> Option<MethodReason> {
         let grid = self.problem.heights.grid();
         let is_large = |percent: &f64| *percent > 100.0 * Estimate::GREATEST_ADAPTIVE_AREA;
@@ -184,7 +185,9 @@ impl<'a> Choice<'a, '_> {
     }
 }
 
-/// Refuses a grid whose padded grid has too many elements to count.
+/// Refuses a grid that exceeds the limits of [`Grid`] when it is padded.
+///
+/// A grid with free borders is padded, so that no element acts on another around the border.
 fn check_padded(grid: Grid) -> Result<(), SolveError> {
     let [px, py] = [grid.nx(), grid.ny()].map(padded_side);
     Grid::in_cell(px, py, grid.cell_ratio() * (py * grid.nx()) as f64 / (px * grid.ny()) as f64)?;

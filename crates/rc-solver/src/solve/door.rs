@@ -43,7 +43,8 @@ impl<'a> ContactProblem<'a> {
     /// Solves the problem on the coarsest grid that is accurate enough.
     ///
     /// The relative error bar of the contact area is then at most `wanted`. The heights must be a band-limited surface
-    /// in a square cell. Of the grid of the given [`HeightSource`], only the shape of the cell is used.
+    /// in a square cell. The grid of the given [`HeightSource`] only says that the cell is a square. Its numbers of
+    /// elements are not used.
     ///
     /// The first grid has four elements for the shortest wave. Its error bar determines the next grid. In most cases
     /// two problems are solved. The last takes longer than all others.
@@ -122,12 +123,12 @@ pub fn solve<'a>(
 /// The operator v = L p must be symmetric, and positive for pressures that are not uniform. The displacement must have
 /// zero mean. Element i of the operator is element i of the heights.
 ///
-/// Projected conjugate gradients on this grid find the pressure. No preconditioner is known for a general operator, so
-/// they need several times the iterations of the uniform method. For a half-space with a [`rc_core::Kernel`],
-/// [`ContactProblem::with_kernel`] is faster. Of `params`, only the tolerance and the number of iterations count. A
-/// border level, or a method other than [`Method::Uniform`], is an error. The certificate comes from a fresh
-/// application of the operator. [`Solution::stiffness`] is then less accurate, because its iteration is not
-/// preconditioned either. It is a lower bound, usually less than a percent too small.
+/// Projected conjugate gradients on the grid of the heights find the pressure. No preconditioner is known for a general
+/// operator, so they need several times the iterations of the uniform method. For a half-space with a
+/// [`rc_core::Kernel`], [`ContactProblem::with_kernel`] is faster. Of `params`, only the tolerance and the number of
+/// iterations count. A border level, or a method other than [`Method::Uniform`], is an error. The certificate comes
+/// from a fresh application of the operator. [`Solution::stiffness`] is then less accurate, because its iteration is
+/// not preconditioned either. It is a lower bound, usually less than a percent too small.
 ///
 /// # Errors
 /// [`SolveError`]. [`crate::ProblemError::Operator`] for an operator with another number of elements.

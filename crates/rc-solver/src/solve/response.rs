@@ -57,7 +57,7 @@ impl Response<'_> {
         }
     }
 
-    /// dσ0/dΔ under the contact of `solution`, in E*/λ.
+    /// Contact stiffness dσ0/dΔ of `solution`, in E*/λ.
     pub(super) fn stiffness(&self, solution: &GridSolution, hardness: f64) -> f64 {
         match self {
             Self::Kernel(kernel) => contact_stiffness(&solution.pressure, hardness, kernel.get()),
