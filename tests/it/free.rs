@@ -133,7 +133,7 @@ fn a_dense_solver_finds_the_same_pressure() {
     }
 }
 
-/// A contact in periodic cells of 1, 2 and 4 patches per side approaches the half-space.
+/// A contact in periodic cells of 2, 4 and 8 patches per side approaches the half-space.
 ///
 /// The effect of the images and of the missing mean falls with the third power.
 #[test]

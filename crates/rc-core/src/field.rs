@@ -124,6 +124,7 @@ impl Field {
         extreme(&self.values, f64::NEG_INFINITY, |value, greatest| value > greatest)
     }
 }
+
 /// The extreme of all values and `start`, where `is_beyond` compares two values.
 ///
 /// Sixteen lanes are compared independently, so the compiler can use vector instructions.

@@ -40,7 +40,7 @@ pub(super) fn ratio(ratio: Ratio) -> String {
 /// Table of times to an error, ours and the fastest peer's, over all scenes.
 pub(super) fn times(results: &Results<'_>, choice: Choice) -> String {
     let ours = match choice {
-        Choice::Stated => "rc, median (scenes; where it holds)",
+        Choice::Stated => "rc, median (scenes; error bars that hold)",
         Choice::Hindsight => "rc, median (scenes)",
     };
     let readings = Reading::ALL.map(Reading::name).join(" | ");
@@ -247,7 +247,7 @@ pub(super) fn spreads(results: &Results<'_>) -> String {
     let (fewest, most) = (repeats.clone().min().unwrap_or(0), repeats.max().unwrap_or(0));
     let n = if fewest < most { format!("{fewest} to {most}") } else { most.to_string() };
     format!(
-        "Each case was solved {n} times. The difference of the slowest to the fastest time, divided by the median, is {:.0} % in the \
+        "Each case was solved {n} times. The difference between the slowest and the fastest time, divided by the median, is {:.0} % in the \
          median case and below {:.0} % in nine of ten cases.\n",
         100.0 * all[at / 2],
         100.0 * all[9 * at / 10]

@@ -58,7 +58,7 @@ struct Choice<'a, 'b> {
 type Chosen<'a> = Result<(ChosenMethod<'a>, MethodReason), SolveError>;
 
 impl<'a> Choice<'a, '_> {
-    /// Refuses a method that cannot solve with this kernel or border level.
+    /// Refuses a method that cannot solve with this kernel, border level, hardness or boundary.
     fn check_asked_for(&self, method: Method) -> Result<(), SolveError> {
         let kernel = self.problem.kernel.get();
         match method {
