@@ -152,10 +152,11 @@ pub trait Kernel: Sync {
 ///
 /// # What a solve checks
 /// Before it starts, a solve applies the operator to two irregular pressures a and b. It then applies the operator to
-/// the sum of a, b and a uniform pressure. It refuses an operator with one of these faults:
+/// the sum of a, b and a uniform pressure. If the displacements do not add up, two more applications find the reason.
+/// The solve refuses an operator with one of these faults:
 ///
 /// - the displacement is not finite or has a mean;
-/// - a second application gives another displacement;
+/// - two applications to the same pressure give different displacements;
 /// - the displacement depends on the previous contents of output or scratch;
 /// - the operator is not linear, not symmetric or not positive;
 /// - a uniform pressure causes a displacement.

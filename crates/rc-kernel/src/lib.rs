@@ -4,7 +4,7 @@
 //! j and all its periodic images (Eq. 5). The mean displacement is subtracted (Eq. 6). The sums over images in Eq. 5
 //! and Eq. 6 diverge. If both are cut after K shells (rings of images), the error of their difference is of order 1/K.
 //! The crate has the paper's truncated sums for comparison. All other periodic sums are over all images.
-//! [`love_displacement`] and [`FreeLove`] have no images:
+//! [`love_displacement`] and [`FreeLove`] have no images. The main items of the crate are:
 //!
 //! | item | what it computes | file |
 //! |---|---|---|

@@ -47,7 +47,9 @@ pub(super) fn solve<'a>(
     }
 }
 
-/// The coarsest grid of the search. The sides of all other grids are multiples of its sides.
+/// The coarsest grid of the search.
+///
+/// The number of elements per side of every other grid is a multiple of the number on this one.
 pub(super) fn coarsest_grid(heights: &HeightSource<'_>) -> Result<Grid, SolveError> {
     Ok(Grid::square(side(waves_of(heights)?, COARSEST))?)
 }

@@ -32,7 +32,7 @@ impl<'a> ContactProblem<'a> {
 
     /// The coarsest grid of [`ContactProblem::solve_to_area_error`].
     ///
-    /// The sides of all other grids are multiples of its sides.
+    /// The number of elements per side of every other grid is a multiple of the number on this one.
     ///
     /// # Errors
     /// [`SolveError::NoWaves`], and [`SolveError::Grid`] for a surface with too many waves.
@@ -132,8 +132,8 @@ pub fn solve<'a>(
 ///
 /// # Errors
 /// [`SolveError`]. [`crate::ProblemError::Operator`] for an operator with another number of elements.
-/// [`crate::ProblemError::NotElastic`] if three applications at the start show that the operator is not one of a
-/// half-space (see [`Operator`]).
+/// [`crate::ProblemError::NotElastic`] if the check at the start shows that the operator is not one of a half-space
+/// (see [`Operator`]).
 pub fn solve_with_operator<'a>(
     heights: impl Into<HeightSource<'a>>,
     operator: &'a dyn Operator,

@@ -97,8 +97,9 @@ impl<'a> ContactProblem<'a> {
     /// The same problem, solved jointly by several ranks (threads or MPI processes).
     ///
     /// Each rank has a part of the mesh. All ranks call the same functions in the same order, including those of the
-    /// solution. Only the adaptive method works over ranks, without a border level and without a hardness. The grid
-    /// must halve down to its base grid. Results are bitwise the same for any number of ranks.
+    /// solution. Only the adaptive method works over ranks, without a border level and without a hardness. Along both
+    /// sides, the grid must have 2^k times the elements of its base grid. Results are bitwise the same for any number
+    /// of ranks.
     ///
     /// ```
     /// use rc_comm::run_threads;
@@ -124,10 +125,11 @@ impl<'a> ContactProblem<'a> {
 
     /// The same problem with a checkpoint.
     ///
-    /// After each level (grid of one element size), a solve stores the start values of the next finer level. Another
-    /// solve of the same problem continues from the last stored level. It may have any number of ranks, and its results
-    /// are bitwise the same. The caller ensures that no other problem uses the checkpoint. Only the adaptive method
-    /// without a border level stores anything.
+    /// The adaptive method solves a coarse base grid first, and then finer levels (grids of one element size). After
+    /// the base grid and after each level except the finest, it stores the start values of the next level. Another
+    /// solve of the same problem continues from the values stored last. It may have any number of ranks, and its
+    /// results are bitwise the same. The caller ensures that no other problem uses the checkpoint. The other methods,
+    /// and the adaptive method with a border level, store nothing.
     #[must_use]
     pub fn kept_in(self, checkpoint: Arc<dyn Checkpoint>) -> Self {
         Self { place: Place { checkpoint: Some(checkpoint), ..self.place }, ..self }

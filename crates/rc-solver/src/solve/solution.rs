@@ -42,7 +42,7 @@ pub(super) struct HowSolved {
     pub(super) reason: MethodReason,
     pub(super) bound: ErrorBound,
     pub(super) kernel: &'static str,
-    /// The maximum pressure. Infinite for an elastic contact.
+    /// The limit of the pressure. Infinite for an elastic contact.
     pub(super) hardness: f64,
 }
 
@@ -273,7 +273,7 @@ impl<'a> Solution<'a> {
         elements::each_of_ranks(elements, &self.ranks(), take)
     }
 
-    /// The maximum pressure, in E*. Infinite for an elastic contact.
+    /// The hardness, which limits the pressure, in E*. Infinite for an elastic contact.
     #[must_use]
     pub fn hardness(&self) -> f64 {
         self.how.hardness
