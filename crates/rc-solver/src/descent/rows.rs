@@ -113,8 +113,25 @@ impl ElementValues<'_> {
     /// that penetrate, and plastic elements with a gap. Those that penetrate get `joining` times their overlap as a
     /// pressure. Plastic elements lose as much.
     pub(super) fn clip(&mut self, length: f64, joining: f64, step: &mut ClippedStep<'_>, gradient: &Gradient) -> u32 {
+        // Comparisons with a hardness are compiled away for surfaces without one.
+        if gradient.hardness.is_finite() {
+            self.clip_to::<true>(length, joining, step, gradient)
+        } else {
+            self.clip_to::<false>(length, joining, step, gradient)
+        }
+    }
+
+    #[inline(always)]
+    fn clip_to<const HARDNESS: bool>(
+        &mut self,
+        length: f64,
+        joining: f64,
+        step: &mut ClippedStep<'_>,
+        gradient: &Gradient,
+    ) -> u32 {
         let ClippedStep { direction, displacement, active, added } = step;
         let hardness = gradient.hardness;
+        let within = |p: f64| if HARDNESS { p.max(0.0).min(hardness) } else { p.max(0.0) };
         let mut clipped = 0;
         let along = direction.iter().zip(*displacement).zip(active.iter_mut());
         for ((p, g), (((&t, &u), active), added)) in
@@ -122,13 +139,13 @@ impl ElementValues<'_> {
         {
             let stepped = *p + length * f64::from(t);
             *g += length * f64::from(u);
-            *p = stepped.max(0.0).min(hardness);
-            let (gap, is_plastic) = (gradient.of_gap(*g), stepped >= hardness);
+            *p = within(stepped);
+            let (gap, is_plastic) = (gradient.of_gap(*g), HARDNESS && stepped >= hardness);
             // If the step did not change an element, it has just become active, and stays so.
             let at_bound = stepped == 0.0 || is_plastic && stepped <= hardness;
             let joins = (!*active || at_bound) && if is_plastic { gap > 0.0 } else { gap < 0.0 };
             if joining > 0.0 && joins && at_bound {
-                *p = (*p - joining * gap).max(0.0).min(hardness);
+                *p = within(*p - joining * gap);
             }
             *active = stepped > 0.0 && !is_plastic || joins;
             *added = ((*p - stepped) * gradient.unit) as f32;

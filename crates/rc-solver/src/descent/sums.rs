@@ -106,13 +106,12 @@ impl GapSums {
     }
 
     pub(super) fn add_element(&mut self, p: f64, g: f64, overlap: f64) {
-        if p >= self.hardness {
-            self.plastic.add(g, overlap);
-            self.max_pressure = self.max_pressure.max(p);
-            return;
-        }
-        self.min_gap = smaller(self.min_gap, g);
         if p > 0.0 {
+            if p >= self.hardness {
+                self.plastic.add(g, overlap);
+                self.max_pressure = self.max_pressure.max(p);
+                return;
+            }
             self.pressure += p;
             self.pressure_gap += p * g;
             self.pressure_overlap += p * overlap;
@@ -123,6 +122,7 @@ impl GapSums {
                 self.max_pressed_gap = self.max_pressed_gap.max(g);
             }
         }
+        self.min_gap = smaller(self.min_gap, g);
     }
 
     /// Adds the sums of blocks in their order, weighted by the area of their elements.
