@@ -185,8 +185,9 @@ impl<T: Real> Interpolation<T> {
         parallel::for_each(rows, |(iy, fine): (usize, &mut [T])| {
             let (row, is_between) = (iy / self.factor[1], iy % self.factor[1] == 1);
             let [here, above] = [row, row + 1].map(|row| &coarse[self.index([0, row])..][..self.coarse[0]]);
+            let first = self.index([0, row]);
             for column in 0..self.coarse[0] {
-                let at = self.index([column, row]);
+                let at = first + column;
                 let next = if column + 1 < self.coarse[0] { column + 1 } else { 0 };
                 let x = self.factor[0] * column;
                 let has_next = self.factor[0] == 2 && x + 1 < nx;
@@ -247,25 +248,27 @@ impl<T: Real> Interpolation<T> {
     fn restrict_row(&self, row: usize, [below, here, above]: [Option<&[T]>; 3], out: &mut [T]) {
         let (nx, nc) = (self.fine[0], self.coarse[0]);
         let before_row = (row + self.coarse[1] - 1) % self.coarse[1];
+        let of_row = |row: usize| row * nc..(row + 1) * nc;
+        let along_x = &self.along_x[of_row(row)];
+        let [along_y, along_y_below] = [row, before_row].map(|row| &self.along_y[of_row(row)]);
+        let [centre, centre_below] = [row, before_row].map(|row| &self.centre[of_row(row)]);
         for (column, out) in out.iter_mut().enumerate() {
             let before = if column == 0 { nc - 1 } else { column - 1 };
             let x = self.factor[0] * column;
             // If no element is between, its weights are zero.
             let between = |column: usize| (self.factor[0] * column + 1).min(nx - 1);
             let (after, earlier) = (between(column), between(before));
-            let [at, at_before] = [self.index([column, row]), self.index([before, row])];
             let mut sum = T::ZERO;
             if let Some(here) = here {
-                sum += here[x] + self.along_x[at][0] * here[after] + self.along_x[at_before][1] * here[earlier];
+                sum += here[x] + along_x[column][0] * here[after] + along_x[before][1] * here[earlier];
             }
             if let Some(above) = above {
-                sum += self.along_y[at][0] * above[x];
-                sum += self.centre[at][0] * above[after] + self.centre[at_before][1] * above[earlier];
+                sum += along_y[column][0] * above[x];
+                sum += centre[column][0] * above[after] + centre[before][1] * above[earlier];
             }
             if let Some(below) = below {
-                let [at, at_before] = [self.index([column, before_row]), self.index([before, before_row])];
-                sum += self.along_y[at][1] * below[x];
-                sum += self.centre[at][2] * below[after] + self.centre[at_before][3] * below[earlier];
+                sum += along_y_below[column][1] * below[x];
+                sum += centre_below[column][2] * below[after] + centre_below[before][3] * below[earlier];
             }
             *out = sum;
         }
