@@ -52,7 +52,7 @@ impl Target {
 ///
 /// The estimate is from the last two iterations. It is relative to the power, and the unit is the wanted difference of
 /// the bounds.
-const FIRST_LOOK: f64 = 0.3;
+const FIRST_LOOK: f64 = 0.01;
 
 /// Reduction of the estimate before the bounds are computed again.
 ///

@@ -209,6 +209,32 @@ impl<T: Real> Interpolation<T> {
         });
     }
 
+    /// The pressure between those of the coarser elements, `half`.
+    ///
+    /// Both are without a mean fall: `fall` per element, and twice as much in the unit of `half`. The pressure with this
+    /// fall is what the weights are for.
+    pub(super) fn pressure_between(&self, half: &[f64], [fall_x, fall_y]: [f64; 2]) -> Vec<f64> {
+        let [nx, ny] = self.fine;
+        let [columns, rows] = self.coarse;
+        let mut pressure = vec![0.0; nx * ny];
+        let fine = pressure.chunks_mut(nx).enumerate().collect();
+        parallel::for_each(fine, |(iy, fine): (usize, &mut [f64])| {
+            let (first, above) = (iy / 2 * columns, (iy / 2 + 1) % rows * columns);
+            for (column, fine) in fine.chunks_mut(2).enumerate() {
+                let (at, next) = (first + column, (column + 1) % columns);
+                let corners = [at, first + next, above + column, above + next].map(|at| 2.0 * half[at]);
+                for (x, fine) in fine.iter_mut().enumerate() {
+                    let weights = self.corner_weights([column, iy / 2], [x, iy % 2]).map(T::to_f64);
+                    let mean: f64 = weights.iter().zip(corners).map(|(weight, corner)| weight * corner).sum();
+                    let [a, b, c, d] = weights;
+                    let (along_x, along_y) = (x as f64 * fall_x, (iy % 2) as f64 * fall_y);
+                    *fine = mean + along_x * (a + c - b - d) + along_y * (a + b - c - d);
+                }
+            }
+        });
+        pressure
+    }
+
     /// Writes the restriction of the fine residual, by the adjoint of the interpolation, into `coarse`.
     ///
     /// `residual` writes a row of the fine residual.
