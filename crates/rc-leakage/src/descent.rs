@@ -52,15 +52,17 @@ impl Target {
 ///
 /// The estimate is from the last two iterations. It is relative to the power, and the unit is the wanted difference of
 /// the bounds.
-const FIRST_LOOK: f64 = 0.3;
+const FIRST_LOOK: f64 = 0.03;
 
 /// Reduction of the estimate before the bounds are computed again.
 ///
 /// Its unit is the ratio of the wanted difference of the bounds to the one that was found.
 const NEXT_LOOK: f64 = 0.3;
 
-/// Maximum ratio of the gains of two successive iterations in the estimate.
-const SLOWEST: f64 = 0.5;
+/// Range of the ratio of the gains of two successive iterations in the estimate.
+///
+/// A large gain in the first iteration, from a rough start, does not promise a small one in the third.
+const RATIOS: [f64; 2] = [0.03, 0.5];
 
 /// Maximum relative difference of the updated residual from the true one.
 ///
@@ -202,7 +204,7 @@ impl<'a, T: Real> Iteration<'a, T> {
         if self.power[0] - self.power[1] < CANCELLED * self.power[0] {
             self.renew(preconditioner);
         }
-        let ratio = if before > 0.0 { (gain / before).min(SLOWEST) } else { SLOWEST };
+        let ratio = if before > 0.0 { (gain / before).clamp(RATIOS[0], RATIOS[1]) } else { RATIOS[1] };
         Some(gain * ratio / (1.0 - ratio) / (self.power[0] - self.power[1]))
     }
 

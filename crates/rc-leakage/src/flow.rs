@@ -81,12 +81,8 @@ impl Leakage {
     /// The axis with the larger permeance, x if both are equal; `None` without a flow.
     #[must_use]
     pub fn flow_axis(&self) -> Option<Axis> {
-        let [x, y] = self.flows.each_ref().map(|flow| flow.permeance);
-        match (x > 0.0 || y > 0.0, y > x) {
-            (false, _) => None,
-            (true, false) => Some(Axis::X),
-            (true, true) => Some(Axis::Y),
-        }
+        let permeances = self.flows.each_ref().map(|flow| flow.permeance);
+        permeances.iter().any(|permeance| *permeance > 0.0).then(|| larger(permeances))
     }
 }
 
@@ -96,10 +92,10 @@ impl Leakage {
 /// [`LeakageError::Gap`] for a gap that is negative or not finite, [`LeakageError::NotConverged`].
 pub fn leakage(gap: &Field, params: &LeakageParams) -> Result<Leakage, LeakageError> {
     check(gap)?;
-    let solved = flows(gap, params, true)?;
-    let half = half(gap).filter(|_| params.half_grid && solved.percolates != [false; 2]);
     let of_half = LeakageParams { error: params.error.max(ERROR_OF_HALF), ..*params };
-    let half = half.and_then(|half| flows(&half, &of_half, false).ok());
+    let half = half(gap).filter(|_| params.half_grid);
+    let half = half.and_then(|half| flows(&half, &of_half, Role::Half).ok());
+    let solved = flows(gap, params, Role::Whole { half: half.as_ref() })?;
     let flows = Axis::BOTH.map(|axis| {
         let i = axis.index();
         let (permeance, info) = solved.results[i];
@@ -140,6 +136,15 @@ fn half(gap: &Field) -> Option<Field> {
     Field::new(grid.with_elements(nx / 2, ny / 2).ok()?, rows.collect()).ok()
 }
 
+/// What a grid is solved for.
+#[derive(Clone, Copy)]
+enum Role<'a> {
+    /// The error bar of the grid, and a start: every second element.
+    Half,
+    /// The results. The flows start from those of every second element.
+    Whole { half: Option<&'a OfGrid> },
+}
+
 /// The flows on one grid.
 struct OfGrid {
     /// Permeances along both axes.
@@ -147,6 +152,8 @@ struct OfGrid {
     percolates: [bool; 2],
     constrictions: [Option<Constriction>; 2],
     flux: Option<Flux>,
+    /// Pressures of both flows on every second element; empty otherwise.
+    pressures: [Vec<f64>; 2],
 }
 
 /// Ratio of a gap to the smaller critical gap below which it counts as closed.
@@ -162,7 +169,7 @@ const CLOSED: f64 = 1e-5;
 const WIDE: f64 = 5e4;
 
 /// Permeances along both axes, and the flux along the axis with the larger one.
-fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<OfGrid, LeakageError> {
+fn flows(gap: &Field, params: &LeakageParams, role: Role<'_>) -> Result<OfGrid, LeakageError> {
     let percolates = Clusters::above(gap, 0.0, false).percolates();
     let mut thresholds = Thresholds::new(gap);
     let constrictions =
@@ -174,10 +181,11 @@ fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<OfGrid,
     let widest = constrictions.map(|place| place.map_or(largest, |place| largest.min(WIDE * place.gap)));
     let network = |i: usize| network_of((gap, widest[i]), &clusters, &masks[i]);
     let mut results = [(0.0, FlowInfo::default()); 2];
+    let mut pressures = [Vec::new(), Vec::new()];
     let mut kept: Option<(Axis, Solved)> = None;
     let mut prepared: Option<(usize, Prepared)> = None;
     let serves = |of: usize, i: usize| masks[of] == masks[i] && widest[of].total_cmp(&widest[i]).is_eq();
-    for axis in Axis::BOTH.into_iter().filter(|axis| percolates[axis.index()]) {
+    for axis in weaker_first(&constrictions).into_iter().filter(|axis| percolates[axis.index()]) {
         let i = axis.index();
         let (of, mut network) = match prepared.take() {
             Some((of, network)) if serves(of, i) => (of, network),
@@ -188,10 +196,18 @@ fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<OfGrid,
         if let Some((_, solved)) = &mut kept {
             solved.correction = Vec::new();
         }
-        let solved = network.solved(axis, params)?;
+        let start = match role {
+            Role::Half => None,
+            Role::Whole { half } => half.map(|half| &half.pressures[i]).filter(|pressure| !pressure.is_empty()),
+        };
+        let mut solved = network.solved(axis, params, start)?;
         results[i] = network.result(axis, &solved);
-        if with_flux && (kept.is_none() || results[1].0 > results[0].0) {
-            kept = Some((axis, solved));
+        match role {
+            Role::Half => pressures[i] = std::mem::take(&mut solved.pressure),
+            Role::Whole { .. } if kept.is_none() || axis == larger(results.map(|(permeance, _)| permeance)) => {
+                kept = Some((axis, solved));
+            }
+            Role::Whole { .. } => {}
         }
         prepared = Some((of, network));
     }
@@ -200,7 +216,18 @@ fn flows(gap: &Field, params: &LeakageParams, with_flux: bool) -> Result<OfGrid,
         let (network, tree) = if serves(of, i) { (prepared.network, prepared.tree) } else { with_tree(network(i)) };
         flux(solved, &network, &tree, axis)
     });
-    Ok(OfGrid { results, percolates, constrictions, flux })
+    Ok(OfGrid { results, percolates, constrictions, flux, pressures })
+}
+
+/// The axis with the larger permeance, x if both are equal.
+fn larger([x, y]: [f64; 2]) -> Axis {
+    if y > x { Axis::Y } else { Axis::X }
+}
+
+/// Both axes. The flow through the wider constriction is second, since it is more likely to be the larger one.
+fn weaker_first(constrictions: &[Option<Constriction>; 2]) -> [Axis; 2] {
+    let [x, y] = constrictions.map(|place| place.map_or(0.0, |place| place.gap));
+    if y < x { [Axis::Y, Axis::X] } else { Axis::BOTH }
 }
 
 /// The network of the runs that carry a flow (`carries`).
@@ -268,18 +295,22 @@ impl Prepared {
         Self { tree: SpanningTree::new(&network), network, preconditioner }
     }
 
-    /// The flow along one axis.
-    fn solved(&mut self, axis: Axis, params: &LeakageParams) -> Result<Solved, LeakageError> {
+    /// The flow along one axis, from the pressure of every second element if it is given.
+    fn solved(&mut self, axis: Axis, params: &LeakageParams, half: Option<&Vec<f64>>) -> Result<Solved, LeakageError> {
         let target = Target { axis, error: params.error, conservation: params.conservation };
         let of = (&self.network, &self.tree);
-        let mut solved = Solved::start(self.network.grid().len());
+        let n = self.network.grid().len();
+        let mut solved = Solved::start(n);
         if let Precondition::Grids(multigrid) = &mut self.preconditioner {
+            if let Some(start) = half.and_then(|half| multigrid.pressure_between(half, axis.unit())) {
+                solved.pressure = start;
+            }
             solved = descent::solve(of, solved, multigrid, target, params.max_iterations.min(ON_GRIDS));
             if !target.is_met(&solved.bounds) {
                 self.preconditioner = Precondition::Aggregates(Aggregation::new(graph_of(&self.network)));
                 // It starts without a pressure again. In single precision, weakly connected pools may have got a
                 // pressure that takes all digits.
-                solved = Solved { iterations: solved.iterations, ..Solved::start(self.network.grid().len()) };
+                solved = Solved { iterations: solved.iterations, ..Solved::start(n) };
             }
         }
         if let Precondition::Aggregates(aggregation) = &mut self.preconditioner

@@ -120,7 +120,7 @@ fn cycle(levels: &mut [Level], last: Option<&Elimination>) {
         return;
     };
     graph.relax(right, x);
-    graph.residual(x, right, residual);
+    graph.residual_of_relaxed(x, residual);
     next.right.fill(0.0);
     for (residual, aggregate) in residual.iter().zip(aggregates.iter()).filter(|(_, aggregate)| **aggregate != ALONE) {
         next.right[*aggregate as usize] += residual;

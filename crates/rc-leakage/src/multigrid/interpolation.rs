@@ -185,8 +185,9 @@ impl<T: Real> Interpolation<T> {
         parallel::for_each(rows, |(iy, fine): (usize, &mut [T])| {
             let (row, is_between) = (iy / self.factor[1], iy % self.factor[1] == 1);
             let [here, above] = [row, row + 1].map(|row| &coarse[self.index([0, row])..][..self.coarse[0]]);
+            let first = self.index([0, row]);
             for column in 0..self.coarse[0] {
-                let at = self.index([column, row]);
+                let at = first + column;
                 let next = if column + 1 < self.coarse[0] { column + 1 } else { 0 };
                 let x = self.factor[0] * column;
                 let has_next = self.factor[0] == 2 && x + 1 < nx;
@@ -206,6 +207,43 @@ impl<T: Real> Interpolation<T> {
                 }
             }
         });
+    }
+
+    /// The pressure between those of the coarser elements, `half`.
+    ///
+    /// Both are without a mean fall: `fall` per element, and twice as much in the unit of `half`. The pressure with this
+    /// fall is what the weights are for.
+    pub(super) fn pressure_between(&self, half: &[f64], [fall_x, fall_y]: [f64; 2]) -> Vec<f64> {
+        let [nx, ny] = self.fine;
+        let [columns, rows] = self.coarse;
+        let mut pressure = vec![0.0; nx * ny];
+        let fine = pressure.chunks_mut(nx).enumerate().collect();
+        parallel::for_each(fine, |(iy, fine): (usize, &mut [f64])| {
+            let (first, above) = (iy / 2 * columns, (iy / 2 + 1) % rows * columns);
+            for (column, fine) in fine.chunks_mut(2).enumerate() {
+                let (at, next) = (first + column, (column + 1) % columns);
+                let corners = [at, first + next, above + column, above + next].map(|at| 2.0 * half[at]);
+                for (x, fine) in fine.iter_mut().enumerate() {
+                    let weights = match [x, iy % 2] {
+                        [0, 0] => [1.0, 0.0, 0.0, 0.0],
+                        [_, 0] => {
+                            let [first, second] = self.along_x[at].map(T::to_f64);
+                            [first, second, 0.0, 0.0]
+                        }
+                        [0, _] => {
+                            let [first, second] = self.along_y[at].map(T::to_f64);
+                            [first, 0.0, second, 0.0]
+                        }
+                        _ => self.centre[at].map(T::to_f64),
+                    };
+                    let mean: f64 = weights.iter().zip(corners).map(|(weight, corner)| weight * corner).sum();
+                    let [a, b, c, d] = weights;
+                    let (along_x, along_y) = (x as f64 * fall_x, (iy % 2) as f64 * fall_y);
+                    *fine = mean + along_x * (a + c - b - d) + along_y * (a + b - c - d);
+                }
+            }
+        });
+        pressure
     }
 
     /// Writes the restriction of the fine residual, by the adjoint of the interpolation, into `coarse`.
@@ -247,25 +285,27 @@ impl<T: Real> Interpolation<T> {
     fn restrict_row(&self, row: usize, [below, here, above]: [Option<&[T]>; 3], out: &mut [T]) {
         let (nx, nc) = (self.fine[0], self.coarse[0]);
         let before_row = (row + self.coarse[1] - 1) % self.coarse[1];
+        let of_row = |row: usize| row * nc..(row + 1) * nc;
+        let along_x = &self.along_x[of_row(row)];
+        let [along_y, along_y_below] = [row, before_row].map(|row| &self.along_y[of_row(row)]);
+        let [centre, centre_below] = [row, before_row].map(|row| &self.centre[of_row(row)]);
         for (column, out) in out.iter_mut().enumerate() {
             let before = if column == 0 { nc - 1 } else { column - 1 };
             let x = self.factor[0] * column;
             // If no element is between, its weights are zero.
             let between = |column: usize| (self.factor[0] * column + 1).min(nx - 1);
             let (after, earlier) = (between(column), between(before));
-            let [at, at_before] = [self.index([column, row]), self.index([before, row])];
             let mut sum = T::ZERO;
             if let Some(here) = here {
-                sum += here[x] + self.along_x[at][0] * here[after] + self.along_x[at_before][1] * here[earlier];
+                sum += here[x] + along_x[column][0] * here[after] + along_x[before][1] * here[earlier];
             }
             if let Some(above) = above {
-                sum += self.along_y[at][0] * above[x];
-                sum += self.centre[at][0] * above[after] + self.centre[at_before][1] * above[earlier];
+                sum += along_y[column][0] * above[x];
+                sum += centre[column][0] * above[after] + centre[before][1] * above[earlier];
             }
             if let Some(below) = below {
-                let [at, at_before] = [self.index([column, before_row]), self.index([before, before_row])];
-                sum += self.along_y[at][1] * below[x];
-                sum += self.centre[at][2] * below[after] + self.centre[at_before][3] * below[earlier];
+                sum += along_y_below[column][1] * below[x];
+                sum += centre_below[column][2] * below[after] + centre_below[before][3] * below[earlier];
             }
             *out = sum;
         }
@@ -295,5 +335,38 @@ impl<T: Real> Bonds<'_, T> {
 
     pub(super) fn falling(&self, x: usize, y: usize) -> T {
         self.0.corners.as_ref().map_or(T::ZERO, |corners| corners.falling[self.index(x, y)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rc_core::{Field, Grid};
+
+    use super::super::finest;
+    use super::*;
+    use crate::network::{Axis, Network};
+
+    /// The pressure of a channel along x with a step in its gap, from every second element.
+    ///
+    /// The pressure is exact, because a flux is the same in all elements.
+    #[test]
+    fn the_pressure_between_every_second_element_is_exact_in_a_channel() {
+        let n = 16;
+        let grid = Grid::square(n).expect("a grid");
+        let gap = Field::new(grid, (0..n * n).map(|i| if i % n < n / 2 { 1.0 } else { 2.0 }).collect());
+        let network = Network::new(&gap.expect("a field"), 2.0, &|_, open: &mut [bool]| open.fill(true));
+        // Pressure that falls by 8/9 and 1/9 of the total, between the centres of elements.
+        let resistance = |i: usize| if i % n < n / 2 { 8.0 } else { 1.0 };
+        let total: f64 = (0..n).map(resistance).sum();
+        let mut pressure = vec![0.0; n];
+        for i in 1..n {
+            let fall = n as f64 * 0.5 * (resistance(i - 1) + resistance(i)) / total;
+            pressure[i] = pressure[i - 1] - fall + 1.0;
+        }
+        let interpolation = Interpolation::new(&finest::<f64>(&network), [2, 2]);
+        let half: Vec<f64> = (0..n * n / 4).map(|i| 0.5 * pressure[2 * (i % (n / 2))]).collect();
+        let found = interpolation.pressure_between(&half, Axis::X.unit());
+        let off = found.iter().enumerate().map(|(i, p)| (p - pressure[i % n]).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-12, "{off:e}");
     }
 }

@@ -70,6 +70,16 @@ impl<T: Real> Multigrid<T> {
         let coarsest = Aggregation::new(graph_of(&levels[levels.len() - 1].stencil));
         Self { levels, coarsest }
     }
+
+    /// The pressure between those of every second element, `half`, without the mean `fall` per element.
+    ///
+    /// `half` is without the fall of its own grid, whose elements are twice as far apart. `None` if the next coarser
+    /// level does not have every second element along both axes.
+    pub(crate) fn pressure_between(&self, half: &[f64], fall: [f64; 2]) -> Option<Vec<f64>> {
+        let interpolation = self.levels[0].interpolation.as_ref()?;
+        let [nx, ny] = interpolation.coarse;
+        (interpolation.factor == [2, 2] && nx * ny == half.len()).then(|| interpolation.pressure_between(half, fall))
+    }
 }
 
 impl<T: Real> Preconditioner for Multigrid<T> {
