@@ -1,4 +1,4 @@
-//! The coarsest grid on which the contact area is as accurate as wanted.
+//! Finer and finer grids, until the contact area is as accurate as wanted.
 
 use rc_core::{Grid, HeightField, HeightSource, Observer};
 
@@ -47,9 +47,9 @@ pub(super) fn solve<'a>(
     }
 }
 
-/// The coarsest grid of the search.
+/// The first grid of the search.
 ///
-/// The number of elements per side of every other grid is a multiple of the number on this one.
+/// All later grids are finer. Their numbers of elements per side are multiples of the number on this one.
 pub(super) fn coarsest_grid(heights: &HeightSource<'_>) -> Result<Grid, SolveError> {
     Ok(Grid::square(side(waves_of(heights)?, COARSEST))?)
 }

@@ -30,9 +30,9 @@ impl<'a> ContactProblem<'a> {
         self.plan(params)?.solve(observer)
     }
 
-    /// The coarsest grid of [`ContactProblem::solve_to_area_error`].
+    /// The first grid of [`ContactProblem::solve_to_area_error`].
     ///
-    /// The number of elements per side of every other grid is a multiple of the number on this one.
+    /// All later grids are finer. Their numbers of elements per side are multiples of the number on this one.
     ///
     /// # Errors
     /// [`SolveError::NoWaves`], and [`SolveError::Grid`] for a surface with too many waves.
@@ -40,14 +40,15 @@ impl<'a> ContactProblem<'a> {
         area_error::coarsest_grid(&self.heights)
     }
 
-    /// Solves the problem on the coarsest grid that is accurate enough.
+    /// Solves the problem on finer grids until the contact area is accurate enough.
     ///
     /// The relative error bar of the contact area is then at most `wanted`. The heights must be a band-limited surface
     /// in a square cell. The grid of the given [`HeightSource`] only says that the cell is a square. Its numbers of
     /// elements are not used.
     ///
-    /// The first grid has four elements for the shortest wave. Its error bar determines the next grid. In most cases
-    /// two problems are solved. The last takes longer than all others.
+    /// The first grid has at least four elements for the shortest wave. The error bar on a grid determines the next
+    /// grid, which has 2, 4, 8, ... times the elements per side. In most cases two problems are solved. The last takes
+    /// longer than all others.
     ///
     /// # Errors
     /// [`SolveError`]. [`SolveError::NoWaves`] for heights that cannot be sampled on another grid.

@@ -125,11 +125,11 @@ impl<'a> ContactProblem<'a> {
 
     /// The same problem with a checkpoint.
     ///
-    /// The adaptive method solves a coarse base grid first, and then finer levels (grids of one element size). After
-    /// the base grid and after each level except the finest, it stores the start values of the next level. Another
-    /// solve of the same problem continues from the values stored last. It may have any number of ranks, and its
-    /// results are bitwise the same. The caller ensures that no other problem uses the checkpoint. The other methods,
-    /// and the adaptive method with a border level, store nothing.
+    /// The adaptive method solves a coarse base grid first, and then finer levels (meshes of tiles near contacts).
+    /// After the base grid and after each level except the finest, it stores the start values of the next level.
+    /// Another solve of the same problem continues from the values stored last. It may have any number of ranks, and
+    /// its results are bitwise the same. The caller ensures that no other problem uses the checkpoint. The other
+    /// methods, and the adaptive method with a border level, store nothing.
     #[must_use]
     pub fn kept_in(self, checkpoint: Arc<dyn Checkpoint>) -> Self {
         Self { place: Place { checkpoint: Some(checkpoint), ..self.place }, ..self }

@@ -288,10 +288,10 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// Number of elements whose pressures are unknowns.
+    /// Number of elements on which the solution states a pressure.
     ///
     /// For the uniform method, these are all elements of the grid. For the adaptive and the Gauss-Seidel method, these
-    /// are the elements in contact.
+    /// are the elements in contact. Elsewhere the pressure is zero.
     #[must_use]
     pub fn n_elements(&self) -> usize {
         match &self.pressures {
