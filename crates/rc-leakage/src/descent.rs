@@ -38,7 +38,7 @@ impl Solved {
     /// The pressure has only its mean fall.
     pub(crate) fn start(n: usize) -> Self {
         let bounds = Bounds { upper: f64::INFINITY, lower: 0.0, flow: 0.0, conservation: f64::INFINITY };
-        Self { pressure: vec![0.0; n], correction: Vec::new(), bounds, iterations: 0 }
+        Self { pressure: parallel::zeros(n), correction: Vec::new(), bounds, iterations: 0 }
     }
 }
 
@@ -131,7 +131,7 @@ impl<'a, T: Real> Iteration<'a, T> {
         let (n, nx) = (network.grid().len(), network.grid().nx());
         let block = parallel::rows_per_block(nx) * nx;
         let [residual, drawn] = [(); 2].map(|()| vec![0.0; n]);
-        let direction = vec![T::ZERO; n];
+        let direction = parallel::zeros(n);
         let (power, gain, curvature) = ([0.0; 2], 0.0, 0.0);
         let mut this = Self { network, target, solved, residual, direction, drawn, power, gain, curvature, block };
         this.renew(preconditioner);

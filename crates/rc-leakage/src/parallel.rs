@@ -4,6 +4,8 @@
 
 use rayon::prelude::*;
 
+use crate::real::Real;
+
 /// Default number of elements in a block of rows.
 const BLOCK: usize = 1 << 16;
 
@@ -25,4 +27,12 @@ pub(crate) fn map<S: Send, R: Send>(items: Vec<S>, work: impl Fn(S) -> R + Sync 
 /// The sum of the results of `work` over `items`, in their order.
 pub(crate) fn sum<S: Send>(items: Vec<S>, work: impl Fn(S) -> f64 + Sync + Send) -> f64 {
     map(items, work).into_iter().sum()
+}
+
+/// Zeros that are in memory.
+///
+/// Zeros from the allocator have no memory before they are written. If they are read first, each page of them is
+/// fetched twice, and the second time stops all threads.
+pub(crate) fn zeros<T: Real>(n: usize) -> Vec<T> {
+    rayon::iter::repeat_n(T::ZERO, n).collect()
 }
