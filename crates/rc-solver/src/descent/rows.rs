@@ -113,7 +113,7 @@ impl ElementValues<'_> {
     /// that penetrate, and plastic elements with a gap. Those that penetrate get `joining` times their overlap as a
     /// pressure. Plastic elements lose as much.
     pub(super) fn clip(&mut self, length: f64, joining: f64, step: &mut ClippedStep<'_>, gradient: &Gradient) -> u32 {
-        // Comparisons with a hardness are compiled away for surfaces without one.
+        // Two functions are compiled. That for surfaces without a hardness has no comparison with it.
         if gradient.hardness.is_finite() {
             self.clip_to::<true>(length, joining, step, gradient)
         } else {
@@ -121,7 +121,6 @@ impl ElementValues<'_> {
         }
     }
 
-    #[inline(always)]
     fn clip_to<const HARDNESS: bool>(
         &mut self,
         length: f64,
