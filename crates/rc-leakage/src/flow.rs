@@ -164,9 +164,9 @@ struct OfGrid {
 
 /// Gaps below this multiple of the smaller critical gap count as closed.
 ///
-/// The critical gap of an axis is the gap at its constriction. An element at the limit has 1e-15 of the conductance of a
-/// constriction. Where only such elements connect a part of the film to the rest, rounding would decide the pressure of
-/// this part.
+/// The critical gap of an axis is the gap at its constriction. An element at the limit has 1e-15 of the conductance of
+/// a constriction. Where only such elements connect a part of the film to the rest, rounding would decide the pressure
+/// of this part.
 const CLOSED: f64 = 1e-5;
 
 /// Limit of gaps, as a multiple of the critical gap of an axis.
