@@ -38,8 +38,9 @@ pub struct EdgeBias {
     pub per_contact: f64,
     /// Term per unit of deviation from the gap law beside an edge.
     ///
-    /// For a straight edge, gap ∝ s^(3/2) at distance s from the edge. This law converts the gap at the second element
-    /// outside an edge to a distance. The deviation is this distance minus the distance to the interpolated edge, in
+    /// For a straight edge, gap ∝ s^(3/2) at distance s from the edge. The pressure inside and the gap outside the edge
+    /// give its interpolated position and the factor of this law. The law then converts the gap at the second element
+    /// outside the edge to a distance. The deviation is this distance minus the distance to the interpolated edge, in
     /// element sides. It is not zero at curved edges and between contacts that are close to each other.
     pub per_deviation: f64,
     /// Term added to Σ p² for each edge.
@@ -71,10 +72,10 @@ impl Default for EdgeBias {
 ///   real. The displacement that remains from earlier steps is known. Subtract it from the heights.
 /// - **Shifted responses**, for example of a moving load, also have a complex symbol, with a factor exp(2πi k·d).
 ///   Instead, move the heights.
-/// - **Anisotropic solids** respond differently along different directions. Symbols here are even in kx and in ky, and
-///   symmetric in kx and ky on a [square](Grid::is_square) grid. The axes of an anisotropic solid must therefore be the
-///   axes of the cell. The grid must have different numbers of elements along them, because symmetry in kx and ky is
-///   then not required. A solid with oblique axes needs its own [`Operator`].
+/// - **Anisotropic solids** respond differently along different directions. Symbols here are even in kx and in ky. The
+///   axes of an anisotropic solid must therefore be the axes of the cell. On a [square](Grid::is_square) grid, symbols
+///   are also symmetric in kx and ky. The grid must therefore not be square: the cell is a rectangle, or the numbers of
+///   elements along its sides differ. A solid with oblique axes needs its own [`Operator`].
 ///
 /// # What a solve checks
 /// Before it starts, a solve evaluates the symbol on its grid. If the grid has at most 512 waves, it does so at every

@@ -19,7 +19,7 @@ use crate::tree::SpanningTree;
 pub struct LeakageParams {
     /// Maximum relative difference of the upper and the lower bound of the permeance.
     pub error: f64,
-    /// Maximum difference of the flow through two sections of the cell, relative to the flow.
+    /// Maximum relative difference of the flow through a section from the mean over all sections.
     pub conservation: f64,
     /// Maximum number of iterations of one flow.
     pub max_iterations: usize,
@@ -40,7 +40,9 @@ impl Default for LeakageParams {
 pub struct Leakage {
     /// The flow along x, and along y.
     pub flows: [Flow; 2],
-    /// The flux along the axis [`Leakage::flow_axis`]; `None` without a flow.
+    /// The flux of the flow along [`Leakage::flow_axis`]; `None` without a flow.
+    ///
+    /// It has components along x and along y.
     pub flux: Option<Flux>,
 }
 
@@ -54,7 +56,8 @@ pub struct Flow {
     pub permeance: f64,
     /// Estimated error of the grid, the difference from the permeance of every second element.
     ///
-    /// `None` if it was not computed, or if the sides are odd.
+    /// `None` without [`LeakageParams::half_grid`], without percolation, or if the flow on every second element does
+    /// not converge. Also `None` if a side has an odd number of elements, or fewer than four.
     pub permeance_error: Option<f64>,
     /// Whether a cluster of elements out of contact winds around the cell along this axis.
     pub percolates: bool,
@@ -71,7 +74,8 @@ pub struct FlowInfo {
     pub iterations: usize,
     /// Maximum relative error of the network's permeance.
     ///
-    /// It is the distance of the lower bound, by the principle of Thomson.
+    /// It is 1 minus the ratio of the lower bound to the upper bound. The upper bound is [`Flow::permeance`]. The lower
+    /// bound follows from the principle of Thomson.
     pub error: f64,
     /// Maximum relative difference of the flow through a section from the mean over all sections.
     pub conservation: f64,
@@ -152,20 +156,23 @@ struct OfGrid {
     percolates: [bool; 2],
     constrictions: [Option<Constriction>; 2],
     flux: Option<Flux>,
-    /// Pressures of both flows on every second element; empty otherwise.
+    /// Pressures of both flows, if this is the grid of every second element.
+    ///
+    /// Empty on the whole grid, and for a flow that does not percolate.
     pressures: [Vec<f64>; 2],
 }
 
-/// Ratio of a gap to the smaller critical gap below which it counts as closed.
+/// Gaps below this multiple of the smaller critical gap count as closed.
 ///
-/// Such an element conducts 1e-15 of a constriction. Where only such elements connect a pool to the rest, rounding
-/// would decide the pool's pressure.
+/// The critical gap of an axis is the gap at its constriction. An element at the limit has 1e-15 of the conductance of
+/// a constriction. Where only such elements connect a part of the film to the rest, rounding would decide the pressure
+/// of this part.
 const CLOSED: f64 = 1e-5;
 
-/// Limit of gaps, as a multiple of the critical gap of an axis. Wider gaps are replaced by it.
+/// Limit of gaps, as a multiple of the critical gap of an axis.
 ///
-/// Such an element resists 1e-14 of a constriction. For a wider one, the pressure difference that drives the flow would
-/// be lost in rounding.
+/// Wider gaps are replaced by the limit. An element at the limit has 1e-14 of the resistance of a constriction. In a
+/// wider gap, the pressure difference that drives the flow would be lost in rounding.
 const WIDE: f64 = 5e4;
 
 /// Permeances along both axes, and the flux along the axis with the larger one.
@@ -269,9 +276,10 @@ fn elements_along(grid: Grid, axis: Axis) -> usize {
     }
 }
 
-/// Number of iterations with coarser grids, after which aggregates alone take over.
+/// Maximum number of iterations with coarser grids in the preconditioner.
 ///
-/// Films that are resolved take six to ten.
+/// Films that are resolved take six to ten. After the maximum, all coarser levels are aggregates, which are groups of
+/// elements with strong bonds. Before, only the levels below the coarser grids are aggregates.
 const ON_GRIDS: usize = 12;
 
 /// A network with its tree and its preconditioner.

@@ -73,8 +73,8 @@ impl Solution<'_> {
 
     /// Passes the rows of [`Solution::pressure`] to `take`, in order.
     ///
-    /// Each call of `take` gets the index of its first row, and some rows one after the other. Stops at the first
-    /// error.
+    /// Each call of `take` gets one or more consecutive rows in one slice, and the index of the first of them. Stops at
+    /// the first error.
     ///
     /// # Errors
     /// The error that `take` returns.
