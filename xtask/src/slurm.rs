@@ -1,4 +1,4 @@
-//! `cargo xtask slurm`: a sweep as a job array on a Slurm of one node.
+//! `cargo xtask slurm`: a sweep as a job array on a Slurm cluster of one node.
 //!
 //! One of the tasks is killed and requeued.
 

@@ -15,7 +15,7 @@ pub(crate) struct Target {
     pub(crate) axis: Axis,
     /// Maximum relative difference of the bounds.
     pub(crate) error: f64,
-    /// Maximum difference of the flow through two sections, relative to the flow.
+    /// Maximum relative difference of the flow through a section from the mean over all sections.
     pub(crate) conservation: f64,
 }
 

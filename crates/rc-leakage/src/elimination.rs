@@ -91,7 +91,7 @@ fn by_strength(n: usize, bonds: &[(usize, usize, f64)]) -> Vec<usize> {
 mod tests {
     use super::*;
 
-    /// A chain of strong bonds with a weak one at its end, and a right side that sums to 1e-7.
+    /// Two strong bonds and a weak one in a chain. The right side sums to 1e-7.
     ///
     /// The rest leaves through a strong element, so the weak bond carries only what its own element gets.
     #[test]

@@ -29,7 +29,7 @@ pub enum LeakageError {
         grid: Grid,
         /// Maximum relative error of the permeance.
         error: f64,
-        /// Maximum relative difference of the flow through sections.
+        /// Maximum relative difference of the flow through a section from the mean over all sections.
         conservation: f64,
         /// Number of iterations.
         iterations: usize,

@@ -303,7 +303,7 @@ impl Prepared {
         Self { tree: SpanningTree::new(&network), network, preconditioner }
     }
 
-    /// The flow along one axis, from the pressure of every second element if it is given.
+    /// The flow along one axis. It starts from the pressure of every second element, `half`.
     fn solved(&mut self, axis: Axis, params: &LeakageParams, half: Option<&Vec<f64>>) -> Result<Solved, LeakageError> {
         let target = Target { axis, error: params.error, conservation: params.conservation };
         let of = (&self.network, &self.tree);
@@ -316,8 +316,8 @@ impl Prepared {
             solved = descent::solve(of, solved, multigrid, target, params.max_iterations.min(ON_GRIDS));
             if !target.is_met(&solved.bounds) {
                 self.preconditioner = Precondition::Aggregates(Aggregation::new(graph_of(&self.network)));
-                // It starts without a pressure again. In single precision, weakly connected pools may have got a
-                // pressure that takes all digits.
+                // It starts without a pressure again. In single precision, rounding may have raised the pressure of
+                // weakly connected pools so much that no digits are left for the others.
                 solved = Solved { iterations: solved.iterations, ..Solved::start(n) };
             }
         }

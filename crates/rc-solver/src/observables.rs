@@ -101,7 +101,7 @@ impl Observables {
     }
 }
 
-/// The rms pressure, with the part that elements at edges miss.
+/// The rms pressure, corrected for the error of Σ p² at edges of contacts.
 fn corrected(rms_pressure: f64, area: &ContactArea) -> f64 {
     rms_pressure.mul_add(rms_pressure, area.missing_square).max(0.0).sqrt()
 }

@@ -71,11 +71,11 @@ pub struct Summary {
     pub rms_pressure: f64,
     /// Best estimate of the rms pressure (Pa).
     ///
-    /// It includes the part that elements at edges of contacts miss.
+    /// It is corrected for the error of ⟨p²⟩ at edges of contacts.
     pub rms_pressure_corrected: Option<f64>,
     /// Estimated discretisation error of `rms_pressure_corrected` (Pa).
     ///
-    /// It is null when no coarser grid was solved.
+    /// It is null where contact reaches a free border, and in full contact without a coarser grid.
     pub rms_pressure_error: Option<f64>,
     /// Maximum pressure (Pa).
     pub max_pressure: f64,

@@ -211,8 +211,8 @@ impl<T: Real> Interpolation<T> {
 
     /// The pressure between those of the coarser elements, `half`.
     ///
-    /// Both are without a mean fall: `fall` per element, and twice as much in the unit of `half`. The pressure with this
-    /// fall is what the weights are for.
+    /// Both are without a mean fall: `fall` per element, and twice as much in the unit of `half`. The weights are
+    /// those of pressures with this fall.
     pub(super) fn pressure_between(&self, half: &[f64], [fall_x, fall_y]: [f64; 2]) -> Vec<f64> {
         let [nx, ny] = self.fine;
         let [columns, rows] = self.coarse;
@@ -346,7 +346,7 @@ mod tests {
     use super::*;
     use crate::network::{Axis, Network};
 
-    /// The pressure of a channel along x with a step in its gap, from every second element.
+    /// A channel along x, with a step in its gap.
     ///
     /// The pressure is exact, because a flux is the same in all elements.
     #[test]

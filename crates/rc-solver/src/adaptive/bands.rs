@@ -42,8 +42,8 @@ const BAND_CELLS: usize = 1_000_000;
 /// The bands of a level: rows of tiles, and the rank that gets them.
 pub(super) fn bands(tiles: &TileSet, ranks: &Ranks, receiver: Receiver) -> impl Iterator<Item = (Range<usize>, usize)> {
     let ([nx, _], [_, n_rows]) = (tiles.sides(), tiles.extent());
-    // With each band, all tiles of the level are evaluated again. With bands of as many cells, this doubles the work and
-    // the memory of one evaluation.
+    // With each band, all tiles of the level are evaluated again. With bands of as many cells, this doubles the work
+    // and the memory of one evaluation.
     let of_level = ranks.maximum((tiles.places().len() * CELLS) as f64, 0.0) as usize;
     let at_once = (BAND_CELLS.max(of_level) / (TILE * nx)).max(1);
     let (n_bands, size) = (n_rows.div_ceil(at_once), ranks.size());
