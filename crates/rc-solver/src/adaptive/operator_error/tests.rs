@@ -255,13 +255,18 @@ fn for_any_grid(bounds: &[ErrorBound], mut check: impl FnMut(&str, &Scene<'_>, &
             for &bound in bounds {
                 let control = Control::MeanPressure(1e-3 * load * f64::from(waves));
                 let scene = Scene { map: &map, boundary: Boundary::Periodic, base: None, control, bound };
-                let audited = scene.audited();
-                check(&format!("{grid}, load {load}, {bound}"), &scene, &audited);
-                let scene = Scene { control: Control::Penetration(audited.approach(&map)), ..scene };
-                check(&format!("{grid}, load {load}, its penetration, {bound}"), &scene, &scene.audited());
+                under_both_controls(&format!("{grid}, load {load}"), &scene, &mut check);
             }
         }
     }
+}
+
+/// Calls `check` with a scene under its load, and under the penetration that the load causes.
+fn under_both_controls(name: &str, scene: &Scene<'_>, check: &mut impl FnMut(&str, &Scene<'_>, &Audited)) {
+    let (audited, bound) = (scene.audited(), scene.bound);
+    check(&format!("{name}, {bound}"), scene, &audited);
+    let scene = Scene { control: Control::Penetration(audited.approach(scene.map)), ..*scene };
+    check(&format!("{name}, its penetration, {bound}"), &scene, &scene.audited());
 }
 
 /// Calls `check` with scenes on square grids, and their solutions.
@@ -285,10 +290,7 @@ fn for_each_scene(bounds: &[ErrorBound], mut check: impl FnMut(&str, &Scene<'_>,
                 let base = Some((map.grid().nx() / 4).clamp(32, 64));
                 let control = Control::MeanPressure(load * slope);
                 let scene = Scene { map, boundary: Boundary::Periodic, base, control, bound };
-                let audited = scene.audited();
-                check(&format!("{name}, load {load}, {bound}"), &scene, &audited);
-                let scene = Scene { control: Control::Penetration(audited.approach(map)), ..scene };
-                check(&format!("{name}, its penetration, {bound}"), &scene, &scene.audited());
+                under_both_controls(&format!("{name}, load {load}"), &scene, &mut check);
             }
         }
     }
@@ -309,10 +311,7 @@ fn for_each_patch(bounds: &[ErrorBound], mut check: impl FnMut(&str, &Scene<'_>,
             for &bound in bounds {
                 let control = Control::MeanPressure(1e-3 * load * f64::from(waves));
                 let scene = Scene { map: &map, boundary: Boundary::Free, base: None, control, bound };
-                let audited = scene.audited();
-                check(&format!("a patch of {grid}, load {load}, {bound}"), &scene, &audited);
-                let scene = Scene { control: Control::Penetration(audited.approach(&map)), ..scene };
-                check(&format!("a patch of {grid}, load {load}, its penetration, {bound}"), &scene, &scene.audited());
+                under_both_controls(&format!("a patch of {grid}, load {load}"), &scene, &mut check);
             }
         }
     }
