@@ -278,7 +278,7 @@ fn elements_along(grid: Grid, axis: Axis) -> usize {
 
 /// Maximum number of iterations with coarser grids in the preconditioner.
 ///
-/// Films that are resolved take six to ten. After the maximum, all coarser levels are aggregates, which are groups of
+/// Films that are resolved take three to six. After the maximum, all coarser levels are aggregates, which are groups of
 /// elements with strong bonds. Before, only the levels below the coarser grids are aggregates.
 const ON_GRIDS: usize = 12;
 

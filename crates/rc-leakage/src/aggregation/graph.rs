@@ -246,6 +246,7 @@ mod tests {
             before = after;
         }
     }
+
     /// Random bonds of both signs, also between blocks.
     #[test]
     fn the_residual_after_relaxation_needs_only_later_elements_and_other_blocks() {

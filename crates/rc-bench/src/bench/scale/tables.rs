@@ -22,7 +22,7 @@ fn peer<'a>(rows: &'a [ScaleRow], beside: &ScaleRow) -> Option<&'a ScaleRow> {
 
 /// Table of large grids, with the peer's times where it ran.
 pub(in crate::bench) fn grids(rows: &[ScaleRow]) -> String {
-    let head = "| N, grid | iterations | applications of L | cells evaluated | time | memory | ASPHER: time | memory | its time / ours |\n\
+    let head = "| N, grid | iterations | applications of L | elements evaluated | time | memory | ASPHER: time | memory | its time / ours |\n\
                 |---|---|---|---|---|---|---|---|---|\n";
     let line = |row: &ScaleRow| {
         let count = |count: Option<u64>| count.map_or_else(|| NONE.to_owned(), |count| count.to_string());

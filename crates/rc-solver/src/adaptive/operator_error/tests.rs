@@ -261,7 +261,7 @@ fn for_any_grid(bounds: &[ErrorBound], mut check: impl FnMut(&str, &Scene<'_>, &
     }
 }
 
-/// Calls `check` with a scene under its load, and under the penetration that the load causes.
+/// Calls `check` with a scene under its load, and under its penetration.
 fn under_both_controls(name: &str, scene: &Scene<'_>, check: &mut impl FnMut(&str, &Scene<'_>, &Audited)) {
     let (audited, bound) = (scene.audited(), scene.bound);
     check(&format!("{name}, {bound}"), scene, &audited);
