@@ -1,4 +1,4 @@
-//! The types that all crates of rc share, and the traits for research forks.
+//! Types that all crates share, and traits for your own surfaces, kernels and operators.
 //!
 //! # Conventions of all crates of this workspace
 //!
@@ -11,10 +11,10 @@
 //! - **Points**, offsets and wave vectors in floating point are [`DVec2`] of `glam`.
 //! - **Layout.** Fields are row-major, `index = iy * nx + ix`. The origin of the cell is its corner. Point (ix, iy) is
 //!   the **centre** of its element, ((ix + ½)/nx, (iy + ½)/ny) on a square cell ([`Grid::centre`]).
-//! - **Fourier.** The integers kx and ky are the periods of a wave along the sides of the cell. On a square cell, its
-//!   wave vector is k = (kx, ky), in waves per λ. [`Grid::waves`] computes |k| on any cell. The angular wavenumber is
-//!   q = 2π|k|. A forward transform carries no factor, the inverse carries 1/(nx·ny). The symbol of an operator is its
-//!   eigenvalue for the wave exp(2πi k·x): the ratio of displacement to pressure.
+//! - **Fourier.** The integers kx and ky are the numbers of periods of a wave along the sides of the cell. On a square
+//!   cell, its wave vector is k = (kx, ky), in waves per λ. [`Grid::waves`] computes |k| on any cell. The angular
+//!   wavenumber is q = 2π|k|. A forward transform carries no factor, the inverse carries 1/(nx·ny). The symbol of an
+//!   operator is its eigenvalue for the wave exp(2πi k·x): the ratio of displacement to pressure.
 //! - **Means** are over the whole cell (nominal area A0) unless a name says "contact".
 //! - **rms slope** is the isotropic one, √⟨|∇h|²⟩.
 //!
