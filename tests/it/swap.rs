@@ -1,4 +1,4 @@
-//! A half-space and a surface of a research fork, which use only the traits.
+//! A half-space and a surface of a fork, which use only the traits.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 

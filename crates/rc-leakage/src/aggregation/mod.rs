@@ -181,3 +181,42 @@ fn add(a: &mut [f64], factor: f64, b: &[f64]) {
 fn scale(a: &mut [f64], factor: f64) {
     parallel::for_each(a.chunks_mut(BLOCK).collect(), |a: &mut [f64]| a.iter_mut().for_each(|a| *a *= factor));
 }
+
+#[cfg(test)]
+mod tests {
+    use rc_core::testing::quasi_random;
+
+    use super::*;
+
+    /// Two conjugate steps leave a residual that is orthogonal to their sum.
+    #[test]
+    fn both_steps_of_a_solve_are_conjugate() {
+        let side = 60;
+        let n = side * side;
+        let conductance = |a: usize, axis: usize| 10.0_f64.powf(-3.0 * quasi_random(7919 * (2 * a + axis + 1)));
+        let graph = || {
+            Graph::new(n, &|i, out| {
+                let (x, y) = (i % side, i / side);
+                let neighbour = |x: usize, y: usize| y % side * side + x % side;
+                let [west, south] = [neighbour(x + side - 1, y), neighbour(x, y + side - 1)];
+                let all = [
+                    (neighbour(x + 1, y), conductance(i, 0)),
+                    (neighbour(x, y + 1), conductance(i, 1)),
+                    (west, conductance(west, 0)),
+                    (south, conductance(south, 1)),
+                ];
+                out.extend(all.map(|(other, bond)| (other as u32, bond)));
+            })
+        };
+        let mut aggregation = Aggregation::new(graph());
+        // Each element has its source, and the next one the same sink.
+        let source = |i: usize| quasi_random(31 * (i % n) + 5);
+        let right: Vec<f64> = (0..n).map(|i| source(i + 1) - source(i)).collect();
+        aggregation.right_mut().copy_from_slice(&right);
+        let x = aggregation.solve().to_vec();
+        let mut drawn = vec![0.0; n];
+        graph().draw(&x, &mut drawn);
+        let (work, energy) = (dot(&x, &right), dot(&x, &drawn));
+        assert!(work > 0.0 && (work - energy).abs() < 1e-10 * work, "{work:e}, {energy:e}");
+    }
+}
