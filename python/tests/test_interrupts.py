@@ -29,7 +29,7 @@ def kill():
 def threads():
     return len(os.listdir("/proc/self/task"))
 
-# This thread may begin when the call has its threads already, so they are counted before, with it.
+# The threads before the call, with the one that interrupts: it may begin when the call has its threads already.
 n_quiet = threads() + 1
 
 def interrupt():

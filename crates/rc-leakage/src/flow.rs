@@ -205,7 +205,9 @@ fn flows(gap: &Field, params: &LeakageParams, role: Role<'_>) -> Result<OfGrid, 
         }
         let start = match role {
             Role::Half => None,
-            Role::Whole { half } => half.map(|half| &half.pressures[i]).filter(|pressure| !pressure.is_empty()),
+            Role::Whole { half } => {
+                half.map(|half| half.pressures[i].as_slice()).filter(|pressure| !pressure.is_empty())
+            }
         };
         let mut solved = network.solved(axis, params, start)?;
         results[i] = network.result(axis, &solved);
@@ -304,7 +306,7 @@ impl Prepared {
     }
 
     /// The flow along one axis. It starts from the pressure of every second element, `half`.
-    fn solved(&mut self, axis: Axis, params: &LeakageParams, half: Option<&Vec<f64>>) -> Result<Solved, LeakageError> {
+    fn solved(&mut self, axis: Axis, params: &LeakageParams, half: Option<&[f64]>) -> Result<Solved, LeakageError> {
         let target = Target { axis, error: params.error, conservation: params.conservation };
         let of = (&self.network, &self.tree);
         let n = self.network.grid().len();
