@@ -1,11 +1,11 @@
 //! The adaptive mesh of squares on the periodic cell.
 //!
-//! The crate has only the geometry, without physics. The mesh is fine along the edges of contacts, coarser inside them,
-//! and has no elements outside contact. The default solver runs on this mesh:
+//! The crate has only the geometry, without physics. The mesh has elements near contacts only. They have one size, or
+//! are smaller along the edges of contacts. The default solver runs on this mesh:
 //!
 //! | item | what it is or does |
 //! |---|---|
-//! | [`TileSet`] | the tiles of one level (grid of one element size); a tile is a square of 8 × 8 cells |
+//! | [`TileSet`] | the tiles of one level (grid of one element size); a tile is a square of 8 × 8 elements, which names of items call cells |
 //! | [`Elements`] | elements of several sizes, as disjoint tiles of several levels; defines the layout of vectors and moves values to another mesh |
 //! | [`divide`] | divides the elements of chosen tiles into quarters, and keeps neighbours within a factor of 2 |
 //! | [`ContactFields`] | the refinement rule, which selects the elements to divide |
