@@ -8,6 +8,7 @@ mod circles;
 mod complaint;
 mod culture;
 mod dependencies;
+mod emphasis;
 mod guide;
 mod named;
 mod packages;
@@ -41,6 +42,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("equations", tags::check),
     ("snapshots", snapshots::check),
     ("prose", prose::check),
+    ("emphasis", emphasis::check),
     ("culture", culture::check),
     ("dependencies", dependencies::check),
     ("guide", guide::check),

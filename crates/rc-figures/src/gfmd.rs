@@ -57,7 +57,7 @@ pub struct Params {
 pub struct Gfmd {
     params: Params,
     rms_slope: f64,
-    /// Elastic energy per nominal area in full contact, in E*λ of the cell.
+    /// Elastic energy per nominal area in full contact, in E* λ of the cell.
     full_energy: f64,
     points: Vec<Point>,
     distributions: Vec<Distribution>,

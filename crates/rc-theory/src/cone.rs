@@ -26,7 +26,7 @@ impl Cone {
         (penetration / (FRAC_PI_2 * self.slope)).max(0.0)
     }
 
-    /// Load F = (π/2) a² s, in E*λ².
+    /// Load F = (π/2) a² s, in E* λ².
     #[must_use]
     pub fn load(self, contact_radius: f64) -> f64 {
         FRAC_PI_2 * contact_radius * contact_radius * self.slope
@@ -61,7 +61,7 @@ impl Cone {
         self.slope * (a * a.atan2(leg) - a * a / (leg + r))
     }
 
-    /// Elastic energy 2δ³/(3πs), in E*λ³.
+    /// Elastic energy 2δ³/(3πs), in E* λ³.
     #[must_use]
     pub fn energy(self, contact_radius: f64) -> f64 {
         2.0 * self.penetration(contact_radius).powi(3) / (3.0 * PI * self.slope)

@@ -29,7 +29,7 @@ impl EllipticContact {
         [factor * (first - second), factor * ((a / b).powi(2) * second - first)]
     }
 
-    /// Load F = (2/3) p0 π a b, in E*λ².
+    /// Load F = (2/3) p0 π a b, in E* λ².
     #[must_use]
     pub fn load(self) -> f64 {
         2.0 / 3.0 * self.peak_pressure * self.area()

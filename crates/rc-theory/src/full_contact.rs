@@ -27,7 +27,7 @@ pub fn rms_pressure(rms_slope: f64) -> f64 {
     0.5 * rms_slope
 }
 
-/// Elastic energy per nominal area, in E*λ.
+/// Elastic energy per nominal area, in E* λ.
 ///
 /// It is a quarter of the sum over all waves Σ q |`a_k`|² (in λ).
 #[must_use]

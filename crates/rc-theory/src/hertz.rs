@@ -27,7 +27,7 @@ impl Hertz {
         (self.radius * penetration).max(0.0).sqrt()
     }
 
-    /// Contact radius a = (3FR/4)^(1/3), in λ, for a load in E*λ².
+    /// Contact radius a = (3FR/4)^(1/3), in λ, for a load in E* λ².
     #[must_use]
     pub fn contact_radius_at_load(self, load: f64) -> f64 {
         (0.75 * load * self.radius).cbrt()
@@ -39,7 +39,7 @@ impl Hertz {
         contact_radius * contact_radius / self.radius
     }
 
-    /// Load F = 4a³/(3R), in E*λ².
+    /// Load F = 4a³/(3R), in E* λ².
     #[must_use]
     pub fn load(self, contact_radius: f64) -> f64 {
         4.0 * contact_radius.powi(3) / (3.0 * self.radius)
@@ -72,7 +72,7 @@ impl Hertz {
         ((2.0 * a * a - r * r) * a.atan2(leg) + a * leg) / (PI * self.radius)
     }
 
-    /// Elastic energy (8/15) √R δ^(5/2) = 8a⁵/(15R²), in E*λ³.
+    /// Elastic energy (8/15) √R δ^(5/2) = 8a⁵/(15R²), in E* λ³.
     #[must_use]
     pub fn energy(self, contact_radius: f64) -> f64 {
         8.0 * contact_radius.powi(5) / (15.0 * self.radius * self.radius)
@@ -106,7 +106,7 @@ pub struct PeriodicContact {
     pub contact_radius: f64,
     /// Effective radius `R_e`, in λ.
     pub effective_radius: f64,
-    /// Load F, in E*λ². It equals the mean pressure over the cell, in E*.
+    /// Load F, in E* λ². It equals the mean pressure over the cell, in E*.
     pub load: f64,
     /// Penetration Δ, in λ.
     pub penetration: f64,
@@ -138,7 +138,7 @@ impl PeriodicHertz {
         within("contact radius", contact_radius, Self::MAX_CONTACT_RADIUS).map(|a| self.contact(a))
     }
 
-    /// The contact under a load F, in E*λ².
+    /// The contact under a load F, in E* λ².
     ///
     /// The mean pressure in E* has the same value. The radius follows from a³ = FR / (4/3 + (2 S3/3π) FR).
     ///

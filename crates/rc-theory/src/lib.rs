@@ -1,7 +1,7 @@
 //! Closed forms of contact mechanics with their sources, for comparison with numerical solutions.
 //!
-//! Units are those of all libraries of this workspace. Lengths are in λ and pressures in E*, so forces are in E*λ² and
-//! energies in E*λ³. Shapes are those of the rigid body, with heights up towards the half-space. Penetration Δ is
+//! Units are those of all libraries of this workspace. Lengths are in λ and pressures in E*, so forces are in E* λ² and
+//! energies in E* λ³. Shapes are those of the rigid body, with heights up towards the half-space. Penetration Δ is
 //! counted from first touch. It follows the convention of Eq. 3, a displacement of zero mean, unless a type says that
 //! its half-space is infinite.
 //!

@@ -42,7 +42,7 @@ impl ThinLayer {
         contact_radius * contact_radius / (divisor * self.radius)
     }
 
-    /// Load F = π a⁴ / (4Rc), in E*λ². It is π a⁶ / (128 R d³) for an incompressible layer.
+    /// Load F = π a⁴ / (4Rc), in E* λ². It is π a⁶ / (128 R d³) for an incompressible layer.
     #[must_use]
     pub fn load(self, contact_radius: f64) -> f64 {
         let a = contact_radius;

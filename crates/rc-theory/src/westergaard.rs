@@ -84,7 +84,7 @@ impl Westergaard {
         self.amplitude * relative_penetration(self.ratio(mean_pressure))
     }
 
-    /// Elastic energy per nominal area, A p^ P² (1/4 - ln(P)/2), in E*λ.
+    /// Elastic energy per nominal area, A p^ P² (1/4 - ln(P)/2), in E* λ.
     ///
     /// In full contact it is A p^/4 and does not grow with the load.
     #[must_use]

@@ -39,15 +39,16 @@ fn check_columns(path: &str, text: &str) -> Vec<Complaint> {
 
 /// The documentation of one item.
 #[derive(Debug)]
-struct Doc<'a> {
+pub(super) struct Doc<'a> {
     /// Its first line, from 1.
-    line: usize,
+    pub(super) line: usize,
     /// Whether readers outside the module see it: the item is public, part of a trait, or a module itself.
     is_public: bool,
-    lines: Vec<&'a str>,
+    pub(super) lines: Vec<&'a str>,
 }
 
-fn docs(text: &str) -> Vec<Doc<'_>> {
+/// The documentation of all items in a source, in their order.
+pub(super) fn docs(text: &str) -> Vec<Doc<'_>> {
     let lines: Vec<&str> = text.lines().map(str::trim_start).collect();
     let mut found = Vec::new();
     let mut at = 0;
