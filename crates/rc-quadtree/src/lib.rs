@@ -5,7 +5,7 @@
 //!
 //! | item | what it is or does |
 //! |---|---|
-//! | [`TileSet`] | the tiles of one level (grid of one element size); a tile is a square of 8 × 8 elements, which names of items call cells |
+//! | [`TileSet`] | the tiles of one level (grid of one element size); a tile is a square of 8 × 8 elements. In names of items, such an element is a cell |
 //! | [`Elements`] | elements of several sizes, as disjoint tiles of several levels; defines the layout of vectors and moves values to another mesh |
 //! | [`divide`] | divides the elements of chosen tiles into quarters, and keeps neighbours within a factor of 2 |
 //! | [`ContactFields`] | the refinement rule, which selects the elements to divide |

@@ -285,4 +285,13 @@ mod tests {
             assert!(applied != text, "{} changes nothing", mutation.name);
         }
     }
+
+    #[test]
+    fn every_mutation_has_a_row_in_the_guide() {
+        let page = fs::read_to_string(repository::root().join("docs/stress.md")).expect("the page of stress");
+        for Mutation { name, .. } in mutations().expect("a list of mutations") {
+            let rows = page.lines().filter(|line| line.starts_with(&format!("| {name} | "))).count();
+            assert_eq!(rows, 1, "rows of \"{name}\" in docs/stress.md");
+        }
+    }
 }
