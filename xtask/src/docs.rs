@@ -40,9 +40,10 @@ const INSTALL: Step = Step {
 
 #[expect(clippy::print_stdout, reason = "the result of the command")]
 pub(crate) fn run(_args: &Args) -> Result<()> {
-    // The crates come first, since they do not need a network.
-    CRATES.run(&[])?;
     let folder = repository::target();
+    // The crates come first, since they do not need a network.
+    make_folders_of_crates(&folder.join("doc")).context("could not make the folders of the documentation")?;
+    CRATES.run(&[])?;
     println!("{}", folder.join("doc/rc_core/index.html").display());
     let book = folder.join("book");
     let chapters = folder.join("guide");
@@ -54,6 +55,17 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
         bail!("`mdbook build {}` failed", chapters.display());
     }
     println!("{}", book.join("index.html").display());
+    Ok(())
+}
+
+/// Makes a folder in `documentation` for each crate.
+///
+/// Cargo documents crates in any order, and rustdoc writes links to another crate only if its folder exists.
+fn make_folders_of_crates(documentation: &Path) -> std::io::Result<()> {
+    for entry in fs::read_dir(repository::root().join("crates"))? {
+        let name = entry?.file_name().to_string_lossy().replace('-', "_");
+        fs::create_dir_all(documentation.join(name))?;
+    }
     Ok(())
 }
 
