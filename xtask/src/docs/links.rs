@@ -27,10 +27,11 @@ pub(super) fn to_lines(page: &str, sources: &Sources) -> String {
 
 /// Path from the book to rustdoc's page of the source file at `path`.
 ///
-/// `None` if the file is not a library's.
+/// `None` if the file is not a library's, or has only tests, which rustdoc does not see.
 fn shown(path: &str) -> Option<String> {
     let (name, file) = path.strip_prefix("crates/")?.split_once("/src/")?;
-    Some(format!("../doc/src/{}/{file}.html", name.replace('-', "_")))
+    let has_only_tests = file.split('/').any(|part| part == "tests" || part == "tests.rs");
+    (!has_only_tests).then(|| format!("../doc/src/{}/{file}.html", name.replace('-', "_")))
 }
 
 /// Number of the line that defines `item`, from 1.
@@ -51,10 +52,15 @@ mod tests {
     #[test]
     fn items_of_libraries_lead_to_their_lines() {
         let text = "//! fn love\n\n/// Love.\npub fn love(x: f64) {}\n".to_owned();
+        let tests = ["crates/rc-a/tests/t.rs", "crates/rc-a/src/b/tests.rs"];
         let sources: Sources =
-            ["crates/rc-a/src/b.rs", "crates/rc-a/tests/t.rs"].map(|path| (path.to_owned(), text.clone())).into();
-        let page = "| Eq. (5) | `crates/rc-a/src/b.rs`: `love`, `hate` | `crates/rc-a/tests/t.rs`: `love` |";
-        let expected = "| Eq. (5) | `crates/rc-a/src/b.rs`: [`love`](../doc/src/rc_a/b.rs.html#4), `hate` | `crates/rc-a/tests/t.rs`: `love` |";
+            ["crates/rc-a/src/b.rs"].iter().chain(&tests).map(|path| ((*path).to_owned(), text.clone())).collect();
+        let page = "| Eq. (5) | `crates/rc-a/src/b.rs`: `love`, `hate` |";
+        let expected = "| Eq. (5) | `crates/rc-a/src/b.rs`: [`love`](../doc/src/rc_a/b.rs.html#4), `hate` |";
         assert_eq!(to_lines(page, &sources), expected);
+        for path in tests {
+            let page = format!("| `{path}`: `love` |");
+            assert_eq!(to_lines(&page, &sources), page);
+        }
     }
 }
