@@ -52,7 +52,7 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
         lines.extend(leakage_lines(leakage));
     }
     if let (Some(evaluated), Some(proven)) = (s.cells_evaluated, s.cells_proven) {
-        lines.push(("cells", format!("{evaluated} evaluated, {proven} proven out of contact")));
+        lines.push(("elements", format!("{evaluated} evaluated, {proven} proven out of contact")));
     }
     lines
 }
