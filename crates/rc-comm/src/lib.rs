@@ -13,7 +13,7 @@
 //! ```
 //! use rc_comm::{Ranks, run_threads};
 //!
-//! // Four ranks add up numbers in the order of ranks, as one would.
+//! // Four ranks add up numbers in the order of ranks, and get the same bits as one process.
 //! let add = |ranks: &Ranks| ranks.fold([0.0], |[sum]| [sum + 0.1 * (ranks.rank() + 1) as f64]);
 //! let sums = run_threads(4, |ranks| add(&ranks))?;
 //! let alone = (1..=4).fold(0.0, |sum, i| sum + 0.1 * f64::from(i));

@@ -15,7 +15,7 @@
 //! | [`bisinusoidal`] | two-dimensional wave | both ends of the load range |
 //! | [`full_contact`] | any band-limited surface | exact, above a load |
 //! | [`persson`] | random surface, Eq. 7 | a theory, not exact in partial contact |
-//! | [`persson_gap`] | mean gap of a random surface at low loads | a theory, without a highest asperity |
+//! | [`persson_gap`] | mean gap of a random surface at low loads | a theory; not near first touch, because its surface has no highest point |
 //!
 //! Module [`lattice`] has the constants of the periodic half-space.
 //!
