@@ -32,13 +32,14 @@ class Leakage(NamedTuple):
 
     #: K of the flow Q = K ΔP/(12 η) (m³). It is 0 where nothing percolates.
     permeance: list[float]
-    #: Certified relative error of the solver. K of the network is between ``permeance`` (1 - ``relative_error``) and ``permeance``.
+    #: Certified relative error of the solver. The exact K on these elements is at most ``permeance``, and at least
+    #: ``permeance`` (1 - ``relative_error``).
     relative_error: list[float]
     #: Estimated error of the grid (m³).
     permeance_error: list[float | None]
     #: Axis with the larger permeance, ``x`` or ``y``, which :attr:`Result.flux` belongs to. None where nothing flows.
     flow_direction: str | None
-    #: Whether the film winds around the cell.
+    #: Whether the film connects opposite sides of the cell, and so all its periodic copies.
     percolates: list[bool]
     #: Gap of the narrowest place of the widest path (m).
     critical_gap: list[float | None]

@@ -82,7 +82,7 @@ class Result:
     mean_gap_error: float
     #: dσ0/dΔ (Pa/m); None in full contact.
     contact_stiffness: float | None
-    #: Electrical and thermal conductance of the nominal area for bodies of conductivity 1 (1/m); None in full contact.
+    #: Electrical or thermal conductance per nominal area and conductivity (1/m); None in full contact.
     contact_conductance: float | None
     #: Elastic energy of the cell (J).
     elastic_energy: float
@@ -134,7 +134,7 @@ class Result:
 
     @property
     def cells(self) -> dict[str, Any]:
-        """The summary as the cells of a row of a sweep. A flow has columns of its own."""
+        """The summary as a row of a sweep's table. Each number of a flow has its own column."""
         cells: dict[str, Any] = json.loads(_core.cells(self._source.summary_json(), self.scene))
         return cells
 
@@ -271,7 +271,7 @@ class Result:
         if self.pressure.shape != (ny, nx):
             height, width = self.pressure.shape
             means = f"means over blocks (output_grid), {width} x {height} of {nx} x {ny} elements"
-            raise ValueError(f"{wanted}: needs the elements, and the folder has {means}; solve again, or give no output_grid")
+            raise ValueError(f"{wanted}: needs the elements, and the folder has {means}; solve again without output_grid")
         return self.pressure
 
     @cached_property

@@ -17,7 +17,7 @@ from roughcontact import _core
 from roughcontact._result import Result
 from roughcontact._solve import solve_keys
 
-#: What solves rows side by side, or a function that makes one: again, when a worker took the first one with it.
+#: An executor, or a function that makes one. If a worker is killed and breaks the executor, the function makes another.
 Workers = Union[Executor, Callable[[], Executor]]
 
 
@@ -44,7 +44,7 @@ class Job(NamedTuple):
     folder: str | None
     #: The Zarr group for its fields.
     group: str | None
-    #: Another one each time that it is handed out: Dask takes equal calls for one, also after its failure.
+    #: A different text for each attempt. Dask would not repeat an identical call, even if the first one failed.
     attempt: str = ""
 
 
@@ -105,7 +105,7 @@ def here(jobs: list[Job]) -> Iterator[tuple[int, Found]]:
         yield job.row, row
 
 
-#: Rounds in which workers end and no row does, before the sweep gives up.
+#: Rounds in which workers die and no row is finished, before the sweep gives up.
 _ROUNDS = 3
 
 #: Names of exceptions of executors whose worker ended while it solved a row.
@@ -128,7 +128,10 @@ def by_workers(workers: Workers, jobs: list[Job]) -> Iterator[tuple[int, Found]]
                     cause = found
             rounds = rounds + 1 if len(unfinished) == len(waiting) else 0
             if cause is not None and (rounds == _ROUNDS or not pool.renew(cause)):
-                message = f"{len(unfinished)} rows are not solved, since workers ended while they solved them: {cause!r}"
+                message = (
+                    f"{len(unfinished)} rows are not solved, because workers died while they solved them: {cause!r}; "
+                    "if memory was short, use fewer workers or a coarser grid"
+                )
                 raise RuntimeError(message) from cause
             # What may have ended a worker comes last, so that it cannot keep the others from being solved.
             suspects = min(pool.size, len(unfinished) - 1)
@@ -192,7 +195,7 @@ class _Pool:
             self._make = workers
             self.executor = workers()
         else:
-            raise ValueError(f"executor: must have a method submit, or be a function that makes one that has, not {workers!r}")
+            raise ValueError(f"executor: must be an executor (with a method submit), or a function that makes one, not {workers!r}")
         self._is_own = self._make is not None
 
     @property

@@ -137,7 +137,7 @@ class RowBar:
 
 
 def _fallen(error: float, tolerance: float) -> float:
-    """How far the error has fallen from 1 (0) to the tolerance (1), in orders of magnitude."""
+    """The progress on a logarithmic scale: 0 for an error of 1, and 1 for the tolerance."""
     if not (error > 0.0 and tolerance < 1.0):
         return 0.0
     return min(max(math.log(error) / math.log(tolerance), 0.0), 1.0)

@@ -101,8 +101,8 @@ def solve(
         Discretisation of the half-space. A function ``f(kx, ky)`` of two arrays of wavenumbers (rad/m) returns the
         displacement (m) of a pressure wave of 1 Pa, which is ``2 / (E* |k|)`` for a half-space. It must be positive, and even
         in kx and in ky. On a square grid it must also stay the same when kx and ky are exchanged. It is called once, with all
-        waves of the grid except the zero wave, and with mirror images of some. Contact edges are located with E*, so E* must
-        be that of its shortest waves. A warning names the E* of the function where it differs.
+        waves of the grid except the zero wave, and with mirror images of some. Contact edges are located with E*. It must
+        agree with the function at its shortest waves: ``E* = 2 / (|k| f)``. If it does not, a warning gives the E* that does.
     boundary : {"periodic", "free"}, default "periodic"
         What is beyond the heights: the same heights again, or the free surface of the half-space. With "free" the heights are
         a patch with the sides ``cell`` and ``cell_y``. Then ``pressure`` is the load divided by its area, and the penetration
@@ -223,5 +223,5 @@ def surface_of(heights: Any, keys: dict[str, Any]) -> tuple[dict[str, Any], Any,
         return {**keys, "heights": os.fspath(heights)}, None, None
     for name in ("unit", "height_scale", "channel", "layout", "spectrum"):
         if name in keys:
-            raise ValueError(f"{name}: is for files; heights that are an array are in metres, so omit it")
+            raise ValueError(f"{name}: is for files; omit it, because the heights are an array (m)")
     return keys, *map_parts(heights)

@@ -37,7 +37,7 @@ class Source(Protocol):
 class Stored:
     """The files of a result, byte by byte, as a pickle holds them.
 
-    Beside them are fields that the files have averaged, and spots that need more than the files.
+    Beside them are the fields of which the files hold only averages, and the spots, which do not follow from the files.
     """
 
     def __init__(self, files: dict[str, bytes], fields: dict[str, Floats], spots: list[ContactSpot] | None) -> None:

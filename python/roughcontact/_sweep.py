@@ -94,7 +94,7 @@ def sweep(
     threads : int, optional
         Worker threads of each solve. Default: all cores, or one with an executor.
     time_limit : float or str, optional
-        Maximum time of each solve.
+        Maximum time of each solve. (``rc sweep --time-limit`` limits the whole sweep.)
     out : path, optional
         A folder that keeps each row as soon as it is finished. Journal and table are those of ``rc sweep --out``, and each
         program continues the sweeps of the other.
@@ -288,7 +288,7 @@ class _Collected:
         self._fields: dict[int, FieldsAt | None] | None = {} if names_fields else None
         kept = [(index, json.loads(cells)) for index, cells in planned.kept()]
         self._rows = {index: {key: cell for key, cell in row.items() if key != "seed" or cell is not None} for index, row in kept}
-        self._failures = {index: "kept from before" for index, row in kept if row["status"] == "not_converged"}
+        self._failures = {index: "some were solved in an earlier run" for index, row in kept if row["status"] == "not_converged"}
         self._refused: dict[int, ValueError] = {}
 
     def __len__(self) -> int:
@@ -326,7 +326,7 @@ class _Collected:
             index = min(self._refused)
             message = f"{self._planned.describe(index)}: {self._refused[index]}"
             if len(table):
-                message += f"; {len(self._refused)} rows cannot be solved, the other {len(table)} are in the table"
+                message += f"; {len(self._refused)} rows cannot be solved, the other {len(table)} are in the attribute table of this error"
             error = ValueError(message)
             error.table = table  # type: ignore[attr-defined]
             raise error

@@ -197,12 +197,12 @@ fn no_heights(channels: &[String]) -> String {
     match channels {
         [] => "the file has no 2-D array of numbers".to_owned(),
         [only] if only.is_empty() => {
-            "no channel has heights: the values of the only one, which has no name, are not lengths; channel = 1 with height_scale (m), \
-             the height of one, reads them"
+            "no channel has heights: the values of the only one, which has no name, are not lengths; to read them, give \
+             channel = 1 and height_scale, the height (m) of the value 1"
                 .to_owned()
         }
         _ => format!(
-            "no channel has heights; {}; channel = NAME with height_scale (m), the height of one, reads a channel",
+            "no channel has heights; {}; to read one, give channel = NAME and height_scale, the height (m) of the value 1",
             names(channels)
         ),
     }

@@ -114,11 +114,11 @@ pub enum LengthUnitError {
         name: String,
     },
     /// Levels of grey have no scale.
-    #[error("levels of grey have no unit; give the height of one level as height_scale (m)")]
+    #[error("levels of grey have no unit; give height_scale, the height (m) of one level")]
     GreyLevels,
     /// Values are not lengths and have no scale.
     #[error(
-        "the values of this channel are not lengths; give the height of one as height_scale (m), or pick another channel"
+        "the values of this channel are not lengths; give height_scale, the height (m) of the value 1, or pick another channel"
     )]
     NotLength,
     /// A scale is zero or not finite.

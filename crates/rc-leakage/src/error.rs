@@ -19,8 +19,8 @@ pub enum LeakageError {
     },
     /// The bounds of the permeance, or the flow through sections, still differ after the most iterations.
     #[error(
-        "the bounds of the permeance along {axis} on {grid} elements differ by {error:.1e} of it after {iterations} iterations, and the flow through two \
-         sections by {conservation:.1e}"
+        "the flow along {axis} on {grid} elements did not converge in {iterations} iterations: its bounds differ by {error:.1e} of the \
+         permeance, and the flow through sections by {conservation:.1e}"
     )]
     NotConverged {
         /// Direction of the flow.

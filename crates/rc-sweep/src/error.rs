@@ -60,7 +60,7 @@ pub enum SweepError {
         most: usize,
     },
     /// The cell of a row that is to be averaged is not a number.
-    #[error("{quantity} of seed {seed} on grid {grid} is not a number")]
+    #[error("{quantity} of seed {seed} on grid {grid} has no value")]
     NoNumber {
         /// Name of the cell.
         quantity: String,
@@ -128,7 +128,7 @@ pub enum SweepError {
         difference: String,
     },
     /// The number of rows in the journal does not agree with its settings.
-    #[error("{}: the number of rows in its journal is not that of its settings: it is damaged", folder.display())]
+    #[error("{}: the journal is damaged, because its number of rows is not that of its settings", folder.display())]
     DamagedShape {
         /// The folder.
         folder: PathBuf,

@@ -21,7 +21,7 @@ pub(crate) struct InspectArgs {
     /// The heights of a file of waves are evaluated on them. Moments are exact.
     #[arg(long, value_name = "N", requires = "spectrum", allow_hyphen_values = true)]
     pub(crate) grid: Option<GridSpec>,
-    /// Side λ of the cell, along x (m) [default: that in the file, or 0.01]
+    /// Side λ of the cell, along x (m) [default: the file's; 0.01 if it has none]
     ///
     /// Of a result, it is that of its scene.toml.
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
@@ -32,7 +32,7 @@ pub(crate) struct InspectArgs {
     /// Unit of lengths in a file that names none: m, mm, um or nm [default: m]
     #[arg(long, value_name = "UNIT")]
     pub(crate) unit: Option<LengthUnit>,
-    /// Height of 1 (m) in a file without a unit; overrides --unit
+    /// Height (m) of the value 1 in a file without a unit; overrides --unit
     ///
     /// In an image, 1 is one level of grey.
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
@@ -42,7 +42,7 @@ pub(crate) struct InspectArgs {
     /// The channels are listed first.
     #[arg(long, value_name = "NAME")]
     pub(crate) channel: Option<String>,
-    /// Layout of an ambiguous text: a row of the map a line, or a point a line
+    /// Layout of an ambiguous text: each line a row (matrix) or point (xyz)
     #[arg(long, value_name = "matrix|xyz")]
     pub(crate) layout: Option<Layout>,
     /// Folder for pictures of a height map: heights, spectrum, distribution

@@ -105,7 +105,7 @@ fn spectrum_lines(s: &SurfaceRecord) -> String {
     let law = match &s.hurst_fit {
         None => "no part of the spectrum follows a power law over a factor of 4 in wave number".to_owned(),
         Some(fit) => format!(
-            "H = {} from {} to {} waves per cell ({} to {}), C0 = {} m^{}, {} off in ln C",
+            "H = {} from {} to {} waves per cell ({} to {}), C0 = {} m^{}, rms deviation of ln C {}",
             digits(fit.hurst, 3),
             digits(fit.from_waves, 3),
             digits(fit.to_waves, 3),

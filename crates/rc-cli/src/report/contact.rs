@@ -176,7 +176,7 @@ fn tiles(s: &Summary) -> Vec<Tile> {
 fn commands(folder: &Path, scene: &Scene) -> Vec<Command> {
     let path = quoted(&folder.join("scene.toml").display().to_string());
     let mut commands = vec![Command {
-        note: "From its folder, digit by digit:".to_owned(),
+        note: "With the scene file in its folder, to the last digit:".to_owned(),
         text: format!("rc solve {path} --out again"),
     }];
     if scene.surface.file().is_none() {
@@ -281,8 +281,8 @@ fn certificate(s: &Summary) -> Certificate {
     ]);
     Certificate {
         rows,
-        note: "All errors come from a fresh application of the elastic operator to the pressure that is shown. They are relative to \
-               the pressure, to the range of heights and to the load. They bound how far the pressure is from the solution of \
+        note: "All errors come from a fresh application of the elastic operator to the pressure that is shown. The first is \
+               relative to the pressure, the next two to the range of heights, and the last to the load. They bound how far the pressure is from the solution of \
                the discrete problem. The error bar of the area says how far that solution is from the continuous one. The limit \
                follows from the tolerance of the solve.",
     }

@@ -229,8 +229,8 @@ fn body(means: &[Estimate]) -> Body {
         heads: ["load", "mean", "error", "of statistics", "of the grid", "realisations", "status"],
         rows: means.iter().map(Estimate::row).collect(),
         level_heads: ["grid", "realisations", "mean", "standard deviation", "cost of each", "part of the cost"],
-        note: "A mean is the sum over its levels: the coarsest grid, and the differences from each grid to the next coarser one. Its \
-               error is the root mean square of standard error and error of the finest grid. Costs are elements times \
+        note: "A mean is the sum over its levels: the coarsest grid, and the differences from each grid to the next coarser one. The \
+               square of its error is the sum of the squares of two errors: the standard error, and the error of the finest grid. Costs are elements times \
                applications of the operator.",
     }
 }

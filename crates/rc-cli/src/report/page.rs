@@ -32,7 +32,7 @@ pub(super) struct Tile {
 }
 
 /// What a command line does that has all parameters in it.
-pub(super) const WITHOUT_FILES: &str = "Without any file, digit by digit:";
+pub(super) const WITHOUT_FILES: &str = "Without any file, to the last digit:";
 
 /// A command line and what it does.
 #[derive(Clone, Debug, Serialize)]

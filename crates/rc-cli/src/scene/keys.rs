@@ -45,7 +45,7 @@ pub struct SurfaceKeys {
     /// Unit of lengths in a file that names none: m, mm, um or nm [default: m]
     #[arg(long, value_name = "UNIT", help_heading = help::FILES)]
     pub unit: Option<LengthUnit>,
-    /// Height of 1 (m) in a file without a unit; overrides --unit
+    /// Height (m) of the value 1 in a file without a unit; overrides --unit
     ///
     /// In an image, 1 is one level of grey.
     #[arg(long, value_name = "M", help_heading = help::FILES, allow_hyphen_values = true)]
@@ -55,7 +55,7 @@ pub struct SurfaceKeys {
     /// rc inspect lists the channels of a file.
     #[arg(long, value_name = "NAME", help_heading = help::FILES)]
     pub channel: Option<String>,
-    /// Layout of an ambiguous text: a row of the map a line, or a point a line
+    /// Layout of an ambiguous text: each line a row (matrix) or point (xyz)
     #[arg(long, value_name = "matrix|xyz", help_heading = help::FILES)]
     pub layout: Option<Layout>,
     /// N of a random surface: waves per cell of the shortest wave [default: 64]
@@ -183,7 +183,7 @@ pub struct ContactKeys {
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[command(next_help_heading = help::RESULTS)]
 pub struct RunKeys {
-    /// Folder for the results; without it nothing is written
+    /// Folder for the results; rc solve without it writes none, rc sweep needs it
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Worker threads; results do not depend on it [default: all cores]
@@ -192,7 +192,7 @@ pub struct RunKeys {
     /// Refuse what is estimated to need more: 500MB, 2GB, or bytes
     #[arg(long, value_name = "SIZE", help_heading = help::MACHINE, allow_hyphen_values = true)]
     pub memory_limit: Option<ByteSize>,
-    /// Stop after this time with what there is: seconds, or 90s, 5min, 1h
+    /// Stop the command after this time, with what there is: 90s, 5min, 1h
     ///
     /// A solve that takes longer is marked not_converged. A sweep begins no further row.
     #[arg(long, value_name = "TIME", help_heading = help::MACHINE, allow_hyphen_values = true)]

@@ -28,7 +28,7 @@ const METHODS: [Named<Method>; 3] = [
 
 const BOUNDARIES: [Named<Boundary>; 2] = [
     ("periodic", Boundary::Periodic, "The heights repeat: a periodic cell"),
-    ("free", Boundary::Free, "A patch on an infinite half-space, which nothing presses on beyond it"),
+    ("free", Boundary::Free, "A patch on an infinite half-space; nothing presses on it outside the patch"),
 ];
 
 /// Reads a [`Boundary`].

@@ -29,7 +29,7 @@ pub(crate) struct SolveArgs {
 
 const SOLVE_HELP: &str = "\
 Give --pressure or --penetration, exactly one. Flags override the keys of the scene file.
-A height map has no default cell or material: give --cell, unless the file has a size, and --e-star, or --young and --poisson.
+A height map has no default material: give --e-star, or --young and --poisson. If its file has no size, give --cell too.
 
 DIR receives summary.json, pressure.npy (Pa), gap.npy (m), contact.png and scene.toml.
 Manual pages with longer texts: rc man --out man";
@@ -37,7 +37,7 @@ Manual pages with longer texts: rc man --out man";
 const SOLVE_MANUAL: &str = "\
 The embedded example gives what neither scene file nor flags say: cell 0.01 m, E = 0.4 GPa, ν = 0.45, N = 64, H = 0.8, \
 rms 13 µm, seed 1, kernel love, energy tolerance 0.01. A height map never gets its cell or material: with --heights, give \
---cell, unless the file has a size, and --e-star, or --young and --poisson. The control is never assumed: give --pressure or \
+--e-star, or --young and --poisson. If the file has no size, give --cell too. The control is never assumed: give --pressure or \
 --penetration, exactly one. A flag replaces its alternatives in the scene file: --penetration its pressure, --heights its \
 random surface. Relative paths in a scene file start at its folder.
 

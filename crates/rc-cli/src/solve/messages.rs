@@ -68,7 +68,7 @@ fn of_problem(error: &ProblemError, contact: &ContactSetup) -> CliError {
             CliError::input(format_args!("penetration: must be positive and finite (m), not {}", units.metres(*value)))
         }
         ProblemError::HeightRange { value, smallest, greatest } => CliError::input(format_args!(
-            "heights: their range must be 0 or from {:e} to {:e} m, not {:e} m",
+            "heights: their range must be 0 or from {:e} to {:e} m, not {:e} m; check the cell and the unit",
             units.metres(*smallest),
             units.metres(*greatest),
             units.metres(*value)

@@ -39,7 +39,7 @@ pub(crate) struct TreatmentKeys {
     /// Shorter waves lose more. The length is four points or more.
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub(crate) low_pass: Option<f64>,
-    /// Points on the same area: 512, or 512x256; by means, or cubic interpolation
+    /// Fewer points (means) or more (cubic) on the same area: 512, or 512x256
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub(crate) resample: Option<GridSpec>,
     /// Copies of a periodic map side by side: 3x4, or square (makes the cell a square)

@@ -35,7 +35,8 @@ fn refused(error: &SweepError) -> CliError {
         SweepError::NothingToResume { .. } => "; give the folder of a sweep",
         SweepError::InTheWay { .. } | SweepError::OtherShard { .. } => "; give another --out",
         SweepError::OtherSettings { .. } => "; give its settings, or another --out",
-        SweepError::DamagedLine { .. } => "; remove it",
+        SweepError::DamagedLine { .. } => "; remove the line, and --resume solves its row again",
+        SweepError::DamagedShape { .. } => "; start the sweep again with another --out",
         SweepError::NoNumber { .. } => "; choose another --mean-of",
         SweepError::NoShards => "; give those of all shards",
         SweepError::MissingRows { .. } => "; finish it with --resume",
@@ -61,22 +62,22 @@ pub(super) fn of_run(error: RunError<CliError>) -> CliError {
         ),
         RunError::Refused { error, .. } | RunError::Failed(error) => error,
         RunError::Sweep(error) => error.into(),
-        _ => CliError::input("this sweep cannot be solved"),
+        _ => CliError::input("the sweep ended with an error that rc does not know"),
     }
 }
 
 /// The error for a time limit that was too short for all rows.
 pub(super) fn out_of_time(limit: TimeLimit, missing: usize, n_rows: usize) -> CliError {
     CliError::NotConverged(format!(
-        "time_limit: after {limit} {missing} of {n_rows} rows are not solved; --resume goes on"
+        "time_limit: {missing} of {n_rows} rows are not solved after {limit}; --resume goes on"
     ))
 }
 
 /// The error for a time limit that was too short for a mean.
 pub(super) fn mean_out_of_time(limit: Option<TimeLimit>, kept: usize) -> CliError {
-    let after = limit.map_or_else(String::new, |limit| format!("after {limit} "));
+    let after = limit.map_or_else(String::new, |limit| format!(" after {limit}"));
     CliError::NotConverged(format!(
-        "time_limit: {after}the mean is not reached yet; {kept} solves are kept, --resume goes on"
+        "time_limit: the mean is not reached yet{after}; {kept} solves are kept, --resume goes on"
     ))
 }
 
@@ -87,7 +88,7 @@ pub(super) fn check_means(means: &[EnsembleMean]) -> Result<(), CliError> {
     let reached = format!("error_of_mean: {} at {} {:e}", mean.mean_of, mean.control, mean.control_value);
     Err(CliError::NotConverged(match (mean.not_converged, mean.levels.last()) {
         (0, Some(finest)) if mean.grid_error > mean.standard_error => format!(
-            "{reached} has an error of {} on grid {}, not {};  give a finer --grid",
+            "{reached} has an error of {} on grid {}, not {}; give a finer --grid",
             percent(mean.relative_error),
             finest.grid,
             percent(mean.wanted_error)

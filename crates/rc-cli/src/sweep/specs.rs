@@ -36,7 +36,10 @@ impl FromStr for ShardSpec {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let Some(rest) = text.strip_prefix("auto") else {
-            return text.parse().map(Self::Given).map_err(|error| format!("{error}, nor auto or auto/8"));
+            return text
+                .parse()
+                .map(Self::Given)
+                .map_err(|_| format!("a shard is i/n with i from 1 to n, as 2/8, or auto, or auto/8, not '{text}'"));
         };
         let count = rest.strip_prefix('/').map(|count| count.trim().parse().ok().filter(|&count| count > 0));
         match (rest, count) {
@@ -73,7 +76,8 @@ impl FromStr for ListSpec {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let refuse = |_| format!("a list has 1 part or more, as 64, or rows, not '{text}'");
+        let refuse =
+            |_| format!("give a number of parts, as 64, or the word rows for a part for each row, not '{text}'");
         if text == Self::ROWS { Ok(Self::EachRow) } else { text.parse().map(Self::Parts).map_err(refuse) }
     }
 }

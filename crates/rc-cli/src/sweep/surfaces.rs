@@ -276,7 +276,7 @@ fn control(args: &SweepArgs, scenes: &[(String, Scene)]) -> Result<ControlKind, 
             }
             (Some(kind), Some(other)) if kind != other => {
                 return Err(CliError::input(format_args!(
-                    "{name} has a {}, the scenes before a {}; a sweep has one control",
+                    "{name} gives a {}, but the scenes before it give a {}; a sweep has one control",
                     kind.key(),
                     other.key()
                 )));

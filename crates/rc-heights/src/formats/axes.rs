@@ -22,7 +22,9 @@ pub(super) fn step(name: &str, coordinates: &[f64]) -> Result<f64, FormatError> 
         distance.is_nan() || distance > EVEN * step.abs()
     };
     if step == 0.0 || !step.is_finite() {
-        return Err(FormatError::Irregular(format!("{name} goes from {first:e} to {last:e}")));
+        return Err(FormatError::Irregular(format!(
+            "{name} goes from {first:e} to {last:e}; a grid needs two different finite ends"
+        )));
     }
     match coordinates.iter().enumerate().position(off) {
         None => Ok(step),

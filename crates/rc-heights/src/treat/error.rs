@@ -27,7 +27,7 @@ pub enum TreatError {
     },
     /// The distances of points along x and y are so different that no part is a square.
     #[error(
-        "crop: no part of the map of {grid} points, {:e} apart along x and {:e} along y, is a square within 0.1 %",
+        "crop: no part of the map of {grid} points, {:e} apart along x and {:e} along y, is a square within 0.1 %; resample it first",
         spacing[0],
         spacing[1]
     )]
@@ -39,8 +39,8 @@ pub enum TreatError {
     },
     /// The sides are such that no whole numbers of copies make a square.
     #[error(
-        "repeat: no copies of {grid} points on {:.6e} by {:.6e}, 16 at most along a side, have square points and make a square; \
-         crop or resample it first",
+        "repeat: up to 16 copies along a side of a map of {grid} points, {:.6e} by {:.6e}, never make a square with the same \
+         spacing along x and y; crop or resample it first",
         sides[0],
         sides[1]
     )]

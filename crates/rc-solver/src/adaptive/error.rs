@@ -59,7 +59,7 @@ pub enum AdaptiveError {
     },
     /// A border level on a grid that is not halved down to the base grid.
     #[error(
-        "a border level needs a grid that halves: 16 or a larger power of 2 times another number of elements per side, not {grid}"
+        "a border level needs a grid that can be halved several times: a small number times a large power of 2 along both sides, as 1024 or 1536, not {grid}"
     )]
     BorderOfGrid {
         /// The grid of the smallest elements.
@@ -116,6 +116,8 @@ fn no_base_grid([nx, ny]: [usize; 2], smallest: usize) -> String {
             "the adaptive method needs at least {smallest} elements along the longer side of the grid, not {nx} x {ny}"
         )
     } else {
-        format!("the adaptive method has no base grid of nearly square elements for {nx} x {ny}; other sides have one")
+        format!(
+            "the adaptive method has no base grid of nearly square elements for {nx} x {ny}; other numbers of elements may have one"
+        )
     }
 }

@@ -31,8 +31,8 @@ pub enum GaussSeidelError {
     ///
     /// The estimate comes from a solution on a coarse grid, before any other work.
     #[error(
-        "about {elements} elements in contact need {coefficients:.1e} coefficients a sweep, about {seconds_per_sweep:.0} s, \
-         more than the budget of {budget:.1e}; take a coarser grid, another method, or a larger budget"
+        "about {elements} elements in contact need {coefficients:.1e} coefficients for each sweep of the iteration, about {seconds_per_sweep:.0} s. \
+         At most {budget:.1e} are allowed; take a coarser grid, or another method"
     )]
     Budget {
         /// Estimated number of elements in contact.

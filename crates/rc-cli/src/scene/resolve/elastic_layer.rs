@@ -42,7 +42,7 @@ pub(super) fn layer(keys: &ContactKeys, kernel: KernelName, side: f64) -> Result
     check_ratio(poisson)?;
     if kernel == KernelName::Own {
         return Err(CliError::input(
-            "layer_thickness: a function as the kernel describes the solid already; omit one of the two",
+            "layer_thickness: the function given as kernel already describes the solid; omit one of the two",
         ));
     }
     if let Some(method @ (Method::Adaptive | Method::GaussSeidel)) = keys.method {

@@ -23,7 +23,7 @@ pub(super) fn boundary(keys: &ContactKeys, kernel: KernelName) -> Result<Boundar
             refuse("kernel: spectral waves are periodic; give love for free borders, or omit it")
         }
         (KernelName::Own, _) => {
-            refuse("boundary: a function as the kernel describes a periodic cell; omit one of the two")
+            refuse("boundary: the function given as kernel describes a periodic cell; omit one of the two")
         }
         (KernelName::Love, Some(_)) => {
             refuse("boundary: a layer has no free borders; omit boundary, or layer_thickness")

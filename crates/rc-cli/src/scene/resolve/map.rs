@@ -38,7 +38,7 @@ fn check(surface: &SurfaceKeys, missing: impl IntoIterator<Item = &'static str>)
     let what = if surface.spectrum.is_some() { "spectrum: a file of waves" } else { "heights: a height map" };
     match surface.file() {
         Some(_) if !missing.is_empty() => Err(CliError::input(format_args!(
-            "{what} needs {} too; the example's values are for generated surfaces only",
+            "{what} needs {} too; the default values are for random surfaces only",
             missing.join(", and ")
         ))),
         _ => Ok(()),
