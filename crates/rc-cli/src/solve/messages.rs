@@ -109,5 +109,8 @@ fn of_adaptive(error: &AdaptiveError, budget: Budget) -> CliError {
 
 /// The message about a solution that did not reach the tolerance.
 pub(super) fn not_converged(grid: Grid, iterations: usize, certificate: &Certificate, bound: ErrorBound) -> String {
-    format!("not converged to {bound} on {grid} elements after {iterations} iterations: {certificate}")
+    format!(
+        "not converged to {bound} on {grid} elements after {iterations} iterations: {certificate}; give \
+         a larger tolerance, or more time"
+    )
 }
