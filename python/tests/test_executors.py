@@ -301,7 +301,7 @@ def test_result_folders_of_rows_are_those_of_the_command_line(command, tmp_path)
         ({"fields": True}, "^fields: the rows are kept in a folder; give out"),
         ({"out": "s", "kernel": lambda kx, ky: kx}, "^out: a journal cannot tell"),
         ({"executor": Refusing(), "progress": print}, "^progress: a function sees solves of this process alone"),
-        ({"executor": 3}, "^executor: must have a method submit, or be a function that makes one that has, not 3"),
+        ({"executor": 3}, r"^executor: must be an executor \(with a method submit\), or a function that makes one, not 3"),
         ({"progress": 3}, "^progress: must be True, False or a function, not 3"),
         ({"seeds": 3}, "^seeds: must be whole numbers, as range"),
         ({"seeds": [1.5]}, "^seeds: must be whole numbers, as range"),

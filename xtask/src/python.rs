@@ -10,7 +10,7 @@ use crate::process::Program;
 
 /// Builds, installs and tests the Python package in an environment in target/python.
 ///
-/// It runs tests, type checks, examples and notebooks. It needs a Python from 3.10 on: `python3`, or the one in the
+/// It runs tests, type checks, examples and notebooks. It needs Python 3.11 or newer: `python3`, or the one in the
 /// variable PYTHON.
 #[derive(clap::Args)]
 pub(crate) struct Args {

@@ -63,7 +63,7 @@ fn bad_values_of_the_contact_are_refused_with_their_key() {
         (&["--method", "adaptive", "--kernel", "spectral"], "needs kernel love"),
         (&["--method", "adaptive", "--grid", "128x64"], "square elements"),
         (&["--method", "adaptive", "--grid", "66"], "at least 128 elements"),
-        (&["--border-level", "1", "--grid", "130"], "needs a grid that halves"),
+        (&["--border-level", "1", "--grid", "130"], "needs a grid that can be halved several times"),
         (&["--method", "adaptive", "--tolerance", "1e-13"], "tolerance"),
         (&["--memory-limit", "100kB"], "memory_limit"),
         (&["--memory-limit", "100kB", "--method", "uniform"], "memory_limit"),

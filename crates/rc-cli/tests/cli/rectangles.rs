@@ -87,6 +87,6 @@ fn what_does_not_go_with_a_rectangle_is_refused() {
         refused(&["--heights", "map.npy", "--cell", "2e-3", "--cell-y", side], expected);
     }
     let repeat = ["surface", "--heights", "map.npy", "--repeat", "square", "--cell", "1.4142135", "--cell-y", "1"];
-    assert_refused(&place.run(&repeat), "no copies of 128 x 64 points");
+    assert_refused(&place.run(&repeat), "copies along a side of a map of 128 x 64 points");
     assert_eq!(place.names("."), ["map.npy"]);
 }

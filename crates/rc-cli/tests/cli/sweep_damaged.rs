@@ -59,7 +59,7 @@ fn a_changed_digit_in_a_journal_is_found() {
     let damaged = journal.replacen(from, to, 1);
     place.write("s/sweep.jsonl", &damaged);
     let resume = [&TINY[..], &["--pressures", "1e5,2e5", "--out", "s", "--resume"]].concat();
-    assert_refused(&place.run(&resume), "line 2 is damaged; remove it");
+    assert_refused(&place.run(&resume), "line 2 is damaged; remove the line, and --resume");
     assert!(text(&place.bytes("s/sweep.jsonl")) == damaged, "the damaged journal was changed");
     place.write("s/sweep.jsonl", journal.replace("\"loads\":2}", "\"loads\":9999999999999999}"));
     assert_refused(&place.run(&resume), "not a journal of rc sweep");

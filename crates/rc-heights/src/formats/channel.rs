@@ -150,8 +150,8 @@ mod tests {
         assert!(chosen(channels(&[""]), Some("1")).is_ok());
         for (names, expected) in [
             (&[][..], "no 2-D array"),
-            (&[""], "channel = 1 with height_scale"),
-            (&["phase", "V"], "phase, V; channel"),
+            (&[""], "channel = 1 and height_scale"),
+            (&["phase", "V"], "phase, V; to read one, give channel"),
         ] {
             let error = chosen(channels(names), None).err().expect("no heights").to_string();
             assert!(error.contains(expected), "{error}");
