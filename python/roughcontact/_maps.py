@@ -144,7 +144,7 @@ def _sides_of(shape: tuple[int, ...], known: Sides | None, cell: float | None, c
         return None
     ny, nx = shape
     if side_y is None and nx != ny:
-        squares = f"{side * ny / nx:g} if its points are squares, {side:g} if it is one itself"
+        squares = f"{side * ny / nx:g} if the spacing is the same along x and y, {side:g} if the whole map is a square"
         raise ValueError(f"cell_y: must be given (m) for a map of {nx} x {ny} points: {squares}")
     return side, side if side_y is None else side_y
 

@@ -104,7 +104,7 @@ class Bar:
             return
         self._bar.set_description_str(f"level {progress.level}/{progress.levels}", refresh=False)
         self._bar.n = round(_STEPS * _fallen(progress.error, progress.tolerance))
-        self._bar.set_postfix_str(f"error {progress.error:.0e} of {progress.tolerance:.0e}", refresh=False)
+        self._bar.set_postfix_str(f"error {progress.error:.0e}, tolerance {progress.tolerance:.0e}", refresh=False)
         self._bar.update(0)
         self._bar.refresh()
 

@@ -106,10 +106,10 @@ def solve(
     boundary : {"periodic", "free"}, default "periodic"
         What is beyond the heights: the same heights again, or the free surface of the half-space. With "free" the heights are
         a patch with the sides ``cell`` and ``cell_y``. Then ``pressure`` is the load divided by its area, and the penetration
-        is the displacement of a rigid body since first touch (kernel love).
+        is the displacement of a rigid body since first touch. Only the kernel love has free borders.
     layer_thickness, layer_poisson : float, optional
         An elastic layer of this thickness (m), bonded to a rigid base, instead of the half-space. Its Poisson's ratio is
-        ``poisson``. With ``e_star``, ``layer_poisson`` must be given (uniform method).
+        ``poisson``. With ``e_star``, ``layer_poisson`` must be given. Only the uniform method solves layers.
     method : {"adaptive", "uniform", "gauss-seidel"}, optional
         How the problem is solved. Default: adaptive, or uniform where that is cheaper.
     border_level : int, default 0

@@ -288,7 +288,7 @@ class _Collected:
         self._fields: dict[int, FieldsAt | None] | None = {} if names_fields else None
         kept = [(index, json.loads(cells)) for index, cells in planned.kept()]
         self._rows = {index: {key: cell for key, cell in row.items() if key != "seed" or cell is not None} for index, row in kept}
-        self._failures = {index: "some were solved in an earlier run" for index, row in kept if row["status"] == "not_converged"}
+        self._failures = {index: "not known, it was solved in an earlier run" for index, row in kept if row["status"] == "not_converged"}
         self._refused: dict[int, ValueError] = {}
 
     def __len__(self) -> int:
@@ -332,6 +332,6 @@ class _Collected:
             raise error
         if self._failures:
             first = self._failures[min(self._failures)]
-            message = f"{len(self._failures)} of {len(table)} rows did not converge: {first}"
+            message = f"{len(self._failures)} of {len(table)} rows did not converge, the first for this reason: {first}"
             warnings.warn(message, NotConvergedWarning, stacklevel=3)
         return table

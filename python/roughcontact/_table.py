@@ -31,7 +31,7 @@ class Table:
     rows: list[dict[str, Any]]
     #: The results of the rows. None without ``keep_results=True``.
     results: list[Result] | None
-    #: The places of the rows' Zarr groups, with None for a row from before. None without ``fields="DIR"``.
+    #: The places of the rows' Zarr groups, with None for a row that an earlier run solved (``resume``). None without ``fields="DIR"``.
     fields: list[FieldsAt | None] | None
 
     def __init__(

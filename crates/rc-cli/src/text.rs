@@ -116,7 +116,7 @@ fn surface_line(s: &Summary) -> String {
 fn certificate_line(s: &Summary) -> String {
     let energy = s.energy_error.map_or_else(String::new, |energy| format!("energy {energy:.1e}, "));
     format!(
-        "{energy}complementarity {:.1e}, penetration {:.1e}, load {:.1e}",
+        "{energy}complementarity {:.1e}, deepest overlap {:.1e}, load {:.1e}",
         s.complementarity_error, s.penetration_error, s.load_error
     )
 }

@@ -106,17 +106,21 @@ impl fmt::Display for MethodReason {
             Self::AskedFor(method) => write!(f, "{method}: asked for"),
             Self::BorderLevel => write!(f, "adaptive: a border level is asked for"),
             Self::SmallContact { percent } => {
-                write!(f, "adaptive: an estimated contact area of {} %", round(percent))
+                write!(f, "adaptive: the contact area was estimated as {} % before the solve", round(percent))
             }
             Self::LargeContact { percent } => {
-                write!(f, "uniform: an estimated contact area of {} % is cheaper on the uniform grid", round(percent))
+                write!(
+                    f,
+                    "uniform: the contact area was estimated as {} % before the solve, which is cheaper on the uniform grid",
+                    round(percent)
+                )
             }
             Self::ScatteredContact { percent } => {
-                write!(f, "uniform: contact is near {} % of the tiles of the adaptive method", round(percent))
+                write!(f, "uniform: {} % of the tiles of the adaptive method would be near contact", round(percent))
             }
             Self::UniformDoesNotFit { percent } => write!(
                 f,
-                "adaptive: at an estimated contact area of {} % the uniform grid is cheaper but does not fit into memory",
+                "adaptive: the contact area was estimated as {} % before the solve; the uniform grid is cheaper but does not fit into memory",
                 round(percent)
             ),
             Self::AdaptiveDoesNotFit => write!(f, "uniform: the adaptive method does not fit into memory"),

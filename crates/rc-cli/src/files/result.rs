@@ -58,7 +58,11 @@ impl ResultFolder {
         let plastic_gap = folder.join(PLASTIC_GAP_FILE).is_file().then(|| field(PLASTIC_GAP_FILE)).transpose()?;
         for (name, gap) in [("gap.npy", Some(&gap)), (PLASTIC_GAP_FILE, plastic_gap.as_ref())] {
             if let Some(gap) = gap.filter(|gap| gap.grid() != pressure.grid()) {
-                let message = format_args!("{} elements, but pressure.npy has {}", gap.grid(), pressure.grid());
+                let message = format_args!(
+                    "{} elements, but pressure.npy has {}; the files are of different solves, so solve again",
+                    gap.grid(),
+                    pressure.grid()
+                );
                 return Err(CliError::in_file(&folder.join(name), message));
             }
         }

@@ -105,7 +105,7 @@ fn spectrum_lines(s: &SurfaceRecord) -> String {
     let law = match &s.hurst_fit {
         None => "no part of the spectrum follows a power law over a factor of 4 in wave number".to_owned(),
         Some(fit) => format!(
-            "H = {} from {} to {} waves per cell ({} to {}), C0 = {} m^{}, rms deviation of ln C {}",
+            "H = {} from {} to {} waves per cell ({} to {}), C(q) = {} m^{} q^{}, rms deviation of ln C {}",
             digits(fit.hurst, 3),
             digits(fit.from_waves, 3),
             digits(fit.to_waves, 3),
@@ -113,6 +113,7 @@ fn spectrum_lines(s: &SurfaceRecord) -> String {
             engineering(s.cell / fit.to_waves, "m"),
             digits(fit.c0, 3),
             digits(2.0 - 2.0 * fit.hurst, 3),
+            digits(-2.0 * (1.0 + fit.hurst), 3),
             digits(fit.deviation, 2)
         ),
     };

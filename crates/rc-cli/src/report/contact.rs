@@ -203,7 +203,9 @@ fn maps(result: &ResultFolder) -> Maps {
     let pixel = if grid == pixels {
         format!("Every {what} is a pixel.")
     } else {
-        format!("At most {MOST_PIXELS} x {MOST_PIXELS} pixels: each is the mean over its {what}s, of {grid}.")
+        format!(
+            "The maps have at most {MOST_PIXELS} x {MOST_PIXELS} pixels. Each is a mean over some of the {grid} {what}s."
+        )
     };
     let [nx, ny] = summary.grid;
     let averaged = if of_elements {
@@ -212,7 +214,7 @@ fn maps(result: &ResultFolder) -> Maps {
         format!(
             "The files have means over blocks (output_grid): {grid} values of {nx} x {ny} elements. A block is touched if any of its \
              elements is in contact. Stress distribution and contact spots need the elements, and are not shown. The numbers \
-             are those of the elements. {pixel}"
+             on this page are from before averaging. {pixel}"
         )
     };
     Maps {
@@ -275,7 +277,7 @@ fn certificate(s: &Summary) -> Certificate {
         rows.push(row("pressure, in the energy norm", energy, s.energy_tolerance));
     }
     rows.extend([
-        row("pressure where there is a gap", s.complementarity_error, s.tolerance),
+        row("gap where there is pressure", s.complementarity_error, s.tolerance),
         row("deepest overlap", s.penetration_error, s.tolerance),
         row("load", s.load_error, Some(LOAD_LIMIT)),
     ]);

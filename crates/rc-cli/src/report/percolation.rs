@@ -16,7 +16,7 @@ pub(super) fn note(mut rows: Vec<(Surface, f64, [f64; 2])>) -> Option<String> {
         return None;
     }
     if brackets.is_empty() {
-        return Some("Percolation is not lost between any of these loads.".to_owned());
+        return Some("Along each axis, the film percolates at all of these loads, or at none.".to_owned());
     }
     let mean = brackets.iter().map(|[low, high]| 0.5 * (low + high)).sum::<f64>() / brackets.len() as f64;
     let low = brackets.iter().map(|bracket| bracket[0]).fold(f64::INFINITY, f64::min);

@@ -70,7 +70,7 @@ impl Observer for Progress {
             }
             Event::Iteration { iteration, error, tolerance, .. } => {
                 self.bar.set_position((fallen(error, tolerance) * STEPS as f64) as u64);
-                self.bar.set_message(format!("iteration {iteration}, error {error:.0e} of {tolerance:.0e}"));
+                self.bar.set_message(format!("iteration {iteration}, error {error:.0e}, tolerance {tolerance:.0e}"));
             }
             _ => {}
         }

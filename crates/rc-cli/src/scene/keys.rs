@@ -158,7 +158,7 @@ pub struct ContactKeys {
     /// Pits, offsets and light loads do not loosen it.
     #[arg(long, value_name = "ERROR", help_heading = help::ACCURACY, allow_hyphen_values = true)]
     pub energy_tolerance: Option<f64>,
-    /// Instead: tolerance relative to the peak-to-valley height, or auto
+    /// Instead: overlap relative to the peak-to-valley height, or auto
     ///
     /// Other programs have a tolerance relative to the height. auto is an energy error well below the error of the
     /// grid.
@@ -183,7 +183,7 @@ pub struct ContactKeys {
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[command(next_help_heading = help::RESULTS)]
 pub struct RunKeys {
-    /// Folder for the results; rc solve without it writes none, rc sweep needs it
+    /// Folder for the results; without it nothing is written
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Worker threads; results do not depend on it [default: all cores]

@@ -13,6 +13,8 @@ use crate::scene::values::Fraction;
 /// Arguments of `rc sweep`.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = SWEEP_HELP, after_long_help = SWEEP_MANUAL, args_conflicts_with_subcommands = true)]
+#[command(mut_arg("out", |out| out.help("Folder for the rows and the table; must be given")))]
+#[command(mut_arg("area_error", |refused| refused.hide(true)))]
 pub(crate) struct SweepArgs {
     /// What else there is to do with sweeps.
     #[command(subcommand)]

@@ -62,7 +62,7 @@ pub(super) fn of_run(error: RunError<CliError>) -> CliError {
         ),
         RunError::Refused { error, .. } | RunError::Failed(error) => error,
         RunError::Sweep(error) => error.into(),
-        _ => CliError::input("the sweep ended with an error that rc does not know"),
+        _ => CliError::input("the sweep ended for an unknown reason; --resume goes on"),
     }
 }
 
@@ -88,7 +88,7 @@ pub(super) fn check_means(means: &[EnsembleMean]) -> Result<(), CliError> {
     let reached = format!("error_of_mean: {} at {} {:e}", mean.mean_of, mean.control, mean.control_value);
     Err(CliError::NotConverged(match (mean.not_converged, mean.levels.last()) {
         (0, Some(finest)) if mean.grid_error > mean.standard_error => format!(
-            "{reached} has an error of {} on grid {}, not {}; give a finer --grid",
+            "{reached} has an error of {} on grid {}, wanted {}; give a finer --grid",
             percent(mean.relative_error),
             finest.grid,
             percent(mean.wanted_error)

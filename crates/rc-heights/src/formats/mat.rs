@@ -101,7 +101,7 @@ fn arrays(file: &[u8]) -> Result<Vec<Array<'_>>, FormatError> {
     let (mut bytes, mut arrays) = (&file[HEADER..], Vec::new());
     while !bytes.is_empty() {
         if bytes.len() < 8 {
-            let reason = format!("{} bytes of an element, whose start has 8", bytes.len());
+            let reason = format!("it ends after {} of the 8 bytes before an array", bytes.len());
             return Err(FormatError::Container { format: Format::Mat, reason });
         }
         let (kind, size) = (order.u32_at(bytes, 0), order.u32_at(bytes, 4) as usize);

@@ -119,7 +119,7 @@ impl RowWriter {
     /// Errors of the file system, and an error for more values than the grid has elements.
     pub fn write(&mut self, values: &[f64]) -> io::Result<()> {
         let missing = self.missing.checked_sub(values.len());
-        self.missing = missing.ok_or_else(|| io::Error::other("more values than elements"))?;
+        self.missing = missing.ok_or_else(|| io::Error::other("more values than the grid has elements"))?;
         for value in values {
             self.out.write_all(&(value * self.factor).to_le_bytes())?;
         }
