@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pathlib
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -13,6 +14,9 @@ import numpy as np
 import pytest
 
 import roughcontact as rc
+
+# A shell starts commands in the background with interrupts ignored, and their programs inherit this. The tests send some.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 #: What a summary says of a run, not of the contact.
 OF_THE_RUN = {"wall_seconds", "peak_memory_bytes", "threads"}

@@ -129,7 +129,7 @@ def test_the_layer_as_a_function_is_the_layer_by_its_keywords(heights):
     # Two springs in series.
     soft = 1 / (1 / own.contact_stiffness + compressed / 1e6)
     assert named.contact_stiffness == pytest.approx(soft, rel=3e-3)
-    with pytest.raises(ValueError, match="layer_thickness: a function"):
+    with pytest.raises(ValueError, match="layer_thickness: the function given as kernel"):
         rc.solve(heights, **CONTACT, kernel=layer, **keywords)
 
 
@@ -141,7 +141,7 @@ def test_a_patch_does_not_meet_itself(heights):
     trough = np.tile((np.arange(64) - 31.5) ** 2 * 1e-8, (64, 1))
     in_cell, alone = (rc.solve(trough, **CONTACT, boundary=boundary) for boundary in ("periodic", "free"))
     assert len(in_cell.spots) == 1 and len(alone.spots) == 2
-    with pytest.raises(ValueError, match="boundary: a function"):
+    with pytest.raises(ValueError, match="boundary: the function given as kernel"):
         rc.solve(heights, **CONTACT, kernel=half_space, boundary="free")
     with pytest.raises(ValueError, match="leakage: the flow is computed on a periodic cell only"):
         rc.solve(heights, **CONTACT, leakage=True, boundary="free")

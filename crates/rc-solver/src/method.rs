@@ -111,7 +111,7 @@ impl fmt::Display for MethodReason {
             Self::LargeContact { percent } => {
                 write!(
                     f,
-                    "uniform: the contact area was estimated as {} % before the solve, which is cheaper on the uniform grid",
+                    "uniform: it is cheaper for the contact area of {} % that was estimated before the solve",
                     round(percent)
                 )
             }
@@ -120,7 +120,7 @@ impl fmt::Display for MethodReason {
             }
             Self::UniformDoesNotFit { percent } => write!(
                 f,
-                "adaptive: the contact area was estimated as {} % before the solve; the uniform grid is cheaper but does not fit into memory",
+                "adaptive: the uniform grid is cheaper for the estimated contact area of {} % but does not fit into memory",
                 round(percent)
             ),
             Self::AdaptiveDoesNotFit => write!(f, "uniform: the adaptive method does not fit into memory"),
@@ -129,7 +129,7 @@ impl fmt::Display for MethodReason {
             Self::Layer => write!(f, "uniform: a layer has no adaptive form"),
             Self::ElementsNotSquare { grid } => write!(f, "uniform: {grid} elements are not square"),
             Self::NoLevels { grid } => {
-                write!(f, "uniform: {grid} elements are too few, or have no base grid of squares")
+                write!(f, "uniform: {grid} elements are too few or have no base grid of squares")
             }
             Self::Flat => write!(f, "uniform: a flat surface needs no adaptive mesh"),
             Self::ToleranceTooSmall { tolerance } => {

@@ -53,6 +53,6 @@ mod tests {
             "{text}"
         );
         assert_eq!(note(Vec::new()), None);
-        assert!(note(vec![row(1, 0.3, [1.0, 2.0])]).expect("a flow").contains("not lost between any of these loads"));
+        assert!(note(vec![row(1, 0.3, [1.0, 2.0])]).expect("a flow").contains("at all of these loads, or at none"));
     }
 }
