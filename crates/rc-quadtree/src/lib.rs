@@ -1,7 +1,7 @@
 //! The adaptive mesh of squares on the periodic cell.
 //!
 //! The crate has only the geometry, without physics. The mesh has elements near contacts only. They have one size, or
-//! are smaller along the edges of contacts. The default solver runs on this mesh:
+//! are smaller along the edges of contacts. The adaptive method of rc-solver runs on this mesh:
 //!
 //! | item | what it is or does |
 //! |---|---|
